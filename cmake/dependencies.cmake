@@ -1,0 +1,11 @@
+# What taut stands on, all from Debian 12; why each is there is said in script/packages.txt.
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(yaml-cpp REQUIRED)
+pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET GLOBAL hdf5-serial hdf5)
+if(TAUT_BUILD_APPS)
+  find_package(CLI11 REQUIRED)
+endif()

@@ -1,0 +1,41 @@
+# `cmake --install build/release --prefix ~/.local`: the command, the library for find_package(taut),
+# and the files of share/taut.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+# taut::taut is all of the library at once.
+add_library(taut_library INTERFACE)
+add_library(taut::taut ALIAS taut_library)
+set_target_properties(taut_library PROPERTIES EXPORT_NAME taut)
+get_property(layers GLOBAL PROPERTY TAUT_LAYERS)
+list(TRANSFORM layers PREPEND taut_ OUTPUT_VARIABLE layer_targets)
+target_link_libraries(taut_library INTERFACE ${layer_targets})
+set_target_properties(taut_options PROPERTIES EXPORT_NAME options)
+
+if(NOT TAUT_INSTALL)
+  return()
+endif()
+
+set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/taut)
+install(TARGETS taut_library taut_options ${layer_targets} EXPORT taut
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT taut NAMESPACE taut:: FILE tautTargets.cmake DESTINATION ${config_dir})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/taut DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING PATTERN "*.h")
+if(TAUT_BUILD_APPS)
+  install(TARGETS taut RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+foreach(folder IN ITEMS models experiments schema mappings)
+  if(EXISTS ${PROJECT_SOURCE_DIR}/${folder})
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/taut)
+  endif()
+endforeach()
+
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/tautConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/tautConfig.cmake INSTALL_DESTINATION ${config_dir}
+  PATH_VARS CMAKE_INSTALL_DATADIR)
+# Before 1.0, a minor version may break programs.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/tautConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/tautConfig.cmake ${PROJECT_BINARY_DIR}/tautConfigVersion.cmake
+  DESTINATION ${config_dir})

@@ -1,0 +1,47 @@
+/// Complaints about an input, collected so that a user fixes a file in one go.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace taut {
+
+/// A place in an input file. `line` and `column` are 1-based; 0 means unknown.
+struct SourceRef {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+/// One complaint: where, what is wrong, and what to do about it.
+struct Diagnostic {
+  SourceRef at;
+  std::string what;
+  std::string hint;  ///< May be empty.
+};
+
+/// Collects every complaint about one input. Nothing here throws, prints or exits: the caller
+/// decides.
+class Diagnostics {
+ public:
+  void Error(SourceRef at, std::string what, std::string hint = {});
+
+  bool ok() const noexcept { return items_.empty(); }
+  const std::vector<Diagnostic>& items() const noexcept { return items_; }
+
+  /// One line each, sorted by file, line and column, without repetitions:
+  /// `prism.yaml:12:7: error: <what> (<hint>)`.
+  std::string Format() const;
+
+ private:
+  std::vector<Diagnostic> items_;
+};
+
+/// The candidate closest to `word` if it is close enough to be a likely misspelling, else empty.
+std::string_view ClosestMatch(std::string_view word, const std::vector<std::string>& candidates);
+
+/// `did you mean "radius_m"?`, or the list of all candidates if none is close.
+std::string DidYouMean(std::string_view word, const std::vector<std::string>& candidates);
+
+}  // namespace taut

@@ -1,0 +1,29 @@
+/// Elementary functions that give the same bits on every machine and with every C library.
+///
+/// Computed in double-double arithmetic (two doubles, about 2^-100 relative) from +, -, *, / and
+/// sqrt alone, which IEEE 754 fixes, then rounded to a double: the result is within 0.5001 units
+/// in the last place of the true one, and within one of them where it is subnormal. Needs a
+/// compiler that does not contract or reorder (-ffp-contract=off, no -ffast-math). About a
+/// hundred times slower than a C library: meant for reading files and start-up, not for stepping.
+///
+/// Special cases follow C: NaN in, NaN out; domain errors are NaN; overflow is infinity.
+#pragma once
+
+namespace taut::math {
+
+/// Largest angle [rad] that Sin, Cos and Tan accept; beyond it they return NaN, because the
+/// argument is reduced with 160 bits of pi only.
+inline constexpr double kMaxAngle = 1e9;
+
+double Sin(double angle_rad) noexcept;
+double Cos(double angle_rad) noexcept;
+double Tan(double angle_rad) noexcept;
+double Asin(double x) noexcept;
+double Acos(double x) noexcept;
+double Atan(double x) noexcept;
+double Atan2(double y, double x) noexcept;
+double Exp(double x) noexcept;
+double Log(double x) noexcept;
+double Pow(double base, double exponent) noexcept;
+
+}  // namespace taut::math
