@@ -1,0 +1,159 @@
+/// Many worlds of one model, stepped together: one world a SIMD lane, groups of lanes on a
+/// thread pool. A world gives the same bits alone, in any lane, on any number of threads and on
+/// any instruction set (docs/determinism.md).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "taut/diagnostics.h"
+#include "taut/model_def.h"
+
+namespace taut {
+
+/// A model, checked and laid out for stepping. Immutable; shared by all worlds of a batch.
+class Model {
+ public:
+  /// Checks the numbers of `def`. Nothing and diagnostics (without file positions) if one is
+  /// wrong: a negative mass, NaN, an index out of range.
+  static std::shared_ptr<const Model> Compile(const ModelDef& def, Diagnostics& out);
+
+  virtual ~Model() = default;
+  const ModelDef& def() const noexcept { return def_; }
+
+ protected:
+  explicit Model(ModelDef def) : def_(std::move(def)) {}
+  ModelDef def_;
+};
+
+/// How many worlds share a register: 1, 2 (SSE2), 4 (AVX2), 8 (AVX-512).
+enum class Simd { kScalar = 1, kSse2 = 2, kAvx2 = 4, kAvx512 = 8 };
+
+/// The widest that this machine has, or what the environment variable TAUT_SIMD asks for
+/// (scalar, sse2, avx2, avx512; what the machine lacks falls back to what it has).
+Simd BestSimd();
+
+struct BatchOptions {
+  int worlds = 1;
+  int threads = 1;                ///< 0: one a core.
+  std::optional<Simd> simd;       ///< Nothing: `BestSimd()`, or scalar for a single world.
+  int max_sweeps = 1000;          ///< Of the contact solver; a step that needs more says so.
+  double tolerance_m_per_s = 1e-10;  ///< Residual at which the contact solve counts as done.
+};
+
+/// What a world has to say for itself. Bits; 0 is good. Sticky until `ClearStatus`.
+enum StatusBits : std::uint32_t {
+  kStatusOk = 0,
+  kStatusNonFinite = 1u << 0,         ///< A state is NaN or infinite: the world stands still.
+  kStatusNotConverged = 1u << 1,      ///< The contact solve stopped at max_sweeps.
+  kStatusContactOverflow = 1u << 2,   ///< More contacts than the model has room for.
+};
+
+struct WorldStatus {
+  std::uint32_t bits = kStatusOk;
+  double first_time_s = 0.0;   ///< When the first bit was set.
+  int body = kWorld;           ///< Concerned body, or kWorld.
+  int cable = -1;              ///< Concerned cable, or -1.
+  double residual_m_per_s = 0; ///< Of the last solve.
+  int sweeps = 0;              ///< Of the last solve.
+};
+
+/// A cable at the current time.
+struct CableState {
+  double length_m = 0;         ///< l: between its ends, along all attachments.
+  double rate_m_per_s = 0;     ///< dl/dt, exact.
+  double rest_length_m = 0;    ///< L.
+  double tension_n = 0;        ///< What a load cell feels: spring and damper.
+  double elastic_n = 0;        ///< max(0, k (l - L)) alone: what NTRT logs.
+};
+
+struct BodyState {
+  Vec3 position_m;                  ///< Of the centre of mass, in W.
+  Quat orientation;                 ///< From the start's orientation (identity at t = 0), in W.
+  Vec3 velocity_m_per_s;            ///< In W.
+  Vec3 angular_velocity_rad_per_s;  ///< In W.
+};
+
+struct Energy {
+  double kinetic_j = 0, gravity_j = 0, elastic_j = 0;
+};
+
+/// A touching point of the last step.
+struct ContactState {
+  int body_a = 0, body_b = kWorld;  ///< The force acts on A, its opposite on B.
+  Vec3 point_m, normal;             ///< In W; normal points from B to A.
+  Vec3 force_n;                     ///< On A, in W.
+  double gap_m = 0;
+};
+
+/// Which per-world parameter `SetParameter` changes. `index`: a body, a cable or a surface.
+enum class Parameter {
+  kBodyMass,             ///< [kg]; inertia scales with it.
+  kCableStiffness,       ///< [N/m]
+  kCableDamping,         ///< [N s/m]
+  kFrictionScale,        ///< Factor on all coefficients of the world; index 0. [1]
+  kGravityX, kGravityY, kGravityZ,  ///< [m/s^2]; index 0.
+};
+
+class Batch {
+ public:
+  Batch(std::shared_ptr<const Model> model, const BatchOptions& options);
+  ~Batch();
+  Batch(Batch&&) noexcept;
+  Batch& operator=(Batch&&) noexcept;
+
+  const Model& model() const noexcept;
+  int worlds() const noexcept;
+  int lanes() const noexcept;
+
+  /// Advances every world by `count` steps of `step_s`. Allocates nothing.
+  void Step(double step_s, int count = 1) noexcept;
+
+  /// Simulated time of a world [s].
+  double Time(int world) const noexcept;
+
+  // --- commands: held until changed -------------------------------------------------------
+  /// The actuator's target for a cable's rest length [m].
+  void SetRestLengthTarget(int world, int cable, double rest_length_m) noexcept;
+  double RestLengthTarget(int world, int cable) const noexcept;
+  /// A force on a node [N], in W, for all following steps.
+  void SetNodeForce(int world, int node, const Vec3& force_n) noexcept;
+
+  // --- observation -------------------------------------------------------------------------
+  CableState Cable(int world, int cable) const noexcept;
+  BodyState Body(int world, int body) const noexcept;
+  Vec3 NodePosition(int world, int node) const noexcept;   ///< [m], in W.
+  Vec3 NodeVelocity(int world, int node) const noexcept;   ///< [m/s], in W.
+  Energy TotalEnergy(int world) const noexcept;
+  Vec3 Momentum(int world) const noexcept;                 ///< [kg m/s], in W.
+  Vec3 AngularMomentum(int world) const noexcept;          ///< About W's origin [kg m^2/s].
+  std::vector<ContactState> Contacts(int world) const;     ///< Of the last step.
+
+  // --- state -------------------------------------------------------------------------------
+  void SetBodyState(int world, int body, const BodyState& state) noexcept;
+  void SetTime(int world, double time_s) noexcept;
+  void SetRestLength(int world, int cable, double rest_length_m) noexcept;
+  void SetParameter(int world, Parameter parameter, int index, double value) noexcept;
+  double GetParameter(int world, Parameter parameter, int index) const noexcept;
+
+  /// All that determines a world's future, commands and parameters included.
+  std::vector<std::uint8_t> Save(int world) const;
+  /// False if `snapshot` is not of this model.
+  bool Restore(int world, const std::vector<std::uint8_t>& snapshot) noexcept;
+  std::uint64_t Hash(int world) const noexcept;
+  WorldStatus Status(int world) const noexcept;
+  void ClearStatus(int world) noexcept;
+  /// Memory that one more world costs [bytes].
+  std::size_t BytesPerWorld() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace taut

@@ -1,0 +1,153 @@
+/// What a robot and its surroundings are made of, in numbers: the plain description that a
+/// `Model` is compiled from. A model file (`taut/spec.h`) is one way to fill it; a program may
+/// fill it directly.
+///
+/// SI units. World frame W: right-handed, z up, x forward, y left. Everything is given in W at
+/// the moment t = 0, as described (before any settling).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "taut/types.h"
+
+namespace taut {
+
+/// Surface properties of a shape. How two of them combine is `ModelDef::friction_combine`.
+struct Material {
+  double static_friction = 0.5;   ///< Coulomb coefficient while sticking, >= kinetic_friction.
+  double kinetic_friction = 0.5;  ///< Coulomb coefficient while sliding, >= 0.
+  double restitution = 0.0;       ///< Newton's coefficient, 0..1.
+};
+
+/// A rigid body. Shapes, cables and nodes refer to it by its index.
+struct BodyDef {
+  std::string name;
+  double mass_kg = 0.0;                  ///< > 0 (ignored if `fixed`).
+  Vec3 com_m;                            ///< Centre of mass in W.
+  Inertia inertia_kg_m2;                 ///< About the centre of mass, in axes parallel to W.
+  Vec3 velocity_m_per_s;                 ///< Of the centre of mass, in W.
+  Vec3 angular_velocity_rad_per_s;       ///< In W.
+  bool fixed = false;                    ///< Does not move: anchored to the world.
+};
+
+struct SphereDef {
+  std::string name;
+  int body = 0;
+  Vec3 center_m;
+  double radius_m = 0.0;  ///< > 0.
+  Material material;
+  bool collides = true;
+};
+
+/// A rod's shape: all points within `radius_m` of the segment from..to.
+struct CapsuleDef {
+  std::string name;
+  int body = 0;
+  Vec3 from_m, to_m;
+  double radius_m = 0.0;  ///< > 0.
+  Material material;
+  bool collides = true;
+};
+
+struct BoxDef {
+  std::string name;
+  int body = 0;
+  Vec3 center_m;
+  Quat orientation;       ///< q_WBox.
+  Vec3 half_extents_m;    ///< Along the box axes, > 0.
+  Material material;
+  bool collides = true;
+};
+
+/// A named point of a body (or of the world): where forces are applied and positions measured.
+struct NodeDef {
+  std::string name;
+  int body = kWorld;
+  Vec3 position_m;
+};
+
+/// How a cable's damper acts (docs/theory/cables.md).
+enum class DampingLaw {
+  kExact,    ///< b dl/dt, tension never below 0 (paper eq. 1).
+  kClamped,  ///< b dl/dt limited to +- the elastic force, as NTRT does.
+};
+
+/// What changes a cable's rest length.
+struct ActuatorDef {
+  enum class Kind {
+    kNone,     ///< Rest length fixed; commands are ignored.
+    kIdeal,    ///< The rest length is what was commanded, at once.
+    kLimited,  ///< Follows the command within the limits below.
+  };
+  Kind kind = Kind::kNone;
+  double max_speed_m_per_s = 0.0;           ///< Of the rest length, > 0; infinity: no limit.
+  double max_acceleration_m_per_s2 = 0.0;   ///< Of the rest length, > 0; infinity: no limit.
+  double max_force_n = 0.0;                 ///< Never winds past this tension, > 0; may be infinity.
+  double min_rest_length_m = 0.0;           ///< >= 0.
+  double min_length_m = 0.0;                ///< Does not wind in while the cable is shorter, >= 0.
+};
+
+/// Where a cable is fixed to, or slides through, a body.
+struct AttachmentDef {
+  int body = kWorld;
+  Vec3 position_m;
+};
+
+/// A tension-only spring and damper through two or more attachments: one cable, one tension.
+struct CableDef {
+  std::string name;
+  std::vector<AttachmentDef> attachments;  ///< >= 2, in order along the cable.
+  double stiffness_n_per_m = 0.0;          ///< k > 0.
+  double damping_n_s_per_m = 0.0;          ///< b >= 0.
+  double rest_length_m = 0.0;              ///< L > 0 at t = 0.
+  DampingLaw damping_law = DampingLaw::kExact;
+  ActuatorDef actuator;
+};
+
+/// A half space: the ground, a slope. The solid side is opposite to `normal`.
+struct PlaneDef {
+  std::string name;
+  Vec3 normal{0.0, 0.0, 1.0};  ///< Unit vector in W.
+  Vec3 point_m;                ///< Any point of the surface.
+  Material material;
+};
+
+/// A fixed box: a wall, a step.
+struct TerrainBoxDef {
+  std::string name;
+  Vec3 center_m;
+  Quat orientation;  ///< q_WBox.
+  Vec3 half_extents_m;
+  Material material;
+};
+
+/// How the coefficients of two touching materials become one.
+enum class CombineRule { kProduct, kGeometricMean, kMinimum, kMaximum };
+
+/// In which directions friction acts at a contact.
+enum class FrictionLaw {
+  kCone,       ///< Both tangential directions: the exact Coulomb cone.
+  kAlongSlip,  ///< Only along the sliding velocity that would result without contact, as Bullet
+               ///< does by default (and so NTRT). Lets a robot creep sideways.
+};
+
+/// Everything a `Model` is compiled from. Indices are positions in these vectors.
+struct ModelDef {
+  std::string name;
+  std::vector<BodyDef> bodies;
+  std::vector<SphereDef> spheres;
+  std::vector<CapsuleDef> capsules;
+  std::vector<BoxDef> boxes;
+  std::vector<NodeDef> nodes;
+  std::vector<CableDef> cables;
+  std::vector<PlaneDef> planes;
+  std::vector<TerrainBoxDef> terrain_boxes;
+
+  Vec3 gravity_m_per_s2{0.0, 0.0, -9.81};
+  CombineRule friction_combine = CombineRule::kGeometricMean;
+  CombineRule restitution_combine = CombineRule::kMaximum;
+  FrictionLaw friction_law = FrictionLaw::kCone;
+};
+
+}  // namespace taut

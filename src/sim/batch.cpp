@@ -1,0 +1,288 @@
+#include "taut/batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+
+#include "sim/batch_impl.h"
+
+namespace taut {
+namespace {
+
+using sim::Layout;
+
+bool MachineHas(Simd simd) {
+  switch (simd) {
+    case Simd::kAvx512:
+      return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+             __builtin_cpu_supports("avx512vl") != 0;
+    case Simd::kAvx2: return __builtin_cpu_supports("avx2") != 0;
+    default: return true;
+  }
+}
+
+const sim::Kernel& KernelOf(Simd simd) {
+  switch (simd) {
+    case Simd::kAvx512: return sim::kKernelAvx512;
+    case Simd::kAvx2: return sim::kKernelAvx2;
+    case Simd::kSse2: return sim::kKernelSse2;
+    default: return sim::kKernelScalar;
+  }
+}
+
+Simd WidestUpTo(Simd wish) {
+  for (Simd simd : {Simd::kAvx512, Simd::kAvx2, Simd::kSse2}) {
+    if (static_cast<int>(simd) <= static_cast<int>(wish) && MachineHas(simd)) return simd;
+  }
+  return Simd::kScalar;
+}
+
+BatchOptions Sane(BatchOptions o) {
+  o.worlds = std::max(o.worlds, 1);
+  o.simd = o.simd ? WidestUpTo(*o.simd) : (o.worlds == 1 ? Simd::kScalar : BestSimd());
+  return o;
+}
+
+}  // namespace
+
+Simd BestSimd() {
+  const char* const text = std::getenv("TAUT_SIMD");
+  const std::string_view wish = text == nullptr ? "" : text;
+  if (wish == "scalar") return Simd::kScalar;
+  if (wish == "sse2") return Simd::kSse2;
+  if (wish == "avx2") return WidestUpTo(Simd::kAvx2);
+  return WidestUpTo(Simd::kAvx512);
+}
+
+Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
+    : model(std::static_pointer_cast<const sim::Tables>(std::move(m))),
+      view(model->View()),
+      options(Sane(o)),
+      kernel(&KernelOf(*options.simd)),
+      layout(model->MakeLayout(kernel->lanes)),
+      pool(options.threads) {
+  const int n = lanes();
+  const auto group_count = static_cast<std::size_t>((options.worlds + n - 1) / n);
+  const auto contacts = static_cast<std::size_t>(model->ContactCapacity(n));
+  const auto nodes = static_cast<std::size_t>(model->node_count);
+  const std::size_t group_rows = static_cast<std::size_t>(layout.rows) * static_cast<std::size_t>(n);
+  const std::size_t stride = (group_rows + 7) / 8 * 8;
+  rows = AllocateAligned<double>(group_count * stride);
+  ids.resize(group_count * contacts);
+  forced.resize(group_count * nodes);
+  status.resize(group_count * static_cast<std::size_t>(n));
+  groups.resize(group_count);
+  for (std::size_t g = 0; g < group_count; ++g) {
+    groups[g].lanes = n;
+    groups[g].rows = rows.get() + g * stride;
+    groups[g].contact_ids = ids.data() + g * contacts;
+    groups[g].forced_nodes = forced.data() + g * nodes;
+    groups[g].status = status.data() + g * static_cast<std::size_t>(n);
+  }
+  for (int i = 0; i < pool.threads(); ++i) {
+    scratch.push_back(AllocateAligned<char>(kernel->scratch_bytes(view)));
+  }
+  // The lanes behind the last world are worlds, too: no special cases, and no NaN.
+  for (int world = 0; world < static_cast<int>(group_count) * n; ++world) InitializeWorld(world);
+}
+
+void Batch::Impl::SetMass(int world, int body, double mass_kg) noexcept {
+  const BodyDef& def = model->def().bodies[static_cast<std::size_t>(body)];
+  at(world, layout.mass + body) = def.fixed ? 0.0 : mass_kg;
+  at(world, layout.inv_mass + body) = def.fixed ? 0.0 : 1.0 / mass_kg;
+  for (int i = 0; i < 3; ++i) {
+    const double moment =
+        def.fixed ? 0.0
+                  : model->inertia[static_cast<std::size_t>(3 * body + i)] * (mass_kg / def.mass_kg);
+    at(world, layout.inertia + 3 * body + i) = moment;
+    at(world, layout.inv_inertia + 3 * body + i) = def.fixed ? 0.0 : 1.0 / moment;
+  }
+}
+
+void Batch::Impl::InitializeWorld(int world) noexcept {
+  const ModelDef& def = model->def();
+  for (int b = 0; b < view.body_count; ++b) {
+    const BodyDef& body = def.bodies[static_cast<std::size_t>(b)];
+    SetMass(world, b, body.mass_kg);
+    set(world, layout.pos + 3 * b, body.com_m);
+    set(world, layout.vel + 3 * b, body.fixed ? Vec3{} : body.velocity_m_per_s);
+    for (int i = 0; i < 4; ++i) {
+      at(world, layout.quat + 4 * b + i) = model->q_WP0[static_cast<std::size_t>(4 * b + i)];
+    }
+    const Inertia& j = body.inertia_kg_m2;
+    const Vec3& w = body.angular_velocity_rad_per_s;
+    const Vec3 momentum{j.xx * w.x + j.xy * w.y + j.xz * w.z, j.xy * w.x + j.yy * w.y + j.yz * w.z,
+                        j.xz * w.x + j.yz * w.y + j.zz * w.z};
+    set(world, layout.mom + 3 * b, body.fixed ? Vec3{} : momentum);
+    set(world, layout.old_vel + 3 * b, body.fixed ? Vec3{} : body.velocity_m_per_s);
+    set(world, layout.old_spin + 3 * b, body.fixed ? Vec3{} : w);
+  }
+  for (int c = 0; c < view.cable_count; ++c) {
+    const CableDef& cable = def.cables[static_cast<std::size_t>(c)];
+    at(world, layout.rest + c) = at(world, layout.target + c) = cable.rest_length_m;
+    at(world, layout.stiffness + c) = cable.stiffness_n_per_m;
+    at(world, layout.damping + c) = cable.damping_n_s_per_m;
+  }
+  JudgeStiffness(world);
+  at(world, layout.friction_scale) = 1.0;
+  set(world, layout.gravity, def.gravity_m_per_s2);
+}
+
+void Batch::Impl::JudgeStiffness(int world) noexcept {
+  const ModelDef& def = model->def();
+  double lighter = 1, k_max = 0, b_max = 0;
+  for (int b = 0; b < view.body_count; ++b) {
+    const BodyDef& body = def.bodies[static_cast<std::size_t>(b)];
+    if (!body.fixed) lighter = std::max(lighter, body.mass_kg / at(world, layout.mass + b));
+  }
+  for (int c = 0; c < view.cable_count; ++c) {
+    k_max = std::max(k_max, at(world, layout.stiffness + c));
+    b_max = std::max(b_max, at(world, layout.damping + c));
+  }
+  // Two bounds of the same spectral radius: by columns, and of the whole.
+  for (int c = 0; c < view.cable_count; ++c) {
+    const double own = model->coupling[static_cast<std::size_t>(c)];
+    const double all = model->largest_coupling;
+    at(world, layout.stiff_k + c) =
+        lighter * std::min(own * at(world, layout.stiffness + c), all * k_max);
+    at(world, layout.stiff_b + c) =
+        lighter * std::min(own * at(world, layout.damping + c), all * b_max);
+  }
+}
+
+void Batch::Impl::Moved(int world) const noexcept {
+  for (int i = 0; i < view.body_pair_count; ++i) at(world, layout.clearance + i) = 0.0;
+  group(world).sensed = false;
+}
+
+void Batch::Impl::Sense(int world) const noexcept {
+  sim::Group& g = group(world);
+  if (!g.sensed) kernel->sense(view, layout, g, scratch[0].get());
+}
+
+void Batch::Impl::ForceNode(int world, int node) noexcept {
+  sim::Group& g = group(world);
+  int* const end = g.forced_nodes + g.forced_count;
+  int* const place = std::lower_bound(g.forced_nodes, end, node);
+  if (place != end && *place == node) return;
+  std::copy_backward(place, end, end + 1);
+  *place = node;
+  ++g.forced_count;
+}
+
+Batch::Batch(std::shared_ptr<const Model> model, const BatchOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(model), options)) {}
+Batch::~Batch() = default;
+Batch::Batch(Batch&&) noexcept = default;
+Batch& Batch::operator=(Batch&&) noexcept = default;
+
+const Model& Batch::model() const noexcept { return *impl_->model; }
+int Batch::worlds() const noexcept { return impl_->options.worlds; }
+int Batch::lanes() const noexcept { return impl_->lanes(); }
+
+void Batch::Step(double step_s, int count) noexcept {
+  Impl& d = *impl_;
+  const sim::StepSettings settings{d.options.max_sweeps, d.options.tolerance_m_per_s};
+  const int threads = d.pool.threads();
+  auto work = [&](int thread) {
+    // A group stays with a thread: its rows stay in that core's cache.
+    const std::size_t n = d.groups.size(), t = static_cast<std::size_t>(thread);
+    const std::size_t first = n * t / static_cast<std::size_t>(threads);
+    const std::size_t last = n * (t + 1) / static_cast<std::size_t>(threads);
+    for (std::size_t g = first; g < last; ++g) {
+      d.kernel->step(d.view, d.layout, d.groups[g], settings, d.scratch[t].get(), step_s, count);
+    }
+  };
+  d.pool.Run(work);
+}
+
+double Batch::Time(int world) const noexcept { return impl_->at(world, impl_->layout.time); }
+
+void Batch::SetRestLengthTarget(int world, int cable, double rest_length_m) noexcept {
+  impl_->at(world, impl_->layout.target + cable) = rest_length_m;
+}
+double Batch::RestLengthTarget(int world, int cable) const noexcept {
+  return impl_->at(world, impl_->layout.target + cable);
+}
+void Batch::SetNodeForce(int world, int node, const Vec3& force_n) noexcept {
+  impl_->ForceNode(world, node);
+  impl_->set(world, impl_->layout.node_force + 3 * node, force_n);
+}
+
+void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
+  Impl& d = *impl_;
+  const auto first = static_cast<std::size_t>(4 * body);
+  const double* q0 = d.model->q_WP0.data() + first;
+  const Quat q = state.orientation * Quat{q0[0], q0[1], q0[2], q0[3]};
+  d.set(world, d.layout.pos + 3 * body, state.position_m);
+  d.set(world, d.layout.vel + 3 * body, state.velocity_m_per_s);
+  d.set(world, d.layout.old_vel + 3 * body, state.velocity_m_per_s);
+  d.set(world, d.layout.old_spin + 3 * body, state.angular_velocity_rad_per_s);
+  const int row = d.layout.quat + 4 * body;
+  d.at(world, row) = q.w;
+  d.at(world, row + 1) = q.x;
+  d.at(world, row + 2) = q.y;
+  d.at(world, row + 3) = q.z;
+  // Angular momentum in W: R diag(I) R^T w.
+  const Vec3 w = Rotate(Conjugate(q), state.angular_velocity_rad_per_s);
+  const Vec3 inertia = d.vec(world, d.layout.inertia + 3 * body);
+  d.set(world, d.layout.mom + 3 * body,
+        Rotate(q, {inertia.x * w.x, inertia.y * w.y, inertia.z * w.z}));
+  d.Moved(world);
+}
+
+void Batch::SetTime(int world, double time_s) noexcept {
+  impl_->at(world, impl_->layout.time) = time_s;
+}
+
+void Batch::SetRestLength(int world, int cable, double rest_length_m) noexcept {
+  Impl& d = *impl_;
+  d.at(world, d.layout.rest + cable) = rest_length_m;
+  d.at(world, d.layout.target + cable) = rest_length_m;
+  d.at(world, d.layout.rest_rate + cable) = 0.0;
+  d.group(world).sensed = false;
+}
+
+void Batch::SetParameter(int world, Parameter parameter, int index, double value) noexcept {
+  Impl& d = *impl_;
+  if (parameter == Parameter::kBodyMass) {
+    const BodyState state = Body(world, index);
+    d.SetMass(world, index, value);
+    d.JudgeStiffness(world);
+    SetBodyState(world, index, state);  // same velocity, other momentum
+    return;
+  }
+  d.group(world).sensed = false;
+  switch (parameter) {
+    case Parameter::kCableStiffness: d.at(world, d.layout.stiffness + index) = value; break;
+    case Parameter::kCableDamping: d.at(world, d.layout.damping + index) = value; break;
+    case Parameter::kFrictionScale: d.at(world, d.layout.friction_scale) = value; break;
+    case Parameter::kGravityX: d.at(world, d.layout.gravity) = value; break;
+    case Parameter::kGravityY: d.at(world, d.layout.gravity + 1) = value; break;
+    default: d.at(world, d.layout.gravity + 2) = value; break;
+  }
+  d.JudgeStiffness(world);
+}
+
+double Batch::GetParameter(int world, Parameter parameter, int index) const noexcept {
+  const Layout& l = impl_->layout;
+  switch (parameter) {
+    case Parameter::kBodyMass: return impl_->at(world, l.mass + index);
+    case Parameter::kCableStiffness: return impl_->at(world, l.stiffness + index);
+    case Parameter::kCableDamping: return impl_->at(world, l.damping + index);
+    case Parameter::kFrictionScale: return impl_->at(world, l.friction_scale);
+    case Parameter::kGravityX: return impl_->at(world, l.gravity);
+    case Parameter::kGravityY: return impl_->at(world, l.gravity + 1);
+    default: return impl_->at(world, l.gravity + 2);
+  }
+}
+
+std::size_t Batch::BytesPerWorld() const noexcept {
+  const Impl& d = *impl_;
+  const std::size_t ids = static_cast<std::size_t>(d.model->ContactCapacity(d.lanes())) *
+                          sizeof(std::uint32_t) / static_cast<std::size_t>(d.lanes());
+  return static_cast<std::size_t>(d.layout.rows) * sizeof(double) + ids + sizeof(sim::LaneStatus);
+}
+
+}  // namespace taut

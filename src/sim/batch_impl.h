@@ -1,0 +1,77 @@
+/// What a Batch keeps; shared by the files that implement it.
+#pragma once
+
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#include "base/thread_pool.h"
+#include "math/vec.h"
+#include "sim/group.h"
+#include "taut/batch.h"
+
+namespace taut {
+
+struct Free {
+  void operator()(void* p) const noexcept { std::free(p); }
+};
+template <class T>
+using Aligned = std::unique_ptr<T[], Free>;
+
+/// Zeroed memory on a cache line's boundary.
+template <class T>
+Aligned<T> AllocateAligned(std::size_t count) {
+  const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64 + 64;
+  void* const memory = std::aligned_alloc(64, bytes);
+  if (memory == nullptr) throw std::bad_alloc();
+  std::fill_n(static_cast<unsigned char*>(memory), bytes, static_cast<unsigned char>(0));
+  return Aligned<T>(static_cast<T*>(memory));
+}
+
+struct Batch::Impl {
+  Impl(std::shared_ptr<const Model> m, const BatchOptions& o);
+
+  std::shared_ptr<const sim::Tables> model;
+  sim::View view;
+  BatchOptions options;
+  const sim::Kernel* kernel;
+  sim::Layout layout;
+  mutable std::vector<sim::Group> groups;
+  Aligned<double> rows;
+  std::vector<std::uint32_t> ids;
+  std::vector<int> forced;
+  std::vector<sim::LaneStatus> status;
+  std::vector<Aligned<char>> scratch;  ///< One a thread.
+  base::ThreadPool pool;
+
+  int lanes() const noexcept { return kernel->lanes; }
+  sim::Group& group(int world) const noexcept {
+    return groups[static_cast<std::size_t>(world / lanes())];
+  }
+  /// Row `row` of a world.
+  double& at(int world, int row) const noexcept {
+    return group(world).rows[row * lanes() + world % lanes()];
+  }
+  Vec3 vec(int world, int row) const noexcept {
+    return {at(world, row), at(world, row + 1), at(world, row + 2)};
+  }
+  void set(int world, int row, const Vec3& x) const noexcept {
+    at(world, row) = x.x;
+    at(world, row + 1) = x.y;
+    at(world, row + 2) = x.z;
+  }
+  Quat quat(int world, int body) const noexcept {
+    const int row = layout.quat + 4 * body;
+    return {at(world, row), at(world, row + 1), at(world, row + 2), at(world, row + 3)};
+  }
+  void SetMass(int world, int body, double mass_kg) noexcept;
+  void InitializeWorld(int world) noexcept;
+  /// After a change of masses, stiffnesses or dampings: which cables are how stiff.
+  void JudgeStiffness(int world) noexcept;
+  /// Bodies moved by hand: what was known about distances is void.
+  void Moved(int world) const noexcept;
+  void Sense(int world) const noexcept;
+  void ForceNode(int world, int node) noexcept;
+};
+
+}  // namespace taut

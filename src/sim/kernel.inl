@@ -1,0 +1,197 @@
+/// The step: the list of its stages (docs/theory/integrator.md). Included once an instruction
+/// set, by step_*.cpp, with the width of its registers.
+///
+/// Moreau's midpoint scheme: half a drift, forces and contacts at the middle, half a drift.
+/// Nothing here or below uses the standard library, so that no shared template is compiled with
+/// instructions that not every machine has.
+
+#include "sim/rows.h"
+#include "sim/shape_contacts.h"
+#include "sim/stage_bodies.inl"
+#include "sim/stiff_cables.inl"
+#include "sim/stage_cables.inl"
+#include "sim/stage_collide.inl"
+#include "sim/contact_row.inl"
+#include "sim/stage_blocks.inl"
+#include "sim/stage_solve.inl"
+
+namespace taut::sim {
+
+template <class W>
+void SaveStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
+  for (int b = 0; b < m.body_count; ++b) {
+    work.saved_pos[b] = s.pos[b];
+    work.saved_quat[b] = s.quat[b];
+    work.saved_vel[b] = s.vel[b];
+    work.saved_mom[b] = s.mom[b];
+  }
+  for (int c = 0; c < m.cable_count; ++c) {
+    work.saved_rest[c] = s.rest[c];
+    work.saved_rest_rate[c] = s.rest_rate[c];
+  }
+}
+
+/// Worlds that are halted keep the state of the start of this step.
+template <class W, class M>
+void KeepStart(const View& m, const Rows<W>& s, const Scratch<W>& work, M halted) noexcept {
+  for (int b = 0; b < m.body_count; ++b) {
+    s.pos[b] = Select3(halted, work.saved_pos[b], s.pos[b]);
+    s.vel[b] = Select3(halted, work.saved_vel[b], s.vel[b]);
+    s.mom[b] = Select3(halted, work.saved_mom[b], s.mom[b]);
+    Q4<W>& q = s.quat[b];
+    const Q4<W>& old = work.saved_quat[b];
+    q = {Select(halted, old.w, q.w), Select(halted, old.x, q.x), Select(halted, old.y, q.y),
+         Select(halted, old.z, q.z)};
+  }
+  for (int c = 0; c < m.cable_count; ++c) {
+    s.rest[c] = Select(halted, work.saved_rest[c], s.rest[c]);
+    s.rest_rate[c] = Select(halted, work.saved_rest_rate[c], s.rest_rate[c]);
+  }
+  const W zero = W::Splat(0.0);
+  for (int i = 0; i < work.contact_count; ++i) {  // NaN forces must not be remembered
+    s.cache_force[i] = Select3(halted, V3<W>{zero, zero, zero}, s.cache_force[i]);
+    s.cache_live[i] = Select(halted, zero, s.cache_live[i]);
+  }
+}
+
+/// Velocities back into the state; what the contacts remember.
+template <class W>
+void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
+                  double step_s) noexcept {
+  const W zero = W::Splat(0.0);  // + 0: see StageDriftSecond
+  const V3<W> none{zero, zero, zero};
+  for (int b = 0; b < m.body_count; ++b) {
+    s.old_vel[b] = s.vel[b];
+    s.old_spin[b] = work.bodies[b].w0 + none;
+    s.vel[b] = work.bodies[b].v + none;
+    s.mom[b] += none;
+  }
+  const W inv_h = W::Splat(1.0 / step_s);
+  g.contact_count = work.contact_count;
+  for (int i = 0; i < work.contact_count; ++i) {
+    const ContactRow<W>& row = work.contacts[i];
+    const auto live = row.live > zero;
+    g.contact_ids[i] = row.id;
+    const V3<W> f = row.ln * row.n + row.l1 * row.t1 + row.l2 * row.t2;
+    s.cache_force[i] = Select3(live, inv_h * f + none, none);
+    s.cache_slip[i] = Select(live & (row.ln > zero), row.slip, W::Splat(1.0));
+    s.cache_bounce[i] = Select(live, row.bounce, zero);
+    s.cache_live[i] = row.live;
+    s.cache_arm[i] = row.arm_a;
+    s.cache_normal[i] = row.n;
+    s.cache_gap[i] = row.gap;
+  }
+}
+
+/// Writes down which lanes have something to say, and halts those that are no longer finite.
+template <class W>
+void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
+           const SolveResult<W>& solve, const StepSettings& settings, uint32_t overflow) noexcept {
+  const W zero = W::Splat(0.0);
+  W sum = zero;  // stays 0 while everything is finite
+  for (int b = 0; b < m.body_count; ++b) {
+    const V3<W>&p = s.pos[b], &v = s.vel[b], &l = s.mom[b];
+    sum += zero * (p.x + p.y + p.z + v.x + v.y + v.z + l.x + l.y + l.z + s.quat[b].w);
+  }
+  for (int c = 0; c < m.cable_count; ++c) sum += zero * s.rest[c];
+  const auto was_halted = s.halted[0] > zero;
+  const auto lost = (!(sum == zero)) & (!was_halted);
+  const auto unsolved = (solve.residual > W::Splat(settings.tolerance_m_per_s)) & (!was_halted);
+  s.residual[0] = solve.residual;
+  s.sweeps[0] = solve.sweeps;
+  if (!Any(lost | unsolved) && overflow == 0) return;
+  for (int lane = 0; lane < W::kLanes; ++lane) {
+    if (was_halted[lane]) continue;
+    LaneStatus& status = g.status[lane];
+    uint32_t bits = 0;
+    if (lost[lane]) bits |= kStatusNonFinite;
+    if (unsolved[lane]) bits |= kStatusNotConverged;
+    if (overflow & (1u << lane)) bits |= kStatusContactOverflow;
+    if (bits != 0 && status.bits == 0) {
+      status.first_time_s = s.time[0][lane];
+      status.body = kWorld;
+      status.cable = -1;
+    }
+    if (bits & ~status.bits & kStatusNotConverged) {
+      W worst = zero;
+      for (int i = 0; i < work.contact_count; ++i) {
+        const ContactRow<W>& row = work.contacts[i];
+        if (row.ln[lane] > worst[lane]) {
+          worst.Set(lane, row.ln[lane]);
+          status.body = row.a;
+        }
+      }
+    }
+    if (bits & kStatusNonFinite) {
+      for (int c = m.cable_count - 1; c >= 0; --c) {
+        const double x = s.rest[c][lane] + s.target[c][lane];
+        if (!(x - x == 0)) status.cable = c;
+      }
+      for (int b = m.body_count - 1; b >= 0; --b) {
+        const double x = s.pos[b].x[lane] + s.pos[b].y[lane] + s.pos[b].z[lane] +
+                         s.vel[b].x[lane] + s.vel[b].y[lane] + s.vel[b].z[lane] +
+                         s.mom[b].x[lane] + s.mom[b].y[lane] + s.mom[b].z[lane];
+        if (!(x - x == 0)) status.body = b;
+      }
+      s.halted[0].Set(lane, 1.0);
+    }
+    status.bits |= bits;
+  }
+}
+
+template <class W>
+void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings& settings,
+              Scratch<W>& work, double step_s) noexcept {
+  const Rows<W> s(layout, g);
+  const W zero = W::Splat(0.0);
+  const W h = W::Splat(step_s), half_h = W::Splat(0.5 * step_s);
+  const double since_last = g.last_step_s > step_s ? g.last_step_s : step_s;
+
+  // Dampers act on velocities at the middle of the step, extrapolated from this step and the last.
+  const double ahead = g.last_step_s > 0 ? 0.5 * step_s / g.last_step_s : 0;
+
+  SaveStart(m, s, work);
+  StageDriftFirst(m, s, half_h);
+  StageKinematics(m, s, g, work, W::Splat(ahead));
+  StageCables(m, s, work, step_s);
+  StageKick(m, s, work, h);
+  const uint32_t overflow = StageCollide(m, s, work, h, W::Splat(since_last));
+  const SolveResult<W> solve = StageSolve(m, s, g, work, settings, step_s);
+  StoreResults(m, s, g, work, step_s);
+  StageDriftSecond(m, s, work, half_h);
+  Judge(m, s, g, work, solve, settings, overflow);
+
+  const auto halted = s.halted[0] > zero;
+  if (Any(halted)) KeepStart(m, s, work, halted);
+  s.time[0] += Select(halted, zero, h);
+  g.last_step_s = step_s;
+  g.sensed = false;
+}
+
+template <class W>
+size_t ScratchBytes(const View& m) {
+  return Scratch<W>::Bytes(m);
+}
+
+template <class W>
+void StepGroup(const View& m, const Layout& layout, Group& g, const StepSettings& settings,
+               void* scratch, double step_s, int count) {
+  Scratch<W> work(m, scratch);
+  for (int i = 0; i < count; ++i) StepOnce(m, layout, g, settings, work, step_s);
+}
+
+template <class W>
+void SenseGroup(const View& m, const Layout& layout, Group& g, void* scratch) {
+  Scratch<W> work(m, scratch);
+  const Rows<W> s(layout, g);
+  StageKinematics(m, s, g, work, W::Splat(0.0));
+  StageSense(m, s, work);
+  g.sensed = true;
+}
+
+template <class W>
+constexpr Kernel MakeKernel() {
+  return {W::kLanes, ScratchBytes<W>, StepGroup<W>, SenseGroup<W>};
+}
+
+}  // namespace taut::sim

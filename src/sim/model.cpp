@@ -1,0 +1,370 @@
+#include <algorithm>
+#include <cmath>
+
+#include "sim/model_check.h"
+#include "sim/principal_axes.h"
+#include "sim/tables.h"
+
+namespace taut {
+namespace {
+
+using sim::PrincipalAxes;
+using sim::Tables;
+
+
+struct Frame {
+  double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< R_WP, row major.
+  double origin[3] = {};
+};
+
+/// A rotation matrix as a unit quaternion (Shepperd's method: the largest component first).
+Quat QuatOf(const double r[9]) {
+  const double t[4] = {1 + r[0] + r[4] + r[8], 1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8],
+                       1 - r[0] - r[4] + r[8]};
+  const int best = static_cast<int>(std::max_element(t, t + 4) - t);
+  const double s = 0.5 / std::sqrt(t[best]), d = 0.5 * std::sqrt(t[best]);
+  const double x = r[7] - r[5], y = r[2] - r[6], z = r[3] - r[1];
+  switch (best) {
+    case 0: return {d, x * s, y * s, z * s};
+    case 1: return {x * s, d, (r[1] + r[3]) * s, (r[2] + r[6]) * s};
+    case 2: return {y * s, (r[1] + r[3]) * s, d, (r[5] + r[7]) * s};
+    default: return {z * s, (r[2] + r[6]) * s, (r[5] + r[7]) * s, d};
+  }
+}
+
+void MatrixOf(const Quat& q, double r[9]) {
+  const double n = 1 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  const double w = q.w * n, x = q.x * n, y = q.y * n, z = q.z * n;
+  const double m[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+                       2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                       2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+  std::copy(m, m + 9, r);
+}
+
+void ToBody(const Frame& f, const Vec3& p, double out[3]) {
+  const double d[3] = {p.x - f.origin[0], p.y - f.origin[1], p.z - f.origin[2]};
+  for (int i = 0; i < 3; ++i) out[i] = f.r[i] * d[0] + f.r[3 + i] * d[1] + f.r[6 + i] * d[2];
+}
+
+double Length(const double p[3]) { return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]); }
+
+double Combine(CombineRule rule, double a, double b) {
+  switch (rule) {
+    case CombineRule::kProduct: return a * b;
+    case CombineRule::kGeometricMean: return std::sqrt(a * b);
+    case CombineRule::kMinimum: return std::min(a, b);
+    default: return std::max(a, b);
+  }
+}
+
+/// Turns a checked definition into tables.
+class Compiler {
+ public:
+  explicit Compiler(Tables& t) : t_(t), def_(t.def()) {}
+
+  void Run() {
+    t_.body_count = static_cast<int>(def_.bodies.size());
+    t_.cable_count = static_cast<int>(def_.cables.size());
+    t_.node_count = static_cast<int>(def_.nodes.size());
+    t_.plane_count = static_cast<int>(def_.planes.size());
+    t_.along_slip = def_.friction_law == FrictionLaw::kAlongSlip;
+    Bodies();
+    Cables();
+    Planes();
+    Shapes();
+    Points();
+    Pairs();
+    sim::CoupleCables(t_);
+  }
+
+ private:
+  const Frame& frame(int body) const { return frames_[static_cast<std::size_t>(Index(body))]; }
+  int Index(int body) const { return body == kWorld ? t_.body_count : body; }
+
+  void Bodies() {
+    frames_.resize(def_.bodies.size() + 1);
+    for (std::size_t b = 0; b < def_.bodies.size(); ++b) {
+      const BodyDef& body = def_.bodies[b];
+      double moments[3] = {0, 0, 0};
+      if (!body.fixed) PrincipalAxes(body.inertia_kg_m2, frames_[b].r, moments);
+      frames_[b].origin[0] = body.com_m.x;
+      frames_[b].origin[1] = body.com_m.y;
+      frames_[b].origin[2] = body.com_m.z;
+      const Quat q = QuatOf(frames_[b].r);
+      t_.q_WP0.insert(t_.q_WP0.end(), {q.w, q.x, q.y, q.z});
+      t_.inertia.insert(t_.inertia.end(), moments, moments + 3);
+    }
+    t_.bound_m.assign(def_.bodies.size() + 1, 0.0);
+  }
+
+  sim::AttachmentTable Attach(int body, const Vec3& p) const {
+    sim::AttachmentTable a;
+    a.body = Index(body);
+    ToBody(frame(body), p, a.p_P);
+    return a;
+  }
+
+  void Cables() {
+    for (const CableDef& c : def_.cables) {
+      sim::CableTable table;
+      table.first_attachment = static_cast<int>(t_.attachments.size());
+      table.attachment_count = static_cast<int>(c.attachments.size());
+      table.clamped_damping = c.damping_law == DampingLaw::kClamped;
+      table.actuator = c.actuator;
+      for (const AttachmentDef& a : c.attachments) {
+        t_.attachments.push_back(Attach(a.body, a.position_m));
+      }
+      t_.max_attachments = std::max(t_.max_attachments, table.attachment_count);
+      t_.cables.push_back(table);
+    }
+    for (const NodeDef& n : def_.nodes) t_.nodes.push_back(Attach(n.body, n.position_m));
+  }
+
+  void Planes() {
+    for (const PlaneDef& p : def_.planes) {
+      sim::PlaneTable table;
+      const double n[3] = {p.normal.x, p.normal.y, p.normal.z};
+      // The first tangent is the axis of W that is least along the normal, made orthogonal.
+      int axis = 0;
+      for (int i = 1; i < 3; ++i) {
+        if (std::fabs(n[i]) < std::fabs(n[axis])) axis = i;
+      }
+      double t1[3] = {-n[0] * n[axis], -n[1] * n[axis], -n[2] * n[axis]};
+      t1[axis] += 1;
+      const double length = Length(t1);
+      for (double& x : t1) x /= length;
+      const double t2[3] = {n[1] * t1[2] - n[2] * t1[1], n[2] * t1[0] - n[0] * t1[2],
+                            n[0] * t1[1] - n[1] * t1[0]};
+      std::copy(n, n + 3, table.normal);
+      std::copy(t1, t1 + 3, table.tangent1);
+      std::copy(t2, t2 + 3, table.tangent2);
+      table.offset_m = n[0] * p.point_m.x + n[1] * p.point_m.y + n[2] * p.point_m.z;
+      t_.planes.push_back(table);
+    }
+  }
+
+  void Round(int body, const Vec3& from, const Vec3& to, double radius, const Material& material) {
+    sim::ShapeTable s;
+    s.body = Index(body);
+    s.radius_m = radius;
+    ToBody(frame(body), from, s.from_P);
+    ToBody(frame(body), to, s.to_P);
+    double half[3];
+    for (int i = 0; i < 3; ++i) {
+      s.center_P[i] = 0.5 * (s.from_P[i] + s.to_P[i]);
+      half[i] = 0.5 * (s.to_P[i] - s.from_P[i]);
+    }
+    s.bound_m = Length(half) + radius;
+    s.material = material;
+    AddShape(s);
+  }
+
+  void Box(int body, const Vec3& center, const Quat& q, const Vec3& half, const Material& material) {
+    sim::ShapeTable s;
+    s.is_box = true;
+    s.body = Index(body);
+    ToBody(frame(body), center, s.center_P);
+    double box[9];
+    MatrixOf(q, box);  // columns: the box axes in W
+    const Frame& f = frame(body);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int i = 0; i < 3; ++i) {
+        s.axes_P[3 * axis + i] =
+            f.r[i] * box[axis] + f.r[3 + i] * box[3 + axis] + f.r[6 + i] * box[6 + axis];
+      }
+    }
+    s.half_m[0] = half.x;
+    s.half_m[1] = half.y;
+    s.half_m[2] = half.z;
+    s.bound_m = Length(s.half_m);
+    s.material = material;
+    AddShape(s);
+  }
+
+  void AddShape(const sim::ShapeTable& s) {
+    double& bound = t_.bound_m[static_cast<std::size_t>(s.body)];
+    bound = std::max(bound, Length(s.center_P) + s.bound_m);
+    t_.shapes.push_back(s);
+  }
+
+  void Shapes() {
+    for (const SphereDef& s : def_.spheres) {
+      if (s.collides) Round(s.body, s.center_m, s.center_m, s.radius_m, s.material);
+    }
+    for (const CapsuleDef& c : def_.capsules) {
+      if (c.collides) Round(c.body, c.from_m, c.to_m, c.radius_m, c.material);
+    }
+    for (const BoxDef& b : def_.boxes) {
+      if (b.collides) Box(b.body, b.center_m, b.orientation, b.half_extents_m, b.material);
+    }
+    for (const TerrainBoxDef& b : def_.terrain_boxes) {
+      Box(kWorld, b.center_m, b.orientation, b.half_extents_m, b.material);
+    }
+  }
+
+  /// Points that can touch planes. Of several in one place the thickest counts, spheres first:
+  /// rods that end in a node's sphere add nothing.
+  void Points() {
+    for (int body = 0; body < t_.body_count; ++body) {
+      t_.first_point.push_back(static_cast<int>(t_.points.size()));
+      if (def_.bodies[static_cast<std::size_t>(body)].fixed) continue;
+      const std::size_t first = t_.points.size();
+      for (const sim::ShapeTable& s : t_.shapes) {
+        if (s.body != body) continue;
+        if (!s.is_box) {
+          AddPoint(first, s.from_P, s.radius_m, s.material);
+          AddPoint(first, s.to_P, s.radius_m, s.material);
+          continue;
+        }
+        for (int corner = 0; corner < 8; ++corner) {
+          double p[3];
+          for (int i = 0; i < 3; ++i) {
+            p[i] = s.center_P[i];
+            for (int axis = 0; axis < 3; ++axis) {
+              p[i] += ((corner >> axis) & 1 ? 1 : -1) * s.half_m[axis] * s.axes_P[3 * axis + i];
+            }
+          }
+          AddPoint(first, p, 0.0, s.material);
+        }
+      }
+    }
+    t_.first_point.push_back(static_cast<int>(t_.points.size()));
+    t_.first_pair_id = static_cast<std::uint32_t>(t_.points.size() * t_.planes.size());
+  }
+
+  void AddPoint(std::size_t first, const double p[3], double radius, const Material& material) {
+    for (std::size_t i = first; i < t_.points.size(); ++i) {
+      const sim::PointTable& other = t_.points[i];
+      const double d[3] = {p[0] - other.p_P[0], p[1] - other.p_P[1], p[2] - other.p_P[2]};
+      if (Length(d) <= 1e-9 && radius <= other.radius_m) return;
+    }
+    sim::PointTable point;
+    std::copy(p, p + 3, point.p_P);
+    point.radius_m = radius;
+    for (std::size_t k = 0; k < def_.planes.size(); ++k) {
+      const Material& plane = def_.planes[k].material;
+      point.static_friction[k] =
+          Combine(def_.friction_combine, material.static_friction, plane.static_friction);
+      point.kinetic_friction[k] =
+          Combine(def_.friction_combine, material.kinetic_friction, plane.kinetic_friction);
+      point.restitution[k] =
+          Combine(def_.restitution_combine, material.restitution, plane.restitution);
+    }
+    t_.points.push_back(point);
+  }
+
+  bool Moves(int index) const {
+    return index < t_.body_count && !def_.bodies[static_cast<std::size_t>(index)].fixed;
+  }
+
+  void Pairs() {
+    std::uint32_t id = t_.first_pair_id;
+    // Pairs with the world first: their contacts need the rows of one body only.
+    for (int a = 0; a < t_.body_count; ++a) AddPair(a, t_.body_count, id);
+    for (int a = 0; a < t_.body_count; ++a) {
+      for (int b = a + 1; b < t_.body_count; ++b) AddPair(a, b, id);
+    }
+    const auto possible = (id - t_.first_pair_id);
+    t_.pair_capacity = static_cast<int>(
+        std::min<std::uint64_t>(possible, static_cast<std::uint64_t>(16 + 12 * t_.body_count)));
+  }
+
+  void AddPair(int a, int b, std::uint32_t& id) {
+    if (!Moves(a) && !Moves(b)) return;
+    if (!Moves(a)) std::swap(a, b);
+    sim::BodyPairTable pair{a, b, static_cast<int>(t_.shape_pairs.size()), 0};
+    for (std::size_t i = 0; i < t_.shapes.size(); ++i) {
+      if (t_.shapes[i].body != a) continue;
+      for (std::size_t j = 0; j < t_.shapes.size(); ++j) {
+        if (t_.shapes[j].body != b) continue;
+        const Material &m = t_.shapes[i].material, &n = t_.shapes[j].material;
+        t_.shape_pairs.push_back(
+            {static_cast<int>(i), static_cast<int>(j), id,
+             Combine(def_.friction_combine, m.static_friction, n.static_friction),
+             Combine(def_.friction_combine, m.kinetic_friction, n.kinetic_friction),
+             Combine(def_.restitution_combine, m.restitution, n.restitution)});
+        id += sim::kMaxPointsPerPair;
+        ++pair.pair_count;
+      }
+    }
+    if (pair.pair_count > 0) t_.body_pairs.push_back(pair);
+  }
+
+  Tables& t_;
+  const ModelDef& def_;
+  std::vector<Frame> frames_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Model> Model::Compile(const ModelDef& def, Diagnostics& out) {
+  if (!sim::CheckModel(def, out)) return nullptr;
+  auto tables = std::make_shared<Tables>(def);
+  Compiler(*tables).Run();
+  return tables;
+}
+
+namespace sim {
+
+View Tables::View() const noexcept {
+  return {body_count,       cable_count,         node_count,         plane_count,
+          static_cast<int>(body_pairs.size()),   bound_m.data(),     cables.data(),
+          attachments.data(), nodes.data(),      planes.data(),      first_point.data(),
+          points.data(),    shapes.data(),       shape_pairs.data(), body_pairs.data(),
+          first_pair_id,    pair_capacity,       max_attachments,
+          static_cast<int>(attachments.size()), along_slip};
+}
+
+Layout Tables::MakeLayout(int lanes) const {
+  Layout l;
+  int rows = 0;
+  const auto take = [&](int count) {
+    const int first = rows;
+    rows += count;
+    return first;
+  };
+  l.time = take(1);
+  l.pos = take(3 * body_count);
+  l.quat = take(4 * body_count);
+  l.vel = take(3 * body_count);
+  l.mom = take(3 * body_count);
+  l.old_vel = take(3 * body_count);
+  l.old_spin = take(3 * body_count);
+  l.rest = take(cable_count);
+  l.rest_rate = take(cable_count);
+  l.target = take(cable_count);
+  l.tension = take(cable_count);
+  l.node_force = take(3 * node_count);
+  l.mass = take(body_count);
+  l.inv_mass = take(body_count);
+  l.inertia = take(3 * body_count);
+  l.inv_inertia = take(3 * body_count);
+  l.stiffness = take(cable_count);
+  l.damping = take(cable_count);
+  l.stiff_k = take(cable_count);
+  l.stiff_b = take(cable_count);
+  l.friction_scale = take(1);
+  l.gravity = take(3);
+  l.halted = take(1);
+  l.snapshot_rows = rows;
+  const int contacts = ContactCapacity(lanes);
+  l.cache_force = take(3 * contacts);
+  l.cache_slip = take(contacts);
+  l.cache_bounce = take(contacts);
+  l.cache_live = take(contacts);
+  l.cache_arm = take(3 * contacts);
+  l.cache_normal = take(3 * contacts);
+  l.cache_gap = take(contacts);
+  l.clearance = take(static_cast<int>(body_pairs.size()));
+  l.residual = take(1);
+  l.sweeps = take(1);
+  l.sense_length = take(cable_count);
+  l.sense_rate = take(cable_count);
+  l.sense_tension = take(cable_count);
+  l.sense_elastic = take(cable_count);
+  l.rows = rows;
+  return l;
+}
+
+}  // namespace sim
+}  // namespace taut

@@ -1,0 +1,135 @@
+#include "sim/model_check.h"
+
+#include <cmath>
+
+#include "sim/principal_axes.h"
+#include "sim/tables.h"
+
+namespace taut::sim {
+namespace {
+
+/// Checks numbers and names what is wrong; there are no file positions at this level.
+class Checker {
+ public:
+  explicit Checker(Diagnostics& out) : out_(out) {}
+  void Require(bool good, const std::string& what) {
+    if (!good) out_.Error({}, what);
+  }
+  void Positive(double x, const std::string& what) {
+    Require(x > 0 && std::isfinite(x), what + " must be a positive number");
+  }
+  void NonNegative(double x, const std::string& what) {
+    Require(x >= 0 && std::isfinite(x), what + " must be zero or a positive number");
+  }
+  void Finite(const Vec3& p, const std::string& what) {
+    Require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z),
+            what + " must be finite");
+  }
+  void Body(int body, const ModelDef& def, const std::string& what) {
+    Require(body >= kWorld && body < static_cast<int>(def.bodies.size()),
+            what + " refers to a body that is not there");
+  }
+  void Surface(const Material& m, const std::string& what) {
+    NonNegative(m.kinetic_friction, what + ": kinetic friction");
+    NonNegative(m.static_friction, what + ": static friction");
+    Require(!(m.static_friction < m.kinetic_friction),
+            what + ": static friction must not be below kinetic friction");
+    Require(m.restitution >= 0 && m.restitution <= 1, what + ": restitution must be 0..1");
+  }
+
+ private:
+  Diagnostics& out_;
+};
+
+void CheckBodies(const ModelDef& def, Checker& check) {
+  for (const BodyDef& b : def.bodies) {
+    const std::string name = "body " + b.name;
+    check.Finite(b.com_m, name + ": centre of mass");
+    check.Finite(b.velocity_m_per_s, name + ": velocity");
+    check.Finite(b.angular_velocity_rad_per_s, name + ": angular velocity");
+    if (b.fixed) continue;
+    check.Positive(b.mass_kg, name + ": mass");
+    double r[9], moments[3];
+    PrincipalAxes(b.inertia_kg_m2, r, moments);
+    for (double m : moments) check.Positive(m, name + ": each principal moment of inertia");
+  }
+}
+
+void CheckShapes(const ModelDef& def, Checker& check) {
+  for (const SphereDef& s : def.spheres) {
+    check.Body(s.body, def, "sphere " + s.name);
+    check.Finite(s.center_m, "sphere " + s.name + ": centre");
+    check.Positive(s.radius_m, "sphere " + s.name + ": radius");
+    check.Surface(s.material, "sphere " + s.name);
+  }
+  for (const CapsuleDef& c : def.capsules) {
+    check.Body(c.body, def, "rod " + c.name);
+    check.Finite(c.from_m, "rod " + c.name + ": end");
+    check.Finite(c.to_m, "rod " + c.name + ": end");
+    check.Positive(c.radius_m, "rod " + c.name + ": radius");
+    check.Surface(c.material, "rod " + c.name);
+  }
+  const auto box = [&](const std::string& name, const Vec3& center, const Vec3& half,
+                       const Material& m) {
+    check.Finite(center, name + ": centre");
+    check.Positive(half.x, name + ": half extent");
+    check.Positive(half.y, name + ": half extent");
+    check.Positive(half.z, name + ": half extent");
+    check.Surface(m, name);
+  };
+  for (const BoxDef& b : def.boxes) {
+    check.Body(b.body, def, "box " + b.name);
+    box("box " + b.name, b.center_m, b.half_extents_m, b.material);
+  }
+  for (const TerrainBoxDef& b : def.terrain_boxes) {
+    box("terrain box " + b.name, b.center_m, b.half_extents_m, b.material);
+  }
+  check.Require(static_cast<int>(def.planes.size()) <= kMaxPlanes,
+                "at most " + std::to_string(kMaxPlanes) + " planes");
+  for (const PlaneDef& p : def.planes) {
+    check.Finite(p.point_m, "plane " + p.name + ": point");
+    const Vec3& n = p.normal;
+    check.Require(std::fabs(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-9,
+                  "plane " + p.name + ": the normal must be a unit vector");
+    check.Surface(p.material, "plane " + p.name);
+  }
+}
+
+void CheckCables(const ModelDef& def, Checker& check) {
+  for (const NodeDef& n : def.nodes) {
+    check.Body(n.body, def, "node " + n.name);
+    check.Finite(n.position_m, "node " + n.name + ": position");
+  }
+  for (const CableDef& c : def.cables) {
+    const std::string name = "cable " + c.name;
+    check.Require(c.attachments.size() >= 2, name + " needs two attachments or more");
+    for (const AttachmentDef& a : c.attachments) {
+      check.Body(a.body, def, name);
+      check.Finite(a.position_m, name + ": attachment");
+    }
+    check.Positive(c.stiffness_n_per_m, name + ": stiffness");
+    check.NonNegative(c.damping_n_s_per_m, name + ": damping");
+    check.Positive(c.rest_length_m, name + ": rest length");
+    if (c.actuator.kind != ActuatorDef::Kind::kLimited) continue;
+    check.Require(c.actuator.max_speed_m_per_s > 0, name + ": largest speed must be positive");
+    check.Require(c.actuator.max_acceleration_m_per_s2 > 0,
+                  name + ": largest acceleration must be positive");
+    check.Require(c.actuator.max_force_n > 0, name + ": largest force must be positive");
+    check.NonNegative(c.actuator.min_rest_length_m, name + ": least rest length");
+    check.NonNegative(c.actuator.min_length_m, name + ": least length");
+  }
+}
+
+}  // namespace
+
+bool CheckModel(const ModelDef& def, Diagnostics& out) {
+  const std::size_t before = out.items().size();
+  Checker check(out);
+  check.Finite(def.gravity_m_per_s2, "gravity");
+  CheckBodies(def, check);
+  CheckShapes(def, check);
+  CheckCables(def, check);
+  return out.items().size() == before;
+}
+
+}  // namespace taut::sim

@@ -1,0 +1,273 @@
+/// What can be seen of a world, and its snapshots.
+
+#include <algorithm>
+#include <cstring>
+
+#include "sim/batch_impl.h"
+
+namespace taut {
+
+
+CableState Batch::Cable(int world, int cable) const noexcept {
+  const Impl& d = *impl_;
+  d.Sense(world);
+  return {d.at(world, d.layout.sense_length + cable), d.at(world, d.layout.sense_rate + cable),
+          d.at(world, d.layout.rest + cable), d.at(world, d.layout.sense_tension + cable),
+          d.at(world, d.layout.sense_elastic + cable)};
+}
+
+BodyState Batch::Body(int world, int body) const noexcept {
+  const Impl& d = *impl_;
+  const Quat q = d.quat(world, body);
+  const double* q0 = d.model->q_WP0.data() + static_cast<std::size_t>(4 * body);
+  const Vec3 l = Rotate(Conjugate(q), d.vec(world, d.layout.mom + 3 * body));
+  const Vec3 inv = d.vec(world, d.layout.inv_inertia + 3 * body);
+  return {d.vec(world, d.layout.pos + 3 * body), q * Conjugate({q0[0], q0[1], q0[2], q0[3]}),
+          d.vec(world, d.layout.vel + 3 * body),
+          Rotate(q, {inv.x * l.x, inv.y * l.y, inv.z * l.z})};
+}
+
+Vec3 Batch::NodePosition(int world, int node) const noexcept {
+  const Impl& d = *impl_;
+  const sim::AttachmentTable& n = d.view.nodes[node];
+  const Vec3 p{n.p_P[0], n.p_P[1], n.p_P[2]};
+  if (n.body == d.view.body_count) return p;
+  return d.vec(world, d.layout.pos + 3 * n.body) + Rotate(d.quat(world, n.body), p);
+}
+
+Vec3 Batch::NodeVelocity(int world, int node) const noexcept {
+  const Impl& d = *impl_;
+  const sim::AttachmentTable& n = d.view.nodes[node];
+  if (n.body == d.view.body_count) return {};
+  const BodyState b = Body(world, n.body);
+  const Vec3 arm = Rotate(d.quat(world, n.body), {n.p_P[0], n.p_P[1], n.p_P[2]});
+  return b.velocity_m_per_s + Cross(b.angular_velocity_rad_per_s, arm);
+}
+
+Energy Batch::TotalEnergy(int world) const noexcept {
+  const Impl& d = *impl_;
+  Energy e;
+  const Vec3 gravity = d.vec(world, d.layout.gravity);
+  for (int b = 0; b < d.view.body_count; ++b) {
+    const double mass = d.at(world, d.layout.mass + b);
+    const Vec3 v = d.vec(world, d.layout.vel + 3 * b);
+    const Vec3 l = Rotate(Conjugate(d.quat(world, b)), d.vec(world, d.layout.mom + 3 * b));
+    const Vec3 inv = d.vec(world, d.layout.inv_inertia + 3 * b);
+    e.kinetic_j += 0.5 * mass * Dot(v, v) +
+                   0.5 * (inv.x * l.x * l.x + inv.y * l.y * l.y + inv.z * l.z * l.z);
+    e.gravity_j -= mass * Dot(gravity, d.vec(world, d.layout.pos + 3 * b));
+  }
+  for (int c = 0; c < d.view.cable_count; ++c) {
+    const CableState cable = Cable(world, c);
+    const double stretch = std::max(cable.length_m - cable.rest_length_m, 0.0);
+    e.elastic_j += 0.5 * d.at(world, d.layout.stiffness + c) * stretch * stretch;
+  }
+  return e;
+}
+
+Vec3 Batch::Momentum(int world) const noexcept {
+  const Impl& d = *impl_;
+  Vec3 sum;
+  for (int b = 0; b < d.view.body_count; ++b) {
+    sum = sum + d.at(world, d.layout.mass + b) * d.vec(world, d.layout.vel + 3 * b);
+  }
+  return sum;
+}
+
+Vec3 Batch::AngularMomentum(int world) const noexcept {
+  const Impl& d = *impl_;
+  Vec3 sum;
+  for (int b = 0; b < d.view.body_count; ++b) {
+    const Vec3 p = d.at(world, d.layout.mass + b) * d.vec(world, d.layout.vel + 3 * b);
+    sum = sum + d.vec(world, d.layout.mom + 3 * b) + Cross(d.vec(world, d.layout.pos + 3 * b), p);
+  }
+  return sum;
+}
+
+std::vector<ContactState> Batch::Contacts(int world) const {
+  const Impl& d = *impl_;
+  const sim::Tables& m = *d.model;
+  const sim::Group& g = d.group(world);
+  std::vector<ContactState> out;
+  for (int i = 0; i < g.contact_count; ++i) {
+    if (!(d.at(world, d.layout.cache_live + i) > 0)) continue;
+    ContactState c;
+    const std::uint32_t id = g.contact_ids[i];
+    if (id < m.first_pair_id) {
+      const int point = static_cast<int>(id) / m.plane_count;
+      c.body_a = static_cast<int>(std::upper_bound(m.first_point.begin(), m.first_point.end(), point) -
+                                  m.first_point.begin()) - 1;
+    } else {
+      const auto& pair =
+          m.shape_pairs[(id - m.first_pair_id) / static_cast<std::uint32_t>(sim::kMaxPointsPerPair)];
+      c.body_a = m.shapes[static_cast<std::size_t>(pair.a)].body;
+      const int b = m.shapes[static_cast<std::size_t>(pair.b)].body;
+      c.body_b = b == m.body_count ? kWorld : b;
+    }
+    c.point_m = d.vec(world, d.layout.pos + 3 * c.body_a) +
+                d.vec(world, d.layout.cache_arm + 3 * i);
+    c.normal = d.vec(world, d.layout.cache_normal + 3 * i);
+    c.force_n = d.vec(world, d.layout.cache_force + 3 * i);
+    c.gap_m = d.at(world, d.layout.cache_gap + i);
+    out.push_back(c);
+  }
+  return out;
+}
+
+namespace {
+
+/// A snapshot: header, the state rows, then the live contacts.
+struct SnapshotHeader {
+  std::uint32_t magic = 0x74736e31;  // "tsn1"
+  std::uint32_t rows = 0, contacts = 0, bits = 0;
+  double first_time_s = 0, last_step_s = 0;
+};
+struct SnapshotContact {
+  std::uint64_t id = 0;
+  Vec3 force_n;
+  double slip = 0, bounce = 0;
+};
+
+std::size_t SnapshotSize(const SnapshotHeader& header) {
+  return sizeof(SnapshotHeader) + sizeof(double) * header.rows +
+         sizeof(SnapshotContact) * header.contacts;
+}
+
+template <class T>
+void Write(std::uint8_t*& at, const T& x) {
+  std::memcpy(at, &x, sizeof(T));
+  at += sizeof(T);
+}
+template <class T>
+T Read(const std::uint8_t*& at) {
+  T x;
+  std::memcpy(&x, at, sizeof(T));
+  at += sizeof(T);
+  return x;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> Batch::Save(int world) const {
+  const Impl& d = *impl_;
+  const sim::Group& g = d.group(world);
+  const sim::LaneStatus& status = g.status[world % d.lanes()];
+  SnapshotHeader header;
+  header.rows = static_cast<std::uint32_t>(d.layout.snapshot_rows);
+  header.bits = status.bits;
+  header.first_time_s = status.first_time_s;
+  header.last_step_s = g.last_step_s;
+  std::vector<SnapshotContact> contacts;
+  for (int i = 0; i < g.contact_count; ++i) {
+    if (!(d.at(world, d.layout.cache_live + i) > 0)) continue;
+    contacts.push_back({g.contact_ids[i], d.vec(world, d.layout.cache_force + 3 * i),
+                        d.at(world, d.layout.cache_slip + i),
+                        d.at(world, d.layout.cache_bounce + i)});
+  }
+  header.contacts = static_cast<std::uint32_t>(contacts.size());
+  std::vector<std::uint8_t> out(SnapshotSize(header));
+  std::uint8_t* at = out.data();
+  Write(at, header);
+  for (int row = 0; row < d.layout.snapshot_rows; ++row) Write(at, d.at(world, row));
+  for (const SnapshotContact& c : contacts) Write(at, c);
+  return out;
+}
+
+bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexcept {
+  Impl& d = *impl_;
+  if (snapshot.size() < sizeof(SnapshotHeader)) return false;
+  const std::uint8_t* at = snapshot.data();
+  const auto header = Read<SnapshotHeader>(at);
+  if (header.magic != SnapshotHeader().magic || snapshot.size() != SnapshotSize(header) ||
+      header.rows != static_cast<std::uint32_t>(d.layout.snapshot_rows) ||
+      header.contacts > static_cast<std::uint32_t>(d.model->ContactCapacity(1))) {
+    return false;
+  }
+  for (int row = 0; row < d.layout.snapshot_rows; ++row) d.at(world, row) = Read<double>(at);
+  for (int node = 0; node < d.view.node_count; ++node) {
+    const Vec3 f = d.vec(world, d.layout.node_force + 3 * node);
+    if (f.x != 0 || f.y != 0 || f.z != 0) d.ForceNode(world, node);
+  }
+  sim::Group& g = d.group(world);
+  sim::LaneStatus& status = g.status[world % d.lanes()];
+  status = {};
+  status.bits = header.bits;
+  status.first_time_s = header.first_time_s;
+  g.last_step_s = std::max(g.last_step_s, header.last_step_s);
+
+  // This lane's contacts give way to the snapshot's; those of other lanes stay.
+  const auto clear = [&](int i) {
+    d.set(world, d.layout.cache_force + 3 * i, {});
+    d.at(world, d.layout.cache_slip + i) = 1.0;
+    d.at(world, d.layout.cache_bounce + i) = 0.0;
+    d.at(world, d.layout.cache_live + i) = 0.0;
+  };
+  for (int i = 0; i < g.contact_count; ++i) clear(i);
+  for (std::uint32_t k = 0; k < header.contacts; ++k) {
+    const auto c = Read<SnapshotContact>(at);
+    const auto id = static_cast<std::uint32_t>(c.id);
+    std::uint32_t* const end = g.contact_ids + g.contact_count;
+    std::uint32_t* const place = std::lower_bound(g.contact_ids, end, id);
+    const int i = static_cast<int>(place - g.contact_ids);
+    if (place == end || *place != id) {
+      if (g.contact_count >= d.model->ContactCapacity(d.lanes())) continue;
+      std::copy_backward(place, end, end + 1);
+      *place = id;
+      for (int first : {d.layout.cache_force, d.layout.cache_arm, d.layout.cache_normal}) {
+        double* const rows = g.rows + (first + 3 * i) * g.lanes;
+        std::copy_backward(rows, rows + 3 * (g.contact_count - i) * g.lanes,
+                           rows + 3 * (g.contact_count - i + 1) * g.lanes);
+        std::fill_n(rows, 3 * g.lanes, 0.0);
+      }
+      for (int first : {d.layout.cache_slip, d.layout.cache_bounce, d.layout.cache_live,
+                        d.layout.cache_gap}) {
+        double* const rows = g.rows + (first + i) * g.lanes;
+        std::copy_backward(rows, rows + (g.contact_count - i) * g.lanes,
+                           rows + (g.contact_count - i + 1) * g.lanes);
+        std::fill_n(rows, g.lanes, first == d.layout.cache_slip ? 1.0 : 0.0);
+      }
+      ++g.contact_count;
+    }
+    d.set(world, d.layout.cache_force + 3 * i, c.force_n);
+    d.at(world, d.layout.cache_slip + i) = c.slip;
+    d.at(world, d.layout.cache_bounce + i) = c.bounce;
+    d.at(world, d.layout.cache_live + i) = 1.0;
+  }
+  d.Moved(world);
+  return true;
+}
+
+std::uint64_t Batch::Hash(int world) const noexcept {
+  // FNV-1a over what a snapshot holds, without building one.
+  const Impl& d = *impl_;
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  const auto add = [&](double x) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &x, sizeof(bits));
+    for (int i = 0; i < 8; ++i) hash = (hash ^ ((bits >> (8 * i)) & 0xff)) * 0x100000001b3u;
+  };
+  for (int row = 0; row < d.layout.snapshot_rows; ++row) add(d.at(world, row));
+  const sim::Group& g = d.group(world);
+  for (int i = 0; i < g.contact_count; ++i) {
+    if (!(d.at(world, d.layout.cache_live + i) > 0)) continue;
+    add(static_cast<double>(g.contact_ids[i]));
+    for (int k = 0; k < 3; ++k) add(d.at(world, d.layout.cache_force + 3 * i + k));
+    add(d.at(world, d.layout.cache_slip + i));
+    add(d.at(world, d.layout.cache_bounce + i));
+  }
+  return hash;
+}
+
+WorldStatus Batch::Status(int world) const noexcept {
+  const Impl& d = *impl_;
+  const sim::LaneStatus& s = d.group(world).status[world % d.lanes()];
+  return {s.bits, s.first_time_s, s.body, s.cable, d.at(world, d.layout.residual),
+          static_cast<int>(d.at(world, d.layout.sweeps))};
+}
+
+void Batch::ClearStatus(int world) noexcept {
+  impl_->group(world).status[world % impl_->lanes()] = {};
+  impl_->at(world, impl_->layout.halted) = 0.0;
+}
+
+}  // namespace taut

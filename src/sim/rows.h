@@ -1,0 +1,199 @@
+/// Typed access to a group's rows, and what a step keeps only while it runs.
+#pragma once
+
+#include "sim/group.h"
+#include "simd/vec3.h"
+
+namespace taut::sim {
+
+using simd::M3;
+using simd::Q4;
+using simd::S3;
+using simd::V3;
+
+/// A group's rows as wide numbers (names as in Layout).
+template <class W>
+struct Rows {
+  W *time, *rest, *rest_rate, *target, *mass, *inv_mass, *stiffness, *damping, *friction_scale,
+      *tension, *stiff_k, *stiff_b,
+      *halted, *cache_slip, *cache_bounce, *cache_live, *cache_gap, *clearance, *residual, *sweeps,
+      *sense_length,
+      *sense_rate, *sense_tension, *sense_elastic;
+  V3<W> *pos, *vel, *mom, *old_vel, *old_spin, *node_force, *inertia, *inv_inertia, *gravity, *cache_force, *cache_arm,
+      *cache_normal;
+  Q4<W>* quat;
+
+  Rows(const Layout& l, const Group& g) noexcept {
+    W* const base = reinterpret_cast<W*>(g.rows);
+    const auto v3 = [base](int row) { return reinterpret_cast<V3<W>*>(base + row); };
+    time = base + l.time;
+    pos = v3(l.pos);
+    quat = reinterpret_cast<Q4<W>*>(base + l.quat);
+    vel = v3(l.vel);
+    mom = v3(l.mom);
+    old_vel = v3(l.old_vel);
+    old_spin = v3(l.old_spin);
+    rest = base + l.rest;
+    rest_rate = base + l.rest_rate;
+    target = base + l.target;
+    tension = base + l.tension;
+    stiff_k = base + l.stiff_k;
+    stiff_b = base + l.stiff_b;
+    node_force = v3(l.node_force);
+    mass = base + l.mass;
+    inv_mass = base + l.inv_mass;
+    inertia = v3(l.inertia);
+    inv_inertia = v3(l.inv_inertia);
+    stiffness = base + l.stiffness;
+    damping = base + l.damping;
+    friction_scale = base + l.friction_scale;
+    gravity = v3(l.gravity);
+    halted = base + l.halted;
+    cache_force = v3(l.cache_force);
+    cache_slip = base + l.cache_slip;
+    cache_bounce = base + l.cache_bounce;
+    cache_live = base + l.cache_live;
+    cache_arm = v3(l.cache_arm);
+    cache_normal = v3(l.cache_normal);
+    cache_gap = base + l.cache_gap;
+    clearance = base + l.clearance;
+    residual = base + l.residual;
+    sweeps = base + l.sweeps;
+    sense_length = base + l.sense_length;
+    sense_rate = base + l.sense_rate;
+    sense_tension = base + l.sense_tension;
+    sense_elastic = base + l.sense_elastic;
+  }
+};
+
+/// A body while a step runs. The world has one, too: identity, zero.
+template <class W>
+struct BodyWork {
+  M3<W> R;             ///< R_WP at the middle of the step.
+  S3<W> inv_inertia;   ///< In W [1/(kg m^2)].
+  V3<W> v, w;          ///< Current velocities [m/s], [rad/s].
+  V3<W> v0, w0;        ///< Before this step's forces.
+  V3<W> v_mid, w_mid;  ///< Expected at the middle of the step, for dampers.
+  V3<W> force, torque; ///< Of cables, gravity and nodes [N], [N m].
+};
+
+/// The Jacobian of a contact's three directions for one body.
+template <class W>
+struct Lever {
+  V3<W> n, t1, t2;  ///< arm x direction [m].
+};
+
+/// A contact while a step runs (docs/theory/contact.md). Force on body a, opposite on b.
+template <class W>
+struct ContactRow {
+  int a, b;
+  uint32_t id;
+  int frame;   ///< Contacts with equal numbers have the same directions; -1: with no other.
+  V3<W> n, t1, t2;
+  V3<W> arm_a, arm_b;
+  Lever<W> ja, jb;          ///< arm x direction.
+  Lever<W> ga, gb;          ///< inverse inertia times that.
+  W im_a, im_b;             ///< Inverse masses.
+  W live;                   ///< 1 in lanes that have this contact, else 0.
+  W gap;                    ///< At the middle of the step [m].
+  W wnn, w1n, w2n, w11, w12, w22;  ///< Inverse effective mass, 3x3 [1/kg].
+  W inv_nn, p11, p12, p22;  ///< 1 / wnn; inverse of the tangential 2x2.
+  W rho1, rho2;             ///< Step lengths of the sliding iteration [kg].
+  W bias;                   ///< Normal velocity to reach is -bias or more [m/s].
+  W static_friction, kinetic_friction;
+  W mu;                     ///< Coefficient of this step.
+  W slip;                   ///< 1 if the impulse is on the cone's edge.
+  W bounce;                 ///< Rebound speed due in the next step [m/s], 0: none.
+  W restitution;
+  W ln, l1, l2;             ///< Impulses [N s].
+  V3<W> before, change;     ///< Impulses of an earlier sweep, and what a sweep changed.
+};
+
+/// An attachment while its cable's force is worked out; its velocity is the expected one.
+template <class W>
+struct AttachmentWork {
+  V3<W> p, v, arm;
+  V3<W> u;  ///< Unit vector from the attachment before.
+};
+
+/// What a cable does to one body: pulls with tension T as T F at the centre, T Q about it.
+template <class W>
+struct CableLink {
+  int body;
+  V3<W> F, Q;   ///< Sum of directions [1], of arm x direction [m].
+  V3<W> GQ;     ///< Inverse inertia times Q.
+  W im;
+};
+
+/// A cable whose tension is found together with the contacts (docs/theory/cables.md, eq. 8-11):
+///   T = base + gain dl,  dl: rate after the step
+template <class W>
+struct StiffCable {
+  int cable, first_link, link_count;
+  W on;          ///< 1 in lanes in which this cable is stiff.
+  W A;           ///< Inverse effective mass along the cable [1/kg].
+  W base, gain;  ///< Impulse at dl = 0 [N s], and per dl [kg].
+  W inverse;     ///< 1 / (1 + gain A).
+  W upper;       ///< Largest impulse [N s].
+  W lambda;      ///< Impulse [N s].
+};
+
+template <class W>
+struct Scratch {
+  BodyWork<W>* bodies;
+  AttachmentWork<W>* attachments;
+  ContactRow<W>* contacts;
+  V3<W>* saved_pos;   ///< Start of the step, for worlds that turn non-finite.
+  Q4<W>* saved_quat;
+  V3<W>* saved_vel;
+  V3<W>* saved_mom;
+  W* saved_rest;
+  W* saved_rest_rate;
+  uint32_t* old_ids;       ///< Contacts of the step before.
+  V3<W>* old_force;
+  W* old_slip;
+  W* old_bounce;
+  StiffCable<W>* stiff;
+  CableLink<W>* links;     ///< Of all stiff cables.
+  int contact_count;
+  int plane_count;    ///< Contacts with planes come first,
+  int single_count;   ///< then those with other things of the world.
+  int stiff_count, link_count;
+
+  static size_t Bytes(const View& m) noexcept { return Scratch(m, nullptr).used_; }
+
+  Scratch(const View& m, void* memory) noexcept : memory_(static_cast<char*>(memory)) {
+    const size_t bodies_count = static_cast<size_t>(m.body_count) + 1;
+    const size_t cables_count = static_cast<size_t>(m.cable_count);
+    const size_t contacts_count =
+        m.first_pair_id + static_cast<size_t>(W::kLanes) * static_cast<size_t>(m.pair_capacity);
+    bodies = Take<BodyWork<W>>(bodies_count);
+    attachments = Take<AttachmentWork<W>>(static_cast<size_t>(m.max_attachments));
+    contacts = Take<ContactRow<W>>(contacts_count);
+    saved_pos = Take<V3<W>>(bodies_count);
+    saved_quat = Take<Q4<W>>(bodies_count);
+    saved_vel = Take<V3<W>>(bodies_count);
+    saved_mom = Take<V3<W>>(bodies_count);
+    saved_rest = Take<W>(cables_count);
+    saved_rest_rate = Take<W>(cables_count);
+    old_ids = Take<uint32_t>(contacts_count);
+    old_force = Take<V3<W>>(contacts_count);
+    old_slip = Take<W>(contacts_count);
+    old_bounce = Take<W>(contacts_count);
+    stiff = Take<StiffCable<W>>(cables_count);
+    links = Take<CableLink<W>>(static_cast<size_t>(m.attachment_count));
+    contact_count = plane_count = single_count = stiff_count = link_count = 0;
+  }
+
+ private:
+  template <class T>
+  T* Take(size_t count) noexcept {
+    T* const first = reinterpret_cast<T*>(memory_ + used_);
+    used_ += (count * sizeof(T) + 63) / 64 * 64;
+    return first;
+  }
+  char* memory_;
+  size_t used_ = 0;
+};
+
+}  // namespace taut::sim

@@ -1,0 +1,56 @@
+/// Where two shapes touch, for one world: the rare part of collision, kept scalar so that every
+/// instruction set runs the very same code.
+///
+/// What a caller may rely on
+///   - All functions need only + - * / and square roots, allocate nothing and never throw.
+///   - A point comes into the list when its gap falls below the margin and leaves it the same way.
+///     Whether a point is left out because others make up for it changes the gap felt there by a
+///     millionth of the radius at most, so forces have no jumps.
+///   - Features number the points of a pair, so that a solver finds its last answer again.
+#pragma once
+
+namespace taut::sim {
+
+/// A sphere (from = to) or capsule in W.
+struct RoundShape {
+  double from[3], to[3];
+  double radius_m;
+};
+
+/// A box in W; rows of `axes` are its unit axes.
+struct BoxShape {
+  double center[3], axes[9], half_m[3];
+};
+
+/// A contact point: the unit normal points from the second shape to the first.
+struct TouchPoint {
+  double point[3];  ///< Midway between the two surfaces [m].
+  double normal[3];
+  double gap_m;  ///< Negative: penetration.
+  int feature;   ///< Below kMaxPointsPerPair; stable while the shapes slide.
+};
+
+/// Each fills `out` (kMaxPointsPerPair entries, see tables.h) with the points whose gap is below
+/// `margin_m`, and returns how many there are.
+///
+/// Features: 0 the closest points; 1, 2 the ends of the stretch that capsules at less than 30
+/// degrees have in common.
+int TouchRoundRound(const RoundShape& a, const RoundShape& b, double margin_m,
+                    TouchPoint* out) noexcept;
+
+/// Features: 0, 1 the ends (a sphere has one); 2 the point of the centre line nearest to the box;
+/// 3..8 where the centre line crosses the planes of the box's faces.
+int TouchRoundBox(const RoundShape& a, const BoxShape& b, double margin_m,
+                  TouchPoint* out) noexcept;
+
+/// Features: 0..3 corners of a face; 4..11 where its edges leave and enter the other box's face
+/// along each of that one's four sides; 12 edges that cross, or a
+/// corner beside the face that is nearer.
+int TouchBoxBox(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoint* out) noexcept;
+
+/// A lower bound of the distance between two shapes, 0 if they may touch. Exact where one is round.
+double DistanceRoundRound(const RoundShape& a, const RoundShape& b) noexcept;
+double DistanceRoundBox(const RoundShape& a, const BoxShape& b) noexcept;
+double DistanceBoxBox(const BoxShape& a, const BoxShape& b) noexcept;
+
+}  // namespace taut::sim

@@ -1,0 +1,158 @@
+/// Stages of the cables: actuators and forces, sensors (docs/theory/cables.md, actuators.md).
+///
+///   k, b    stiffness [N/m], damping [N s/m]
+///   l, dl   length along all attachments [m], its rate [m/s]
+///   L       rest length [m]
+///   T       tension [N]
+
+namespace taut::sim {
+
+template <class W>
+struct CableForce {
+  W tension, elastic;
+};
+
+/// Paper eq. (1): T = k (l - L) + b dl while l > L, never negative, otherwise 0.
+/// With the clamped law the damper's part is limited to +- the spring's.
+template <class W>
+CableForce<W> TensionOf(W k, W b, W l, W dl, W rest, bool clamped) noexcept {
+  const W zero = W::Splat(0.0);
+  const W stretch = l - rest;
+  const W spring = k * stretch;
+  W damper = b * dl;
+  if (clamped) damper = Max(Min(damper, spring), -spring);
+  const auto taut = stretch > zero;
+  return {Select(taut, Max(spring + damper, zero), zero), Select(taut, spring, zero)};
+}
+
+/// Where an attachment is and how fast it is expected to move.
+template <class W>
+AttachmentWork<W> Attachment(const View& m, const AttachmentTable& table, const V3<W>* origin,
+                             const Scratch<W>& work) noexcept {
+  const BodyWork<W>& body = work.bodies[table.body];
+  AttachmentWork<W> here;
+  here.arm = body.R * simd::Splat3<W>(table.p_P);
+  here.p = table.body < m.body_count ? origin[table.body] + here.arm : here.arm;
+  here.v = body.v_mid + Cross(body.w_mid, here.arm);
+  return here;
+}
+
+/// Length and rate of a cable; fills work.attachments with its points.
+template <class W>
+void MeasureCable(const View& m, const CableTable& cable, const V3<W>* origin,
+                  const Scratch<W>& work, W& l, W& dl) noexcept {
+  const AttachmentTable* const tables = m.attachments + cable.first_attachment;
+  AttachmentWork<W> before = Attachment(m, tables[0], origin, work);
+  work.attachments[0] = before;
+  W length_sum = W::Splat(0.0), rate_sum = W::Splat(0.0);
+  for (int i = 1; i < cable.attachment_count; ++i) {
+    AttachmentWork<W> here = Attachment(m, tables[i], origin, work);
+    const V3<W> d = here.p - before.p;
+    const W length = Sqrt(Dot(d, d));
+    // Coinciding attachments have no direction; a length this small pulls with u = d / tiny ~ 0.
+    here.u = (W::Splat(1.0) / Max(length, W::Splat(1e-12))) * d;
+    length_sum += length;
+    rate_sum += Dot(here.u, here.v - before.v);
+    work.attachments[i] = here;
+    before = here;
+  }
+  l = length_sum;
+  dl = rate_sum;
+}
+
+/// A rest length follows its target for one step, within the actuator's limits. Limits are per
+/// second, so nothing depends on the step. The force limit is NTRT's: never wind past the rest
+/// length at which the spring would exceed it.
+template <class W>
+void Actuate(const ActuatorDef& limit, W k, W l, W target, double step_s, W& rest,
+             W& rate) noexcept {
+  const W h = W::Splat(step_s), inv_h = W::Splat(1.0 / step_s), zero = W::Splat(0.0);
+  if (limit.kind == ActuatorDef::Kind::kNone) return;
+  if (limit.kind == ActuatorDef::Kind::kIdeal) {
+    rate = (target - rest) * inv_h;
+    rest = target;
+    return;
+  }
+  const W least_rest = W::Splat(limit.min_rest_length_m);
+  const W goal = Max(Max(target, l - W::Splat(limit.max_force_n) / k), least_rest);
+  const W way = goal - rest;
+  const W distance = Abs(way);
+  const W top = W::Splat(limit.max_speed_m_per_s);
+  const W arriving = distance * inv_h;  // the rate that ends this step at the goal
+  const bool accelerates_at_once = limit.max_acceleration_m_per_s2 > 1e300;
+  const W a = W::Splat(limit.max_acceleration_m_per_s2);
+  W speed = Min(arriving, top);
+  if (!accelerates_at_once) {
+    // No faster than can still be braked: v h + v^2 / (2 a) <= distance.
+    speed = Min(speed, Sqrt(a * a * h * h + (a + a) * distance) - a * h);
+  }
+  W wish = Select(way < zero, -speed, speed);
+  wish = Select((l < W::Splat(limit.min_length_m)) & (way < zero), zero, wish);
+  if (!accelerates_at_once) wish = Max(Min(wish, rate + a * h), rate - a * h);
+  const auto arrives = Abs(wish) == arriving;
+  rate = wish;
+  rest = Max(Select(arrives & !(wish == zero), goal, rest + h * wish), least_rest);
+}
+
+/// Stage: actuators move the rest lengths, cables pull on bodies.
+///   reads   pos, bodies[], target     writes  rest, rest_rate, tension, bodies[].force, .torque
+///           (adds), stiff[]
+///   order   cables ascending within a group: sums do not depend on anything else
+/// The force is that of the middle of the step: geometry and expected velocities there, and the
+/// mean of the rest lengths before and after. Lanes in which that would not be stable leave the
+/// cable to the solver (stiff_cables.inl).
+template <class W>
+void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
+  const W half = W::Splat(0.5), zero = W::Splat(0.0), h = W::Splat(step_s);
+  work.stiff_count = work.link_count = 0;
+  for (int c = 0; c < m.cable_count; ++c) {
+    const CableTable& cable = m.cables[c];
+    W l, dl;
+    MeasureCable(m, cable, s.pos, work, l, dl);
+    const W before = s.rest[c];
+    W rest = before, rate = s.rest_rate[c];
+    Actuate(cable.actuator, s.stiffness[c], l, s.target[c], step_s, rest, rate);
+    s.rest[c] = rest;
+    s.rest_rate[c] = rate;
+    const W middle = half * (before + rest);
+    W T = TensionOf(s.stiffness[c], s.damping[c], l, dl, middle, cable.clamped_damping).tension;
+    const auto stiff = (h * h * s.stiff_k[c] > W::Splat(kSoftSpring)) |
+                       (h * s.stiff_b[c] > W::Splat(kSoftDamper));
+    if (Any(stiff)) {
+      AddStiffCable(m, s, work, c, l - middle, h, Select(stiff, W::Splat(1.0), zero));
+      T = Select(stiff, zero, T);
+      s.tension[c] = Select(stiff, s.tension[c], T);
+      if (!Any(!stiff)) continue;
+    } else {
+      s.tension[c] = T;
+    }
+    for (int i = 1; i < cable.attachment_count; ++i) {
+      const AttachmentWork<W>&from = work.attachments[i - 1], &to = work.attachments[i];
+      const V3<W> f = T * to.u;
+      BodyWork<W>& a = work.bodies[m.attachments[cable.first_attachment + i - 1].body];
+      BodyWork<W>& b = work.bodies[m.attachments[cable.first_attachment + i].body];
+      a.force += f;
+      a.torque += Cross(from.arm, f);
+      b.force -= f;
+      b.torque -= Cross(to.arm, f);
+    }
+  }
+}
+
+/// Stage: what sensors see of the cables at the end of a step.
+///   reads   pos, bodies[] (of the current state)     writes  sense_*
+template <class W>
+void StageSense(const View& m, const Rows<W>& s, const Scratch<W>& work) noexcept {
+  for (int c = 0; c < m.cable_count; ++c) {
+    W l, dl;
+    MeasureCable(m, m.cables[c], s.pos, work, l, dl);
+    const CableForce<W> f =
+        TensionOf(s.stiffness[c], s.damping[c], l, dl, s.rest[c], m.cables[c].clamped_damping);
+    s.sense_length[c] = l;
+    s.sense_rate[c] = dl;
+    s.sense_tension[c] = f.tension;
+    s.sense_elastic[c] = f.elastic;
+  }
+}
+
+}  // namespace taut::sim

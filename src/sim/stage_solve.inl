@@ -1,0 +1,131 @@
+/// Stage: impulses of contacts and stiff cables. Sweeps go over all of them, solve each by itself
+/// or, for a body on the ground, its contacts together, and stop a lane when nothing changed a
+/// velocity by more than the tolerance. A lane that is done freezes: its neighbours cannot change it.
+
+namespace taut::sim {
+
+/// Extrapolation of slow convergence (Aitken): where all impulses of a lane shrink their changes
+/// by the same factor r a sweep, the limit is r / (1 - r) changes further on. Slow modes are those
+/// in which contacts hand friction to each other, one sticking and one sliding.
+template <class W>
+struct Extrapolation {
+  static constexpr int kPeriod = 8;  ///< Sweeps between two extrapolations.
+
+  /// Call after every sweep.
+  template <class M>
+  void AfterSweep(Scratch<W>& work, int sweep, M lanes) noexcept {
+    const int phase = sweep % kPeriod;
+    if (phase == kPeriod - 3) Remember(work);
+    if (phase == kPeriod - 2) Compare(work);
+    if (phase == kPeriod - 1) Extrapolate(work, lanes);
+  }
+
+ private:
+  static void Remember(Scratch<W>& work) noexcept {
+    for (int i = 0; i < work.contact_count; ++i) {
+      ContactRow<W>& row = work.contacts[i];
+      row.before = {row.ln, row.l1, row.l2};
+    }
+  }
+  static void Compare(Scratch<W>& work) noexcept {
+    for (int i = 0; i < work.contact_count; ++i) {
+      ContactRow<W>& row = work.contacts[i];
+      const V3<W> now{row.ln, row.l1, row.l2};
+      row.change = now - row.before;
+      row.before = now;
+    }
+  }
+  template <class M>
+  static void Extrapolate(Scratch<W>& work, M lanes) noexcept {
+    const W zero = W::Splat(0.0), one = W::Splat(1.0);
+    W dot = zero, norm2 = zero;
+    for (int i = 0; i < work.contact_count; ++i) {
+      ContactRow<W>& row = work.contacts[i];
+      const V3<W> change = V3<W>{row.ln, row.l1, row.l2} - row.before;
+      dot += Dot(change, row.change);
+      norm2 += Dot(row.change, row.change);
+      row.change = change;
+    }
+    const W r = Min(dot / Max(norm2, W::Splat(1e-300)), W::Splat(0.999));
+    const W ahead = Select(lanes & (r > W::Splat(0.5)), r / (one - r), zero);
+    for (int i = 0; i < work.contact_count; ++i) {
+      ContactRow<W>& row = work.contacts[i];
+      const W dn = Max(row.ln + ahead * row.change.x, zero) - row.ln;
+      const W d1 = ahead * row.change.y, d2 = ahead * row.change.z;
+      row.ln += dn;
+      row.l1 += d1;
+      row.l2 += d2;
+      ApplyImpulse(work.bodies[row.a], row.im_a, row, row.ga, dn, d1, d2);
+      if (i < work.single_count) continue;
+      ApplyImpulse(work.bodies[row.b], row.im_b, row, row.gb, -dn, -d1, -d2);
+    }
+  }
+};
+
+template <class W>
+struct SolveResult {
+  W residual;  ///< Largest change of a contact velocity in a lane's last sweep [m/s].
+  W sweeps;
+};
+
+/// Contacts get their equations and start from the impulses of the step before.
+template <class W>
+void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+                     double step_s) noexcept {
+  const int old_count = g.contact_count;
+  for (int i = 0; i < old_count; ++i) {
+    work.old_ids[i] = g.contact_ids[i];
+    work.old_force[i] = s.cache_force[i];
+    work.old_slip[i] = s.cache_slip[i];
+    work.old_bounce[i] = s.cache_bounce[i];
+  }
+  int cursor = 0;
+  for (int i = 0; i < work.contact_count; ++i) {
+    ContactRow<W>& row = work.contacts[i];
+    const ContactMemory<W> memory = Recall(work, row.id, old_count, cursor);
+    if (i < work.single_count) {
+      PrepareContact<W, false>(m, s, work, row, memory, step_s);
+    } else {
+      PrepareContact<W, true>(m, s, work, row, memory, step_s);
+    }
+  }
+}
+
+/// Stage: solve.
+///   reads   contacts[] (geometry), stiff cables, cache of the step before
+///   writes  bodies[].v, .w, impulses, mom
+template <class W>
+SolveResult<W> StageSolve(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+                          const StepSettings& settings, double step_s) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  SolveResult<W> result{zero, zero};
+  PrepareContacts(m, s, g, work, step_s);
+  StartStiffCables(work);
+  const bool anything = work.contact_count + work.stiff_count > 0;
+  const W tolerance = W::Splat(settings.tolerance_m_per_s);
+  auto busy = s.halted[0] == zero;
+  for (int sweep = 0; anything && sweep < settings.max_sweeps && Any(busy); ++sweep) {
+    W change = RelaxStiffCables(work, busy);
+    change = Max(RelaxBlocks(m, work, tolerance, busy), change);
+    for (int i = work.plane_count; i < work.single_count; ++i) {
+      change = Max(RelaxContact<W, false>(work, work.contacts[i], busy), change);
+    }
+    for (int i = work.single_count; i < work.contact_count; ++i) {
+      change = Max(RelaxContact<W, true>(work, work.contacts[i], busy), change);
+    }
+    result.residual = Select(busy, change, result.residual);
+    result.sweeps += Select(busy, one, zero);
+    busy = busy & (change > tolerance);
+    if (Any(busy)) Extrapolation<W>().AfterSweep(work, sweep, busy);
+  }
+  for (int i = 0; i < work.contact_count; ++i) {
+    const ContactRow<W>& row = work.contacts[i];
+    const V3<W> f = row.ln * row.n + row.l1 * row.t1 + row.l2 * row.t2;
+    s.mom[row.a] += Cross(row.arm_a, f);
+    if (i >= work.single_count) s.mom[row.b] -= Cross(row.arm_b, f);
+  }
+  FinishStiffCables(s, work, step_s);
+  return result;
+}
+
+}  // namespace taut::sim

@@ -1,0 +1,121 @@
+/// Cables that explicit forces would make unstable at this step: their tension is an impulse that
+/// the solver finds together with the contacts (docs/theory/cables.md, eq. 8-11).
+///
+/// While taut, the implicit midpoint rule: length and rate are means of the start and the end of
+/// the step. It is stable for any stiffness and loses no energy. A cable that was slack enters by
+/// the length at the end of the step instead, so that a sudden stop of a fast end does not turn
+/// into a larger rebound; its damper joins one step later, when the cable is known to be taut.
+
+namespace taut::sim {
+
+/// Limits of explicit forces: h^2 K / m and h B / m, summed over the cables that a cable is coupled
+/// to (the explicit scheme is stable below 4 and 1).
+inline constexpr double kSoftSpring = 1.0;
+inline constexpr double kSoftDamper = 0.8;
+
+template <class W>
+void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W stretch, W h,
+                   W on) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0), half = W::Splat(0.5);
+  const CableTable& cable = m.cables[c];
+  StiffCable<W>& row = work.stiff[work.stiff_count++];
+  row.cable = c;
+  row.on = on;
+  row.first_link = work.link_count;
+  row.link_count = 0;
+  for (int i = 0; i < cable.attachment_count; ++i) {
+    const int body = m.attachments[cable.first_attachment + i].body;
+    if (body == m.body_count) continue;
+    V3<W> direction{zero, zero, zero};  // of the pull on this attachment
+    if (i > 0) direction -= work.attachments[i].u;
+    if (i + 1 < cable.attachment_count) direction += work.attachments[i + 1].u;
+    CableLink<W>* link = work.links + row.first_link;
+    CableLink<W>* const end = link + row.link_count;
+    while (link != end && link->body != body) ++link;
+    if (link == end) {
+      link->body = body;
+      link->F = link->Q = {zero, zero, zero};
+      ++row.link_count;
+      ++work.link_count;
+    }
+    link->F += direction;
+    link->Q += Cross(work.attachments[i].arm, direction);
+  }
+  row.A = zero;
+  W rate = zero;  // before the step
+  for (int i = 0; i < row.link_count; ++i) {
+    CableLink<W>& link = work.links[row.first_link + i];
+    const BodyWork<W>& body = work.bodies[link.body];
+    link.im = s.inv_mass[link.body];
+    link.GQ = body.inv_inertia * link.Q;
+    row.A += link.im * Dot(link.F, link.F) + Dot(link.Q, link.GQ);
+    rate -= Dot(link.F, body.v0) + Dot(link.Q, body.w0);
+  }
+  const W k = s.stiffness[c];
+  const auto was_taut = s.tension[c] > zero;
+  const W b = Select(was_taut & (stretch > zero), s.damping[c], zero);
+  const W quarter_hk = W::Splat(0.25) * h * k;
+  const W gain = Select(was_taut, quarter_hk + half * b, half * h * k);
+  const W base = k * stretch + Select(was_taut, (half * b - quarter_hk) * rate, zero);
+  row.base = h * base;
+  row.gain = h * gain;
+  row.inverse = one / (one + row.gain * row.A);
+  row.upper = cable.clamped_damping ? h * Max(k * (stretch + stretch), zero) : W::Splat(1e300);
+  row.lambda = Select(on > zero, Min(h * s.tension[c], row.upper), zero);
+}
+
+template <class W>
+void PullLinks(Scratch<W>& work, const StiffCable<W>& row, W impulse) noexcept {
+  for (int i = 0; i < row.link_count; ++i) {
+    const CableLink<W>& link = work.links[row.first_link + i];
+    BodyWork<W>& body = work.bodies[link.body];
+    body.v += (link.im * impulse) * link.F;
+    body.w += impulse * link.GQ;
+  }
+}
+
+/// Stiff cables start from the tensions of the step before.
+template <class W>
+void StartStiffCables(Scratch<W>& work) noexcept {
+  for (int i = 0; i < work.stiff_count; ++i) PullLinks(work, work.stiff[i], work.stiff[i].lambda);
+}
+
+/// One sweep over the stiff cables. Returns the largest change of a rate [m/s].
+template <class W, class M>
+W RelaxStiffCables(Scratch<W>& work, M lanes) noexcept {
+  const W zero = W::Splat(0.0);
+  W change = zero;
+  for (int i = 0; i < work.stiff_count; ++i) {
+    StiffCable<W>& row = work.stiff[i];
+    W rate = zero;
+    for (int k = 0; k < row.link_count; ++k) {
+      const CableLink<W>& link = work.links[row.first_link + k];
+      const BodyWork<W>& body = work.bodies[link.body];
+      rate -= Dot(link.F, body.v) + Dot(link.Q, body.w);
+    }
+    const W wish = row.lambda + row.inverse * (row.base + row.gain * rate - row.lambda);
+    const W lambda = Min(Max(wish, zero), row.upper);
+    const W d = Select(lanes & (row.on > zero), lambda - row.lambda, zero);
+    row.lambda += d;
+    PullLinks(work, row, d);
+    change = Max(Abs(d) * row.A, change);
+  }
+  return change;
+}
+
+/// Tensions and angular momenta of what the solver found.
+template <class W>
+void FinishStiffCables(const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
+  const W inv_h = W::Splat(1.0 / step_s);
+  for (int i = 0; i < work.stiff_count; ++i) {
+    const StiffCable<W>& row = work.stiff[i];
+    s.tension[row.cable] =
+        Select(row.on > W::Splat(0.0), inv_h * row.lambda, s.tension[row.cable]);
+    for (int k = 0; k < row.link_count; ++k) {
+      const CableLink<W>& link = work.links[row.first_link + k];
+      s.mom[link.body] += row.lambda * link.Q;
+    }
+  }
+}
+
+}  // namespace taut::sim

@@ -1,0 +1,139 @@
+/// The topology and constants of a model, laid out for stepping: what all worlds share.
+///
+/// Every body has a principal frame P: origin in the centre of mass, axes along the principal
+/// axes of inertia. Points of a body are kept in P. The world is body number `body_count`: it
+/// has no mass, does not move, and its frame is W.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "taut/batch.h"
+
+namespace taut::sim {
+
+struct CableTable {
+  int first_attachment = 0, attachment_count = 0;
+  bool clamped_damping = false;
+  ActuatorDef actuator;
+};
+
+struct AttachmentTable {
+  int body = 0;
+  double p_P[3] = {};  ///< [m]
+};
+
+/// A shape that may touch another: a sphere (from = to), a capsule or a box.
+struct ShapeTable {
+  bool is_box = false;
+  int body = 0;
+  double radius_m = 0;            ///< 0 for a box.
+  double from_P[3] = {}, to_P[3] = {};
+  double center_P[3] = {};
+  double axes_P[9] = {};          ///< Box: rows are its axes in P.
+  double half_m[3] = {};
+  double bound_m = 0;             ///< Radius of the sphere around `center_P` that holds it.
+  Material material;
+};
+
+/// A point that can touch a plane: a sphere's centre, a capsule's end, a box's corner.
+struct PointTable {
+  double p_P[3] = {};
+  double radius_m = 0;
+  double static_friction[8] = {}, kinetic_friction[8] = {}, restitution[8] = {};  ///< A plane each.
+};
+
+struct PlaneTable {
+  double normal[3] = {}, tangent1[3] = {}, tangent2[3] = {};
+  double offset_m = 0;  ///< normal . x of its points.
+};
+
+struct ShapePairTable {
+  int a = 0, b = 0;       ///< Shapes; the body of `a` is not the world.
+  std::uint32_t id = 0;   ///< Of its first possible contact point.
+  double static_friction = 0, kinetic_friction = 0, restitution = 0;
+};
+
+/// Two bodies that may touch, with all pairs of their shapes.
+struct BodyPairTable {
+  int a = 0, b = 0;  ///< b may be the world.
+  int first_pair = 0, pair_count = 0;
+};
+
+inline constexpr int kMaxPlanes = 8;
+inline constexpr int kMaxPointsPerPair = 13;  ///< What shape_contacts.h numbers.
+
+/// Offsets, in rows of one double a lane, of everything that a group of worlds keeps.
+struct Layout {
+  // State and commands: what a snapshot holds.
+  int time = 0, pos = 0, quat = 0, vel = 0, mom = 0, old_vel = 0, old_spin = 0, rest = 0, rest_rate = 0, target = 0, tension = 0,
+      node_force = 0;
+  // Parameters, also part of a snapshot.
+  int mass = 0, inv_mass = 0, inertia = 0, inv_inertia = 0, stiffness = 0, damping = 0, stiff_k = 0, stiff_b = 0,
+      friction_scale = 0, gravity = 0, halted = 0;
+  int snapshot_rows = 0;
+  // Contacts of the last step (ids are shared by the lanes; `live` says which lanes have them).
+  int cache_force = 0, cache_slip = 0, cache_bounce = 0, cache_live = 0, cache_arm = 0,
+      cache_normal = 0, cache_gap = 0;
+  // Derived; forgotten by snapshots.
+  int clearance = 0, residual = 0, sweeps = 0;
+  int sense_length = 0, sense_rate = 0, sense_tension = 0, sense_elastic = 0;
+  int rows = 0;
+};
+
+/// `Tables` without the standard library.
+struct View {
+  int body_count, cable_count, node_count, plane_count, body_pair_count;
+  const double* bound_m;
+  const CableTable* cables;
+  const AttachmentTable* attachments;
+  const AttachmentTable* nodes;
+  const PlaneTable* planes;
+  const int* first_point;
+  const PointTable* points;
+  const ShapeTable* shapes;
+  const ShapePairTable* shape_pairs;
+  const BodyPairTable* body_pairs;
+  std::uint32_t first_pair_id;
+  int pair_capacity, max_attachments, attachment_count;
+  bool along_slip;
+};
+
+class Tables final : public Model {
+ public:
+  explicit Tables(ModelDef def) : Model(std::move(def)) {}
+
+  int body_count = 0, cable_count = 0, node_count = 0, plane_count = 0;
+  std::vector<double> q_WP0;          ///< 4 per body: principal frame at t = 0.
+  std::vector<double> inertia;        ///< 3 per body: principal moments [kg m^2].
+  std::vector<double> bound_m;        ///< Per body and the world: reach of its shapes from its origin.
+  std::vector<CableTable> cables;
+  std::vector<AttachmentTable> attachments;
+  int max_attachments = 0;            ///< Of one cable.
+  std::vector<AttachmentTable> nodes;
+  std::vector<PlaneTable> planes;
+  std::vector<int> first_point;       ///< Per body, and one past the last.
+  std::vector<PointTable> points;
+  std::vector<ShapeTable> shapes;
+  std::vector<ShapePairTable> shape_pairs;
+  std::vector<BodyPairTable> body_pairs;  ///< Those with the world first.
+  std::uint32_t first_pair_id = 0;    ///< Ids below are plane contacts.
+  int pair_capacity = 0;              ///< Pair contacts that one world may have at once.
+  bool along_slip = false;
+  std::vector<double> coupling;       ///< Per cable: sum over all cables of |coupling| [1/kg].
+  double largest_coupling = 0;        ///< Largest eigenvalue of the couplings [1/kg].
+
+  /// The same tables as plain pointers, for code that is compiled for several instruction sets
+  /// and must not touch the standard library.
+  struct View View() const noexcept;
+  int ContactCapacity(int lanes) const noexcept {
+    return static_cast<int>(first_pair_id) + lanes * pair_capacity;
+  }
+  Layout MakeLayout(int lanes) const;
+};
+
+/// Fills coupling and largest_coupling.
+void CoupleCables(Tables& tables);
+
+}  // namespace taut::sim

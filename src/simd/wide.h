@@ -1,0 +1,146 @@
+/// N doubles side by side, one a world. Lane i never reads lane j, so a batch of N gives bit for
+/// bit what N single worlds give (docs/determinism.md).
+///
+/// The storage is a compiler vector and not an array: with arrays, g++ 12 leaves most of the step
+/// scalar. There are no shuffles, no horizontal sums and no fused multiply-adds. Every width is
+/// used in exactly one instruction set, so that no template instance is compiled twice with
+/// different flags. This folder is the only one that knows intrinsics.
+#pragma once
+
+#include <immintrin.h>
+
+namespace taut::simd {
+
+template <class T, int N>
+struct VectorOf {
+  typedef T Type __attribute__((vector_size(sizeof(T) * N)));
+};
+
+template <int N>
+struct Wide {
+  static constexpr int kLanes = N;
+  using Vector = typename VectorOf<double, N>::Type;
+  Vector v;
+
+  static Wide Splat(double x) noexcept { return {x - Vector{}}; }
+  double operator[](int i) const noexcept { return v[i]; }
+  void Set(int i, double x) noexcept { v[i] = x; }
+};
+
+template <int N>
+struct Mask {
+  using Vector = typename VectorOf<long long, N>::Type;
+  Vector v;
+
+  bool operator[](int i) const noexcept { return v[i] != 0; }
+  void Set(int i, bool x) noexcept { v[i] = x ? -1 : 0; }
+  static Mask Splat(bool x) noexcept { return {Vector{} - (x ? 1 : 0)}; }
+};
+
+template <int N>
+inline Wide<N> operator+(Wide<N> a, Wide<N> b) noexcept {
+  return {a.v + b.v};
+}
+template <int N>
+inline Wide<N> operator-(Wide<N> a, Wide<N> b) noexcept {
+  return {a.v - b.v};
+}
+template <int N>
+inline Wide<N> operator*(Wide<N> a, Wide<N> b) noexcept {
+  return {a.v * b.v};
+}
+template <int N>
+inline Wide<N> operator/(Wide<N> a, Wide<N> b) noexcept {
+  return {a.v / b.v};
+}
+template <int N>
+inline Wide<N> operator-(Wide<N> a) noexcept {
+  return {-a.v};
+}
+template <int N>
+inline Mask<N> operator<(Wide<N> a, Wide<N> b) noexcept {
+  return {a.v < b.v};
+}
+template <int N>
+inline Mask<N> operator>(Wide<N> a, Wide<N> b) noexcept {
+  return {a.v > b.v};
+}
+template <int N>
+inline Mask<N> operator==(Wide<N> a, Wide<N> b) noexcept {
+  return {a.v == b.v};
+}
+template <int N>
+inline Mask<N> operator&(Mask<N> a, Mask<N> b) noexcept {
+  return {a.v & b.v};
+}
+template <int N>
+inline Mask<N> operator|(Mask<N> a, Mask<N> b) noexcept {
+  return {a.v | b.v};
+}
+template <int N>
+inline Mask<N> operator!(Mask<N> a) noexcept {
+  return {~a.v};
+}
+template <int N>
+inline Wide<N> Select(Mask<N> m, Wide<N> yes, Wide<N> no) noexcept {
+  return {m.v ? yes.v : no.v};
+}
+
+inline Wide<2> Sqrt(Wide<2> a) noexcept { return {(Wide<2>::Vector)_mm_sqrt_pd((__m128d)a.v)}; }
+inline bool Any(Mask<2> m) noexcept { return _mm_movemask_pd((__m128d)m.v) != 0; }
+#ifdef __AVX2__
+inline Wide<4> Sqrt(Wide<4> a) noexcept { return {(Wide<4>::Vector)_mm256_sqrt_pd((__m256d)a.v)}; }
+inline bool Any(Mask<4> m) noexcept { return _mm256_movemask_pd((__m256d)m.v) != 0; }
+#endif
+#ifdef __AVX512DQ__
+inline Wide<8> Sqrt(Wide<8> a) noexcept { return {(Wide<8>::Vector)_mm512_maskz_sqrt_pd(0xff, (__m512d)a.v)}; }
+inline bool Any(Mask<8> m) noexcept { return _mm512_movepi64_mask((__m512i)m.v) != 0; }
+#endif
+
+/// One lane: a plain double, so that a single world costs no vector overhead.
+template <>
+struct Mask<1> {
+  bool v;
+  bool operator[](int) const noexcept { return v; }
+  void Set(int, bool x) noexcept { v = x; }
+  static Mask Splat(bool x) noexcept { return {x}; }
+};
+template <>
+struct Wide<1> {
+  static constexpr int kLanes = 1;
+  double v;
+  static Wide Splat(double x) noexcept { return {x}; }
+  double operator[](int) const noexcept { return v; }
+  void Set(int, double x) noexcept { v = x; }
+};
+inline Mask<1> operator&(Mask<1> a, Mask<1> b) noexcept { return {a.v && b.v}; }
+inline Mask<1> operator|(Mask<1> a, Mask<1> b) noexcept { return {a.v || b.v}; }
+inline Mask<1> operator!(Mask<1> a) noexcept { return {!a.v}; }
+inline Wide<1> Select(Mask<1> m, Wide<1> yes, Wide<1> no) noexcept { return {m.v ? yes.v : no.v}; }
+inline Wide<1> Sqrt(Wide<1> a) noexcept { return {__builtin_sqrt(a.v)}; }
+inline bool Any(Mask<1> m) noexcept { return m.v; }
+
+/// The greater of two; `b` if either is NaN.
+template <int N>
+inline Wide<N> Max(Wide<N> a, Wide<N> b) noexcept {
+  return Select(a > b, a, b);
+}
+template <int N>
+inline Wide<N> Min(Wide<N> a, Wide<N> b) noexcept {
+  return Select(a < b, a, b);
+}
+template <int N>
+inline Wide<N> Abs(Wide<N> a) noexcept {
+  return Max(a, -a);
+}
+
+template <int N>
+inline Wide<N>& operator+=(Wide<N>& a, Wide<N> b) noexcept {
+  return a = a + b;
+}
+template <int N>
+inline Wide<N>& operator-=(Wide<N>& a, Wide<N> b) noexcept {
+  return a = a - b;
+}
+
+}  // namespace taut::simd
