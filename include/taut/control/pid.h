@@ -1,0 +1,82 @@
+/// A PID controller in discrete time.
+#pragma once
+
+#include "taut/control/real.h"
+
+namespace taut {
+namespace control {
+
+/// Gains; their units are those of output per error, and per second or times seconds.
+template <class Real>
+struct Pid {
+  Real proportional;
+  Real integral;
+  Real derivative;
+};
+
+/// What a PID remembers from tick to tick.
+template <class Real>
+struct PidState {
+  Real error_before;  ///< e_(n-1) [error].
+  Real integral;      ///< I_n [error s].
+};
+
+/// Starts as tgPIDController does, with e_(-1) = 0: the first tick sees the whole error as a jump.
+template <class Real>
+constexpr PidState<Real> StartPid() noexcept {
+  return PidState<Real>{Literal<Real>(0.0f), Literal<Real>(0.0f)};
+}
+
+/// Starts without a kick: the derivative of the first tick is 0 if its error is `error`.
+template <class Real>
+constexpr PidState<Real> StartPidAt(Real error) noexcept {
+  return PidState<Real>{error, Literal<Real>(0.0f)};
+}
+
+/// One tick (docs/theory/control.md, eq. K.5); returns u.
+///   I_n = I_(n-1) + (e_n + e_(n-1)) / 2 h
+///   u_n = kp e_n + ki I_n + kd (e_n - e_(n-1)) / h
+/// Source: NTRT's tgPIDController, the same but for its choice of signs. Nothing bounds I.
+template <class Real>
+constexpr Real StepPid(const Pid<Real>& pid, PidState<Real>& state, Real error,
+                       Real period_s) noexcept {
+  state.integral = state.integral + Literal<Real>(0.5f) * (error + state.error_before) * period_s;
+  const Real rate = (error - state.error_before) / period_s;
+  state.error_before = error;
+  return pid.proportional * error + pid.integral * state.integral + pid.derivative * rate;
+}
+
+/// The range of an actuator.
+template <class Real>
+struct OutputLimits {
+  Real low, high;  ///< low <= high.
+};
+
+/// What becomes of the integral while the output is at a limit.
+enum class Windup : unsigned char {
+  kAllowed,  ///< It goes on growing, as in tgPIDController.
+  kHeld,     ///< It stands still as long as integrating on would push further past the limit.
+};
+
+/// One tick with a bounded output (eq. K.5 and K.6); returns u, low <= u <= high.
+template <class Real>
+constexpr Real StepPidLimited(const Pid<Real>& pid, PidState<Real>& state, Real error,
+                              Real period_s, const OutputLimits<Real>& limits,
+                              Windup windup) noexcept {
+  const Real integral_before = state.integral;
+  const Real u = StepPid(pid, state, error, period_s);
+  if (windup == Windup::kAllowed) return Clamp(u, limits.low, limits.high);
+
+  const Real push = pid.integral * (state.integral - integral_before);
+  const Real zero = Literal<Real>(0.0f);
+  const Real held_above = Select(push > zero, integral_before, state.integral);
+  const Real held_below = Select(push < zero, integral_before, state.integral);
+  const Real integral_now =
+      Select(u > limits.high, held_above, Select(u < limits.low, held_below, state.integral));
+  const Real u_now = u - pid.integral * (state.integral - integral_now);
+  state.integral = integral_now;
+  return Clamp(u_now, limits.low, limits.high);
+}
+
+}  // namespace control
+}  // namespace taut

@@ -1,0 +1,53 @@
+/// Position control: rest lengths that follow a program.
+///
+/// The paper uses position control "at startup to set the initial length of each cable and to
+/// maintain the balance of all three segments". Its boards receive motor angles; taut commands the
+/// rest length, which is the angle times the spool's radius.
+#pragma once
+
+#include <stddef.h>
+
+#include "taut/control/pid.h"
+#include "taut/control/real.h"
+
+namespace taut {
+namespace control {
+
+/// A corner of a program.
+template <class Real, class Time = Real>
+struct ProgramPoint {
+  Time time_s;
+  Real rest_length_m;
+};
+
+/// The program's rest length at `t_s` (docs/theory/control.md, eq. K.10) [m]: straight between the
+/// points, held before the first and after the last. One point is a constant command, two are a
+/// ramp; two points at one time are a jump, and the later one holds at that time.
+/// `count` >= 1; times must not fall.
+template <class Real, class Time>
+constexpr Real RestLengthAt(const ProgramPoint<Real, Time>* points, size_t count,
+                            Time t_s) noexcept {
+  if (!(t_s >= points[0].time_s)) return points[0].rest_length_m;
+  size_t last = 0;
+  while (last + 1 < count && points[last + 1].time_s <= t_s) ++last;
+  if (last + 1 == count) return points[last].rest_length_m;
+
+  const ProgramPoint<Real, Time>& from = points[last];
+  const ProgramPoint<Real, Time>& to = points[last + 1];
+  const Time part = (t_s - from.time_s) / (to.time_s - from.time_s);
+  return from.rest_length_m + (to.rest_length_m - from.rest_length_m) * FromScalar<Real>(part);
+}
+
+/// The rate of the rest length [m/s] that a PID on its error asks for, bounded to
+/// +-`max_speed_m_per_s` (eq. K.11): what a board does that can set a winding rate only. The
+/// paper gives no gains; those used with this are our assumption.
+template <class Real>
+constexpr Real RestLengthByPid(const Pid<Real>& pid, PidState<Real>& state, Real rest_length_m,
+                               Real set_point_m, Real period_s, Real max_speed_m_per_s,
+                               Windup windup) noexcept {
+  const OutputLimits<Real> limits{-max_speed_m_per_s, max_speed_m_per_s};
+  return StepPidLimited(pid, state, set_point_m - rest_length_m, period_s, limits, windup);
+}
+
+}  // namespace control
+}  // namespace taut
