@@ -1,0 +1,163 @@
+/// Robots and experiments as files describe them. Reading never throws and never prints: all
+/// that is wrong with a file ends up in `Diagnostics`.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "taut/diagnostics.h"
+#include "taut/model_def.h"
+
+namespace taut {
+
+/// `--set name=value` pairs: named parameters whose value replaces the file's. The value may be
+/// an expression such as `2 * edge_m`.
+using Overrides = std::vector<std::pair<std::string, std::string>>;
+
+/// Tags that a file gave to a part of the model, for controllers and events to match.
+using Tags = std::vector<std::string>;
+
+/// A model file, resolved: numbers in `def`, plus what only files know (tags, places).
+struct RobotSpec {
+  ModelDef def;
+  std::vector<Tags> cable_tags;              ///< Per cable of `def`; includes the cable's name.
+  std::vector<Tags> node_tags;               ///< Per node of `def`; includes the node's name.
+  std::vector<SourceRef> cable_sources;      ///< Per cable: the pair that it came from.
+  std::vector<SourceRef> body_sources;       ///< Per body.
+  std::map<std::string, double> parameters;  ///< As resolved, overrides applied.
+  std::vector<std::string> files;            ///< Every file that was read, the model first.
+};
+
+/// Reads a model file. Returns nothing if there was any error.
+std::optional<RobotSpec> LoadRobot(const std::string& path, const Overrides& overrides,
+                                   Diagnostics& out);
+
+/// What a file says it is, "model" or "experiment". Nothing, and a complaint, if it says neither.
+std::optional<std::string> FileKind(const std::string& path, Diagnostics& out);
+
+/// When a controller runs: at phase_s, phase_s + period_s, ... [s]. Owned by the controller, not
+/// by the step.
+struct ClockSpec {
+  double period_s = 0.001;
+  double phase_s = 0.0;
+};
+
+/// Gains of one cable under impedance control (paper eq. 3); lengthening is positive.
+struct ImpedanceGains {
+  int cable = 0;
+  double tension_offset_n = 0.0;               ///< T0 >= 0.
+  double length_offset_m = 0.0;                ///< L0 >= 0.
+  double position_gain_n_per_m = 0.0;          ///< K >= 0.
+  double velocity_gain_n_s_per_m = 0.0;        ///< B >= 0.
+  double velocity_offset_m_per_s = 0.0;        ///< V0.
+};
+
+/// How a tension set point becomes a rest-length command.
+enum class TensionConversion {
+  kStiffness,  ///< L = L_now - (T_set - T_now) / k: NTRT's tgTensionController.
+  kPid,        ///< A PID on the tension error commands the rest length's rate: the paper's boards.
+};
+
+struct PidGains {
+  double proportional_m_per_s_n = 0.0;   ///< Rate of winding in per newton of error.
+  double integral_m_per_s2_n = 0.0;
+  double derivative_m_per_n = 0.0;
+};
+
+struct ImpedanceSpec {
+  TensionConversion conversion = TensionConversion::kStiffness;
+  PidGains pid;
+  /// From where dl/dt comes: the exact rate, or the change of length since the last tick (as a
+  /// board or NTRT has it; the first tick then sees `length - rest_length` as NTRT does if
+  /// `start_from_rest_length`).
+  bool differenced_rate = false;
+  bool start_from_rest_length = false;
+  std::vector<ImpedanceGains> cables;
+};
+
+/// A rest length against time, piecewise linear, held before the first and after the last point.
+/// One point is a constant command, two are a ramp.
+struct PositionProgram {
+  int cable = 0;
+  std::vector<std::pair<double, double>> rest_length_m;  ///< (time_s, rest_length_m), times rising.
+};
+
+struct ControllerSpec {
+  std::string name;
+  ClockSpec clock;
+  std::optional<ImpedanceSpec> impedance;   ///< Exactly one of these is present.
+  std::vector<PositionProgram> position;
+};
+
+/// A force on a node against time, piecewise linear, zero before the first and after the last
+/// point.
+struct PushSpec {
+  std::string name;
+  int node = 0;
+  Vec3 direction{1.0, 0.0, 0.0};  ///< Unit vector in W.
+  double scale = 1.0;             ///< Factor on force_n.
+  std::vector<std::pair<double, double>> force_n;  ///< (time_s, force_n), times rising.
+};
+
+/// A spring and damper pulls a node towards a point that starts at the node's place at
+/// `from_s` and moves at a steady velocity: a hand-held scale that drags the robot.
+struct DragSpec {
+  std::string name;
+  int node = 0;
+  Vec3 velocity_m_per_s;  ///< Of the moving point, in W.
+  double stiffness_n_per_m = 0.0;
+  double damping_n_s_per_m = 0.0;
+  double from_s = 0.0, to_s = 0.0;
+};
+
+/// A named span of the timeline, for the summary table.
+struct PhaseSpec {
+  std::string name;
+  double from_s = 0.0, to_s = 0.0;
+};
+
+enum class StartKind {
+  kAsDescribed,
+  kSettled,          ///< Static equilibrium under gravity and contact, rest lengths fixed.
+  kSettledFloating,  ///< Static equilibrium of cables alone: no gravity, no ground.
+};
+
+struct RecordSpec {
+  double rate_hz = 100.0;              ///< Rows a second; 0: every step.
+  std::vector<std::string> channels;   ///< Name patterns with `*`; empty: all.
+};
+
+/// An experiment file, resolved.
+struct ExperimentSpec {
+  std::string name;
+  std::string description;
+  RobotSpec robot;  ///< With the experiment's terrain and overrides already in `robot.def`.
+  double step_s = 0.001;
+  double duration_s = 0.0;
+  StartKind start = StartKind::kAsDescribed;
+  std::uint64_t seed = 0;
+  std::vector<ControllerSpec> controllers;
+  std::vector<PushSpec> pushes;
+  std::vector<DragSpec> drags;
+  std::vector<PhaseSpec> phases;
+  RecordSpec record;
+  std::optional<std::string> compare_with;    ///< A trace to set the result beside.
+  std::map<std::string, double> parameters;   ///< The experiment's own, as resolved.
+  std::vector<std::string> files;             ///< Every file that was read, the experiment first.
+  std::uint64_t input_hash = 0;  ///< FNV-1a of the bytes of `files` and of the overrides.
+};
+
+/// Reads an experiment file and the model it names, or what `ResolvedYaml` wrote. Returns nothing
+/// if there was any error.
+std::optional<ExperimentSpec> LoadExperiment(const std::string& path, const Overrides& overrides,
+                                             Diagnostics& out);
+
+/// The experiment and its robot in numbers, without parameters, models or bases, as one YAML text.
+/// `LoadExperiment` reads it back to the same bits, so it reproduces the run on its own.
+std::string ResolvedYaml(const ExperimentSpec& experiment);
+
+}  // namespace taut

@@ -1,0 +1,154 @@
+#include "mechanics/mass_properties.h"
+
+#include "taut/statics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "math/vec.h"
+
+namespace taut {
+namespace {
+
+/// Inertia with moment `along` about the unit vector u, `across` about all axes normal to it.
+Inertia AxiallySymmetric(const Vec3& u, double along, double across) {
+  const double d = along - across;
+  return {across + d * u.x * u.x, across + d * u.y * u.y, across + d * u.z * u.z,
+          d * u.x * u.y,          d * u.x * u.z,          d * u.y * u.z};
+}
+
+Inertia operator+(const Inertia& a, const Inertia& b) {
+  return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.xz + b.xz, a.yz + b.yz};
+}
+
+/// Of a point mass at r.
+Inertia PointInertia(double mass, const Vec3& r) {
+  return {mass * (r.y * r.y + r.z * r.z),
+          mass * (r.x * r.x + r.z * r.z),
+          mass * (r.x * r.x + r.y * r.y),
+          -mass * r.x * r.y,
+          -mass * r.x * r.z,
+          -mass * r.y * r.z};
+}
+
+Vec3 Abs(const Vec3& a) { return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; }
+
+/// The shortest rotation that turns z into the unit vector u.
+Quat FromZ(const Vec3& u) {
+  const double w = std::sqrt(0.5 * (1.0 + std::max(-1.0, u.z)));
+  if (w < 1e-9) return {0.0, 1.0, 0.0, 0.0};  // straight down: any half turn
+  const double s = 0.5 / w;
+  return {w, -u.y * s, u.x * s, 0.0};
+}
+
+}  // namespace
+
+MassProperties SolidCylinder(const Vec3& from_m, const Vec3& to_m, double radius_m,
+                             double mass_kg) {
+  const Vec3 axis = to_m - from_m;
+  const double length = std::sqrt(Dot(axis, axis));
+  const double along = 0.5 * mass_kg * radius_m * radius_m;
+  const double across = mass_kg / 12.0 * (3.0 * radius_m * radius_m + length * length);
+  return {mass_kg, 0.5 * (from_m + to_m), AxiallySymmetric((1.0 / length) * axis, along, across)};
+}
+
+MassProperties SolidSphere(const Vec3& center_m, double radius_m, double mass_kg) {
+  const double moment = 0.4 * mass_kg * radius_m * radius_m;
+  return {mass_kg, center_m, {moment, moment, moment, 0.0, 0.0, 0.0}};
+}
+
+MassProperties SolidBox(const Vec3& center_m, const Quat& q_WBox, const Vec3& half_extents_m,
+                        double mass_kg) {
+  const Vec3 h = half_extents_m;
+  const double third = mass_kg / 3.0;
+  const Vec3 moments{third * (h.y * h.y + h.z * h.z), third * (h.x * h.x + h.z * h.z),
+                     third * (h.x * h.x + h.y * h.y)};
+  const Inertia inertia = AxiallySymmetric(Rotate(q_WBox, {1, 0, 0}), moments.x, 0.0) +
+                          AxiallySymmetric(Rotate(q_WBox, {0, 1, 0}), moments.y, 0.0) +
+                          AxiallySymmetric(Rotate(q_WBox, {0, 0, 1}), moments.z, 0.0);
+  return {mass_kg, center_m, inertia};
+}
+
+MassProperties Combine(const std::vector<MassProperties>& parts) {
+  MassProperties whole;
+  for (const MassProperties& part : parts) {
+    whole.mass_kg += part.mass_kg;
+    whole.com_m = whole.com_m + part.mass_kg * part.com_m;
+  }
+  if (whole.mass_kg == 0.0) return {};
+  whole.com_m = (1.0 / whole.mass_kg) * whole.com_m;
+  for (const MassProperties& part : parts) {
+    whole.inertia_kg_m2 = whole.inertia_kg_m2 + part.inertia_kg_m2 +
+                          PointInertia(part.mass_kg, part.com_m - whole.com_m);
+  }
+  return whole;
+}
+
+void Bounds::Add(const Vec3& center_m, const Vec3& half_extents_m) {
+  *this = Union(*this, {center_m - half_extents_m, center_m + half_extents_m});
+}
+
+Bounds Union(const Bounds& a, const Bounds& b) {
+  return {
+      {std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)},
+      {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
+}
+
+Bounds SphereBounds(const Vec3& center_m, double radius_m) {
+  Bounds bounds;
+  bounds.Add(center_m, {radius_m, radius_m, radius_m});
+  return bounds;
+}
+
+Bounds BoxBounds(const Vec3& center_m, const Quat& q_WBox, const Vec3& half_extents_m) {
+  const Vec3 h = half_extents_m;
+  Bounds bounds;
+  bounds.Add(center_m, h.x * Abs(Rotate(q_WBox, {1, 0, 0})) + h.y * Abs(Rotate(q_WBox, {0, 1, 0})) +
+                           h.z * Abs(Rotate(q_WBox, {0, 0, 1})));
+  return bounds;
+}
+
+Bounds BulletCylinderBounds(const Vec3& from_m, const Vec3& to_m, double radius_m) {
+  const Vec3 axis = to_m - from_m;
+  const double length = std::sqrt(Dot(axis, axis));
+  return BoxBounds(0.5 * (from_m + to_m), FromZ((1.0 / length) * axis),
+                   {radius_m, radius_m, 0.5 * length});
+}
+
+Inertia BoundingBoxInertia(const Bounds& bounds, double mass_kg) {
+  const Vec3 half = 0.5 * (bounds.high - bounds.low);
+  return SolidBox({}, {}, half, mass_kg).inertia_kg_m2;
+}
+
+Vec3 PrincipalMoments(const Inertia& inertia_kg_m2) {
+  // Cyclic Jacobi: a few sweeps reach round-off for any symmetric 3x3 matrix.
+  const Inertia& i = inertia_kg_m2;
+  double a[3][3] = {{i.xx, i.xy, i.xz}, {i.xy, i.yy, i.yz}, {i.xz, i.yz, i.zz}};
+  for (int sweep = 0; sweep < 12; ++sweep) {
+    for (int p = 0; p < 2; ++p) {
+      for (int q = p + 1; q < 3; ++q) {
+        if (a[p][q] == 0.0) continue;
+        const double theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+        const double t =
+            std::copysign(1.0, theta) / (std::fabs(theta) + std::sqrt(theta * theta + 1.0));
+        const double c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
+        for (int k = 0; k < 3; ++k) {
+          const double kp = a[k][p], kq = a[k][q];
+          a[k][p] = c * kp - s * kq;
+          a[k][q] = s * kp + c * kq;
+        }
+        for (int k = 0; k < 3; ++k) {
+          const double pk = a[p][k], qk = a[q][k];
+          a[p][k] = c * pk - s * qk;
+          a[q][k] = s * pk + c * qk;
+        }
+      }
+    }
+  }
+  double moments[3] = {a[0][0], a[1][1], a[2][2]};
+  std::sort(moments, moments + 3);
+  return {moments[0], moments[1], moments[2]};
+}
+
+}  // namespace taut

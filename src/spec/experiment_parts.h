@@ -1,0 +1,42 @@
+/// The parts of an experiment file, each read by one function. `robot` is null where the model
+/// could not be read: then nothing that refers to it is checked, everything else is.
+#pragma once
+
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "spec/reader.h"
+#include "taut/spec.h"
+
+namespace taut::spec {
+
+/// The cables that a selector stands for, ascending. Empty, and a complaint unless the robot is
+/// unknown, if there are none.
+std::vector<int> SelectCables(const Value& value, std::string_view what, const RobotSpec* robot,
+                              const Scope& scope);
+
+/// [[time_s, value], ...] with rising times. Empty after a complaint.
+std::vector<std::pair<double, double>> ReadPoints(const Value& value, std::string_view what,
+                                                  Bound bound, const Scope& scope);
+
+/// `actuators_known`: false if the model has errors, so that an actuator may just be misspelt.
+std::vector<ControllerSpec> ReadControllers(const Value* list, const RobotSpec* robot,
+                                            bool actuators_known, const Scope& scope);
+
+ImpedanceSpec ReadImpedance(const Value& value, const RobotSpec* robot, const Scope& scope);
+std::vector<PositionProgram> ReadPosition(const Value& value, const RobotSpec* robot,
+                                          const Scope& scope);
+
+/// Phases and events, into `out`, which has its duration already (NaN if that is unknown).
+void ReadTimeline(const Value& value, const RobotSpec* robot, const Scope& scope,
+                  ExperimentSpec& out);
+
+/// Planes and boxes, appended to `def`.
+void ReadTerrain(const Value* list, const Scope& scope, ModelDef& def);
+
+/// Moves the robot in `def` (but not the terrain) and gives it a velocity. `start` is for the
+/// complaint about velocities that settling would take away.
+void ReadPlace(const Value& value, StartKind start, const Scope& scope, ModelDef& def);
+
+}  // namespace taut::spec

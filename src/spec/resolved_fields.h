@@ -1,0 +1,216 @@
+/// What is in a resolved experiment: one list of fields a struct, for writing and for reading.
+#pragma once
+
+#include <concepts>
+#include <type_traits>
+
+#include "spec/laws.h"
+#include "taut/spec.h"
+
+namespace taut::spec {
+
+inline const Choices<ActuatorDef::Kind> kActuatorKinds{{"none", ActuatorDef::Kind::kNone},
+                                                {"ideal", ActuatorDef::Kind::kIdeal},
+                                                {"limited", ActuatorDef::Kind::kLimited}};
+inline const Choices<TensionConversion> kConversions{{"stiffness", TensionConversion::kStiffness},
+                                              {"pid", TensionConversion::kPid}};
+inline const Choices<StartKind> kStarts{{"as_described", StartKind::kAsDescribed},
+                                 {"settled", StartKind::kSettled},
+                                 {"settled_floating", StartKind::kSettledFloating}};
+
+// One list of fields a struct, for writing and for reading: `io` is called with each key and
+// field, and with the choices of an enumeration.
+template <class T, class U>
+concept Like = std::same_as<std::remove_const_t<T>, U>;
+
+template <class Io>
+void Fields(Io& io, Like<Material> auto& m) {
+  io("static_friction", m.static_friction);
+  io("kinetic_friction", m.kinetic_friction);
+  io("restitution", m.restitution);
+}
+template <class Io>
+void Fields(Io& io, Like<BodyDef> auto& b) {
+  io("name", b.name);
+  io("mass_kg", b.mass_kg);
+  io("com_m", b.com_m);
+  io("inertia_kg_m2", b.inertia_kg_m2);
+  io("velocity_m_per_s", b.velocity_m_per_s);
+  io("angular_velocity_rad_per_s", b.angular_velocity_rad_per_s);
+  io("fixed", b.fixed);
+}
+template <class Io>
+void Fields(Io& io, Like<SphereDef> auto& s) {
+  io("name", s.name);
+  io("body", s.body);
+  io("center_m", s.center_m);
+  io("radius_m", s.radius_m);
+  io("material", s.material);
+  io("collides", s.collides);
+}
+template <class Io>
+void Fields(Io& io, Like<CapsuleDef> auto& c) {
+  io("name", c.name);
+  io("body", c.body);
+  io("from_m", c.from_m);
+  io("to_m", c.to_m);
+  io("radius_m", c.radius_m);
+  io("material", c.material);
+  io("collides", c.collides);
+}
+template <class Io>
+void Fields(Io& io, Like<BoxDef> auto& b) {
+  io("name", b.name);
+  io("body", b.body);
+  io("center_m", b.center_m);
+  io("orientation", b.orientation);
+  io("half_extents_m", b.half_extents_m);
+  io("material", b.material);
+  io("collides", b.collides);
+}
+template <class Io>
+void Fields(Io& io, Like<NodeDef> auto& n) {
+  io("name", n.name);
+  io("body", n.body);
+  io("position_m", n.position_m);
+}
+template <class Io>
+void Fields(Io& io, Like<AttachmentDef> auto& a) {
+  io("body", a.body);
+  io("position_m", a.position_m);
+}
+template <class Io>
+void Fields(Io& io, Like<ActuatorDef> auto& a) {
+  io("kind", a.kind, kActuatorKinds);
+  io.Limit("max_speed_m_per_s", a.max_speed_m_per_s);
+  io.Limit("max_acceleration_m_per_s2", a.max_acceleration_m_per_s2);
+  io.Limit("max_force_n", a.max_force_n);
+  io("min_rest_length_m", a.min_rest_length_m);
+  io("min_length_m", a.min_length_m);
+}
+template <class Io>
+void Fields(Io& io, Like<CableDef> auto& c) {
+  io("name", c.name);
+  io("attachments", c.attachments);
+  io("stiffness_n_per_m", c.stiffness_n_per_m);
+  io("damping_n_s_per_m", c.damping_n_s_per_m);
+  io("rest_length_m", c.rest_length_m);
+  io("damping_law", c.damping_law, kDampingLaws);
+  io("actuator", c.actuator);
+}
+template <class Io>
+void Fields(Io& io, Like<PlaneDef> auto& p) {
+  io("name", p.name);
+  io("normal", p.normal);
+  io("point_m", p.point_m);
+  io("material", p.material);
+}
+template <class Io>
+void Fields(Io& io, Like<TerrainBoxDef> auto& b) {
+  io("name", b.name);
+  io("center_m", b.center_m);
+  io("orientation", b.orientation);
+  io("half_extents_m", b.half_extents_m);
+  io("material", b.material);
+}
+template <class Io>
+void Fields(Io& io, Like<RobotSpec> auto& r) {
+  io("name", r.def.name);
+  io("gravity_m_per_s2", r.def.gravity_m_per_s2);
+  io("friction_combine", r.def.friction_combine, kCombineRules);
+  io("restitution_combine", r.def.restitution_combine, kCombineRules);
+  io("friction_law", r.def.friction_law, kFrictionLaws);
+  io("bodies", r.def.bodies);
+  io("spheres", r.def.spheres);
+  io("capsules", r.def.capsules);
+  io("boxes", r.def.boxes);
+  io("nodes", r.def.nodes);
+  io("node_tags", r.node_tags);
+  io("cables", r.def.cables);
+  io("cable_tags", r.cable_tags);
+  io("planes", r.def.planes);
+  io("terrain_boxes", r.def.terrain_boxes);
+}
+template <class Io>
+void Fields(Io& io, Like<ImpedanceGains> auto& g) {
+  io("cable", g.cable);
+  io("tension_offset_n", g.tension_offset_n);
+  io("length_offset_m", g.length_offset_m);
+  io("position_gain_n_per_m", g.position_gain_n_per_m);
+  io("velocity_gain_n_s_per_m", g.velocity_gain_n_s_per_m);
+  io("velocity_offset_m_per_s", g.velocity_offset_m_per_s);
+}
+template <class Io>
+void Fields(Io& io, Like<PidGains> auto& p) {
+  io("proportional_m_per_s_n", p.proportional_m_per_s_n);
+  io("integral_m_per_s2_n", p.integral_m_per_s2_n);
+  io("derivative_m_per_n", p.derivative_m_per_n);
+}
+template <class Io>
+void Fields(Io& io, Like<ImpedanceSpec> auto& i) {
+  io("conversion", i.conversion, kConversions);
+  io("pid", i.pid);
+  io("differenced_rate", i.differenced_rate);
+  io("start_from_rest_length", i.start_from_rest_length);
+  io("cables", i.cables);
+}
+template <class Io>
+void Fields(Io& io, Like<PositionProgram> auto& p) {
+  io("cable", p.cable);
+  io("rest_length_m", p.rest_length_m);
+}
+template <class Io>
+void Fields(Io& io, Like<ControllerSpec> auto& c) {
+  io("name", c.name);
+  io("period_s", c.clock.period_s);
+  io("phase_s", c.clock.phase_s);
+  io("impedance", c.impedance);
+  io("position", c.position);
+}
+template <class Io>
+void Fields(Io& io, Like<PushSpec> auto& p) {
+  io("name", p.name);
+  io("node", p.node);
+  io("direction", p.direction);
+  io("scale", p.scale);
+  io("force_n", p.force_n);
+}
+template <class Io>
+void Fields(Io& io, Like<DragSpec> auto& d) {
+  io("name", d.name);
+  io("node", d.node);
+  io("velocity_m_per_s", d.velocity_m_per_s);
+  io("stiffness_n_per_m", d.stiffness_n_per_m);
+  io("damping_n_s_per_m", d.damping_n_s_per_m);
+  io("from_s", d.from_s);
+  io("to_s", d.to_s);
+}
+template <class Io>
+void Fields(Io& io, Like<PhaseSpec> auto& p) {
+  io("name", p.name);
+  io("from_s", p.from_s);
+  io("to_s", p.to_s);
+}
+template <class Io>
+void Fields(Io& io, Like<RecordSpec> auto& r) {
+  io("rate_hz", r.rate_hz);
+  io("channels", r.channels);
+}
+template <class Io>
+void Fields(Io& io, Like<ExperimentSpec> auto& e) {
+  io("name", e.name);
+  io("description", e.description);
+  io("step_s", e.step_s);
+  io("duration_s", e.duration_s);
+  io("start", e.start, kStarts);
+  io("seed", e.seed);
+  io("record", e.record);
+  io("compare_with", e.compare_with);
+  io("phases", e.phases);
+  io("pushes", e.pushes);
+  io("drags", e.drags);
+  io("controllers", e.controllers);
+  io("robot", e.robot);
+}
+
+}  // namespace taut::spec
