@@ -1,0 +1,67 @@
+/// Recordings of a run: named channels against time (docs/formats/trace.md).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "taut/diagnostics.h"
+
+namespace taut {
+
+/// One column of a trace. The name ends with the quantity and its unit:
+/// `cable/outer_top_1/tension_n`, `body/segment_0/position_x_m`.
+struct ChannelInfo {
+  std::string name;
+  std::string unit;  ///< SI: "N", "m", "m/s", "rad", "1".
+};
+
+/// Text that makes a run reproducible: pairs such as ("taut_version", "0.1.0"), ("seed", "0").
+using TraceMetadata = std::vector<std::pair<std::string, std::string>>;
+
+/// Writes a trace while the run goes on. A file cut off at any moment (kill -9) is readable and
+/// lacks at most the last second of wall-clock time.
+class TraceWriter {
+ public:
+  virtual ~TraceWriter() = default;
+
+  /// Appends a row. `values` has one entry a channel, in the order given at the start.
+  /// Returns false once writing has failed (disk full, ...); `error()` then says why.
+  virtual bool Append(double time_s, const double* values) = 0;
+
+  /// Writes what is still in memory and closes the file. False: see `error()`.
+  virtual bool Finish() = 0;
+
+  virtual const std::string& error() const = 0;
+};
+
+/// Starts an HDF5 trace (single writer, multiple readers). Nothing and a diagnostic if the file
+/// cannot be made.
+std::unique_ptr<TraceWriter> CreateHdf5Trace(const std::string& path,
+                                             const std::vector<ChannelInfo>& channels,
+                                             const TraceMetadata& metadata, Diagnostics& out);
+
+/// Starts a CSV trace: one header line `time_s,cable/outer_top_1/tension_n,...`.
+std::unique_ptr<TraceWriter> CreateCsvTrace(const std::string& path,
+                                            const std::vector<ChannelInfo>& channels,
+                                            Diagnostics& out);
+
+/// A trace in memory.
+struct Trace {
+  std::vector<ChannelInfo> channels;
+  std::vector<double> time_s;
+  std::vector<std::vector<double>> values;  ///< values[channel][row].
+  TraceMetadata metadata;
+
+  /// The position of a channel, or nothing.
+  std::optional<std::size_t> Find(const std::string& name) const;
+};
+
+/// Reads `.h5`, `.csv` or `.csv.gz`. Nothing and a diagnostic if that fails. A file that was cut
+/// off gives the rows that are complete in every channel.
+std::optional<Trace> ReadTrace(const std::string& path, Diagnostics& out);
+
+}  // namespace taut

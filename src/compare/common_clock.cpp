@@ -1,0 +1,83 @@
+#include "compare/common_clock.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace taut::compare {
+namespace {
+
+/// Times closer than this are the same row: what the digits of a CSV file may lose.
+double Tolerance(double time_s) { return 1e-9 * std::max(1.0, std::abs(time_s)); }
+
+bool SameTimes(const std::vector<double>& a, RowRange rows_a, const std::vector<double>& b,
+               RowRange rows_b) {
+  if (rows_a.end - rows_a.begin != rows_b.end - rows_b.begin) return false;
+  for (std::size_t i = rows_a.begin, j = rows_b.begin; i < rows_a.end; ++i, ++j) {
+    if (!(std::abs(a[i] - b[j]) <= Tolerance(a[i]))) return false;
+  }
+  return true;
+}
+
+double MeanStep(const std::vector<double>& time_s, RowRange rows) {
+  const std::size_t count = rows.end - rows.begin;
+  return count < 2 ? 0.0
+                   : (time_s[rows.end - 1] - time_s[rows.begin]) / static_cast<double>(count - 1);
+}
+
+}  // namespace
+
+RowRange RowsBetween(const std::vector<double>& time_s, double from_s, double to_s) {
+  const auto begin = std::lower_bound(time_s.begin(), time_s.end(), from_s - Tolerance(from_s));
+  const auto end = std::upper_bound(begin, time_s.end(), to_s + Tolerance(to_s));
+  return {static_cast<std::size_t>(begin - time_s.begin()),
+          static_cast<std::size_t>(end - time_s.begin())};
+}
+
+CommonClock MakeCommonClock(const std::vector<double>& time_a_s,
+                            const std::vector<double>& time_b_s, const CompareOptions& options) {
+  CommonClock clock;
+  if (time_a_s.empty() || time_b_s.empty()) return clock;
+  clock.from_s = std::max(time_a_s.front(), time_b_s.front());
+  clock.to_s = std::min(time_a_s.back(), time_b_s.back());
+  if (options.from_s) clock.from_s = std::max(clock.from_s, *options.from_s);
+  if (options.to_s) clock.to_s = std::min(clock.to_s, *options.to_s);
+  if (!(clock.from_s <= clock.to_s)) return clock;
+
+  const RowRange rows_a = RowsBetween(time_a_s, clock.from_s, clock.to_s);
+  const RowRange rows_b = RowsBetween(time_b_s, clock.from_s, clock.to_s);
+  const bool same = SameTimes(time_a_s, rows_a, time_b_s, rows_b);
+  clock.resample_a = !same && MeanStep(time_a_s, rows_a) < MeanStep(time_b_s, rows_b);
+  clock.resample_b = !same && !clock.resample_a;
+  const std::vector<double>& time_s = clock.resample_a ? time_b_s : time_a_s;
+  const RowRange rows = clock.resample_a ? rows_b : rows_a;
+  clock.time_s.assign(time_s.begin() + static_cast<std::ptrdiff_t>(rows.begin),
+                      time_s.begin() + static_cast<std::ptrdiff_t>(rows.end));
+  return clock;
+}
+
+std::vector<double> Interpolate(const std::vector<double>& time_s,
+                                const std::vector<double>& values,
+                                const std::vector<double>& at_s) {
+  std::vector<double> result;
+  result.reserve(at_s.size());
+  std::size_t next = 0;  // the first row after `at`
+  for (const double at : at_s) {
+    while (next < time_s.size() && time_s[next] <= at) ++next;
+    if (next == 0) {
+      result.push_back(values.front());
+    } else if (next == time_s.size() || time_s[next - 1] == at) {
+      result.push_back(values[next - 1]);
+    } else {
+      const double part = (at - time_s[next - 1]) / (time_s[next] - time_s[next - 1]);
+      result.push_back(values[next - 1] + part * (values[next] - values[next - 1]));
+    }
+  }
+  return result;
+}
+
+TraceSpan SpanOf(const std::vector<double>& time_s) {
+  if (time_s.empty()) return {};
+  return {time_s.size(), time_s.front(), time_s.back(), MeanStep(time_s, {0, time_s.size()})};
+}
+
+}  // namespace taut::compare

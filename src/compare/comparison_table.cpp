@@ -1,0 +1,183 @@
+// A comparison for the terminal. Channels that differ only in the middle of their names share a
+// heading, so that the rows fit into 100 columns:
+//
+//   cable/*/elastic_n [N]
+//                     rmse      bias  max error     at s   lag s   corr     max a     max b   err %
+//   inner_top_1     0.0821   -0.0132     -0.412    31.05   0.012  0.998    32.321    32.327   -0.02
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "taut/compare.h"
+
+namespace taut {
+namespace {
+
+/// A number in `width` columns, with as many digits as are worth reading.
+std::string Cell(double value, int width) {
+  if (!std::isfinite(value)) return fmt::format("{:>{}}", "-", width);
+  const double size = std::abs(value);
+  if (size != 0.0 && (size >= 1e5 || size < 1e-4)) return fmt::format("{:>{}.2e}", value, width);
+  const int decimals = size >= 1000.0 ? 1 : size >= 100.0 ? 2 : size >= 1.0 ? 3 : 4;
+  return fmt::format("{:>{}.{}f}", value, width, size == 0.0 ? 0 : decimals);
+}
+
+std::string Fixed(double value, int width, int decimals) {
+  return std::isfinite(value) ? fmt::format("{:>{}.{}f}", value, width, decimals)
+                              : fmt::format("{:>{}}", "-", width);
+}
+
+/// "cable/a/tension_n" is row "a" under heading "cable/*/tension_n"; "system/com_x_m" has no
+/// middle and is row "com_x_m" under "system/*".
+std::pair<std::string, std::string> HeadingAndRow(const std::string& name) {
+  const std::size_t first = name.find('/');
+  if (first == name.npos) return {"", name};
+  const std::size_t last = name.rfind('/');
+  if (first == last) return {name.substr(0, first) + "/*", name.substr(first + 1)};
+  return {name.substr(0, first) + "/*" + name.substr(last),
+          name.substr(first + 1, last - first - 1)};
+}
+
+struct Group {
+  std::string heading;
+  std::vector<std::pair<std::string, const ChannelComparison*>> rows;
+  std::size_t name_width = 8;
+};
+
+std::vector<Group> GroupsOf(const std::vector<ChannelComparison>& channels) {
+  std::vector<Group> groups;
+  for (const ChannelComparison& channel : channels) {
+    auto [heading, row] = HeadingAndRow(channel.name);
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&, &name = heading](const Group& g) { return g.heading == name; });
+    if (group == groups.end()) {
+      groups.push_back({heading, {}});
+      group = groups.end() - 1;
+    }
+    group->name_width = std::max(group->name_width, row.size());
+    group->rows.emplace_back(std::move(row), &channel);
+  }
+  return groups;
+}
+
+std::string GroupTitle(const Group& group) {
+  const std::string& unit = group.rows.front().second->unit;
+  const bool one_unit = std::all_of(group.rows.begin(), group.rows.end(),
+                                    [&](const auto& row) { return row.second->unit == unit; });
+  return one_unit ? fmt::format("{} [{}]", group.heading, unit) : group.heading;
+}
+
+/// ">0.5" if the search ended there: the delay may be longer.
+std::string LagCell(const ChannelComparison& channel, int width) {
+  if (!channel.lag_at_limit) return Fixed(channel.lag_s, width, 3);
+  const char* beyond = channel.lag_s < 0.0 ? "<" : ">";
+  return fmt::format("{:>{}}", fmt::format("{}{:.3g}", beyond, channel.lag_s), width);
+}
+
+void AppendGroup(const Group& group, std::string& out) {
+  out += fmt::format("\n{}\n{:<{}}{:>10}{:>10}{:>11}{:>9}{:>8}{:>7}{:>10}{:>10}{:>8}\n",
+                     GroupTitle(group), "", group.name_width, "rmse", "bias", "max error", "at s",
+                     "lag s", "corr", "max a", "max b", "err %");
+  for (const auto& [name, channel] : group.rows) {
+    out += fmt::format("{:<{}}", name, group.name_width);
+    out += Cell(channel->rmse, 10) + Cell(channel->bias, 10) + Cell(channel->error.value, 11);
+    out += Fixed(channel->error.time_s, 9, 2) + LagCell(*channel, 8);
+    out += Fixed(channel->correlation, 7, 3);
+    out += Cell(channel->max_a.value, 10) + Cell(channel->max_b.value, 10);
+    out += Fixed(channel->max_error_percent, 8, 2) + "\n";
+  }
+}
+
+/// Mean, min and max of both and their differences, for one phase.
+void AppendPhase(const Group& group, const TimeWindow& phase, std::size_t index, std::string& out) {
+  out += fmt::format("\n{}, {}: {:g} .. {:g} s\n", GroupTitle(group), phase.name, phase.from_s,
+                     phase.to_s);
+  out += fmt::format("{:<{}}{:>9}{:>9}{:>10}", "", group.name_width, "mean a", "mean b", "diff");
+  out += fmt::format("{:>9}{:>9}{:>10}{:>9}{:>9}{:>10}\n", "min a", "min b", "diff", "max a",
+                     "max b", "diff");
+  for (const auto& [name, channel] : group.rows) {
+    const auto& [a, b] = channel->phases[index];
+    out += fmt::format("{:<{}}", name, group.name_width);
+    for (const auto& [of_a, of_b] :
+         {std::pair(a.mean, b.mean), std::pair(a.min, b.min), std::pair(a.max, b.max)}) {
+      out += Cell(of_a, 9) + Cell(of_b, 9) + Cell(of_a - of_b, 10);
+    }
+    out += "\n";
+  }
+}
+
+std::string SpanText(const TraceSpan& span) {
+  if (span.rows == 0) return "no rows";
+  return fmt::format("{} rows, {:g} .. {:g} s, every {:.4g} s", span.rows, span.first_s,
+                     span.last_s, span.step_s);
+}
+
+/// When only one of the two has rows.
+void AppendAlone(const TraceSpan& one, const TraceSpan& other, const char* which,
+                 std::string& out) {
+  if (one.rows == 0 || other.rows == 0) return;
+  const double half_s = 0.5 * one.step_s;
+  std::string parts;
+  if (one.first_s < other.first_s - half_s) {
+    parts = fmt::format("{:g} .. {:g} s", one.first_s, std::min(one.last_s, other.first_s));
+  }
+  if (one.last_s > other.last_s + half_s) {
+    parts += fmt::format("{}{:g} .. {:g} s", parts.empty() ? "" : " and ",
+                         std::max(one.first_s, other.last_s), one.last_s);
+  }
+  if (!parts.empty()) out += fmt::format("only {} covers {}\n", which, parts);
+}
+
+void AppendList(const std::string& title, const std::vector<std::string>& names, std::string& out) {
+  if (names.empty()) return;
+  std::string line = fmt::format("{} ({}):", title, names.size());
+  constexpr std::size_t kMost = 12;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+    if (line.size() + names[i].size() > 98) {
+      out += line + "\n";
+      line = " ";
+    }
+    line += " " + names[i];
+  }
+  out += line + (names.size() > kMost ? " ...\n" : "\n");
+}
+
+}  // namespace
+
+std::string ComparisonTable(const Comparison& comparison, const std::string& name_a,
+                            const std::string& name_b) {
+  std::string out = fmt::format("a: {} ({})\nb: {} ({}), the reference\n", name_a,
+                                SpanText(comparison.a), name_b, SpanText(comparison.b));
+  if (comparison.rows > 0) {
+    out += fmt::format("compared: {:g} .. {:g} s, {} rows{}; differences are a - b\n",
+                       comparison.from_s, comparison.to_s, comparison.rows,
+                       comparison.resampled ? ", the finer trace interpolated" : "");
+  }
+  const std::vector<Group> groups = GroupsOf(comparison.channels);
+  for (const Group& group : groups) AppendGroup(group, out);
+  for (std::size_t i = 0; i < comparison.phases.size(); ++i) {
+    for (const Group& group : groups) AppendPhase(group, comparison.phases[i], i, out);
+  }
+  if (!comparison.system.empty()) out += "\n";
+  for (const SystemMaximum& system : comparison.system) {
+    out += fmt::format("largest {}: error {:+.2f} %\n", system.pattern, system.error_percent);
+    for (const auto& [which, extreme, channel] :
+         {std::tuple("a", system.a, system.channel_a), {"b", system.b, system.channel_b}}) {
+      out += fmt::format("  {} {:.4f} {} in {} at {:.2f} s\n", which, extreme.value, system.unit,
+                         HeadingAndRow(channel).second, extreme.time_s);
+    }
+  }
+  out += "\n";
+  AppendAlone(comparison.a, comparison.b, "a", out);
+  AppendAlone(comparison.b, comparison.a, "b", out);
+  AppendList("only in a", comparison.only_a, out);
+  AppendList("only in b", comparison.only_b, out);
+  AppendList("units differ, not compared", comparison.unit_conflicts, out);
+  while (out.ends_with("\n\n")) out.pop_back();
+  return out;
+}
+
+}  // namespace taut

@@ -1,0 +1,271 @@
+// Mapping files: JSON, read strictly. Vectors and quaternions become plain rules for their
+// components, so that applying a mapping knows only rules.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "compare/pattern.h"
+#include "taut/compare.h"
+#include "trace/channel_names.h"
+
+namespace taut {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kAxisNames[] = {"x", "y", "z"};
+constexpr std::string_view kAxisMark = "{axis}";
+
+/// Which axis of the file an axis of taut is, and whether it points the other way.
+struct Axis {
+  int of_file = 0;
+  double sign = 1.0;
+};
+using Axes = std::array<Axis, 3>;
+
+/// +1 for a rotation, -1 for a mirror, 0 if an axis is missing.
+double Handedness(const Axes& axes) {
+  const int i = axes[0].of_file, j = axes[1].of_file, k = axes[2].of_file;
+  const int order = (j - i) * (k - i) * (k - j);  // 2 or -2 for a permutation
+  return order / 2 * axes[0].sign * axes[1].sign * axes[2].sign;
+}
+
+std::string WithAxis(std::string name, std::string_view axis) {
+  const std::size_t at = name.find(kAxisMark);
+  return name.replace(at, kAxisMark.size(), axis);
+}
+
+class MappingReader {
+ public:
+  MappingReader(const std::string& path, Diagnostics& out) : path_(path), out_(out) {}
+
+  std::optional<Mapping> Read() {
+    std::ifstream file(path_);
+    if (!file) {
+      Error("", "cannot be opened");
+      return std::nullopt;
+    }
+    const Json json = Parse(file);
+    if (good_) Root(json);
+    if (!good_) return std::nullopt;
+    return std::move(mapping_);
+  }
+
+ private:
+  /// JSON lets a later key overwrite an earlier one; here that is an error.
+  Json Parse(std::istream& file) {
+    std::vector<std::set<std::string>> keys;
+    const auto watch = [&](int, Json::parse_event_t event, Json& value) {
+      if (event == Json::parse_event_t::object_start) keys.emplace_back();
+      if (event == Json::parse_event_t::object_end) keys.pop_back();
+      if (event == Json::parse_event_t::key && !keys.back().insert(value).second) {
+        Error("", fmt::format("key \"{}\" occurs twice in one object", std::string(value)));
+      }
+      return true;
+    };
+    try {
+      return Json::parse(file, watch);
+    } catch (const Json::exception& failure) {
+      const std::string what = failure.what();  // "[json...] parse error at line 1, ...: ..."
+      Error("", "is not JSON: " + what.substr(what.find("] ") + 2));
+      return {};
+    }
+  }
+
+  void Root(const Json& root) {
+    if (!IsObject(root, "",
+                  {"version", "description", "axes", "channels", "vectors", "quaternions"})) {
+      return;
+    }
+    if (root.value("version", Json()) != 1) {
+      Error("version", "is not 1, the version of mapping files that this taut reads");
+    }
+    if (root.contains("description") && !root["description"].is_string()) {
+      Error("description", "is not a text");
+    }
+    ReadAxes(root);
+    ForEach(root, "channels", {"from", "to", "unit", "scale", "offset"},
+            [&](const Json& rule, const std::string& at) { Channel(rule, at); });
+    ForEach(root, "vectors", {"from", "to", "unit", "scale", "offset"},
+            [&](const Json& rule, const std::string& at) { Vector(rule, at); });
+    ForEach(root, "quaternions", {"from", "to"},
+            [&](const Json& rule, const std::string& at) { Quaternion(rule, at); });
+  }
+
+  void ReadAxes(const Json& root) {
+    for (int i = 0; i < 3; ++i) axes_[static_cast<std::size_t>(i)] = {i, 1.0};
+    if (!root.contains("axes")) return;
+    if (!IsObject(root["axes"], "axes", {"x", "y", "z"})) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::string text = Text(root["axes"], kAxisNames[i], "axes");
+      const bool negative = text.starts_with('-');
+      const std::string letter = text.substr(negative ? 1 : 0);
+      if (letter != "x" && letter != "y" && letter != "z") {
+        Error(fmt::format("axes.{}", kAxisNames[i]), "is none of x, y, z, -x, -y, -z");
+        return;
+      }
+      axes_[i] = {letter[0] - 'x', negative ? -1.0 : 1.0};
+    }
+    if (Handedness(axes_) == 0.0) {
+      Error("axes", "names an axis twice");
+    } else if (Handedness(axes_) < 0.0) {
+      Error("axes", "is a mirror image, not a rotation");
+    }
+  }
+
+  void Channel(const Json& rule, const std::string& at) {
+    Mapping::Rule result{Pattern(rule, "from", at), Pattern(rule, "to", at), Unit(rule, at),
+                         Number(rule, "scale", at, 1.0), Number(rule, "offset", at, 0.0)};
+    if (StarsDiffer(result)) Error(at, "one of \"from\" and \"to\" has a `*`, the other not");
+    mapping_.rules.push_back(std::move(result));
+  }
+
+  void Vector(const Json& rule, const std::string& at) {
+    const Mapping::Rule whole = AxisRule(rule, at);
+    std::array<double, 3> offset{};
+    if (rule.contains("offset")) {
+      const Json& given = rule["offset"];
+      if (!given.is_array() || given.size() != 3 ||
+          !std::all_of(given.begin(), given.end(), [](const Json& j) { return j.is_number(); })) {
+        Error(at + ".offset", "is not a list of three numbers, along taut's x, y and z");
+        return;
+      }
+      for (std::size_t i = 0; i < 3; ++i) offset[i] = given[i];
+    }
+    if (good_) AddComponents(whole, Number(rule, "scale", at, 1.0), offset);
+  }
+
+  /// A rotation's vector part turns with the axes, its scalar part stays.
+  void Quaternion(const Json& rule, const std::string& at) {
+    const Mapping::Rule whole = AxisRule(rule, at);
+    if (!good_) return;
+    mapping_.rules.push_back({WithAxis(whole.from, "w"), WithAxis(whole.to, "w"), "1", 1.0, 0.0});
+    AddComponents(whole, 1.0, {});
+  }
+
+  void AddComponents(const Mapping::Rule& whole, double scale,
+                     const std::array<double, 3>& offset) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      mapping_.rules.push_back({WithAxis(whole.from, kAxisNames[axes_[i].of_file]),
+                                WithAxis(whole.to, kAxisNames[i]), whole.unit,
+                                axes_[i].sign * scale, offset[i]});
+    }
+  }
+
+  Mapping::Rule AxisRule(const Json& rule, const std::string& at) {
+    Mapping::Rule result{Pattern(rule, "from", at), Pattern(rule, "to", at), Unit(rule, at)};
+    for (const auto& [key, text] : {std::pair("from", result.from), std::pair("to", result.to)}) {
+      const std::size_t mark = text.find(kAxisMark);
+      if (mark == text.npos || text.find(kAxisMark, mark + 1) != text.npos) {
+        Error(fmt::format("{}.{}", at, key), "does not have one {axis}, where x, y and z go");
+      }
+    }
+    if (StarsDiffer(result)) Error(at, "one of \"from\" and \"to\" has a `*`, the other not");
+    return result;
+  }
+
+  static bool StarsDiffer(const Mapping::Rule& rule) {
+    return (rule.from.find('*') == std::string::npos) != (rule.to.find('*') == std::string::npos);
+  }
+
+  std::string Pattern(const Json& rule, const char* key, const std::string& at) {
+    const std::string text = Text(rule, key, at);
+    if (std::count(text.begin(), text.end(), '*') > 1) {
+      Error(fmt::format("{}.{}", at, key), "has more than one `*`");
+    }
+    return text;
+  }
+
+  std::string Unit(const Json& rule, const std::string& at) {
+    return rule.contains("unit") ? Text(rule, "unit", at) : std::string();
+  }
+
+  std::string Text(const Json& object, const char* key, const std::string& at) {
+    const auto found = object.find(key);
+    if (found != object.end() && found->is_string() && !found->get<std::string>().empty()) {
+      return *found;
+    }
+    Error(fmt::format("{}.{}", at, key), found == object.end() ? "is missing" : "is not a text");
+    return {};
+  }
+
+  double Number(const Json& object, const char* key, const std::string& at, double otherwise) {
+    const auto found = object.find(key);
+    if (found == object.end()) return otherwise;
+    if (found->is_number()) return *found;
+    Error(fmt::format("{}.{}", at, key), "is not a number");
+    return otherwise;
+  }
+
+  bool IsObject(const Json& json, const std::string& at, const std::vector<std::string>& keys) {
+    if (!json.is_object()) {
+      Error(at, "is not an object { ... }");
+      return false;
+    }
+    for (const auto& [key, value] : json.items()) {
+      if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+      Error(at.empty() ? key : at + "." + key, "is not known here", DidYouMean(key, keys));
+    }
+    return true;
+  }
+
+  template <class Use>
+  void ForEach(const Json& root, const char* key, const std::vector<std::string>& keys,
+               const Use& use) {
+    if (!root.contains(key)) return;
+    if (!root[key].is_array()) return Error(key, "is not a list [ ... ]");
+    for (std::size_t i = 0; i < root[key].size(); ++i) {
+      const std::string at = fmt::format("{}[{}]", key, i);
+      if (IsObject(root[key][i], at, keys)) use(root[key][i], at);
+    }
+  }
+
+  void Error(const std::string& at, const std::string& what, std::string hint = {}) {
+    out_.Error({path_}, at.empty() ? what : at + " " + what, std::move(hint));
+    good_ = false;
+  }
+
+  const std::string& path_;
+  Diagnostics& out_;
+  bool good_ = true;
+  Axes axes_;
+  Mapping mapping_;
+};
+
+}  // namespace
+
+std::optional<Mapping> LoadMapping(const std::string& path, Diagnostics& out) {
+  return MappingReader(path, out).Read();
+}
+
+std::optional<Trace> ApplyMapping(const Mapping& mapping, Trace trace, const std::string& path,
+                                  Diagnostics& out) {
+  std::set<std::string> names;
+  bool good = true;
+  for (std::size_t i = 0; i < trace.channels.size(); ++i) {
+    ChannelInfo& channel = trace.channels[i];
+    for (const Mapping::Rule& rule : mapping.rules) {
+      const auto wildcard = compare::Wildcard(rule.from, channel.name);
+      if (!wildcard) continue;
+      std::string name = rule.to;
+      if (const std::size_t star = name.find('*'); star != name.npos) {
+        name.replace(star, 1, *wildcard);
+      }
+      channel = {name, rule.unit.empty() ? trace::UnitOfName(name) : rule.unit};
+      for (double& value : trace.values[i]) value = rule.scale * value + rule.offset;
+      break;
+    }
+    if (!names.insert(channel.name).second) {
+      out.Error({path}, fmt::format("the mapping makes two channels {}", channel.name));
+      good = false;
+    }
+  }
+  if (!good) return std::nullopt;
+  return trace;
+}
+
+}  // namespace taut

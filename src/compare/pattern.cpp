@@ -1,0 +1,46 @@
+#include "compare/pattern.h"
+
+#include <algorithm>
+
+namespace taut::compare {
+
+bool Fits(std::string_view pattern, std::string_view name) {
+  // Greedy with one place to come back to: the last `*` takes one character more.
+  std::size_t p = 0, n = 0, star = pattern.npos, resume = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      resume = n;
+    } else if (p < pattern.size() && pattern[p] == name[n]) {
+      ++p;
+      ++n;
+    } else if (star != pattern.npos) {
+      p = star + 1;
+      n = ++resume;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == pattern.npos;
+}
+
+bool FitsAny(const std::vector<std::string>& patterns, std::string_view name) {
+  return patterns.empty() || std::any_of(patterns.begin(), patterns.end(),
+                                         [&](const auto& pattern) { return Fits(pattern, name); });
+}
+
+std::optional<std::string_view> Wildcard(std::string_view pattern, std::string_view name) {
+  const std::size_t star = pattern.find('*');
+  if (star == pattern.npos) {
+    return pattern == name ? std::optional<std::string_view>("") : std::nullopt;
+  }
+  const std::string_view head = pattern.substr(0, star), tail = pattern.substr(star + 1);
+  // at least one character, so that "*_x_m" takes a part of a name, not its absence
+  if (name.size() <= head.size() + tail.size() || !name.starts_with(head) ||
+      !name.ends_with(tail)) {
+    return std::nullopt;
+  }
+  return name.substr(head.size(), name.size() - head.size() - tail.size());
+}
+
+}  // namespace taut::compare

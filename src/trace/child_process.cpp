@@ -1,0 +1,129 @@
+#include "trace/child_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+
+namespace taut::trace {
+namespace {
+
+/// Address space of this process, or 0 if the system does not tell.
+std::size_t AddressSpaceBytes() {
+  std::FILE* file = std::fopen("/proc/self/statm", "r");
+  if (file == nullptr) return 0;
+  unsigned long pages = 0;
+  const int found = std::fscanf(file, "%lu", &pages);
+  std::fclose(file);
+  return found == 1 ? pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+/// A crash of the child is expected: no handlers of the program around it, no core file, no last
+/// words on the terminal. An interrupt is for the parent to answer.
+void PrepareForTheWorst(std::size_t more_memory_bytes) {
+  for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGPIPE}) {
+    signal(number, SIG_DFL);
+  }
+  signal(SIGINT, SIG_IGN);
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  if (const std::size_t now = AddressSpaceBytes(); now > 0) {
+    const rlimit memory{now + more_memory_bytes, now + more_memory_bytes};
+    setrlimit(RLIMIT_AS, &memory);
+  }
+  if (const int null = open("/dev/null", O_WRONLY); null >= 0) dup2(null, STDERR_FILENO);
+}
+
+}  // namespace
+
+void ChildOutput::Write(const void* data, std::size_t size) const {
+  const char* from = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t done = write(descriptor_, from, size);
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) _exit(1);
+    from += done;
+    size -= static_cast<std::size_t>(done);
+  }
+}
+
+ChildProcess::ChildProcess(const std::function<void(const ChildOutput&)>& work,
+                           std::size_t more_memory_bytes, std::chrono::milliseconds patience)
+    : patience_(patience) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) {
+    trouble_ = fmt::format("could not be started: {}", std::strerror(errno));
+    return;
+  }
+  pid_ = fork();
+  if (pid_ == 0) {
+    close(ends[0]);
+    PrepareForTheWorst(more_memory_bytes);
+    try {
+      work(ChildOutput(ends[1]));
+    } catch (const std::exception&) {
+      _exit(1);
+    }
+    _exit(0);  // not exit(): what the parent has open or buffered is the parent's to finish
+  }
+  if (pid_ < 0) trouble_ = fmt::format("could not be started: {}", std::strerror(errno));
+  close(ends[1]);
+  descriptor_ = ends[0];
+}
+
+ChildProcess::~ChildProcess() {
+  End();
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+bool ChildProcess::Read(void* to, std::size_t size) {
+  char* at = static_cast<char*>(to);
+  while (size > 0 && trouble_.empty() && !stream_ended_) {
+    pollfd waiting{descriptor_, POLLIN, 0};
+    const int ready = poll(&waiting, 1, static_cast<int>(patience_.count()));
+    if (ready < 0 && errno == EINTR) continue;
+    if (ready == 0) {
+      trouble_ = fmt::format("gave no sign of life for {} s",
+                             std::chrono::duration<double>(patience_).count());
+      break;
+    }
+    const ssize_t done = read(descriptor_, at, size);
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) {
+      stream_ended_ = true;
+      break;
+    }
+    at += done;
+    size -= static_cast<std::size_t>(done);
+  }
+  return size == 0;
+}
+
+std::string ChildProcess::End() {
+  if (pid_ <= 0) return trouble_;
+  if (!stream_ended_) kill(pid_, SIGKILL);
+  int status = 0;
+  pid_t ended = -1;
+  do {
+    ended = waitpid(pid_, &status, 0);
+  } while (ended < 0 && errno == EINTR);
+  pid_ = -1;
+  if (ended < 0 || !trouble_.empty() || !stream_ended_) return trouble_;
+  if (WIFSIGNALED(status)) {
+    trouble_ = fmt::format("crashed ({})", strsignal(WTERMSIG(status)));
+  } else if (WEXITSTATUS(status) != 0) {
+    trouble_ = fmt::format("ended with status {}", WEXITSTATUS(status));
+  }
+  return trouble_;
+}
+
+}  // namespace taut::trace

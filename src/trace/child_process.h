@@ -1,0 +1,49 @@
+/// A forked child that does something dangerous and sends back what it found.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <string>
+
+namespace taut::trace {
+
+/// The child's end of the pipe. Ends the child once the parent is gone.
+class ChildOutput {
+ public:
+  explicit ChildOutput(int descriptor) : descriptor_(descriptor) {}
+  void Write(const void* data, std::size_t size) const;
+
+ private:
+  int descriptor_;
+};
+
+/// Whatever happens to the child (a crash, a hang, memory without bound), the parent lives.
+class ChildProcess {
+ public:
+  /// Forks and runs `work` in the child, which ends with it. `more_memory_bytes`: what the child
+  /// may take beyond what the parent has. `patience`: how long `Read` waits for a sign of life.
+  ChildProcess(const std::function<void(const ChildOutput&)>& work, std::size_t more_memory_bytes,
+               std::chrono::milliseconds patience);
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// Receives exactly `size` bytes. False if they do not come.
+  bool Read(void* to, std::size_t size);
+
+  /// Ends the child if it still runs. Empty if it ended by itself and well, else what befell it:
+  /// "crashed (Segmentation fault)", "gave no sign of life for 30 s".
+  std::string End();
+
+ private:
+  pid_t pid_ = -1;
+  int descriptor_ = -1;
+  std::chrono::milliseconds patience_;
+  bool stream_ended_ = false;
+  std::string trouble_;
+};
+
+}  // namespace taut::trace

@@ -1,0 +1,48 @@
+#include "trace/hdf5.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace taut::trace {
+namespace {
+
+herr_t TakeInnermost(unsigned depth, const H5E_error2_t* error, void* out) {
+  if (depth == 0 && error->desc != nullptr) *static_cast<std::string*>(out) = error->desc;
+  return 0;
+}
+
+/// HDF5 calls this when a call has failed, before anything can overwrite the reason.
+herr_t Remember(hid_t stack, void* out) {
+  std::string& why = *static_cast<std::string*>(out);
+  if (!why.empty()) return 0;
+  H5Ewalk2(stack, H5E_WALK_UPWARD, TakeInnermost, &why);
+  constexpr std::string_view kQuote = "error message = '";
+  if (const std::size_t at = why.find(kQuote); at != why.npos) {
+    const std::size_t from = at + kQuote.size();
+    why = why.substr(from, why.find('\'', from) - from);
+  }
+  return 0;
+}
+
+}  // namespace
+
+QuietHdf5::QuietHdf5() {
+  // A trace that could not be finished stays open inside the library, which must not try again
+  // when the program exits.
+  static const herr_t once = H5dont_atexit();
+  static_cast<void>(once);
+  H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+  H5Eset_auto2(H5E_DEFAULT, Remember, &why_);
+}
+
+QuietHdf5::~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+
+Hdf5Id StringType(std::size_t size) {
+  Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, std::max<std::size_t>(size, 1));
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  return type;
+}
+
+}  // namespace taut::trace

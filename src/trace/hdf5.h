@@ -1,0 +1,69 @@
+/// The little of HDF5's C interface that reader and writer share.
+#pragma once
+
+#include <hdf5.h>
+
+#include <string>
+#include <utility>
+
+namespace taut::trace {
+
+inline constexpr char kFormatName[] = "taut trace";
+inline constexpr int kFormatVersion = 1;
+
+/// An HDF5 identifier that closes itself.
+class Hdf5Id {
+ public:
+  using Close = herr_t (*)(hid_t);
+
+  Hdf5Id() = default;
+  Hdf5Id(hid_t id, Close close) noexcept : id_(id), close_(close) {}
+  Hdf5Id(Hdf5Id&& other) noexcept
+      : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
+  Hdf5Id& operator=(Hdf5Id&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  ~Hdf5Id() { Reset(); }
+
+  /// Closes. False if that failed (HDF5 writes what it still holds when it closes).
+  bool Reset() noexcept {
+    const hid_t id = std::exchange(id_, H5I_INVALID_HID);
+    return id < 0 || close_(id) >= 0;
+  }
+  /// Forgets the identifier without closing it.
+  void Abandon() noexcept { id_ = H5I_INVALID_HID; }
+  explicit operator bool() const noexcept { return id_ >= 0; }
+  operator hid_t() const noexcept { return id_; }
+
+ private:
+  hid_t id_ = H5I_INVALID_HID;
+  Close close_ = nullptr;
+};
+
+/// Keeps HDF5 from printing its errors while it lives, and remembers the first. Puts the setting of
+/// the program around us back afterwards.
+class QuietHdf5 {
+ public:
+  QuietHdf5();
+  ~QuietHdf5();
+  QuietHdf5(const QuietHdf5&) = delete;
+  QuietHdf5& operator=(const QuietHdf5&) = delete;
+
+  /// Why the first call failed, in the system's words if it was the system
+  /// ("No space left on device").
+  std::string why() const { return why_.empty() ? "unknown HDF5 error" : why_; }
+  /// Forgets an error that was expected.
+  void Forget() { why_.clear(); }
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+  std::string why_;
+};
+
+/// A fixed-length string type for `size` characters.
+Hdf5Id StringType(std::size_t size);
+
+}  // namespace taut::trace

@@ -1,0 +1,222 @@
+// A trace in HDF5, written so that it can be read at any moment (docs/formats/trace.md).
+//
+// All groups, datasets and attributes exist before the first row; from then on the file is in
+// HDF5's single-writer mode, in which the library orders its writes such that a reader, or the
+// next program after a kill -9, never sees a broken structure.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "taut/trace.h"
+#include "trace/channel_names.h"
+#include "trace/hdf5.h"
+
+namespace taut::trace {
+namespace {
+
+/// Rows of a chunk. 8 kB: a short run wastes little on its last chunk, an hour at 1 kHz is still
+/// only 3500 chunks a channel.
+constexpr hsize_t kChunkRows = 1024;
+
+/// How old rows in memory may become before they are written. Half of what the interface
+/// promises, because the next look at the clock is at the next row.
+constexpr std::chrono::milliseconds kMaxAge{500};
+
+bool WriteText(hid_t object, const std::string& name, const std::string& text) {
+  const Hdf5Id type = StringType(text.size());
+  const Hdf5Id space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Id attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
+  return attribute && H5Awrite(attribute, type, text.c_str()) >= 0;
+}
+
+bool WriteNumber(hid_t object, const char* name, int number) {
+  const Hdf5Id space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Id attribute(H5Acreate2(object, name, H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
+  return attribute && H5Awrite(attribute, H5T_NATIVE_INT, &number) >= 0;
+}
+
+/// A column at `path`, empty, with room without limit. `column`: its place in a row.
+Hdf5Id CreateColumn(hid_t file, const std::string& path, const std::string& unit, int column) {
+  const hsize_t none = 0, unlimited = H5S_UNLIMITED;
+  const Hdf5Id space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
+  const Hdf5Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links, 1);
+  const Hdf5Id layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_chunk(layout, 1, &kChunkRows);
+  H5Pset_fill_time(layout, H5D_FILL_TIME_NEVER);
+  Hdf5Id column_id(
+      H5Dcreate2(file, path.c_str(), H5T_IEEE_F64LE, space, links, layout, H5P_DEFAULT), H5Dclose);
+  if (!column_id || !WriteText(column_id, "unit", unit) ||
+      !WriteNumber(column_id, "column", column)) {
+    return {};
+  }
+  return column_id;
+}
+
+class Hdf5Writer final : public TraceWriter {
+ public:
+  Hdf5Writer(std::string path, std::size_t channel_count)
+      : path_(std::move(path)), width_(channel_count + 1), rows_(kChunkRows * width_) {}
+
+  ~Hdf5Writer() override {
+    if (file_ && error_.empty()) Finish();
+  }
+
+  /// Makes the file and all that it will ever contain except rows.
+  bool Start(const std::vector<ChannelInfo>& channels, const TraceMetadata& metadata);
+
+  bool Append(double time_s, const double* values) override {
+    if (!file_) return Fail("was finished before this row");
+    if (!error_.empty()) return false;
+    double* row = rows_.data() + row_count_ * width_;
+    row[0] = time_s;
+    std::copy(values, values + (width_ - 1), row + 1);
+    ++row_count_;
+    // Whole chunks are cheapest, so a block ends where a chunk does.
+    if ((written_ + row_count_) % kChunkRows == 0 && !WriteRows()) return false;
+    return std::chrono::steady_clock::now() - flushed_ < kMaxAge || Flush();
+  }
+
+  bool Finish() override {
+    if (!error_.empty()) return false;
+    if (!file_) return true;
+    if (!WriteRows()) return false;
+    const QuietHdf5 quiet;
+    for (Hdf5Id& column : columns_) {
+      if (!column.Reset()) return Fail(quiet.why());
+    }
+    return file_.Reset() || Fail(quiet.why());
+  }
+
+  const std::string& error() const override { return error_; }
+
+ private:
+  bool Flush() {
+    if (!WriteRows()) return false;
+    const QuietHdf5 quiet;
+    if (H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0) return Fail(quiet.why());
+    flushed_ = std::chrono::steady_clock::now();
+    return true;
+  }
+
+  /// Time goes last: a row that has a time has everything else.
+  bool WriteRows() {
+    if (row_count_ == 0) return true;
+    const QuietHdf5 quiet;
+    for (std::size_t i = 1; i <= width_; ++i) {
+      if (!WriteColumn(i % width_)) return Fail(quiet.why());
+    }
+    written_ += row_count_;
+    row_count_ = 0;
+    return true;
+  }
+
+  bool WriteColumn(std::size_t column) {
+    for (std::size_t row = 0; row < row_count_; ++row) {
+      block_[row] = rows_[row * width_ + column];
+    }
+    const hsize_t from = written_, count = row_count_, total = from + count;
+    if (H5Dset_extent(columns_[column], &total) < 0) return false;
+    const Hdf5Id memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    const Hdf5Id space(H5Dget_space(columns_[column]), H5Sclose);
+    return space &&
+           H5Sselect_hyperslab(space, H5S_SELECT_SET, &from, nullptr, &count, nullptr) >= 0 &&
+           H5Dwrite(columns_[column], H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, block_) >= 0;
+  }
+
+  /// The library cannot close what it cannot write, so the file stays as it is: readable up to
+  /// the last flush that went well.
+  bool Fail(std::string why) {
+    if (error_.empty()) error_ = fmt::format("{}: cannot be written: {}", path_, why);
+    for (Hdf5Id& column : columns_) column.Abandon();
+    file_.Abandon();
+    return false;
+  }
+
+  std::string path_, error_;
+  std::size_t width_;  ///< Numbers of a row: time and channels.
+  Hdf5Id file_;
+  std::vector<Hdf5Id> columns_;  ///< Time, then the channels.
+  std::vector<double> rows_;     ///< Not yet written, row by row: one chunk at most.
+  std::size_t row_count_ = 0;    ///< In `rows_`.
+  hsize_t written_ = 0;          ///< Rows in the file.
+  double block_[kChunkRows] = {};
+  std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
+};
+
+bool Hdf5Writer::Start(const std::vector<ChannelInfo>& channels, const TraceMetadata& metadata) {
+  const QuietHdf5 quiet;
+  const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+  // No chunk cache: what is written leaves the process at once, and memory stays small. (Set for
+  // a dataset alone it is forgotten when the single-writer mode starts.)
+  H5Pset_cache(access, 0, 1, 0, 1.0);
+  const Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+
+  // Under another name until it is a trace: at `path` is always a whole one, this or the last.
+  const std::string unfinished = path_ + ".part";
+  file_ = Hdf5Id(H5Fcreate(unfinished.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
+  if (!file_) return Fail(quiet.why());
+  bool good = WriteText(file_, "format", kFormatName) &&
+              WriteNumber(file_, "format_version", kFormatVersion);
+  for (std::size_t i = 0; good && i < metadata.size(); ++i) {
+    good = WriteText(file_, metadata[i].first, metadata[i].second);
+  }
+  for (std::size_t i = 0; good && i <= channels.size(); ++i) {
+    columns_.push_back(i == 0 ? CreateColumn(file_, "/time_s", "s", 0)
+                              : CreateColumn(file_, "/" + channels[i - 1].name,
+                                             channels[i - 1].unit, static_cast<int>(i)));
+    good = static_cast<bool>(columns_.back());
+  }
+  good = good && H5Fstart_swmr_write(file_) >= 0;
+  if (!good) {
+    Fail(quiet.why());
+  } else if (std::rename(unfinished.c_str(), path_.c_str()) != 0) {
+    Fail(std::strerror(errno));
+  }
+  if (!error_.empty()) std::remove(unfinished.c_str());
+  return error_.empty();
+}
+
+bool CheckMetadata(const std::string& path, const TraceMetadata& metadata, Diagnostics& out) {
+  for (std::size_t i = 0; i < metadata.size(); ++i) {
+    const std::string& key = metadata[i].first;
+    const bool taken = key.empty() || key == "format" || key == "format_version" ||
+                       std::any_of(metadata.begin(), metadata.begin() + static_cast<long>(i),
+                                   [&](const auto& pair) { return pair.first == key; });
+    if (!taken) continue;
+    out.Error({path}, fmt::format("metadata key \"{}\" is empty, reserved or occurs twice", key));
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+}  // namespace taut::trace
+
+namespace taut {
+
+std::unique_ptr<TraceWriter> CreateHdf5Trace(const std::string& path,
+                                             const std::vector<ChannelInfo>& channels,
+                                             const TraceMetadata& metadata, Diagnostics& out) {
+  if (!trace::CheckChannelNames(path, channels, out) ||
+      !trace::CheckMetadata(path, metadata, out)) {
+    return nullptr;
+  }
+  auto writer = std::make_unique<trace::Hdf5Writer>(path, channels.size());
+  if (!writer->Start(channels, metadata)) {
+    out.Error({}, writer->error());
+    return nullptr;
+  }
+  return writer;
+}
+
+}  // namespace taut

@@ -1,0 +1,36 @@
+#include "taut/trace.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "trace/readers.h"
+
+namespace taut {
+
+std::optional<std::size_t> Trace::Find(const std::string& name) const {
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (channels[i].name == name) return i;
+  }
+  return std::nullopt;
+}
+
+std::optional<Trace> ReadTrace(const std::string& path, Diagnostics& out) {
+  struct stat info {};
+  if (stat(path.c_str(), &info) != 0) {
+    out.Error({path}, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    return std::nullopt;
+  }
+  if (!S_ISREG(info.st_mode)) {
+    out.Error({path}, "is not a regular file");
+    return std::nullopt;
+  }
+  if (path.ends_with(".h5")) return trace::ReadHdf5(path, out);
+  if (path.ends_with(".csv") || path.ends_with(".csv.gz")) return trace::ReadCsv(path, out);
+  out.Error({path}, "is of no known kind", "the name of a trace ends with .h5, .csv or .csv.gz");
+  return std::nullopt;
+}
+
+}  // namespace taut
