@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "check_report.h"
+#include "commands.h"
+#include "overrides.h"
+#include "taut/batch.h"
+#include "taut/spec.h"
+
+namespace taut::cli {
+namespace {
+
+struct CheckArguments {
+  std::string path;
+  std::vector<std::string> set;
+  bool json = false, quiet = false;
+};
+
+/// All errors, on stderr as text and, if asked for, on stdout as JSON.
+int Bad(const CheckArguments& args, const Diagnostics& found) {
+  fmt::print(stderr, "{}", found.Format());
+  if (args.json) fmt::print("{}\n", ErrorsJson(args.path, found));
+  return kBadInput;
+}
+
+int Check(const CheckArguments& args) {
+  const std::optional<Overrides> overrides = ParseOverrides(args.set);
+  if (!overrides) return kUsage;
+  Diagnostics found;
+  const std::optional<std::string> kind = FileKind(args.path, found);
+  if (!kind) return Bad(args, found);
+
+  std::optional<ExperimentSpec> experiment;
+  std::optional<RobotSpec> robot;
+  if (*kind == "experiment") {
+    experiment = LoadExperiment(args.path, *overrides, found);
+    if (experiment) robot = experiment->robot;
+  } else {
+    robot = LoadRobot(args.path, *overrides, found);
+  }
+  // What the simulator refuses is wrong, too.
+  if (!robot || !Model::Compile(robot->def, found)) return Bad(args, found);
+
+  if (args.json) {
+    fmt::print("{}\n", CheckJson(*robot, experiment ? &*experiment : nullptr));
+  } else if (!args.quiet) {
+    fmt::print("{}: good\n", args.path);
+    if (experiment) fmt::print("\n{}", ExperimentTables(*experiment));
+    fmt::print("\n{}", RobotTables(*robot));
+  }
+  return kOk;
+}
+
+}  // namespace
+
+void AddCheck(CLI::App& app, int& exit_code) {
+  auto args = std::make_shared<CheckArguments>();
+  CLI::App* check =
+      app.add_subcommand("check", "Check a model or experiment file; show what it describes.");
+  check->add_option("file", args->path, "Model or experiment file (YAML)")->required();
+  check->add_option("--set", args->set, "Parameter of the file: name=value")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  check->add_flag("--json", args->json, "JSON instead of tables");
+  check->add_flag("--quiet", args->quiet, "Say nothing about a good file");
+  check->footer(
+      "Examples:\n"
+      "  taut check models/tetraspine3.yaml\n"
+      "  taut check models/tetraspine3.yaml --set segments=12 --set edge_m=0.4\n"
+      "  taut check experiments/push_20n.yaml --json\n"
+      "Every error of a file comes with its place: file:line:column: error: ... (hint)\n"
+      "Exit status: 0 the file is good, 2 bad usage, 3 the file has errors.");
+  check->callback([args, &exit_code] { exit_code = Check(*args); });
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,107 @@
+#include <nlohmann/json.hpp>
+
+#include "check_report.h"
+#include "taut/statics.h"
+
+namespace taut::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ToJson(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+
+Json BodiesJson(const ModelDef& def) {
+  const std::vector<BodyLoad> loads = StartLoads(def);
+  const std::vector<ShapeCount> shapes = CollidingShapes(def);
+  Json bodies = Json::array();
+  for (std::size_t i = 0; i < def.bodies.size(); ++i) {
+    const BodyDef& body = def.bodies[i];
+    const Inertia& inertia = body.inertia_kg_m2;
+    bodies.push_back({{"name", body.name},
+                      {"fixed", body.fixed},
+                      {"mass_kg", body.mass_kg},
+                      {"com_m", ToJson(body.com_m)},
+                      {"inertia_kg_m2",
+                       {{"xx", inertia.xx},
+                        {"yy", inertia.yy},
+                        {"zz", inertia.zz},
+                        {"xy", inertia.xy},
+                        {"xz", inertia.xz},
+                        {"yz", inertia.yz}}},
+                      {"principal_inertia_kg_m2", ToJson(PrincipalMoments(inertia))},
+                      {"cable_force_n", ToJson(loads[i].cable_force_n)},
+                      {"cable_torque_n_m", ToJson(loads[i].cable_torque_n_m)},
+                      {"weight_n", ToJson(loads[i].weight_n)},
+                      {"colliding_rods", shapes[i].capsules},
+                      {"colliding_spheres", shapes[i].spheres},
+                      {"colliding_boxes", shapes[i].boxes}});
+  }
+  return bodies;
+}
+
+Json CablesJson(const RobotSpec& robot) {
+  Json cables = Json::array();
+  for (std::size_t i = 0; i < robot.def.cables.size(); ++i) {
+    const CableDef& cable = robot.def.cables[i];
+    Json attachments = Json::array();
+    for (const AttachmentDef& at : cable.attachments) {
+      attachments.push_back({{"body", at.body == kWorld ? "world" : robot.def.bodies[at.body].name},
+                             {"position_m", ToJson(at.position_m)}});
+    }
+    cables.push_back({{"name", cable.name},
+                      {"tags", robot.cable_tags[i]},
+                      {"length_m", CableLength(cable)},
+                      {"rest_length_m", cable.rest_length_m},
+                      {"tension_n", CableTension(cable)},
+                      {"stiffness_n_per_m", cable.stiffness_n_per_m},
+                      {"damping_n_s_per_m", cable.damping_n_s_per_m},
+                      {"attachments", std::move(attachments)}});
+  }
+  return cables;
+}
+
+/// Names may hold any bytes that the file had; JSON wants UTF-8.
+std::string Dump(const Json& json) {
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment) {
+  Json nodes = Json::array();
+  for (std::size_t i = 0; i < robot.def.nodes.size(); ++i) {
+    const NodeDef& node = robot.def.nodes[i];
+    nodes.push_back({{"name", node.name},
+                     {"body", node.body == kWorld ? "world" : robot.def.bodies[node.body].name},
+                     {"position_m", ToJson(node.position_m)},
+                     {"tags", robot.node_tags[i]}});
+  }
+  Json json{{"ok", true}, {"name", robot.def.name}};
+  if (experiment) {
+    json["experiment"] = {{"name", experiment->name},
+                          {"duration_s", experiment->duration_s},
+                          {"step_s", experiment->step_s}};
+  }
+  json["files"] = experiment ? experiment->files : robot.files;
+  json["parameters"] = robot.parameters;
+  json["total_mass_kg"] = TotalMass(robot.def);
+  json["gravity_m_per_s2"] = ToJson(robot.def.gravity_m_per_s2);
+  json["bodies"] = BodiesJson(robot.def);
+  json["cables"] = CablesJson(robot);
+  json["nodes"] = std::move(nodes);
+  return Dump(json);
+}
+
+std::string ErrorsJson(const std::string& path, const Diagnostics& found) {
+  Json errors = Json::array();
+  for (const Diagnostic& d : found.items()) {
+    errors.push_back({{"file", d.at.file},
+                      {"line", d.at.line},
+                      {"column", d.at.column},
+                      {"error", d.what},
+                      {"hint", d.hint}});
+  }
+  return Dump({{"ok", false}, {"file", path}, {"errors", std::move(errors)}});
+}
+
+}  // namespace taut::cli

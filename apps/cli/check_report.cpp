@@ -1,0 +1,211 @@
+#include "check_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "taut/statics.h"
+
+namespace taut::cli {
+namespace {
+
+constexpr std::size_t kMostRows = 60;  ///< A longer table ends with how many rows are missing.
+constexpr int kMostCollisions = 20;    ///< A longer list of what may collide says nothing.
+
+/// Columns as wide as their widest cell; the first one to the left, the others to the right.
+class Table {
+ public:
+  explicit Table(std::vector<std::string> head) { rows_.push_back(std::move(head)); }
+
+  void Add(std::vector<std::string> row) {
+    ++added_;
+    if (added_ <= kMostRows) rows_.push_back(std::move(row));
+  }
+
+  std::string Text() const {
+    std::vector<std::size_t> width(rows_[0].size(), 0);
+    for (const auto& row : rows_) {
+      for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
+    }
+    std::string text;
+    for (const auto& row : rows_) {
+      std::string line = fmt::format("  {:<{}}", row[0], width[0]);
+      for (std::size_t i = 1; i < row.size(); ++i)
+        line += fmt::format("  {:>{}}", row[i], width[i]);
+      text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    }
+    if (added_ > kMostRows) text += fmt::format("  ... and {} more\n", added_ - kMostRows);
+    return text;
+  }
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+  std::size_t added_ = 0;
+};
+
+std::string Counted(long long count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+/// Numbers that are nothing but round-off are shown as 0.
+double Clean(double x) { return std::fabs(x) < 5e-10 ? 0.0 : x; }
+
+std::string Fixed(double x, int digits) {
+  std::string text = fmt::format("{:.{}f}", Clean(x), digits);
+  return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1)
+                                                                              : text;
+}
+
+std::string ActuatorText(const ActuatorDef& actuator) {
+  if (actuator.kind == ActuatorDef::Kind::kNone) return "-";
+  if (actuator.kind == ActuatorDef::Kind::kIdeal) return "ideal";
+  std::string text;
+  if (std::isfinite(actuator.max_speed_m_per_s))
+    text += fmt::format("{:g} m/s ", actuator.max_speed_m_per_s);
+  if (std::isfinite(actuator.max_acceleration_m_per_s2)) {
+    text += fmt::format("{:g} m/s^2 ", actuator.max_acceleration_m_per_s2);
+  }
+  if (std::isfinite(actuator.max_force_n)) text += fmt::format("{:g} N ", actuator.max_force_n);
+  return text.empty() ? "limited" : text.substr(0, text.size() - 1);
+}
+
+std::string ShapeText(const ShapeCount& shapes) {
+  std::string text;
+  const auto add = [&](int count, const char* one, const char* many) {
+    if (count > 0)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, count == 1 ? one : many);
+  };
+  add(shapes.capsules, "rod", "rods");
+  add(shapes.spheres, "sphere", "spheres");
+  add(shapes.boxes, "box", "boxes");
+  return text.empty() ? "-" : text;
+}
+
+std::string Bodies(const ModelDef& def) {
+  Table table(
+      {"body", "mass", "centre x", "y", "z", "principal inertia 1", "2", "3", "colliding shapes"});
+  table.Add({"", "kg", "m", "m", "m", "kg m^2", "kg m^2", "kg m^2", ""});
+  const std::vector<ShapeCount> shapes = CollidingShapes(def);
+  for (std::size_t i = 0; i < def.bodies.size(); ++i) {
+    const BodyDef& body = def.bodies[i];
+    const Vec3 moments = PrincipalMoments(body.inertia_kg_m2);
+    const auto moment = [&](double m) {
+      return body.fixed ? std::string("-") : fmt::format("{:.6g}", m);
+    };
+    table.Add({body.name + (body.fixed ? " (fixed)" : ""), Fixed(body.mass_kg, 6),
+               Fixed(body.com_m.x, 6), Fixed(body.com_m.y, 6), Fixed(body.com_m.z, 6),
+               moment(moments.x), moment(moments.y), moment(moments.z), ShapeText(shapes[i])});
+  }
+  return table.Text();
+}
+
+std::string Cables(const ModelDef& def) {
+  Table table(
+      {"cable", "length", "rest length", "tension", "stiffness", "damping", "path", "actuator"});
+  table.Add({"", "m", "m", "N", "N/m", "N s/m", "", ""});
+  for (const CableDef& cable : def.cables) {
+    std::string path;
+    for (const AttachmentDef& at : cable.attachments) {
+      path +=
+          (path.empty() ? "" : " - ") + (at.body == kWorld ? "world" : def.bodies[at.body].name);
+    }
+    table.Add({cable.name, Fixed(CableLength(cable), 6), Fixed(cable.rest_length_m, 6),
+               Fixed(CableTension(cable), 3), fmt::format("{:g}", cable.stiffness_n_per_m),
+               fmt::format("{:g}", cable.damping_n_s_per_m), path, ActuatorText(cable.actuator)});
+  }
+  return table.Text();
+}
+
+std::string Loads(const ModelDef& def) {
+  Table table({"body", "cables pull x", "y", "z", "turn about x", "y", "z", "weight x", "y", "z"});
+  table.Add({"", "N", "N", "N", "N m", "N m", "N m", "N", "N", "N"});
+  const std::vector<BodyLoad> loads = StartLoads(def);
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const BodyLoad& load = loads[i];
+    const Vec3 f = load.cable_force_n, t = load.cable_torque_n_m, w = load.weight_n;
+    table.Add({def.bodies[i].name, Fixed(f.x, 3), Fixed(f.y, 3), Fixed(f.z, 3), Fixed(t.x, 4),
+               Fixed(t.y, 4), Fixed(t.z, 4), Fixed(w.x, 3), Fixed(w.y, 3), Fixed(w.z, 3)});
+  }
+  return table.Text();
+}
+
+std::string Collisions(const ModelDef& def) {
+  const std::vector<ShapeCount> shapes = CollidingShapes(def);
+  Table table({"pair of bodies", "pairs of shapes"});
+  long long pairs = 0, shape_pairs = 0;
+  for (std::size_t a = 0; a < shapes.size(); ++a) {
+    for (std::size_t b = a + 1; b < shapes.size(); ++b) {
+      const long long count = static_cast<long long>(shapes[a].total()) * shapes[b].total();
+      if (count == 0 || (def.bodies[a].fixed && def.bodies[b].fixed)) continue;
+      ++pairs;
+      shape_pairs += count;
+      if (pairs > kMostCollisions) continue;
+      table.Add({def.bodies[a].name + " - " + def.bodies[b].name, fmt::format("{}", count)});
+    }
+  }
+  const int terrain = static_cast<int>(def.planes.size() + def.terrain_boxes.size());
+  std::string text = fmt::format("May collide: {} of bodies, {} of shapes; with ",
+                                 Counted(pairs, "pair"), Counted(shape_pairs, "pair"));
+  text += terrain == 0 ? "terrain, which is the experiment's\n"
+                       : Counted(terrain, "terrain surface") + "\n";
+  if (pairs > 0 && pairs <= kMostCollisions) text += table.Text();
+  return text;
+}
+
+}  // namespace
+
+std::string RobotTables(const RobotSpec& robot) {
+  const ModelDef& def = robot.def;
+  const Vec3 g = def.gravity_m_per_s2;
+  std::string text = fmt::format(
+      "Model {}: {}, {}, {}; {:.6f} kg that move; gravity ({:g}, {:g}, {:g}) m/s^2\n", def.name,
+      def.bodies.size() == 1 ? "1 body" : fmt::format("{} bodies", def.bodies.size()),
+      Counted(def.cables.size(), "cable"), Counted(def.nodes.size(), "node"), TotalMass(def), g.x,
+      g.y, g.z);
+  if (!robot.parameters.empty()) {
+    text += "Parameters:";
+    for (const auto& [name, value] : robot.parameters) text += fmt::format(" {}={:g}", name, value);
+    text += "\n";
+  }
+  if (!def.bodies.empty()) text += "\nBodies\n" + Bodies(def);
+  if (!def.cables.empty()) {
+    text += "\nCables\n" + Cables(def);
+    text += "\nLoads at the start: what the prestress does to each body, its weight beside it\n" +
+            Loads(def);
+  }
+  return text + "\n" + Collisions(def);
+}
+
+std::string ExperimentTables(const ExperimentSpec& experiment) {
+  std::string text = fmt::format("Experiment {}: {:g} s in steps of {:g} s, {}\n", experiment.name,
+                                 experiment.duration_s, experiment.step_s,
+                                 Counted(experiment.controllers.size(), "controller"));
+  const std::vector<NodeDef>& nodes = experiment.robot.def.nodes;
+  Table table({"what", "name", "acts on", "when"});
+  for (const ControllerSpec& controller : experiment.controllers) {
+    const std::size_t cables =
+        controller.impedance ? controller.impedance->cables.size() : controller.position.size();
+    table.Add({controller.impedance ? "impedance controller" : "position controller",
+               controller.name, fmt::format("{} cables", cables),
+               fmt::format("every {:g} s", controller.clock.period_s)});
+  }
+  for (const PushSpec& push : experiment.pushes) {
+    const std::string when =
+        push.force_n.empty()
+            ? std::string()
+            : fmt::format("{:g} to {:g} s", push.force_n.front().first, push.force_n.back().first);
+    table.Add({"push", push.name, nodes[push.node].name, when});
+  }
+  for (const DragSpec& drag : experiment.drags) {
+    table.Add({"drag", drag.name, nodes[drag.node].name,
+               fmt::format("{:g} to {:g} s", drag.from_s, drag.to_s)});
+  }
+  for (const PhaseSpec& phase : experiment.phases) {
+    table.Add({"phase", phase.name, "", fmt::format("{:g} to {:g} s", phase.from_s, phase.to_s)});
+  }
+  return text + table.Text();
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,22 @@
+/// The subcommands of `taut`: parse, call the library, print, return the exit status.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace taut::cli {
+
+/// Exit statuses, the same for every subcommand (docs/cli.md).
+enum Exit : int {
+  kOk = 0,
+  kFailed = 1,       ///< The command ran and the answer is no, or it could not finish.
+  kUsage = 2,        ///< The command line itself is wrong.
+  kBadInput = 3,     ///< A file has errors; all of them were printed.
+  kInterrupted = 130,
+};
+
+/// Each adds one subcommand to `app`; when it ran, `exit_code` holds its status.
+void AddCheck(CLI::App& app, int& exit_code);
+void AddRun(CLI::App& app, int& exit_code);
+void AddCompare(CLI::App& app, int& exit_code);
+
+}  // namespace taut::cli

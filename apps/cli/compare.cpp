@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "taut/compare.h"
+
+namespace taut::cli {
+namespace {
+
+struct CompareArguments {
+  std::string path_a, path_b, map_a, map_b;
+  std::vector<std::string> phases;
+  CompareOptions options;
+  CompareLimits limits;
+  bool json = false;
+};
+
+/// "before=25:30". Nothing if it is not like that.
+std::optional<TimeWindow> ParsePhase(const std::string& text) {
+  const std::size_t equals = text.find('='), colon = text.find(':', equals);
+  if (equals == 0 || equals == text.npos || colon == text.npos) return std::nullopt;
+  TimeWindow phase;
+  phase.name = text.substr(0, equals);
+  if (!CLI::detail::lexical_cast(text.substr(equals + 1, colon - equals - 1), phase.from_s) ||
+      !CLI::detail::lexical_cast(text.substr(colon + 1), phase.to_s) ||
+      !(phase.from_s <= phase.to_s)) {
+    return std::nullopt;
+  }
+  return phase;
+}
+
+std::optional<Trace> Load(const std::string& path, const std::string& map, Diagnostics& out) {
+  auto trace = ReadTrace(path, out);
+  if (map.empty()) return trace;
+  const auto mapping = LoadMapping(map, out);
+  if (!trace || !mapping) return std::nullopt;
+  return ApplyMapping(*mapping, std::move(*trace), path, out);
+}
+
+int RunCompare(const CompareArguments& given) {
+  Diagnostics found;
+  const auto a = Load(given.path_a, given.map_a, found);
+  const auto b = Load(given.path_b, given.map_b, found);
+  if (!a || !b) {
+    fmt::print(stderr, "{}", found.Format());
+    return kBadInput;
+  }
+  const Comparison comparison = Compare(*a, *b, given.options);
+  fmt::print("{}", given.json ? ComparisonJson(comparison, given.path_a, given.path_b)
+                              : ComparisonTable(comparison, given.path_a, given.path_b));
+  if (comparison.rows == 0) {
+    fmt::print(stderr, "error: the traces have no time in common\n");
+    return kBadInput;
+  }
+  if (comparison.channels.empty()) {
+    fmt::print(stderr, "error: the traces have no channel in common (--map translates names)\n");
+    return kBadInput;
+  }
+  if (!given.limits.max_error_percent && !given.limits.max_rmse) return kOk;
+  const std::vector<std::string> exceeded = ExceededLimits(comparison, given.limits);
+  std::FILE* to = given.json ? stderr : stdout;  // what is on stdout then stays JSON
+  for (const std::string& sentence : exceeded) fmt::print(to, "FAIL: {}\n", sentence);
+  if (exceeded.empty()) fmt::print(to, "PASS: within the limits\n");
+  return exceeded.empty() ? kOk : kFailed;
+}
+
+}  // namespace
+
+void AddCompare(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("compare", "Say how far two traces are apart");
+  const auto given = std::make_shared<CompareArguments>();
+  command->add_option("A", given->path_a, "Trace (.h5, .csv, .csv.gz): what is judged")->required();
+  command->add_option("B", given->path_b, "Trace: the reference")->required();
+  command->add_option("--map", given->map_b, "Mapping file that gives B the names of taut");
+  command->add_option("--map-a", given->map_a, "The same for A");
+  command
+      ->add_option("--channels", given->options.channels,
+                   "Only channels that fit a pattern such as 'cable/*/tension_n' (may be repeated)")
+      ->allow_extra_args(false);
+  command->add_option("--from", given->options.from_s, "Begin here [s]");
+  command->add_option("--to", given->options.to_s, "End here [s]");
+  command
+      ->add_option(
+          "--phase", given->phases,
+          "NAME=FROM:TO [s]: also compare mean, min and max in this window (may be repeated)")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) {
+        return ParsePhase(text) ? std::string() : "\"" + text + "\" is not like before=25:30";
+      });
+  command
+      ->add_option("--system", given->options.system,
+                   "Pattern of the channels whose largest value is the system's (may be repeated)")
+      ->allow_extra_args(false)
+      ->default_str("cable/*/tension_n cable/*/elastic_n");
+  command
+      ->add_option("--max-lag", given->options.max_lag_s, "Look for delays up to this [s]; 0: none")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--max-error-percent", given->limits.max_error_percent,
+                   "Fail if the system's largest value is further off")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--max-rmse", given->limits.max_rmse,
+                   "Fail if the RMSE of a compared channel is larger, in its unit")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--json", given->json, "Print JSON instead of tables");
+  command->footer(
+      "Examples:\n"
+      "  taut compare runs/push/trace.h5 measured.csv --max-error-percent 6.1\n"
+      "  taut compare runs/push/trace.h5 push_1000hz.csv.gz --map mappings/ntrt.json \\\n"
+      "    --channels 'cable/*/elastic_n' --from 5 --phase before=25:30 --phase during=35:40\n"
+      "Exit status: 0 within the limits (or none given), 1 not, 2 bad usage, 3 bad input.");
+  command->callback([given, &exit_code] {
+    for (const std::string& phase : given->phases) {
+      given->options.phases.push_back(*ParsePhase(phase));
+    }
+    exit_code = RunCompare(*given);
+  });
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,163 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <system_error>
+
+#include "commands.h"
+#include "overrides.h"
+#include "taut/run.h"
+#include "taut/spec.h"
+#include "taut/summary.h"
+#include "taut/trace.h"
+#include "taut/version.h"
+
+namespace taut::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<bool> interrupt_asked{false};
+
+extern "C" void AskInterrupt(int) { interrupt_asked = true; }
+
+struct RunArguments {
+  std::string experiment, out;
+  std::vector<std::string> set;
+  double step_s = 0, duration_s = -1;
+  std::uint64_t seed = 0;
+  int threads = 1;
+  bool csv = false, quiet = false, has_seed = false;
+};
+
+/// One line that is rewritten on a terminal, a line every ten seconds elsewhere.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+  bool Show(const RunProgress& p) {
+    if (!quiet_ && (terminal_ || p.wall_s - last_s_ >= 10)) {
+      const double factor = p.wall_s > 0 ? p.time_s / p.wall_s : 0;
+      const double left_s = factor > 0 ? (p.duration_s - p.time_s) / factor : 0;
+      fmt::print(stderr, "{}t = {:.2f} of {:g} s  {:.0f} x real time  {:.0f} s left{}",
+                 terminal_ ? "\r\033[K" : "", p.time_s, p.duration_s, factor, left_s,
+                 terminal_ ? "" : "\n");
+      std::fflush(stderr);
+      last_s_ = p.wall_s;
+    }
+    return !interrupt_asked;
+  }
+  void Clear() const {
+    if (!quiet_ && terminal_) fmt::print(stderr, "\r\033[K");
+  }
+
+ private:
+  bool quiet_, terminal_;
+  double last_s_ = 0;
+};
+
+int Fail(const Diagnostics& found, Exit exit) {
+  fmt::print(stderr, "{}", found.Format());
+  return exit;
+}
+
+bool WriteText(const fs::path& path, const std::string& text, Diagnostics& out) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (file) return true;
+  out.Error({path.string()}, "cannot be written", "is the disk full, or the folder not yours?");
+  return false;
+}
+
+/// The run's folder: the one asked for, or runs/<experiment>.
+fs::path MakeFolder(const RunArguments& args, const ExperimentSpec& experiment, Diagnostics& out) {
+  const fs::path folder = args.out.empty() ? fs::path("runs") / experiment.name : fs::path(args.out);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) out.Error({folder.string()}, "cannot make this folder: " + error.message());
+  return folder;
+}
+
+int Run(const RunArguments& args) {
+  Diagnostics found;
+  const std::optional<Overrides> overrides = ParseOverrides(args.set);
+  if (!overrides) return kUsage;
+  std::optional<ExperimentSpec> experiment = LoadExperiment(args.experiment, *overrides, found);
+  if (!experiment) return Fail(found, kBadInput);
+  if (args.step_s > 0) experiment->step_s = args.step_s;
+  if (args.duration_s >= 0) experiment->duration_s = args.duration_s;
+  if (args.has_seed) experiment->seed = args.seed;
+
+  const fs::path folder = MakeFolder(args, *experiment, found);
+  if (!found.ok()) return Fail(found, kFailed);
+  const std::vector<ChannelInfo> channels = RunChannels(*experiment);
+  std::vector<std::unique_ptr<TraceWriter>> writers;
+  writers.push_back(CreateHdf5Trace((folder / "trace.h5").string(), channels,
+                                    RunMetadata(*experiment), found));
+  if (args.csv) {
+    writers.push_back(CreateCsvTrace((folder / "trace.csv").string(), channels, found));
+  }
+  WriteText(folder / "inputs.yaml", ResolvedYaml(*experiment), found);
+  if (!found.ok()) return Fail(found, kFailed);
+
+  ProgressLine line(args.quiet);
+  RunOptions options;
+  options.threads = args.threads;
+  options.progress = [&](const RunProgress& p) { return line.Show(p); };
+  for (const auto& writer : writers) options.traces.push_back(writer.get());
+  std::signal(SIGINT, AskInterrupt);
+  std::signal(SIGTERM, AskInterrupt);
+  const std::optional<RunSummary> summary = RunExperiment(*experiment, options, found);
+  line.Clear();
+  if (!summary) return Fail(found, kFailed);
+
+  WriteText(folder / "summary.json", SummaryJson(*summary), found);
+  if (!args.quiet) {
+    fmt::print("{}\n", SummaryTable(*summary));
+    fmt::print("Trace, inputs and summary: {}\n", folder.string());
+  }
+  if (!summary->status_text.empty()) fmt::print(stderr, "warning: {}\n", summary->status_text);
+  if (!found.ok()) return Fail(found, kFailed);
+  if (summary->interrupted) {
+    fmt::print(stderr, "interrupted at t = {:.3f} s; what was simulated is in the trace\n",
+               summary->simulated_s);
+    return kInterrupted;
+  }
+  return summary->status.bits & kStatusNonFinite ? kFailed : kOk;
+}
+
+}  // namespace
+
+void AddRun(CLI::App& app, int& exit_code) {
+  auto args = std::make_shared<RunArguments>();
+  CLI::App* run = app.add_subcommand("run", "Run an experiment: trace, summary and table.");
+  run->add_option("experiment", args->experiment, "Experiment file (YAML)")->required();
+  run->add_option("--set", args->set, "Parameter of the experiment or model: name=value")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  run->add_option("--step_s", args->step_s, "Step instead of the file's [s]")
+      ->check(CLI::Range(1e-9, 1.0));
+  run->add_option("--duration_s", args->duration_s, "Duration instead of the file's [s]")
+      ->check(CLI::Range(0.0, 1e9));
+  run->add_option("--seed", args->seed, "Seed of all that is random")
+      ->each([args](const std::string&) { args->has_seed = true; });
+  run->add_option("--out", args->out, "Folder to write into (default: runs/<experiment>)");
+  run->add_option("--threads", args->threads, "Threads, 0: one a core")->check(CLI::Range(0, 1024));
+  run->add_flag("--csv", args->csv, "Write trace.csv as well");
+  run->add_flag("--quiet", args->quiet, "No progress and no table");
+  run->footer(
+      "Examples:\n"
+      "  taut run experiments/push_20n.yaml\n"
+      "  taut run experiments/push_20n.yaml --set push_n=15 --step_s 0.0005 --out runs/push_15n\n"
+      "  taut run experiments/push_20n.yaml --csv --quiet\n"
+      "Ctrl-C ends a run early; its trace is complete up to there (exit status 130).");
+  run->callback([args, &exit_code] { exit_code = Run(*args); });
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,93 @@
+/// Running one experiment: the world, its controllers on their clocks, the timeline, the trace.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "taut/batch.h"
+#include "taut/spec.h"
+#include "taut/trace.h"
+
+namespace taut {
+
+/// Least, mean and greatest of a quantity over a span of time.
+struct Range {
+  double mean = 0, min = 0, max = 0;
+};
+
+/// What a run has to say about one cable. All values over every step, not only recorded rows.
+struct CableSummary {
+  std::string name;
+  struct Quantity {
+    double max_n = 0;              ///< Over the whole run.
+    double max_after_start_n = 0;  ///< From t = 5 s on.
+    std::vector<Range> phases;     ///< One per phase of the experiment [N].
+  };
+  Quantity tension;  ///< Spring and damper: what a load cell feels.
+  Quantity elastic;  ///< k (l - L) alone: what NTRT logs.
+  /// Of the cable's actuator, for sizing motors (zero without one).
+  double max_force_n = 0;        ///< Largest tension while it had to hold or move.
+  double max_speed_m_per_s = 0;  ///< Largest rate of the rest length.
+  double max_power_w = 0;        ///< Largest tension times winding-in rate.
+  double energy_j = 0;           ///< Work done while winding in.
+};
+
+struct DragSummary {
+  std::string name;
+  Range force_n;  ///< Along the drag's direction, over its second half.
+};
+
+struct RunSummary {
+  std::string experiment;
+  double simulated_s = 0;
+  double wall_s = 0;
+  bool interrupted = false;
+  std::vector<PhaseSpec> phases;
+  std::vector<CableSummary> cables;
+  std::vector<DragSummary> drags;
+  double system_max_tension_n = 0;              ///< Largest `tension` of any cable, whole run.
+  std::string system_max_tension_cable;
+  double system_max_elastic_n = 0;
+  double system_max_elastic_after_start_n = 0;
+  WorldStatus status;
+  std::string status_text;                      ///< Empty when good; names the body or cable.
+  std::uint64_t state_hash = 0;                 ///< Of the world at the end.
+};
+
+/// Where a run stands, for progress lines.
+struct RunProgress {
+  double time_s = 0;      ///< Simulated.
+  double duration_s = 0;
+  double wall_s = 0;      ///< Since the first step.
+};
+
+struct RunOptions {
+  std::optional<Simd> simd;
+  int threads = 1;
+  /// Called a few times a second of wall-clock time. False stops the run at once, cleanly.
+  std::function<bool(const RunProgress&)> progress;
+  /// Get every recorded row; made by the caller, finished by the run.
+  std::vector<TraceWriter*> traces;
+};
+
+/// The channels that a run of this experiment records, in order.
+std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment);
+
+/// What a trace says about how it came to be: version, machine, seed, step, hash of the inputs.
+TraceMetadata RunMetadata(const ExperimentSpec& experiment);
+
+/// Runs an experiment from start to end. Nothing and diagnostics if it cannot start (a model that
+/// does not compile, a start that does not settle); what happens later is in the summary. A trace
+/// that cannot be written ends the run with a diagnostic.
+std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment,
+                                        const RunOptions& options, Diagnostics& out);
+
+/// Brings a world to rest: rest lengths fixed, motion taken out whenever the kinetic energy peaks,
+/// until no node gains more than 1e-9 m/s in a step. Time does not pass. False if that takes more
+/// than `max_steps`.
+bool Settle(Batch& batch, int world, double step_s, int max_steps = 200000);
+
+}  // namespace taut

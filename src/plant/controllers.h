@@ -1,0 +1,51 @@
+/// The controllers of an experiment at work: each on its own clock, observation in, command out.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "taut/control/clock.h"
+#include "taut/control/pid.h"
+#include "taut/control/position.h"
+#include "taut/control/rate.h"
+#include "taut/batch.h"
+#include "taut/spec.h"
+
+namespace taut::plant {
+
+/// What a robot tells its controller about a cable, simulated or real.
+struct CableReading {
+  double rest_length_m = 0;  ///< From the encoder.
+  double length_m = 0;       ///< Between the cable's ends.
+  double rate_m_per_s = 0;   ///< Of that.
+  double tension_n = 0;      ///< From the load cell.
+  double elastic_n = 0;      ///< The spring's part of it.
+  double stiffness_n_per_m = 0;
+};
+
+/// One controller with its clock and memory.
+class Controller {
+ public:
+  explicit Controller(const ControllerSpec& spec);
+
+  double next_tick_s() const noexcept;
+
+  /// Acts if a tick is due at `time_s`. Reads `readings[cable]`, writes `target_m[cable]` (rest
+  /// lengths) and `set_point_n[cable]` of its cables.
+  void Act(double time_s, const std::vector<CableReading>& readings, std::vector<double>& target_m,
+           std::vector<double>& set_point_n);
+
+ private:
+  void ActImpedance(std::size_t i, const CableReading& reading, double& target_m,
+                    double& set_point_n);
+
+  ControllerSpec spec_;
+  control::Clock<double> clock_;
+  std::int64_t tick_ = 0;
+  bool started_ = false;
+  std::vector<control::PidState<double>> pid_;
+  std::vector<control::DifferenceState<double>> difference_;
+  std::vector<std::vector<control::ProgramPoint<double>>> programs_;
+};
+
+}  // namespace taut::plant

@@ -1,0 +1,63 @@
+#include <sys/utsname.h>
+
+#include <charconv>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+
+#include "taut/run.h"
+#include "taut/version.h"
+
+namespace taut {
+namespace {
+
+std::string Shortest(double x) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof(text), x).ptr};
+}
+
+/// The processor's name as Linux knows it; empty elsewhere.
+std::string ProcessorName() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("model name", 0) != 0) continue;
+    const std::size_t colon = line.find(": ");
+    return colon == std::string::npos ? "" : line.substr(colon + 2);
+  }
+  return {};
+}
+
+std::string MachineName() {
+  utsname name{};
+  if (uname(&name) != 0) return ProcessorName();
+  return std::string(name.sysname) + " " + name.release + " " + name.machine + ", " +
+         ProcessorName();
+}
+
+std::string NowUtc() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[32];
+  return {text, std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &parts)};
+}
+
+}  // namespace
+
+TraceMetadata RunMetadata(const ExperimentSpec& experiment) {
+  char hash[32];
+  std::snprintf(hash, sizeof(hash), "%016llx",
+                static_cast<unsigned long long>(experiment.input_hash));
+  return {{"taut_version", kVersion},
+          {"experiment", experiment.name},
+          {"model", experiment.robot.def.name},
+          {"input_hash", hash},
+          {"seed", std::to_string(experiment.seed)},
+          {"step_s", Shortest(experiment.step_s)},
+          {"duration_s", Shortest(experiment.duration_s)},
+          {"started", NowUtc()},
+          {"machine", MachineName()},
+          {"compiler", __VERSION__}};
+}
+
+}  // namespace taut

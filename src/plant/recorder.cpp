@@ -1,0 +1,128 @@
+#include "plant/recorder.h"
+
+#include <algorithm>
+
+#include "math/vec.h"
+
+namespace taut::plant {
+
+bool MatchesPattern(std::string_view pattern, std::string_view name) {
+  if (pattern.empty()) return name.empty();
+  if (pattern.front() != '*') {
+    return !name.empty() && pattern.front() == name.front() &&
+           MatchesPattern(pattern.substr(1), name.substr(1));
+  }
+  for (std::size_t i = 0; i <= name.size(); ++i) {
+    if (MatchesPattern(pattern.substr(1), name.substr(i))) return true;
+  }
+  return false;
+}
+
+namespace {
+
+void Put(const Vec3& v, double* out) {
+  out[0] = v.x;
+  out[1] = v.y;
+  out[2] = v.z;
+}
+
+void FillBody(const Batch& batch, int world, int body, double* out) {
+  const BodyState b = batch.Body(world, body);
+  Put(b.position_m, out);
+  out[3] = b.orientation.w;
+  out[4] = b.orientation.x;
+  out[5] = b.orientation.y;
+  out[6] = b.orientation.z;
+  Put(b.velocity_m_per_s, out + 7);
+  Put(b.angular_velocity_rad_per_s, out + 10);
+}
+
+Vec3 CenterOfMass(const Batch& batch, int world) {
+  Vec3 sum;
+  double mass = 0;
+  for (std::size_t b = 0; b < batch.model().def().bodies.size(); ++b) {
+    const double m = batch.GetParameter(world, Parameter::kBodyMass, static_cast<int>(b));
+    sum = sum + m * batch.Body(world, static_cast<int>(b)).position_m;
+    mass += m;
+  }
+  return (mass > 0 ? 1 / mass : 0) * sum;
+}
+
+void FillSystem(const Batch& batch, int world, double* out) {
+  const Energy e = batch.TotalEnergy(world);
+  out[0] = e.kinetic_j;
+  out[1] = e.gravity_j;
+  out[2] = e.elastic_j;
+  out[3] = static_cast<double>(batch.Contacts(world).size());
+  out[4] = batch.Status(world).residual_m_per_s;
+  Put(CenterOfMass(batch, world), out + 5);
+}
+
+}  // namespace
+
+Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.record.channels) {
+  const ModelDef& def = experiment.robot.def;
+  for (std::size_t c = 0; c < def.cables.size(); ++c) {
+    Add("cable/" + def.cables[c].name + "/",
+        {{"tension_n", "N"}, {"elastic_n", "N"}, {"length_m", "m"}, {"rate_m_per_s", "m/s"},
+         {"rest_length_m", "m"}, {"target_rest_length_m", "m"}, {"setpoint_n", "N"}},
+        [c](const RecordSource& s, double* out) {
+          const CableReading& r = (*s.readings)[c];
+          const double values[] = {r.tension_n,        r.elastic_n,      r.length_m,
+                                   r.rate_m_per_s,     r.rest_length_m,  (*s.target_m)[c],
+                                   (*s.set_point_n)[c]};
+          std::copy(std::begin(values), std::end(values), out);
+        });
+  }
+  for (std::size_t b = 0; b < def.bodies.size(); ++b) {
+    Add("body/" + def.bodies[b].name + "/",
+        {{"position_x_m", "m"}, {"position_y_m", "m"}, {"position_z_m", "m"},
+         {"orientation_w", "1"}, {"orientation_x", "1"}, {"orientation_y", "1"},
+         {"orientation_z", "1"}, {"velocity_x_m_per_s", "m/s"}, {"velocity_y_m_per_s", "m/s"},
+         {"velocity_z_m_per_s", "m/s"}, {"angular_velocity_x_rad_per_s", "rad/s"},
+         {"angular_velocity_y_rad_per_s", "rad/s"}, {"angular_velocity_z_rad_per_s", "rad/s"}},
+        [b](const RecordSource& s, double* out) {
+          FillBody(*s.batch, s.world, static_cast<int>(b), out);
+        });
+  }
+  for (std::size_t i = 0; i < experiment.pushes.size(); ++i) {
+    Add("push/" + experiment.pushes[i].name + "/", {{"force_n", "N"}},
+        [i](const RecordSource& s, double* out) { *out = s.timeline->push_n()[i]; });
+  }
+  for (std::size_t i = 0; i < experiment.drags.size(); ++i) {
+    Add("drag/" + experiment.drags[i].name + "/", {{"force_n", "N"}},
+        [i](const RecordSource& s, double* out) { *out = s.timeline->drag_n()[i]; });
+  }
+  Add("system/",
+      {{"kinetic_j", "J"}, {"gravity_j", "J"}, {"elastic_j", "J"}, {"contact_count", "1"},
+       {"residual_m_per_s", "m/s"}, {"com_x_m", "m"}, {"com_y_m", "m"}, {"com_z_m", "m"}},
+      [](const RecordSource& s, double* out) { FillSystem(*s.batch, s.world, out); });
+  row_.resize(channels_.size());
+}
+
+void Recorder::Add(const std::string& prefix, const std::vector<ChannelInfo>& names, Fill fill) {
+  Block block;
+  block.size = names.size();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string name = prefix + names[i].name;
+    const auto fits = [&](const std::string& pattern) { return MatchesPattern(pattern, name); };
+    if (!patterns_.empty() && std::none_of(patterns_.begin(), patterns_.end(), fits)) continue;
+    block.kept.push_back(i);
+    channels_.push_back({name, names[i].unit});
+  }
+  if (block.kept.empty()) return;
+  block.fill = std::move(fill);
+  block_values_.resize(std::max(block_values_.size(), block.size));
+  blocks_.push_back(std::move(block));
+}
+
+const std::vector<double>& Recorder::Row(const RecordSource& source) {
+  std::size_t column = 0;
+  for (const Block& block : blocks_) {
+    block.fill(source, block_values_.data());
+    for (std::size_t i : block.kept) row_[column++] = block_values_[i];
+  }
+  return row_;
+}
+
+}  // namespace taut::plant

@@ -1,0 +1,54 @@
+/// Which channels a run records, and their values.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "plant/controllers.h"
+#include "plant/timeline.h"
+#include "taut/batch.h"
+#include "taut/spec.h"
+#include "taut/trace.h"
+
+namespace taut::plant {
+
+/// What a row is filled from.
+struct RecordSource {
+  const Batch* batch = nullptr;
+  int world = 0;
+  const std::vector<CableReading>* readings = nullptr;
+  const std::vector<double>* target_m = nullptr;
+  const std::vector<double>* set_point_n = nullptr;
+  const Timeline* timeline = nullptr;
+};
+
+class Recorder {
+ public:
+  explicit Recorder(const ExperimentSpec& experiment);
+
+  const std::vector<ChannelInfo>& channels() const noexcept { return channels_; }
+
+  /// The current row; valid until the next call.
+  const std::vector<double>& Row(const RecordSource& source);
+
+ private:
+  using Fill = std::function<void(const RecordSource&, double*)>;
+  /// Adds channels `prefix + names[i]` that `fill` computes together; those not asked for are
+  /// dropped.
+  void Add(const std::string& prefix, const std::vector<ChannelInfo>& names, Fill fill);
+
+  struct Block {
+    Fill fill;
+    std::vector<std::size_t> kept;  ///< Which of the block's values are channels.
+    std::size_t size = 0;
+  };
+  std::vector<std::string> patterns_;
+  std::vector<ChannelInfo> channels_;
+  std::vector<Block> blocks_;
+  std::vector<double> row_, block_values_;
+};
+
+/// Whether a name fits a pattern in which `*` stands for any text.
+bool MatchesPattern(std::string_view pattern, std::string_view name);
+
+}  // namespace taut::plant

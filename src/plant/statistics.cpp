@@ -1,0 +1,106 @@
+#include "plant/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace taut::plant {
+namespace {
+
+/// The start-up transient is over by then: NTRT's own figures make the same cut.
+constexpr double kStartIsOverS = 5.0;
+/// Times are sums of steps; a phase that ends at 30 s includes the step that ends there.
+constexpr double kTimeToleranceS = 1e-9;
+
+bool Within(double time_s, double from_s, double to_s) {
+  return time_s >= from_s - kTimeToleranceS && time_s <= to_s + kTimeToleranceS;
+}
+
+}  // namespace
+
+void Statistics::Sum::Take(double x) {
+  min = count == 0 ? x : std::min(min, x);
+  max = count == 0 ? x : std::max(max, x);
+  sum += x;
+  ++count;
+}
+
+Range Statistics::Sum::range() const {
+  if (count == 0) return {};
+  return {sum / static_cast<double>(count), min, max};
+}
+
+Statistics::Statistics(const ExperimentSpec& experiment)
+    : experiment_(experiment),
+      cables_(experiment.robot.def.cables.size()),
+      drags_(experiment.drags.size()) {
+  for (Cable& cable : cables_) {
+    cable.tension.phases.resize(experiment.phases.size());
+    cable.elastic.phases.resize(experiment.phases.size());
+  }
+}
+
+void Statistics::Take(Quantity& quantity, double time_s, double force_n) const {
+  quantity.max = std::max(quantity.max, force_n);
+  if (time_s > kStartIsOverS) quantity.max_after_start = std::max(quantity.max_after_start, force_n);
+  for (std::size_t p = 0; p < experiment_.phases.size(); ++p) {
+    const PhaseSpec& phase = experiment_.phases[p];
+    if (Within(time_s, phase.from_s, phase.to_s)) quantity.phases[p].Take(force_n);
+  }
+}
+
+void Statistics::Take(double time_s, double step_s, const std::vector<CableReading>& readings,
+                      const std::vector<double>& drag_n) {
+  for (std::size_t c = 0; c < cables_.size(); ++c) {
+    Cable& cable = cables_[c];
+    const CableReading& r = readings[c];
+    Take(cable.tension, time_s, r.tension_n);
+    Take(cable.elastic, time_s, r.elastic_n);
+    if (experiment_.robot.def.cables[c].actuator.kind != ActuatorDef::Kind::kNone) {
+      cable.max_force_n = std::max(cable.max_force_n, r.tension_n);
+      if (step_s > 0) {
+        const double wound_m = cable.rest_length_m - r.rest_length_m;
+        cable.max_speed = std::max(cable.max_speed, std::fabs(wound_m) / step_s);
+        cable.max_power_w = std::max(cable.max_power_w, r.tension_n * wound_m / step_s);
+        cable.energy_j += r.tension_n * std::max(wound_m, 0.0);
+      }
+    }
+    cable.rest_length_m = r.rest_length_m;
+  }
+  for (std::size_t i = 0; i < drags_.size(); ++i) {
+    const DragSpec& drag = experiment_.drags[i];
+    if (Within(time_s, 0.5 * (drag.from_s + drag.to_s), drag.to_s)) drags_[i].Take(drag_n[i]);
+  }
+}
+
+void Statistics::Fill(RunSummary& summary) const {
+  summary.phases = experiment_.phases;
+  for (std::size_t c = 0; c < cables_.size(); ++c) {
+    const Cable& cable = cables_[c];
+    CableSummary out;
+    out.name = experiment_.robot.def.cables[c].name;
+    const auto copy = [](const Quantity& from, CableSummary::Quantity& to) {
+      to.max_n = from.max;
+      to.max_after_start_n = from.max_after_start;
+      for (const Sum& sum : from.phases) to.phases.push_back(sum.range());
+    };
+    copy(cable.tension, out.tension);
+    copy(cable.elastic, out.elastic);
+    out.max_force_n = cable.max_force_n;
+    out.max_speed_m_per_s = cable.max_speed;
+    out.max_power_w = cable.max_power_w;
+    out.energy_j = cable.energy_j;
+    if (out.tension.max_n > summary.system_max_tension_n) {
+      summary.system_max_tension_n = out.tension.max_n;
+      summary.system_max_tension_cable = out.name;
+    }
+    summary.system_max_elastic_n = std::max(summary.system_max_elastic_n, out.elastic.max_n);
+    summary.system_max_elastic_after_start_n =
+        std::max(summary.system_max_elastic_after_start_n, out.elastic.max_after_start_n);
+    summary.cables.push_back(std::move(out));
+  }
+  for (std::size_t i = 0; i < drags_.size(); ++i) {
+    summary.drags.push_back({experiment_.drags[i].name, drags_[i].range()});
+  }
+}
+
+}  // namespace taut::plant

@@ -1,0 +1,44 @@
+/// What a run has to say at its end, gathered at every step.
+#pragma once
+
+#include <vector>
+
+#include "plant/controllers.h"
+#include "taut/run.h"
+
+namespace taut::plant {
+
+class Statistics {
+ public:
+  explicit Statistics(const ExperimentSpec& experiment);
+
+  /// Takes a moment in. `step_s` is the length of the step that led here; 0 at the start.
+  void Take(double time_s, double step_s, const std::vector<CableReading>& readings,
+            const std::vector<double>& drag_n);
+
+  /// Cables, drags and maxima; the rest of the summary is the runner's.
+  void Fill(RunSummary& summary) const;
+
+ private:
+  struct Sum {
+    double sum = 0, min = 0, max = 0;
+    std::int64_t count = 0;
+    void Take(double x);
+    Range range() const;
+  };
+  struct Quantity {
+    double max = 0, max_after_start = 0;
+    std::vector<Sum> phases;
+  };
+  struct Cable {
+    Quantity tension, elastic;
+    double rest_length_m = 0, max_force_n = 0, max_speed = 0, max_power_w = 0, energy_j = 0;
+  };
+  void Take(Quantity& quantity, double time_s, double force_n) const;
+
+  const ExperimentSpec& experiment_;
+  std::vector<Cable> cables_;
+  std::vector<Sum> drags_;
+};
+
+}  // namespace taut::plant

@@ -1,0 +1,80 @@
+#include "plant/timeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "math/vec.h"
+
+namespace taut::plant {
+
+double ProfileAt(const std::vector<std::pair<double, double>>& points, double time_s) {
+  if (points.empty() || time_s < points.front().first || time_s > points.back().first) return 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const auto& [t0, f0] = points[i - 1];
+    const auto& [t1, f1] = points[i];
+    if (time_s <= t1) return f0 + (f1 - f0) * ((time_s - t0) / (t1 - t0));
+  }
+  return points.back().second;
+}
+
+Timeline::Timeline(const ExperimentSpec& experiment)
+    : experiment_(experiment),
+      push_n_(experiment.pushes.size()),
+      drag_n_(experiment.drags.size()),
+      drag_start_m_(experiment.drags.size()),
+      dragging_(experiment.drags.size()) {
+  for (const PushSpec& push : experiment.pushes) {
+    nodes_.push_back(push.node);
+    for (const auto& point : push.force_n) corners_.push_back(point.first);
+  }
+  for (const DragSpec& drag : experiment.drags) {
+    nodes_.push_back(drag.node);
+    corners_.insert(corners_.end(), {drag.from_s, drag.to_s});
+  }
+  std::sort(nodes_.begin(), nodes_.end());
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  std::sort(corners_.begin(), corners_.end());
+}
+
+double Timeline::NextCorner(double time_s) const {
+  const auto next = std::upper_bound(corners_.begin(), corners_.end(), time_s);
+  return next == corners_.end() ? std::numeric_limits<double>::infinity() : *next;
+}
+
+Vec3 Timeline::DragForce(const Batch& batch, int world, std::size_t drag, double time_s) {
+  const DragSpec& spec = experiment_.drags[drag];
+  drag_n_[drag] = 0;
+  if (time_s < spec.from_s || time_s > spec.to_s) return {};
+  const Vec3 node = batch.NodePosition(world, spec.node);
+  if (!dragging_[drag]) {
+    dragging_[drag] = true;
+    drag_start_m_[drag] = node;
+  }
+  const Vec3 hand = drag_start_m_[drag] + (time_s - spec.from_s) * spec.velocity_m_per_s;
+  const Vec3 slip = spec.velocity_m_per_s - batch.NodeVelocity(world, spec.node);
+  const Vec3 force =
+      spec.stiffness_n_per_m * (hand - node) + spec.damping_n_s_per_m * slip;
+  const double speed = std::sqrt(Dot(spec.velocity_m_per_s, spec.velocity_m_per_s));
+  drag_n_[drag] = speed > 0 ? Dot(force, spec.velocity_m_per_s) / speed : 0;
+  return force;
+}
+
+void Timeline::Apply(Batch& batch, int world, double time_s, double step_s) {
+  for (int node : nodes_) {
+    Vec3 force;
+    for (std::size_t i = 0; i < experiment_.pushes.size(); ++i) {
+      const PushSpec& push = experiment_.pushes[i];
+      if (push.node != node) continue;
+      push_n_[i] = push.scale * ProfileAt(push.force_n, time_s + 0.5 * step_s);
+      force = force + push_n_[i] * push.direction;
+    }
+    for (std::size_t i = 0; i < experiment_.drags.size(); ++i) {
+      if (experiment_.drags[i].node != node) continue;
+      force = force + DragForce(batch, world, i, time_s);
+    }
+    batch.SetNodeForce(world, node, force);
+  }
+}
+
+}  // namespace taut::plant

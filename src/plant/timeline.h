@@ -1,0 +1,41 @@
+/// What happens to the robot from outside: pushes and drags.
+#pragma once
+
+#include <vector>
+
+#include "taut/batch.h"
+#include "taut/spec.h"
+
+namespace taut::plant {
+
+/// A piecewise linear profile, zero outside its points.
+double ProfileAt(const std::vector<std::pair<double, double>>& points, double time_s);
+
+/// The outside forces of an experiment.
+class Timeline {
+ public:
+  explicit Timeline(const ExperimentSpec& experiment);
+
+  /// The next time after `time_s` at which a profile has a corner; infinity if there is none.
+  double NextCorner(double time_s) const;
+
+  /// Sets the node forces for the step from `time_s` to `time_s + step_s`: their values in its
+  /// middle.
+  void Apply(Batch& batch, int world, double time_s, double step_s);
+
+  /// Forces of the last Apply [N]: along the push's direction, and along the drag's.
+  const std::vector<double>& push_n() const noexcept { return push_n_; }
+  const std::vector<double>& drag_n() const noexcept { return drag_n_; }
+
+ private:
+  Vec3 DragForce(const Batch& batch, int world, std::size_t drag, double time_s);
+
+  const ExperimentSpec& experiment_;
+  std::vector<double> corners_;
+  std::vector<int> nodes_;          ///< All that are ever pushed or dragged.
+  std::vector<double> push_n_, drag_n_;
+  std::vector<Vec3> drag_start_m_;
+  std::vector<bool> dragging_;
+};
+
+}  // namespace taut::plant

@@ -1,0 +1,28 @@
+/// What both forms of the summary derive from a run.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "taut/run.h"
+
+namespace taut::report {
+
+/// Whether the run came as far as the phase's end.
+inline bool Complete(const RunSummary& summary, const PhaseSpec& phase) {
+  return phase.to_s <= summary.simulated_s * (1.0 + 1e-9);
+}
+
+/// Simulated over wall-clock time; 0 if no time passed.
+inline double RealTimeFactor(const RunSummary& summary) {
+  return summary.wall_s > 0.0 ? summary.simulated_s / summary.wall_s : 0.0;
+}
+
+/// "ok", or what is wrong.
+inline std::string StatusText(const RunSummary& summary) {
+  if (summary.status.bits == kStatusOk) return "ok";
+  return summary.status_text.empty() ? "status bits " + std::to_string(summary.status.bits)
+                                     : summary.status_text;
+}
+
+}  // namespace taut::report

@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "report/facts.h"
+#include "taut/summary.h"
+#include "taut/version.h"
+
+namespace taut {
+namespace {
+
+using Json = nlohmann::ordered_json;  // keys in the order in which they are set; NaN prints as null
+
+Json ToJson(const Range& range) {
+  return {{"mean_n", range.mean}, {"min_n", range.min}, {"max_n", range.max}};
+}
+
+Json ToJson(const CableSummary::Quantity& quantity, const RunSummary& run) {
+  Json phases = Json::object();
+  for (std::size_t i = 0; i < run.phases.size() && i < quantity.phases.size(); ++i) {
+    phases[run.phases[i].name] =
+        report::Complete(run, run.phases[i]) ? ToJson(quantity.phases[i]) : Json();
+  }
+  return {{"max_n", quantity.max_n},
+          {"max_after_start_n", quantity.max_after_start_n},
+          {"phases", phases}};
+}
+
+Json ToJson(const CableSummary& cable, const RunSummary& run) {
+  return {{"name", cable.name},
+          {"tension", ToJson(cable.tension, run)},
+          {"elastic", ToJson(cable.elastic, run)},
+          {"actuator",
+           {{"max_force_n", cable.max_force_n},
+            {"max_speed_m_per_s", cable.max_speed_m_per_s},
+            {"max_power_w", cable.max_power_w},
+            {"energy_j", cable.energy_j}}}};
+}
+
+}  // namespace
+
+std::string SummaryJson(const RunSummary& summary) {
+  Json json;
+  json["format_version"] = 1;
+  json["taut_version"] = kVersion;
+  json["experiment"] = summary.experiment;
+  json["simulated_s"] = summary.simulated_s;
+  json["wall_s"] = summary.wall_s;
+  json["real_time_factor"] = report::RealTimeFactor(summary);
+  json["interrupted"] = summary.interrupted;
+  json["status"] = report::StatusText(summary);
+  json["status_bits"] = summary.status.bits;
+  json["state_hash"] = fmt::format("{:016x}", summary.state_hash);  // too long for a JSON number
+  json["system_max_tension_n"] = summary.system_max_tension_n;
+  json["system_max_tension_cable"] = summary.system_max_tension_cable;
+  json["system_max_elastic_n"] = summary.system_max_elastic_n;
+  json["system_max_elastic_after_start_n"] = summary.system_max_elastic_after_start_n;
+  json["phases"] = Json::array();
+  for (const PhaseSpec& phase : summary.phases) {
+    json["phases"].push_back(
+        {{"name", phase.name}, {"from_s", phase.from_s}, {"to_s", phase.to_s}});
+  }
+  json["cables"] = Json::array();
+  for (const CableSummary& cable : summary.cables) json["cables"].push_back(ToJson(cable, summary));
+  json["drags"] = Json::array();
+  for (const DragSummary& drag : summary.drags) {
+    json["drags"].push_back({{"name", drag.name}, {"force", ToJson(drag.force_n)}});
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace taut

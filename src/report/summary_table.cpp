@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/facts.h"
+#include "taut/summary.h"
+
+namespace taut {
+namespace {
+
+constexpr int kCell = 8;                   ///< Columns of a number.
+constexpr std::size_t kPhasesAbreast = 3;  ///< What fits into 100 columns.
+
+/// Decimals that show a quantity of this size to four digits or so.
+int DecimalsFor(double size) { return size >= 1000.0 ? 1 : size >= 10.0 ? 2 : size >= 1.0 ? 3 : 4; }
+
+std::string Cell(double value, int decimals, int width = kCell) {
+  return std::isfinite(value) ? fmt::format("{:>{}.{}f}", value, width, decimals)
+                              : fmt::format("{:>{}}", "-", width);
+}
+
+std::string RangeCells(const Range& range, bool complete, int decimals) {
+  std::string out;
+  for (const double value : {range.mean, range.min, range.max}) {
+    out += complete ? Cell(value, decimals) : fmt::format("{:>{}}", "-", kCell);
+  }
+  return out;
+}
+
+template <class Items>
+std::size_t NameWidth(const Items& items) {
+  std::size_t width = 10;
+  for (const auto& item : items) width = std::max(width, item.name.size());
+  return width;
+}
+
+std::string Head(const RunSummary& run) {
+  std::string out =
+      fmt::format("{}: {:g} s simulated in {:.3g} s ({:.3g} times real time)", run.experiment,
+                  run.simulated_s, run.wall_s, report::RealTimeFactor(run));
+  if (run.interrupted) out += ", interrupted";
+  out += "\n";
+  if (run.status.bits != kStatusOk) {
+    out += fmt::format("WARNING: {} (first at {:.4g} s)\n", report::StatusText(run),
+                       run.status.first_time_s);
+  }
+  return out;
+}
+
+/// Cables against phases first .. last - 1, and the largest of the whole run.
+std::string PhaseTable(const RunSummary& run, std::size_t first, std::size_t last) {
+  const std::size_t name_width = NameWidth(run.cables);
+  const int decimals = DecimalsFor(run.system_max_tension_n);
+  std::string phases = fmt::format("{:<{}}", "", name_width);
+  std::string heads = fmt::format("{:<{}}", "tension [N]", name_width);
+  for (std::size_t i = first; i < last; ++i) {
+    const PhaseSpec& phase = run.phases[i];
+    std::string title = fmt::format("{} {:g}..{:g} s", phase.name, phase.from_s, phase.to_s);
+    if (title.size() > 3 * kCell) title = phase.name.substr(0, 3 * kCell);
+    phases += fmt::format(" {:>{}}", title, 3 * kCell);
+    heads += fmt::format(" {:>{}}{:>{}}{:>{}}", "mean", kCell, "min", kCell, "max", kCell);
+  }
+  phases += fmt::format("  {:>{}}", "whole", kCell);
+  heads += fmt::format("  {:>{}}", "max", kCell);
+  std::string out = "\n" + phases + "\n" + heads + "\n";
+  for (const CableSummary& cable : run.cables) {
+    out += fmt::format("{:<{}}", cable.name, name_width);
+    for (std::size_t i = first; i < last; ++i) {
+      const bool known = i < cable.tension.phases.size() && report::Complete(run, run.phases[i]);
+      out += " " + RangeCells(known ? cable.tension.phases[i] : Range(), known, decimals);
+    }
+    out += "  " + Cell(cable.tension.max_n, decimals) + "\n";
+  }
+  return out;
+}
+
+std::string SystemLines(const RunSummary& run) {
+  return fmt::format(
+      "\nlargest system tension: {:.3f} N in {}\n"
+      "elastic part alone: {:.3f} N; from 5 s on: {:.3f} N\n",
+      run.system_max_tension_n, run.system_max_tension_cable, run.system_max_elastic_n,
+      run.system_max_elastic_after_start_n);
+}
+
+std::string DragTable(const RunSummary& run) {
+  if (run.drags.empty()) return {};
+  const std::size_t name_width = NameWidth(run.drags);
+  std::string out = fmt::format("\n{:<{}} {:>{}}{:>{}}{:>{}}\n", "drag [N]", name_width, "mean",
+                                kCell, "min", kCell, "max", kCell);
+  for (const DragSummary& drag : run.drags) {
+    const double size = std::max(std::abs(drag.force_n.min), std::abs(drag.force_n.max));
+    out += fmt::format("{:<{}} {}\n", drag.name, name_width,
+                       RangeCells(drag.force_n, true, DecimalsFor(size)));
+  }
+  return out;
+}
+
+/// Cables whose rest length moved or was held by a motor; those without one are left out.
+std::string ActuatorTable(const RunSummary& run) {
+  std::string rows;
+  const std::size_t name_width = NameWidth(run.cables);
+  for (const CableSummary& cable : run.cables) {
+    if (cable.max_force_n == 0.0 && cable.max_speed_m_per_s == 0.0) continue;
+    rows +=
+        fmt::format("{:<{}} {:>12.2f}{:>16.4f}{:>14.3f}{:>12.3f}\n", cable.name, name_width,
+                    cable.max_force_n, cable.max_speed_m_per_s, cable.max_power_w, cable.energy_j);
+  }
+  if (rows.empty()) return {};
+  return fmt::format("\n{:<{}} {:>12}{:>16}{:>14}{:>12}\n", "actuator", name_width, "max force N",
+                     "max speed m/s", "max power W", "energy J") +
+         rows;
+}
+
+}  // namespace
+
+std::string SummaryTable(const RunSummary& summary) {
+  std::string out = Head(summary);
+  if (!summary.cables.empty()) {
+    for (std::size_t i = 0; i == 0 || i < summary.phases.size(); i += kPhasesAbreast) {
+      out += PhaseTable(summary, i, std::min(i + kPhasesAbreast, summary.phases.size()));
+    }
+    out += SystemLines(summary);
+  }
+  return out + DragTable(summary) + ActuatorTable(summary);
+}
+
+}  // namespace taut
