@@ -1,0 +1,50 @@
+# cmake -DKIND=find_package|add_subdirectory -DBINARY_DIR=... -DSOURCE_DIR=... -DWORK_DIR=...
+#       -DCXX=... -DCXX_FLAGS=... -DVERSION=... -P package_test.cmake
+#
+# A program outside of the tree builds with an installed taut, or with taut as a subfolder, and runs.
+function(run)
+  execute_process(COMMAND ${ARGV} RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(failed)
+    string(REPLACE ";" " " command "${ARGV}")
+    message(FATAL_ERROR "${command}\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+set(prefix ${WORK_DIR}/prefix)
+set(build ${WORK_DIR}/build)
+file(REMOVE_RECURSE ${WORK_DIR})
+set(configure ${CMAKE_COMMAND} -S ${SOURCE_DIR}/tests/package/consumer -B ${build} -G Ninja
+  -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${CXX_FLAGS} -DCMAKE_BUILD_TYPE=Debug)
+
+if(KIND STREQUAL find_package)
+  run(${CMAKE_COMMAND} --install ${BINARY_DIR} --prefix ${prefix})
+  run(${configure} -DCMAKE_PREFIX_PATH=${prefix} -DTAUT_WANTED_VERSION=${VERSION})
+  set(model ${prefix}/share/taut/models/tetraspine3.yaml)
+  # the installed command works where it is, with the installed files
+  run(${prefix}/bin/taut --version)
+  if(NOT output MATCHES "taut ${VERSION}")
+    message(FATAL_ERROR "the installed command says it is \"${output}\", not taut ${VERSION}")
+  endif()
+  run(${prefix}/bin/taut check ${prefix}/share/taut/experiments/push_20n.yaml)
+  # nothing installed points back into the build or the sources
+  file(GLOB_RECURSE texts ${prefix}/*.cmake ${prefix}/*.h ${prefix}/*.yaml)
+  foreach(file IN LISTS texts)
+    file(READ ${file} text)
+    foreach(folder IN ITEMS ${BINARY_DIR} ${SOURCE_DIR})
+      string(FIND "${text}" "${folder}/" at)
+      if(NOT at EQUAL -1)
+        message(FATAL_ERROR "${file} mentions ${folder}")
+      endif()
+    endforeach()
+  endforeach()
+else()
+  run(${configure} -DTAUT_SOURCE_DIR=${SOURCE_DIR})
+  set(model ${SOURCE_DIR}/models/tetraspine3.yaml)
+endif()
+run(${CMAKE_COMMAND} --build ${build} --target consumer)
+run(${build}/consumer ${model} ${WORK_DIR}/consumer.h5)
+if(NOT output MATCHES "taut ${VERSION}: 12 cables")
+  message(FATAL_ERROR "the consumer said \"${output}\"")
+endif()
+message(STATUS "${output}")

@@ -1,0 +1,5 @@
+#include "taut/version.h"
+
+#include <gtest/gtest.h>
+
+TEST(Version, TheHeaderAgreesWithCMake) { EXPECT_STREQ(taut::kVersion, TAUT_CMAKE_VERSION); }

@@ -1,0 +1,102 @@
+/// What a closed system keeps: momentum to rounding, energy within bounds and without drift.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scenes/prism3.h"
+#include "scenes/tetraspine3.h"
+#include "tests/physics/world.h"
+
+namespace taut::test {
+namespace {
+
+/// A model without ground, weight, dampers and shapes.
+ModelDef Closed(ModelDef def) {
+  def.gravity_m_per_s2 = {0, 0, 0};
+  def.planes.clear();
+  def.spheres.clear();
+  def.capsules.clear();
+  for (CableDef& cable : def.cables) cable.damping_n_s_per_m = 0;
+  return def;
+}
+
+double Total(const Batch& world) {
+  const Energy e = world.TotalEnergy(0);
+  return e.kinetic_j + e.elastic_j;
+}
+
+/// Runs for 60 s at 1 kHz. The energy may swing by `share` of what is in motion at the start, and
+/// no second has more or less than that.
+void KeepsEverything(const ModelDef& def, double share) {
+  Batch world = MakeBatch(def);
+  const Vec3 p0 = world.Momentum(0), l0 = world.AngularMomentum(0);
+  const double start = Total(world), kinetic = world.TotalEnergy(0).kinetic_j;
+  ASSERT_GT(kinetic, 0);
+  double largest = 0;
+  for (int n = 1; n <= 60000; ++n) {
+    world.Step(1e-3);
+    largest = std::max(largest, std::fabs(Total(world) - start));
+  }
+  EXPECT_LT(largest, share * start);
+  EXPECT_LE(Distance(world.Momentum(0), p0), RoundOff(60000, 1));
+  EXPECT_LE(Distance(world.AngularMomentum(0), l0), RoundOff(60000, 1));
+  EXPECT_EQ(world.Status(0).bits, kStatusOk);
+}
+
+TEST(Conservation, AFreePrismKeepsMomentumAndEnergyForAMinute) {
+  ModelDef def = Closed(scenes::Prism3().Def());
+  def.bodies[0].velocity_m_per_s = {0.1, 0.02, -0.03};
+  def.bodies[1].angular_velocity_rad_per_s = {1, -2, 0.5};
+  KeepsEverything(def, 1e-3);
+}
+
+TEST(Conservation, AFreeTetraspineKeepsMomentumAndEnergyForAMinute) {
+  ModelDef def = Closed(scenes::Tetraspine().Def());
+  def.bodies[0].velocity_m_per_s = {0.05, 0.02, -0.03};
+  def.bodies[2].angular_velocity_rad_per_s = {0.3, -0.2, 0.5};
+  KeepsEverything(def, 1e-3);
+}
+
+TEST(Conservation, ACableThroughEyeletsOnFreeBodiesKeepsMomentum) {
+  // Ends, and an eyelet, beside the centres of mass, so that everything turns.
+  ModelDef def;
+  def.gravity_m_per_s2 = {0, 0, 0};
+  const Vec3 centers[3] = {{-0.5, 0, 0}, {0, 0.2, 0.1}, {0.6, -0.1, 0}};
+  for (int i = 0; i < 3; ++i) {
+    BodyDef body;
+    body.name = "body_" + std::to_string(i);
+    body.mass_kg = 0.2 + 0.1 * i;
+    body.com_m = centers[i];
+    body.inertia_kg_m2 = {0.001, 0.002, 0.0025, 0, 0, 0};
+    body.velocity_m_per_s = {0.1 * i, 0.2, -0.1 * i};
+    def.bodies.push_back(body);
+  }
+  CableDef cable;
+  cable.name = "cable";
+  cable.attachments = {{0, centers[0] + Vec3{0.05, 0.02, 0}}, {1, centers[1] + Vec3{0, 0.03, 0.04}},
+                       {2, centers[2] + Vec3{-0.02, 0, 0.05}}};
+  cable.stiffness_n_per_m = 200;
+  cable.rest_length_m = 1.1;
+  def.cables.push_back(cable);
+  cable.name = "stiff";
+  cable.attachments = {{0, centers[0] + Vec3{0, 0, 0.05}}, {2, centers[2] + Vec3{0, 0, -0.05}}};
+  cable.stiffness_n_per_m = 1e6;
+  cable.damping_n_s_per_m = 10;
+  cable.rest_length_m = 1.09;
+  def.cables.push_back(cable);
+  Batch world = MakeBatch(def);
+  const Vec3 p0 = world.Momentum(0), l0 = world.AngularMomentum(0);
+  bool turned = false;
+  for (int n = 1; n <= 5000; ++n) {
+    world.Step(1e-3);
+    // Impulses of k (l - L) h are at most a hundred times the momenta that they leave.
+    ASSERT_LE(Distance(world.Momentum(0), p0), RoundOff(n, 10));
+    ASSERT_LE(Distance(world.AngularMomentum(0), l0), RoundOff(n, 10));
+    turned = turned || Norm(world.Body(0, 1).angular_velocity_rad_per_s) > 1;
+  }
+  EXPECT_TRUE(turned);
+}
+
+}  // namespace
+}  // namespace taut::test

@@ -1,0 +1,176 @@
+/// Cables through eyelets: one length, one tension (docs/theory/cables.md).
+
+#include <gtest/gtest.h>
+
+#include "scenes/hanging_mass.h"
+#include "tests/physics/world.h"
+
+namespace taut::test {
+namespace {
+
+BodyDef PointMass(const std::string& name, double mass_kg, const Vec3& p) {
+  BodyDef body;
+  body.name = name;
+  body.mass_kg = mass_kg;
+  body.com_m = p;
+  body.inertia_kg_m2 = scenes::SphereInertia(mass_kg, 0.05);
+  return body;
+}
+
+CableDef Cable(std::vector<AttachmentDef> attachments, double stiffness, double rest_length) {
+  CableDef cable;
+  cable.name = "cable";
+  cable.attachments = std::move(attachments);
+  cable.stiffness_n_per_m = stiffness;
+  cable.rest_length_m = rest_length;
+  return cable;
+}
+
+/// A mass that slides without friction on a cable between two points a span `d` apart, one `e`
+/// higher than the other. One tension means that both parts make the same angle a with the
+/// vertical: sin a = d / l, and 2 T cos a = m g with T = k (l - L) gives the length.
+void HangsStill(double span, double rise) {
+  const double m = 0.4, g = 9.81, k = 300, rest = 1.3;
+  double low = std::hypot(span, rise), high = 10;
+  for (int i = 0; i < 200; ++i) {
+    const double l = (low + high) / 2;
+    const double tension = std::max(k * (l - rest), 0.0);
+    (2 * tension * std::sqrt(1 - span * span / (l * l)) < m * g ? low : high) = l;
+  }
+  const double l = low, cosine = std::sqrt(1 - span * span / (l * l));
+  const double left = (l - rise / cosine) / 2;  // (right - left) cos a = rise
+  const Vec3 p{left * span / l, 0, -left * cosine};
+  ModelDef def;
+  def.bodies.push_back(PointMass("mass", m, p));
+  def.cables.push_back(Cable({{kWorld, {0, 0, 0}}, {0, p}, {kWorld, {span, 0, rise}}}, k, rest));
+  Batch world = MakeBatch(def);
+  EXPECT_NEAR(world.Cable(0, 0).length_m, l, RoundOff(1, l));
+  EXPECT_NEAR(world.Cable(0, 0).tension_n, k * (l - rest), RoundOff(1, k));
+  world.Step(1e-3, 2000);
+  // Rounding of lengths of 1 m is all that could move it.
+  EXPECT_LE(Distance(world.Body(0, 0).position_m, p), RoundOff(2000, 1));
+  // Pulled aside it is not in equilibrium: the test would notice.
+  world.SetBodyState(0, 0, {p + Vec3{0.01, 0, 0}, {}, {}, {}});
+  world.Step(1e-3, 100);
+  EXPECT_LT(world.Body(0, 0).velocity_m_per_s.x, -1e-3);
+}
+
+TEST(RoutedCable, AMassOnACableHangsInTheMiddleOfLevelEyelets) { HangsStill(1.0, 0.0); }
+
+TEST(RoutedCable, AMassOnACableHangsWhereTheAnglesAreEqualBetweenEyeletsOfDifferentHeight) {
+  HangsStill(1.0, 0.5);
+  HangsStill(0.6, -0.7);
+}
+
+TEST(RoutedCable, AMassOnACableThroughTwoFixedEyeletsIsTheLeapfrogsOscillator) {
+  // The mass hangs vertically; what the cable does before the last eyelet only adds to its length.
+  const double m = 0.5, k = 400, rest = 2.0, h = 1e-3, a = 0.004;
+  const double before = 0.5 + 0.5;  // anchor to eyelet to eyelet
+  const double hang = rest + m * 9.81 / k - before;
+  const Vec3 p{0.4, 0.3, -(hang + a)};
+  ModelDef def;
+  def.bodies.push_back(PointMass("mass", m, p));
+  def.cables.push_back(Cable({{kWorld, {0, 0, 0.5}}, {kWorld, {0, 0, 0}}, {kWorld, {0.4, 0.3, 0}},
+                              {0, p}},
+                             k, rest));
+  Batch world = MakeBatch(def);
+  const double theta = 2 * std::asin(std::sqrt(k / m) * h / 2);
+  for (int n = 1; n <= 3000; ++n) {
+    world.Step(h);
+    const Vec3 now = world.Body(0, 0).position_m;
+    ASSERT_NEAR(-now.z - hang, a * std::cos(n * theta), RoundOff(n, 2));
+    ASSERT_EQ(now.x, 0.4);
+    ASSERT_EQ(now.y, 0.3);
+  }
+}
+
+/// Two masses on one cable over an eyelet. Whatever the tension does, it is the same on both sides,
+/// so m1 z1 - m2 z2 falls as (m1 - m2) g t^2 / 2.
+ModelDef Atwood(double m1, double m2, double stiffness, double stretch) {
+  ModelDef def;
+  def.bodies.push_back(PointMass("one", m1, {-0.1, 0, -0.7}));
+  def.bodies.push_back(PointMass("two", m2, {0.1, 0, -0.9}));
+  // Eyelets straight above the masses keep the motion vertical.
+  def.cables.push_back(Cable({{0, {-0.1, 0, -0.7}}, {kWorld, {-0.1, 0, 0}}, {kWorld, {0.1, 0, 0}},
+                              {1, {0.1, 0, -0.9}}},
+                             stiffness, 1.8 - stretch));
+  return def;
+}
+
+TEST(RoutedCable, BothSidesOfAnEyeletPullEquallyHoweverTheCableSwings) {
+  const double m1 = 0.3, m2 = 0.5, g = 9.81;
+  Batch world = MakeBatch(Atwood(m1, m2, 500, 0.02));
+  for (int n = 1; n <= 400; ++n) {
+    world.Step(1e-3);
+    const double t = n * 1e-3;
+    const double difference =
+        m1 * (world.Body(0, 0).position_m.z + 0.7) - m2 * (world.Body(0, 1).position_m.z + 0.9);
+    ASSERT_NEAR(difference, (m2 - m1) * g * t * t / 2, RoundOff(n, 2));
+  }
+}
+
+TEST(RoutedCable, AtwoodsMachineAcceleratesAtItsClosedFormForAnyStiffness) {
+  // Started with the tension 2 m1 m2 g / (m1 + m2), the length stays and the masses move as on a
+  // rigid rope, exactly on parabolas.
+  const double m1 = 0.3, m2 = 0.5, g = 9.81;
+  const double tension = 2 * m1 * m2 / (m1 + m2) * g, a = (m2 - m1) / (m1 + m2) * g;
+  for (const double stiffness : {500.0, 2e4, 1e6}) {
+    for (const double h : kThreeStepsS) {
+      Batch world = MakeBatch(Atwood(m1, m2, stiffness, tension / stiffness));
+      const int steps = StepsIn(0.4, h);
+      world.Step(h, steps);
+      // A cable that the solver takes over is not known to be taut in its first step and then swings
+      // about its tension; that is m g / k of length at most.
+      const bool stiff = h * h * stiffness * (1 / m1 + 1 / m2) > 0.5;
+      const double allowed = RoundOff(steps, 2) + (stiff ? 2 * tension / stiffness : 0);
+      EXPECT_NEAR(world.Body(0, 0).position_m.z + 0.7, a * 0.08, allowed) << stiffness << " " << h;
+      EXPECT_NEAR(world.Body(0, 1).position_m.z + 0.9, -a * 0.08, allowed) << stiffness << " " << h;
+      if (stiff) continue;
+      EXPECT_NEAR(world.Cable(0, 0).tension_n, tension, RoundOff(steps, stiffness));
+    }
+  }
+}
+
+TEST(RoutedCable, ABeadOnATautCableSlidesFreely) {
+  // On a straight cable the pulls on the bead cancel; a cable tied to it would hold it.
+  ModelDef def;
+  def.gravity_m_per_s2 = {0, 0, 0};
+  def.bodies.push_back(PointMass("bead", 0.1, {0.3, 0, 0}));
+  def.bodies[0].velocity_m_per_s = {0.5, 0, 0};
+  def.cables.push_back(
+      Cable({{kWorld, {0, 0, 0}}, {0, {0.3, 0, 0}}, {kWorld, {1, 0, 0}}}, 1000, 0.9));
+  Batch world = MakeBatch(def);
+  for (int n = 1; n <= 1000; ++n) {
+    world.Step(1e-3);
+    // Unit vectors are rounded: by that share of T h / m = 1 m/s a step.
+    ASSERT_NEAR(world.Body(0, 0).velocity_m_per_s.x, 0.5, RoundOff(n, 1));
+    ASSERT_NEAR(world.Cable(0, 0).tension_n, 100, RoundOff(n, 1000));
+  }
+  EXPECT_NEAR(world.Body(0, 0).position_m.x, 0.8, RoundOff(1000, 1));
+}
+
+TEST(RoutedCable, AnEyeletBesideTheCentreOfMassTurnsItsBody) {
+  // T (u2 - u1) acts at the eyelet: with parts that leave up and to the right, T (1, 0, 1).
+  const double tension = 12, h = 1e-6;
+  ModelDef def;
+  def.gravity_m_per_s2 = {0, 0, 0};
+  def.bodies.push_back(PointMass("block", 2, {0, 0, 0}));
+  def.bodies[0].inertia_kg_m2 = {0.01, 0.02, 0.03, 0, 0, 0};
+  const Vec3 eyelet{0.1, 0.05, 0.02};
+  def.cables.push_back(Cable({{kWorld, eyelet + Vec3{0, 0, 1}}, {0, eyelet},
+                              {kWorld, eyelet + Vec3{1, 0, 0}}},
+                             1200, 1.99));
+  Batch world = MakeBatch(def);
+  world.Step(h);
+  const Vec3 force{tension, 0, tension}, torque = Cross(eyelet, force);
+  const BodyState body = world.Body(0, 0);
+  EXPECT_LE(Distance((1 / h) * body.velocity_m_per_s, 0.5 * force), RoundOff(1, 1200));
+  // Rates of w, torque / I, are below 120 rad/s^2. In the second half of the step the body turns by
+  // up to 120 h^2 / 2, which turns w and shares L out anew among moments of a ratio of 3.
+  EXPECT_LE(Distance((1 / h) * body.angular_velocity_rad_per_s,
+                     {torque.x / 0.01, torque.y / 0.02, torque.z / 0.03}),
+            120 * 3 * (120 * h * h / 2));
+}
+
+}  // namespace
+}  // namespace taut::test

@@ -1,0 +1,45 @@
+/// What the tests of the core share: worlds from scenes, distances, and how much rounding may do.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "math/vec.h"
+#include "taut/batch.h"
+
+namespace taut::test {
+
+inline Batch MakeBatch(const ModelDef& def, const BatchOptions& options = {}) {
+  Diagnostics complaints;
+  const auto model = Model::Compile(def, complaints);
+  if (model == nullptr) throw std::runtime_error(complaints.Format());
+  return Batch(model, options);
+}
+
+/// 4 kHz, 1 kHz and 250 Hz.
+inline constexpr double kThreeStepsS[] = {1.0 / 4000, 1.0 / 1000, 1.0 / 250};
+
+inline int StepsIn(double time_s, double step_s) {
+  return static_cast<int>(std::lround(time_s / step_s));
+}
+
+/// A sum of `n` terms, each rounded to a relative half epsilon and no partial sum above `size`, is
+/// off by no more than n size eps / 2. A position gets two additions a step, and its velocity's own
+/// error n speed eps / 2 adds up to n (time speed) eps / 4; products add as much again. So this
+/// bounds both, with `size` at least the largest position and the largest path.
+inline double RoundOff(int steps, double size) {
+  return 4 * steps * std::numeric_limits<double>::epsilon() * size;
+}
+
+/// What n contact solves may be off by together. A solve stops when a sweep changes no velocity by
+/// more than the tolerance; one that converges by a factor of 0.9 a sweep is then ten times that
+/// from its limit, and ours are faster than that.
+inline double SolverError(int solves, double tolerance_m_per_s = BatchOptions().tolerance_m_per_s) {
+  return 10 * solves * tolerance_m_per_s;
+}
+
+inline double Norm(const Vec3& a) { return std::sqrt(Dot(a, a)); }
+inline double Distance(const Vec3& a, const Vec3& b) { return Norm(a - b); }
+
+}  // namespace taut::test

@@ -1,0 +1,117 @@
+// `taut compare` as a person or a script calls it.
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "unit/trace_fixture.h"
+
+namespace taut::test {
+namespace {
+
+struct Outcome {
+  int status = -1;
+  std::string output, errors;
+};
+
+class CompareCommand : public TraceFolder {
+ protected:
+  CompareCommand() {
+    Diagnostics out;
+    const std::vector<ChannelInfo> channels = {{"cable/a/tension_n", "N"},
+                                               {"cable/b/tension_n", "N"}};
+    auto writer = CreateHdf5Trace(Path("a.h5"), channels, {}, out);
+    EXPECT_TRUE(writer) << out.Format();
+    std::string csv = "time_s,a_lbf,b_lbf\n";
+    for (int i = 0; i <= 100; ++i) {
+      const double row[] = {20.0 + i % 7, 30.0};
+      writer->Append(0.1 * i, row);
+      csv += std::to_string(i) + "e-1," + std::to_string(5 + i % 7) + ",6\n";
+    }
+    EXPECT_TRUE(writer->Finish());
+    WriteFile("b.csv", csv);
+    WriteFile("map.json", R"({"version": 1, "channels": [
+      {"from": "*_lbf", "to": "cable/*/tension_n", "scale": 4}]})");
+  }
+
+  /// Runs `taut compare` in the folder.
+  Outcome Run(const std::string& arguments) {
+    const std::string command = "cd '" + folder_.string() + "' && '" TAUT_COMMAND "' compare " +
+                                arguments + " >out.txt 2>err.txt";
+    const int status = std::system(command.c_str());
+    return {WEXITSTATUS(status), ReadFile(Path("out.txt")), ReadFile(Path("err.txt"))};
+  }
+};
+
+TEST_F(CompareCommand, PassesWithinTheLimitAndFailsBeyondIt) {
+  // largest of a: 30 N; largest of b: 11 lbf, here 44 N; so -31.82 %
+  Outcome outcome = Run("a.h5 b.csv --map map.json --max-error-percent 32");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("largest cable/*/tension_n: error -31.82 %"), std::string::npos)
+      << outcome.output;
+  EXPECT_NE(outcome.output.find("\nPASS: within the limits\n"), std::string::npos);
+  outcome = Run("a.h5 b.csv --map map.json --max-error-percent 31");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.output.find("\nFAIL: the largest cable/*/tension_n is -31.82 % off"),
+            std::string::npos)
+      << outcome.output;
+  outcome = Run("a.h5 b.csv --map map.json");
+  EXPECT_EQ(outcome.status, 0) << "no limit, no verdict";
+  EXPECT_EQ(outcome.output.find("PASS"), std::string::npos);
+  // b's 6 lbf are 24 N: the RMSE of cable b is exactly 6 N
+  EXPECT_EQ(Run("a.h5 b.csv --map map.json --channels 'cable/b/*' --max-rmse 6.01").status, 0);
+  EXPECT_EQ(Run("a.h5 b.csv --map map.json --channels 'cable/b/*' --max-rmse 5.99").status, 1);
+  EXPECT_EQ(Run("b.csv a.h5 --map-a map.json --max-error-percent 46.7").status, 0);
+}
+
+TEST_F(CompareCommand, JsonAloneIsOnStandardOutput) {
+  const Outcome outcome = Run(
+      "--json --phase early=0:1 --phase late=9:10 --channels 'cable/a/*' --channels 'cable/b/*' "
+      "a.h5 b.csv --map map.json --from 0.5 --max-error-percent 1");
+  EXPECT_EQ(outcome.status, 1);
+  const auto json = nlohmann::ordered_json::parse(outcome.output);
+  EXPECT_EQ(json["channels"].size(), 2u);
+  EXPECT_EQ(json["phases"][1]["name"], "late");
+  EXPECT_EQ(json["from_s"], 0.5);
+  EXPECT_EQ(json["channels"][1]["phases"]["early"]["a"]["rows"], 6);
+  EXPECT_EQ(outcome.errors.substr(0, 5), "FAIL:");
+}
+
+TEST_F(CompareCommand, BadInputEndsWithThreeAndSaysWhatIsWrong) {
+  Outcome outcome = Run("none.h5 b.csv --map none.json");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_EQ(outcome.errors,
+            "none.h5: error: cannot be opened: No such file or directory\n"
+            "none.json: error: cannot be opened\n");
+  EXPECT_EQ(outcome.output, "");
+  outcome = Run("a.h5 b.csv");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_EQ(outcome.errors,
+            "error: the traces have no channel in common (--map translates names)\n");
+  EXPECT_NE(outcome.output.find("only in b (2): a_lbf b_lbf\n"), std::string::npos);
+  outcome = Run("a.h5 b.csv --map map.json --from 20");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_EQ(outcome.errors, "error: the traces have no time in common\n");
+}
+
+TEST_F(CompareCommand, BadUsageEndsWithTwo) {
+  for (const std::string phase : {"25:30", "x=30:25", "x=25", "=1:2", "x=a:3"}) {
+    const Outcome outcome = Run("a.h5 b.csv --phase " + phase);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.errors.find("\"" + phase + "\" is not like before=25:30"), std::string::npos)
+        << outcome.errors;
+  }
+  EXPECT_EQ(Run("a.h5").status, 2);
+  EXPECT_EQ(Run("a.h5 b.csv --max-lag -1").status, 2);
+  EXPECT_EQ(Run("a.h5 b.csv --no-such-option").status, 2);
+}
+
+TEST_F(CompareCommand, HelpShowsExamples) {
+  const Outcome outcome = Run("--help");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.output.find("taut compare runs/push/trace.h5 push_1000hz.csv.gz --map"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace taut::test

@@ -1,0 +1,52 @@
+// What a microcontroller's program takes from the controllers, compiled without a standard
+// library: this file must link against nothing (see control_freestanding.cmake).
+#include "taut/control/clock.h"
+#include "taut/control/impedance.h"
+#include "taut/control/pid.h"
+#include "taut/control/position.h"
+#include "taut/control/rate.h"
+#include "taut/control/real.h"
+
+namespace control = taut::control;
+
+extern "C" float RestLengthFromImpedance(float rest_length_m, float tension_n, float* before_m) {
+  const control::Impedance<float> law{28.0f, 0.19f, 500.0f, 150.0f};
+  const float period_s = 0.001f, stiffness_n_per_m = 229.16f;
+  const float length_m = control::LengthFromTension(rest_length_m, tension_n, stiffness_n_per_m);
+  control::DifferenceState<float> difference = control::StartDifference(*before_m);
+  const float rate = control::StepDifference(difference, length_m, period_s);
+  *before_m = difference.length_before_m;
+  const float set_point_n = control::ImpedanceTension(law, length_m, rate, 0.0f);
+  return control::TensionToRestLengthByStiffness(rest_length_m, tension_n, set_point_n,
+                                                 stiffness_n_per_m, 0.001f);
+}
+
+extern "C" float SpeedFromTension(control::PidState<float>* state, float tension_n, float set_n) {
+  const control::Pid<float> pid{0.05f, 0.1f, 0.0f};
+  return control::TensionByPidLimited(pid, *state, tension_n, set_n, 0.001f, 0.07f,
+                                      control::Windup::kHeld);
+}
+
+extern "C" float SpeedFromPosition(control::PidState<float>* state, float rest_length_m,
+                                   float t_s) {
+  const control::ProgramPoint<float> ramp[] = {{0.0f, 0.2f}, {5.0f, 0.3f}};
+  const control::Pid<float> pid{5.0f, 0.0f, 0.0f};
+  return control::RestLengthByPid(pid, *state, rest_length_m, control::RestLengthAt(ramp, 2, t_s),
+                                  0.001f, 0.07f, control::Windup::kHeld);
+}
+
+extern "C" int64_t NextTick(float t_s) {
+  const control::Clock<float> clock{0.001f, 0.0f};
+  const int64_t tick = control::TickAtOrAfter(clock, t_s);
+  return control::IsDue(clock, tick, t_s) ? tick + 1 : tick;
+}
+
+int main() {
+  float before_m = 0.2f;
+  control::PidState<float> tension = control::StartPid<float>();
+  control::PidState<float> position = control::StartPidAt(0.0f);
+  const float rest_length_m = RestLengthFromImpedance(0.2f, 10.0f, &before_m);
+  const float speed =
+      SpeedFromTension(&tension, 10.0f, 12.0f) + SpeedFromPosition(&position, rest_length_m, 2.0f);
+  return speed < 0.0f && NextTick(0.5f) > 0 ? 0 : 1;
+}

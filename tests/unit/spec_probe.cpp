@@ -1,0 +1,44 @@
+// Loads model and experiment files and prints what is wrong with them, for tests in other
+// languages: spec_probe [--set name=value]... [--resolved] FILE...
+// Exit status 1 if anything is wrong.
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <string>
+
+#include "taut/spec.h"
+
+namespace {
+
+bool IsModel(const std::string& path) {
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);) {
+    if (line.find("kind: model") == 0 || line.find("\"kind\": \"model\"") != std::string::npos) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  taut::Overrides overrides;
+  taut::Diagnostics out;
+  bool resolved = false;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--resolved") {
+      resolved = true;
+    } else if (argument == "--set" && i + 1 < argc) {
+      const std::string pair = argv[++i];
+      overrides.emplace_back(pair.substr(0, pair.find('=')), pair.substr(pair.find('=') + 1));
+    } else if (IsModel(argument)) {
+      taut::LoadRobot(argument, overrides, out);
+    } else if (const auto experiment = taut::LoadExperiment(argument, overrides, out)) {
+      if (resolved) std::cout << taut::ResolvedYaml(*experiment);
+    }
+  }
+  std::cout << out.Format();
+  return out.ok() ? 0 : 1;
+}

@@ -1,0 +1,163 @@
+// The summary of a run, as JSON and as tables.
+#include "taut/summary.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace taut {
+namespace {
+
+CableSummary Cable(const std::string& name, double base, std::size_t phase_count) {
+  CableSummary cable;
+  cable.name = name;
+  cable.tension = {base + 9, base + 8, {}};
+  cable.elastic = {base + 7, base + 6, {}};
+  for (std::size_t i = 0; i < phase_count; ++i) {
+    const double at = base + 0.1 * static_cast<double>(i);
+    cable.tension.phases.push_back({at, at - 0.5, at + 0.5});
+    cable.elastic.phases.push_back({at - 1, at - 1.5, at - 0.5});
+  }
+  cable.max_force_n = 31.25;
+  cable.max_speed_m_per_s = 0.07;
+  cable.max_power_w = 2.1875;
+  cable.energy_j = 0.5;
+  return cable;
+}
+
+RunSummary Summary() {
+  RunSummary summary;
+  summary.experiment = "push_20n";
+  summary.simulated_s = 60;
+  summary.wall_s = 0.125;
+  summary.phases = {{"before", 25, 30}, {"during", 35, 40}, {"after", 50, 60}};
+  summary.cables = {Cable("inner_top_1", 32.25, 3), Cable("outer_top_2", 4, 3)};
+  summary.system_max_tension_n = 41.25;
+  summary.system_max_tension_cable = "inner_top_1";
+  summary.system_max_elastic_n = 39.25;
+  summary.system_max_elastic_after_start_n = 38.25;
+  summary.state_hash = 0x0123456789abcdefu;
+  return summary;
+}
+
+TEST(SummaryJson, HoldsEverythingUnderItsName) {
+  RunSummary summary = Summary();
+  summary.drags = {{"scale", {1.5, 1.25, 1.75}}};
+  const std::string text = SummaryJson(summary);
+  const auto json = nlohmann::ordered_json::parse(text);
+  EXPECT_EQ(json["experiment"], "push_20n");
+  EXPECT_EQ(json["taut_version"], "0.1.0");
+  EXPECT_EQ(json["format_version"], 1);
+  EXPECT_EQ(json["simulated_s"], 60);
+  EXPECT_EQ(json["wall_s"], 0.125);
+  EXPECT_EQ(json["real_time_factor"], 480);
+  EXPECT_EQ(json["interrupted"], false);
+  EXPECT_EQ(json["status"], "ok");
+  EXPECT_EQ(json["state_hash"], "0123456789abcdef");
+  EXPECT_EQ(json["system_max_tension_n"], 41.25);
+  EXPECT_EQ(json["system_max_tension_cable"], "inner_top_1");
+  EXPECT_EQ(json["system_max_elastic_n"], 39.25);
+  EXPECT_EQ(json["system_max_elastic_after_start_n"], 38.25);
+  EXPECT_EQ(json["phases"][1]["from_s"], 35);
+  const auto& cable = json["cables"][0];
+  EXPECT_EQ(cable["name"], "inner_top_1");
+  EXPECT_EQ(cable["tension"]["max_n"], 41.25);
+  EXPECT_EQ(cable["tension"]["max_after_start_n"], 40.25);
+  EXPECT_EQ(cable["elastic"]["max_n"], 39.25);
+  EXPECT_EQ(cable["elastic"]["phases"]["before"]["mean_n"], 31.25);
+  EXPECT_EQ(cable["tension"]["phases"]["before"]["min_n"], 31.75);
+  EXPECT_EQ(cable["tension"]["phases"]["before"]["max_n"], 32.75);
+  EXPECT_TRUE(cable["tension"]["phases"].contains("after"));
+  EXPECT_EQ(cable["actuator"]["max_force_n"], 31.25);
+  EXPECT_EQ(cable["actuator"]["max_speed_m_per_s"], 0.07);
+  EXPECT_EQ(cable["actuator"]["max_power_w"], 2.1875);
+  EXPECT_EQ(cable["actuator"]["energy_j"], 0.5);
+  EXPECT_EQ(json["drags"][0]["name"], "scale");
+  EXPECT_EQ(json["drags"][0]["force"]["mean_n"], 1.5);
+  EXPECT_EQ(json.begin().key(), "format_version") << "keys stay in order";
+  EXPECT_EQ(text, SummaryJson(summary));
+}
+
+TEST(SummaryJson, WhatWasNotReachedIsNull) {
+  RunSummary summary = Summary();
+  summary.simulated_s = 37;
+  summary.interrupted = true;
+  summary.status.bits = kStatusNonFinite;
+  summary.status_text = "body segment_1 is not finite";
+  summary.system_max_tension_n = std::numeric_limits<double>::quiet_NaN();
+  const auto json = nlohmann::ordered_json::parse(SummaryJson(summary));
+  EXPECT_EQ(json["interrupted"], true);
+  EXPECT_EQ(json["status"], "body segment_1 is not finite");
+  EXPECT_EQ(json["status_bits"], 1);
+  const auto& phases = json["cables"][0]["tension"]["phases"];
+  EXPECT_FALSE(phases["before"].is_null());
+  EXPECT_TRUE(phases["during"].is_null()) << "was not complete";
+  EXPECT_TRUE(phases["after"].is_null());
+  EXPECT_TRUE(json["system_max_tension_n"].is_null());
+}
+
+TEST(SummaryTable, IsWhatAPersonReads) {
+  RunSummary summary = Summary();
+  summary.drags = {{"scale", {1.5, 1.25, 1.75}}};
+  EXPECT_EQ(SummaryTable(summary),
+            R"(push_20n: 60 s simulated in 0.125 s (480 times real time)
+
+                     before 25..30 s          during 35..40 s           after 50..60 s     whole
+tension [N]     mean     min     max     mean     min     max     mean     min     max       max
+inner_top_1    32.25   31.75   32.75    32.35   31.85   32.85    32.45   31.95   32.95     41.25
+outer_top_2     4.00    3.50    4.50     4.10    3.60    4.60     4.20    3.70    4.70     13.00
+
+largest system tension: 41.250 N in inner_top_1
+elastic part alone: 39.250 N; from 5 s on: 38.250 N
+
+drag [N]       mean     min     max
+scale         1.500   1.250   1.750
+
+actuator     max force N   max speed m/s   max power W    energy J
+inner_top_1        31.25          0.0700         2.188       0.500
+outer_top_2        31.25          0.0700         2.188       0.500
+)");
+}
+
+TEST(SummaryTable, SaysWhatWentWrongAndLeavesOutWhatWasNotReached) {
+  RunSummary summary = Summary();
+  summary.simulated_s = 37;
+  summary.interrupted = true;
+  summary.status.bits = kStatusNotConverged;
+  summary.status.first_time_s = 36.5;
+  for (CableSummary& cable : summary.cables) cable.max_force_n = cable.max_speed_m_per_s = 0.0;
+  const std::string table = SummaryTable(summary);
+  EXPECT_NE(table.find("push_20n: 37 s simulated in 0.125 s (296 times real time), interrupted\n"
+                       "WARNING: status bits 2 (first at 36.5 s)\n"),
+            std::string::npos)
+      << table;
+  EXPECT_NE(table.find("inner_top_1    32.25   31.75   32.75        -       -       -        -    "
+                       "   -       -     41.25"),
+            std::string::npos)
+      << table;
+  EXPECT_EQ(table.find("actuator"), std::string::npos) << "there is none";
+  EXPECT_EQ(table.find("drag"), std::string::npos);
+}
+
+TEST(SummaryTable, StaysWithinAHundredColumns) {
+  RunSummary summary = Summary();
+  summary.phases = {{"a", 0, 1}, {"b", 1, 2}, {"c", 2, 3}, {"d", 3, 4}, {"e", 4, 5}};
+  summary.cables = {Cable("inner_top_11", 1234.5, 5), Cable("outer_left_12", 4, 5)};
+  summary.system_max_tension_n = 1243.5;
+  std::istringstream lines(SummaryTable(summary));
+  std::size_t titles = 0;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), 100u) << line;
+    titles += line.find("tension [N]") != line.npos;
+  }
+  EXPECT_EQ(titles, 2u) << "five phases take two tables";
+  summary.phases.clear();
+  EXPECT_NE(SummaryTable(summary).find("tension [N]         max\ninner_top_11     1243.5\n"),
+            std::string::npos)
+      << SummaryTable(summary);
+}
+
+}  // namespace
+}  // namespace taut

@@ -1,0 +1,320 @@
+// Traces and accidents: writers killed, disks full, files damaged.
+#include <hdf5.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cstring>
+#include <functional>
+#include <iostream>
+#include <random>
+#include <thread>
+
+#include "trace/child_process.h"
+#include "trace_fixture.h"
+
+namespace taut::test {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr std::size_t kChannelCount = 5;
+
+double Now() { return duration<double>(steady_clock::now().time_since_epoch()).count(); }
+
+std::unique_ptr<TraceWriter> Create(const std::string& path, Diagnostics& out) {
+  return path.ends_with(".h5") ? CreateHdf5Trace(path, Channels(kChannelCount), {}, out)
+                               : CreateCsvTrace(path, Channels(kChannelCount), out);
+}
+
+/// Runs `work` in a child that ends as a program does; returns how it ended.
+int InChild(const std::function<int()>& work) {
+  const pid_t pid = fork();
+  if (pid == 0) std::exit(work());
+  int status = 0;
+  waitpid(pid, &status, 0);
+  return status;
+}
+
+struct Survival : TraceFolder {
+  /// Writes to `path`, most of the time inside the library, kills the writer after `life`, reads.
+  void KillAfter(const std::string& path, milliseconds life);
+  std::size_t rows_read = 0;
+};
+
+void Survival::KillAfter(const std::string& path, milliseconds life) {
+  // Moments on the one steady clock of all processes: 0 until the first row.
+  struct Progress {
+    volatile double created, appended;
+  };
+  void* shared =
+      mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  auto* progress = new (shared) Progress{0.0, 0.0};
+  const pid_t pid = fork();
+  if (pid == 0) {
+    Diagnostics out;
+    const auto writer = Create(path, out);
+    progress->created = Now();
+    double last = 0.0;
+    for (std::size_t row = 0; writer; ++row) {
+      double now = Now();
+      while (!(now > last)) now = Now();
+      last = now;
+      if (!AppendRow(*writer, row, kChannelCount, now)) break;
+      progress->appended = now;
+      if (row % 64 == 0) std::this_thread::sleep_for(std::chrono::microseconds(500));
+    }
+    _exit(1);
+  }
+  while (progress->created == 0.0) std::this_thread::sleep_for(milliseconds(1));
+  std::this_thread::sleep_for(life);
+  Diagnostics while_writing;
+  EXPECT_TRUE(ReadTrace(path, while_writing)) << while_writing.Format();
+  kill(pid, SIGKILL);
+  int status = 0;
+  waitpid(pid, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "the writer gave up by itself";
+
+  Diagnostics out;
+  const auto trace = ReadTrace(path, out);
+  ASSERT_TRUE(trace) << out.Format();
+  ExpectPattern(*trace, kChannelCount);
+  const double last = trace->time_s.empty() ? progress->created : trace->time_s.back();
+  EXPECT_GT(last, progress->appended - 1.0) << trace->time_s.size() << " rows";
+  rows_read += trace->time_s.size();
+  munmap(shared, sizeof(Progress));
+}
+
+TEST_F(Survival, AKilledWriterLeavesAllButTheLastSecond) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> life_ms(0, 1300);
+  for (int i = 0; i < 20; ++i) {
+    SCOPED_TRACE(i);
+    KillAfter(Path("t.h5"), milliseconds(life_ms(random)));
+  }
+  for (int i = 0; i < 5; ++i) KillAfter(Path("t.csv"), milliseconds(life_ms(random)));
+  EXPECT_GT(rows_read, 10000u);
+}
+
+TEST_F(Survival, ATraceInAFolderThatIsNotThereIsAnErrorAndSilent) {
+  testing::internal::CaptureStderr();
+  for (const std::string name : {"none/t.h5", "none/t.csv"}) {
+    Diagnostics out;
+    EXPECT_FALSE(Create(Path(name), out));
+    EXPECT_EQ(out.Format(),
+              "error: " + Path(name) + ": cannot be written: No such file or directory\n");
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(Survival, AFullDiskIsAnErrorInCsv) {
+  if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
+  Diagnostics out;
+  EXPECT_FALSE(Create("/dev/full", out));
+  EXPECT_EQ(out.Format(), "error: /dev/full: cannot be written: No space left on device\n");
+}
+
+TEST_F(Survival, AFullDiskIsAnErrorAndWhatWasFlushedStaysReadable) {
+  // A file may not grow beyond a limit: to the library the same as a full disk.
+  std::mt19937 random(2);
+  std::size_t complaints_at_start = 0;
+  for (int i = 0; i < 60; ++i) {
+    const std::string path = Path(i % 6 == 0 ? "t.csv" : "t.h5");
+    std::filesystem::remove(path);
+    const rlim_t limit =
+        std::uniform_int_distribution<rlim_t>(0, i % 2 == 0 ? 30000 : 600000)(random);
+    SCOPED_TRACE(path + " limited to " + std::to_string(limit) + " bytes");
+    constexpr int kRefusedAtStart = 10, kRefusedLater = 11;
+    const int status = InChild([&] {
+      const rlimit size{limit, limit};
+      setrlimit(RLIMIT_FSIZE, &size);
+      signal(SIGXFSZ, SIG_IGN);
+      Diagnostics out;
+      auto writer = Create(path, out);
+      if (!writer) {
+        return out.Format() == "error: " + path + ": cannot be written: File too large\n"
+                   ? kRefusedAtStart
+                   : 1;
+      }
+      std::size_t row = 0;
+      while (row < 100000 && AppendRow(*writer, row, kChannelCount, static_cast<double>(row))) {
+        ++row;
+      }
+      if (row == 100000) return 2;
+      const bool sane = writer->error() == path + ": cannot be written: File too large" &&
+                        !AppendRow(*writer, row, kChannelCount, 1e9) && !writer->Finish();
+      writer.reset();
+      return sane ? kRefusedLater : 3;
+    });
+    ASSERT_TRUE(WIFEXITED(status)) << strsignal(WTERMSIG(status));
+    if (WEXITSTATUS(status) == kRefusedAtStart) {
+      ++complaints_at_start;
+      continue;
+    }
+    ASSERT_EQ(WEXITSTATUS(status), kRefusedLater);
+    Diagnostics out;
+    const auto trace = ReadTrace(path, out);
+    ASSERT_TRUE(trace) << out.Format();
+    ExpectPattern(*trace, kChannelCount);
+    rows_read += trace->time_s.size();
+  }
+  EXPECT_GT(rows_read, 1000u);
+  EXPECT_GT(complaints_at_start, 1u);
+}
+
+TEST_F(Survival, AFullDiskFoundOnlyAtTheEndIsAnError) {
+  for (const std::string name : {"t.h5", "t.csv"}) {
+    const int status = InChild([&] {
+      Diagnostics out;
+      auto writer = Create(Path(name), out);
+      for (std::size_t row = 0; row < 100; ++row) {
+        if (!AppendRow(*writer, row, kChannelCount, static_cast<double>(row))) return 1;
+      }
+      const rlimit size{100, 100};
+      setrlimit(RLIMIT_FSIZE, &size);
+      signal(SIGXFSZ, SIG_IGN);
+      return !writer->Finish() && !writer->error().empty() && !writer->Finish() ? 10 : 2;
+    });
+    ASSERT_TRUE(WIFEXITED(status)) << strsignal(WTERMSIG(status));
+    EXPECT_EQ(WEXITSTATUS(status), 10);
+  }
+}
+
+/// The same content as other programs write it: HDF5's old layout, which has no checksums.
+void WriteOldLayout(const std::string& path, std::size_t rows) {
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t text = H5Tcopy(H5T_C_S1), scalar = H5Screate(H5S_SCALAR);
+  H5Tset_size(text, 10);
+  const hid_t format = H5Acreate2(file, "format", text, scalar, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(format, text, "taut trace");
+  H5Aclose(format);
+  const hid_t version =
+      H5Acreate2(file, "format_version", H5T_NATIVE_INT, scalar, H5P_DEFAULT, H5P_DEFAULT);
+  const int one = 1;
+  H5Awrite(version, H5T_NATIVE_INT, &one);
+  H5Aclose(version);
+  const hid_t layout = H5Pcreate(H5P_DATASET_CREATE), links = H5Pcreate(H5P_LINK_CREATE);
+  const hsize_t count = rows, chunk = 256;
+  H5Pset_chunk(layout, 1, &chunk);
+  H5Pset_deflate(layout, 4);
+  H5Pset_create_intermediate_group(links, 1);
+  const hid_t space = H5Screate_simple(1, &count, nullptr);
+  std::vector<double> values(rows);
+  for (std::size_t i = 0; i < rows; ++i) values[i] = static_cast<double>(i);
+  std::vector<ChannelInfo> columns = Channels(kChannelCount);
+  columns.push_back({"time_s", "s"});
+  for (const ChannelInfo& column : columns) {
+    const hid_t dataset =
+        H5Dcreate2(file, column.name.c_str(), H5T_IEEE_F64LE, space, links, layout, H5P_DEFAULT);
+    H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Dclose(dataset);
+  }
+  for (const hid_t id : {layout, links}) H5Pclose(id);
+  for (const hid_t id : {scalar, space}) H5Sclose(id);
+  H5Tclose(text);
+  H5Fclose(file);
+}
+
+struct Outcome {
+  std::size_t readable = 0, refused = 0, crashed = 0;
+};
+
+/// Spoils `good` in `count` ways. Whatever HDF5 does, the caller gets data or a diagnostic.
+Outcome ReadDamaged(const std::string& good, std::size_t structure_bytes, int count,
+                    const std::string& path) {
+  std::mt19937 random(3);
+  const auto below = [&](std::size_t limit) {
+    return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);
+  };
+  Outcome outcome;
+  for (int i = 0; i < count; ++i) {
+    std::string bad = good;
+    const std::size_t reach = i % 3 == 0 ? bad.size() : structure_bytes;
+    for (std::size_t n = 1 + below(6); n > 0; --n) {
+      bad[below(reach)] = static_cast<char>(below(256));
+    }
+    if (i % 10 == 0) bad.resize(below(bad.size()));
+    std::ofstream(path, std::ios::binary) << bad;
+    Diagnostics found;
+    const auto trace = ReadTrace(path, found);
+    EXPECT_NE(trace.has_value(), !found.ok()) << "file " << i;
+    if (trace) {
+      for (const auto& column : trace->values) EXPECT_EQ(column.size(), trace->time_s.size());
+    }
+    ++(trace ? outcome.readable : outcome.refused);
+    outcome.crashed += found.Format().find("crashed") != std::string::npos;
+  }
+  std::cout << outcome.readable << " readable, " << outcome.refused << " refused, of which "
+            << outcome.crashed << " crashed HDF5\n";
+  return outcome;
+}
+
+TEST_F(Survival, DamagedTracesGiveDataOrADiagnostic) {
+  Diagnostics out;
+  auto writer = CreateHdf5Trace(Path("good.h5"), Channels(kChannelCount), {{"seed", "0"}}, out);
+  for (std::size_t row = 0; row < 2000; ++row) {
+    ASSERT_TRUE(AppendRow(*writer, row, kChannelCount, static_cast<double>(row)));
+  }
+  ASSERT_TRUE(writer->Finish());
+  const Outcome outcome = ReadDamaged(ReadFile(Path("good.h5")), 8192, 400, Path("bad.h5"));
+  EXPECT_GT(outcome.readable, 10u);
+  EXPECT_GT(outcome.refused, 10u);
+}
+
+TEST_F(Survival, DamagedFilesWithoutChecksumsGiveDataOrADiagnostic) {
+  WriteOldLayout(Path("good.h5"), 2000);
+  Diagnostics out;
+  ASSERT_TRUE(ReadTrace(Path("good.h5"), out)) << out.Format();
+  const Outcome outcome = ReadDamaged(ReadFile(Path("good.h5")), 8192, 400, Path("bad.h5"));
+  EXPECT_GT(outcome.readable, 10u);
+  EXPECT_GT(outcome.refused, 10u);
+}
+
+TEST(ChildProcess, SendsWhatItFound) {
+  trace::ChildProcess child([](const trace::ChildOutput& to) { to.Write("hello", 5); }, 1 << 20,
+                            milliseconds(10000));
+  char text[6] = {};
+  EXPECT_TRUE(child.Read(text, 5));
+  EXPECT_STREQ(text, "hello");
+  EXPECT_FALSE(child.Read(text, 1)) << "there is no more";
+  EXPECT_EQ(child.End(), "");
+}
+
+TEST(ChildProcess, TellsHowItEnded) {
+  const auto end = [](const std::function<void()>& work) {
+    trace::ChildProcess child([&](const trace::ChildOutput&) { work(); }, 1 << 28,
+                              milliseconds(2000));
+    char byte = 0;
+    EXPECT_FALSE(child.Read(&byte, 1));
+    return child.End();
+  };
+  EXPECT_EQ(end([] { raise(SIGSEGV); }), "crashed (Segmentation fault)");
+  EXPECT_EQ(end([] { std::abort(); }), "crashed (Aborted)");
+  EXPECT_EQ(end([] { _exit(7); }), "ended with status 7");
+  EXPECT_EQ(end([] { std::this_thread::sleep_for(std::chrono::seconds(100)); }),
+            "gave no sign of life for 2 s");
+  EXPECT_EQ(end([] { std::vector<char> much(std::size_t{1} << 33); }), "ended with status 1")
+      << "memory is limited";
+  EXPECT_EQ(end([] {}), "");
+}
+
+TEST(ChildProcess, DiesWithAParentThatHasHeardEnough) {
+  const auto begin = steady_clock::now();
+  {
+    trace::ChildProcess child(
+        [](const trace::ChildOutput& to) {
+          for (;;) to.Write("x", 1);
+        },
+        1 << 20, milliseconds(10000));
+    char byte = 0;
+    EXPECT_TRUE(child.Read(&byte, 1));
+  }
+  EXPECT_LT(duration<double>(steady_clock::now() - begin).count(), 5.0);
+}
+
+}  // namespace
+}  // namespace taut::test

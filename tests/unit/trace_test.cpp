@@ -1,0 +1,403 @@
+// Traces survive the way to a file and back, and every complaint about one is clear.
+#include <hdf5.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "trace/channel_names.h"
+#include "trace_fixture.h"
+
+namespace taut::test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Bitwise, so that NaN equals NaN and 0 differs from -0.
+bool SameBits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+class TraceTest : public TraceFolder {
+ protected:
+  /// The diagnostics of reading `path`, which must fail; without the folder's name.
+  std::string Complaint(const std::string& path) const {
+    Diagnostics out;
+    EXPECT_FALSE(ReadTrace(path, out));
+    return WithoutFolder(out.Format());
+  }
+
+  std::string CsvComplaint(const std::string& content) const {
+    return Complaint(WriteFile("t.csv", content));
+  }
+
+  std::string WithoutFolder(std::string text) const {
+    const std::string folder = folder_.string() + "/";
+    for (std::size_t at; (at = text.find(folder)) != text.npos;) text.erase(at, folder.size());
+    return text;
+  }
+};
+
+// Names on purpose neither in alphabetic order nor grouped: the order of columns is kept.
+const std::vector<ChannelInfo> kChannels = {{"cable/b/tension_n", "N"},
+                                            {"body/s/position_x_m", "m"},
+                                            {"cable/a/rate_m_per_s", "m/s"},
+                                            {"system/contact_count", "1"}};
+const std::vector<double> kTimes = {0.0, 0.1, 0.30000000000000004, 1e9};
+const std::vector<std::vector<double>> kRows = {{1.0 / 3.0, -0.0, 5e-324, 1.7976931348623157e308},
+                                                {kNan, kInfinity, -kInfinity, 3.0},
+                                                {0.1, 0.2, 1e-300, 123456789.125},
+                                                {1e22, 1e23, 9007199254740993.0, -1.5}};
+
+void ExpectAll(const Trace& trace) {
+  ASSERT_EQ(trace.channels.size(), kChannels.size());
+  EXPECT_TRUE(SameBits(trace.time_s, kTimes));
+  for (std::size_t i = 0; i < kChannels.size(); ++i) {
+    EXPECT_EQ(trace.channels[i].name, kChannels[i].name);
+    EXPECT_EQ(trace.channels[i].unit, kChannels[i].unit);
+    std::vector<double> column;
+    for (const auto& row : kRows) column.push_back(row[i]);
+    EXPECT_TRUE(SameBits(trace.values[i], column)) << kChannels[i].name;
+    EXPECT_EQ(trace.Find(kChannels[i].name), i);
+  }
+  EXPECT_EQ(trace.Find("cable/none/tension_n"), std::nullopt);
+}
+
+TEST_F(TraceTest, Hdf5KeepsEveryBitTheOrderTheUnitsAndTheMetadata) {
+  const TraceMetadata metadata = {{"taut_version", "0.1.0"},
+                                  {"seed", "0"},
+                                  {"empty", ""},
+                                  {"big", std::string(200000, 'x')},
+                                  {"a b/ü", "text\nof two"}};
+  Diagnostics out;
+  auto writer = CreateHdf5Trace(Path("t.h5"), kChannels, metadata, out);
+  ASSERT_TRUE(writer) << out.Format();
+  for (std::size_t i = 0; i < kRows.size(); ++i) {
+    ASSERT_TRUE(writer->Append(kTimes[i], kRows[i].data()));
+  }
+  ASSERT_TRUE(writer->Finish()) << writer->error();
+  EXPECT_TRUE(writer->Finish()) << "twice is allowed";
+  const auto trace = ReadTrace(Path("t.h5"), out);
+  ASSERT_TRUE(trace) << out.Format();
+  ExpectAll(*trace);
+  EXPECT_EQ(trace->metadata, metadata);
+  EXPECT_FALSE(std::filesystem::exists(Path("t.h5.part")));
+}
+
+TEST_F(TraceTest, CsvKeepsEveryBitOfFiniteNumbers) {
+  Diagnostics out;
+  auto writer = CreateCsvTrace(Path("t.csv"), kChannels, out);
+  ASSERT_TRUE(writer) << out.Format();
+  for (std::size_t i = 0; i < kRows.size(); ++i) {
+    ASSERT_TRUE(writer->Append(kTimes[i], kRows[i].data()));
+  }
+  ASSERT_TRUE(writer->Finish()) << writer->error();
+  const auto trace = ReadTrace(Path("t.csv"), out);
+  ASSERT_TRUE(trace) << out.Format();
+  ExpectAll(*trace);
+  EXPECT_TRUE(trace->metadata.empty());
+  EXPECT_EQ(ReadFile(Path("t.csv")).substr(0, 142),
+            "time_s,cable/b/tension_n,body/s/position_x_m,cable/a/rate_m_per_s,system/contact_count"
+            "\n0,0.3333333333333333,-0,5e-324,1.7976931348623157e+308\n")
+      << "shortest digits";
+}
+
+TEST_F(TraceTest, ManyRowsAcrossChunksAndAFileWithoutRowsAreKept) {
+  for (const std::string name : {"t.h5", "t.csv"}) {
+    for (const std::size_t rows : {0, 1, 1023, 1024, 1025, 5000}) {
+      Diagnostics out;
+      auto writer = name == "t.h5" ? CreateHdf5Trace(Path(name), Channels(3), {}, out)
+                                   : CreateCsvTrace(Path(name), Channels(3), out);
+      ASSERT_TRUE(writer) << out.Format();
+      for (std::size_t row = 0; row < rows; ++row) {
+        ASSERT_TRUE(AppendRow(*writer, row, 3, 0.001 * static_cast<double>(row)));
+      }
+      writer.reset();  // finishes, too
+      const auto trace = ReadTrace(Path(name), out);
+      ASSERT_TRUE(trace) << out.Format();
+      EXPECT_EQ(trace->time_s.size(), rows);
+      ExpectPattern(*trace, 3);
+    }
+  }
+}
+
+TEST_F(TraceTest, AGzippedCsvIsReadAsWellAsOneWithWindowsLineEnds) {
+  const std::string text = "\xEF\xBB\xBFtime_s, a_n ,b\r\n0, 1 ,2\r\n1,3,4\r\n\r\n";
+  gzFile file = gzopen(Path("t.csv.gz").c_str(), "wb");
+  ASSERT_EQ(gzwrite(file, text.data(), static_cast<unsigned>(text.size())),
+            static_cast<int>(text.size()));
+  gzclose(file);
+  WriteFile("t.csv", text);
+  for (const std::string name : {"t.csv", "t.csv.gz"}) {
+    Diagnostics out;
+    const auto trace = ReadTrace(Path(name), out);
+    ASSERT_TRUE(trace) << out.Format();
+    ASSERT_EQ(trace->channels.size(), 2u);
+    EXPECT_EQ(trace->channels[0].name, "a_n");
+    EXPECT_EQ(trace->channels[0].unit, "N");
+    EXPECT_EQ(trace->channels[1].unit, "1");
+    EXPECT_EQ(trace->time_s, (std::vector<double>{0, 1}));
+    EXPECT_EQ(trace->values[1], (std::vector<double>{2, 4}));
+  }
+}
+
+TEST_F(TraceTest, ACutOffCsvLosesOnlyTheRowThatIsNotWhole) {
+  Diagnostics out;
+  // the last number might have been 4 or 42
+  const auto trace = ReadTrace(WriteFile("t.csv", "time_s,a\n0,1\n1,2\n2,4"), out);
+  ASSERT_TRUE(trace) << out.Format();
+  EXPECT_EQ(trace->time_s, (std::vector<double>{0, 1}));
+
+  std::string text = "time_s,a\n";
+  for (int i = 0; i < 20000; ++i) text += std::to_string(i) + "," + std::to_string(i * i) + "\n";
+  gzFile file = gzopen(Path("t.csv.gz").c_str(), "wb");
+  gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
+  gzclose(file);
+  std::string packed = ReadFile(Path("t.csv.gz"));
+  WriteFile("t.csv.gz", packed.substr(0, packed.size() / 2));
+  const auto half = ReadTrace(Path("t.csv.gz"), out);
+  ASSERT_TRUE(half) << out.Format();
+  EXPECT_GT(half->time_s.size(), 1000u);
+  EXPECT_LT(half->time_s.size(), 20000u);
+  packed[packed.size() / 2] ^= 0x55;
+  WriteFile("t.csv.gz", packed);
+  EXPECT_NE(Complaint(Path("t.csv.gz")).find("t.csv.gz: error: is damaged: "), std::string::npos);
+}
+
+TEST_F(TraceTest, CsvComplaintsNameTheLineAndComeAllAtOnce) {
+  EXPECT_EQ(CsvComplaint("time_s,a,b\n0,1,2\n1,x,\n2,3\n1,5,6\nnan,5,6\n3,1e999,2\n4,1,2 3\n"),
+            "t.csv:3:3: error: \"x\" is not a number\n"
+            "t.csv:3:5: error: \"\" is not a number (write nan for a missing value)\n"
+            "t.csv:4: error: 2 values where the header names 3\n"
+            "t.csv:6:1: error: time nan does not come after the row before (times must rise)\n"
+            "t.csv:7:3: error: number \"1e999\" is out of range\n"
+            "t.csv:8:5: error: \"2 3\" is not a number\n");
+  EXPECT_EQ(CsvComplaint("time_s,a\n1,2\n1,3\n"),
+            "t.csv:3:1: error: time 1 does not come after the row before (times must rise)\n");
+  EXPECT_EQ(CsvComplaint("time_s,a\n0,1\n\n1,2\n"), "t.csv:3: error: an empty line between rows\n");
+  EXPECT_EQ(CsvComplaint(""), "t.csv:1: error: has no header line\n");
+  EXPECT_EQ(
+      CsvComplaint("t,a\n0,1\n"),
+      "t.csv:1:1: error: the first column is \"t\" (the first column of a trace is time_s)\n");
+  EXPECT_EQ(CsvComplaint("time_s,a,a\n0,1,2\n"), "t.csv: error: channel name \"a\" occurs twice\n");
+  EXPECT_EQ(CsvComplaint(std::string(9 << 20, '1')),
+            "t.csv: error: is not a CSV file: no line end in 8 MB\n");
+  std::string bad = "time_s,a\n";
+  for (int i = 0; i < 100; ++i) bad += "0,x\n";
+  const std::string complaint = CsvComplaint(bad);
+  EXPECT_EQ(std::count(complaint.begin(), complaint.end(), '\n'), 20);
+}
+
+TEST_F(TraceTest, AFileThatCannotBeOpenedSaysWhy) {
+  EXPECT_EQ(Complaint(Path("none.h5")),
+            "none.h5: error: cannot be opened: No such file or directory\n");
+  EXPECT_EQ(Complaint(WriteFile("t.txt", "time_s\n")),
+            "t.txt: error: is of no known kind (the name of a trace ends with .h5, .csv or "
+            ".csv.gz)\n");
+  std::filesystem::create_directory(Path("folder.h5"));
+  EXPECT_EQ(Complaint(Path("folder.h5")), "folder.h5: error: is not a regular file\n");
+  EXPECT_EQ(Complaint(WriteFile("t.h5", "time_s,a\n")),
+            "t.h5: error: is not HDF5 or is damaged: file signature not found\n");
+}
+
+TEST_F(TraceTest, NamesThatAFileCannotHoldAreErrors) {
+  const std::vector<ChannelInfo> bad = {{"a", "1"},      {"a", "1"},    {"", "1"},
+                                        {"time_s", "s"}, {"b//c", "1"}, {"d,e", "1"},
+                                        {"a/b", "1"},    {"./x", "1"},  {"time_s/x", "1"}};
+  const std::string expected =
+      "channel name \"\" has an empty part or a lone dot between slashes\n"
+      "channel name \"./x\" has an empty part or a lone dot between slashes\n"
+      "channel name \"a\" occurs twice\n"
+      "channel name \"a/b\" continues the name of another channel after a slash\n"
+      "channel name \"b//c\" has an empty part or a lone dot between slashes\n"
+      "channel name \"d,e\" holds a comma, a quote or a control character\n"
+      "channel name \"time_s\" is the trace's own clock\n"
+      "channel name \"time_s/x\" continues the name of another channel after a slash\n";
+  const auto message = [&](Diagnostics& out) {
+    std::string text = WithoutFolder(out.Format());
+    for (const std::string head : {"t.h5: error: ", "t.csv: error: "}) {
+      for (std::size_t at; (at = text.find(head)) != text.npos;) text.erase(at, head.size());
+    }
+    return text;
+  };
+  Diagnostics h5, csv;
+  EXPECT_FALSE(CreateHdf5Trace(Path("t.h5"), bad, {}, h5));
+  EXPECT_EQ(message(h5), expected);
+  EXPECT_FALSE(CreateCsvTrace(Path("t.csv"), bad, csv));
+  EXPECT_EQ(message(csv), expected);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+TEST_F(TraceTest, MetadataKeysAreDistinctAndNotReserved) {
+  for (const TraceMetadata& metadata :
+       {TraceMetadata{{"format", "x"}}, TraceMetadata{{"format_version", "x"}},
+        TraceMetadata{{"", "x"}}, TraceMetadata{{"a", "x"}, {"a", "x"}}}) {
+    Diagnostics out;
+    EXPECT_FALSE(CreateHdf5Trace(Path("t.h5"), {}, metadata, out));
+    EXPECT_EQ(WithoutFolder(out.Format()), "t.h5: error: metadata key \"" + metadata.back().first +
+                                               "\" is empty, reserved or occurs twice\n");
+  }
+}
+
+TEST_F(TraceTest, ANewTraceReplacesTheOldOneOnlyWhenItIsOne) {
+  Diagnostics out;
+  auto writer = CreateHdf5Trace(Path("t.h5"), Channels(1), {}, out);
+  ASSERT_TRUE(writer && AppendRow(*writer, 0, 1, 0.0) && writer->Finish());
+  EXPECT_FALSE(CreateHdf5Trace(Path("t.h5"), {{"a", "1"}, {"a", "1"}}, {}, out));
+  Diagnostics reading;
+  ASSERT_TRUE(ReadTrace(Path("t.h5"), reading));
+  writer = CreateHdf5Trace(Path("t.h5"), Channels(2), {}, out);
+  ASSERT_TRUE(writer && writer->Finish());
+  EXPECT_EQ(ReadTrace(Path("t.h5"), reading)->channels.size(), 2u);
+}
+
+TEST_F(TraceTest, AProcessMayReadWhatItIsStillWriting) {
+  for (const std::string name : {"t.h5", "t.csv"}) {
+    Diagnostics out;
+    auto writer = name == "t.h5" ? CreateHdf5Trace(Path(name), Channels(2), {}, out)
+                                 : CreateCsvTrace(Path(name), Channels(2), out);
+    ASSERT_TRUE(writer) << out.Format();
+    std::size_t row = 0;
+    for (; row < 30000; ++row) {
+      ASSERT_TRUE(AppendRow(*writer, row, 2, static_cast<double>(row)));
+      if (row % 10000 != 0) continue;
+      const auto trace = ReadTrace(Path(name), out);
+      ASSERT_TRUE(trace) << out.Format();
+      EXPECT_LE(trace->time_s.size(), row + 1);
+      EXPECT_GE(trace->time_s.size() + 9000, row) << "whole blocks are there";
+      ExpectPattern(*trace, 2);
+    }
+    ASSERT_TRUE(writer->Finish()) << writer->error();
+    const auto trace = ReadTrace(Path(name), out);
+    ASSERT_TRUE(trace) << out.Format();
+    EXPECT_EQ(trace->time_s.size(), row);
+    ExpectPattern(*trace, 2);
+  }
+}
+
+TEST_F(TraceTest, WritingAfterTheEndIsAnError) {
+  Diagnostics out;
+  auto h5 = CreateHdf5Trace(Path("t.h5"), Channels(1), {}, out);
+  auto csv = CreateCsvTrace(Path("t.csv"), Channels(1), out);
+  for (TraceWriter* writer : {h5.get(), csv.get()}) {
+    ASSERT_TRUE(writer->Finish());
+    EXPECT_FALSE(AppendRow(*writer, 0, 1, 0.0));
+    EXPECT_NE(writer->error().find("cannot be written: was finished before this row"),
+              std::string::npos);
+  }
+}
+
+/// A file as another program might write it; `change` spoils it.
+class ForeignHdf5 : public TraceTest {
+ protected:
+  std::string Make(const std::string& format, int version) {
+    file_ = H5Fcreate(Path("f.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, H5T_VARIABLE);
+    hid_t scalar = H5Screate(H5S_SCALAR);
+    hid_t text = H5Acreate2(file_, "format", type, scalar, H5P_DEFAULT, H5P_DEFAULT);
+    const char* value = format.c_str();
+    H5Awrite(text, type, &value);
+    H5Aclose(text);
+    hid_t number =
+        H5Acreate2(file_, "format_version", H5T_STD_I64BE, scalar, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(number, H5T_NATIVE_INT, &version);
+    H5Aclose(number);
+    H5Sclose(scalar);
+    H5Tclose(type);
+    return Path("f.h5");
+  }
+  template <class T>
+  void Dataset(const char* name, hid_t stored, hid_t given, std::vector<T> data, int rank = 1) {
+    const hsize_t size[2] = {data.size(), 1};
+    hid_t space = H5Screate_simple(rank, size, nullptr);
+    hid_t dataset = H5Dcreate2(file_, name, stored, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dwrite(dataset, given, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data());
+    H5Dclose(dataset);
+    H5Sclose(space);
+  }
+  void Times(std::vector<double> times = {0, 1, 2}) {
+    Dataset("time_s", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, times);
+  }
+  hid_t file_ = -1;
+};
+
+TEST_F(ForeignHdf5, FloatsIntegersAndTextOfAnyLengthAreFine) {
+  const std::string path = Make("taut trace", 1);
+  Times();
+  Dataset("b_n", H5T_IEEE_F32BE, H5T_NATIVE_DOUBLE, std::vector<double>{0.5, 1.5, 2.5});
+  Dataset("a_count", H5T_STD_I16LE, H5T_NATIVE_INT, std::vector<int>{1, 2, 3, 4});
+  H5Fclose(file_);
+  Diagnostics out;
+  const auto trace = ReadTrace(path, out);
+  ASSERT_TRUE(trace) << out.Format();
+  ASSERT_EQ(trace->channels.size(), 2u);
+  EXPECT_EQ(trace->channels[0].name, "a_count");
+  EXPECT_EQ(trace->values[0], (std::vector<double>{1, 2, 3})) << "the shortest column counts";
+  EXPECT_EQ(trace->values[1], (std::vector<double>{0.5, 1.5, 2.5}));
+}
+
+TEST_F(ForeignHdf5, WhatIsNotATraceOfThisVersionIsSaidToBeSo) {
+  std::string path = Make("photo", 1);
+  H5Fclose(file_);
+  EXPECT_EQ(Complaint(path),
+            "f.h5: error: is HDF5 but not a trace: no attribute \"format\" that says \"taut "
+            "trace\"\n");
+  path = Make("taut trace", 2);
+  H5Fclose(file_);
+  EXPECT_EQ(Complaint(path),
+            "f.h5: error: has trace format version 2; this taut reads version 1\n");
+  path = Make("taut trace", 1);
+  H5Fclose(file_);
+  EXPECT_EQ(Complaint(path), "f.h5: error: is damaged: has no column /time_s\n");
+  path = Make("taut trace", 1);
+  Times();
+  Dataset("m", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, std::vector<double>{1, 2, 3}, 2);
+  H5Fclose(file_);
+  EXPECT_EQ(Complaint(path), "f.h5: error: /m is not a column of numbers\n");
+  path = Make("taut trace", 1);
+  Times({0, 2, 2, 3});
+  H5Fclose(file_);
+  EXPECT_EQ(Complaint(path), "f.h5: error: is damaged: time does not rise at row 2\n");
+}
+
+TEST_F(ForeignHdf5, ATraceThatClaimsMoreRowsThanItsSizeAllowsIsDamaged) {
+  const std::string path = Make("taut trace", 1);
+  const hsize_t rows = hsize_t{1} << 40, chunk = 1024;  // 8 TB of nothing
+  hid_t space = H5Screate_simple(1, &rows, nullptr);
+  hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(layout, 1, &chunk);
+  H5Dclose(H5Dcreate2(file_, "time_s", H5T_IEEE_F64LE, space, H5P_DEFAULT, layout, H5P_DEFAULT));
+  H5Pclose(layout);
+  H5Sclose(space);
+  H5Fclose(file_);
+  EXPECT_EQ(Complaint(path),
+            "f.h5: error: is damaged: claims 1099511627776 rows, more than its size allows\n");
+}
+
+TEST(ChannelNames, EndWithTheUnit) {
+  for (const auto& [name, unit] : std::vector<std::pair<std::string, std::string>>{
+           {"cable/a/tension_n", "N"},
+           {"cable/a/length_m", "m"},
+           {"cable/a/rate_m_per_s", "m/s"},
+           {"body/a/angular_velocity_x_rad_per_s", "rad/s"},
+           {"system/kinetic_j", "J"},
+           {"body/a/orientation_w", "1"},
+           {"system/contact_count", "1"},
+           {"a_m_per_s2", "m/s^2"},
+           {"k_n_per_m", "N/m"},
+           {"b_n_s_per_m", "N s/m"},
+           {"torque_n_m", "N m"},
+           {"angle_rad", "rad"},
+           {"rate_hz", "Hz"},
+           {"mass_kg", "kg"},
+           {"age_s", "s"}}) {
+    EXPECT_EQ(trace::UnitOfName(name), unit) << name;
+  }
+}
+
+}  // namespace
+}  // namespace taut::test
