@@ -25,7 +25,6 @@ struct Group {
   int* forced_nodes = nullptr;      ///< Nodes that ever had a force, rising.
   int forced_count = 0;
   bool sensed = false;              ///< The sense_* rows belong to the current state.
-  double last_step_s = 0;           ///< Length of the step before.
   LaneStatus* status = nullptr;     ///< Per lane.
 };
 

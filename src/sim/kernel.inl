@@ -145,17 +145,17 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   const Rows<W> s(layout, g);
   const W zero = W::Splat(0.0);
   const W h = W::Splat(step_s), half_h = W::Splat(0.5 * step_s);
-  const double since_last = g.last_step_s > step_s ? g.last_step_s : step_s;
 
   // Dampers act on velocities at the middle of the step, extrapolated from this step and the last.
-  const double ahead = g.last_step_s > 0 ? 0.5 * step_s / g.last_step_s : 0;
+  const W last = s.last_step[0];
+  const W ahead = Select(last > zero, half_h / Max(last, W::Splat(1e-300)), zero);
 
   SaveStart(m, s, work);
   StageDriftFirst(m, s, half_h);
-  StageKinematics(m, s, g, work, W::Splat(ahead));
+  StageKinematics(m, s, g, work, ahead);
   StageCables(m, s, work, step_s);
   StageKick(m, s, work, h);
-  const uint32_t overflow = StageCollide(m, s, work, h, W::Splat(since_last));
+  const uint32_t overflow = StageCollide(m, s, work, h, Max(h, last));
   const SolveResult<W> solve = StageSolve(m, s, g, work, settings, step_s);
   StoreResults(m, s, g, work, step_s);
   StageDriftSecond(m, s, work, half_h);
@@ -164,7 +164,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   const auto halted = s.halted[0] > zero;
   if (Any(halted)) KeepStart(m, s, work, halted);
   s.time[0] += Select(halted, zero, h);
-  g.last_step_s = step_s;
+  s.last_step[0] = Select(halted, last, h);
   g.sensed = false;
 }
 

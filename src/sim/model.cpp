@@ -324,6 +324,7 @@ Layout Tables::MakeLayout(int lanes) const {
     return first;
   };
   l.time = take(1);
+  l.last_step = take(1);
   l.pos = take(3 * body_count);
   l.quat = take(4 * body_count);
   l.vel = take(3 * body_count);

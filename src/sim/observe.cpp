@@ -120,7 +120,7 @@ namespace {
 struct SnapshotHeader {
   std::uint32_t magic = 0x74736e31;  // "tsn1"
   std::uint32_t rows = 0, contacts = 0, bits = 0;
-  double first_time_s = 0, last_step_s = 0;
+  double first_time_s = 0;
 };
 struct SnapshotContact {
   std::uint64_t id = 0;
@@ -156,7 +156,6 @@ std::vector<std::uint8_t> Batch::Save(int world) const {
   header.rows = static_cast<std::uint32_t>(d.layout.snapshot_rows);
   header.bits = status.bits;
   header.first_time_s = status.first_time_s;
-  header.last_step_s = g.last_step_s;
   std::vector<SnapshotContact> contacts;
   for (int i = 0; i < g.contact_count; ++i) {
     if (!(d.at(world, d.layout.cache_live + i) > 0)) continue;
@@ -193,7 +192,6 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
   status = {};
   status.bits = header.bits;
   status.first_time_s = header.first_time_s;
-  g.last_step_s = std::max(g.last_step_s, header.last_step_s);
 
   // This lane's contacts give way to the snapshot's; those of other lanes stay.
   const auto clear = [&](int i) {

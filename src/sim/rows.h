@@ -14,7 +14,7 @@ using simd::V3;
 /// A group's rows as wide numbers (names as in Layout).
 template <class W>
 struct Rows {
-  W *time, *rest, *rest_rate, *target, *mass, *inv_mass, *stiffness, *damping, *friction_scale,
+  W *time, *last_step, *rest, *rest_rate, *target, *mass, *inv_mass, *stiffness, *damping, *friction_scale,
       *tension, *stiff_k, *stiff_b,
       *halted, *cache_slip, *cache_bounce, *cache_live, *cache_gap, *clearance, *residual, *sweeps,
       *sense_length,
@@ -27,6 +27,7 @@ struct Rows {
     W* const base = reinterpret_cast<W*>(g.rows);
     const auto v3 = [base](int row) { return reinterpret_cast<V3<W>*>(base + row); };
     time = base + l.time;
+    last_step = base + l.last_step;
     pos = v3(l.pos);
     quat = reinterpret_cast<Q4<W>*>(base + l.quat);
     vel = v3(l.vel);

@@ -9,8 +9,8 @@ namespace {
 constexpr int kMeetingFeature = 12;
 static_assert(kMeetingFeature < kMaxPointsPerPair, "every feature needs a number");
 
-/// Another axis must be better by this share of its distance, and of the boxes' size, before it
-/// takes over: `b`'s faces from `a`'s, edges from faces. So the choice does not flicker.
+/// Another axis must be better by this share of the depth, and of the boxes' size, before it takes
+/// over: `b`'s faces from `a`'s, edges from faces. So the choice does not flicker.
 constexpr double kBetterShare = 0.05, kBetterSize = 1e-4;
 /// Faces are this much larger when the other's corners are cut off, so that corners on corners
 /// stay what they are.
@@ -220,7 +220,7 @@ void TouchCorner(const BoxShape& a, const BoxShape& b, double slack_m, TouchList
 }
 
 bool ClearlyBetter(double apart_m, double than_m, double size_m) noexcept {
-  return apart_m > than_m + kBetterShare * std::fabs(than_m) + kBetterSize * size_m;
+  return apart_m > than_m + kBetterShare * Larger(-than_m, 0.0) + kBetterSize * size_m;
 }
 
 double SizeOf(const BoxShape& box) noexcept {

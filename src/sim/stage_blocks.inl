@@ -15,6 +15,9 @@ template <class W, int kContacts>
 class ContactBlock {
   static constexpr int kSize = 3 * kContacts;
   static constexpr int kMaxIterations = 6;
+  /// Redundant friction (two contacts on one rod, along the rod) leaves the system singular; this
+  /// much compliance chooses the change that is smallest, and is iterated away.
+  static constexpr double kCompliance = 1e-9;
 
  public:
   ContactBlock(Scratch<W>& work, ContactRow<W>* rows, bool along_slip) noexcept
@@ -36,8 +39,12 @@ class ContactBlock {
     W start[kSize];
     for (int i = 0; i < kSize; ++i) start[i] = lambda_[i];
     for (int iteration = 0; iteration < kMaxIterations && Any(busy); ++iteration) {
-      Linearize();
-      Eliminate();
+      if (AnySlides(busy)) {
+        Linearize();
+        Eliminate();
+      } else {
+        SolveSticking();
+      }
       for (int i = 0; i < kSize; ++i) delta_[i] = Select(busy, delta_[i], zero);
       for (int i = 0; i < kSize; ++i) {
         lambda_[i] += delta_[i];
@@ -156,12 +163,54 @@ class ContactBlock {
     t2[0] = t2n, t2[1] = t21, t2[2] = t22;
   }
 
+  template <class M>
+  bool AnySlides(M lanes) const noexcept {
+    auto any = slides_[0];
+    for (int c = 1; c < kContacts; ++c) any = any | slides_[c];
+    return along_slip_ || Any(any & lanes);
+  }
+
+  /// Newton's step where every contact sticks or is open: a symmetric system, a third of the work.
+  void SolveSticking() noexcept {
+    const W zero = W::Splat(0.0), one = W::Splat(1.0);
+    const W soft = W::Splat(1.0 + kCompliance);
+    for (int c = 0; c < kContacts; ++c) {
+      const auto closed = closed_[c];
+      delta_[3 * c] = Select(closed, -(u_[3 * c] + rows_[c].bias), -lambda_[3 * c]);
+      for (int k = 3 * c + 1; k < 3 * c + 3; ++k) delta_[k] = Select(closed, -u_[k], -lambda_[k]);
+    }
+    for (int i = 0; i < kSize; ++i) {
+      const auto closed = closed_[i / 3];
+      for (int j = 0; j < i; ++j) {
+        const auto other = closed_[j / 3];
+        a_[i][j] = Select(closed & other, w_[i][j], zero);
+        // What opens lets go of its impulse, and the others feel that.
+        if (i / 3 == j / 3) continue;
+        delta_[i] += Select(closed & (!other), w_[i][j] * lambda_[j], zero);
+        delta_[j] += Select(other & (!closed), w_[i][j] * lambda_[i], zero);
+      }
+      a_[i][i] = Select(closed, soft * w_[i][i], one);
+    }
+    // a = L D L^T, then forward, through D, and back.
+    for (int k = 0; k < kSize; ++k) {
+      const W inverse = one / a_[k][k];
+      for (int i = k + 1; i < kSize; ++i) {
+        const W factor = a_[i][k] * inverse;
+        for (int j = k + 1; j <= i; ++j) a_[i][j] -= factor * a_[j][k];
+        delta_[i] -= factor * delta_[k];
+      }
+      a_[k][k] = inverse;
+    }
+    for (int k = kSize - 1; k >= 0; --k) {
+      for (int j = k + 1; j < kSize; ++j) delta_[k] -= a_[j][k] * delta_[j];
+      delta_[k] = delta_[k] * a_[k][k];
+    }
+  }
+
   /// The rows of Newton's linear system, each scaled so that its diagonal is about one.
   void Linearize() noexcept {
     const W zero = W::Splat(0.0), one = W::Splat(1.0);
-    // Redundant friction (two contacts on one rod, along the rod) leaves the system singular; this
-    // much compliance chooses the change that is smallest, and is iterated away.
-    const W soft = W::Splat(1.0 + 1e-9);
+    const W soft = W::Splat(1.0 + kCompliance);
     for (int c = 0; c < kContacts; ++c) {
       const ContactRow<W>& row = rows_[c];
       const int n = 3 * c, t1 = n + 1, t2 = n + 2;

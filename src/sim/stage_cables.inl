@@ -64,9 +64,9 @@ void MeasureCable(const View& m, const CableTable& cable, const V3<W>* origin,
 /// second, so nothing depends on the step. The force limit is NTRT's: never wind past the rest
 /// length at which the spring would exceed it.
 template <class W>
-void Actuate(const ActuatorDef& limit, W k, W l, W target, double step_s, W& rest,
+void Actuate(const ActuatorDef& limit, W k, W l, W target, W h, W inv_h, W& rest,
              W& rate) noexcept {
-  const W h = W::Splat(step_s), inv_h = W::Splat(1.0 / step_s), zero = W::Splat(0.0);
+  const W zero = W::Splat(0.0);
   if (limit.kind == ActuatorDef::Kind::kNone) return;
   if (limit.kind == ActuatorDef::Kind::kIdeal) {
     rate = (target - rest) * inv_h;
@@ -103,7 +103,8 @@ void Actuate(const ActuatorDef& limit, W k, W l, W target, double step_s, W& res
 /// cable to the solver (stiff_cables.inl).
 template <class W>
 void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
-  const W half = W::Splat(0.5), zero = W::Splat(0.0), h = W::Splat(step_s);
+  const W half = W::Splat(0.5), zero = W::Splat(0.0);
+  const W h = W::Splat(step_s), inv_h = W::Splat(1.0 / step_s);
   work.stiff_count = work.link_count = 0;
   for (int c = 0; c < m.cable_count; ++c) {
     const CableTable& cable = m.cables[c];
@@ -111,7 +112,7 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
     MeasureCable(m, cable, s.pos, work, l, dl);
     const W before = s.rest[c];
     W rest = before, rate = s.rest_rate[c];
-    Actuate(cable.actuator, s.stiffness[c], l, s.target[c], step_s, rest, rate);
+    Actuate(cable.actuator, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
     s.rest[c] = rest;
     s.rest_rate[c] = rate;
     const W middle = half * (before + rest);

@@ -67,7 +67,7 @@ inline constexpr int kMaxPointsPerPair = 13;  ///< What shape_contacts.h numbers
 /// Offsets, in rows of one double a lane, of everything that a group of worlds keeps.
 struct Layout {
   // State and commands: what a snapshot holds.
-  int time = 0, pos = 0, quat = 0, vel = 0, mom = 0, old_vel = 0, old_spin = 0, rest = 0, rest_rate = 0, target = 0, tension = 0,
+  int time = 0, last_step = 0, pos = 0, quat = 0, vel = 0, mom = 0, old_vel = 0, old_spin = 0, rest = 0, rest_rate = 0, target = 0, tension = 0,
       node_force = 0;
   // Parameters, also part of a snapshot.
   int mass = 0, inv_mass = 0, inertia = 0, inv_inertia = 0, stiffness = 0, damping = 0, stiff_k = 0, stiff_b = 0,
