@@ -11,7 +11,7 @@
 namespace taut::scenes {
 
 struct Prism3 {
-  double radius_m = 0.1;             ///< Of the circles through the triangles' corners.
+  double radius_m = 0.1;  ///< Of the circles through the triangles' corners.
   double height_m = 0.2;
   double rod_mass_kg = 0.05;
   double rod_radius_m = 0.004;

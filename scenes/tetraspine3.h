@@ -1,6 +1,6 @@
 /// Tetraspine3: the three-segment spine of Mirletz, Park, Quinn, SunSpiral (IROS 2015), with the
-/// numbers of its NTRT model; the same robot as models/tetraspine3.yaml. x is forward, y left, z up;
-/// segment 0 is the front. With more segments it is the longer spine of the same family.
+/// numbers of its NTRT model; the same robot as models/tetraspine3.yaml. x is forward, y left, z
+/// up; segment 0 is the front. With more segments it is the longer spine of the same family.
 #pragma once
 
 #include <array>
@@ -53,9 +53,9 @@ struct Tetraspine {
   void Segment(ModelDef& def, int s) const {
     static constexpr std::array<const char*, kNodes> kNames{"right", "left",      "top",
                                                             "tip",   "pcb_right", "pcb_left"};
-    static constexpr int kRods[8][2] = {{kRight, kLeft},   {kRight, kPcbRight}, {kPcbRight, kTop},
-                                        {kRight, kTip},    {kLeft, kPcbLeft},   {kPcbLeft, kTop},
-                                        {kLeft, kTip},     {kTop, kTip}};
+    static constexpr int kRods[8][2] = {{kRight, kLeft}, {kRight, kPcbRight}, {kPcbRight, kTop},
+                                        {kRight, kTip},  {kLeft, kPcbLeft},   {kPcbLeft, kTop},
+                                        {kLeft, kTip},   {kTop, kTip}};
     const bool first = s == 0, last = s == segments - 1;
     const double base = first ? 0.140 : last ? 0.100 : 0.180;
     const double tip = first ? 0.040 : 0.120, pcb = last && !first ? 0.095 : 0.070;
@@ -63,7 +63,8 @@ struct Tetraspine {
     const std::string name = "segment_" + std::to_string(s);
     Parts parts;
     for (const auto& rod : kRods) {
-      const Vec3 &from = p[static_cast<std::size_t>(rod[0])], &to = p[static_cast<std::size_t>(rod[1])];
+      const Vec3 &from = p[static_cast<std::size_t>(rod[0])],
+                 &to = p[static_cast<std::size_t>(rod[1])];
       parts.AddRod(kRodKgPerM * LengthOf(Between(from, to)), from, to);
       def.capsules.push_back({name, s, from, to, kRadiusM, material});
     }

@@ -71,7 +71,11 @@ def check_file(rules, root, path, layer, allowed, private, errors):
                 errors.append(f"{where}: error: {layer} may include public headers only, not {header}")
             elif owner not in allowed:
                 errors.append(f"{where}: error: {layer} may not include {header} of {owner}")
-        elif not (path.parent / header).exists() and not (root / "tests" / header).exists():
+        elif header.split("/")[0] in rules.folders and (root / header).exists():
+            owner = header.split("/")[0]
+            if owner not in (layer, *allowed):
+                errors.append(f"{where}: error: {layer} may not include {header} of {owner}")
+        elif not (path.parent / header).exists() and not (root / layer / header).exists():
             errors.append(f"{where}: error: no file {header}")
 
 

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "check_report.h"
 #include "taut/statics.h"
@@ -93,8 +95,13 @@ std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment) 
 }
 
 std::string ErrorsJson(const std::string& path, const Diagnostics& found) {
+  std::vector<Diagnostic> sorted = found.items();  // in the order of the file, as in the text
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::tie(a.at.file, a.at.line, a.at.column) <
+           std::tie(b.at.file, b.at.line, b.at.column);
+  });
   Json errors = Json::array();
-  for (const Diagnostic& d : found.items()) {
+  for (const Diagnostic& d : sorted) {
     errors.push_back({{"file", d.at.file},
                       {"line", d.at.line},
                       {"column", d.at.column},

@@ -26,8 +26,9 @@ std::string Cell(double value, int width) {
 }
 
 std::string Fixed(double value, int width, int decimals) {
-  return std::isfinite(value) ? fmt::format("{:>{}.{}f}", value, width, decimals)
-                              : fmt::format("{:>{}}", "-", width);
+  if (!std::isfinite(value)) return fmt::format("{:>{}}", "-", width);
+  const bool zero = std::abs(value) < 0.5 * std::pow(10.0, -decimals);  // no "-0.000"
+  return fmt::format("{:>{}.{}f}", zero ? 0.0 : value, width, decimals);
 }
 
 /// "cable/a/tension_n" is row "a" under heading "cable/*/tension_n"; "system/com_x_m" has no
@@ -131,18 +132,40 @@ void AppendAlone(const TraceSpan& one, const TraceSpan& other, const char* which
   if (!parts.empty()) out += fmt::format("only {} covers {}\n", which, parts);
 }
 
+/// Names that differ in the middle only become one, with their number: "cable/*/damping_n (12)".
+std::vector<std::string> Abridged(const std::vector<std::string>& names) {
+  std::vector<std::pair<std::string, int>> counts;
+  std::vector<std::string> first;
+  for (const std::string& name : names) {
+    const std::string heading = HeadingAndRow(name).first;
+    const auto known = std::find_if(counts.begin(), counts.end(),
+                                    [&](const auto& count) { return count.first == heading; });
+    if (known != counts.end() && !heading.empty()) {
+      ++known->second;
+    } else {
+      counts.emplace_back(heading, 1);
+      first.push_back(name);
+    }
+  }
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (counts[i].second > 1) first[i] = fmt::format("{} ({})", counts[i].first, counts[i].second);
+  }
+  return first;
+}
+
 void AppendList(const std::string& title, const std::vector<std::string>& names, std::string& out) {
   if (names.empty()) return;
   std::string line = fmt::format("{} ({}):", title, names.size());
-  constexpr std::size_t kMost = 12;
-  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
-    if (line.size() + names[i].size() > 98) {
+  const std::vector<std::string> items = Abridged(names);
+  constexpr std::size_t kMost = 24;
+  for (std::size_t i = 0; i < std::min(items.size(), kMost); ++i) {
+    if (line.size() + items[i].size() > 98) {
       out += line + "\n";
       line = " ";
     }
-    line += " " + names[i];
+    line += " " + items[i];
   }
-  out += line + (names.size() > kMost ? " ...\n" : "\n");
+  out += line + (items.size() > kMost ? " ...\n" : "\n");
 }
 
 }  // namespace
@@ -175,7 +198,8 @@ std::string ComparisonTable(const Comparison& comparison, const std::string& nam
   AppendAlone(comparison.b, comparison.a, "b", out);
   AppendList("only in a", comparison.only_a, out);
   AppendList("only in b", comparison.only_b, out);
-  AppendList("units differ, not compared", comparison.unit_conflicts, out);
+  if (!comparison.unit_conflicts.empty()) out += "units differ, not compared:\n";
+  for (const std::string& conflict : comparison.unit_conflicts) out += "  " + conflict + "\n";
   while (out.ends_with("\n\n")) out.pop_back();
   return out;
 }

@@ -30,8 +30,8 @@ using Axes = std::array<Axis, 3>;
 /// +1 for a rotation, -1 for a mirror, 0 if an axis is missing.
 double Handedness(const Axes& axes) {
   const int i = axes[0].of_file, j = axes[1].of_file, k = axes[2].of_file;
-  const int order = (j - i) * (k - i) * (k - j);  // 2 or -2 for a permutation
-  return order / 2 * axes[0].sign * axes[1].sign * axes[2].sign;
+  const double order = 0.5 * ((j - i) * (k - i) * (k - j));  // 1 or -1 for a permutation
+  return order * axes[0].sign * axes[1].sign * axes[2].sign;
 }
 
 std::string WithAxis(std::string name, std::string_view axis) {
@@ -173,7 +173,7 @@ class MappingReader {
   }
 
   std::string Pattern(const Json& rule, const char* key, const std::string& at) {
-    const std::string text = Text(rule, key, at);
+    std::string text = Text(rule, key, at);
     if (std::count(text.begin(), text.end(), '*') > 1) {
       Error(fmt::format("{}.{}", at, key), "has more than one `*`");
     }

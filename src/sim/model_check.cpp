@@ -49,8 +49,9 @@ void CheckBodies(const ModelDef& def, Checker& check) {
     check.Finite(b.angular_velocity_rad_per_s, name + ": angular velocity");
     if (b.fixed) continue;
     check.Positive(b.mass_kg, name + ": mass");
-    double r[9], moments[3];
-    PrincipalAxes(b.inertia_kg_m2, r, moments);
+    const Inertia& j = b.inertia_kg_m2;
+    double r[9], moments[3] = {NAN, NAN, NAN};
+    if (std::isfinite(j.xx + j.yy + j.zz + j.xy + j.xz + j.yz)) PrincipalAxes(j, r, moments);
     for (double m : moments) check.Positive(m, name + ": each principal moment of inertia");
   }
 }
@@ -69,9 +70,11 @@ void CheckShapes(const ModelDef& def, Checker& check) {
     check.Positive(c.radius_m, "rod " + c.name + ": radius");
     check.Surface(c.material, "rod " + c.name);
   }
-  const auto box = [&](const std::string& name, const Vec3& center, const Vec3& half,
-                       const Material& m) {
+  const auto box = [&](const std::string& name, const Vec3& center, const Quat& q,
+                       const Vec3& half, const Material& m) {
     check.Finite(center, name + ": centre");
+    check.Require(std::fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1) < 1e-9,
+                  name + ": the orientation must be a unit quaternion");
     check.Positive(half.x, name + ": half extent");
     check.Positive(half.y, name + ": half extent");
     check.Positive(half.z, name + ": half extent");
@@ -79,10 +82,10 @@ void CheckShapes(const ModelDef& def, Checker& check) {
   };
   for (const BoxDef& b : def.boxes) {
     check.Body(b.body, def, "box " + b.name);
-    box("box " + b.name, b.center_m, b.half_extents_m, b.material);
+    box("box " + b.name, b.center_m, b.orientation, b.half_extents_m, b.material);
   }
   for (const TerrainBoxDef& b : def.terrain_boxes) {
-    box("terrain box " + b.name, b.center_m, b.half_extents_m, b.material);
+    box("terrain box " + b.name, b.center_m, b.orientation, b.half_extents_m, b.material);
   }
   check.Require(static_cast<int>(def.planes.size()) <= kMaxPlanes,
                 "at most " + std::to_string(kMaxPlanes) + " planes");

@@ -3,9 +3,10 @@
 ///
 /// What a caller may rely on
 ///   - All functions need only + - * / and square roots, allocate nothing and never throw.
-///   - A point comes into the list when its gap falls below the margin and leaves it the same way.
-///     Whether a point is left out because others make up for it changes the gap felt there by a
-///     millionth of the radius at most, so forces have no jumps.
+///   - As shapes move, a point enters and leaves with its gap at the margin, or where others make
+///     up for it: for a capsule to a millionth of the radius in gap, or a thousandth in place. Two
+///     things do jump: which way out is shortest for a deep penetration, and which of two boxes'
+///     faces or edges meet.
 ///   - Features number the points of a pair, so that a solver finds its last answer again.
 #pragma once
 

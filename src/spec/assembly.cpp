@@ -56,21 +56,25 @@ class Assembler {
 
   /// Counted before anything is made, so that `copies: 10000` of a large part costs nothing.
   bool FitsLimits() {
+    const auto ends = [](const std::vector<PairText>& pairs) {
+      long long count = 0;
+      for (const PairText& pair : pairs) count += static_cast<long long>(pair.nodes.size());
+      return count;
+    };
     long long nodes = static_cast<long long>(model_.loose.nodes.size());
-    long long pairs = static_cast<long long>(model_.loose.pairs.size());
+    long long pair_ends = ends(model_.loose.pairs);
     for (const PlacementText& placement : model_.structure) {
       const PartText* part = FindPart(placement.part.text);
       if (!part) continue;
       nodes += static_cast<long long>(part->nodes.size()) * placement.copies;
-      pairs +=
-          static_cast<long long>(part->pairs.size() + placement.connect.size()) * placement.copies;
-      if (nodes <= kMaxModelNodes && pairs <= kMaxModelPairs) continue;
-      const bool by_nodes = nodes > kMaxModelNodes;
-      out_.Error(placement.at,
-                 "the model has more than " +
-                     std::to_string(by_nodes ? kMaxModelNodes : kMaxModelPairs) +
-                     (by_nodes ? " nodes" : " pairs"),
-                 "with the " + std::to_string(placement.copies) + " copies of this placement");
+      pair_ends += (ends(part->pairs) + ends(placement.connect)) * placement.copies;
+      if (nodes <= kMaxModelNodes && pair_ends <= kMaxModelEnds) continue;
+      out_.Error(
+          placement.at,
+          nodes > kMaxModelNodes
+              ? "the model has more than " + std::to_string(kMaxModelNodes) + " nodes"
+              : "the pairs of the model name more than " + std::to_string(kMaxModelEnds) + " nodes",
+          "with the " + std::to_string(placement.copies) + " copies of this placement");
       return false;
     }
     return true;

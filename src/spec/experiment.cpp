@@ -32,10 +32,9 @@ void FindChoice(const MapReader& map, std::string_view key, const Choices<E>& ch
 ModelOptions ReadModelOptions(const Value* value, const Scope& scope) {
   ModelOptions options;
   if (!value) return options;
-  const MapReader map(*value, "model_options",
-                      {"inertia", "damping_law", "friction_law", "friction_combine",
-                       "restitution_combine"},
-                      scope);
+  const MapReader map(
+      *value, "model_options",
+      {"inertia", "damping_law", "friction_law", "friction_combine", "restitution_combine"}, scope);
   FindChoice(map, "inertia", kInertiaLaws, options.inertia);
   FindChoice(map, "damping_law", kDampingLaws, options.damping_law);
   FindChoice(map, "friction_law", kFrictionLaws, options.friction_law);
@@ -83,9 +82,10 @@ class ExperimentReader {
                    Diagnostics& out)
       : scope_{names, out},
         map_(*file.root, "",
-             {"taut", "kind", "base", "name", "description", "model", "set", "parameters",
-              "model_options", "gravity_m_per_s2", "terrain", "place", "start", "step_s",
-              "duration_s", "seed", "controllers", "timeline", "record", "compare_with"},
+             {"taut",    "kind",        "base",       "name",          "description",
+              "model",   "set",         "parameters", "model_options", "gravity_m_per_s2",
+              "terrain", "place",       "start",      "step_s",        "duration_s",
+              "seed",    "controllers", "timeline",   "record",        "compare_with"},
              scope_),
         overrides_(overrides) {}
 
@@ -101,7 +101,8 @@ class ExperimentReader {
                                             {"settled", StartKind::kSettled},
                                             {"settled_floating", StartKind::kSettledFloating}});
     spec_.controllers = ReadControllers(map_.Find("controllers"), known, model.good, scope_);
-    if (const Value* timeline = map_.Find("timeline")) ReadTimeline(*timeline, known, scope_, spec_);
+    if (const Value* timeline = map_.Find("timeline"))
+      ReadTimeline(*timeline, known, scope_, spec_);
     if (const Value* record = map_.Find("record")) ReadRecord(*record);
     spec_.compare_with = FindFile(map_, "compare_with");
 

@@ -158,8 +158,9 @@ PositionProgram ProgramFor(const RobotSpec& robot, int cable, const Course& cour
     const double change_m = length_m;
     length_m += def.rest_length_m;
     if (!(length_m <= 0.0) || !reported.insert({course.at.line, course.at.column}).second) continue;
-    scope.out.Error(course.at, "programs.change_m: a change of " + Shown(change_m) + " m at t = " +
-                                   Shown(time_s) + " s leaves " + def.name + " no rest length",
+    scope.out.Error(course.at,
+                    "programs.change_m: a change of " + Shown(change_m) +
+                        " m at t = " + Shown(time_s) + " s leaves " + def.name + " no rest length",
                     "it is " + Shown(def.rest_length_m) + " m as described");
   }
   return program;
@@ -176,8 +177,9 @@ std::vector<int> DrivenCables(const ControllerSpec& controller) {
 }
 
 /// One line for all cables that a controller cannot drive, for the same reason.
-void CheckDriven(const std::vector<ControllerSpec>& controllers, const std::vector<SourceRef>& places,
-                 const RobotSpec& robot, bool actuators_known, const Scope& scope) {
+void CheckDriven(const std::vector<ControllerSpec>& controllers,
+                 const std::vector<SourceRef>& places, const RobotSpec& robot, bool actuators_known,
+                 const Scope& scope) {
   std::map<int, std::size_t> driver;
   for (std::size_t i = 0; i < controllers.size(); ++i) {
     std::vector<int> no_actuator;
@@ -189,14 +191,15 @@ void CheckDriven(const std::vector<ControllerSpec>& controllers, const std::vect
       if (!fresh) taken[place->second].push_back(cable);
     }
     if (!no_actuator.empty() && actuators_known) {
-      scope.out.Error(places[i], "controller " + controllers[i].name + " drives " +
-                                     CableNames(robot, no_actuator) + ", which has no actuator",
+      scope.out.Error(places[i],
+                      "controller " + controllers[i].name + " drives " +
+                          CableNames(robot, no_actuator) + ", which has no actuator",
                       "give the cable's builder in the model an `actuator:`");
     }
     for (const auto& [other, cables] : taken) {
-      scope.out.Error(places[i], "controller " + controllers[i].name + " drives " +
-                                     CableNames(robot, cables) + ", which controller " +
-                                     controllers[other].name + " drives already",
+      scope.out.Error(places[i],
+                      "controller " + controllers[i].name + " drives " + CableNames(robot, cables) +
+                          ", which controller " + controllers[other].name + " drives already",
                       "a cable obeys one controller");
     }
   }
@@ -261,7 +264,8 @@ std::vector<std::pair<double, double>> ReadPoints(const Value& value, std::strin
 }
 
 ImpedanceSpec ReadImpedance(const Value& value, const RobotSpec* robot, const Scope& scope) {
-  const MapReader map(value, "impedance", {"conversion", "pid", "rate", "gains", "set_points"}, scope);
+  const MapReader map(value, "impedance", {"conversion", "pid", "rate", "gains", "set_points"},
+                      scope);
   ImpedanceSpec out;
   out.conversion = map.ChoiceOr<TensionConversion>(
       "conversion", TensionConversion::kStiffness,
@@ -287,7 +291,8 @@ ImpedanceSpec ReadImpedance(const Value& value, const RobotSpec* robot, const Sc
   }
   PerCable<SetPoint> set_points(robot, "set points", scope);
   const Value* set_points_list = map.Require("set_points");
-  if (!set_points_list || set_points_list->kind != Value::Kind::kSequence) set_points.SetIncomplete();
+  if (!set_points_list || set_points_list->kind != Value::Kind::kSequence)
+    set_points.SetIncomplete();
   for (const ValuePtr& item : Items(set_points_list, "impedance.set_points", scope)) {
     const MapReader entry(*item, "set_points",
                           {"cables", "tension_n", "length_m", "velocity_m_per_s"}, scope);
@@ -339,11 +344,12 @@ std::vector<ControllerSpec> ReadControllers(const Value* list, const RobotSpec* 
   std::vector<SourceRef> places;
   std::map<std::string, SourceRef> names;
   for (const ValuePtr& item : Items(list, "controllers", scope)) {
-    const MapReader map(*item, "controller", {"name", "period_s", "phase_s", "impedance", "position"},
-                        scope);
+    const MapReader map(*item, "controller",
+                        {"name", "period_s", "phase_s", "impedance", "position"}, scope);
     ControllerSpec controller;
     controller.name = map.Name("name");
-    controller.clock.period_s = map.NumberOr("period_s", controller.clock.period_s, Bound::kPositive);
+    controller.clock.period_s =
+        map.NumberOr("period_s", controller.clock.period_s, Bound::kPositive);
     controller.clock.phase_s = map.NumberOr("phase_s", 0.0, Bound::kNonNegative);
     const std::string kind = map.ExactlyOne({"impedance", "position"});
     if (kind == "impedance") {

@@ -34,10 +34,9 @@ Vec3 SlopeNormal(const MapReader& map) {
 }
 
 PlaneDef ReadPlane(const Value& value, const Scope& scope) {
-  const MapReader map(value, "plane",
-                      WithMaterialKeys({"height_m", "point_m", "normal", "slope_rad",
-                                        "slope_direction"}),
-                      scope);
+  const MapReader map(
+      value, "plane",
+      WithMaterialKeys({"height_m", "point_m", "normal", "slope_rad", "slope_direction"}), scope);
   PlaneDef plane;
   const std::string how = map.ExactlyOne({"height_m", "normal", "slope_rad"});
   if (how == "height_m") {

@@ -12,6 +12,7 @@ namespace taut::spec {
 namespace {
 
 constexpr int kMaxNesting = 100;  ///< Of parentheses, signs and powers: bounds the recursion.
+constexpr std::size_t kMaxLength = 10'000;  ///< Bounds the time that names take.
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -170,7 +171,7 @@ class Evaluator {
 
   std::string NameHint(std::string_view name) const {
     if (names_.empty()) return "there are no parameters";
-    if (names_.size() > 300) return {};  // the search would take long
+    if (names_.size() > 300 || name.size() > 60) return {};  // the search would take long
     std::vector<std::string> known;
     for (const auto& entry : names_) known.push_back(entry.first);
     return DidYouMean(name, known);
@@ -277,6 +278,7 @@ class Evaluator {
 }  // namespace
 
 Evaluated Evaluate(std::string_view expression, const NameTable& names) {
+  if (expression.size() > kMaxLength) return {kNan, "the expression is too long", ""};
   try {
     return {Evaluator(expression, names).Run(), "", ""};
   } catch (const Failure& failure) {
@@ -286,6 +288,7 @@ Evaluated Evaluate(std::string_view expression, const NameTable& names) {
 
 std::vector<std::string> NamesIn(std::string_view expression) {
   std::vector<std::string> names;
+  if (expression.size() > kMaxLength) return names;
   for (std::size_t at = 0; at < expression.size();) {
     const std::size_t length = IdentifierLength(expression, at);
     if (length == 0) {

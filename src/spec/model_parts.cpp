@@ -12,6 +12,16 @@ bool IsFinite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+/// `tags:`, if there are any.
+Tags ReadTags(const MapReader& map) {
+  Tags tags = map.NamesOr("tags", {});
+  if (tags.size() > static_cast<std::size_t>(kMaxTags)) {
+    map.Error("tags", map.Path("tags") + ": more than " + std::to_string(kMaxTags) + " tags");
+    tags.clear();
+  }
+  return tags;
+}
+
 /// `tip: [x, y, z]` or `tip: {at_m: [x, y, z], tags: [...], fixed_to: other}`.
 NodeText ReadNode(const Entry& entry, const std::string& what, const Scope& scope) {
   NodeText node;
@@ -28,7 +38,7 @@ NodeText ReadNode(const Entry& entry, const std::string& what, const Scope& scop
   }
   const MapReader map(*entry.value, what, {"at_m", "tags", "fixed_to"}, scope);
   node.at_m = map.Vector("at_m");
-  node.tags = map.NamesOr("tags", {});
+  node.tags = ReadTags(map);
   if (map.Has("fixed_to")) node.fixed_to = {map.Name("fixed_to"), map.Find("fixed_to")->at};
   return node;
 }
@@ -72,7 +82,7 @@ std::vector<PairText> ReadPairs(const Value* list, const std::string& what, bool
     PairText pair;
     pair.at = item->at;
     pair.name = map.NameOr("name", "");
-    pair.tags = map.NamesOr("tags", {});
+    pair.tags = ReadTags(map);
     const std::string key = map.ExactlyOne({"nodes", "each"});
     if (key == "nodes") {
       ReadPairNodes(*map.Find(key), map.Path(key), placed_names, scope, pair, pairs);
@@ -174,7 +184,7 @@ std::vector<PlacementText> ReadStructure(const Value* list, ModelText& model, co
     if (const Value* rotate = map.Find("step_rotate")) {
       placement.step_rotate = ReadRotation(*rotate, map.Path("step_rotate"), scope);
     }
-    placement.tags = map.NamesOr("tags", {});
+    placement.tags = ReadTags(map);
     placement.velocity_m_per_s = map.VectorOr("velocity_m_per_s", {});
     placement.angular_velocity_rad_per_s = map.VectorOr("angular_velocity_rad_per_s", {});
     const std::size_t errors_before = scope.out.items().size();

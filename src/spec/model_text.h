@@ -16,7 +16,8 @@
 namespace taut::spec {
 
 inline constexpr int kMaxModelNodes = 100'000;
-inline constexpr int kMaxModelPairs = 200'000;
+inline constexpr int kMaxModelEnds = 400'000;  ///< Nodes of all pairs together.
+inline constexpr int kMaxTags = 32;            ///< Of one node, pair or placement.
 inline constexpr int kMaxCopies = 10'000;
 inline constexpr int kMaxBuilders = 1'000;
 

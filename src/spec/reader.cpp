@@ -9,14 +9,12 @@
 namespace taut::spec {
 namespace {
 
+constexpr std::size_t kMaxNameLength = 200;  ///< A model has many copies of each.
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::string Joined(const std::vector<std::string>& words, std::string_view between) {
   std::string out;
-  for (const std::string& word : words) {
-    if (!out.empty()) out += between;
-    out += word;
-  }
+  for (const std::string& word : words) (out += out.empty() ? "" : between) += word;
   return out;
 }
 
@@ -31,6 +29,11 @@ bool IsNameText(std::string_view text, bool dots) {
 std::string ReadNameText(const Value& value, std::string_view what, bool dots, const Scope& scope) {
   if (value.kind != Value::Kind::kScalar) {
     WrongType(value, what, "a name", scope);
+    return {};
+  }
+  if (value.text.size() > kMaxNameLength) {
+    scope.out.Error(value.at, std::string(what) + ": a name has at most " +
+                                  std::to_string(kMaxNameLength) + " characters");
     return {};
   }
   if (IsNameText(value.text, dots)) return value.text;
@@ -78,12 +81,12 @@ std::string KeyHint(std::string_view key, const std::vector<std::string>& known)
       longer.push_back("\"" + candidate + "\"");
     }
   }
-  if (longer.empty()) return DidYouMean(key, known);
+  if (longer.empty()) return NameHint(key, known);
   return "did you mean " + Joined(longer, " or ") + "?";
 }
 
 std::string NameHint(std::string_view name, const std::vector<std::string>& known) {
-  return known.size() <= 300 ? DidYouMean(name, known) : std::string();
+  return known.size() <= 300 && name.size() <= 60 ? DidYouMean(name, known) : std::string();
 }
 
 double ReadNumber(const Value& value, std::string_view what, Bound bound, const Scope& scope) {
@@ -322,7 +325,7 @@ std::string MapReader::Text(std::string_view key) const {
 
 std::string MapReader::TextOr(std::string_view key, std::string fallback) const {
   const Value* found = Find(key);
-  return found ? ReadText(*found, Path(key), scope_) : fallback;
+  return found ? ReadText(*found, Path(key), scope_) : std::move(fallback);
 }
 
 std::string MapReader::Name(std::string_view key) const {
@@ -332,13 +335,13 @@ std::string MapReader::Name(std::string_view key) const {
 
 std::string MapReader::NameOr(std::string_view key, std::string fallback) const {
   const Value* found = Find(key);
-  return found ? ReadName(*found, Path(key), scope_) : fallback;
+  return found ? ReadName(*found, Path(key), scope_) : std::move(fallback);
 }
 
 std::vector<std::string> MapReader::NamesOr(std::string_view key,
                                             std::vector<std::string> fallback) const {
   const Value* found = Find(key);
-  return found ? ReadNames(*found, Path(key), scope_) : fallback;
+  return found ? ReadNames(*found, Path(key), scope_) : std::move(fallback);
 }
 
 const std::vector<ValuePtr>& Items(const Value* value, std::string_view what, const Scope& scope) {

@@ -70,7 +70,7 @@ void WrongType(const Value& value, std::string_view what, std::string_view wante
 /// The hint for an unknown key: the likely one, or one that only lacks its unit.
 std::string KeyHint(std::string_view key, const std::vector<std::string>& known);
 
-/// `DidYouMean`, unless there are so many candidates that the search would take long.
+/// `DidYouMean`, unless there is so much to compare that it would take long.
 std::string NameHint(std::string_view name, const std::vector<std::string>& known);
 
 template <class E>
@@ -87,7 +87,7 @@ std::optional<E> ReadChoice(const Value& value, std::string_view what,
     names.push_back(name);
   }
   scope.out.Error(value.at, std::string(what) + " cannot be \"" + value.text + "\"",
-                  DidYouMean(value.text, names));
+                  NameHint(value.text, names));
   return std::nullopt;
 }
 

@@ -10,13 +10,13 @@
 namespace taut::spec {
 
 inline const Choices<ActuatorDef::Kind> kActuatorKinds{{"none", ActuatorDef::Kind::kNone},
-                                                {"ideal", ActuatorDef::Kind::kIdeal},
-                                                {"limited", ActuatorDef::Kind::kLimited}};
+                                                       {"ideal", ActuatorDef::Kind::kIdeal},
+                                                       {"limited", ActuatorDef::Kind::kLimited}};
 inline const Choices<TensionConversion> kConversions{{"stiffness", TensionConversion::kStiffness},
-                                              {"pid", TensionConversion::kPid}};
+                                                     {"pid", TensionConversion::kPid}};
 inline const Choices<StartKind> kStarts{{"as_described", StartKind::kAsDescribed},
-                                 {"settled", StartKind::kSettled},
-                                 {"settled_floating", StartKind::kSettledFloating}};
+                                        {"settled", StartKind::kSettled},
+                                        {"settled_floating", StartKind::kSettledFloating}};
 
 // One list of fields a struct, for writing and for reading: `io` is called with each key and
 // field, and with the choices of an enumeration.

@@ -1,10 +1,11 @@
-/// A world gives the same bits alone, in any lane, on any number of threads, on any instruction set.
+/// A world gives the same bits alone, in any lane, on any number of threads, on any instruction
+/// set.
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <map>
 #include <optional>
+#include <tuple>
 
 #include "tests/determinism/variety.h"
 
@@ -13,10 +14,14 @@ namespace {
 
 const char* NameOf(Simd simd) {
   switch (simd) {
-    case Simd::kSse2: return "sse2";
-    case Simd::kAvx2: return "avx2";
-    case Simd::kAvx512: return "avx512";
-    default: return "scalar";
+    case Simd::kSse2:
+      return "sse2";
+    case Simd::kAvx2:
+      return "avx2";
+    case Simd::kAvx512:
+      return "avx512";
+    default:
+      return "scalar";
   }
 }
 
@@ -31,45 +36,49 @@ std::optional<Batch> BatchOn(Simd simd, const ModelDef& def, int worlds, int thr
   return batch;
 }
 
-/// What each model and seed comes to alone, in scalar code: worked out once.
-const Outcome& Expected(const ModelDef& def, std::size_t model, int seed) {
-  static std::map<std::pair<std::size_t, int>, Outcome> known;
-  const auto key = std::make_pair(model, seed);
-  const auto found = known.find(key);
-  return found != known.end() ? found->second : known.emplace(key, Alone(def, seed)).first->second;
-}
+using SimdAndModel = std::tuple<Simd, std::size_t>;
+class LanesOf : public testing::TestWithParam<SimdAndModel> {};
 
-void LanesEqualWorldsAlone(Simd simd, int worlds, int threads) {
-  const std::vector<ModelDef> models = VariedModels();
-  for (std::size_t m = 0; m < models.size(); ++m) {
-    std::optional<Batch> batch = BatchOn(simd, models[m], worlds, threads);
-    if (!batch) GTEST_SKIP() << "this machine has no " << NameOf(simd);
-    for (int i = 0; i < worlds; ++i) Scatter(*batch, i, i);
-    for (int stretch = 0; stretch < kStretches; ++stretch) {
-      for (int i = 0; i < worlds; ++i) Disturb(*batch, i, i, stretch);
-      batch->Step(kVarietyStepS, kStepsAStretch);
-      for (int i = 0; i < worlds; ++i) {
-        ASSERT_EQ(batch->Hash(i), Expected(models[m], m, i).hashes[static_cast<std::size_t>(stretch)])
-            << models[m].name << " (" << m << "), world " << i << ", after "
+TEST_P(LanesOf, EqualTheirWorldsAloneOnAnyNumberOfThreads) {
+  const auto [simd, model] = GetParam();
+  const ModelDef def = VariedModels()[model];
+  constexpr int kWorlds = 19;
+  if (!BatchOn(simd, def, 1, 1)) GTEST_SKIP() << "this machine has no " << NameOf(simd);
+  std::vector<Outcome> expected;  // in scalar code
+  for (int i = 0; i < kWorlds; ++i) expected.push_back(Alone(def, i));
+  for (const int threads : {1, 2, 3}) {
+    Batch batch = *BatchOn(simd, def, kWorlds, threads);
+    for (int i = 0; i < kWorlds; ++i) Scatter(batch, i, i);
+    for (std::size_t stretch = 0; stretch < kStretches; ++stretch) {
+      for (int i = 0; i < kWorlds; ++i) Disturb(batch, i, i, static_cast<int>(stretch));
+      batch.Step(kVarietyStepS, kStepsAStretch);
+      for (int i = 0; i < kWorlds; ++i) {
+        ASSERT_EQ(batch.Hash(i), expected[static_cast<std::size_t>(i)].hashes[stretch])
+            << "world " << i << " of " << threads << " threads, after "
             << (stretch + 1) * kStepsAStretch << " steps";
       }
     }
-    for (int i = 0; i < worlds; ++i) {
-      EXPECT_EQ(batch->Save(i), Expected(models[m], m, i).snapshot) << models[m].name << i;
+    for (int i = 0; i < kWorlds; ++i) {
+      EXPECT_EQ(batch.Save(i), expected[static_cast<std::size_t>(i)].snapshot) << i;
       // The hash sees what happens: no two worlds are alike, none is broken.
-      EXPECT_NE(batch->Hash(i), batch->Hash((i + 1) % worlds)) << models[m].name << i;
-      EXPECT_EQ(batch->Status(i).bits & kStatusNonFinite, 0u) << models[m].name << i;
+      EXPECT_NE(batch.Hash(i), batch.Hash((i + 1) % kWorlds)) << i;
+      EXPECT_EQ(batch.Status(i).bits & kStatusNonFinite, 0u) << i;
     }
   }
 }
 
+std::string NameOfBoth(const testing::TestParamInfo<SimdAndModel>& each) {
+  return std::string(NameOf(std::get<0>(each.param))) + "_" +
+         VariedModels()[std::get<1>(each.param)].name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LanesOf,
+                         testing::Combine(testing::Values(Simd::kScalar, Simd::kSse2, Simd::kAvx2,
+                                                          Simd::kAvx512),
+                                          testing::Range<std::size_t>(0, VariedModels().size())),
+                         NameOfBoth);
+
 class Lanes : public testing::TestWithParam<Simd> {};
-
-TEST_P(Lanes, EachEqualsItsWorldAlone) { LanesEqualWorldsAlone(GetParam(), 19, 1); }
-
-TEST_P(Lanes, EachEqualsItsWorldAloneOnTwoThreads) { LanesEqualWorldsAlone(GetParam(), 19, 2); }
-
-TEST_P(Lanes, EachEqualsItsWorldAloneOnThreeThreads) { LanesEqualWorldsAlone(GetParam(), 19, 3); }
 
 TEST_P(Lanes, ObservingAWorldChangesNothing) {
   std::optional<Batch> seen = BatchOn(GetParam(), scenes::Jumble().Def(), 9, 1);
@@ -142,8 +151,7 @@ TEST(Threads, ZeroMeansOneACoreAndGivesTheSameBits) {
     for (int i = 0; i < 5; ++i) Disturb(batch, i, i, stretch);
     batch.Step(kVarietyStepS, kStepsAStretch);
   }
-  const std::size_t jumble = VariedModels().size() - 1;
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(batch.Hash(i), Expected(def, jumble, i).hashes.back()) << i;
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(batch.Hash(i), Alone(def, i).hashes.back()) << i;
 }
 
 /// Sets an environment variable for as long as it lives.
@@ -154,9 +162,7 @@ class WithEnvironment {
     if (before != nullptr) before_ = before;
     setenv(name, value, 1);
   }
-  ~WithEnvironment() {
-    before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_);
-  }
+  ~WithEnvironment() { before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_); }
   WithEnvironment(const WithEnvironment&) = delete;
   WithEnvironment& operator=(const WithEnvironment&) = delete;
 

@@ -1,7 +1,8 @@
 # cmake -DKIND=find_package|add_subdirectory -DBINARY_DIR=... -DSOURCE_DIR=... -DWORK_DIR=...
-#       -DCXX=... -DCXX_FLAGS=... -DVERSION=... -P package_test.cmake
+#       -DCXX=... -DCXX_FLAGS=... -DBUILD_TYPE=... -DVERSION=... -P package_test.cmake
 #
 # A program outside of the tree builds with an installed taut, or with taut as a subfolder, and runs.
+# All flags are those of the build under test, so that a compiler cache has the objects already.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(failed)
@@ -15,7 +16,8 @@ set(prefix ${WORK_DIR}/prefix)
 set(build ${WORK_DIR}/build)
 file(REMOVE_RECURSE ${WORK_DIR})
 set(configure ${CMAKE_COMMAND} -S ${SOURCE_DIR}/tests/package/consumer -B ${build} -G Ninja
-  -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${CXX_FLAGS} -DCMAKE_BUILD_TYPE=Debug)
+  -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${CXX_FLAGS} -DCMAKE_BUILD_TYPE=${BUILD_TYPE}
+  -DTAUT_WARNINGS_AS_ERRORS=ON)
 
 if(KIND STREQUAL find_package)
   run(${CMAKE_COMMAND} --install ${BINARY_DIR} --prefix ${prefix})

@@ -147,8 +147,7 @@ TEST(BodyContact, OneRodSlidesAlongAnotherWithKineticFriction) {
   const double h = 1e-3;
   for (int n = 1; n <= 300; ++n) {
     world.Step(h);
-    ASSERT_NEAR(world.Body(0, rod).velocity_m_per_s.x, 1 - 0.3 * 9.81 * n * h, SolverError(n))
-        << n;
+    ASSERT_NEAR(world.Body(0, rod).velocity_m_per_s.x, 1 - 0.3 * 9.81 * n * h, SolverError(n)) << n;
   }
   EXPECT_EQ(world.Status(0).bits, kStatusOk);
 }

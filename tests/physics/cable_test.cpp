@@ -62,8 +62,8 @@ TEST(Cable, ADampedSpringFollowsTheSchemesRecurrence) {
   scene.length_m = middle + 0.006;
   for (const double h : kThreeStepsS) {
     Batch world = MakeBatch(scene.Def());
-    DampedSpring spring{scene.stiffness_n_per_m, scene.damping_n_s_per_m, scene.mass_kg, 0.006, 0,
-                        0};
+    DampedSpring spring{
+        scene.stiffness_n_per_m, scene.damping_n_s_per_m, scene.mass_kg, 0.006, 0, 0};
     for (int n = 1; n <= StepsIn(2, h); ++n) {
       world.Step(h);
       spring.Step(h);
@@ -87,8 +87,7 @@ TEST(Cable, ADampedSpringDecaysAsTheDifferentialEquationSaysToSecondOrder) {
     for (int n = 1; n <= StepsIn(0.5, h); ++n) {
       world.Step(h);
       const double t = n * h;
-      const double x =
-          a * std::exp(-decay * t) * (std::cos(w * t) + decay / w * std::sin(w * t));
+      const double x = a * std::exp(-decay * t) * (std::cos(w * t) + decay / w * std::sin(w * t));
       errors[i] = std::max(errors[i], std::fabs(-Height(world) - middle - x));
     }
   }
@@ -167,9 +166,9 @@ TEST(Cable, TheTensionIsSpringPlusDamperAndNeverNegative) {
     double stretch, rate, tension;
   };
   const std::vector<Case> cases{
-      {DampingLaw::kExact, 0.01, 0.1, 15},    {DampingLaw::kExact, 0.01, 1.0, 60},
-      {DampingLaw::kExact, 0.01, -0.1, 5},    {DampingLaw::kExact, 0.01, -0.5, 0},
-      {DampingLaw::kExact, -0.01, 1.0, 0},    {DampingLaw::kExact, -0.01, -1.0, 0},
+      {DampingLaw::kExact, 0.01, 0.1, 15},   {DampingLaw::kExact, 0.01, 1.0, 60},
+      {DampingLaw::kExact, 0.01, -0.1, 5},   {DampingLaw::kExact, 0.01, -0.5, 0},
+      {DampingLaw::kExact, -0.01, 1.0, 0},   {DampingLaw::kExact, -0.01, -1.0, 0},
       {DampingLaw::kClamped, 0.01, 0.1, 15},  // |damper| = 5 < spring = 10: as the exact law
       {DampingLaw::kClamped, 0.01, -0.1, 5},  //
       {DampingLaw::kClamped, 0.01, 1.0, 20},  // damper 50, limited to the spring's 10
@@ -198,7 +197,7 @@ TEST(Cable, AStiffCableFollowsTheMidpointRulesClosedFormAndKeepsItsEnergy) {
     const double middle = scene.rest_length_m + sag, theta = 2 * std::atan(w * h / 2);
     scene.length_m = middle;
     Batch world = MakeBatch(scene.Def());
-    world.Step(h);  // from now on the cable is known to be taut
+    world.Step(h);                       // from now on the cable is known to be taut
     const double amplitude = 0.7 * sag;  // and stays so
     world.SetBodyState(0, 0, {{0, 0, -middle - amplitude}, {}, {}, {}});
     const double x0 = -Height(world) - middle;
@@ -229,7 +228,8 @@ TEST(Cable, AStiffCableHoldsAWeightWithTheRightTension) {
       // Lengths of 1 m are rounded to 2e-16 m.
       EXPECT_NEAR(cable.elastic_n, weight, 1e-9 * weight + 4e-16 * stiffness)
           << stiffness << " N/m at " << h << " s";
-      EXPECT_NEAR(cable.length_m - cable.rest_length_m, scene.sag_m(), 1e-9 * scene.sag_m() + 4e-16);
+      EXPECT_NEAR(cable.length_m - cable.rest_length_m, scene.sag_m(),
+                  1e-9 * scene.sag_m() + 4e-16);
       EXPECT_EQ(world.Status(0).bits, kStatusOk);
     }
   }

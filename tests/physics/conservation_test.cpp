@@ -44,6 +44,22 @@ void KeepsEverything(const ModelDef& def, double share) {
   EXPECT_EQ(world.Status(0).bits, kStatusOk);
 }
 
+TEST(Conservation, APrismIsInEquilibriumWithItsSelfStress) {
+  // The scene's form and force densities are those of the closed form: nothing moves, and there is
+  // no other equilibrium nearby that it would move to.
+  Batch world = MakeBatch(Closed(scenes::Prism3().Def()));
+  for (int c = 0; c < 9; ++c) {
+    const CableState cable = world.Cable(0, c);
+    const double density = c < 6 ? 100 / std::sqrt(3.0) : 100;
+    EXPECT_NEAR(cable.tension_n, density * cable.length_m, RoundOff(1, 1000)) << c;
+  }
+  world.Step(1e-3, 1000);
+  for (int b = 0; b < 3; ++b) {
+    EXPECT_LE(Norm(world.Body(0, b).velocity_m_per_s), RoundOff(1000, 1)) << b;
+    EXPECT_LE(Norm(world.Body(0, b).angular_velocity_rad_per_s), RoundOff(1000, 10)) << b;
+  }
+}
+
 TEST(Conservation, AFreePrismKeepsMomentumAndEnergyForAMinute) {
   ModelDef def = Closed(scenes::Prism3().Def());
   def.bodies[0].velocity_m_per_s = {0.1, 0.02, -0.03};
@@ -74,7 +90,8 @@ TEST(Conservation, ACableThroughEyeletsOnFreeBodiesKeepsMomentum) {
   }
   CableDef cable;
   cable.name = "cable";
-  cable.attachments = {{0, centers[0] + Vec3{0.05, 0.02, 0}}, {1, centers[1] + Vec3{0, 0.03, 0.04}},
+  cable.attachments = {{0, centers[0] + Vec3{0.05, 0.02, 0}},
+                       {1, centers[1] + Vec3{0, 0.03, 0.04}},
                        {2, centers[2] + Vec3{-0.02, 0, 0.05}}};
   cable.stiffness_n_per_m = 200;
   cable.rest_length_m = 1.1;

@@ -54,7 +54,8 @@ TEST(FreeMotion, AForceOnABallGivesItsMomentum) {
 /// flows of X = lx^2 / 2Ix, Y and Z. It keeps not E = X + Y + Z but E + h^2 E2 + O(h^4), with (from
 /// the symmetric Baker-Campbell-Hausdorff series, twice; {.,.} Poisson brackets; up to sign)
 ///   E2 = {X,{X,Y+Z}} / 24 + {Y+Z,{X,Y+Z}} / 12 + {Y,{Y,Z}} / 24 + {Z,{Y,Z}} / 12
-/// and {lx, ly} = lz and so on. So E moves by h^2 (max E2 - min E2) along an orbit and never drifts.
+/// and {lx, ly} = lz and so on. So E moves by h^2 (max E2 - min E2) along an orbit and never
+/// drifts.
 double SecondOrderEnergy(const Vec3& l, const Vec3& moments) {
   const double x = l.x * l.x, y = l.y * l.y, z = l.z * l.z;
   const double xp = x / moments.x * (z - y);  // {X, lx ly lz}

@@ -104,7 +104,8 @@ TEST(Friction, BetweenTheTwoFrictionAnglesASliderStaysUntilItIsPushedAndThenSlid
 }
 
 TEST(Friction, ASliderAtRestSticksWithItsStaticFrictionWhenTheGroundTilts) {
-  // It has been at rest on level ground; then gravity tilts beyond the kinetic, not the static angle.
+  // It has been at rest on level ground; then gravity tilts beyond the kinetic, not the static
+  // angle.
   for (const Slider& slider : kSliders) {
     Batch world = MakeBatch(slider.def(0, 0.5, 0.3));
     world.Step(1e-3, 100);

@@ -70,9 +70,8 @@ TEST(RoutedCable, AMassOnACableThroughTwoFixedEyeletsIsTheLeapfrogsOscillator) {
   const Vec3 p{0.4, 0.3, -(hang + a)};
   ModelDef def;
   def.bodies.push_back(PointMass("mass", m, p));
-  def.cables.push_back(Cable({{kWorld, {0, 0, 0.5}}, {kWorld, {0, 0, 0}}, {kWorld, {0.4, 0.3, 0}},
-                              {0, p}},
-                             k, rest));
+  def.cables.push_back(Cable(
+      {{kWorld, {0, 0, 0.5}}, {kWorld, {0, 0, 0}}, {kWorld, {0.4, 0.3, 0}}, {0, p}}, k, rest));
   Batch world = MakeBatch(def);
   const double theta = 2 * std::asin(std::sqrt(k / m) * h / 2);
   for (int n = 1; n <= 3000; ++n) {
@@ -91,9 +90,9 @@ ModelDef Atwood(double m1, double m2, double stiffness, double stretch) {
   def.bodies.push_back(PointMass("one", m1, {-0.1, 0, -0.7}));
   def.bodies.push_back(PointMass("two", m2, {0.1, 0, -0.9}));
   // Eyelets straight above the masses keep the motion vertical.
-  def.cables.push_back(Cable({{0, {-0.1, 0, -0.7}}, {kWorld, {-0.1, 0, 0}}, {kWorld, {0.1, 0, 0}},
-                              {1, {0.1, 0, -0.9}}},
-                             stiffness, 1.8 - stretch));
+  def.cables.push_back(Cable(
+      {{0, {-0.1, 0, -0.7}}, {kWorld, {-0.1, 0, 0}}, {kWorld, {0.1, 0, 0}}, {1, {0.1, 0, -0.9}}},
+      stiffness, 1.8 - stretch));
   return def;
 }
 
@@ -119,8 +118,8 @@ TEST(RoutedCable, AtwoodsMachineAcceleratesAtItsClosedFormForAnyStiffness) {
       Batch world = MakeBatch(Atwood(m1, m2, stiffness, tension / stiffness));
       const int steps = StepsIn(0.4, h);
       world.Step(h, steps);
-      // A cable that the solver takes over is not known to be taut in its first step and then swings
-      // about its tension; that is m g / k of length at most.
+      // A cable that the solver takes over is not known to be taut in its first step and then
+      // swings about its tension; that is m g / k of length at most.
       const bool stiff = h * h * stiffness * (1 / m1 + 1 / m2) > 0.5;
       const double allowed = RoundOff(steps, 2) + (stiff ? 2 * tension / stiffness : 0);
       EXPECT_NEAR(world.Body(0, 0).position_m.z + 0.7, a * 0.08, allowed) << stiffness << " " << h;
@@ -157,9 +156,9 @@ TEST(RoutedCable, AnEyeletBesideTheCentreOfMassTurnsItsBody) {
   def.bodies.push_back(PointMass("block", 2, {0, 0, 0}));
   def.bodies[0].inertia_kg_m2 = {0.01, 0.02, 0.03, 0, 0, 0};
   const Vec3 eyelet{0.1, 0.05, 0.02};
-  def.cables.push_back(Cable({{kWorld, eyelet + Vec3{0, 0, 1}}, {0, eyelet},
-                              {kWorld, eyelet + Vec3{1, 0, 0}}},
-                             1200, 1.99));
+  def.cables.push_back(
+      Cable({{kWorld, eyelet + Vec3{0, 0, 1}}, {0, eyelet}, {kWorld, eyelet + Vec3{1, 0, 0}}}, 1200,
+            1.99));
   Batch world = MakeBatch(def);
   world.Step(h);
   const Vec3 force{tension, 0, tension}, torque = Cross(eyelet, force);

@@ -122,7 +122,8 @@ TEST(Terrain, AWallStopsABall) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
   const Material material{0, 0, 0.5};
-  def.terrain_boxes.push_back({"wall", {1, 0, 0}, scenes::Turn({0, 0, 1}, 0.3), {0.1, 2, 1}, material});
+  def.terrain_boxes.push_back(
+      {"wall", {1, 0, 0}, scenes::Turn({0, 0, 1}, 0.3), {0.1, 2, 1}, material});
   scenes::AddBall(def, "ball", 0.2, 0.1, {0, 0, 0}, material);
   def.bodies[0].velocity_m_per_s = {2, 0, 0};
   Batch world = MakeBatch(def);

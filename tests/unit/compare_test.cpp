@@ -215,7 +215,7 @@ TEST(Compare, ChannelsOfOneSideAndOtherUnitsAreNamedNotCompared) {
   EXPECT_EQ(found.channels.size(), 1u);
   const std::string table = ComparisonTable(found, "a", "b");
   EXPECT_NE(table.find("only in a (1): a_only\nonly in b (1): b_only\n"
-                       "units differ, not compared (1): f: N against lbf\n"),
+                       "units differ, not compared:\n  f: N against lbf\n"),
             std::string::npos)
       << table;
   CompareOptions options;
@@ -223,6 +223,18 @@ TEST(Compare, ChannelsOfOneSideAndOtherUnitsAreNamedNotCompared) {
   const Comparison selected = Compare(a, b, options);
   EXPECT_TRUE(selected.only_a.empty() && selected.only_b.empty());
   EXPECT_EQ(selected.channels.size(), 1u);
+}
+
+TEST(Compare, TheTableAbridgesLongListsOfNames) {
+  const Trace b = Sampled(1.0, 3, [](double t) { return t; });
+  Trace a = b;
+  for (const char* name :
+       {"cable/x/rate_n", "cable/y/rate_n", "cable/z/rate_n", "system/k_j", "u"}) {
+    AddChannel(a, name, [](double) { return 0.0; });
+  }
+  const std::string table = ComparisonTable(Compare(a, b, {}), "a", "b");
+  EXPECT_NE(table.find("only in a (5): cable/*/rate_n (3) system/k_j u\n"), std::string::npos)
+      << table;
 }
 
 TEST(Compare, PhasesGiveMeanLeastAndGreatest) {

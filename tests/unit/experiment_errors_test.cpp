@@ -190,7 +190,7 @@ TEST_F(ExperimentErrors, OneCallFindsThemAllInBothFiles) {
   text.replace(text.find("cables: left"), 12, "cables: l");
   text.replace(text.find("friction: 0.5"), 13, "friction: -1");
   Write("trial.yaml", text);
-  // The robot is not known, so what refers to its nodes and cables is left alone.
+  // A mass is wrong, but the nodes and cables are known: what refers to them is checked.
   EXPECT_EQ(
       Complaints(),
       "model.yaml:17:49: error: rod.mass_kg must not be negative, got -1\ntrial.yaml:7:51: error: "
@@ -198,6 +198,13 @@ TEST_F(ExperimentErrors, OneCallFindsThemAllInBothFiles) {
       "cable matches l (no cable is called or tagged \"l\"; one of: back, driven, front, left, "
       "loose, passive, right)\ntrial.yaml:20:31: error: there is no node \"a9\" (did you mean "
       "\"a0\"?)\ntrial.yaml:21:19: error: record.rate_hz must not be negative, got -5\n");
+}
+
+TEST_F(ExperimentErrors, ARobotThatCouldNotBeReadIsNotReferredTo) {
+  ChangeFile("model.yaml", kModel, "a1: [1, 0, 0.1]", "a1: [1, 0]");
+  std::string text = kExperiment;
+  Write("trial.yaml", text.replace(text.find("node: a1"), 8, "node: a9"));
+  EXPECT_EQ(Complaints(), "model.yaml:7:7: error: nodes.a1 must have 3 numbers, got 2\n");
 }
 
 }  // namespace

@@ -58,10 +58,7 @@ record: {rate_hz: 50}
 
 class ExperimentFolder : public testing::Test {
  protected:
-  ExperimentFolder()
-      : folder_(std::filesystem::path(testing::TempDir()) /
-                (std::string("taut_") +
-                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
+  ExperimentFolder() : folder_(std::filesystem::path(testing::TempDir()) / TestName()) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     Write("model.yaml", kModel);
@@ -101,10 +98,12 @@ class ExperimentFolder : public testing::Test {
     Diagnostics out;
     const bool loaded = LoadExperiment(Path(name), overrides, out).has_value();
     EXPECT_EQ(loaded, out.ok()) << out.Format();
-    std::string text = out.Format();
-    const std::string prefix = folder_.string() + "/";
-    for (std::size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix)) {
-      text.erase(at, prefix.size());
+    return Without(folder_.string() + "/", out.Format());
+  }
+
+  static std::string Without(const std::string& word, std::string text) {
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word)) {
+      text.erase(at, word.size());
     }
     return text;
   }
@@ -124,13 +123,7 @@ class ExperimentErrors : public ExperimentFolder {
   void Expect(const std::string& old_text, const std::string& new_text,
               const std::string& expected) {
     Change(old_text, new_text);
-    std::string complaints = Complaints();
-    const std::string file = "trial.yaml:";
-    for (std::size_t at = complaints.find(file); at != std::string::npos;
-         at = complaints.find(file)) {
-      complaints.erase(at, file.size());
-    }
-    EXPECT_EQ(complaints, expected + "\n")
+    EXPECT_EQ(Without("trial.yaml:", Complaints()), expected + "\n")
         << "with \"" << new_text << "\" for \"" << old_text << "\"";
   }
 };

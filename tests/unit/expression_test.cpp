@@ -111,6 +111,8 @@ TEST(Expression, EveryMistakeHasItsMessage) {
   EXPECT_EQ(Error("1e308 + 1e308"), "a sum that is too large for a number");
   EXPECT_EQ(Error(std::string(500, '(') + "1"), "the expression is nested too deeply");
   EXPECT_EQ(Error(std::string(5000, '-') + "1"), "the expression is nested too deeply");
+  EXPECT_EQ(Error("1" + std::string(10'000, ' ')), "the expression is too long");
+  EXPECT_EQ(Error(std::string(100, 'x')), "unknown name \"" + std::string(100, 'x') + "\"");
 }
 
 TEST(Expression, AnUnknownNameWithoutParametersSaysSo) {

@@ -224,6 +224,8 @@ TEST_F(Reading, NamesAreLettersDigitsUnderscoresAndHyphens) {
   EXPECT_EQ(Errors(), "f.yaml:1:4: error: name must be a name, got a list\n");
   ReadNames(V("{a: b}"), "tags", scope_);
   EXPECT_EQ(Errors(), "f.yaml:1:4: error: tags must be a name or a list of names, got a map\n");
+  ReadName(V(std::string(201, 'a')), "name", scope_);
+  EXPECT_EQ(Errors(), "f.yaml:1:4: error: name: a name has at most 200 characters\n");
   ReadText(V("[a]"), "description", scope_);
   EXPECT_EQ(Errors(), "f.yaml:1:4: error: description must be a text, got a list\n");
 }

@@ -140,16 +140,20 @@ class RandomShapes {
   }
   Vec3 InCube(double half) { return {In(-half, half), In(-half, half), In(-half, half)}; }
   Motion Anywhere(double spread_m) {
+    // One by one: compilers evaluate arguments in any order.
     const Vec3 axis = InCube(1);
-    return Turn(axis, In(0, 6.28), InCube(spread_m));
+    const double angle = In(0, 6.28);
+    return Turn(axis, angle, InCube(spread_m));
   }
   RoundShape Round(double spread_m) {
     const Vec3 from = InCube(spread_m), along = InCube(0.3);
     const bool ball = In(0, 1) < 0.2;
-    return ball ? Ball(from, In(0.02, 0.1)) : Rod(from, from + along, In(0.02, 0.1));
+    const double radius = In(0.02, 0.1);
+    return ball ? Ball(from, radius) : Rod(from, from + along, radius);
   }
   BoxShape AnyBox(double spread_m) {
-    return Box({In(0.02, 0.2), In(0.02, 0.2), In(0.02, 0.2)}, Anywhere(spread_m));
+    const Vec3 half{In(0.02, 0.2), In(0.02, 0.2), In(0.02, 0.2)};
+    return Box(half, Anywhere(spread_m));
   }
 
  private:

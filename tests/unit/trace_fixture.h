@@ -34,6 +34,19 @@ class TraceFolder : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
+  /// The diagnostics of reading `path`, which must fail; without the folder's name.
+  std::string Complaint(const std::string& path) const {
+    Diagnostics out;
+    EXPECT_FALSE(ReadTrace(path, out));
+    return WithoutFolder(out.Format());
+  }
+
+  std::string WithoutFolder(std::string text) const {
+    const std::string folder = folder_.string() + "/";
+    for (std::size_t at; (at = text.find(folder)) != text.npos;) text.erase(at, folder.size());
+    return text;
+  }
+
   std::filesystem::path folder_;
 };
 

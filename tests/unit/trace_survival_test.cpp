@@ -41,12 +41,12 @@ int InChild(const std::function<int()>& work) {
 }
 
 struct Survival : TraceFolder {
-  /// Writes to `path`, most of the time inside the library, kills the writer after `life`, reads.
-  void KillAfter(const std::string& path, milliseconds life);
+  /// Writes to `path`, `rows_at_once` each half millisecond, kills the writer after `life`, reads.
+  void KillAfter(const std::string& path, milliseconds life, std::size_t rows_at_once);
   std::size_t rows_read = 0;
 };
 
-void Survival::KillAfter(const std::string& path, milliseconds life) {
+void Survival::KillAfter(const std::string& path, milliseconds life, std::size_t rows_at_once) {
   // Moments on the one steady clock of all processes: 0 until the first row.
   struct Progress {
     volatile double created, appended;
@@ -66,7 +66,7 @@ void Survival::KillAfter(const std::string& path, milliseconds life) {
       last = now;
       if (!AppendRow(*writer, row, kChannelCount, now)) break;
       progress->appended = now;
-      if (row % 64 == 0) std::this_thread::sleep_for(std::chrono::microseconds(500));
+      if (row % rows_at_once == 0) std::this_thread::sleep_for(std::chrono::microseconds(500));
     }
     _exit(1);
   }
@@ -94,9 +94,10 @@ TEST_F(Survival, AKilledWriterLeavesAllButTheLastSecond) {
   std::uniform_int_distribution<int> life_ms(0, 1300);
   for (int i = 0; i < 20; ++i) {
     SCOPED_TRACE(i);
-    KillAfter(Path("t.h5"), milliseconds(life_ms(random)));
+    KillAfter(Path("t.h5"), milliseconds(life_ms(random)), 64);
   }
-  for (int i = 0; i < 5; ++i) KillAfter(Path("t.csv"), milliseconds(life_ms(random)));
+  // slowly, so that time and not the amount of text decides when to write
+  for (int i = 0; i < 4; ++i) KillAfter(Path("t.csv"), milliseconds(1100 + 150 * i), 1);
   EXPECT_GT(rows_read, 10000u);
 }
 

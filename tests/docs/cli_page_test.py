@@ -1,0 +1,76 @@
+"""docs/cli.md names the subcommands and flags that taut has: all of them and no others.
+
+Usage: cli_page_test.py TAUT
+"""
+
+import re
+import subprocess
+import sys
+
+sys.dont_write_bytecode = True
+from page import ROOT, Page  # noqa: E402
+
+PAGE = ROOT / "docs" / "cli.md"
+
+
+def help_of(taut, *subcommand):
+    done = subprocess.run([taut, *subcommand, "--help"], capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+def part(text, title):
+    """The indented lines below a line "Title:"."""
+    match = re.search(rf"^{title}:\n((?:  .*\n)+)", text, re.MULTILINE)
+    return match[1] if match else ""
+
+
+def flags_of_help(text):
+    return set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", part(text, "Options"), re.MULTILINE)) - {"--help"}
+
+
+def arguments_of_help(text):
+    return re.findall(r"^  (\w+)", part(text, "Positionals"), re.MULTILINE)
+
+
+def sections_of_page():
+    """For each heading "## taut ...": the first cells of its tables."""
+    sections, current = {}, None
+    for _, line in Page(PAGE).prose:
+        heading = re.match(r"## `?(taut.*?)`?$", line)
+        if heading:
+            current = sections.setdefault(heading[1], set())
+        elif line.startswith("## "):
+            current = None
+        cell = re.match(r"\| `([^`]+)`", line)
+        if cell and current is not None:
+            current.add(cell[1])
+    return sections
+
+
+def main():
+    taut, wrong = sys.argv[1], []
+    top = help_of(taut)
+    subcommands = re.findall(r"^  (\w+)", part(top, "Subcommands"), re.MULTILINE)
+    expected = {"taut": flags_of_help(top)}
+    for name in subcommands:
+        text = help_of(taut, name)
+        expected[f"taut {name}"] = flags_of_help(text) | set(arguments_of_help(text))
+    if not subcommands or not all(expected.values()):
+        wrong.append("the help texts cannot be read")
+    found = {
+        title: {cell.split()[0] for cell in cells if re.match(r"--|\w+$", cell)}
+        for title, cells in sections_of_page().items()
+    }
+    for title in sorted(expected.keys() | found.keys()):
+        of_help, of_page = expected.get(title), found.get(title)
+        if of_help is None or of_page is None:
+            wrong.append(f"`{title}` is {'not in the help' if of_help is None else 'not in docs/cli.md'}")
+            continue
+        wrong += [f"docs/cli.md, {title}: {x} is missing" for x in sorted(of_help - of_page)]
+        wrong += [f"docs/cli.md, {title}: there is no {x}" for x in sorted(of_page - of_help)]
+    print("\n".join(wrong) or f"{len(subcommands)} subcommands: good")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,59 @@
+"""Reads a page of documentation: its fenced blocks, its links, its headings."""
+
+import pathlib
+import re
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+
+
+class Block:
+    """A fenced block. `info` is what stands behind the opening fence, `line` the line after it."""
+
+    def __init__(self, info, line, lines):
+        self.info, self.line, self.lines = info, line, lines
+
+    @property
+    def text(self):
+        return "".join(line + "\n" for line in self.lines)
+
+
+class Page:
+    def __init__(self, path):
+        self.path = pathlib.Path(path).resolve()
+        self.lines = self.path.read_text().splitlines()
+        self.blocks, self.prose = [], []  # prose: (line number, text) outside of blocks
+        block = None
+        for number, line in enumerate(self.lines, 1):
+            fence = re.match(r"```+(.*)$", line)
+            if fence and block is None:
+                block = Block(fence[1].strip(), number + 1, [])
+            elif fence:
+                self.blocks.append(block)
+                block = None
+            elif block is not None:
+                block.lines.append(line)
+            else:
+                self.prose.append((number, line))
+        if block is not None:
+            raise SystemExit(f"{self.name}:{block.line}: a block that is never closed")
+
+    @property
+    def name(self):
+        return str(self.path.relative_to(ROOT))
+
+    def links(self):
+        """(line number, target) of every link that is not to the web."""
+        for number, line in self.prose:
+            for target in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"`[^`]*`", "", line)):
+                if not re.match(r"[a-z]+:", target):
+                    yield number, target
+
+    def anchors(self):
+        """What GitHub calls its headings."""
+        found = set()
+        for _, line in self.prose:
+            heading = re.match(r"#+ (.*)", line)
+            if heading:
+                words = re.sub(r"[^\w\- ]", "", heading[1].lower())
+                found.add(words.replace(" ", "-"))
+        return found

@@ -1,0 +1,201 @@
+"""What a page shows is true: its commands run, print what it says, and its files are the real ones.
+
+Usage: run_page.py TAUT PAGE
+
+In a page,
+  ```console            lines that start with "$ " are run, in order, in a fresh folder; the lines
+                        below a command are what it prints. A line "..." there stands for any lines.
+  ```console status=3   the block's last command ends with this exit status, not with 0
+  ```yaml FILE          the block is that file, seen from the page's folder (any language)
+  ```yaml in FILE       the block is some lines of that file, without a gap
+Blocks of other kinds are left alone. A page docs/x.md with a folder docs/x/ runs among copies of
+that folder's files, other pages among the folders of the project.
+
+With TAUT_BLESS=1 in the environment, what the commands print now is put into the page instead. Exit
+status 77: all is good, but some commands were left out for want of a Python module.
+"""
+
+import importlib.util
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.dont_write_bytecode = True
+from page import ROOT, Page  # noqa: E402
+
+SKIPPED = 77
+SHOWN_FOLDERS = ["docs", "examples", "experiments", "mappings", "models", "schema"]
+
+
+class Command:
+    """A command of a page and what the page says that it prints."""
+
+    def __init__(self, line, text):
+        self.line, self.text = line, text
+        self.output, self.status = [], 0
+
+
+def commands_of(block):
+    commands, status = [], 0
+    status_word = re.search(r"\bstatus=(\d+)", block.info)
+    if status_word:
+        status = int(status_word[1])
+    continued = False
+    for number, line in enumerate(block.lines, block.line):
+        if continued:
+            commands[-1].text += "\n" + line
+        elif line.startswith("$ "):
+            commands.append(Command(number, line[2:]))
+        elif commands:
+            commands[-1].output.append(line)
+        else:
+            raise SystemExit(f"line {number}: a console block begins with a command")
+        continued = line.endswith("\\") and (continued or line.startswith("$ "))
+    commands[-1].status = status
+    return commands
+
+
+def steady(line):
+    """A line without what differs from run to run and from machine to machine."""
+    return re.sub(r"simulated in \S+ s \(\S+ times real time\)", "simulated in ...", line)
+
+
+def printed_lines(text):
+    """Without the progress lines that only slow machines show."""
+    return [line for line in text.splitlines() if not re.match(r"t = .* s left$", line)]
+
+
+def same(expected, printed):
+    """Whether `printed` is `expected`, in which one line may be "..."."""
+    expected, printed = [steady(x) for x in expected], [steady(x) for x in printed]
+    if "..." not in expected:
+        return expected == printed
+    at = expected.index("...")
+    head, tail = expected[:at], expected[at + 1 :]
+    return (
+        len(printed) >= len(head) + len(tail)
+        and printed[:at] == head
+        and printed[len(printed) - len(tail) :] == tail
+    )
+
+
+def shortened(expected, printed):
+    """`printed`, cut where `expected` was."""
+    if "..." not in expected:
+        return printed
+    at = expected.index("...")
+    tail = len(expected) - at - 1
+    return printed[:at] + ["..."] + printed[len(printed) - tail :]
+
+
+def prepare(page, folder, taut):
+    """A folder to run in, and a search path on which `taut` and `python3` are the wanted ones."""
+    programs = folder / "programs"
+    programs.mkdir()
+    (programs / "taut").symlink_to(taut)
+    (programs / "python3").symlink_to(sys.executable)
+    work = folder / "work"
+    own = page.path.with_suffix("")
+    if own.is_dir():
+        shutil.copytree(own, work)
+    else:
+        work.mkdir()
+        for name in SHOWN_FOLDERS:
+            (work / name).symlink_to(ROOT / name)
+    environment = dict(os.environ, MPLBACKEND="Agg", MPLCONFIGDIR=str(folder), LC_ALL="C.UTF-8")
+    environment["PATH"] = f"{programs}{os.pathsep}{environment['PATH']}"
+    return work, environment
+
+
+def missing_module(command, work):
+    """A module that a Python program of this command imports and this machine lacks."""
+    program = re.match(r"python3 (\S+)", command.text)
+    if program:
+        text = (work / program[1]).read_text()
+        for module in re.findall(r"^(?:import|from) (\w+)", text, re.MULTILINE):
+            if importlib.util.find_spec(module) is None:
+                return module
+    return None
+
+
+def check_files(page):
+    """How many blocks show a file, and what is wrong with them."""
+    count, wrong = 0, []
+    for block in page.blocks:
+        match = re.fullmatch(r"\w+ (in )?(\S+\.\w+)", block.info)
+        if not match or block.info.startswith("console"):
+            continue
+        count += 1
+        path = page.path.parent / match[2]
+        text = path.read_text() if path.is_file() else None
+        if text is None:
+            wrong.append(f"{page.name}:{block.line}: there is no file {match[2]}")
+        elif not match[1] and block.text != text:
+            wrong.append(f"{page.name}:{block.line}: this is not {match[2]}")
+        elif match[1] and "\n" + block.text not in "\n" + text:
+            wrong.append(f"{page.name}:{block.line}: these lines are not in {match[2]}")
+    return count, wrong
+
+
+def run(page, taut, bless):
+    """How many commands ran, what is wrong with them, and which were left out."""
+    count, wrong, left_out, replaced = 0, [], [], []
+    with tempfile.TemporaryDirectory() as folder:
+        work, environment = prepare(page, pathlib.Path(folder), taut)
+        for block in page.blocks:
+            if block.info.split()[:1] != ["console"]:
+                continue
+            for command in commands_of(block):
+                missing = missing_module(command, work)
+                if missing:
+                    left_out.append(f"{page.name}:{command.line}: `{command.text}` needs the Python "
+                                    f"module {missing} (Debian: python3-{missing})")
+                    continue
+                count += 1
+                done = subprocess.run(
+                    ["bash", "-o", "pipefail", "-c", command.text], cwd=work, env=environment,
+                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+                    text=True, errors="replace", timeout=300,
+                )
+                where, printed = f"{page.name}:{command.line}", printed_lines(done.stdout)
+                if done.returncode != command.status:
+                    wrong.append(f"{where}: `{command.text}` ended with status {done.returncode}, "
+                                 f"not {command.status}:\n" + "\n".join(printed))
+                elif not same(command.output, printed):
+                    first = command.line + command.text.count("\n")
+                    replaced.append((first, len(command.output), shortened(command.output, printed)))
+                    if not bless:
+                        wrong.append(f"{where}: `{command.text}` printed\n" + "\n".join(printed) +
+                                     "\nand the page says\n" + "\n".join(command.output))
+    if bless and replaced:
+        lines = list(page.lines)
+        for first, length, output in reversed(replaced):
+            lines[first : first + length] = output
+        page.path.write_text("\n".join(lines) + "\n")
+        print(f"wrote {len(replaced)} outputs into {page.name}")
+    return count, wrong, left_out
+
+
+def main():
+    if len(sys.argv) != 3:
+        print(__doc__.strip(), file=sys.stderr)
+        return 2
+    taut, bless = pathlib.Path(sys.argv[1]).resolve(), os.environ.get("TAUT_BLESS") == "1"
+    page = Page(sys.argv[2])
+    file_count, wrong = check_files(page)
+    command_count, more, left_out = run(page, taut, bless)
+    wrong += more
+    if file_count + command_count == 0:
+        wrong.append(f"{page.name}: shows neither a file nor a command")
+    print("\n".join(wrong) or f"{page.name}: {file_count} files, {command_count} commands: good")
+    for text in left_out:
+        print(f"skipped: {text}")
+    return 1 if wrong else SKIPPED if left_out else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

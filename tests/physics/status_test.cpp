@@ -1,0 +1,139 @@
+/// A world says what is wrong with it, and keeps it to itself.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "scenes/ball.h"
+#include "scenes/tetraspine3.h"
+#include "tests/physics/world.h"
+
+namespace taut::test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool Finite(const Batch& batch, int world, int body) {
+  const BodyState state = batch.Body(world, body);
+  return std::isfinite(Norm(state.position_m) + Norm(state.velocity_m_per_s) +
+                       Norm(state.angular_velocity_rad_per_s) + state.orientation.w +
+                       state.orientation.x + state.orientation.y + state.orientation.z);
+}
+
+/// Breaks world 1 of three after 0.05 s; it must say so, stand still, and be alone with that.
+void BreaksAlone(const std::function<void(Batch&)>& breaks, int body) {
+  for (const Simd simd : {Simd::kScalar, Simd::kSse2, Simd::kAvx2, Simd::kAvx512}) {
+    BatchOptions options;
+    options.worlds = 3;
+    options.simd = simd;
+    const ModelDef def = scenes::Tetraspine().Def();
+    Batch batch = MakeBatch(def, options), healthy = MakeBatch(def, options);
+    batch.Step(1e-3, 50);
+    healthy.Step(1e-3, 50);
+    breaks(batch);
+    batch.Step(1e-3);
+    healthy.Step(1e-3);
+    const WorldStatus status = batch.Status(1);
+    EXPECT_EQ(status.bits & kStatusNonFinite, kStatusNonFinite);
+    EXPECT_EQ(status.body, body);
+    EXPECT_NEAR(status.first_time_s, 0.05, RoundOff(50, 0.05));
+    // It stands still where it was before the step that broke it.
+    for (int b = 0; b < 3; ++b) EXPECT_TRUE(Finite(batch, 1, b)) << b;
+    EXPECT_EQ(batch.Time(1), status.first_time_s);
+    const std::uint64_t hash = batch.Hash(1);
+    batch.Step(1e-3, 100);
+    healthy.Step(1e-3, 100);
+    EXPECT_EQ(batch.Hash(1), hash);
+    EXPECT_EQ(batch.Time(1), status.first_time_s);
+    for (const int world : {0, 2}) {
+      EXPECT_EQ(batch.Hash(world), healthy.Hash(world)) << batch.lanes() << " lanes";
+      EXPECT_EQ(batch.Status(world).bits, kStatusOk);
+    }
+  }
+}
+
+TEST(Status, AForceThatIsNotANumberStopsItsWorldAndNamesTheBody) {
+  BreaksAlone([](Batch& batch) { batch.SetNodeForce(1, 6 * 2 + 3, {0, kNan, 0}); }, 2);
+  BreaksAlone([](Batch& batch) { batch.SetNodeForce(1, 6 * 1 + 3, {kInfinity, 0, 0}); }, 1);
+}
+
+TEST(Status, ACommandThatIsNotANumberNamesTheCable) {
+  ModelDef def = scenes::Tetraspine().Def();
+  for (CableDef& cable : def.cables) cable.actuator.kind = ActuatorDef::Kind::kIdeal;
+  Batch world = MakeBatch(def);
+  world.SetRestLengthTarget(0, 7, kNan);
+  world.Step(1e-3);
+  EXPECT_EQ(world.Status(0).bits & kStatusNonFinite, kStatusNonFinite);
+  EXPECT_EQ(world.Status(0).cable, 7);
+  for (int b = 0; b < 3; ++b) EXPECT_TRUE(Finite(world, 0, b)) << b;
+  EXPECT_EQ(world.Cable(0, 7).rest_length_m, def.cables[7].rest_length_m);
+}
+
+TEST(Status, AWorldThatIsMendedGoesOn) {
+  const ModelDef def = scenes::Tetraspine().Def();
+  Batch world = MakeBatch(def), healthy = MakeBatch(def);
+  world.Step(1e-3, 50);
+  healthy.Step(1e-3, 50);
+  world.SetNodeForce(0, 3, {kNan, 0, 0});
+  world.Step(1e-3, 20);
+  ASSERT_NE(world.Status(0).bits, kStatusOk);
+  world.SetNodeForce(0, 3, {});
+  world.ClearStatus(0);
+  EXPECT_EQ(world.Status(0).bits, kStatusOk);
+  world.Step(1e-3, 50);
+  healthy.Step(1e-3, 50);
+  EXPECT_EQ(world.Status(0).bits, kStatusOk);
+  // What the contacts remembered is lost: not the same bits, but the same motion.
+  EXPECT_LE(Distance(world.Body(0, 0).position_m, healthy.Body(0, 0).position_m), 1e-5);
+}
+
+TEST(Status, ASolveThatIsCutShortSaysSoAndNamesABodyInContact) {
+  BatchOptions options;
+  options.max_sweeps = 1;
+  ModelDef def;
+  const Material material{0.5, 0.5, 0};
+  scenes::AddGround(def, material);
+  for (int i = 0; i < 4; ++i) {  // one sweep does not carry a weight through four contacts
+    scenes::AddBall(def, "ball", 0.1, 0.1, {0, 0, 0.1 + 0.2 * i}, material);
+  }
+  Batch hasty = MakeBatch(def, options);
+  hasty.Step(1e-3);
+  EXPECT_EQ(hasty.Status(0).bits, kStatusNotConverged);
+  EXPECT_EQ(hasty.Status(0).first_time_s, 0);
+  EXPECT_EQ(hasty.Status(0).sweeps, 1);
+  EXPECT_GT(hasty.Status(0).residual_m_per_s, options.tolerance_m_per_s);
+  EXPECT_GE(hasty.Status(0).body, 0);
+  EXPECT_LT(hasty.Status(0).body, 4);
+  hasty.ClearStatus(0);
+  EXPECT_EQ(hasty.Status(0).bits, kStatusOk);
+
+  Batch thorough = MakeBatch(def);
+  thorough.Step(1e-3, 100);
+  EXPECT_EQ(thorough.Status(0).bits, kStatusOk);
+  EXPECT_LE(thorough.Status(0).residual_m_per_s, options.tolerance_m_per_s);
+}
+
+TEST(Status, MoreContactsThanRoomAreSaidAndTheOthersStillHold) {
+  // A body of 60 balls on a terrain box: more contacts than a model of one body has room for.
+  ModelDef def;
+  const Material material{0.5, 0.5, 0};
+  def.terrain_boxes.push_back({"table", {0, 0, -0.5}, {}, {5, 5, 0.5}, material});
+  scenes::Parts parts;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 p{0.1 * (i % 10), 0.1 * (i / 10), 0.02};
+    parts.AddSphere(0.01, p, 0.02);
+    def.spheres.push_back({"ball", 0, p, 0.02, material});
+  }
+  def.bodies.push_back(parts.Body("carpet"));
+  Batch world = MakeBatch(def);
+  world.Step(1e-3, 100);
+  EXPECT_EQ(world.Status(0).bits & kStatusContactOverflow, kStatusContactOverflow);
+  EXPECT_LT(world.Contacts(0).size(), 60u);
+  EXPECT_GE(world.Contacts(0).size(), 3u);
+  EXPECT_TRUE(Finite(world, 0, 0));
+}
+
+}  // namespace
+}  // namespace taut::test

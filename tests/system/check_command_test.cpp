@@ -1,0 +1,132 @@
+// `taut check` as a person or a script calls it.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace taut {
+namespace {
+
+std::string Text(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+class CheckCommand : public ::testing::Test {
+ protected:
+  CheckCommand()
+      : folder_(::testing::TempDir() + "taut_check_" +
+                ::testing::UnitTest::GetInstance()->current_test_info()->name()) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~CheckCommand() override { std::filesystem::remove_all(folder_); }
+
+  struct Outcome {
+    int status = -1;
+    std::string output, errors;
+  };
+  Outcome Run(const std::string& arguments) {
+    const std::string command = "cd '" TAUT_SOURCE_DIR "' && '" TAUT_COMMAND "' check " +
+                                arguments + " >'" + folder_ + "/out' 2>'" + folder_ + "/err'";
+    const int status = std::system(command.c_str());
+    return {WEXITSTATUS(status), Text(folder_ + "/out"), Text(folder_ + "/err")};
+  }
+
+  std::string folder_;
+};
+
+TEST_F(CheckCommand, ShowsMassesLengthsTensionsAndLoads) {
+  const Outcome spine = Run("models/tetraspine3.yaml");
+  EXPECT_EQ(spine.status, 0);
+  EXPECT_EQ(spine.errors, "");
+  EXPECT_EQ(spine.output.rfind("models/tetraspine3.yaml: good\n", 0), 0u);
+  for (const char* part : {"3 bodies, 12 cables, 18 nodes; 2.349243 kg that move",
+                           "segment_0  0.713081  0.793276  0.000000  0.125465            0.0148116 "
+                           " 0.0157328  0.0241226  8 rods, 6 spheres\n",
+                           "inner_top_1    0.213953     0.126678   20.000     229.16       20  "
+                           "segment_0 - segment_1  0.07 m/s 50 N\n",
+                           "segment_0        -30.913  0.000  -12.946        0.0000  -2.5616  "
+                           "0.0000     0.000  0.000  -6.995\n",
+                           "May collide: 3 pairs of bodies, 588 pairs of shapes; with terrain, "
+                           "which is the experiment's\n",
+                           "segment_0 - segment_2              196\n"}) {
+    EXPECT_NE(spine.output.find(part), std::string::npos) << part << "\nis not in\n"
+                                                          << spine.output;
+  }
+}
+
+TEST_F(CheckCommand, ShowsAnExperimentAndItsRobot) {
+  const Outcome push = Run("experiments/push_20n.yaml");
+  EXPECT_EQ(push.status, 0) << push.errors;
+  EXPECT_NE(push.output.find("Experiment push_20n: 60 s in steps of 0.001 s, 1 controller\n"),
+            std::string::npos);
+  EXPECT_NE(push.output.find("segment_0.tip"), std::string::npos);
+  EXPECT_NE(push.output.find("Model tetraspine3: 3 bodies"), std::string::npos);
+  EXPECT_NE(push.output.find("with 1 terrain surface\n"), std::string::npos);
+}
+
+TEST_F(CheckCommand, QuietSaysNothingAboutAGoodFile) {
+  const Outcome outcome = Run("models/rod.yaml --quiet");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.output + outcome.errors, "");
+}
+
+TEST_F(CheckCommand, SetChangesParameters) {
+  EXPECT_NE(Run("models/tetraspine3.yaml --set segments=12").output.find("12 bodies, 66 cables"),
+            std::string::npos);
+  const Outcome unknown = Run("models/tetraspine3.yaml --set segment=12");
+  EXPECT_EQ(unknown.status, 3);
+  EXPECT_EQ(
+      unknown.errors,
+      "--set segment=12: error: there is no parameter \"segment\" (did you mean \"segments\"?)\n");
+  EXPECT_EQ(Run("models/tetraspine3.yaml --set segments").status, 2);
+}
+
+TEST_F(CheckCommand, JsonHoldsTheSameNumbers) {
+  const Outcome outcome = Run("models/tetraspine3.yaml --json");
+  EXPECT_EQ(outcome.status, 0);
+  const auto json = nlohmann::json::parse(outcome.output);
+  EXPECT_EQ(json["ok"], true);
+  EXPECT_NEAR(json["bodies"][1]["mass_kg"].get<double>(), 0.913080891, 1e-9);
+  EXPECT_EQ(json["cables"].size(), 12u);
+  EXPECT_EQ(json["cables"][5]["name"], "inner_top_1");
+  EXPECT_NEAR(json["cables"][5]["tension_n"].get<double>(), 20.0, 1e-12);
+  EXPECT_EQ(json["nodes"][3]["name"], "segment_0.tip");
+}
+
+TEST_F(CheckCommand, ErrorsGoToStderrWithTheirPlace) {
+  const std::string path = folder_ + "/bad.yaml";
+  std::ofstream(path) << "taut: 1\nkind: model\nname: bad\nnodes: {a: [0, 0]}\nbuilder: []\n";
+  const std::string wanted = path + ":4:12: error: nodes.a must have 3 numbers, got 2\n" + path +
+                             ":5:1: error: unknown key \"builder\" (did you mean \"builders\"?)\n";
+  const Outcome text = Run("'" + path + "' --quiet");
+  EXPECT_EQ(text.status, 3);
+  EXPECT_EQ(text.output, "");
+  EXPECT_EQ(text.errors, wanted);
+  const Outcome outcome = Run("'" + path + "' --json");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_EQ(outcome.errors, wanted);
+  const auto json = nlohmann::json::parse(outcome.output);
+  EXPECT_EQ(json["ok"], false);
+  EXPECT_EQ(json["errors"].size(), 2u);
+  EXPECT_EQ(json["errors"][0]["line"], 4);
+  const Outcome missing = Run("no_such.yaml");
+  EXPECT_EQ(missing.status, 3);
+  EXPECT_EQ(missing.errors, "no_such.yaml: error: cannot open the file\n");
+}
+
+TEST_F(CheckCommand, WrongUsageIsNotABadFile) {
+  EXPECT_EQ(Run("").status, 2);
+  EXPECT_EQ(Run("models/rod.yaml --no-such-flag").status, 2);
+  const Outcome help = Run("--help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_NE(help.output.find("taut check models/tetraspine3.yaml\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace taut
