@@ -39,12 +39,7 @@ class ContactBlock {
     W start[kSize];
     for (int i = 0; i < kSize; ++i) start[i] = lambda_[i];
     for (int iteration = 0; iteration < kMaxIterations && Any(busy); ++iteration) {
-      if (AnySlides(busy)) {
-        Linearize();
-        Eliminate();
-      } else {
-        SolveSticking();
-      }
+      SolveLinear(busy);
       for (int i = 0; i < kSize; ++i) delta_[i] = Select(busy, delta_[i], zero);
       for (int i = 0; i < kSize; ++i) {
         lambda_[i] += delta_[i];
@@ -163,11 +158,20 @@ class ContactBlock {
     t2[0] = t2n, t2[1] = t21, t2[2] = t22;
   }
 
+  /// Newton's step in every lane, by the way that fits the lane: the other lanes have no say in it.
   template <class M>
-  bool AnySlides(M lanes) const noexcept {
-    auto any = slides_[0];
-    for (int c = 1; c < kContacts; ++c) any = any | slides_[c];
-    return along_slip_ || Any(any & lanes);
+  void SolveLinear(M lanes) noexcept {
+    auto sliding = along_slip_ ? M::Splat(true) : slides_[0];
+    for (int c = 1; c < kContacts; ++c) sliding = sliding | slides_[c];
+    const bool some_stick = Any(lanes & (!sliding)), some_slide = Any(lanes & sliding);
+    if (some_stick) SolveSticking();
+    if (!some_slide) return;
+    W sticking[kSize];
+    for (int i = 0; i < kSize; ++i) sticking[i] = delta_[i];
+    Linearize();
+    Eliminate();
+    if (!some_stick) return;
+    for (int i = 0; i < kSize; ++i) delta_[i] = Select(sliding, delta_[i], sticking[i]);
   }
 
   /// Newton's step where every contact sticks or is open: a symmetric system, a third of the work.
@@ -273,7 +277,7 @@ class ContactBlock {
   bool along_slip_;
   MaskType closed_[kContacts], slides_[kContacts];
   V3<W> slide_[kContacts] = {};  ///< Sliding direction, and edge / |s|.
-  W u_[kSize], lambda_[kSize], delta_[kSize];
+  W u_[kSize], lambda_[kSize], delta_[kSize] = {};
   W w_[kSize][kSize], a_[kSize][kSize];
 };
 

@@ -1,4 +1,4 @@
-/// Stages of the cables: actuators and forces, sensors (docs/theory/cables.md, actuators.md).
+/// Stages of the cables: actuators and forces, sensors (docs/theory/cables.md).
 ///
 ///   k, b    stiffness [N/m], damping [N s/m]
 ///   l, dl   length along all attachments [m], its rate [m/s]

@@ -7,7 +7,7 @@
 namespace taut::spec {
 namespace {
 
-/// The index of the node, or nothing after a complaint or if the robot is unknown.
+/// The index of the node; 0 after a complaint or if the robot is unknown.
 int ReadNodeName(const MapReader& map, const RobotSpec* robot) {
   const std::string name = map.Text("node");
   if (name.empty() || !robot) return 0;
