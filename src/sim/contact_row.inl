@@ -66,7 +66,10 @@ void ApplyImpulse(BodyWork<W>& body, W im, const ContactRow<W>& row, const Lever
   body.w += ln * g.n + l1 * g.t1 + l2 * g.t2;
 }
 
-/// What a contact remembers of the step before; a new contact slides and does not rebound.
+/// A contact that meets faster than this along its surface starts sliding, slower, sticking [m/s].
+inline constexpr double kSlidingMPerS = 1e-6;
+
+/// What a contact remembers of the step before; a new contact does not rebound.
 template <class W>
 struct ContactMemory {
   V3<W> force;
@@ -80,15 +83,15 @@ ContactMemory<W> Recall(const Scratch<W>& work, uint32_t id, int old_count, int&
     return {work.old_force[cursor], work.old_slip[cursor], work.old_bounce[cursor]};
   }
   const W zero = W::Splat(0.0);
-  return {{zero, zero, zero}, W::Splat(1.0), zero};
+  return {{zero, zero, zero}, W::Splat(kSlipUnknown), zero};
 }
 
 template <class W, bool kPair>
-void PrepareContact(const View& m, const Rows<W>& s, Scratch<W>& work, ContactRow<W>& row,
+void PrepareContact(const View& m, const Rows<W>& s, const Scratch<W>& work, ContactRow<W>& row,
                     const ContactMemory<W>& memory, double step_s) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
   const W h = W::Splat(step_s), inv_h = W::Splat(1.0 / step_s);
-  BodyWork<W>&a = work.bodies[row.a], &b = work.bodies[row.b];
+  const BodyWork<W>&a = work.bodies[row.a], &b = work.bodies[row.b];
   V3<W> free = PointVelocity(a.v, a.w, row.arm_a);
   V3<W> before = PointVelocity(a.v0, a.w0, row.arm_a);
   if (kPair) {
@@ -138,14 +141,14 @@ void PrepareContact(const View& m, const Rows<W>& s, Scratch<W>& work, ContactRo
                     (row.live > zero) & (row.restitution > zero);
   row.bounce = Select(hits, Max(W::Splat(0.5) * dv - row.restitution * impact, zero), zero);
 
-  row.mu = s.friction_scale[0] * Select(memory.slip > zero, row.kinetic_friction,
+  const V3<W> along = before - Dot(before, row.n) * row.n;
+  const auto moving = Dot(along, along) > W::Splat(kSlidingMPerS * kSlidingMPerS);
+  row.slip = Select(memory.slip < zero, Select(moving, one, zero), memory.slip);
+  row.mu = s.friction_scale[0] * Select(row.slip > zero, row.kinetic_friction,
                                         row.static_friction);
-  row.slip = memory.slip;
   row.ln = Max(h * Dot(memory.force, row.n), zero) * row.live;
   row.l1 = h * Dot(memory.force, row.t1) * row.live;
   row.l2 = m.along_slip ? zero : h * Dot(memory.force, row.t2) * row.live;
-  ApplyImpulse(a, row.im_a, row, row.ga, row.ln, row.l1, row.l2);
-  if (kPair) ApplyImpulse(b, row.im_b, row, row.gb, -row.ln, -row.l1, -row.l2);
 }
 
 /// One contact of one sweep. Returns the largest change of its velocity [m/s].

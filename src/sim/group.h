@@ -16,6 +16,9 @@ struct LaneStatus {
   int body = kWorld, cable = -1;
 };
 
+/// What a contact remembers of having slid (1) or stuck (0) where it did not press.
+inline constexpr double kSlipUnknown = -1.0;
+
 /// N worlds. `rows` is laid out by `Layout`: row i of lane j is rows[i * lanes + j].
 struct Group {
   int lanes = 1;

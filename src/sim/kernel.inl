@@ -34,10 +34,14 @@ void SaveStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
 /// Worlds that are halted keep the state of the start of this step.
 template <class W, class M>
 void KeepStart(const View& m, const Rows<W>& s, const Scratch<W>& work, M halted) noexcept {
+  const W zero = W::Splat(0.0);
+  const V3<W> none{zero, zero, zero};
   for (int b = 0; b < m.body_count; ++b) {
     s.pos[b] = Select3(halted, work.saved_pos[b], s.pos[b]);
     s.vel[b] = Select3(halted, work.saved_vel[b], s.vel[b]);
     s.mom[b] = Select3(halted, work.saved_mom[b], s.mom[b]);
+    s.old_vel[b] = Select3(halted, work.saved_vel[b], s.old_vel[b]);
+    s.old_spin[b] = Select3(halted, none, s.old_spin[b]);
     Q4<W>& q = s.quat[b];
     const Q4<W>& old = work.saved_quat[b];
     q = {Select(halted, old.w, q.w), Select(halted, old.x, q.x), Select(halted, old.y, q.y),
@@ -46,10 +50,10 @@ void KeepStart(const View& m, const Rows<W>& s, const Scratch<W>& work, M halted
   for (int c = 0; c < m.cable_count; ++c) {
     s.rest[c] = Select(halted, work.saved_rest[c], s.rest[c]);
     s.rest_rate[c] = Select(halted, work.saved_rest_rate[c], s.rest_rate[c]);
+    s.tension[c] = Select(halted, zero, s.tension[c]);
   }
-  const W zero = W::Splat(0.0);
   for (int i = 0; i < work.contact_count; ++i) {  // NaN forces must not be remembered
-    s.cache_force[i] = Select3(halted, V3<W>{zero, zero, zero}, s.cache_force[i]);
+    s.cache_force[i] = Select3(halted, none, s.cache_force[i]);
     s.cache_live[i] = Select(halted, zero, s.cache_live[i]);
   }
 }
@@ -74,7 +78,7 @@ void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& w
     g.contact_ids[i] = row.id;
     const V3<W> f = row.ln * row.n + row.l1 * row.t1 + row.l2 * row.t2;
     s.cache_force[i] = Select3(live, inv_h * f + none, none);
-    s.cache_slip[i] = Select(live & (row.ln > zero), row.slip, W::Splat(1.0));
+    s.cache_slip[i] = Select(live & (row.ln > zero), row.slip, W::Splat(kSlipUnknown));
     s.cache_bounce[i] = Select(live, row.bounce, zero);
     s.cache_live[i] = row.live;
     s.cache_arm[i] = row.arm_a;

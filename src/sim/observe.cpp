@@ -196,7 +196,7 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
   // This lane's contacts give way to the snapshot's; those of other lanes stay.
   const auto clear = [&](int i) {
     d.set(world, d.layout.cache_force + 3 * i, {});
-    d.at(world, d.layout.cache_slip + i) = 1.0;
+    d.at(world, d.layout.cache_slip + i) = sim::kSlipUnknown;
     d.at(world, d.layout.cache_bounce + i) = 0.0;
     d.at(world, d.layout.cache_live + i) = 0.0;
   };
@@ -222,7 +222,7 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
         double* const rows = g.rows + (first + i) * g.lanes;
         std::copy_backward(rows, rows + (g.contact_count - i) * g.lanes,
                            rows + (g.contact_count - i + 1) * g.lanes);
-        std::fill_n(rows, g.lanes, first == d.layout.cache_slip ? 1.0 : 0.0);
+        std::fill_n(rows, g.lanes, first == d.layout.cache_slip ? sim::kSlipUnknown : 0.0);
       }
       ++g.contact_count;
     }

@@ -99,10 +99,13 @@ class ContactBlock {
       W s1 = l[1] - (row.p11 * u[1] + row.p12 * u[2]);
       W s2 = l[2] - (row.p12 * u[1] + row.p22 * u[2]);
       const W edge = row.mu * Max(l[0], zero);
-      slides_[c] = closed_[c] & (s1 * s1 + s2 * s2 > edge * edge);
+      // Sliding is decided by the short step rho: a long one may reach across the cone and out at
+      // its far side, where an impulse that drives the contact backwards looks like a solution.
+      const W g1 = l[1] - row.rho1 * u[1], g2 = l[2] - row.rho2 * u[2];
+      const W g_squared = g1 * g1 + g2 * g2;
+      slides_[c] = closed_[c] & (g_squared > edge * edge);
       if (Any(slides_[c])) {
-        const W g1 = l[1] - row.rho1 * u[1], g2 = l[2] - row.rho2 * u[2];
-        const W inverse = one / Sqrt(Max(g1 * g1 + g2 * g2, W::Splat(1e-300)));
+        const W inverse = one / Sqrt(Max(g_squared, W::Splat(1e-300)));
         slide_[c] = {g1 * inverse, g2 * inverse, edge * inverse};
         s1 = Select(slides_[c], edge * slide_[c].x, s1);
         s2 = Select(slides_[c], edge * slide_[c].y, s2);

@@ -89,6 +89,13 @@ void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
       PrepareContact<W, true>(m, s, work, row, memory, step_s);
     }
   }
+  // Only now, so that every contact has seen the velocities without contact.
+  for (int i = 0; i < work.contact_count; ++i) {
+    const ContactRow<W>& row = work.contacts[i];
+    ApplyImpulse(work.bodies[row.a], row.im_a, row, row.ga, row.ln, row.l1, row.l2);
+    if (i < work.single_count) continue;
+    ApplyImpulse(work.bodies[row.b], row.im_b, row, row.gb, -row.ln, -row.l1, -row.l2);
+  }
 }
 
 /// Stage: solve.

@@ -50,8 +50,8 @@ def probe(path, *options):
 UNIT_OF_SUFFIX = {
     "_n_s_per_m": "[N s/m]", "_n_per_m": "[N/m]", "_kg_per_m3": "[kg/m^3]", "_kg_per_m": "[kg/m]",
     "_rad_per_s": "[rad/s]", "_m_per_s2_n": "[m/(s^2 N)]", "_m_per_s_n": "[m/(s N)]",
-    "_m_per_s2": "[m/s^2]", "_m_per_s": "[m/s]", "_m_per_n": "[m/N]", "_kg": "[kg]", "_rad": "[rad]",
-    "_hz": "[Hz]", "_n": "[N]", "_s": "[s]", "_m": "[m]",
+    "_m_per_s2": "[m/s^2]", "_m_per_s": "[m/s]", "_m_per_n": "[m/N]", "_kg": "[kg]",
+    "_rad": "[rad]", "_hz": "[Hz]", "_n": "[N]", "_s": "[s]", "_m": "[m]",
 }
 
 
@@ -67,15 +67,14 @@ def test_EveryKeyHasADescriptionWithItsUnit():
             for key, value in node["properties"].items():
                 text = docs.resolve(schema, value).get("description", "")
                 if not text.endswith("."):
-                    yield f"{kind}: {node['title']}.{key} has no description that ends with a full stop"
+                    yield f"{kind}: {node['title']}.{key} has no description with a full stop"
                 suffix = next((s for s in UNIT_OF_SUFFIX if key.endswith(s)), None)
                 if suffix and UNIT_OF_SUFFIX[suffix] not in text:
                     yield f"{kind}: {node['title']}.{key} does not say {UNIT_OF_SUFFIX[suffix]}"
 
 
 def test_EveryDefinitionIsUsed():
-    texts = [(ROOT / "schema" / name).read_text() for name in
-             ("common.schema.json", "model.schema.json", "experiment.schema.json")]
+    texts = [path.read_text() for path in (ROOT / "schema").glob("*.json")]
     for text in texts:
         for name in json.loads(text).get("$defs", {}):
             if not any(f'#/$defs/{name}"' in other for other in texts):
@@ -120,7 +119,7 @@ def test_ShippedFilesLoad():
 
 
 def test_SchemasRefuseWhatTheReaderRefuses():
-    """A misspelt, a missing and a superfluous key, a wrong type: the same files are wrong to both."""
+    """A misspelt, a missing and a superfluous key, a wrong type: both refuse the same files."""
     push = (ROOT / "experiments" / "push_20n.yaml").read_text()
     push = push.replace("../models/", str(ROOT / "models") + "/")
     spine = (ROOT / "models" / "tetraspine3.yaml").read_text()
@@ -278,9 +277,10 @@ def test_ReaderAndSchemaKnowTheSameChoices():
                     path = folder / "probe.yaml"
                     content = {**least_map(schema, node, folder, key), key: "qqqqqqqqqqqqqqqq"}
                     path.write_text(json.dumps(wrap(content), indent=1))
-                    hint = re.search(r'cannot be "qqqqqqqqqqqqqqqq" \(one of: ([\w, ]+)\)', probe(path))
+                    hint = re.search(r'cannot be "q+" \(one of: ([\w, ]+)\)', probe(path))
                     if not hint or set(hint[1].split(", ")) != set(choices):
-                        yield f"{kind}: {node['title']}.{key}: {choices}, the reader: {hint and hint[1]}"
+                        known = hint and hint[1]
+                        yield f"{kind}: {node['title']}.{key}: {choices}, the reader: {known}"
     if count < 12:
         yield f"only {count} keys with choices were tried"
 
@@ -289,7 +289,8 @@ def test_ReaderAndSchemaKnowTheSameChoices():
 
 
 def test_FormatReferenceIsUpToDate():
-    run = subprocess.run([ROOT / "script" / "docs", "--check"], capture_output=True, text=True, check=False)
+    command = [sys.executable, ROOT / "script" / "docs", "--check"]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
     yield from run.stdout.splitlines() + run.stderr.splitlines()
 
 
