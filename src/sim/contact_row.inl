@@ -66,7 +66,7 @@ void ApplyImpulse(BodyWork<W>& body, W im, const ContactRow<W>& row, const Lever
   body.w += ln * g.n + l1 * g.t1 + l2 * g.t2;
 }
 
-/// A contact that meets faster than this along its surface starts sliding, slower, sticking [m/s].
+/// A contact that moves faster than this along its surface slides, a slower one sticks [m/s].
 inline constexpr double kSlidingMPerS = 1e-6;
 
 /// What a contact remembers of the step before; a new contact does not rebound.
@@ -151,6 +151,19 @@ void PrepareContact(const View& m, const Rows<W>& s, const Scratch<W>& work, Con
   row.l2 = m.along_slip ? zero : h * Dot(memory.force, row.t2) * row.live;
 }
 
+/// Whether a contact slid in this step: decides its coefficient in the next.
+template <class W, bool kPair>
+void JudgeSlip(const Scratch<W>& work, ContactRow<W>& row) noexcept {
+  const BodyWork<W>&a = work.bodies[row.a], &b = work.bodies[row.b];
+  W u1 = Dot(row.t1, a.v) + Dot(row.ja.t1, a.w), u2 = Dot(row.t2, a.v) + Dot(row.ja.t2, a.w);
+  if (kPair) {
+    u1 -= Dot(row.t1, b.v) + Dot(row.jb.t1, b.w);
+    u2 -= Dot(row.t2, b.v) + Dot(row.jb.t2, b.w);
+  }
+  const auto slides = u1 * u1 + u2 * u2 > W::Splat(kSlidingMPerS * kSlidingMPerS);
+  row.slip = Select(slides, W::Splat(1.0), W::Splat(0.0));
+}
+
 /// One contact of one sweep. Returns the largest change of its velocity [m/s].
 template <class W, bool kPair, class M>
 W RelaxContact(Scratch<W>& work, ContactRow<W>& row, M lanes) noexcept {
@@ -176,7 +189,6 @@ W RelaxContact(Scratch<W>& work, ContactRow<W>& row, M lanes) noexcept {
   W l2 = row.l2 - (row.p12 * u1 + row.p22 * u2);
   const W edge = row.mu * row.ln;
   const auto slides = l1 * l1 + l2 * l2 > edge * edge;
-  row.slip = Select(on, Select(slides, W::Splat(1.0), zero), row.slip);
   if (Any(slides & on)) {
     const W s1 = row.l1 - row.rho1 * u1, s2 = row.l2 - row.rho2 * u2;
     const W norm2 = s1 * s1 + s2 * s2;

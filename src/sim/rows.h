@@ -89,8 +89,8 @@ template <class W>
 struct ContactRow {
   int a, b;
   uint32_t id;
-  int frame;   ///< Contacts with equal numbers have the same directions; -1: with no other.
   V3<W> n, t1, t2;
+  W frame;                  ///< Contacts with equal numbers have the same directions.
   V3<W> arm_a, arm_b;
   Lever<W> ja, jb;          ///< arm x direction.
   Lever<W> ga, gb;          ///< inverse inertia times that.
@@ -103,7 +103,7 @@ struct ContactRow {
   W bias;                   ///< Normal velocity to reach is -bias or more [m/s].
   W static_friction, kinetic_friction;
   W mu;                     ///< Coefficient of this step.
-  W slip;                   ///< 1 if the impulse is on the cone's edge.
+  W slip;                   ///< 1 if it slides, 0 if it sticks.
   W bounce;                 ///< Rebound speed due in the next step [m/s], 0: none.
   W restitution;
   W ln, l1, l2;             ///< Impulses [N s].

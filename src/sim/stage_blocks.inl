@@ -26,13 +26,10 @@ class ContactBlock {
   /// Solves the block in `lanes`. Returns how far it was from solved before [m/s].
   template <class M>
   W Solve(W tolerance, M lanes) noexcept {
-    const W zero = W::Splat(0.0), one = W::Splat(1.0);
+    const W zero = W::Splat(0.0);
     Start();
     const W first_residual = Residual();
     W residual = first_residual;
-    for (int c = 0; c < kContacts; ++c) {
-      rows_[c].slip = Select(lanes, Select(slides_[c], one, zero), rows_[c].slip);
-    }
     auto busy = lanes & (residual > tolerance);
     if (!Any(busy)) return first_residual;
     BuildMatrix();
@@ -62,7 +59,6 @@ class ContactBlock {
       row.ln += dn;
       row.l1 += d1;
       row.l2 += d2;
-      row.slip = Select(better, Select(slides_[c], one, zero), row.slip);
       ApplyImpulse(work_.bodies[row.a], row.im_a, row, row.ga, dn, d1, d2);
     }
     const auto stuck = lanes & (first_residual > tolerance) & !better;
@@ -121,6 +117,7 @@ class ContactBlock {
 
   /// W = J M^-1 J^T. Contacts with one plane share their directions, whose products are 0 and 1.
   void BuildMatrix() noexcept {
+    const W zero = W::Splat(0.0), one = W::Splat(1.0);
     for (int i = 0; i < kContacts; ++i) {
       const ContactRow<W>& a = rows_[i];
       SetBlock(i, i, a.wnn, a.w1n, a.w2n, a.w1n, a.w11, a.w12, a.w2n, a.w12, a.w22);
@@ -130,25 +127,28 @@ class ContactBlock {
         W nn = Dot(l.n, g.n), n1 = Dot(l.n, g.t1), n2 = Dot(l.n, g.t2);
         W t1n = Dot(l.t1, g.n), t11 = Dot(l.t1, g.t1), t12 = Dot(l.t1, g.t2);
         W t2n = Dot(l.t2, g.n), t21 = Dot(l.t2, g.t1), t22 = Dot(l.t2, g.t2);
-        if (a.frame == b.frame) {
-          nn += a.im_a;
-          t11 += a.im_a;
-          t22 += a.im_a;
-        } else {
-          nn += a.im_a * Dot(a.n, b.n);
-          n1 += a.im_a * Dot(a.n, b.t1);
-          n2 += a.im_a * Dot(a.n, b.t2);
-          t1n += a.im_a * Dot(a.t1, b.n);
-          t11 += a.im_a * Dot(a.t1, b.t1);
-          t12 += a.im_a * Dot(a.t1, b.t2);
-          t2n += a.im_a * Dot(a.t2, b.n);
-          t21 += a.im_a * Dot(a.t2, b.t1);
-          t22 += a.im_a * Dot(a.t2, b.t2);
+        const auto same = a.frame == b.frame;
+        nn += a.im_a * Product(same, a.n, b.n, one);
+        t11 += a.im_a * Product(same, a.t1, b.t1, one);
+        t22 += a.im_a * Product(same, a.t2, b.t2, one);
+        if (Any(!same)) {
+          n1 += a.im_a * Product(same, a.n, b.t1, zero);
+          n2 += a.im_a * Product(same, a.n, b.t2, zero);
+          t1n += a.im_a * Product(same, a.t1, b.n, zero);
+          t12 += a.im_a * Product(same, a.t1, b.t2, zero);
+          t2n += a.im_a * Product(same, a.t2, b.n, zero);
+          t21 += a.im_a * Product(same, a.t2, b.t1, zero);
         }
         SetBlock(i, j, nn, n1, n2, t1n, t11, t12, t2n, t21, t22);
         SetBlock(j, i, nn, t1n, t2n, n1, t11, t21, n2, t12, t22);
       }
     }
+  }
+
+  /// a . b, which is known where both belong to the same frame.
+  template <class M>
+  static W Product(M same, const V3<W>& a, const V3<W>& b, W known) noexcept {
+    return Any(!same) ? Select(same, known, Dot(a, b)) : known;
   }
 
   void SetBlock(int i, int j, W nn, W n1, W n2, W t1n, W t11, W t12, W t2n, W t21,

@@ -31,7 +31,7 @@ ContactRow<W>& AddContact(Scratch<W>& work, int a, int b, uint32_t id) noexcept 
   row.a = a;
   row.b = b;
   row.id = id;
-  row.frame = -1 - work.contact_count;
+  row.frame = W::Splat(-work.contact_count);  // like no other
   return row;
 }
 
@@ -66,7 +66,7 @@ void CollidePlanes(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexc
         const PlaneTable& plane = m.planes[k];
         ContactRow<W>& row = AddContact(
             work, body, m.body_count, static_cast<uint32_t>(i * m.plane_count + k));
-        if (!m.along_slip) row.frame = k;
+        if (!m.along_slip) row.frame = W::Splat(k);
         row.n = simd::Splat3<W>(plane.normal);
         row.t1 = simd::Splat3<W>(plane.tangent1);
         row.t2 = simd::Splat3<W>(plane.tangent2);

@@ -126,10 +126,15 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, const Group& g, Scrat
     if (Any(busy)) Extrapolation<W>().AfterSweep(work, sweep, busy);
   }
   for (int i = 0; i < work.contact_count; ++i) {
-    const ContactRow<W>& row = work.contacts[i];
+    ContactRow<W>& row = work.contacts[i];
     const V3<W> f = row.ln * row.n + row.l1 * row.t1 + row.l2 * row.t2;
     s.mom[row.a] += Cross(row.arm_a, f);
-    if (i >= work.single_count) s.mom[row.b] -= Cross(row.arm_b, f);
+    if (i < work.single_count) {
+      JudgeSlip<W, false>(work, row);
+    } else {
+      s.mom[row.b] -= Cross(row.arm_b, f);
+      JudgeSlip<W, true>(work, row);
+    }
   }
   FinishStiffCables(s, work, step_s);
   return result;

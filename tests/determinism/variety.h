@@ -43,7 +43,17 @@ inline std::vector<ModelDef> VariedModels() {
   along_slip.name = "tetraspine3_along_slip";
   along_slip.friction_law = FrictionLaw::kAlongSlip;
   for (CableDef& cable : along_slip.cables) cable.damping_law = DampingLaw::kClamped;
-  return {scenes::Tetraspine().Def(), along_slip, prism.Def(), block.Def(), scenes::Jumble().Def()};
+  // In a wedge a box touches both planes, with other corners in every world: their directions and
+  // numbers of contacts differ from lane to lane.
+  ModelDef wedge = scenes::BlockOnSlope{{.angle_rad = 0.6}}.Def();
+  wedge.name = "block_in_wedge";
+  wedge.planes.push_back(wedge.planes[0]);
+  wedge.planes[1].normal.x *= -1;
+  ModelDef wedge_along_slip = wedge;
+  wedge_along_slip.name = "block_in_wedge_along_slip";
+  wedge_along_slip.friction_law = FrictionLaw::kAlongSlip;
+  return {wedge,       wedge_along_slip, scenes::Tetraspine().Def(), along_slip,
+          prism.Def(), block.Def(),      scenes::Jumble().Def()};
 }
 
 /// Starts world `world` in a way that belongs to `seed`: other places, speeds, parameters.
