@@ -37,8 +37,11 @@ class PerCable {
 
   /// `selector` may be null, after a complaint about it.
   void Add(const Value* selector, const std::string& path, const T& given) {
-    const std::vector<int> cables =
-        selector ? SelectCables(*selector, path, robot_, scope_) : std::vector<int>();
+    if (!selector) {
+      complete_ = false;
+      return;
+    }
+    const std::vector<int> cables = SelectCables(*selector, path, robot_, scope_);
     if (cables.empty()) complete_ = false;
     std::vector<int> twice;
     SourceRef first;
