@@ -21,6 +21,13 @@ int main(int argc, char** argv) {
   AddCompare(app, exit_code);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    // CLI11 does not say which word it did not know.
+    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
+      fmt::print(stderr, "error: there is no command \"{}\"; one of: check, run, compare\n", argv[1]);
+      return kUsage;
+    }
+    return app.exit(error) == 0 ? kOk : kUsage;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kOk : kUsage;
   }

@@ -11,6 +11,7 @@
 
 #include "commands.h"
 #include "overrides.h"
+#include "taut/compare.h"
 #include "taut/run.h"
 #include "taut/spec.h"
 #include "taut/summary.h"
@@ -84,6 +85,14 @@ fs::path MakeFolder(const RunArguments& args, const ExperimentSpec& experiment, 
   return folder;
 }
 
+/// The result beside the trace that the experiment names.
+void CompareWith(const std::string& reference, const std::string& result, bool quiet,
+                 Diagnostics& out) {
+  const std::optional<Trace> a = ReadTrace(result, out), b = ReadTrace(reference, out);
+  if (!a || !b || quiet) return;
+  fmt::print("\n{}", ComparisonTable(Compare(*a, *b, {}), result, reference));
+}
+
 int Run(const RunArguments& args) {
   Diagnostics found;
   const std::optional<Overrides> overrides = ParseOverrides(args.set);
@@ -121,6 +130,9 @@ int Run(const RunArguments& args) {
   if (!args.quiet) {
     fmt::print("{}\n", SummaryTable(*summary));
     fmt::print("Trace, inputs and summary: {}\n", folder.string());
+  }
+  if (experiment->compare_with) {
+    CompareWith(*experiment->compare_with, (folder / "trace.h5").string(), args.quiet, found);
   }
   if (!summary->status_text.empty()) fmt::print(stderr, "warning: {}\n", summary->status_text);
   if (!found.ok()) return Fail(found, kFailed);

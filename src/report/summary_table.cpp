@@ -76,11 +76,14 @@ std::string PhaseTable(const RunSummary& run, std::size_t first, std::size_t las
 }
 
 std::string SystemLines(const RunSummary& run) {
-  return fmt::format(
+  std::string out = fmt::format(
       "\nlargest system tension: {:.3f} N in {}\n"
-      "elastic part alone: {:.3f} N; from 5 s on: {:.3f} N\n",
-      run.system_max_tension_n, run.system_max_tension_cable, run.system_max_elastic_n,
-      run.system_max_elastic_after_start_n);
+      "elastic part alone: {:.3f} N",
+      run.system_max_tension_n, run.system_max_tension_cable, run.system_max_elastic_n);
+  if (run.simulated_s > 5) {
+    out += fmt::format("; from 5 s on: {:.3f} N", run.system_max_elastic_after_start_n);
+  }
+  return out + "\n";
 }
 
 std::string DragTable(const RunSummary& run) {
