@@ -67,16 +67,12 @@ class Parts {
     inertia_.yy += own.yy;
     inertia_.zz += own.zz;
   }
-  /// A slender rod: its mass on its axis. Two points at 1/sqrt(3) of the half length have the same
-  /// mass, centre and second moments.
-  void AddRod(double mass_kg, const Vec3& from, const Vec3& to) {
+  /// A solid cylinder.
+  void AddCylinder(double mass_kg, const Vec3& from, const Vec3& to, double radius_m) {
+    // Two points on the axis at 1/sqrt(3) of the half length have a thin rod's moments.
     const Vec3 mid = Scaled(0.5, Sum(from, to)), half = Scaled(0.5, Between(from, to));
     AddPoint(mass_kg / 2, Sum(mid, Scaled(1 / std::sqrt(3.0), half)));
     AddPoint(mass_kg / 2, Sum(mid, Scaled(-1 / std::sqrt(3.0), half)));
-  }
-  /// A solid cylinder.
-  void AddCylinder(double mass_kg, const Vec3& from, const Vec3& to, double radius_m) {
-    AddRod(mass_kg, from, to);
     const Vec3 d = Between(from, to);
     const Vec3 u = Scaled(1 / LengthOf(d), d);
     const double across = mass_kg * radius_m * radius_m / 4;  // twice that about its own axis

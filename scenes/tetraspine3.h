@@ -65,7 +65,7 @@ struct Tetraspine {
     for (const auto& rod : kRods) {
       const Vec3 &from = p[static_cast<std::size_t>(rod[0])],
                  &to = p[static_cast<std::size_t>(rod[1])];
-      parts.AddRod(kRodKgPerM * LengthOf(Between(from, to)), from, to);
+      parts.AddCylinder(kRodKgPerM * LengthOf(Between(from, to)), from, to, kRadiusM);
       def.capsules.push_back({name, s, from, to, kRadiusM, material});
     }
     for (std::size_t i = 0; i < kNodes; ++i) {
