@@ -8,9 +8,9 @@ namespace taut::cli {
 /// Exit statuses, the same for every subcommand (docs/cli.md).
 enum Exit : int {
   kOk = 0,
-  kFailed = 1,       ///< The command ran and the answer is no, or it could not finish.
-  kUsage = 2,        ///< The command line itself is wrong.
-  kBadInput = 3,     ///< A file has errors; all of them were printed.
+  kFailed = 1,    ///< The command ran and the answer is no, or it could not finish.
+  kUsage = 2,     ///< The command line itself is wrong.
+  kBadInput = 3,  ///< A file has errors; all of them were printed.
   kInterrupted = 130,
 };
 

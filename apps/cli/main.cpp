@@ -5,7 +5,8 @@
 
 int main(int argc, char** argv) {
   using namespace taut::cli;
-  CLI::App app{"Tensegrity robots: describe, simulate, control, compare with measurements.", "taut"};
+  CLI::App app{"Tensegrity robots: describe, simulate, control, compare with measurements.",
+               "taut"};
   app.set_version_flag("--version", std::string("taut ") + taut::kVersion);
   app.require_subcommand(1);
   app.footer(
@@ -24,7 +25,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::RequiredError& error) {
     // CLI11 does not say which word it did not know.
     if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
-      fmt::print(stderr, "error: there is no command \"{}\"; one of: check, run, compare\n", argv[1]);
+      fmt::print(stderr, "error: there is no command \"{}\"; one of: check, run, compare\n",
+                 argv[1]);
       return kUsage;
     }
     return app.exit(error) == 0 ? kOk : kUsage;

@@ -78,7 +78,8 @@ bool WriteText(const fs::path& path, const std::string& text, Diagnostics& out) 
 
 /// The run's folder: the one asked for, or runs/<experiment>.
 fs::path MakeFolder(const RunArguments& args, const ExperimentSpec& experiment, Diagnostics& out) {
-  const fs::path folder = args.out.empty() ? fs::path("runs") / experiment.name : fs::path(args.out);
+  const fs::path folder =
+      args.out.empty() ? fs::path("runs") / experiment.name : fs::path(args.out);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) out.Error({folder.string()}, "cannot make this folder: " + error.message());
@@ -107,8 +108,8 @@ int Run(const RunArguments& args) {
   if (!found.ok()) return Fail(found, kFailed);
   const std::vector<ChannelInfo> channels = RunChannels(*experiment);
   std::vector<std::unique_ptr<TraceWriter>> writers;
-  writers.push_back(CreateHdf5Trace((folder / "trace.h5").string(), channels,
-                                    RunMetadata(*experiment), found));
+  writers.push_back(
+      CreateHdf5Trace((folder / "trace.h5").string(), channels, RunMetadata(*experiment), found));
   if (args.csv) {
     writers.push_back(CreateCsvTrace((folder / "trace.csv").string(), channels, found));
   }

@@ -40,36 +40,36 @@ Simd BestSimd();
 
 struct BatchOptions {
   int worlds = 1;
-  int threads = 1;                ///< 0: one a core.
-  std::optional<Simd> simd;       ///< Nothing: `BestSimd()`, or scalar for a single world.
-  int max_sweeps = 1000;          ///< Of the contact solver; a step that needs more says so.
+  int threads = 1;                   ///< 0: one a core.
+  std::optional<Simd> simd;          ///< Nothing: `BestSimd()`, or scalar for a single world.
+  int max_sweeps = 1000;             ///< Of the contact solver; a step that needs more says so.
   double tolerance_m_per_s = 1e-10;  ///< Residual at which the contact solve counts as done.
 };
 
 /// What a world has to say for itself. Bits; 0 is good. Sticky until `ClearStatus`.
 enum StatusBits : std::uint32_t {
   kStatusOk = 0,
-  kStatusNonFinite = 1u << 0,         ///< A state is NaN or infinite: the world stands still.
-  kStatusNotConverged = 1u << 1,      ///< The contact solve stopped at max_sweeps.
-  kStatusContactOverflow = 1u << 2,   ///< More contacts than the model has room for.
+  kStatusNonFinite = 1u << 0,        ///< A state is NaN or infinite: the world stands still.
+  kStatusNotConverged = 1u << 1,     ///< The contact solve stopped at max_sweeps.
+  kStatusContactOverflow = 1u << 2,  ///< More contacts than the model has room for.
 };
 
 struct WorldStatus {
   std::uint32_t bits = kStatusOk;
-  double first_time_s = 0.0;   ///< When the first bit was set.
-  int body = kWorld;           ///< Concerned body, or kWorld.
-  int cable = -1;              ///< Concerned cable, or -1.
-  double residual_m_per_s = 0; ///< Of the last solve.
-  int sweeps = 0;              ///< Of the last solve.
+  double first_time_s = 0.0;    ///< When the first bit was set.
+  int body = kWorld;            ///< Concerned body, or kWorld.
+  int cable = -1;               ///< Concerned cable, or -1.
+  double residual_m_per_s = 0;  ///< Of the last solve.
+  int sweeps = 0;               ///< Of the last solve.
 };
 
 /// A cable at the current time.
 struct CableState {
-  double length_m = 0;         ///< l: between its ends, along all attachments.
-  double rate_m_per_s = 0;     ///< dl/dt, exact.
-  double rest_length_m = 0;    ///< L.
-  double tension_n = 0;        ///< What a load cell feels: spring and damper.
-  double elastic_n = 0;        ///< max(0, k (l - L)) alone: what NTRT logs.
+  double length_m = 0;       ///< l: between its ends, along all attachments.
+  double rate_m_per_s = 0;   ///< dl/dt, exact.
+  double rest_length_m = 0;  ///< L.
+  double tension_n = 0;      ///< What a load cell feels: spring and damper.
+  double elastic_n = 0;      ///< max(0, k (l - L)) alone: what NTRT logs.
 };
 
 struct BodyState {
@@ -93,11 +93,13 @@ struct ContactState {
 
 /// Which per-world parameter `SetParameter` changes. `index`: a body, a cable or a surface.
 enum class Parameter {
-  kBodyMass,             ///< [kg]; inertia scales with it.
-  kCableStiffness,       ///< [N/m]
-  kCableDamping,         ///< [N s/m]
-  kFrictionScale,        ///< Factor on all coefficients of the world; index 0. [1]
-  kGravityX, kGravityY, kGravityZ,  ///< [m/s^2]; index 0.
+  kBodyMass,        ///< [kg]; inertia scales with it.
+  kCableStiffness,  ///< [N/m]
+  kCableDamping,    ///< [N s/m]
+  kFrictionScale,   ///< Factor on all coefficients of the world; index 0. [1]
+  kGravityX,
+  kGravityY,
+  kGravityZ,  ///< [m/s^2]; index 0.
 };
 
 class Batch {
@@ -127,12 +129,12 @@ class Batch {
   // --- observation -------------------------------------------------------------------------
   CableState Cable(int world, int cable) const noexcept;
   BodyState Body(int world, int body) const noexcept;
-  Vec3 NodePosition(int world, int node) const noexcept;   ///< [m], in W.
-  Vec3 NodeVelocity(int world, int node) const noexcept;   ///< [m/s], in W.
+  Vec3 NodePosition(int world, int node) const noexcept;  ///< [m], in W.
+  Vec3 NodeVelocity(int world, int node) const noexcept;  ///< [m/s], in W.
   Energy TotalEnergy(int world) const noexcept;
-  Vec3 Momentum(int world) const noexcept;                 ///< [kg m/s], in W.
-  Vec3 AngularMomentum(int world) const noexcept;          ///< About W's origin [kg m^2/s].
-  std::vector<ContactState> Contacts(int world) const;     ///< Of the last step.
+  Vec3 Momentum(int world) const noexcept;              ///< [kg m/s], in W.
+  Vec3 AngularMomentum(int world) const noexcept;       ///< About W's origin [kg m^2/s].
+  std::vector<ContactState> Contacts(int world) const;  ///< Of the last step.
 
   // --- state -------------------------------------------------------------------------------
   void SetBodyState(int world, int body, const BodyState& state) noexcept;

@@ -23,12 +23,12 @@ struct Material {
 /// A rigid body. Shapes, cables and nodes refer to it by its index.
 struct BodyDef {
   std::string name;
-  double mass_kg = 0.0;                  ///< > 0 (ignored if `fixed`).
-  Vec3 com_m;                            ///< Centre of mass in W.
-  Inertia inertia_kg_m2;                 ///< About the centre of mass, in axes parallel to W.
-  Vec3 velocity_m_per_s;                 ///< Of the centre of mass, in W.
-  Vec3 angular_velocity_rad_per_s;       ///< In W.
-  bool fixed = false;                    ///< Does not move: anchored to the world.
+  double mass_kg = 0.0;             ///< > 0 (ignored if `fixed`).
+  Vec3 com_m;                       ///< Centre of mass in W.
+  Inertia inertia_kg_m2;            ///< About the centre of mass, in axes parallel to W.
+  Vec3 velocity_m_per_s;            ///< Of the centre of mass, in W.
+  Vec3 angular_velocity_rad_per_s;  ///< In W.
+  bool fixed = false;               ///< Does not move: anchored to the world.
 };
 
 struct SphereDef {
@@ -54,8 +54,8 @@ struct BoxDef {
   std::string name;
   int body = 0;
   Vec3 center_m;
-  Quat orientation;       ///< q_WBox.
-  Vec3 half_extents_m;    ///< Along the box axes, > 0.
+  Quat orientation;     ///< q_WBox.
+  Vec3 half_extents_m;  ///< Along the box axes, > 0.
   Material material;
   bool collides = true;
 };
@@ -81,11 +81,11 @@ struct ActuatorDef {
     kLimited,  ///< Follows the command within the limits below.
   };
   Kind kind = Kind::kNone;
-  double max_speed_m_per_s = 0.0;           ///< Of the rest length, > 0; infinity: no limit.
-  double max_acceleration_m_per_s2 = 0.0;   ///< Of the rest length, > 0; infinity: no limit.
-  double max_force_n = 0.0;                 ///< Never winds past this tension, > 0; may be infinity.
-  double min_rest_length_m = 0.0;           ///< >= 0.
-  double min_length_m = 0.0;                ///< Does not wind in while the cable is shorter, >= 0.
+  double max_speed_m_per_s = 0.0;          ///< Of the rest length, > 0; infinity: no limit.
+  double max_acceleration_m_per_s2 = 0.0;  ///< Of the rest length, > 0; infinity: no limit.
+  double max_force_n = 0.0;                ///< Never winds past this tension, > 0; may be infinity.
+  double min_rest_length_m = 0.0;          ///< >= 0.
+  double min_length_m = 0.0;               ///< Does not wind in while the cable is shorter, >= 0.
 };
 
 /// Where a cable is fixed to, or slides through, a body.

@@ -48,20 +48,20 @@ struct RunSummary {
   std::vector<PhaseSpec> phases;
   std::vector<CableSummary> cables;
   std::vector<DragSummary> drags;
-  double system_max_tension_n = 0;              ///< Largest `tension` of any cable, whole run.
+  double system_max_tension_n = 0;  ///< Largest `tension` of any cable, whole run.
   std::string system_max_tension_cable;
   double system_max_elastic_n = 0;
   double system_max_elastic_after_start_n = 0;
   WorldStatus status;
-  std::string status_text;                      ///< Empty when good; names the body or cable.
-  std::uint64_t state_hash = 0;                 ///< Of the world at the end.
+  std::string status_text;       ///< Empty when good; names the body or cable.
+  std::uint64_t state_hash = 0;  ///< Of the world at the end.
 };
 
 /// Where a run stands, for progress lines.
 struct RunProgress {
-  double time_s = 0;      ///< Simulated.
+  double time_s = 0;  ///< Simulated.
   double duration_s = 0;
-  double wall_s = 0;      ///< Since the first step.
+  double wall_s = 0;  ///< Since the first step.
 };
 
 struct RunOptions {
@@ -82,8 +82,8 @@ TraceMetadata RunMetadata(const ExperimentSpec& experiment);
 /// Runs an experiment from start to end. Nothing and diagnostics if it cannot start (a model that
 /// does not compile, a start that does not settle); what happens later is in the summary. A trace
 /// that cannot be written ends the run with a diagnostic.
-std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment,
-                                        const RunOptions& options, Diagnostics& out);
+std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment, const RunOptions& options,
+                                        Diagnostics& out);
 
 /// Brings a world to rest: rest lengths fixed, motion taken out whenever the kinetic energy peaks,
 /// until no node gains more than 1e-9 m/s in a step. Time does not pass. False if that takes more

@@ -49,11 +49,11 @@ struct ClockSpec {
 /// Gains of one cable under impedance control (paper eq. 3); lengthening is positive.
 struct ImpedanceGains {
   int cable = 0;
-  double tension_offset_n = 0.0;               ///< T0 >= 0.
-  double length_offset_m = 0.0;                ///< L0 >= 0.
-  double position_gain_n_per_m = 0.0;          ///< K >= 0.
-  double velocity_gain_n_s_per_m = 0.0;        ///< B >= 0.
-  double velocity_offset_m_per_s = 0.0;        ///< V0.
+  double tension_offset_n = 0.0;         ///< T0 >= 0.
+  double length_offset_m = 0.0;          ///< L0 >= 0.
+  double position_gain_n_per_m = 0.0;    ///< K >= 0.
+  double velocity_gain_n_s_per_m = 0.0;  ///< B >= 0.
+  double velocity_offset_m_per_s = 0.0;  ///< V0.
 };
 
 /// How a tension set point becomes a rest-length command.
@@ -63,7 +63,7 @@ enum class TensionConversion {
 };
 
 struct PidGains {
-  double proportional_m_per_s_n = 0.0;   ///< Rate of winding in per newton of error.
+  double proportional_m_per_s_n = 0.0;  ///< Rate of winding in per newton of error.
   double integral_m_per_s2_n = 0.0;
   double derivative_m_per_n = 0.0;
 };
@@ -89,7 +89,7 @@ struct PositionProgram {
 struct ControllerSpec {
   std::string name;
   ClockSpec clock;
-  std::optional<ImpedanceSpec> impedance;   ///< Exactly one of these is present.
+  std::optional<ImpedanceSpec> impedance;  ///< Exactly one of these is present.
   std::vector<PositionProgram> position;
 };
 
@@ -98,8 +98,8 @@ struct ControllerSpec {
 struct PushSpec {
   std::string name;
   int node = 0;
-  Vec3 direction{1.0, 0.0, 0.0};  ///< Unit vector in W.
-  double scale = 1.0;             ///< Factor on force_n.
+  Vec3 direction{1.0, 0.0, 0.0};                   ///< Unit vector in W.
+  double scale = 1.0;                              ///< Factor on force_n.
   std::vector<std::pair<double, double>> force_n;  ///< (time_s, force_n), times rising.
 };
 
@@ -127,8 +127,8 @@ enum class StartKind {
 };
 
 struct RecordSpec {
-  double rate_hz = 100.0;              ///< Rows a second; 0: every step.
-  std::vector<std::string> channels;   ///< Name patterns with `*`; empty: all.
+  double rate_hz = 100.0;             ///< Rows a second; 0: every step.
+  std::vector<std::string> channels;  ///< Name patterns with `*`; empty: all.
 };
 
 /// An experiment file, resolved.
@@ -145,9 +145,9 @@ struct ExperimentSpec {
   std::vector<DragSpec> drags;
   std::vector<PhaseSpec> phases;
   RecordSpec record;
-  std::optional<std::string> compare_with;    ///< A trace to set the result beside.
-  std::map<std::string, double> parameters;   ///< The experiment's own, as resolved.
-  std::vector<std::string> files;             ///< Every file that was read, the experiment first.
+  std::optional<std::string> compare_with;   ///< A trace to set the result beside.
+  std::map<std::string, double> parameters;  ///< The experiment's own, as resolved.
+  std::vector<std::string> files;            ///< Every file that was read, the experiment first.
   std::uint64_t input_hash = 0;  ///< FNV-1a of the bytes of `files` and of the overrides.
 };
 

@@ -12,7 +12,8 @@ Controller::Controller(const ControllerSpec& spec)
   }
   for (const PositionProgram& program : spec_.position) {
     std::vector<control::ProgramPoint<double>> points;
-    for (const auto& [time_s, length_m] : program.rest_length_m) points.push_back({time_s, length_m});
+    for (const auto& [time_s, length_m] : program.rest_length_m)
+      points.push_back({time_s, length_m});
     programs_.push_back(std::move(points));
   }
 }
@@ -51,11 +52,11 @@ void Controller::ActImpedance(std::size_t i, const CableReading& reading, double
   }
   const control::Impedance<double> law{gains.tension_offset_n, gains.length_offset_m,
                                        gains.position_gain_n_per_m, gains.velocity_gain_n_s_per_m};
-  set_point_n = control::ImpedanceTension(law, reading.length_m, rate_m_per_s,
-                                          gains.velocity_offset_m_per_s);
+  set_point_n =
+      control::ImpedanceTension(law, reading.length_m, rate_m_per_s, gains.velocity_offset_m_per_s);
   if (spec.conversion == TensionConversion::kStiffness) {
-    target_m = control::TensionToRestLengthByStiffness(
-        reading.rest_length_m, reading.elastic_n, set_point_n, reading.stiffness_n_per_m, 0.0);
+    target_m = control::TensionToRestLengthByStiffness(reading.rest_length_m, reading.elastic_n,
+                                                       set_point_n, reading.stiffness_n_per_m, 0.0);
     return;
   }
   const control::Pid<double> pid{spec.pid.proportional_m_per_s_n, spec.pid.integral_m_per_s2_n,

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "taut/batch.h"
 #include "taut/control/clock.h"
 #include "taut/control/pid.h"
 #include "taut/control/position.h"
 #include "taut/control/rate.h"
-#include "taut/batch.h"
 #include "taut/spec.h"
 
 namespace taut::plant {

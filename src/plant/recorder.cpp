@@ -64,23 +64,36 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
   const ModelDef& def = experiment.robot.def;
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
     Add("cable/" + def.cables[c].name + "/",
-        {{"tension_n", "N"}, {"elastic_n", "N"}, {"length_m", "m"}, {"rate_m_per_s", "m/s"},
-         {"rest_length_m", "m"}, {"target_rest_length_m", "m"}, {"setpoint_n", "N"}},
+        {{"tension_n", "N"},
+         {"elastic_n", "N"},
+         {"length_m", "m"},
+         {"rate_m_per_s", "m/s"},
+         {"rest_length_m", "m"},
+         {"target_rest_length_m", "m"},
+         {"setpoint_n", "N"}},
         [c](const RecordSource& s, double* out) {
           const CableReading& r = (*s.readings)[c];
-          const double values[] = {r.tension_n,        r.elastic_n,      r.length_m,
-                                   r.rate_m_per_s,     r.rest_length_m,  (*s.target_m)[c],
+          const double values[] = {r.tension_n,        r.elastic_n,     r.length_m,
+                                   r.rate_m_per_s,     r.rest_length_m, (*s.target_m)[c],
                                    (*s.set_point_n)[c]};
           std::copy(std::begin(values), std::end(values), out);
         });
   }
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     Add("body/" + def.bodies[b].name + "/",
-        {{"position_x_m", "m"}, {"position_y_m", "m"}, {"position_z_m", "m"},
-         {"orientation_w", "1"}, {"orientation_x", "1"}, {"orientation_y", "1"},
-         {"orientation_z", "1"}, {"velocity_x_m_per_s", "m/s"}, {"velocity_y_m_per_s", "m/s"},
-         {"velocity_z_m_per_s", "m/s"}, {"angular_velocity_x_rad_per_s", "rad/s"},
-         {"angular_velocity_y_rad_per_s", "rad/s"}, {"angular_velocity_z_rad_per_s", "rad/s"}},
+        {{"position_x_m", "m"},
+         {"position_y_m", "m"},
+         {"position_z_m", "m"},
+         {"orientation_w", "1"},
+         {"orientation_x", "1"},
+         {"orientation_y", "1"},
+         {"orientation_z", "1"},
+         {"velocity_x_m_per_s", "m/s"},
+         {"velocity_y_m_per_s", "m/s"},
+         {"velocity_z_m_per_s", "m/s"},
+         {"angular_velocity_x_rad_per_s", "rad/s"},
+         {"angular_velocity_y_rad_per_s", "rad/s"},
+         {"angular_velocity_z_rad_per_s", "rad/s"}},
         [b](const RecordSource& s, double* out) {
           FillBody(*s.batch, s.world, static_cast<int>(b), out);
         });
@@ -94,8 +107,14 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
         [i](const RecordSource& s, double* out) { *out = s.timeline->drag_n()[i]; });
   }
   Add("system/",
-      {{"kinetic_j", "J"}, {"gravity_j", "J"}, {"elastic_j", "J"}, {"contact_count", "1"},
-       {"residual_m_per_s", "m/s"}, {"com_x_m", "m"}, {"com_y_m", "m"}, {"com_z_m", "m"}},
+      {{"kinetic_j", "J"},
+       {"gravity_j", "J"},
+       {"elastic_j", "J"},
+       {"contact_count", "1"},
+       {"residual_m_per_s", "m/s"},
+       {"com_x_m", "m"},
+       {"com_y_m", "m"},
+       {"com_z_m", "m"}},
       [](const RecordSource& s, double* out) { FillSystem(*s.batch, s.world, out); });
   row_.resize(channels_.size());
 }

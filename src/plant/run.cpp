@@ -25,8 +25,10 @@ std::string DescribeStatus(const ModelDef& def, const WorldStatus& status) {
   if (status.bits & kStatusNotConverged) add("a contact solve did not converge");
   if (status.bits & kStatusContactOverflow) add("more contacts than there is room for");
   if (out.empty()) return out;
-  if (status.body != kWorld) out += ", body " + def.bodies[static_cast<std::size_t>(status.body)].name;
-  if (status.cable >= 0) out += ", cable " + def.cables[static_cast<std::size_t>(status.cable)].name;
+  if (status.body != kWorld)
+    out += ", body " + def.bodies[static_cast<std::size_t>(status.body)].name;
+  if (status.cable >= 0)
+    out += ", cable " + def.cables[static_cast<std::size_t>(status.cable)].name;
   return out + ", first at t = " + std::to_string(status.first_time_s) + " s";
 }
 
@@ -110,8 +112,9 @@ class Runner {
           const auto now = Clock::now();
           if (options_.progress && now - last_progress > std::chrono::milliseconds(200)) {
             last_progress = now;
-            summary.interrupted = !options_.progress(
-                {time_s, experiment_.duration_s, std::chrono::duration<double>(now - start).count()});
+            summary.interrupted =
+                !options_.progress({time_s, experiment_.duration_s,
+                                    std::chrono::duration<double>(now - start).count()});
           }
         }
         if (batch_.Status(kTheWorld).bits & kStatusNonFinite) good = false;
@@ -138,8 +141,10 @@ class Runner {
     for (std::size_t c = 0; c < readings_.size(); ++c) {
       const int cable = static_cast<int>(c);
       const CableState s = batch_.Cable(kTheWorld, cable);
-      readings_[c] = {s.rest_length_m, s.length_m, s.rate_m_per_s, s.tension_n, s.elastic_n,
-                      batch_.GetParameter(kTheWorld, Parameter::kCableStiffness, cable)};
+      readings_[c] = {
+          s.rest_length_m, s.length_m,
+          s.rate_m_per_s,  s.tension_n,
+          s.elastic_n,     batch_.GetParameter(kTheWorld, Parameter::kCableStiffness, cable)};
     }
   }
 
@@ -198,8 +203,8 @@ std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment) {
   return plant::Recorder(experiment).channels();
 }
 
-std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment,
-                                        const RunOptions& options, Diagnostics& out) {
+std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment, const RunOptions& options,
+                                        Diagnostics& out) {
   const auto model = Model::Compile(experiment.robot.def, out);
   if (!model) return std::nullopt;
   BatchOptions batch_options;

@@ -41,7 +41,8 @@ Statistics::Statistics(const ExperimentSpec& experiment)
 
 void Statistics::Take(Quantity& quantity, double time_s, double force_n) const {
   quantity.max = std::max(quantity.max, force_n);
-  if (time_s > kStartIsOverS) quantity.max_after_start = std::max(quantity.max_after_start, force_n);
+  if (time_s > kStartIsOverS)
+    quantity.max_after_start = std::max(quantity.max_after_start, force_n);
   for (std::size_t p = 0; p < experiment_.phases.size(); ++p) {
     const PhaseSpec& phase = experiment_.phases[p];
     if (Within(time_s, phase.from_s, phase.to_s)) quantity.phases[p].Take(force_n);

@@ -53,8 +53,7 @@ Vec3 Timeline::DragForce(const Batch& batch, int world, std::size_t drag, double
   }
   const Vec3 hand = drag_start_m_[drag] + (time_s - spec.from_s) * spec.velocity_m_per_s;
   const Vec3 slip = spec.velocity_m_per_s - batch.NodeVelocity(world, spec.node);
-  const Vec3 force =
-      spec.stiffness_n_per_m * (hand - node) + spec.damping_n_s_per_m * slip;
+  const Vec3 force = spec.stiffness_n_per_m * (hand - node) + spec.damping_n_s_per_m * slip;
   const double speed = std::sqrt(Dot(spec.velocity_m_per_s, spec.velocity_m_per_s));
   drag_n_[drag] = speed > 0 ? Dot(force, spec.velocity_m_per_s) / speed : 0;
   return force;

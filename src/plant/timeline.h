@@ -32,7 +32,7 @@ class Timeline {
 
   const ExperimentSpec& experiment_;
   std::vector<double> corners_;
-  std::vector<int> nodes_;          ///< All that are ever pushed or dragged.
+  std::vector<int> nodes_;  ///< All that are ever pushed or dragged.
   std::vector<double> push_n_, drag_n_;
   std::vector<Vec3> drag_start_m_;
   std::vector<bool> dragging_;

@@ -17,17 +17,23 @@ bool MachineHas(Simd simd) {
     case Simd::kAvx512:
       return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
              __builtin_cpu_supports("avx512vl") != 0;
-    case Simd::kAvx2: return __builtin_cpu_supports("avx2") != 0;
-    default: return true;
+    case Simd::kAvx2:
+      return __builtin_cpu_supports("avx2") != 0;
+    default:
+      return true;
   }
 }
 
 const sim::Kernel& KernelOf(Simd simd) {
   switch (simd) {
-    case Simd::kAvx512: return sim::kKernelAvx512;
-    case Simd::kAvx2: return sim::kKernelAvx2;
-    case Simd::kSse2: return sim::kKernelSse2;
-    default: return sim::kKernelScalar;
+    case Simd::kAvx512:
+      return sim::kKernelAvx512;
+    case Simd::kAvx2:
+      return sim::kKernelAvx2;
+    case Simd::kSse2:
+      return sim::kKernelSse2;
+    default:
+      return sim::kKernelScalar;
   }
 }
 
@@ -66,7 +72,8 @@ Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
   const auto group_count = static_cast<std::size_t>((options.worlds + n - 1) / n);
   const auto contacts = static_cast<std::size_t>(model->ContactCapacity(n));
   const auto nodes = static_cast<std::size_t>(model->node_count);
-  const std::size_t group_rows = static_cast<std::size_t>(layout.rows) * static_cast<std::size_t>(n);
+  const std::size_t group_rows =
+      static_cast<std::size_t>(layout.rows) * static_cast<std::size_t>(n);
   const std::size_t stride = (group_rows + 7) / 8 * 8;
   rows = AllocateAligned<double>(group_count * stride);
   ids.resize(group_count * contacts);
@@ -92,9 +99,9 @@ void Batch::Impl::SetMass(int world, int body, double mass_kg) noexcept {
   at(world, layout.mass + body) = def.fixed ? 0.0 : mass_kg;
   at(world, layout.inv_mass + body) = def.fixed ? 0.0 : 1.0 / mass_kg;
   for (int i = 0; i < 3; ++i) {
-    const double moment =
-        def.fixed ? 0.0
-                  : model->inertia[static_cast<std::size_t>(3 * body + i)] * (mass_kg / def.mass_kg);
+    const double moment = def.fixed ? 0.0
+                                    : model->inertia[static_cast<std::size_t>(3 * body + i)] *
+                                          (mass_kg / def.mass_kg);
     at(world, layout.inertia + 3 * body + i) = moment;
     at(world, layout.inv_inertia + 3 * body + i) = def.fixed ? 0.0 : 1.0 / moment;
   }
@@ -255,12 +262,24 @@ void Batch::SetParameter(int world, Parameter parameter, int index, double value
   }
   d.group(world).sensed = false;
   switch (parameter) {
-    case Parameter::kCableStiffness: d.at(world, d.layout.stiffness + index) = value; break;
-    case Parameter::kCableDamping: d.at(world, d.layout.damping + index) = value; break;
-    case Parameter::kFrictionScale: d.at(world, d.layout.friction_scale) = value; break;
-    case Parameter::kGravityX: d.at(world, d.layout.gravity) = value; break;
-    case Parameter::kGravityY: d.at(world, d.layout.gravity + 1) = value; break;
-    default: d.at(world, d.layout.gravity + 2) = value; break;
+    case Parameter::kCableStiffness:
+      d.at(world, d.layout.stiffness + index) = value;
+      break;
+    case Parameter::kCableDamping:
+      d.at(world, d.layout.damping + index) = value;
+      break;
+    case Parameter::kFrictionScale:
+      d.at(world, d.layout.friction_scale) = value;
+      break;
+    case Parameter::kGravityX:
+      d.at(world, d.layout.gravity) = value;
+      break;
+    case Parameter::kGravityY:
+      d.at(world, d.layout.gravity + 1) = value;
+      break;
+    default:
+      d.at(world, d.layout.gravity + 2) = value;
+      break;
   }
   d.JudgeStiffness(world);
 }
@@ -268,13 +287,20 @@ void Batch::SetParameter(int world, Parameter parameter, int index, double value
 double Batch::GetParameter(int world, Parameter parameter, int index) const noexcept {
   const Layout& l = impl_->layout;
   switch (parameter) {
-    case Parameter::kBodyMass: return impl_->at(world, l.mass + index);
-    case Parameter::kCableStiffness: return impl_->at(world, l.stiffness + index);
-    case Parameter::kCableDamping: return impl_->at(world, l.damping + index);
-    case Parameter::kFrictionScale: return impl_->at(world, l.friction_scale);
-    case Parameter::kGravityX: return impl_->at(world, l.gravity);
-    case Parameter::kGravityY: return impl_->at(world, l.gravity + 1);
-    default: return impl_->at(world, l.gravity + 2);
+    case Parameter::kBodyMass:
+      return impl_->at(world, l.mass + index);
+    case Parameter::kCableStiffness:
+      return impl_->at(world, l.stiffness + index);
+    case Parameter::kCableDamping:
+      return impl_->at(world, l.damping + index);
+    case Parameter::kFrictionScale:
+      return impl_->at(world, l.friction_scale);
+    case Parameter::kGravityX:
+      return impl_->at(world, l.gravity);
+    case Parameter::kGravityY:
+      return impl_->at(world, l.gravity + 1);
+    default:
+      return impl_->at(world, l.gravity + 2);
   }
 }
 

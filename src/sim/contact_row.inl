@@ -137,15 +137,14 @@ void PrepareContact(const View& m, const Rows<W>& s, const Scratch<W>& work, Con
   const W impact = vn - dv * (W::Splat(0.5) - share);
   const auto hits = (row.gap + h * vn < zero) & (memory.bounce == zero) &
                     (Dot(memory.force, row.n) == zero) &
-                    (-impact > Max(W::Splat(kLeastImpactMPerS), Abs(dv + dv))) &
-                    (row.live > zero) & (row.restitution > zero);
+                    (-impact > Max(W::Splat(kLeastImpactMPerS), Abs(dv + dv))) & (row.live > zero) &
+                    (row.restitution > zero);
   row.bounce = Select(hits, Max(W::Splat(0.5) * dv - row.restitution * impact, zero), zero);
 
   const V3<W> along = before - Dot(before, row.n) * row.n;
   const auto moving = Dot(along, along) > W::Splat(kSlidingMPerS * kSlidingMPerS);
   row.slip = Select(memory.slip < zero, Select(moving, one, zero), memory.slip);
-  row.mu = s.friction_scale[0] * Select(row.slip > zero, row.kinetic_friction,
-                                        row.static_friction);
+  row.mu = s.friction_scale[0] * Select(row.slip > zero, row.kinetic_friction, row.static_friction);
   row.ln = Max(h * Dot(memory.force, row.n), zero) * row.live;
   row.l1 = h * Dot(memory.force, row.t1) * row.live;
   row.l2 = m.along_slip ? zero : h * Dot(memory.force, row.t2) * row.live;

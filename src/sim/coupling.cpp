@@ -13,7 +13,7 @@ namespace {
 /// What a unit tension does to one body, at the start.
 struct Pull {
   int body;
-  Vec3 force, torque;       ///< Torque in the principal frame.
+  Vec3 force, torque;  ///< Torque in the principal frame.
 };
 
 Vec3 PointInWorld(const Tables& t, const AttachmentTable& a) {

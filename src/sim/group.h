@@ -25,10 +25,10 @@ struct Group {
   double* rows = nullptr;
   uint32_t* contact_ids = nullptr;  ///< Of the last step, rising.
   int contact_count = 0;
-  int* forced_nodes = nullptr;      ///< Nodes that ever had a force, rising.
+  int* forced_nodes = nullptr;  ///< Nodes that ever had a force, rising.
   int forced_count = 0;
-  bool sensed = false;              ///< The sense_* rows belong to the current state.
-  LaneStatus* status = nullptr;     ///< Per lane.
+  bool sensed = false;           ///< The sense_* rows belong to the current state.
+  LaneStatus* status = nullptr;  ///< Per lane.
 };
 
 struct StepSettings {
@@ -40,8 +40,8 @@ struct StepSettings {
 struct Kernel {
   int lanes;
   size_t (*scratch_bytes)(const View&);
-  void (*step)(const View&, const Layout&, Group&, const StepSettings&, void* scratch, double step_s,
-               int count);
+  void (*step)(const View&, const Layout&, Group&, const StepSettings&, void* scratch,
+               double step_s, int count);
   void (*sense)(const View&, const Layout&, Group&, void* scratch);
 };
 

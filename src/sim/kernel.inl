@@ -5,6 +5,8 @@
 /// Nothing here or below uses the standard library, so that no shared template is compiled with
 /// instructions that not every machine has.
 
+// In the order of use: each file needs what stands before it.
+// clang-format off
 #include "sim/rows.h"
 #include "sim/shape_contacts.h"
 #include "sim/stage_bodies.inl"
@@ -14,6 +16,7 @@
 #include "sim/contact_row.inl"
 #include "sim/stage_blocks.inl"
 #include "sim/stage_solve.inl"
+// clang-format on
 
 namespace taut::sim {
 
@@ -132,9 +135,9 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
         if (!(x - x == 0)) status.cable = c;
       }
       for (int b = m.body_count - 1; b >= 0; --b) {
-        const double x = s.pos[b].x[lane] + s.pos[b].y[lane] + s.pos[b].z[lane] +
-                         s.vel[b].x[lane] + s.vel[b].y[lane] + s.vel[b].z[lane] +
-                         s.mom[b].x[lane] + s.mom[b].y[lane] + s.mom[b].z[lane];
+        const double x = s.pos[b].x[lane] + s.pos[b].y[lane] + s.pos[b].z[lane] + s.vel[b].x[lane] +
+                         s.vel[b].y[lane] + s.vel[b].z[lane] + s.mom[b].x[lane] + s.mom[b].y[lane] +
+                         s.mom[b].z[lane];
         if (!(x - x == 0)) status.body = b;
       }
       s.halted[0].Set(lane, 1.0);

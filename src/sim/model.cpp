@@ -11,7 +11,6 @@ namespace {
 using sim::PrincipalAxes;
 using sim::Tables;
 
-
 struct Frame {
   double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< R_WP, row major.
   double origin[3] = {};
@@ -25,10 +24,14 @@ Quat QuatOf(const double r[9]) {
   const double s = 0.5 / std::sqrt(t[best]), d = 0.5 * std::sqrt(t[best]);
   const double x = r[7] - r[5], y = r[2] - r[6], z = r[3] - r[1];
   switch (best) {
-    case 0: return {d, x * s, y * s, z * s};
-    case 1: return {x * s, d, (r[1] + r[3]) * s, (r[2] + r[6]) * s};
-    case 2: return {y * s, (r[1] + r[3]) * s, d, (r[5] + r[7]) * s};
-    default: return {z * s, (r[2] + r[6]) * s, (r[5] + r[7]) * s, d};
+    case 0:
+      return {d, x * s, y * s, z * s};
+    case 1:
+      return {x * s, d, (r[1] + r[3]) * s, (r[2] + r[6]) * s};
+    case 2:
+      return {y * s, (r[1] + r[3]) * s, d, (r[5] + r[7]) * s};
+    default:
+      return {z * s, (r[2] + r[6]) * s, (r[5] + r[7]) * s, d};
   }
 }
 
@@ -50,10 +53,14 @@ double Length(const double p[3]) { return std::sqrt(p[0] * p[0] + p[1] * p[1] + 
 
 double Combine(CombineRule rule, double a, double b) {
   switch (rule) {
-    case CombineRule::kProduct: return a * b;
-    case CombineRule::kGeometricMean: return std::sqrt(a * b);
-    case CombineRule::kMinimum: return std::min(a, b);
-    default: return std::max(a, b);
+    case CombineRule::kProduct:
+      return a * b;
+    case CombineRule::kGeometricMean:
+      return std::sqrt(a * b);
+    case CombineRule::kMinimum:
+      return std::min(a, b);
+    default:
+      return std::max(a, b);
   }
 }
 
@@ -159,7 +166,8 @@ class Compiler {
     AddShape(s);
   }
 
-  void Box(int body, const Vec3& center, const Quat& q, const Vec3& half, const Material& material) {
+  void Box(int body, const Vec3& center, const Quat& q, const Vec3& half,
+           const Material& material) {
     sim::ShapeTable s;
     s.is_box = true;
     s.body = Index(body);
@@ -307,12 +315,26 @@ std::shared_ptr<const Model> Model::Compile(const ModelDef& def, Diagnostics& ou
 namespace sim {
 
 View Tables::View() const noexcept {
-  return {body_count,       cable_count,         node_count,         plane_count,
-          static_cast<int>(body_pairs.size()),   bound_m.data(),     cables.data(),
-          attachments.data(), nodes.data(),      planes.data(),      first_point.data(),
-          points.data(),    shapes.data(),       shape_pairs.data(), body_pairs.data(),
-          first_pair_id,    pair_capacity,       max_attachments,
-          static_cast<int>(attachments.size()), along_slip};
+  return {body_count,
+          cable_count,
+          node_count,
+          plane_count,
+          static_cast<int>(body_pairs.size()),
+          bound_m.data(),
+          cables.data(),
+          attachments.data(),
+          nodes.data(),
+          planes.data(),
+          first_point.data(),
+          points.data(),
+          shapes.data(),
+          shape_pairs.data(),
+          body_pairs.data(),
+          first_pair_id,
+          pair_capacity,
+          max_attachments,
+          static_cast<int>(attachments.size()),
+          along_slip};
 }
 
 Layout Tables::MakeLayout(int lanes) const {

@@ -70,8 +70,8 @@ void CheckShapes(const ModelDef& def, Checker& check) {
     check.Positive(c.radius_m, "rod " + c.name + ": radius");
     check.Surface(c.material, "rod " + c.name);
   }
-  const auto box = [&](const std::string& name, const Vec3& center, const Quat& q,
-                       const Vec3& half, const Material& m) {
+  const auto box = [&](const std::string& name, const Vec3& center, const Quat& q, const Vec3& half,
+                       const Material& m) {
     check.Finite(center, name + ": centre");
     check.Require(std::fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1) < 1e-9,
                   name + ": the orientation must be a unit quaternion");

@@ -7,7 +7,6 @@
 
 namespace taut {
 
-
 CableState Batch::Cable(int world, int cable) const noexcept {
   const Impl& d = *impl_;
   d.Sense(world);
@@ -53,8 +52,8 @@ Energy Batch::TotalEnergy(int world) const noexcept {
     const Vec3 v = d.vec(world, d.layout.vel + 3 * b);
     const Vec3 l = Rotate(Conjugate(d.quat(world, b)), d.vec(world, d.layout.mom + 3 * b));
     const Vec3 inv = d.vec(world, d.layout.inv_inertia + 3 * b);
-    e.kinetic_j += 0.5 * mass * Dot(v, v) +
-                   0.5 * (inv.x * l.x * l.x + inv.y * l.y * l.y + inv.z * l.z * l.z);
+    e.kinetic_j +=
+        0.5 * mass * Dot(v, v) + 0.5 * (inv.x * l.x * l.x + inv.y * l.y * l.y + inv.z * l.z * l.z);
     e.gravity_j -= mass * Dot(gravity, d.vec(world, d.layout.pos + 3 * b));
   }
   for (int c = 0; c < d.view.cable_count; ++c) {
@@ -95,17 +94,19 @@ std::vector<ContactState> Batch::Contacts(int world) const {
     const std::uint32_t id = g.contact_ids[i];
     if (id < m.first_pair_id) {
       const int point = static_cast<int>(id) / m.plane_count;
-      c.body_a = static_cast<int>(std::upper_bound(m.first_point.begin(), m.first_point.end(), point) -
-                                  m.first_point.begin()) - 1;
+      c.body_a =
+          static_cast<int>(std::upper_bound(m.first_point.begin(), m.first_point.end(), point) -
+                           m.first_point.begin()) -
+          1;
     } else {
-      const auto& pair =
-          m.shape_pairs[(id - m.first_pair_id) / static_cast<std::uint32_t>(sim::kMaxPointsPerPair)];
+      const auto& pair = m.shape_pairs[(id - m.first_pair_id) /
+                                       static_cast<std::uint32_t>(sim::kMaxPointsPerPair)];
       c.body_a = m.shapes[static_cast<std::size_t>(pair.a)].body;
       const int b = m.shapes[static_cast<std::size_t>(pair.b)].body;
       c.body_b = b == m.body_count ? kWorld : b;
     }
-    c.point_m = d.vec(world, d.layout.pos + 3 * c.body_a) +
-                d.vec(world, d.layout.cache_arm + 3 * i);
+    c.point_m =
+        d.vec(world, d.layout.pos + 3 * c.body_a) + d.vec(world, d.layout.cache_arm + 3 * i);
     c.normal = d.vec(world, d.layout.cache_normal + 3 * i);
     c.force_n = d.vec(world, d.layout.cache_force + 3 * i);
     c.gap_m = d.at(world, d.layout.cache_gap + i);
@@ -217,8 +218,8 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
                            rows + 3 * (g.contact_count - i + 1) * g.lanes);
         std::fill_n(rows, 3 * g.lanes, 0.0);
       }
-      for (int first : {d.layout.cache_slip, d.layout.cache_bounce, d.layout.cache_live,
-                        d.layout.cache_gap}) {
+      for (int first :
+           {d.layout.cache_slip, d.layout.cache_bounce, d.layout.cache_live, d.layout.cache_gap}) {
         double* const rows = g.rows + (first + i) * g.lanes;
         std::copy_backward(rows, rows + (g.contact_count - i) * g.lanes,
                            rows + (g.contact_count - i + 1) * g.lanes);
@@ -259,7 +260,11 @@ std::uint64_t Batch::Hash(int world) const noexcept {
 WorldStatus Batch::Status(int world) const noexcept {
   const Impl& d = *impl_;
   const sim::LaneStatus& s = d.group(world).status[world % d.lanes()];
-  return {s.bits, s.first_time_s, s.body, s.cable, d.at(world, d.layout.residual),
+  return {s.bits,
+          s.first_time_s,
+          s.body,
+          s.cable,
+          d.at(world, d.layout.residual),
           static_cast<int>(d.at(world, d.layout.sweeps))};
 }
 

@@ -14,13 +14,12 @@ using simd::V3;
 /// A group's rows as wide numbers (names as in Layout).
 template <class W>
 struct Rows {
-  W *time, *last_step, *rest, *rest_rate, *target, *mass, *inv_mass, *stiffness, *damping, *friction_scale,
-      *tension, *stiff_k, *stiff_b,
-      *halted, *cache_slip, *cache_bounce, *cache_live, *cache_gap, *clearance, *residual, *sweeps,
-      *sense_length,
-      *sense_rate, *sense_tension, *sense_elastic;
-  V3<W> *pos, *vel, *mom, *old_vel, *old_spin, *node_force, *inertia, *inv_inertia, *gravity, *cache_force, *cache_arm,
-      *cache_normal;
+  W *time, *last_step, *rest, *rest_rate, *target, *mass, *inv_mass, *stiffness, *damping,
+      *friction_scale, *tension, *stiff_k, *stiff_b, *halted, *cache_slip, *cache_bounce,
+      *cache_live, *cache_gap, *clearance, *residual, *sweeps, *sense_length, *sense_rate,
+      *sense_tension, *sense_elastic;
+  V3<W>*pos, *vel, *mom, *old_vel, *old_spin, *node_force, *inertia, *inv_inertia, *gravity,
+      *cache_force, *cache_arm, *cache_normal;
   Q4<W>* quat;
 
   Rows(const Layout& l, const Group& g) noexcept {
@@ -70,12 +69,12 @@ struct Rows {
 /// A body while a step runs. The world has one, too: identity, zero.
 template <class W>
 struct BodyWork {
-  M3<W> R;             ///< R_WP at the middle of the step.
-  S3<W> inv_inertia;   ///< In W [1/(kg m^2)].
-  V3<W> v, w;          ///< Current velocities [m/s], [rad/s].
-  V3<W> v0, w0;        ///< Before this step's forces.
-  V3<W> v_mid, w_mid;  ///< Expected at the middle of the step, for dampers.
-  V3<W> force, torque; ///< Of cables, gravity and nodes [N], [N m].
+  M3<W> R;              ///< R_WP at the middle of the step.
+  S3<W> inv_inertia;    ///< In W [1/(kg m^2)].
+  V3<W> v, w;           ///< Current velocities [m/s], [rad/s].
+  V3<W> v0, w0;         ///< Before this step's forces.
+  V3<W> v_mid, w_mid;   ///< Expected at the middle of the step, for dampers.
+  V3<W> force, torque;  ///< Of cables, gravity and nodes [N], [N m].
 };
 
 /// The Jacobian of a contact's three directions for one body.
@@ -90,24 +89,24 @@ struct ContactRow {
   int a, b;
   uint32_t id;
   V3<W> n, t1, t2;
-  W frame;                  ///< Contacts with equal numbers have the same directions.
+  W frame;  ///< Contacts with equal numbers have the same directions.
   V3<W> arm_a, arm_b;
-  Lever<W> ja, jb;          ///< arm x direction.
-  Lever<W> ga, gb;          ///< inverse inertia times that.
-  W im_a, im_b;             ///< Inverse masses.
-  W live;                   ///< 1 in lanes that have this contact, else 0.
-  W gap;                    ///< At the middle of the step [m].
+  Lever<W> ja, jb;                 ///< arm x direction.
+  Lever<W> ga, gb;                 ///< inverse inertia times that.
+  W im_a, im_b;                    ///< Inverse masses.
+  W live;                          ///< 1 in lanes that have this contact, else 0.
+  W gap;                           ///< At the middle of the step [m].
   W wnn, w1n, w2n, w11, w12, w22;  ///< Inverse effective mass, 3x3 [1/kg].
-  W inv_nn, p11, p12, p22;  ///< 1 / wnn; inverse of the tangential 2x2.
-  W rho1, rho2;             ///< Step lengths of the sliding iteration [kg].
-  W bias;                   ///< Normal velocity to reach is -bias or more [m/s].
+  W inv_nn, p11, p12, p22;         ///< 1 / wnn; inverse of the tangential 2x2.
+  W rho1, rho2;                    ///< Step lengths of the sliding iteration [kg].
+  W bias;                          ///< Normal velocity to reach is -bias or more [m/s].
   W static_friction, kinetic_friction;
-  W mu;                     ///< Coefficient of this step.
-  W slip;                   ///< 1 if it slides, 0 if it sticks.
-  W bounce;                 ///< Rebound speed due in the next step [m/s], 0: none.
+  W mu;      ///< Coefficient of this step.
+  W slip;    ///< 1 if it slides, 0 if it sticks.
+  W bounce;  ///< Rebound speed due in the next step [m/s], 0: none.
   W restitution;
-  W ln, l1, l2;             ///< Impulses [N s].
-  V3<W> before, change;     ///< Impulses of an earlier sweep, and what a sweep changed.
+  W ln, l1, l2;          ///< Impulses [N s].
+  V3<W> before, change;  ///< Impulses of an earlier sweep, and what a sweep changed.
 };
 
 /// An attachment while its cable's force is worked out; its velocity is the expected one.
@@ -121,8 +120,8 @@ struct AttachmentWork {
 template <class W>
 struct CableLink {
   int body;
-  V3<W> F, Q;   ///< Sum of directions [1], of arm x direction [m].
-  V3<W> GQ;     ///< Inverse inertia times Q.
+  V3<W> F, Q;  ///< Sum of directions [1], of arm x direction [m].
+  V3<W> GQ;    ///< Inverse inertia times Q.
   W im;
 };
 
@@ -144,21 +143,21 @@ struct Scratch {
   BodyWork<W>* bodies;
   AttachmentWork<W>* attachments;
   ContactRow<W>* contacts;
-  V3<W>* saved_pos;   ///< Start of the step, for worlds that turn non-finite.
+  V3<W>* saved_pos;  ///< Start of the step, for worlds that turn non-finite.
   Q4<W>* saved_quat;
   V3<W>* saved_vel;
   V3<W>* saved_mom;
   W* saved_rest;
   W* saved_rest_rate;
-  uint32_t* old_ids;       ///< Contacts of the step before.
+  uint32_t* old_ids;  ///< Contacts of the step before.
   V3<W>* old_force;
   W* old_slip;
   W* old_bounce;
   StiffCable<W>* stiff;
-  CableLink<W>* links;     ///< Of all stiff cables.
+  CableLink<W>* links;  ///< Of all stiff cables.
   int contact_count;
-  int plane_count;    ///< Contacts with planes come first,
-  int single_count;   ///< then those with other things of the world.
+  int plane_count;   ///< Contacts with planes come first,
+  int single_count;  ///< then those with other things of the world.
   int stiff_count, link_count;
 
   static size_t Bytes(const View& m) noexcept { return Scratch(m, nullptr).used_; }

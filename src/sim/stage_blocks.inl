@@ -108,8 +108,8 @@ class ContactBlock {
       }
       s1 = Select(closed_[c], s1, zero);
       s2 = Select(closed_[c], s2, zero);
-      const W change = Max(Abs(ln - l[0]) * row.wnn,
-                           Max(Abs(s1 - l[1]) * row.w11, Abs(s2 - l[2]) * row.w22));
+      const W change =
+          Max(Abs(ln - l[0]) * row.wnn, Max(Abs(s1 - l[1]) * row.w11, Abs(s2 - l[2]) * row.w22));
       worst = Max(Select(live, change, zero), worst);
     }
     return worst;
@@ -151,8 +151,7 @@ class ContactBlock {
     return Any(!same) ? Select(same, known, Dot(a, b)) : known;
   }
 
-  void SetBlock(int i, int j, W nn, W n1, W n2, W t1n, W t11, W t12, W t2n, W t21,
-                W t22) noexcept {
+  void SetBlock(int i, int j, W nn, W n1, W n2, W t1n, W t11, W t12, W t2n, W t21, W t22) noexcept {
     W* const n = w_[3 * i] + 3 * j;
     W* const t1 = w_[3 * i + 1] + 3 * j;
     W* const t2 = w_[3 * i + 2] + 3 * j;
@@ -231,10 +230,8 @@ class ContactBlock {
       for (int j = 0; j < kSize; ++j) {
         a_[n][j] = Select(closed, row.inv_nn * w_[n][j], zero);
         const W r1 = row.rho1 * w_[t1][j], r2 = row.rho2 * w_[t2][j];
-        a_[t1][j] = Select(sticks, scale1 * w_[t1][j],
-                           Select(slides, m11 * r1 + m12 * r2, zero));
-        a_[t2][j] = Select(sticks, scale2 * w_[t2][j],
-                           Select(slides, m12 * r1 + m22 * r2, zero));
+        a_[t1][j] = Select(sticks, scale1 * w_[t1][j], Select(slides, m11 * r1 + m12 * r2, zero));
+        a_[t2][j] = Select(sticks, scale2 * w_[t2][j], Select(slides, m12 * r1 + m22 * r2, zero));
       }
       a_[n][n] = Select(closed, soft * a_[n][n], one);
       a_[t1][n] -= Select(slides, row.mu * s.x, zero);
@@ -288,10 +285,14 @@ template <class W, class M>
 W SolveBlock(Scratch<W>& work, ContactRow<W>* rows, int count, bool along_slip, W tolerance,
              M lanes) noexcept {
   switch (count) {
-    case 1: return ContactBlock<W, 1>(work, rows, along_slip).Solve(tolerance, lanes);
-    case 2: return ContactBlock<W, 2>(work, rows, along_slip).Solve(tolerance, lanes);
-    case 3: return ContactBlock<W, 3>(work, rows, along_slip).Solve(tolerance, lanes);
-    default: return ContactBlock<W, 4>(work, rows, along_slip).Solve(tolerance, lanes);
+    case 1:
+      return ContactBlock<W, 1>(work, rows, along_slip).Solve(tolerance, lanes);
+    case 2:
+      return ContactBlock<W, 2>(work, rows, along_slip).Solve(tolerance, lanes);
+    case 3:
+      return ContactBlock<W, 3>(work, rows, along_slip).Solve(tolerance, lanes);
+    default:
+      return ContactBlock<W, 4>(work, rows, along_slip).Solve(tolerance, lanes);
   }
 }
 

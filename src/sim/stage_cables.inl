@@ -117,8 +117,8 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
     s.rest_rate[c] = rate;
     const W middle = half * (before + rest);
     W T = TensionOf(s.stiffness[c], s.damping[c], l, dl, middle, cable.clamped_damping).tension;
-    const auto stiff = (h * h * s.stiff_k[c] > W::Splat(kSoftSpring)) |
-                       (h * s.stiff_b[c] > W::Splat(kSoftDamper));
+    const auto stiff =
+        (h * h * s.stiff_k[c] > W::Splat(kSoftSpring)) | (h * s.stiff_b[c] > W::Splat(kSoftDamper));
     if (Any(stiff)) {
       AddStiffCable(m, s, work, c, l - middle, h, Select(stiff, W::Splat(1.0), zero));
       T = Select(stiff, zero, T);

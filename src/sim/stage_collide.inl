@@ -64,8 +64,8 @@ void CollidePlanes(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexc
         const auto touching = gap < margin;
         if (!Any(touching)) continue;
         const PlaneTable& plane = m.planes[k];
-        ContactRow<W>& row = AddContact(
-            work, body, m.body_count, static_cast<uint32_t>(i * m.plane_count + k));
+        ContactRow<W>& row =
+            AddContact(work, body, m.body_count, static_cast<uint32_t>(i * m.plane_count + k));
         if (!m.along_slip) row.frame = W::Splat(k);
         row.n = simd::Splat3<W>(plane.normal);
         row.t1 = simd::Splat3<W>(plane.tangent1);
@@ -101,8 +101,7 @@ void LaneShape(const View& m, const Rows<W>& s, const Scratch<W>& work, int shap
       round.to[i] = x[i] + row[0] * t.to_P[0] + row[1] * t.to_P[1] + row[2] * t.to_P[2];
       continue;
     }
-    box.center[i] =
-        x[i] + row[0] * t.center_P[0] + row[1] * t.center_P[1] + row[2] * t.center_P[2];
+    box.center[i] = x[i] + row[0] * t.center_P[0] + row[1] * t.center_P[1] + row[2] * t.center_P[2];
     box.half_m[i] = t.half_m[i];
     for (int axis = 0; axis < 3; ++axis) {
       const double* a = t.axes_P + 3 * axis;
@@ -162,8 +161,7 @@ W DistanceOfBodies(const View& m, const Rows<W>& s, const Scratch<W>& work,
   for (int i = 0; i < bodies.pair_count; ++i) {
     const ShapePairTable& pair = m.shape_pairs[bodies.first_pair + i];
     const V3<W> d = ShapeCenter(m, s, work, pair.a) - ShapeCenter(m, s, work, pair.b);
-    W bound = Sqrt(Dot(d, d)) -
-              W::Splat(m.shapes[pair.a].bound_m + m.shapes[pair.b].bound_m);
+    W bound = Sqrt(Dot(d, d)) - W::Splat(m.shapes[pair.a].bound_m + m.shapes[pair.b].bound_m);
     const auto closer = bound < least;
     if (!Any(closer)) continue;
     for (int lane = 0; lane < W::kLanes; ++lane) {
@@ -204,8 +202,8 @@ void CollideShapes(const View& m, const Rows<W>& s, Scratch<W>& work, const Shap
         const TouchPoint& t = found[lane][i];
         if (t.feature != feature) continue;
         if (row_of[feature] == nullptr) {
-          row_of[feature] = &AddContact(work, body_a, body_b,
-                                        pair.id + static_cast<uint32_t>(feature));
+          row_of[feature] =
+              &AddContact(work, body_a, body_b, pair.id + static_cast<uint32_t>(feature));
           ContactRow<W>& row = *row_of[feature];
           // Lanes without this point keep a harmless one.
           row.n = {zero, zero, W::Splat(1.0)};

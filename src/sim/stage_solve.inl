@@ -1,6 +1,7 @@
 /// Stage: impulses of contacts and stiff cables. Sweeps go over all of them, solve each by itself
 /// or, for a body on the ground, its contacts together, and stop a lane when nothing changed a
-/// velocity by more than the tolerance. A lane that is done freezes: its neighbours cannot change it.
+/// velocity by more than the tolerance. A lane that is done freezes: its neighbours cannot change
+/// it.
 
 namespace taut::sim {
 

@@ -109,8 +109,7 @@ void FinishStiffCables(const Rows<W>& s, Scratch<W>& work, double step_s) noexce
   const W inv_h = W::Splat(1.0 / step_s);
   for (int i = 0; i < work.stiff_count; ++i) {
     const StiffCable<W>& row = work.stiff[i];
-    s.tension[row.cable] =
-        Select(row.on > W::Splat(0.0), inv_h * row.lambda, s.tension[row.cable]);
+    s.tension[row.cable] = Select(row.on > W::Splat(0.0), inv_h * row.lambda, s.tension[row.cable]);
     for (int k = 0; k < row.link_count; ++k) {
       const CableLink<W>& link = work.links[row.first_link + k];
       s.mom[link.body] += row.lambda * link.Q;

@@ -28,12 +28,12 @@ struct AttachmentTable {
 struct ShapeTable {
   bool is_box = false;
   int body = 0;
-  double radius_m = 0;            ///< 0 for a box.
+  double radius_m = 0;  ///< 0 for a box.
   double from_P[3] = {}, to_P[3] = {};
   double center_P[3] = {};
-  double axes_P[9] = {};          ///< Box: rows are its axes in P.
+  double axes_P[9] = {};  ///< Box: rows are its axes in P.
   double half_m[3] = {};
-  double bound_m = 0;             ///< Radius of the sphere around `center_P` that holds it.
+  double bound_m = 0;  ///< Radius of the sphere around `center_P` that holds it.
   Material material;
 };
 
@@ -50,8 +50,8 @@ struct PlaneTable {
 };
 
 struct ShapePairTable {
-  int a = 0, b = 0;       ///< Shapes; the body of `a` is not the world.
-  std::uint32_t id = 0;   ///< Of its first possible contact point.
+  int a = 0, b = 0;      ///< Shapes; the body of `a` is not the world.
+  std::uint32_t id = 0;  ///< Of its first possible contact point.
   double static_friction = 0, kinetic_friction = 0, restitution = 0;
 };
 
@@ -67,11 +67,11 @@ inline constexpr int kMaxPointsPerPair = 13;  ///< What shape_contacts.h numbers
 /// Offsets, in rows of one double a lane, of everything that a group of worlds keeps.
 struct Layout {
   // State and commands: what a snapshot holds.
-  int time = 0, last_step = 0, pos = 0, quat = 0, vel = 0, mom = 0, old_vel = 0, old_spin = 0, rest = 0, rest_rate = 0, target = 0, tension = 0,
-      node_force = 0;
+  int time = 0, last_step = 0, pos = 0, quat = 0, vel = 0, mom = 0, old_vel = 0, old_spin = 0,
+      rest = 0, rest_rate = 0, target = 0, tension = 0, node_force = 0;
   // Parameters, also part of a snapshot.
-  int mass = 0, inv_mass = 0, inertia = 0, inv_inertia = 0, stiffness = 0, damping = 0, stiff_k = 0, stiff_b = 0,
-      friction_scale = 0, gravity = 0, halted = 0;
+  int mass = 0, inv_mass = 0, inertia = 0, inv_inertia = 0, stiffness = 0, damping = 0, stiff_k = 0,
+      stiff_b = 0, friction_scale = 0, gravity = 0, halted = 0;
   int snapshot_rows = 0;
   // Contacts of the last step (ids are shared by the lanes; `live` says which lanes have them).
   int cache_force = 0, cache_slip = 0, cache_bounce = 0, cache_live = 0, cache_arm = 0,
@@ -105,24 +105,24 @@ class Tables final : public Model {
   explicit Tables(ModelDef def) : Model(std::move(def)) {}
 
   int body_count = 0, cable_count = 0, node_count = 0, plane_count = 0;
-  std::vector<double> q_WP0;          ///< 4 per body: principal frame at t = 0.
-  std::vector<double> inertia;        ///< 3 per body: principal moments [kg m^2].
-  std::vector<double> bound_m;        ///< Per body and the world: reach of its shapes from its origin.
+  std::vector<double> q_WP0;    ///< 4 per body: principal frame at t = 0.
+  std::vector<double> inertia;  ///< 3 per body: principal moments [kg m^2].
+  std::vector<double> bound_m;  ///< Per body and the world: reach of its shapes from its origin.
   std::vector<CableTable> cables;
   std::vector<AttachmentTable> attachments;
-  int max_attachments = 0;            ///< Of one cable.
+  int max_attachments = 0;  ///< Of one cable.
   std::vector<AttachmentTable> nodes;
   std::vector<PlaneTable> planes;
-  std::vector<int> first_point;       ///< Per body, and one past the last.
+  std::vector<int> first_point;  ///< Per body, and one past the last.
   std::vector<PointTable> points;
   std::vector<ShapeTable> shapes;
   std::vector<ShapePairTable> shape_pairs;
   std::vector<BodyPairTable> body_pairs;  ///< Those with the world first.
-  std::uint32_t first_pair_id = 0;    ///< Ids below are plane contacts.
-  int pair_capacity = 0;              ///< Pair contacts that one world may have at once.
+  std::uint32_t first_pair_id = 0;        ///< Ids below are plane contacts.
+  int pair_capacity = 0;                  ///< Pair contacts that one world may have at once.
   bool along_slip = false;
-  std::vector<double> coupling;       ///< Per cable: sum over all cables of |coupling| [1/kg].
-  double largest_coupling = 0;        ///< Largest eigenvalue of the couplings [1/kg].
+  std::vector<double> coupling;  ///< Per cable: sum over all cables of |coupling| [1/kg].
+  double largest_coupling = 0;   ///< Largest eigenvalue of the couplings [1/kg].
 
   /// The same tables as plain pointers, for code that is compiled for several instruction sets
   /// and must not touch the standard library.

@@ -93,7 +93,9 @@ inline Wide<4> Sqrt(Wide<4> a) noexcept { return {(Wide<4>::Vector)_mm256_sqrt_p
 inline bool Any(Mask<4> m) noexcept { return _mm256_movemask_pd((__m256d)m.v) != 0; }
 #endif
 #ifdef __AVX512DQ__
-inline Wide<8> Sqrt(Wide<8> a) noexcept { return {(Wide<8>::Vector)_mm512_maskz_sqrt_pd(0xff, (__m512d)a.v)}; }
+inline Wide<8> Sqrt(Wide<8> a) noexcept {
+  return {(Wide<8>::Vector)_mm512_maskz_sqrt_pd(0xff, (__m512d)a.v)};
+}
 inline bool Any(Mask<8> m) noexcept { return _mm512_movepi64_mask((__m512i)m.v) != 0; }
 #endif
 

@@ -15,7 +15,8 @@ int main(int argc, char** argv) {
   const auto robot = taut::LoadRobot(argv[1], {}, diagnostics);
   const auto model = robot ? taut::Model::Compile(robot->def, diagnostics) : nullptr;
   const auto trace =
-      model ? taut::CreateHdf5Trace(argv[2], {{"cable/0/tension_n", "N"}}, {}, diagnostics) : nullptr;
+      model ? taut::CreateHdf5Trace(argv[2], {{"cable/0/tension_n", "N"}}, {}, diagnostics)
+            : nullptr;
   if (!trace) {
     std::fputs(diagnostics.Format().c_str(), stderr);
     return 1;
