@@ -15,6 +15,7 @@
 #include "sim/stage_collide.inl"
 #include "sim/contact_row.inl"
 #include "sim/stage_blocks.inl"
+#include "sim/lane_newton.inl"
 #include "sim/stage_solve.inl"
 // clang-format on
 

@@ -105,8 +105,7 @@ struct ContactRow {
   W slip;    ///< 1 if it slides, 0 if it sticks.
   W bounce;  ///< Rebound speed due in the next step [m/s], 0: none.
   W restitution;
-  W ln, l1, l2;          ///< Impulses [N s].
-  V3<W> before, change;  ///< Impulses of an earlier sweep, and what a sweep changed.
+  W ln, l1, l2;  ///< Impulses [N s].
 };
 
 /// An attachment while its cable's force is worked out; its velocity is the expected one.
@@ -138,6 +137,33 @@ struct StiffCable {
   W lambda;      ///< Impulse [N s].
 };
 
+/// The sum of a row's velocities over its bodies: lin . v + ang . w each.
+struct NewtonLink {
+  int body;
+  double lin[3], ang[3];  ///< The row's direction; its lever [m].
+  double g[3];            ///< Inverse inertia times lever.
+  double im;              ///< Inverse mass [1/kg].
+};
+
+/// One unknown: the impulse of a contact's normal or tangent, or of a stiff cable.
+struct NewtonRow {
+  int first_link, link_count;
+};
+
+struct NewtonMemory {
+  double *w, *a;  ///< Delassus matrix; that of the linear system. Row by row.
+  double *u, *lambda, *delta;
+  double *start, *best, *center, *center_u;  ///< Impulses and velocities kept for later.
+  NewtonLink* links;
+  NewtonRow* rows;
+  int* contacts;  ///< Numbers of the lane's contacts,
+  int* cables;    ///< and of its stiff cables.
+  int capacity;   ///< Rows.
+};
+
+/// More unknowns than this (80 contacts) are left to the sweeps.
+inline constexpr size_t kMaxNewtonRows = 240;
+
 template <class W>
 struct Scratch {
   BodyWork<W>* bodies;
@@ -155,6 +181,7 @@ struct Scratch {
   W* old_bounce;
   StiffCable<W>* stiff;
   CableLink<W>* links;  ///< Of all stiff cables.
+  NewtonMemory newton;
   int contact_count;
   int plane_count;   ///< Contacts with planes come first,
   int single_count;  ///< then those with other things of the world.
@@ -182,10 +209,28 @@ struct Scratch {
     old_bounce = Take<W>(contacts_count);
     stiff = Take<StiffCable<W>>(cables_count);
     links = Take<CableLink<W>>(static_cast<size_t>(m.attachment_count));
+    TakeNewton(3 * contacts_count + cables_count, static_cast<size_t>(m.attachment_count));
     contact_count = plane_count = single_count = stiff_count = link_count = 0;
   }
 
  private:
+  void TakeNewton(size_t wanted, size_t attachments_count) noexcept {
+    const size_t rows = wanted < kMaxNewtonRows ? wanted : kMaxNewtonRows;
+    newton.capacity = static_cast<int>(rows);
+    newton.w = Take<double>(rows * rows);
+    newton.a = Take<double>(rows * rows);
+    newton.u = Take<double>(rows);
+    newton.lambda = Take<double>(rows);
+    newton.delta = Take<double>(rows);
+    newton.start = Take<double>(rows);
+    newton.best = Take<double>(rows);
+    newton.center = Take<double>(rows);
+    newton.center_u = Take<double>(rows);
+    newton.links = Take<NewtonLink>(2 * rows + attachments_count);
+    newton.rows = Take<NewtonRow>(rows);
+    newton.contacts = Take<int>(rows);
+    newton.cables = Take<int>(rows);
+  }
   template <class T>
   T* Take(size_t count) noexcept {
     T* const first = reinterpret_cast<T*>(memory_ + used_);

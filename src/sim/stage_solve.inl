@@ -1,67 +1,9 @@
 /// Stage: impulses of contacts and stiff cables. Sweeps go over all of them, solve each by itself
 /// or, for a body on the ground, its contacts together, and stop a lane when nothing changed a
-/// velocity by more than the tolerance. A lane that is done freezes: its neighbours cannot change
-/// it.
+/// velocity by more than the tolerance. Where sweeps crawl, Newton's method takes all of a lane
+/// together. A lane that is done freezes: its neighbours cannot change it.
 
 namespace taut::sim {
-
-/// Extrapolation of slow convergence (Aitken): where all impulses of a lane shrink their changes
-/// by the same factor r a sweep, the limit is r / (1 - r) changes further on. Slow modes are those
-/// in which contacts hand friction to each other, one sticking and one sliding.
-template <class W>
-struct Extrapolation {
-  static constexpr int kPeriod = 8;  ///< Sweeps between two extrapolations.
-
-  /// Call after every sweep.
-  template <class M>
-  void AfterSweep(Scratch<W>& work, int sweep, M lanes) noexcept {
-    const int phase = sweep % kPeriod;
-    if (phase == kPeriod - 3) Remember(work);
-    if (phase == kPeriod - 2) Compare(work);
-    if (phase == kPeriod - 1) Extrapolate(work, lanes);
-  }
-
- private:
-  static void Remember(Scratch<W>& work) noexcept {
-    for (int i = 0; i < work.contact_count; ++i) {
-      ContactRow<W>& row = work.contacts[i];
-      row.before = {row.ln, row.l1, row.l2};
-    }
-  }
-  static void Compare(Scratch<W>& work) noexcept {
-    for (int i = 0; i < work.contact_count; ++i) {
-      ContactRow<W>& row = work.contacts[i];
-      const V3<W> now{row.ln, row.l1, row.l2};
-      row.change = now - row.before;
-      row.before = now;
-    }
-  }
-  template <class M>
-  static void Extrapolate(Scratch<W>& work, M lanes) noexcept {
-    const W zero = W::Splat(0.0), one = W::Splat(1.0);
-    W dot = zero, norm2 = zero;
-    for (int i = 0; i < work.contact_count; ++i) {
-      ContactRow<W>& row = work.contacts[i];
-      const V3<W> change = V3<W>{row.ln, row.l1, row.l2} - row.before;
-      dot += Dot(change, row.change);
-      norm2 += Dot(row.change, row.change);
-      row.change = change;
-    }
-    const W r = Min(dot / Max(norm2, W::Splat(1e-300)), W::Splat(0.999));
-    const W ahead = Select(lanes & (r > W::Splat(0.5)), r / (one - r), zero);
-    for (int i = 0; i < work.contact_count; ++i) {
-      ContactRow<W>& row = work.contacts[i];
-      const W dn = Max(row.ln + ahead * row.change.x, zero) - row.ln;
-      const W d1 = ahead * row.change.y, d2 = ahead * row.change.z;
-      row.ln += dn;
-      row.l1 += d1;
-      row.l2 += d2;
-      ApplyImpulse(work.bodies[row.a], row.im_a, row, row.ga, dn, d1, d2);
-      if (i < work.single_count) continue;
-      ApplyImpulse(work.bodies[row.b], row.im_b, row, row.gb, -dn, -d1, -d2);
-    }
-  }
-};
 
 template <class W>
 struct SolveResult {
@@ -99,6 +41,21 @@ void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
   }
 }
 
+/// Sweeps after which to try Newton's method: 32, 64, 128, ...
+inline bool NewtonIsDue(int sweeps) noexcept {
+  return sweeps >= kSweepsBeforeNewton && (sweeps & (sweeps - 1)) == 0;
+}
+
+/// What has not converged must at least not rub harder than Coulomb allows: contact by contact,
+/// each ends inside its own cone.
+template <class W, class M>
+void RespectCones(Scratch<W>& work, M lanes) noexcept {
+  for (int i = 0; i < work.single_count; ++i) RelaxContact<W, false>(work, work.contacts[i], lanes);
+  for (int i = work.single_count; i < work.contact_count; ++i) {
+    RelaxContact<W, true>(work, work.contacts[i], lanes);
+  }
+}
+
 /// Stage: solve.
 ///   reads   contacts[] (geometry), stiff cables, cache of the step before
 ///   writes  bodies[].v, .w, impulses, mom
@@ -124,8 +81,12 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, const Group& g, Scrat
     result.residual = Select(busy, change, result.residual);
     result.sweeps += Select(busy, one, zero);
     busy = busy & (change > tolerance);
-    if (Any(busy)) Extrapolation<W>().AfterSweep(work, sweep, busy);
+    if (!Any(busy) || !NewtonIsDue(sweep + 1)) continue;
+    for (int lane = 0; lane < W::kLanes; ++lane) {
+      if (busy[lane]) LaneNewton<W>(work, lane, m.along_slip).Solve(settings.tolerance_m_per_s);
+    }
   }
+  if (Any(busy)) RespectCones(work, busy);
   for (int i = 0; i < work.contact_count; ++i) {
     ContactRow<W>& row = work.contacts[i];
     const V3<W> f = row.ln * row.n + row.l1 * row.t1 + row.l2 * row.t2;

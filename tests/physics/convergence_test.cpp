@@ -1,0 +1,85 @@
+/// Heaps of things, wedges and thrown spines: the contact solve gets there, and what has not got
+/// there at least respects Coulomb's cone.
+
+#include <gtest/gtest.h>
+
+#include "tests/determinism/variety.h"
+
+namespace taut::test {
+namespace {
+
+TEST(Convergence, RoughWorldsAreSolvedAtEveryStep) {
+  for (const ModelDef& def : VariedModels()) {
+    for (int seed = 0; seed < 16; ++seed) {
+      Batch batch = MakeBatch(def);
+      Scatter(batch, 0, seed);
+      for (int i = 0; i < kStretches; ++i) {
+        Disturb(batch, 0, seed, i);
+        for (int k = 0; k < kStepsAStretch; ++k) {
+          batch.Step(kVarietyStepS);
+          ASSERT_LE(batch.Status(0).residual_m_per_s, BatchOptions{}.tolerance_m_per_s)
+              << def.name << ", seed " << seed << ", step " << i * kStepsAStretch + k;
+        }
+      }
+    }
+  }
+}
+
+/// The spine of seed 2 falls on its side and wedges its segments into each other; loads shared by
+/// ten contacts at once took thousands of sweeps.
+TEST(Convergence, WedgedSegmentsTakeFewSweeps) {
+  Batch batch = MakeBatch(scenes::Tetraspine().Def());
+  Scatter(batch, 0, 2);
+  int most = 0;
+  for (int i = 0; i < kStretches; ++i) {
+    Disturb(batch, 0, 2, i);
+    for (int k = 0; k < kStepsAStretch; ++k) {
+      batch.Step(kVarietyStepS);
+      most = std::max(most, batch.Status(0).sweeps);
+    }
+  }
+  EXPECT_GT(most, 32);  // or this tests nothing: Newton's method is used from 32 sweeps on
+  EXPECT_LE(most, 128);
+}
+
+constexpr double kFriction = 0.4;
+
+TEST(Convergence, FrictionOfAnUnfinishedSolveStaysInItsCone) {
+  for (const int max_sweeps : {1, 2, 16}) {
+    BatchOptions options;
+    options.max_sweeps = max_sweeps;
+    int unfinished = 0, contacts = 0;
+    for (ModelDef def : VariedModels()) {
+      const auto rough = [](auto& shapes) {
+        for (auto& shape : shapes)
+          shape.material = {.static_friction = kFriction, .kinetic_friction = kFriction};
+      };
+      rough(def.spheres), rough(def.capsules), rough(def.boxes);
+      rough(def.planes), rough(def.terrain_boxes);
+      def.friction_combine = CombineRule::kGeometricMean;
+      for (int seed = 0; seed < 8; ++seed) {
+        Batch batch = MakeBatch(def, options);
+        Scatter(batch, 0, seed);
+        batch.SetParameter(0, Parameter::kFrictionScale, 0, 1);
+        for (int k = 0; k < kStretches * kStepsAStretch; ++k) {
+          batch.Step(kVarietyStepS);
+          if (batch.Status(0).residual_m_per_s <= options.tolerance_m_per_s) continue;
+          ++unfinished;
+          for (const ContactState& contact : batch.Contacts(0)) {
+            const double normal_n = Dot(contact.force_n, contact.normal);
+            const double rub_n = Norm(contact.force_n - normal_n * contact.normal);
+            ASSERT_GE(normal_n, -1e-9);
+            ASSERT_LE(rub_n, kFriction * normal_n + 1e-9 * (1 + normal_n))
+                << def.name << ", seed " << seed << ", step " << k;
+            ++contacts;
+          }
+        }
+      }
+    }
+    EXPECT_GT(unfinished, 100) << max_sweeps << " sweeps";
+    EXPECT_GT(contacts, unfinished);
+  }
+}
+
+}  // namespace
+}  // namespace taut::test
