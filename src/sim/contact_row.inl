@@ -18,23 +18,23 @@ inline constexpr double kMaxPushOutMPerS = 0.5;
 inline constexpr double kLeastImpactMPerS = 1e-3;
 
 template <class W>
-Lever<W> LeverOf(const V3<W>& arm, const ContactRow<W>& row) noexcept {
+TAUT_INLINE Lever<W> LeverOf(const V3<W>& arm, const ContactRow<W>& row) noexcept {
   return {Cross(arm, row.n), Cross(arm, row.t1), Cross(arm, row.t2)};
 }
 template <class W>
-Lever<W> operator*(const S3<W>& inv_inertia, const Lever<W>& j) noexcept {
+TAUT_INLINE Lever<W> operator*(const S3<W>& inv_inertia, const Lever<W>& j) noexcept {
   return {inv_inertia * j.n, inv_inertia * j.t1, inv_inertia * j.t2};
 }
 
 template <class W>
-V3<W> PointVelocity(const V3<W>& v, const V3<W>& w, const V3<W>& arm) noexcept {
+TAUT_INLINE V3<W> PointVelocity(const V3<W>& v, const V3<W>& w, const V3<W>& arm) noexcept {
   return v + Cross(w, arm);
 }
 
 /// Two unit tangents. With one friction direction the first lies along the sliding velocity that
 /// would result without contact, as Bullet chooses it.
 template <class W>
-void MakeTangents(ContactRow<W>& row, const V3<W>& velocity, bool along_slip) noexcept {
+TAUT_INLINE void MakeTangents(ContactRow<W>& row, const V3<W>& velocity, bool along_slip) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
   // Start from the axis of W that is certainly not along the normal.
   const auto steep = Abs(row.n.x) < W::Splat(0.6);
@@ -49,7 +49,7 @@ void MakeTangents(ContactRow<W>& row, const V3<W>& velocity, bool along_slip) no
 }
 
 template <class W>
-void AddInverseMass(ContactRow<W>& row, W im, const Lever<W>& j, const Lever<W>& g) noexcept {
+TAUT_INLINE void AddInverseMass(ContactRow<W>& row, W im, const Lever<W>& j, const Lever<W>& g) noexcept {
   row.wnn += im + Dot(j.n, g.n);
   row.w11 += im + Dot(j.t1, g.t1);
   row.w22 += im + Dot(j.t2, g.t2);
@@ -59,7 +59,7 @@ void AddInverseMass(ContactRow<W>& row, W im, const Lever<W>& j, const Lever<W>&
 }
 
 template <class W>
-void ApplyImpulse(BodyWork<W>& body, W im, const ContactRow<W>& row, const Lever<W>& g, W ln, W l1,
+TAUT_INLINE void ApplyImpulse(BodyWork<W>& body, W im, const ContactRow<W>& row, const Lever<W>& g, W ln, W l1,
                   W l2) noexcept {
   const W an = im * ln, a1 = im * l1, a2 = im * l2;
   body.v += an * row.n + a1 * row.t1 + a2 * row.t2;
@@ -77,7 +77,7 @@ struct ContactMemory {
 };
 
 template <class W>
-ContactMemory<W> Recall(const Scratch<W>& work, uint32_t id, int old_count, int& cursor) noexcept {
+TAUT_INLINE ContactMemory<W> Recall(const Scratch<W>& work, uint32_t id, int old_count, int& cursor) noexcept {
   while (cursor < old_count && work.old_ids[cursor] < id) ++cursor;
   if (cursor < old_count && work.old_ids[cursor] == id) {
     return {work.old_force[cursor], work.old_slip[cursor], work.old_bounce[cursor]};
@@ -87,7 +87,7 @@ ContactMemory<W> Recall(const Scratch<W>& work, uint32_t id, int old_count, int&
 }
 
 template <class W, bool kPair>
-void PrepareContact(const View& m, const Rows<W>& s, const Scratch<W>& work, ContactRow<W>& row,
+TAUT_INLINE void PrepareContact(const View& m, const Rows<W>& s, const Scratch<W>& work, ContactRow<W>& row,
                     const ContactMemory<W>& memory, double step_s) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
   const W h = W::Splat(step_s), inv_h = W::Splat(1.0 / step_s);

@@ -31,22 +31,22 @@ struct AxisTurn {
 };
 
 template <class W>
-void NormalizeQuat(Q4<W>& q) noexcept {
+TAUT_INLINE void NormalizeQuat(Q4<W>& q) noexcept {
   const W scale = W::Splat(1.0) / Sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   q = {q.w * scale, q.x * scale, q.y * scale, q.z * scale};
 }
 
 /// q <- q (1, t e_axis), not normalised.
 template <class W>
-void TurnX(Q4<W>& q, W t) noexcept {
+TAUT_INLINE void TurnX(Q4<W>& q, W t) noexcept {
   q = {q.w - t * q.x, q.x + t * q.w, q.y + t * q.z, q.z - t * q.y};
 }
 template <class W>
-void TurnY(Q4<W>& q, W t) noexcept {
+TAUT_INLINE void TurnY(Q4<W>& q, W t) noexcept {
   q = {q.w - t * q.y, q.x - t * q.z, q.y + t * q.w, q.z + t * q.x};
 }
 template <class W>
-void TurnZ(Q4<W>& q, W t) noexcept {
+TAUT_INLINE void TurnZ(Q4<W>& q, W t) noexcept {
   q = {q.w - t * q.z, q.x + t * q.y, q.y - t * q.x, q.z + t * q.w};
 }
 

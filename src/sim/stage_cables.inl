@@ -15,7 +15,7 @@ struct CableForce {
 /// Paper eq. (1): T = k (l - L) + b dl while l > L, never negative, otherwise 0.
 /// With the clamped law the damper's part is limited to +- the spring's.
 template <class W>
-CableForce<W> TensionOf(W k, W b, W l, W dl, W rest, bool clamped) noexcept {
+TAUT_INLINE CableForce<W> TensionOf(W k, W b, W l, W dl, W rest, bool clamped) noexcept {
   const W zero = W::Splat(0.0);
   const W stretch = l - rest;
   const W spring = k * stretch;
@@ -27,7 +27,7 @@ CableForce<W> TensionOf(W k, W b, W l, W dl, W rest, bool clamped) noexcept {
 
 /// Where an attachment is and how fast it is expected to move.
 template <class W>
-AttachmentWork<W> Attachment(const View& m, const AttachmentTable& table, const V3<W>* origin,
+TAUT_INLINE AttachmentWork<W> Attachment(const View& m, const AttachmentTable& table, const V3<W>* origin,
                              const Scratch<W>& work) noexcept {
   const BodyWork<W>& body = work.bodies[table.body];
   AttachmentWork<W> here;
@@ -39,7 +39,7 @@ AttachmentWork<W> Attachment(const View& m, const AttachmentTable& table, const 
 
 /// Length and rate of a cable; fills work.attachments with its points.
 template <class W>
-void MeasureCable(const View& m, const CableTable& cable, const V3<W>* origin,
+TAUT_INLINE void MeasureCable(const View& m, const CableTable& cable, const V3<W>* origin,
                   const Scratch<W>& work, W& l, W& dl) noexcept {
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
   AttachmentWork<W> before = Attachment(m, tables[0], origin, work);
@@ -64,7 +64,7 @@ void MeasureCable(const View& m, const CableTable& cable, const V3<W>* origin,
 /// second, so nothing depends on the step. The force limit is NTRT's: never wind past the rest
 /// length at which the spring would exceed it.
 template <class W>
-void Actuate(const ActuatorDef& limit, W k, W l, W target, W h, W inv_h, W& rest,
+TAUT_INLINE void Actuate(const ActuatorDef& limit, W k, W l, W target, W h, W inv_h, W& rest,
              W& rate) noexcept {
   const W zero = W::Splat(0.0);
   if (limit.kind == ActuatorDef::Kind::kNone) return;

@@ -12,21 +12,21 @@ namespace taut::sim {
 inline constexpr double kContactMarginM = 1e-5;
 
 template <class W>
-W TravelBound(const View& m, const Scratch<W>& work, int body, W h) noexcept {
+TAUT_INLINE W TravelBound(const View& m, const Scratch<W>& work, int body, W h) noexcept {
   const BodyWork<W>& b = work.bodies[body];
   return h * (Norm1(b.v) + W::Splat(m.bound_m[body]) * Norm1(b.w));
 }
 
 /// How far any point of a body may have come since the middle of the step before.
 template <class W>
-W TravelSinceLast(const View& m, const Scratch<W>& work, int body, W since_last) noexcept {
+TAUT_INLINE W TravelSinceLast(const View& m, const Scratch<W>& work, int body, W since_last) noexcept {
   const BodyWork<W>& b = work.bodies[body];
   return since_last * (Norm1(b.v0) + W::Splat(m.bound_m[body]) * Norm1(b.w0));
 }
 
 /// Starts a row; the solver fills in the rest.
 template <class W>
-ContactRow<W>& AddContact(Scratch<W>& work, int a, int b, uint32_t id) noexcept {
+TAUT_INLINE ContactRow<W>& AddContact(Scratch<W>& work, int a, int b, uint32_t id) noexcept {
   ContactRow<W>& row = work.contacts[work.contact_count++];
   row.a = a;
   row.b = b;

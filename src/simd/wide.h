@@ -9,6 +9,10 @@
 
 #include <immintrin.h>
 
+/// Wide numbers travel in registers or not at all: a call passes them through memory, and the
+/// compilers' rules of thumb would call.
+#define TAUT_INLINE [[gnu::always_inline]] inline
+
 namespace taut::simd {
 
 template <class T, int N>
@@ -38,65 +42,65 @@ struct Mask {
 };
 
 template <int N>
-inline Wide<N> operator+(Wide<N> a, Wide<N> b) noexcept {
+TAUT_INLINE Wide<N> operator+(Wide<N> a, Wide<N> b) noexcept {
   return {a.v + b.v};
 }
 template <int N>
-inline Wide<N> operator-(Wide<N> a, Wide<N> b) noexcept {
+TAUT_INLINE Wide<N> operator-(Wide<N> a, Wide<N> b) noexcept {
   return {a.v - b.v};
 }
 template <int N>
-inline Wide<N> operator*(Wide<N> a, Wide<N> b) noexcept {
+TAUT_INLINE Wide<N> operator*(Wide<N> a, Wide<N> b) noexcept {
   return {a.v * b.v};
 }
 template <int N>
-inline Wide<N> operator/(Wide<N> a, Wide<N> b) noexcept {
+TAUT_INLINE Wide<N> operator/(Wide<N> a, Wide<N> b) noexcept {
   return {a.v / b.v};
 }
 template <int N>
-inline Wide<N> operator-(Wide<N> a) noexcept {
+TAUT_INLINE Wide<N> operator-(Wide<N> a) noexcept {
   return {-a.v};
 }
 template <int N>
-inline Mask<N> operator<(Wide<N> a, Wide<N> b) noexcept {
+TAUT_INLINE Mask<N> operator<(Wide<N> a, Wide<N> b) noexcept {
   return {a.v < b.v};
 }
 template <int N>
-inline Mask<N> operator>(Wide<N> a, Wide<N> b) noexcept {
+TAUT_INLINE Mask<N> operator>(Wide<N> a, Wide<N> b) noexcept {
   return {a.v > b.v};
 }
 template <int N>
-inline Mask<N> operator==(Wide<N> a, Wide<N> b) noexcept {
+TAUT_INLINE Mask<N> operator==(Wide<N> a, Wide<N> b) noexcept {
   return {a.v == b.v};
 }
 template <int N>
-inline Mask<N> operator&(Mask<N> a, Mask<N> b) noexcept {
+TAUT_INLINE Mask<N> operator&(Mask<N> a, Mask<N> b) noexcept {
   return {a.v & b.v};
 }
 template <int N>
-inline Mask<N> operator|(Mask<N> a, Mask<N> b) noexcept {
+TAUT_INLINE Mask<N> operator|(Mask<N> a, Mask<N> b) noexcept {
   return {a.v | b.v};
 }
 template <int N>
-inline Mask<N> operator!(Mask<N> a) noexcept {
+TAUT_INLINE Mask<N> operator!(Mask<N> a) noexcept {
   return {~a.v};
 }
 template <int N>
-inline Wide<N> Select(Mask<N> m, Wide<N> yes, Wide<N> no) noexcept {
+TAUT_INLINE Wide<N> Select(Mask<N> m, Wide<N> yes, Wide<N> no) noexcept {
   return {m.v ? yes.v : no.v};
 }
 
-inline Wide<2> Sqrt(Wide<2> a) noexcept { return {(Wide<2>::Vector)_mm_sqrt_pd((__m128d)a.v)}; }
-inline bool Any(Mask<2> m) noexcept { return _mm_movemask_pd((__m128d)m.v) != 0; }
+TAUT_INLINE Wide<2> Sqrt(Wide<2> a) noexcept { return {(Wide<2>::Vector)_mm_sqrt_pd((__m128d)a.v)}; }
+TAUT_INLINE bool Any(Mask<2> m) noexcept { return _mm_movemask_pd((__m128d)m.v) != 0; }
 #ifdef __AVX2__
-inline Wide<4> Sqrt(Wide<4> a) noexcept { return {(Wide<4>::Vector)_mm256_sqrt_pd((__m256d)a.v)}; }
-inline bool Any(Mask<4> m) noexcept { return _mm256_movemask_pd((__m256d)m.v) != 0; }
+TAUT_INLINE Wide<4> Sqrt(Wide<4> a) noexcept { return {(Wide<4>::Vector)_mm256_sqrt_pd((__m256d)a.v)}; }
+TAUT_INLINE bool Any(Mask<4> m) noexcept { return _mm256_movemask_pd((__m256d)m.v) != 0; }
 #endif
 #ifdef __AVX512DQ__
-inline Wide<8> Sqrt(Wide<8> a) noexcept {
+TAUT_INLINE Wide<8> Sqrt(Wide<8> a) noexcept {
   return {(Wide<8>::Vector)_mm512_maskz_sqrt_pd(0xff, (__m512d)a.v)};
 }
-inline bool Any(Mask<8> m) noexcept { return _mm512_movepi64_mask((__m512i)m.v) != 0; }
+TAUT_INLINE bool Any(Mask<8> m) noexcept { return _mm512_movepi64_mask((__m512i)m.v) != 0; }
 #endif
 
 /// One lane: a plain double, so that a single world costs no vector overhead.
@@ -115,33 +119,33 @@ struct Wide<1> {
   double operator[](int) const noexcept { return v; }
   void Set(int, double x) noexcept { v = x; }
 };
-inline Mask<1> operator&(Mask<1> a, Mask<1> b) noexcept { return {a.v && b.v}; }
-inline Mask<1> operator|(Mask<1> a, Mask<1> b) noexcept { return {a.v || b.v}; }
-inline Mask<1> operator!(Mask<1> a) noexcept { return {!a.v}; }
-inline Wide<1> Select(Mask<1> m, Wide<1> yes, Wide<1> no) noexcept { return {m.v ? yes.v : no.v}; }
-inline Wide<1> Sqrt(Wide<1> a) noexcept { return {__builtin_sqrt(a.v)}; }
-inline bool Any(Mask<1> m) noexcept { return m.v; }
+TAUT_INLINE Mask<1> operator&(Mask<1> a, Mask<1> b) noexcept { return {a.v && b.v}; }
+TAUT_INLINE Mask<1> operator|(Mask<1> a, Mask<1> b) noexcept { return {a.v || b.v}; }
+TAUT_INLINE Mask<1> operator!(Mask<1> a) noexcept { return {!a.v}; }
+TAUT_INLINE Wide<1> Select(Mask<1> m, Wide<1> yes, Wide<1> no) noexcept { return {m.v ? yes.v : no.v}; }
+TAUT_INLINE Wide<1> Sqrt(Wide<1> a) noexcept { return {__builtin_sqrt(a.v)}; }
+TAUT_INLINE bool Any(Mask<1> m) noexcept { return m.v; }
 
 /// The greater of two; `b` if either is NaN.
 template <int N>
-inline Wide<N> Max(Wide<N> a, Wide<N> b) noexcept {
+TAUT_INLINE Wide<N> Max(Wide<N> a, Wide<N> b) noexcept {
   return Select(a > b, a, b);
 }
 template <int N>
-inline Wide<N> Min(Wide<N> a, Wide<N> b) noexcept {
+TAUT_INLINE Wide<N> Min(Wide<N> a, Wide<N> b) noexcept {
   return Select(a < b, a, b);
 }
 template <int N>
-inline Wide<N> Abs(Wide<N> a) noexcept {
+TAUT_INLINE Wide<N> Abs(Wide<N> a) noexcept {
   return Max(a, -a);
 }
 
 template <int N>
-inline Wide<N>& operator+=(Wide<N>& a, Wide<N> b) noexcept {
+TAUT_INLINE Wide<N>& operator+=(Wide<N>& a, Wide<N> b) noexcept {
   return a = a + b;
 }
 template <int N>
-inline Wide<N>& operator-=(Wide<N>& a, Wide<N> b) noexcept {
+TAUT_INLINE Wide<N>& operator-=(Wide<N>& a, Wide<N> b) noexcept {
   return a = a - b;
 }
 
