@@ -8,6 +8,7 @@
 // In the order of use: each file needs what stands before it.
 // clang-format off
 #include "sim/rows.h"
+#include "sim/poison.inl"
 #include "sim/shape_contacts.h"
 #include "sim/stage_bodies.inl"
 #include "sim/stiff_cables.inl"
@@ -158,6 +159,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   const W last = s.last_step[0];
   const W ahead = Select(last > zero, half_h / Max(last, W::Splat(1e-300)), zero);
 
+  Poison(m, s, g, work);
   SaveStart(m, s, work);
   StageDriftFirst(m, s, half_h);
   StageKinematics(m, s, g, work, ahead);
@@ -192,6 +194,7 @@ template <class W>
 void SenseGroup(const View& m, const Layout& layout, Group& g, void* scratch) {
   Scratch<W> work(m, scratch);
   const Rows<W> s(layout, g);
+  Poison(m, s, g, work);
   StageKinematics(m, s, g, work, W::Splat(0.0));
   StageSense(m, s, work);
   g.sensed = true;

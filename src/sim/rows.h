@@ -187,6 +187,9 @@ struct Scratch {
   int single_count;  ///< then those with other things of the world.
   int stiff_count, link_count;
 
+  /// Overwrites all that the pointers point to.
+  void Fill(unsigned char byte) noexcept { __builtin_memset(memory_, byte, used_); }
+
   static size_t Bytes(const View& m) noexcept { return Scratch(m, nullptr).used_; }
 
   Scratch(const View& m, void* memory) noexcept : memory_(static_cast<char*>(memory)) {
