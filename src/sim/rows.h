@@ -236,7 +236,8 @@ struct Scratch {
   }
   template <class T>
   T* Take(size_t count) noexcept {
-    T* const first = reinterpret_cast<T*>(memory_ + used_);
+    // Without memory only the sizes count: adding to a null pointer would be undefined.
+    T* const first = memory_ == nullptr ? nullptr : reinterpret_cast<T*>(memory_ + used_);
     used_ += (count * sizeof(T) + 63) / 64 * 64;
     return first;
   }

@@ -1,19 +1,11 @@
 /// Random damage to texts.
 #pragma once
 
-#include <fstream>
 #include <iterator>
 #include <random>
-#include <sstream>
 #include <string>
 
 namespace taut::test {
-
-inline std::string Text(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
 
 class Damage {
  public:

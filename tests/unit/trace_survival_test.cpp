@@ -1,5 +1,4 @@
 // Traces and accidents: writers killed, disks full, files damaged.
-#include <hdf5.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -12,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "tests/unit/hdf5_old_layout.h"
 #include "trace/child_process.h"
 #include "trace_fixture.h"
 
@@ -185,41 +185,6 @@ TEST_F(Survival, AFullDiskFoundOnlyAtTheEndIsAnError) {
   }
 }
 
-/// The same content as other programs write it: HDF5's old layout, which has no checksums.
-void WriteOldLayout(const std::string& path, std::size_t rows) {
-  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  const hid_t text = H5Tcopy(H5T_C_S1), scalar = H5Screate(H5S_SCALAR);
-  H5Tset_size(text, 10);
-  const hid_t format = H5Acreate2(file, "format", text, scalar, H5P_DEFAULT, H5P_DEFAULT);
-  H5Awrite(format, text, "taut trace");
-  H5Aclose(format);
-  const hid_t version =
-      H5Acreate2(file, "format_version", H5T_NATIVE_INT, scalar, H5P_DEFAULT, H5P_DEFAULT);
-  const int one = 1;
-  H5Awrite(version, H5T_NATIVE_INT, &one);
-  H5Aclose(version);
-  const hid_t layout = H5Pcreate(H5P_DATASET_CREATE), links = H5Pcreate(H5P_LINK_CREATE);
-  const hsize_t count = rows, chunk = 256;
-  H5Pset_chunk(layout, 1, &chunk);
-  H5Pset_deflate(layout, 4);
-  H5Pset_create_intermediate_group(links, 1);
-  const hid_t space = H5Screate_simple(1, &count, nullptr);
-  std::vector<double> values(rows);
-  for (std::size_t i = 0; i < rows; ++i) values[i] = static_cast<double>(i);
-  std::vector<ChannelInfo> columns = Channels(kChannelCount);
-  columns.push_back({"time_s", "s"});
-  for (const ChannelInfo& column : columns) {
-    const hid_t dataset =
-        H5Dcreate2(file, column.name.c_str(), H5T_IEEE_F64LE, space, links, layout, H5P_DEFAULT);
-    H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
-    H5Dclose(dataset);
-  }
-  for (const hid_t id : {layout, links}) H5Pclose(id);
-  for (const hid_t id : {scalar, space}) H5Sclose(id);
-  H5Tclose(text);
-  H5Fclose(file);
-}
-
 struct Outcome {
   std::size_t readable = 0, refused = 0, crashed = 0;
 };
@@ -267,7 +232,7 @@ TEST_F(Survival, DamagedTracesGiveDataOrADiagnostic) {
 }
 
 TEST_F(Survival, DamagedFilesWithoutChecksumsGiveDataOrADiagnostic) {
-  WriteOldLayout(Path("good.h5"), 2000);
+  WriteOldLayout(Path("good.h5"), Channels(kChannelCount), 2000);
   Diagnostics out;
   ASSERT_TRUE(ReadTrace(Path("good.h5"), out)) << out.Format();
   const Outcome outcome = ReadDamaged(ReadFile(Path("good.h5")), 8192, 400, Path("bad.h5"));

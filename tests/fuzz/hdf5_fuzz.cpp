@@ -1,0 +1,64 @@
+// Good HDF5 traces with damage, or any bytes. HDF5 itself may crash on them: the caller must not.
+//
+// Input: a byte that chooses a base, then patches of four bytes: place (3), value (1). Bases: a
+// finished trace, one whose writer was cut off, one in HDF5's old layout, which has no checksums;
+// else the input itself is the file.
+#include "fuzz/fuzz_folder.h"
+#include "tests/unit/hdf5_old_layout.h"
+
+namespace {
+
+using taut::fuzz::Folder;
+using taut::fuzz::Must;
+
+constexpr std::size_t kRows = 300;
+
+std::vector<taut::ChannelInfo> Columns() {
+  return {{"cable/a/tension_n", "N"}, {"cable/b/tension_n", "N"}};
+}
+
+/// The file as it is after `kRows` rows, finished or not.
+std::string Written(const std::string& path, bool finish) {
+  taut::Diagnostics out;
+  const auto writer = CreateHdf5Trace(path, Columns(), {{"seed", "0"}}, out);
+  Must(writer != nullptr, out.Format());
+  for (std::size_t row = 0; row < kRows; ++row) {
+    const double values[] = {1.0, static_cast<double>(row)};
+    Must(writer->Append(static_cast<double>(row), values), "a row");
+  }
+  if (finish) writer->Finish();
+  return taut::fuzz::ReadAll(path);
+}
+
+std::vector<std::string> Bases(const Folder& folder) {
+  std::vector<std::string> bases{Written(folder.Path("finished.h5"), true),
+                                 Written(folder.Path("cut.h5"), false)};
+  taut::test::WriteOldLayout(folder.Path("old.h5"), Columns(), kRows);
+  bases.push_back(taut::fuzz::ReadAll(folder.Path("old.h5")));
+  return bases;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const Folder folder;
+  static const std::vector<std::string> bases = Bases(folder);
+  if (size == 0) return 0;
+  std::string file(data + 1, data + size);
+  if (data[0] < bases.size()) {
+    file = bases[data[0]];
+    for (std::size_t i = 1; i + 3 < size; i += 4) {
+      const std::size_t place = data[i] | data[i + 1] << 8 | data[i + 2] << 16;
+      file[place % file.size()] = static_cast<char>(data[i + 3]);
+    }
+  }
+  taut::Diagnostics out;
+  const auto trace = taut::ReadTrace(folder.Write("t.h5", file.data(), file.size()), out);
+  Must(trace.has_value() == out.ok(), "a trace or complaints");
+  if (!trace) return 0;
+  Must(trace->values.size() == trace->channels.size(), "a column a channel");
+  for (const auto& column : trace->values) {
+    Must(column.size() == trace->time_s.size(), "as many values as times");
+  }
+  return 0;
+}

@@ -1,0 +1,239 @@
+// A random model of bodies, cables and terrain, stepped 1000 times with random commands: it ends,
+// and a number that is not finite is never seen without a status that says so.
+#include <fuzzer/FuzzedDataProvider.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "fuzz/fuzz_folder.h"
+#include "math/vec.h"
+#include "scenes/solids.h"
+#include "taut/batch.h"
+
+namespace taut::fuzz {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kSteps = 1000, kStretches = 20;
+
+/// Draws what a model is made of. Sizes are those of robots; stiffnesses, masses, speeds and steps
+/// span what a user may ask for.
+class Draw {
+ public:
+  explicit Draw(FuzzedDataProvider& from) : from_(from) {}
+
+  int Int(int low, int high) { return from_.ConsumeIntegralInRange(low, high); }
+  bool Coin() { return from_.ConsumeBool(); }
+  double Between(double low, double high) { return from_.ConsumeFloatingPointInRange(low, high); }
+  /// Between two positive numbers, all orders of magnitude alike.
+  double Scale(double low, double high) { return std::exp(Between(std::log(low), std::log(high))); }
+  Vec3 Point(double size) {
+    const double x = Between(-size, size), y = Between(-size, size), z = Between(-size, size);
+    return {x, y, z};
+  }
+  Vec3 Direction() {
+    const Vec3 v = Point(1);
+    const double length = std::sqrt(Dot(v, v));
+    return length > 1e-3 ? (1 / length) * v : Vec3{0, 0, 1};
+  }
+  Quat Turn() { return scenes::Turn(Direction(), Between(-4, 4)); }
+  Material Surface() {
+    Material m;
+    m.kinetic_friction = Between(0, 1.5);
+    m.static_friction = m.kinetic_friction + Between(0, 0.5);
+    m.restitution = Between(0, 1);
+    return m;
+  }
+  int Body(const ModelDef& def) { return Int(kWorld, static_cast<int>(def.bodies.size()) - 1); }
+
+ private:
+  FuzzedDataProvider& from_;
+};
+
+void AddBody(ModelDef& def, Draw& draw) {
+  const int index = static_cast<int>(def.bodies.size());
+  BodyDef body;
+  body.name = "body_" + std::to_string(index);
+  body.fixed = draw.Int(0, 9) == 0;
+  body.mass_kg = draw.Scale(1e-4, 1e3);
+  body.com_m = draw.Point(1) + Vec3{0, 0, 1};
+  body.velocity_m_per_s = draw.Point(draw.Coin() ? 1 : 100);
+  body.angular_velocity_rad_per_s = draw.Point(draw.Coin() ? 1 : 300);
+  const double size_m = draw.Scale(1e-3, 1);
+  body.inertia_kg_m2 = scenes::BoxInertia(
+      body.mass_kg, {size_m, size_m * draw.Between(0.01, 1), size_m * draw.Between(0.01, 1)});
+  const std::string name = body.name;
+  const Vec3 center = body.com_m;
+  def.bodies.push_back(std::move(body));
+  for (int i = draw.Int(0, 2); i >= 0; --i) {
+    const double radius_m = draw.Scale(1e-3, 0.3);
+    const Vec3 at = center + draw.Point(size_m);
+    switch (draw.Int(0, 3)) {
+      case 0:
+        def.spheres.push_back({name, index, at, radius_m, draw.Surface()});
+        break;
+      case 1:
+        def.capsules.push_back(
+            {name, index, at, center + draw.Point(size_m), radius_m, draw.Surface()});
+        break;
+      case 2:
+        def.boxes.push_back({name,
+                             index,
+                             at,
+                             draw.Turn(),
+                             {radius_m, radius_m * draw.Between(0.05, 1), 0.5 * radius_m},
+                             draw.Surface()});
+        break;
+      default:
+        break;  // a body without this shape
+    }
+    def.nodes.push_back({name + "_" + std::to_string(i), index, at});
+  }
+}
+
+void AddCable(ModelDef& def, Draw& draw) {
+  CableDef cable;
+  cable.name = "cable_" + std::to_string(def.cables.size());
+  for (int i = draw.Int(2, 4); i > 0; --i) {
+    if (draw.Coin() && !def.nodes.empty()) {  // at a node, so that cables share places
+      const NodeDef& node =
+          def.nodes[static_cast<std::size_t>(draw.Int(0, static_cast<int>(def.nodes.size()) - 1))];
+      cable.attachments.push_back({node.body, node.position_m});
+    } else {
+      cable.attachments.push_back({draw.Body(def), draw.Point(1)});
+    }
+  }
+  cable.stiffness_n_per_m = draw.Scale(1e-2, 1e8);
+  cable.damping_n_s_per_m = draw.Coin() ? 0 : draw.Scale(1e-3, 1e5);
+  cable.rest_length_m = draw.Scale(1e-6, 3);
+  cable.damping_law = draw.Coin() ? DampingLaw::kExact : DampingLaw::kClamped;
+  ActuatorDef& motor = cable.actuator;
+  motor.kind = static_cast<ActuatorDef::Kind>(draw.Int(0, 2));
+  motor.max_speed_m_per_s = draw.Coin() ? kInfinity : draw.Scale(1e-3, 1e3);
+  motor.max_acceleration_m_per_s2 = draw.Coin() ? kInfinity : draw.Scale(1e-3, 1e5);
+  motor.max_force_n = draw.Coin() ? kInfinity : draw.Scale(1e-3, 1e5);
+  motor.min_rest_length_m = draw.Coin() ? 0 : draw.Between(0, 1);
+  motor.min_length_m = draw.Coin() ? 0 : draw.Between(0, 1);
+  def.cables.push_back(std::move(cable));
+}
+
+ModelDef RandomModel(Draw& draw) {
+  ModelDef def;
+  def.name = "random";
+  for (int i = draw.Int(1, 5); i > 0; --i) AddBody(def, draw);
+  for (int i = draw.Int(0, 8); i > 0; --i) AddCable(def, draw);
+  for (int i = draw.Int(0, 2); i > 0; --i) {
+    def.planes.push_back(
+        {"plane", draw.Coin() ? Vec3{0, 0, 1} : draw.Direction(), draw.Point(0.2), draw.Surface()});
+  }
+  if (draw.Coin()) {
+    def.terrain_boxes.push_back({"block",
+                                 draw.Point(1),
+                                 draw.Turn(),
+                                 {draw.Scale(0.01, 1), draw.Scale(0.01, 1), 0.2},
+                                 draw.Surface()});
+  }
+  def.gravity_m_per_s2 = draw.Coin() ? Vec3{0, 0, -9.81} : draw.Point(30);
+  def.friction_combine = static_cast<CombineRule>(draw.Int(0, 3));
+  def.restitution_combine = static_cast<CombineRule>(draw.Int(0, 3));
+  def.friction_law = draw.Coin() ? FrictionLaw::kCone : FrictionLaw::kAlongSlip;
+  return def;
+}
+
+/// Mostly what a controller could ask for; now and then what a broken one does.
+double Command(Draw& draw) {
+  switch (draw.Int(0, 30)) {
+    case 0:
+      return std::nan("");
+    case 1:
+      return kInfinity;
+    case 2:
+      return -draw.Scale(1e-3, 1e300);
+    case 3:
+      return draw.Scale(1e-300, 1e300);
+    default:
+      return draw.Between(0, 3);
+  }
+}
+
+void Disturb(Batch& batch, int world, Draw& draw) {
+  const ModelDef& def = batch.model().def();
+  for (std::size_t c = 0; c < def.cables.size(); ++c) {
+    if (draw.Coin()) batch.SetRestLengthTarget(world, static_cast<int>(c), Command(draw));
+  }
+  if (!def.nodes.empty() && draw.Coin()) {
+    const int node = draw.Int(0, static_cast<int>(def.nodes.size()) - 1);
+    batch.SetNodeForce(world, node, Command(draw) * draw.Direction());
+  }
+}
+
+bool Finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Whether all that can be seen of a world is finite.
+bool LooksFinite(const Batch& batch, int world) {
+  const ModelDef& def = batch.model().def();
+  bool good = true;
+  for (std::size_t b = 0; b < def.bodies.size(); ++b) {
+    const BodyState s = batch.Body(world, static_cast<int>(b));
+    good = good && Finite(s.position_m) && Finite(s.velocity_m_per_s) &&
+           Finite(s.angular_velocity_rad_per_s) &&
+           std::isfinite(s.orientation.w + s.orientation.x + s.orientation.y + s.orientation.z);
+  }
+  for (std::size_t c = 0; c < def.cables.size(); ++c) {
+    const CableState s = batch.Cable(world, static_cast<int>(c));
+    good = good && std::isfinite(s.length_m) && std::isfinite(s.rate_m_per_s) &&
+           std::isfinite(s.rest_length_m) && std::isfinite(s.tension_n) &&
+           std::isfinite(s.elastic_n);
+  }
+  for (const ContactState& c : batch.Contacts(world)) {
+    good = good && Finite(c.point_m) && Finite(c.normal) && Finite(c.force_n);
+  }
+  return good;
+}
+
+/// The input, which is drawn from its end, and before it numbers that it determines: a short input
+/// makes a whole model, too.
+std::vector<std::uint8_t> Extended(const std::uint8_t* data, std::size_t size) {
+  std::seed_seq seed(data, data + size);
+  std::mt19937 random(seed);
+  std::vector<std::uint8_t> bytes(1 << 14);
+  for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
+  bytes.insert(bytes.end(), data, data + size);
+  return bytes;
+}
+
+void Run(const std::uint8_t* data, std::size_t size) {
+  const std::vector<std::uint8_t> extended = Extended(data, size);
+  FuzzedDataProvider bytes(extended.data(), extended.size());
+  Draw draw(bytes);
+  const double step_s = draw.Coin() ? 1e-3 : draw.Scale(1e-9, 1);
+  BatchOptions options;
+  options.worlds = draw.Int(1, 3);
+  options.simd = static_cast<Simd>(1 << draw.Int(0, 3));
+  options.max_sweeps = 50;  // to be fast; a step that needs more says so
+  Diagnostics refused;
+  const auto model = Model::Compile(RandomModel(draw), refused);
+  Must((model != nullptr) == refused.ok(), "compiled or refused");
+  if (!model) return;
+  Batch batch(model, options);
+  for (int i = 0; i < kStretches; ++i) {
+    for (int world = 0; world < options.worlds; ++world) Disturb(batch, world, draw);
+    batch.Step(step_s, kSteps / kStretches);
+    for (int world = 0; world < options.worlds; ++world) {
+      const bool reported = (batch.Status(world).bits & kStatusNonFinite) != 0;
+      Must(reported || LooksFinite(batch, world), "what is not finite is in the status");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace taut::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  taut::fuzz::Run(data, size);
+  return 0;
+}
