@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "overrides.h"
 #include "taut/batch.h"
+#include "taut/run.h"
 #include "taut/spec.h"
 
 namespace taut::cli {
@@ -42,6 +43,7 @@ int Check(const CheckArguments& args) {
   }
   // What the simulator refuses is wrong, too.
   if (!robot || !Model::Compile(robot->def, found)) return Bad(args, found);
+  if (experiment && !CheckRecord(*experiment, found)) return Bad(args, found);
 
   if (args.json) {
     fmt::print("{}\n", CheckJson(*robot, experiment ? &*experiment : nullptr));

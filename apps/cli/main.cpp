@@ -1,10 +1,26 @@
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <system_error>
+
 #include "commands.h"
 #include "taut/version.h"
 
-int main(int argc, char** argv) {
-  using namespace taut::cli;
+namespace taut::cli {
+namespace {
+
+/// What a command has printed must have arrived: a full disk is no success.
+int Printed(int exit_code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
+  fmt::print(stderr, "error: standard output cannot be written: {}\n", std::strerror(errno));
+  return exit_code == kOk ? kFailed : exit_code;
+}
+
+int Run(int argc, char** argv) {
   CLI::App app{"Tensegrity robots: describe, simulate, control, compare with measurements.",
                "taut"};
   app.set_version_flag("--version", std::string("taut ") + taut::kVersion);
@@ -34,4 +50,21 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? kOk : kUsage;
   }
   return exit_code;
+}
+
+}  // namespace
+}  // namespace taut::cli
+
+int main(int argc, char** argv) {
+  using namespace taut::cli;
+  // A file that reaches a limit of its size is an error of writing, not the end of the program.
+  std::signal(SIGXFSZ, SIG_IGN);
+  try {
+    return Printed(Run(argc, argv));
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "error: not enough memory\n");
+  } catch (const std::system_error& error) {  // fmt cannot print, threads cannot start
+    fmt::print(stderr, "error: {}\n", error.what());
+  }
+  return kFailed;
 }

@@ -6,11 +6,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <system_error>
 
 #include "commands.h"
 #include "overrides.h"
+#include "taut/batch.h"
 #include "taut/compare.h"
 #include "taut/run.h"
 #include "taut/spec.h"
@@ -26,6 +28,17 @@ namespace fs = std::filesystem;
 std::atomic<bool> interrupt_asked{false};
 
 extern "C" void AskInterrupt(int) { interrupt_asked = true; }
+
+/// CLI11's own check lets NaN pass and prints 1e-9 as 0.000000.
+std::function<std::string(const std::string&)> NumberWithin(double least, double most) {
+  return [least, most](const std::string& text) {
+    double number = 0;
+    if (CLI::detail::lexical_cast(text, number) && number >= least && number <= most) {
+      return std::string();
+    }
+    return fmt::format("\"{}\" is not a number from {:g} to {:g}", text, least, most);
+  };
+}
 
 struct RunArguments {
   std::string experiment, out;
@@ -104,6 +117,11 @@ int Run(const RunArguments& args) {
   if (args.duration_s >= 0) experiment->duration_s = args.duration_s;
   if (args.has_seed) experiment->seed = args.seed;
 
+  // Before anything is written over an earlier run.
+  if (!Model::Compile(experiment->robot.def, found) || !CheckRecord(*experiment, found)) {
+    return Fail(found, kBadInput);
+  }
+
   const fs::path folder = MakeFolder(args, *experiment, found);
   if (!found.ok()) return Fail(found, kFailed);
   const std::vector<ChannelInfo> channels = RunChannels(*experiment);
@@ -155,9 +173,9 @@ void AddRun(CLI::App& app, int& exit_code) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   run->add_option("--step_s", args->step_s, "Step instead of the file's [s]")
-      ->check(CLI::Range(1e-9, 1.0));
+      ->check(NumberWithin(1e-9, 1.0));
   run->add_option("--duration_s", args->duration_s, "Duration instead of the file's [s]")
-      ->check(CLI::Range(0.0, 1e9));
+      ->check(NumberWithin(0.0, 1e9));
   run->add_option("--seed", args->seed, "Seed of all that is random")
       ->each([args](const std::string&) { args->has_seed = true; });
   run->add_option("--out", args->out, "Folder to write into (default: runs/<experiment>)");

@@ -76,6 +76,9 @@ struct RunOptions {
 /// The channels that a run of this experiment records, in order.
 std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment);
 
+/// False, and a complaint each, if the experiment asks for channels that no run of it has.
+bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out);
+
 /// What a trace says about how it came to be: version, machine, seed, step, hash of the inputs.
 TraceMetadata RunMetadata(const ExperimentSpec& experiment);
 

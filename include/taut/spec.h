@@ -127,8 +127,9 @@ enum class StartKind {
 };
 
 struct RecordSpec {
-  double rate_hz = 100.0;             ///< Rows a second; 0: every step.
-  std::vector<std::string> channels;  ///< Name patterns with `*`; empty: all.
+  double rate_hz = 100.0;                  ///< Rows a second; 0: every step.
+  std::vector<std::string> channels;       ///< Name patterns with `*`; empty: all.
+  std::vector<SourceRef> channel_sources;  ///< Where a file has them; may be empty.
 };
 
 /// An experiment file, resolved.

@@ -8,9 +8,9 @@
 #include <set>
 #include <unordered_map>
 
+#include "base/pattern.h"
 #include "compare/common_clock.h"
 #include "compare/lag.h"
-#include "compare/pattern.h"
 
 namespace taut {
 namespace {
@@ -155,7 +155,7 @@ std::vector<SystemMaximum> SystemMaxima(const std::vector<ChannelComparison>& ch
     SystemMaximum system{pattern, "", "", "", {kNan, kNan}, {kNan, kNan}, kNan};
     bool any = false;
     for (const ChannelComparison& channel : channels) {
-      if (!compare::Fits(pattern, channel.name)) continue;
+      if (!base::Fits(pattern, channel.name)) continue;
       any = true;
       system.unit = channel.unit;
       if (channel.max_a.value > system.a.value || std::isnan(system.a.value)) {
@@ -194,7 +194,7 @@ Comparison Compare(const Trace& a, const Trace& b, const CompareOptions& options
 
   const auto index_a = IndexOf(a), index_b = IndexOf(b);
   for (const ChannelInfo& channel : b.channels) {
-    if (!index_a.contains(channel.name) && compare::FitsAny(options.channels, channel.name)) {
+    if (!index_a.contains(channel.name) && base::FitsAny(options.channels, channel.name)) {
       result.only_b.push_back(channel.name);
     }
   }
@@ -202,7 +202,7 @@ Comparison Compare(const Trace& a, const Trace& b, const CompareOptions& options
   if (result.rows > 0) comparer.emplace(a, b, options, clock);
   for (std::size_t i = 0; i < a.channels.size(); ++i) {
     const ChannelInfo& channel = a.channels[i];
-    if (!compare::FitsAny(options.channels, channel.name)) continue;
+    if (!base::FitsAny(options.channels, channel.name)) continue;
     const auto in_b = index_b.find(channel.name);
     if (in_b == index_b.end()) {
       result.only_a.push_back(channel.name);

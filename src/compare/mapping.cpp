@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "compare/pattern.h"
+#include "base/pattern.h"
 #include "taut/compare.h"
 #include "trace/channel_names.h"
 
@@ -249,7 +249,7 @@ std::optional<Trace> ApplyMapping(const Mapping& mapping, Trace trace, const std
   for (std::size_t i = 0; i < trace.channels.size(); ++i) {
     ChannelInfo& channel = trace.channels[i];
     for (const Mapping::Rule& rule : mapping.rules) {
-      const auto wildcard = compare::Wildcard(rule.from, channel.name);
+      const auto wildcard = base::Wildcard(rule.from, channel.name);
       if (!wildcard) continue;
       std::string name = rule.to;
       if (const std::size_t star = name.find('*'); star != name.npos) {

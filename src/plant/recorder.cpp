@@ -2,21 +2,11 @@
 
 #include <algorithm>
 
+#include "base/pattern.h"
 #include "math/vec.h"
+#include "taut/run.h"
 
 namespace taut::plant {
-
-bool MatchesPattern(std::string_view pattern, std::string_view name) {
-  if (pattern.empty()) return name.empty();
-  if (pattern.front() != '*') {
-    return !name.empty() && pattern.front() == name.front() &&
-           MatchesPattern(pattern.substr(1), name.substr(1));
-  }
-  for (std::size_t i = 0; i <= name.size(); ++i) {
-    if (MatchesPattern(pattern.substr(1), name.substr(i))) return true;
-  }
-  return false;
-}
 
 namespace {
 
@@ -124,8 +114,7 @@ void Recorder::Add(const std::string& prefix, const std::vector<ChannelInfo>& na
   block.size = names.size();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string name = prefix + names[i].name;
-    const auto fits = [&](const std::string& pattern) { return MatchesPattern(pattern, name); };
-    if (!patterns_.empty() && std::none_of(patterns_.begin(), patterns_.end(), fits)) continue;
+    if (!base::FitsAny(patterns_, name)) continue;
     block.kept.push_back(i);
     channels_.push_back({name, names[i].unit});
   }
@@ -145,3 +134,37 @@ const std::vector<double>& Recorder::Row(const RecordSource& source) {
 }
 
 }  // namespace taut::plant
+
+namespace taut {
+
+std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment) {
+  return plant::Recorder(experiment).channels();
+}
+
+bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out) {
+  const RecordSpec& record = experiment.record;
+  if (record.channels.empty()) return true;
+  ExperimentSpec all = experiment;
+  all.record.channels.clear();
+  std::vector<std::string> names, known;
+  for (const ChannelInfo& channel : RunChannels(all)) {
+    names.push_back(channel.name);
+    const std::size_t first = channel.name.find('/'), last = channel.name.rfind('/');
+    std::string general = channel.name;
+    if (first < last) general.replace(first + 1, last - first - 1, "*");
+    if (std::find(known.begin(), known.end(), general) == known.end()) known.push_back(general);
+  }
+  known.insert(known.end(), names.begin(), names.end());
+  bool good = true;
+  for (std::size_t i = 0; i < record.channels.size(); ++i) {
+    const std::string& pattern = record.channels[i];
+    const auto fits = [&](const std::string& name) { return base::Fits(pattern, name); };
+    if (std::any_of(names.begin(), names.end(), fits)) continue;
+    good = false;
+    out.Error(i < record.channel_sources.size() ? record.channel_sources[i] : SourceRef{},
+              "record.channels: no channel fits \"" + pattern + "\"", DidYouMean(pattern, known));
+  }
+  return good;
+}
+
+}  // namespace taut

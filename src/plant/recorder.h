@@ -48,7 +48,4 @@ class Recorder {
   std::vector<double> row_, block_values_;
 };
 
-/// Whether a name fits a pattern in which `*` stands for any text.
-bool MatchesPattern(std::string_view pattern, std::string_view name);
-
 }  // namespace taut::plant

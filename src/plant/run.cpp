@@ -199,14 +199,10 @@ class Runner {
 
 }  // namespace
 
-std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment) {
-  return plant::Recorder(experiment).channels();
-}
-
 std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment, const RunOptions& options,
                                         Diagnostics& out) {
   const auto model = Model::Compile(experiment.robot.def, out);
-  if (!model) return std::nullopt;
+  if (!model || !CheckRecord(experiment, out)) return std::nullopt;
   BatchOptions batch_options;
   batch_options.threads = options.threads;
   batch_options.simd = options.simd;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "math/vec.h"
 #include "sim/tables.h"
@@ -59,8 +61,12 @@ double Coupling(const Tables& t, const std::vector<Pull>& a, const std::vector<P
   return sum;
 }
 
+/// A row of a symmetric matrix: its columns, rising, and what stands there.
+using SparseRow = std::vector<std::pair<std::size_t, double>>;
+
 /// The largest eigenvalue of a symmetric positive semidefinite matrix, by power iteration.
-double LargestEigenvalue(const std::vector<double>& matrix, std::size_t n) {
+double LargestEigenvalue(const std::vector<SparseRow>& matrix) {
+  const std::size_t n = matrix.size();
   std::vector<double> x(n), y(n);
   for (std::size_t i = 0; i < n; ++i) x[i] = 1.0 + 0.01 * static_cast<double>(i % 7);
   double eigenvalue = 0;
@@ -68,7 +74,7 @@ double LargestEigenvalue(const std::vector<double>& matrix, std::size_t n) {
     double norm2 = 0;
     for (std::size_t i = 0; i < n; ++i) {
       y[i] = 0;
-      for (std::size_t j = 0; j < n; ++j) y[i] += matrix[i * n + j] * x[j];
+      for (const auto& [j, a] : matrix[i]) y[i] += a * x[j];
       norm2 += y[i] * y[i];
     }
     eigenvalue = std::sqrt(norm2);
@@ -83,18 +89,32 @@ double LargestEigenvalue(const std::vector<double>& matrix, std::size_t n) {
 void CoupleCables(Tables& tables) {
   const std::size_t n = tables.cables.size();
   std::vector<std::vector<Pull>> pulls;
-  for (const CableTable& cable : tables.cables) pulls.push_back(PullsOf(tables, cable));
-  std::vector<double> matrix(n * n);
-  tables.coupling.assign(n, 0.0);
+  std::vector<std::vector<std::size_t>> cables_at(static_cast<std::size_t>(tables.body_count));
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i; j < n; ++j) {
-      const double a = Coupling(tables, pulls[i], pulls[j]);
-      matrix[i * n + j] = matrix[j * n + i] = a;
-      tables.coupling[i] += std::fabs(a);
-      if (j != i) tables.coupling[j] += std::fabs(a);
+    pulls.push_back(PullsOf(tables, tables.cables[i]));
+    for (const Pull& pull : pulls[i]) {
+      const auto body = static_cast<std::size_t>(pull.body);
+      if (!tables.def().bodies[body].fixed) cables_at[body].push_back(i);
     }
   }
-  tables.largest_coupling = LargestEigenvalue(matrix, n);
+  std::vector<SparseRow> matrix(n);
+  tables.coupling.assign(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<std::size_t> others;  // only cables that share a body act on each other
+    for (const Pull& pull : pulls[i]) {
+      const auto& here = cables_at[static_cast<std::size_t>(pull.body)];
+      others.insert(others.end(), here.begin(), here.end());
+    }
+    std::sort(others.begin(), others.end());
+    others.erase(std::unique(others.begin(), others.end()), others.end());
+    for (const std::size_t j : others) {
+      // The same bits both ways, whatever the order of its sum.
+      const double a = Coupling(tables, pulls[std::min(i, j)], pulls[std::max(i, j)]);
+      matrix[i].emplace_back(j, a);
+      tables.coupling[i] += std::fabs(a);
+    }
+  }
+  tables.largest_coupling = LargestEigenvalue(matrix);
 }
 
 }  // namespace taut::sim

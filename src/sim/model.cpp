@@ -192,10 +192,12 @@ class Compiler {
   void AddShape(const sim::ShapeTable& s) {
     double& bound = t_.bound_m[static_cast<std::size_t>(s.body)];
     bound = std::max(bound, Length(s.center_P) + s.bound_m);
+    shapes_of_[static_cast<std::size_t>(s.body)].push_back(t_.shapes.size());
     t_.shapes.push_back(s);
   }
 
   void Shapes() {
+    shapes_of_.resize(def_.bodies.size() + 1);
     for (const SphereDef& s : def_.spheres) {
       if (s.collides) Round(s.body, s.center_m, s.center_m, s.radius_m, s.material);
     }
@@ -217,8 +219,8 @@ class Compiler {
       t_.first_point.push_back(static_cast<int>(t_.points.size()));
       if (def_.bodies[static_cast<std::size_t>(body)].fixed) continue;
       const std::size_t first = t_.points.size();
-      for (const sim::ShapeTable& s : t_.shapes) {
-        if (s.body != body) continue;
+      for (const std::size_t shape : shapes_of_[static_cast<std::size_t>(body)]) {
+        const sim::ShapeTable& s = t_.shapes[shape];
         if (!s.is_box) {
           AddPoint(first, s.from_P, s.radius_m, s.material);
           AddPoint(first, s.to_P, s.radius_m, s.material);
@@ -269,8 +271,12 @@ class Compiler {
     std::uint32_t id = t_.first_pair_id;
     // Pairs with the world first: their contacts need the rows of one body only.
     for (int a = 0; a < t_.body_count; ++a) AddPair(a, t_.body_count, id);
+    std::vector<int> solid;
     for (int a = 0; a < t_.body_count; ++a) {
-      for (int b = a + 1; b < t_.body_count; ++b) AddPair(a, b, id);
+      if (!shapes_of_[static_cast<std::size_t>(a)].empty()) solid.push_back(a);
+    }
+    for (std::size_t i = 0; i < solid.size(); ++i) {
+      for (std::size_t j = i + 1; j < solid.size(); ++j) AddPair(solid[i], solid[j], id);
     }
     const auto possible = (id - t_.first_pair_id);
     t_.pair_capacity = static_cast<int>(
@@ -281,10 +287,8 @@ class Compiler {
     if (!Moves(a) && !Moves(b)) return;
     if (!Moves(a)) std::swap(a, b);
     sim::BodyPairTable pair{a, b, static_cast<int>(t_.shape_pairs.size()), 0};
-    for (std::size_t i = 0; i < t_.shapes.size(); ++i) {
-      if (t_.shapes[i].body != a) continue;
-      for (std::size_t j = 0; j < t_.shapes.size(); ++j) {
-        if (t_.shapes[j].body != b) continue;
+    for (const std::size_t i : shapes_of_[static_cast<std::size_t>(a)]) {
+      for (const std::size_t j : shapes_of_[static_cast<std::size_t>(b)]) {
         const Material &m = t_.shapes[i].material, &n = t_.shapes[j].material;
         t_.shape_pairs.push_back(
             {static_cast<int>(i), static_cast<int>(j), id,
@@ -301,6 +305,7 @@ class Compiler {
   Tables& t_;
   const ModelDef& def_;
   std::vector<Frame> frames_;
+  std::vector<std::vector<std::size_t>> shapes_of_;  ///< Per body and the world.
 };
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "sim/model_check.h"
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "sim/principal_axes.h"
 #include "sim/tables.h"
@@ -123,6 +125,41 @@ void CheckCables(const ModelDef& def, Checker& check) {
   }
 }
 
+/// Sizes that grow with the square of a model: pairs of shapes of different bodies, and pairs of
+/// cables that pull at one body.
+void CheckSizes(const ModelDef& def, Checker& check) {
+  std::vector<double> shapes(def.bodies.size()), ends(def.bodies.size());
+  double fixed = static_cast<double>(def.terrain_boxes.size());
+  const auto moves = [&](int body) {
+    return body != kWorld && !def.bodies[static_cast<std::size_t>(body)].fixed;
+  };
+  const auto count = [&](const auto& list) {
+    for (const auto& shape : list) {
+      if (shape.collides)
+        (moves(shape.body) ? shapes[static_cast<std::size_t>(shape.body)] : fixed) += 1;
+    }
+  };
+  count(def.spheres);
+  count(def.capsules);
+  count(def.boxes);
+  for (const CableDef& cable : def.cables) {
+    for (const AttachmentDef& a : cable.attachments) {
+      if (moves(a.body)) ends[static_cast<std::size_t>(a.body)] += 1;
+    }
+  }
+  double all = 0, within = 0, couplings = 0;
+  for (std::size_t b = 0; b < def.bodies.size(); ++b) {
+    all += shapes[b];
+    within += shapes[b] * shapes[b];
+    couplings += ends[b] * ends[b];
+  }
+  check.Require(0.5 * (all * all - within) + all * fixed <= kMaxShapePairs,
+                "more than " + std::to_string(kMaxShapePairs) +
+                    " pairs of shapes may collide; shapes that cannot meet need not collide");
+  check.Require(couplings <= kMaxCouplings,
+                "more than " + std::to_string(kMaxCouplings) + " pairs of cables share a body");
+}
+
 }  // namespace
 
 bool CheckModel(const ModelDef& def, Diagnostics& out) {
@@ -132,6 +169,7 @@ bool CheckModel(const ModelDef& def, Diagnostics& out) {
   CheckBodies(def, check);
   CheckShapes(def, check);
   CheckCables(def, check);
+  if (out.items().size() == before) CheckSizes(def, check);
   return out.items().size() == before;
 }
 

@@ -6,6 +6,10 @@
 
 namespace taut::sim {
 
+/// More would take hundreds of megabytes and minutes.
+inline constexpr long kMaxShapePairs = 10'000'000;
+inline constexpr long kMaxCouplings = 10'000'000;
+
 /// False, with a diagnostic (without file position) for every wrong number or index.
 bool CheckModel(const ModelDef& def, Diagnostics& out);
 

@@ -153,6 +153,7 @@ class ExperimentReader {
     spec_.record.rate_hz = map.NumberOr("rate_hz", spec_.record.rate_hz, Bound::kNonNegative);
     for (const ValuePtr& item : Items(map.Find("channels"), "record.channels", scope_)) {
       spec_.record.channels.push_back(ReadText(*item, "record.channels", scope_));
+      spec_.record.channel_sources.push_back(item->at);
     }
   }
 

@@ -6,6 +6,8 @@
 #include <yaml-cpp/parser.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -242,7 +244,7 @@ ValuePtr ReadYaml(const std::string& path, Diagnostics& out) {
   }
   std::ifstream in(path, std::ios::binary);
   if (!in) {
-    out.Error({path, 0, 0}, "cannot open the file");
+    out.Error({path, 0, 0}, std::string("cannot be opened: ") + std::strerror(errno));
     return nullptr;
   }
   std::string text;
@@ -255,7 +257,8 @@ ValuePtr ReadYaml(const std::string& path, Diagnostics& out) {
     return nullptr;
   }
   if (text.size() > kMaxFileBytes) {
-    out.Error({path, 0, 0}, "larger than " + std::to_string(kMaxFileBytes / 1'000'000) + " MB");
+    out.Error({path, 0, 0}, "larger than " + std::to_string(kMaxFileBytes / 1'000'000) + " MB",
+              "what repeats can be a part with `copies:`");
     return nullptr;
   }
   return ParseYaml(text, path, out);

@@ -117,7 +117,7 @@ TEST_F(CheckCommand, ErrorsGoToStderrWithTheirPlace) {
   EXPECT_EQ(json["errors"][0]["line"], 4);
   const Outcome missing = Run("no_such.yaml");
   EXPECT_EQ(missing.status, 3);
-  EXPECT_EQ(missing.errors, "no_such.yaml: error: cannot open the file\n");
+  EXPECT_EQ(missing.errors, "no_such.yaml: error: cannot be opened: No such file or directory\n");
 }
 
 TEST_F(CheckCommand, WrongUsageIsNotABadFile) {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "compare/pattern.h"
+#include "base/pattern.h"
 
 namespace taut {
 namespace {
@@ -321,7 +321,7 @@ TEST(Compare, JsonHoldsTheSameNumbers) {
 }
 
 TEST(Pattern, AStarStandsForAnyCharacters) {
-  using compare::Fits;
+  using base::Fits;
   EXPECT_TRUE(Fits("cable/*/tension_n", "cable/outer_top_1/tension_n"));
   EXPECT_TRUE(Fits("*", ""));
   EXPECT_TRUE(Fits("a*b*c", "axxbbbcc"));
@@ -331,10 +331,10 @@ TEST(Pattern, AStarStandsForAnyCharacters) {
   EXPECT_FALSE(Fits("abc*d", "abc"));
   EXPECT_FALSE(Fits("cable/*/tension_n", "cable/a/tension_n2"));
   EXPECT_FALSE(Fits("", "a"));
-  EXPECT_EQ(compare::Wildcard("a_*_n", "a_xy_n"), "xy");
-  EXPECT_EQ(compare::Wildcard("a_*_n", "a__n"), std::nullopt);
-  EXPECT_EQ(compare::Wildcard("a", "a"), "");
-  EXPECT_EQ(compare::Wildcard("a", "b"), std::nullopt);
+  EXPECT_EQ(base::Wildcard("a_*_n", "a_xy_n"), "xy");
+  EXPECT_EQ(base::Wildcard("a_*_n", "a__n"), std::nullopt);
+  EXPECT_EQ(base::Wildcard("a", "a"), "");
+  EXPECT_EQ(base::Wildcard("a", "b"), std::nullopt);
 }
 
 }  // namespace

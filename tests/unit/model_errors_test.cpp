@@ -258,7 +258,7 @@ TEST(FileKind, IsWhatTheFileSays) {
   std::ofstream(path) << "taut: 1\nkind: robot\n";
   EXPECT_FALSE(FileKind(path, out));
   std::remove(path.c_str());
-  EXPECT_EQ(out.items()[0].what, "cannot open the file");
+  EXPECT_EQ(out.items()[0].what, "cannot be opened: No such file or directory");
   EXPECT_EQ(out.items()[1].what, "a file is of kind model or experiment");
   EXPECT_EQ(out.items()[1].at.line, 2);
 }

@@ -1,8 +1,8 @@
-#include "compare/pattern.h"
+#include "base/pattern.h"
 
 #include <algorithm>
 
-namespace taut::compare {
+namespace taut::base {
 
 bool Fits(std::string_view pattern, std::string_view name) {
   // Greedy with one place to come back to: the last `*` takes one character more.
@@ -43,4 +43,4 @@ std::optional<std::string_view> Wildcard(std::string_view pattern, std::string_v
   return name.substr(head.size(), name.size() - head.size() - tail.size());
 }
 
-}  // namespace taut::compare
+}  // namespace taut::base
