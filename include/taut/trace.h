@@ -32,6 +32,10 @@ class TraceWriter {
   /// Returns false once writing has failed (disk full, ...); `error()` then says why.
   virtual bool Append(double time_s, const double* values) = 0;
 
+  /// Writes what has been in memory for half a second. `Append` does so, too; a program whose rows
+  /// are seldom calls this in between. Returns as `Append` does.
+  virtual bool FlushOld() = 0;
+
   /// Writes what is still in memory and closes the file. False: see `error()`.
   virtual bool Finish() = 0;
 

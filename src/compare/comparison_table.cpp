@@ -22,13 +22,17 @@ std::string Cell(double value, int width) {
   const double size = std::abs(value);
   if (size != 0.0 && (size >= 1e5 || size < 1e-4)) return fmt::format("{:>{}.2e}", value, width);
   const int decimals = size >= 1000.0 ? 1 : size >= 100.0 ? 2 : size >= 1.0 ? 3 : 4;
-  return fmt::format("{:>{}.{}f}", value, width, size == 0.0 ? 0 : decimals);
+  return fmt::format("{:>{}.{}f}", value + 0.0, width, size == 0.0 ? 0 : decimals);  // no "-0"
+}
+
+/// The value, without a sign if that many decimals show a zero: no "-0.000".
+double Shown(double value, int decimals) {
+  return std::abs(value) < 0.5 * std::pow(10.0, -decimals) ? 0.0 : value;
 }
 
 std::string Fixed(double value, int width, int decimals) {
   if (!std::isfinite(value)) return fmt::format("{:>{}}", "-", width);
-  const bool zero = std::abs(value) < 0.5 * std::pow(10.0, -decimals);  // no "-0.000"
-  return fmt::format("{:>{}.{}f}", zero ? 0.0 : value, width, decimals);
+  return fmt::format("{:>{}.{}f}", Shown(value, decimals), width, decimals);
 }
 
 /// "cable/a/tension_n" is row "a" under heading "cable/*/tension_n"; "system/com_x_m" has no
@@ -186,11 +190,12 @@ std::string ComparisonTable(const Comparison& comparison, const std::string& nam
   }
   if (!comparison.system.empty()) out += "\n";
   for (const SystemMaximum& system : comparison.system) {
-    out += fmt::format("largest {}: error {:+.2f} %\n", system.pattern, system.error_percent);
+    out += fmt::format("largest {}: error {:+.2f} %\n", system.pattern,
+                       Shown(system.error_percent, 2));
     for (const auto& [which, extreme, channel] :
          {std::tuple("a", system.a, system.channel_a), {"b", system.b, system.channel_b}}) {
-      out += fmt::format("  {} {:.4f} {} in {} at {:.2f} s\n", which, extreme.value, system.unit,
-                         HeadingAndRow(channel).second, extreme.time_s);
+      out += fmt::format("  {} {:.4f} {} in {} at {:.2f} s\n", which, Shown(extreme.value, 4),
+                         system.unit, HeadingAndRow(channel).second, extreme.time_s);
     }
   }
   out += "\n";

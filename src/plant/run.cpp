@@ -110,9 +110,12 @@ class Runner {
         if (RowIsDue(time_s, rows)) good = Record(time_s, rows, out);
         if ((++steps_done_ & 63) == 0) {
           const auto now = Clock::now();
-          if (options_.progress && now - last_progress > std::chrono::milliseconds(200)) {
+          if (now - last_progress > std::chrono::milliseconds(200)) {
             last_progress = now;
+            for (TraceWriter* trace : options_.traces)
+              good = good && Wrote(trace->FlushOld(), *trace, out);
             summary.interrupted =
+                options_.progress &&
                 !options_.progress({time_s, experiment_.duration_s,
                                     std::chrono::duration<double>(now - start).count()});
           }
@@ -178,11 +181,14 @@ class Runner {
         recorder_.Row({&batch_, kTheWorld, &readings_, &target_m_, &set_point_n_, &timeline_});
     ++rows;
     for (TraceWriter* trace : options_.traces) {
-      if (trace->Append(time_s, row.data())) continue;
-      out.Error({}, trace->error());
-      return false;
+      if (!Wrote(trace->Append(time_s, row.data()), *trace, out)) return false;
     }
     return true;
+  }
+
+  static bool Wrote(bool good, const TraceWriter& trace, Diagnostics& out) {
+    if (!good) out.Error({}, trace.error());
+    return good;
   }
 
   const ExperimentSpec& experiment_;

@@ -45,8 +45,12 @@ class CsvWriter final : public TraceWriter {
       AppendNumber(values[i]);
     }
     text_ += '\n';
-    const bool old = std::chrono::steady_clock::now() - flushed_ >= kMaxAge;
-    return (!old && text_.size() < kBlockBytes) || Flush();
+    return text_.size() < kBlockBytes ? FlushOld() : Flush();
+  }
+
+  bool FlushOld() override {
+    if (!error_.empty()) return false;
+    return file_ < 0 || std::chrono::steady_clock::now() - flushed_ < kMaxAge || Flush();
   }
 
   bool Finish() override {

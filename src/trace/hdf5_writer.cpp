@@ -81,7 +81,12 @@ class Hdf5Writer final : public TraceWriter {
     ++row_count_;
     // Whole chunks are cheapest, so a block ends where a chunk does.
     if ((written_ + row_count_) % kChunkRows == 0 && !WriteRows()) return false;
-    return std::chrono::steady_clock::now() - flushed_ < kMaxAge || Flush();
+    return FlushOld();
+  }
+
+  bool FlushOld() override {
+    if (!error_.empty()) return false;
+    return !file_ || std::chrono::steady_clock::now() - flushed_ < kMaxAge || Flush();
   }
 
   bool Finish() override {

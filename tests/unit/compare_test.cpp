@@ -262,6 +262,20 @@ TEST(Compare, PhasesGiveMeanLeastAndGreatest) {
       << table;
 }
 
+TEST(Compare, ATableHasNoNegativeZeros) {
+  const Trace a = Sampled(0.1, 11, [](double) { return -0.0; });
+  Trace b = a, c = a;
+  for (double& value : b.values[0]) value = 10.0;
+  for (double& value : c.values[0]) value = 10.0 - 1e-5;  // -0.0001 % off
+  for (const auto& [one, other] : {std::pair(a, a), {a, b}, {c, b}}) {
+    const std::string table = ComparisonTable(Compare(one, other, {}), "a", "b");
+    for (std::size_t at = 0; (at = table.find("-0", at)) != table.npos; ++at) {
+      const std::string number = table.substr(at, table.find_first_of(" \n", at) - at);
+      EXPECT_NE(number.find_first_of("123456789"), number.npos) << table;
+    }
+  }
+}
+
 TEST(Compare, TheSystemMaximumIsTheLargestOfAllMatchingChannels) {
   Trace a = Sampled(0.1, 101, [](double t) { return 10 - t; });        // 10 at 0 s
   AddChannel(a, "cable/b/tension_n", [](double t) { return 2 * t; });  // 20 at 10 s

@@ -101,6 +101,22 @@ TEST_F(Survival, AKilledWriterLeavesAllButTheLastSecond) {
   EXPECT_GT(rows_read, 10000u);
 }
 
+TEST_F(Survival, RowsThatAreSeldomAreWrittenInBetween) {
+  for (const std::string name : {"t.h5", "t.csv"}) {
+    Diagnostics out;
+    const auto writer = Create(Path(name), out);
+    ASSERT_TRUE(writer) << out.Format();
+    ASSERT_TRUE(AppendRow(*writer, 0, kChannelCount, 0.0));
+    std::this_thread::sleep_for(milliseconds(600));  // at least
+    ASSERT_TRUE(writer->FlushOld());
+    const auto trace = ReadTrace(Path(name), out);
+    ASSERT_TRUE(trace) << out.Format();
+    EXPECT_EQ(trace->time_s.size(), 1u);
+    ASSERT_TRUE(writer->Finish());
+    EXPECT_TRUE(writer->FlushOld()) << "there is nothing to write";
+  }
+}
+
 TEST_F(Survival, ATraceInAFolderThatIsNotThereIsAnErrorAndSilent) {
   testing::internal::CaptureStderr();
   for (const std::string name : {"none/t.h5", "none/t.csv"}) {

@@ -1,0 +1,154 @@
+// The command at its limits: nothing to simulate, the longest and shortest steps, files that are
+// absent or too large, numbers that are none.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "taut/trace.h"
+#include "tests/system/command.h"
+
+namespace taut::test {
+namespace {
+
+const std::string kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
+
+class Limits : public CommandTest {
+ protected:
+  /// The trace of a run with these arguments, which must go well.
+  Trace Run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), {"--quiet", "--out", Path("run")});
+    const CommandResult result = Taut(arguments);
+    EXPECT_EQ(result.status, 0) << result.errors;
+    EXPECT_EQ(result.errors, "");
+    Diagnostics out;
+    auto trace = ReadTrace(Path("run/trace.h5"), out);
+    EXPECT_TRUE(trace) << out.Format();
+    return trace.value_or(Trace{});
+  }
+  nlohmann::json Summary() { return nlohmann::json::parse(Read(Path("run/summary.json"))); }
+
+  void ExpectRefused(const std::vector<std::string>& arguments, int status,
+                     const std::string& errors) {
+    const CommandResult result = Taut(arguments);
+    EXPECT_EQ(result.status, status);
+    EXPECT_EQ(result.errors, errors);
+    EXPECT_EQ(result.output, "");
+  }
+};
+
+TEST_F(Limits, AnExperimentWithoutDurationRecordsItsStart) {
+  const Trace trace = Run({kHang, "--duration_s", "0"});
+  EXPECT_EQ(trace.time_s, std::vector<double>{0});
+  EXPECT_EQ(Summary().at("simulated_s"), 0.0);
+}
+
+TEST_F(Limits, AnExperimentOfOneStepRecordsItsStartAndItsEnd) {
+  EXPECT_EQ(Run({kHang, "--duration_s", "0.001"}).time_s, (std::vector<double>{0, 0.001}));
+  // A duration shorter than a step is one shorter step.
+  EXPECT_EQ(Run({kHang, "--duration_s", "0.0004"}).time_s, (std::vector<double>{0, 0.0004}));
+}
+
+TEST_F(Limits, StepsOfASecondAndOfANanosecondAreTaken) {
+  const Trace coarse = Run({kHang, "--step_s", "1"});
+  // Steps also end at the corners of the push: 0.5, 0.55 and 0.6 s.
+  EXPECT_EQ(coarse.time_s.front(), 0.0);
+  EXPECT_EQ(coarse.time_s.back(), 5.0);
+  const Trace fine = Run({kHang, "--step_s", "1e-9", "--duration_s", "1e-6"});
+  EXPECT_EQ(fine.time_s, (std::vector<double>{0, 1e-6}));
+  for (const Trace* trace : {&coarse, &fine}) {
+    for (const auto& column : trace->values) {
+      for (const double value : column) EXPECT_TRUE(std::isfinite(value));
+    }
+  }
+  // It hangs in equilibrium.
+  const auto length = fine.Find("cable/cable/length_m");
+  ASSERT_TRUE(length);
+  EXPECT_NEAR(fine.values[*length][1], fine.values[*length][0], 1e-15);
+}
+
+TEST_F(Limits, NumbersOutOfRangeAreBadUsage) {
+  for (const std::string text : {"0", "-1", "nan", "inf", "1e-10", "2", "fast"}) {
+    ExpectRefused(
+        {"run", kHang, "--step_s", text}, 2,
+        "--step_s: \"" + text +
+            "\" is not a number from 1e-09 to 1\nRun with --help for more information.\n");
+  }
+  for (const std::string text : {"-1", "nan", "inf", "2e9"}) {
+    ExpectRefused(
+        {"run", kHang, "--duration_s", text}, 2,
+        "--duration_s: \"" + text +
+            "\" is not a number from 0 to 1e+09\nRun with --help for more information.\n");
+  }
+}
+
+TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
+  for (const char* const command : {"run", "check"}) {
+    ExpectRefused({command, "none.yaml"}, 3,
+                  "none.yaml: error: cannot be opened: No such file or directory\n");
+    ExpectRefused({command, "."}, 3, ".: error: is a directory, not a file\n");
+  }
+  ExpectRefused({"compare", "none.h5", "none.csv"}, 3,
+                "none.csv: error: cannot be opened: No such file or directory\n"
+                "none.h5: error: cannot be opened: No such file or directory\n");
+}
+
+TEST_F(Limits, AFileThatMayNotBeReadIsBadInput) {
+  const std::string closed = Write("closed.yaml", "taut: 1\n");
+  ASSERT_EQ(chmod(closed.c_str(), 0), 0);
+  if (access(closed.c_str(), R_OK) == 0) GTEST_SKIP() << "root may read everything";
+  ExpectRefused({"check", "closed.yaml"}, 3,
+                "closed.yaml: error: cannot be opened: Permission denied\n");
+}
+
+TEST_F(Limits, AModelOfAMillionNodesIsRefusedAtOnce) {
+  std::string text = "taut: 1\nkind: model\nname: many\nnodes:\n";
+  for (int i = 0; i < 1'000'000; ++i) text += "  n" + std::to_string(i) + ": [0, 0, 1]\n";
+  Write("listed.yaml", text);
+  ExpectRefused({"check", "listed.yaml"}, 3,
+                "listed.yaml: error: larger than 10 MB (what repeats can be a part with "
+                "`copies:`)\n");
+  text.resize(text.find("  n100000:"));
+  Write("fewer.yaml", text);
+  ExpectRefused(
+      {"check", "fewer.yaml"}, 3,
+      "fewer.yaml:40004:11: error: more than 200000 YAML nodes (an alias counts as often as "
+      "it is used)\n");
+
+  text = "taut: 1\nkind: model\nname: many\nbuilders: []\nparts:\n  seg:\n    nodes:\n";
+  for (int i = 0; i < 100; ++i) text += "      n" + std::to_string(i) + ": [0, 0, 1]\n";
+  Write("copied.yaml", text + "structure:\n  - {part: seg, copies: 10000}\n");
+  ExpectRefused({"check", "copied.yaml"}, 3,
+                "copied.yaml:109:5: error: the model has more than 100000 nodes (with the 10000 "
+                "copies of this placement)\n");
+}
+
+TEST_F(Limits, MorePairsThanThereIsRoomForAreRefusedAtOnce) {
+  ExpectRefused({"check", TAUT_SOURCE_DIR "/models/tetraspine3.yaml", "--set", "segments=1000"}, 3,
+                "error: more than 10000000 pairs of shapes may collide; shapes that cannot meet "
+                "need not collide\n");
+}
+
+TEST_F(Limits, ARecordedChannelThatIsNotThereIsBadInput) {
+  const std::string model = TAUT_SOURCE_DIR "/models/hanging_mass.yaml";
+  Write("e.yaml", "taut: 1\nkind: experiment\nname: e\nmodel: " + model +
+                      "\nduration_s: 1\nrecord:\n  channels:\n    - cable/*/tension_n\n"
+                      "    - cable/*/tenson_n\n    - '*a*a*a*a*a*a*a*a*a*a*a*a*b'\n");
+  const std::string known =
+      "one of: cable/*/tension_n, cable/*/elastic_n, cable/*/length_m, cable/*/rate_m_per_s, "
+      "cable/*/rest_length_m, cable/*/target_rest_length_m, cable/*/setpoint_n, "
+      "body/*/position_x_m, body/*/position_y_m, body/*/position_z_m, body/*/orientation_w, "
+      "body/*/orientation_x, ...";
+  for (const char* const command : {"run", "check"}) {
+    ExpectRefused(
+        {command, "e.yaml"}, 3,
+        "e.yaml:9:7: error: record.channels: no channel fits \"cable/*/tenson_n\" (did you "
+        "mean \"cable/*/tension_n\"?)\n"
+        "e.yaml:10:7: error: record.channels: no channel fits "
+        "\"*a*a*a*a*a*a*a*a*a*a*a*a*b\" (" +
+            known + ")\n");
+  }
+  EXPECT_FALSE(std::filesystem::exists(Path("runs"))) << "nothing may be overwritten";
+}
+
+}  // namespace
+}  // namespace taut::test
