@@ -176,6 +176,28 @@ TEST(ModelCheck, AllMistakesAreToldAtOnce) {
   EXPECT_EQ(complaints.items().size(), 3u);
 }
 
+TEST(ModelCheck, SizesThatGrowWithTheSquareOfAModelHaveLimits) {
+  // 3163^2 > 10^7 > 3162^2, and a body of 5000 spheres meets the wall and 2000 others.
+  ModelDef cables = Good();
+  cables.cables.resize(3162, cables.cables[0]);
+  ModelDef one_more = cables;
+  one_more.cables.push_back(one_more.cables[0]);
+  ModelDef shapes = Good();
+  shapes.spheres.resize(5000, shapes.spheres[0]);
+  shapes.boxes.resize(2000, shapes.boxes[0]);
+  const auto complaint = [](const ModelDef& def) {
+    Diagnostics complaints;
+    return Model::Compile(def, complaints) == nullptr ? complaints.Format() : std::string();
+  };
+  EXPECT_EQ(complaint(one_more), "error: more than 10000000 pairs of cables share a body\n");
+  EXPECT_EQ(complaint(shapes),
+            "error: more than 10000000 pairs of shapes may collide; shapes that cannot meet need "
+            "not collide\n");
+  for (BoxDef& box : shapes.boxes) box.collides = false;
+  for (SphereDef& sphere : shapes.spheres) sphere.collides = false;
+  EXPECT_EQ(complaint(shapes), "");
+}
+
 TEST(ModelCheck, AFixedBodyNeedsNeitherMassNorInertia) {
   ModelDef def = Good();
   def.bodies[0].fixed = true;
