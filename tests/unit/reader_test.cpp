@@ -106,7 +106,8 @@ TEST(YamlTree, NodesAreLimitedAndAliasesCountFully) {
 TEST(YamlTree, FilesThatCannotBeReadSayWhy) {
   Diagnostics out;
   EXPECT_EQ(ReadYaml("/no/such/file.yaml", out), nullptr);
-  EXPECT_EQ(out.Format(), "/no/such/file.yaml: error: cannot be opened: No such file or directory\n");
+  EXPECT_EQ(out.Format(),
+            "/no/such/file.yaml: error: cannot be opened: No such file or directory\n");
   Diagnostics directory;
   EXPECT_EQ(ReadYaml(TAUT_SOURCE_DIR, directory), nullptr);
   EXPECT_EQ(directory.items()[0].what, "is a directory, not a file");
