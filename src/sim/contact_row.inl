@@ -49,7 +49,8 @@ TAUT_INLINE void MakeTangents(ContactRow<W>& row, const V3<W>& velocity, bool al
 }
 
 template <class W>
-TAUT_INLINE void AddInverseMass(ContactRow<W>& row, W im, const Lever<W>& j, const Lever<W>& g) noexcept {
+TAUT_INLINE void AddInverseMass(ContactRow<W>& row, W im, const Lever<W>& j,
+                                const Lever<W>& g) noexcept {
   row.wnn += im + Dot(j.n, g.n);
   row.w11 += im + Dot(j.t1, g.t1);
   row.w22 += im + Dot(j.t2, g.t2);
@@ -59,8 +60,8 @@ TAUT_INLINE void AddInverseMass(ContactRow<W>& row, W im, const Lever<W>& j, con
 }
 
 template <class W>
-TAUT_INLINE void ApplyImpulse(BodyWork<W>& body, W im, const ContactRow<W>& row, const Lever<W>& g, W ln, W l1,
-                  W l2) noexcept {
+TAUT_INLINE void ApplyImpulse(BodyWork<W>& body, W im, const ContactRow<W>& row, const Lever<W>& g,
+                              W ln, W l1, W l2) noexcept {
   const W an = im * ln, a1 = im * l1, a2 = im * l2;
   body.v += an * row.n + a1 * row.t1 + a2 * row.t2;
   body.w += ln * g.n + l1 * g.t1 + l2 * g.t2;
@@ -77,7 +78,8 @@ struct ContactMemory {
 };
 
 template <class W>
-TAUT_INLINE ContactMemory<W> Recall(const Scratch<W>& work, uint32_t id, int old_count, int& cursor) noexcept {
+TAUT_INLINE ContactMemory<W> Recall(const Scratch<W>& work, uint32_t id, int old_count,
+                                    int& cursor) noexcept {
   while (cursor < old_count && work.old_ids[cursor] < id) ++cursor;
   if (cursor < old_count && work.old_ids[cursor] == id) {
     return {work.old_force[cursor], work.old_slip[cursor], work.old_bounce[cursor]};
@@ -86,9 +88,28 @@ TAUT_INLINE ContactMemory<W> Recall(const Scratch<W>& work, uint32_t id, int old
   return {{zero, zero, zero}, W::Splat(kSlipUnknown), zero};
 }
 
+/// Rebounding: as fast as due. An impact in this step: remember how fast to rebound in the next,
+/// when the surfaces touch. The approach speed is that of the moment of contact, and the rebound
+/// starts half a step before its own middle (docs/theory/contact.md, eq. 9-10).
+///   vn      normal velocity that would result without contact [m/s]
+///   before  normal velocity before the step [m/s]
+template <class W>
+void PrepareRebound(ContactRow<W>& row, const ContactMemory<W>& memory, W h, W inv_h, W vn,
+                    W before) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0), dv = vn - before;
+  row.bias = Select(memory.bounce > zero, -memory.bounce, row.bias);
+  const W share = Min(Max(row.gap, zero) * inv_h / Max(-vn, W::Splat(1e-12)), one);
+  const W impact = vn - dv * (W::Splat(0.5) - share);
+  const auto hits = (row.gap + h * vn < zero) & (memory.bounce == zero) &
+                    (Dot(memory.force, row.n) == zero) &
+                    (-impact > Max(W::Splat(kLeastImpactMPerS), Abs(dv + dv))) & (row.live > zero);
+  row.bounce = Select(hits, Max(W::Splat(0.5) * dv - row.restitution * impact, zero), zero);
+}
+
 template <class W, bool kPair>
-TAUT_INLINE void PrepareContact(const View& m, const Rows<W>& s, const Scratch<W>& work, ContactRow<W>& row,
-                    const ContactMemory<W>& memory, double step_s) noexcept {
+TAUT_INLINE void PrepareContact(const View& m, const Rows<W>& s, const Scratch<W>& work,
+                                ContactRow<W>& row, const ContactMemory<W>& memory,
+                                double step_s) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
   const W h = W::Splat(step_s), inv_h = W::Splat(1.0 / step_s);
   const BodyWork<W>&a = work.bodies[row.a], &b = work.bodies[row.b];
@@ -123,28 +144,21 @@ TAUT_INLINE void PrepareContact(const View& m, const Rows<W>& s, const Scratch<W
     row.rho1 = row.rho2 = one / (Max(row.w11, row.w22) + Abs(row.w12));
   }
 
-  // Approaching: no further than to touch. Inside: out again, gently. Rebounding: as fast as due.
+  // Approaching: no further than to touch. Inside: out again, gently.
   const W out = Max(W::Splat(kPushOut) * row.gap * inv_h, W::Splat(-kMaxPushOutMPerS));
-  const W rebound = -memory.bounce;
   row.bias = Select(row.gap > zero, row.gap * inv_h, out);
-  row.bias = Select(memory.bounce > zero, rebound, row.bias);
 
-  // An impact in this step: remember how fast to rebound in the next, when the surfaces touch.
-  // The approach speed is that of the moment of contact, and the rebound starts half a step before
-  // its own middle (docs/theory/contact.md, eq. 9-10).
-  const W vn = Dot(free, row.n), dv = vn - Dot(before, row.n);
-  const W share = Min(Max(row.gap, zero) * inv_h / Max(-vn, W::Splat(1e-12)), one);
-  const W impact = vn - dv * (W::Splat(0.5) - share);
-  const auto hits = (row.gap + h * vn < zero) & (memory.bounce == zero) &
-                    (Dot(memory.force, row.n) == zero) &
-                    (-impact > Max(W::Splat(kLeastImpactMPerS), Abs(dv + dv))) & (row.live > zero) &
-                    (row.restitution > zero);
-  row.bounce = Select(hits, Max(W::Splat(0.5) * dv - row.restitution * impact, zero), zero);
-
-  const V3<W> along = before - Dot(before, row.n) * row.n;
-  const auto moving = Dot(along, along) > W::Splat(kSlidingMPerS * kSlidingMPerS);
-  row.slip = Select(memory.slip < zero, Select(moving, one, zero), memory.slip);
-  row.mu = s.friction_scale[0] * Select(row.slip > zero, row.kinetic_friction, row.static_friction);
+  row.bounce = zero;
+  if (row.rebounds) PrepareRebound(row, memory, h, inv_h, Dot(free, row.n), Dot(before, row.n));
+  row.slip = zero;
+  W mu = row.kinetic_friction;
+  if (row.breaks_away) {
+    const V3<W> along = before - Dot(before, row.n) * row.n;
+    const auto moving = Dot(along, along) > W::Splat(kSlidingMPerS * kSlidingMPerS);
+    row.slip = Select(memory.slip < zero, Select(moving, one, zero), memory.slip);
+    mu = Select(row.slip > zero, row.kinetic_friction, row.static_friction);
+  }
+  row.mu = s.friction_scale[0] * mu;
   row.ln = Max(h * Dot(memory.force, row.n), zero) * row.live;
   row.l1 = h * Dot(memory.force, row.t1) * row.live;
   row.l2 = m.along_slip ? zero : h * Dot(memory.force, row.t2) * row.live;
@@ -153,6 +167,7 @@ TAUT_INLINE void PrepareContact(const View& m, const Rows<W>& s, const Scratch<W
 /// Whether a contact slid in this step: decides its coefficient in the next.
 template <class W, bool kPair>
 void JudgeSlip(const Scratch<W>& work, ContactRow<W>& row) noexcept {
+  if (!row.breaks_away) return;
   const BodyWork<W>&a = work.bodies[row.a], &b = work.bodies[row.b];
   W u1 = Dot(row.t1, a.v) + Dot(row.ja.t1, a.w), u2 = Dot(row.t2, a.v) + Dot(row.ja.t2, a.w);
   if (kPair) {

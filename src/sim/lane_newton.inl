@@ -19,6 +19,10 @@ template <class W>
 class LaneNewton {
   static constexpr int kMaxRounds = 20;
   static constexpr int kMaxIterations = 12;
+  /// Where Newton's method is of no use, it should at least not take long: multiplications that
+  /// eliminations may take, and eliminations that there may be in any case.
+  static constexpr double kMaxWork = 3e7;
+  static constexpr int kFreeEliminations = 16;
   /// Compliance of the first round, as a share of each row's inverse effective mass; the next has
   /// a tenth of it, or, where Newton's method failed, thirty times as much.
   static constexpr double kFirstCompliance = 1e-3;
@@ -29,15 +33,15 @@ class LaneNewton {
   LaneNewton(Scratch<W>& work, int lane, bool along_slip) noexcept
       : work_(work), mem_(work.newton), lane_(lane), along_slip_(along_slip) {}
 
-  /// Improves the lane's impulses and velocities, if it can.
-  void Solve(double tolerance_m_per_s) noexcept {
+  /// Improves the lane's impulses and velocities, if it can. False if trying again is no use.
+  bool Solve(double tolerance_m_per_s) noexcept {
     const double goal = kMargin * tolerance_m_per_s;
-    if (!Gather()) return;
+    if (!Gather()) return false;
     BuildMatrix();
     const double first = Residual();
     double best = first;
     compliance_ = kFirstCompliance;
-    for (int round = 0; round < kMaxRounds && best > goal; ++round) {
+    for (int round = 0; round < kMaxRounds && best > goal && !Exhausted(); ++round) {
       for (int i = 0; i < count_; ++i) {
         mem_.center[i] = mem_.lambda[i];
         mem_.center_u[i] = mem_.u[i];
@@ -59,6 +63,7 @@ class LaneNewton {
       compliance_ *= 0.1;
     }
     if (best < first) Scatter();
+    return best < 0.9 * first;
   }
 
  private:
@@ -66,12 +71,18 @@ class LaneNewton {
   /// The compliance of row i [1/kg].
   double Soft(int i) const noexcept { return compliance_ * mem_.w[i * count_ + i]; }
 
+  bool Exhausted() const noexcept {
+    const double n = count_;
+    return eliminations_ >= kFreeEliminations && eliminations_ * (n * n * n / 3) > kMaxWork;
+  }
+
   /// Newton's method on the equations with compliance: (19). False if it does not get there.
   bool SolveCompliant(double goal) noexcept {
     for (int iteration = 0;; ++iteration) {
       if (!(Residual() > goal)) return true;
-      if (iteration == kMaxIterations) return false;
+      if (iteration == kMaxIterations || Exhausted()) return false;
       Linearize();
+      ++eliminations_;
       if (!Eliminate()) return false;
       for (int i = 0; i < count_; ++i) {
         mem_.lambda[i] += mem_.delta[i];
@@ -362,6 +373,7 @@ class LaneNewton {
   int lane_;
   bool along_slip_;
   double compliance_ = 0;
+  int eliminations_ = 0;
   int count_ = 0, contact_count_ = 0, cable_count_ = 0, link_count_ = 0;
 };
 

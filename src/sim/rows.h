@@ -88,6 +88,8 @@ template <class W>
 struct ContactRow {
   int a, b;
   uint32_t id;
+  bool breaks_away;  ///< Static friction exceeds kinetic: it matters whether the contact slides.
+  bool rebounds;
   V3<W> n, t1, t2;
   W frame;  ///< Contacts with equal numbers have the same directions.
   V3<W> arm_a, arm_b;

@@ -23,9 +23,10 @@ class ContactBlock {
   ContactBlock(Scratch<W>& work, ContactRow<W>* rows, bool along_slip) noexcept
       : work_(work), rows_(rows), along_slip_(along_slip) {}
 
-  /// Solves the block in `lanes`. Returns how far it was from solved before [m/s].
+  /// Solves the block in `lanes`. Returns how far it was from solved before, as other rows may
+  /// disturb it again; in lanes where none can, how far it is now [m/s].
   template <class M>
-  W Solve(W tolerance, M lanes) noexcept {
+  W Solve(W tolerance, M lanes, M coupled) noexcept {
     const W zero = W::Splat(0.0);
     Start();
     const W first_residual = Residual();
@@ -65,7 +66,7 @@ class ContactBlock {
     if (Any(stuck)) {
       for (int c = 0; c < kContacts; ++c) RelaxContact<W, false>(work_, rows_[c], stuck);
     }
-    return first_residual;
+    return Select(coupled | !better, first_residual, residual);
   }
 
  private:
@@ -283,16 +284,16 @@ class ContactBlock {
 
 template <class W, class M>
 W SolveBlock(Scratch<W>& work, ContactRow<W>* rows, int count, bool along_slip, W tolerance,
-             M lanes) noexcept {
+             M lanes, M coupled) noexcept {
   switch (count) {
     case 1:
-      return ContactBlock<W, 1>(work, rows, along_slip).Solve(tolerance, lanes);
+      return ContactBlock<W, 1>(work, rows, along_slip).Solve(tolerance, lanes, coupled);
     case 2:
-      return ContactBlock<W, 2>(work, rows, along_slip).Solve(tolerance, lanes);
+      return ContactBlock<W, 2>(work, rows, along_slip).Solve(tolerance, lanes, coupled);
     case 3:
-      return ContactBlock<W, 3>(work, rows, along_slip).Solve(tolerance, lanes);
+      return ContactBlock<W, 3>(work, rows, along_slip).Solve(tolerance, lanes, coupled);
     default:
-      return ContactBlock<W, 4>(work, rows, along_slip).Solve(tolerance, lanes);
+      return ContactBlock<W, 4>(work, rows, along_slip).Solve(tolerance, lanes, coupled);
   }
 }
 
@@ -309,7 +310,7 @@ void CopyLane(const ContactRow<W>& from, ContactRow<W>& to, int lane) noexcept {
 /// packed, so that a lane gets what it would get alone; one with too many goes one by one.
 template <class W, class M>
 W SolveCrowdedBlock(Scratch<W>& work, ContactRow<W>* rows, int count, bool along_slip, W tolerance,
-                    M lanes) noexcept {
+                    M lanes, M coupled) noexcept {
   const W zero = W::Splat(0.0);
   ContactRow<W> packed[kMaxBlockContacts];
   int place[W::kLanes][kMaxBlockContacts];
@@ -338,7 +339,7 @@ W SolveCrowdedBlock(Scratch<W>& work, ContactRow<W>* rows, int count, bool along
     packed_count[lane] = n;
     if (n > largest) largest = n;
   }
-  W change = SolveBlock(work, packed, largest, along_slip, tolerance, fits);
+  W change = SolveBlock(work, packed, largest, along_slip, tolerance, fits, coupled);
   for (int lane = 0; lane < W::kLanes; ++lane) {
     for (int i = 0; i < packed_count[lane]; ++i) CopyLane(packed[i], rows[place[lane][i]], lane);
   }
@@ -354,7 +355,7 @@ W SolveCrowdedBlock(Scratch<W>& work, ContactRow<W>* rows, int count, bool along
 
 /// One sweep over the contacts with planes, a body at a time. Returns the largest residual before.
 template <class W, class M>
-W RelaxBlocks(const View& m, Scratch<W>& work, W tolerance, M lanes) noexcept {
+W RelaxBlocks(const View& m, Scratch<W>& work, W tolerance, M lanes, M coupled) noexcept {
   W change = W::Splat(0.0);
   int first = 0;
   while (first < work.plane_count) {
@@ -362,8 +363,8 @@ W RelaxBlocks(const View& m, Scratch<W>& work, W tolerance, M lanes) noexcept {
     int count = 1;
     while (first + count < work.plane_count && rows[count].a == rows[0].a) ++count;
     const W c = count <= kMaxBlockContacts
-                    ? SolveBlock(work, rows, count, m.along_slip, tolerance, lanes)
-                    : SolveCrowdedBlock(work, rows, count, m.along_slip, tolerance, lanes);
+                    ? SolveBlock(work, rows, count, m.along_slip, tolerance, lanes, coupled)
+                    : SolveCrowdedBlock(work, rows, count, m.along_slip, tolerance, lanes, coupled);
     change = Max(c, change);
     first += count;
   }

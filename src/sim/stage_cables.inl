@@ -27,8 +27,8 @@ TAUT_INLINE CableForce<W> TensionOf(W k, W b, W l, W dl, W rest, bool clamped) n
 
 /// Where an attachment is and how fast it is expected to move.
 template <class W>
-TAUT_INLINE AttachmentWork<W> Attachment(const View& m, const AttachmentTable& table, const V3<W>* origin,
-                             const Scratch<W>& work) noexcept {
+TAUT_INLINE AttachmentWork<W> Attachment(const View& m, const AttachmentTable& table,
+                                         const V3<W>* origin, const Scratch<W>& work) noexcept {
   const BodyWork<W>& body = work.bodies[table.body];
   AttachmentWork<W> here;
   here.arm = body.R * simd::Splat3<W>(table.p_P);
@@ -37,24 +37,22 @@ TAUT_INLINE AttachmentWork<W> Attachment(const View& m, const AttachmentTable& t
   return here;
 }
 
-/// Length and rate of a cable; fills work.attachments with its points.
+/// Length and rate of a cable; fills `ends` with its attachments.
 template <class W>
-TAUT_INLINE void MeasureCable(const View& m, const CableTable& cable, const V3<W>* origin,
-                  const Scratch<W>& work, W& l, W& dl) noexcept {
+TAUT_INLINE void MeasureCable(const View& m, const CableTable& cable, int attachment_count,
+                              const V3<W>* origin, const Scratch<W>& work, AttachmentWork<W>* ends,
+                              W& l, W& dl) noexcept {
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
-  AttachmentWork<W> before = Attachment(m, tables[0], origin, work);
-  work.attachments[0] = before;
+  ends[0] = Attachment(m, tables[0], origin, work);
   W length_sum = W::Splat(0.0), rate_sum = W::Splat(0.0);
-  for (int i = 1; i < cable.attachment_count; ++i) {
-    AttachmentWork<W> here = Attachment(m, tables[i], origin, work);
-    const V3<W> d = here.p - before.p;
+  for (int i = 1; i < attachment_count; ++i) {
+    ends[i] = Attachment(m, tables[i], origin, work);
+    const V3<W> d = ends[i].p - ends[i - 1].p;
     const W length = Sqrt(Dot(d, d));
     // Coinciding attachments have no direction; a length this small pulls with u = d / tiny ~ 0.
-    here.u = (W::Splat(1.0) / Max(length, W::Splat(1e-12))) * d;
+    ends[i].u = (W::Splat(1.0) / Max(length, W::Splat(1e-12))) * d;
     length_sum += length;
-    rate_sum += Dot(here.u, here.v - before.v);
-    work.attachments[i] = here;
-    before = here;
+    rate_sum += Dot(ends[i].u, ends[i].v - ends[i - 1].v);
   }
   l = length_sum;
   dl = rate_sum;
@@ -65,7 +63,7 @@ TAUT_INLINE void MeasureCable(const View& m, const CableTable& cable, const V3<W
 /// length at which the spring would exceed it.
 template <class W>
 TAUT_INLINE void Actuate(const ActuatorDef& limit, W k, W l, W target, W h, W inv_h, W& rest,
-             W& rate) noexcept {
+                         W& rate) noexcept {
   const W zero = W::Splat(0.0);
   if (limit.kind == ActuatorDef::Kind::kNone) return;
   if (limit.kind == ActuatorDef::Kind::kIdeal) {
@@ -94,6 +92,44 @@ TAUT_INLINE void Actuate(const ActuatorDef& limit, W k, W l, W target, W h, W in
   rest = Max(Select(arrives & !(wish == zero), goal, rest + h * wish), least_rest);
 }
 
+/// One cable of the stage below. `ends` is room for its attachments: known to be two, they stay
+/// in registers.
+template <class W>
+TAUT_INLINE void PullCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
+                           int attachment_count, AttachmentWork<W>* ends, W h, W inv_h) noexcept {
+  const W half = W::Splat(0.5), zero = W::Splat(0.0);
+  const CableTable& cable = m.cables[c];
+  W l, dl;
+  MeasureCable(m, cable, attachment_count, s.pos, work, ends, l, dl);
+  const W before = s.rest[c];
+  W rest = before, rate = s.rest_rate[c];
+  Actuate(cable.actuator, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
+  s.rest[c] = rest;
+  s.rest_rate[c] = rate;
+  const W middle = half * (before + rest);
+  W T = TensionOf(s.stiffness[c], s.damping[c], l, dl, middle, cable.clamped_damping).tension;
+  const auto stiff =
+      (h * h * s.stiff_k[c] > W::Splat(kSoftSpring)) | (h * s.stiff_b[c] > W::Splat(kSoftDamper));
+  if (Any(stiff)) {
+    for (int i = 0; i < attachment_count; ++i) work.attachments[i] = ends[i];
+    AddStiffCable(m, s, work, c, l - middle, h, Select(stiff, W::Splat(1.0), zero));
+    T = Select(stiff, zero, T);
+    s.tension[c] = Select(stiff, s.tension[c], T);
+    if (!Any(!stiff)) return;
+  } else {
+    s.tension[c] = T;
+  }
+  for (int i = 1; i < attachment_count; ++i) {
+    const V3<W> f = T * ends[i].u;
+    BodyWork<W>& a = work.bodies[m.attachments[cable.first_attachment + i - 1].body];
+    BodyWork<W>& b = work.bodies[m.attachments[cable.first_attachment + i].body];
+    a.force += f;
+    a.torque += Cross(ends[i - 1].arm, f);
+    b.force -= f;
+    b.torque -= Cross(ends[i].arm, f);
+  }
+}
+
 /// Stage: actuators move the rest lengths, cables pull on bodies.
 ///   reads   pos, bodies[], target     writes  rest, rest_rate, tension, bodies[].force, .torque
 ///           (adds), stiff[]
@@ -103,39 +139,15 @@ TAUT_INLINE void Actuate(const ActuatorDef& limit, W k, W l, W target, W h, W in
 /// cable to the solver (stiff_cables.inl).
 template <class W>
 void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
-  const W half = W::Splat(0.5), zero = W::Splat(0.0);
   const W h = W::Splat(step_s), inv_h = W::Splat(1.0 / step_s);
   work.stiff_count = work.link_count = 0;
   for (int c = 0; c < m.cable_count; ++c) {
-    const CableTable& cable = m.cables[c];
-    W l, dl;
-    MeasureCable(m, cable, s.pos, work, l, dl);
-    const W before = s.rest[c];
-    W rest = before, rate = s.rest_rate[c];
-    Actuate(cable.actuator, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
-    s.rest[c] = rest;
-    s.rest_rate[c] = rate;
-    const W middle = half * (before + rest);
-    W T = TensionOf(s.stiffness[c], s.damping[c], l, dl, middle, cable.clamped_damping).tension;
-    const auto stiff =
-        (h * h * s.stiff_k[c] > W::Splat(kSoftSpring)) | (h * s.stiff_b[c] > W::Splat(kSoftDamper));
-    if (Any(stiff)) {
-      AddStiffCable(m, s, work, c, l - middle, h, Select(stiff, W::Splat(1.0), zero));
-      T = Select(stiff, zero, T);
-      s.tension[c] = Select(stiff, s.tension[c], T);
-      if (!Any(!stiff)) continue;
+    const int count = m.cables[c].attachment_count;
+    if (count == 2) {
+      AttachmentWork<W> ends[2];
+      PullCable(m, s, work, c, 2, ends, h, inv_h);
     } else {
-      s.tension[c] = T;
-    }
-    for (int i = 1; i < cable.attachment_count; ++i) {
-      const AttachmentWork<W>&from = work.attachments[i - 1], &to = work.attachments[i];
-      const V3<W> f = T * to.u;
-      BodyWork<W>& a = work.bodies[m.attachments[cable.first_attachment + i - 1].body];
-      BodyWork<W>& b = work.bodies[m.attachments[cable.first_attachment + i].body];
-      a.force += f;
-      a.torque += Cross(from.arm, f);
-      b.force -= f;
-      b.torque -= Cross(to.arm, f);
+      PullCable(m, s, work, c, count, work.attachments, h, inv_h);
     }
   }
 }
@@ -146,7 +158,8 @@ template <class W>
 void StageSense(const View& m, const Rows<W>& s, const Scratch<W>& work) noexcept {
   for (int c = 0; c < m.cable_count; ++c) {
     W l, dl;
-    MeasureCable(m, m.cables[c], s.pos, work, l, dl);
+    MeasureCable(m, m.cables[c], m.cables[c].attachment_count, s.pos, work, work.attachments, l,
+                 dl);
     const CableForce<W> f =
         TensionOf(s.stiffness[c], s.damping[c], l, dl, s.rest[c], m.cables[c].clamped_damping);
     s.sense_length[c] = l;

@@ -19,19 +19,27 @@ TAUT_INLINE W TravelBound(const View& m, const Scratch<W>& work, int body, W h) 
 
 /// How far any point of a body may have come since the middle of the step before.
 template <class W>
-TAUT_INLINE W TravelSinceLast(const View& m, const Scratch<W>& work, int body, W since_last) noexcept {
+TAUT_INLINE W TravelSinceLast(const View& m, const Scratch<W>& work, int body,
+                              W since_last) noexcept {
   const BodyWork<W>& b = work.bodies[body];
   return since_last * (Norm1(b.v0) + W::Splat(m.bound_m[body]) * Norm1(b.w0));
 }
 
 /// Starts a row; the solver fills in the rest.
 template <class W>
-TAUT_INLINE ContactRow<W>& AddContact(Scratch<W>& work, int a, int b, uint32_t id) noexcept {
+TAUT_INLINE ContactRow<W>& AddContact(Scratch<W>& work, int a, int b, uint32_t id,
+                                      double static_friction, double kinetic_friction,
+                                      double restitution) noexcept {
   ContactRow<W>& row = work.contacts[work.contact_count++];
   row.a = a;
   row.b = b;
   row.id = id;
   row.frame = W::Splat(-work.contact_count);  // like no other
+  row.static_friction = W::Splat(static_friction);
+  row.kinetic_friction = W::Splat(kinetic_friction);
+  row.restitution = W::Splat(restitution);
+  row.breaks_away = static_friction > kinetic_friction;
+  row.rebounds = restitution > 0;
   return row;
 }
 
@@ -65,7 +73,8 @@ void CollidePlanes(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexc
         if (!Any(touching)) continue;
         const PlaneTable& plane = m.planes[k];
         ContactRow<W>& row =
-            AddContact(work, body, m.body_count, static_cast<uint32_t>(i * m.plane_count + k));
+            AddContact(work, body, m.body_count, static_cast<uint32_t>(i * m.plane_count + k),
+                       point.static_friction[k], point.kinetic_friction[k], point.restitution[k]);
         if (!m.along_slip) row.frame = W::Splat(k);
         row.n = simd::Splat3<W>(plane.normal);
         row.t1 = simd::Splat3<W>(plane.tangent1);
@@ -73,9 +82,6 @@ void CollidePlanes(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexc
         row.arm_a = b.R * p_P - W::Splat(point.radius_m) * row.n;
         row.live = Select(touching, one, zero);
         row.gap = gap;
-        row.static_friction = W::Splat(point.static_friction[k]);
-        row.kinetic_friction = W::Splat(point.kinetic_friction[k]);
-        row.restitution = W::Splat(point.restitution[k]);
       }
     }
   }
@@ -203,16 +209,14 @@ void CollideShapes(const View& m, const Rows<W>& s, Scratch<W>& work, const Shap
         if (t.feature != feature) continue;
         if (row_of[feature] == nullptr) {
           row_of[feature] =
-              &AddContact(work, body_a, body_b, pair.id + static_cast<uint32_t>(feature));
+              &AddContact(work, body_a, body_b, pair.id + static_cast<uint32_t>(feature),
+                          pair.static_friction, pair.kinetic_friction, pair.restitution);
           ContactRow<W>& row = *row_of[feature];
           // Lanes without this point keep a harmless one.
           row.n = {zero, zero, W::Splat(1.0)};
           row.arm_a = row.arm_b = {zero, zero, zero};
           row.live = zero;
           row.gap = W::Splat(1.0);
-          row.static_friction = W::Splat(pair.static_friction);
-          row.kinetic_friction = W::Splat(pair.kinetic_friction);
-          row.restitution = W::Splat(pair.restitution);
         }
         ContactRow<W>& row = *row_of[feature];
         row.n.x.Set(lane, t.normal[0]);

@@ -56,6 +56,15 @@ void RespectCones(Scratch<W>& work, M lanes) noexcept {
   }
 }
 
+/// Lanes in which bodies on planes are not islands: something else hangs on them.
+template <class W>
+auto CoupledLanes(const Scratch<W>& work) noexcept {
+  W others = W::Splat(0.0);
+  for (int i = work.plane_count; i < work.contact_count; ++i) others += work.contacts[i].live;
+  for (int i = 0; i < work.stiff_count; ++i) others += work.stiff[i].on;
+  return others > W::Splat(0.0);
+}
+
 /// Stage: solve.
 ///   reads   contacts[] (geometry), stiff cables, cache of the step before
 ///   writes  bodies[].v, .w, impulses, mom
@@ -69,9 +78,11 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, const Group& g, Scrat
   const bool anything = work.contact_count + work.stiff_count > 0;
   const W tolerance = W::Splat(settings.tolerance_m_per_s);
   auto busy = s.halted[0] == zero;
+  auto hopeful = busy;  // that Newton's method helps
+  const auto coupled = CoupledLanes(work);
   for (int sweep = 0; anything && sweep < settings.max_sweeps && Any(busy); ++sweep) {
     W change = RelaxStiffCables(work, busy);
-    change = Max(RelaxBlocks(m, work, tolerance, busy), change);
+    change = Max(RelaxBlocks(m, work, tolerance, busy, coupled), change);
     for (int i = work.plane_count; i < work.single_count; ++i) {
       change = Max(RelaxContact<W, false>(work, work.contacts[i], busy), change);
     }
@@ -83,7 +94,9 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, const Group& g, Scrat
     busy = busy & (change > tolerance);
     if (!Any(busy) || !NewtonIsDue(sweep + 1)) continue;
     for (int lane = 0; lane < W::kLanes; ++lane) {
-      if (busy[lane]) LaneNewton<W>(work, lane, m.along_slip).Solve(settings.tolerance_m_per_s);
+      if (!(busy & hopeful)[lane]) continue;
+      LaneNewton<W> newton(work, lane, m.along_slip);
+      hopeful.Set(lane, newton.Solve(settings.tolerance_m_per_s));
     }
   }
   if (Any(busy)) RespectCones(work, busy);

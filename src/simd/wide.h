@@ -90,10 +90,14 @@ TAUT_INLINE Wide<N> Select(Mask<N> m, Wide<N> yes, Wide<N> no) noexcept {
   return {m.v ? yes.v : no.v};
 }
 
-TAUT_INLINE Wide<2> Sqrt(Wide<2> a) noexcept { return {(Wide<2>::Vector)_mm_sqrt_pd((__m128d)a.v)}; }
+TAUT_INLINE Wide<2> Sqrt(Wide<2> a) noexcept {
+  return {(Wide<2>::Vector)_mm_sqrt_pd((__m128d)a.v)};
+}
 TAUT_INLINE bool Any(Mask<2> m) noexcept { return _mm_movemask_pd((__m128d)m.v) != 0; }
 #ifdef __AVX2__
-TAUT_INLINE Wide<4> Sqrt(Wide<4> a) noexcept { return {(Wide<4>::Vector)_mm256_sqrt_pd((__m256d)a.v)}; }
+TAUT_INLINE Wide<4> Sqrt(Wide<4> a) noexcept {
+  return {(Wide<4>::Vector)_mm256_sqrt_pd((__m256d)a.v)};
+}
 TAUT_INLINE bool Any(Mask<4> m) noexcept { return _mm256_movemask_pd((__m256d)m.v) != 0; }
 #endif
 #ifdef __AVX512DQ__
@@ -122,19 +126,39 @@ struct Wide<1> {
 TAUT_INLINE Mask<1> operator&(Mask<1> a, Mask<1> b) noexcept { return {a.v && b.v}; }
 TAUT_INLINE Mask<1> operator|(Mask<1> a, Mask<1> b) noexcept { return {a.v || b.v}; }
 TAUT_INLINE Mask<1> operator!(Mask<1> a) noexcept { return {!a.v}; }
-TAUT_INLINE Wide<1> Select(Mask<1> m, Wide<1> yes, Wide<1> no) noexcept { return {m.v ? yes.v : no.v}; }
+TAUT_INLINE Wide<1> Select(Mask<1> m, Wide<1> yes, Wide<1> no) noexcept {
+  return {m.v ? yes.v : no.v};
+}
 TAUT_INLINE Wide<1> Sqrt(Wide<1> a) noexcept { return {__builtin_sqrt(a.v)}; }
 TAUT_INLINE bool Any(Mask<1> m) noexcept { return m.v; }
 
-/// The greater of two; `b` if either is NaN.
-template <int N>
-TAUT_INLINE Wide<N> Max(Wide<N> a, Wide<N> b) noexcept {
-  return Select(a > b, a, b);
+/// The greater of two; `b` if either is NaN. So do the instructions: a > b ? a : b.
+TAUT_INLINE Wide<1> Max(Wide<1> a, Wide<1> b) noexcept { return {a.v > b.v ? a.v : b.v}; }
+TAUT_INLINE Wide<2> Max(Wide<2> a, Wide<2> b) noexcept {
+  return {(Wide<2>::Vector)_mm_max_pd((__m128d)a.v, (__m128d)b.v)};
 }
-template <int N>
-TAUT_INLINE Wide<N> Min(Wide<N> a, Wide<N> b) noexcept {
-  return Select(a < b, a, b);
+/// The smaller of two; `b` if either is NaN.
+TAUT_INLINE Wide<1> Min(Wide<1> a, Wide<1> b) noexcept { return {a.v < b.v ? a.v : b.v}; }
+TAUT_INLINE Wide<2> Min(Wide<2> a, Wide<2> b) noexcept {
+  return {(Wide<2>::Vector)_mm_min_pd((__m128d)a.v, (__m128d)b.v)};
 }
+#ifdef __AVX2__
+TAUT_INLINE Wide<4> Max(Wide<4> a, Wide<4> b) noexcept {
+  return {(Wide<4>::Vector)_mm256_max_pd((__m256d)a.v, (__m256d)b.v)};
+}
+TAUT_INLINE Wide<4> Min(Wide<4> a, Wide<4> b) noexcept {
+  return {(Wide<4>::Vector)_mm256_min_pd((__m256d)a.v, (__m256d)b.v)};
+}
+#endif
+#ifdef __AVX512DQ__
+TAUT_INLINE Wide<8> Max(Wide<8> a, Wide<8> b) noexcept {
+  return {(Wide<8>::Vector)_mm512_maskz_max_pd(0xff, (__m512d)a.v, (__m512d)b.v)};
+}
+TAUT_INLINE Wide<8> Min(Wide<8> a, Wide<8> b) noexcept {
+  return {(Wide<8>::Vector)_mm512_maskz_min_pd(0xff, (__m512d)a.v, (__m512d)b.v)};
+}
+#endif
+
 template <int N>
 TAUT_INLINE Wide<N> Abs(Wide<N> a) noexcept {
   return Max(a, -a);
