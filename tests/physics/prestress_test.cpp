@@ -1,0 +1,117 @@
+/// What a high tension does across a cable: a string's stiffness T / l, which no scheme along the
+/// cable takes care of (docs/theory/cables.md, eq. 12).
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/solids.h"
+#include "scenes/tetraspine3.h"
+#include "tests/physics/world.h"
+
+namespace taut::test {
+namespace {
+
+/// A mass of 0.1 kg in the middle of a cable of 2 m that is tight by `tension_n`, off the line by
+/// `off_m`. It swings across with w^2 = 2 T / (m l), l = 1 m.
+ModelDef Plucked(double tension_n, double off_m) {
+  ModelDef def;
+  def.gravity_m_per_s2 = {0, 0, 0};
+  BodyDef body;
+  body.name = "mass";
+  body.mass_kg = 0.1;
+  body.com_m = {0, 0, off_m};
+  body.inertia_kg_m2 = scenes::SphereInertia(0.1, 0.05);
+  def.bodies.push_back(body);
+  for (const double end : {-1.0, 1.0}) {
+    CableDef cable;
+    cable.name = end < 0 ? "left" : "right";
+    cable.attachments = {{kWorld, {end, 0, 0}}, {0, body.com_m}};
+    cable.stiffness_n_per_m = 1e7;
+    cable.rest_length_m = 1 - tension_n / cable.stiffness_n_per_m;
+    def.cables.push_back(cable);
+  }
+  return def;
+}
+
+TEST(Prestress, AcrossAStiffCableAMassSwingsAsTheLeapfrogsClosedFormSays) {
+  // z_n = A cos(n theta), cos(theta) = 1 - (w h)^2 / 2, though along the cable it is the midpoint
+  // rule. The tension grows with z^2 / 2, here by 1e-12 of a metre: the angle by 1e-5 of itself at
+  // most, and A is a micrometre.
+  const double h = 1e-3, off = 1e-6;
+  for (const double share : {1e-4, 0.01, 0.5, 0.99}) {  // of the limit (w h)^2 = 4
+    const double tension = share * 2 * 0.1 / (h * h), theta = std::acos(1 - 2 * share);
+    Batch world = MakeBatch(Plucked(tension, off));
+    for (int n = 1; n <= 1000; ++n) {
+      world.Step(h);
+      ASSERT_NEAR(world.Body(0, 0).position_m.z, off * std::cos(n * theta), 1e-3 * off)
+          << share << ", step " << n;
+    }
+    EXPECT_EQ(world.Status(0).bits, kStatusOk);
+  }
+}
+
+TEST(Prestress, BeyondTheLimitAPluckedCableSwingsEverWider) {
+  // What (12) rules out does happen: the limit is sharp.
+  const double h = 1e-3, off = 1e-6;
+  Batch world = MakeBatch(Plucked(1.01 * 2 * 0.1 / (h * h), off));
+  double widest = 0;
+  for (int n = 0; n < 100; ++n) {
+    world.Step(h);
+    widest = std::max(widest, std::fabs(world.Body(0, 0).position_m.z));
+  }
+  EXPECT_GT(widest, 100 * off);
+}
+
+/// Tetraspine3 with cables 10^4 times as stiff and the same rest lengths: 200 kN in its top cables.
+/// Nothing but its cables acts.
+ModelDef OverwoundSpine() {
+  ModelDef def = scenes::Tetraspine().Def();
+  def.gravity_m_per_s2 = {0, 0, 0};
+  def.planes.clear();
+  def.spheres.clear();
+  def.capsules.clear();
+  for (CableDef& cable : def.cables) {
+    cable.stiffness_n_per_m *= 1e4;
+    cable.damping_n_s_per_m = 0;
+    cable.actuator = {};
+  }
+  return def;
+}
+
+double EnergyOf(const Batch& world) {
+  const Energy e = world.TotalEnergy(0);
+  return e.kinetic_j + e.elastic_j;
+}
+
+TEST(Prestress, ASpineWoundTo200KilonewtonGainsNoEnergyAtAStepBelowTheLimit) {
+  // What is lost is lost where slack cables catch (eq. 10).
+  Batch world = MakeBatch(OverwoundSpine());
+  const double start = EnergyOf(world), h = 2.5e-4;
+  EXPECT_NEAR(world.Cable(0, 2).tension_n, 2e5, 1);
+  double most = 0;
+  for (int n = 0; n < StepsIn(5, h); ++n) {
+    world.Step(h);
+    most = std::max(most, EnergyOf(world));
+  }
+  EXPECT_LT(most, 1.001 * start);
+  EXPECT_EQ(world.Status(0).bits, kStatusOk);
+}
+
+TEST(Prestress, ASpineWoundTo200KilonewtonThatGainsEnergyAtALongStepSaysSo) {
+  // Far beyond (12). Whatever becomes of it: the status tells, and every number is finite.
+  Batch world = MakeBatch(OverwoundSpine());
+  const double start = EnergyOf(world);
+  for (int n = 0; n < 5000; ++n) {
+    world.Step(4e-3);
+    for (int b = 0; b < 3; ++b) {
+      const BodyState body = world.Body(0, b);
+      ASSERT_TRUE(std::isfinite(Norm(body.position_m) + Norm(body.velocity_m_per_s))) << n;
+    }
+    ASSERT_TRUE(EnergyOf(world) < 1.01 * start || world.Status(0).bits != kStatusOk) << n;
+  }
+}
+
+}  // namespace
+}  // namespace taut::test
