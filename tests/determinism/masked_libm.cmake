@@ -1,0 +1,51 @@
+# cmake -DPROBE=... -DPROGRAM=test [-DEXPERIMENT=file -DWORK_DIR=folder] -P masked_libm.cmake
+#
+# glibc picks variants of sin, exp and others by processor: those with fused multiply-add give other
+# last bits than those of an older machine. Here they are masked, as on such a machine:
+#   PROGRAM               a test program passes all the same
+#   PROGRAM, EXPERIMENT   `taut run` of the experiment ends in the same state, with the same inputs
+# First the probe shows that the mask does change the C library's results: else nothing is tested.
+set(mask GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4)
+
+function(run_probe result)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env ${ARGN} ${PROBE} OUTPUT_VARIABLE out
+    RESULT_VARIABLE failed)
+  if(failed)
+    message(FATAL_ERROR "${PROBE} failed")
+  endif()
+  set(${result} ${out} PARENT_SCOPE)
+endfunction()
+run_probe(plain)
+run_probe(masked ${mask})
+if(plain STREQUAL masked)
+  message(STATUS "skipped: this machine's C library has nothing to mask")
+  return()
+endif()
+
+if(NOT EXPERIMENT)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env ${mask} ${PROGRAM} RESULT_VARIABLE failed)
+  if(failed)
+    message(FATAL_ERROR "${PROGRAM} fails with glibc's FMA variants masked")
+  endif()
+  return()
+endif()
+
+foreach(kind plain masked)
+  set(env "")
+  if(kind STREQUAL masked)
+    set(env ${mask})
+  endif()
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env ${env} ${PROGRAM} run ${EXPERIMENT} --quiet --out
+    ${WORK_DIR}/${kind} RESULT_VARIABLE failed)
+  if(failed)
+    message(FATAL_ERROR "taut run ${EXPERIMENT} failed")
+  endif()
+  file(READ ${WORK_DIR}/${kind}/summary.json summary)
+  string(JSON hash_${kind} GET "${summary}" state_hash)
+  file(SHA256 ${WORK_DIR}/${kind}/inputs.yaml inputs_${kind})
+endforeach()
+if(NOT hash_plain STREQUAL hash_masked OR NOT inputs_plain STREQUAL inputs_masked)
+  message(FATAL_ERROR "with glibc's FMA variants masked: state ${hash_masked}, not ${hash_plain}; "
+    "inputs ${inputs_masked}, not ${inputs_plain}")
+endif()
+message(STATUS "state ${hash_plain} either way")
