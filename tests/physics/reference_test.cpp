@@ -5,8 +5,8 @@
 /// What differs: a bar of MOTES has no moment of inertia about its own axis, one of taut has
 /// m r^2 / 2. Strings pull at the bars' axes and give no moment about them, so a bar that does not
 /// spin at the start never spins, and that inertia takes no part. MOTES integrates with a fixed
-/// step of 1 ms (Runge and Kutta's fourth order) and writes every tenth; strings that are slack pull
-/// as little as ours.
+/// step of 1 ms (Runge and Kutta's fourth order) and writes every tenth; strings that are slack
+/// pull as little as ours.
 
 #include <gtest/gtest.h>
 #include <zlib.h>
