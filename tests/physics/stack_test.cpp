@@ -91,7 +91,7 @@ TEST(Stack, ARodOnTwoRodsOnTheGroundStaysThoughAllCouldRoll) {
 
 TEST(Stack, BoxesOnEachOtherCarryAllThatIsAboveThem) {
   const Material material{0.5, 0.5, 0};
-  const std::vector<double> mass_kg{2, 0.5, 1};
+  const std::vector<double> mass_kg{2, 0.5, 1, 0.2, 0.7};
   ModelDef def;
   scenes::AddGround(def, material);
   double top = 0;
@@ -202,33 +202,58 @@ TEST(Stack, ASlabTenThousandTimesAsHeavyAsThirtyBallsStandsOnThem) {
   ExpectAtRest(world, def, 1e-8);
 }
 
-TEST(Stack, WhereTheSolverDoesNotConvergeItSaysSoInTheSameStep) {
+TEST(Stack, BoxesThatAlternateByTenThousandOverSixtyContactsConverge) {
   // Fifteen boxes on each other, every other one 10^4 times as heavy as those below and above: for
-  // an iteration from contact to contact the worst there is. However it ends, no step is silent.
+  // an iteration from contact to contact the worst there is.
   const Material material{0.5, 0.5, 0};
   const Vec3 half{0.1, 0.08, 0.02};
   ModelDef def;
   scenes::AddGround(def, material);
-  double weight = 0;
   for (int i = 0; i < 15; ++i) {
-    const double mass = i % 2 == 0 ? 0.1 : 1000;
-    AddBox(def, "box_" + std::to_string(i), mass, {0, 0, half.z * (2 * i + 1)}, half, material);
-    weight += mass * kG;
+    AddBox(def, "box_" + std::to_string(i), i % 2 == 0 ? 0.1 : 1000, {0, 0, half.z * (2 * i + 1)},
+           half, material);
   }
   Batch world = MakeBatch(def);
-  const BatchOptions options;
+  for (int n = 0; n < 500; ++n) {
+    world.Step(1e-3);
+    ASSERT_EQ(world.Status(0).bits, kStatusOk) << n;
+    ASSERT_LE(world.Status(0).residual_m_per_s, BatchOptions().tolerance_m_per_s) << n;
+    ASSERT_GE(world.Contacts(0).size(), 60u) << n;
+  }
+  double above = 0;
+  for (int i = 14; i >= 0; --i) {
+    above += def.bodies[static_cast<std::size_t>(i)].mass_kg * kG;
+    EXPECT_NEAR(ForceOn(world, i, i == 0 ? kWorld : i - 1).z, above, 1000 * SolverError(15) / 1e-3)
+        << i;
+  }
+  ExpectAtRest(world, def, 1e-8);
+}
+
+TEST(Stack, ASolverThatIsStoppedEarlySaysSoInTheSameStep) {
+  // Cut short where it would need more: no step with a large residual is silent.
+  const Material material{0.5, 0.5, 0};
+  const Vec3 half{0.1, 0.08, 0.02};
+  ModelDef def;
+  scenes::AddGround(def, material);
+  for (int i = 0; i < 15; ++i) {
+    AddBox(def, "box_" + std::to_string(i), i % 2 == 0 ? 0.1 : 1000, {0, 0, half.z * (2 * i + 1)},
+           half, material);
+  }
+  BatchOptions options;
+  options.max_sweeps = 5;
+  Batch world = MakeBatch(def, options);
+  int stopped = 0;
   for (int n = 0; n < 10; ++n) {
     world.ClearStatus(0);
     world.Step(1e-3);
     const WorldStatus status = world.Status(0);
     const bool says = (status.bits & kStatusNotConverged) != 0;
     ASSERT_EQ(says, status.residual_m_per_s > options.tolerance_m_per_s) << n;
-    if (says) {
-      ASSERT_EQ(status.sweeps, options.max_sweeps) << n;
-    } else {
-      ASSERT_NEAR(ForceOn(world, 0, kWorld).z, weight, 0.005 * weight) << n;
-    }
+    if (!says) continue;
+    ++stopped;
+    ASSERT_EQ(status.sweeps, options.max_sweeps) << n;
   }
+  EXPECT_GT(stopped, 0);
 }
 
 }  // namespace
