@@ -130,6 +130,15 @@ void Batch::Impl::InitializeWorld(int world) noexcept {
     at(world, layout.rest + c) = at(world, layout.target + c) = cable.rest_length_m;
     at(world, layout.stiffness + c) = cable.stiffness_n_per_m;
     at(world, layout.damping + c) = cable.damping_n_s_per_m;
+    // A cable that is taut at the start is known to be so: a stiff one does not enter as if it had
+    // been slack before (docs/theory/cables.md, eq. 10).
+    double length = 0;
+    for (std::size_t i = 1; i < cable.attachments.size(); ++i) {
+      const Vec3 d = cable.attachments[i].position_m - cable.attachments[i - 1].position_m;
+      length += std::sqrt(Dot(d, d));
+    }
+    at(world, layout.tension + c) =
+        std::max(cable.stiffness_n_per_m * (length - cable.rest_length_m), 0.0);
   }
   JudgeStiffness(world);
   at(world, layout.friction_scale) = 1.0;

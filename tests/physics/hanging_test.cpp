@@ -221,5 +221,23 @@ TEST(Hanging, AMassThatACableCatchesAgainAndAgainKeepsTheEnergyOfItsFall) {
   }
 }
 
+TEST(Hanging, AStiffCableThatIsTautAtTheStartKeepsItsEnergyFromTheFirstStepOn) {
+  for (const double stiffness : {1e6, 1e7}) {
+    const double mass = 0.1, sag = mass * kG / stiffness;
+    ModelDef def;
+    const Vec3 start{0, 0, -(1 + 1.5 * sag)};
+    AddPointMass(def, "mass", mass, start);
+    AddCable(def, {kWorld, {}}, {0, start}, stiffness, 0, 1);
+    Batch world = MakeBatch(def);
+    const auto energy = [&] {
+      const Energy e = world.TotalEnergy(0);
+      return e.kinetic_j + e.gravity_j + e.elastic_j;
+    };
+    const double before = energy(), swing = stiffness * sag * sag / 8;
+    world.Step(1e-3, 1000);
+    EXPECT_NEAR(energy(), before, 0.01 * swing) << stiffness;
+  }
+}
+
 }  // namespace
 }  // namespace taut::test
