@@ -1,0 +1,132 @@
+#include "peers/peer.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "peers/adapters.h"
+
+namespace taut::peers {
+namespace {
+
+struct Entry {
+  const char* name;
+  std::unique_ptr<World> (*make)(const ModelDef&, const Options&);
+  std::string (*version)();
+};
+
+const Entry& Of(Engine engine) {
+  static const Entry kMujoco{"mujoco",
+#ifdef TAUT_PEER_MUJOCO
+                             MakeMujoco, MujocoVersion
+#else
+                             nullptr, nullptr
+#endif
+  };
+  static const Entry kBullet{"bullet",
+#ifdef TAUT_PEER_BULLET
+                             MakeBullet, BulletVersion
+#else
+                             nullptr, nullptr
+#endif
+  };
+  static const Entry kOde{"ode",
+#ifdef TAUT_PEER_ODE
+                          MakeOde, OdeVersion
+#else
+                          nullptr, nullptr
+#endif
+  };
+  return engine == Engine::kMujoco ? kMujoco : engine == Engine::kBullet ? kBullet : kOde;
+}
+
+bool Same(const Material& a, const Material& b) {
+  return a.static_friction == b.static_friction && a.kinetic_friction == b.kinetic_friction &&
+         a.restitution == b.restitution;
+}
+
+/// The material of the first shape that collides; nothing without one.
+const Material* FirstMaterial(const ModelDef& def) {
+  for (const SphereDef& s : def.spheres) {
+    if (s.collides) return &s.material;
+  }
+  for (const CapsuleDef& c : def.capsules) {
+    if (c.collides) return &c.material;
+  }
+  return nullptr;
+}
+
+double Combine(CombineRule rule, double a, double b) {
+  switch (rule) {
+    case CombineRule::kProduct:
+      return a * b;
+    case CombineRule::kGeometricMean:
+      return std::sqrt(a * b);
+    case CombineRule::kMinimum:
+      return std::fmin(a, b);
+    default:
+      return std::fmax(a, b);
+  }
+}
+
+Contact Between(const ModelDef& def, const Material& a, const Material& b) {
+  return {Combine(def.friction_combine, a.kinetic_friction, b.kinetic_friction),
+          Combine(def.restitution_combine, a.restitution, b.restitution)};
+}
+
+}  // namespace
+
+const char* Name(Engine engine) { return Of(engine).name; }
+bool Available(Engine engine) { return Of(engine).make != nullptr; }
+std::string Version(Engine engine) {
+  return Available(engine) ? Of(engine).version() : "not built in";
+}
+
+std::string Unsupported(const ModelDef& def) {
+  if (!def.boxes.empty() || !def.terrain_boxes.empty()) return "boxes";
+  for (const BodyDef& body : def.bodies) {
+    if (body.fixed) return "the fixed body " + body.name;
+  }
+  for (const CableDef& cable : def.cables) {
+    if (cable.damping_law != DampingLaw::kExact) return "the damping law of cable " + cable.name;
+  }
+  const Material* const material = FirstMaterial(def);
+  const auto fits = [&](const Material& m) { return Same(m, *material); };
+  for (const SphereDef& s : def.spheres) {
+    if (s.collides && !fits(s.material)) return "shapes of different materials";
+  }
+  for (const CapsuleDef& c : def.capsules) {
+    if (c.collides && !fits(c.material)) return "shapes of different materials";
+  }
+  for (const PlaneDef& p : def.planes) {
+    if (p.material.static_friction != p.material.kinetic_friction) {
+      return "static friction that differs from kinetic friction";
+    }
+  }
+  if (material != nullptr && material->static_friction != material->kinetic_friction) {
+    return "static friction that differs from kinetic friction";
+  }
+  if (def.friction_law != FrictionLaw::kCone) return "the friction law along_slip";
+  return "";
+}
+
+Contact BetweenBodies(const ModelDef& def) {
+  const Material* const m = FirstMaterial(def);
+  return m == nullptr ? Contact{} : Between(def, *m, *m);
+}
+
+Contact WithPlane(const ModelDef& def, int plane) {
+  const Material* const m = FirstMaterial(def);
+  return m == nullptr ? Contact{}
+                      : Between(def, *m, def.planes[static_cast<std::size_t>(plane)].material);
+}
+
+std::unique_ptr<World> MakeWorld(Engine engine, const ModelDef& def, const Options& options) {
+  if (!Available(engine)) {
+    throw std::invalid_argument(std::string(Name(engine)) + " is not built in");
+  }
+  const std::string why = Unsupported(def);
+  if (!why.empty()) throw std::invalid_argument("the peers do not know " + why);
+  return Of(engine).make(def, options);
+}
+
+}  // namespace taut::peers
