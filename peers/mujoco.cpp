@@ -61,7 +61,7 @@ void WritePlanes(std::ostream& xml, const ModelDef& def) {
 
 std::string Mjcf(const ModelDef& def, const Options& options) {
   const std::vector<Shape> shapes = ShapesOf(def);
-  const std::size_t contacts = 100 + 50 * def.bodies.size();
+  const std::size_t contacts = 100 + 12 * def.bodies.size();
   std::ostringstream xml;
   xml.precision(17);
   xml << "<mujoco>\n<compiler angle='radian' inertiafromgeom='false' boundmass='0' "
@@ -147,6 +147,10 @@ class Mujoco final : public World {
     model_->opt.timestep = step_s;
     for (int i = 0; i < count; ++i) mj_step(model_, data_);
     measured_ = false;
+    for (int kind = 0; kind < mjNWARNING; ++kind) {  // contacts that had no room, a state gone wild
+      const mjWarningStat& warning = data_->warning[kind];
+      if (warning.number > 0) throw std::runtime_error(mju_warningText(kind, warning.lastinfo));
+    }
   }
   void SetRestLength(int cable, double rest_length_m) override {
     data_->ctrl[cable] = rest_length_m;

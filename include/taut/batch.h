@@ -154,6 +154,7 @@ class Batch {
   std::size_t BytesPerWorld() const noexcept;
 
  private:
+  friend struct BatchInside;  ///< For measurements (benchmarks/).
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -148,9 +148,30 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
   }
 }
 
-template <class W>
+/// The stages of a step, in their order.
+enum class Stage {
+  kStart,       ///< Keep the state of the start.
+  kKinematics,  ///< Half a drift, rotations, inertias in W.
+  kCables,      ///< Actuators and cable forces.
+  kKick,        ///< Velocities from forces.
+  kCollide,     ///< Find the contacts.
+  kSolve,       ///< Contacts and stiff cables.
+  kIntegrate,   ///< Keep the contacts, half a drift.
+  kJudge,       ///< Look whether it went well.
+  kCount
+};
+
+/// Is told when a stage is over. This one does nothing and costs nothing; benchmarks/ has one with
+/// a clock.
+struct NoWatch {
+  void Begin() noexcept {}
+  void Mark(Stage) noexcept {}
+};
+
+template <class W, class Watch>
 void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings& settings,
-              Scratch<W>& work, double step_s) noexcept {
+              Scratch<W>& work, double step_s, Watch& watch) noexcept {
+  watch.Begin();
   const Rows<W> s(layout, g);
   const W zero = W::Splat(0.0);
   const W h = W::Splat(step_s), half_h = W::Splat(0.5 * step_s);
@@ -161,14 +182,21 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
 
   Poison(m, s, g, work);
   SaveStart(m, s, work);
+  watch.Mark(Stage::kStart);
   StageDriftFirst(m, s, half_h);
   StageKinematics(m, s, g, work, ahead);
+  watch.Mark(Stage::kKinematics);
   StageCables(m, s, work, step_s);
+  watch.Mark(Stage::kCables);
   StageKick(m, s, work, h);
+  watch.Mark(Stage::kKick);
   const uint32_t overflow = StageCollide(m, s, work, h, Max(h, last));
+  watch.Mark(Stage::kCollide);
   const SolveResult<W> solve = StageSolve(m, s, g, work, settings, step_s);
+  watch.Mark(Stage::kSolve);
   StoreResults(m, s, g, work, step_s);
   StageDriftSecond(m, s, work, half_h);
+  watch.Mark(Stage::kIntegrate);
   Judge(m, s, g, work, solve, settings, overflow);
 
   const auto halted = s.halted[0] > zero;
@@ -176,6 +204,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   s.time[0] += Select(halted, zero, h);
   s.last_step[0] = Select(halted, last, h);
   g.sensed = false;
+  watch.Mark(Stage::kJudge);
 }
 
 template <class W>
@@ -183,11 +212,12 @@ size_t ScratchBytes(const View& m) {
   return Scratch<W>::Bytes(m);
 }
 
-template <class W>
+template <class W, class Watch>
 void StepGroup(const View& m, const Layout& layout, Group& g, const StepSettings& settings,
                void* scratch, double step_s, int count) {
   Scratch<W> work(m, scratch);
-  for (int i = 0; i < count; ++i) StepOnce(m, layout, g, settings, work, step_s);
+  Watch watch;
+  for (int i = 0; i < count; ++i) StepOnce(m, layout, g, settings, work, step_s, watch);
 }
 
 template <class W>
@@ -200,9 +230,9 @@ void SenseGroup(const View& m, const Layout& layout, Group& g, void* scratch) {
   g.sensed = true;
 }
 
-template <class W>
+template <class W, class Watch = NoWatch>
 constexpr Kernel MakeKernel() {
-  return {W::kLanes, ScratchBytes<W>, StepGroup<W>, SenseGroup<W>};
+  return {W::kLanes, ScratchBytes<W>, StepGroup<W, Watch>, SenseGroup<W>};
 }
 
 }  // namespace taut::sim

@@ -1,0 +1,213 @@
+// How fast: taut beside MuJoCo, Bullet and ODE on the same robots. script/bench runs it and makes
+// medians and the page docs/performance.md of what it says.
+//
+// A benchmark's name says what it measured: KIND/engine/setting/robot/worlds/lanes/threads, and
+// its counters the rest. Every robot stands on the ground, has had time to settle, and moves.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+
+#include <cstdio>
+#include <ctime>
+#include <functional>
+#include <thread>
+
+#include "benchmarks/robots.h"
+#include "benchmarks/stage_watch.h"
+
+namespace taut::bench {
+namespace {
+
+constexpr int kWorldsPerThread = 64;
+
+using Make = std::function<std::unique_ptr<Runner>()>;
+
+struct Case {
+  std::string kind, robot;
+  int worlds = 1, lanes = 1, threads = 1;
+  std::string engine{}, setting{};
+  std::string Name() const {
+    return kind + "/" + engine + "/" + setting + "/" + robot + "/" + std::to_string(worlds) + "/" +
+           std::to_string(lanes) + "/" + std::to_string(threads);
+  }
+};
+
+/// Worlds that a benchmark goes on with when it is called again.
+class Standing {
+ public:
+  Standing(Make make, int settle_periods) : make_(std::move(make)), settle_(settle_periods) {}
+  Runner& operator()() {
+    if (runner_ == nullptr) {
+      runner_ = make_();
+      runner_->Run(settle_);
+    }
+    return *runner_;
+  }
+
+ private:
+  Make make_;
+  int settle_;
+  std::unique_ptr<Runner> runner_;
+};
+
+double StepsOf(const benchmark::State& state, const Runner& runner) {
+  return static_cast<double>(state.iterations()) * kControlSteps * runner.worlds();
+}
+
+void Measure(benchmark::State& state, Runner& runner) {
+  for (auto _ : state) runner.Run(1);
+  state.counters["steps_per_s"] =
+      benchmark::Counter(StepsOf(state, runner), benchmark::Counter::kIsRate);
+  state.counters["contacts"] = runner.contacts();
+  if (auto* const ours = dynamic_cast<TautRunner*>(&runner)) {
+    state.counters["bytes_per_world"] = static_cast<double>(ours->batch().BytesPerWorld());
+    state.counters["converged"] = ours->converged() ? 1 : 0;
+    state.counters["sweeps"] = ours->batch().Status(0).sweeps;
+  }
+}
+
+/// Ticks that reading the clock takes, least of many: each stage holds one reading.
+std::uint64_t TicksOfAReading() {
+  std::uint64_t least = ~std::uint64_t{0};
+  for (int i = 0; i < 10000; ++i) {
+    const std::uint64_t before = __builtin_ia32_rdtsc();
+    least = std::min<std::uint64_t>(least, __builtin_ia32_rdtsc() - before);
+  }
+  return least;
+}
+
+void MeasureStages(benchmark::State& state, TautRunner& runner) {
+  std::uint64_t before[sim::kStages];
+  std::copy_n(sim::g_stage_ticks, sim::kStages, before);
+  const std::clock_t start = std::clock();  // processor's time, as Google Benchmark's rates
+  const std::uint64_t start_ticks = __builtin_ia32_rdtsc();
+  for (auto _ : state) runner.Run(1);
+  const double ticks = static_cast<double>(__builtin_ia32_rdtsc() - start_ticks);
+  const double ns = 1e9 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  const double steps = StepsOf(state, runner);
+  const double group_steps = steps / runner.batch().lanes();
+  const double readings = group_steps * static_cast<double>(TicksOfAReading());
+  for (int i = 0; i < sim::kStages; ++i) {
+    const double spent = static_cast<double>(sim::g_stage_ticks[i] - before[i]) - readings;
+    state.counters[std::string("ns_") + sim::kStageNames[i]] = spent * ns / ticks / steps;
+  }
+  state.counters["steps_per_s"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
+}
+
+void Register(const Case& what, const Make& make, int settle_periods, bool stages = false) {
+  const auto standing = std::make_shared<Standing>(make, settle_periods);
+  auto* const registered = benchmark::RegisterBenchmark(
+      what.Name().c_str(), [standing, stages](benchmark::State& state) {
+        try {
+          Runner& runner = (*standing)();
+          stages ? MeasureStages(state, dynamic_cast<TautRunner&>(runner)) : Measure(state, runner);
+        } catch (const std::exception& error) {
+          state.SkipWithError(error.what());
+        }
+      });
+  // The processor's time is steadier where others run, too; threads have only the wall's in common.
+  if (what.threads > 1) registered->UseRealTime();
+}
+
+void RegisterTaut(Case what, const ModelDef& def, int settle_periods) {
+  what.engine = "taut";
+  what.setting = "default";
+  BatchOptions options;
+  options.worlds = what.worlds;
+  options.threads = what.threads;
+  options.simd = static_cast<Simd>(what.lanes);
+  const bool stages = what.kind == "stages";
+  const Make make = [def, options, stages] {
+    auto runner = std::make_unique<TautRunner>(def, options);
+    if (stages) BatchInside::Watch(runner->batch());
+    return runner;
+  };
+  Register(what, make, settle_periods, stages);
+}
+
+struct PeerSetting {
+  peers::Engine engine;
+  const char* name;
+  peers::Options options;
+  bool main;  ///< The engine's default, which ratios are to.
+};
+const PeerSetting kPeerSettings[] = {
+    {peers::Engine::kMujoco, "euler_pyramidal", {}, true},
+    {peers::Engine::kMujoco, "euler_elliptic", {.elliptic = true}, false},
+    {peers::Engine::kBullet, "iterations_10", {.iterations = 10}, true},
+    {peers::Engine::kBullet, "iterations_50", {.iterations = 50}, false},
+    {peers::Engine::kOde, "quick_10", {.iterations = 10}, true},
+    {peers::Engine::kOde, "full_step", {.full_step = true}, true},
+};
+
+void RegisterPeers(Case what, const ModelDef& def, int settle_periods, bool all) {
+  for (const PeerSetting& setting : kPeerSettings) {
+    if (!peers::Available(setting.engine) || !(setting.main || all)) continue;
+    what.engine = peers::Name(setting.engine);
+    what.setting = setting.name;
+    Register(
+        what,
+        [def, setting] {
+          return std::make_unique<PeerRunner>(setting.engine, def, setting.options);
+        },
+        settle_periods);
+  }
+}
+
+void RegisterAll() {
+  const int widest = static_cast<int>(BestSimd());
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  for (const char* robot : {"tetraspine3", "tetraspine12", "six_strut"}) {
+    const ModelDef def = OnGround(robot);
+    constexpr int kSettle = 300;
+    RegisterTaut({.kind = "one", .robot = robot}, def, kSettle);
+    for (int lanes = 1; lanes <= widest; lanes *= 2) {
+      RegisterTaut({.kind = "batch", .robot = robot, .worlds = kWorldsPerThread, .lanes = lanes},
+                   def, kSettle);
+    }
+    if (cores > 1) {
+      RegisterTaut({.kind = "batch",
+                    .robot = robot,
+                    .worlds = kWorldsPerThread * cores,
+                    .lanes = widest,
+                    .threads = cores},
+                   def, kSettle);
+    }
+    RegisterPeers({.kind = "one", .robot = robot}, def, kSettle, true);
+    for (int lanes : {1, widest}) {
+      RegisterTaut({.kind = "stages", .robot = robot, .worlds = lanes, .lanes = lanes}, def,
+                   kSettle);
+    }
+  }
+  const auto growth = [&](const char* kind, const std::string& robot, const ModelDef& def) {
+    constexpr int kSettle = 50;
+    RegisterTaut({.kind = kind, .robot = robot}, def, kSettle);
+    RegisterTaut({.kind = kind, .robot = robot, .worlds = widest, .lanes = widest}, def, kSettle);
+    RegisterPeers({.kind = kind, .robot = robot}, def, kSettle, false);
+  };
+  for (int segments = 1; segments <= 64; segments *= 2) {
+    growth("segments", "spine_" + std::to_string(segments), Spine(segments));
+  }
+  for (int contacts : {0, 4, 8, 16, 32, 64}) {
+    growth("contacts", "footed_" + std::to_string(contacts), Footed(contacts));
+  }
+}
+
+}  // namespace
+}  // namespace taut::bench
+
+int main(int argc, char** argv) {
+  for (const taut::peers::Engine engine : taut::peers::kEngines) {
+    benchmark::AddCustomContext(taut::peers::Name(engine), taut::peers::Version(engine));
+  }
+  benchmark::AddCustomContext("step_s", std::to_string(taut::bench::kStepS));
+  benchmark::AddCustomContext("max_sweeps", std::to_string(taut::BatchOptions().max_sweeps));
+  char tolerance[32];
+  std::snprintf(tolerance, sizeof tolerance, "%g", taut::BatchOptions().tolerance_m_per_s);
+  benchmark::AddCustomContext("tolerance_m_per_s", tolerance);
+  taut::bench::RegisterAll();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}

@@ -1,0 +1,116 @@
+#include "benchmarks/robots.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "scenes/tetraspine3.h"
+#include "taut/spec.h"
+
+namespace taut::bench {
+namespace {
+
+constexpr int kPeriodTicks = 100;  // a second
+constexpr double kPi = 3.14159265358979323846;
+
+PlaneDef Ground() {
+  PlaneDef ground;
+  ground.name = "ground";
+  ground.material = {0.5, 0.5, 0.0};
+  return ground;
+}
+
+std::shared_ptr<const Model> Compiled(const ModelDef& def) {
+  Diagnostics complaints;
+  auto model = Model::Compile(def, complaints);
+  if (model == nullptr) throw std::runtime_error(complaints.Format());
+  return model;
+}
+
+}  // namespace
+
+ModelDef OnGround(const std::string& robot) {
+  Diagnostics complaints;
+  const auto spec = LoadRobot(TAUT_MODELS "/" + robot + ".yaml", {}, complaints);
+  if (!spec) throw std::runtime_error(complaints.Format());
+  ModelDef def = spec->def;
+  def.planes = {Ground()};
+  return def;
+}
+
+ModelDef Spine(int segments) {
+  scenes::Tetraspine spine;
+  spine.segments = segments;
+  return spine.Def();
+}
+
+ModelDef Footed(int contacts) {
+  ModelDef def;
+  def.name = "footed";
+  def.planes = {Ground()};
+  const double foot_m = 0.01, disc_m = 0.3;
+  scenes::Parts parts;
+  parts.AddCylinder(2, {0, 0, 0.03}, {0, 0, 0.05}, disc_m);
+  def.bodies.push_back(parts.Body("disc"));
+  for (int i = 0; i < contacts; ++i) {
+    const double a = 2 * kPi * i / contacts;
+    const Vec3 at{disc_m * std::cos(a), disc_m * std::sin(a), foot_m};
+    def.spheres.push_back({"foot_" + std::to_string(i), 0, at, foot_m, {0.5, 0.5, 0.0}});
+  }
+  CableDef cable;
+  cable.name = "drag";
+  cable.attachments = {{0, {0, 0, 0.05}}, {kWorld, {1, 0.2, 0.05}}};
+  cable.stiffness_n_per_m = 500;
+  cable.damping_n_s_per_m = 5;
+  cable.rest_length_m = 1.0;
+  cable.actuator.kind = ActuatorDef::Kind::kIdeal;
+  def.cables.push_back(cable);
+  return def;
+}
+
+Motion::Motion(const ModelDef& def) {
+  for (const CableDef& cable : def.cables) rest_m_.push_back(cable.rest_length_m);
+  for (int i = 0; i < kPeriodTicks; ++i) {
+    factor_.push_back(1 + 0.02 * std::sin(2 * kPi * i / kPeriodTicks));
+  }
+}
+
+double Motion::RestLength(int world, int cable, int tick) const {
+  const int at = (tick + 37 * cable + 61 * world) % kPeriodTicks;
+  return rest_m_[static_cast<std::size_t>(cable)] * factor_[static_cast<std::size_t>(at)];
+}
+
+TautRunner::TautRunner(const ModelDef& def, const BatchOptions& options)
+    : motion_(def), batch_(Compiled(def), options) {}
+
+void TautRunner::Run(int control_periods) {
+  for (int i = 0; i < control_periods; ++i, ++tick_) {
+    for (int w = 0; w < batch_.worlds(); ++w) {
+      for (int c = 0; c < motion_.cables(); ++c) {
+        batch_.SetRestLengthTarget(w, c, motion_.RestLength(w, c, tick_));
+      }
+    }
+    batch_.Step(kStepS, kControlSteps);
+  }
+  for (int w = 0; w < batch_.worlds(); ++w) {
+    const std::uint32_t bits = batch_.Status(w).bits;
+    if ((bits & ~kStatusNotConverged) != 0) {
+      throw std::runtime_error("world " + std::to_string(w) + " has status " +
+                               std::to_string(bits));
+    }
+    if (bits != kStatusOk) converged_ = false;
+  }
+}
+
+PeerRunner::PeerRunner(peers::Engine engine, const ModelDef& def, const peers::Options& options)
+    : motion_(def), world_(peers::MakeWorld(engine, def, options)) {}
+
+void PeerRunner::Run(int control_periods) {
+  for (int i = 0; i < control_periods; ++i, ++tick_) {
+    for (int c = 0; c < motion_.cables(); ++c) {
+      world_->SetRestLength(c, motion_.RestLength(0, c, tick_));
+    }
+    world_->Step(kStepS, kControlSteps);
+  }
+}
+
+}  // namespace taut::bench

@@ -1,0 +1,81 @@
+/// The robots that are measured, and one way to run them for every engine.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "peers/peer.h"
+#include "taut/batch.h"
+
+namespace taut::bench {
+
+inline constexpr double kStepS = 0.001;
+inline constexpr int kControlSteps = 10;  ///< Rest lengths are commanded at 100 Hz.
+
+/// A model of models/ on the ground.
+ModelDef OnGround(const std::string& robot);
+
+/// Tetraspine3 with another number of segments, on the ground.
+ModelDef Spine(int segments);
+
+/// A disc that stands on `contacts` feet on the ground and is dragged to and fro by a cable.
+ModelDef Footed(int contacts);
+
+/// All cables' rest lengths against time: a sine of 1 Hz and 2 % about the described length, each
+/// cable of each world with a phase of its own. Looked up, so that it costs engines nothing.
+class Motion {
+ public:
+  explicit Motion(const ModelDef& def);
+  int cables() const { return static_cast<int>(rest_m_.size()); }
+  double RestLength(int world, int cable, int tick) const;
+
+ private:
+  std::vector<double> rest_m_;
+  std::vector<double> factor_;
+};
+
+/// Worlds of a robot in some engine, which stand and move.
+class Runner {
+ public:
+  Runner() = default;
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
+  virtual ~Runner() = default;
+  virtual void Run(int control_periods) = 0;
+  virtual int worlds() const = 0;
+  virtual double contacts() = 0;  ///< Of the first world.
+};
+
+/// taut. A world that is not finite or has too many contacts becomes an exception.
+class TautRunner final : public Runner {
+ public:
+  TautRunner(const ModelDef& def, const BatchOptions& options);
+  void Run(int control_periods) override;
+  int worlds() const override { return batch_.worlds(); }
+  double contacts() override { return static_cast<double>(batch_.Contacts(0).size()); }
+  Batch& batch() { return batch_; }
+  /// Whether every contact solve since the start reached its tolerance.
+  bool converged() const { return converged_; }
+
+ private:
+  Motion motion_;
+  Batch batch_;
+  bool converged_ = true;
+  int tick_ = 0;
+};
+
+class PeerRunner final : public Runner {
+ public:
+  PeerRunner(peers::Engine engine, const ModelDef& def, const peers::Options& options);
+  void Run(int control_periods) override;
+  int worlds() const override { return 1; }
+  double contacts() override { return world_->ContactCount(); }
+
+ private:
+  Motion motion_;
+  std::unique_ptr<peers::World> world_;
+  int tick_ = 0;
+};
+
+}  // namespace taut::bench

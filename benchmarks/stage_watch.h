@@ -1,0 +1,31 @@
+/// Time stamps between the stages of a step. The library's own step has none: the step's text is
+/// compiled a second time, here, with a watch.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/group.h"
+
+namespace taut {
+
+class Batch;
+
+/// What a measurement needs of a batch's inside.
+struct BatchInside {
+  /// From now on the batch steps with the watch.
+  static void Watch(Batch& batch);
+};
+
+namespace sim {
+
+inline constexpr int kStages = 8;
+inline constexpr const char* kStageNames[kStages] = {"start",   "kinematics", "cables",    "kick",
+                                                     "collide", "solve",      "integrate", "judge"};
+
+/// Ticks of the processor's clock spent in each stage so far. Of batches with one thread.
+extern std::uint64_t g_stage_ticks[kStages];
+
+extern const Kernel kWatchedScalar, kWatchedSse2, kWatchedAvx2, kWatchedAvx512;
+
+}  // namespace sim
+}  // namespace taut

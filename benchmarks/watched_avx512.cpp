@@ -1,0 +1,7 @@
+#include "benchmarks/stage_watch.inl"
+
+namespace taut::sim {
+
+const Kernel kWatchedAvx512 = MakeKernel<simd::Wide<8>, StageWatch>();
+
+}  // namespace taut::sim

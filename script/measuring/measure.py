@@ -1,0 +1,92 @@
+"""Running the benchmark program and making a list of what it measured."""
+
+import json
+import os
+import pathlib
+import platform
+import statistics
+import subprocess
+import tempfile
+
+from validation.runs import ROOT, Problem
+
+STAGE = "ns_"  # begins the counters that are times of stages
+
+
+def command(*words, **more):
+    """Runs a command, shows what it said only if it fails."""
+    run = subprocess.run([str(word) for word in words], capture_output=True, text=True, **more)
+    if run.returncode != 0:
+        raise Problem(f"{' '.join(map(str, words))}\n{run.stdout}{run.stderr}".rstrip())
+    return run.stdout
+
+
+def build():
+    command("bash", "-c", "source script/common.sh; script/setup; build release taut_bench", cwd=ROOT)
+
+
+def processor():
+    try:
+        for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()
+
+
+def commit():
+    run = subprocess.run(["git", "describe", "--always", "--dirty", "--exclude", "*"], cwd=ROOT,
+                         capture_output=True, text=True)
+    return run.stdout.strip() or "unknown"
+
+
+def machine(context):
+    """What figures hold for: Google Benchmark's context and what it does not know."""
+    return {"processor": processor(), "cores": os.cpu_count(), "load": context["load_avg"][:1],
+            "commit": commit(),
+            **{key: context[key] for key in ("mujoco", "bullet", "ode", "step_s", "max_sweeps",
+                                             "tolerance_m_per_s")}}
+
+
+def results(raw):
+    """The list from Google Benchmark's JSON: a median of the repetitions for each benchmark."""
+    where = machine(raw["context"])
+    repetitions = {}
+    for run in raw["benchmarks"]:
+        if run.get("error_occurred"):
+            raise Problem(f"{run['name']}: {run['error_message']}")
+        if run["run_type"] == "iteration":
+            repetitions.setdefault(run["run_name"].removesuffix("/real_time"), []).append(run)
+    found = []
+    for name, runs in repetitions.items():
+        kind, engine, setting, robot, worlds, lanes, threads = name.split("/")
+        rates = [run["steps_per_s"] for run in runs]
+        item = {"kind": kind, "engine": engine, "setting": setting, "robot": robot,
+                "worlds": int(worlds), "lanes": int(lanes), "threads": int(threads),
+                "steps_per_s": statistics.median(rates), "repetitions": len(rates),
+                "spread": (max(rates) - min(rates)) / statistics.median(rates)}
+        for key in ("contacts", "sweeps", "bytes_per_world"):
+            if key in runs[0]:
+                item[key] = statistics.median(run[key] for run in runs)
+        if "converged" in runs[0]:
+            item["converged"] = all(run["converged"] == 1 for run in runs)
+        stages = {key.removeprefix(STAGE): statistics.median(run[key] for run in runs)
+                  for key in runs[0] if key.startswith(STAGE)}
+        if stages:
+            item["stages_ns"] = stages
+        found.append({**item, "machine": where})
+    if not found:
+        raise Problem("no benchmark matches")
+    return found
+
+
+def run(program, only, repetitions, seconds):
+    if not os.access(program, os.X_OK):
+        raise Problem(f"there is no {program}; it needs libbenchmark-dev (script/setup)")
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder, "raw.json")
+        command(program, f"--benchmark_filter={only}", f"--benchmark_repetitions={repetitions}",
+                f"--benchmark_min_time={seconds}", "--benchmark_enable_random_interleaving=true",
+                f"--benchmark_out={out}", "--benchmark_out_format=json")
+        return results(json.loads(out.read_text()))

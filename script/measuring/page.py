@@ -1,0 +1,149 @@
+"""docs/performance.md: the tables, from a list of results."""
+
+import pathlib
+
+from validation.runs import Problem, fill, table
+
+TEMPLATE = pathlib.Path(__file__).with_name("performance.md.in")
+ROBOTS = ("tetraspine3", "tetraspine12", "six_strut")
+SETTINGS = {  # in the order of the tables
+    ("taut", "default"): "taut",
+    ("mujoco", "euler_pyramidal"): "MuJoCo, Euler, pyramidal cones",
+    ("mujoco", "euler_elliptic"): "MuJoCo, Euler, elliptic cones",
+    ("bullet", "iterations_10"): "Bullet, 10 iterations",
+    ("bullet", "iterations_50"): "Bullet, 50 iterations",
+    ("ode", "quick_10"): "ODE, quick step, 10 iterations",
+    ("ode", "full_step"): "ODE, full step",
+}
+STAGES = ("start", "kinematics", "cables", "kick", "collide", "solve", "integrate", "judge")
+NOTHING = "-"
+UNCONVERGED = "*"  # some step of it stopped at the largest number of sweeps
+
+
+def number(value, digits=3):
+    """Rounded to significant digits, groups of three apart: 1 230 000."""
+    if value == 0:
+        return "0"
+    rounded = float(f"{value:.{digits}g}")
+    return f"{rounded:,.0f}".replace(",", " ") if abs(rounded) >= 10 ** (digits - 1) else f"{rounded:.{digits}g}"
+
+
+class Results:
+    def __init__(self, items):
+        self.items = items
+
+    def of(self, **wanted):
+        return [item for item in self.items if all(item[key] == value for key, value in wanted.items())]
+
+    def one(self, **wanted):
+        found = self.of(**wanted)
+        if len(found) > 1:
+            raise Problem(f"{len(found)} results for {wanted}")
+        return found[0] if found else None
+
+    def rate(self, **wanted):
+        found = self.one(**wanted)
+        return found["steps_per_s"] if found else None
+
+
+def mark(item):
+    return "" if item.get("converged", True) else UNCONVERGED
+
+
+def one_world(items):
+    """Steps a second of one world, and how many times as many taut does."""
+    results = Results(items)
+    rows = []
+    for (engine, setting), name in SETTINGS.items():
+        row = [name]
+        for robot in ROBOTS:
+            item = results.one(kind="one", engine=engine, setting=setting, robot=robot)
+            ours = results.rate(kind="one", engine="taut", robot=robot)
+            times = f" ({number(ours / item['steps_per_s'], 2)}x)" if item and ours and engine != "taut" else ""
+            row.append(number(item["steps_per_s"]) + mark(item) + times if item else NOTHING)
+        rows.append(row)
+    return table(["engine", *ROBOTS], rows)
+
+
+def batches(items):
+    results = Results(items)
+    rows = []
+    for worlds, lanes, threads in sorted({(i["worlds"], i["lanes"], i["threads"]) for i in results.of(kind="batch")},
+                                         key=lambda key: (key[2], key[1])):
+        row = [str(worlds), str(lanes), str(threads)]
+        for robot in ROBOTS:
+            item = results.one(kind="batch", robot=robot, worlds=worlds, lanes=lanes, threads=threads)
+            one = results.rate(kind="one", engine="taut", robot=robot)
+            times = f" ({number(item['steps_per_s'] / one, 2)}x)" if item and one else ""
+            row.append(number(item["steps_per_s"]) + mark(item) + times if item else NOTHING)
+        rows.append(row)
+    return table(["worlds", "lanes", "threads", *ROBOTS], rows)
+
+
+def against_batches(items):
+    """The widest batch on one core against one world of each peer."""
+    results = Results(items)
+    rows = []
+    for (engine, setting), name in SETTINGS.items():
+        if engine == "taut":
+            continue
+        row = [name]
+        for robot in ROBOTS:
+            rate = results.rate(kind="one", engine=engine, setting=setting, robot=robot)
+            ours = [item["steps_per_s"] for item in results.of(kind="batch", robot=robot, threads=1)]
+            row.append(f"{number(max(ours) / rate, 2)}x" if rate and ours else NOTHING)
+        rows.append(row)
+    return table(["engine", *ROBOTS], rows)
+
+
+def stages(items):
+    found = Results(items).of(kind="stages")
+    found.sort(key=lambda item: (ROBOTS.index(item["robot"]), item["lanes"]))
+    head = ["stage", *(f"{item['robot']}, {item['lanes']} lane{'s' * (item['lanes'] > 1)}" for item in found)]
+    rows = [[name, *(number(item["stages_ns"][name], 2) for item in found)] for name in STAGES]
+    rows.append(["sum", *(number(sum(item["stages_ns"].values())) for item in found)])
+    return table(head, rows)
+
+
+def memory(items):
+    results = Results(items)
+    rows = []
+    for lanes in sorted({item["lanes"] for item in results.of(kind="batch")}):
+        cells = []
+        for robot in ROBOTS:
+            found = results.of(kind="batch", robot=robot, lanes=lanes, threads=1)
+            cells.append(number(found[0]["bytes_per_world"] / 1000) if found else NOTHING)
+        rows.append([str(lanes), *cells])
+    return table(["lanes", *ROBOTS], rows)
+
+
+def growth(items, kind):
+    """Microseconds of a step against a number that ends the robot's name."""
+    results = Results(items)
+    columns = []
+    for (engine, setting), name in SETTINGS.items():
+        lanes = sorted({item["lanes"] for item in results.of(kind=kind, engine=engine, setting=setting)})
+        columns += [(engine, setting, lane, f"{name}, {lane} lanes" if lane > 1 else name) for lane in lanes]
+    robots = sorted({item["robot"] for item in results.of(kind=kind)}, key=lambda name: int(name.split("_")[-1]))
+    rows = []
+    for robot in robots:
+        row = [robot.split("_")[-1]]
+        for engine, setting, lane, _ in columns:
+            found = results.one(kind=kind, engine=engine, setting=setting, lanes=lane, robot=robot)
+            row.append(number(1e6 / found["steps_per_s"]) + mark(found) if found else NOTHING)
+        rows.append(row)
+    return table([kind, *(column[3] for column in columns)], rows)
+
+
+def text(items):
+    machine = items[0]["machine"]
+    if any(item["machine"] != machine for item in items):
+        raise Problem("these results are of several machines or versions")
+    values = {"one": one_world(items), "batches": batches(items), "against": against_batches(items),
+              "stages": stages(items), "memory": memory(items), "segments": growth(items, "segments"),
+              "contacts": growth(items, "contacts"),
+              "spread": f"{100 * max(item['spread'] for item in items):.0f}",
+              "repetitions": str(min(item["repetitions"] for item in items)),
+              "tolerance": machine["tolerance_m_per_s"], "sweeps": machine["max_sweeps"],
+              **{key: str(machine[key]) for key in ("processor", "cores", "commit", "mujoco", "bullet", "ode")}}
+    return fill(TEMPLATE.read_text(), values)
