@@ -14,6 +14,7 @@
 
 #include "benchmarks/robots.h"
 #include "benchmarks/stage_watch.h"
+#include "peers/settings.h"
 
 namespace taut::bench {
 namespace {
@@ -125,23 +126,8 @@ void RegisterTaut(Case what, const ModelDef& def, int settle_periods) {
   Register(what, make, settle_periods, stages);
 }
 
-struct PeerSetting {
-  peers::Engine engine;
-  const char* name;
-  peers::Options options;
-  bool main;  ///< The engine's default, which ratios are to.
-};
-const PeerSetting kPeerSettings[] = {
-    {peers::Engine::kMujoco, "euler_pyramidal", {}, true},
-    {peers::Engine::kMujoco, "euler_elliptic", {.elliptic = true}, false},
-    {peers::Engine::kBullet, "iterations_10", {.iterations = 10}, true},
-    {peers::Engine::kBullet, "iterations_50", {.iterations = 50}, false},
-    {peers::Engine::kOde, "quick_10", {.iterations = 10}, true},
-    {peers::Engine::kOde, "full_step", {.full_step = true}, true},
-};
-
 void RegisterPeers(Case what, const ModelDef& def, int settle_periods, bool all) {
-  for (const PeerSetting& setting : kPeerSettings) {
+  for (const peers::Setting& setting : peers::kSettings) {
     if (!peers::Available(setting.engine) || !(setting.main || all)) continue;
     what.engine = peers::Name(setting.engine);
     what.setting = setting.name;

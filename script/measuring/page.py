@@ -12,6 +12,7 @@ SETTINGS = {  # in the order of the tables
     ("mujoco", "euler_elliptic"): "MuJoCo, Euler, elliptic cones",
     ("bullet", "iterations_10"): "Bullet, 10 iterations",
     ("bullet", "iterations_50"): "Bullet, 50 iterations",
+    ("bullet", "two_directions"): "Bullet, 10 iterations, two friction directions",
     ("ode", "quick_10"): "ODE, quick step, 10 iterations",
     ("ode", "full_step"): "ODE, full step",
 }

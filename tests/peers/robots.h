@@ -5,13 +5,16 @@
 #include <stdexcept>
 #include <string>
 
-#include "peers/peer.h"
+#include "peers/settings.h"
 #include "taut/batch.h"
 #include "taut/spec.h"
 
 namespace taut::peers {
 
 inline void PrintTo(Engine engine, std::ostream* out) { *out << Name(engine); }
+inline void PrintTo(const Setting& setting, std::ostream* out) {
+  *out << Name(setting.engine) << ' ' << setting.name;
+}
 
 }  // namespace taut::peers
 

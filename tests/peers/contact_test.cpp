@@ -1,0 +1,87 @@
+// Where the engines differ in contact, and why: docs/validation/peers.md shows how much that is on
+// robots.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "peers/settings.h"
+#include "peers/sled.h"
+
+namespace taut::peers {
+namespace {
+
+constexpr double kStepS = 0.001;
+constexpr double kPi = 3.14159265358979323846;
+
+class ContactOf : public testing::TestWithParam<Setting> {
+ protected:
+  void SetUp() override {
+    if (!Available(GetParam().engine))
+      GTEST_SKIP() << Name(GetParam().engine) << " is not built in";
+  }
+  static std::unique_ptr<World> Make(const ModelDef& def) {
+    return MakeWorld(GetParam().engine, def, GetParam().options);
+  }
+  static double WayOf(double heading_rad) {
+    const auto world = Make(test::Sled(1, heading_rad));
+    world->Step(kStepS, 2000);
+    const Vec3 p = world->Body(0).position_m;
+    return std::hypot(p.x, p.y);
+  }
+};
+
+TEST_P(ContactOf, SlidingStopsAsCoulombSaysAlongAnAxis) {
+  // Half a step's way is what moving by the velocity before or after the step makes; MuJoCo's soft
+  // contact yields by less than that.
+  EXPECT_NEAR(WayOf(0), 1 / (2 * 0.5 * 9.81), kStepS);
+}
+
+TEST_P(ContactOf, SlidingOnTheDiagonalShowsTheShapeOfItsCone) {
+  // |f| is mu N in every direction only if the cone is round. A pyramid with its corners on the
+  // axes has 1 / sqrt(2) of it between them; a box has sqrt(2).
+  const bool pyramid = GetParam().engine == Engine::kMujoco && !GetParam().options.elliptic;
+  const bool box = GetParam().engine == Engine::kOde;
+  const double mu = 0.5 * (pyramid ? std::sqrt(0.5) : box ? std::sqrt(2.0) : 1);
+  EXPECT_NEAR(WayOf(kPi / 4), 1 / (2 * mu * 9.81), kStepS);
+}
+
+TEST_P(ContactOf, OnlyBulletSlidesUnderACouple) {
+  // Bullet's friction leaves out the velocity that external torques will give a body in the step,
+  // (I^-1 torque) h at the lever of the contact: by just that every contact slips, however rough.
+  const ModelDef def = test::Turned(test::Sled());
+  Options options = GetParam().options;
+  options.iterations = 1000;  // so that nothing is for want of iterations
+  const auto world = MakeWorld(GetParam().engine, def, options);
+  world->Step(kStepS, 1000);
+  const double lever_m = def.bodies[0].com_m.z;
+  const double slip = kStepS * test::kCoupleNm / def.bodies[0].inertia_kg_m2.yy * lever_m;
+  const double speed = -world->Body(0).velocity_m_per_s.x;
+  if (GetParam().engine == Engine::kBullet) {
+    EXPECT_NEAR(speed, slip, 1e-3 * slip);
+  } else {
+    EXPECT_NEAR(speed, 0, 1e-3 * slip);
+  }
+}
+
+std::string CaseName(const testing::TestParamInfo<Setting>& info) {
+  return std::string(Name(info.param.engine)) + "_" + info.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Peers, ContactOf, testing::ValuesIn(kSettings), CaseName);
+
+/// taut beside them.
+TEST(PeersContact, OursDoesNeither) {
+  Diagnostics complaints;
+  for (const double heading_rad : {0.0, kPi / 4, kPi / 2}) {
+    Batch world(Model::Compile(test::Sled(1, heading_rad), complaints), {});
+    world.Step(kStepS, 2000);
+    const Vec3 p = world.Body(0, 0).position_m;
+    EXPECT_NEAR(std::hypot(p.x, p.y), 1 / (2 * 0.5 * 9.81), 1e-6) << heading_rad;
+  }
+  Batch world(Model::Compile(test::Turned(test::Sled()), complaints), {});
+  world.Step(kStepS, 1000);
+  EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.x, 0, 1e-9);
+}
+
+}  // namespace
+}  // namespace taut::peers

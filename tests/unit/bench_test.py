@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+"""script/bench, without regard to how fast anything is.
+
+Usage: bench_test.py PROGRAM TEST. One test of this file, by the name of its function; PROGRAM is taut_bench,
+or empty where it could not be built.
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "script"))
+
+from measuring import compare, measure, page  # noqa: E402
+from validation.runs import Problem  # noqa: E402
+
+PROGRAM = sys.argv[1]
+FEW = "(one|batch|stages)/.*/tetraspine3/|/(spine|footed)_4/"
+
+
+def bench(*words):
+    return subprocess.run([sys.executable, ROOT / "script/bench", *map(str, words)], capture_output=True, text=True)
+
+
+def measured(folder):
+    """The list of one short repetition of some benchmarks."""
+    path = pathlib.Path(folder, "results.json")
+    run = bench("--program", PROGRAM, "--repetitions", 1, "--seconds", 0.001, "--filter", FEW, "--json", path)
+    assert run.returncode == 0, run.stderr
+    return path, json.loads(path.read_text())
+
+
+def WritesAListOfWhatItMeasured():
+    with tempfile.TemporaryDirectory() as folder:
+        _, results = measured(folder)
+    assert results
+    for item in results:
+        for key, kind in {"engine": str, "robot": str, "worlds": int, "lanes": int, "threads": int,
+                          "steps_per_s": float, "machine": dict}.items():
+            assert isinstance(item[key], kind), (key, item)
+        assert item["steps_per_s"] > 0, item
+        assert item["machine"]["processor"], item
+    engines = {"taut"} | {name for name in ("mujoco", "bullet", "ode")
+                          if results[0]["machine"][name] != "not built in"}
+    for robot in ("tetraspine3", "spine_4", "footed_4"):
+        assert {item["engine"] for item in results if item["robot"] == robot} == engines, robot
+    ours = [item for item in results if item["engine"] == "taut" and item["robot"] == "tetraspine3"]
+    assert {1} < {item["lanes"] for item in ours}
+    for item in ours:
+        if item["kind"] == "stages":
+            assert set(item["stages_ns"]) == set(page.STAGES), item
+        else:
+            assert item["bytes_per_world"] > 0 and item["contacts"] == 6 and item["converged"], item
+
+
+def MakesThePageFromItsList():
+    with tempfile.TemporaryDirectory() as folder:
+        _, results = measured(folder)
+    text = page.text(results)
+    assert "{{" not in text
+    for item in results:
+        assert page.SETTINGS[item["engine"], item["setting"]] in text, item
+    rate = page.Results(results).rate(kind="one", engine="taut", robot="tetraspine3")
+    assert f"| taut | {page.number(rate)} | - | - |" in text
+    assert page.one_world(results) in text
+    elsewhere = {**results[0], "machine": {**results[0]["machine"], "processor": "another"}}
+    try:
+        page.text([*results, elsewhere])
+    except Problem as problem:
+        assert str(problem) == "these results are of several machines or versions"
+    else:
+        raise AssertionError("results of two machines on one page")
+
+
+def SaysWhatIsWrong():
+    run = bench("--program", PROGRAM, "--filter", "nothing_like_this")
+    assert run.returncode == 2 and "script/bench:" in run.stderr and "nothing_like_this" in run.stderr, run
+    run = bench("--from", "no_such_file.json", "--page")
+    assert run.returncode == 2 and run.stderr.startswith("script/bench: no_such_file.json: "), run
+    run = bench("--program", "no_such_program")
+    assert run.returncode == 2 and "there is no no_such_program" in run.stderr, run
+    run = bench("--compare", "a", "b", "c")
+    assert run.returncode == 2 and "--compare takes one or two commits" in run.stderr, run
+    run = bench("--compare", "no_such_commit")
+    assert run.returncode == 2 and "no_such_commit" in run.stderr, run
+
+
+def NumbersAreRoundedAndGrouped():
+    for value, text in {1234567: "1 230 000", 999.6: "1 000", 123.4: "123", 12.34: "12.3", 0.001234: "0.00123",
+                        0: "0"}.items():
+        assert page.number(value) == text, (value, page.number(value))
+
+
+def AMedianIsTakenOfTheRepetitions():
+    context = {"load_avg": [0.5], "mujoco": "1", "bullet": "2", "ode": "3", "step_s": "0.001", "max_sweeps": "10",
+               "tolerance_m_per_s": "0.1"}
+    runs = [{"name": "x", "run_name": "batch/taut/default/robot/128/8/2/real_time", "run_type": "iteration",
+             "steps_per_s": rate} for rate in (1.0, 4.0, 2.0)]
+    runs.append({**runs[0], "run_type": "aggregate"})
+    (item,) = measure.results({"context": context, "benchmarks": runs})
+    assert (item["steps_per_s"], item["repetitions"], item["spread"]) == (2.0, 3, 1.5), item
+    assert (item["kind"], item["worlds"], item["lanes"], item["threads"]) == ("batch", 128, 8, 2), item
+    runs[1] = {**runs[1], "error_occurred": True, "error_message": "it broke"}
+    try:
+        measure.results({"context": context, "benchmarks": runs})
+    except Problem as problem:
+        assert str(problem) == "x: it broke"
+    else:
+        raise AssertionError("an error went unseen")
+
+
+def MoreInstructionsAreARegression():
+    assert compare.verdict([("a", 1000, 1030), ("b", 1000, 900)])[0] == 0
+    status, words = compare.verdict([("a", 1000, 1031), ("b", 1000, 900)])
+    assert status == 1 and words == "more than 3 % more instructions: a", words
+
+
+def main():
+    if not PROGRAM:
+        print("skipped: taut_bench was not built (libbenchmark-dev)")
+        return
+    globals()[sys.argv[2]]()
+
+
+if __name__ == "__main__":
+    main()
