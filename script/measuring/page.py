@@ -1,6 +1,7 @@
 """docs/performance.md: the tables, from a list of results."""
 
 import pathlib
+import statistics
 
 from validation.runs import Problem, fill, table
 
@@ -136,6 +137,15 @@ def growth(items, kind):
     return table([kind, *(column[3] for column in columns)], rows)
 
 
+def spread(items):
+    """How far the repetitions of a benchmark are apart, in per cent of their median."""
+    worst = max(items, key=lambda item: item["spread"])
+    name = SETTINGS[worst["engine"], worst["setting"]]
+    return {"spread": number(100 * statistics.median(item["spread"] for item in items), 2),
+            "worst": number(100 * worst["spread"], 2),
+            "worst_name": f"{name}, {worst['robot']}, {worst['worlds']} worlds, {worst['lanes']} lanes"}
+
+
 def text(items):
     machine = items[0]["machine"]
     if any(item["machine"] != machine for item in items):
@@ -143,8 +153,8 @@ def text(items):
     values = {"one": one_world(items), "batches": batches(items), "against": against_batches(items),
               "stages": stages(items), "memory": memory(items), "segments": growth(items, "segments"),
               "contacts": growth(items, "contacts"),
-              "spread": f"{100 * max(item['spread'] for item in items):.0f}",
+              **spread(items),
               "repetitions": str(min(item["repetitions"] for item in items)),
-              "tolerance": machine["tolerance_m_per_s"], "sweeps": machine["max_sweeps"],
+              "load": f"{machine['load'][0]:.1f}", "tolerance": machine["tolerance_m_per_s"], "sweeps": machine["max_sweeps"],
               **{key: str(machine[key]) for key in ("processor", "cores", "commit", "mujoco", "bullet", "ode")}}
     return fill(TEMPLATE.read_text(), values)
