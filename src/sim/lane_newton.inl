@@ -19,10 +19,8 @@ template <class W>
 class LaneNewton {
   static constexpr int kMaxRounds = 20;
   static constexpr int kMaxIterations = 12;
-  /// Where Newton's method is of no use, it should at least not take long: multiplications that
-  /// eliminations may take, and eliminations that there may be in any case.
-  static constexpr double kMaxWork = 3e7;
-  static constexpr int kFreeEliminations = 16;
+  /// Where Newton's method is of no use, it should at least not take long: so many multiplications.
+  static constexpr double kMaxWork = 1e8;
   /// Compliance of the first round, as a share of each row's inverse effective mass; the next has
   /// a tenth of it, or, where Newton's method failed, thirty times as much.
   static constexpr double kFirstCompliance = 1e-3;
@@ -41,7 +39,7 @@ class LaneNewton {
     const double first = Residual();
     double best = first;
     compliance_ = kFirstCompliance;
-    for (int round = 0; round < kMaxRounds && best > goal && !Exhausted(); ++round) {
+    for (int round = 0; round < kMaxRounds && best > goal && work_done_ < kMaxWork; ++round) {
       for (int i = 0; i < count_; ++i) {
         mem_.center[i] = mem_.lambda[i];
         mem_.center_u[i] = mem_.u[i];
@@ -71,18 +69,12 @@ class LaneNewton {
   /// The compliance of row i [1/kg].
   double Soft(int i) const noexcept { return compliance_ * mem_.w[i * count_ + i]; }
 
-  bool Exhausted() const noexcept {
-    const double n = count_;
-    return eliminations_ >= kFreeEliminations && eliminations_ * (n * n * n / 3) > kMaxWork;
-  }
-
   /// Newton's method on the equations with compliance: (19). False if it does not get there.
   bool SolveCompliant(double goal) noexcept {
     for (int iteration = 0;; ++iteration) {
       if (!(Residual() > goal)) return true;
-      if (iteration == kMaxIterations || Exhausted()) return false;
+      if (iteration == kMaxIterations || work_done_ > kMaxWork) return false;
       Linearize();
-      ++eliminations_;
       if (!Eliminate()) return false;
       for (int i = 0; i < count_; ++i) {
         mem_.lambda[i] += mem_.delta[i];
@@ -328,6 +320,7 @@ class LaneNewton {
       for (int i = k + 1; i < n; ++i) {
         const double factor = a[i * n + k] * inverse;
         if (factor == 0) continue;
+        work_done_ += n - k;
         for (int j = k + 1; j < n; ++j) a[i * n + j] -= factor * a[k * n + j];
         x[i] -= factor * x[k];
       }
@@ -373,7 +366,7 @@ class LaneNewton {
   int lane_;
   bool along_slip_;
   double compliance_ = 0;
-  int eliminations_ = 0;
+  double work_done_ = 0;
   int count_ = 0, contact_count_ = 0, cable_count_ = 0, link_count_ = 0;
 };
 
