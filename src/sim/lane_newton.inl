@@ -20,7 +20,7 @@ class LaneNewton {
   static constexpr int kMaxRounds = 20;
   static constexpr int kMaxIterations = 12;
   /// Where Newton's method is of no use, it should at least not take long: so many multiplications.
-  static constexpr double kMaxWork = 1e8;
+  static constexpr double kMaxWork = 2e7;
   /// Compliance of the first round, as a share of each row's inverse effective mass; the next has
   /// a tenth of it, or, where Newton's method failed, thirty times as much.
   static constexpr double kFirstCompliance = 1e-3;

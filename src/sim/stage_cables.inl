@@ -60,16 +60,17 @@ TAUT_INLINE void MeasureCable(const View& m, const CableTable& cable, int attach
 
 /// A rest length follows its target for one step, within the actuator's limits. Limits are per
 /// second, so nothing depends on the step. The force limit is NTRT's: never wind past the rest
-/// length at which the spring would exceed it.
+/// length at which the spring would exceed it. Returns the rest length's mean over the step: a
+/// motor runs until it arrives, and then stands.
 template <class W>
-TAUT_INLINE void Actuate(const ActuatorDef& limit, W k, W l, W target, W h, W inv_h, W& rest,
-                         W& rate) noexcept {
-  const W zero = W::Splat(0.0);
-  if (limit.kind == ActuatorDef::Kind::kNone) return;
+TAUT_INLINE W Actuate(const ActuatorDef& limit, W k, W l, W target, W h, W inv_h, W& rest,
+                      W& rate) noexcept {
+  const W zero = W::Splat(0.0), before = rest;
+  if (limit.kind == ActuatorDef::Kind::kNone) return rest;
   if (limit.kind == ActuatorDef::Kind::kIdeal) {
     rate = (target - rest) * inv_h;
     rest = target;
-    return;
+    return rest;
   }
   const W least_rest = W::Splat(limit.min_rest_length_m);
   const W goal = Max(Max(target, l - W::Splat(limit.max_force_n) / k), least_rest);
@@ -90,6 +91,10 @@ TAUT_INLINE void Actuate(const ActuatorDef& limit, W k, W l, W target, W h, W in
   const auto arrives = Abs(wish) == arriving;
   rate = wish;
   rest = Max(Select(arrives & !(wish == zero), goal, rest + h * wish), least_rest);
+  // The share of the step in which it runs; with limited acceleration, taken as all of it.
+  const W share =
+      accelerates_at_once ? speed * W::Splat(1.0 / limit.max_speed_m_per_s) : W::Splat(1.0);
+  return rest - W::Splat(0.5) * share * (rest - before);
 }
 
 /// One cable of the stage below. `ends` is room for its attachments: known to be two, they stay
@@ -97,22 +102,20 @@ TAUT_INLINE void Actuate(const ActuatorDef& limit, W k, W l, W target, W h, W in
 template <class W>
 TAUT_INLINE void PullCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
                            int attachment_count, AttachmentWork<W>* ends, W h, W inv_h) noexcept {
-  const W half = W::Splat(0.5), zero = W::Splat(0.0);
+  const W zero = W::Splat(0.0);
   const CableTable& cable = m.cables[c];
   W l, dl;
   MeasureCable(m, cable, attachment_count, s.pos, work, ends, l, dl);
-  const W before = s.rest[c];
-  W rest = before, rate = s.rest_rate[c];
-  Actuate(cable.actuator, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
+  W rest = s.rest[c], rate = s.rest_rate[c];
+  const W mean = Actuate(cable.actuator, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
   s.rest[c] = rest;
   s.rest_rate[c] = rate;
-  const W middle = half * (before + rest);
-  W T = TensionOf(s.stiffness[c], s.damping[c], l, dl, middle, cable.clamped_damping).tension;
+  W T = TensionOf(s.stiffness[c], s.damping[c], l, dl, mean, cable.clamped_damping).tension;
   const auto stiff =
       (h * h * s.stiff_k[c] > W::Splat(kSoftSpring)) | (h * s.stiff_b[c] > W::Splat(kSoftDamper));
   if (Any(stiff)) {
     for (int i = 0; i < attachment_count; ++i) work.attachments[i] = ends[i];
-    AddStiffCable(m, s, work, c, l - middle, h, Select(stiff, W::Splat(1.0), zero));
+    AddStiffCable(m, s, work, c, l - mean, h, Select(stiff, W::Splat(1.0), zero));
     T = Select(stiff, zero, T);
     s.tension[c] = Select(stiff, s.tension[c], T);
     if (!Any(!stiff)) return;
@@ -135,7 +138,7 @@ TAUT_INLINE void PullCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
 ///           (adds), stiff[]
 ///   order   cables ascending within a group: sums do not depend on anything else
 /// The force is that of the middle of the step: geometry and expected velocities there, and the
-/// mean of the rest lengths before and after. Lanes in which that would not be stable leave the
+/// rest length's mean over the step. Lanes in which that would not be stable leave the
 /// cable to the solver (stiff_cables.inl).
 template <class W>
 void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {

@@ -38,6 +38,38 @@ ActuatorDef Limited(double speed, double acceleration = kNone, double force = kN
 
 double Rest(const Batch& world) { return world.Cable(0, 0).rest_length_m; }
 
+/// A body too heavy to move hangs on a motor that winds in 0.1 mm at 0.1 m/s: what it gets in
+/// 4 ms must not depend on how many steps those are.
+TEST(Actuator, TheImpulseOfAMotorThatArrivesDoesNotDependOnTheStep) {
+  constexpr double kMass = 1e6, kStiffness = 1000, kStretch = 0.01;
+  constexpr double kTime = 4e-3, kSpeed = 0.1, kWay = 1e-4, kArrives = kWay / kSpeed;
+  for (const bool ideal : {false, true}) {
+    ModelDef def = Winch(Limited(kSpeed), -kStretch, kStiffness);
+    if (ideal) def.cables[0].actuator.kind = ActuatorDef::Kind::kIdeal;
+    def.gravity_m_per_s2 = {};
+    BodyDef body;
+    body.name = "heavy";
+    body.mass_kg = kMass;
+    body.com_m = {1, 0, 0};
+    body.inertia_kg_m2 = {kMass, kMass, kMass, 0, 0, 0};
+    def.bodies.push_back(body);
+    def.cables[0].attachments[1].body = 0;
+    const double arrives = ideal ? 0 : kArrives;
+    const double stretch_time =
+        kStretch * kTime + kWay * arrives / 2 + kWay * (kTime - arrives);  // [m s]
+    for (const int steps : {1, 4, 64}) {
+      Batch world = MakeBatch(def);
+      world.SetRestLengthTarget(0, 0, 1 - kStretch - kWay);
+      world.Step(kTime / steps, steps);
+      EXPECT_EQ(Rest(world), 1 - kStretch - kWay);
+      // Its own motion changes the stretch by less than 1e-9 of itself.
+      const double impulse = -world.Body(0, 0).velocity_m_per_s.x * kMass;
+      EXPECT_NEAR(impulse, kStiffness * stretch_time, 1e-8 * kStiffness * stretch_time)
+          << steps << " steps, " << (ideal ? "ideal" : "limited");
+    }
+  }
+}
+
 TEST(Actuator, WithoutOneCommandsAreIgnored) {
   Batch world = MakeBatch(Winch({}));
   world.SetRestLengthTarget(0, 0, 0.2);
