@@ -106,9 +106,14 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
   const auto was_halted = s.halted[0] > zero;
   const auto lost = (!(sum == zero)) & (!was_halted);
   const auto unsolved = (solve.residual > W::Splat(settings.tolerance_m_per_s)) & (!was_halted);
+  W share = zero;
+  for (int i = 0; i < work.stiff_count; ++i) {
+    share = Max(ShareOfStableTension(s, work.stiff[i]), share);
+  }
+  const auto too_long = (share > W::Splat(1.0)) & (!was_halted);
   s.residual[0] = solve.residual;
   s.sweeps[0] = solve.sweeps;
-  if (!Any(lost | unsolved) && overflow == 0) return;
+  if (!Any(lost | unsolved | too_long) && overflow == 0) return;
   for (int lane = 0; lane < W::kLanes; ++lane) {
     if (was_halted[lane]) continue;
     LaneStatus& status = g.status[lane];
@@ -116,6 +121,7 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
     if (lost[lane]) bits |= kStatusNonFinite;
     if (unsolved[lane]) bits |= kStatusNotConverged;
     if (overflow & (1u << lane)) bits |= kStatusContactOverflow;
+    if (too_long[lane]) bits |= kStatusStepTooLong;
     if (bits != 0 && status.bits == 0) {
       status.first_time_s = s.time[0][lane];
       status.body = kWorld;
@@ -128,6 +134,13 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
         if (row.ln[lane] > worst[lane]) {
           worst.Set(lane, row.ln[lane]);
           status.body = row.a;
+        }
+      }
+    }
+    if (bits & ~status.bits & kStatusStepTooLong) {
+      for (int i = 0; i < work.stiff_count; ++i) {
+        if (ShareOfStableTension(s, work.stiff[i])[lane] == share[lane]) {
+          status.cable = work.stiff[i].cable;
         }
       }
     }

@@ -136,6 +136,7 @@ struct StiffCable {
   W base, gain;  ///< Impulse at dl = 0 [N s], and per dl [kg].
   W inverse;     ///< 1 / (1 + gain A).
   W upper;       ///< Largest impulse [N s].
+  W across;      ///< Share of the largest stable tension, per tension [1/N] (eq. 12).
   W lambda;      ///< Impulse [N s].
 };
 

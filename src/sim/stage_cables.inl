@@ -115,7 +115,7 @@ TAUT_INLINE void PullCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
       (h * h * s.stiff_k[c] > W::Splat(kSoftSpring)) | (h * s.stiff_b[c] > W::Splat(kSoftDamper));
   if (Any(stiff)) {
     for (int i = 0; i < attachment_count; ++i) work.attachments[i] = ends[i];
-    AddStiffCable(m, s, work, c, l - mean, h, Select(stiff, W::Splat(1.0), zero));
+    AddStiffCable(m, s, work, c, l, l - mean, h, Select(stiff, W::Splat(1.0), zero));
     T = Select(stiff, zero, T);
     s.tension[c] = Select(stiff, s.tension[c], T);
     if (!Any(!stiff)) return;

@@ -10,12 +10,12 @@ namespace taut::sim {
 
 /// Limits of explicit forces: h^2 K / m and h B / m, summed over the cables that a cable is coupled
 /// to (the explicit scheme is stable below 4 and 1).
-inline constexpr double kSoftSpring = 1.0;
+inline constexpr double kSoftSpring = 0.1;
 inline constexpr double kSoftDamper = 0.8;
 
 template <class W>
-void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W stretch, W h,
-                   W on) noexcept {
+void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W length, W stretch,
+                   W h, W on) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0), half = W::Splat(0.5);
   const CableTable& cable = m.cables[c];
   StiffCable<W>& row = work.stiff[work.stiff_count++];
@@ -60,6 +60,7 @@ void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W s
   row.base = h * base;
   row.gain = h * gain;
   row.inverse = one / (one + row.gain * row.A);
+  row.across = W::Splat(0.25) * h * h * s.stiff_k[c] / (k * length);
   row.upper = cable.clamped_damping ? h * Max(k * (stretch + stretch), zero) : W::Splat(1e300);
   row.lambda = Select(on > zero, Min(h * s.tension[c], row.upper), zero);
 }
@@ -101,6 +102,13 @@ W RelaxStiffCables(Scratch<W>& work, M lanes) noexcept {
     change = Max(Abs(d) * row.A, change);
   }
   return change;
+}
+
+/// Share of the largest stable tension that a stiff cable has. Along itself it is stable at any
+/// tension; across itself its force is explicit.
+template <class W>
+W ShareOfStableTension(const Rows<W>& s, const StiffCable<W>& row) noexcept {
+  return Select(row.on > W::Splat(0.0), s.tension[row.cable] * row.across, W::Splat(0.0));
 }
 
 /// Tensions and angular momenta of what the solver found.

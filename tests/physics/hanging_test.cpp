@@ -192,7 +192,8 @@ TEST(Hanging, AMassThatACableCatchesAgainAndAgainKeepsTheEnergyOfItsFall) {
   // The force has a kink where the cable goes slack, and what a step makes of it depends on where
   // in the step it lies. Without damping, for a minute, some hundred catches.
   const double h = 1e-3;
-  for (const double angle : {0.03, 0.06, 0.1}) {  // w h
+  // From w h = 0.3 on the midpoint rule takes over: it may lose energy in a catch, but not add any.
+  for (const double angle : {0.03, 0.06, 0.1, 0.5, 0.7, 0.9}) {  // w h
     for (int i = 0; i < 5; ++i) {
       const double mass = 0.5, stiffness = mass * angle * angle / (h * h), fall = 0.05 + 0.002 * i;
       ModelDef def;
@@ -213,10 +214,11 @@ TEST(Hanging, AMassThatACableCatchesAgainAndAgainKeepsTheEnergyOfItsFall) {
         const bool now_slack = !(world.Cable(0, 0).tension_n > 0);
         if (slack && !now_slack) ++catches;
         slack = now_slack;
-        if (slack) worst = std::max(worst, std::fabs(energy() - before));
+        const double change = energy() - before;
+        if (slack) worst = std::max(worst, angle < 0.3 ? std::fabs(change) : change);
       }
       EXPECT_LT(worst, 0.01 * mass * kG * fall) << angle << ", fall " << fall;
-      EXPECT_GT(catches, 100);
+      EXPECT_GT(catches, angle < 0.3 ? 100 : 2);
     }
   }
 }

@@ -62,6 +62,9 @@ TEST(Prestress, BeyondTheLimitAPluckedCableSwingsEverWider) {
     widest = std::max(widest, std::fabs(world.Body(0, 0).position_m.z));
   }
   EXPECT_GT(widest, 100 * off);
+  EXPECT_EQ(world.Status(0).bits, kStatusStepTooLong);
+  EXPECT_EQ(world.Status(0).first_time_s, 0);
+  EXPECT_GE(world.Status(0).cable, 0);
 }
 
 /// Tetraspine3 with cables 10^4 times as stiff and the same rest lengths: 200 kN in its top cables.
@@ -110,6 +113,7 @@ TEST(Prestress, ASpineWoundTo200KilonewtonPassesOnFiniteNumbersAtAnyStep) {
         ASSERT_TRUE(std::isfinite(Norm(body.position_m) + Norm(body.velocity_m_per_s))) << h << n;
       }
     }
+    EXPECT_NE(world.Status(0).bits & kStatusStepTooLong, 0u) << h;
   }
 }
 
