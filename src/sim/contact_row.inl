@@ -78,11 +78,11 @@ struct ContactMemory {
 };
 
 template <class W>
-TAUT_INLINE ContactMemory<W> Recall(const Scratch<W>& work, uint32_t id, int old_count,
+TAUT_INLINE ContactMemory<W> Recall(const Rows<W>& s, const Group& g, uint32_t id,
                                     int& cursor) noexcept {
-  while (cursor < old_count && work.old_ids[cursor] < id) ++cursor;
-  if (cursor < old_count && work.old_ids[cursor] == id) {
-    return {work.old_force[cursor], work.old_slip[cursor], work.old_bounce[cursor]};
+  while (cursor < g.contact_count && g.contact_ids[cursor] < id) ++cursor;
+  if (cursor < g.contact_count && g.contact_ids[cursor] == id) {
+    return {s.cache_force[cursor], s.cache_slip[cursor], s.cache_bounce[cursor]};
   }
   const W zero = W::Splat(0.0);
   return {{zero, zero, zero}, W::Splat(kSlipUnknown), zero};

@@ -178,10 +178,6 @@ struct Scratch {
   V3<W>* saved_mom;
   W* saved_rest;
   W* saved_rest_rate;
-  uint32_t* old_ids;  ///< Contacts of the step before.
-  V3<W>* old_force;
-  W* old_slip;
-  W* old_bounce;
   StiffCable<W>* stiff;
   CableLink<W>* links;  ///< Of all stiff cables.
   NewtonMemory newton;
@@ -209,10 +205,6 @@ struct Scratch {
     saved_mom = Take<V3<W>>(bodies_count);
     saved_rest = Take<W>(cables_count);
     saved_rest_rate = Take<W>(cables_count);
-    old_ids = Take<uint32_t>(contacts_count);
-    old_force = Take<V3<W>>(contacts_count);
-    old_slip = Take<W>(contacts_count);
-    old_bounce = Take<W>(contacts_count);
     stiff = Take<StiffCable<W>>(cables_count);
     links = Take<CableLink<W>>(static_cast<size_t>(m.attachment_count));
     TakeNewton(3 * contacts_count + cables_count, static_cast<size_t>(m.attachment_count));

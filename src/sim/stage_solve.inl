@@ -15,17 +15,10 @@ struct SolveResult {
 template <class W>
 void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                      double step_s) noexcept {
-  const int old_count = g.contact_count;
-  for (int i = 0; i < old_count; ++i) {
-    work.old_ids[i] = g.contact_ids[i];
-    work.old_force[i] = s.cache_force[i];
-    work.old_slip[i] = s.cache_slip[i];
-    work.old_bounce[i] = s.cache_bounce[i];
-  }
   int cursor = 0;
   for (int i = 0; i < work.contact_count; ++i) {
     ContactRow<W>& row = work.contacts[i];
-    const ContactMemory<W> memory = Recall(work, row.id, old_count, cursor);
+    const ContactMemory<W> memory = Recall(s, g, row.id, cursor);
     if (i < work.single_count) {
       PrepareContact<W, false>(m, s, work, row, memory, step_s);
     } else {
