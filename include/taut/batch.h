@@ -52,7 +52,7 @@ enum StatusBits : std::uint32_t {
   kStatusNonFinite = 1u << 0,        ///< A state is NaN or infinite: the world stands still.
   kStatusNotConverged = 1u << 1,     ///< The contact solve stopped at max_sweeps.
   kStatusContactOverflow = 1u << 2,  ///< More contacts than the model has room for.
-  kStatusStepTooLong = 1u << 3,      ///< For a cable's tension, across it (docs/theory/cables.md, 12).
+  kStatusStepTooLong = 1u << 3,  ///< For a cable's tension, across it (docs/theory/cables.md, 12).
 };
 
 struct WorldStatus {
