@@ -1,0 +1,144 @@
+// What the page knows, in one place; the parts of the page watch it and never each other.
+import { frameOfScene, type Frame } from "./frame";
+import type { ClientMessage, EventMessage, HelloMessage, Report, Scene, SeriesMessage, ServerMessage } from "./protocol";
+import { PROTOCOL_VERSION } from "./protocol";
+import type { Connection, Source } from "./source";
+import { memory, Signal } from "./util";
+
+export type Selection = { kind: "cable" | "body" | "node"; index: number };
+export type Theme = "dark" | "light";
+
+export class App {
+  readonly hello = new Signal<HelloMessage | null>(null);
+  readonly scene = new Signal<Scene | null>(null);
+  /** The latest scene, for what may be changed in it: parameters and controls. */
+  readonly tuning = new Signal<Scene | null>(null);
+  readonly frame = new Signal<Frame | null>(null);
+  readonly link = new Signal<Connection>("connecting");
+  readonly driver = new Signal<number>(0);
+  readonly selection = new Signal<Selection | null>(null);
+  readonly hover = new Signal<Selection | null>(null);
+  /** The time under the mouse in a plot or the timeline [s]. */
+  readonly cursor_s = new Signal<number | null>(null);
+  /** The span of time that the plots show; null: all, or what is recent. */
+  readonly range_s = new Signal<readonly [number, number] | null>(null);
+  readonly theme = new Signal<Theme>(startTheme());
+  /** Why there is nothing to show. */
+  readonly failure = new Signal<string | null>(null);
+  readonly notice = new Signal<string | null>(null);
+  readonly events = new Signal<readonly EventMessage[]>([]);
+  readonly seriesAnswer = new Signal<SeriesMessage | null>(null);
+
+  constructor(
+    private readonly source: Source,
+    readonly report: Report | null,
+  ) {
+    this.theme.watch((theme) => (document.documentElement.dataset.theme = theme));
+  }
+
+  start(): void {
+    this.source.start({
+      connection: (state) => (this.link.value = state),
+      message: (message) => this.receive(message),
+      frame: (frame) => {
+        if (this.fits(frame)) this.frame.value = frame;
+      },
+    });
+  }
+
+  send(message: ClientMessage): boolean {
+    const sent = this.source.send(message);
+    if (!sent && message.type !== "want_series") this.notice.value = "not connected: that was not sent";
+    return sent;
+  }
+
+  get live(): boolean {
+    return this.hello.value?.mode === "live";
+  }
+
+  /** Can time be chosen freely? */
+  get seekable(): boolean {
+    return this.hello.value?.mode === "replay";
+  }
+
+  get drives(): boolean {
+    return this.driver.value === 0 || this.driver.value === this.hello.value?.client;
+  }
+
+  togglePlay(): void {
+    this.send({ type: this.frame.value?.paused ? "resume" : "pause" });
+  }
+
+  seek(time_s: number): void {
+    if (this.seekable) this.send({ type: "seek", time_s });
+  }
+
+  toggleTheme(): void {
+    this.theme.value = this.theme.value === "dark" ? "light" : "dark";
+    memory.set("theme", this.theme.value);
+  }
+
+  private receive(message: ServerMessage): void {
+    switch (message.type) {
+      case "hello":
+        if (message.version !== PROTOCOL_VERSION) {
+          this.failure.value = `This page speaks version ${PROTOCOL_VERSION} of the protocol, the server version ${message.version}. Reload the page; if that does not help, the server is of another version of taut.`;
+          return;
+        }
+        this.failure.value = message.mode === "error" ? (message.notice ?? "the server does not say why") : null;
+        this.driver.value = message.driver;
+        this.hello.value = message;
+        break;
+      case "scene":
+        this.receiveScene(message.scene);
+        break;
+      case "series":
+        this.seriesAnswer.value = message;
+        break;
+      case "event":
+        this.events.value = [...this.events.value.slice(-199), message];
+        break;
+      case "error":
+        this.notice.value = message.text;
+        break;
+      case "driver":
+        this.driver.value = message.id;
+        break;
+    }
+  }
+
+  /** A scene comes anew when a parameter changes; what looks the same is not built again. */
+  private receiveScene(scene: Scene): void {
+    const before = this.scene.value;
+    if (before === null || looks(before) !== looks(scene)) {
+      if (before === null || names(before) !== names(scene)) {
+        this.selection.value = null;
+        this.hover.value = null;
+      }
+      this.scene.value = scene;
+      if (this.frame.value === null || !this.fits(this.frame.value)) this.frame.value = frameOfScene(scene);
+    }
+    this.tuning.value = scene;
+    if (scene.notice !== undefined) this.notice.value = scene.notice;
+  }
+
+  /** A frame of the scene before it may still be on its way when the scene has changed. */
+  private fits(frame: Frame): boolean {
+    const scene = this.scene.value;
+    return scene !== null && frame.body_count === scene.bodies.length && frame.cable_count === scene.cables.length;
+  }
+}
+
+function looks({ bodies, nodes, cables, terrain, channels, phases, duration_s, reference }: Scene): string {
+  return JSON.stringify([bodies, nodes, cables, terrain, channels, phases, duration_s, reference]);
+}
+
+function names({ bodies, nodes, cables }: Scene): string {
+  return JSON.stringify([bodies, nodes, cables].map((list) => list.map(({ name }) => name)));
+}
+
+function startTheme(): Theme {
+  const kept = memory.get("theme");
+  if (kept === "dark" || kept === "light") return kept;
+  return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+}

@@ -1,0 +1,68 @@
+// Colours that people who see colours differently tell apart (Okabe and Ito), for both themes; and
+// the scale of tension, whose lightness rises or falls all the way, so that it reads in grey, too.
+import type { Theme } from "./app";
+
+export interface Palette {
+  background: string;
+  horizon: string;
+  ground: string;
+  gridMinor: string;
+  gridMajor: string;
+  text: string;
+  rod: string;
+  sphere: string;
+  box: string;
+  slack: string;
+  contact: string;
+  push: string;
+  path: string;
+  selected: string;
+  /** plots: set point, measured, simulated */
+  setpoint: string;
+  measured: string;
+  simulated: string;
+  grid: string;
+  further: readonly string[];
+}
+
+const LIGHT: Palette = {
+  background: "#dfe7ee", horizon: "#eef2f5", ground: "#e9ecee", gridMinor: "#cfd5da", gridMajor: "#9aa5ae",
+  text: "#1c232b", rod: "#39414b", sphere: "#5c6773", box: "#8b97a3", slack: "#6d7781",
+  contact: "#009e73", push: "#d55e00", path: "#0072b2", selected: "#e69f00",
+  setpoint: "#0072b2", measured: "#d43a00", simulated: "#000000", grid: "#00000018",
+  further: ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"],
+};
+
+const DARK: Palette = {
+  background: "#10151b", horizon: "#1a222b", ground: "#1d252e", gridMinor: "#2b3641", gridMajor: "#51606f",
+  text: "#e3e8ed", rod: "#b4bfca", sphere: "#8fa0b0", box: "#64748b", slack: "#8c98a4",
+  contact: "#2bd4a4", push: "#ff8c42", path: "#56b4e9", selected: "#f0c541",
+  setpoint: "#56b4e9", measured: "#ff7a45", simulated: "#f2f4f6", grid: "#ffffff1c",
+  further: ["#56b4e9", "#ff8c42", "#2bd4a4", "#e39cc4", "#f0c541", "#8fb8ff"],
+};
+
+export function palette(theme: Theme): Palette {
+  return theme === "dark" ? DARK : LIGHT;
+}
+
+type Rgb = readonly [number, number, number];
+
+// On light ground strong means dark, on dark ground bright.
+const SCALES: Record<Theme, readonly Rgb[]> = {
+  light: [[86, 180, 233], [56, 130, 205], [90, 70, 190], [140, 30, 140], [150, 0, 60]],
+  dark: [[70, 110, 210], [150, 95, 215], [225, 100, 170], [250, 150, 95], [253, 231, 110]],
+};
+
+/** The colour of a tension, as a share of the scale's end; 0..1 each. */
+export function tensionColour(share: number, theme: Theme): Rgb {
+  const scale = SCALES[theme];
+  const place = Math.min(Math.max(share, 0), 1) * (scale.length - 1);
+  const from = scale[Math.floor(place)]!;
+  const to = scale[Math.min(Math.floor(place) + 1, scale.length - 1)]!;
+  const part = place - Math.floor(place);
+  return [0, 1, 2].map((i) => (from[i]! + part * (to[i]! - from[i]!)) / 255) as unknown as Rgb;
+}
+
+export function css(colour: Rgb): string {
+  return `rgb(${colour.map((value) => Math.round(255 * value)).join(" ")})`;
+}

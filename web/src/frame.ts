@@ -1,0 +1,67 @@
+// A frame: the state of the world at one time, as the server or a report gives it. The layout is
+// FRAME of protocol.ts.
+import { FRAME, type Scene } from "./protocol";
+
+type Header = (typeof FRAME.header)[number];
+type Section = (typeof FRAME.sections)[number]["name"];
+type Numbers = Float64Array | Float32Array;
+
+export type Frame = Record<Header, number> & Record<Section, Numbers>;
+
+export const BODY_VALUES = 7;
+export const CABLE_VALUES = 4;
+export const CONTACT_VALUES = 6;
+export const PUSH_VALUES = 4;
+
+/** Reads the frame that the numbers hold; throws where they are too few or too many. */
+export function decodeFrame(values: Numbers): Frame {
+  const frame = {} as Frame;
+  FRAME.header.forEach((name, place) => (frame[name] = values[place] ?? NaN));
+  let place: number = FRAME.header.length;
+  for (const section of FRAME.sections) {
+    const count = frame[section.count];
+    if (!Number.isInteger(count) || count < 0) throw new Error(`frame: ${section.count} is ${count}`);
+    const end = place + count * section.fields.length;
+    if (end > values.length) throw new Error(`frame: ${section.name} go beyond its end`);
+    frame[section.name] = values.subarray(place, end);
+    place = end;
+  }
+  if (place !== values.length) throw new Error(`frame: ${values.length - place} numbers too many`);
+  return frame;
+}
+
+/** The scene as it stands before the first frame arrives. */
+export function frameOfScene(scene: Scene): Frame {
+  const frame = {} as Frame;
+  for (const name of FRAME.header) frame[name] = 0;
+  frame.time_s = scene.first_s;
+  frame.paused = 1;
+  frame.kinetic_j = frame.gravity_j = frame.elastic_j = NaN;
+  frame.body_count = scene.bodies.length;
+  frame.cable_count = scene.cables.length;
+  frame.bodies = new Float64Array(scene.bodies.flatMap((body) => [...body.position_m, ...body.orientation]));
+  frame.cables = new Float64Array(scene.cables.length * CABLE_VALUES).fill(NaN);
+  frame.contacts = new Float64Array(0);
+  frame.pushes = new Float64Array(0);
+  return frame;
+}
+
+export interface CableState {
+  tension_n: number;
+  length_m: number;
+  rest_length_m: number;
+  setpoint_n: number;
+}
+
+export function cableState(frame: Frame, cable: number): CableState {
+  const [tension_n, length_m, rest_length_m, setpoint_n] = frame.cables.subarray(
+    cable * CABLE_VALUES,
+    (cable + 1) * CABLE_VALUES,
+  ) as unknown as [number, number, number, number];
+  return { tension_n, length_m, rest_length_m, setpoint_n };
+}
+
+/** A cable carries nothing where it is slack; what is not known is not slack. */
+export function isSlack(state: CableState): boolean {
+  return state.tension_n <= 0;
+}

@@ -1,0 +1,50 @@
+// The server as a source: one WebSocket, opened anew whenever it is lost.
+import { decodeFrame } from "./frame";
+import type { ClientMessage, ServerMessage } from "./protocol";
+import type { Listener, Source } from "./source";
+
+const FIRST_RETRY_MS = 250;
+const LAST_RETRY_MS = 2000;
+
+export class ServerSource implements Source {
+  private socket: WebSocket | null = null;
+  private listener: Listener | null = null;
+  private retry_ms = FIRST_RETRY_MS;
+
+  start(listener: Listener): void {
+    this.listener = listener;
+    this.open();
+  }
+
+  send(message: ClientMessage): boolean {
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify(message));
+    return true;
+  }
+
+  private open(): void {
+    // The token, if the server wants one, is in the page's own address.
+    const address = new URL(`ws${location.search}`, location.href);
+    address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
+    address.hash = "";
+    const socket = new WebSocket(address);
+    socket.binaryType = "arraybuffer";
+    this.socket = socket;
+    socket.onopen = () => {
+      this.retry_ms = FIRST_RETRY_MS;
+      this.listener?.connection("open");
+    };
+    socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.receive(event.data);
+    socket.onclose = () => {
+      if (this.socket !== socket) return;
+      this.listener?.connection("lost");
+      setTimeout(() => this.open(), this.retry_ms);
+      this.retry_ms = Math.min(2 * this.retry_ms, LAST_RETRY_MS);
+    };
+  }
+
+  private receive(data: string | ArrayBuffer): void {
+    if (typeof data === "string") this.listener?.message(JSON.parse(data) as ServerMessage);
+    else this.listener?.frame(decodeFrame(new Float64Array(data)));
+  }
+}

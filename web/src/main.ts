@@ -1,0 +1,70 @@
+// The page: as a live view, as a replay, or as a report, by what it finds inside itself.
+import "uplot/dist/uPlot.min.css";
+import "./style.css";
+import { App } from "./app";
+import { ReportSource } from "./embedded";
+import { ServerSource } from "./live";
+import { PlotPanel } from "./plots/panel";
+import { type Report, PROTOCOL_VERSION } from "./protocol";
+import { reportPage } from "./report/page";
+import { legend } from "./scene/legend";
+import { foresee } from "./scene/foresee";
+import { View } from "./scene/view";
+import { SeriesStore } from "./series";
+import { controls } from "./ui/controls";
+import { failurePage, header, notices } from "./ui/header";
+import { Help } from "./ui/help";
+import { inspector } from "./ui/inspector";
+import { keysOf, listenToKeys } from "./ui/keyboard";
+import { recorder } from "./ui/record";
+import { timeline } from "./ui/timeline";
+import { button, el } from "./util";
+
+function start(root: HTMLElement): void {
+  const report = embeddedReport();
+  const app = new App(report ? new ReportSource(report) : new ServerSource(), report);
+  const store = new SeriesStore(app);
+  const view = new View(app);
+  const plots = new PlotPanel(app, store);
+  const help = new Help();
+  foresee(app, store, view);
+
+  const drawer = controls(app);
+  drawer.hidden = true;
+  const toggleControls = () => {
+    if (app.live) drawer.hidden = !drawer.hidden;
+  };
+  const controlsButton = button("controls", "live controls (C)", toggleControls);
+  app.hello.watch(() => (controlsButton.hidden = !app.live));
+  const keys = keysOf(app, view, () => help.toggle(), toggleControls);
+  help.fill(keys);
+  listenToKeys(keys);
+
+  view.element.append(legend(app, view), inspector(app));
+  plots.element.prepend(drawer);
+  const top = header(app, () => help.toggle(), [controlsButton, recorder(app, view)]);
+  const overlays = [help.element, notices(app), failurePage(app)];
+  if (report) reportPage(root, report, { top, view, plots, timeline: timeline(app), overlays });
+  else root.append(top, el("main.split", {}, view.element, plots.element), timeline(app), ...overlays);
+  Object.assign(window, { taut: { app, view, store } });
+  app.start();
+}
+
+/** What is inside the page; null: nothing, so there is a server. */
+function embeddedReport(): Report | null {
+  const text = document.getElementById("taut-report")?.textContent?.trim() ?? "";
+  if (text === "") return null;
+  const report = JSON.parse(text) as Report;
+  if (report.version !== PROTOCOL_VERSION) {
+    throw new Error(`the data are of version ${report.version}, this page reads version ${PROTOCOL_VERSION}`);
+  }
+  return report;
+}
+
+const root = document.getElementById("app")!;
+try {
+  start(root);
+} catch (error) {
+  const reason = error instanceof Error ? error.message : String(error);
+  root.replaceChildren(el("main.failure", { role: "alert" }, el("h1", {}, "This page cannot be shown"), el("pre", {}, reason)));
+}

@@ -1,0 +1,144 @@
+// Plots as files: SVG drawn here in the colours of paper, PNG made of that, CSV of the data in sight.
+import { palette } from "../colours";
+import type { Points } from "../series";
+import { download, tickText } from "../util";
+import { type Filled, ink, valueRange } from "./figure";
+
+const CELL = { width: 300, height: 170, left: 42, right: 10, top: 22, bottom: 24 };
+const KEY_PX = 26;
+
+export function exportSvg(filled: Filled[], span: readonly [number, number], name: string): void {
+  download(`${fileName(name)}.svg`, new Blob([svg(filled, span)], { type: "image/svg+xml" }));
+}
+
+export async function exportPng(filled: Filled[], span: readonly [number, number], name: string): Promise<void> {
+  const text = svg(filled, span);
+  const image = new Image();
+  const loaded = new Promise<void>((resolve, reject) => {
+    image.onload = () => resolve();
+    image.onerror = () => reject(new Error("the browser cannot draw the plot"));
+  });
+  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
+  await loaded;
+  const canvas = document.createElement("canvas");
+  canvas.width = 3 * image.width;
+  canvas.height = 3 * image.height;
+  canvas.getContext("2d")!.drawImage(image, 0, 0, canvas.width, canvas.height);
+  canvas.toBlob((blob) => blob && download(`${fileName(name)}.png`, blob), "image/png");
+}
+
+/** One row a time; a channel's least and greatest value where a row stands for several. */
+export function exportCsv(filled: Filled[], name: string): void {
+  download(`${fileName(name)}.csv`, new Blob([csv(filled)], { type: "text/csv" }));
+}
+
+export function csv(filled: readonly Filled[]): string {
+  const columns = new Map<string, Map<number, number | null>>();
+  const add = (label: string, t: number[], values: (number | null)[]) => {
+    if (!columns.has(label)) columns.set(label, new Map(t.map((time_s, i) => [time_s, values[i] ?? null])));
+  };
+  for (const { figure, data } of filled) {
+    figure.lines.forEach((line, i) => {
+      const points = data[i]!;
+      const label = line.source === 1 ? `reference:${line.channel}` : line.channel;
+      add(label, points.t, points.mean);
+      if (points.mean.some((value, k) => value !== points.min[k] || value !== points.max[k])) {
+        add(`${label}:min`, points.t, points.min);
+        add(`${label}:max`, points.t, points.max);
+      }
+    });
+  }
+  const times = [...new Set([...columns.values()].flatMap((column) => [...column.keys()]))].sort((a, b) => a - b);
+  const rows = times.map((time_s) => [time_s, ...[...columns.values()].map((column) => column.get(time_s) ?? "")].join(","));
+  return [["time_s", ...columns.keys()].join(","), ...rows, ""].join("\n");
+}
+
+export function svg(filled: readonly Filled[], span: readonly [number, number]): string {
+  const across = Math.min(filled.length, filled.length > 4 ? 3 : 2);
+  const down = Math.ceil(filled.length / across);
+  const width = across * CELL.width;
+  const height = down * CELL.height + KEY_PX;
+  const tensions = filled.filter(({ figure }) => figure.group === "tension");
+  const shared = tensions.length > 1 ? valueRange(tensions) : null;
+  const cells = filled.map((each, i) => {
+    const range = shared && each.figure.group === "tension" ? shared : valueRange([each]);
+    const place = `translate(${(i % across) * CELL.width} ${Math.floor(i / across) * CELL.height})`;
+    return `<g transform="${place}">${cell(each, span, range)}</g>`;
+  });
+  return `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}" font-family="sans-serif" font-size="11">
+<rect width="100%" height="100%" fill="#fff"/>
+${cells.join("\n")}
+<g transform="translate(${CELL.left} ${down * CELL.height + 16})">${keyOf(filled)}</g>
+</svg>
+`;
+}
+
+function cell({ figure, data }: Filled, [t0, t1]: readonly [number, number], [y0, y1]: [number, number]): string {
+  const right = CELL.width - CELL.right;
+  const bottom = CELL.height - CELL.bottom;
+  const x = (t: number) => CELL.left + ((t - t0) / (t1 - t0)) * (right - CELL.left);
+  const y = (v: number) => bottom - ((v - y0) / (y1 - y0)) * (bottom - CELL.top);
+  const parts = [`<text x="${CELL.left}" y="15" font-weight="600">${escape(figure.title)}${figure.unit ? ` [${escape(figure.unit)}]` : ""}</text>`];
+  for (const tick of ticks(y0, y1, 4)) {
+    parts.push(`<path d="M${CELL.left} ${y(tick).toFixed(1)}H${right}" stroke="#ddd"/><text x="${CELL.left - 4}" y="${(y(tick) + 4).toFixed(1)}" text-anchor="end">${tickText(tick)}</text>`);
+  }
+  for (const tick of ticks(t0, t1, 5)) {
+    parts.push(`<path d="M${x(tick).toFixed(1)} ${CELL.top}V${bottom}" stroke="#eee"/><text x="${x(tick).toFixed(1)}" y="${bottom + 14}" text-anchor="middle">${tickText(tick)} s</text>`);
+  }
+  parts.push(`<svg x="${CELL.left}" y="${CELL.top}" width="${right - CELL.left}" height="${bottom - CELL.top}" viewBox="${CELL.left} ${CELL.top} ${right - CELL.left} ${bottom - CELL.top}">`);
+  figure.lines.forEach((line, i) => {
+    const colour = ink(palette("light"), line.ink);
+    const points = data[i]!;
+    if (points.mean.some((value, k) => value !== points.min[k])) parts.push(`<path d="${band(points, x, y)}" fill="${colour}" fill-opacity="0.22"/>`);
+    parts.push(`<path d="${path(points.t, points.mean, x, y)}" fill="none" stroke="${colour}" stroke-width="1.2"/>`);
+  });
+  parts.push(`</svg><path d="M${CELL.left} ${CELL.top}V${bottom}H${right}" fill="none" stroke="#444"/>`);
+  return parts.join("");
+}
+
+type Scale = (value: number) => number;
+
+function path(t: readonly number[], values: readonly (number | null)[], x: Scale, y: Scale): string {
+  let pen = "M";
+  let text = "";
+  values.forEach((value, i) => {
+    if (value === null) return;
+    text += `${pen}${x(t[i]!).toFixed(1)} ${y(value).toFixed(1)}`;
+    pen = "L";
+  });
+  return text;
+}
+
+function band(points: Points, x: Scale, y: Scale): string {
+  const back = path([...points.t].reverse(), [...points.min].reverse(), x, y).replace(/^M/, "L");
+  return `${path(points.t, points.max, x, y)}${back}Z`;
+}
+
+function keyOf(filled: readonly Filled[]): string {
+  const lines = new Map<string, string>();
+  for (const { figure } of filled) for (const line of figure.lines) lines.set(line.label, ink(palette("light"), line.ink));
+  let left = 0;
+  return [...lines].map(([label, colour]) => {
+    const text = `<path d="M${left} -4h18" stroke="${colour}" stroke-width="2"/><text x="${left + 23}">${escape(label)}</text>`;
+    left += 40 + 6.5 * label.length;
+    return text;
+  }).join("");
+}
+
+/** Round values between two, about as many as asked for. */
+export function ticks(from: number, to: number, count: number): number[] {
+  const raw = (to - from) / count;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const step = power * ([1, 2, 5, 10].find((factor) => factor * power >= raw * 0.99) ?? 10);
+  const found: number[] = [];
+  for (let i = Math.ceil(from / step - 1e-9); i * step <= to + 1e-9 * step; ++i) found.push(i * step);
+  return found;
+}
+
+function escape(text: string): string {
+  return text.replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
+}
+
+function fileName(name: string): string {
+  return `taut-${name.replace(/[^\w.-]+/g, "-")}`;
+}

@@ -1,0 +1,109 @@
+// What a plot shows: lines over time with their channels; the same for the screen and for export.
+import type { Palette } from "../colours";
+import type { Scene } from "../protocol";
+import { NOTHING, type Points, type SeriesStore } from "../series";
+
+export type Ink = "simulated" | "setpoint" | "measured" | number;
+
+export interface Line {
+  label: string;
+  channel: string;
+  source: number;
+  ink: Ink;
+}
+
+export interface Figure {
+  id: string;
+  title: string;
+  unit: string;
+  lines: Line[];
+  group: "tension" | "system" | "own";
+}
+
+/** A figure with the points of its lines, in their order. */
+export interface Filled {
+  figure: Figure;
+  data: Points[];
+}
+
+export function ink(palette: Palette, which: Ink): string {
+  if (typeof which === "number") return palette.further[which % palette.further.length]!;
+  return palette[which];
+}
+
+/** In the manner of the paper's Figs. 3-5: set point blue, measured red, simulated black. */
+export function standardFigures(scene: Scene, store: SeriesStore): Figure[] {
+  const figures: Figure[] = scene.cables.map(({ name }) => ({
+    id: `tension:${name}`,
+    title: name,
+    unit: "N",
+    group: "tension",
+    lines: [
+      { label: "set point", channel: `cable/${name}/setpoint_n`, source: store.has(`cable/${name}/setpoint_n`, 1) ? 1 : 0, ink: "setpoint" },
+      { label: "measured", channel: `cable/${name}/tension_n`, source: 1, ink: "measured" },
+      { label: "simulated", channel: `cable/${name}/tension_n`, source: 0, ink: "simulated" },
+    ],
+  }));
+  const system = (id: string, title: string, unit: string, parts: [string, string][]): Figure => ({
+    id, title, unit, group: "system",
+    lines: parts.map(([label, channel], i) => ({ label, channel, source: 0, ink: i })),
+  });
+  figures.push(
+    system("energy", "energy", "J", [["kinetic", "system/kinetic_j"], ["gravity", "system/gravity_j"], ["elastic", "system/elastic_j"]]),
+    system("contacts", "contacts", "", [["contacts", "system/contact_count"]]),
+    system("rtf", "real-time factor", "", [["real-time factor", "real_time_factor"]]),
+  );
+  return figures.map((figure) => known(figure, store)).filter((figure) => figure.lines.length > 0);
+}
+
+/** What there is to plot of a cable or body, a figure for each unit. */
+export function ownFigures(store: SeriesStore, kind: "cable" | "body", name: string): Figure[] {
+  const figure = (id: string, unit: string, title: string, keys: string[]): Figure => ({
+    id: `own:${kind}:${name}:${id}`, title: `${name} ${title}`, unit, group: "own",
+    lines: keys.map((key, i) => ({ label: key.replace(/_(m|n|rad)(_per_s)?$/, "").replace(/_/g, " "), channel: `${kind}/${name}/${key}`, source: 0, ink: i })),
+  });
+  const figures = kind === "cable"
+    ? [
+        figure("tension", "N", "tension", ["setpoint_n", "tension_n", "elastic_n"]),
+        figure("length", "m", "length", ["length_m", "rest_length_m", "target_rest_length_m"]),
+        figure("rate", "m/s", "rate", ["rate_m_per_s"]),
+      ]
+    : [
+        figure("position", "m", "position", ["position_x_m", "position_y_m", "position_z_m"]),
+        figure("velocity", "m/s", "velocity", ["velocity_x_m_per_s", "velocity_y_m_per_s", "velocity_z_m_per_s"]),
+        figure("spin", "rad/s", "angular velocity", ["angular_velocity_x_rad_per_s", "angular_velocity_y_rad_per_s", "angular_velocity_z_rad_per_s"]),
+      ];
+  return figures.map((each) => known(each, store)).filter((each) => each.lines.length > 0);
+}
+
+function known(figure: Figure, store: SeriesStore): Figure {
+  return { ...figure, lines: figure.lines.filter((line) => store.has(line.channel, line.source)) };
+}
+
+/** Fetches the points of all lines between two times. */
+export function fill(figure: Figure, store: SeriesStore, t0: number, t1: number, points: number, done: (filled: Filled) => void): void {
+  const data: Points[] = figure.lines.map(() => NOTHING);
+  let missing = figure.lines.length;
+  figure.lines.forEach((line, i) =>
+    store.want(line.channel, line.source, t0, t1, points, (received) => {
+      data[i] = received;
+      if (--missing === 0) done({ figure, data });
+    }),
+  );
+}
+
+/** Least and greatest value shown; zero belongs to it where values are close to it. */
+export function valueRange(filled: readonly Filled[]): [number, number] {
+  let least = Infinity;
+  let greatest = -Infinity;
+  for (const { data } of filled) {
+    for (const points of data) {
+      for (const value of points.min) if (value !== null && value < least) least = value;
+      for (const value of points.max) if (value !== null && value > greatest) greatest = value;
+    }
+  }
+  if (least > greatest) return [0, 1];
+  if (least > 0 && least < 0.6 * greatest) least = 0;
+  const room = 0.05 * (greatest - least) || Math.max(0.05 * Math.abs(greatest), 1e-6);
+  return [least === 0 ? 0 : least - room, greatest + room];
+}

@@ -1,0 +1,146 @@
+// All plots: what they show, when they are filled anew, which are in sight.
+import type { App } from "../app";
+import { button, el } from "../util";
+import type { SeriesStore } from "../series";
+import { Chart } from "./chart";
+import { exportCsv, exportPng, exportSvg } from "./export";
+import { type Figure, fill, type Filled, ownFigures, standardFigures, valueRange } from "./figure";
+import { key } from "./key";
+
+const LIVE_SPAN_S = 20;
+const LIVE_EVERY_MS = 100;
+const POINTS = 600; // a plot; about two for each pixel of its width
+
+export class PlotPanel {
+  readonly element = el("section.plots", { "aria-label": "plots" });
+  private readonly grids = { tension: el("div.grid"), own: el("div.grid.wide"), system: el("div.grid.wide") };
+  private charts: Chart[] = [];
+  private readonly visible = new Set<Chart>();
+  private readonly seen: IntersectionObserver;
+  private sameScale = true;
+  private due = 0;
+  private own: { kind: "cable" | "body"; name: string } | null = null;
+
+  constructor(
+    private readonly app: App,
+    private readonly store: SeriesStore,
+  ) {
+    this.element.append(this.toolbar(), this.grids.tension, this.grids.own, this.grids.system);
+    this.seen = new IntersectionObserver((entries) => {
+      for (const entry of entries) {
+        const chart = this.charts.find((each) => each.element === entry.target);
+        if (!chart) continue;
+        if (entry.isIntersecting) this.visible.add(chart);
+        else this.visible.delete(chart);
+      }
+      this.refresh();
+    }, { rootMargin: "1500px 0px" });
+    app.scene.watch(() => this.rebuild());
+    app.range_s.watch(() => this.refresh());
+    app.theme.watch(() => this.charts.forEach((chart) => chart.repaint()));
+    app.selection.watch((selection) => {
+      const scene = app.scene.value;
+      if (!scene || !selection || selection.kind === "node") return;
+      const list = selection.kind === "cable" ? scene.cables : scene.bodies;
+      this.plotOwn(selection.kind, list[selection.index]!.name);
+    });
+    app.cursor_s.watch(() => this.mark());
+    app.frame.watch(() => {
+      this.mark();
+      if (app.live && performance.now() >= this.due) this.refresh();
+    });
+  }
+
+  private get span(): readonly [number, number] {
+    const scene = this.app.scene.value;
+    if (this.app.range_s.value) return this.app.range_s.value;
+    if (!this.app.live) return scene ? [scene.first_s, Math.max(scene.duration_s, scene.first_s + 1e-3)] : [0, 1];
+    const now_s = this.app.frame.value?.time_s ?? 0;
+    return [Math.max(0, now_s - LIVE_SPAN_S), Math.max(now_s, LIVE_SPAN_S)];
+  }
+
+  private plotOwn(kind: "cable" | "body", name: string): void {
+    if (this.own?.kind === kind && this.own.name === name) return;
+    this.own = { kind, name };
+    this.drop((chart) => chart.figure.group === "own");
+    for (const figure of ownFigures(this.store, kind, name)) this.add(figure);
+  }
+
+  private rebuild(): void {
+    this.own = null;
+    this.drop(() => true);
+    const scene = this.app.scene.value;
+    if (scene) for (const figure of standardFigures(scene, this.store)) this.add(figure);
+  }
+
+  private drop(which: (chart: Chart) => boolean): void {
+    for (const chart of this.charts.filter(which)) {
+      this.seen.unobserve(chart.element);
+      this.visible.delete(chart);
+      chart.dispose();
+    }
+    this.charts = this.charts.filter((chart) => !which(chart));
+  }
+
+  private add(figure: Figure): void {
+    const save = (name: string, write: (filled: Filled[], name: string) => void) =>
+      button(name, `save ${figure.title} as ${name}`, () => write([chart.filled], figure.title), "button.small");
+    const tools = el("span.tools", {}, save("PNG", (f, n) => void exportPng(f, this.span, n)), save("SVG", (f, n) => exportSvg(f, this.span, n)), save("CSV", exportCsv));
+    const chart: Chart = new Chart(this.app, figure, tools);
+    this.charts.push(chart);
+    this.grids[figure.group].append(chart.element);
+    this.seen.observe(chart.element);
+  }
+
+  private mark(): void {
+    for (const chart of this.visible) chart.mark();
+  }
+
+  private refresh(): void {
+    this.due = performance.now() + LIVE_EVERY_MS;
+    const span = this.span;
+    for (const chart of this.visible) {
+      fill(chart.figure, this.store, span[0], span[1], POINTS, (filled) => {
+        if (span !== this.span && !this.app.live && (span[0] !== this.span[0] || span[1] !== this.span[1])) return;
+        chart.filled = filled;
+        chart.show(filled, span, this.scaleOf(chart));
+        if (!this.app.live) this.rescale(chart);
+      });
+    }
+  }
+
+  /** The tensions have one scale, so that heights compare, unless that is switched off. */
+  private scaleOf(chart: Chart): [number, number] | null {
+    if (!this.sameScale || chart.figure.group !== "tension") return null;
+    return valueRange(this.charts.filter((each) => each.figure.group === "tension").map((each) => each.filled));
+  }
+
+  private rescale(except: Chart): void {
+    if (except.figure.group !== "tension" || !this.sameScale) return;
+    const shared = this.scaleOf(except);
+    for (const chart of this.visible) {
+      if (chart !== except && chart.figure.group === "tension" && chart.filled.data.some((points) => points.t.length > 0)) {
+        chart.show(chart.filled, this.span, shared);
+      }
+    }
+  }
+
+  private toolbar(): HTMLElement {
+    const scale = el<HTMLInputElement>("input", { type: "checkbox", checked: true, onchange: () => {
+      this.sameScale = scale.checked;
+      this.refresh();
+    } });
+    const all = (which: "tension" | "all") => this.charts.filter((chart) => which === "all" || chart.figure.group === which).map((chart) => chart.filled);
+    const zoomOut = button("whole time", "show the whole time again (double click in a plot)", () => (this.app.range_s.value = null));
+    this.app.range_s.watch((range) => (zoomOut.hidden = range === null));
+    return el("div.toolbar", {},
+      key(this.app),
+      el("label", { title: "one scale for all tensions, so that heights compare" }, scale, " same scale"),
+      zoomOut,
+      el("span.spring"),
+      el("span", {}, "save all:"),
+      button("PNG", "save all tensions as PNG", () => void exportPng(all("tension"), this.span, "tensions"), "button.small"),
+      button("SVG", "save all tensions as SVG", () => exportSvg(all("tension"), this.span, "tensions"), "button.small"),
+      button("CSV", "save the data in sight as CSV", () => exportCsv(all("all"), "plots"), "button.small"));
+  }
+}

@@ -1,0 +1,401 @@
+// Made of web/protocol/messages.json by script/protocol. Do not edit.
+//
+// What the viewer's server and its pages say to each other. JSON texts, except frames, which are binary. script/protocol makes web/src/protocol.ts and apps/viewer/protocol_messages.h of this file. SI units; W is the world frame, z up; quaternions are unit, order w, x, y, z. A field whose name ends with ? may be absent.
+
+export const PROTOCOL_VERSION = 1;
+
+export type Vec3 = [number, number, number];
+/** w, x, y, z */
+export type Quat = [number, number, number, number];
+
+/** Part of a body, in the body's frame (origin: centre of mass). */
+export interface Shape {
+  /** Which of the fields below are there. */
+  kind: "rod" | "sphere" | "box";
+  name: string;
+  /** rod: one end of the axis */
+  from_m?: Vec3;
+  /** rod: the other */
+  to_m?: Vec3;
+  /** sphere, box */
+  center_m?: Vec3;
+  /** rod, sphere */
+  radius_m?: number;
+  /** box: along its axes */
+  half_extents_m?: Vec3;
+  /** box: q_BodyBox */
+  orientation?: Quat;
+}
+
+export interface Body {
+  name: string;
+  /** 0 where it is not known */
+  mass_kg: number;
+  fixed: boolean;
+  /** Centre of mass at the start, in W. */
+  position_m: Vec3;
+  /** At the start; identity as described. */
+  orientation: Quat;
+  shapes: Shape[];
+}
+
+/** A named point of a body, or of the world (body -1). */
+export interface Node {
+  name: string;
+  /** Place in Scene.bodies, or -1. */
+  body: number;
+  /** In the body's frame; in W if body is -1. */
+  position_m: Vec3;
+}
+
+export interface Attachment {
+  /** Place in Scene.bodies, or -1: the world. */
+  body: number;
+  /** In the body's frame; in W if body is -1. */
+  position_m: Vec3;
+}
+
+/** Goes through its attachments in order. */
+export interface Cable {
+  name: string;
+  /** Empty where they are not known. */
+  attachments: Attachment[];
+  /** 0 where it is not known */
+  stiffness_n_per_m: number;
+  actuated: boolean;
+}
+
+export interface Terrain {
+  kind: "plane" | "box";
+  name: string;
+  /** plane: unit, out of the solid, in W */
+  normal?: Vec3;
+  /** plane: a point of its surface, in W */
+  point_m?: Vec3;
+  /** box, in W */
+  center_m?: Vec3;
+  /** box: along its axes */
+  half_extents_m?: Vec3;
+  /** box: q_WBox */
+  orientation?: Quat;
+}
+
+/** What set_parameter may change. */
+export interface Parameter {
+  /** friction_scale, body/<name>/mass_kg, push_n ... */
+  name: string;
+  value: number;
+  unit: string;
+  min: number;
+  max: number;
+  /** A parameter of the files: a change starts the experiment anew. */
+  restarts: boolean;
+}
+
+/** What set_setpoint and set_gain may change of a cable. */
+export interface Control {
+  cable: string;
+  /** What its set point is: tension_offset_n or rest_length_m. */
+  kind: "impedance" | "rest_length";
+  /** impedance: T0 */
+  tension_offset_n?: number;
+  /** impedance: L0 */
+  length_offset_m?: number;
+  /** impedance: K */
+  position_gain_n_per_m?: number;
+  /** impedance: B */
+  velocity_gain_n_s_per_m?: number;
+  /** rest_length: the command */
+  rest_length_m?: number;
+}
+
+export interface Channel {
+  /** As in traces: cable/<name>/tension_n. */
+  name: string;
+  unit: string;
+}
+
+/** A named span of the timeline. */
+export interface Phase {
+  name: string;
+  from_s: number;
+  to_s: number;
+}
+
+/** A number to show beside ours. */
+export interface ReferenceValue {
+  /** Key of summary.json or name of a cable. */
+  quantity: string;
+  value: number;
+  unit: string;
+  /** Who says so. */
+  source: string;
+}
+
+/** What a run is compared with. */
+export interface Reference {
+  /** What to call it: a path or a title. */
+  name: string;
+  /** Its channels; series of them are asked for with source 1. */
+  channels: Channel[];
+  values: ReferenceValue[];
+}
+
+/** A channel over a span of time, at the resolution asked for. Points are blocks of `level` rows; at level 1, min, max and mean are the value. */
+export interface SeriesData {
+  channel: string;
+  /** 0: the run; 1: what it is compared with. */
+  source: number;
+  /** Rows a point, a power of two. */
+  level: number;
+  /** Of each block's first row. */
+  time_s: (number | null)[];
+  /** null: not a number */
+  min: (number | null)[];
+  /** null: not a number */
+  max: (number | null)[];
+  /** null: not a number */
+  mean: (number | null)[];
+}
+
+/** What a report holds, in <script type="application/json" id="taut-report">. */
+export interface Report {
+  /** Of this definition. */
+  version: number;
+  title: string;
+  scene: Scene;
+  /** Text by key: versions, seed, machine, hash of the inputs. */
+  metadata: Record<string, string>;
+  /** The experiment and its model as resolved (YAML); empty if unknown. */
+  inputs: string;
+  /** The content of summary.json, or null. */
+  summary: unknown;
+  /** The content of `taut compare --json`, or null. */
+  comparison: unknown;
+  /** Every channel, decimated; with source 1 those of the other trace. */
+  series: SeriesData[];
+  frame_count: number;
+  /** Numbers a frame. */
+  frame_values: number;
+  /** Float32, little endian: frames as defined below, one after the other, contacts left out. Each has as many pushes as the one with the most; what does not act has no force. */
+  frames_base64: string;
+}
+
+/** What there is to see. Sent after hello, and anew when it changes. */
+export interface Scene {
+  bodies: Body[];
+  nodes: Node[];
+  cables: Cable[];
+  terrain: Terrain[];
+  /** Empty unless live. */
+  parameters: Parameter[];
+  /** Empty unless live. */
+  controls: Control[];
+  /** What want_series may ask for. */
+  channels: Channel[];
+  phases: Phase[];
+  /** Time of the first row of a trace; 0 when live. */
+  first_s: number;
+  /** Time of the last. */
+  duration_s: number;
+  /** Of the spring that drag pulls with; 0 unless live. */
+  drag_stiffness_n_per_m: number;
+  reference?: Reference;
+  /** What is amiss with the file, in a sentence. */
+  notice?: string;
+}
+
+/** The first message. */
+export interface HelloMessage {
+  type: "hello";
+  /** Of this definition. */
+  version: number;
+  /** error: there is nothing to show but `notice`. */
+  mode: "live" | "replay" | "model" | "error";
+  title: string;
+  /** Who you are, 1 or more. */
+  client: number;
+  /** Who drives; 0: nobody. */
+  driver: number;
+  /** mode error: what is wrong. */
+  notice?: string;
+}
+
+export interface SceneMessage {
+  type: "scene";
+  scene: Scene;
+}
+
+/** Answer to want_series. */
+export interface SeriesMessage {
+  type: "series";
+  /** Of the question. */
+  id: number;
+  series: SeriesData;
+}
+
+/** Something happened: a drag, a push, a restart, the end. */
+export interface EventMessage {
+  type: "event";
+  time_s: number;
+  text: string;
+}
+
+/** Something that you asked for was not done. */
+export interface ErrorMessage {
+  type: "error";
+  text: string;
+}
+
+/** Who drives from now on. */
+export interface DriverMessage {
+  type: "driver";
+  /** 0: nobody. */
+  id: number;
+}
+
+export type ServerMessage =
+  | HelloMessage
+  | SceneMessage
+  | SeriesMessage
+  | EventMessage
+  | ErrorMessage
+  | DriverMessage;
+
+/** Drive from now on. The first command of anybody does so, too, while nobody drives. */
+export interface TakeControlMessage {
+  type: "take_control";
+}
+
+export interface PauseMessage {
+  type: "pause";
+}
+
+export interface ResumeMessage {
+  type: "resume";
+}
+
+/** While paused: one step (replay: `count` rows, may be negative). */
+export interface StepMessage {
+  type: "step";
+  /** 1 if absent; -1000 to 1000. */
+  count?: number;
+}
+
+/** Back to the start. */
+export interface ResetMessage {
+  type: "reset";
+}
+
+/** Simulated seconds a second; 0: as fast as it can. */
+export interface SpeedMessage {
+  type: "speed";
+  /** 0, or 0.001 to 1000. */
+  factor: number;
+}
+
+/** Replay only. */
+export interface SeekMessage {
+  type: "seek";
+  time_s: number;
+}
+
+/** A spring pulls the node to the target until drop. */
+export interface DragMessage {
+  type: "drag";
+  node: string;
+  /** In W. */
+  target_m: Vec3;
+}
+
+export interface DropMessage {
+  type: "drop";
+}
+
+/** A force for a while, from now on. */
+export interface PushMessage {
+  type: "push";
+  node: string;
+  /** In W. */
+  force_n: Vec3;
+  /** 0.001 to 1000. */
+  duration_s: number;
+}
+
+export interface SetParameterMessage {
+  type: "set_parameter";
+  name: string;
+  value: number;
+}
+
+export interface SetSetpointMessage {
+  type: "set_setpoint";
+  cable: string;
+  /** Tension offset [N] or rest length [m], by the control's kind. */
+  value: number;
+}
+
+export interface SetGainMessage {
+  type: "set_gain";
+  cable: string;
+  gain: "length_offset_m" | "position_gain_n_per_m" | "velocity_gain_n_s_per_m";
+  value: number;
+}
+
+/** Anyone may ask. */
+export interface WantSeriesMessage {
+  type: "want_series";
+  /** Comes back with the answer. */
+  id: number;
+  channel: string;
+  /** 0 if absent. */
+  source?: number;
+  /** [s] */
+  t0: number;
+  /** [s] */
+  t1: number;
+  /** At most; 2 to 10000. */
+  points: number;
+}
+
+export type ClientMessage =
+  | TakeControlMessage
+  | PauseMessage
+  | ResumeMessage
+  | StepMessage
+  | ResetMessage
+  | SpeedMessage
+  | SeekMessage
+  | DragMessage
+  | DropMessage
+  | PushMessage
+  | SetParameterMessage
+  | SetSetpointMessage
+  | SetGainMessage
+  | WantSeriesMessage;
+
+/** The present. Binary: Float64, little endian, in this order; the header, then each section as often as its count says. Latest wins: frames that a slow client missed are not sent again. */
+export const FRAME = {
+  header: [
+    "time_s",
+    "real_time_factor", // Simulated over wall-clock time, of late; 0 while paused.
+    "speed", // As asked for; 0: as fast as it can.
+    "paused", // 1 or 0
+    "driver", // Client, or 0
+    "kinetic_j", // Energies; NaN where they are not known.
+    "gravity_j",
+    "elastic_j",
+    "run", // Rises at every restart: what was plotted before is of another run.
+    "body_count",
+    "cable_count",
+    "contact_count", // NaN forces where only the count is known: then `contacts` is empty.
+    "contact_rows", // Entries of the section `contacts`.
+    "push_count", // Pushes and drags that act.
+  ],
+  sections: [
+    { name: "bodies", count: "body_count", fields: ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"] },
+    { name: "cables", count: "cable_count", fields: ["tension_n", "length_m", "rest_length_m", "setpoint_n"] },
+    { name: "contacts", count: "contact_rows", fields: ["x_m", "y_m", "z_m", "force_x_n", "force_y_n", "force_z_n"] },
+    { name: "pushes", count: "push_count", fields: ["node", "force_x_n", "force_y_n", "force_z_n"] },
+  ],
+} as const;

@@ -1,0 +1,105 @@
+// Cables: lines whose thickness and colour show the tension; slack ones are dashed and grey.
+import { Color, Group, type InstancedInterleavedBuffer, Vector2, Vector3 } from "three";
+import { Line2 } from "three/examples/jsm/lines/Line2.js";
+import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
+import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
+import type { Theme } from "../app";
+import { palette, tensionColour } from "../colours";
+import { cableState, type Frame, isSlack } from "../frame";
+import type { Cable, Scene } from "../protocol";
+import { type Part, release } from "./part";
+import { worldPoint } from "./poses";
+
+export const THINNEST_PX = 1.5;
+export const THICKEST_PX = 7;
+
+export class Cables implements Part {
+  readonly object = new Group();
+  /** Points of each cable in W, as last drawn. */
+  readonly points: Vector3[][];
+  scale_n = 1;
+  private readonly lines: (Line2 | null)[];
+  private marked = -1;
+  private theme: Theme = "light";
+  private frame: Frame | null = null;
+
+  constructor(private readonly scene: Scene, size_m: number) {
+    this.points = scene.cables.map((cable) => cable.attachments.map(() => new Vector3()));
+    this.lines = scene.cables.map((cable) => this.line(cable, size_m));
+  }
+
+  update(frame: Frame): void {
+    this.frame = frame;
+    this.scene.cables.forEach((cable, i) => {
+      const line = this.lines[i];
+      if (!line) return;
+      const points = this.points[i]!;
+      cable.attachments.forEach((end, k) => worldPoint(frame, end.body, end.position_m, points[k]!));
+      moveLine(line, points);
+      this.colour(i);
+    });
+  }
+
+  mark(cable: number): void {
+    this.marked = cable;
+    this.lines.forEach((_, i) => this.colour(i));
+  }
+
+  resize(width_px: number, height_px: number): void {
+    for (const line of this.lines) line?.material.resolution.copy(new Vector2(width_px, height_px));
+  }
+
+  paint(theme: Theme): void {
+    this.theme = theme;
+    this.lines.forEach((_, i) => this.colour(i));
+  }
+
+  dispose(): void {
+    release(this.object);
+  }
+
+  private colour(i: number): void {
+    const line = this.lines[i];
+    if (!line || !this.frame) return;
+    const state = cableState(this.frame, i);
+    const share = Number.isFinite(state.tension_n) ? state.tension_n / this.scale_n : 0;
+    const slack = isSlack(state);
+    const material = line.material;
+    if (material.dashed !== slack) {
+      material.dashed = slack;
+      material.needsUpdate = true;
+    }
+    if (slack) line.computeLineDistances();
+    material.linewidth = slack ? THINNEST_PX : THINNEST_PX + (THICKEST_PX - THINNEST_PX) * Math.min(share, 1);
+    if (i === this.marked) {
+      material.linewidth += 3;
+      material.color.set(palette(this.theme).selected);
+    } else if (slack) {
+      material.color.set(palette(this.theme).slack);
+    } else {
+      material.color.copy(new Color().setRGB(...tensionColour(share, this.theme), "srgb"));
+    }
+  }
+
+  private line(cable: Cable, size_m: number): Line2 | null {
+    if (cable.attachments.length < 2) return null;
+    const geometry = new LineGeometry();
+    geometry.setPositions(new Float32Array(3 * cable.attachments.length));
+    const material = new LineMaterial({ dashSize: 0.02 * size_m, gapSize: 0.015 * size_m });
+    const line = new Line2(geometry, material);
+    line.frustumCulled = false; // its bounds are those of the start
+    this.object.add(line);
+    return line;
+  }
+}
+
+/** Writes into the buffer that the line has; setPositions would make a new one each frame. */
+function moveLine(line: Line2, points: readonly Vector3[]): void {
+  const start = line.geometry.getAttribute("instanceStart") as unknown as { data: InstancedInterleavedBuffer };
+  const buffer = start.data;
+  for (let k = 0; k + 1 < points.length; ++k) {
+    points[k]!.toArray(buffer.array, 6 * k);
+    points[k + 1]!.toArray(buffer.array, 6 * k + 3);
+  }
+  buffer.needsUpdate = true;
+}

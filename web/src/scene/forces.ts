@@ -1,0 +1,69 @@
+// Contact forces, and the pushes and drags that act, as arrows to one scale.
+import { Group, Vector3 } from "three";
+import type { Theme } from "../app";
+import { palette } from "../colours";
+import { CONTACT_VALUES, type Frame, PUSH_VALUES } from "../frame";
+import type { Scene } from "../protocol";
+import { niceAbove } from "../util";
+import { Arrows } from "./arrows";
+import type { Part } from "./part";
+import { worldPoint } from "./poses";
+
+export class Forces implements Part {
+  readonly object = new Group();
+  readonly contacts: Arrows;
+  readonly pushes: Arrows;
+  /** The force whose arrow is as long as `reference_m`; grows with what is seen. */
+  reference_n = 10;
+  readonly reference_m: number;
+  private readonly point = new Vector3();
+  private readonly force = new Vector3();
+
+  constructor(private readonly scene: Scene, size_m: number) {
+    this.reference_m = niceAbove(0.2 * size_m);
+    this.contacts = new Arrows(0.005 * size_m);
+    this.pushes = new Arrows(0.008 * size_m);
+    this.object.add(this.contacts.object, this.pushes.object);
+  }
+
+  update(frame: Frame): void {
+    this.fit(frame);
+    const m_per_n = this.reference_m / this.reference_n;
+    this.contacts.begin();
+    for (let at = 0; at < frame.contacts.length; at += CONTACT_VALUES) {
+      const [x, y, z, fx, fy, fz] = frame.contacts.subarray(at, at + CONTACT_VALUES);
+      this.contacts.add(this.point.set(x!, y!, z!), this.force.set(fx!, fy!, fz!).multiplyScalar(m_per_n));
+    }
+    this.contacts.end();
+    this.pushes.begin();
+    for (let at = 0; at < frame.pushes.length; at += PUSH_VALUES) {
+      const [index, fx, fy, fz] = frame.pushes.subarray(at, at + PUSH_VALUES);
+      const node = this.scene.nodes[index!];
+      if (!node) continue;
+      worldPoint(frame, node.body, node.position_m, this.point);
+      this.pushes.add(this.point, this.force.set(fx!, fy!, fz!).multiplyScalar(m_per_n), true);
+    }
+    this.pushes.end();
+  }
+
+  paint(theme: Theme): void {
+    this.contacts.material.color.set(palette(theme).contact);
+    this.pushes.material.color.set(palette(theme).push);
+  }
+
+  dispose(): void {
+    this.contacts.dispose();
+    this.pushes.dispose();
+  }
+
+  /** An impact must not make all later arrows tiny: the scale follows pushes and steady contacts. */
+  private fit(frame: Frame): void {
+    let largest_n = 0;
+    for (let at = 0; at < frame.pushes.length; at += PUSH_VALUES) {
+      largest_n = Math.max(largest_n, Math.hypot(...frame.pushes.subarray(at + 1, at + PUSH_VALUES)));
+    }
+    const mass_kg = this.scene.bodies.reduce((sum, body) => sum + (body.fixed ? 0 : body.mass_kg), 0);
+    largest_n = Math.max(largest_n, 0.5 * 9.81 * mass_kg);
+    if (largest_n > this.reference_n || this.reference_n > 20 * largest_n) this.reference_n = niceAbove(largest_n);
+  }
+}

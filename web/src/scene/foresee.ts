@@ -1,0 +1,40 @@
+// What a trace knows before it is played: the path of the centre of mass, and the largest tension,
+// so that the scale of tension does not change on the way. Live, both grow by themselves.
+import { Vector3 } from "three";
+import type { App } from "../app";
+import { niceAbove } from "../util";
+import { NOTHING, type Points, type SeriesStore } from "../series";
+import type { View } from "./view";
+
+const POINTS = 5000;
+
+export function foresee(app: App, store: SeriesStore, view: View): void {
+  app.scene.watch((scene) => {
+    if (!scene || app.live) return;
+    for (const { name } of scene.cables) {
+      const channel = `cable/${name}/tension_n`;
+      if (!store.has(channel, 0)) continue;
+      store.want(channel, 0, scene.first_s, scene.duration_s, 2, ({ max }) => {
+        if (view.world?.scene !== scene) return;
+        const largest_n = Math.max(...max.map((value) => value ?? 0));
+        const { cables } = view.world;
+        cables.scale_n = niceAbove(Math.max(cables.scale_n, largest_n));
+        if (app.frame.value) view.world.update(app.frame.value);
+        view.invalidate();
+      });
+    }
+    const channels = ["x", "y", "z"].map((axis) => `system/com_${axis}_m`);
+    if (!channels.every((channel) => store.has(channel, 0))) return;
+    const parts: Points[] = channels.map(() => NOTHING);
+    let missing = channels.length;
+    channels.forEach((channel, k) =>
+      store.want(channel, 0, scene.first_s, scene.duration_s, POINTS, (points) => {
+        parts[k] = points;
+        if (--missing > 0 || view.world?.scene !== scene) return;
+        const [x, y, z] = parts as [Points, Points, Points];
+        view.world.path.set(x.t, x.t.map((_, i) => new Vector3(x.mean[i] ?? 0, y.mean[i] ?? 0, z.mean[i] ?? 0)));
+        view.invalidate();
+      }),
+    );
+  });
+}

@@ -1,0 +1,38 @@
+// Where points of bodies are in a frame.
+import type { Vector3 } from "three";
+import { BODY_VALUES, type Frame } from "../frame";
+import type { Scene, Vec3 } from "../protocol";
+
+/** p_WP of a point P that is fixed in a body; the world is body -1. */
+export function worldPoint(frame: Frame, body: number, p: Vec3, out: Vector3): Vector3 {
+  if (body < 0) return out.set(p[0], p[1], p[2]);
+  const b = frame.bodies;
+  const at = body * BODY_VALUES;
+  const [w, x, y, z] = [b[at + 3]!, b[at + 4]!, b[at + 5]!, b[at + 6]!];
+  // p + 2 q x (q x p + w p)
+  const cx = y * p[2] - z * p[1] + w * p[0];
+  const cy = z * p[0] - x * p[2] + w * p[1];
+  const cz = x * p[1] - y * p[0] + w * p[2];
+  return out.set(
+    b[at]! + p[0] + 2 * (y * cz - z * cy),
+    b[at + 1]! + p[1] + 2 * (z * cx - x * cz),
+    b[at + 2]! + p[2] + 2 * (x * cy - y * cx),
+  );
+}
+
+/** Centre of mass of all bodies whose mass is known and that can move; false if there is none. */
+export function centreOfMass(scene: Scene, frame: Frame, out: Vector3): boolean {
+  let mass_kg = 0;
+  out.set(0, 0, 0);
+  scene.bodies.forEach((body, i) => {
+    if (body.fixed || !(body.mass_kg > 0)) return;
+    const at = i * BODY_VALUES;
+    out.x += body.mass_kg * frame.bodies[at]!;
+    out.y += body.mass_kg * frame.bodies[at + 1]!;
+    out.z += body.mass_kg * frame.bodies[at + 2]!;
+    mass_kg += body.mass_kg;
+  });
+  if (mass_kg === 0) return false;
+  out.divideScalar(mass_kg);
+  return true;
+}

@@ -1,0 +1,269 @@
+// The 3-D view: camera, light, mouse; draws only when something has changed.
+import {
+  AmbientLight, type Box3, Color, DirectionalLight, PCFSoftShadowMap, PerspectiveCamera, Scene as ThreeScene, Vector3,
+  WebGLRenderer, HemisphereLight,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import type { App } from "../app";
+import { palette } from "../colours";
+import { el } from "../util";
+import { Grip } from "./grip";
+import { pick, project, type Viewport } from "./pick";
+import { centreOfMass, worldPoint } from "./poses";
+import { World } from "./world";
+
+const FILLED = 0.76; // of half the view that the robot takes up, at most
+const FREE = 0.3; // how far the robot moves before the camera follows, in sizes of the robot
+const CLICK_PX = 4; // a press that moves less is a click
+
+export class View {
+  readonly element = el("div.view");
+  readonly renderer: WebGLRenderer;
+  readonly camera = new PerspectiveCamera(40, 1, 0.01, 500);
+  world: World | null = null;
+  follow = true;
+  readonly frames = { drawn: 0 };
+  private readonly stage = new ThreeScene();
+  private readonly sun = new DirectionalLight(0xffffff, 2.2);
+  private readonly controls: OrbitControls;
+  private readonly tip = el("div.tip", { role: "tooltip" });
+  private readonly grip: Grip;
+  private dirty = true;
+  /** Centre of mass now; and where the camera believes it to be. */
+  private readonly followed = new Vector3();
+  private readonly anchor = new Vector3();
+  private pressed: { x: number; y: number } | null = null;
+
+  constructor(private readonly app: App) {
+    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: false });
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFSoftShadowMap;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    const canvas = this.renderer.domElement;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("aria-label", "3-D view of the robot");
+    this.element.append(canvas, this.tip);
+    this.camera.up.set(0, 0, 1);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    this.stage.add(this.sun, this.sun.target, new AmbientLight(0xffffff, 0.35), new HemisphereLight(0xffffff, 0x8899aa, 1.1));
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("change", () => this.invalidate());
+    this.grip = new Grip(app, this);
+    this.stage.add(this.grip.object);
+    this.listen(canvas);
+    this.watch();
+    requestAnimationFrame(() => this.loop());
+  }
+
+  get canvas(): HTMLCanvasElement {
+    return this.renderer.domElement;
+  }
+
+  get viewport(): Viewport {
+    return { camera: this.camera, width_px: this.canvas.clientWidth, height_px: this.canvas.clientHeight };
+  }
+
+  /** The point that the camera looks at and turns about. */
+  get target(): Vector3 {
+    return this.controls.target;
+  }
+
+  invalidate(): void {
+    this.dirty = true;
+  }
+
+  /** Where a point of W is on the screen, in pixels from the view's top left. */
+  toScreen(point: Vector3): Vector3 {
+    this.camera.updateMatrixWorld();
+    return project(point, this.viewport, new Vector3());
+  }
+
+  enableOrbit(on: boolean): void {
+    this.controls.enabled = on;
+  }
+
+  /** Shows the whole robot where it is now, from the side the camera is on. */
+  fit(fromFront = false): void {
+    const world = this.world;
+    if (!world) return;
+    const centre = world.bounds.getCenter(new Vector3());
+    const frame = this.app.frame.value;
+    const now = new Vector3();
+    if (frame && centreOfMass(world.scene, frame, now)) centre.set(now.x, now.y, centre.z);
+    const direction = fromFront
+      ? new Vector3(0.55, -1, 0.5)
+      : this.camera.position.clone().sub(this.controls.target);
+    const shift = centre.clone().sub(world.bounds.getCenter(new Vector3()));
+    const corners = cornersOf(world.bounds.clone().translate(shift));
+    this.controls.target.copy(centre);
+    this.anchor.copy(centre);
+    direction.normalize();
+    let distance_m = 2 * world.size_m;
+    // what is nearer looks larger, so the distance is found in a few rounds
+    for (let round = 0; round < 6; ++round) {
+      this.camera.position.copy(centre).addScaledVector(direction, distance_m);
+      this.camera.lookAt(centre);
+      this.camera.updateMatrixWorld();
+      const reach = corners.map((corner) => corner.clone().project(this.camera));
+      distance_m *= Math.max(...reach.map(({ x, y }) => Math.max(Math.abs(x), Math.abs(y)))) / FILLED;
+    }
+    this.controls.minDistance = 0.05 * world.size_m;
+    this.controls.maxDistance = 60 * world.size_m;
+    this.controls.update();
+    this.invalidate();
+  }
+
+  private watch(): void {
+    this.app.scene.watch((scene) => {
+      const first = this.world === null;
+      const count = this.world?.scene.bodies.length;
+      this.world?.dispose();
+      this.world = scene ? new World(scene) : null;
+      if (!this.world) return;
+      this.stage.add(this.world.object);
+      this.world.paint(this.app.theme.value);
+      this.resize();
+      if (first || count !== scene?.bodies.length) this.fit(first);
+      const frame = this.app.frame.value;
+      if (frame && frame.body_count === this.world.scene.bodies.length) this.world.update(frame);
+    });
+    this.app.frame.watch((frame) => {
+      if (!frame || !this.world) return;
+      this.world.update(frame);
+      this.grip.update(frame);
+      this.followCentre();
+      this.invalidate();
+    });
+    this.app.theme.watch((theme) => {
+      this.stage.background = new Color(palette(theme).horizon);
+      this.world?.paint(theme);
+      this.grip.paint(theme);
+      this.invalidate();
+    });
+    const mark = () => {
+      const shown = this.app.selection.value ?? this.app.hover.value;
+      this.world?.cables.mark(shown?.kind === "cable" ? shown.index : -1);
+      const node = shown?.kind === "node" ? this.app.scene.value?.nodes[shown.index] : undefined;
+      this.world?.bodies.mark(shown?.kind === "body" ? shown.index : (node?.body ?? -1));
+      this.invalidate();
+    };
+    this.app.selection.watch(mark);
+    this.app.hover.watch(mark);
+    new ResizeObserver(() => this.resize()).observe(this.element);
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.element;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.world?.cables.resize(width, height);
+    this.invalidate();
+  }
+
+  /** The camera goes along when the robot leaves; small motions stay visible against it. */
+  private followCentre(): void {
+    const world = this.world;
+    const frame = this.app.frame.value;
+    const now = new Vector3();
+    if (!world || !frame || !centreOfMass(world.scene, frame, now)) return;
+    this.followed.copy(now);
+    const away = now.sub(this.anchor).setZ(0);
+    const free_m = FREE * world.size_m;
+    if (!this.follow || away.length() <= free_m) return;
+    away.multiplyScalar(1 - free_m / away.length());
+    this.anchor.add(away);
+    this.controls.target.add(away);
+    this.camera.position.add(away);
+  }
+
+  private loop(): void {
+    requestAnimationFrame(() => this.loop());
+    this.controls.update();
+    if (!this.dirty) return;
+    this.dirty = false;
+    this.aimSun();
+    this.renderer.render(this.stage, this.camera);
+    ++this.frames.drawn;
+    this.element.dataset["drawn"] = String(this.frames.drawn);
+  }
+
+  /** The shadow's box stays around the robot, so that its edges are fine wherever it goes. */
+  private aimSun(): void {
+    const reach_m = this.world ? 0.9 * this.world.size_m : 1;
+    const at = this.sun.target.position.copy(this.followed.lengthSq() > 0 ? this.followed : this.controls.target);
+    this.sun.position.copy(at).add(new Vector3(-0.5, -0.6, 1.6).multiplyScalar(2 * reach_m));
+    const box = this.sun.shadow.camera;
+    box.left = box.bottom = -reach_m;
+    box.right = box.top = reach_m;
+    box.near = 0.1 * reach_m;
+    box.far = 8 * reach_m;
+    box.updateProjectionMatrix();
+    this.sun.shadow.normalBias = 0.004 * reach_m;
+  }
+
+  private at(event: PointerEvent): { x: number; y: number } {
+    const box = this.canvas.getBoundingClientRect();
+    return { x: event.clientX - box.left, y: event.clientY - box.top };
+  }
+
+  private pickAt(x: number, y: number) {
+    const frame = this.app.frame.value;
+    if (!this.world || !frame) return null;
+    return pick(x, y, this.viewport, this.world.scene, frame, this.world.bodies, this.world.cables);
+  }
+
+  private listen(canvas: HTMLCanvasElement): void {
+    // Before the orbit sees it: a press on a node that may be dragged is not an orbit.
+    canvas.addEventListener("pointerdown", (event) => {
+      const { x, y } = this.at(event);
+      this.pressed = { x, y };
+      const under = event.button === 0 ? this.pickAt(x, y) : null;
+      if (under?.kind === "node" && this.app.live) this.grip.take(under.index, event);
+    }, { capture: true });
+    canvas.addEventListener("pointermove", (event) => {
+      const { x, y } = this.at(event);
+      if (this.grip.held) this.grip.move(x, y);
+      else if (event.buttons === 0) this.hover(x, y);
+    });
+    canvas.addEventListener("pointerup", (event) => {
+      const { x, y } = this.at(event);
+      const held = this.grip.drop();
+      const still = this.pressed && Math.hypot(x - this.pressed.x, y - this.pressed.y) < CLICK_PX;
+      if (event.button === 0 && still) this.app.selection.value = this.pickAt(x, y);
+      else if (held) this.hover(x, y);
+    });
+    canvas.addEventListener("pointerleave", () => {
+      this.app.hover.value = null;
+      this.tip.hidden = true;
+    });
+    canvas.addEventListener("dblclick", () => this.fit());
+  }
+
+  private hover(x: number, y: number): void {
+    const under = this.pickAt(x, y);
+    const before = this.app.hover.value;
+    if (under?.kind !== before?.kind || under?.index !== before?.index) this.app.hover.value = under;
+    this.tip.hidden = under === null;
+    this.canvas.style.cursor = under ? (under.kind === "node" && this.app.live ? "grab" : "pointer") : "";
+    if (!under || !this.world) return;
+    const scene = this.world.scene;
+    const list = { cable: scene.cables, body: scene.bodies, node: scene.nodes }[under.kind];
+    this.tip.textContent = `${under.kind} ${list[under.index]?.name ?? ""}`;
+    const left = Math.min(x + 14, this.canvas.clientWidth - this.tip.offsetWidth - 4);
+    this.tip.style.transform = `translate(${left}px, ${Math.max(y - 28, 4)}px)`;
+  }
+
+  /** Where a node is now, in W. */
+  nodeAt(index: number): Vector3 | null {
+    const node = this.world?.scene.nodes[index];
+    const frame = this.app.frame.value;
+    return node && frame ? worldPoint(frame, node.body, node.position_m, new Vector3()) : null;
+  }
+}
+
+function cornersOf({ min, max }: Box3): Vector3[] {
+  return [min.x, max.x].flatMap((x) => [min.y, max.y].flatMap((y) => [min.z, max.z].map((z) => new Vector3(x, y, z))));
+}

@@ -1,0 +1,149 @@
+// Live controls: a push, parameters, set points and gains. Each change is a message that the server
+// does not drop; what it refuses comes back as an error and is shown.
+import type { App } from "../app";
+import type { Control, Parameter, Vec3 } from "../protocol";
+import { button, el, number, unitText } from "../util";
+
+export function controls(app: App): HTMLElement {
+  const body = el("div");
+  const element = el("section.controls", { "aria-label": "live controls" }, body);
+  let offered = "";
+  app.tuning.watch((scene) => {
+    if (!scene) return;
+    // what one is about to move must not be taken out of the hand
+    const offers = JSON.stringify([scene.parameters, scene.controls, scene.nodes].map((list) => list.map((each) => ("cable" in each ? each.cable : each.name))));
+    if (offers === offered && element.contains(document.activeElement)) return;
+    offered = offers;
+    const owned = (prefix: string) => scene.parameters.filter(({ name }) => name.startsWith(prefix));
+    const general = scene.parameters.filter(({ name }) => !/^(body|cable)\//.test(name));
+    body.replaceChildren(pushForm(app));
+    if (general.length > 0) body.append(group("Parameters", general.map((each) => parameter(app, each, each.name))));
+    const one = (kind: "cable" | "body", names: string[], more: (name: string) => HTMLElement[]) => {
+      const parts = (name: string) => {
+        const prefix = `${kind}/${name}/`;
+        return [...more(name), ...owned(prefix).map((each) => parameter(app, each, labelOf(each.name.slice(prefix.length))))];
+      };
+      if (names.some((name) => parts(name).length > 0)) body.append(group(kind === "cable" ? "Cable" : "Body", [chooser(app, kind, names, parts)]));
+    };
+    one("cable", scene.cables.map(({ name }) => name), (name) => {
+      const control = scene.controls.find(({ cable }) => cable === name);
+      return control ? slidersOf(app, control) : [];
+    });
+    one("body", scene.bodies.map(({ name }) => name), () => []);
+  });
+  return element;
+}
+
+function group(title: string, content: HTMLElement[]): HTMLElement {
+  return el("details", { open: true }, el("summary", {}, title), ...content);
+}
+
+/** "stiffness_n_per_m" -> "stiffness": the unit stands beside the slider. */
+function labelOf(key: string): string {
+  return key.replace(/_(n_s_per_m|n_per_m|m_per_s2|kg|n|m)$/, "").replace(/_/g, " ");
+}
+
+/** Fields of one cable or body of many; the one that is selected in the view, if one is. */
+function chooser(app: App, kind: "cable" | "body", names: string[], parts: (name: string) => HTMLElement[]): HTMLElement {
+  const fields = el("div");
+  const choice = el<HTMLSelectElement>("select", { "aria-label": kind }, ...names.map((name) => el("option", {}, name)));
+  const show = () => fields.replaceChildren(...parts(choice.value));
+  choice.addEventListener("change", show);
+  app.selection.watch((selection) => {
+    const name = selection?.kind === kind ? names[selection.index] : undefined;
+    if (name === undefined || name === choice.value) return;
+    choice.value = name;
+    show();
+  });
+  show();
+  return el("div", {}, choice, fields);
+}
+
+/** A slider with its number beside it; both say what has been set. */
+function slider(label: string, unit: string, value: number, min: number, max: number, set: (value: number) => void): HTMLElement {
+  const step = (max - min) / 500 || "any";
+  const range = el<HTMLInputElement>("input", { type: "range", min, max, step, value, "aria-label": `${label} [${unit}]` });
+  const exact = el<HTMLInputElement>("input", { type: "number", min, max, step: "any", value: +value.toPrecision(4), "aria-label": `${label} [${unit}], exact` });
+  range.addEventListener("input", () => {
+    exact.value = String(+Number(range.value).toPrecision(4));
+    set(Number(range.value));
+  });
+  exact.addEventListener("change", () => {
+    if (!exact.reportValidity() || exact.value === "") return;
+    range.value = exact.value;
+    set(Number(exact.value));
+  });
+  return el("label.slider", { title: label }, el("span", {}, label), range, exact, el("span.unit", {}, unit));
+}
+
+function parameter(app: App, known: Parameter, label: string): HTMLElement {
+  const { name, unit, min, max, restarts } = known;
+  const set = (value: number) => {
+    known.value = value;
+    app.send({ type: "set_parameter", name, value });
+  };
+  const made = slider(label, unitText(unit), known.value, min, max, restarts ? () => {} : set);
+  made.title = name;
+  if (restarts) {
+    // only when the slider is let go: a new start for each pixel would be no use
+    made.addEventListener("change", (event) => set(Number((event.target as HTMLInputElement).value)));
+    made.append(el("span.restarts", { title: "a change starts the experiment anew" }, "↻"));
+  }
+  return made;
+}
+
+function slidersOf(app: App, control: Control): HTMLElement[] {
+  const { cable } = control;
+  const setpoint = (value: number) => app.send({ type: "set_setpoint", cable, value });
+  if (control.kind === "rest_length") {
+    const now = control.rest_length_m ?? 0;
+    return [slider("rest length", "m", now, 0.2 * now, 2 * now, (value) => {
+      control.rest_length_m = value;
+      setpoint(value);
+    })];
+  }
+  const gain = (name: "length_offset_m" | "position_gain_n_per_m" | "velocity_gain_n_s_per_m", label: string, unit: string, max: number) =>
+    slider(label, unit, control[name] ?? 0, 0, max, (value) => {
+      control[name] = value;
+      app.send({ type: "set_gain", cable, gain: name, value });
+    });
+  const room = (value: number | undefined, least: number) => Math.max(3 * (value ?? 0), least);
+  return [
+    slider("tension T₀", "N", control.tension_offset_n ?? 0, 0, room(control.tension_offset_n, 50), (value) => {
+      control.tension_offset_n = value;
+      setpoint(value);
+    }),
+    gain("length_offset_m", "length L₀", "m", room(control.length_offset_m, 0.1)),
+    gain("position_gain_n_per_m", "gain K", "N/m", room(control.position_gain_n_per_m, 500)),
+    gain("velocity_gain_n_s_per_m", "gain B", "N s/m", room(control.velocity_gain_n_s_per_m, 200)),
+  ];
+}
+
+const DIRECTIONS: readonly [string, Vec3][] = [
+  ["forward +x", [1, 0, 0]], ["back −x", [-1, 0, 0]], ["left +y", [0, 1, 0]], ["right −y", [0, -1, 0]],
+  ["up +z", [0, 0, 1]], ["down −z", [0, 0, -1]],
+];
+
+function pushForm(app: App): HTMLElement {
+  const nodes = app.scene.value?.nodes ?? [];
+  const node = el<HTMLSelectElement>("select", { "aria-label": "node to push" }, ...nodes.map(({ name }) => el("option", {}, name)));
+  const direction = el<HTMLSelectElement>("select", { "aria-label": "direction" }, ...DIRECTIONS.map(([name], i) => el("option", { value: i }, name)));
+  const force = el<HTMLInputElement>("input", { type: "number", value: 20, min: 0, max: 100000, step: "any", "aria-label": "force [N]" });
+  const duration = el<HTMLInputElement>("input", { type: "number", value: 0.5, min: 0.001, max: 1000, step: "any", "aria-label": "for [s]" });
+  const push = () => {
+    if (!force.reportValidity() || !duration.reportValidity()) return;
+    const along = DIRECTIONS[Number(direction.value)]![1];
+    const force_n = along.map((part) => part * Number(force.value)) as Vec3;
+    if (app.send({ type: "push", node: node.value, force_n, duration_s: Number(duration.value) })) {
+      app.notice.value = `pushed ${node.value} with ${number(Number(force.value))} N`;
+    }
+  };
+  app.selection.watch((selection) => {
+    if (selection?.kind === "node") node.value = app.scene.value?.nodes[selection.index]?.name ?? node.value;
+  });
+  return group("Push", [
+    el("div.push", {}, node, direction,
+      el("label", {}, force, " N"), el("label", {}, duration, " s"),
+      button("push", "push the node", push, "button.primary")),
+  ]);
+}

@@ -1,0 +1,75 @@
+// The keys, in one table that the help shows, too.
+import type { App } from "../app";
+import type { View } from "../scene/view";
+import { nextSpeed } from "./timeline";
+
+export interface Key {
+  keys: string[];
+  shown: string;
+  does: string;
+  act(event: KeyboardEvent): void;
+}
+
+export function keysOf(app: App, view: View, toggleHelp: () => void, toggleControls: () => void): Key[] {
+  const jump = (seconds: number) => app.seek((app.frame.value?.time_s ?? 0) + seconds);
+  const step = (count: number) => (event: KeyboardEvent) => {
+    if (event.shiftKey) jump(count);
+    else app.send({ type: "step", count });
+  };
+  const speed = (faster: boolean) => () =>
+    app.send({ type: "speed", factor: nextSpeed(app.frame.value?.speed ?? 1, faster) });
+  const show = (what: "forces" | "path" | "cables") => () => {
+    const part = view.world?.[what];
+    if (!part) return;
+    if (what === "path") view.world!.path.shown = !view.world!.path.shown;
+    part.object.visible = !part.object.visible;
+    view.invalidate();
+  };
+  const scene = () => app.scene.value;
+  return [
+    { keys: [" "], shown: "space", does: "play or pause", act: () => app.togglePlay() },
+    { keys: ["ArrowRight"], shown: "→", does: "one step on (with shift: one second)", act: step(1) },
+    { keys: ["ArrowLeft"], shown: "←", does: "one step back (with shift: one second); replay only", act: (event) => app.seekable && step(-1)(event) },
+    { keys: ["Home"], shown: "home", does: "to the start; replay only", act: () => app.seek(scene()?.first_s ?? 0) },
+    { keys: ["End"], shown: "end", does: "to the end; replay only", act: () => app.seek(scene()?.duration_s ?? 0) },
+    { keys: ["r", "R"], shown: "R", does: "reset: back to the start", act: () => app.send({ type: "reset" }) },
+    { keys: ["["], shown: "[", does: "slower", act: speed(false) },
+    { keys: ["]"], shown: "]", does: "faster", act: speed(true) },
+    { keys: ["f", "F"], shown: "F", does: "fit the robot into the view", act: () => view.fit() },
+    { keys: ["v", "V"], shown: "V", does: "the view follows the robot, or stays", act: () => {
+      view.follow = !view.follow;
+      app.notice.value = view.follow ? "the view follows the robot" : "the view stays";
+    } },
+    { keys: ["a", "A"], shown: "A", does: "arrows of forces on or off", act: show("forces") },
+    { keys: ["p", "P"], shown: "P", does: "path of the centre of mass on or off", act: show("path") },
+    { keys: ["n", "N"], shown: "N", does: "next cable (with shift: next body): its numbers and plots", act: (event) => {
+      const kind = event.shiftKey ? "body" : "cable";
+      const list = event.shiftKey ? scene()?.bodies : scene()?.cables;
+      if (!list || list.length === 0) return;
+      const now = app.selection.value;
+      app.selection.value = { kind, index: now?.kind === kind ? (now.index + 1) % list.length : 0 };
+    } },
+    { keys: ["Escape"], shown: "esc", does: "nothing selected; closes this help", act: () => (app.selection.value = null) },
+    { keys: ["c", "C"], shown: "C", does: "live controls", act: toggleControls },
+    { keys: ["t", "T"], shown: "T", does: "dark or light", act: () => app.toggleTheme() },
+    { keys: ["?", "h", "H"], shown: "?", does: "this help", act: toggleHelp },
+  ];
+}
+
+export function listenToKeys(keys: readonly Key[]): void {
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    const target = event.target as HTMLElement;
+    // an open dialog closes itself by escape, and has its own buttons
+    if (target.closest("dialog[open]") && event.key !== "?") return;
+    const writes = target.closest("input:not([type=range]):not([type=checkbox]), textarea, select");
+    if (writes && event.key !== "Escape") return;
+    // a button acts on space, a slider on arrows: theirs before ours
+    if (event.key === " " && target.closest("button, summary, input[type=checkbox]")) return;
+    if (event.key.startsWith("Arrow") && target.closest("input[type=range]:not(.timeline input)")) return;
+    const key = keys.find((each) => each.keys.includes(event.key));
+    if (!key) return;
+    event.preventDefault();
+    key.act(event);
+  });
+}

@@ -1,0 +1,96 @@
+// Play, step, speed, and the line of time with its phases; in a replay it is a scrubber.
+import type { App } from "../app";
+import { icon } from "./icons";
+import { button, clock, el, number } from "../util";
+
+const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10, 0];
+
+export function timeline(app: App): HTMLElement {
+  const play = button(icon("play"), "play or pause (space)", () => app.togglePlay(), "button.play");
+  const back = button(icon("start"), "back to the start (R)", () => app.send({ type: "reset" }));
+  const stepBack = button(icon("back"), "one step back (left arrow)", () => app.send({ type: "step", count: -1 }));
+  const step = button(icon("step"), "one step (right arrow)", () => app.send({ type: "step", count: 1 }));
+  const speed = el<HTMLSelectElement>("select", {
+    title: "speed: simulated seconds a second ([ and ])", "aria-label": "speed",
+    onchange: () => app.send({ type: "speed", factor: Number(speed.value) }),
+  }, ...SPEEDS.map((factor) => el("option", { value: factor }, speedText(factor))));
+  const time = el("span.time", { "aria-live": "off" });
+  const factor = el("span.factor", { title: "real-time factor: simulated over wall-clock time" });
+  const phases = el("div.phases");
+  const events = el("div.events");
+  const cursor = el("div.cursor");
+  const slider = el<HTMLInputElement>("input", {
+    type: "range", step: "any", min: 0, max: 1, value: 0, "aria-label": "time",
+    oninput: () => app.seek(Number(slider.value)),
+  });
+  const track = el("div.track", {}, phases, slider, events, cursor);
+  const element = el("footer.timeline", {}, back, stepBack, play, step, speed, track, time, factor);
+
+  const share = (time_s: number): string => {
+    const min = Number(slider.min);
+    const max = Number(slider.max);
+    return `${(100 * Math.min(Math.max((time_s - min) / (max - min || 1), 0), 1)).toFixed(3)}%`;
+  };
+  const stretch = () => {
+    const scene = app.scene.value;
+    if (!scene) return;
+    const now_s = app.frame.value?.time_s ?? 0;
+    slider.min = String(scene.first_s);
+    slider.max = String(app.live ? Math.max(scene.duration_s, now_s) : scene.duration_s);
+    phases.replaceChildren(...scene.phases.map((phase) => {
+      const span = el("span", { title: `${phase.name}: ${phase.from_s} s to ${phase.to_s} s` }, phase.name);
+      span.style.left = share(phase.from_s);
+      span.style.width = `calc(${share(phase.to_s)} - ${share(phase.from_s)})`;
+      return span;
+    }));
+  };
+  app.scene.watch(stretch);
+  app.hello.watch(() => {
+    stepBack.hidden = !app.seekable;
+    slider.disabled = !app.seekable;
+    element.classList.toggle("model", app.hello.value?.mode === "model");
+    stretch();
+  });
+  app.frame.watch((frame) => {
+    if (!frame) return;
+    if (app.live && frame.time_s > Number(slider.max)) stretch();
+    slider.value = String(frame.time_s);
+    slider.setAttribute("aria-valuetext", `${frame.time_s.toFixed(2)} s`);
+    track.style.setProperty("--now", share(frame.time_s));
+    const end_s = app.scene.value?.duration_s ?? 0;
+    time.textContent = end_s > 0 ? `${clock(frame.time_s)} / ${clock(end_s, 0)}` : clock(frame.time_s);
+    const paused = frame.paused !== 0;
+    if (element.dataset["paused"] !== String(paused)) play.replaceChildren(icon(paused ? "play" : "pause"));
+    element.dataset["paused"] = String(paused);
+    element.dataset["time"] = String(frame.time_s);
+    factor.textContent = paused || !app.live ? "" : `${number(frame.real_time_factor, 2)}× real time`;
+    if (document.activeElement !== speed) select(speed, frame.speed);
+  });
+  app.cursor_s.watch((time_s) => {
+    cursor.hidden = time_s === null;
+    if (time_s !== null) cursor.style.left = share(time_s);
+  });
+  app.events.watch((list) =>
+    events.replaceChildren(...list.map((event) => {
+      const mark = el("i", { title: `${clock(event.time_s)} ${event.text}` });
+      mark.style.left = share(event.time_s);
+      return mark;
+    })));
+  return element;
+}
+
+function select(list: HTMLSelectElement, factor: number): void {
+  let option = [...list.options].find((each) => Number(each.value) === factor);
+  if (!option) list.append((option = el<HTMLOptionElement>("option", { value: factor }, speedText(factor))));
+  option.selected = true;
+}
+
+function speedText(factor: number): string {
+  return factor === 0 ? "max" : `${factor}×`;
+}
+
+/** The next faster or slower of the speeds on offer. */
+export function nextSpeed(now: number, faster: boolean): number {
+  const place = SPEEDS.findIndex((speed) => (now === 0 ? speed === 0 : speed === 0 || speed >= now));
+  return SPEEDS[Math.min(Math.max(place + (faster ? 1 : -1), 0), SPEEDS.length - 1)]!;
+}

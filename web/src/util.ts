@@ -1,0 +1,133 @@
+// Small helpers that everything uses: a value that can be watched, elements of the page, numbers as
+// text.
+
+export class Signal<T> {
+  private readonly watchers = new Set<(value: T) => void>();
+  constructor(private current: T) {}
+
+  get value(): T {
+    return this.current;
+  }
+
+  set value(next: T) {
+    if (Object.is(next, this.current)) return;
+    this.current = next;
+    for (const watcher of [...this.watchers]) watcher(next);
+  }
+
+  /** Calls now and at every change; what it returns ends that. */
+  watch(watcher: (value: T) => void): () => void {
+    this.watchers.add(watcher);
+    watcher(this.current);
+    return () => this.watchers.delete(watcher);
+  }
+}
+
+type Attributes = Record<string, string | number | boolean | ((event: never) => void)>;
+
+/** el("button.primary", {onclick: f, "aria-label": "x"}, "text", child). */
+export function el<T extends HTMLElement = HTMLElement>(
+  spec: string,
+  attributes: Attributes = {},
+  ...children: (Node | string)[]
+): T {
+  const [tag, ...classes] = spec.split(".");
+  const element = document.createElement(tag || "div");
+  if (classes.length > 0) element.className = classes.join(" ");
+  for (const [name, value] of Object.entries(attributes)) {
+    if (typeof value === "function") element.addEventListener(name.slice(2), value as EventListener);
+    else if (typeof value === "boolean") element.toggleAttribute(name, value);
+    else element.setAttribute(name, String(value));
+  }
+  element.append(...children);
+  return element as T;
+}
+
+/** A button that says what it does to eyes, ears and those who wait with the mouse over it. */
+export function button(label: string | Node, title: string, onclick: () => void, spec = "button"): HTMLButtonElement {
+  return el<HTMLButtonElement>(spec, { type: "button", title, "aria-label": title, onclick }, label);
+}
+
+export function number(value: number, digits = 3): string {
+  if (!Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  if (size !== 0 && (size >= 1e5 || size < 1e-3)) return value.toExponential(digits - 1);
+  if (Number.isInteger(value)) return String(value).replace("-", "−");
+  const decimals = size === 0 ? 0 : Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return value.toFixed(Math.min(decimals, 6)).replace("-", "−");
+}
+
+/** "tension_n" -> "N": the unit that a channel's name ends with, written as on paper. */
+export function unitText(unit: string): string {
+  const known: Record<string, string> = {
+    n: "N", m: "m", s: "s", j: "J", w: "W", kg: "kg", rad: "rad", hz: "Hz",
+    m_per_s: "m/s", rad_per_s: "rad/s", n_per_m: "N/m", n_s_per_m: "N s/m", m_per_s2: "m/s²", "m/s^2": "m/s²", "1": "",
+  };
+  return known[unit.toLowerCase()] ?? unit;
+}
+
+/** 12.345 s -> "0:12.35"; long times get hours. */
+export function clock(time_s: number, decimals = 2): string {
+  if (!Number.isFinite(time_s)) return "–";
+  const scale = 10 ** decimals;
+  const total = Math.round(Math.abs(time_s) * scale) / scale;
+  const hours = Math.floor(total / 3600);
+  const minutes = Math.floor((total % 3600) / 60);
+  const seconds = (total % 60).toFixed(decimals).padStart(decimals > 0 ? decimals + 3 : 2, "0");
+  const sign = time_s < 0 ? "−" : "";
+  return hours > 0
+    ? `${sign}${hours}:${String(minutes).padStart(2, "0")}:${seconds}`
+    : `${sign}${minutes}:${seconds}`;
+}
+
+/** As a tick of an axis: no zeros at the end. */
+export function tickText(value: number): string {
+  return `${+value.toPrecision(6)}`.replace("-", "−");
+}
+
+const NICE = [1, 1.5, 2, 3, 4, 5, 6, 8, 10];
+
+/** The smallest of 1, 1.5, 2, 3, ... times a power of ten that is no less than the value. */
+export function niceAbove(value: number): number {
+  if (!(value > 0) || !Number.isFinite(value)) return 1;
+  const power = 10 ** Math.floor(Math.log10(value));
+  return (NICE.find((factor) => factor * power >= value * (1 - 1e-9)) ?? 10) * power;
+}
+
+/** Place of the last element <= value in an ascending list; -1 if there is none. */
+export function lastAtMost(list: ArrayLike<number>, value: number): number {
+  let low = 0;
+  let high = list.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (list[middle]! <= value) low = middle + 1;
+    else high = middle;
+  }
+  return low - 1;
+}
+
+export function download(name: string, content: Blob): void {
+  const link = el<HTMLAnchorElement>("a", { href: URL.createObjectURL(content), download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+/** What the browser keeps between visits; a page opened from disk may not be allowed to. */
+export const memory = {
+  get(key: string): string | null {
+    try {
+      return localStorage.getItem(`taut.${key}`);
+    } catch {
+      return null;
+    }
+  },
+  set(key: string, value: string): void {
+    try {
+      localStorage.setItem(`taut.${key}`, value);
+    } catch {
+      // then it is forgotten
+    }
+  },
+};

@@ -1,0 +1,136 @@
+// A real browser without a screen: Debian's Chromium, driven by playwright-core, with graphics in
+// software. Environment: TAUT_PAGE: the built page; TAUT_CHROMIUM; TAUT_PICTURES: where to put
+// pictures of what the tests see.
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+
+export const PAGE = process.env.TAUT_PAGE ?? fileURLToPath(new URL("../dist/index.html", import.meta.url));
+const CHROMIUM = process.env.TAUT_CHROMIUM ?? "/usr/bin/chromium";
+const PICTURES = process.env.TAUT_PICTURES ?? join(tmpdir(), "taut-pictures");
+
+let browser = null;
+
+export async function openBrowser() {
+  if (!existsSync(PAGE)) throw new Error(`${PAGE} is not there: build it first (npm run build)`);
+  browser ??= await chromium.launch({
+    executablePath: CHROMIUM,
+    args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox", "--force-color-profile=srgb"],
+  });
+  return browser;
+}
+
+export async function closeBrowser() {
+  await browser?.close();
+  browser = null;
+}
+
+/** A page that notes its complaints and every address that it asks for. */
+export async function openPage(url, { width = 1000, height = 560, theme = "light", wait = true, scale = 1 } = {}) {
+  const context = await (await openBrowser()).newContext({
+    viewport: { width, height }, colorScheme: theme, acceptDownloads: true, deviceScaleFactor: scale,
+  });
+  const page = await context.newPage();
+  page.complaints = [];
+  page.requests = [];
+  page.on("pageerror", (error) => page.complaints.push(error.message));
+  page.on("console", (message) => message.type() === "error" && page.complaints.push(message.text()));
+  page.on("request", (request) => page.requests.push(request.url()));
+  page.on("websocket", (socket) => page.requests.push(socket.url()));
+  await page.goto(url);
+  if (wait) await ready(page);
+  return page;
+}
+
+/** Waits until the scene has been drawn. */
+export async function ready(page) {
+  await page.waitForFunction(() => Number(document.querySelector(".view")?.dataset.drawn ?? 0) > 1 && window.taut?.view.world);
+}
+
+/** Waits for a time in the timeline, to a hundredth of a row. */
+export async function untilTime(page, time_s, within_s = 1e-4) {
+  await page.waitForFunction(([wanted, within]) =>
+    Math.abs(Number(document.querySelector(".timeline").dataset.time) - wanted) <= within, [time_s, within_s]);
+  await drawn(page);
+}
+
+/** Waits until what has changed so far is on the screen. */
+export async function drawn(page) {
+  await page.evaluate(() => new Promise((resolve) => {
+    window.taut.view.invalidate();
+    requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+  }));
+}
+
+/** Waits until something here, not in the page, is so. */
+export async function until(condition, what) {
+  for (let round = 0; round < 600; ++round) {
+    if (condition()) return;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  throw new Error(`30 s have gone by and not: ${what}`);
+}
+
+export async function picture(page, name, options = {}) {
+  mkdirSync(PICTURES, { recursive: true });
+  return page.screenshot({ path: join(PICTURES, `${name}.png`), ...options });
+}
+
+/** Writes the page as a report with these data; answers its address on disk. */
+export function writeReport(data, folder) {
+  const text = JSON.stringify(data).replace(/</g, "\\u003c");
+  const html = readFileSync(PAGE, "utf8").replace(/(id="taut-report">)(<\/script>)/, (_, before, after) => before + text + after);
+  const path = join(folder, "report.html");
+  writeFileSync(path, html);
+  return `file://${path}`;
+}
+
+/** The picture of the 3-D view: colour(x, y) in pixels of the page, from the view's top left. */
+export async function viewPixels(page) {
+  const box = await page.locator(".view").boundingBox();
+  const shot = await page.screenshot({ clip: box });
+  const data = await page.evaluate(async (base64) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${base64}`;
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [image.width, image.height];
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    return { width: image.width, height: image.height, rgba: Array.from(context.getImageData(0, 0, image.width, image.height).data) };
+  }, shot.toString("base64"));
+  return {
+    width: box.width, height: box.height,
+    colour: (x, y) => {
+      const at = 4 * (Math.round(y) * data.width + Math.round(x));
+      return data.rgba.slice(at, at + 3);
+    },
+  };
+}
+
+/** A projection of our own, from where the page says that its camera is: p_W to pixels. */
+export async function projection(page) {
+  const { eye, target, fov, width, height } = await page.evaluate(() => {
+    const { view } = window.taut;
+    return {
+      eye: view.camera.position.toArray(), target: view.target.toArray(), fov: view.camera.fov,
+      width: view.canvas.clientWidth, height: view.canvas.clientHeight,
+    };
+  });
+  const minus = (a, b) => a.map((value, k) => value - b[k]);
+  const dot = (a, b) => a.reduce((sum, value, k) => sum + value * b[k], 0);
+  const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
+  const unit = (a) => a.map((value) => value / Math.hypot(...a));
+  const ahead = unit(minus(target, eye));
+  const right = unit(cross(ahead, [0, 0, 1]));
+  const up = cross(right, ahead);
+  const scale = height / 2 / Math.tan((fov * Math.PI) / 360);
+  const project = (p) => {
+    const d = minus(p, eye);
+    const depth = dot(d, ahead);
+    return { x: width / 2 + (scale * dot(d, right)) / depth, y: height / 2 - (scale * dot(d, up)) / depth, depth };
+  };
+  return project;
+}

@@ -1,0 +1,210 @@
+// Live: dragging, pushing, sliders, several viewers, a server that goes and comes back, refusals.
+import assert from "node:assert/strict";
+import { after, afterEach, beforeEach, test } from "node:test";
+import { closeBrowser, drawn, openPage, PAGE, picture, projection, ready, until } from "./browser.mjs";
+import { nodes, worldPoint } from "./fixture.mjs";
+import { MockServer } from "./mock_server.mjs";
+
+let server;
+const pages = [];
+
+async function open(options) {
+  const page = await openPage(server.url, options);
+  pages.push(page);
+  return page;
+}
+
+beforeEach(async () => {
+  server = await new MockServer(PAGE, { mode: "live" }).start();
+});
+afterEach(async () => {
+  for (const page of pages.splice(0)) await page.context().close();
+  await server.stop();
+});
+after(closeBrowser);
+
+const camera = (page) => page.evaluate(() => window.taut.view.camera.position.toArray());
+
+/** Where a node is on the page. */
+async function nodeOnPage(page, index) {
+  const project = await projection(page);
+  const box = await page.locator(".view").boundingBox();
+  const at = project(worldPoint(nodes[index].body, nodes[index].position_m, server.time_s));
+  return { x: box.x + at.x, y: box.y + at.y, depth: at.depth, project, box };
+}
+
+test("DraggingANodePullsItAndTheTensionAnswers", async () => {
+  const page = await open();
+  const before = await camera(page);
+  const from = await nodeOnPage(page, 1);
+  await page.mouse.move(from.x, from.y);
+  await page.waitForFunction(() => document.querySelector(".tip").textContent === "node rod_0.high");
+  await page.mouse.down();
+  await page.mouse.move(from.x + 60, from.y - 40, { steps: 4 });
+  await until(() => {
+    const last = server.of("drag").at(-1);
+    if (!last) return false;
+    const { x, y } = from.project(last.target_m);
+    return Math.abs(x + from.box.x - from.x - 60) < 1 && Math.abs(y + from.box.y - from.y + 40) < 1;
+  }, "the target is under the mouse");
+  const target = server.of("drag").at(-1);
+  assert.equal(target.node, "rod_0.high");
+  assert.ok(Math.abs(from.project(target.target_m).depth - from.depth) < 1e-3, "the target stays as far away as the node");
+  await page.waitForFunction(() => window.taut.view.world.forces.pushes.object.children[0].count === 1);
+  await page.waitForFunction(() => window.taut.app.frame.value.cables[0] > 6);
+  await drawn(page);
+  await picture(page, "drag");
+  await page.mouse.up();
+  await until(() => server.of("drop").length === 1, "the drop");
+  await page.waitForFunction(() => window.taut.view.world.forces.pushes.object.children[0].count === 0);
+  await page.waitForFunction(() => document.querySelectorAll(".events i").length === 1);
+  (await camera(page)).forEach((value, k) => assert.ok(Math.abs(value - before[k]) < 1e-9, "the view does not turn meanwhile"));
+  assert.deepEqual(page.complaints, []);
+});
+
+test("DraggingBesideTheRobotTurnsTheView", async () => {
+  const page = await open();
+  const before = await camera(page);
+  const box = await page.locator(".view").boundingBox();
+  await page.mouse.move(box.x + box.width - 60, box.y + 30);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width - 160, box.y + 60, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForFunction((old) => window.taut.view.camera.position.toArray().some((value, k) => Math.abs(value - old[k]) > 0.05), before);
+  assert.equal(server.of("drag").length, 0);
+});
+
+test("AClickShowsTheNumbersOfACableAndPlotsIt", async () => {
+  const page = await open();
+  const ends = [await nodeOnPage(page, 1), await nodeOnPage(page, 3)]; // top_0
+  await page.mouse.click((ends[0].x + ends[1].x) / 2, (ends[0].y + ends[1].y) / 2);
+  await page.waitForFunction(() => document.querySelector(".inspector .name").textContent === "cable top_0");
+  const rows = Object.fromEntries(await page.locator(".inspector tr").evaluateAll((list) => list.map((row) => [...row.cells].map((cell) => cell.textContent))));
+  assert.equal(rows["tension"], "16 N");
+  assert.equal(rows["rest length"], "0.25000 m");
+  assert.equal(rows["stiffness"], "300 N/m");
+  assert.equal(rows["between"], "rod_0 → rod_1");
+  await page.waitForSelector('[data-figure="own:cable:top_0:length"] .uplot');
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => document.querySelector(".inspector").hidden);
+});
+
+test("KeysPauseStepAndReset", async () => {
+  const page = await open();
+  await page.keyboard.press(" ");
+  await until(() => server.of("resume").length === 1 && server.time_s > 0.1, "it runs");
+  await page.keyboard.press(" ");
+  await until(() => server.of("pause").length === 1, "it is paused");
+  await page.keyboard.press("ArrowRight");
+  await until(() => server.of("step").length === 1, "a step");
+  await page.keyboard.press("r");
+  await until(() => server.of("reset").length === 1, "a reset");
+  assert.equal(server.of("seek").length, 0);
+});
+
+test("LiveControlsSendWhatTheyShow", async () => {
+  const page = await open({ width: 1280, height: 760 });
+  await page.keyboard.press("c");
+  await page.getByLabel("friction_scale [], exact").fill("0.5");
+  await page.keyboard.press("Enter");
+  await until(() => server.of("set_parameter").length > 0, "a parameter");
+  assert.deepEqual(server.of("set_parameter").map(({ name, value }) => ({ name, value })), [{ name: "friction_scale", value: 0.5 }]);
+  await page.getByLabel("cable", { exact: true }).selectOption("side_1");
+  await page.getByLabel("tension T₀ [N], exact").fill("21");
+  await page.keyboard.press("Enter");
+  await page.getByLabel("gain K [N/m]", { exact: true }).focus();
+  await page.keyboard.press("ArrowRight");
+  await until(() => server.of("set_gain").length > 0, "a gain");
+  assert.deepEqual(server.of("set_setpoint").map(({ cable, value }) => ({ cable, value })), [{ cable: "side_1", value: 21 }]);
+  const { cable, gain, value } = server.of("set_gain")[0];
+  assert.equal(`${cable} ${gain} ${value > 100}`, "side_1 position_gain_n_per_m true");
+  await page.getByLabel("node to push").selectOption("rod_2.high");
+  await page.getByLabel("direction").selectOption("up +z");
+  await page.getByLabel("force [N]").fill("12");
+  await page.getByLabel("for [s]").fill("3");
+  await page.getByRole("button", { name: "push the node" }).click();
+  await until(() => server.of("push").length === 1, "a push");
+  const { node, force_n, duration_s } = server.of("push")[0];
+  assert.deepEqual({ node, force_n, duration_s }, { node: "rod_2.high", force_n: [0, 0, 12], duration_s: 3 });
+  await page.waitForFunction(() => window.taut.view.world.forces.pushes.object.children[0].count === 1);
+  await page.getByLabel("force [N]").fill("-5");
+  await page.getByRole("button", { name: "push the node" }).click();
+  await page.waitForFunction(() => document.querySelector('[aria-label="force [N]"]').validity.rangeUnderflow);
+  assert.equal(server.of("push").length, 1, "a force below zero is not sent");
+  await drawn(page);
+  await picture(page, "controls");
+});
+
+test("AChangedParameterLeavesViewSelectionAndSlidersAlone", async () => {
+  const page = await open();
+  await page.keyboard.press("n");
+  await page.keyboard.press("c");
+  await page.evaluate(() => (window.world = window.taut.view.world));
+  const slider = page.getByLabel("friction_scale []", { exact: true });
+  await slider.focus();
+  for (let i = 1; i <= 3; ++i) {
+    await page.keyboard.press("ArrowRight");
+    await page.waitForFunction((value) => window.taut.app.tuning.value.parameters[0].value === value, 1 + 0.004 * i);
+  }
+  assert.ok(await slider.evaluate((element) => element === document.activeElement), "the slider keeps the focus");
+  assert.ok(await page.evaluate(() => window.world === window.taut.view.world), "the scene is not built again");
+  assert.equal(await page.locator(".inspector .name").innerText(), "cable bottom_0");
+});
+
+test("APageOutlivesItsServer", async () => {
+  const page = await open();
+  const { port } = server;
+  await server.stop();
+  await page.waitForFunction(() => document.querySelector(".link").dataset.state === "lost");
+  assert.match(await page.locator(".link").innerText(), /connection lost/);
+  server = await new MockServer(PAGE, { mode: "live" }).start(port);
+  server.time_s = 7;
+  await page.waitForFunction(() => document.querySelector(".link").dataset.state === "open" && Number(document.querySelector(".timeline").dataset.time) === 7);
+  await page.keyboard.press(" ");
+  await until(() => server.of("resume").length === 1, "commands arrive again");
+});
+
+test("OneDrivesOthersWatchUntilTheyTakeOver", async () => {
+  const first = await open();
+  await first.keyboard.press(" ");
+  await first.waitForFunction(() => document.querySelector(".driver").textContent === "you drive");
+  const second = await open();
+  await second.waitForFunction(() => document.querySelector(".driver").textContent === "viewer 1 drives, you watch");
+  await second.keyboard.press(" ");
+  await second.waitForFunction(() => document.querySelector(".notice span").textContent === "viewer 1 drives");
+  await second.getByRole("button", { name: /drive from now on/ }).click();
+  await first.waitForFunction(() => document.querySelector(".driver").textContent === "viewer 2 drives, you watch");
+  await second.waitForFunction(() => document.querySelector(".driver").textContent === "you drive");
+});
+
+test("WhatCannotBeShownIsSaidOnAPageOfItsOwn", async () => {
+  await server.stop();
+  server = await new MockServer(PAGE, { mode: "error", notice: "run.h5: is of format 9; this taut reads 1 to 2" }).start();
+  const page = await open({ wait: false });
+  await page.waitForFunction(() => document.querySelector(".failure pre")?.textContent.includes("format 9"));
+  assert.equal(await page.locator(".split").isVisible(), false);
+  await picture(page, "error");
+});
+
+test("AServerOfAnotherVersionIsRefused", async () => {
+  await server.stop();
+  server = await new MockServer(PAGE, { mode: "live", hello: { version: 99 } }).start();
+  const page = await open({ wait: false });
+  await page.waitForFunction(() => /version 1 of the protocol, the server version 99/.test(document.querySelector(".failure pre")?.textContent ?? ""));
+});
+
+test("HelpNamesEveryKeyAndThemesChange", async () => {
+  const page = await open();
+  await page.keyboard.press("?");
+  await page.waitForFunction(() => document.querySelector("dialog.help").open);
+  const shown = await page.locator("dialog.help").innerText();
+  for (const key of ["space", "→", "home", "R", "esc"]) assert.ok(shown.includes(key), key);
+  await picture(page, "help");
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => !document.querySelector("dialog.help").open);
+  await page.keyboard.press("t");
+  await page.waitForFunction(() => document.documentElement.dataset.theme === "dark");
+  await page.reload();
+  await ready(page);
+  assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "dark");
+});

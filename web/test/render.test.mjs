@@ -1,0 +1,148 @@
+// What is drawn is where the model says: pixels of rods and cables against a projection of our own.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { closeBrowser, drawn, openPage, PAGE, picture, projection, untilTime, viewPixels } from "./browser.mjs";
+import { CABLE_COUNT, cables, nodes, SLACK, tension_n, worldPoint } from "./fixture.mjs";
+import { MockServer } from "./mock_server.mjs";
+
+const CLEAR_PX = 12; // rods and cables are less wide
+const SCALE_N = 40; // the largest tension of the fixture is 38.4 N
+const GROUND = { light: 210, dark: 50 }; // how bright it is, of 255
+let server;
+
+before(async () => {
+  server = await new MockServer(PAGE, { mode: "replay" }).start();
+});
+after(async () => {
+  await closeBrowser();
+  await server.stop();
+});
+
+const difference = (a, b) => Math.max(...a.map((value, k) => Math.abs(value - b[k])));
+const between = (a, b, part) => a.map((value, k) => value + part * (b[k] - value));
+const brightness = (colour) => (colour[0] + colour[1] + colour[2]) / 3;
+
+/** Of the points along a line that nothing else comes near, the share whose pixel, or one beside it, passes. */
+function along(project, image, line, others, passes) {
+  let [hits, seen] = [0, 0];
+  for (let part = 0.08; part < 0.93; part += 0.02) {
+    const { x, y } = project(between(...line, part));
+    if (others.some((other) => awayFrom(x, y, ...other.map(project)) < CLEAR_PX)) continue;
+    ++seen;
+    const near = [-1, 0, 1].flatMap((dx) => [-1, 0, 1].map((dy) => image.colour(x + dx, y + dy)));
+    if (near.some(passes)) ++hits;
+  }
+  assert.ok(seen >= 6, `only ${seen} points are free to be seen`);
+  return hits / seen;
+}
+
+function awayFrom(x, y, a, b) {
+  const [dx, dy] = [b.x - a.x, b.y - a.y];
+  const part = Math.min(Math.max(((x - a.x) * dx + (y - a.y) * dy) / (dx * dx + dy * dy), 0), 1);
+  return Math.hypot(x - a.x - part * dx, y - a.y - part * dy);
+}
+
+/** All rods and cables but one. */
+function othersThan(kind, index, time_s) {
+  const rods = [0, 1, 2].filter((i) => kind !== "rod" || i !== index).map((i) => rodEnds(i, time_s));
+  const lines = cables.map((_, i) => i).filter((i) => kind !== "cable" || i !== index).map((i) => cableEnds(i, time_s));
+  return [...rods, ...lines];
+}
+
+function rodEnds(i, time_s) {
+  return [2 * i, 2 * i + 1].map((node) => worldPoint(i, nodes[node].position_m, time_s));
+}
+
+function cableEnds(i, time_s) {
+  return cables[i].attachments.map(({ body, position_m }) => worldPoint(body, position_m, time_s));
+}
+
+async function sceneAt(t, theme, time_s) {
+  const page = await openPage(server.url, { theme });
+  t.after(() => page.context().close());
+  await page.keyboard.press("a"); // no arrows over what is measured
+  await page.evaluate((wanted) => window.taut.app.seek(wanted), time_s);
+  await untilTime(page, time_s);
+  await page.waitForFunction((scale) => window.taut.view.world.cables.scale_n === scale, SCALE_N);
+  await page.evaluate(() => {
+    // from where little hides little
+    const { camera, target } = window.taut.view;
+    camera.position.copy(target).add(camera.position.clone().set(1.03, 0.28, 0.43));
+    document.querySelector(".legend").hidden = true;
+  });
+  await drawn(page);
+  return { page, project: await projection(page), image: await viewPixels(page) };
+}
+
+for (const theme of ["light", "dark"]) {
+  test(`RodsAreWhereTheirBodiesAre (${theme})`, async (t) => {
+    for (const time_s of [0, 4, 8]) {
+      const { page, project, image } = await sceneAt(t, theme, time_s);
+      const isRod = (colour) => (theme === "light" ? brightness(colour) < 110 : brightness(colour) > 75) &&
+        Math.max(...colour) - Math.min(...colour) < 45;
+      for (let i = 0; i < 3; ++i) {
+        const share = along(project, image, rodEnds(i, time_s), othersThan("rod", i, time_s), isRod);
+        assert.ok(share > 0.9, `rod ${i} at ${time_s} s: ${share} of its axis is drawn`);
+      }
+      // and where there is nothing, there is ground
+      const { x, y } = project([0.05 * time_s - 0.25, 0.4, 0]);
+      const free = image.colour(x, y);
+      assert.ok(Math.abs(brightness(free) - GROUND[theme]) < 40 && !isRod(free), `ground is ${free}`);
+      await page.context().close(); // who drives must leave before the next can
+    }
+  });
+
+  test(`CablesHaveTheColourOfTheirTension (${theme})`, async (t) => {
+    const time_s = 4;
+    const { page, project, image } = await sceneAt(t, theme, time_s);
+    const expected = await page.evaluate(() => window.taut.view.world.cables.object.children.map((line) => line.material.color.getHex()));
+    for (let i = 0; i < CABLE_COUNT; ++i) {
+      const wanted = [expected[i] >> 16, (expected[i] >> 8) & 255, expected[i] & 255];
+      const share = along(project, image, cableEnds(i, time_s), othersThan("cable", i, time_s), (colour) => difference(colour, wanted) < 40);
+      if (i === SLACK) assert.ok(share > 0.25 && share < 0.9, `slack cable ${i} is dashed: ${share} of it is drawn`);
+      else assert.ok(share > 0.8, `cable ${i}: ${share} of it is drawn in ${wanted}`);
+    }
+  });
+}
+
+test("ColourAndWidthRiseWithTension", async (t) => {
+  const { page } = await sceneAt(t, "light", 4);
+  const lines = await page.evaluate(() => window.taut.view.world.cables.object.children.map(({ material }) => ({
+    width: material.linewidth, dashed: material.dashed, red: material.color.clone().convertLinearToSRGB().r,
+  })));
+  for (let i = 0; i < CABLE_COUNT; ++i) {
+    assert.equal(lines[i].dashed, i === SLACK);
+    if (i === SLACK) continue;
+    const width = 1.5 + (5.5 * tension_n(i, 4)) / SCALE_N;
+    assert.ok(Math.abs(lines[i].width - width) < 1e-9, `cable ${i}: ${lines[i].width} px, not ${width}`);
+    if (i > 0) assert.ok(lines[i].width > lines[i - 1].width);
+  }
+  const legend = await page.locator(".legend .marks").innerText();
+  assert.deepEqual(legend.split(/\s*N\s*/).filter((part) => part !== "").map(Number), [0, 20, 40]);
+});
+
+test("ContactForcesAreArrowsToScale", async (t) => {
+  const page = await openPage(server.url);
+  t.after(() => page.context().close());
+  await page.evaluate(() => window.taut.app.seek(2));
+  await untilTime(page, 2);
+  const arrows = await page.evaluate(() => {
+    const { forces } = window.taut.view.world;
+    const [shafts, heads] = forces.contacts.object.children;
+    const length = (mesh, i) => Math.hypot(...mesh.instanceMatrix.array.slice(16 * i + 4, 16 * i + 7));
+    return { count: shafts.count, lengths: [0, 1, 2].map((i) => length(shafts, i) + length(heads, i)), m_per_n: forces.reference_m / forces.reference_n };
+  });
+  assert.equal(arrows.count, 3);
+  for (const length of arrows.lengths) assert.ok(Math.abs(length - 4.905 * arrows.m_per_n) < 1e-6);
+});
+
+test("PicturesOfTheScene", async (t) => {
+  for (const theme of ["light", "dark"]) {
+    const { page } = await sceneAt(t, theme, 4);
+    await page.keyboard.press("a");
+    await drawn(page);
+    const image = await picture(page, `scene-${theme}`);
+    assert.ok(image.length > 20_000, "a picture of one colour would be smaller");
+    assert.deepEqual(page.complaints, []);
+  }
+});

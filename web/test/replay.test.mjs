@@ -1,0 +1,144 @@
+// A replay: plays, scrubs, steps, and shows the poses that the trace holds; plots share its time.
+import assert from "node:assert/strict";
+import { after, before, beforeEach, test } from "node:test";
+import { closeBrowser, openPage, PAGE, picture, until, untilTime } from "./browser.mjs";
+import { DURATION_S, pose, RATE_HZ, setpoint_n, tension_n } from "./fixture.mjs";
+import { MockServer } from "./mock_server.mjs";
+
+let server;
+let page;
+
+before(async () => {
+  server = await new MockServer(PAGE, { mode: "replay", compare: true }).start();
+  page = await openPage(server.url);
+});
+after(async () => {
+  await closeBrowser();
+  await server.stop();
+});
+beforeEach(async () => {
+  await page.evaluate(() => {
+    window.taut.app.send({ type: "pause" });
+    window.taut.app.range_s.value = null;
+    window.taut.app.seek(0);
+  });
+  await untilTime(page, 0);
+});
+
+const shownTime = () => page.evaluate(() => Number(document.querySelector(".timeline").dataset.time));
+
+test("SpacePlaysAndPauses", async () => {
+  await page.keyboard.press(" ");
+  await page.waitForFunction(() => Number(document.querySelector(".timeline").dataset.time) > 0.3);
+  await page.keyboard.press(" ");
+  await page.waitForFunction(() => document.querySelector(".timeline").dataset.paused === "true");
+  const stopped_s = await shownTime();
+  assert.equal(server.paused, true);
+  assert.equal(server.time_s, stopped_s);
+});
+
+test("ScrubbingShowsTheTimeUnderTheMouse", async () => {
+  const box = await page.locator(".track").boundingBox();
+  for (const share of [0.25, 0.8, 0.5]) {
+    await page.mouse.click(box.x + share * box.width, box.y + box.height / 2);
+    await untilTime(page, share * DURATION_S, (2 * DURATION_S) / box.width);
+  }
+  await page.mouse.move(box.x + 0.1 * box.width, box.y + 10);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.6 * box.width, box.y + 10, { steps: 5 });
+  await page.mouse.up();
+  await untilTime(page, 6, (2 * DURATION_S) / box.width);
+});
+
+test("ArrowKeysStepAndJump", async () => {
+  await page.locator(".view canvas").first().focus();
+  await page.keyboard.press("ArrowRight");
+  await untilTime(page, 1 / RATE_HZ);
+  await page.keyboard.press("ArrowRight");
+  await untilTime(page, 2 / RATE_HZ);
+  await page.keyboard.press("ArrowLeft");
+  await untilTime(page, 1 / RATE_HZ);
+  await page.keyboard.press("Shift+ArrowRight");
+  await untilTime(page, 1 + 1 / RATE_HZ);
+  await page.keyboard.press("End");
+  await untilTime(page, DURATION_S);
+  await page.keyboard.press("Home");
+  await untilTime(page, 0);
+});
+
+test("PosesAreThoseOfTheTrace", async () => {
+  for (const time_s of [0, 1.3, 5, 9.98]) {
+    await page.evaluate((t) => window.taut.app.seek(t), time_s);
+    await untilTime(page, time_s);
+    const shown = await page.evaluate(() => {
+      const { bodies } = window.taut.view.world;
+      return bodies.object.children.map((group) => ({ position_m: group.position.toArray(), q: group.quaternion.toArray() }));
+    });
+    shown.forEach(({ position_m, q: [x, y, z, w] }, body) => {
+      const wanted = pose(body, time_s);
+      position_m.forEach((value, k) => assert.ok(Math.abs(value - wanted.position_m[k]) < 1e-12));
+      [w, x, y, z].forEach((value, k) => assert.ok(Math.abs(value - wanted.orientation[k]) < 1e-12));
+    });
+  }
+});
+
+test("PlotsShowSetPointMeasuredAndSimulated", async () => {
+  await page.waitForFunction(() => document.querySelectorAll('[data-figure^="tension:"] .uplot').length === 9);
+  await page.evaluate(() => window.taut.app.seek(3));
+  await untilTime(page, 3);
+  const values = await page.locator('[data-figure="tension:top_1"] .values span').allInnerTexts();
+  const wanted = [setpoint_n(4), tension_n(4, 3) + 1.5, tension_n(4, 3)];
+  values.forEach((text, k) => assert.ok(Math.abs(Number(text) - wanted[k]) < 0.11, `${text} is not ${wanted[k]}`));
+  const titles = await page.locator('[data-figure="tension:top_1"] .values span').evaluateAll((spans) => spans.map(({ title }) => title));
+  assert.deepEqual(titles, ["set point", "measured", "simulated"]);
+});
+
+test("ACursorInAPlotIsOneInTheTimeline", async () => {
+  const plot = page.locator('[data-figure="tension:top_0"] .u-over');
+  await plot.waitFor();
+  const box = await plot.boundingBox();
+  await page.mouse.move(box.x + 0.3 * box.width, box.y + 30);
+  await page.waitForFunction((wanted) => Math.abs((window.taut.app.cursor_s.value ?? -1) - wanted) < 0.1, 0.3 * DURATION_S);
+  const track = await page.locator(".track").boundingBox();
+  const cursor = await page.locator(".track .cursor").boundingBox();
+  assert.ok(Math.abs((cursor.x - track.x) / track.width - 0.3) < 0.01);
+  await page.mouse.click(box.x + 0.3 * box.width, box.y + 30);
+  await untilTime(page, 0.3 * DURATION_S, 0.1);
+});
+
+test("DraggingInAPlotZoomsAllAndAsksForFinerData", async () => {
+  const plot = page.locator('[data-figure="tension:top_0"] .u-over');
+  const box = await plot.boundingBox();
+  const asked = server.of("want_series").length;
+  await page.mouse.move(box.x + 0.2 * box.width, box.y + 30);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.4 * box.width, box.y + 40, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForFunction(() => window.taut.app.range_s.value !== null);
+  const [t0, t1] = await page.evaluate(() => window.taut.app.range_s.value);
+  assert.ok(Math.abs(t0 - 2) < 0.2 && Math.abs(t1 - 4) < 0.2, `${t0} to ${t1}`);
+  await page.waitForFunction(() => document.querySelector(".toolbar button:not([hidden])")?.textContent === "whole time");
+  const finer = () => server.of("want_series").slice(asked).filter((question) => question.t0 === t0 && question.t1 === t1);
+  await until(() => new Set(finer().map(({ channel }) => channel)).size >= 9, "finer data of nine cables");
+  await page.mouse.dblclick(box.x + 0.5 * box.width, box.y + 30);
+  await page.waitForFunction(() => window.taut.app.range_s.value === null);
+});
+
+test("SpeedIsChosenFromAListOrByKeys", async () => {
+  await page.selectOption(".timeline select", "0.25");
+  await page.waitForFunction(() => window.taut.app.frame.value.speed === 0.25);
+  await page.locator(".view canvas").first().focus();
+  await page.keyboard.press("]");
+  await page.waitForFunction(() => window.taut.app.frame.value.speed === 0.5);
+  await page.keyboard.press("[");
+  await page.waitForFunction(() => window.taut.app.frame.value.speed === 0.25);
+});
+
+test("NothingIsAskedOfAnyOtherHost", async () => {
+  const others = page.requests.filter((url) => new URL(url).host !== `127.0.0.1:${server.port}` && !/^(data|blob):/.test(url));
+  assert.deepEqual(others, []);
+  assert.deepEqual(page.complaints, []);
+  await page.evaluate(() => window.taut.app.seek(4));
+  await untilTime(page, 4);
+  await picture(page, "replay");
+});
