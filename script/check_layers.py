@@ -50,6 +50,11 @@ def check_outside(rules, where, layer, header, errors):
         errors.append(f"{where}: error: {layer} may include only {', '.join(allowed)}, not <{header}>")
 
 
+def folder_of(rules, header):
+    """The folder of layers.txt that a header is in: apps/viewer of apps/viewer/server.h."""
+    return next((folder for folder in rules.folders if header.startswith(folder + "/")), None)
+
+
 def check_file(rules, root, path, layer, allowed, private, errors):
     """`layer` is what the file belongs to, `allowed` the layers that it may include."""
     for number, line in enumerate(path.read_text().splitlines(), 1):
@@ -71,8 +76,8 @@ def check_file(rules, root, path, layer, allowed, private, errors):
                 errors.append(f"{where}: error: {layer} may include public headers only, not {header}")
             elif owner not in allowed:
                 errors.append(f"{where}: error: {layer} may not include {header} of {owner}")
-        elif header.split("/")[0] in rules.folders and (root / header).exists():
-            owner = header.split("/")[0]
+        elif folder_of(rules, header) and (root / header).exists():
+            owner = folder_of(rules, header)
             if owner not in (layer, *allowed):
                 errors.append(f"{where}: error: {layer} may not include {header} of {owner}")
         elif not (path.parent / header).exists() and not (root / layer / header).exists():

@@ -30,18 +30,22 @@ int Run(int argc, char** argv) {
       "  taut check models/tetraspine3.yaml\n"
       "  taut run experiments/push_20n.yaml --csv\n"
       "  taut compare simulated.h5 measured.csv\n"
+      "  taut view experiments/push_20n.yaml\n"
       "`taut COMMAND --help` tells more.\n"
       "Exit status: 0 good, 1 failed, 2 bad usage, 3 bad input, 130 interrupted.");
   int exit_code = kOk;
   AddCheck(app, exit_code);
   AddRun(app, exit_code);
   AddCompare(app, exit_code);
+  AddReport(app, exit_code);
+  AddView(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {
     // CLI11 does not say which word it did not know.
     if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
-      fmt::print(stderr, "error: there is no command \"{}\"; one of: check, run, compare\n",
+      fmt::print(stderr,
+                 "error: there is no command \"{}\"; one of: check, run, compare, report, view\n",
                  argv[1]);
       return kUsage;
     }

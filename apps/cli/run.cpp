@@ -10,6 +10,7 @@
 #include <memory>
 #include <system_error>
 
+#include "apps/viewer/report.h"
 #include "commands.h"
 #include "overrides.h"
 #include "taut/batch.h"
@@ -46,7 +47,7 @@ struct RunArguments {
   double step_s = 0, duration_s = -1;
   std::uint64_t seed = 0;
   int threads = 1;
-  bool csv = false, quiet = false, has_seed = false;
+  bool csv = false, report = false, quiet = false, has_seed = false;
 };
 
 /// One line that is rewritten on a terminal, a line every ten seconds elsewhere.
@@ -150,6 +151,13 @@ int Run(const RunArguments& args) {
     fmt::print("{}\n", SummaryTable(*summary));
     fmt::print("Trace, inputs and summary: {}\n", folder.string());
   }
+  if (args.report) {
+    const fs::path report = folder / "report.html";
+    if (viewer::WriteReport((folder / "trace.h5").string(), "", report.string(), found) &&
+        !args.quiet) {
+      fmt::print("Report: {}\n", report.string());
+    }
+  }
   if (experiment->compare_with) {
     CompareWith(*experiment->compare_with, (folder / "trace.h5").string(), args.quiet, found);
   }
@@ -181,6 +189,8 @@ void AddRun(CLI::App& app, int& exit_code) {
   run->add_option("--out", args->out, "Folder to write into (default: runs/<experiment>)");
   run->add_option("--threads", args->threads, "Threads, 0: one a core")->check(CLI::Range(0, 1024));
   run->add_flag("--csv", args->csv, "Write trace.csv as well");
+  run->add_flag("--report", args->report,
+                "Write report.html as well: one file that opens anywhere");
   run->add_flag("--quiet", args->quiet, "No progress and no table");
   run->footer(
       "Examples:\n"

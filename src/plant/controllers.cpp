@@ -1,5 +1,8 @@
 #include "plant/controllers.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "taut/control/impedance.h"
 
 namespace taut::plant {
@@ -35,6 +38,32 @@ void Controller::Act(double time_s, const std::vector<CableReading>& readings,
   }
   started_ = true;
   ++tick_;
+}
+
+const ImpedanceGains* Controller::FindGains(int cable) const noexcept {
+  if (!spec_.impedance) return nullptr;
+  for (const ImpedanceGains& gains : spec_.impedance->cables) {
+    if (gains.cable == cable) return &gains;
+  }
+  return nullptr;
+}
+
+ImpedanceGains* Controller::FindGains(int cable) noexcept {
+  return const_cast<ImpedanceGains*>(std::as_const(*this).FindGains(cable));
+}
+
+bool Controller::HasProgram(int cable) const noexcept {
+  return std::any_of(spec_.position.begin(), spec_.position.end(),
+                     [&](const PositionProgram& program) { return program.cable == cable; });
+}
+
+bool Controller::Hold(int cable, double rest_length_m) {
+  for (std::size_t i = 0; i < programs_.size(); ++i) {
+    if (spec_.position[i].cable != cable) continue;
+    programs_[i] = {{0.0, rest_length_m}};
+    return true;
+  }
+  return false;
 }
 
 void Controller::ActImpedance(std::size_t i, const CableReading& reading, double& target_m,

@@ -30,6 +30,14 @@ class Controller {
 
   double next_tick_s() const noexcept;
 
+  /// The gains of a cable, to be changed while it runs; nothing if it does not drive the cable so.
+  ImpedanceGains* FindGains(int cable) noexcept;
+  const ImpedanceGains* FindGains(int cable) const noexcept;
+  /// Holds a cable at a rest length from the next tick on, whatever its program said. False if it
+  /// does not drive the cable by a program.
+  bool Hold(int cable, double rest_length_m);
+  bool HasProgram(int cable) const noexcept;
+
   /// Acts if a tick is due at `time_s`. Reads `readings[cable]`, writes `target_m[cable]` (rest
   /// lengths) and `set_point_n[cable]` of its cables.
   void Act(double time_s, const std::vector<CableReading>& readings, std::vector<double>& target_m,

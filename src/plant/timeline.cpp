@@ -72,7 +72,19 @@ void Timeline::Apply(Batch& batch, int world, double time_s, double step_s) {
       if (experiment_.drags[i].node != node) continue;
       force = force + DragForce(batch, world, i, time_s);
     }
+    for (const NodeForce& hand : hand_) {
+      if (hand.node == node) force = force + hand.force_n;
+    }
     batch.SetNodeForce(world, node, force);
+  }
+}
+
+void Timeline::SetHandForces(std::vector<NodeForce> forces) {
+  hand_ = std::move(forces);
+  for (const NodeForce& hand : hand_) {
+    const auto at = std::lower_bound(nodes_.begin(), nodes_.end(), hand.node);
+    // A node stays here for good: once it is let go, its force is set to zero.
+    if (at == nodes_.end() || *at != hand.node) nodes_.insert(at, hand.node);
   }
 }
 

@@ -11,6 +11,12 @@ namespace taut::plant {
 /// A piecewise linear profile, zero outside its points.
 double ProfileAt(const std::vector<std::pair<double, double>>& points, double time_s);
 
+/// A force on a node, in W.
+struct NodeForce {
+  int node = 0;
+  Vec3 force_n;
+};
+
 /// The outside forces of an experiment.
 class Timeline {
  public:
@@ -23,6 +29,10 @@ class Timeline {
   /// middle.
   void Apply(Batch& batch, int world, double time_s, double step_s);
 
+  /// Forces that the experiment does not know of, until changed: a person's hand. They add to its
+  /// pushes and drags.
+  void SetHandForces(std::vector<NodeForce> forces);
+
   /// Forces of the last Apply [N]: along the push's direction, and along the drag's.
   const std::vector<double>& push_n() const noexcept { return push_n_; }
   const std::vector<double>& drag_n() const noexcept { return drag_n_; }
@@ -34,6 +44,7 @@ class Timeline {
   std::vector<double> corners_;
   std::vector<int> nodes_;  ///< All that are ever pushed or dragged.
   std::vector<double> push_n_, drag_n_;
+  std::vector<NodeForce> hand_;
   std::vector<Vec3> drag_start_m_;
   std::vector<bool> dragging_;
 };

@@ -8,7 +8,7 @@ import sys
 sys.dont_write_bytecode = True
 from page import ROOT, Page  # noqa: E402
 
-OUTSIDE = {".git", "build", "runs", "changes"}
+OUTSIDE = {".git", "build", "runs", "changes", "node_modules"}
 
 
 def pages():

@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "apps/viewer/report.h"
+#include "apps/viewer/web_files.h"
+#include "commands.h"
+
+namespace taut::cli {
+namespace {
+
+struct ReportArguments {
+  std::string trace, compare, out;
+};
+
+int Report(const ReportArguments& args) {
+  std::string missing;
+  if (!viewer::FindWebFolder(missing)) {
+    fmt::print(stderr, "error: {}\n", missing);
+    return kFailed;
+  }
+  const std::string path =
+      args.out.empty() ? (std::filesystem::path(args.trace).parent_path() / "report.html").string()
+                       : args.out;
+  Diagnostics found;
+  if (!viewer::WriteReport(args.trace, args.compare, path, found)) {
+    fmt::print(stderr, "{}", found.Format());
+    const bool unwritten = found.items().front().at.file == path;
+    return unwritten ? kFailed : kBadInput;
+  }
+  fmt::print("Report: {}\n", path);
+  return kOk;
+}
+
+}  // namespace
+
+void AddReport(CLI::App& app, int& exit_code) {
+  auto args = std::make_shared<ReportArguments>();
+  CLI::App* report =
+      app.add_subcommand("report", "Write a run as one HTML file that opens anywhere.");
+  report->add_option("trace", args->trace, "Trace of the run (.h5, .csv, .csv.gz)")->required();
+  report->add_option("--out", args->out, "File to write (default: report.html beside the trace)");
+  report->add_option("--compare", args->compare,
+                     "Another trace, drawn and tabulated beside this one (default: what the "
+                     "experiment names)");
+  report->footer(
+      "Examples:\n"
+      "  taut report runs/push_20n/trace.h5\n"
+      "  taut report runs/push_20n/trace.h5 --compare runs/other/trace.h5 --out both.html\n"
+      "The inputs and the summary are taken from the trace's folder. The file needs no network.");
+  report->callback([args, &exit_code] { exit_code = Report(*args); });
+}
+
+}  // namespace taut::cli

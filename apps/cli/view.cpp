@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/viewer/live_session.h"
+#include "apps/viewer/replay_session.h"
+#include "apps/viewer/server.h"
+#include "apps/viewer/web_files.h"
+#include "commands.h"
+#include "overrides.h"
+#include "taut/run.h"
+#include "taut/spec.h"
+
+namespace taut::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using viewer::Session;
+
+struct ViewArguments {
+  std::string file, compare, out;
+  std::vector<std::string> set;
+  double speed = 1;
+  bool max = false, settled = false, paused = false;
+  viewer::ServerOptions server;
+};
+
+bool IsTrace(const std::string& path) {
+  return path.ends_with(".h5") || path.ends_with(".csv") || path.ends_with(".csv.gz");
+}
+
+/// A model by itself, without weight and ground; it moves only when it is dragged.
+std::optional<ExperimentSpec> ModelAlone(const ViewArguments& args, const Overrides& overrides,
+                                         Diagnostics& out) {
+  auto robot = LoadRobot(args.file, overrides, out);
+  if (!robot) return std::nullopt;
+  ExperimentSpec experiment;
+  experiment.robot = std::move(*robot);
+  experiment.robot.parameters.clear();  // to change them, the file would have to be read again
+  experiment.robot.def.gravity_m_per_s2 = {};
+  experiment.name = experiment.robot.def.name;
+  experiment.files = experiment.robot.files;
+  if (args.settled) experiment.start = StartKind::kSettledFloating;
+  return experiment;
+}
+
+/// A replay, or what is wrong with the trace: both are shown in the browser.
+std::unique_ptr<Session> MakeReplay(const ViewArguments& args) {
+  Diagnostics found;
+  auto recorded = viewer::Recorded::Load(args.file, args.compare, found);
+  if (recorded) {
+    return std::make_unique<viewer::ReplaySession>(std::move(recorded), args.max ? 0 : args.speed);
+  }
+  fmt::print(stderr, "{}", found.Format());
+  return std::make_unique<viewer::ErrorSession>(fs::path(args.file).filename().string(),
+                                                found.Format());
+}
+
+/// A live run of an experiment or of a model alone. Nothing: `exit` says how to end.
+std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
+  Diagnostics found;
+  exit = kUsage;
+  const std::optional<Overrides> overrides = ParseOverrides(args.set);
+  if (!overrides) return nullptr;
+  exit = kBadInput;
+  const auto kind = FileKind(args.file, found);
+  const bool model = kind && *kind == "model";
+  std::optional<ExperimentSpec> experiment;
+  if (kind) {
+    experiment =
+        model ? ModelAlone(args, *overrides, found) : LoadExperiment(args.file, *overrides, found);
+  }
+  if (!experiment || !Model::Compile(experiment->robot.def, found) ||
+      !CheckRecord(*experiment, found)) {
+    fmt::print(stderr, "{}", found.Format());
+    return nullptr;
+  }
+  if (args.settled && !model) experiment->start = StartKind::kSettled;
+  exit = kFailed;
+  if (!args.out.empty()) {
+    std::error_code error;
+    fs::create_directories(args.out, error);
+    if (error) {
+      fmt::print(stderr, "{}: error: cannot make this folder: {}\n", args.out, error.message());
+      return nullptr;
+    }
+  }
+  viewer::LiveOptions options;
+  options.path = args.file;
+  options.overrides = *overrides;
+  options.speed = args.max ? 0 : args.speed;
+  options.paused = args.paused || model;
+  options.record_folder = args.out;
+  auto session = viewer::LiveSession::Create(model ? "model" : "live", *experiment, options, found);
+  if (!session) fmt::print(stderr, "{}", found.Format());
+  return session;
+}
+
+std::string Url(const viewer::ServerOptions& options, std::uint16_t port) {
+  std::string host = "localhost";
+  if (!viewer::IsLoopback(options.address)) {
+    host = options.address;
+    char name[256] = {};
+    if ((host == "0.0.0.0" || host == "::") && gethostname(name, sizeof(name) - 1) == 0) {
+      host = name;
+    } else if (host.find(':') != host.npos) {
+      host = "[" + host + "]";
+    }
+  }
+  return fmt::format("http://{}:{}/{}", host, port,
+                     options.token.empty() ? "" : "?token=" + options.token);
+}
+
+int View(ViewArguments args) {
+  std::string error;
+  const std::optional<std::string> web = viewer::FindWebFolder(error);
+  if (!web) {
+    fmt::print(stderr, "error: {}\n", error);
+    return kFailed;
+  }
+  if (IsTrace(args.file) && (!args.set.empty() || args.settled || !args.out.empty())) {
+    fmt::print(stderr, "error: --set, --settled and --out do not go with a trace\n");
+    return kUsage;
+  }
+  if (!IsTrace(args.file) && !args.compare.empty()) {
+    fmt::print(stderr, "error: --compare goes with a trace only\n");
+    return kUsage;
+  }
+  int exit = kOk;
+  const std::unique_ptr<Session> session =
+      IsTrace(args.file) ? MakeReplay(args) : MakeLive(args, exit);
+  if (!session) return exit;
+  if (!viewer::IsLoopback(args.server.address)) args.server.token = viewer::RandomToken();
+  viewer::Server server(*session, viewer::ReadWebFiles(*web), args.server);
+  if (!server.Listen(error)) {
+    fmt::print(stderr, "error: {}\n", error);
+    return kFailed;
+  }
+  fmt::print("{}: {}\nCtrl-C ends it.\n", session->title(), Url(args.server, server.port()));
+  std::fflush(stdout);
+  server.Run();
+  return kOk;
+}
+
+}  // namespace
+
+void AddView(CLI::App& app, int& exit_code) {
+  auto args = std::make_shared<ViewArguments>();
+  CLI::App* view =
+      app.add_subcommand("view", "Watch an experiment live, replay a trace, look at a model.");
+  view->add_option("file", args->file, "Experiment or model (YAML), or trace (.h5, .csv, .csv.gz)")
+      ->required();
+  view->add_option("--set", args->set, "Parameter of the experiment or model: name=value")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  auto* speed = view->add_option("--speed", args->speed, "Simulated seconds a second (default: 1)")
+                    ->check(CLI::Range(0.001, 1000.0));
+  view->add_flag("--max", args->max, "As fast as it can")->excludes(speed);
+  view->add_flag("--paused", args->paused, "Begin paused");
+  view->add_flag("--settled", args->settled, "Begin at rest, where the robot settles");
+  view->add_option("--compare", args->compare, "Replay: another trace, drawn beside this one");
+  view->add_option("--out", args->out,
+                   "Live: folder to record into (trace, inputs, what was done); default: none");
+  view->add_option("--listen", args->server.address,
+                   "Address to listen on (default: 127.0.0.1, this machine only)");
+  view->add_option("--port", args->server.port, "Port (default: 8080; 0: any that is free)");
+  view->footer(
+      "Examples:\n"
+      "  taut view experiments/push_20n.yaml --speed 0.25\n"
+      "  taut view runs/push_20n/trace.h5 --compare runs/other/trace.h5\n"
+      "  taut view models/tetraspine3.yaml --settled\n"
+      "Open the address that it prints in a browser. With --listen other than this machine, the\n"
+      "address has a secret token; give it only to those who may look and drive.");
+  view->callback([args, &exit_code] { exit_code = View(*args); });
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,145 @@
+#include "command.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "protocol_messages.h"
+
+namespace taut::viewer {
+namespace {
+
+using Json = nlohmann::json;
+
+bool IsNumber(const Json& value) { return value.is_number() && std::isfinite(value.get<double>()); }
+
+bool IsInteger(const Json& value) {
+  return value.is_number() && std::fabs(value.get<double>()) <= 2147483647.0 &&
+         value.get<double>() == std::floor(value.get<double>());
+}
+
+bool IsVec3(const Json& value) {
+  return value.is_array() && value.size() == 3 && IsNumber(value[0]) && IsNumber(value[1]) &&
+         IsNumber(value[2]);
+}
+
+bool IsChoice(const Json& value, std::string_view choices) {
+  if (!value.is_string()) return false;
+  const std::string text = value.get<std::string>();
+  while (!choices.empty()) {
+    const std::size_t bar = choices.find('|');
+    if (choices.substr(0, bar) == text) return true;
+    choices = bar == choices.npos ? "" : choices.substr(bar + 1);
+  }
+  return false;
+}
+
+bool Fits(const Json& value, const MessageField& field) {
+  switch (field.kind) {
+    case FieldKind::kString:
+      return value.is_string() && value.get_ref<const std::string&>().size() < 1000;
+    case FieldKind::kNumber:
+      return IsNumber(value);
+    case FieldKind::kInteger:
+      return IsInteger(value);
+    case FieldKind::kBoolean:
+      return value.is_boolean();
+    case FieldKind::kVec3:
+      return IsVec3(value);
+    case FieldKind::kChoice:
+      return IsChoice(value, field.choices);
+  }
+  return false;
+}
+
+/// Whether `json` has the fields of messages of this type and no others.
+bool CheckFields(const Json& json, const std::string& type, std::string& error) {
+  bool known = false;
+  std::size_t found = 1;  // "type"
+  for (const MessageField& field : kClientFields) {
+    if (type != field.message) continue;
+    known = true;
+    if (*field.name == '\0') continue;
+    const auto at = json.find(field.name);
+    if (at == json.end()) {
+      if (field.optional) continue;
+      error = fmt::format("{} needs \"{}\"", type, field.name);
+      return false;
+    }
+    ++found;
+    if (!Fits(*at, field)) {
+      error = fmt::format("{}: \"{}\" has the wrong type", type, field.name);
+      return false;
+    }
+  }
+  if (!known) {
+    error = fmt::format("there is no message \"{}\"", type.substr(0, 40));
+  } else if (found != json.size()) {
+    error = fmt::format("{} has a field that it may not have", type);
+  }
+  return known && found == json.size();
+}
+
+/// What a number must be within; the types are checked by then.
+bool CheckRanges(const Command& command, std::string& error) {
+  const auto within = [&](const char* what, double value, double least, double most) {
+    if (value >= least && value <= most) return true;
+    error = fmt::format("{}: {} must be within {:g} to {:g}, got {:g}", command.type, what, least,
+                        most, value);
+    return false;
+  };
+  if (command.type == "speed") {
+    return command.value == 0 || within("factor", command.value, 0.001, 1000);
+  }
+  if (command.type == "push") return within("duration_s", command.value, 0.001, 1000);
+  if (command.type == "step") return within("count", command.count, -1000, 1000);
+  if (command.type == "want_series") {
+    return within("points", command.points, 2, 10000) && within("source", command.source, 0, 1);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<Command> ParseCommand(std::string_view text, std::string& error) {
+  if (text.size() > kMaxMessageBytes) {
+    error = "the message is too long";
+    return std::nullopt;
+  }
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("type") || !json["type"].is_string()) {
+    error = "a message is a JSON object with a text \"type\"";
+    return std::nullopt;
+  }
+  Command command;
+  command.type = json["type"].get<std::string>();
+  if (!CheckFields(json, command.type, error)) return std::nullopt;
+  for (const auto& [key, value] : json.items()) {
+    if (key == "node" || key == "name" || key == "cable" || key == "channel") {
+      command.name = value.get<std::string>();
+    } else if (key == "gain") {
+      command.gain = value.get<std::string>();
+    } else if (key == "target_m" || key == "force_n") {
+      command.vector = {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+    } else if (key == "value" || key == "factor" || key == "time_s" || key == "duration_s") {
+      command.value = value.get<double>();
+    } else if (key == "t0") {
+      command.t0 = value.get<double>();
+    } else if (key == "t1") {
+      command.t1 = value.get<double>();
+    } else if (key == "id") {
+      command.id = static_cast<int>(value.get<double>());
+    } else if (key == "source") {
+      command.source = static_cast<int>(value.get<double>());
+    } else if (key == "points") {
+      command.points = static_cast<int>(value.get<double>());
+    } else if (key == "count") {
+      command.count = static_cast<int>(value.get<double>());
+    }
+  }
+  if (!CheckRanges(command, error)) return std::nullopt;
+  return command;
+}
+
+}  // namespace taut::viewer

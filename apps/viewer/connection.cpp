@@ -1,0 +1,106 @@
+#include "connection.h"
+
+#include <utility>
+
+#include "command.h"
+
+namespace taut::viewer {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+
+/// A client that leaves this much unread is gone or has no use for it.
+constexpr std::size_t kMaxWaitingBytes = 64 << 20;
+
+}  // namespace
+
+Connection::Connection(asio::ip::tcp::socket socket, int client, Handlers handlers)
+    : stream_(std::move(socket)), client_(client), handlers_(std::move(handlers)) {}
+
+void Connection::Accept(http::request<http::empty_body> request) {
+  beast::get_lowest_layer(stream_).expires_never();
+  stream_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+  stream_.read_message_max(kMaxMessageBytes);
+  stream_.async_accept(request, [self = shared_from_this()](beast::error_code failed) {
+    if (failed) return self->Finished();
+    self->open_ = true;
+    self->handlers_.opened(*self);
+    self->Read();
+  });
+}
+
+void Connection::Read() {
+  stream_.async_read(received_, [self = shared_from_this()](beast::error_code failed, std::size_t) {
+    // A message that is too long closes the connection by itself, with a code that says so.
+    if (failed || self->closing_) return self->Finished();
+    const std::string text = beast::buffers_to_string(self->received_.data());
+    self->received_.consume(self->received_.size());
+    std::string reason = "messages are texts";
+    if (!self->stream_.got_text() || !self->handlers_.received(*self, text, reason)) {
+      self->Close(reason);
+    }
+    self->Read();
+  });
+}
+
+void Connection::SendText(std::string text) {
+  if (!open_ || closing_) return;
+  waiting_bytes_ += text.size();
+  if (waiting_bytes_ > kMaxWaitingBytes) return Close("too slow");
+  texts_.push_back(std::move(text));
+  Write();
+}
+
+void Connection::SendFrame(std::shared_ptr<const std::string> frame) {
+  if (!open_ || closing_) return;
+  frame_ = std::move(frame);  // the newest replaces one that has not been sent
+  Write();
+}
+
+void Connection::Close(const std::string& reason) {
+  if (closing_) return;
+  closing_ = true;
+  close_reason_ = reason.substr(0, 120);  // a close frame has room for 123 bytes
+  texts_.clear();
+  frame_.reset();
+  Write();
+}
+
+void Connection::Write() {
+  if (writing_ || finished_) return;
+  const auto written = [self = shared_from_this()](beast::error_code failed, std::size_t) {
+    self->writing_ = false;
+    if (failed) return self->Finished();
+    self->Write();
+  };
+  if (closing_) {
+    writing_ = true;
+    stream_.async_close({websocket::close_code::policy_error, close_reason_},
+                        [self = shared_from_this()](beast::error_code) { self->Finished(); });
+  } else if (!texts_.empty()) {
+    writing_ = true;
+    sending_text_ = std::move(texts_.front());
+    texts_.pop_front();
+    waiting_bytes_ -= sending_text_.size();
+    stream_.text(true);
+    stream_.async_write(asio::buffer(sending_text_), written);
+  } else if (frame_) {
+    writing_ = true;
+    sending_ = std::move(frame_);
+    frame_.reset();
+    stream_.binary(true);
+    stream_.async_write(asio::buffer(*sending_), written);
+  }
+}
+
+void Connection::Finished() {
+  if (std::exchange(finished_, true)) return;
+  beast::error_code ignored;
+  beast::get_lowest_layer(stream_).socket().close(ignored);
+  if (std::exchange(open_, false)) handlers_.closed(*this);
+}
+
+}  // namespace taut::viewer

@@ -1,0 +1,48 @@
+/// One WebSocket client. Texts are sent in order and all of them; of frames only the newest.
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace taut::viewer {
+
+class Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  struct Handlers {
+    std::function<void(Connection&)> opened;
+    /// A text of the client; false and a reason: the connection is closed with it.
+    std::function<bool(Connection&, const std::string&, std::string&)> received;
+    std::function<void(Connection&)> closed;
+  };
+
+  Connection(boost::asio::ip::tcp::socket socket, int client, Handlers handlers);
+
+  int client() const noexcept { return client_; }
+  void Accept(boost::beast::http::request<boost::beast::http::empty_body> request);
+  void SendText(std::string text);
+  void SendFrame(std::shared_ptr<const std::string> frame);
+  void Close(const std::string& reason);
+
+ private:
+  void Read();
+  void Write();
+  void Finished();
+
+  boost::beast::websocket::stream<boost::beast::tcp_stream> stream_;
+  int client_;
+  Handlers handlers_;
+  boost::beast::flat_buffer received_;
+  std::deque<std::string> texts_;
+  std::size_t waiting_bytes_ = 0;
+  std::shared_ptr<const std::string> frame_, sending_;
+  std::string sending_text_, close_reason_;
+  bool open_ = false, writing_ = false, closing_ = false, finished_ = false;
+};
+
+}  // namespace taut::viewer

@@ -1,0 +1,47 @@
+/// The present as a client gets it: the binary message of web/protocol/messages.json.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "taut/batch.h"
+#include "taut/live.h"
+
+namespace taut::viewer {
+
+/// What a frame shows. What is not known is NaN.
+struct Frame {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+  struct Body {
+    Vec3 position_m;
+    Quat orientation;
+  };
+  struct Cable {
+    double tension_n = kUnknown, length_m = kUnknown, rest_length_m = kUnknown,
+           setpoint_n = kUnknown;
+  };
+  struct Contact {
+    Vec3 point_m, force_n;
+  };
+
+  double time_s = 0, real_time_factor = 0, speed = 1;
+  bool paused = false;
+  int driver = 0;
+  Energy energy{kUnknown, kUnknown, kUnknown};
+  int run = 0;
+  double contact_count = 0;  ///< May be known where the contacts are not.
+  std::vector<Body> bodies;
+  std::vector<Cable> cables;
+  std::vector<Contact> contacts;
+  std::vector<OutsideForce> pushes;
+};
+
+/// Every number of the frame in the order of the definition.
+std::vector<double> FrameNumbers(const Frame& frame);
+
+/// The binary message: those numbers as Float64, little endian.
+std::string FrameMessage(const Frame& frame);
+
+}  // namespace taut::viewer

@@ -1,0 +1,134 @@
+#include "http_page.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace taut::viewer {
+namespace {
+
+namespace http = boost::beast::http;
+
+std::string_view View(boost::beast::string_view text) { return {text.data(), text.size()}; }
+
+/// The value of `name` in "a=1&b=2" or "a=1; b=2"; empty if it is not there.
+std::string_view ValueOf(std::string_view list, std::string_view name, char separator) {
+  while (!list.empty()) {
+    const std::size_t end = list.find(separator);
+    std::string_view one = list.substr(0, end);
+    list = end == list.npos ? std::string_view() : list.substr(end + 1);
+    while (!one.empty() && one.front() == ' ') one.remove_prefix(1);
+    if (one.size() > name.size() && one.substr(0, name.size()) == name && one[name.size()] == '=') {
+      return one.substr(name.size() + 1);
+    }
+  }
+  return {};
+}
+
+/// Takes as long for a guess that is nearly right as for one that is not.
+bool SameSecret(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference |=
+        static_cast<unsigned>(static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]));
+  }
+  return difference == 0;
+}
+
+std::string_view Query(const HttpRequest& request) {
+  const std::string_view target = View(request.target());
+  const std::size_t mark = target.find('?');
+  return mark == target.npos ? std::string_view() : target.substr(mark + 1);
+}
+
+/// "localhost" of "localhost:8080", "[::1]" of "[::1]:8080".
+std::string_view HostName(std::string_view host) {
+  const std::size_t colon = host.rfind(':');
+  const std::size_t bracket = host.rfind(']');
+  if (colon == host.npos || (bracket != host.npos && colon < bracket)) return host;
+  return host.substr(0, colon);
+}
+
+std::string_view MimeType(std::string_view path) {
+  static constexpr std::pair<std::string_view, std::string_view> kTypes[] = {
+      {".html", "text/html; charset=utf-8"},
+      {".js", "text/javascript; charset=utf-8"},
+      {".css", "text/css; charset=utf-8"},
+      {".json", "application/json"},
+      {".svg", "image/svg+xml"},
+      {".png", "image/png"},
+      {".ico", "image/x-icon"},
+      {".woff2", "font/woff2"},
+      {".wasm", "application/wasm"}};
+  for (const auto& [end, type] : kTypes) {
+    if (path.ends_with(end)) return type;
+  }
+  return "application/octet-stream";
+}
+
+}  // namespace
+
+bool MayEnter(const HttpRequest& request, const ServerOptions& options) {
+  const std::string_view host = View(request[http::field::host]);
+  // A name that leads here although it is not ours is how foreign pages reach local servers.
+  if (IsLoopback(options.address)) {
+    const std::string_view name = HostName(host);
+    if (name != "localhost" && name != "127.0.0.1" && name != "[::1]" && name != options.address) {
+      return false;
+    }
+  }
+  const std::string_view origin = View(request[http::field::origin]);
+  if (!origin.empty()) {
+    const std::size_t slashes = origin.find("://");
+    if (slashes == origin.npos || origin.substr(slashes + 3) != host) return false;
+  }
+  if (options.token.empty()) return true;
+  return SameSecret(ValueOf(Query(request), "token", '&'), options.token) ||
+         SameSecret(ValueOf(View(request[http::field::cookie]), "taut_token", ';'), options.token);
+}
+
+HttpResponse Answer(const HttpRequest& request, const WebFiles& files,
+                    const ServerOptions& options) {
+  HttpResponse response;
+  response.version(request.version());
+  response.keep_alive(request.keep_alive());
+  response.set(http::field::cache_control, "no-cache");
+  response.set("X-Content-Type-Options", "nosniff");
+  response.set("Referrer-Policy", "no-referrer");
+  const auto say = [&](http::status status, const std::string& text) {
+    response.result(status);
+    response.set(http::field::content_type, "text/plain; charset=utf-8");
+    response.body() = text + "\n";
+  };
+  std::string path(View(request.target()).substr(0, View(request.target()).find('?')));
+  if (path == "/") path = "/index.html";
+  const auto file = files.find(path);
+  if (!MayEnter(request, options)) {
+    say(http::status::forbidden, "Use the whole address that taut printed, with its token.");
+  } else if (request.method() != http::verb::get && request.method() != http::verb::head) {
+    response.set(http::field::allow, "GET, HEAD");
+    say(http::status::method_not_allowed, "This server has pages to get, and nothing else.");
+  } else if (file == files.end()) {
+    say(http::status::not_found, "There is no such page here.");
+  } else {
+    response.result(http::status::ok);
+    response.set(http::field::content_type, std::string(MimeType(path)));
+    // Nothing is ever fetched from elsewhere. The page holds its own script.
+    response.set("Content-Security-Policy",
+                 "default-src 'self'; script-src 'self' 'unsafe-inline'; img-src 'self' data: "
+                 "blob:; media-src 'self' blob:; "
+                 "style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; base-uri 'none'; "
+                 "form-action 'none'; frame-ancestors 'none'");
+    if (!options.token.empty()) {
+      response.set(http::field::set_cookie,
+                   fmt::format("taut_token={}; HttpOnly; SameSite=Strict; Path=/", options.token));
+    }
+    response.body() = file->second;
+  }
+  response.content_length(response.body().size());
+  if (request.method() == http::verb::head) response.body().clear();
+  return response;
+}
+
+}  // namespace taut::viewer

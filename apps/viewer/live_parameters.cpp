@@ -1,0 +1,102 @@
+#include "live_parameters.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace taut::viewer {
+namespace {
+
+/// The unit that a name such as push_n ends with; "1" if none.
+std::string UnitOfName(const std::string& name) {
+  static const std::pair<const char*, const char*> kUnits[] = {{"_n_s_per_m", "N s/m"},
+                                                               {"_n_per_m", "N/m"},
+                                                               {"_m_per_s", "m/s"},
+                                                               {"_kg_per_m3", "kg/m^3"},
+                                                               {"_rad", "rad"},
+                                                               {"_kg", "kg"},
+                                                               {"_hz", "Hz"},
+                                                               {"_n", "N"},
+                                                               {"_m", "m"},
+                                                               {"_s", "s"}};
+  for (const auto& [end, unit] : kUnits) {
+    if (name.ends_with(end)) return unit;
+  }
+  return "1";
+}
+
+}  // namespace
+
+std::vector<LiveParameter> Parameters(const LiveRun& run, const ExperimentSpec& experiment) {
+  std::vector<LiveParameter> all;
+  const auto now = [&](std::string name, const char* unit, Parameter kind, int index, double min,
+                       double max) {
+    const double value = run.batch().GetParameter(0, kind, index);
+    all.push_back({std::move(name), unit, value, min, max, false, kind, index});
+  };
+  const ModelDef& def = experiment.robot.def;
+  now("friction_scale", "1", Parameter::kFrictionScale, 0, 0, 4);
+  now("gravity_z_m_per_s2", "m/s^2", Parameter::kGravityZ, 0, -20, 20);
+  for (std::size_t b = 0; b < def.bodies.size(); ++b) {
+    const double mass_kg = def.bodies[b].mass_kg;
+    if (def.bodies[b].fixed) continue;
+    now("body/" + def.bodies[b].name + "/mass_kg", "kg", Parameter::kBodyMass, static_cast<int>(b),
+        mass_kg / 4, 4 * mass_kg);
+  }
+  for (std::size_t c = 0; c < def.cables.size(); ++c) {
+    const CableDef& cable = def.cables[c];
+    const int index = static_cast<int>(c);
+    now("cable/" + cable.name + "/stiffness_n_per_m", "N/m", Parameter::kCableStiffness, index,
+        cable.stiffness_n_per_m / 10, 10 * cable.stiffness_n_per_m);
+    now("cable/" + cable.name + "/damping_n_s_per_m", "N s/m", Parameter::kCableDamping, index, 0,
+        std::max(10.0, 10 * cable.damping_n_s_per_m));
+  }
+  std::map<std::string, double> named = experiment.robot.parameters;
+  named.insert(experiment.parameters.begin(), experiment.parameters.end());
+  for (const auto& [name, value] : named) {
+    const double far = value == 0 ? 1 : 4 * value;
+    all.push_back({name, UnitOfName(name), value, std::min(0.0, far), std::max(0.0, far), true,
+                   Parameter::kFrictionScale, 0});
+  }
+  return all;
+}
+
+std::optional<LiveParameter> FindParameter(const LiveRun& run, const ExperimentSpec& experiment,
+                                           const std::string& name) {
+  for (LiveParameter& parameter : Parameters(run, experiment)) {
+    if (parameter.name == name) return std::move(parameter);
+  }
+  return std::nullopt;
+}
+
+Json ParametersJson(const LiveRun& run, const ExperimentSpec& experiment) {
+  Json json = Json::array();
+  for (const LiveParameter& p : Parameters(run, experiment)) {
+    json.push_back({{"name", p.name},
+                    {"value", p.value},
+                    {"unit", p.unit},
+                    {"min", p.min},
+                    {"max", p.max},
+                    {"restarts", p.restarts}});
+  }
+  return json;
+}
+
+Json ControlsJson(const LiveRun& run) {
+  Json json = Json::array();
+  for (const LiveControl& control : run.Controls()) {
+    const auto& cable = run.experiment().robot.def.cables[static_cast<std::size_t>(control.cable)];
+    Json one = {{"cable", cable.name}, {"kind", control.impedance ? "impedance" : "rest_length"}};
+    if (control.impedance) {
+      one["tension_offset_n"] = control.impedance->tension_offset_n;
+      one["length_offset_m"] = control.impedance->length_offset_m;
+      one["position_gain_n_per_m"] = control.impedance->position_gain_n_per_m;
+      one["velocity_gain_n_s_per_m"] = control.impedance->velocity_gain_n_s_per_m;
+    } else {
+      one["rest_length_m"] = control.rest_length_m;
+    }
+    json.push_back(std::move(one));
+  }
+  return json;
+}
+
+}  // namespace taut::viewer

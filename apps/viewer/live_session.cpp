@@ -1,0 +1,305 @@
+#include "live_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "live_parameters.h"
+#include "recording.h"
+
+namespace taut::viewer {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+constexpr microseconds kFramePeriod{16667};
+/// How long steps are made without a look at the commands.
+constexpr milliseconds kSlice{5};
+/// A run that is further behind than this goes on from where it is: it is slower than asked for.
+constexpr double kMaxBehindS = 0.1;
+constexpr milliseconds kIdlePeriod{250};
+
+double Seconds(Session::Clock::duration span) { return duration<double>(span).count(); }
+
+}  // namespace
+
+std::unique_ptr<LiveSession> LiveSession::Create(const std::string& mode,
+                                                 const ExperimentSpec& experiment,
+                                                 const LiveOptions& options, Diagnostics& out) {
+  auto run = LiveRun::Start(experiment, out);
+  if (!run) return nullptr;
+  std::unique_ptr<LiveSession> session(new LiveSession(mode, std::move(run), options));
+  session->experiment_ = experiment;
+  if (!session->StartRecording(out)) return nullptr;
+  session->SetScene(session->MakeScene(), false);
+  return session;
+}
+
+LiveSession::LiveSession(const std::string& mode, std::unique_ptr<LiveRun> run, LiveOptions options)
+    : Session(mode, run->experiment().name),
+      options_(std::move(options)),
+      run_(std::move(run)),
+      paused_(options_.paused),
+      speed_(options_.speed) {
+  Anchor();
+}
+
+LiveSession::~LiveSession() {
+  Stop();
+  if (recording_) recording_->Finish();
+}
+
+bool LiveSession::StartRecording(Diagnostics& out) {
+  if (options_.record_folder.empty()) return true;
+  recording_ = Recording::Start(options_.record_folder, ++recordings_, *run_, experiment_, out);
+  return recording_ != nullptr;
+}
+
+void LiveSession::Handle(int client, const Command& command) {
+  std::string error;
+  changed_ = true;
+  if (!Drive(command, error)) SayError(client, error);
+}
+
+bool LiveSession::Drive(const Command& command, std::string& error) {
+  const std::string& type = command.type;
+  if (type == "pause" || type == "resume") {
+    paused_ = type == "pause";
+    Anchor();
+  } else if (type == "step") {
+    if (!paused_) paused_ = true;
+    for (int i = 0; i < std::max(command.count, 0); ++i) StepOnce();
+    Anchor();
+  } else if (type == "reset") {
+    return Restart(experiment_, error);
+  } else if (type == "speed") {
+    speed_ = command.value;
+    Anchor();
+  } else if (type == "drop") {
+    if (dragging_) Log("let go");
+    dragging_ = false;
+    run_->SetHand({});
+  } else if (type == "drag" || type == "push") {
+    const std::optional<int> node = FindNode(command.name);
+    if (!node) {
+      error = fmt::format("there is no node \"{}\"", command.name);
+      return false;
+    }
+    const Vec3& v = command.vector;
+    if (type == "drag") {
+      if (!dragging_) Log(fmt::format("drag {}", command.name));
+      dragging_ = true;
+      run_->SetHand(HandSpec{*node, v});
+    } else {
+      run_->Push({*node, v}, command.value);
+      Log(fmt::format("push {} with ({:.4g}, {:.4g}, {:.4g}) N for {:g} s", command.name, v.x, v.y,
+                      v.z, command.value));
+    }
+  } else if (type == "set_parameter") {
+    return SetParameter(command, error);
+  } else if (type == "set_setpoint" || type == "set_gain") {
+    return SetControl(command, error);
+  } else {
+    error = fmt::format("{} does not go with a live run", type);
+    return false;
+  }
+  return true;
+}
+
+bool LiveSession::SetParameter(const Command& command, std::string& error) {
+  const std::optional<LiveParameter> parameter = FindParameter(*run_, experiment_, command.name);
+  if (!parameter) {
+    error = fmt::format("there is no parameter \"{}\"", command.name);
+    return false;
+  }
+  if (!(command.value >= parameter->min && command.value <= parameter->max)) {
+    error =
+        fmt::format("{} must be within {:g} to {:g}", command.name, parameter->min, parameter->max);
+    return false;
+  }
+  if (!parameter->restarts) {
+    run_->SetParameter(parameter->kind, parameter->index, command.value);
+    Log(fmt::format("{} = {:g}", command.name, command.value));
+    scene_changed_ = true;
+    return true;
+  }
+  std::erase_if(options_.overrides, [&](const auto& set) { return set.first == command.name; });
+  options_.overrides.emplace_back(command.name, fmt::format("{}", command.value));
+  Diagnostics found;
+  const auto experiment = LoadExperiment(options_.path, options_.overrides, found);
+  if (!experiment) {
+    error = found.Format();
+    options_.overrides.pop_back();
+    return false;
+  }
+  return Restart(*experiment, error);
+}
+
+bool LiveSession::SetControl(const Command& command, std::string& error) {
+  for (LiveControl& control : run_->Controls()) {
+    const CableDef& cable = experiment_.robot.def.cables[static_cast<std::size_t>(control.cable)];
+    if (cable.name != command.name) continue;
+    if (!(command.value >= 0)) {
+      error = "set points and gains are not negative";
+      return false;
+    }
+    if (command.type == "set_setpoint") {
+      (control.impedance ? control.impedance->tension_offset_n : control.rest_length_m) =
+          command.value;
+    } else if (!control.impedance) {
+      error = fmt::format("{} has no gains", command.name);
+      return false;
+    } else if (command.gain == "length_offset_m") {
+      control.impedance->length_offset_m = command.value;
+    } else if (command.gain == "position_gain_n_per_m") {
+      control.impedance->position_gain_n_per_m = command.value;
+    } else {
+      control.impedance->velocity_gain_n_s_per_m = command.value;
+    }
+    run_->SetControl(control);
+    Log(fmt::format("{} of {} = {:g}",
+                    command.type == "set_gain" ? command.gain
+                    : control.impedance        ? "tension_offset_n"
+                                               : "rest_length_m",
+                    command.name, command.value));
+    scene_changed_ = true;
+    return true;
+  }
+  error = fmt::format("no motor drives a cable \"{}\"", command.name);
+  return false;
+}
+
+bool LiveSession::Restart(const ExperimentSpec& experiment, std::string& error) {
+  Diagnostics found;
+  auto run = LiveRun::Start(experiment, found);
+  if (!run) {
+    error = found.Format();
+    return false;
+  }
+  if (recording_) recording_->Finish();
+  run_ = std::move(run);
+  experiment_ = experiment;
+  ++run_number_;
+  end_told_ = broken_told_ = dragging_ = false;
+  if (!StartRecording(found)) SayEvent(0, found.Format());
+  Anchor();
+  scene_changed_ = true;
+  SayEvent(0, "from the start");
+  return true;
+}
+
+void LiveSession::Log(const std::string& text) {
+  SayEvent(run_->time_s(), text);
+  if (recording_) recording_->Event(run_->time_s(), text);
+}
+
+bool LiveSession::StepOnce() {
+  if (!run_->Step()) {
+    if (!std::exchange(broken_told_, true)) Log("the state is no longer finite");
+    paused_ = true;
+    return false;
+  }
+  if (recording_ && !recording_->Take(*run_)) {
+    SayEvent(run_->time_s(), recording_->error());
+    recording_.reset();
+  }
+  if (!end_told_ && run_->time_s() >= experiment_.duration_s && mode() == "live") {
+    end_told_ = true;
+    Log("the experiment's end; resume goes on");
+    paused_ = true;
+    return false;
+  }
+  return true;
+}
+
+void LiveSession::StepUntil(double time_s, Clock::time_point deadline) {
+  for (int steps = 0; run_->time_s() < time_s; ++steps) {
+    if (!StepOnce()) return;
+    if ((steps & 15) == 15 && Clock::now() >= deadline) return;
+  }
+}
+
+void LiveSession::Anchor() {
+  anchor_wall_ = measured_wall_ = Clock::now();
+  anchor_s_ = measured_s_ = run_->time_s();
+  real_time_factor_ = 0;
+}
+
+Session::Clock::time_point LiveSession::Work() {
+  if (std::exchange(scene_changed_, false)) SetScene(MakeScene(), true);
+  const Clock::time_point start = Clock::now();
+  const bool full_speed = speed_ == 0;
+  if (!paused_) {
+    const double wanted =
+        full_speed ? HUGE_VAL : anchor_s_ + speed_ * Seconds(start - anchor_wall_);
+    StepUntil(wanted, std::min(start + kSlice, shown_wall_ + kFramePeriod));
+    if (!full_speed && wanted - run_->time_s() > kMaxBehindS * std::max(speed_, 1.0)) {
+      anchor_wall_ = Clock::now();
+      anchor_s_ = run_->time_s();
+    }
+    changed_ = true;
+  }
+  const Clock::time_point now = Clock::now();
+  if (now - measured_wall_ > milliseconds(500)) {
+    real_time_factor_ = (run_->time_s() - measured_s_) / Seconds(now - measured_wall_);
+    measured_wall_ = now;
+    measured_s_ = run_->time_s();
+  }
+  if (now - shown_wall_ >= (changed_ ? Clock::duration(kFramePeriod) : kIdlePeriod)) {
+    if (recording_) recording_->FlushOld();
+    Show();
+    shown_wall_ = now;
+    changed_ = false;
+  }
+  if (paused_) return shown_wall_ + (changed_ ? Clock::duration(kFramePeriod) : kIdlePeriod);
+  return full_speed ? now : std::min(shown_wall_ + kFramePeriod, now + microseconds(4000));
+}
+
+void LiveSession::Show() {
+  Frame frame;
+  const Batch& batch = run_->batch();
+  const ModelDef& def = experiment_.robot.def;
+  frame.time_s = run_->time_s();
+  frame.real_time_factor = paused_ ? 0 : real_time_factor_;
+  frame.speed = speed_;
+  frame.paused = paused_;
+  frame.run = run_number_;
+  frame.energy = batch.TotalEnergy(0);
+  for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) {
+    const BodyState body = batch.Body(0, b);
+    frame.bodies.push_back({body.position_m, body.orientation});
+  }
+  for (int c = 0; c < static_cast<int>(def.cables.size()); ++c) {
+    const CableState cable = batch.Cable(0, c);
+    frame.cables.push_back({cable.tension_n, cable.length_m, cable.rest_length_m,
+                            run_->set_point_n()[static_cast<std::size_t>(c)]});
+  }
+  for (const ContactState& contact : batch.Contacts(0)) {
+    frame.contacts.push_back({contact.point_m, contact.force_n});
+  }
+  frame.contact_count = static_cast<double>(frame.contacts.size());
+  frame.pushes = run_->OutsideForces();
+  Publish(std::move(frame));
+}
+
+Json LiveSession::MakeScene() const {
+  Json scene = SceneOf(experiment_);
+  scene["parameters"] = ParametersJson(*run_, experiment_);
+  scene["controls"] = ControlsJson(*run_);
+  scene["drag_stiffness_n_per_m"] = run_->DragStiffness();
+  return scene;
+}
+
+std::optional<int> LiveSession::FindNode(const std::string& name) const {
+  const auto& nodes = experiment_.robot.def.nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i].name == name) return static_cast<int>(i);
+  }
+  return std::nullopt;
+}
+
+}  // namespace taut::viewer

@@ -1,0 +1,68 @@
+/// A live run, in real time or at another speed.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "session.h"
+#include "taut/live.h"
+
+namespace taut::viewer {
+
+struct LiveOptions {
+  std::string path;     ///< Of the experiment, read again when a parameter of the files changes.
+  Overrides overrides;  ///< Of those parameters.
+  double speed = 1;     ///< Simulated seconds a second; 0: as fast as it can.
+  bool paused = false;
+  /// Where to record traces, events and inputs; empty: nowhere. An existing folder.
+  std::string record_folder;
+};
+
+class LiveSession final : public Session {
+ public:
+  /// Shows `experiment`. Nothing and diagnostics if it cannot start.
+  static std::unique_ptr<LiveSession> Create(const std::string& mode,
+                                             const ExperimentSpec& experiment,
+                                             const LiveOptions& options, Diagnostics& out);
+  ~LiveSession() override;
+
+ private:
+  class Recording;
+
+  LiveSession(const std::string& mode, std::unique_ptr<LiveRun> run, LiveOptions options);
+
+  void Handle(int client, const Command& command) override;
+  Clock::time_point Work() override;
+
+  bool Drive(const Command& command, std::string& error);
+  bool SetParameter(const Command& command, std::string& error);
+  bool SetControl(const Command& command, std::string& error);
+  bool Restart(const ExperimentSpec& experiment, std::string& error);
+  bool StartRecording(Diagnostics& out);
+  void Log(const std::string& text);
+  bool StepOnce();
+  void StepUntil(double time_s, Clock::time_point deadline);
+  void Anchor();
+  void Show();
+  Json MakeScene() const;
+  std::optional<int> FindNode(const std::string& name) const;
+
+  LiveOptions options_;
+  ExperimentSpec experiment_;  ///< As read; `run_` may have been changed by hand since.
+  std::unique_ptr<LiveRun> run_;
+  std::unique_ptr<Recording> recording_;
+  int run_number_ = 1, recordings_ = 0;
+  bool paused_ = false, end_told_ = false, broken_told_ = false, dragging_ = false;
+  double speed_ = 1;
+  // Simulated time keeps up with wall-clock time since this pair.
+  Clock::time_point anchor_wall_;
+  double anchor_s_ = 0;
+  // What the real-time factor is measured from.
+  Clock::time_point measured_wall_;
+  double measured_s_ = 0, real_time_factor_ = 0;
+  Clock::time_point shown_wall_;
+  bool changed_ = true, scene_changed_ = false;
+};
+
+}  // namespace taut::viewer

@@ -1,0 +1,219 @@
+#include "recorded.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace taut::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string ReadText(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Whether a trace can be of this experiment: all its bodies and cables have a name there.
+bool Belongs(const Trace& trace, const ExperimentSpec& experiment) {
+  std::vector<std::string> known;
+  for (const BodyDef& body : experiment.robot.def.bodies) known.push_back("body/" + body.name);
+  for (const CableDef& cable : experiment.robot.def.cables) known.push_back("cable/" + cable.name);
+  std::sort(known.begin(), known.end());
+  return std::all_of(trace.channels.begin(), trace.channels.end(), [&](const ChannelInfo& channel) {
+    if (!channel.name.starts_with("body/") && !channel.name.starts_with("cable/")) return true;
+    return std::binary_search(known.begin(), known.end(),
+                              channel.name.substr(0, channel.name.rfind('/')));
+  });
+}
+
+double ValueAt(const std::vector<double>* column, std::size_t row) {
+  return column == nullptr ? Frame::kUnknown : (*column)[row];
+}
+
+}  // namespace
+
+std::unique_ptr<Recorded> Recorded::Load(const std::string& path, const std::string& compare,
+                                         Diagnostics& out) {
+  auto trace = ReadTrace(path, out);
+  if (!trace) return nullptr;
+  if (trace->time_s.empty()) {
+    out.Error({path}, "has no rows: there is nothing to show");
+    return nullptr;
+  }
+  auto recorded = std::make_unique<Recorded>();
+  recorded->path_ = path;
+  recorded->trace_ = std::move(*trace);
+  recorded->FindInputs();
+  recorded->FindColumns();
+  std::string other = compare;
+  if (other.empty() && recorded->experiment_ && recorded->experiment_->compare_with &&
+      fs::exists(*recorded->experiment_->compare_with)) {
+    other = *recorded->experiment_->compare_with;
+  }
+  if (other.empty()) return recorded;
+  recorded->reference_ = ReadTrace(other, out);
+  recorded->reference_name_ = fs::path(other).filename().string();
+  if (!recorded->reference_) return nullptr;
+  return recorded;
+}
+
+void Recorded::FindInputs() {
+  const fs::path folder = fs::path(path_).parent_path();
+  // A live run that was reset leaves trace_2.h5 and inputs_2.yaml.
+  std::string name = fs::path(path_).stem().string();
+  const std::string suffix = name.starts_with("trace") ? name.substr(5) : "";
+  const fs::path inputs = folder / ("inputs" + suffix + ".yaml");
+  std::error_code failed;
+  if (!fs::exists(inputs, failed)) {
+    notice_ = fmt::format("no {} beside the trace: bodies are shown as balls",
+                          inputs.filename().string());
+    return;
+  }
+  Diagnostics found;
+  experiment_ = LoadExperiment(inputs.string(), {}, found);
+  if (experiment_ && !Belongs(trace_, *experiment_)) experiment_.reset();
+  if (!experiment_) {
+    notice_ = fmt::format("{} is not of this trace: bodies are shown as balls",
+                          inputs.filename().string());
+    return;
+  }
+  inputs_ = ReadText(inputs);
+  const double end_s = trace_.time_s.back();
+  if (suffix.empty() && end_s < experiment_->duration_s * (1 - 1e-9) - 1e-9) {
+    notice_ = fmt::format("the trace ends at {:g} s of {:g} s", end_s, experiment_->duration_s);
+  }
+  summary_ = Json::parse(ReadText(folder / ("summary" + suffix + ".json")), nullptr, false);
+  if (summary_.is_discarded()) summary_ = nullptr;
+}
+
+const std::vector<double>* Recorded::Column(const std::string& name) const {
+  const auto at = trace_.Find(name);
+  return at ? &trace_.values[*at] : nullptr;
+}
+
+void Recorded::FindColumns() {
+  static const char* const kPose[] = {"position_x_m",  "position_y_m",  "position_z_m",
+                                      "orientation_w", "orientation_x", "orientation_y",
+                                      "orientation_z"};
+  static const char* const kCable[] = {"tension_n", "length_m", "rest_length_m", "setpoint_n"};
+  const Json scene = experiment_ ? SceneOf(*experiment_) : SceneOf(trace_);
+  for (const Json& body : scene["bodies"]) {
+    BodyColumns columns;
+    const Json& at = body["position_m"];
+    columns.start.position_m = {at[0].get<double>(), at[1].get<double>(), at[2].get<double>()};
+    for (int i = 0; i < 7; ++i) {
+      columns.values[i] = Column("body/" + body["name"].get<std::string>() + "/" + kPose[i]);
+    }
+    bodies_.push_back(columns);
+  }
+  for (const Json& cable : scene["cables"]) {
+    CableColumns columns;
+    for (int i = 0; i < 4; ++i) {
+      columns.values[i] = Column("cable/" + cable["name"].get<std::string>() + "/" + kCable[i]);
+    }
+    cables_.push_back(columns);
+  }
+  if (experiment_) {
+    for (const PushSpec& push : experiment_->pushes) {
+      const auto* value = Column("push/" + push.name + "/force_n");
+      if (value != nullptr) forces_.push_back({push.node, push.direction, value});
+    }
+    for (const DragSpec& drag : experiment_->drags) {
+      const auto* value = Column("drag/" + drag.name + "/force_n");
+      const Vec3& v = drag.velocity_m_per_s;
+      const double speed = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+      if (value == nullptr || speed == 0) continue;
+      forces_.push_back({drag.node, {v.x / speed, v.y / speed, v.z / speed}, value});
+    }
+    for (const char* hand : {"hand/drag/", "hand/push/"}) {
+      HandColumns columns;
+      int found = 0;
+      for (const char* name : {"node", "force_x_n", "force_y_n", "force_z_n"}) {
+        columns.values[found] = Column(std::string(hand) + name);
+        if (columns.values[found] != nullptr) ++found;
+      }
+      if (found == 4) hands_.push_back(columns);
+    }
+  }
+  energy_[0] = Column("system/kinetic_j");
+  energy_[1] = Column("system/gravity_j");
+  energy_[2] = Column("system/elastic_j");
+  contact_count_ = Column("system/contact_count");
+}
+
+Json Recorded::scene() const {
+  Json scene = experiment_ ? SceneOf(*experiment_) : SceneOf(trace_);
+  scene["channels"] = ToJson(trace_.channels);
+  scene["first_s"] = trace_.time_s.front();
+  scene["duration_s"] = trace_.time_s.back();
+  if (reference_) {
+    scene["reference"] = {{"name", reference_name_},
+                          {"channels", ToJson(reference_->channels)},
+                          {"values", Json::array()}};
+  }
+  if (!notice_.empty()) scene["notice"] = notice_;
+  return scene;
+}
+
+Frame Recorded::FrameOf(std::size_t row) const {
+  Frame frame;
+  frame.time_s = trace_.time_s[row];
+  frame.energy = {ValueAt(energy_[0], row), ValueAt(energy_[1], row), ValueAt(energy_[2], row)};
+  frame.contact_count = ValueAt(contact_count_, row);
+  for (const BodyColumns& body : bodies_) {
+    Frame::Body pose = body.start;
+    double* const to[] = {&pose.position_m.x,  &pose.position_m.y,  &pose.position_m.z,
+                          &pose.orientation.w, &pose.orientation.x, &pose.orientation.y,
+                          &pose.orientation.z};
+    for (int i = 0; i < 7; ++i) {
+      if (body.values[i] != nullptr) *to[i] = (*body.values[i])[row];
+    }
+    frame.bodies.push_back(pose);
+  }
+  for (const CableColumns& cable : cables_) {
+    frame.cables.push_back({ValueAt(cable.values[0], row), ValueAt(cable.values[1], row),
+                            ValueAt(cable.values[2], row), ValueAt(cable.values[3], row)});
+  }
+  for (const ForceColumn& force : forces_) {
+    const double n = (*force.value)[row];
+    const Vec3& d = force.direction;
+    if (n != 0) frame.pushes.push_back({force.node, {n * d.x, n * d.y, n * d.z}});
+  }
+  const double nodes = experiment_ ? static_cast<double>(experiment_->robot.def.nodes.size()) : 0;
+  for (const HandColumns& hand : hands_) {
+    const double node = (*hand.values[0])[row];
+    if (!(node >= 0 && node < nodes)) continue;
+    frame.pushes.push_back(
+        {static_cast<int>(node),
+         {(*hand.values[1])[row], (*hand.values[2])[row], (*hand.values[3])[row]}});
+  }
+  return frame;
+}
+
+std::size_t Recorded::RowAt(double time_s) const {
+  const auto after = std::upper_bound(trace_.time_s.begin(), trace_.time_s.end(), time_s);
+  return after == trace_.time_s.begin()
+             ? 0
+             : static_cast<std::size_t>(after - trace_.time_s.begin()) - 1;
+}
+
+Json Recorded::SeriesOf(const std::string& channel, int source, double t0, double t1,
+                        std::size_t points) const {
+  if (source == 1 && !reference_) return nullptr;
+  const Trace& trace = source == 1 ? *reference_ : trace_;
+  const auto at = trace.Find(channel);
+  if (!at) return nullptr;
+  const std::vector<double>& column = trace.values[*at];
+  const auto pyramid = pyramids_.try_emplace({source, *at}, column).first;
+  const Series series = pyramid->second.Get(trace.time_s, column, t0, t1, points);
+  return {{"channel", channel},      {"source", source},  {"level", series.level},
+          {"time_s", series.time_s}, {"min", series.min}, {"max", series.max},
+          {"mean", series.mean}};
+}
+
+}  // namespace taut::viewer

@@ -1,0 +1,81 @@
+/// A trace and what is known about it: the experiment beside it, the summary, another trace to
+/// compare with. Replays and reports are made of this.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frame.h"
+#include "pyramid.h"
+#include "scene.h"
+#include "taut/spec.h"
+#include "taut/trace.h"
+
+namespace taut::viewer {
+
+class Recorded {
+ public:
+  /// Reads the trace at `path` and, from its folder, inputs.yaml and summary.json where they are
+  /// there and fit. `compare`: another trace, empty for none; else what the experiment names.
+  /// Nothing and diagnostics if a trace cannot be read.
+  static std::unique_ptr<Recorded> Load(const std::string& path, const std::string& compare,
+                                        Diagnostics& out);
+
+  const std::string& path() const { return path_; }
+  const Trace& trace() const { return trace_; }
+  const std::optional<Trace>& reference() const { return reference_; }
+  const std::string& reference_name() const { return reference_name_; }
+  const std::optional<ExperimentSpec>& experiment() const { return experiment_; }
+  const std::string& inputs() const { return inputs_; }  ///< The text of inputs.yaml, or empty.
+  const Json& summary() const { return summary_; }       ///< Or null.
+  const std::string& notice() const { return notice_; }  ///< What is amiss, or empty.
+
+  Json scene() const;
+  /// What a row of the trace shows.
+  Frame FrameOf(std::size_t row) const;
+  /// The last row at or before a time; 0 before the first.
+  std::size_t RowAt(double time_s) const;
+  /// SeriesData of a channel of the trace (source 0) or of the other (1); null if there is none.
+  Json SeriesOf(const std::string& channel, int source, double t0, double t1,
+                std::size_t points) const;
+
+ private:
+  void FindInputs();
+  void FindColumns();
+  /// The column of a channel, or null.
+  const std::vector<double>* Column(const std::string& name) const;
+
+  struct BodyColumns {
+    const std::vector<double>* values[7];  ///< Null: as at the start.
+    Frame::Body start;
+  };
+  struct CableColumns {
+    const std::vector<double>* values[4];
+  };
+  struct ForceColumn {
+    int node = 0;
+    Vec3 direction;
+    const std::vector<double>* value;
+  };
+  struct HandColumns {
+    const std::vector<double>* values[4];
+  };
+
+  std::string path_, inputs_, notice_, reference_name_;
+  Trace trace_;
+  std::optional<Trace> reference_;
+  std::optional<ExperimentSpec> experiment_;
+  Json summary_;
+  std::vector<BodyColumns> bodies_;
+  std::vector<CableColumns> cables_;
+  std::vector<ForceColumn> forces_;
+  std::vector<HandColumns> hands_;
+  const std::vector<double>* energy_[3] = {};
+  const std::vector<double>* contact_count_ = nullptr;
+  mutable std::map<std::pair<int, std::size_t>, Pyramid> pyramids_;  ///< Made when asked for.
+};
+
+}  // namespace taut::viewer

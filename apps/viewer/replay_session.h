@@ -1,0 +1,31 @@
+/// A trace, played back.
+#pragma once
+
+#include <memory>
+
+#include "recorded.h"
+#include "session.h"
+
+namespace taut::viewer {
+
+class ReplaySession final : public Session {
+ public:
+  ReplaySession(std::unique_ptr<Recorded> recorded, double speed);
+  ~ReplaySession() override { Stop(); }
+
+ private:
+  void Handle(int client, const Command& command) override;
+  Clock::time_point Work() override;
+  void Anchor(double time_s);
+  double PlayedTo(Clock::time_point now) const;
+
+  std::unique_ptr<Recorded> recorded_;
+  double speed_;
+  bool paused_ = true, changed_ = true;
+  std::size_t row_ = 0;
+  // The time shown is the second plus speed times the wall-clock time since the first.
+  Clock::time_point anchor_wall_, shown_wall_;
+  double anchor_s_ = 0;
+};
+
+}  // namespace taut::viewer

@@ -1,0 +1,183 @@
+#include "report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "protocol_messages.h"
+#include "taut/compare.h"
+#include "web_files.h"
+
+namespace taut::viewer {
+namespace {
+
+constexpr double kFramesPerS = 30;
+constexpr std::size_t kMaxFrames = 4000;
+/// Points of a plot: about two for each of its pixels.
+constexpr std::size_t kPoints = 800;
+
+std::string Base64(const std::string& bytes) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63] : '=';
+    }
+  }
+  return text;
+}
+
+/// What a report plots. Poses are in its frames; velocities would only make it larger.
+bool IsPlotted(const ChannelInfo& channel) { return !channel.name.starts_with("body/"); }
+
+std::vector<ChannelInfo> Plotted(const std::vector<ChannelInfo>& channels) {
+  std::vector<ChannelInfo> plotted;
+  std::copy_if(channels.begin(), channels.end(), std::back_inserter(plotted), IsPlotted);
+  return plotted;
+}
+
+/// To seven digits, more than a plot shows: a third of the size.
+void Round(Json& numbers) {
+  for (Json& number : numbers) {
+    const double x = number.get<double>();
+    if (!std::isfinite(x)) continue;
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.7g", x);
+    number = std::strtod(text.data(), nullptr);
+  }
+}
+
+void AddSeries(const Recorded& recorded, const Trace& trace, int source, Json& all) {
+  if (trace.time_s.empty()) return;
+  for (const ChannelInfo& channel : trace.channels) {
+    if (!IsPlotted(channel)) continue;
+    Json series =
+        recorded.SeriesOf(channel.name, source, trace.time_s.front(), trace.time_s.back(), kPoints);
+    for (const char* key : {"time_s", "min", "max", "mean"}) Round(series[key]);
+    all.push_back(std::move(series));
+  }
+}
+
+/// Every frame's numbers as Float32.
+void AddFrames(const Recorded& recorded, Json& report) {
+  const std::vector<double>& times = recorded.trace().time_s;
+  const double span_s = times.back() - times.front();
+  const auto frames =
+      std::clamp<std::size_t>(static_cast<std::size_t>(std::min(span_s * kFramesPerS, 1e9)) + 1, 1,
+                              std::min(kMaxFrames, times.size()));
+  std::vector<Frame> all;
+  std::size_t pushes = 0;
+  for (std::size_t i = 0; i < frames; ++i) {
+    const double share = frames == 1 ? 0 : static_cast<double>(i) / static_cast<double>(frames - 1);
+    // Times near a row may lie a rounding before it.
+    all.push_back(recorded.FrameOf(recorded.RowAt(times.front() + share * span_s + 1e-9)));
+    pushes = std::max(pushes, all.back().pushes.size());
+  }
+  std::string bytes;
+  std::size_t values = 0;
+  for (Frame& frame : all) {
+    frame.pushes.resize(pushes);  // all frames have one size; what was added has no force
+    frame.run = 1;
+    const std::vector<double> numbers = FrameNumbers(frame);
+    const std::vector<float> small(numbers.begin(), numbers.end());
+    values = small.size();
+    bytes.append(reinterpret_cast<const char*>(small.data()), values * sizeof(float));
+  }
+  report["frame_count"] = frames;
+  report["frame_values"] = values;
+  report["frames_base64"] = Base64(bytes);
+}
+
+std::string ReadText(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+Json ReportOf(const Recorded& recorded) {
+  Json report;
+  report["version"] = kProtocolVersion;
+  report["title"] = recorded.experiment()
+                        ? recorded.experiment()->name
+                        : std::filesystem::path(recorded.path()).filename().string();
+  report["scene"] = recorded.scene();
+  report["scene"]["channels"] = ToJson(Plotted(recorded.trace().channels));
+  report["metadata"] = Json::object();
+  for (const auto& [key, text] : recorded.trace().metadata) report["metadata"][key] = text;
+  report["inputs"] = recorded.inputs();
+  report["summary"] = recorded.summary();
+  report["comparison"] = nullptr;
+  report["series"] = Json::array();
+  AddSeries(recorded, recorded.trace(), 0, report["series"]);
+  if (const auto& reference = recorded.reference()) {
+    report["scene"]["reference"]["channels"] = ToJson(Plotted(reference->channels));
+    AddSeries(recorded, *reference, 1, report["series"]);
+    CompareOptions options;
+    if (recorded.experiment()) {
+      for (const PhaseSpec& phase : recorded.experiment()->phases) {
+        options.phases.push_back({phase.name, phase.from_s, phase.to_s});
+      }
+    }
+    report["comparison"] =
+        Json::parse(ComparisonJson(Compare(recorded.trace(), *reference, options),
+                                   std::filesystem::path(recorded.path()).filename().string(),
+                                   recorded.reference_name()),
+                    nullptr, false);
+  }
+  AddFrames(recorded, report);
+  return report;
+}
+
+std::optional<std::string> ReportPage(const Json& report, const std::string& page) {
+  static constexpr std::string_view kPlace =
+      R"(<script type="application/json" id="taut-report"></script>)";
+  const std::size_t at = page.find(kPlace);
+  if (at == page.npos) return std::nullopt;
+  std::string data;
+  for (const char c : Dump(report)) {
+    if (c == '<') {
+      data += "\\u003c";  // nothing in the data can end the element that holds it
+    } else {
+      data += c;
+    }
+  }
+  const std::size_t end = at + kPlace.size() - std::strlen("</script>");
+  return page.substr(0, end) + data + page.substr(end);
+}
+
+bool WriteReport(const std::string& trace, const std::string& compare, const std::string& path,
+                 Diagnostics& out) {
+  std::string error;
+  const std::optional<std::string> folder = FindWebFolder(error);
+  if (!folder) {
+    out.Error({path}, "the report cannot be made: " + error);
+    return false;
+  }
+  const auto recorded = Recorded::Load(trace, compare, out);
+  if (!recorded) return false;
+  const auto page = ReportPage(ReportOf(*recorded), ReadText(*folder + "/report.html"));
+  if (!page) {
+    out.Error({*folder + "/report.html"}, "is not the page that reports are made of",
+              "build the viewer's pages again: script/build");
+    return false;
+  }
+  std::ofstream file(path, std::ios::binary);
+  file << *page;
+  file.close();
+  if (file) return true;
+  out.Error({path}, "cannot be written", "is the disk full, or the folder not yours?");
+  return false;
+}
+
+}  // namespace taut::viewer

@@ -1,0 +1,23 @@
+/// A run as one HTML file that opens from disk: the viewer's page with the data inside.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "recorded.h"
+#include "taut/diagnostics.h"
+
+namespace taut::viewer {
+
+/// The Report of web/protocol/messages.json.
+Json ReportOf(const Recorded& recorded);
+
+/// The page `page` with the data in its empty <script id="taut-report">. Nothing if it has none.
+std::optional<std::string> ReportPage(const Json& report, const std::string& page);
+
+/// Reads the trace at `trace` (and what is beside it), writes the report to `path`. False and
+/// diagnostics if that fails.
+bool WriteReport(const std::string& trace, const std::string& compare, const std::string& path,
+                 Diagnostics& out);
+
+}  // namespace taut::viewer

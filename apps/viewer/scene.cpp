@@ -1,0 +1,174 @@
+#include "scene.h"
+
+#include <algorithm>
+
+namespace taut::viewer {
+namespace {
+
+Vec3 Minus(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+
+/// A point of W at t = 0 in its body's frame.
+Json InBody(const ModelDef& def, int body, const Vec3& point_m) {
+  if (body == kWorld) return ToJson(point_m);
+  return ToJson(Minus(point_m, def.bodies[static_cast<std::size_t>(body)].com_m));
+}
+
+Json Bodies(const ModelDef& def) {
+  Json bodies = Json::array();
+  for (const BodyDef& body : def.bodies) {
+    bodies.push_back({{"name", body.name},
+                      {"mass_kg", body.mass_kg},
+                      {"fixed", body.fixed},
+                      {"position_m", ToJson(body.com_m)},
+                      {"orientation", ToJson(Quat{})},
+                      {"shapes", Json::array()}});
+  }
+  const auto add = [&](int body, Json shape) {
+    if (body != kWorld)
+      bodies[static_cast<std::size_t>(body)]["shapes"].push_back(std::move(shape));
+  };
+  for (const CapsuleDef& rod : def.capsules) {
+    add(rod.body, {{"kind", "rod"},
+                   {"name", rod.name},
+                   {"from_m", InBody(def, rod.body, rod.from_m)},
+                   {"to_m", InBody(def, rod.body, rod.to_m)},
+                   {"radius_m", rod.radius_m}});
+  }
+  for (const SphereDef& sphere : def.spheres) {
+    add(sphere.body, {{"kind", "sphere"},
+                      {"name", sphere.name},
+                      {"center_m", InBody(def, sphere.body, sphere.center_m)},
+                      {"radius_m", sphere.radius_m}});
+  }
+  for (const BoxDef& box : def.boxes) {
+    add(box.body, {{"kind", "box"},
+                   {"name", box.name},
+                   {"center_m", InBody(def, box.body, box.center_m)},
+                   {"half_extents_m", ToJson(box.half_extents_m)},
+                   {"orientation", ToJson(box.orientation)}});
+  }
+  return bodies;
+}
+
+Json Cables(const ModelDef& def) {
+  Json cables = Json::array();
+  for (const CableDef& cable : def.cables) {
+    Json attachments = Json::array();
+    for (const AttachmentDef& at : cable.attachments) {
+      attachments.push_back(
+          {{"body", at.body}, {"position_m", InBody(def, at.body, at.position_m)}});
+    }
+    cables.push_back({{"name", cable.name},
+                      {"attachments", attachments},
+                      {"stiffness_n_per_m", cable.stiffness_n_per_m},
+                      {"actuated", cable.actuator.kind != ActuatorDef::Kind::kNone}});
+  }
+  return cables;
+}
+
+Json Terrain(const ModelDef& def) {
+  Json terrain = Json::array();
+  for (const PlaneDef& plane : def.planes) {
+    terrain.push_back({{"kind", "plane"},
+                       {"name", plane.name},
+                       {"normal", ToJson(plane.normal)},
+                       {"point_m", ToJson(plane.point_m)}});
+  }
+  for (const TerrainBoxDef& box : def.terrain_boxes) {
+    terrain.push_back({{"kind", "box"},
+                       {"name", box.name},
+                       {"center_m", ToJson(box.center_m)},
+                       {"half_extents_m", ToJson(box.half_extents_m)},
+                       {"orientation", ToJson(box.orientation)}});
+  }
+  return terrain;
+}
+
+Json Empty() {
+  Json scene;
+  for (const char* key :
+       {"bodies", "nodes", "cables", "terrain", "parameters", "controls", "channels", "phases"}) {
+    scene[key] = Json::array();
+  }
+  scene["first_s"] = 0;
+  scene["duration_s"] = 0;
+  scene["drag_stiffness_n_per_m"] = 0;
+  return scene;
+}
+
+/// "segment_0" of "body/segment_0/position_x_m"; empty if the name is not like that.
+std::string Between(const std::string& name, const std::string& prefix, const std::string& suffix) {
+  if (name.size() <= prefix.size() + suffix.size() || name.compare(0, prefix.size(), prefix) != 0 ||
+      name.compare(name.size() - suffix.size(), suffix.size(), suffix) != 0) {
+    return {};
+  }
+  return name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
+}
+
+}  // namespace
+
+Json ToJson(const Vec3& v) { return {v.x, v.y, v.z}; }
+Json ToJson(const Quat& q) { return {q.w, q.x, q.y, q.z}; }
+
+Json ToJson(const std::vector<ChannelInfo>& channels) {
+  Json json = Json::array();
+  for (const ChannelInfo& channel : channels) {
+    json.push_back({{"name", channel.name}, {"unit", channel.unit}});
+  }
+  return json;
+}
+
+Json SceneOf(const ExperimentSpec& experiment) {
+  const ModelDef& def = experiment.robot.def;
+  Json scene = Empty();
+  scene["bodies"] = Bodies(def);
+  for (const NodeDef& node : def.nodes) {
+    scene["nodes"].push_back({{"name", node.name},
+                              {"body", node.body},
+                              {"position_m", InBody(def, node.body, node.position_m)}});
+  }
+  scene["cables"] = Cables(def);
+  scene["terrain"] = Terrain(def);
+  for (const PhaseSpec& phase : experiment.phases) {
+    scene["phases"].push_back(
+        {{"name", phase.name}, {"from_s", phase.from_s}, {"to_s", phase.to_s}});
+  }
+  scene["duration_s"] = experiment.duration_s;
+  return scene;
+}
+
+Json SceneOf(const Trace& trace) {
+  constexpr double kRadiusM = 0.02;
+  Json scene = Empty();
+  std::vector<std::string> cables;
+  for (const ChannelInfo& channel : trace.channels) {
+    const std::string body = Between(channel.name, "body/", "/position_x_m");
+    if (!body.empty()) {
+      const Json center = ToJson(Vec3{});
+      const Json ball = {
+          {"kind", "sphere"}, {"name", body}, {"center_m", center}, {"radius_m", kRadiusM}};
+      scene["bodies"].push_back({{"name", body},
+                                 {"mass_kg", 0},
+                                 {"fixed", false},
+                                 {"position_m", center},
+                                 {"orientation", ToJson(Quat{})},
+                                 {"shapes", Json::array({ball})}});
+    }
+    for (const char* quantity : {"/tension_n", "/elastic_n", "/length_m", "/setpoint_n"}) {
+      const std::string cable = Between(channel.name, "cable/", quantity);
+      if (cable.empty() || std::find(cables.begin(), cables.end(), cable) != cables.end()) continue;
+      cables.push_back(cable);
+      scene["cables"].push_back({{"name", cable},
+                                 {"attachments", Json::array()},
+                                 {"stiffness_n_per_m", 0},
+                                 {"actuated", false}});
+    }
+  }
+  return scene;
+}
+
+std::string Dump(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace taut::viewer

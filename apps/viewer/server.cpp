@@ -1,0 +1,281 @@
+#include "server.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <csignal>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "connection.h"
+#include "drivers.h"
+#include "http_page.h"
+#include "protocol_messages.h"
+
+namespace taut::viewer {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+
+constexpr std::size_t kMaxClients = 64;
+/// Sockets of plain HTTP, which a browser opens six of.
+constexpr std::size_t kMaxHttp = 256;
+constexpr std::chrono::seconds kHttpPatience{30};
+constexpr std::uint32_t kMaxHeaderBytes = 8 * 1024;
+
+}  // namespace
+
+struct Server::Impl {
+  Impl(Session& the_session, WebFiles the_files, ServerOptions the_options)
+      : session(the_session), files(std::move(the_files)), options(std::move(the_options)) {}
+
+  /// One socket that speaks plain HTTP, until it closes or becomes a WebSocket.
+  struct Http : std::enable_shared_from_this<Http> {
+    Http(tcp::socket socket, Impl& the_server) : stream(std::move(socket)), server(the_server) {
+      ++server.http_count;
+    }
+    ~Http() { --server.http_count; }
+
+    void Read() {
+      parser.emplace();
+      parser->header_limit(kMaxHeaderBytes);
+      parser->body_limit(0);
+      stream.expires_after(kHttpPatience);
+      http::async_read(stream, buffer, *parser,
+                       [self = shared_from_this()](beast::error_code failed, std::size_t) {
+                         if (!failed) self->Serve(self->parser->release());
+                       });
+    }
+
+    void Serve(HttpRequest request) {
+      const std::string target(request.target().substr(0, request.target().find('?')));
+      if (websocket::is_upgrade(request) && target == "/ws" && MayEnter(request, server.options) &&
+          server.clients.size() < kMaxClients) {
+        server.Open(stream.release_socket(), std::move(request));
+        return;
+      }
+      response = Answer(request, server.files, server.options);
+      serializer.emplace(*response);
+      http::async_write(stream, *serializer,
+                        [self = shared_from_this()](beast::error_code failed, std::size_t) {
+                          if (failed) return;
+                          if (self->response->keep_alive()) return self->Read();
+                          self->stream.socket().shutdown(tcp::socket::shutdown_send, failed);
+                        });
+    }
+
+    beast::tcp_stream stream;
+    Impl& server;
+    beast::flat_buffer buffer{64 * 1024};
+    std::optional<http::request_parser<http::empty_body>> parser;
+    std::optional<HttpResponse> response;
+    std::optional<http::response_serializer<http::string_body>> serializer;
+  };
+
+  void Accept() {
+    acceptor.async_accept([this](beast::error_code failed, tcp::socket socket) {
+      if (!acceptor.is_open()) return;
+      if (!failed && http_count < kMaxHttp) {
+        beast::error_code ignored;
+        socket.set_option(tcp::no_delay(true), ignored);
+        std::make_shared<Http>(std::move(socket), *this)->Read();
+      }
+      if (!failed) return Accept();
+      // Out of file descriptors, most likely: try again once some are free.
+      pause.expires_after(std::chrono::milliseconds(100));
+      pause.async_wait([this](beast::error_code) { Accept(); });
+    });
+  }
+
+  void Open(tcp::socket socket, HttpRequest request) {
+    const int client = ++last_client;
+    Connection::Handlers handlers;
+    handlers.opened = [this](Connection& who) { Opened(who); };
+    handlers.received = [this](Connection& who, const std::string& text, std::string& reason) {
+      return Received(who, text, reason);
+    };
+    handlers.closed = [this](Connection& who) { Closed(who); };
+    std::make_shared<Connection>(std::move(socket), client, std::move(handlers))
+        ->Accept(std::move(request));
+  }
+
+  void Opened(Connection& who) {
+    clients[who.client()] = who.shared_from_this();
+    Json hello = {{"type", "hello"},        {"version", kProtocolVersion},
+                  {"mode", session.mode()}, {"title", session.title()},
+                  {"client", who.client()}, {"driver", drivers.driver()}};
+    if (!session.notice().empty()) hello["notice"] = session.notice();
+    who.SendText(Dump(hello));
+    if (std::string scene = session.scene(); !scene.empty()) who.SendText(std::move(scene));
+    if (const auto frame = session.frame()) who.SendFrame(frame);
+  }
+
+  bool Received(Connection& who, const std::string& text, std::string& reason) {
+    std::optional<Command> command = ParseCommand(text, reason);
+    if (!command) return false;
+    const int before = drivers.driver();
+    if (!drivers.Allow(who.client(), command->type)) {
+      who.SendText(Dump({{"type", "error"},
+                         {"text", fmt::format("client {} drives; take control first", before)}}));
+      return true;
+    }
+    TellDriver(before);
+    if (command->type == "take_control") return true;
+    if (session.Post(who.client(), std::move(*command))) return true;
+    reason = "too many messages";
+    return false;
+  }
+
+  void Closed(Connection& who) {
+    clients.erase(who.client());
+    const int before = drivers.driver();
+    drivers.Leave(who.client());
+    // A hand that has gone holds nothing.
+    if (before == who.client() && session.mode() != "replay" && session.mode() != "error") {
+      Command drop;
+      drop.type = "drop";
+      session.Post(who.client(), drop);
+    }
+    TellDriver(before);
+  }
+
+  void TellDriver(int before) {
+    if (drivers.driver() == before) return;
+    session.SetDriver(drivers.driver());
+    ToAll(Dump({{"type", "driver"}, {"id", drivers.driver()}}));
+  }
+
+  void ToAll(const std::string& text) {
+    for (const auto& [id, client] : Clients()) client->SendText(text);
+  }
+
+  /// A copy: sending may close a connection, which takes it out of `clients`.
+  std::map<int, std::shared_ptr<Connection>> Clients() const { return clients; }
+
+  /// Runs on the session's thread.
+  void Wake() {
+    if (woken.exchange(true)) return;
+    asio::post(io, [this] { Fetch(); });
+  }
+
+  void Fetch() {
+    woken = false;  // before fetching: what comes later wakes again
+    for (Outgoing& message : session.TakeMessages()) {
+      if (message.client == 0) {
+        ToAll(message.text);
+      } else if (const auto at = clients.find(message.client); at != clients.end()) {
+        const auto keep = at->second;
+        keep->SendText(std::move(message.text));
+      }
+    }
+    if (const auto frame = session.frame()) {
+      for (const auto& [id, client] : Clients()) client->SendFrame(frame);
+    }
+  }
+
+  Session& session;
+  const WebFiles files;
+  const ServerOptions options;
+  asio::io_context io{1};
+  tcp::acceptor acceptor{io};
+  asio::steady_timer pause{io};
+  asio::signal_set signals{io};
+  std::map<int, std::shared_ptr<Connection>> clients;
+  Drivers drivers;
+  std::atomic<bool> woken{false};
+  int last_client = 0;
+  std::size_t http_count = 0;
+};
+
+Server::Server(Session& session, WebFiles files, const ServerOptions& options)
+    : impl_(std::make_unique<Impl>(session, std::move(files), options)) {}
+
+Server::~Server() { impl_->session.Stop(); }
+
+namespace {
+
+bool Bind(tcp::acceptor& acceptor, const tcp::endpoint& where, beast::error_code& failed) {
+  failed = {};
+  acceptor.open(where.protocol(), failed);
+  if (!failed) acceptor.set_option(tcp::acceptor::reuse_address(true), failed);
+  if (!failed) acceptor.bind(where, failed);
+  if (!failed) acceptor.listen(asio::socket_base::max_listen_connections, failed);
+  if (!failed) return true;
+  beast::error_code ignored;
+  acceptor.close(ignored);
+  return false;
+}
+
+}  // namespace
+
+bool Server::Listen(std::string& error) {
+  beast::error_code failed;
+  const auto address = asio::ip::make_address(impl_->options.address, failed);
+  if (failed) {
+    error =
+        fmt::format("\"{}\" is not an address; 127.0.0.1 is this machine, 0.0.0.0 listens to all",
+                    impl_->options.address);
+    return false;
+  }
+  const std::uint16_t port = impl_->options.port;
+  if (Bind(impl_->acceptor, {address, port}, failed)) return true;
+  if (failed != asio::error::address_in_use) {
+    error = fmt::format("cannot listen on {} port {}: {}", impl_->options.address, port,
+                        failed.message());
+    return false;
+  }
+  error = fmt::format("port {} is in use", port);
+  for (int next = port + 1; next <= 65535 && next <= port + 100; ++next) {
+    tcp::acceptor trial(impl_->io);
+    if (!Bind(trial, {address, static_cast<std::uint16_t>(next)}, failed)) continue;
+    error += fmt::format("; the next that is free: --port {}", next);
+    break;
+  }
+  return false;
+}
+
+std::uint16_t Server::port() const {
+  beast::error_code ignored;
+  return impl_->acceptor.local_endpoint(ignored).port();
+}
+
+void Server::Run() {
+  impl_->signals.add(SIGINT);
+  impl_->signals.add(SIGTERM);
+  impl_->signals.async_wait([this](beast::error_code failed, int) {
+    if (!failed) impl_->io.stop();
+  });
+  impl_->Accept();
+  impl_->session.Start([this] { impl_->Wake(); });
+  impl_->io.run();
+  impl_->session.Stop();
+}
+
+void Server::Stop() {
+  asio::post(impl_->io, [this] { impl_->io.stop(); });
+}
+
+bool IsLoopback(const std::string& address) {
+  beast::error_code failed;
+  const auto parsed = asio::ip::make_address(address, failed);
+  return !failed && parsed.is_loopback();
+}
+
+std::string RandomToken() {
+  std::random_device device;  // the kernel's generator
+  std::string token;
+  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", device());
+  return token;
+}
+
+}  // namespace taut::viewer

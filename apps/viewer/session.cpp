@@ -1,0 +1,128 @@
+#include "session.h"
+
+#include <utility>
+
+namespace taut::viewer {
+
+namespace {
+
+/// More than any person makes; less than would hurt.
+constexpr std::size_t kMaxWaiting = 100000;
+/// Answers of up to a megabyte; a page asks for a few at a time.
+constexpr int kMaxSeriesWaiting = 256;
+
+}  // namespace
+
+Session::Session(std::string mode, std::string title)
+    : mode_(std::move(mode)), title_(std::move(title)) {}
+
+Session::~Session() = default;
+
+void Session::Start(std::function<void()> wake) {
+  wake_ = std::move(wake);
+  thread_ = std::thread([this] { Loop(); });
+}
+
+void Session::Stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+bool Session::Post(int client, Command command) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (commands_.size() >= kMaxWaiting || series_waiting_ >= kMaxSeriesWaiting) return false;
+    if (command.type == "want_series") ++series_waiting_;
+    commands_.emplace_back(client, std::move(command));
+  }
+  changed_.notify_all();
+  return true;
+}
+
+std::shared_ptr<const std::string> Session::frame() const {
+  const std::lock_guard lock(mutex_);
+  return frame_;
+}
+
+std::string Session::scene() const {
+  const std::lock_guard lock(mutex_);
+  return scene_;
+}
+
+std::vector<Outgoing> Session::TakeMessages() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(messages_, {});
+}
+
+void Session::SetDriver(int client) {
+  driver_ = client;
+  changed_.notify_all();
+}
+
+void Session::Publish(Frame frame) {
+  frame.driver = driver_;
+  auto bytes = std::make_shared<const std::string>(FrameMessage(frame));
+  {
+    const std::lock_guard lock(mutex_);
+    frame_.swap(bytes);
+  }
+  if (wake_) wake_();
+}
+
+void Session::SetScene(const Json& scene, bool tell) {
+  std::string text = Dump({{"type", "scene"}, {"scene", scene}});
+  {
+    const std::lock_guard lock(mutex_);
+    if (tell) messages_.push_back({0, text});
+    scene_ = std::move(text);
+  }
+  if (tell && wake_) wake_();
+}
+
+void Session::Say(int client, const Json& message) {
+  std::string text = Dump(message);
+  {
+    const std::lock_guard lock(mutex_);
+    messages_.push_back({client, std::move(text)});
+  }
+  if (wake_) wake_();
+}
+
+void Session::SayError(int client, const std::string& text) {
+  Say(client, {{"type", "error"}, {"text", text}});
+}
+
+void Session::SayEvent(double time_s, const std::string& text) {
+  Say(0, {{"type", "event"}, {"time_s", time_s}, {"text", text}});
+}
+
+void Session::Loop() {
+  std::vector<std::pair<int, Command>> commands;
+  for (;;) {
+    for (const auto& [client, command] : commands) Handle(client, command);
+    commands.clear();
+    const Clock::time_point until = Work();
+    std::unique_lock lock(mutex_);
+    changed_.wait_until(lock, until, [&] { return stop_ || !commands_.empty(); });
+    if (stop_) return;
+    commands.swap(commands_);
+    series_waiting_ = 0;
+  }
+}
+
+ErrorSession::ErrorSession(std::string title, std::string notice)
+    : Session("error", std::move(title)) {
+  SetNotice(std::move(notice));
+}
+
+void ErrorSession::Handle(int client, const Command&) {
+  SayError(client, "there is nothing to drive");
+}
+
+Session::Clock::time_point ErrorSession::Work() { return Clock::now() + std::chrono::hours(1); }
+
+}  // namespace taut::viewer

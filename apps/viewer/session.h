@@ -1,0 +1,95 @@
+/// What is shown, on a thread of its own: a live run, a replay, or a complaint. The server asks for
+/// the newest frame and never makes the session wait; commands are kept until they are done.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "command.h"
+#include "frame.h"
+#include "scene.h"
+
+namespace taut::viewer {
+
+/// A text for one client, or for all.
+struct Outgoing {
+  int client = 0;  ///< 0: everyone.
+  std::string text;
+};
+
+class Session {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  explicit Session(std::string mode, std::string title);
+  virtual ~Session();  ///< A derived class calls Stop in its own destructor.
+
+  const std::string& mode() const noexcept { return mode_; }
+  const std::string& title() const noexcept { return title_; }
+  const std::string& notice() const noexcept { return notice_; }
+
+  /// Starts the thread. `wake` is called from it when there is something to fetch; it must return
+  /// at once.
+  void Start(std::function<void()> wake);
+  void Stop();
+
+  // --- for the server, from any thread; none of them waits for the session's work ------------
+  /// False if so many commands wait that something must be wrong with who sends them.
+  bool Post(int client, Command command);
+  std::shared_ptr<const std::string> frame() const;  ///< The newest; nothing before the first.
+  std::string scene() const;                         ///< The message; empty if there is none.
+  std::vector<Outgoing> TakeMessages();
+  void SetDriver(int client);
+
+ protected:
+  // --- for derived classes, on the session's thread -----------------------------------------
+  virtual void Handle(int client, const Command& command) = 0;
+  /// Goes on for a little while (a few milliseconds) and publishes; returns when it wants to be
+  /// called again at the latest.
+  virtual Clock::time_point Work() = 0;
+
+  void Publish(Frame frame);
+  void SetScene(const Json& scene, bool tell);
+  void Say(int client, const Json& message);
+  void SayError(int client, const std::string& text);
+  void SayEvent(double time_s, const std::string& text);
+  void SetNotice(std::string notice) { notice_ = std::move(notice); }
+
+ private:
+  void Loop();
+
+  const std::string mode_, title_;
+  std::string notice_;
+  std::thread thread_;
+  std::function<void()> wake_;
+  std::atomic<int> driver_{0};
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stop_ = false;
+  std::vector<std::pair<int, Command>> commands_;
+  int series_waiting_ = 0;
+  std::shared_ptr<const std::string> frame_;
+  std::string scene_;
+  std::vector<Outgoing> messages_;
+};
+
+/// Nothing to show but what is wrong.
+class ErrorSession final : public Session {
+ public:
+  ErrorSession(std::string title, std::string notice);
+  ~ErrorSession() override { Stop(); }
+
+ private:
+  void Handle(int client, const Command& command) override;
+  Clock::time_point Work() override;
+};
+
+}  // namespace taut::viewer

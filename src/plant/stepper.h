@@ -1,0 +1,59 @@
+/// An experiment's world, controllers and timeline, advanced step by step. Who calls decides when
+/// to record, to show and to stop.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "plant/controllers.h"
+#include "plant/timeline.h"
+#include "taut/batch.h"
+#include "taut/spec.h"
+
+namespace taut::plant {
+
+class Stepper {
+ public:
+  /// Both outlive the stepper. The batch is at the experiment's start.
+  Stepper(const ExperimentSpec& experiment, Batch& batch);
+
+  /// Lets the controllers act if one is due. The next Step does so, too; a row that is recorded at
+  /// the start wants their first commands.
+  void Prepare();
+
+  /// One step. Steps land on the ticks of controllers, the corners of the timeline and the
+  /// experiment's end, and go on after it.
+  void Step();
+
+  double time_s() const noexcept { return time_s_; }
+  double step_s() const noexcept { return step_s_; }  ///< Of the last step.
+  bool finite() const noexcept;
+
+  const std::vector<CableReading>& readings() const noexcept { return readings_; }
+  const std::vector<double>& target_m() const noexcept { return target_m_; }
+  const std::vector<double>& set_point_n() const noexcept { return set_point_n_; }
+  Timeline& timeline() noexcept { return timeline_; }
+  const Timeline& timeline() const noexcept { return timeline_; }
+  std::vector<Controller>& controllers() noexcept { return controllers_; }
+  const std::vector<Controller>& controllers() const noexcept { return controllers_; }
+
+  /// Commands a cable that no controller drives.
+  void SetTarget(int cable, double rest_length_m);
+
+ private:
+  void Observe();
+  double NextBoundary() const;
+
+  const ExperimentSpec& experiment_;
+  Batch& batch_;
+  Timeline timeline_;
+  std::vector<Controller> controllers_;
+  std::vector<CableReading> readings_;
+  std::vector<double> target_m_, set_point_n_;
+  double time_s_ = 0, step_s_ = 0;
+  // The span between two boundaries: `steps_` steps, of which `done_` are done.
+  double from_s_ = 0, until_s_ = 0;
+  std::int64_t steps_ = 0, done_ = 0;
+};
+
+}  // namespace taut::plant

@@ -1,0 +1,224 @@
+// A live run: left alone it is the run, and what a person does to it has its effect and is
+// recorded.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "taut/live.h"
+#include "taut/run.h"
+#include "tests/viewer/serving.h"
+
+namespace taut::test {
+namespace {
+
+namespace fs = std::filesystem;
+using viewer::FrameHeader;
+
+ExperimentSpec LoadSpec(const std::string& path) {
+  Diagnostics found;
+  const auto experiment = LoadExperiment(path, {}, found);
+  EXPECT_TRUE(experiment) << found.Format();
+  return *experiment;
+}
+
+std::unique_ptr<LiveRun> StartRun(const ExperimentSpec& experiment) {
+  Diagnostics found;
+  auto run = LiveRun::Start(experiment, found);
+  EXPECT_TRUE(run) << found.Format();
+  return run;
+}
+
+int Node(const ExperimentSpec& experiment, const std::string& name) {
+  const auto& nodes = experiment.robot.def.nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i].name == name) return static_cast<int>(i);
+  }
+  ADD_FAILURE() << "no node " << name;
+  return 0;
+}
+
+TEST(LiveRun, LeftAloneItGivesTheBitsOfARun) {
+  for (const std::string& path : {kHang, kPush}) {
+    ExperimentSpec experiment = LoadSpec(path);
+    experiment.duration_s = 2.5;
+    Diagnostics found;
+    const auto summary = RunExperiment(experiment, {}, found);
+    ASSERT_TRUE(summary) << found.Format();
+    const auto run = StartRun(experiment);
+    while (run->time_s() < experiment.duration_s) ASSERT_TRUE(run->Step());
+    EXPECT_EQ(run->time_s(), experiment.duration_s);
+    EXPECT_EQ(run->batch().Hash(0), summary->state_hash) << path;
+    for (int i = 0; i < 100; ++i) ASSERT_TRUE(run->Step());  // the end is no limit
+    EXPECT_GT(run->time_s(), experiment.duration_s + 0.05);
+  }
+}
+
+TEST(LiveRun, AHandHoldsANodeUpAgainstItsWeight) {
+  const ExperimentSpec experiment = LoadSpec(kHang);
+  const auto run = StartRun(experiment);
+  const int mass = Node(experiment, "mass");
+  const double weight_n = 0.5 * 9.81;
+  const Vec3 start = run->batch().NodePosition(0, mass);
+  // Above the point where the cable goes slack: the hand carries all of the weight.
+  run->SetHand(HandSpec{mass, {start.x, start.y, start.z + 0.2}});
+  while (run->time_s() < 10) ASSERT_TRUE(run->Step());
+  EXPECT_EQ(run->batch().Cable(0, 0).tension_n, 0);
+  ASSERT_EQ(run->OutsideForces().size(), 1u);
+  EXPECT_NEAR(run->OutsideForces()[0].force_n.z, weight_n, 1e-6);
+  EXPECT_NEAR(run->batch().NodePosition(0, mass).z, start.z + 0.2 - weight_n / run->DragStiffness(),
+              1e-6);
+  run->SetHand({});
+  ASSERT_TRUE(run->Step());
+  EXPECT_TRUE(run->OutsideForces().empty());
+  EXPECT_NEAR(run->batch().Body(0, 0).velocity_m_per_s.z, -9.81e-3, 1e-6);  // it falls
+}
+
+TEST(LiveRun, APushGivesItsImpulse) {
+  const ExperimentSpec experiment = LoadSpec(kHang);
+  const auto pushed = StartRun(experiment), alone = StartRun(experiment);
+  pushed->Push({Node(experiment, "mass"), {2, 0, 0}}, 0.05);
+  for (int i = 0; i < 50; ++i) {
+    ASSERT_TRUE(pushed->Step());
+    ASSERT_TRUE(alone->Step());
+  }
+  // 2 N for 50 ms; the cable's pull to the side grows with the way of at most 5 mm.
+  EXPECT_NEAR(pushed->batch().Momentum(0).x - alone->batch().Momentum(0).x, 0.1, 0.002);
+  ASSERT_TRUE(pushed->Step());
+  EXPECT_TRUE(pushed->OutsideForces().empty());
+}
+
+TEST(LiveRun, SetPointsAndGainsTakeEffect) {
+  const ExperimentSpec experiment = LoadSpec(kPush);
+  const auto run = StartRun(experiment), alone = StartRun(experiment);
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_TRUE(run->Step());
+    ASSERT_TRUE(alone->Step());
+  }
+  std::vector<LiveControl> controls = run->Controls();
+  ASSERT_EQ(controls.size(), 12u);
+  ASSERT_TRUE(controls[2].impedance);
+  EXPECT_EQ(controls[2].impedance->tension_offset_n, 15);
+  const auto cable = static_cast<std::size_t>(controls[2].cable);
+  controls[2].impedance->tension_offset_n += 4;
+  EXPECT_TRUE(run->SetControl(controls[2]));
+  ASSERT_TRUE(run->Step());
+  ASSERT_TRUE(alone->Step());
+  // Both controllers saw the same state.
+  EXPECT_NEAR(run->set_point_n()[cable], alone->set_point_n()[cable] + 4, 1e-12);
+  controls[2].impedance->position_gain_n_per_m = 0;
+  controls[2].impedance->velocity_gain_n_s_per_m = 0;
+  EXPECT_TRUE(run->SetControl(controls[2]));
+  ASSERT_TRUE(run->Step());
+  EXPECT_EQ(run->set_point_n()[cable], 19);  // T0 alone
+  controls[2].impedance.reset();
+  EXPECT_FALSE(run->SetControl(controls[2]));  // a controller drives it
+  controls[2].cable = 99;
+  EXPECT_FALSE(run->SetControl(controls[2]));
+}
+
+class LiveFolder : public testing::Test {
+ protected:
+  LiveFolder() {
+    std::string pattern = (fs::temp_directory_path() / "taut_live_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~LiveFolder() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+TEST_F(LiveFolder, DragsAndPushesAreInTheTrace) {
+  viewer::LiveOptions options;
+  options.paused = true;
+  options.record_folder = folder_.string();
+  {
+    const Serving serving(Live(kHang, options));
+    Client client(serving.port());
+    client.Await("hello");
+    client.Send({{"type", "step"}, {"count", 100}});
+    client.Send({{"type", "drag"}, {"node", "mass"}, {"target_m", {0.2, 0, 1}}});
+    client.Send({{"type", "step"}, {"count", 100}});
+    client.Send({{"type", "drop"}});
+    client.Send({{"type", "push"}, {"node", "mass"}, {"force_n", {0, 3, 0}}, {"duration_s", 0.05}});
+    client.Send({{"type", "step"}, {"count", 100}});
+    client.AwaitFrame([](const auto& f) { return f[FrameHeader::kFrameTimeS] > 0.2999; });
+    client.Send({{"type", "reset"}});
+    client.AwaitFrame([](const auto& f) { return f[FrameHeader::kFrameRun] == 2; });
+  }
+  Diagnostics found;
+  const auto trace = ReadTrace((folder_ / "trace.h5").string(), found);
+  ASSERT_TRUE(trace) << found.Format();
+  ASSERT_EQ(trace->time_s.size(), 61u);  // 200 Hz
+  const auto value = [&](const char* name, std::size_t row) {
+    return trace->values[*trace->Find(name)][row];
+  };
+  EXPECT_EQ(value("hand/drag/node", 20), -1);
+  EXPECT_GE(value("hand/drag/node", 21), 0);
+  EXPECT_GT(value("hand/drag/force_x_n", 21), 0);
+  EXPECT_EQ(value("hand/drag/node", 41), -1);
+  EXPECT_EQ(value("hand/push/force_y_n", 41), 3);
+  EXPECT_EQ(value("hand/push/node", 60), -1);
+  EXPECT_TRUE(fs::exists(folder_ / "trace_2.h5"));
+  std::ifstream events(folder_ / "events.jsonl");
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(events, line);) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(Json::parse(lines[0])["text"], "drag mass");
+  EXPECT_NEAR(Json::parse(lines[0])["time_s"].get<double>(), 0.1, 1e-9);
+  EXPECT_EQ(Json::parse(lines[1])["text"], "let go");
+  EXPECT_EQ(Json::parse(lines[2])["text"], "push mass with (0, 3, 0) N for 0.05 s");
+}
+
+TEST(LiveView, EditsOfEveryClientAreDoneInTheirOrder) {
+  const Serving serving(PausedLive(kPush));
+  Client client(serving.port());
+  client.Await("scene");
+  for (int i = 1; i <= 2000; ++i) {
+    client.Send({{"type", "set_setpoint"}, {"cable", "inner_top_1"}, {"value", 0.01 * i}});
+  }
+  int count = 0;
+  client.AwaitText([&](const Json& message) {
+    if (message["type"] == "event") ++count;
+    return count == 2000;
+  });
+  EXPECT_EQ(count, 2000);
+  const Json scene = client.Await("scene")["scene"];
+  double set_n = 0;
+  for (const Json& control : scene["controls"]) {
+    if (control["cable"] == "inner_top_1") set_n = control["tension_offset_n"];
+  }
+  EXPECT_EQ(set_n, 0.01 * 2000);
+}
+
+TEST(LiveView, AParameterOfTheFilesStartsAnew) {
+  const Serving serving(PausedLive(kPush));
+  Client client(serving.port());
+  client.Await("scene");
+  client.Send({{"type", "step"}, {"count", 5}});
+  client.Send({{"type", "set_parameter"}, {"name", "push_n"}, {"value", 30}});
+  const Json scene = client.Await("scene")["scene"];
+  double push_n = 0;
+  for (const Json& parameter : scene["parameters"]) {
+    if (parameter["name"] == "push_n") push_n = parameter["value"];
+  }
+  EXPECT_EQ(push_n, 30);
+  const auto frame =
+      client.AwaitFrame([](const auto& f) { return f[FrameHeader::kFrameRun] == 2; });
+  EXPECT_EQ(frame[FrameHeader::kFrameTimeS], 0);
+}
+
+TEST(LiveView, StopsAtTheEndOfTheExperimentAndGoesOnWhenAsked) {
+  viewer::LiveOptions options;
+  options.speed = 0;
+  const Serving serving(Live(kHang, options));
+  Client client(serving.port());
+  const auto end = client.AwaitFrame([](const auto& f) {
+    return f[FrameHeader::kFrameTimeS] >= 5 && f[FrameHeader::kFramePaused] == 1;
+  });
+  EXPECT_EQ(end[FrameHeader::kFrameTimeS], 5);
+  client.Send({{"type", "resume"}});
+  EXPECT_FALSE(client.AwaitFrame([](const auto& f) { return f[FrameHeader::kFrameTimeS] > 5; })
+                   .numbers.empty());
+}
+
+}  // namespace
+}  // namespace taut::test

@@ -1,0 +1,256 @@
+// Replays: poses as in the file, scrubbing, plots at every resolution, traces with something amiss.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "apps/viewer/replay_session.h"
+#include "taut/run.h"
+#include "tests/viewer/serving.h"
+
+namespace taut::test {
+namespace {
+
+namespace fs = std::filesystem;
+using viewer::FrameHeader;
+
+/// A folder with a recorded run of half a second of the push test.
+class Replay : public testing::Test {
+ protected:
+  Replay() {
+    std::string pattern = (fs::temp_directory_path() / "taut_replay_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+    Diagnostics found;
+    experiment_ = *LoadExperiment(kPush, {}, found);
+    experiment_.duration_s = 0.5;
+    const auto writer = CreateHdf5Trace(trace(), RunChannels(experiment_), {}, found);
+    RunOptions options;
+    options.traces = {writer.get()};
+    EXPECT_TRUE(RunExperiment(experiment_, options, found)) << found.Format();
+    WriteInputs();
+  }
+  ~Replay() override { fs::remove_all(folder_); }
+
+  std::string trace() const { return (folder_ / "trace.h5").string(); }
+  void WriteInputs() const { Write("inputs.yaml", ResolvedYaml(experiment_)); }
+  void Write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  static std::unique_ptr<viewer::Recorded> Load(const std::string& path) {
+    Diagnostics found;
+    auto recorded = viewer::Recorded::Load(path, "", found);
+    EXPECT_TRUE(recorded) << found.Format();
+    return recorded;
+  }
+  std::unique_ptr<viewer::Session> Session() const {
+    return std::make_unique<viewer::ReplaySession>(Load(trace()), 1);
+  }
+
+  fs::path folder_;
+  ExperimentSpec experiment_;
+};
+
+TEST_F(Replay, ShowsThePosesAndTensionsOfTheFile) {
+  Diagnostics found;
+  const Trace file = *ReadTrace(trace(), found);
+  const Serving serving(Session());
+  Client client(serving.port());
+  EXPECT_EQ(client.Await("hello")["mode"], "replay");
+  const Json scene = client.Await("scene")["scene"];
+  EXPECT_EQ(scene["channels"].size(), file.channels.size());
+  EXPECT_EQ(scene["first_s"], 0);
+  EXPECT_EQ(scene["duration_s"], 0.5);
+  for (const std::size_t row : {0u, 1u, 17u, 50u}) {
+    client.Send({{"type", "seek"}, {"time_s", file.time_s[row]}});
+    const ReceivedFrame frame = client.AwaitFrame(
+        [&](const auto& f) { return f[FrameHeader::kFrameTimeS] == file.time_s[row]; });
+    for (std::size_t b = 0; b < 3; ++b) {
+      const std::string body = "body/" + experiment_.robot.def.bodies[b].name + "/";
+      const char* const pose[] = {"position_x_m",  "position_y_m",  "position_z_m", "orientation_w",
+                                  "orientation_x", "orientation_y", "orientation_z"};
+      for (std::size_t i = 0; i < 7; ++i) {
+        EXPECT_EQ(frame.numbers.at(frame.bodies() + 7 * b + i),
+                  file.values[*file.Find(body + pose[i])][row]);
+      }
+    }
+    for (std::size_t c = 0; c < 12; ++c) {
+      const std::string cable = "cable/" + experiment_.robot.def.cables[c].name + "/";
+      const char* const values[] = {"tension_n", "length_m", "rest_length_m", "setpoint_n"};
+      for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(frame.numbers.at(frame.cables() + 4 * c + i),
+                  file.values[*file.Find(cable + values[i])][row]);
+      }
+    }
+    EXPECT_EQ(frame[FrameHeader::kFrameKineticJ], file.values[*file.Find("system/kinetic_j")][row]);
+    EXPECT_EQ(frame[FrameHeader::kFrameContactCount],
+              file.values[*file.Find("system/contact_count")][row]);
+  }
+}
+
+TEST_F(Replay, PlaysStepsAndStopsAtTheEnd) {
+  const Serving serving(Session());
+  Client client(serving.port());
+  const auto at = [&](double time_s, double paused) {
+    return !client
+                .AwaitFrame([&](const auto& f) {
+                  return std::abs(f[FrameHeader::kFrameTimeS] - time_s) < 1e-9 &&
+                         f[FrameHeader::kFramePaused] == paused;
+                })
+                .numbers.empty();
+  };
+  client.Send({{"type", "step"}, {"count", 3}});
+  EXPECT_TRUE(at(0.03, 1));
+  client.Send({{"type", "step"}, {"count", -1}});
+  EXPECT_TRUE(at(0.02, 1));
+  client.Send({{"type", "step"}, {"count", 1000}});
+  EXPECT_TRUE(at(0.5, 1));
+  client.Send({{"type", "reset"}});
+  EXPECT_TRUE(at(0, 1));
+  client.Send({{"type", "resume"}});
+  EXPECT_TRUE(at(0.5, 1));  // played to its end
+  client.Send({{"type", "drag"}, {"node", "a"}, {"target_m", {0, 0, 0}}});
+  EXPECT_EQ(client.Await("error")["text"], "drag does not go with a replay");
+}
+
+TEST_F(Replay, AnyoneMayAskForSeries) {
+  Diagnostics found;
+  const Trace file = *ReadTrace(trace(), found);
+  const std::string channel = "cable/outer_top_1/tension_n";
+  const std::vector<double>& column = file.values[*file.Find(channel)];
+  const Serving serving(Session());
+  Client driver(serving.port()), client(serving.port());
+  driver.Send({{"type", "pause"}});
+  driver.Await("driver");
+  const auto ask = [&](const std::string& name, int points) {
+    client.Send({{"type", "want_series"},
+                 {"id", 7},
+                 {"channel", name},
+                 {"t0", 0},
+                 {"t1", 0.5},
+                 {"points", points}});
+  };
+  ask(channel, 100);
+  const Json all = client.Await("series");
+  EXPECT_EQ(all["id"], 7);
+  EXPECT_EQ(all["series"]["level"], 1);
+  EXPECT_EQ(all["series"]["mean"].get<std::vector<double>>(), column);
+  EXPECT_EQ(all["series"]["time_s"].get<std::vector<double>>(), file.time_s);
+  ask(channel, 8);
+  const Json coarse = client.Await("series")["series"];
+  EXPECT_EQ(coarse["level"], 8);
+  EXPECT_EQ(coarse["max"][0], *std::max_element(column.begin(), column.begin() + 8));
+  EXPECT_EQ(coarse["min"][6], *std::min_element(column.begin() + 48, column.end()));
+  ask("cable/nobody/tension_n", 8);
+  EXPECT_EQ(client.Await("error")["text"], "there is no channel \"cable/nobody/tension_n\"");
+}
+
+TEST_F(Replay, WithoutInputsBodiesAreBallsAndThatIsSaid) {
+  fs::remove(folder_ / "inputs.yaml");
+  auto recorded = Load(trace());
+  EXPECT_EQ(recorded->notice(), "no inputs.yaml beside the trace: bodies are shown as balls");
+  Json scene = Json::parse(viewer::Dump(recorded->scene()));
+  EXPECT_EQ(scene["notice"], recorded->notice());
+  ASSERT_EQ(scene["bodies"].size(), 3u);
+  EXPECT_EQ(scene["bodies"][0]["shapes"][0]["kind"], "sphere");
+  EXPECT_EQ(scene["cables"].size(), 12u);
+  EXPECT_EQ(recorded->FrameOf(3).bodies.size(), 3u);
+
+  Write("inputs.yaml", "taut: 2");
+  EXPECT_EQ(Load(trace())->notice(), "inputs.yaml is not of this trace: bodies are shown as balls");
+  Diagnostics found;
+  Write("inputs.yaml", ResolvedYaml(*LoadExperiment(kHang, {}, found)));
+  EXPECT_EQ(Load(trace())->notice(), "inputs.yaml is not of this trace: bodies are shown as balls");
+}
+
+TEST_F(Replay, ATraceThatEndsEarlyShowsWhatIsThere) {
+  experiment_.duration_s = 60;
+  WriteInputs();
+  const auto recorded = Load(trace());
+  EXPECT_EQ(recorded->notice(), "the trace ends at 0.5 s of 60 s");
+  EXPECT_EQ(recorded->trace().time_s.size(), 51u);
+}
+
+TEST_F(Replay, ABrokenTraceCannotBeLoaded) {
+  Write("trace.h5", "no trace at all");
+  Diagnostics found;
+  EXPECT_FALSE(viewer::Recorded::Load(trace(), "", found));
+  EXPECT_NE(found.Format().find("is not HDF5 or is damaged"), std::string::npos);
+  Write("empty.csv", "time_s,a\n");
+  Diagnostics empty;
+  EXPECT_FALSE(viewer::Recorded::Load((folder_ / "empty.csv").string(), "", empty));
+  EXPECT_NE(empty.Format().find("has no rows: there is nothing to show"), std::string::npos);
+
+  const Serving serving(std::make_unique<viewer::ErrorSession>("trace.h5", found.Format()));
+  Client client(serving.port());
+  const Json hello = client.Await("hello");
+  EXPECT_EQ(hello["mode"], "error");
+  EXPECT_EQ(hello["notice"], found.Format());
+}
+
+TEST_F(Replay, PushesHaveTheirArrows) {
+  experiment_.duration_s = 40;
+  experiment_.record.rate_hz = 1;
+  Diagnostics found;
+  const auto writer = CreateHdf5Trace(trace(), RunChannels(experiment_), {}, found);
+  RunOptions options;
+  options.traces = {writer.get()};
+  ASSERT_TRUE(RunExperiment(experiment_, options, found));
+  WriteInputs();
+  const viewer::Frame frame = Load(trace())->FrameOf(38);
+  ASSERT_EQ(frame.pushes.size(), 3u);
+  EXPECT_NEAR(frame.pushes[0].force_n.x, 22.563, 1e-9);
+  EXPECT_NEAR(frame.pushes[1].force_n.x, -0.45 * 22.563, 1e-9);
+  EXPECT_EQ(experiment_.robot.def.nodes[static_cast<std::size_t>(frame.pushes[0].node)].name,
+            "segment_0.tip");
+}
+
+TEST(ViewPyramid, EveryLevelAgreesWithTheRows) {
+  std::vector<double> times, values;
+  for (int i = 0; i < 1003; ++i) {
+    times.push_back(0.01 * i);
+    values.push_back(i % 7 == 3 ? std::numeric_limits<double>::quiet_NaN() : std::sin(0.1 * i) * i);
+  }
+  for (int i = 512; i < 520; ++i) values[static_cast<std::size_t>(i)] = HUGE_VAL - HUGE_VAL;
+  const viewer::Pyramid pyramid(values);
+  for (const auto& [t0, t1, points] : {std::tuple{0.0, 20.0, 4u},
+                                       {0.0, 20.0, 37u},
+                                       {1.234, 7.5, 10u},
+                                       {5.0, 5.0, 2u},
+                                       {-3.0, 0.0, 5u},
+                                       {10.0, 99.0, 3u},
+                                       {0.0, 20.0, 2000u},
+                                       {0.0, 20.0, 2u}}) {
+    const viewer::Series series = pyramid.Get(times, values, t0, t1, points);
+    ASSERT_LE(series.time_s.size(), points + 2);
+    ASSERT_FALSE(series.time_s.empty());
+    EXPECT_LE(series.time_s.front(), std::max(t0, 0.0));
+    for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+      const auto first = static_cast<std::size_t>(
+          std::lower_bound(times.begin(), times.end(), series.time_s[i]) - times.begin());
+      EXPECT_EQ(first % series.level, 0u);
+      double least = HUGE_VAL, greatest = -HUGE_VAL, sum = 0;
+      int count = 0;
+      for (std::size_t k = first; k < std::min(first + series.level, values.size()); ++k) {
+        if (std::isnan(values[k])) continue;
+        least = std::min(least, values[k]);
+        greatest = std::max(greatest, values[k]);
+        sum += values[k];
+        ++count;
+      }
+      if (count == 0) {
+        EXPECT_TRUE(std::isnan(series.min[i]) && std::isnan(series.max[i]) &&
+                    std::isnan(series.mean[i]));
+        continue;
+      }
+      EXPECT_EQ(series.min[i], least);
+      EXPECT_EQ(series.max[i], greatest);
+      EXPECT_NEAR(series.mean[i], sum / count, 1e-12 * 1003);
+    }
+  }
+  EXPECT_TRUE(pyramid.Get(times, values, 2, 1, 10).time_s.size() <= 3);
+  EXPECT_TRUE(viewer::Pyramid({}).Get({}, {}, 0, 1, 10).time_s.empty());
+}
+
+}  // namespace
+}  // namespace taut::test

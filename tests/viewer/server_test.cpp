@@ -1,0 +1,307 @@
+// The viewer's server through real sockets: who is let in, who drives, what is refused.
+#include <random>
+
+#include "tests/viewer/serving.h"
+
+namespace taut::test {
+namespace {
+
+using viewer::FrameHeader;
+
+TEST(ViewServer, ServesItsFilesAndNothingElse) {
+  const Serving serving(PausedLive(kHang));
+  const HttpAnswer page = Get(serving.port(), "/");
+  EXPECT_EQ(page.status, 200u);
+  EXPECT_EQ(page.body, "<p>the page");
+  EXPECT_NE(page.fields["Content-Security-Policy"].find("default-src 'self'"), std::string::npos);
+  EXPECT_EQ(Get(serving.port(), "/index.html").body, "<p>the page");
+  EXPECT_EQ(Get(serving.port(), "/?a=b").status, 200u);
+  EXPECT_EQ(Get(serving.port(), "/assets/a.js").fields["Content-Type"],
+            "text/javascript; charset=utf-8");
+  for (const char* path :
+       {"/nothing", "/../CMakeLists.txt", "/assets/../../etc/passwd", "//etc/passwd",
+        "/assets/%2e%2e/index.html", "/assets", "/assets/", "/ws", "/index.html/", "*"}) {
+    EXPECT_EQ(Get(serving.port(), path).status, 404u) << path;
+  }
+  EXPECT_EQ(Get(serving.port(), "/", {}, http::verb::delete_).status, 405u);
+  EXPECT_EQ(Get(serving.port(), "/", {}, http::verb::head).status, 200u);
+}
+
+TEST(ViewServer, PagesOfOtherSitesStayOutside) {
+  const Serving serving(PausedLive(kHang));
+  EXPECT_EQ(Get(serving.port(), "/", {{"Host", "elsewhere.example"}}).status, 403u);
+  EXPECT_EQ(Get(serving.port(), "/", {{"Origin", "http://elsewhere.example"}}).status, 403u);
+  const Client foreign(serving.port(), "/ws", "http://elsewhere.example");
+  EXPECT_FALSE(foreign.open());
+  const Client own(serving.port(), "/ws", "http://localhost:" + std::to_string(serving.port()));
+  EXPECT_TRUE(own.open());
+}
+
+TEST(ViewServer, WithATokenOnlyThoseWhoHaveItComeIn) {
+  viewer::ServerOptions options;
+  options.token = viewer::RandomToken();
+  EXPECT_EQ(options.token.size(), 32u);
+  EXPECT_NE(options.token, viewer::RandomToken());
+  const Serving serving(PausedLive(kHang), options);
+  std::string wrong = options.token;
+  wrong.back() = wrong.back() == '0' ? '1' : '0';
+  for (const std::string& target : {std::string("/"), "/?token=" + wrong, std::string("/?token="),
+                                    "/?nottoken=" + options.token, "/?token=" + options.token + "0",
+                                    "/?token=" + options.token.substr(1)}) {
+    EXPECT_EQ(Get(serving.port(), target).status, 403u) << target;
+  }
+  EXPECT_FALSE(Client(serving.port()).open());
+  EXPECT_FALSE(Client(serving.port(), "/ws?token=" + wrong).open());
+  const HttpAnswer page = Get(serving.port(), "/?token=" + options.token);
+  ASSERT_EQ(page.status, 200u);
+  const std::string cookie(page.fields["Set-Cookie"]);
+  EXPECT_NE(cookie.find("HttpOnly"), cookie.npos);
+  const std::string pair = cookie.substr(0, cookie.find(';'));
+  EXPECT_EQ(Get(serving.port(), "/assets/a.js", {{"Cookie", "other=1; " + pair}}).status, 200u);
+  EXPECT_TRUE(Client(serving.port(), "/ws?token=" + options.token).open());
+}
+
+TEST(ViewServer, OnlyThisMachinesAddressesNeedNoToken) {
+  EXPECT_TRUE(viewer::IsLoopback("127.0.0.1"));
+  EXPECT_TRUE(viewer::IsLoopback("::1"));
+  EXPECT_FALSE(viewer::IsLoopback("0.0.0.0"));
+  EXPECT_FALSE(viewer::IsLoopback("192.168.1.2"));
+  EXPECT_FALSE(viewer::IsLoopback("nonsense"));
+}
+
+TEST(ViewServer, AUsedPortIsNamedAndTheNextOffered) {
+  const Serving first(PausedLive(kHang));
+  const auto session = PausedLive(kHang);
+  viewer::ServerOptions options;
+  options.port = first.port();
+  viewer::Server second(*session, {}, options);
+  std::string error;
+  ASSERT_FALSE(second.Listen(error));
+  const std::string in_use = "port " + std::to_string(first.port()) + " is in use";
+  EXPECT_EQ(error.find(in_use), 0u) << error;
+  // The one that it offers can be had.
+  const std::size_t at = error.find("--port ");
+  ASSERT_NE(at, error.npos) << error;
+  options.port = static_cast<std::uint16_t>(std::stoi(error.substr(at + 7)));
+  viewer::Server third(*session, {}, options);
+  EXPECT_TRUE(third.Listen(error)) << error;
+  options.address = "not an address";
+  viewer::Server fourth(*session, {}, options);
+  EXPECT_FALSE(fourth.Listen(error));
+  EXPECT_NE(error.find("\"not an address\" is not an address"), error.npos) << error;
+}
+
+TEST(ViewServer, GreetsWithVersionSceneAndFrame) {
+  const Serving serving(PausedLive(kPush));
+  Client client(serving.port());
+  const Json hello = client.Await("hello");
+  EXPECT_EQ(hello["version"], viewer::kProtocolVersion);
+  EXPECT_EQ(hello["mode"], "live");
+  EXPECT_EQ(hello["title"], "push_20n");
+  EXPECT_EQ(hello["driver"], 0);
+  const Json scene = client.Await("scene")["scene"];
+  EXPECT_EQ(scene["bodies"].size(), 3u);
+  EXPECT_EQ(scene["cables"].size(), 12u);
+  EXPECT_EQ(scene["controls"].size(), 12u);
+  EXPECT_EQ(scene["phases"][1]["name"], "during");
+  const ReceivedFrame frame = client.AwaitFrame();
+  EXPECT_EQ(frame.Count(FrameHeader::kFrameBodyCount), 3u);
+  EXPECT_EQ(frame.Count(FrameHeader::kFrameCableCount), 12u);
+  EXPECT_EQ(frame.end(), frame.numbers.size());
+  EXPECT_EQ(frame[FrameHeader::kFramePaused], 1);
+  // bodies are where the scene says before the first step
+  for (std::size_t b = 0; b < 3; ++b) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(frame.numbers[frame.bodies() + 7 * b + i],
+                scene["bodies"][b]["position_m"][i].get<double>());
+    }
+  }
+}
+
+TEST(ViewServer, OneDrivesAtATimeAndEveryoneKnowsWho) {
+  const Serving serving(PausedLive(kHang));
+  Client first(serving.port()), second(serving.port());
+  const int id_1 = first.Await("hello")["client"], id_2 = second.Await("hello")["client"];
+  EXPECT_NE(id_1, id_2);
+  first.Send({{"type", "step"}});
+  EXPECT_EQ(first.Await("driver")["id"], id_1);
+  EXPECT_EQ(second.Await("driver")["id"], id_1);
+  const ReceivedFrame stepped =
+      second.AwaitFrame([](const auto& f) { return f[FrameHeader::kFrameTimeS] > 0; });
+  EXPECT_EQ(stepped[FrameHeader::kFrameDriver], id_1);
+
+  second.Send({{"type", "reset"}});
+  EXPECT_EQ(second.Await("error")["text"],
+            "client " + std::to_string(id_1) + " drives; take control first");
+  second.Send({{"type", "take_control"}});
+  EXPECT_EQ(second.Await("driver")["id"], id_2);
+  EXPECT_EQ(first.Await("driver")["id"], id_2);
+  second.Send({{"type", "reset"}});
+  EXPECT_EQ(second.AwaitFrame([](const auto& f) {
+    return f[FrameHeader::kFrameRun] == 2;
+  })[FrameHeader::kFrameTimeS],
+            0);
+  second.Close();
+  EXPECT_EQ(first.Await("driver")["id"], 0);
+}
+
+TEST(ViewServer, MessagesThatAreNoneCloseTheirConnectionOnly) {
+  const Serving serving(PausedLive(kHang));
+  Client good(serving.port());
+  good.Await("hello");
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", "a message is a JSON object with a text \"type\""},
+      {"nonsense", "a message is a JSON object with a text \"type\""},
+      {"[]", "a message is a JSON object with a text \"type\""},
+      {R"({"type": 3})", "a message is a JSON object with a text \"type\""},
+      {R"({"type": "fly"})", "there is no message \"fly\""},
+      {R"({"type": "seek"})", "seek needs \"time_s\""},
+      {R"({"type": "seek", "time_s": "1"})", "seek: \"time_s\" has the wrong type"},
+      {R"({"type": "seek", "time_s": 1e999})", "a message is a JSON object with a text \"type\""},
+      {R"({"type": "pause", "now": true})", "pause has a field that it may not have"},
+      {R"({"type": "drag", "node": "mass", "target_m": [1, 2]})",
+       "drag: \"target_m\" has the wrong type"},
+      {R"({"type": "set_gain", "cable": "c", "gain": "g", "value": 1})",
+       "set_gain: \"gain\" has the wrong type"},
+      {R"({"type": "speed", "factor": -1})", "speed: factor must be within 0.001 to 1000, got -1"},
+      {R"({"type": "step", "count": 2000})", "step: count must be within -1000 to 1000, got 2000"},
+      {R"({"type": "want_series", "id": 1, "channel": "a", "t0": 0, "t1": 1, "points": 1})",
+       "want_series: points must be within 2 to 10000, got 1"},
+  };
+  for (const auto& [text, why] : cases) {
+    Client bad(serving.port());
+    bad.SendText(text);
+    const auto reason = bad.AwaitClose();
+    EXPECT_EQ(reason.code, beast::websocket::close_code::policy_error) << text;
+    EXPECT_EQ(std::string(reason.reason.c_str()), why.substr(0, 120)) << text;
+  }
+  Client binary(serving.port());
+  binary.SendBinary("{\"type\": \"pause\"}");
+  EXPECT_EQ(std::string(binary.AwaitClose().reason.c_str()), "messages are texts");
+  Client large(serving.port());
+  large.SendText(R"({"type": "pause", "x": ")" + std::string(65 * 1024, 'x') + "\"}");
+  EXPECT_EQ(large.AwaitClose().code, beast::websocket::close_code::too_big);
+  Client deep(serving.port());
+  deep.SendText(std::string(60000, '['));
+  EXPECT_EQ(deep.AwaitClose().code, beast::websocket::close_code::policy_error);
+
+  good.Send({{"type", "step"}});  // nothing else was harmed
+  EXPECT_GT(
+      good.AwaitFrame([](const auto& f) { return f[FrameHeader::kFrameTimeS] > 0; }).numbers.size(),
+      0u);
+}
+
+TEST(ViewServer, UnknownNamesAreAnsweredNotObeyed) {
+  const Serving serving(PausedLive(kHang));
+  Client client(serving.port());
+  const std::vector<std::pair<Json, std::string>> cases = {
+      {{{"type", "drag"}, {"node", "nobody"}, {"target_m", {0, 0, 0}}},
+       "there is no node \"nobody\""},
+      {{{"type", "set_parameter"}, {"name", "luck"}, {"value", 1}},
+       "there is no parameter \"luck\""},
+      {{{"type", "set_parameter"}, {"name", "friction_scale"}, {"value", -1}},
+       "friction_scale must be within 0 to 4"},
+      {{{"type", "set_setpoint"}, {"cable", "cable"}, {"value", 1}},
+       "no motor drives a cable \"cable\""},
+      {{{"type", "seek"}, {"time_s", 1}}, "seek does not go with a live run"},
+  };
+  for (const auto& [message, why] : cases) {
+    client.Send(message);
+    EXPECT_EQ(client.Await("error")["text"], why);
+  }
+}
+
+/// Seeded: what is sent is the same every time.
+TEST(ViewServer, RandomMessagesHarmNothing) {
+  const Serving serving(PausedLive(kHang));
+  std::mt19937 random(4);
+  const auto pick = [&](std::size_t count) { return random() % count; };
+  const std::vector<std::string> seeds = {
+      R"({"type": "drag", "node": "mass", "target_m": [0.1, 0, 1]})",
+      R"({"type": "push", "node": "mass", "force_n": [1, 2, 3], "duration_s": 0.1})",
+      R"({"type": "set_parameter", "name": "gravity_z_m_per_s2", "value": -3})",
+      R"({"type": "step", "count": 3})",
+      R"({"type": "speed", "factor": 0})",
+      R"({"type": "want_series", "id": 1, "channel": "a", "t0": 0, "t1": 1, "points": 100})",
+      R"({"type": "reset"})"};
+  for (int i = 0; i < 400; ++i) {
+    Client client(serving.port());
+    ASSERT_TRUE(client.open()) << i;
+    for (int k = 0; k < 5 && !client.failed(); ++k) {
+      std::string text = seeds[pick(seeds.size())];
+      for (std::size_t damage = pick(4); damage > 0; --damage) {
+        const std::size_t at = pick(text.size());
+        switch (pick(3)) {
+          case 0:
+            text[at] = static_cast<char>(random());
+            break;
+          case 1:
+            text.erase(at, 1 + pick(8));
+            break;
+          default:
+            text.insert(at, text.substr(pick(text.size()), 6));
+        }
+        if (text.empty()) text = " ";
+      }
+      pick(10) == 0 ? client.SendRaw(text) : client.SendText(text);
+    }
+  }
+  // Whatever of it was a command has been done; the server still does what it is told.
+  Client client(serving.port());
+  client.Send({{"type", "take_control"}});
+  client.Send({{"type", "pause"}});
+  client.Send({{"type", "reset"}});
+  const ReceivedFrame frame = client.AwaitFrame([](const auto& f) {
+    return f[FrameHeader::kFrameTimeS] == 0 && f[FrameHeader::kFramePaused] == 1;
+  });
+  EXPECT_FALSE(frame.numbers.empty());
+}
+
+TEST(ViewServer, AClientComesBackAfterARestart) {
+  auto serving = std::make_unique<Serving>(PausedLive(kHang));
+  viewer::ServerOptions options;
+  options.port = serving->port();
+  Client before(serving->port());
+  before.Await("hello");
+  serving.reset();
+  before.AwaitClose();
+  EXPECT_FALSE(before.open());
+  serving = std::make_unique<Serving>(PausedLive(kHang), options);
+  ASSERT_EQ(serving->port(), options.port);
+  Client after(serving->port());
+  EXPECT_EQ(after.Await("hello")["title"], "hang");
+}
+
+/// Frames too large for the buffers of sockets, one after the other, numbered by their time.
+class Flood final : public viewer::Session {
+ public:
+  Flood() : Session("live", "flood") {}
+  ~Flood() override { Stop(); }
+
+ private:
+  void Handle(int, const viewer::Command&) override {}
+  Clock::time_point Work() override {
+    viewer::Frame frame;
+    frame.time_s = ++count_;
+    frame.bodies.resize(300000);
+    Publish(std::move(frame));
+    return Clock::now() + std::chrono::milliseconds(1);
+  }
+  int count_ = 0;
+};
+
+TEST(ViewServer, ASlowClientIsOneFrameBehindAndHoldsNobodyUp) {
+  const Serving serving(std::make_unique<Flood>());
+  Client slow(serving.port()), quick(serving.port());
+  slow.Await("hello");
+  // `slow` reads nothing while `quick` sees many frames go by.
+  double seen = 0;
+  for (int i = 0; i < 6; ++i) seen = quick.AwaitFrame()[FrameHeader::kFrameTimeS];
+  EXPECT_GE(seen, 6);
+  // The one that was under way, and then the newest.
+  EXPECT_LT(slow.AwaitFrame()[FrameHeader::kFrameTimeS], seen);
+  EXPECT_GE(slow.AwaitFrame()[FrameHeader::kFrameTimeS], seen);
+}
+
+}  // namespace
+}  // namespace taut::test
