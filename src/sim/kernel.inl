@@ -3,7 +3,8 @@
 ///
 /// Moreau's midpoint scheme: half a drift, forces and contacts at the middle, half a drift.
 /// Nothing here or below uses the standard library, so that no shared template is compiled with
-/// instructions that not every machine has.
+/// instructions that not every machine has. For the same reason every function is a template of W
+/// or TAUT_INLINE: of a function that several of step_*.cpp emit the linker keeps any one.
 
 // In the order of use: each file needs what stands before it.
 // clang-format off
@@ -177,8 +178,8 @@ enum class Stage {
 /// Is told when a stage is over. This one does nothing and costs nothing; benchmarks/ has one with
 /// a clock.
 struct NoWatch {
-  void Begin() noexcept {}
-  void Mark(Stage) noexcept {}
+  TAUT_INLINE void Begin() noexcept {}
+  TAUT_INLINE void Mark(Stage) noexcept {}
 };
 
 template <class W, class Watch>

@@ -11,7 +11,7 @@ namespace taut::sim {
 
 inline constexpr int kSweepsBeforeNewton = 32;
 
-inline double Dot3(const double* a, const double* b) noexcept {
+TAUT_INLINE double Dot3(const double* a, const double* b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 

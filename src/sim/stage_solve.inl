@@ -35,7 +35,7 @@ void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
 }
 
 /// Sweeps after which to try Newton's method: 32, 64, 128, ...
-inline bool NewtonIsDue(int sweeps) noexcept {
+TAUT_INLINE bool NewtonIsDue(int sweeps) noexcept {
   return sweeps >= kSweepsBeforeNewton && (sweeps & (sweeps - 1)) == 0;
 }
 

@@ -1,0 +1,29 @@
+# cmake -DNM=... -DOBJECTS=a.o,b.o,... -P kernels_share_nothing.cmake
+#
+# No function is emitted by two of src/sim/step_*.cpp: the linker would keep one of them, perhaps
+# that with instructions which the machine lacks. Optimisation hides it, so debug builds tell most.
+cmake_minimum_required(VERSION 3.25)
+string(REPLACE "," ";" objects "${OBJECTS}")
+list(FILTER objects INCLUDE REGEX "/step_[a-z0-9]+\\.cpp\\.o$")
+list(LENGTH objects count)
+if(NOT count EQUAL 4)
+  message(FATAL_ERROR "4 kernels expected, not ${count}: ${OBJECTS}")
+endif()
+set(seen)
+set(shared)
+foreach(object ${objects})
+  execute_process(COMMAND ${NM} --defined-only ${object} OUTPUT_VARIABLE symbols
+    COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCHALL " W [^\n]+" weak "${symbols}")
+  list(REMOVE_DUPLICATES weak)
+  foreach(function ${weak})
+    if(function IN_LIST seen)
+      list(APPEND shared "${function}")
+    endif()
+  endforeach()
+  list(APPEND seen ${weak})
+endforeach()
+if(shared)
+  list(JOIN shared "\n " text)
+  message(FATAL_ERROR "in more than one kernel:\n ${text}")
+endif()
