@@ -118,6 +118,7 @@ class Compiler {
       table.attachment_count = static_cast<int>(c.attachments.size());
       table.clamped_damping = c.damping_law == DampingLaw::kClamped;
       table.actuator = c.actuator;
+      table.inv_max_speed = 1.0 / c.actuator.max_speed_m_per_s;
       for (const AttachmentDef& a : c.attachments) {
         t_.attachments.push_back(Attach(a.body, a.position_m));
       }

@@ -63,8 +63,9 @@ TAUT_INLINE void MeasureCable(const View& m, const CableTable& cable, int attach
 /// length at which the spring would exceed it. Returns the rest length's mean over the step: a
 /// motor runs until it arrives, and then stands.
 template <class W>
-TAUT_INLINE W Actuate(const ActuatorDef& limit, W k, W l, W target, W h, W inv_h, W& rest,
+TAUT_INLINE W Actuate(const CableTable& cable, W k, W l, W target, W h, W inv_h, W& rest,
                       W& rate) noexcept {
+  const ActuatorDef& limit = cable.actuator;
   const W zero = W::Splat(0.0), before = rest;
   if (limit.kind == ActuatorDef::Kind::kNone) return rest;
   if (limit.kind == ActuatorDef::Kind::kIdeal) {
@@ -92,8 +93,7 @@ TAUT_INLINE W Actuate(const ActuatorDef& limit, W k, W l, W target, W h, W inv_h
   rate = wish;
   rest = Max(Select(arrives & !(wish == zero), goal, rest + h * wish), least_rest);
   // The share of the step in which it runs; with limited acceleration, taken as all of it.
-  const W share =
-      accelerates_at_once ? speed * W::Splat(1.0 / limit.max_speed_m_per_s) : W::Splat(1.0);
+  const W share = accelerates_at_once ? speed * W::Splat(cable.inv_max_speed) : W::Splat(1.0);
   return rest - W::Splat(0.5) * share * (rest - before);
 }
 
@@ -107,7 +107,7 @@ TAUT_INLINE void PullCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
   W l, dl;
   MeasureCable(m, cable, attachment_count, s.pos, work, ends, l, dl);
   W rest = s.rest[c], rate = s.rest_rate[c];
-  const W mean = Actuate(cable.actuator, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
+  const W mean = Actuate(cable, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
   s.rest[c] = rest;
   s.rest_rate[c] = rate;
   W T = TensionOf(s.stiffness[c], s.damping[c], l, dl, mean, cable.clamped_damping).tension;

@@ -39,14 +39,18 @@ TAUT_INLINE bool NewtonIsDue(int sweeps) noexcept {
   return sweeps >= kSweepsBeforeNewton && (sweeps & (sweeps - 1)) == 0;
 }
 
-/// What has not converged must at least not rub harder than Coulomb allows: contact by contact,
-/// each ends inside its own cone.
+/// One sweep over the contacts from number `first` on, each by itself: each ends inside its own
+/// cone. Returns the largest change of a velocity [m/s].
 template <class W, class M>
-void RespectCones(Scratch<W>& work, M lanes) noexcept {
-  for (int i = 0; i < work.single_count; ++i) RelaxContact<W, false>(work, work.contacts[i], lanes);
-  for (int i = work.single_count; i < work.contact_count; ++i) {
-    RelaxContact<W, true>(work, work.contacts[i], lanes);
+W RelaxContacts(Scratch<W>& work, int first, M lanes) noexcept {
+  W change = W::Splat(0.0);
+  for (int i = first; i < work.single_count; ++i) {
+    change = Max(RelaxContact<W, false>(work, work.contacts[i], lanes), change);
   }
+  for (int i = work.single_count; i < work.contact_count; ++i) {
+    change = Max(RelaxContact<W, true>(work, work.contacts[i], lanes), change);
+  }
+  return change;
 }
 
 /// Lanes in which bodies on planes are not islands: something else hangs on them.
@@ -76,12 +80,7 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, const Group& g, Scrat
   for (int sweep = 0; anything && sweep < settings.max_sweeps && Any(busy); ++sweep) {
     W change = RelaxStiffCables(work, busy);
     change = Max(RelaxBlocks(m, work, tolerance, busy, coupled), change);
-    for (int i = work.plane_count; i < work.single_count; ++i) {
-      change = Max(RelaxContact<W, false>(work, work.contacts[i], busy), change);
-    }
-    for (int i = work.single_count; i < work.contact_count; ++i) {
-      change = Max(RelaxContact<W, true>(work, work.contacts[i], busy), change);
-    }
+    change = Max(RelaxContacts(work, work.plane_count, busy), change);
     result.residual = Select(busy, change, result.residual);
     result.sweeps += Select(busy, one, zero);
     busy = busy & (change > tolerance);
@@ -92,7 +91,8 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, const Group& g, Scrat
       hopeful.Set(lane, newton.Solve(settings.tolerance_m_per_s));
     }
   }
-  if (Any(busy)) RespectCones(work, busy);
+  // What has not converged must at least not rub harder than Coulomb allows.
+  if (Any(busy)) RelaxContacts(work, 0, busy);
   for (int i = 0; i < work.contact_count; ++i) {
     ContactRow<W>& row = work.contacts[i];
     const V3<W> f = row.ln * row.n + row.l1 * row.t1 + row.l2 * row.t2;

@@ -17,6 +17,7 @@ struct CableTable {
   int first_attachment = 0, attachment_count = 0;
   bool clamped_damping = false;
   ActuatorDef actuator;
+  double inv_max_speed = 0;  ///< 1 / actuator.max_speed_m_per_s [s/m].
 };
 
 struct AttachmentTable {
