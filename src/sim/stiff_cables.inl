@@ -52,7 +52,10 @@ void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W l
     rate -= Dot(link.F, body.v0) + Dot(link.Q, body.w0);
   }
   const W k = s.stiffness[c];
-  const auto was_taut = s.tension[c] > zero;
+  // Stretched at the middle of the step before, a step's way ago, even if its damper held the
+  // tension at zero.
+  const W stretch_before = stretch - h * (rate - s.rest_rate[c]);
+  const auto was_taut = (s.tension[c] > zero) | (stretch_before > zero);
   const W b = Select(was_taut & (stretch > zero), s.damping[c], zero);
   const W quarter_hk = W::Splat(0.25) * h * k;
   const W gain = Select(was_taut, quarter_hk + half * b, half * h * k);

@@ -73,6 +73,30 @@ TEST(Cable, ADampedSpringFollowsTheSchemesRecurrence) {
   }
 }
 
+TEST(Cable, ADamperThatHoldsTheTensionAtZeroDoesSoWhileTheCableIsStretched) {
+  // A mass runs towards the other end so fast that b dl outweighs k (l - L): it must coast until
+  // the cable is slack, and after that, too.
+  const double speed = 0.5, stretch = 0.1;
+  for (const double damping : {200.0, 2000.0, 2e5}) {  // h b / m from 0.1 to 400 at these steps
+    for (const double h : kThreeStepsS) {
+      scenes::HangingMass scene;
+      scene.gravity_m_per_s2 = 0;
+      scene.damping_n_s_per_m = damping;
+      scene.length_m = scene.rest_length_m + stretch;
+      ASSERT_GT(damping * speed, scene.stiffness_n_per_m * stretch);
+      ModelDef def = scene.Def();
+      def.bodies[0].velocity_m_per_s = {0, 0, speed};
+      Batch world = MakeBatch(def);
+      world.Step(h);  // starts with the tension of a cable at rest
+      const double coasting = Rise(world);
+      for (int n = 2; n <= StepsIn(0.3, h); ++n) {
+        world.Step(h);
+        ASSERT_NEAR(Rise(world), coasting, RoundOff(n, 1)) << damping << ' ' << h << ' ' << n;
+      }
+    }
+  }
+}
+
 TEST(Cable, ADampedSpringDecaysAsTheDifferentialEquationSaysToSecondOrder) {
   scenes::HangingMass scene;
   scene.damping_n_s_per_m = 1.5;
