@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include <cstdio>
 
 namespace taut::cli {
@@ -17,6 +19,16 @@ std::optional<Overrides> ParseOverrides(const std::vector<std::string>& set) {
     overrides.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
   return overrides;
+}
+
+std::function<std::string(const std::string&)> NumberWithin(double least, double most) {
+  return [least, most](const std::string& text) {
+    double number = 0;
+    if (CLI::detail::lexical_cast(text, number) && number >= least && number <= most) {
+      return std::string();
+    }
+    return fmt::format("\"{}\" is not a number from {:g} to {:g}", text, least, most);
+  };
 }
 
 }  // namespace taut::cli

@@ -30,17 +30,6 @@ std::atomic<bool> interrupt_asked{false};
 
 extern "C" void AskInterrupt(int) { interrupt_asked = true; }
 
-/// CLI11's own check lets NaN pass and prints 1e-9 as 0.000000.
-std::function<std::string(const std::string&)> NumberWithin(double least, double most) {
-  return [least, most](const std::string& text) {
-    double number = 0;
-    if (CLI::detail::lexical_cast(text, number) && number >= least && number <= most) {
-      return std::string();
-    }
-    return fmt::format("\"{}\" is not a number from {:g} to {:g}", text, least, most);
-  };
-}
-
 struct RunArguments {
   std::string experiment, out;
   std::vector<std::string> set;

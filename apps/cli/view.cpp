@@ -26,7 +26,7 @@ using viewer::Session;
 struct ViewArguments {
   std::string file, compare, out;
   std::vector<std::string> set;
-  double speed = 1;
+  double speed = 1, step_s = 0;
   bool max = false, settled = false, paused = false;
   viewer::ServerOptions server;
 };
@@ -81,6 +81,7 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
     fmt::print(stderr, "{}", found.Format());
     return nullptr;
   }
+  if (args.step_s > 0) experiment->step_s = args.step_s;
   if (args.settled && !model) experiment->start = StartKind::kSettled;
   exit = kFailed;
   if (!args.out.empty()) {
@@ -94,6 +95,7 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
   viewer::LiveOptions options;
   options.path = args.file;
   options.overrides = *overrides;
+  options.step_s = args.step_s;
   options.speed = args.max ? 0 : args.speed;
   options.paused = args.paused || model;
   options.record_folder = args.out;
@@ -124,8 +126,9 @@ int View(ViewArguments args) {
     fmt::print(stderr, "error: {}\n", error);
     return kFailed;
   }
-  if (IsTrace(args.file) && (!args.set.empty() || args.settled || !args.out.empty())) {
-    fmt::print(stderr, "error: --set, --settled and --out do not go with a trace\n");
+  if (IsTrace(args.file) &&
+      (!args.set.empty() || args.settled || !args.out.empty() || args.step_s > 0)) {
+    fmt::print(stderr, "error: --set, --step_s, --settled and --out do not go with a trace\n");
     return kUsage;
   }
   if (!IsTrace(args.file) && !args.compare.empty()) {
@@ -159,8 +162,10 @@ void AddView(CLI::App& app, int& exit_code) {
   view->add_option("--set", args->set, "Parameter of the experiment or model: name=value")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
+  view->add_option("--step_s", args->step_s, "Step instead of the file's [s]")
+      ->check(NumberWithin(1e-9, 1.0));
   auto* speed = view->add_option("--speed", args->speed, "Simulated seconds a second (default: 1)")
-                    ->check(CLI::Range(0.001, 1000.0));
+                    ->check(NumberWithin(0.001, 1000.0));
   view->add_flag("--max", args->max, "As fast as it can")->excludes(speed);
   view->add_flag("--paused", args->paused, "Begin paused");
   view->add_flag("--settled", args->settled, "Begin at rest, where the robot settles");

@@ -7,17 +7,12 @@
 namespace taut::viewer {
 namespace {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = beast::http;
-namespace websocket = beast::websocket;
-
 /// A client that leaves this much unread is gone or has no use for it.
 constexpr std::size_t kMaxWaitingBytes = 64 << 20;
 
 }  // namespace
 
-Connection::Connection(asio::ip::tcp::socket socket, int client, Handlers handlers)
+Connection::Connection(tcp::socket socket, int client, Handlers handlers)
     : stream_(std::move(socket)), client_(client), handlers_(std::move(handlers)) {}
 
 void Connection::Accept(http::request<http::empty_body> request) {

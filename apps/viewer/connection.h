@@ -1,14 +1,12 @@
 /// One WebSocket client. Texts are sent in order and all of them; of frames only the newest.
 #pragma once
 
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <string>
+
+#include "network.h"
 
 namespace taut::viewer {
 
@@ -21,10 +19,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
     std::function<void(Connection&)> closed;
   };
 
-  Connection(boost::asio::ip::tcp::socket socket, int client, Handlers handlers);
+  Connection(tcp::socket socket, int client, Handlers handlers);
 
   int client() const noexcept { return client_; }
-  void Accept(boost::beast::http::request<boost::beast::http::empty_body> request);
+  void Accept(http::request<http::empty_body> request);
   void SendText(std::string text);
   void SendFrame(std::shared_ptr<const std::string> frame);
   void Close(const std::string& reason);
@@ -34,10 +32,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void Write();
   void Finished();
 
-  boost::beast::websocket::stream<boost::beast::tcp_stream> stream_;
+  beast::websocket::stream<beast::tcp_stream> stream_;
   int client_;
   Handlers handlers_;
-  boost::beast::flat_buffer received_;
+  beast::flat_buffer received_;
   std::deque<std::string> texts_;
   std::size_t waiting_bytes_ = 0;
   std::shared_ptr<const std::string> frame_, sending_;

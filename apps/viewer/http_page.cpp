@@ -7,9 +7,7 @@
 namespace taut::viewer {
 namespace {
 
-namespace http = boost::beast::http;
-
-std::string_view View(boost::beast::string_view text) { return {text.data(), text.size()}; }
+std::string_view View(beast::string_view text) { return {text.data(), text.size()}; }
 
 /// The value of `name` in "a=1&b=2" or "a=1; b=2"; empty if it is not there.
 std::string_view ValueOf(std::string_view list, std::string_view name, char separator) {

@@ -1,15 +1,15 @@
 /// What the server answers to plain HTTP.
 #pragma once
 
-#include <boost/beast/http.hpp>
 #include <string>
 
+#include "network.h"
 #include "server.h"
 
 namespace taut::viewer {
 
-using HttpRequest = boost::beast::http::request<boost::beast::http::empty_body>;
-using HttpResponse = boost::beast::http::response<boost::beast::http::string_body>;
+using HttpRequest = http::request<http::empty_body>;
+using HttpResponse = http::response<http::string_body>;
 
 /// Whether the browser that sends this may talk to us: it has the token, it names this machine, and
 /// no other site's page is behind it.

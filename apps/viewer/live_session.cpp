@@ -127,16 +127,19 @@ bool LiveSession::SetParameter(const Command& command, std::string& error) {
     scene_changed_ = true;
     return true;
   }
-  std::erase_if(options_.overrides, [&](const auto& set) { return set.first == command.name; });
-  options_.overrides.emplace_back(command.name, fmt::format("{}", command.value));
+  Overrides overrides = options_.overrides;
+  std::erase_if(overrides, [&](const auto& set) { return set.first == command.name; });
+  overrides.emplace_back(command.name, fmt::format("{}", command.value));
   Diagnostics found;
-  const auto experiment = LoadExperiment(options_.path, options_.overrides, found);
+  auto experiment = LoadExperiment(options_.path, overrides, found);
   if (!experiment) {
     error = found.Format();
-    options_.overrides.pop_back();
     return false;
   }
-  return Restart(*experiment, error);
+  if (options_.step_s > 0) experiment->step_s = options_.step_s;
+  if (!Restart(*experiment, error)) return false;
+  options_.overrides = std::move(overrides);  // a change that failed leaves the earlier ones
+  return true;
 }
 
 bool LiveSession::SetControl(const Command& command, std::string& error) {

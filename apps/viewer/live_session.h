@@ -13,6 +13,7 @@ namespace taut::viewer {
 struct LiveOptions {
   std::string path;     ///< Of the experiment, read again when a parameter of the files changes.
   Overrides overrides;  ///< Of those parameters.
+  double step_s = 0;    ///< Instead of the experiment's; 0: as that says.
   double speed = 1;     ///< Simulated seconds a second; 0: as fast as it can.
   bool paused = false;
   /// Where to record traces, events and inputs; empty: nowhere. An existing folder.

@@ -146,15 +146,17 @@ void Recorded::FindColumns() {
   contact_count_ = Column("system/contact_count");
 }
 
+std::string Recorded::title() const {
+  return experiment_ ? experiment_->name : fs::path(path_).filename().string();
+}
+
 Json Recorded::scene() const {
   Json scene = experiment_ ? SceneOf(*experiment_) : SceneOf(trace_);
   scene["channels"] = ToJson(trace_.channels);
   scene["first_s"] = trace_.time_s.front();
   scene["duration_s"] = trace_.time_s.back();
   if (reference_) {
-    scene["reference"] = {{"name", reference_name_},
-                          {"channels", ToJson(reference_->channels)},
-                          {"values", Json::array()}};
+    scene["reference"] = {{"name", reference_name_}, {"channels", ToJson(reference_->channels)}};
   }
   if (!notice_.empty()) scene["notice"] = notice_;
   return scene;

@@ -25,6 +25,8 @@ class Recorded {
                                         Diagnostics& out);
 
   const std::string& path() const { return path_; }
+  /// The experiment's name; the file's where that is not known.
+  std::string title() const;
   const Trace& trace() const { return trace_; }
   const std::optional<Trace>& reference() const { return reference_; }
   const std::string& reference_name() const { return reference_name_; }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 namespace taut::viewer {
 namespace {
@@ -16,7 +15,7 @@ constexpr double kMaxSpeed = 100;
 }  // namespace
 
 ReplaySession::ReplaySession(std::unique_ptr<Recorded> recorded, double speed)
-    : Session("replay", std::filesystem::path(recorded->path()).filename().string()),
+    : Session("replay", recorded->title()),
       recorded_(std::move(recorded)),
       speed_(speed == 0 ? kMaxSpeed : speed) {
   SetScene(recorded_->scene(), false);

@@ -108,9 +108,7 @@ std::string ReadText(const std::string& path) {
 Json ReportOf(const Recorded& recorded) {
   Json report;
   report["version"] = kProtocolVersion;
-  report["title"] = recorded.experiment()
-                        ? recorded.experiment()->name
-                        : std::filesystem::path(recorded.path()).filename().string();
+  report["title"] = recorded.title();
   report["scene"] = recorded.scene();
   report["scene"]["channels"] = ToJson(Plotted(recorded.trace().channels));
   report["metadata"] = Json::object();

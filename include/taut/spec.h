@@ -132,6 +132,24 @@ struct RecordSpec {
   std::vector<SourceRef> channel_sources;  ///< Where a file has them; may be empty.
 };
 
+/// Numbers of somebody else (a robot's, another simulator's) to show ours beside.
+struct ReferenceSpec {
+  enum class Quantity {
+    kTension,  ///< What a load cell feels.
+    kElastic,  ///< k (l - L) alone.
+  };
+  enum class Statistic { kMax, kMean, kMin };
+  struct Value {
+    int cable = 0;
+    double force_n = 0;
+  };
+  std::string source;  ///< Who says so.
+  Quantity quantity = Quantity::kTension;
+  Statistic statistic = Statistic::kMax;
+  std::string phase;  ///< Of the timeline; empty: the whole run, for which there is only kMax.
+  std::vector<Value> values;
+};
+
 /// An experiment file, resolved.
 struct ExperimentSpec {
   std::string name;
@@ -146,7 +164,8 @@ struct ExperimentSpec {
   std::vector<DragSpec> drags;
   std::vector<PhaseSpec> phases;
   RecordSpec record;
-  std::optional<std::string> compare_with;   ///< A trace to set the result beside.
+  std::optional<std::string> compare_with;  ///< A trace to set the result beside.
+  std::vector<ReferenceSpec> references;
   std::map<std::string, double> parameters;  ///< The experiment's own, as resolved.
   std::vector<std::string> files;            ///< Every file that was read, the experiment first.
   std::uint64_t input_hash = 0;  ///< FNV-1a of the bytes of `files` and of the overrides.

@@ -12,7 +12,8 @@ namespace taut {
 std::string SummaryJson(const RunSummary& summary);
 
 /// Tables for a terminal of 100 columns: tension of every cable in every phase, the largest of the
-/// system, drag forces, what the actuators had to do.
+/// system, drag forces, what the actuators had to do, how far off the numbers are
+/// that the experiment names.
 std::string SummaryTable(const RunSummary& summary);
 
 }  // namespace taut

@@ -75,6 +75,7 @@ void Statistics::Take(double time_s, double step_s, const std::vector<CableReadi
 
 void Statistics::Fill(RunSummary& summary) const {
   summary.phases = experiment_.phases;
+  summary.references = experiment_.references;
   for (std::size_t c = 0; c < cables_.size(); ++c) {
     const Cable& cable = cables_[c];
     CableSummary out;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/facts.h"
+#include "report/reference.h"
 #include "taut/summary.h"
 #include "taut/version.h"
 
@@ -38,6 +39,20 @@ Json ToJson(const CableSummary& cable, const RunSummary& run) {
             {"energy_j", cable.energy_j}}}};
 }
 
+Json ToJson(const ReferenceSpec& reference, const RunSummary& run) {
+  Json cables = Json::array();
+  for (const ReferenceSpec::Value& value : reference.values) {
+    cables.push_back({{"name", run.cables[static_cast<std::size_t>(value.cable)].name},
+                      {"reference_n", value.force_n},
+                      {"ours_n", report::OurValue(run, reference, value.cable)}});
+  }
+  return {{"source", reference.source},
+          {"quantity", report::QuantityName(reference)},
+          {"statistic", report::StatisticName(reference)},
+          {"phase", reference.phase.empty() ? Json() : Json(reference.phase)},
+          {"cables", cables}};
+}
+
 }  // namespace
 
 std::string SummaryJson(const RunSummary& summary) {
@@ -66,6 +81,10 @@ std::string SummaryJson(const RunSummary& summary) {
   json["drags"] = Json::array();
   for (const DragSummary& drag : summary.drags) {
     json["drags"].push_back({{"name", drag.name}, {"force", ToJson(drag.force_n)}});
+  }
+  json["references"] = Json::array();
+  for (const ReferenceSpec& reference : summary.references) {
+    json["references"].push_back(ToJson(reference, summary));
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

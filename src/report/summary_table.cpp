@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "report/facts.h"
+#include "report/reference.h"
 #include "taut/summary.h"
 
 namespace taut {
@@ -125,7 +126,7 @@ std::string SummaryTable(const RunSummary& summary) {
     }
     out += SystemLines(summary);
   }
-  return out + DragTable(summary) + ActuatorTable(summary);
+  return out + DragTable(summary) + ActuatorTable(summary) + report::ReferenceLines(summary);
 }
 
 }  // namespace taut

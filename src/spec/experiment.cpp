@@ -82,10 +82,11 @@ class ExperimentReader {
                    Diagnostics& out)
       : scope_{names, out},
         map_(*file.root, "",
-             {"taut",    "kind",        "base",       "name",          "description",
-              "model",   "set",         "parameters", "model_options", "gravity_m_per_s2",
-              "terrain", "place",       "start",      "step_s",        "duration_s",
-              "seed",    "controllers", "timeline",   "record",        "compare_with"},
+             {"taut",     "kind",        "base",       "name",          "description",
+              "model",    "set",         "parameters", "model_options", "gravity_m_per_s2",
+              "terrain",  "place",       "start",      "step_s",        "duration_s",
+              "seed",     "controllers", "timeline",   "record",        "compare_with",
+              "reference"},
              scope_),
         overrides_(overrides) {}
 
@@ -105,6 +106,8 @@ class ExperimentReader {
       ReadTimeline(*timeline, known, scope_, spec_);
     if (const Value* record = map_.Find("record")) ReadRecord(*record);
     spec_.compare_with = FindFile(map_, "compare_with");
+
+    spec_.references = ReadReferences(map_.Find("reference"), known, spec_.phases, scope_);
 
     if (model.robot) spec_.robot = std::move(*model.robot);
     ModelDef& def = spec_.robot.def;

@@ -6,10 +6,18 @@
 #include <utility>
 #include <vector>
 
+#include "spec/laws.h"
 #include "spec/reader.h"
 #include "taut/spec.h"
 
 namespace taut::spec {
+
+inline const Choices<ReferenceSpec::Quantity> kReferenceQuantities{
+    {"tension", ReferenceSpec::Quantity::kTension}, {"elastic", ReferenceSpec::Quantity::kElastic}};
+inline const Choices<ReferenceSpec::Statistic> kReferenceStatistics{
+    {"max", ReferenceSpec::Statistic::kMax},
+    {"mean", ReferenceSpec::Statistic::kMean},
+    {"min", ReferenceSpec::Statistic::kMin}};
 
 /// The cables that a selector stands for, ascending. Empty, and a complaint unless the robot is
 /// unknown, if there are none.
@@ -31,6 +39,10 @@ std::vector<PositionProgram> ReadPosition(const Value& value, const RobotSpec* r
 /// Phases and events, into `out`, which has its duration already (NaN if that is unknown).
 void ReadTimeline(const Value& value, const RobotSpec* robot, const Scope& scope,
                   ExperimentSpec& out);
+
+/// Numbers of others. `phases`: those of the timeline.
+std::vector<ReferenceSpec> ReadReferences(const Value* list, const RobotSpec* robot,
+                                          const std::vector<PhaseSpec>& phases, const Scope& scope);
 
 /// Planes and boxes, appended to `def`.
 void ReadTerrain(const Value* list, const Scope& scope, ModelDef& def);

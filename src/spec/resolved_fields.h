@@ -4,6 +4,7 @@
 #include <concepts>
 #include <type_traits>
 
+#include "spec/experiment_parts.h"
 #include "spec/laws.h"
 #include "taut/spec.h"
 
@@ -197,6 +198,19 @@ void Fields(Io& io, Like<RecordSpec> auto& r) {
   io("channels", r.channels);
 }
 template <class Io>
+void Fields(Io& io, Like<ReferenceSpec::Value> auto& v) {
+  io("cable", v.cable);
+  io("force_n", v.force_n);
+}
+template <class Io>
+void Fields(Io& io, Like<ReferenceSpec> auto& r) {
+  io("source", r.source);
+  io("quantity", r.quantity, kReferenceQuantities);
+  io("statistic", r.statistic, kReferenceStatistics);
+  io("phase", r.phase);
+  io("values", r.values);
+}
+template <class Io>
 void Fields(Io& io, Like<ExperimentSpec> auto& e) {
   io("name", e.name);
   io("description", e.description);
@@ -207,6 +221,7 @@ void Fields(Io& io, Like<ExperimentSpec> auto& e) {
   io("record", e.record);
   io("compare_with", e.compare_with);
   io("phases", e.phases);
+  io.Later("references", e.references);
   io("pushes", e.pushes);
   io("drags", e.drags);
   io("controllers", e.controllers);

@@ -18,6 +18,10 @@ struct KeyList {
     keys.push_back(key);
   }
   void Limit(const char* key, double) { keys.push_back(key); }
+  template <class T>
+  void Later(const char* key, const T&) {
+    keys.push_back(key);
+  }
 };
 
 void Read(const Value& value, const std::string& what, const Scope& scope, double& out) {
@@ -78,6 +82,11 @@ class FieldReader {
   void operator()(const char* key, E& out, const Choices<E>& choices) {
     if (map_.Require(key)) out = map_.ChoiceOr(key, out, choices);
   }
+  /// What earlier versions of taut did not write.
+  template <class T>
+  void Later(const char* key, T& out) {
+    if (map_.Has(key)) (*this)(key, out);
+  }
   void Limit(const char* key, double& out) {
     out = map_.NumberOr(key, std::numeric_limits<double>::infinity(), Bound::kNonNegative);
   }
@@ -116,6 +125,11 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
     if (!controller.impedance) continue;
     for (const ImpedanceGains& gains : controller.impedance->cables) {
       check(gains.cable, robot.def.cables.size(), "cable");
+    }
+  }
+  for (const ReferenceSpec& reference : experiment.references) {
+    for (const ReferenceSpec::Value& value : reference.values) {
+      check(value.cable, robot.def.cables.size(), "cable");
     }
   }
   for (const PushSpec& push : experiment.pushes) check(push.node, robot.def.nodes.size(), "node");

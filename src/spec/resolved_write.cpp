@@ -120,6 +120,10 @@ class BlockWriter {
     Fields(inner, robot);
     text_ += indent_ + key + ":\n" + inner.text_;
   }
+  template <class T>
+  void Later(const char* key, const std::vector<T>& items) {
+    if (!items.empty()) (*this)(key, items);
+  }
   const std::string& text() const { return text_; }
 
  private:

@@ -79,6 +79,19 @@ TEST_F(ViewCommand, ServesALiveRunUntilCtrlC) {
   EXPECT_EQ(Stop(pid), 0);
 }
 
+TEST_F(ViewCommand, TheStepIsTheOneAskedForAfterARestartToo) {
+  const pid_t pid = StartView({kHang, "--paused", "--step_s", "0.01"});
+  Client client(port_);
+  client.Await("scene");
+  client.Send({{"type", "step"}});
+  client.AwaitFrame([](const auto& f) { return f[viewer::kFrameTimeS] == 0.01; });
+  client.Send({{"type", "set_parameter"}, {"name", "mass_kg"}, {"value", 1}});
+  client.AwaitFrame([](const auto& f) { return f[viewer::kFrameRun] == 2; });
+  client.Send({{"type", "step"}});
+  client.AwaitFrame([](const auto& f) { return f[viewer::kFrameTimeS] == 0.01; });
+  EXPECT_EQ(Stop(pid), 0);
+}
+
 TEST_F(ViewCommand, ListeningToOthersNeedsTheTokenOfTheAddress) {
   const pid_t pid = StartView({kHang, "--listen", "0.0.0.0", "--paused"});
   ASSERT_EQ(query_.rfind("?token=", 0), 0u) << query_;
@@ -166,13 +179,15 @@ TEST_F(ViewCommand, BadInputIsSaidAtOnce) {
             "all\n");
   EXPECT_EQ(Run({"view", kHang, "--speed", "0"}).status, 2);
   EXPECT_EQ(Run({"view", kHang, "--speed", "2", "--max"}).status, 2);
+  EXPECT_EQ(Run({"view", kHang, "--speed", "nan"}).status, 2);
+  EXPECT_EQ(Run({"view", kHang, "--step_s", "2"}).status, 2);
   EXPECT_EQ(Run({"view", "absent.yaml"}).status, 3);
   result = Run({"view", kHang, "--compare", "a.h5"});
   EXPECT_EQ(result.status, 2);
   EXPECT_EQ(result.errors, "error: --compare goes with a trace only\n");
   result = Run({"view", "a.h5", "--out", "folder"});
   EXPECT_EQ(result.status, 2);
-  EXPECT_EQ(result.errors, "error: --set, --settled and --out do not go with a trace\n");
+  EXPECT_EQ(result.errors, "error: --set, --step_s, --settled and --out do not go with a trace\n");
 }
 
 /// The data of a report.

@@ -69,6 +69,26 @@ TEST_F(ExperimentErrors, FilesMustBeThere) {
          "experiment)");
 }
 
+TEST_F(ExperimentErrors, ReferencesNameWhatThereIs) {
+  const auto expect = [&](const std::string& keys, const std::string& complaint) {
+    Expect("record:", "reference:\n  - {source: a book, " + keys + "}\nrecord:", complaint);
+  };
+  expect("cables_n: {lift: 1}",
+         "22:33: error: there is no cable \"lift\" (did you mean \"left\"?)");
+  expect("phase: befor, cables_n: {left: 1}",
+         "22:29: error: there is no phase \"befor\" (did you mean \"before\"?)");
+  expect("statistic: mean, cables_n: {left: 1}",
+         "22:22: error: reference.statistic: over the whole run there is only max (name a phase of "
+         "the timeline: phase: before)");
+  expect("cables_n: {}", "22:32: error: reference.cables_n has no values (inner_top_1: 34.4)");
+  expect("cables_n: {left: much}",
+         "22:39: error: reference.cables_n.left: unknown name \"much\" (one of: push_n)");
+  Expect("record:", "reference:\n  - {quantity: force}\nrecord:",
+         "22:5: error: reference needs the key \"cables_n\"\n"
+         "22:5: error: reference needs the key \"source\"\n"
+         "22:16: error: reference.quantity cannot be \"force\" (one of: tension, elastic)");
+}
+
 TEST_F(ExperimentErrors, ParametersMustExist) {
   Expect("push_n: 10", "push_n: 10 *",
          "5:22: error: parameters.push_n: the expression ends too early");

@@ -63,6 +63,12 @@ TEST_F(ExperimentRecord, EveryShippedExperimentComesBackToTheSameBits) {
   EXPECT_GE(count, 7);
 }
 
+TEST_F(ExperimentRecord, OneOfAnEarlierVersionHasNoReferences) {
+  const ExperimentSpec before = Load();
+  EXPECT_EQ(ResolvedYaml(before).find("references"), std::string::npos);
+  EXPECT_TRUE(ThereAndBack(before).references.empty());
+}
+
 TEST_F(ExperimentRecord, NumbersTextsAndMissingLimitsSurvive) {
   Write("trace.csv", "time_s\n");
   Change("duration_s: 10",

@@ -165,6 +165,27 @@ TEST_F(ExperimentReading, OrdinaryKeysAreTaken) {
   ExpectVector(experiment.pushes.at(0).direction, 0, 0, 1);
 }
 
+TEST_F(ExperimentReading, ReferencesSayWhatOthersFound) {
+  Change("record:",
+         "reference:\n  - {source: a robot, cables_n: {right: 2 * push_n, left: 3}}\n"
+         "  - {source: a book, quantity: elastic, statistic: min, phase: before, "
+         "cables_n: {left: 1}}\nrecord:");
+  const ExperimentSpec experiment = Load();
+  ASSERT_EQ(experiment.references.size(), 2u);
+  const ReferenceSpec& robot = experiment.references[0];
+  EXPECT_EQ(robot.source, "a robot");
+  EXPECT_EQ(robot.quantity, ReferenceSpec::Quantity::kTension);
+  EXPECT_EQ(robot.statistic, ReferenceSpec::Statistic::kMax);
+  EXPECT_EQ(robot.phase, "");
+  ASSERT_EQ(robot.values.size(), 2u);
+  EXPECT_EQ(experiment.robot.def.cables[robot.values[0].cable].name, "right");
+  EXPECT_EQ(robot.values[0].force_n, 20);
+  const ReferenceSpec& book = experiment.references[1];
+  EXPECT_EQ(book.quantity, ReferenceSpec::Quantity::kElastic);
+  EXPECT_EQ(book.statistic, ReferenceSpec::Statistic::kMin);
+  EXPECT_EQ(book.phase, "before");
+}
+
 TEST_F(ExperimentReading, OverridesGoToTheExperimentFirstAndThenToTheModel) {
   Change("{push_n: 10}", "{push_n: 10, height_m: 2 * push_n}");
   const ExperimentSpec experiment =

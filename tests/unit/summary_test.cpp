@@ -80,6 +80,51 @@ TEST(SummaryJson, HoldsEverythingUnderItsName) {
   EXPECT_EQ(text, SummaryJson(summary));
 }
 
+/// The robot's maxima, and a book's means of the second phase.
+std::vector<ReferenceSpec> References() {
+  ReferenceSpec robot, book;
+  robot.source = "a robot";
+  robot.values = {{0, 33}, {1, 10}};
+  book.source = "a book";
+  book.quantity = ReferenceSpec::Quantity::kElastic;
+  book.statistic = ReferenceSpec::Statistic::kMean;
+  book.phase = "during";
+  book.values = {{1, 3}};
+  return {robot, book};
+}
+
+TEST(SummaryJson, PutsOursBesideTheReferences) {
+  RunSummary summary = Summary();
+  summary.references = References();
+  const auto references = nlohmann::json::parse(SummaryJson(summary))["references"];
+  ASSERT_EQ(references.size(), 2u);
+  EXPECT_EQ(references[0]["source"], "a robot");
+  EXPECT_EQ(references[0]["quantity"], "tension");
+  EXPECT_EQ(references[0]["statistic"], "max");
+  EXPECT_TRUE(references[0]["phase"].is_null());
+  EXPECT_EQ(references[0]["cables"][1]["name"], "outer_top_2");
+  EXPECT_EQ(references[0]["cables"][1]["reference_n"], 10);
+  EXPECT_EQ(references[0]["cables"][1]["ours_n"], 13);
+  EXPECT_EQ(references[1]["phase"], "during");
+  EXPECT_DOUBLE_EQ(references[1]["cables"][0]["ours_n"], 3.1);
+}
+
+TEST(SummaryTable, SaysHowFarOffTheReferencesAre) {
+  RunSummary summary = Summary();
+  summary.references = References();
+  const std::string whole = SummaryTable(summary);
+  EXPECT_TRUE(
+      whole.ends_with("beside a robot: max tension of 2 cables, whole run\n"
+                      "  at most 30.00 % off: outer_top_2 13.000 N, there 10.000 N\n"
+                      "beside a book: mean elastic of 1 cables, during\n"
+                      "  at most 3.33 % off: outer_top_2 3.100 N, there 3.000 N\n"))
+      << whole;
+  summary.simulated_s = 37;
+  EXPECT_TRUE(
+      SummaryTable(summary).ends_with("beside a book: mean elastic of 1 cables, during\n"
+                                      "  not reached\n"));
+}
+
 TEST(SummaryJson, WhatWasNotReachedIsNull) {
   RunSummary summary = Summary();
   summary.simulated_s = 37;

@@ -206,6 +206,28 @@ TEST(LiveView, AParameterOfTheFilesStartsAnew) {
   EXPECT_EQ(frame[FrameHeader::kFrameTimeS], 0);
 }
 
+TEST(LiveView, AValueThatIsRefusedLeavesTheEarlierOnes) {
+  const Serving serving(PausedLive(kHang));
+  Client client(serving.port());
+  client.Await("scene");
+  const auto set = [&](const char* name, double value) {
+    client.Send({{"type", "set_parameter"}, {"name", name}, {"value", value}});
+  };
+  const auto shown = [&](const char* wanted) {
+    const Json scene = client.Await("scene")["scene"];
+    for (const Json& parameter : scene["parameters"]) {
+      if (parameter["name"] == wanted) return parameter["value"].get<double>();
+    }
+    return std::nan("");
+  };
+  set("mass_kg", 0.75);
+  EXPECT_EQ(shown("mass_kg"), 0.75);
+  set("mass_kg", 0);
+  EXPECT_NE(client.Await("error")["text"].get<std::string>().find("mass_kg"), std::string::npos);
+  set("rest_length_m", 1.25);
+  EXPECT_EQ(shown("mass_kg"), 0.75);
+}
+
 TEST(LiveView, StopsAtTheEndOfTheExperimentAndGoesOnWhenAsked) {
   viewer::LiveOptions options;
   options.speed = 0;

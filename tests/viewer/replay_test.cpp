@@ -56,7 +56,9 @@ TEST_F(Replay, ShowsThePosesAndTensionsOfTheFile) {
   const Trace file = *ReadTrace(trace(), found);
   const Serving serving(Session());
   Client client(serving.port());
-  EXPECT_EQ(client.Await("hello")["mode"], "replay");
+  const Json hello = client.Await("hello");
+  EXPECT_EQ(hello["mode"], "replay");
+  EXPECT_EQ(hello["title"], "push_20n");
   const Json scene = client.Await("scene")["scene"];
   EXPECT_EQ(scene["channels"].size(), file.channels.size());
   EXPECT_EQ(scene["first_s"], 0);

@@ -1,6 +1,7 @@
 // A report as a source: answers like a server that replays, out of the data inside the page.
-import { BODY_VALUES, decodeFrame, type Frame } from "./frame";
-import { type ClientMessage, FRAME, type Report, type SeriesData, type WantSeriesMessage } from "./protocol";
+import { decodeFrame, type Frame } from "./frame";
+import { FRAME, VALUES } from "./layout";
+import type { ClientMessage, Report, SeriesData, WantSeriesMessage } from "./protocol";
 import { bodyPosition } from "./series";
 import type { Listener, Source } from "./source";
 import { lastAtMost } from "./util";
@@ -112,7 +113,7 @@ export class ReportSource implements Source {
     const found = bodyPosition(channel, this.report.scene);
     if (!found) return undefined;
     const { frame_values: size, frame_count: count } = this.report;
-    const at = FRAME.header.length + found.body * BODY_VALUES + found.axis;
+    const at = FRAME.header.length + found.body * VALUES.bodies + found.axis;
     const mean = Array.from({ length: count }, (_, i) => this.values[i * size + at]!);
     return { channel, source: 0, level: 1, time_s: [...this.times_s], min: mean, max: mean, mean };
   }

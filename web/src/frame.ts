@@ -1,6 +1,7 @@
 // A frame: the state of the world at one time, as the server or a report gives it. The layout is
-// FRAME of protocol.ts.
-import { FRAME, type Scene } from "./protocol";
+// FRAME of layout.ts.
+import { FRAME, VALUES } from "./layout";
+import type { Scene } from "./protocol";
 
 type Header = (typeof FRAME.header)[number];
 type Section = (typeof FRAME.sections)[number]["name"];
@@ -8,10 +9,6 @@ type Numbers = Float64Array | Float32Array;
 
 export type Frame = Record<Header, number> & Record<Section, Numbers>;
 
-export const BODY_VALUES = 7;
-export const CABLE_VALUES = 4;
-export const CONTACT_VALUES = 6;
-export const PUSH_VALUES = 4;
 
 /** Reads the frame that the numbers hold; throws where they are too few or too many. */
 export function decodeFrame(values: Numbers): Frame {
@@ -40,7 +37,7 @@ export function frameOfScene(scene: Scene): Frame {
   frame.body_count = scene.bodies.length;
   frame.cable_count = scene.cables.length;
   frame.bodies = new Float64Array(scene.bodies.flatMap((body) => [...body.position_m, ...body.orientation]));
-  frame.cables = new Float64Array(scene.cables.length * CABLE_VALUES).fill(NaN);
+  frame.cables = new Float64Array(scene.cables.length * VALUES.cables).fill(NaN);
   frame.contacts = new Float64Array(0);
   frame.pushes = new Float64Array(0);
   return frame;
@@ -55,8 +52,8 @@ export interface CableState {
 
 export function cableState(frame: Frame, cable: number): CableState {
   const [tension_n, length_m, rest_length_m, setpoint_n] = frame.cables.subarray(
-    cable * CABLE_VALUES,
-    (cable + 1) * CABLE_VALUES,
+    cable * VALUES.cables,
+    (cable + 1) * VALUES.cables,
   ) as unknown as [number, number, number, number];
   return { tension_n, length_m, rest_length_m, setpoint_n };
 }

@@ -1,6 +1,6 @@
 // Made of web/protocol/messages.json by script/protocol. Do not edit.
 //
-// What the viewer's server and its pages say to each other. JSON texts, except frames, which are binary. script/protocol makes web/src/protocol.ts and apps/viewer/protocol_messages.h of this file. SI units; W is the world frame, z up; quaternions are unit, order w, x, y, z. A field whose name ends with ? may be absent.
+// What the viewer's server and its pages say to each other. JSON texts, except frames, which are binary. script/protocol makes web/src/protocol.ts, web/src/layout.ts and apps/viewer/protocol_messages.h of this file. SI units; W is the world frame, z up; quaternions are unit, order w, x, y, z. A field whose name ends with ? may be absent.
 
 export const PROTOCOL_VERSION = 1;
 
@@ -122,23 +122,12 @@ export interface Phase {
   to_s: number;
 }
 
-/** A number to show beside ours. */
-export interface ReferenceValue {
-  /** Key of summary.json or name of a cable. */
-  quantity: string;
-  value: number;
-  unit: string;
-  /** Who says so. */
-  source: string;
-}
-
 /** What a run is compared with. */
 export interface Reference {
   /** What to call it: a path or a title. */
   name: string;
   /** Its channels; series of them are asked for with source 1. */
   channels: Channel[];
-  values: ReferenceValue[];
 }
 
 /** A channel over a span of time, at the resolution asked for. Points are blocks of `level` rows; at level 1, min, max and mean are the value. */
@@ -373,29 +362,3 @@ export type ClientMessage =
   | SetSetpointMessage
   | SetGainMessage
   | WantSeriesMessage;
-
-/** The present. Binary: Float64, little endian, in this order; the header, then each section as often as its count says. Latest wins: frames that a slow client missed are not sent again. */
-export const FRAME = {
-  header: [
-    "time_s",
-    "real_time_factor", // Simulated over wall-clock time, of late; 0 while paused.
-    "speed", // As asked for; 0: as fast as it can.
-    "paused", // 1 or 0
-    "driver", // Client, or 0
-    "kinetic_j", // Energies; NaN where they are not known.
-    "gravity_j",
-    "elastic_j",
-    "run", // Rises at every restart: what was plotted before is of another run.
-    "body_count",
-    "cable_count",
-    "contact_count", // NaN forces where only the count is known: then `contacts` is empty.
-    "contact_rows", // Entries of the section `contacts`.
-    "push_count", // Pushes and drags that act.
-  ],
-  sections: [
-    { name: "bodies", count: "body_count", fields: ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"] },
-    { name: "cables", count: "cable_count", fields: ["tension_n", "length_m", "rest_length_m", "setpoint_n"] },
-    { name: "contacts", count: "contact_rows", fields: ["x_m", "y_m", "z_m", "force_x_n", "force_y_n", "force_z_n"] },
-    { name: "pushes", count: "push_count", fields: ["node", "force_x_n", "force_y_n", "force_z_n"] },
-  ],
-} as const;

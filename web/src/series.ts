@@ -1,6 +1,7 @@
 // The channels over time: what frames have shown so far, when live; what the trace holds, when not.
 import type { App } from "./app";
-import { BODY_VALUES, cableState, type Frame } from "./frame";
+import { cableState, type Frame } from "./frame";
+import { VALUES } from "./layout";
 import type { Scene, SeriesData } from "./protocol";
 import { lastAtMost } from "./util";
 
@@ -125,7 +126,7 @@ export function* frameValues(scene: Scene, frame: Frame): Generator<[string, num
   }
   for (let i = 0; i < scene.bodies.length; ++i) {
     const name = scene.bodies[i]!.name;
-    const at = i * BODY_VALUES;
+    const at = i * VALUES.bodies;
     yield [`body/${name}/position_x_m`, frame.bodies[at]!];
     yield [`body/${name}/position_y_m`, frame.bodies[at + 1]!];
     yield [`body/${name}/position_z_m`, frame.bodies[at + 2]!];

@@ -155,7 +155,6 @@ export function seriesOf(channel, source, t0, t1, points) {
 export const reference = {
   name: "measured.h5",
   channels: channels.filter(({ name }) => name.endsWith("/tension_n")),
-  values: [{ quantity: "system_max_tension_n", value: 40, unit: "N", source: "a book" }],
 };
 
 /** What a report holds; every second frame of the trace. */
@@ -169,6 +168,10 @@ export function report(changes = {}) {
     inputs: "taut: 1\nname: <b>prism</b>\n",
     summary: {
       experiment: "turning prism", status: "ok", simulated_s: 10, system_max_tension_n: 38.4, phases: scene.phases,
+      references: [
+        { source: "a book", quantity: "tension", statistic: "max", phase: null, cables: [{ name: "bottom_0", reference_n: 5, ours_n: 4.8 }, { name: "top_1", reference_n: 20, ours_n: null }] },
+        { source: "a book", quantity: "elastic", statistic: "mean", phase: "before", cables: [{ name: "top_1", reference_n: 2, ours_n: 4 }] },
+      ],
       cables: cables.map(({ name }, i) => ({ name, tension: { max_n: 4.8 * (i + 1), phases: { before: { mean_n: i, min_n: 0, max_n: 9 } } } })),
     },
     comparison: null,

@@ -1,27 +1,43 @@
-// Our numbers beside others: the values that an experiment names, and `taut compare`.
+// Our numbers beside others: the references that an experiment names, and `taut compare`.
 import type { Report } from "../protocol";
 import { el, number } from "../util";
 import { facts, section } from "./page";
 import { labelled } from "./summary";
 
-export function referenceSection(report: Report): HTMLElement[] {
-  const reference = report.scene.reference;
-  if (!reference || reference.values.length === 0) return [];
-  const rows = reference.values.map(({ quantity, value, unit, source }) => {
-    const ours = ourValue(report.summary, quantity);
-    const off = Number.isFinite(ours) && value !== 0 ? `${number((100 * (ours - value)) / value, 3)} %` : "–";
-    return el("tr", {}, el("th", { scope: "row" }, labelled(quantity)[0]),
-      ...[`${number(value, 4)} ${unit}`, `${number(ours, 4)} ${unit}`, off, source].map((text) => el("td", {}, text)));
-  });
-  const head = el("tr", {}, ...["quantity", reference.name, "this run", "difference", "source"].map((text) => el("th", { scope: "col" }, text)));
-  return [section("Beside the reference", el("div.scroll", {}, el("table.numbers", {}, el("thead", {}, head), el("tbody", {}, ...rows))))];
+interface Reference {
+  source: string;
+  quantity: string;
+  statistic: string;
+  phase: string | null;
+  cables: { name: string; reference_n: number; ours_n: number | null }[];
 }
 
-/** A key of summary.json, or a cable: its largest tension. */
-function ourValue(summary: unknown, quantity: string): number {
-  const known = summary as (Record<string, unknown> & { cables?: { name: string; tension?: { max_n?: number } }[] }) | null;
-  const value = known?.[quantity] ?? known?.cables?.find(({ name }) => name === quantity)?.tension?.max_n;
-  return typeof value === "number" ? value : NaN;
+/** A table for each source: a row a cable, three columns for each thing that the source says. */
+export function referenceSection(report: Report): HTMLElement[] {
+  const references = (report.summary as { references?: Reference[] } | null)?.references ?? [];
+  const sources = [...new Set(references.map(({ source }) => source))];
+  if (sources.length === 0) return [];
+  return [section("Beside the references", ...sources.flatMap((source) => [
+    el("h3", {}, `This run and ${source}`),
+    el("div.scroll", {}, sourceTable(references.filter((each) => each.source === source))),
+  ]))];
+}
+
+function sourceTable(references: Reference[]): HTMLElement {
+  const names = [...new Set(references.flatMap(({ cables }) => cables.map(({ name }) => name)))];
+  const titles = references.map(({ quantity, statistic, phase }) => `${statistic} ${quantity}, ${phase ?? "whole run"} [N]`);
+  const head = el("thead", {},
+    el("tr", {}, el("th", { scope: "col", rowspan: 2 }, "cable"), ...titles.map((title) => el("th.wide", { scope: "colgroup", colspan: 3 }, title))),
+    el("tr", {}, ...references.flatMap(({ source }) => [source, "this run", "difference"].map((text) => el("th", { scope: "col" }, text)))));
+  const rows = names.map((name) => el("tr", {}, el("th", { scope: "row" }, name), ...references.flatMap(({ cables }) => {
+    const found = cables.find((cable) => cable.name === name);
+    const ours_n = found?.ours_n ?? NaN;
+    const theirs_n = found?.reference_n ?? NaN;
+    const percent = (100 * (ours_n - theirs_n)) / theirs_n;
+    const off = Number.isFinite(percent) ? `${percent < 0 ? "−" : "+"}${Math.abs(percent).toFixed(1)} %` : "–";
+    return [number(theirs_n, 4), number(ours_n, 4), off].map((text) => el("td", {}, text));
+  })));
+  return el("table.numbers", {}, head, el("tbody", {}, ...rows));
 }
 
 /** Whatever numbers the comparison holds, as tables: lists of records become rows. */

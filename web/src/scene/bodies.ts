@@ -4,7 +4,8 @@ import {
 } from "three";
 import type { Theme } from "../app";
 import { palette } from "../colours";
-import { BODY_VALUES, type Frame } from "../frame";
+import type { Frame } from "../frame";
+import { VALUES } from "../layout";
 import type { Scene, Shape } from "../protocol";
 import { type Part, release } from "./part";
 
@@ -35,7 +36,7 @@ export class Bodies implements Part {
 
   update(frame: Frame): void {
     this.groups.forEach((group, i) => {
-      const b = frame.bodies.subarray(i * BODY_VALUES, (i + 1) * BODY_VALUES);
+      const b = frame.bodies.subarray(i * VALUES.bodies, (i + 1) * VALUES.bodies);
       group.position.set(b[0]!, b[1]!, b[2]!);
       group.quaternion.set(b[4]!, b[5]!, b[6]!, b[3]!);
     });

@@ -2,7 +2,8 @@
 import { Group, Vector3 } from "three";
 import type { Theme } from "../app";
 import { palette } from "../colours";
-import { CONTACT_VALUES, type Frame, PUSH_VALUES } from "../frame";
+import type { Frame } from "../frame";
+import { VALUES } from "../layout";
 import type { Scene } from "../protocol";
 import { niceAbove } from "../util";
 import { Arrows } from "./arrows";
@@ -30,14 +31,14 @@ export class Forces implements Part {
     this.fit(frame);
     const m_per_n = this.reference_m / this.reference_n;
     this.contacts.begin();
-    for (let at = 0; at < frame.contacts.length; at += CONTACT_VALUES) {
-      const [x, y, z, fx, fy, fz] = frame.contacts.subarray(at, at + CONTACT_VALUES);
+    for (let at = 0; at < frame.contacts.length; at += VALUES.contacts) {
+      const [x, y, z, fx, fy, fz] = frame.contacts.subarray(at, at + VALUES.contacts);
       this.contacts.add(this.point.set(x!, y!, z!), this.force.set(fx!, fy!, fz!).multiplyScalar(m_per_n));
     }
     this.contacts.end();
     this.pushes.begin();
-    for (let at = 0; at < frame.pushes.length; at += PUSH_VALUES) {
-      const [index, fx, fy, fz] = frame.pushes.subarray(at, at + PUSH_VALUES);
+    for (let at = 0; at < frame.pushes.length; at += VALUES.pushes) {
+      const [index, fx, fy, fz] = frame.pushes.subarray(at, at + VALUES.pushes);
       const node = this.scene.nodes[index!];
       if (!node) continue;
       worldPoint(frame, node.body, node.position_m, this.point);
@@ -59,8 +60,8 @@ export class Forces implements Part {
   /** An impact must not make all later arrows tiny: the scale follows pushes and steady contacts. */
   private fit(frame: Frame): void {
     let largest_n = 0;
-    for (let at = 0; at < frame.pushes.length; at += PUSH_VALUES) {
-      largest_n = Math.max(largest_n, Math.hypot(...frame.pushes.subarray(at + 1, at + PUSH_VALUES)));
+    for (let at = 0; at < frame.pushes.length; at += VALUES.pushes) {
+      largest_n = Math.max(largest_n, Math.hypot(...frame.pushes.subarray(at + 1, at + VALUES.pushes)));
     }
     const mass_kg = this.scene.bodies.reduce((sum, body) => sum + (body.fixed ? 0 : body.mass_kg), 0);
     largest_n = Math.max(largest_n, 0.5 * 9.81 * mass_kg);

@@ -1,13 +1,14 @@
 // Where points of bodies are in a frame.
 import type { Vector3 } from "three";
-import { BODY_VALUES, type Frame } from "../frame";
+import type { Frame } from "../frame";
+import { VALUES } from "../layout";
 import type { Scene, Vec3 } from "../protocol";
 
 /** p_WP of a point P that is fixed in a body; the world is body -1. */
 export function worldPoint(frame: Frame, body: number, p: Vec3, out: Vector3): Vector3 {
   if (body < 0) return out.set(p[0], p[1], p[2]);
   const b = frame.bodies;
-  const at = body * BODY_VALUES;
+  const at = body * VALUES.bodies;
   const [w, x, y, z] = [b[at + 3]!, b[at + 4]!, b[at + 5]!, b[at + 6]!];
   // p + 2 q x (q x p + w p)
   const cx = y * p[2] - z * p[1] + w * p[0];
@@ -26,7 +27,7 @@ export function centreOfMass(scene: Scene, frame: Frame, out: Vector3): boolean 
   out.set(0, 0, 0);
   scene.bodies.forEach((body, i) => {
     if (body.fixed || !(body.mass_kg > 0)) return;
-    const at = i * BODY_VALUES;
+    const at = i * VALUES.bodies;
     out.x += body.mass_kg * frame.bodies[at]!;
     out.y += body.mass_kg * frame.bodies[at + 1]!;
     out.z += body.mass_kg * frame.bodies[at + 2]!;

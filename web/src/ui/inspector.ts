@@ -1,6 +1,7 @@
 // The numbers of the selected cable, body or node.
 import type { App, Selection } from "../app";
-import { BODY_VALUES, cableState, type Frame, isSlack } from "../frame";
+import { cableState, type Frame, isSlack } from "../frame";
+import { VALUES } from "../layout";
 import type { Scene } from "../protocol";
 import { worldPoint } from "../scene/poses";
 import { button, el, number } from "../util";
@@ -54,7 +55,7 @@ function rowsOf(scene: Scene, frame: Frame, { kind, index }: Selection): Row[] {
   }
   if (kind === "body") {
     const body = scene.bodies[index]!;
-    const values = frame.bodies.subarray(index * BODY_VALUES, (index + 1) * BODY_VALUES);
+    const values = frame.bodies.subarray(index * VALUES.bodies, (index + 1) * VALUES.bodies);
     return [
       ["mass", body.mass_kg > 0 ? `${number(body.mass_kg, 4)} kg` : "–"],
       ["centre of mass", `${vector(values.subarray(0, 3))} m`],
