@@ -12,6 +12,7 @@ static_assert(std::endian::native == std::endian::little, "frames are sent as th
 std::vector<double> FrameNumbers(const Frame& frame) {
   std::vector<double> out(kFrameHeaderSize);
   out[kFrameTimeS] = frame.time_s;
+  out[kFrameNowS] = frame.now_s;
   out[kFrameRealTimeFactor] = frame.real_time_factor;
   out[kFrameSpeed] = frame.speed;
   out[kFramePaused] = frame.paused ? 1 : 0;

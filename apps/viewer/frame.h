@@ -26,7 +26,9 @@ struct Frame {
     Vec3 point_m, force_n;
   };
 
-  double time_s = 0, real_time_factor = 0, speed = 1;
+  double time_s = 0;
+  double now_s = 0;  ///< Of the run; later than `time_s` while its past is looked at.
+  double real_time_factor = 0, speed = 1;
   bool paused = false;
   int driver = 0;
   Energy energy{kUnknown, kUnknown, kUnknown};

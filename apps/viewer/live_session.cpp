@@ -22,6 +22,9 @@ constexpr milliseconds kSlice{5};
 /// A run that is further behind than this goes on from where it is: it is slower than asked for.
 constexpr double kMaxBehindS = 0.1;
 constexpr milliseconds kIdlePeriod{250};
+/// Simulated time between the moments that are kept. At full speed fewer, so that keeping them
+/// takes no time worth mentioning.
+constexpr double kHistoryPeriodS = 0.01, kFastHistoryPeriodS = 0.02;
 
 double Seconds(Session::Clock::duration span) { return duration<double>(span).count(); }
 
@@ -35,6 +38,7 @@ std::unique_ptr<LiveSession> LiveSession::Create(const std::string& mode,
   std::unique_ptr<LiveSession> session(new LiveSession(mode, std::move(run), options));
   session->experiment_ = experiment;
   if (!session->StartRecording(out)) return nullptr;
+  session->StartHistory();
   session->SetScene(session->MakeScene(), false);
   return session;
 }
@@ -53,6 +57,13 @@ LiveSession::~LiveSession() {
   if (recording_) recording_->Finish();
 }
 
+void LiveSession::StartHistory() {
+  history_.emplace(experiment_.robot.def, speed_ == 0 ? kFastHistoryPeriodS : kHistoryPeriodS);
+  past_row_.reset();
+  Fill(moment_);
+  history_->Take(moment_);
+}
+
 bool LiveSession::StartRecording(Diagnostics& out) {
   if (options_.record_folder.empty()) return true;
   recording_ = Recording::Start(options_.record_folder, ++recordings_, *run_, experiment_, out);
@@ -61,6 +72,14 @@ bool LiveSession::StartRecording(Diagnostics& out) {
 
 void LiveSession::Handle(int client, const Command& command) {
   std::string error;
+  if (command.type == "want_series") {
+    Json series = history_->SeriesOf(command.name, command.t0, command.t1,
+                                     static_cast<std::size_t>(command.points));
+    if (command.source == 0 && !series.is_null()) {
+      return Say(client, {{"type", "series"}, {"id", command.id}, {"series", std::move(series)}});
+    }
+    return SayError(client, fmt::format("there is no channel \"{}\"", command.name));
+  }
   changed_ = true;
   if (!Drive(command, error)) SayError(client, error);
 }
@@ -70,9 +89,20 @@ bool LiveSession::Drive(const Command& command, std::string& error) {
   if (type == "pause" || type == "resume") {
     paused_ = type == "pause";
     Anchor();
+    if (!paused_) past_row_.reset();
   } else if (type == "step") {
-    if (!paused_) paused_ = true;
-    for (int i = 0; i < std::max(command.count, 0); ++i) StepOnce();
+    paused_ = true;
+    if (past_row_ || command.count < 0) {
+      LookAt(static_cast<std::int64_t>(past_row_.value_or(PresentRow())) + command.count);
+    } else {
+      for (int i = 0; i < command.count; ++i) StepOnce();
+    }
+    Anchor();
+  } else if (type == "seek") {
+    paused_ = true;
+    past_row_.reset();
+    if (command.value < run_->time_s())
+      LookAt(static_cast<std::int64_t>(history_->RowAt(command.value)));
     Anchor();
   } else if (type == "reset") {
     return Restart(experiment_, error);
@@ -90,6 +120,7 @@ bool LiveSession::Drive(const Command& command, std::string& error) {
       return false;
     }
     const Vec3& v = command.vector;
+    past_row_.reset();  // hands hold what is, not what was
     if (type == "drag") {
       if (!dragging_) Log(fmt::format("drag {}", command.name));
       dragging_ = true;
@@ -189,6 +220,7 @@ bool LiveSession::Restart(const ExperimentSpec& experiment, std::string& error) 
   ++run_number_;
   end_told_ = broken_told_ = dragging_ = false;
   if (!StartRecording(found)) SayEvent(0, found.Format());
+  StartHistory();
   Anchor();
   scene_changed_ = true;
   SayEvent(0, "from the start");
@@ -205,6 +237,10 @@ bool LiveSession::StepOnce() {
     if (!std::exchange(broken_told_, true)) Log("the state is no longer finite");
     paused_ = true;
     return false;
+  }
+  if (history_->IsDue(run_->time_s())) {
+    Fill(moment_);
+    history_->Take(moment_);
   }
   if (recording_ && !recording_->Take(*run_)) {
     SayEvent(run_->time_s(), recording_->error());
@@ -262,30 +298,50 @@ Session::Clock::time_point LiveSession::Work() {
   return full_speed ? now : std::min(shown_wall_ + kFramePeriod, now + microseconds(4000));
 }
 
-void LiveSession::Show() {
-  Frame frame;
+std::size_t LiveSession::PresentRow() const {
+  const std::size_t last = history_->size() - 1;
+  return history_->time_s(last) < run_->time_s() ? last + 1 : last;
+}
+
+void LiveSession::LookAt(std::int64_t row) {
+  past_row_.reset();
+  if (row < static_cast<std::int64_t>(PresentRow())) {
+    past_row_ = static_cast<std::size_t>(std::max<std::int64_t>(row, 0));
+  }
+}
+
+void LiveSession::Fill(Frame& frame) const {
   const Batch& batch = run_->batch();
   const ModelDef& def = experiment_.robot.def;
-  frame.time_s = run_->time_s();
+  frame.time_s = frame.now_s = run_->time_s();
   frame.real_time_factor = paused_ ? 0 : real_time_factor_;
   frame.speed = speed_;
   frame.paused = paused_;
   frame.run = run_number_;
   frame.energy = batch.TotalEnergy(0);
+  frame.bodies.clear();
   for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) {
     const BodyState body = batch.Body(0, b);
     frame.bodies.push_back({body.position_m, body.orientation});
   }
+  frame.cables.clear();
   for (int c = 0; c < static_cast<int>(def.cables.size()); ++c) {
     const CableState cable = batch.Cable(0, c);
     frame.cables.push_back({cable.tension_n, cable.length_m, cable.rest_length_m,
                             run_->set_point_n()[static_cast<std::size_t>(c)]});
   }
+  frame.contacts.clear();
   for (const ContactState& contact : batch.Contacts(0)) {
     frame.contacts.push_back({contact.point_m, contact.force_n});
   }
   frame.contact_count = static_cast<double>(frame.contacts.size());
   frame.pushes = run_->OutsideForces();
+}
+
+void LiveSession::Show() {
+  Frame frame;
+  Fill(frame);
+  if (past_row_) history_->Show(*past_row_, frame);
   Publish(std::move(frame));
 }
 
@@ -293,6 +349,7 @@ Json LiveSession::MakeScene() const {
   Json scene = SceneOf(experiment_);
   scene["parameters"] = ParametersJson(*run_, experiment_);
   scene["controls"] = ControlsJson(*run_);
+  scene["channels"] = ToJson(history_->channels());
   scene["drag_stiffness_n_per_m"] = run_->DragStiffness();
   return scene;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "history.h"
 #include "session.h"
 #include "taut/live.h"
 
@@ -41,10 +42,16 @@ class LiveSession final : public Session {
   bool SetControl(const Command& command, std::string& error);
   bool Restart(const ExperimentSpec& experiment, std::string& error);
   bool StartRecording(Diagnostics& out);
+  void StartHistory();
   void Log(const std::string& text);
   bool StepOnce();
   void StepUntil(double time_s, Clock::time_point deadline);
   void Anchor();
+  /// The row of the history that the present is, or would be.
+  std::size_t PresentRow() const;
+  /// Looks at the past from that row on; at the present if there is no such row.
+  void LookAt(std::int64_t row);
+  void Fill(Frame& frame) const;
   void Show();
   Json MakeScene() const;
   std::optional<int> FindNode(const std::string& name) const;
@@ -53,6 +60,9 @@ class LiveSession final : public Session {
   ExperimentSpec experiment_;  ///< As read; `run_` may have been changed by hand since.
   std::unique_ptr<LiveRun> run_;
   std::unique_ptr<Recording> recording_;
+  std::optional<History> history_;
+  std::optional<std::size_t> past_row_;  ///< What is shown; nothing: the present.
+  Frame moment_;                         ///< Kept, so that taking a moment allocates little.
   int run_number_ = 1, recordings_ = 0;
   bool paused_ = false, end_told_ = false, broken_told_ = false, dragging_ = false;
   double speed_ = 1;

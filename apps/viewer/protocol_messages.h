@@ -3,7 +3,7 @@
 
 namespace taut::viewer {
 
-inline constexpr int kProtocolVersion = 1;
+inline constexpr int kProtocolVersion = 2;
 
 /// How a field of a message is written in JSON.
 enum class FieldKind { kString, kNumber, kInteger, kBoolean, kVec3, kChoice };
@@ -51,6 +51,7 @@ inline constexpr MessageField kClientFields[] = {
 /// Numbers of a frame's header, in their order.
 enum FrameHeader {
   kFrameTimeS,
+  kFrameNowS,
   kFrameRealTimeFactor,
   kFrameSpeed,
   kFramePaused,

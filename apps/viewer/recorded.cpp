@@ -213,9 +213,7 @@ Json Recorded::SeriesOf(const std::string& channel, int source, double t0, doubl
   const std::vector<double>& column = trace.values[*at];
   const auto pyramid = pyramids_.try_emplace({source, *at}, column).first;
   const Series series = pyramid->second.Get(trace.time_s, column, t0, t1, points);
-  return {{"channel", channel},      {"source", source},  {"level", series.level},
-          {"time_s", series.time_s}, {"min", series.min}, {"max", series.max},
-          {"mean", series.mean}};
+  return SeriesJson(channel, source, series);
 }
 
 }  // namespace taut::viewer

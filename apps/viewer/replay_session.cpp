@@ -85,6 +85,7 @@ Session::Clock::time_point ReplaySession::Work() {
   }
   if (changed_ || now - shown_wall_ >= kIdlePeriod) {
     Frame frame = recorded_->FrameOf(row_);
+    frame.now_s = frame.time_s;
     frame.speed = speed_;
     frame.paused = paused_;
     frame.real_time_factor = paused_ ? 0 : speed_;

@@ -88,6 +88,7 @@ void AddFrames(const Recorded& recorded, Json& report) {
   for (Frame& frame : all) {
     frame.pushes.resize(pushes);  // all frames have one size; what was added has no force
     frame.run = 1;
+    frame.now_s = frame.time_s;
     const std::vector<double> numbers = FrameNumbers(frame);
     const std::vector<float> small(numbers.begin(), numbers.end());
     values = small.size();

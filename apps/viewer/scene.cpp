@@ -118,6 +118,12 @@ Json ToJson(const std::vector<ChannelInfo>& channels) {
   return json;
 }
 
+Json SeriesJson(const std::string& channel, int source, const Series& series) {
+  return {{"channel", channel},      {"source", source},  {"level", series.level},
+          {"time_s", series.time_s}, {"min", series.min}, {"max", series.max},
+          {"mean", series.mean}};
+}
+
 Json SceneOf(const ExperimentSpec& experiment) {
   const ModelDef& def = experiment.robot.def;
   Json scene = Empty();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pyramid.h"
 #include "taut/live.h"
 #include "taut/spec.h"
 #include "taut/trace.h"
@@ -16,6 +17,9 @@ using Json = nlohmann::ordered_json;  // keys in the order in which they are set
 Json ToJson(const Vec3& v);
 Json ToJson(const Quat& q);
 Json ToJson(const std::vector<ChannelInfo>& channels);
+
+/// The SeriesData of web/protocol/messages.json.
+Json SeriesJson(const std::string& channel, int source, const Series& series);
 
 /// The scene of a model with an experiment's surroundings and phases; no parameters, controls,
 /// channels.

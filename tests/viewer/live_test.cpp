@@ -1,5 +1,7 @@
 // A live run: left alone it is the run, and what a person does to it has its effect and is
 // recorded.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -204,6 +206,63 @@ TEST(LiveView, AParameterOfTheFilesStartsAnew) {
   const auto frame =
       client.AwaitFrame([](const auto& f) { return f[FrameHeader::kFrameRun] == 2; });
   EXPECT_EQ(frame[FrameHeader::kFrameTimeS], 0);
+}
+
+TEST(LiveView, ItsPastIsLookedAtAndPlotted) {
+  const Serving serving(PausedLive(kHang));
+  Client client(serving.port());
+  client.Await("scene");
+  const auto until = [&](double time_s) {
+    const ReceivedFrame frame = client.AwaitFrame(
+        [time_s](const auto& f) { return std::fabs(f[FrameHeader::kFrameTimeS] - time_s) < 1e-9; });
+    if (frame.numbers.empty()) throw std::runtime_error(fmt::format("never at {} s", time_s));
+    return frame;
+  };
+  client.Send({{"type", "push"}, {"node", "mass"}, {"force_n", {0, 3, 0}}, {"duration_s", 0.05}});
+  client.Send({{"type", "step"}, {"count", 40}});
+  const auto then = until(0.04);
+  client.Send({{"type", "step"}, {"count", 205}});
+  const auto now = until(0.245);
+  // Back: what is shown is the past, where the run is does not change.
+  client.Send({{"type", "seek"}, {"time_s", 0.0412}});
+  const auto seen = until(0.04);
+  EXPECT_EQ(seen[FrameHeader::kFrameNowS], now[FrameHeader::kFrameTimeS]);
+  EXPECT_EQ(seen.numbers.size(), then.numbers.size()) << "the push is seen, too";
+  for (std::size_t i = FrameHeader::kFrameHeaderSize; i < then.numbers.size(); ++i) {
+    EXPECT_EQ(seen.numbers[i], then.numbers[i]) << i;
+  }
+  client.Send({{"type", "step"}, {"count", -2}});
+  until(0.02);
+  client.Send({{"type", "step"}, {"count", -1000}});
+  until(0);
+  client.Send({{"type", "step"}, {"count", 1000}});
+  EXPECT_EQ(until(0.245).numbers, now.numbers) << "the present, as it was";
+  client.Send({{"type", "step"}, {"count", -1}});
+  until(0.24);
+  client.Send({{"type", "seek"}, {"time_s", 99}});
+  until(0.245);
+  client.Send({{"type", "step"}});
+  until(0.246);
+  client.Send({{"type", "seek"}, {"time_s", 0.1}});
+  until(0.1);
+  client.Send({{"type", "resume"}});
+  client.AwaitFrame([](const auto& f) { return f[FrameHeader::kFrameTimeS] > 0.247; });
+  client.Send({{"type", "want_series"},
+               {"id", 5},
+               {"channel", "body/hanging_mass/position_y_m"},
+               {"t0", 0},
+               {"t1", 0.04},
+               {"points", 100}});
+  const Json answer = client.Await("series");
+  EXPECT_EQ(answer["id"], 5);
+  EXPECT_EQ(answer["series"]["mean"][4], then.numbers[then.bodies() + 1]);
+  client.Send({{"type", "want_series"},
+               {"id", 6},
+               {"channel", "body/absent/position_y_m"},
+               {"t0", 0},
+               {"t1", 1},
+               {"points", 100}});
+  EXPECT_EQ(client.Await("error")["text"], "there is no channel \"body/absent/position_y_m\"");
 }
 
 TEST(LiveView, AValueThatIsRefusedLeavesTheEarlierOnes) {

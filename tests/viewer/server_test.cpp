@@ -203,7 +203,13 @@ TEST(ViewServer, UnknownNamesAreAnsweredNotObeyed) {
        "friction_scale must be within 0 to 4"},
       {{{"type", "set_setpoint"}, {"cable", "cable"}, {"value", 1}},
        "no motor drives a cable \"cable\""},
-      {{{"type", "seek"}, {"time_s", 1}}, "seek does not go with a live run"},
+      {{{"type", "want_series"},
+        {"id", 1},
+        {"channel", "luck"},
+        {"t0", 0},
+        {"t1", 1},
+        {"points", 9}},
+       "there is no channel \"luck\""},
   };
   for (const auto& [message, why] : cases) {
     client.Send(message);

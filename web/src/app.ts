@@ -56,9 +56,24 @@ export class App {
     return this.hello.value?.mode === "live";
   }
 
-  /** Can time be chosen freely? */
-  get seekable(): boolean {
+  get replay(): boolean {
     return this.hello.value?.mode === "replay";
+  }
+
+  /** Can another time than the present be looked at? */
+  get seekable(): boolean {
+    return this.replay || this.live;
+  }
+
+  /** A live run is looked at as it was earlier. */
+  get looksBack(): boolean {
+    const frame = this.frame.value;
+    return this.live && frame !== null && frame.time_s < frame.now_s;
+  }
+
+  /** Back to the present of a live run. */
+  goToNow(): void {
+    this.seek(Number.MAX_VALUE);
   }
 
   get drives(): boolean {

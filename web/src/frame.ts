@@ -31,8 +31,9 @@ export function decodeFrame(values: Numbers): Frame {
 export function frameOfScene(scene: Scene): Frame {
   const frame = {} as Frame;
   for (const name of FRAME.header) frame[name] = 0;
-  frame.time_s = scene.first_s;
+  frame.time_s = frame.now_s = scene.first_s;
   frame.paused = 1;
+  frame.run = -1; // of no run
   frame.kinetic_j = frame.gravity_j = frame.elastic_j = NaN;
   frame.body_count = scene.bodies.length;
   frame.cable_count = scene.cables.length;

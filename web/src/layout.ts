@@ -4,6 +4,7 @@
 export const FRAME = {
   header: [
     "time_s",
+    "now_s", // Live: where the run is; later than time_s while its past is looked at. Else the same.
     "real_time_factor", // Simulated over wall-clock time, of late; 0 while paused.
     "speed", // As asked for; 0: as fast as it can.
     "paused", // 1 or 0

@@ -12,6 +12,7 @@ import { foresee } from "./scene/foresee";
 import { View } from "./scene/view";
 import { SeriesStore } from "./series";
 import { controls } from "./ui/controls";
+import { gifMaker } from "./ui/gif";
 import { failurePage, header, notices } from "./ui/header";
 import { Help } from "./ui/help";
 import { inspector } from "./ui/inspector";
@@ -42,7 +43,7 @@ function start(root: HTMLElement): void {
 
   view.element.append(legend(app, view), inspector(app));
   plots.element.prepend(drawer);
-  const top = header(app, () => help.toggle(), [controlsButton, recorder(app, view)]);
+  const top = header(app, () => help.toggle(), [controlsButton, recorder(app, view), gifMaker(app, view)]);
   const overlays = [help.element, notices(app), failurePage(app)];
   if (report) reportPage(root, report, { top, view, plots, timeline: timeline(app), overlays });
   else root.append(top, el("main.split", {}, view.element, plots.element), timeline(app), ...overlays);

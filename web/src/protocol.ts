@@ -2,7 +2,7 @@
 //
 // What the viewer's server and its pages say to each other. JSON texts, except frames, which are binary. script/protocol makes web/src/protocol.ts, web/src/layout.ts and apps/viewer/protocol_messages.h of this file. SI units; W is the world frame, z up; quaternions are unit, order w, x, y, z. A field whose name ends with ? may be absent.
 
-export const PROTOCOL_VERSION = 1;
+export const PROTOCOL_VERSION = 2;
 
 export type Vec3 = [number, number, number];
 /** w, x, y, z */
@@ -180,7 +180,7 @@ export interface Scene {
   parameters: Parameter[];
   /** Empty unless live. */
   controls: Control[];
-  /** What want_series may ask for. */
+  /** What want_series may ask for; live, of what the run has shown so far. */
   channels: Channel[];
   phases: Phase[];
   /** Time of the first row of a trace; 0 when live. */
@@ -264,7 +264,7 @@ export interface ResumeMessage {
   type: "resume";
 }
 
-/** While paused: one step (replay: `count` rows, may be negative). */
+/** Pauses and goes on by `count`: rows of a trace, steps of a live run. Below zero: back, in a live run through the rows that it keeps of its past. */
 export interface StepMessage {
   type: "step";
   /** 1 if absent; -1000 to 1000. */
@@ -283,7 +283,7 @@ export interface SpeedMessage {
   factor: number;
 }
 
-/** Replay only. */
+/** Replay: goes there. Live: pauses and looks at that moment of the past; nothing is simulated anew, and resume, or a time that is not past, goes back to the present. */
 export interface SeekMessage {
   type: "seek";
   time_s: number;

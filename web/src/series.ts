@@ -29,8 +29,17 @@ interface Question {
   receive: Receiver;
 }
 
+/** An answer about the time before the page came. */
+interface Past {
+  t0: number;
+  t1: number;
+  coarse: boolean;
+  points: Points;
+}
+
 export class SeriesStore {
   private readonly history = new Map<string, Points>();
+  private readonly past = new Map<string, Past>();
   private run = -1;
   private last_s = -Infinity;
   private readonly waiting: Question[] = [];
@@ -58,16 +67,43 @@ export class SeriesStore {
     if (!scene) return false;
     if (report) return bodyPosition(channel, scene) !== null || report.series.some((each) => each.channel === channel && each.source === source);
     if (source === 1) return scene.reference?.channels.some((each) => each.name === channel) ?? false;
-    return this.app.live ? liveChannels(scene).has(channel) : scene.channels.some((each) => each.name === channel);
+    return scene.channels.some((each) => each.name === channel);
   }
 
   want(channel: string, source: number, t0: number, t1: number, points: number, receive: Receiver): void {
     if (this.app.live && source === 0) {
-      receive(thinned(this.history.get(channel) ?? NOTHING, t0, t1, points));
+      const own = this.history.get(channel) ?? NOTHING;
+      const first_s = own.t[0] ?? Infinity;
+      const seen = thinned(own, t0, t1, points);
+      receive(t0 < first_s ? joined(this.before(channel, t0, Math.min(t1, first_s), points), seen) : seen);
       return;
     }
-    this.waiting.push({ channel, source, t0, t1, points: Math.round(Math.min(Math.max(points, 2), 10_000)), receive });
+    this.put({ channel, source, t0, t1, points, receive });
+  }
+
+  private put(question: Question): void {
+    this.waiting.push({ ...question, points: Math.round(Math.min(Math.max(question.points, 2), 10_000)) });
     this.ask();
+  }
+
+  /** What a live run showed before this page came, as far as the server has answered. */
+  private before(channel: string, t0: number, t1: number, points: number): Points {
+    const kept = this.past.get(channel);
+    const covers = kept !== undefined && kept.t0 <= t0 && kept.t1 >= t1;
+    if (!covers || (kept.coarse && kept.t1 - kept.t0 > 3 * (t1 - t0))) {
+      // kept until the answer is there, so that the plot does not blink; not asked for twice
+      const asked: Past = { t0, t1, coarse: false, points: kept?.points ?? NOTHING };
+      this.past.set(channel, asked);
+      this.put({ channel, source: 0, t0, t1, points, receive: (received) => {
+        asked.points = received;
+        asked.coarse = received.t.length > points / 3;
+      } });
+    }
+    const { points: found } = this.past.get(channel)!;
+    const from = Math.max(0, lastAtMost(found.t, t0));
+    let to = lastAtMost(found.t, t1) + 1;
+    if (to > 0 && found.t[to - 1]! >= t1) --to; // the page has that one itself
+    return { t: found.t.slice(from, to), mean: found.mean.slice(from, to), min: found.min.slice(from, to), max: found.max.slice(from, to) };
   }
 
   private ask(): void {
@@ -85,6 +121,7 @@ export class SeriesStore {
 
   private forget(): void {
     this.history.clear();
+    this.past.clear();
     this.waiting.length = 0;
     this.asked.clear();
     this.last_s = -Infinity;
@@ -92,7 +129,8 @@ export class SeriesStore {
 
   private record(frame: Frame): void {
     const scene = this.app.scene.value;
-    if (!scene) return;
+    // a look back is no news, and what the scene says is not yet the run
+    if (!scene || frame.time_s < frame.now_s || frame.run < 0) return;
     if (frame.run !== this.run || frame.time_s < this.last_s) {
       this.run = frame.run;
       this.forget();
@@ -145,21 +183,6 @@ export function bodyPosition(channel: string, scene: Scene): { body: number; axi
   return axis === undefined || body < 0 ? null : { body, axis: "xyz".indexOf(axis) };
 }
 
-const known = new WeakMap<Scene, Set<string>>();
-
-function liveChannels(scene: Scene): Set<string> {
-  let names = known.get(scene);
-  if (!names) {
-    names = new Set(["system/kinetic_j", "system/gravity_j", "system/elastic_j", "system/contact_count", "real_time_factor"]);
-    for (const { name } of scene.cables) {
-      for (const key of ["tension_n", "length_m", "rest_length_m", "setpoint_n"]) names.add(`cable/${name}/${key}`);
-    }
-    for (const { name } of scene.bodies) for (const axis of "xyz") names.add(`body/${name}/position_${axis}_m`);
-    known.set(scene, names);
-  }
-  return names;
-}
-
 function pointsOf(series: SeriesData): Points {
   return { t: series.time_s.map((value) => value ?? NaN), mean: series.mean, min: series.min, max: series.max };
 }
@@ -191,4 +214,9 @@ export function thinned(all: Points, t0: number, t1: number, points: number): Po
     thin.max.push(count ? greatest : null);
   }
   return thin;
+}
+
+function joined(first: Points, then: Points): Points {
+  if (first.t.length === 0) return then;
+  return { t: first.t.concat(then.t), mean: first.mean.concat(then.mean), min: first.min.concat(then.min), max: first.max.concat(then.max) };
 }

@@ -5,6 +5,7 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { inflateSync } from "node:zlib";
 import { chromium } from "playwright-core";
 
 export const PAGE = process.env.TAUT_PAGE ?? fileURLToPath(new URL("../dist/index.html", import.meta.url));
@@ -90,24 +91,44 @@ export function writeReport(data, folder) {
 /** The picture of the 3-D view: colour(x, y) in pixels of the page, from the view's top left. */
 export async function viewPixels(page) {
   const box = await page.locator(".view").boundingBox();
-  const shot = await page.screenshot({ clip: box });
-  const data = await page.evaluate(async (base64) => {
-    const image = new Image();
-    image.src = `data:image/png;base64,${base64}`;
-    await image.decode();
-    const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [image.width, image.height];
-    const context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    return { width: image.width, height: image.height, rgba: Array.from(context.getImageData(0, 0, image.width, image.height).data) };
-  }, shot.toString("base64"));
+  const { width, channels, bytes } = decodePng(await page.screenshot({ clip: box }));
   return {
     width: box.width, height: box.height,
     colour: (x, y) => {
-      const at = 4 * (Math.round(y) * data.width + Math.round(x));
-      return data.rgba.slice(at, at + 3);
+      const at = channels * (Math.round(y) * width + Math.round(x));
+      return [...bytes.subarray(at, at + 3)];
     },
   };
+}
+
+/** A PNG of 8 bits a channel, not interlaced, as Chromium writes them. */
+export function decodePng(file) {
+  const width = file.readUInt32BE(16);
+  const height = file.readUInt32BE(20);
+  const channels = { 2: 3, 6: 4 }[file[25]];
+  if (file[24] !== 8 || !channels || file[28] !== 0) throw new Error("a PNG of another kind");
+  const parts = [];
+  for (let at = 8; at < file.length; at += 12 + file.readUInt32BE(at)) {
+    if (file.toString("latin1", at + 4, at + 8) === "IDAT") parts.push(file.subarray(at + 8, at + 8 + file.readUInt32BE(at)));
+  }
+  const packed = inflateSync(Buffer.concat(parts));
+  const row = width * channels;
+  const bytes = new Uint8Array(height * row);
+  for (let y = 0; y < height; ++y) {
+    const filter = packed[y * (row + 1)];
+    for (let i = 0; i < row; ++i) {
+      const left = i >= channels ? bytes[y * row + i - channels] : 0;
+      const up = y > 0 ? bytes[(y - 1) * row + i] : 0;
+      const corner = i >= channels && y > 0 ? bytes[(y - 1) * row + i - channels] : 0;
+      const nearest = () => {
+        const [a, b, c] = [Math.abs(up - corner), Math.abs(left - corner), Math.abs(left + up - 2 * corner)];
+        return a <= b && a <= c ? left : b <= c ? up : corner;
+      };
+      const guess = [() => 0, () => left, () => up, () => (left + up) >> 1, nearest][filter]();
+      bytes[y * row + i] = packed[y * (row + 1) + 1 + i] + guess;
+    }
+  }
+  return { width, height, channels, bytes };
 }
 
 /** A projection of our own, from where the page says that its camera is: p_W to pixels. */

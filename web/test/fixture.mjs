@@ -46,6 +46,7 @@ const channels = [
   ...cables.flatMap(({ name }) => ends.map((key) => ({ name: `cable/${name}/${key}`, unit: key.split("_").pop() }))),
   ...["kinetic_j", "gravity_j", "elastic_j", "contact_count"].map((key) => ({ name: `system/${key}`, unit: "j" })),
   ...["x", "y", "z"].map((axis) => ({ name: `system/com_${axis}_m`, unit: "m" })),
+  ...[0, 1, 2].flatMap((i) => ["x", "y", "z"].map((axis) => ({ name: `body/rod_${i}/position_${axis}_m`, unit: "m" }))),
 ];
 
 export const scene = {
@@ -69,7 +70,7 @@ export const scene = {
 };
 
 export const liveScene = {
-  ...scene, duration_s: 0, channels: [], drag_stiffness_n_per_m: 200,
+  ...scene, duration_s: 0, drag_stiffness_n_per_m: 200,
   parameters: [
     { name: "friction_scale", value: 1, unit: "", min: 0, max: 2, restarts: false },
     { name: "push_n", value: 20, unit: "n", min: 0, max: 60, restarts: true },
@@ -97,16 +98,18 @@ export function worldPoint(body, [x, y, z], time_s) {
   return [px + x * Math.cos(angle) - y * Math.sin(angle), py + x * Math.sin(angle) + y * Math.cos(angle), pz + z];
 }
 
+const protocol = JSON.parse(readFileSync(new URL("../protocol/messages.json", import.meta.url), "utf8"));
+export const VERSION = protocol.version;
+
 /** A frame as a list of numbers; `more`: header values, contacts, pushes and changed tensions. */
 export function frameValues(time_s, more = {}) {
   const contacts = more.contacts ?? [];
   const pushes = more.pushes ?? [];
   const header = {
-    time_s, real_time_factor: 1, speed: 1, paused: 0, driver: 1, kinetic_j: 0.1 * time_s, gravity_j: 2, elastic_j: 3,
+    time_s, now_s: time_s, real_time_factor: 1, speed: 1, paused: 0, driver: 1, kinetic_j: 0.1 * time_s, gravity_j: 2, elastic_j: 3,
     run: 0, body_count: 3, cable_count: CABLE_COUNT, contact_count: 3, contact_rows: contacts.length, push_count: pushes.length,
     ...more.header,
   };
-  const protocol = JSON.parse(readFileSync(new URL("../protocol/messages.json", import.meta.url), "utf8"));
   return [
     ...protocol.frame.header.map(([name]) => header[name]),
     ...[0, 1, 2].flatMap((i) => Object.values(pose(i, time_s)).flat()),
@@ -128,6 +131,8 @@ function channelValue(name, time_s) {
   if (key === "length_m") return 0.3 + 0.01 * i;
   if (key === "rest_length_m") return 0.25;
   const centre = [0, 1, 2].map((body) => pose(body, time_s).position_m);
+  const [, body, along] = /^body\/rod_(\d)\/position_([xyz])_m$/.exec(name) ?? [];
+  if (body !== undefined) return pose(Number(body), time_s).position_m["xyz".indexOf(along)];
   const axis = { "system/com_x_m": 0, "system/com_y_m": 1, "system/com_z_m": 2 }[name];
   if (axis !== undefined) return centre.reduce((sum, p) => sum + p[axis] / 3, 0);
   return { "system/kinetic_j": 0.1 * time_s, "system/gravity_j": 2, "system/elastic_j": 3, "system/contact_count": 3 }[name] ?? null;
@@ -163,7 +168,7 @@ export function report(changes = {}) {
   for (let k = 0; k <= (DURATION_S * RATE_HZ) / 2; ++k) frames.push(frameValues((2 * k) / RATE_HZ));
   const asked = [...channels.map(({ name }) => [name, 0]), ...(changes.scene?.reference?.channels ?? []).map(({ name }) => [name, 1])];
   return {
-    version: 1, title: "turning prism", scene,
+    version: VERSION, title: "turning prism", scene,
     metadata: { taut_version: "1.2.3", seed: "42", machine: "a machine" },
     inputs: "taut: 1\nname: <b>prism</b>\n",
     summary: {

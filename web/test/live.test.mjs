@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, afterEach, beforeEach, test } from "node:test";
 import { closeBrowser, drawn, openPage, PAGE, picture, projection, ready, until } from "./browser.mjs";
-import { nodes, worldPoint } from "./fixture.mjs";
+import { nodes, pose, tension_n, worldPoint } from "./fixture.mjs";
 import { MockServer } from "./mock_server.mjs";
 
 let server;
@@ -99,7 +99,44 @@ test("KeysPauseStepAndReset", async () => {
   await until(() => server.of("step").length === 1, "a step");
   await page.keyboard.press("r");
   await until(() => server.of("reset").length === 1, "a reset");
-  assert.equal(server.of("seek").length, 0);
+});
+
+test("APageThatComesLateShowsWhatWentBefore", async () => {
+  server.time_s = 8;
+  const page = await open({ width: 1280, height: 760 });
+  const shown = () => page.evaluate(() => new Promise((resolve) => window.taut.store.want("cable/top_1/tension_n", 0, 0, 8, 1000, (points) => resolve(points))));
+  await page.waitForFunction(() => new Promise((resolve) => window.taut.store.want("cable/top_1/tension_n", 0, 0, 8, 1000, ({ t }) => resolve(t.length > 100))));
+  const { t, mean } = await shown();
+  assert.equal(t[0], 0);
+  assert.equal(t.at(-1), 8);
+  t.forEach((time_s, i) => {
+    assert.ok(i === 0 || time_s > t[i - 1], "times rise where the two parts meet");
+    assert.ok(Math.abs(mean[i] - tension_n(4, time_s)) < 1e-9);
+  });
+  const asked = server.of("want_series").length;
+  await page.waitForTimeout(500);
+  assert.equal(server.of("want_series").length, asked, "what has been answered is not asked for again");
+});
+
+test("ALiveRunIsLookedBackAt", async () => {
+  server.time_s = 8;
+  const page = await open({ width: 1280, height: 760 });
+  await page.evaluate(() => window.taut.app.seek(3));
+  await page.waitForFunction(() => document.querySelector(".timeline").dataset.time === "3");
+  assert.equal(await page.locator(".factor").innerText(), "looking back");
+  const place = await page.evaluate(() => window.taut.view.world.bodies.object.children[1].position.toArray());
+  place.forEach((value, k) => assert.ok(Math.abs(value - pose(1, 3).position_m[k]) < 1e-9));
+  await drawn(page);
+  await picture(page, "look-back");
+  const before = await page.evaluate(() => window.taut.store.history.get("cable/top_1/tension_n").t.at(-1));
+  assert.equal(before, 8, "what was is no news");
+  await page.getByRole("button", { name: "back to where the run is" }).click();
+  await page.waitForFunction(() => document.querySelector(".timeline").dataset.time === "8");
+  assert.equal(await page.getByRole("button", { name: "back to where the run is" }).isVisible(), false);
+  await page.keyboard.press("Home");
+  await page.waitForFunction(() => document.querySelector(".timeline").dataset.time === "0");
+  await page.keyboard.press("End");
+  await page.waitForFunction(() => document.querySelector(".timeline").dataset.time === "8");
 });
 
 test("LiveControlsSendWhatTheyShow", async () => {
@@ -190,7 +227,7 @@ test("AServerOfAnotherVersionIsRefused", async () => {
   await server.stop();
   server = await new MockServer(PAGE, { mode: "live", hello: { version: 99 } }).start();
   const page = await open({ wait: false });
-  await page.waitForFunction(() => /version 1 of the protocol, the server version 99/.test(document.querySelector(".failure pre")?.textContent ?? ""));
+  await page.waitForFunction(() => /version 2 of the protocol, the server version 99/.test(document.querySelector(".failure pre")?.textContent ?? ""));
 });
 
 test("HelpNamesEveryKeyAndThemesChange", async () => {

@@ -3,15 +3,17 @@
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { WebSocketServer } from "ws";
-import { contactsAt, DURATION_S, frameValues, liveScene, nodes, RATE_HZ, reference, scene, seriesOf, worldPoint } from "./fixture.mjs";
+import { contactsAt, DURATION_S, frameValues, liveScene, nodes, RATE_HZ, reference, scene, seriesOf, VERSION, worldPoint } from "./fixture.mjs";
 
 const FRAME_MS = 20;
+const IDLE_TICKS = 12;
 
 export class MockServer {
   received = [];
   time_s = 0;
   paused = true;
   speed = 1;
+  past_s = null; // the earlier time that is looked at
   driver = 0;
   run = 0;
   dragged = null;
@@ -78,7 +80,7 @@ export class MockServer {
       if (this.driver === client) this.tell({ type: "driver", id: (this.driver = 0) });
     });
     this.send(socket, {
-      type: "hello", version: 1, mode: this.mode, title: "turning prism", client, driver: this.driver,
+      type: "hello", version: VERSION, mode: this.mode, title: "turning prism", client, driver: this.driver,
       ...(this.notice ? { notice: this.notice } : {}), ...this.hello,
     });
     if (this.mode === "error") return;
@@ -92,7 +94,8 @@ export class MockServer {
     this.received.push({ ...message, client });
     if (message.type === "want_series") {
       const { id, channel, source = 0, t0, t1, points } = message;
-      this.send(socket, { type: "series", id, series: seriesOf(channel, source, t0, t1, points) });
+      const last_s = this.mode === "live" ? Math.min(t1, this.time_s) : t1;
+      this.send(socket, { type: "series", id, series: seriesOf(channel, source, t0, last_s, points) });
       return;
     }
     if (message.type === "take_control" || this.driver === 0) {
@@ -111,11 +114,14 @@ export class MockServer {
     const limit = (time_s) => (this.mode === "live" ? time_s : Math.min(Math.max(time_s, 0), DURATION_S));
     switch (message.type) {
       case "pause": this.paused = true; break;
-      case "resume": this.paused = false; break;
+      case "resume": [this.paused, this.past_s] = [false, null]; break;
       case "step": this.paused = true; this.time_s = limit(this.time_s + (message.count ?? 1) / RATE_HZ); break;
       case "reset": this.time_s = 0; this.run += this.mode === "live" ? 1 : 0; break;
       case "speed": this.speed = message.factor; break;
-      case "seek": this.time_s = limit(message.time_s); break;
+      case "seek":
+        if (this.mode !== "live") this.time_s = limit(message.time_s);
+        else [this.paused, this.past_s] = [true, message.time_s < this.time_s ? Math.max(message.time_s, 0) : null];
+        break;
       case "set_parameter":
         this.parameters = { ...this.parameters, [message.name]: message.value };
         this.tell({ type: "scene", scene: this.liveScene() });
@@ -132,11 +138,14 @@ export class MockServer {
   tick() {
     if (!this.paused) this.time_s += (FRAME_MS / 1000) * (this.speed || 10);
     if (this.mode === "replay" && this.time_s >= DURATION_S) [this.time_s, this.paused] = [DURATION_S, true];
-    this.frame();
+    // like the real server, which says rarely that nothing changes
+    this.idle = this.paused ? (this.idle ?? 0) + 1 : 0;
+    if (this.idle % IDLE_TICKS <= 1) this.frame();
   }
 
   frame() {
     if (this.mode === "error") return;
+    const shown_s = this.past_s ?? this.time_s;
     const pushes = this.pushed.filter(({ until_s }) => until_s > this.time_s)
       .map(({ node, force_n }) => [nodes.findIndex(({ name }) => name === node), ...force_n]);
     const tensions = {};
@@ -147,9 +156,10 @@ export class MockServer {
       pushes.push([place, ...force_n]);
       tensions[0] = 5 + Math.hypot(...force_n);
     }
-    const values = frameValues(this.time_s, {
-      header: { paused: this.paused ? 1 : 0, speed: this.speed, driver: this.driver, run: this.run },
-      contacts: contactsAt(this.time_s), pushes, tension_n: tensions,
+    const values = frameValues(shown_s, {
+      header: {
+        now_s: this.time_s, paused: this.paused ? 1 : 0, speed: this.speed, driver: this.driver, run: this.run },
+      contacts: contactsAt(shown_s), pushes, tension_n: tensions,
     });
     const bytes = new Float64Array(values);
     for (const socket of this.clients.values()) if (socket.bufferedAmount < 1e6) socket.send(bytes);

@@ -1,5 +1,6 @@
 // A replay: plays, scrubs, steps, and shows the poses that the trace holds; plots share its time.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { after, before, beforeEach, test } from "node:test";
 import { closeBrowser, openPage, PAGE, picture, until, untilTime } from "./browser.mjs";
 import { DURATION_S, pose, RATE_HZ, setpoint_n, tension_n } from "./fixture.mjs";
@@ -117,7 +118,7 @@ test("DraggingInAPlotZoomsAllAndAsksForFinerData", async () => {
   await page.waitForFunction(() => window.taut.app.range_s.value !== null);
   const [t0, t1] = await page.evaluate(() => window.taut.app.range_s.value);
   assert.ok(Math.abs(t0 - 2) < 0.2 && Math.abs(t1 - 4) < 0.2, `${t0} to ${t1}`);
-  await page.waitForFunction(() => document.querySelector(".toolbar button:not([hidden])")?.textContent === "whole time");
+  await page.waitForFunction(() => document.querySelector(".toolbar button:not([hidden])")?.textContent === "zoom out");
   const finer = () => server.of("want_series").slice(asked).filter((question) => question.t0 === t0 && question.t1 === t1);
   await until(() => new Set(finer().map(({ channel }) => channel)).size >= 9, "finer data of nine cables");
   await page.mouse.dblclick(box.x + 0.5 * box.width, box.y + 30);
@@ -141,4 +142,80 @@ test("NothingIsAskedOfAnyOtherHost", async () => {
   await page.evaluate(() => window.taut.app.seek(4));
   await untilTime(page, 4);
   await picture(page, "replay");
+});
+
+test("TheViewIsRecordedAsAVideo", async () => {
+  await page.getByRole("button", { name: /as a video/ }).click();
+  await page.keyboard.press("Escape"); // away from the button, on which space would act
+  await page.evaluate(() => window.taut.app.togglePlay());
+  await page.waitForFunction(() => Number(document.querySelector(".timeline").dataset.time) > 1);
+  const [file] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: /as a video/ }).click()]);
+  assert.equal(file.suggestedFilename(), "taut-turning prism.webm");
+  // the file is a video that a browser plays, and in which something moves
+  const video = readFileSync(await file.path()).toString("base64");
+  const seen = await page.evaluate(async (base64) => {
+    const element = document.createElement("video");
+    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+    element.src = URL.createObjectURL(new Blob([bytes], { type: "video/webm" }));
+    element.muted = true;
+    await element.play();
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [64, 64];
+    const context = canvas.getContext("2d", { willReadFrequently: true });
+    const pictures = new Set();
+    await new Promise((resolve) => {
+      const look = () => {
+        context.drawImage(element, 0, 0, 64, 64);
+        pictures.add(context.getImageData(0, 0, 64, 64).data.join());
+        if (element.ended) resolve();
+        else setTimeout(look, 20);
+      };
+      look();
+    });
+    return { width: element.videoWidth, pictures: pictures.size };
+  }, video);
+  assert.ok(seen.width > 300 && seen.pictures > 3, JSON.stringify(seen));
+});
+
+test("AReplayIsSavedAsAGif", async () => {
+  await page.evaluate(() => {
+    window.taut.app.send({ type: "speed", factor: 1 });
+    window.taut.app.range_s.value = [2, 4];
+  });
+  await page.waitForFunction(() => window.taut.app.frame.value.speed === 1);
+  const [file] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: /GIF/ }).click()]);
+  assert.equal(file.suggestedFilename(), "taut-turning prism.gif");
+  const gif = readFileSync(await file.path());
+  assert.equal(gif.subarray(0, 6).toString(), "GIF89a");
+  const box = await page.locator(".view").boundingBox();
+  assert.ok(Math.abs(gif.readUInt16LE(6) - Math.min(640, box.width)) <= 1, "as wide as the view");
+  const delays = [];
+  for (let at = gif.indexOf("21f904", "hex"); at >= 0; at = gif.indexOf("21f904", at + 8, "hex")) delays.push(gif.readUInt16LE(at + 4));
+  assert.deepEqual(delays, new Array(26).fill(8), "two seconds in steps of 80 ms");
+  // its last picture is what is seen at the end of that time
+  const far = await page.evaluate(async (base64) => {
+    const decoder = new ImageDecoder({ type: "image/gif", data: Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)) });
+    const canvas = document.createElement("canvas");
+    const pixels = async (frameIndex) => {
+      const { image } = await decoder.decode({ frameIndex });
+      [canvas.width, canvas.height] = [image.displayWidth, image.displayHeight];
+      const context = canvas.getContext("2d", { willReadFrequently: true });
+      context.drawImage(image, 0, 0);
+      return context.getImageData(0, 0, canvas.width, canvas.height).data;
+    };
+    const [first, last] = [await pixels(0), await pixels(25)];
+    const { app, view } = window.taut;
+    await new Promise((resolve) => {
+      app.seek(4);
+      const wait = () => (app.frame.value.time_s === 4 ? resolve() : setTimeout(wait, 10));
+      wait();
+    });
+    view.draw();
+    const context = canvas.getContext("2d", { willReadFrequently: true });
+    context.drawImage(view.canvas, 0, 0, canvas.width, canvas.height);
+    const now = context.getImageData(0, 0, canvas.width, canvas.height).data;
+    const away = (a, b) => a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
+    return { last: away(last, now), first: away(first, now) };
+  }, gif.toString("base64"));
+  assert.ok(far.last < 3 && far.first > 2 * far.last, JSON.stringify(far));
 });

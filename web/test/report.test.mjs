@@ -73,7 +73,7 @@ test("PlotsAreSavedAsSvgPngAndCsv", async () => {
 });
 
 for (const [what, data, says] of [
-  ["OfAnotherVersion", { ...report(), version: 7 }, /version 7, this page reads version 1/],
+  ["OfAnotherVersion", { ...report(), version: 7 }, /version 7, this page reads version 2/],
   ["CutOff", { ...report(), frame_count: 3 }, /holds \d+ numbers of frames, not 3 times/],
 ]) {
   test(`AReport${what}SaysSo`, async () => {

@@ -105,6 +105,44 @@ test("ANodeIsDraggedAndTheTensionAnswers", options, async (t) => {
   assert.deepEqual(live.complaints, []);
 });
 
+test("APageOutlivesTheRealServer", options, async (t) => {
+  const address = await view("experiments/hang.yaml", "--paused", "--port", "0");
+  const page = await openPage(address);
+  t.after(() => page.context().close());
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction(() => window.taut.app.frame.value.time_s === 0.001);
+  const ended = new Promise((resolve) => server.on("exit", resolve));
+  server.kill("SIGKILL");
+  await ended;
+  await page.waitForFunction(() => document.querySelector(".link").dataset.state === "lost");
+  await view("experiments/stand_still.yaml", "--paused", "--port", new URL(address).port);
+  await page.waitForFunction(() => document.querySelector(".link").dataset.state === "open" && window.taut.app.scene.value.bodies.length === 3);
+  await page.waitForFunction(() => window.taut.app.frame.value.time_s === 0 && window.taut.view.world.scene.bodies.length === 3);
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction(() => window.taut.app.frame.value.time_s === 0.001);
+  assert.deepEqual(page.complaints.filter((text) => !/WebSocket|ERR_CONNECTION/.test(text)), []);
+});
+
+test("TwoPagesOfTheRealServerDriveOneAtATime", options, async (t) => {
+  const address = await view("experiments/hang.yaml", "--paused", "--port", "0");
+  const [first, second] = [await openPage(address), await openPage(address)];
+  t.after(() => Promise.all([first, second].map((page) => page.context().close())));
+  const driver = (page, text) => page.waitForFunction((wanted) => document.querySelector(".driver").textContent === wanted, text);
+  await first.keyboard.press("ArrowRight");
+  await driver(first, "you drive");
+  await driver(second, "viewer 1 drives, you watch");
+  await second.keyboard.press("ArrowRight");
+  await second.waitForFunction(() => /drives; take control first/.test(document.querySelector(".notice span").textContent));
+  assert.equal(await first.evaluate(() => window.taut.app.frame.value.time_s), 0.001);
+  await second.getByRole("button", { name: /drive from now on/ }).click();
+  await driver(first, "viewer 2 drives, you watch");
+  await second.locator(".view canvas").first().focus();
+  await second.keyboard.press("ArrowRight");
+  await first.waitForFunction(() => window.taut.app.frame.value.time_s === 0.002);
+  await second.context().close();
+  await driver(first, "");
+});
+
 test("AReportOpensFromDiskAndAsksNobody", options, async (t) => {
   const file = join(folder, "report.html");
   execFileSync(TAUT, ["report", join(folder, "trace.h5"), "--out", file], { cwd: ROOT, env: { ...process.env, TAUT_WEB: dirname(PAGE) } });

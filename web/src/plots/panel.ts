@@ -18,6 +18,7 @@ export class PlotPanel {
   private readonly visible = new Set<Chart>();
   private readonly seen: IntersectionObserver;
   private sameScale = true;
+  private wholeRun = false;
   private due = 0;
   private own: { kind: "cable" | "body"; name: string } | null = null;
 
@@ -55,8 +56,12 @@ export class PlotPanel {
     const scene = this.app.scene.value;
     if (this.app.range_s.value) return this.app.range_s.value;
     if (!this.app.live) return scene ? [scene.first_s, Math.max(scene.duration_s, scene.first_s + 1e-3)] : [0, 1];
-    const now_s = this.app.frame.value?.time_s ?? 0;
-    return [Math.max(0, now_s - LIVE_SPAN_S), Math.max(now_s, LIVE_SPAN_S)];
+    const now_s = this.app.frame.value?.now_s ?? 0;
+    if (this.wholeRun) return [0, Math.max(now_s, LIVE_SPAN_S)];
+    // who looks back sees what was around that time
+    const shown_s = this.app.frame.value?.time_s ?? 0;
+    const end_s = shown_s < now_s - LIVE_SPAN_S ? shown_s + LIVE_SPAN_S / 2 : now_s;
+    return [Math.max(0, end_s - LIVE_SPAN_S), Math.max(end_s, LIVE_SPAN_S)];
   }
 
   private plotOwn(kind: "cable" | "body", name: string): void {
@@ -130,13 +135,19 @@ export class PlotPanel {
       this.sameScale = scale.checked;
       this.refresh();
     } });
+    const whole = el<HTMLInputElement>("input", { type: "checkbox", onchange: () => {
+      this.wholeRun = whole.checked;
+      this.refresh();
+    } });
+    const wholeLabel = el("label", { title: `the whole run, not its last ${LIVE_SPAN_S} s` }, whole, " whole run");
+    this.app.hello.watch(() => (wholeLabel.hidden = !this.app.live));
     const all = (which: "tension" | "all") => this.charts.filter((chart) => which === "all" || chart.figure.group === which).map((chart) => chart.filled);
-    const zoomOut = button("whole time", "show the whole time again (double click in a plot)", () => (this.app.range_s.value = null));
+    const zoomOut = button("zoom out", "show all of the time again (double click in a plot)", () => (this.app.range_s.value = null));
     this.app.range_s.watch((range) => (zoomOut.hidden = range === null));
     return el("div.toolbar", {},
       key(this.app),
       el("label", { title: "one scale for all tensions, so that heights compare" }, scale, " same scale"),
-      zoomOut,
+      wholeLabel, zoomOut,
       el("span.spring"),
       el("span", {}, "save all:"),
       button("PNG", "save all tensions as PNG", () => void exportPng(all("tension"), this.span, "tensions"), "button.small"),

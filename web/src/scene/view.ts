@@ -182,7 +182,11 @@ export class View {
   private loop(): void {
     requestAnimationFrame(() => this.loop());
     this.controls.update();
-    if (!this.dirty) return;
+    if (this.dirty) this.draw();
+  }
+
+  /** Draws at once; the canvas can be copied until the caller gives way to the browser. */
+  draw(): void {
     this.dirty = false;
     this.aimSun();
     this.renderer.render(this.stage, this.camera);

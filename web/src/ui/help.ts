@@ -9,7 +9,7 @@ const MOUSE: readonly [string, string][] = [
   ["click", "numbers and plots of a cable or body"],
   ["drag a node", "pull it with a spring (live)"],
   ["drag in a plot", "zoom into that time; double click: all of it"],
-  ["click in a plot", "go to that time (replay)"],
+  ["click in a plot", "go to that time"],
 ];
 
 export class Help {

@@ -29,9 +29,9 @@ export function keysOf(app: App, view: View, toggleHelp: () => void, toggleContr
   return [
     { keys: [" "], shown: "space", does: "play or pause", act: () => app.togglePlay() },
     { keys: ["ArrowRight"], shown: "→", does: "one step on (with shift: one second)", act: step(1) },
-    { keys: ["ArrowLeft"], shown: "←", does: "one step back (with shift: one second); replay only", act: (event) => app.seekable && step(-1)(event) },
-    { keys: ["Home"], shown: "home", does: "to the start; replay only", act: () => app.seek(scene()?.first_s ?? 0) },
-    { keys: ["End"], shown: "end", does: "to the end; replay only", act: () => app.seek(scene()?.duration_s ?? 0) },
+    { keys: ["ArrowLeft"], shown: "←", does: "one step back (with shift: one second); live: through what was, nothing is undone", act: step(-1) },
+    { keys: ["Home"], shown: "home", does: "to the start", act: () => app.seek(scene()?.first_s ?? 0) },
+    { keys: ["End"], shown: "end", does: "to the end; live: back to now", act: () => (app.live ? app.goToNow() : app.seek(scene()?.duration_s ?? 0)) },
     { keys: ["r", "R"], shown: "R", does: "reset: back to the start", act: () => app.send({ type: "reset" }) },
     { keys: ["["], shown: "[", does: "slower", act: speed(false) },
     { keys: ["]"], shown: "]", does: "faster", act: speed(true) },

@@ -14,6 +14,7 @@ export function timeline(app: App): HTMLElement {
     title: "speed: simulated seconds a second ([ and ])", "aria-label": "speed",
     onchange: () => app.send({ type: "speed", factor: Number(speed.value) }),
   }, ...SPEEDS.map((factor) => el("option", { value: factor }, speedText(factor))));
+  const now = button("now", "back to where the run is (end)", () => app.goToNow(), "button.now");
   const time = el("span.time", { "aria-live": "off" });
   const factor = el("span.factor", { title: "real-time factor: simulated over wall-clock time" });
   const phases = el("div.phases");
@@ -23,8 +24,8 @@ export function timeline(app: App): HTMLElement {
     type: "range", step: "any", min: 0, max: 1, value: 0, "aria-label": "time",
     oninput: () => app.seek(Number(slider.value)),
   });
-  const track = el("div.track", {}, phases, slider, events, cursor);
-  const element = el("footer.timeline", {}, back, stepBack, play, step, speed, track, time, factor);
+  const track = el("div.track", {}, phases, slider, events, cursor, el("div.present"));
+  const element = el("footer.timeline", {}, back, stepBack, play, step, speed, track, now, time, factor);
 
   const share = (time_s: number): string => {
     const min = Number(slider.min);
@@ -34,7 +35,7 @@ export function timeline(app: App): HTMLElement {
   const stretch = () => {
     const scene = app.scene.value;
     if (!scene) return;
-    const now_s = app.frame.value?.time_s ?? 0;
+    const now_s = app.frame.value?.now_s ?? 0;
     slider.min = String(scene.first_s);
     slider.max = String(app.live ? Math.max(scene.duration_s, now_s) : scene.duration_s);
     phases.replaceChildren(...scene.phases.map((phase) => {
@@ -46,14 +47,15 @@ export function timeline(app: App): HTMLElement {
   };
   app.scene.watch(stretch);
   app.hello.watch(() => {
-    stepBack.hidden = !app.seekable;
     slider.disabled = !app.seekable;
     element.classList.toggle("model", app.hello.value?.mode === "model");
     stretch();
   });
   app.frame.watch((frame) => {
     if (!frame) return;
-    if (app.live && frame.time_s > Number(slider.max)) stretch();
+    if (app.live && frame.now_s > Number(slider.max)) stretch();
+    now.hidden = !app.looksBack;
+    track.style.setProperty("--run", app.looksBack ? share(frame.now_s) : "-10px");
     slider.value = String(frame.time_s);
     slider.setAttribute("aria-valuetext", `${frame.time_s.toFixed(2)} s`);
     track.style.setProperty("--now", share(frame.time_s));
@@ -63,7 +65,7 @@ export function timeline(app: App): HTMLElement {
     if (element.dataset["paused"] !== String(paused)) play.replaceChildren(icon(paused ? "play" : "pause"));
     element.dataset["paused"] = String(paused);
     element.dataset["time"] = String(frame.time_s);
-    factor.textContent = paused || !app.live ? "" : `${number(frame.real_time_factor, 2)}× real time`;
+    factor.textContent = app.looksBack ? "looking back" : paused || !app.live ? "" : `${number(frame.real_time_factor, 2)}× real time`;
     if (document.activeElement !== speed) select(speed, frame.speed);
   });
   app.cursor_s.watch((time_s) => {

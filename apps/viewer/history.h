@@ -1,0 +1,63 @@
+/// What a live run has shown so far, for plots of the time before a page came and for a look back.
+#pragma once
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "frame.h"
+#include "scene.h"
+
+namespace taut::viewer {
+
+/// Rows of equal distance in simulated time. When there are too many, every second one goes and
+/// the distance doubles: the whole run stays, more coarsely the longer it lasts.
+class History {
+ public:
+  /// `period_s`: simulated time between rows, for a start.
+  History(const ModelDef& def, double period_s, std::size_t max_bytes = 128u << 20);
+
+  /// Of the run that begins now.
+  void Clear();
+  /// Whether the moment is far enough from the last one taken.
+  bool IsDue(double time_s) const { return time_s >= due_s_; }
+  /// Times rise.
+  void Take(const Frame& frame);
+
+  std::size_t size() const { return time_s_.size(); }
+  double time_s(std::size_t row) const { return time_s_[row]; }
+  /// The last row at or before a time; 0 before the first.
+  std::size_t RowAt(double time_s) const;
+  /// Of `frame` stays what is no history: speed, pause, driver.
+  void Show(std::size_t row, Frame& frame) const;
+
+  const std::vector<ChannelInfo>& channels() const { return channels_; }
+  /// SeriesData of a channel; null if there is none.
+  Json SeriesOf(const std::string& channel, double t0, double t1, std::size_t points) const;
+
+ private:
+  /// Lists of any length, one a row.
+  template <class T>
+  struct Lists {
+    std::vector<T> items;
+    std::vector<std::size_t> ends;
+    void Add(const std::vector<T>& list);
+    std::vector<T> Get(std::size_t row) const;
+    void Thin();
+    std::size_t bytes() const { return items.size() * sizeof(T) + ends.size() * sizeof(ends[0]); }
+  };
+
+  void AddChannel(std::string name, std::string unit);
+  void Thin();
+
+  std::vector<ChannelInfo> channels_;
+  std::unordered_map<std::string, std::size_t> places_;
+  std::size_t bodies_, cables_, max_bytes_;
+  double first_period_s_, period_s_, due_s_ = 0;
+  std::vector<double> time_s_;
+  std::vector<std::vector<double>> columns_;  ///< By channel.
+  Lists<Frame::Contact> contacts_;
+  Lists<OutsideForce> pushes_;
+};
+
+}  // namespace taut::viewer

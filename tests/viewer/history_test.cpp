@@ -1,0 +1,103 @@
+// What a live run keeps of its past.
+#include "apps/viewer/history.h"
+
+#include <gtest/gtest.h>
+
+namespace taut::test {
+namespace {
+
+using viewer::Frame;
+using viewer::History;
+using viewer::Json;
+
+ModelDef OneOfEach() {
+  ModelDef def;
+  def.bodies.resize(1);
+  def.bodies[0].name = "rod";
+  def.cables.resize(1);
+  def.cables[0].name = "string";
+  return def;
+}
+
+/// A frame whose numbers all follow from its place; every third has a push, every fourth contacts.
+Frame Moment(int i) {
+  Frame frame;
+  frame.time_s = 0.01 * i;
+  frame.real_time_factor = 1;
+  frame.energy = {1.0 * i, 2.0 * i, 3.0 * i};
+  frame.bodies = {{{0.1 * i, 0.2 * i, 0.3 * i}, {1, 0, 0, 0.001 * i}}};
+  frame.cables = {{5.0 + i, 0.5, 0.25, 4.0}};
+  for (int k = 0; k < i % 4; ++k) frame.contacts.push_back({{1.0 * k, 0, 0}, {0, 0, 1.0 * i}});
+  frame.contact_count = i % 4;
+  if (i % 3 == 0) frame.pushes = {{7, {1.0 * i, 0, 0}}};
+  return frame;
+}
+
+std::vector<double> Numbers(const Frame& frame) { return viewer::FrameNumbers(frame); }
+
+TEST(History, ShowsEveryMomentAsItWas) {
+  History history(OneOfEach(), 0.01);
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE(history.IsDue(0.01 * i)) << i;
+    history.Take(Moment(i));
+    ASSERT_FALSE(history.IsDue(0.01 * i + 0.009)) << i;
+  }
+  for (const int i : {0, 1, 12, 99}) {
+    Frame frame;
+    frame.real_time_factor = 1;
+    history.Show(history.RowAt(0.01 * i + 0.004), frame);
+    EXPECT_EQ(Numbers(frame), Numbers(Moment(i))) << i;
+  }
+  EXPECT_EQ(history.RowAt(-1), 0u);
+  EXPECT_EQ(history.RowAt(1e9), 99u);
+}
+
+TEST(History, SeriesHaveTheLeastAndGreatestOfTheirBlocks) {
+  History history(OneOfEach(), 0.01);
+  for (int i = 0; i < 100; ++i) history.Take(Moment(i));
+  const Json all = history.SeriesOf("cable/string/tension_n", 0, 1, 1000);
+  EXPECT_EQ(all["level"], 1);
+  ASSERT_EQ(all["mean"].size(), 100u);
+  EXPECT_EQ(all["mean"][42], 47);
+  const Json few = history.SeriesOf("cable/string/tension_n", 0, 1, 25);
+  EXPECT_EQ(few["level"], 4);
+  ASSERT_EQ(few["mean"].size(), 25u);
+  EXPECT_EQ(few["min"][3], 17);
+  EXPECT_EQ(few["max"][3], 20);
+  EXPECT_EQ(few["mean"][3], 18.5);
+  EXPECT_EQ(history.SeriesOf("body/rod/position_z_m", 0, 1, 1000)["max"][99], 0.3 * 99);
+  EXPECT_EQ(history.SeriesOf("system/elastic_j", 0, 1, 1000)["max"][99], 297);
+  EXPECT_TRUE(history.SeriesOf("cable/absent/tension_n", 0, 1, 100).is_null());
+  EXPECT_EQ(history.channels().size(), 5u + 7u + 4u);
+}
+
+TEST(History, KeepsTheWholeRunMoreCoarselyTheLongerItLasts) {
+  constexpr std::size_t kBytes = 40000;  // some 100 rows
+  History history(OneOfEach(), 0.01, kBytes);
+  int taken = 0;
+  for (int i = 0; i < 10000; ++i) {
+    if (!history.IsDue(0.01 * i)) continue;
+    history.Take(Moment(i));
+    ++taken;
+  }
+  EXPECT_LT(history.size(), 200u);
+  EXPECT_GT(history.size(), 50u);
+  EXPECT_LT(taken, 1000);
+  EXPECT_EQ(history.time_s(0), 0);
+  EXPECT_GT(history.time_s(history.size() - 1), 97);
+  const double step_s = history.time_s(1) - history.time_s(0);
+  for (std::size_t row = 1; row < history.size(); ++row) {
+    EXPECT_NEAR(history.time_s(row) - history.time_s(row - 1), step_s, 1e-9);
+    Frame frame;
+    frame.real_time_factor = 1;
+    history.Show(row, frame);
+    const int i = static_cast<int>(history.time_s(row) / 0.01 + 0.5);
+    EXPECT_EQ(Numbers(frame), Numbers(Moment(i)));
+  }
+  history.Clear();
+  EXPECT_EQ(history.size(), 0u);
+  EXPECT_TRUE(history.IsDue(0));
+}
+
+}  // namespace
+}  // namespace taut::test

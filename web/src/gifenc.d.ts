@@ -1,0 +1,12 @@
+// What is used of gifenc, which has no types of its own.
+declare module "gifenc" {
+  export type GifPalette = number[][];
+  export interface GifEncoder {
+    writeFrame(indices: Uint8Array, width: number, height: number, options?: { palette?: GifPalette; delay?: number }): void;
+    finish(): void;
+    bytes(): Uint8Array<ArrayBuffer>;
+  }
+  export function GIFEncoder(): GifEncoder;
+  export function quantize(rgba: Uint8ClampedArray, colours: number): GifPalette;
+  export function applyPalette(rgba: Uint8ClampedArray, palette: GifPalette): Uint8Array;
+}

@@ -1,0 +1,136 @@
+// The page on small and on magnified screens: nothing is cut off, nothing lies over something else,
+// and all that can be used is reached by the tab key.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { closeBrowser, drawn, openPage, PAGE, picture, writeReport } from "./browser.mjs";
+import { reference, report, scene } from "./fixture.mjs";
+import { MockServer } from "./mock_server.mjs";
+
+const servers = {};
+let folder;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), "taut-layout-"));
+  servers.live = await new MockServer(PAGE, { mode: "live" }).start();
+  servers.replay = await new MockServer(PAGE, { mode: "replay", compare: true }).start();
+  for (const server of Object.values(servers)) server.time_s = 5;
+});
+after(async () => {
+  await closeBrowser();
+  for (const server of Object.values(servers)) await server.stop();
+  rmSync(folder, { recursive: true });
+});
+
+const address = (use) =>
+  use === "report" ? writeReport(report({ scene: { ...scene, reference } }), folder) : servers[use].url;
+
+/** What is wrong with the layout, in sentences. */
+function faults() {
+  const found = [];
+  const name = (element) => element.getAttribute("aria-label") || element.textContent.trim() || element.className;
+  const shown = (element) => element.checkVisibility() && element.getBoundingClientRect().width > 0;
+  const width = document.documentElement.clientWidth;
+  if (document.documentElement.scrollWidth > width) found.push(`the page is ${document.documentElement.scrollWidth} px wide, the window ${width}`);
+  const parts = [...document.querySelectorAll("header.top > *, footer.timeline > *, .toolbar > *, .legend > *, .controls input, .controls button, .controls select")].filter(shown);
+  for (const part of parts) {
+    const box = part.getBoundingClientRect();
+    if (box.left < -0.5 || box.right > width + 0.5) found.push(`${name(part)} goes beyond the window`);
+    if (!part.matches("h1, input, select, .track") && part.scrollWidth > part.clientWidth + 1 && part.clientWidth > 0) found.push(`${name(part)} is cut off`);
+  }
+  for (const bar of document.querySelectorAll("header.top, footer.timeline, .toolbar")) {
+    const boxes = [...bar.children].filter(shown).filter((child) => child.textContent.trim() || child.matches("button, select, .track"));
+    boxes.forEach((one, i) => boxes.slice(i + 1).forEach((other) => {
+      const [a, b] = [one.getBoundingClientRect(), other.getBoundingClientRect()];
+      if (Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1) {
+        found.push(`${name(one)} lies over ${name(other)}`);
+      }
+    }));
+  }
+  const legend = document.querySelector(".legend").getBoundingClientRect();
+  const view = document.querySelector(".view").getBoundingClientRect();
+  if (legend.right > view.right || legend.top < view.top) found.push("the legend goes beyond the view");
+  return found;
+}
+
+// A window of 1280 x 720 at 125 % is one of 1024 x 576 whose pixels are larger; the last is a
+// projector of 800 x 600.
+for (const use of ["live", "replay", "report"]) {
+  for (const [what, size] of Object.entries({
+    At125Percent: { width: 1024, height: 576, scale: 1.25 },
+    OnAProjector: { width: 800, height: 600, scale: 1 },
+  })) {
+    test(`NothingOf_${use}_IsCutOffOrCovered${what}`, async () => {
+      const page = await openPage(address(use), { ...size, theme: what === "OnAProjector" ? "dark" : "light" });
+      if (use === "live") {
+        await page.keyboard.press("c");
+        await page.evaluate(() => window.taut.app.seek(3));
+        await page.waitForFunction(() => window.taut.app.looksBack);
+      }
+      await drawn(page);
+      await picture(page, `layout-${use}-${what}`);
+      assert.deepEqual(await page.evaluate(faults), []);
+      assert.equal(await page.evaluate(() => devicePixelRatio), size.scale);
+      await page.context().close();
+    });
+  }
+}
+
+test("TheTabKeyReachesEverythingAndTheFocusIsSeen", async () => {
+  const page = await openPage(servers.live.url, { width: 1280, height: 760 });
+  await page.keyboard.press("c");
+  const expected = await page.evaluate(() => [...document.querySelectorAll("button, select, input, summary, canvas[tabindex]")]
+    .filter((element) => element.checkVisibility({ visibilityProperty: true }) && !element.disabled && !element.closest(".tools"))
+    .map((element, i) => (element.dataset.reach = String(i))));
+  const reached = new Set();
+  const unseen = [];
+  for (let i = 0; i < 4 * expected.length; ++i) {
+    await page.keyboard.press("Tab");
+    const { reach, seen, name } = await page.evaluate(() => {
+      const element = document.activeElement;
+      const { outlineStyle, outlineWidth } = getComputedStyle(element);
+      return { reach: element.dataset.reach, seen: outlineStyle !== "none" && outlineWidth !== "0px", name: element.ariaLabel ?? element.tagName };
+    });
+    if (reach === undefined) continue;
+    if (reached.has(reach)) break;
+    reached.add(reach);
+    if (!seen) unseen.push(name);
+  }
+  const missed = await page.evaluate((list) => list.map((i) => document.querySelector(`[data-reach="${i}"]`).outerHTML.slice(0, 120)), expected.filter((i) => !reached.has(i)));
+  assert.deepEqual(missed, []);
+  assert.deepEqual(unseen, []);
+  await page.context().close();
+});
+
+/** The contrast of two colours as WCAG 2 defines it. */
+function contrast(a, b) {
+  const light = ([r, g, blue]) => {
+    const part = (value) => (value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4);
+    return 0.2126 * part(r) + 0.7152 * part(g) + 0.0722 * part(blue);
+  };
+  const [x, y] = [light(a), light(b)].sort((p, q) => q - p);
+  return (x + 0.05) / (y + 0.05);
+}
+
+test("TextsStandOutFromTheirGround", async () => {
+  for (const theme of ["light", "dark"]) {
+    const page = await openPage(servers.replay.url, { theme });
+    const pairs = await page.evaluate(() => {
+      const style = getComputedStyle(document.documentElement);
+      const probe = document.body.appendChild(document.createElement("i"));
+      const rgb = (name) => {
+        probe.style.color = style.getPropertyValue(name);
+        return getComputedStyle(probe).color.match(/\d+/g).slice(0, 3).map(Number);
+      };
+      return [["--text", "--panel"], ["--text", "--page"], ["--faint", "--panel"], ["--faint", "--page"], ["--warn", "--panel"], ["--on-accent", "--accent"]]
+        .map((names) => ({ names, colours: names.map(rgb) }));
+    });
+    for (const { names, colours } of pairs) {
+      const found = contrast(...colours);
+      assert.ok(found >= 4.5, `${theme}: ${names.join(" on ")} has a contrast of ${found.toFixed(2)}, less than 4.5`);
+    }
+    await page.context().close();
+  }
+});
