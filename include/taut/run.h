@@ -49,7 +49,7 @@ struct RunSummary {
   std::vector<CableSummary> cables;
   std::vector<DragSummary> drags;
   std::vector<ReferenceSpec> references;  ///< The experiment's.
-  double system_max_tension_n = 0;  ///< Largest `tension` of any cable, whole run.
+  double system_max_tension_n = 0;        ///< Largest `tension` of any cable, whole run.
   std::string system_max_tension_cable;
   double system_max_elastic_n = 0;
   double system_max_elastic_after_start_n = 0;

@@ -52,8 +52,9 @@ export class App {
     return sent;
   }
 
+  /** An experiment, or a model by itself, that is simulated now. */
   get live(): boolean {
-    return this.hello.value?.mode === "live";
+    return ["live", "model"].includes(this.hello.value?.mode ?? "");
   }
 
   get replay(): boolean {

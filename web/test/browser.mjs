@@ -10,7 +10,7 @@ import { chromium } from "playwright-core";
 
 export const PAGE = process.env.TAUT_PAGE ?? fileURLToPath(new URL("../dist/index.html", import.meta.url));
 const CHROMIUM = process.env.TAUT_CHROMIUM ?? "/usr/bin/chromium";
-const PICTURES = process.env.TAUT_PICTURES ?? join(tmpdir(), "taut-pictures");
+export const PICTURES = process.env.TAUT_PICTURES ?? join(tmpdir(), "taut-pictures");
 
 let browser = null;
 

@@ -37,6 +37,15 @@ test("ItSaysWhatWasRunAndWhatCameOut", async () => {
   assert.match(await page.locator(".inputs").innerText(), /<b>prism<\/b>/, "inputs are text, never markup");
 });
 
+test("EveryPlotIsThereBeforeItIsScrolledTo", async () => {
+  const small = await openPage(writeReport(report(), folder), { width: 700, height: 300 });
+  await small.waitForFunction(() => {
+    const charts = [...document.querySelectorAll("figure.chart")];
+    return charts.length === 11 && charts.every((chart) => !chart.querySelector(".values").textContent.startsWith("–"));
+  });
+  await small.context().close();
+});
+
 test("ItReplaysWithoutAServer", async () => {
   await page.evaluate(() => window.taut.app.seek(6));
   await untilTime(page, 6, 1e-3);
@@ -70,6 +79,17 @@ test("PlotsAreSavedAsSvgPngAndCsv", async () => {
   assert.ok(Math.abs(value - (tension_n(4, 5) + tension_n(4, 5.02)) / 2) < 1e-9, `${value}`);
   assert.ok(names.includes("reference:cable/top_1/tension_n") && names.includes("cable/top_1/setpoint_n"));
   await picture(page, "report", { fullPage: true });
+});
+
+test("ASetPointFarAwayDoesNotFlattenThePlots", async () => {
+  const data = report();
+  const series = data.series.find(({ channel }) => channel === "cable/top_2/setpoint_n");
+  series.max[0] = series.mean[0] = 13000;
+  const far = await openPage(writeReport(data, folder));
+  const [file] = await Promise.all([far.waitForEvent("download"), far.getByRole("button", { name: "save all tensions as SVG" }).click()]);
+  const ticks = [...readFileSync(await file.path(), "utf8").matchAll(/text-anchor="end">(\d+)</g)].map(([, tick]) => Number(tick));
+  assert.ok(ticks.length > 20 && Math.max(...ticks) >= 40 && Math.max(...ticks) < 100, ticks.join());
+  await far.context().close();
 });
 
 for (const [what, data, says] of [

@@ -81,6 +81,11 @@ test("ANodeIsDraggedAndTheTensionAnswers", options, async (t) => {
   t.after(() => page.context().close());
   const mode = await page.evaluate(() => window.taut.app.hello.value.mode);
   assert.equal(mode, "model");
+  // alone and paused it stands still; once resumed it follows the hand
+  const tip = await page.evaluate(() => window.taut.app.scene.value.nodes.at(-1).name);
+  await page.evaluate((node) => window.taut.app.send({ type: "drag", node, target_m: [1, 1, 1] }), tip);
+  await page.getByRole("button", { name: "play or pause" }).click();
+  await page.waitForFunction(() => window.taut.app.frame.value.time_s > 0.2 && window.taut.app.frame.value.kinetic_j > 0.01);
   await page.context().close();
   await stop();
   const live = await openPage(await view("experiments/stand_still.yaml", "--port", "0"));

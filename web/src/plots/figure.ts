@@ -92,18 +92,32 @@ export function fill(figure: Figure, store: SeriesStore, t0: number, t1: number,
   );
 }
 
-/** Least and greatest value shown; zero belongs to it where values are close to it. */
+/**
+ * Least and greatest value shown; zero belongs to it where values are close to it. A controller's first
+ * word may be a set point far beyond all tensions; it must not flatten them.
+ */
 export function valueRange(filled: readonly Filled[]): [number, number] {
-  let least = Infinity;
-  let greatest = -Infinity;
-  for (const { data } of filled) {
-    for (const points of data) {
-      for (const value of points.min) if (value !== null && value < least) least = value;
-      for (const value of points.max) if (value !== null && value > greatest) greatest = value;
-    }
+  const forces = extent(filled, (line) => line.ink !== "setpoint");
+  let [least, greatest] = extent(filled, () => true);
+  if (forces[0] <= forces[1]) {
+    const far = Math.max(forces[1] - forces[0], 0.1 * Math.abs(forces[1]));
+    least = Math.max(least, forces[0] - far);
+    greatest = Math.min(greatest, forces[1] + far);
   }
   if (least > greatest) return [0, 1];
   if (least > 0 && least < 0.6 * greatest) least = 0;
   const room = 0.05 * (greatest - least) || Math.max(0.05 * Math.abs(greatest), 1e-6);
   return [least === 0 ? 0 : least - room, greatest + room];
+}
+
+function extent(filled: readonly Filled[], counts: (line: Line) => boolean): [number, number] {
+  let [least, greatest] = [Infinity, -Infinity];
+  for (const { figure, data } of filled) {
+    data.forEach((points, i) => {
+      if (!counts(figure.lines[i]!)) return;
+      for (const value of points.min) if (value !== null && value < least) least = value;
+      for (const value of points.max) if (value !== null && value > greatest) greatest = value;
+    });
+  }
+  return [least, greatest];
 }

@@ -69,6 +69,7 @@ export class PlotPanel {
     this.own = { kind, name };
     this.drop((chart) => chart.figure.group === "own");
     for (const figure of ownFigures(this.store, kind, name)) this.add(figure);
+    if (this.app.report) this.refresh();
   }
 
   private rebuild(): void {
@@ -76,6 +77,7 @@ export class PlotPanel {
     this.drop(() => true);
     const scene = this.app.scene.value;
     if (scene) for (const figure of standardFigures(scene, this.store)) this.add(figure);
+    if (this.app.report) this.refresh();
   }
 
   private drop(which: (chart: Chart) => boolean): void {
@@ -94,7 +96,9 @@ export class PlotPanel {
     const chart: Chart = new Chart(this.app, figure, tools);
     this.charts.push(chart);
     this.grids[figure.group].append(chart.element);
-    this.seen.observe(chart.element);
+    // a report may be printed, so all of it is there; else what is far away is not asked for
+    if (this.app.report) this.visible.add(chart);
+    else this.seen.observe(chart.element);
   }
 
   private mark(): void {
@@ -149,9 +153,9 @@ export class PlotPanel {
       el("label", { title: "one scale for all tensions, so that heights compare" }, scale, " same scale"),
       wholeLabel, zoomOut,
       el("span.spring"),
-      el("span", {}, "save all:"),
+      el("span.save", {}, "save all:",
       button("PNG", "save all tensions as PNG", () => void exportPng(all("tension"), this.span, "tensions"), "button.small"),
       button("SVG", "save all tensions as SVG", () => exportSvg(all("tension"), this.span, "tensions"), "button.small"),
-      button("CSV", "save the data in sight as CSV", () => exportCsv(all("all"), "plots"), "button.small"));
+      button("CSV", "save the data in sight as CSV", () => exportCsv(all("all"), "plots"), "button.small")));
   }
 }

@@ -15,7 +15,7 @@ export function gifMaker(app: App, view: View): HTMLElement {
   const made = button("GIF", "save what the plots' time shows as an animated picture (GIF)", () => {
     if (running) running = false;
     else void make();
-  });
+  }, "button.film");
   app.hello.watch(() => (made.hidden = !app.replay));
 
   const make = async () => {

@@ -26,7 +26,7 @@ export function recorder(app: App, view: View): HTMLElement {
     made.classList.add("recording");
     view.invalidate();
   };
-  const made = button("record", "record the 3-D view as a video (WebM)", toggle);
+  const made = button("record", "record the 3-D view as a video (WebM)", toggle, "button.film");
   made.hidden = typeof MediaRecorder === "undefined" || !MediaRecorder.isTypeSupported("video/webm");
   return made;
 }

@@ -24,7 +24,8 @@ export function timeline(app: App): HTMLElement {
     type: "range", step: "any", min: 0, max: 1, value: 0, "aria-label": "time",
     oninput: () => app.seek(Number(slider.value)),
   });
-  const track = el("div.track", {}, phases, slider, events, cursor, el("div.present"));
+  const present = el("div.present", { hidden: true, title: "where the run is" });
+  const track = el("div.track", {}, phases, slider, events, cursor, present);
   const element = el("footer.timeline", {}, back, stepBack, play, step, speed, track, now, time, factor);
 
   const share = (time_s: number): string => {
@@ -48,14 +49,14 @@ export function timeline(app: App): HTMLElement {
   app.scene.watch(stretch);
   app.hello.watch(() => {
     slider.disabled = !app.seekable;
-    element.classList.toggle("model", app.hello.value?.mode === "model");
     stretch();
   });
   app.frame.watch((frame) => {
     if (!frame) return;
     if (app.live && frame.now_s > Number(slider.max)) stretch();
     now.hidden = !app.looksBack;
-    track.style.setProperty("--run", app.looksBack ? share(frame.now_s) : "-10px");
+    present.hidden = !app.looksBack;
+    present.style.left = share(frame.now_s);
     slider.value = String(frame.time_s);
     slider.setAttribute("aria-valuetext", `${frame.time_s.toFixed(2)} s`);
     track.style.setProperty("--now", share(frame.time_s));
