@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "taut/diagnostics.h"
+#include "taut/gait.h"
 #include "taut/model_def.h"
 
 namespace taut {
@@ -86,11 +87,20 @@ struct PositionProgram {
   std::vector<std::pair<double, double>> rest_length_m;  ///< (time_s, rest_length_m), times rising.
 };
 
+/// A gait as the velocity input V0 of impedance control, on a clock of its own: V0 holds from tick
+/// to tick.
+struct VelocityInputSpec {
+  ClockSpec clock{0.01, 0.0};
+  GaitSpec gait;
+};
+
 struct ControllerSpec {
   std::string name;
   ClockSpec clock;
   std::optional<ImpedanceSpec> impedance;  ///< Exactly one of these is present.
   std::vector<PositionProgram> position;
+  /// With `impedance` only: added to each cable's velocity offset.
+  std::optional<VelocityInputSpec> velocity_input;
 };
 
 /// A force on a node against time, piecewise linear, zero before the first and after the last

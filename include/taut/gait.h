@@ -1,0 +1,159 @@
+/// Gaits: what makes the velocity input V0 of impedance control (paper eq. 3) for many cables at
+/// once. A gait is a file of its own (docs/formats/gait.md); the experiment says which controller
+/// plays it and how often.
+///
+/// All numbers of a gait are plain doubles, and `GaitValues` lists them by name for whoever changes
+/// them. A gait names cables; `ResolveGait` finds them in a robot, so that one gait plays on a
+/// spine of any number of segments.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "taut/diagnostics.h"
+
+namespace taut {
+
+struct RobotSpec;
+
+/// Which cables, as in an experiment: those that have all tags of any of these sets. A cable's
+/// name is one of its tags.
+using CableMatch = std::vector<std::vector<std::string>>;
+
+/// V0 = offset + amplitude cos(2 pi f t + phase) for some cables (docs/theory/gaits.md, eq. G.1).
+struct SineWave {
+  std::string name;
+  CableMatch cables;
+  double amplitude_m_per_s = 0.0;  ///< May be negative.
+  double phase_rad = 0.0;
+  double offset_m_per_s = 0.0;
+  /// Added to the phase once for every segment further back: a travelling wave. The cables between
+  /// segments i - 1 and i, whose names end in _i, get (i - 1) times this.
+  double phase_per_segment_rad = 0.0;
+  std::optional<double> frequency_hz;  ///< Its own; the gait's if absent.
+  SourceRef at;
+};
+
+struct SineGait {
+  double frequency_hz = 1.0;
+  std::vector<SineWave> waves;
+};
+
+/// Which couplings share their weight and phase.
+enum class CpgSymmetry {
+  /// By the two cables' roles (the name without _i) and which of them is further in front: the
+  /// same for all segments, and for the two directions within one joint. 57 groups for six roles.
+  kSegments,
+  /// NTRT's rule, by positions in `order` (docs/theory/gaits.md, eq. G.9). 57 groups for six roles.
+  kIndex,
+  kNone,  ///< None do: a group for each coupling.
+};
+
+/// Weight and phase of all couplings of one group.
+struct CouplingGroup {
+  std::string name;           ///< As `FindCouplings` names it: "behind.outer_top.inner_left".
+  double weight_per_m = 0.0;  ///< w; times the neighbour's amplitude in m/s it is a rate in rad/s.
+  double phase_rad = 0.0;     ///< phi: theta_j - theta_i that the coupling pulls towards.
+  SourceRef at;
+};
+
+/// How a cable's tension acts on its oscillator: theta' += gain (T - reference) cos theta.
+struct CpgFeedback {
+  double gain_rad_per_n_s = 0.0;
+  double reference_n = 0.0;
+};
+
+/// Phase oscillators with amplitude dynamics, one a cable (paper eq. 4-6).
+struct CpgGait {
+  double frequency_hz = 1.0;         ///< v of all oscillators.
+  double amplitude_m_per_s = 0.05;   ///< R of all oscillators, >= 0.
+  double convergence_per_s = 20.0;   ///< a of all oscillators, > 0.
+  double integrator_step_s = 0.001;  ///< Longest step of the fourth-order integrator, > 0.
+  CpgSymmetry symmetry = CpgSymmetry::kSegments;
+  std::vector<std::string> order;  ///< Cables by name; empty: all with an actuator, in order.
+  CableMatch inverted;             ///< Cables whose V0 is the negative of their oscillator's.
+  std::optional<CpgFeedback> feedback;
+  std::vector<CouplingGroup> groups;  ///< All groups of the robot, in their order.
+  SourceRef at;
+};
+
+/// Velocities from a table.
+struct TableGait {
+  std::vector<std::string> cables;        ///< By name; a column each.
+  std::vector<double> time_s;             ///< Rising, the first 0.
+  std::vector<std::vector<double>> rows;  ///< Per time: m/s for each cable.
+  bool linear = false;                    ///< Straight between rows; else each row holds.
+  std::optional<double> repeat_from_s;    ///< After the last row go on here; else it holds.
+  SourceRef at;
+};
+
+/// A gait. Exactly one of the three is present.
+struct GaitSpec {
+  std::string name;
+  std::string description;
+  std::optional<SineGait> sine;
+  std::optional<CpgGait> cpg;
+  std::optional<TableGait> table;
+  std::vector<std::string> files;  ///< That were read, the gait first.
+};
+
+/// Reads a gait file. Returns nothing if there was any error.
+std::optional<GaitSpec> LoadGait(const std::string& path, Diagnostics& out);
+
+/// The gait as YAML. `LoadGait` reads it back to the same bits.
+std::string GaitYaml(const GaitSpec& gait);
+
+/// Writes `GaitYaml` to a file. False and a complaint if that fails.
+bool SaveGait(const GaitSpec& gait, const std::string& path, Diagnostics& out);
+
+/// One number of a gait: "sine.<wave>.amplitude_m_per_s", "cpg.frequency_hz",
+/// "cpg.<group>.weight_per_m", "cpg.<group>.phase_rad".
+struct GaitValue {
+  std::string name;
+  std::string unit;  ///< "m/s", "rad", "Hz", "1/m", "1/s", "N", "rad/(N s)".
+  double* value;     ///< Into the gait, as long as that is neither moved nor resized.
+  double min, max;   ///< Beyond these the gait makes no sense or repeats itself; may be infinite.
+};
+
+/// Every number of the gait that shapes the motion; none of a table.
+std::vector<GaitValue> GaitValues(GaitSpec& gait);
+
+/// Who is coupled to whom. Oscillator i drives cables[i].
+struct CouplingGraph {
+  struct Coupling {
+    int to = 0, from = 0;  ///< Oscillators: the equation of `to` sees the phase of `from`.
+    int group = 0;         ///< Into `groups`.
+  };
+  std::vector<int> cables;          ///< Per oscillator: index of its cable in the robot.
+  std::vector<Coupling> couplings;  ///< By `to`, then `from`.
+  std::vector<std::string> groups;  ///< Names.
+};
+
+/// One oscillator for each cable of `order` (all cables with an actuator if that is empty), each
+/// coupled to every other whose cable is attached to a body that its own is attached to. Nothing if
+/// there was any error; `at` is for the messages.
+std::optional<CouplingGraph> FindCouplings(const RobotSpec& robot, CpgSymmetry symmetry,
+                                           const std::vector<std::string>& order,
+                                           const SourceRef& at, Diagnostics& out);
+
+/// A gait whose cables were found in a robot: what a controller plays.
+struct ResolvedGait {
+  struct Wave {
+    int cable = 0;
+    double frequency_hz = 0.0, phase_rad = 0.0, amplitude_m_per_s = 0.0, offset_m_per_s = 0.0;
+  };
+  std::vector<int> cables;   ///< That it drives, by index.
+  std::vector<Wave> waves;   ///< Of a sine: in the order of `cables`.
+  CouplingGraph graph;       ///< Of a CPG; its cables are `cables`.
+  std::vector<double> sign;  ///< Of a CPG, per oscillator: 1 or -1.
+};
+
+/// Finds the gait's cables in a robot and checks that its groups are the robot's. Nothing if there
+/// was any error.
+std::optional<ResolvedGait> ResolveGait(const GaitSpec& gait, const RobotSpec& robot,
+                                        Diagnostics& out);
+
+}  // namespace taut
