@@ -1,11 +1,13 @@
 // What a microcontroller's program takes from the controllers, compiled without a standard
 // library: this file must link against nothing (see control_freestanding.cmake).
 #include "taut/control/clock.h"
+#include "taut/control/cpg.h"
 #include "taut/control/impedance.h"
 #include "taut/control/pid.h"
 #include "taut/control/position.h"
 #include "taut/control/rate.h"
 #include "taut/control/real.h"
+#include "taut/control/sine.h"
 
 namespace control = taut::control;
 
@@ -35,6 +37,24 @@ extern "C" float SpeedFromPosition(control::PidState<float>* state, float rest_l
                                   0.001f, 0.07f, control::Windup::kHeld);
 }
 
+extern "C" float SpeedFromSine(float t_s) {
+  const control::Sine<float> wave{0.06f, -0.5f, -0.06f};
+  return control::SineVelocity(wave, control::ClockTurns(0.5f, t_s));
+}
+
+// A motor board's two oscillators, with the load cells on their phases.
+extern "C" float SpeedFromOscillators(control::CpgState<float>* states, float tension_n) {
+  const control::CpgLaw<float> laws[] = {{1.0f, 0.07f, 20.0f}, {1.0f, 0.07f, 20.0f}};
+  const control::CpgCoupling<float> couplings[] = {
+      control::MakeCoupling<float>(0, 1, 100.0f, 0.25f),
+      control::MakeCoupling<float>(1, 0, 100.0f, -0.25f)};
+  const control::CpgNetwork<float> network{laws, 2, couplings, 2};
+  const float feedback[] = {0.1f * (tension_n - 10.0f), 0.0f};
+  control::CpgWork<float> work[2];
+  control::StepCpg(network, feedback, 0.005f, 2, states, work);
+  return control::CpgVelocity(states[0]);
+}
+
 extern "C" int64_t NextTick(float t_s) {
   const control::Clock<float> clock{0.001f, 0.0f};
   const int64_t tick = control::TickAtOrAfter(clock, t_s);
@@ -48,5 +68,7 @@ int main() {
   const float rest_length_m = RestLengthFromImpedance(0.2f, 10.0f, &before_m);
   const float speed =
       SpeedFromTension(&tension, 10.0f, 12.0f) + SpeedFromPosition(&position, rest_length_m, 2.0f);
-  return speed < 0.0f && NextTick(0.5f) > 0 ? 0 : 1;
+  control::CpgState<float> oscillators[] = {control::StartCpg<float>(), control::StartCpg<float>()};
+  const float gait = SpeedFromSine(0.25f) + SpeedFromOscillators(oscillators, 12.0f);
+  return speed < 0.0f && gait < 1.0f && NextTick(0.5f) > 0 ? 0 : 1;
 }

@@ -1,0 +1,158 @@
+/// A central pattern generator: phase oscillators with amplitude dynamics, coupled in a network.
+///
+/// Sources: Mirletz, Park, Quinn, SunSpiral, "Towards bridging the reality gap between tensegrity
+/// simulation and robotic hardware", IROS 2015, eq. 4-6; A. Crespi, A. J. Ijspeert, "AmphiBot II:
+/// an amphibious snake robot that crawls and swims using a central pattern generator", CLAWAR 2006,
+/// whose equations these are. Derivations and differences: docs/theory/gaits.md.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "taut/control/real.h"
+#include "taut/control/turns.h"
+
+namespace taut {
+namespace control {
+
+/// What one oscillator tends to. It may change at any time: phase and amplitude stay smooth.
+template <class Real>
+struct CpgLaw {
+  Real frequency_hz;       ///< v: of the oscillator left to itself.
+  Real amplitude_m_per_s;  ///< R >= 0.
+  Real convergence_per_s;  ///< a > 0.
+};
+
+/// The pull of oscillator `from` on oscillator `to`. Made by `MakeCoupling`.
+template <class Real>
+struct CpgCoupling {
+  uint16_t to, from;
+  Real along, across;  ///< w / (2 pi) times cosine and sine of phi [turns/m].
+};
+
+/// w in rad/s per m/s of the neighbour's amplitude; phi in turns, -1/2..1/2: the coupling pulls
+/// theta_from - theta_to towards it.
+template <class Real>
+constexpr CpgCoupling<Real> MakeCoupling(uint16_t to, uint16_t from, Real weight_per_m,
+                                         Real phase_turns) noexcept {
+  const Real weight = weight_per_m * control::FromScalar<Real>(kTurnsPerRad);
+  return CpgCoupling<Real>{to, from, weight * CosTurns(phase_turns),
+                           weight * SinTurns(phase_turns)};
+}
+
+/// One oscillator's state.
+template <class Real>
+struct CpgState {
+  Real phase_turns;              ///< theta, -1/2..1/2.
+  Real amplitude_m_per_s;        ///< r.
+  Real amplitude_rate_m_per_s2;  ///< dr/dt.
+};
+
+template <class Real>
+constexpr CpgState<Real> StartCpg() noexcept {
+  return CpgState<Real>{Literal<Real>(0.0f), Literal<Real>(0.0f), Literal<Real>(0.0f)};
+}
+
+/// V = r cos theta [m/s] (paper eq. 6, docs/theory/gaits.md eq. G.5).
+template <class Real>
+constexpr Real CpgVelocity(const CpgState<Real>& state) noexcept {
+  return state.amplitude_m_per_s * CosTurns(state.phase_turns);
+}
+
+/// What a step needs and forgets, one an oscillator.
+template <class Real>
+struct CpgWork {
+  CpgState<Real> stage, rate, sum;
+  Real sine, cosine, pull_sine, pull_cosine;
+};
+
+/// A network: `count` oscillators, and couplings in any order (the order of the sums).
+template <class Real>
+struct CpgNetwork {
+  const CpgLaw<Real>* laws;  ///< Per oscillator.
+  size_t count;
+  const CpgCoupling<Real>* couplings;
+  size_t coupling_count;
+};
+
+namespace internal {
+
+/// `work.rate` at `work.stage`:
+///   theta_i' = 2 pi v_i + sum_j w_ij r_j sin(theta_j - theta_i - phi_ij) + s_i cos theta_i  (G.3)
+///   r_i''    = a_i (a_i / 4 (R_i - r_i) - r_i')                                             (G.4)
+/// The sine of the difference is taken apart (G.6), so that every oscillator needs one sine and
+/// one cosine and a coupling none.
+template <class Real>
+constexpr void CpgRates(const CpgNetwork<Real>& network, const Real* feedback,
+                        CpgWork<Real>* work) noexcept {
+  for (size_t i = 0; i < network.count; ++i) {
+    CpgWork<Real>& w = work[i];
+    const Real turns = WrapTurns(w.stage.phase_turns);
+    w.sine = SinTurns(turns);
+    w.cosine = CosTurns(turns);
+    w.pull_sine =
+        feedback ? feedback[i] * control::FromScalar<Real>(kTurnsPerRad) : Literal<Real>(0.0f);
+    w.pull_cosine = Literal<Real>(0.0f);
+  }
+  for (size_t k = 0; k < network.coupling_count; ++k) {
+    const CpgCoupling<Real>& link = network.couplings[k];
+    const CpgWork<Real>& from = work[link.from];
+    CpgWork<Real>& to = work[link.to];
+    const Real r = from.stage.amplitude_m_per_s;
+    to.pull_sine = to.pull_sine + r * (link.along * from.sine - link.across * from.cosine);
+    to.pull_cosine = to.pull_cosine + r * (link.along * from.cosine + link.across * from.sine);
+  }
+  for (size_t i = 0; i < network.count; ++i) {
+    CpgWork<Real>& w = work[i];
+    const CpgLaw<Real>& law = network.laws[i];
+    const Real a = law.convergence_per_s;
+    w.rate.phase_turns = law.frequency_hz + (w.pull_sine * w.cosine - w.pull_cosine * w.sine);
+    w.rate.amplitude_m_per_s = w.stage.amplitude_rate_m_per_s2;
+    w.rate.amplitude_rate_m_per_s2 =
+        a * (Literal<Real>(0.25f) * a * (law.amplitude_m_per_s - w.stage.amplitude_m_per_s) -
+             w.stage.amplitude_rate_m_per_s2);
+  }
+}
+
+template <class Real>
+constexpr CpgState<Real> Advanced(const CpgState<Real>& state, const CpgState<Real>& rate,
+                                  Real h) noexcept {
+  return CpgState<Real>{state.phase_turns + h * rate.phase_turns,
+                        state.amplitude_m_per_s + h * rate.amplitude_m_per_s,
+                        state.amplitude_rate_m_per_s2 + h * rate.amplitude_rate_m_per_s2};
+}
+
+}  // namespace internal
+
+/// Advances all oscillators by `step_count` steps of `step_s` with the classical Runge-Kutta method
+/// of fourth order (eq. G.7); choose step_s so that step_s times the sum of an oscillator's |w| R
+/// is well below 2.7, where the method's stability ends.
+///
+/// `feedback` [rad/s] is null or has one s_i an oscillator, held during the call: a sensor reading
+/// times a gain. It slows or hastens an oscillator by s_i cos theta_i. `states` and `work` have
+/// `network.count` entries.
+template <class Real>
+constexpr void StepCpg(const CpgNetwork<Real>& network, const Real* feedback, Real step_s,
+                       uint16_t step_count, CpgState<Real>* states, CpgWork<Real>* work) noexcept {
+  const Real h = step_s, half = Literal<Real>(0.5f) * h;
+  const Real third = h / Literal<Real>(3.0f), sixth = h / Literal<Real>(6.0f);
+  const Real to_next[] = {half, half, h, h}, weight[] = {sixth, third, third, sixth};
+  for (uint16_t step = 0; step < step_count; ++step) {
+    for (size_t i = 0; i < network.count; ++i) work[i].stage = work[i].sum = states[i];
+    for (int stage = 0; stage < 4; ++stage) {
+      internal::CpgRates(network, feedback, work);
+      for (size_t i = 0; i < network.count; ++i) {
+        CpgWork<Real>& w = work[i];
+        w.sum = internal::Advanced(w.sum, w.rate, weight[stage]);
+        w.stage = internal::Advanced(states[i], w.rate, to_next[stage]);
+      }
+    }
+    for (size_t i = 0; i < network.count; ++i) {
+      states[i] = work[i].sum;
+      states[i].phase_turns = WrapTurns(states[i].phase_turns);
+    }
+  }
+}
+
+}  // namespace control
+}  // namespace taut
