@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <fstream>
+#include <map>
 #include <memory>
 
 #include "check_report.h"
 #include "commands.h"
+#include "couplings.h"
 #include "overrides.h"
 #include "taut/batch.h"
 #include "taut/run.h"
@@ -13,10 +16,16 @@
 namespace taut::cli {
 namespace {
 
+const std::map<std::string, CpgSymmetry> kSymmetries{{"segments", CpgSymmetry::kSegments},
+                                                     {"index", CpgSymmetry::kIndex},
+                                                     {"none", CpgSymmetry::kNone}};
+
 struct CheckArguments {
   std::string path;
   std::vector<std::string> set;
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, couplings = false;
+  CpgSymmetry symmetry = CpgSymmetry::kSegments;
+  std::string svg;
 };
 
 /// All errors, on stderr as text and, if asked for, on stdout as JSON.
@@ -24,6 +33,30 @@ int Bad(const CheckArguments& args, const Diagnostics& found) {
   fmt::print(stderr, "{}", found.Format());
   if (args.json) fmt::print("{}\n", ErrorsJson(args.path, found));
   return kBadInput;
+}
+
+/// The network that the experiment's own gait has, or the one that a new gait would have.
+int Couplings(const CheckArguments& args, const RobotSpec& robot,
+              const ExperimentSpec* experiment) {
+  CpgSymmetry symmetry = args.symmetry;
+  std::vector<std::string> order;
+  for (const ControllerSpec& controller :
+       experiment ? experiment->controllers : std::vector<ControllerSpec>()) {
+    if (!controller.velocity_input || !controller.velocity_input->gait.cpg) continue;
+    symmetry = controller.velocity_input->gait.cpg->symmetry;
+    order = controller.velocity_input->gait.cpg->order;
+  }
+  Diagnostics found;
+  const auto graph = FindCouplings(robot, symmetry, order, {args.path, 0, 0}, found);
+  if (!graph) return Bad(args, found);
+  fmt::print("{}\n", args.json ? CouplingJson(robot, *graph) : CouplingTables(robot, *graph));
+  if (args.svg.empty()) return kOk;
+  std::ofstream file(args.svg, std::ios::binary | std::ios::trunc);
+  file << CouplingSvg(robot, *graph);
+  file.flush();
+  if (file) return kOk;
+  fmt::print(stderr, "error: {} cannot be written\n", args.svg);
+  return kFailed;
 }
 
 int Check(const CheckArguments& args) {
@@ -45,6 +78,7 @@ int Check(const CheckArguments& args) {
   if (!robot || !Model::Compile(robot->def, found)) return Bad(args, found);
   if (experiment && !CheckRecord(*experiment, found)) return Bad(args, found);
 
+  if (args.couplings) return Couplings(args, *robot, experiment ? &*experiment : nullptr);
   if (args.json) {
     fmt::print("{}\n", CheckJson(*robot, experiment ? &*experiment : nullptr));
   } else if (!args.quiet) {
@@ -65,6 +99,13 @@ void AddCheck(CLI::App& app, int& exit_code) {
   check->add_option("--set", args->set, "Parameter of the file: name=value")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
+  check->add_flag("--couplings", args->couplings,
+                  "Show the network of oscillators that a gait of the robot has");
+  check
+      ->add_option("--symmetry", args->symmetry,
+                   "With --couplings: which are alike: segments (default), index or none")
+      ->transform(CLI::CheckedTransformer(kSymmetries));
+  check->add_option("--svg", args->svg, "With --couplings: draw them into this file");
   check->add_flag("--json", args->json, "JSON instead of tables");
   check->add_flag("--quiet", args->quiet, "Say nothing about a good file");
   check->footer(
@@ -72,6 +113,7 @@ void AddCheck(CLI::App& app, int& exit_code) {
       "  taut check models/tetraspine3.yaml\n"
       "  taut check models/tetraspine3.yaml --set segments=12 --set edge_m=0.4\n"
       "  taut check experiments/push_20n.yaml --json\n"
+      "  taut check models/tetraspine3.yaml --couplings --svg couplings.svg\n"
       "Every error of a file comes with its place: file:line:column: error: ... (hint)\n"
       "Exit status: 0 the file is good, 2 bad usage, 3 the file has errors.");
   check->callback([args, &exit_code] { exit_code = Check(*args); });

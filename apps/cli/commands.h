@@ -18,6 +18,7 @@ enum Exit : int {
 void AddCheck(CLI::App& app, int& exit_code);
 void AddRun(CLI::App& app, int& exit_code);
 void AddCompare(CLI::App& app, int& exit_code);
+void AddGait(CLI::App& app, int& exit_code);
 void AddReport(CLI::App& app, int& exit_code);
 void AddView(CLI::App& app, int& exit_code);
 

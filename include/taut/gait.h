@@ -109,6 +109,26 @@ std::string GaitYaml(const GaitSpec& gait);
 /// Writes `GaitYaml` to a file. False and a complaint if that fails.
 bool SaveGait(const GaitSpec& gait, const std::string& path, Diagnostics& out);
 
+/// In which order NTRT's nodes had the spine's cables: the parameters it learned belong to one.
+enum class NtrtCableOrder {
+  kPaper2015,  ///< Builder by builder, as when the paper's gait was learned.
+  kSince2016,  ///< Pair by pair.
+};
+
+/// A gait of NTRT's three-segment spine. `path` is a folder with a set of learned parameters
+/// (bestParameters-9_node-0.nnw and ..._edge-0.nnw to 56) or the controlVars.json of the hand-tuned
+/// sine waves. Nothing if there was any error.
+std::optional<GaitSpec> ImportNtrtGait(const std::string& path, NtrtCableOrder order,
+                                       Diagnostics& out);
+
+/// A CPG for a robot: every group of couplings there, all weights and phases 0. Nothing if there
+/// was any error.
+std::optional<GaitSpec> NewCpgGait(const RobotSpec& robot, CpgSymmetry symmetry, Diagnostics& out);
+
+/// A table as plain text: "time_s,outer_top_1_m_per_s,...", a row a line. A gait file's
+/// `table: {file: ...}` reads it back to the same bits.
+std::string GaitTableText(const TableGait& table);
+
 /// One number of a gait: "sine.<wave>.amplitude_m_per_s", "cpg.frequency_hz",
 /// "cpg.<group>.weight_per_m", "cpg.<group>.phase_rad".
 struct GaitValue {

@@ -7,7 +7,7 @@
 
 namespace taut::plant {
 
-Controller::Controller(const ControllerSpec& spec)
+Controller::Controller(const ControllerSpec& spec, const RobotSpec& robot)
     : spec_(spec), clock_{spec.clock.period_s, spec.clock.phase_s} {
   if (spec_.impedance) {
     pid_.resize(spec_.impedance->cables.size(), control::StartPid<double>());
@@ -19,21 +19,45 @@ Controller::Controller(const ControllerSpec& spec)
       points.push_back({time_s, length_m});
     programs_.push_back(std::move(points));
   }
+  if (!spec_.velocity_input || !spec_.impedance) return;
+  Diagnostics heard_before;
+  auto resolved = ResolveGait(spec_.velocity_input->gait, robot, heard_before);
+  if (!resolved) return;
+  const std::vector<ImpedanceGains>& gains = spec_.impedance->cables;
+  gait_velocity_m_per_s_.resize(gains.size());
+  for (const int cable : resolved->cables) {
+    const auto found = std::find_if(gains.begin(), gains.end(),
+                                    [&](const ImpedanceGains& g) { return g.cable == cable; });
+    gait_to_gains_.push_back(static_cast<std::size_t>(found - gains.begin()));
+  }
+  gait_.emplace(spec_.velocity_input->gait, std::move(*resolved), spec_.velocity_input->clock);
 }
 
-double Controller::next_tick_s() const noexcept { return control::TickTime(clock_, tick_); }
+double Controller::next_tick_s() const noexcept {
+  const double own_s = control::TickTime(clock_, tick_);
+  return gait_ ? std::min(own_s, gait_->next_tick_s()) : own_s;
+}
+
+void Controller::ActGait(double time_s, const std::vector<CableReading>& readings) {
+  gait_->Act(time_s,
+             [&](int cable) { return readings[static_cast<std::size_t>(cable)].tension_n; });
+  for (std::size_t i = 0; i < gait_to_gains_.size(); ++i) {
+    gait_velocity_m_per_s_[gait_to_gains_[i]] = gait_->velocity_m_per_s()[i];
+  }
+}
 
 void Controller::Act(double time_s, const std::vector<CableReading>& readings,
-                     std::vector<double>& target_m, std::vector<double>& set_point_n) {
+                     CableCommands& commands) {
+  if (gait_) ActGait(time_s, readings);
   if (!control::IsDue(clock_, tick_, time_s)) return;
   if (spec_.impedance) {
     for (std::size_t i = 0; i < spec_.impedance->cables.size(); ++i) {
       const auto cable = static_cast<std::size_t>(spec_.impedance->cables[i].cable);
-      ActImpedance(i, readings[cable], target_m[cable], set_point_n[cable]);
+      ActImpedance(i, readings[cable], commands);
     }
   }
   for (std::size_t i = 0; i < programs_.size(); ++i) {
-    target_m[static_cast<std::size_t>(spec_.position[i].cable)] =
+    commands.target_m[static_cast<std::size_t>(spec_.position[i].cable)] =
         control::RestLengthAt(programs_[i].data(), programs_[i].size(), time_s);
   }
   started_ = true;
@@ -66,10 +90,14 @@ bool Controller::Hold(int cable, double rest_length_m) {
   return false;
 }
 
-void Controller::ActImpedance(std::size_t i, const CableReading& reading, double& target_m,
-                              double& set_point_n) {
+void Controller::ActImpedance(std::size_t i, const CableReading& reading, CableCommands& commands) {
   const ImpedanceSpec& spec = *spec_.impedance;
   const ImpedanceGains& gains = spec.cables[i];
+  const auto cable = static_cast<std::size_t>(gains.cable);
+  double& target_m = commands.target_m[cable];
+  double& set_point_n = commands.set_point_n[cable];
+  double& velocity_input = commands.velocity_input_m_per_s[cable];
+  velocity_input = gains.velocity_offset_m_per_s + (gait_ ? gait_velocity_m_per_s_[i] : 0.0);
   double rate_m_per_s = reading.rate_m_per_s;
   if (spec.differenced_rate) {
     if (!started_) {
@@ -81,8 +109,7 @@ void Controller::ActImpedance(std::size_t i, const CableReading& reading, double
   }
   const control::Impedance<double> law{gains.tension_offset_n, gains.length_offset_m,
                                        gains.position_gain_n_per_m, gains.velocity_gain_n_s_per_m};
-  set_point_n =
-      control::ImpedanceTension(law, reading.length_m, rate_m_per_s, gains.velocity_offset_m_per_s);
+  set_point_n = control::ImpedanceTension(law, reading.length_m, rate_m_per_s, velocity_input);
   if (spec.conversion == TensionConversion::kStiffness) {
     target_m = control::TensionToRestLengthByStiffness(reading.rest_length_m, reading.elastic_n,
                                                        set_point_n, reading.stiffness_n_per_m, 0.0);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "plant/gait_player.h"
 #include "taut/batch.h"
 #include "taut/control/clock.h"
 #include "taut/control/pid.h"
@@ -23,11 +25,20 @@ struct CableReading {
   double stiffness_n_per_m = 0;
 };
 
+/// What controllers tell the robot, per cable.
+struct CableCommands {
+  std::vector<double> target_m;                ///< Rest lengths.
+  std::vector<double> set_point_n;             ///< Under impedance control; else 0.
+  std::vector<double> velocity_input_m_per_s;  ///< V0 of the impedance law, gait included.
+};
+
 /// One controller with its clock and memory.
 class Controller {
  public:
-  explicit Controller(const ControllerSpec& spec);
+  /// The robot is where the gait's cables are; the gait fits it (LoadExperiment sees to that).
+  Controller(const ControllerSpec& spec, const RobotSpec& robot);
 
+  /// Of its own clock or of its gait's, whichever is next.
   double next_tick_s() const noexcept;
 
   /// The gains of a cable, to be changed while it runs; nothing if it does not drive the cable so.
@@ -38,14 +49,13 @@ class Controller {
   bool Hold(int cable, double rest_length_m);
   bool HasProgram(int cable) const noexcept;
 
-  /// Acts if a tick is due at `time_s`. Reads `readings[cable]`, writes `target_m[cable]` (rest
-  /// lengths) and `set_point_n[cable]` of its cables.
-  void Act(double time_s, const std::vector<CableReading>& readings, std::vector<double>& target_m,
-           std::vector<double>& set_point_n);
+  /// Acts if a tick is due at `time_s`, the gait before the law that it feeds. Reads
+  /// `readings[cable]`, writes the commands of its cables.
+  void Act(double time_s, const std::vector<CableReading>& readings, CableCommands& commands);
 
  private:
-  void ActImpedance(std::size_t i, const CableReading& reading, double& target_m,
-                    double& set_point_n);
+  void ActGait(double time_s, const std::vector<CableReading>& readings);
+  void ActImpedance(std::size_t i, const CableReading& reading, CableCommands& commands);
 
   ControllerSpec spec_;
   control::Clock<double> clock_;
@@ -54,6 +64,9 @@ class Controller {
   std::vector<control::PidState<double>> pid_;
   std::vector<control::DifferenceState<double>> difference_;
   std::vector<std::vector<control::ProgramPoint<double>>> programs_;
+  std::optional<GaitPlayer> gait_;
+  std::vector<std::size_t> gait_to_gains_;     ///< Per output of the gait: the cable's gains.
+  std::vector<double> gait_velocity_m_per_s_;  ///< Per cable of the impedance control.
 };
 
 }  // namespace taut::plant

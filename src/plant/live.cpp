@@ -102,7 +102,7 @@ class Live final : public LiveRun {
       if (experiment_.robot.def.cables[c].actuator.kind == ActuatorDef::Kind::kNone) continue;
       LiveControl control;
       control.cable = static_cast<int>(c);
-      control.rest_length_m = stepper_.target_m()[c];
+      control.rest_length_m = stepper_.commands().target_m[c];
       for (const plant::Controller& controller : stepper_.controllers()) {
         if (const ImpedanceGains* gains = controller.FindGains(control.cable)) {
           control.impedance = *gains;
@@ -134,9 +134,8 @@ class Live final : public LiveRun {
   const std::vector<ChannelInfo>& channels() const override { return channels_; }
 
   const std::vector<double>& Row() override {
-    const std::vector<double>& recorded =
-        recorder_.Row({&batch_, kTheWorld, &stepper_.readings(), &stepper_.target_m(),
-                       &stepper_.set_point_n(), &stepper_.timeline()});
+    const std::vector<double>& recorded = recorder_.Row(
+        {&batch_, kTheWorld, &stepper_.readings(), &stepper_.commands(), &stepper_.timeline()});
     double* out = std::copy(recorded.begin(), recorded.end(), row_.data());
     NodeForce push{-1, {}};
     for (const TimedPush& one : pushes_) {

@@ -60,12 +60,18 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
          {"rate_m_per_s", "m/s"},
          {"rest_length_m", "m"},
          {"target_rest_length_m", "m"},
-         {"setpoint_n", "N"}},
+         {"setpoint_n", "N"},
+         {"velocity_input_m_per_s", "m/s"}},
         [c](const RecordSource& s, double* out) {
           const CableReading& r = (*s.readings)[c];
-          const double values[] = {r.tension_n,        r.elastic_n,     r.length_m,
-                                   r.rate_m_per_s,     r.rest_length_m, (*s.target_m)[c],
-                                   (*s.set_point_n)[c]};
+          const double values[] = {r.tension_n,
+                                   r.elastic_n,
+                                   r.length_m,
+                                   r.rate_m_per_s,
+                                   r.rest_length_m,
+                                   s.commands->target_m[c],
+                                   s.commands->set_point_n[c],
+                                   s.commands->velocity_input_m_per_s[c]};
           std::copy(std::begin(values), std::end(values), out);
         });
   }

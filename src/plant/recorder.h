@@ -17,8 +17,7 @@ struct RecordSource {
   const Batch* batch = nullptr;
   int world = 0;
   const std::vector<CableReading>* readings = nullptr;
-  const std::vector<double>* target_m = nullptr;
-  const std::vector<double>* set_point_n = nullptr;
+  const CableCommands* commands = nullptr;
   const Timeline* timeline = nullptr;
 };
 

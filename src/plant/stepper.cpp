@@ -18,12 +18,16 @@ Stepper::Stepper(const ExperimentSpec& experiment, Batch& batch)
     : experiment_(experiment),
       batch_(batch),
       timeline_(experiment),
-      readings_(experiment.robot.def.cables.size()),
-      target_m_(readings_.size()),
-      set_point_n_(readings_.size()) {
-  for (const ControllerSpec& spec : experiment.controllers) controllers_.emplace_back(spec);
-  for (std::size_t c = 0; c < target_m_.size(); ++c) {
-    target_m_[c] = batch.RestLengthTarget(kTheWorld, static_cast<int>(c));
+      readings_(experiment.robot.def.cables.size()) {
+  for (std::vector<double>* commands :
+       {&commands_.target_m, &commands_.set_point_n, &commands_.velocity_input_m_per_s}) {
+    commands->resize(readings_.size());
+  }
+  for (const ControllerSpec& spec : experiment.controllers) {
+    controllers_.emplace_back(spec, experiment.robot);
+  }
+  for (std::size_t c = 0; c < commands_.target_m.size(); ++c) {
+    commands_.target_m[c] = batch.RestLengthTarget(kTheWorld, static_cast<int>(c));
   }
   Observe();
 }
@@ -31,10 +35,10 @@ Stepper::Stepper(const ExperimentSpec& experiment, Batch& batch)
 void Stepper::Prepare() {
   if (done_ < steps_) return;
   for (Controller& controller : controllers_) {
-    controller.Act(time_s_, readings_, target_m_, set_point_n_);
+    controller.Act(time_s_, readings_, commands_);
   }
-  for (std::size_t c = 0; c < target_m_.size(); ++c) {
-    batch_.SetRestLengthTarget(kTheWorld, static_cast<int>(c), target_m_[c]);
+  for (std::size_t c = 0; c < commands_.target_m.size(); ++c) {
+    batch_.SetRestLengthTarget(kTheWorld, static_cast<int>(c), commands_.target_m[c]);
   }
   from_s_ = time_s_;
   until_s_ = NextBoundary();
@@ -64,7 +68,7 @@ bool Stepper::finite() const noexcept {
 }
 
 void Stepper::SetTarget(int cable, double rest_length_m) {
-  target_m_[static_cast<std::size_t>(cable)] = rest_length_m;
+  commands_.target_m[static_cast<std::size_t>(cable)] = rest_length_m;
   batch_.SetRestLengthTarget(kTheWorld, cable, rest_length_m);
 }
 

@@ -30,8 +30,8 @@ class Stepper {
   bool finite() const noexcept;
 
   const std::vector<CableReading>& readings() const noexcept { return readings_; }
-  const std::vector<double>& target_m() const noexcept { return target_m_; }
-  const std::vector<double>& set_point_n() const noexcept { return set_point_n_; }
+  const CableCommands& commands() const noexcept { return commands_; }
+  const std::vector<double>& set_point_n() const noexcept { return commands_.set_point_n; }
   Timeline& timeline() noexcept { return timeline_; }
   const Timeline& timeline() const noexcept { return timeline_; }
   std::vector<Controller>& controllers() noexcept { return controllers_; }
@@ -49,7 +49,7 @@ class Stepper {
   Timeline timeline_;
   std::vector<Controller> controllers_;
   std::vector<CableReading> readings_;
-  std::vector<double> target_m_, set_point_n_;
+  CableCommands commands_;
   double time_s_ = 0, step_s_ = 0;
   // The span between two boundaries: `steps_` steps, of which `done_` are done.
   double from_s_ = 0, until_s_ = 0;

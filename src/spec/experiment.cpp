@@ -194,6 +194,11 @@ std::optional<ExperimentSpec> LoadExperiment(const std::string& path, const Over
     experiment->files = std::move(file.files);
   }
   if (!experiment || out.items().size() != errors_before) return std::nullopt;
+  for (const ControllerSpec& controller : experiment->controllers) {
+    if (!controller.velocity_input) continue;
+    const std::vector<std::string>& of_gait = controller.velocity_input->gait.files;
+    experiment->files.insert(experiment->files.end(), of_gait.begin(), of_gait.end());
+  }
   const std::vector<std::string>& model_files = experiment->robot.files;
   experiment->files.insert(experiment->files.end(), model_files.begin(), model_files.end());
   experiment->input_hash = spec::HashInputs(experiment->files, overrides);

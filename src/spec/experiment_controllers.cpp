@@ -348,7 +348,8 @@ std::vector<ControllerSpec> ReadControllers(const Value* list, const RobotSpec* 
   std::map<std::string, SourceRef> names;
   for (const ValuePtr& item : Items(list, "controllers", scope)) {
     const MapReader map(*item, "controller",
-                        {"name", "period_s", "phase_s", "impedance", "position"}, scope);
+                        {"name", "period_s", "phase_s", "impedance", "position", "velocity_input"},
+                        scope);
     ControllerSpec controller;
     controller.name = map.Name("name");
     controller.clock.period_s =
@@ -359,6 +360,15 @@ std::vector<ControllerSpec> ReadControllers(const Value* list, const RobotSpec* 
       controller.impedance = ReadImpedance(*map.Find(kind), robot, scope);
     } else if (kind == "position") {
       controller.position = ReadPosition(*map.Find(kind), robot, scope);
+    }
+    if (const Value* input = map.Find("velocity_input")) {
+      controller.velocity_input = ReadVelocityInput(*input, scope);
+      if (kind == "position") {
+        map.Error("velocity_input", "velocity_input has no effect with position",
+                  "it is the V0 of `impedance`");
+      } else if (robot && controller.velocity_input && controller.impedance) {
+        CheckGaitDrives(controller, *robot, input->at, scope.out);
+      }
     }
     if (!controller.name.empty()) {
       const auto [first, fresh] = names.emplace(controller.name, map.KeyAt("name"));

@@ -2,6 +2,7 @@
 /// could not be read: then nothing that refers to it is checked, everything else is.
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -35,6 +36,13 @@ std::vector<ControllerSpec> ReadControllers(const Value* list, const RobotSpec* 
 ImpedanceSpec ReadImpedance(const Value& value, const RobotSpec* robot, const Scope& scope);
 std::vector<PositionProgram> ReadPosition(const Value& value, const RobotSpec* robot,
                                           const Scope& scope);
+
+/// The gait of `value` on its clock, its file read; no gait after a complaint.
+std::optional<VelocityInputSpec> ReadVelocityInput(const Value& value, const Scope& scope);
+
+/// Complains unless the gait's cables are in the robot and driven by the controller's impedance.
+void CheckGaitDrives(const ControllerSpec& controller, const RobotSpec& robot, const SourceRef& at,
+                     Diagnostics& out);
 
 /// Phases and events, into `out`, which has its duration already (NaN if that is unknown).
 void ReadTimeline(const Value& value, const RobotSpec* robot, const Scope& scope,

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "spec/experiment_parts.h"
+#include "spec/gait_parts.h"
 #include "spec/laws.h"
 #include "taut/spec.h"
 
@@ -161,12 +162,73 @@ void Fields(Io& io, Like<PositionProgram> auto& p) {
   io("rest_length_m", p.rest_length_m);
 }
 template <class Io>
+void Fields(Io& io, Like<SineWave> auto& w) {
+  io("name", w.name);
+  io("cables", w.cables);
+  io("amplitude_m_per_s", w.amplitude_m_per_s);
+  io("phase_rad", w.phase_rad);
+  io("offset_m_per_s", w.offset_m_per_s);
+  io("phase_per_segment_rad", w.phase_per_segment_rad);
+  io("frequency_hz", w.frequency_hz);
+}
+template <class Io>
+void Fields(Io& io, Like<SineGait> auto& s) {
+  io("frequency_hz", s.frequency_hz);
+  io("waves", s.waves);
+}
+template <class Io>
+void Fields(Io& io, Like<CouplingGroup> auto& g) {
+  io("name", g.name);
+  io("weight_per_m", g.weight_per_m);
+  io("phase_rad", g.phase_rad);
+}
+template <class Io>
+void Fields(Io& io, Like<CpgFeedback> auto& f) {
+  io("gain_rad_per_n_s", f.gain_rad_per_n_s);
+  io("reference_n", f.reference_n);
+}
+template <class Io>
+void Fields(Io& io, Like<CpgGait> auto& c) {
+  io("frequency_hz", c.frequency_hz);
+  io("amplitude_m_per_s", c.amplitude_m_per_s);
+  io("convergence_per_s", c.convergence_per_s);
+  io("integrator_step_s", c.integrator_step_s);
+  io("symmetry", c.symmetry, kSymmetries);
+  io("order", c.order);
+  io("inverted", c.inverted);
+  io("feedback", c.feedback);
+  io("groups", c.groups);
+}
+template <class Io>
+void Fields(Io& io, Like<TableGait> auto& t) {
+  io("cables", t.cables);
+  io("time_s", t.time_s);
+  io("rows", t.rows);
+  io("linear", t.linear);
+  io("repeat_from_s", t.repeat_from_s);
+}
+template <class Io>
+void Fields(Io& io, Like<GaitSpec> auto& g) {
+  io("name", g.name);
+  io("description", g.description);
+  io("sine", g.sine);
+  io("cpg", g.cpg);
+  io("table", g.table);
+}
+template <class Io>
+void Fields(Io& io, Like<VelocityInputSpec> auto& v) {
+  io("period_s", v.clock.period_s);
+  io("phase_s", v.clock.phase_s);
+  io("gait", v.gait);
+}
+template <class Io>
 void Fields(Io& io, Like<ControllerSpec> auto& c) {
   io("name", c.name);
   io("period_s", c.clock.period_s);
   io("phase_s", c.clock.phase_s);
   io("impedance", c.impedance);
   io("position", c.position);
+  io("velocity_input", c.velocity_input);
 }
 template <class Io>
 void Fields(Io& io, Like<PushSpec> auto& p) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "spec/experiment_parts.h"
 #include "spec/parameters.h"
 #include "spec/reader.h"
 #include "spec/resolved.h"
@@ -111,6 +112,35 @@ void Read(const Value& value, const std::string& what, const Scope& scope, T& ou
   ReadStruct(value, what, {}, scope, out);
 }
 
+/// Its cables must be there, and its numbers what a gait file's would have to be.
+void CheckGait(const ControllerSpec& controller, const RobotSpec& robot, const SourceRef& at,
+               Diagnostics& out) {
+  const VelocityInputSpec& input = *controller.velocity_input;
+  if (!(input.clock.period_s > 0.0)) out.Error(at, "velocity_input.period_s must be positive");
+  const GaitSpec& gait = input.gait;
+  if (gait.sine.has_value() + gait.cpg.has_value() + gait.table.has_value() != 1) {
+    out.Error(at, "a gait is one of sine, cpg and table");
+    return;
+  }
+  if (gait.cpg && !(gait.cpg->convergence_per_s > 0.0 && gait.cpg->integrator_step_s > 0.0)) {
+    out.Error(at, "cpg.convergence_per_s and cpg.integrator_step_s must be positive");
+  }
+  if (gait.table) {
+    const std::size_t errors_before = out.items().size();
+    if (gait.table->rows.size() != gait.table->time_s.size()) {
+      out.Error(at, "a table needs a time for each row");
+    }
+    for (const std::vector<double>& row : gait.table->rows) {
+      if (row.size() == gait.table->cables.size()) continue;
+      out.Error(at, "a table's row needs a velocity for each cable");
+      break;
+    }
+    if (out.items().size() != errors_before) return;
+    CheckTable(*gait.table, at, out);
+  }
+  CheckGaitDrives(controller, robot, at, out);
+}
+
 /// What `Model::Compile` does not look at.
 void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnostics& out) {
   const RobotSpec& robot = experiment.robot;
@@ -122,7 +152,11 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
     for (const PositionProgram& program : controller.position) {
       check(program.cable, robot.def.cables.size(), "cable");
     }
-    if (!controller.impedance) continue;
+    if (!controller.impedance) {
+      if (controller.velocity_input) out.Error(at, "velocity_input goes with impedance");
+      continue;
+    }
+    if (controller.velocity_input) CheckGait(controller, robot, at, out);
     for (const ImpedanceGains& gains : controller.impedance->cables) {
       check(gains.cable, robot.def.cables.size(), "cable");
     }

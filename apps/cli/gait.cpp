@@ -1,0 +1,196 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "overrides.h"
+#include "taut/gait.h"
+#include "taut/play.h"
+#include "taut/spec.h"
+
+namespace taut::cli {
+namespace {
+
+struct GaitArguments {
+  std::string input, robot, out, name;
+  std::vector<std::string> set;
+  double rate_hz = 100.0, duration_s = 60.0;
+  CpgSymmetry symmetry = CpgSymmetry::kSegments;
+  NtrtCableOrder order = NtrtCableOrder::kPaper2015;
+  bool json = false;
+};
+
+const std::map<std::string, CpgSymmetry> kSymmetries{{"segments", CpgSymmetry::kSegments},
+                                                     {"index", CpgSymmetry::kIndex},
+                                                     {"none", CpgSymmetry::kNone}};
+const std::map<std::string, NtrtCableOrder> kOrders{{"paper2015", NtrtCableOrder::kPaper2015},
+                                                    {"since2016", NtrtCableOrder::kSince2016}};
+
+int Bad(const Diagnostics& found) {
+  fmt::print(stderr, "{}", found.Format());
+  return kBadInput;
+}
+
+/// To the file that was asked for, or to standard output.
+int Write(const std::string& text, const std::string& path) {
+  if (path.empty()) {
+    fmt::print("{}", text);
+    return kOk;
+  }
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << text;
+  file.flush();
+  if (file) return kOk;
+  fmt::print(stderr, "error: {} cannot be written\n", path);
+  return kFailed;
+}
+
+/// The robot of a model file or of an experiment file.
+std::optional<RobotSpec> LoadAnyRobot(const std::string& path, const Overrides& overrides,
+                                      Diagnostics& out) {
+  const auto kind = FileKind(path, out);
+  if (!kind) return std::nullopt;
+  if (*kind == "model") return LoadRobot(path, overrides, out);
+  auto experiment = LoadExperiment(path, overrides, out);
+  if (!experiment) return std::nullopt;
+  return std::move(experiment->robot);
+}
+
+int Export(const GaitArguments& args) {
+  const auto overrides = ParseOverrides(args.set);
+  if (!overrides) return kUsage;
+  Diagnostics found;
+  const auto gait = LoadGait(args.input, found);
+  const auto robot = LoadAnyRobot(args.robot, *overrides, found);
+  if (!gait || !robot) return Bad(found);
+  const auto table = PlayGait(*gait, *robot, args.rate_hz, args.duration_s, found);
+  if (!table) return Bad(found);
+  if (gait->cpg && gait->cpg->feedback) {
+    fmt::print(stderr, "warning: the gait has feedback; a table has none\n");
+  }
+  return Write(GaitTableText(*table), args.out);
+}
+
+int Import(const GaitArguments& args) {
+  Diagnostics found;
+  auto gait = ImportNtrtGait(args.input, args.order, found);
+  if (!gait) return Bad(found);
+  if (!args.name.empty()) gait->name = args.name;
+  return Write(GaitYaml(*gait), args.out);
+}
+
+int Create(const GaitArguments& args) {
+  const auto overrides = ParseOverrides(args.set);
+  if (!overrides) return kUsage;
+  Diagnostics found;
+  const auto robot = LoadAnyRobot(args.robot, *overrides, found);
+  if (!robot) return Bad(found);
+  auto gait = NewCpgGait(*robot, args.symmetry, found);
+  if (!gait) return Bad(found);
+  if (!args.name.empty()) gait->name = args.name;
+  return Write(GaitYaml(*gait), args.out);
+}
+
+int Values(const GaitArguments& args) {
+  Diagnostics found;
+  auto gait = LoadGait(args.input, found);
+  if (!gait) return Bad(found);
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const GaitValue& value : GaitValues(*gait)) {
+    if (args.json) {
+      json.push_back({{"name", value.name}, {"unit", value.unit}, {"value", *value.value}});
+    } else {
+      fmt::print("{:52} {:>14.8g} {}\n", value.name, *value.value, value.unit);
+    }
+  }
+  if (args.json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  }
+  return kOk;
+}
+
+CLI::Validator Finite(double least, double most) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        double number = 0;
+        if (CLI::detail::lexical_cast(text, number) && number >= least && number <= most) {
+          return std::string();
+        }
+        return fmt::format("{} is not within {}..{}", text, least, most);
+      },
+      fmt::format("{}..{}", least, most));
+}
+
+}  // namespace
+
+void AddGait(CLI::App& app, int& exit_code) {
+  auto args = std::make_shared<GaitArguments>();
+  CLI::App* gait = app.add_subcommand("gait", "Gaits as files: export, import, create, list.");
+  gait->require_subcommand(1);
+  const auto add_set = [&](CLI::App* command) {
+    command->add_option("--set", args->set, "Parameter of the model: name=value")
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false);
+  };
+
+  CLI::App* export_ = gait->add_subcommand(
+      "export", "The velocities that a gait commands, as a table in plain text (CSV).");
+  export_->add_option("gait", args->input, "Gait file (YAML)")->required();
+  export_->add_option("robot", args->robot, "Model or experiment file (YAML)")->required();
+  export_->add_option("--rate_hz", args->rate_hz, "Rows a second; also the gait's own rate")
+      ->check(Finite(1e-3, 1e6))
+      ->capture_default_str();
+  export_->add_option("--duration_s", args->duration_s, "Up to here [s]")
+      ->check(Finite(0.0, 1e6))
+      ->capture_default_str();
+  export_->add_option("--out", args->out, "File to write (default: print)");
+  add_set(export_);
+  export_->callback([args, &exit_code] { exit_code = Export(*args); });
+
+  CLI::App* import =
+      gait->add_subcommand("import", "A gait of NTRT's three-segment spine as a gait file.");
+  import
+      ->add_option("path", args->input,
+                   "Folder with bestParameters-*.nnw, or the hand-tuned controlVars.json")
+      ->required();
+  import
+      ->add_option("--order", args->order,
+                   "Order of NTRT's cables when it learned: paper2015 (default) or since2016")
+      ->transform(CLI::CheckedTransformer(kOrders));
+  import->add_option("--name", args->name, "Name of the gait");
+  import->add_option("--out", args->out, "File to write (default: print)");
+  import->callback([args, &exit_code] { exit_code = Import(*args);
+});
+
+CLI::App* create = gait->add_subcommand(
+    "create", "A CPG with all couplings of a robot, weights and phases 0: a start for learning.");
+create->add_option("robot", args->robot, "Model or experiment file (YAML)")->required();
+create
+    ->add_option("--symmetry", args->symmetry,
+                 "Which couplings are alike: segments (default), index or none")
+    ->transform(CLI::CheckedTransformer(kSymmetries));
+create->add_option("--name", args->name, "Name of the gait");
+create->add_option("--out", args->out, "File to write (default: print)");
+add_set(create);
+create->callback([args, &exit_code] { exit_code = Create(*args); });
+
+CLI::App* values = gait->add_subcommand("values", "Every number of a gait by name.");
+values->add_option("gait", args->input, "Gait file (YAML)")->required();
+values->add_flag("--json", args->json, "JSON instead of a table");
+values->callback([args, &exit_code] { exit_code = Values(*args); });
+
+gait->footer(
+    "Examples:\n"
+    "  taut gait export gaits/cpg_learned.yaml models/tetraspine3.yaml --out commands.csv\n"
+    "  taut gait import ntrt/hardwareLearning/logs --name sidewinder --out sidewinder.yaml\n"
+    "  taut gait create models/tetraspine12.yaml --out blank.yaml\n"
+    "  taut gait values gaits/hand_tuned_sine.yaml\n"
+    "A table comes back as a gait by `table: {file: commands.csv}` (docs/formats/gait.md).\n"
+    "Exit status: 0 good, 1 a file cannot be written, 2 bad usage, 3 bad input.");
+}  // namespace taut::cli
+
+}  // namespace taut::cli
