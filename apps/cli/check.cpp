@@ -7,7 +7,7 @@
 
 #include "check_report.h"
 #include "commands.h"
-#include "couplings.h"
+#include "gait_report.h"
 #include "overrides.h"
 #include "taut/batch.h"
 #include "taut/run.h"
@@ -59,6 +59,18 @@ int Couplings(const CheckArguments& args, const RobotSpec& robot,
   return kFailed;
 }
 
+/// A gait by itself; whether it fits a robot, the experiment that plays it says.
+int CheckGait(const CheckArguments& args, Diagnostics& found) {
+  auto gait = LoadGait(args.path, found);
+  if (!gait) return Bad(args, found);
+  if (args.json) {
+    fmt::print("{}\n", GaitJson(*gait));
+  } else if (!args.quiet) {
+    fmt::print("{}: good\n\n{}", args.path, GaitTable(*gait));
+  }
+  return kOk;
+}
+
 int Check(const CheckArguments& args) {
   const std::optional<Overrides> overrides = ParseOverrides(args.set);
   if (!overrides) return kUsage;
@@ -66,6 +78,7 @@ int Check(const CheckArguments& args) {
   const std::optional<std::string> kind = FileKind(args.path, found);
   if (!kind) return Bad(args, found);
 
+  if (*kind == "gait") return CheckGait(args, found);
   std::optional<ExperimentSpec> experiment;
   std::optional<RobotSpec> robot;
   if (*kind == "experiment") {
@@ -93,9 +106,9 @@ int Check(const CheckArguments& args) {
 
 void AddCheck(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<CheckArguments>();
-  CLI::App* check =
-      app.add_subcommand("check", "Check a model or experiment file; show what it describes.");
-  check->add_option("file", args->path, "Model or experiment file (YAML)")->required();
+  CLI::App* check = app.add_subcommand(
+      "check", "Check a model, experiment or gait file; show what it describes.");
+  check->add_option("file", args->path, "Model, experiment or gait file (YAML)")->required();
   check->add_option("--set", args->set, "Parameter of the file: name=value")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);

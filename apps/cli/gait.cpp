@@ -4,9 +4,9 @@
 #include <fstream>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "gait_report.h"
 #include "overrides.h"
 #include "taut/gait.h"
 #include "taut/play.h"
@@ -99,17 +99,7 @@ int Values(const GaitArguments& args) {
   Diagnostics found;
   auto gait = LoadGait(args.input, found);
   if (!gait) return Bad(found);
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const GaitValue& value : GaitValues(*gait)) {
-    if (args.json) {
-      json.push_back({{"name", value.name}, {"unit", value.unit}, {"value", *value.value}});
-    } else {
-      fmt::print("{:52} {:>14.8g} {}\n", value.name, *value.value, value.unit);
-    }
-  }
-  if (args.json) {
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-  }
+  fmt::print("{}{}", args.json ? GaitJson(*gait) : GaitTable(*gait), args.json ? "\n" : "");
   return kOk;
 }
 

@@ -37,7 +37,8 @@ struct RobotSpec {
 std::optional<RobotSpec> LoadRobot(const std::string& path, const Overrides& overrides,
                                    Diagnostics& out);
 
-/// What a file says it is, "model" or "experiment". Nothing, and a complaint, if it says neither.
+/// What a file says it is: "model", "experiment" or "gait". Nothing, and a complaint, if it says
+/// none of these.
 std::optional<std::string> FileKind(const std::string& path, Diagnostics& out);
 
 /// When a controller runs: at phase_s, phase_s + period_s, ... [s]. Owned by the controller, not

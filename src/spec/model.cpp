@@ -92,10 +92,12 @@ std::optional<std::string> FileKind(const std::string& path, Diagnostics& out) {
   const spec::ValuePtr root = spec::ReadYaml(path, out);
   if (!root) return std::nullopt;
   const spec::Value* kind = root->Find("kind");
-  if (kind && (kind->text == "model" || kind->text == "experiment")) return kind->text;
+  for (const char* known : {"model", "experiment", "gait"}) {
+    if (kind && kind->text == known) return kind->text;
+  }
   if (kind && kind->text == spec::kResolvedKind) return "experiment";
-  out.Error(kind ? kind->at : root->at, "a file is of kind model or experiment",
-            "write `kind: model` or `kind: experiment` at its top");
+  out.Error(kind ? kind->at : root->at, "a file is of kind model, experiment or gait",
+            "write `kind: model`, `kind: experiment` or `kind: gait` at its top");
   return std::nullopt;
 }
 

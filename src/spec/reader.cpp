@@ -277,11 +277,12 @@ std::string MapReader::ExactlyOne(const std::vector<std::string>& keys) const {
     if (Has(key)) present.push_back(key);
   }
   if (present.size() == 1) return present[0];
+  const std::string what = what_.empty() ? "the file" : what_;
   if (present.empty()) {
     scope_.out.Error(at(),
-                     what_ + " needs " + (keys.size() == 1 ? "" : "one of ") + Joined(keys, ", "));
+                     what + " needs " + (keys.size() == 1 ? "" : "one of ") + Joined(keys, ", "));
   } else {
-    Error(present[1], what_ + " has both " + Joined(present, " and "),
+    Error(present[1], what + " has both " + Joined(present, " and "),
           "only one of them may be there");
   }
   return {};
@@ -387,7 +388,7 @@ bool CheckHeader(const Value& root, std::string_view kind, Diagnostics& out) {
     good = false;
   };
   check("taut", "1", "the version of the format; this taut reads version 1");
-  check("kind", kind, "a file is a model or an experiment");
+  check("kind", kind, "a file is a model, an experiment or a gait");
   return good;
 }
 

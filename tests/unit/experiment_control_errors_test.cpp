@@ -99,7 +99,8 @@ TEST_F(ExperimentErrors, ACableObeysOneController) {
          "11:5: error: controller has both impedance and position (only one of them may be there)");
   Expect("    impedance:", "    cpg:",
          "10:5: error: controller needs one of impedance, position\n11:5: error: unknown key "
-         "\"cpg\" in controller (one of: name, period_s, phase_s, impedance, position)");
+         "\"cpg\" in controller (one of: name, period_s, phase_s, impedance, position, "
+         "velocity_input)");
   const std::string second =
       "  - {name: second, position: {programs: [{cables: back, rest_length_m: 0.1}]}}\n";
   Expect("timeline:", second + "timeline:",

@@ -252,6 +252,7 @@ TEST(FileKind, IsWhatTheFileSays) {
   Diagnostics out;
   EXPECT_EQ(FileKind(TAUT_SOURCE_DIR "/models/rod.yaml", out), "model");
   EXPECT_EQ(FileKind(TAUT_SOURCE_DIR "/experiments/push_20n.yaml", out), "experiment");
+  EXPECT_EQ(FileKind(TAUT_SOURCE_DIR "/gaits/cpg_learned.yaml", out), "gait");
   EXPECT_TRUE(out.ok());
   EXPECT_FALSE(FileKind("/no/such/file.yaml", out));
   const std::string path = ::testing::TempDir() + "taut_kind.yaml";
@@ -259,7 +260,7 @@ TEST(FileKind, IsWhatTheFileSays) {
   EXPECT_FALSE(FileKind(path, out));
   std::remove(path.c_str());
   EXPECT_EQ(out.items()[0].what, "cannot be opened: No such file or directory");
-  EXPECT_EQ(out.items()[1].what, "a file is of kind model or experiment");
+  EXPECT_EQ(out.items()[1].what, "a file is of kind model, experiment or gait");
   EXPECT_EQ(out.items()[1].at.line, 2);
 }
 

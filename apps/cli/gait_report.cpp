@@ -1,4 +1,4 @@
-#include "couplings.h"
+#include "gait_report.h"
 
 #include <fmt/format.h>
 
@@ -57,6 +57,27 @@ int Joint(const std::string& name) {
 }
 
 }  // namespace
+
+std::string GaitTable(GaitSpec& gait) {
+  std::string out;
+  for (const GaitValue& value : GaitValues(gait)) {
+    out += fmt::format("{:52} {:>14.8g} {}\n", value.name, *value.value, value.unit);
+  }
+  if (gait.table) {
+    out += fmt::format("{} cables, {} rows, {} s\n", gait.table->cables.size(),
+                       gait.table->rows.size(), gait.table->time_s.back());
+  }
+  return out;
+}
+
+std::string GaitJson(GaitSpec& gait) {
+  nlohmann::ordered_json values = nlohmann::ordered_json::array();
+  for (const GaitValue& value : GaitValues(gait)) {
+    values.push_back({{"name", value.name}, {"unit", value.unit}, {"value", *value.value}});
+  }
+  const nlohmann::ordered_json json{{"ok", true}, {"name", gait.name}, {"values", values}};
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+}
 
 std::string CouplingTables(const RobotSpec& robot, const CouplingGraph& graph) {
   const int count = static_cast<int>(graph.cables.size());

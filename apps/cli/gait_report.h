@@ -1,4 +1,4 @@
-/// The network of a gait's oscillators, for people, programs and pages.
+/// Gaits and the networks of their oscillators, for people, programs and pages.
 #pragma once
 
 #include <string>
@@ -7,6 +7,10 @@
 #include "taut/spec.h"
 
 namespace taut::cli {
+
+/// Every number of a gait by name: one line each, and as a JSON list.
+std::string GaitTable(GaitSpec& gait);
+std::string GaitJson(GaitSpec& gait);
 
 /// Counts, who is coupled to how many, the groups, and for small networks the whole matrix.
 std::string CouplingTables(const RobotSpec& robot, const CouplingGraph& graph);
