@@ -26,7 +26,7 @@ docs = importlib.util.module_from_spec(importlib.util.spec_from_loader("docs", l
 sys.dont_write_bytecode = True
 loader.exec_module(docs)
 
-KINDS = {"model": "models", "experiment": "experiments"}
+KINDS = {"model": "models", "experiment": "experiments", "gait": "gaits"}
 PROBE = ""
 
 
@@ -48,6 +48,7 @@ def probe(path, *options):
 
 
 UNIT_OF_SUFFIX = {
+    "_rad_per_n_s": "[rad/(N s)]", "convergence_per_s": "[1/s]", "weight_per_m": "[1/m]",
     "_n_s_per_m": "[N s/m]", "_n_per_m": "[N/m]", "_kg_per_m3": "[kg/m^3]", "_kg_per_m": "[kg/m]",
     "_rad_per_s": "[rad/s]", "_m_per_s2_n": "[m/(s^2 N)]", "_m_per_s_n": "[m/(s N)]",
     "_m_per_s2": "[m/s^2]", "_m_per_s": "[m/s]", "_m_per_n": "[m/N]", "_kg": "[kg]",

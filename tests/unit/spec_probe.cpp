@@ -1,4 +1,4 @@
-// Loads model and experiment files and prints what is wrong with them, for tests in other
+// Loads model, experiment and gait files and prints what is wrong with them, for tests in other
 // languages: spec_probe [--set name=value]... [--resolved] FILE...
 // Exit status 1 if anything is wrong.
 #include <cstdio>
@@ -10,10 +10,11 @@
 
 namespace {
 
-bool IsModel(const std::string& path) {
+bool IsOfKind(const std::string& kind, const std::string& path) {
   std::ifstream in(path);
   for (std::string line; std::getline(in, line);) {
-    if (line.find("kind: model") == 0 || line.find("\"kind\": \"model\"") != std::string::npos) {
+    if (line.find("kind: " + kind) == 0 ||
+        line.find("\"kind\": \"" + kind + "\"") != std::string::npos) {
       return true;
     }
   }
@@ -33,8 +34,10 @@ int main(int argc, char** argv) {
     } else if (argument == "--set" && i + 1 < argc) {
       const std::string pair = argv[++i];
       overrides.emplace_back(pair.substr(0, pair.find('=')), pair.substr(pair.find('=') + 1));
-    } else if (IsModel(argument)) {
+    } else if (IsOfKind("model", argument)) {
       taut::LoadRobot(argument, overrides, out);
+    } else if (IsOfKind("gait", argument)) {
+      taut::LoadGait(argument, out);
     } else if (const auto experiment = taut::LoadExperiment(argument, overrides, out)) {
       if (resolved) std::cout << taut::ResolvedYaml(*experiment);
     }
