@@ -139,48 +139,55 @@ void AddGait(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   export_->add_option("--out", args->out, "File to write (default: print)");
   add_set(export_);
+  export_->footer(
+      "Example:\n  taut gait export gaits/cpg_learned.yaml models/tetraspine3.yaml --out "
+      "commands.csv");
   export_->callback([args, &exit_code] { exit_code = Export(*args); });
 
-  CLI::App* import =
+  CLI::App* import_ =
       gait->add_subcommand("import", "A gait of NTRT's three-segment spine as a gait file.");
-  import
+  import_
       ->add_option("path", args->input,
                    "Folder with bestParameters-*.nnw, or the hand-tuned controlVars.json")
       ->required();
-  import
+  import_
       ->add_option("--order", args->order,
                    "Order of NTRT's cables when it learned: paper2015 (default) or since2016")
       ->transform(CLI::CheckedTransformer(kOrders));
-  import->add_option("--name", args->name, "Name of the gait");
-  import->add_option("--out", args->out, "File to write (default: print)");
-  import->callback([args, &exit_code] { exit_code = Import(*args);
-});
+  import_->add_option("--name", args->name, "Name of the gait");
+  import_->add_option("--out", args->out, "File to write (default: print)");
+  import_->footer(
+      "Example:\n  taut gait import ntrt/hardwareLearning/logs --name sidewinder --out "
+      "sidewinder.yaml");
+  import_->callback([args, &exit_code] { exit_code = Import(*args); });
 
-CLI::App* create = gait->add_subcommand(
-    "create", "A CPG with all couplings of a robot, weights and phases 0: a start for learning.");
-create->add_option("robot", args->robot, "Model or experiment file (YAML)")->required();
-create
-    ->add_option("--symmetry", args->symmetry,
-                 "Which couplings are alike: segments (default), index or none")
-    ->transform(CLI::CheckedTransformer(kSymmetries));
-create->add_option("--name", args->name, "Name of the gait");
-create->add_option("--out", args->out, "File to write (default: print)");
-add_set(create);
-create->callback([args, &exit_code] { exit_code = Create(*args); });
+  CLI::App* create = gait->add_subcommand(
+      "create", "A CPG with all couplings of a robot, weights and phases 0: a start for learning.");
+  create->add_option("robot", args->robot, "Model or experiment file (YAML)")->required();
+  create
+      ->add_option("--symmetry", args->symmetry,
+                   "Which couplings are alike: segments (default), index or none")
+      ->transform(CLI::CheckedTransformer(kSymmetries));
+  create->add_option("--name", args->name, "Name of the gait");
+  create->add_option("--out", args->out, "File to write (default: print)");
+  add_set(create);
+  create->footer("Example:\n  taut gait create models/tetraspine12.yaml --out blank.yaml");
+  create->callback([args, &exit_code] { exit_code = Create(*args); });
 
-CLI::App* values = gait->add_subcommand("values", "Every number of a gait by name.");
-values->add_option("gait", args->input, "Gait file (YAML)")->required();
-values->add_flag("--json", args->json, "JSON instead of a table");
-values->callback([args, &exit_code] { exit_code = Values(*args); });
+  CLI::App* values = gait->add_subcommand("values", "Every number of a gait by name.");
+  values->add_option("gait", args->input, "Gait file (YAML)")->required();
+  values->add_flag("--json", args->json, "JSON instead of a table");
+  values->footer("Example:\n  taut gait values gaits/hand_tuned_sine.yaml");
+  values->callback([args, &exit_code] { exit_code = Values(*args); });
 
-gait->footer(
-    "Examples:\n"
-    "  taut gait export gaits/cpg_learned.yaml models/tetraspine3.yaml --out commands.csv\n"
-    "  taut gait import ntrt/hardwareLearning/logs --name sidewinder --out sidewinder.yaml\n"
-    "  taut gait create models/tetraspine12.yaml --out blank.yaml\n"
-    "  taut gait values gaits/hand_tuned_sine.yaml\n"
-    "A table comes back as a gait by `table: {file: commands.csv}` (docs/formats/gait.md).\n"
-    "Exit status: 0 good, 1 a file cannot be written, 2 bad usage, 3 bad input.");
+  gait->footer(
+      "Examples:\n"
+      "  taut gait export gaits/cpg_learned.yaml models/tetraspine3.yaml --out commands.csv\n"
+      "  taut gait import ntrt/hardwareLearning/logs --name sidewinder --out sidewinder.yaml\n"
+      "  taut gait create models/tetraspine12.yaml --out blank.yaml\n"
+      "  taut gait values gaits/hand_tuned_sine.yaml\n"
+      "A table comes back as a gait by `table: {file: commands.csv}` (docs/formats/gait.md).\n"
+      "Exit status: 0 good, 1 a file cannot be written, 2 bad usage, 3 bad input.");
 }  // namespace taut::cli
 
 }  // namespace taut::cli

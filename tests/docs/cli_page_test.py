@@ -32,6 +32,10 @@ def arguments_of_help(text):
     return re.findall(r"^  (\w+)", part(text, "Positionals"), re.MULTILINE)
 
 
+def subcommands_of_help(text):
+    return re.findall(r"^  (\w+)", part(text, "Subcommands"), re.MULTILINE)
+
+
 def sections_of_page():
     """For each heading "## taut ...": the first cells of its tables."""
     sections, current = {}, None
@@ -50,11 +54,15 @@ def sections_of_page():
 def main():
     taut, wrong = sys.argv[1], []
     top = help_of(taut)
-    subcommands = re.findall(r"^  (\w+)", part(top, "Subcommands"), re.MULTILINE)
+    subcommands = subcommands_of_help(top)
     expected = {"taut": flags_of_help(top)}
     for name in subcommands:
         text = help_of(taut, name)
-        expected[f"taut {name}"] = flags_of_help(text) | set(arguments_of_help(text))
+        parts = subcommands_of_help(text)
+        expected[f"taut {name}"] = flags_of_help(text) | set(arguments_of_help(text)) | set(parts)
+        for inner in parts:
+            text = help_of(taut, name, inner)
+            expected[f"taut {name} {inner}"] = flags_of_help(text) | set(arguments_of_help(text))
     if not subcommands or not all(expected.values()):
         wrong.append("the help texts cannot be read")
     found = {
