@@ -128,8 +128,8 @@ TEST(GaitPlayer, OscillatorsStartAtTheFirstTickAndSomeAreInverted) {
   }
 }
 
-// At ticks that both have, a gait at 100 Hz is the one at 1 kHz, bit for bit, if it integrates by
-// the same steps.
+// At ticks that both have, a gait at 100 Hz is the one at 1 kHz, since it integrates by the same
+// steps; periods divided by 40 and by 4 may be a rounding apart.
 TEST(GaitPlayer, TheRateOfTheGaitDoesNotChangeItsOscillators) {
   Diagnostics out;
   const auto gait = LoadGait(kRoot + "gaits/cpg_learned.yaml", out);

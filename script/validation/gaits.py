@@ -1,0 +1,373 @@
+"""The two motion experiments of Mirletz et al. (2015): hand-tuned sine waves and a learned gait."""
+
+import csv
+import gzip
+import math
+import os
+import pathlib
+import time
+
+from validation.push import OWN_LAWS, laws, machine, percent, plain
+from validation.runs import ROOT, Variant, fill, replaced, table, yaml_block
+from validation.waves import dominant, harmonics, line_at, off_sine, off_triangle
+
+TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
+FROM_S, TO_S = 30.0, 60.0  # where both gaits are periodic
+ROW_S = 0.04  # NTRT's traces in tests/data
+TIMES_S = (5, 10, 20, 30, 40, 50, 60)
+CABLES = [f"{side}_{role}_{joint}" for joint in (1, 2) for side in ("outer", "inner")
+          for role in ("top", "left", "right")]
+# NTRT's masses of the segments [kg], for the centre of mass; facts of the running model.
+MASSES_KG = (0.713080883, 0.913080871, 0.723080874)
+
+
+class Gait:
+    """An experiment, its NTRT variant, and what NTRT got."""
+
+    def __init__(self, key, title, trace, column, system_max_n):
+        self.key, self.title, self.trace, self.column = key, title, trace, column
+        self.system_max_n = system_max_n  # NTRT's largest tension, 100 Hz samples of 60 s
+
+
+SINE = Gait("sine_hand_tuned", "Hand-tuned sine waves", "tests/data/ntrt/sine_hand_tuned_1000hz.csv.gz",
+            "_velocity_input_m_s", 26.9256)
+CPG = Gait("cpg_learned", "The learned gait", "tests/data/ntrt/cpg_learned_1000hz.csv.gz", "_cpg_m_s", 30.2723)
+
+STEPS_S = (0.00025, 0.0005, 0.001, 0.002, 0.004)
+STARTS = 6
+APART_M = 1e-6
+DISTANCE_S = 20.0
+PARTED_M = 1e-3
+
+
+class Ntrt:
+    def __init__(self, gait):
+        with gzip.open(ROOT / gait.trace, "rt", newline="") as file:
+            self.rows = [{key: float(x) for key, x in row.items()} for row in csv.DictReader(file)]
+
+    def tension(self, cable):
+        return [row[cable + "_tension_N"] for row in self.rows if FROM_S - 1e-9 <= row["time_s"] < TO_S - 1e-9]
+
+    def velocity(self, cable, column):
+        return [row[cable + column] for row in self.rows]
+
+    def com(self, time_s):
+        row = self.rows[round(time_s / ROW_S)]
+        return [sum(m * row[f"segment_{i}_{axis}_m"] for i, m in enumerate(MASSES_KG)) / sum(MASSES_KG)
+                for axis in "zx"]
+
+    def heading(self, time_s):
+        row = self.rows[round(time_s / ROW_S)]
+        return math.degrees(math.atan2(row["segment_0_x_m"] - row["segment_2_x_m"],
+                                       row["segment_0_z_m"] - row["segment_2_z_m"]))
+
+
+class Run:
+    """trace.csv of a run, at NTRT's rows."""
+
+    def __init__(self, folder, result):
+        self.largest_n = result.summary["system_max_elastic_n"] if result else math.nan
+        with open(folder / "trace.csv", newline="") as file:
+            rows = [{key: float(x) for key, x in row.items()} for row in csv.DictReader(file)]
+        self.rows = [row for row in rows if abs(row["time_s"] / ROW_S - round(row["time_s"] / ROW_S)) < 1e-6]
+
+    def tension(self, cable):
+        return [row[f"cable/{cable}/elastic_n"] for row in self.rows
+                if FROM_S - 1e-9 <= row["time_s"] < TO_S - 1e-9]
+
+    def com(self, time_s):
+        row = self.rows[round(time_s / ROW_S)]
+        return [row[f"system/com_{axis}_m"] for axis in "xy"]
+
+    def heading(self, time_s):
+        row = self.rows[round(time_s / ROW_S)]
+        away = [row[f"body/segment_0/position_{axis}_m"] - row[f"body/segment_2/position_{axis}_m"]
+                for axis in "xy"]
+        return math.degrees(math.atan2(away[1], away[0]))
+
+
+class Path:
+    """The centre of mass of a run that recorded nothing else."""
+
+    def __init__(self, folder):
+        with open(folder / "trace.csv", newline="") as file:
+            self.rows = [(float(row["time_s"]), float(row["system/com_x_m"]), float(row["system/com_y_m"]))
+                         for row in csv.DictReader(file)]
+
+    def distance_m(self, time_s):
+        start, end = self.rows[0], min(self.rows, key=lambda row: abs(row[0] - time_s))
+        return math.hypot(end[1] - start[1], end[2] - start[2])
+
+    def parts_from_s(self, other):
+        """When the two centres of mass are first more than PARTED_M apart; None if never."""
+        for a, b in zip(self.rows, other.rows):
+            if math.hypot(a[1] - b[1], a[2] - b[2]) > PARTED_M:
+                return a[0]
+        return None
+
+
+def mean(values):
+    return sum(values) / len(values)
+
+
+def swing(values):
+    return max(values) - min(values)
+
+
+def degrees_apart(a_rad, b_rad):
+    return (math.degrees(a_rad - b_rad) + 180) % 360 - 180
+
+
+def cable_rows(gait, ntrt, its, own):
+    """What the tables show, for each cable: NTRT, its laws, taut's own."""
+    for cable in CABLES:
+        waves = [source.tension(cable) for source in (ntrt, its, own)]
+        lines = [dominant(wave, ROW_S) for wave in waves]
+        phases = [line_at(wave, ROW_S, lines[0][0])[1] for wave in waves]
+        yield cable, waves, lines, [degrees_apart(phase, phases[0]) for phase in phases[1:]]
+
+
+def means_table(rows):
+    head = ["cable", "mean: NTRT", "its laws", "own laws", "p-p: NTRT", "its laws", "own laws"]
+    return table(head, [[plain(cable), *(f"{mean(wave):.3f}" for wave in waves),
+                         *(f"{swing(wave):.3f}" for wave in waves)] for cable, waves, _, _ in rows])
+
+
+def lines_table(rows):
+    head = ["cable", "Hz: NTRT", "its laws", "own laws", "amplitude N: NTRT", "its laws", "own laws",
+            "phase against NTRT, degrees: its laws", "own laws"]
+    return table(head, [[plain(cable), *(f"{line[0]:.3f}" for line in lines),
+                         *(f"{line[1]:.3f}" for line in lines), *(f"{phase:+.1f}" for phase in phases)]
+                        for cable, _, lines, phases in rows])
+
+
+def shapes_table(rows, fundamental_hz):
+    """Harmonics of the tension in % of the first, and what a sine or a triangle leaves of it."""
+    head = ["cable", *(f"{n}: {who}" for n in (2, 3, 5) for who in ("NTRT", "own")),
+            "beside a sine %: NTRT", "own", "beside a triangle %: NTRT", "own"]
+    out = []
+    for cable, waves, _, _ in rows:
+        spectra = [harmonics(waves[pick], ROW_S, fundamental_hz, 7) for pick in (0, 2)]
+        cells = [f"{100 * abs(s[n - 1] / s[0]):.1f}" for n in (2, 3, 5) for s in spectra]
+        cells += [f"{100 * f(s):.1f}" for f in (off_sine, off_triangle) for s in spectra]
+        out.append([plain(cable), *cells])
+    return table(head, out)
+
+
+def paths_table(sources):
+    head = ["t s"] + [f"{what}: {who}" for what in ("forward cm", "left cm", "turned degrees")
+                      for who in ("NTRT", "its laws", "own laws")]
+    out = []
+    for time_s in TIMES_S:
+        moved = [[100 * (end - start) for start, end in zip(source.com(0), source.com(time_s))]
+                 for source in sources]
+        turned = [source.heading(time_s) - source.heading(0) for source in sources]
+        out.append([f"{time_s}", *(f"{m[0]:+.2f}" for m in moved), *(f"{m[1]:+.2f}" for m in moved),
+                    *(f"{angle:+.1f}" for angle in turned)])
+    return table(head, out)
+
+
+def worst_mean(rows, pick, full_n):
+    return max((100 * abs(mean(waves[pick]) - mean(waves[0])) / full_n, plain(cable))
+               for cable, waves, _, _ in rows)
+
+
+def system_table(gait, rows, runs):
+    out = [["NTRT", f"{gait.system_max_n:.3f}", "", "", ""]]
+    for pick, (who, run) in enumerate(zip(("its laws", "taut's own laws"), runs), start=1):
+        worst, cable = worst_mean(rows, pick, gait.system_max_n)
+        out.append([who, f"{run.largest_n:.3f}", percent(100 * (run.largest_n / gait.system_max_n - 1), 2),
+                    f"{worst:.2f} %", cable])
+    return table(["", "largest tension N", "against NTRT", "means against NTRT, worst", "where"], out)
+
+
+def frequency_text(rows):
+    """How far the strongest lines are from NTRT's, where they are the same line."""
+    worst, others = 0.0, []
+    for cable, _, lines, _ in rows:
+        for who, line in zip(("its laws", "own laws"), lines[1:]):
+            off = abs(line[0] / lines[0][0] - 1)
+            if off < 0.1:
+                worst = max(worst, off)
+            else:
+                others.append(f"{plain(cable)} under {who}: {line[0]:.2f} instead of {lines[0][0]:.2f} Hz")
+    text = f"Where the strongest line is the same one, its frequency is within {100 * worst:.2f} %."
+    return text + (f" It is another one in: {'; '.join(others)}." if others else "")
+
+
+# --- each law by itself ---------------------------------------------------------------------------
+
+
+def beside(text):
+    """The text of an experiment's controllers for a file in runs/validation/gaits/x/."""
+    return replaced(text, "../gaits/", os.path.relpath(ROOT / "gaits", ROOT / "runs/validation/gaits/x") + "/")
+
+
+def changed_controllers(gait, old, new):
+    return beside(replaced(yaml_block(f"experiments/{gait.key}.yaml", "controllers"), old, new))
+
+
+def law_variants(gait):
+    """What is changed, and the run; the first is what the others are set beside."""
+    changes = [
+        ("taut's own laws", ""),
+        ("gait at 1 kHz instead of 100 Hz", changed_controllers(gait, "period_s: 0.01}", "period_s: 0.001}")),
+        ("impedance law at 100 Hz instead of 1 kHz",
+         changed_controllers(gait, "    period_s: 0.001\n", "    period_s: 0.01\n")),
+        ("controller: difference of lengths",
+         changed_controllers(gait, "conversion: stiffness", "conversion: stiffness\n      rate: differenced")),
+        ("friction: along the sliding velocity only", laws(OWN_LAWS, friction_law="along_slip")),
+        ("inertia: of the bounding box", laws(OWN_LAWS, inertia="bounding_box")),
+        ("damping: clamped", laws(OWN_LAWS, damping_law="clamped")),
+    ]
+    return [(text, Variant(f"{gait.key}_law_{i}" if i else gait.key, gait.key, keys, full_trace=True))
+            for i, (text, keys) in enumerate(changes)]
+
+
+def laws_table(gait, ntrt, runs):
+    out = []
+    for text, run in runs:
+        worst = max(abs(mean(run.tension(cable)) - mean(ntrt.tension(cable))) for cable in CABLES)
+        far = [100 * math.dist(run.com(0), run.com(time_s)) for time_s in (DISTANCE_S, TO_S)]
+        out.append([text, f"{run.largest_n:.3f}", percent(100 * (run.largest_n / gait.system_max_n - 1), 2),
+                    f"{100 * worst / gait.system_max_n:.2f} %", *(f"{cm:.2f}" for cm in far),
+                    f"{run.heading(TO_S) - run.heading(0):+.1f}"])
+    return table(["", "largest tension N", "against NTRT", "means against NTRT, worst", "20 s cm", "60 s cm",
+                  "turned degrees"], out)
+
+
+def saturation_table(run_of):
+    """How much of 30 to 60 s a motor winds at its limit of 0.07 m/s, from one row to the next."""
+    out = []
+    for side in ("inner", "outer"):
+        cells = []
+        for run in run_of:
+            rows = [row for row in run.rows if FROM_S - 1e-9 <= row["time_s"] <= TO_S + 1e-9]
+            at_limit = [abs(b[key] - a[key]) > 0.99 * 0.07 * ROW_S
+                        for key in (f"cable/{cable}/rest_length_m" for cable in CABLES if cable.startswith(side))
+                        for a, b in zip(rows, rows[1:])]
+            cells.append(f"{100 * mean(at_limit):.0f} %")
+        out.append([side, *cells])
+    return table(["cables", SINE.title.lower(), CPG.title.lower()], out)
+
+
+# --- distance and step ----------------------------------------------------------------------------
+
+
+def controllers(gait, exact):
+    """The experiment's controllers on one clock that every step divides: the law at 250 Hz, the gait at
+    50 Hz."""
+    text = yaml_block(f"experiments/{gait.key}.yaml", "controllers")
+    text = replaced(text, "    period_s: 0.001\n", "    period_s: 0.004\n")
+    text = replaced(text, "period_s: 0.01}", "period_s: 0.02}")
+    text = beside(text)
+    return text if exact else replaced(text, "conversion: stiffness", "conversion: stiffness\n      rate: differenced")
+
+
+def step_variant(gait, exact, step_s, start):
+    name = f"{gait.key}_{'exact' if exact else 'differenced'}_{1 / step_s:.0f}hz_{start}"
+    keys = (f"step_s: {step_s}\nduration_s: {DISTANCE_S if start else TO_S:g}\ntimeline: {{}}\n"
+            f"place: {{at_m: [0, 0, {start * APART_M:g}]}}\n"
+            "record: {rate_hz: 10, channels: [system/com_x_m, system/com_y_m]}\n")
+    return Variant(name, gait.key, keys + controllers(gait, exact), full_trace=True)
+
+
+STEP_RUNS = {(gait.key, exact, step_s, start): step_variant(gait, exact, step_s, start)
+             for gait in (SINE, CPG) for exact in (True, False) for step_s in STEPS_S for start in range(STARTS)}
+
+
+def steps_table(gait, exact, paths):
+    """Mean and spread of the distance in the first 20 s over the starts; when paths part."""
+    means, out = {}, []
+    finest = paths[gait.key, exact, STEPS_S[0], 0]
+    for step_s in STEPS_S:
+        far = [paths[gait.key, exact, step_s, start].distance_m(DISTANCE_S) for start in range(STARTS)]
+        means[step_s] = mean(far)
+        parted = paths[gait.key, exact, step_s, 0].parts_from_s(finest)
+        out.append([f"{1 / step_s:.0f}", f"{100 * mean(far):.3f}",
+                    f"{100 * min(far):.3f} to {100 * max(far):.3f}",
+                    "" if step_s == STEPS_S[0] else percent(100 * (mean(far) / means[STEPS_S[0]] - 1), 2),
+                    "" if step_s == STEPS_S[0] else "never" if parted is None else f"{parted:.1f}"])
+    largest = max(abs(means[step_s] / means[STEPS_S[0]] - 1) for step_s in STEPS_S)
+    return table(["Hz", "distance cm", f"{STARTS} starts cm", "against 4 kHz", "1 mm from 4 kHz at s"], out), largest
+
+
+# --- commands -------------------------------------------------------------------------------------
+
+
+def inverted():
+    line = next(line for line in (ROOT / "gaits/cpg_learned.yaml").read_text().splitlines() if "inverted:" in line)
+    return {name.strip(" []") for name in line.split(":", 1)[1].split(",")}
+
+
+def export(taut, gait_path, name):
+    path = taut.folder / f"{name}.csv"
+    taut("gait", "export", gait_path, "models/tetraspine3.yaml", "--rate_hz", 1000, "--duration_s", 60,
+         "--out", path)
+    with open(path, newline="") as file:
+        return [{key: float(x) for key, x in row.items()} for row in csv.DictReader(file)]
+
+
+def worst_command(ntrt, gait, table_, signs, until_s):
+    return max(abs(signs.get(cable, 1) * table_[round(row["time_s"] * 1000)][cable + "_m_per_s"]
+                   - row[cable + gait.column])
+               for row in ntrt.rows if 0 < row["time_s"] <= until_s for cable in CABLES)
+
+
+def command_values(taut, ntrts):
+    signs = {cable: -1 for cable in inverted()}
+    taut.folder.mkdir(parents=True, exist_ok=True)
+    waves = export(taut, "gaits/hand_tuned_sine.yaml", "hand_tuned_sine")
+    learned = export(taut, "gaits/cpg_learned.yaml", "cpg_learned")
+    coarse_gait = taut.folder / "cpg_coarse.yaml"
+    coarse_gait.write_text(replaced((ROOT / "gaits/cpg_learned.yaml").read_text(), "integrator_step_s: 0.00025",
+                                  "integrator_step_s: 0.001"))
+    coarse = export(taut, coarse_gait, "cpg_coarse")
+    return {
+        "sine_command": f"{worst_command(ntrts[SINE.key], SINE, waves, {}, 60):.1e}",
+        "cpg_command_10": f"{worst_command(ntrts[CPG.key], CPG, learned, signs, 10):.1e}",
+        "cpg_command_60": f"{worst_command(ntrts[CPG.key], CPG, learned, signs, 60):.1e}",
+        "cpg_command_coarse": f"{worst_command(ntrts[CPG.key], CPG, coarse, signs, 60):.1e}",
+    }
+
+
+def page(taut):
+    started = time.monotonic()
+    under_its_laws = [Variant(gait.key + "_ntrt", gait.key + "_ntrt", full_trace=True) for gait in (SINE, CPG)]
+    one_law = {gait.key: law_variants(gait) for gait in (SINE, CPG)}
+    results = taut.run([*under_its_laws, *(variant for runs in one_law.values() for _, variant in runs),
+                        *STEP_RUNS.values()])
+    values, ntrts, owns = {}, {}, []
+    for gait, prefix in ((SINE, "sine"), (CPG, "cpg")):
+        ntrt = ntrts[gait.key] = Ntrt(gait)
+        its, own = (Run(taut.folder / name, results[name]) for name in (gait.key + "_ntrt", gait.key))
+        rows = list(cable_rows(gait, ntrt, its, own))
+        owns.append(own)
+        # of NTRT's largest swing
+        fundamental_hz = max((lines[0] for _, _, lines, _ in rows), key=lambda line: line[1])[0]
+        values.update({
+            f"{prefix}_system": system_table(gait, rows, (its, own)),
+            f"{prefix}_means": means_table(rows),
+            f"{prefix}_lines": lines_table(rows),
+            f"{prefix}_frequencies": frequency_text(rows),
+            f"{prefix}_paths": paths_table((ntrt, its, own)),
+            f"{prefix}_shapes": shapes_table(rows, fundamental_hz),
+            f"{prefix}_laws": laws_table(gait, ntrt, [(text, Run(taut.folder / variant.name, results[variant.name]))
+                                                      for text, variant in one_law[gait.key]]),
+            f"{prefix}_fundamental": f"{fundamental_hz:.3f}",
+        })
+    paths = {key: Path(taut.folder / variant.name) for key, variant in STEP_RUNS.items()}
+    for gait, prefix in ((SINE, "sine"), (CPG, "cpg")):
+        for exact, rate in ((True, "exact"), (False, "differenced")):
+            text, largest = steps_table(gait, exact, paths)
+            values[f"{prefix}_steps_{rate}"] = text
+            values[f"{prefix}_steps_{rate}_worst"] = f"{100 * largest:.1f}"
+    values["saturation"] = saturation_table(owns)
+    values.update(command_values(taut, ntrts))
+    values.update({
+        "version": results[SINE.key].summary["taut_version"],
+        "runs": str(len(results)),
+        "seconds": f"{time.monotonic() - started:.0f}",
+        "machine": machine(),
+    })
+    return fill(TEMPLATE.read_text(), values)
