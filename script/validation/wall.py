@@ -1,0 +1,82 @@
+"""Twelve segments over walls: how high, and how often."""
+
+import csv
+import pathlib
+import random
+import time
+
+from validation.push import machine
+from validation.runs import Variant, fill, table
+
+TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
+HEIGHTS_M = (0.02, 0.04, 0.06, 0.08, 0.10, 0.12)
+STARTS = 20
+DURATION_S = 90
+FAR_SIDE_M = 1.20   # of the wall
+REACH_M = 0.25      # no point of a segment is further from its centre of mass
+SEGMENTS = 12
+SIDE_M = 2.5        # the wall reaches 3 m to either side
+
+
+def start(number):
+    """Where, which way and on what; the first start is the experiment as it is."""
+    if number == 0:
+        return {}
+    rng = random.Random(number)
+    return {
+        "start_x_m": f"{rng.uniform(-0.1, 0.0):.4f}",
+        "start_yaw_rad": f"{rng.uniform(-0.05, 0.05):.4f}",
+        "ground_friction": f"{rng.uniform(0.4, 0.6):.4f}",
+        "wall_friction": f"{rng.uniform(0.8, 1.2):.4f}",
+    }
+
+
+def variant(height_m, number):
+    keys = (f"duration_s: {DURATION_S}\n"
+            "record: {rate_hz: 4, channels: ['body/*/position_x_m', 'body/*/position_y_m']}\n")
+    return Variant(f"wall_{1000 * height_m:.0f}mm_{number}", "wall", keys,
+                   {"wall_height_m": height_m, **start(number)}, full_trace=True)
+
+
+def over_at_s(folder):
+    """When the whole robot is first behind the wall; None if never. And the segments then or at the end."""
+    behind = 0
+    with open(folder / "trace.csv", newline="") as file:
+        for row in csv.DictReader(file):
+            behind = 0
+            for segment in range(SEGMENTS):
+                x = float(row[f"body/segment_{segment}/position_x_m"])
+                y = float(row[f"body/segment_{segment}/position_y_m"])
+                behind += x > FAR_SIDE_M + REACH_M and abs(y) < SIDE_M
+            if behind == SEGMENTS:
+                return float(row["time_s"]), behind
+    return None, behind
+
+
+def page(taut):
+    started = time.monotonic()
+    variants = {(height_m, number): variant(height_m, number)
+                for height_m in HEIGHTS_M for number in range(STARTS)}
+    taut.run(variants.values())
+    rows, highest = [], 0.0
+    for height_m in HEIGHTS_M:
+        outcomes = [over_at_s(taut.folder / variants[height_m, number].name) for number in range(STARTS)]
+        times = [at_s for at_s, _ in outcomes if at_s is not None]
+        stuck = [behind for at_s, behind in outcomes if at_s is None]
+        highest = height_m if outcomes[0][0] is not None and height_m > highest else highest
+        rows.append([f"{100 * height_m:.0f}", f"{len(times)} of {STARTS}",
+                     f"{min(times):.1f} to {max(times):.1f}" if times else "",
+                     f"{outcomes[0][0]:.1f}" if outcomes[0][0] is not None else "never",
+                     f"{min(stuck)} to {max(stuck)}" if stuck else ""])
+    values = {
+        "walls": table(["wall cm", "over it", "after s", "unperturbed: after s",
+                        "else: segments behind it in the end"], rows),
+        "highest": f"{100 * highest:.0f}",
+        "starts": str(STARTS - 1),
+        "duration": str(DURATION_S),
+        "version": taut("--version").split()[-1],
+        "runs": str(len(variants)),
+        "seconds": f"{time.monotonic() - started:.0f}",
+        "machine": machine(),
+    }
+    return fill(TEMPLATE.read_text(), values)

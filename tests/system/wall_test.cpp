@@ -1,0 +1,63 @@
+// Twelve segments over a wall (docs/validation/wall.md).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "taut/run.h"
+#include "taut/spec.h"
+#include "taut/trace.h"
+
+namespace taut {
+namespace {
+
+constexpr double kFarSideM = 1.20;
+constexpr double kReachM = 0.25;  // no point of a segment is further from its centre of mass
+
+/// Where the last segment is in the last row, and how far any segment ever was to a side.
+class Watch final : public TraceWriter {
+ public:
+  explicit Watch(std::size_t segments) : segments_(segments) {}
+  bool Append(double, const double* values) override {
+    rearmost_m = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < segments_; ++i) {
+      rearmost_m = std::min(rearmost_m, values[2 * i]);
+      aside_m = std::max(aside_m, std::fabs(values[2 * i + 1]));
+    }
+    return true;
+  }
+  bool FlushOld() override { return true; }
+  bool Finish() override { return true; }
+  const std::string& error() const override { return none_; }
+  double rearmost_m = 0, aside_m = 0;
+
+ private:
+  std::size_t segments_;
+  std::string none_;
+};
+
+void ExpectOver(const std::string& height_m, double within_s) {
+  Diagnostics out;
+  auto experiment =
+      LoadExperiment(TAUT_SOURCE_DIR "/experiments/wall.yaml", {{"wall_height_m", height_m}}, out);
+  ASSERT_TRUE(experiment) << out.Format();
+  experiment->duration_s = within_s;
+  experiment->record.rate_hz = 4;
+  experiment->record.channels = {"body/*/position_x_m", "body/*/position_y_m"};
+  ASSERT_EQ(RunChannels(*experiment).size(), 24u);
+  Watch watch(12);
+  RunOptions options;
+  options.traces = {&watch};
+  const auto summary = RunExperiment(*experiment, options, out);
+  ASSERT_TRUE(summary) << out.Format();
+  EXPECT_EQ(summary->status_text, "");
+  EXPECT_GT(watch.rearmost_m, kFarSideM + kReachM);
+  EXPECT_LT(watch.aside_m, 2.5);  // not round the wall, which reaches 3 m to either side
+}
+
+TEST(Wall, TwelveSegmentsCrawlOverAWallAsHighAsNtrts) { ExpectOver("0.02", 40); }
+TEST(Wall, AndOverOneThreeTimesAsHigh) { ExpectOver("0.06", 52); }
+
+}  // namespace
+}  // namespace taut
