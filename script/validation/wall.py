@@ -9,9 +9,9 @@ from validation.push import machine
 from validation.runs import Variant, fill, table
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
-HEIGHTS_M = (0.02, 0.04, 0.06, 0.08, 0.10, 0.12)
+HEIGHTS_M = (0.02, 0.04, 0.06, 0.08, 0.10)
 STARTS = 20
-DURATION_S = 90
+DURATION_S = 70
 FAR_SIDE_M = 1.20   # of the wall
 REACH_M = 0.25      # no point of a segment is further from its centre of mass
 SEGMENTS = 12

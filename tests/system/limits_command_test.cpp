@@ -139,8 +139,8 @@ TEST_F(Limits, ARecordedChannelThatIsNotThereIsBadInput) {
   const std::string known =
       "one of: cable/*/tension_n, cable/*/elastic_n, cable/*/length_m, cable/*/rate_m_per_s, "
       "cable/*/rest_length_m, cable/*/target_rest_length_m, cable/*/setpoint_n, "
-      "body/*/position_x_m, body/*/position_y_m, body/*/position_z_m, body/*/orientation_w, "
-      "body/*/orientation_x, ...";
+      "cable/*/velocity_input_m_per_s, body/*/position_x_m, body/*/position_y_m, "
+      "body/*/position_z_m, body/*/orientation_w, ...";
   for (const char* const command : {"run", "check"}) {
     ExpectRefused(
         {command, "e.yaml"}, 3,
