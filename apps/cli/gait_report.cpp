@@ -172,8 +172,8 @@ std::string CouplingSvg(const RobotSpec& robot, const CouplingGraph& graph) {
         cx, cy, cx, cy < kMargin ? cy - 8 : cy + 15, Name(robot, graph, i));
   }
   out += fmt::format(
-      "<text x=\"10\" y=\"{:.0f}\" font-size=\"11\">red: cables of one joint; blue: cables of "
-      "neighbouring joints, which share a segment</text>\n</svg>\n",
+      "<text x=\"10\" y=\"{:.0f}\">red: one joint; blue: neighbouring joints, which share a "
+      "segment</text>\n</svg>\n",
       2 * kMargin + 12);
   return out;
 }
