@@ -73,6 +73,19 @@ struct CableState {
   double elastic_n = 0;      ///< max(0, k (l - L)) alone: what NTRT logs.
 };
 
+/// All cables of the worlds that share a register: cable c of world `first_world + j` is at
+/// [c * lanes + j]. Points into the batch; what was sensed is void after the next step or change.
+struct CableRows {
+  int lanes = 1, first_world = 0;
+  const double* length_m = nullptr;
+  const double* rate_m_per_s = nullptr;
+  const double* rest_length_m = nullptr;
+  const double* tension_n = nullptr;
+  const double* elastic_n = nullptr;
+  const double* stiffness_n_per_m = nullptr;
+  double* rest_length_target_m = nullptr;  ///< As `SetRestLengthTarget` sets them; may be written.
+};
+
 struct BodyState {
   Vec3 position_m;                  ///< Of the centre of mass, in W.
   Quat orientation;                 ///< From the start's orientation (identity at t = 0), in W.
@@ -129,6 +142,11 @@ class Batch {
 
   // --- observation -------------------------------------------------------------------------
   CableState Cable(int world, int cable) const noexcept;
+  /// What `Cable` says, of all cables of a group of `lanes()` worlds at once, and their commands:
+  /// for controllers that run over lanes. Group g holds the worlds from g * lanes() on; lanes
+  /// behind the last world are there, too.
+  CableRows Cables(int group) noexcept;
+  int groups() const noexcept;
   BodyState Body(int world, int body) const noexcept;
   Vec3 NodePosition(int world, int node) const noexcept;  ///< [m], in W.
   Vec3 NodeVelocity(int world, int node) const noexcept;  ///< [m/s], in W.

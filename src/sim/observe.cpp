@@ -15,6 +15,24 @@ CableState Batch::Cable(int world, int cable) const noexcept {
           d.at(world, d.layout.sense_elastic + cable)};
 }
 
+int Batch::groups() const noexcept { return static_cast<int>(impl_->groups.size()); }
+
+CableRows Batch::Cables(int group) noexcept {
+  const Impl& d = *impl_;
+  const int first_world = group * d.lanes();
+  d.Sense(first_world);
+  const auto row = [&](int first) { return &d.at(first_world, first); };
+  return {d.lanes(),
+          first_world,
+          row(d.layout.sense_length),
+          row(d.layout.sense_rate),
+          row(d.layout.rest),
+          row(d.layout.sense_tension),
+          row(d.layout.sense_elastic),
+          row(d.layout.stiffness),
+          row(d.layout.target)};
+}
+
 BodyState Batch::Body(int world, int body) const noexcept {
   const Impl& d = *impl_;
   const Quat q = d.quat(world, body);

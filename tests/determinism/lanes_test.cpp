@@ -67,6 +67,34 @@ TEST_P(LanesOf, EqualTheirWorldsAloneOnAnyNumberOfThreads) {
   }
 }
 
+TEST_P(LanesOf, SayOfAllCablesAtOnceWhatTheySayOfEach) {
+  const auto [simd, model] = GetParam();
+  const ModelDef def = VariedModels()[model];
+  constexpr int kWorlds = 11;
+  if (!BatchOn(simd, def, 1, 1)) GTEST_SKIP() << "this machine has no " << NameOf(simd);
+  Batch batch = *BatchOn(simd, def, kWorlds, 1);
+  for (int i = 0; i < kWorlds; ++i) Scatter(batch, i, i);
+  batch.Step(kVarietyStepS, kStepsAStretch);
+  ASSERT_EQ(batch.groups(), (kWorlds + batch.lanes() - 1) / batch.lanes());
+  for (int i = 0; i < kWorlds; ++i) {
+    const CableRows rows = batch.Cables(i / batch.lanes());
+    ASSERT_EQ(rows.lanes, batch.lanes());
+    ASSERT_EQ(rows.first_world, i - i % batch.lanes());
+    for (int c = 0; c < static_cast<int>(def.cables.size()); ++c) {
+      const int at = c * rows.lanes + i % rows.lanes;
+      const CableState cable = batch.Cable(i, c);
+      EXPECT_EQ(rows.length_m[at], cable.length_m);
+      EXPECT_EQ(rows.rate_m_per_s[at], cable.rate_m_per_s);
+      EXPECT_EQ(rows.rest_length_m[at], cable.rest_length_m);
+      EXPECT_EQ(rows.tension_n[at], cable.tension_n);
+      EXPECT_EQ(rows.elastic_n[at], cable.elastic_n);
+      EXPECT_EQ(rows.stiffness_n_per_m[at], batch.GetParameter(i, Parameter::kCableStiffness, c));
+      rows.rest_length_target_m[at] = 0.1 + 0.01 * at;
+      EXPECT_EQ(batch.RestLengthTarget(i, c), 0.1 + 0.01 * at);
+    }
+  }
+}
+
 std::string NameOfBoth(const testing::TestParamInfo<SimdAndModel>& each) {
   return std::string(NameOf(std::get<0>(each.param))) + "_" +
          VariedModels()[std::get<1>(each.param)].name;
