@@ -239,7 +239,7 @@ void SenseGroup(const View& m, const Layout& layout, Group& g, void* scratch) {
   Scratch<W> work(m, scratch);
   const Rows<W> s(layout, g);
   Poison(m, s, g, work);
-  StageKinematics(m, s, g, work, W::Splat(0.0));
+  StageSenseBodies(m, s, work);
   StageSense(m, s, work);
   g.sensed = true;
 }

@@ -126,6 +126,24 @@ void StageKinematics(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
   }
 }
 
+/// Frames and velocities of all bodies as they are, with the same bits as StageKinematics: what a
+/// cable's length and rate follow from.
+///   reads   quat, vel, mom     writes  bodies[].R, .v_mid, .w_mid
+template <class W>
+void StageSenseBodies(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  const V3<W> none{zero, zero, zero};
+  for (int b = 0; b < m.body_count; ++b) {
+    BodyWork<W>& body = work.bodies[b];
+    body.R = RotationOf(s.quat[b]);
+    body.v_mid = s.vel[b] + none;
+    body.w_mid = Congruence(body.R, s.inv_inertia[b]) * s.mom[b] + none;
+  }
+  BodyWork<W>& world = work.bodies[m.body_count];
+  world.R = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+  world.v_mid = world.w_mid = none;
+}
+
 /// Stage: forces become velocities.
 ///   reads   bodies[].force, .torque     writes  bodies[].v, .w, mom
 template <class W>

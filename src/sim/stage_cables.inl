@@ -155,20 +155,32 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
   }
 }
 
+/// One cable of the stage below; `ends` as in PullCable.
+template <class W>
+TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, const Scratch<W>& work, int c,
+                            int attachment_count, AttachmentWork<W>* ends) noexcept {
+  W l, dl;
+  MeasureCable(m, m.cables[c], attachment_count, s.pos, work, ends, l, dl);
+  const CableForce<W> f =
+      TensionOf(s.stiffness[c], s.damping[c], l, dl, s.rest[c], m.cables[c].clamped_damping);
+  s.sense_length[c] = l;
+  s.sense_rate[c] = dl;
+  s.sense_tension[c] = f.tension;
+  s.sense_elastic[c] = f.elastic;
+}
+
 /// Stage: what sensors see of the cables at the end of a step.
 ///   reads   pos, bodies[] (of the current state)     writes  sense_*
 template <class W>
 void StageSense(const View& m, const Rows<W>& s, const Scratch<W>& work) noexcept {
   for (int c = 0; c < m.cable_count; ++c) {
-    W l, dl;
-    MeasureCable(m, m.cables[c], m.cables[c].attachment_count, s.pos, work, work.attachments, l,
-                 dl);
-    const CableForce<W> f =
-        TensionOf(s.stiffness[c], s.damping[c], l, dl, s.rest[c], m.cables[c].clamped_damping);
-    s.sense_length[c] = l;
-    s.sense_rate[c] = dl;
-    s.sense_tension[c] = f.tension;
-    s.sense_elastic[c] = f.elastic;
+    const int count = m.cables[c].attachment_count;
+    if (count == 2) {
+      AttachmentWork<W> ends[2];
+      SenseCable(m, s, work, c, 2, ends);
+    } else {
+      SenseCable(m, s, work, c, count, work.attachments);
+    }
   }
 }
 
