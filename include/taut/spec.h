@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -137,6 +138,46 @@ enum class StartKind {
   kSettledFloating,  ///< Static equilibrium of cables alone: no gravity, no ground.
 };
 
+/// A factor on a parameter of the model as compiled, for what is not known for sure.
+struct ScaleSpec {
+  enum class Quantity { kFriction, kMass, kStiffness, kDamping };
+  Quantity quantity = Quantity::kFriction;
+  std::vector<int> index;  ///< Bodies or cables; empty: all.
+  double factor = 1.0;     ///< > 0.
+};
+
+/// How far the start is from what is described; drawn from the seed, evenly.
+struct StartNoise {
+  double position_m = 0.0;   ///< Each body by up to this along x and y, and upwards.
+  double heading_rad = 0.0;  ///< The whole robot about the vertical, by up to this either way.
+};
+
+/// A tension through a load cell: T' = T + bias + noise, limited to a range, in quanta, late.
+struct LoadCellSpec {
+  double noise_n = 0.0;  ///< Standard deviation of each sample, white.
+  double bias_n = 0.0;   ///< Standard deviation of each cell's error for the whole run.
+  double min_n = 0.0;    ///< Of the range.
+  double max_n = std::numeric_limits<double>::infinity();
+  double quantum_n = 0.0;  ///< Step of the converter, from min_n on; 0: none.
+  double delay_s = 0.0;    ///< Whole sensor periods.
+};
+
+/// A rest length through counts of a motor's encoder.
+struct EncoderSpec {
+  double quantum_m = 0.0;  ///< Rest length of a count; 0: exact.
+  double delay_s = 0.0;    ///< Whole sensor periods.
+};
+
+/// What stands between the robot and its controllers. Without it they see exact values.
+struct SensorSpec {
+  double period_s = 0.001;  ///< Between samples; the first is at t = 0.
+  std::optional<LoadCellSpec> load_cell;
+  std::optional<EncoderSpec> encoder;
+  /// A cable's length from rest length and tension, L + T / k, as a board must have it, and its
+  /// rate from successive samples; else both exact.
+  bool length_from_tension = false;
+};
+
 struct RecordSpec {
   double rate_hz = 100.0;                  ///< Rows a second; 0: every step.
   std::vector<std::string> channels;       ///< Name patterns with `*`; empty: all.
@@ -170,6 +211,9 @@ struct ExperimentSpec {
   double duration_s = 0.0;
   StartKind start = StartKind::kAsDescribed;
   std::uint64_t seed = 0;
+  std::vector<ScaleSpec> scales;
+  StartNoise start_noise;
+  std::optional<SensorSpec> sensors;
   std::vector<ControllerSpec> controllers;
   std::vector<PushSpec> pushes;
   std::vector<DragSpec> drags;

@@ -3,15 +3,25 @@
 #include <algorithm>
 #include <utility>
 
-#include "taut/control/impedance.h"
-
 namespace taut::plant {
+
+ImpedanceLaw LawOf(const ImpedanceSpec& spec, const ClockSpec& clock) {
+  ImpedanceLaw law;
+  law.by_pid = spec.conversion == TensionConversion::kPid;
+  law.differenced_rate = spec.differenced_rate;
+  law.start_from_rest_length = spec.start_from_rest_length;
+  law.proportional = spec.pid.proportional_m_per_s_n;
+  law.integral = spec.pid.integral_m_per_s2_n;
+  law.derivative = spec.pid.derivative_m_per_n;
+  law.period_s = clock.period_s;
+  return law;
+}
 
 Controller::Controller(const ControllerSpec& spec, const RobotSpec& robot)
     : spec_(spec), clock_{spec.clock.period_s, spec.clock.phase_s} {
   if (spec_.impedance) {
-    pid_.resize(spec_.impedance->cables.size(), control::StartPid<double>());
-    difference_.resize(spec_.impedance->cables.size(), control::StartDifference(0.0));
+    law_ = LawOf(*spec_.impedance, spec_.clock);
+    memory_.resize(spec_.impedance->cables.size());
   }
   for (const PositionProgram& program : spec_.position) {
     std::vector<control::ProgramPoint<double>> points;
@@ -60,7 +70,7 @@ void Controller::Act(double time_s, const std::vector<CableReading>& readings,
     commands.target_m[static_cast<std::size_t>(spec_.position[i].cable)] =
         control::RestLengthAt(programs_[i].data(), programs_[i].size(), time_s);
   }
-  started_ = true;
+  law_.first_tick = false;
   ++tick_;
 }
 
@@ -91,36 +101,19 @@ bool Controller::Hold(int cable, double rest_length_m) {
 }
 
 void Controller::ActImpedance(std::size_t i, const CableReading& reading, CableCommands& commands) {
-  const ImpedanceSpec& spec = *spec_.impedance;
-  const ImpedanceGains& gains = spec.cables[i];
+  const ImpedanceGains& gains = spec_.impedance->cables[i];
   const auto cable = static_cast<std::size_t>(gains.cable);
-  double& target_m = commands.target_m[cable];
-  double& set_point_n = commands.set_point_n[cable];
   double& velocity_input = commands.velocity_input_m_per_s[cable];
   velocity_input = gains.velocity_offset_m_per_s + (gait_ ? gait_velocity_m_per_s_[i] : 0.0);
-  double rate_m_per_s = reading.rate_m_per_s;
-  if (spec.differenced_rate) {
-    if (!started_) {
-      difference_[i] = spec.start_from_rest_length
-                           ? control::StartDifferenceAtRestLength(reading.rest_length_m)
-                           : control::StartDifference(reading.length_m);
-    }
-    rate_m_per_s = control::StepDifference(difference_[i], reading.length_m, clock_.period_s);
-  }
   const control::Impedance<double> law{gains.tension_offset_n, gains.length_offset_m,
                                        gains.position_gain_n_per_m, gains.velocity_gain_n_s_per_m};
-  set_point_n = control::ImpedanceTension(law, reading.length_m, rate_m_per_s, velocity_input);
-  if (spec.conversion == TensionConversion::kStiffness) {
-    target_m = control::TensionToRestLengthByStiffness(reading.rest_length_m, reading.elastic_n,
-                                                       set_point_n, reading.stiffness_n_per_m, 0.0);
-    return;
-  }
-  const control::Pid<double> pid{spec.pid.proportional_m_per_s_n, spec.pid.integral_m_per_s2_n,
-                                 spec.pid.derivative_m_per_n};
-  if (!started_) pid_[i] = control::StartPidAt(set_point_n - reading.tension_n);
-  const double winding =
-      control::TensionByPid(pid, pid_[i], reading.tension_n, set_point_n, clock_.period_s);
-  target_m = control::RestLengthAfter(reading.rest_length_m, winding, clock_.period_s, 0.0);
+  const CableSenses<double> sensed{reading.rest_length_m, reading.length_m,
+                                   reading.rate_m_per_s,  reading.tension_n,
+                                   reading.elastic_n,     reading.stiffness_n_per_m};
+  const ImpedanceCommand<double> command =
+      StepImpedance(law_, law, velocity_input, sensed, memory_[i]);
+  commands.target_m[cable] = command.target_m;
+  commands.set_point_n[cable] = command.set_point_n;
 }
 
 }  // namespace taut::plant

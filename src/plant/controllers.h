@@ -6,11 +6,10 @@
 #include <vector>
 
 #include "plant/gait_player.h"
+#include "plant/impedance_step.h"
 #include "taut/batch.h"
 #include "taut/control/clock.h"
-#include "taut/control/pid.h"
 #include "taut/control/position.h"
-#include "taut/control/rate.h"
 #include "taut/spec.h"
 
 namespace taut::plant {
@@ -31,6 +30,9 @@ struct CableCommands {
   std::vector<double> set_point_n;             ///< Under impedance control; else 0.
   std::vector<double> velocity_input_m_per_s;  ///< V0 of the impedance law, gait included.
 };
+
+/// Of a controller with impedance control.
+ImpedanceLaw LawOf(const ImpedanceSpec& spec, const ClockSpec& clock);
 
 /// One controller with its clock and memory.
 class Controller {
@@ -60,9 +62,8 @@ class Controller {
   ControllerSpec spec_;
   control::Clock<double> clock_;
   std::int64_t tick_ = 0;
-  bool started_ = false;
-  std::vector<control::PidState<double>> pid_;
-  std::vector<control::DifferenceState<double>> difference_;
+  ImpedanceLaw law_;
+  std::vector<ImpedanceMemory<double>> memory_;  ///< Per cable under impedance control.
   std::vector<std::vector<control::ProgramPoint<double>>> programs_;
   std::optional<GaitPlayer> gait_;
   std::vector<std::size_t> gait_to_gains_;     ///< Per output of the gait: the cable's gains.

@@ -134,8 +134,9 @@ class Live final : public LiveRun {
   const std::vector<ChannelInfo>& channels() const override { return channels_; }
 
   const std::vector<double>& Row() override {
-    const std::vector<double>& recorded = recorder_.Row(
-        {&batch_, kTheWorld, &stepper_.readings(), &stepper_.commands(), &stepper_.timeline()});
+    const std::vector<double>& recorded =
+        recorder_.Row({&batch_, kTheWorld, &stepper_.readings(), &stepper_.sensed(),
+                       &stepper_.commands(), &stepper_.timeline()});
     double* out = std::copy(recorded.begin(), recorded.end(), row_.data());
     NodeForce push{-1, {}};
     for (const TimedPush& one : pushes_) {

@@ -75,6 +75,15 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
           std::copy(std::begin(values), std::end(values), out);
         });
   }
+  for (std::size_t c = 0; experiment.sensors && c < def.cables.size(); ++c) {
+    Add("sensor/" + def.cables[c].name + "/",
+        {{"tension_n", "N"}, {"length_m", "m"}, {"rate_m_per_s", "m/s"}, {"rest_length_m", "m"}},
+        [c](const RecordSource& s, double* out) {
+          const CableReading& r = (*s.sensed)[c];
+          const double values[] = {r.tension_n, r.length_m, r.rate_m_per_s, r.rest_length_m};
+          std::copy(std::begin(values), std::end(values), out);
+        });
+  }
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     Add("body/" + def.bodies[b].name + "/",
         {{"position_x_m", "m"},

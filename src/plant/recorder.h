@@ -17,6 +17,7 @@ struct RecordSource {
   const Batch* batch = nullptr;
   int world = 0;
   const std::vector<CableReading>* readings = nullptr;
+  const std::vector<CableReading>* sensed = nullptr;  ///< By the controllers.
   const CableCommands* commands = nullptr;
   const Timeline* timeline = nullptr;
 };

@@ -96,8 +96,9 @@ class Runner {
   }
 
   bool Record(std::int64_t& rows, Diagnostics& out) {
-    const std::vector<double>& row = recorder_.Row(
-        {&batch_, kTheWorld, &stepper_.readings(), &stepper_.commands(), &stepper_.timeline()});
+    const std::vector<double>& row =
+        recorder_.Row({&batch_, kTheWorld, &stepper_.readings(), &stepper_.sensed(),
+                       &stepper_.commands(), &stepper_.timeline()});
     ++rows;
     for (TraceWriter* trace : options_.traces) {
       if (!Wrote(trace->Append(stepper_.time_s(), row.data()), *trace, out)) return false;

@@ -1,10 +1,15 @@
 #include "plant/start.h"
 
+#include "math/elementary.h"
+#include "math/random.h"
+#include "math/vec.h"
+#include "plant/streams.h"
 #include "taut/run.h"
 
 namespace taut::plant {
+namespace {
 
-bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out) {
+bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out) {
   if (experiment.start == StartKind::kAsDescribed) return true;
   const std::string hint = "a mechanism or a slope may have no equilibrium; try as_described";
   if (experiment.start == StartKind::kSettled) {
@@ -19,6 +24,7 @@ bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& o
   const auto model = Model::Compile(floating, out);
   if (!model) return false;
   Batch alone(model, {});
+  ApplyScales(experiment.scales, alone, kTheWorld);
   if (!Settle(alone, kTheWorld, experiment.step_s)) {
     out.Error({}, "the robot does not settle to an equilibrium of its cables", hint);
     return false;
@@ -26,6 +32,83 @@ bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& o
   for (std::size_t b = 0; b < floating.bodies.size(); ++b) {
     batch.SetBodyState(kTheWorld, static_cast<int>(b), alone.Body(kTheWorld, static_cast<int>(b)));
   }
+  return true;
+}
+
+/// Bodies a little off, upwards rather than into the ground; then the whole robot turned.
+void Disturb(const ExperimentSpec& experiment, Batch& batch) {
+  const StartNoise& noise = experiment.start_noise;
+  const ModelDef& def = experiment.robot.def;
+  Vec3 center;
+  double mass = 0;
+  for (std::size_t b = 0; b < def.bodies.size(); ++b) {
+    if (def.bodies[b].fixed) continue;
+    const int body = static_cast<int>(b);
+    BodyState state = batch.Body(kTheWorld, body);
+    if (noise.position_m > 0) {
+      math::Random random(experiment.seed, kStartPosition, b);
+      const double x = random.Uniform(-noise.position_m, noise.position_m);
+      const double y = random.Uniform(-noise.position_m, noise.position_m);
+      state.position_m = state.position_m + Vec3{x, y, random.Uniform(0.0, noise.position_m)};
+      batch.SetBodyState(kTheWorld, body, state);
+    }
+    const double m = batch.GetParameter(kTheWorld, Parameter::kBodyMass, body);
+    center = center + m * state.position_m;
+    mass += m;
+  }
+  if (!(noise.heading_rad > 0) || !(mass > 0)) return;
+  center = (1 / mass) * center;
+  math::Random random(experiment.seed, kStartHeading, 0);
+  const double half_rad = 0.5 * random.Uniform(-noise.heading_rad, noise.heading_rad);
+  const Quat turn{math::Cos(half_rad), 0, 0, math::Sin(half_rad)};
+  for (std::size_t b = 0; b < def.bodies.size(); ++b) {
+    if (def.bodies[b].fixed) continue;
+    BodyState state = batch.Body(kTheWorld, static_cast<int>(b));
+    state.position_m = center + Rotate(turn, state.position_m - center);
+    state.orientation = turn * state.orientation;
+    state.velocity_m_per_s = Rotate(turn, state.velocity_m_per_s);
+    state.angular_velocity_rad_per_s = Rotate(turn, state.angular_velocity_rad_per_s);
+    batch.SetBodyState(kTheWorld, static_cast<int>(b), state);
+  }
+}
+
+}  // namespace
+
+void ApplyScales(const std::vector<ScaleSpec>& scales, Batch& batch, int world) {
+  const ModelDef& def = batch.model().def();
+  const auto apply = [&](Parameter parameter, const std::vector<int>& chosen, std::size_t count,
+                         double factor) {
+    const auto scale = [&](int index) {
+      batch.SetParameter(world, parameter, index,
+                         factor * batch.GetParameter(world, parameter, index));
+    };
+    for (const int index : chosen) scale(index);
+    for (std::size_t i = 0; chosen.empty() && i < count; ++i) scale(static_cast<int>(i));
+  };
+  for (const ScaleSpec& s : scales) {
+    if (s.factor == 1.0) continue;
+    switch (s.quantity) {
+      case ScaleSpec::Quantity::kFriction:
+        apply(Parameter::kFrictionScale, {}, 1, s.factor);
+        break;
+      case ScaleSpec::Quantity::kMass:
+        apply(Parameter::kBodyMass, s.index, def.bodies.size(), s.factor);
+        break;
+      case ScaleSpec::Quantity::kStiffness:
+        apply(Parameter::kCableStiffness, s.index, def.cables.size(), s.factor);
+        break;
+      case ScaleSpec::Quantity::kDamping:
+        apply(Parameter::kCableDamping, s.index, def.cables.size(), s.factor);
+        break;
+    }
+  }
+}
+
+bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out) {
+  ApplyScales(experiment.scales, batch, kTheWorld);
+  if (!FindStart(experiment, batch, out)) return false;
+  const StartNoise& noise = experiment.start_noise;
+  if (noise.position_m > 0 || noise.heading_rad > 0) Disturb(experiment, batch);
   return true;
 }
 

@@ -1,22 +1,14 @@
 #include "plant/stepper.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "plant/start.h"
 
 namespace taut::plant {
 
-namespace {
-
-/// After the experiment's end there may be no boundary left; spans then have this length.
-constexpr double kSpanAfterEndS = 1.0;
-
-}  // namespace
-
 Stepper::Stepper(const ExperimentSpec& experiment, Batch& batch)
-    : experiment_(experiment),
-      batch_(batch),
+    : batch_(batch),
+      schedule_(experiment.step_s, experiment.duration_s),
       timeline_(experiment),
       readings_(experiment.robot.def.cables.size()) {
   for (std::vector<double>* commands :
@@ -26,6 +18,11 @@ Stepper::Stepper(const ExperimentSpec& experiment, Batch& batch)
   for (const ControllerSpec& spec : experiment.controllers) {
     controllers_.emplace_back(spec, experiment.robot);
   }
+  if (experiment.sensors) {
+    sensors_.emplace(*experiment.sensors, readings_.size(),
+                     std::vector<std::uint64_t>{experiment.seed});
+    sensed_.resize(readings_.size());
+  }
   for (std::size_t c = 0; c < commands_.target_m.size(); ++c) {
     commands_.target_m[c] = batch.RestLengthTarget(kTheWorld, static_cast<int>(c));
   }
@@ -33,33 +30,22 @@ Stepper::Stepper(const ExperimentSpec& experiment, Batch& batch)
 }
 
 void Stepper::Prepare() {
-  if (done_ < steps_) return;
+  if (!schedule_.AtBoundary()) return;
+  if (sensors_) Sense();
   for (Controller& controller : controllers_) {
-    controller.Act(time_s_, readings_, commands_);
+    controller.Act(time_s(), sensed(), commands_);
   }
   for (std::size_t c = 0; c < commands_.target_m.size(); ++c) {
     batch_.SetRestLengthTarget(kTheWorld, static_cast<int>(c), commands_.target_m[c]);
   }
-  from_s_ = time_s_;
-  until_s_ = NextBoundary();
-  // Steps land on the boundary: as many as are needed at no more than the step asked for.
-  const double span = until_s_ - from_s_;
-  steps_ = std::max<std::int64_t>(
-      1, static_cast<std::int64_t>(std::ceil(span / experiment_.step_s - 1e-6)));
-  done_ = 0;
-  step_s_ = span / static_cast<double>(steps_);
-  // "n steps" that differ from the step asked for by rounding only are that step.
-  if (std::fabs(step_s_ - experiment_.step_s) < 1e-9 * experiment_.step_s) {
-    step_s_ = experiment_.step_s;
-  }
+  schedule_.Aim(NextBoundary());
 }
 
 void Stepper::Step() {
   Prepare();
-  timeline_.Apply(batch_, kTheWorld, time_s_, step_s_);
-  batch_.Step(step_s_);
-  ++done_;
-  time_s_ = done_ == steps_ ? until_s_ : from_s_ + static_cast<double>(done_) * step_s_;
+  timeline_.Apply(batch_, kTheWorld, time_s(), step_s());
+  batch_.Step(step_s());
+  schedule_.Advance();
   Observe();
 }
 
@@ -83,15 +69,33 @@ void Stepper::Observe() {
   }
 }
 
-/// The next tick, corner of the timeline, or end.
+void Stepper::Sense() {
+  std::vector<double> rows[6];
+  for (const CableReading& r : readings_) {
+    rows[0].push_back(r.rest_length_m);
+    rows[1].push_back(r.length_m);
+    rows[2].push_back(r.rate_m_per_s);
+    rows[3].push_back(r.tension_n);
+    rows[4].push_back(r.elastic_n);
+    rows[5].push_back(r.stiffness_n_per_m);
+  }
+  sensors_->Sample(time_s(), {rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data(),
+                              rows[4].data(), rows[5].data()});
+  const ReadingRows seen = sensors_->rows();
+  for (std::size_t c = 0; c < sensed_.size(); ++c) {
+    sensed_[c] = {seen.rest_length_m[c], seen.length_m[c],  seen.rate_m_per_s[c],
+                  seen.tension_n[c],     seen.elastic_n[c], seen.stiffness_n_per_m[c]};
+  }
+}
+
+/// The next tick or corner.
 double Stepper::NextBoundary() const {
-  const bool over = time_s_ >= experiment_.duration_s;
-  const double end_s = over ? time_s_ + kSpanAfterEndS : experiment_.duration_s;
-  double next = std::min(end_s, timeline_.NextCorner(time_s_));
+  double next = timeline_.NextCorner(time_s());
+  if (sensors_) next = std::min(next, sensors_->next_tick_s());
   for (const Controller& controller : controllers_) {
     next = std::min(next, controller.next_tick_s());
   }
-  return next > time_s_ ? next : std::min(end_s, time_s_ + experiment_.step_s);
+  return next;
 }
 
 }  // namespace taut::plant

@@ -2,10 +2,12 @@
 /// to record, to show and to stop.
 #pragma once
 
-#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "plant/controllers.h"
+#include "plant/schedule.h"
+#include "plant/sensors.h"
 #include "plant/timeline.h"
 #include "taut/batch.h"
 #include "taut/spec.h"
@@ -25,11 +27,15 @@ class Stepper {
   /// experiment's end, and go on after it.
   void Step();
 
-  double time_s() const noexcept { return time_s_; }
-  double step_s() const noexcept { return step_s_; }  ///< Of the last step.
+  double time_s() const noexcept { return schedule_.time_s(); }
+  double step_s() const noexcept { return schedule_.step_s(); }  ///< Of the last step.
   bool finite() const noexcept;
 
+  /// As it is; and what the controllers saw of it at their last tick.
   const std::vector<CableReading>& readings() const noexcept { return readings_; }
+  const std::vector<CableReading>& sensed() const noexcept {
+    return sensors_ ? sensed_ : readings_;
+  }
   const CableCommands& commands() const noexcept { return commands_; }
   const std::vector<double>& set_point_n() const noexcept { return commands_.set_point_n; }
   Timeline& timeline() noexcept { return timeline_; }
@@ -42,18 +48,16 @@ class Stepper {
 
  private:
   void Observe();
+  void Sense();
   double NextBoundary() const;
 
-  const ExperimentSpec& experiment_;
   Batch& batch_;
+  Schedule schedule_;
   Timeline timeline_;
   std::vector<Controller> controllers_;
-  std::vector<CableReading> readings_;
+  std::optional<Sensors> sensors_;
+  std::vector<CableReading> readings_, sensed_;
   CableCommands commands_;
-  double time_s_ = 0, step_s_ = 0;
-  // The span between two boundaries: `steps_` steps, of which `done_` are done.
-  double from_s_ = 0, until_s_ = 0;
-  std::int64_t steps_ = 0, done_ = 0;
 };
 
 }  // namespace taut::plant

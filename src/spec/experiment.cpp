@@ -82,11 +82,11 @@ class ExperimentReader {
                    Diagnostics& out)
       : scope_{names, out},
         map_(*file.root, "",
-             {"taut",     "kind",        "base",       "name",          "description",
-              "model",    "set",         "parameters", "model_options", "gravity_m_per_s2",
-              "terrain",  "place",       "start",      "step_s",        "duration_s",
-              "seed",     "controllers", "timeline",   "record",        "compare_with",
-              "reference"},
+             {"taut",      "kind",        "base",        "name",          "description",
+              "model",     "set",         "parameters",  "model_options", "gravity_m_per_s2",
+              "terrain",   "place",       "start",       "step_s",        "duration_s",
+              "seed",      "controllers", "timeline",    "record",        "compare_with",
+              "reference", "scale",       "start_noise", "sensors"},
              scope_),
         overrides_(overrides) {}
 
@@ -101,6 +101,11 @@ class ExperimentReader {
                                            {{"as_described", StartKind::kAsDescribed},
                                             {"settled", StartKind::kSettled},
                                             {"settled_floating", StartKind::kSettledFloating}});
+    spec_.scales = ReadScales(map_.Find("scale"), known, scope_);
+    if (const Value* noise = map_.Find("start_noise")) {
+      spec_.start_noise = ReadStartNoise(*noise, scope_);
+    }
+    if (const Value* sensors = map_.Find("sensors")) spec_.sensors = ReadSensors(*sensors, scope_);
     spec_.controllers = ReadControllers(map_.Find("controllers"), known, model.good, scope_);
     if (const Value* timeline = map_.Find("timeline"))
       ReadTimeline(*timeline, known, scope_, spec_);

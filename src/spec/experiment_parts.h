@@ -51,6 +51,10 @@ void ReadTimeline(const Value& value, const RobotSpec* robot, const Scope& scope
 /// Numbers of others. `phases`: those of the timeline.
 std::vector<ReferenceSpec> ReadReferences(const Value* list, const RobotSpec* robot,
                                           const std::vector<PhaseSpec>& phases, const Scope& scope);
+/// Factors on friction, masses, stiffnesses and dampings.
+std::vector<ScaleSpec> ReadScales(const Value* list, const RobotSpec* robot, const Scope& scope);
+StartNoise ReadStartNoise(const Value& value, const Scope& scope);
+SensorSpec ReadSensors(const Value& value, const Scope& scope);
 
 /// Planes and boxes, appended to `def`.
 void ReadTerrain(const Value* list, const Scope& scope, ModelDef& def);

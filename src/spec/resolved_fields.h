@@ -19,6 +19,11 @@ inline const Choices<TensionConversion> kConversions{{"stiffness", TensionConver
 inline const Choices<StartKind> kStarts{{"as_described", StartKind::kAsDescribed},
                                         {"settled", StartKind::kSettled},
                                         {"settled_floating", StartKind::kSettledFloating}};
+inline const Choices<ScaleSpec::Quantity> kScaledQuantities{
+    {"friction", ScaleSpec::Quantity::kFriction},
+    {"mass", ScaleSpec::Quantity::kMass},
+    {"stiffness", ScaleSpec::Quantity::kStiffness},
+    {"damping", ScaleSpec::Quantity::kDamping}};
 
 // One list of fields a struct, for writing and for reading: `io` is called with each key and
 // field, and with the choices of an enumeration.
@@ -273,6 +278,38 @@ void Fields(Io& io, Like<ReferenceSpec> auto& r) {
   io("values", r.values);
 }
 template <class Io>
+void Fields(Io& io, Like<ScaleSpec> auto& s) {
+  io("quantity", s.quantity, kScaledQuantities);
+  io("index", s.index);
+  io("factor", s.factor);
+}
+template <class Io>
+void Fields(Io& io, Like<StartNoise> auto& n) {
+  io("position_m", n.position_m);
+  io("heading_rad", n.heading_rad);
+}
+template <class Io>
+void Fields(Io& io, Like<LoadCellSpec> auto& c) {
+  io("noise_n", c.noise_n);
+  io("bias_n", c.bias_n);
+  io("min_n", c.min_n);
+  io.Limit("max_n", c.max_n);
+  io("quantum_n", c.quantum_n);
+  io("delay_s", c.delay_s);
+}
+template <class Io>
+void Fields(Io& io, Like<EncoderSpec> auto& e) {
+  io("quantum_m", e.quantum_m);
+  io("delay_s", e.delay_s);
+}
+template <class Io>
+void Fields(Io& io, Like<SensorSpec> auto& s) {
+  io("period_s", s.period_s);
+  io("load_cell", s.load_cell);
+  io("encoder", s.encoder);
+  io("length_from_tension", s.length_from_tension);
+}
+template <class Io>
 void Fields(Io& io, Like<ExperimentSpec> auto& e) {
   io("name", e.name);
   io("description", e.description);
@@ -286,6 +323,9 @@ void Fields(Io& io, Like<ExperimentSpec> auto& e) {
   io.Later("references", e.references);
   io("pushes", e.pushes);
   io("drags", e.drags);
+  io.Later("scale", e.scales);
+  io.Later("start_noise", e.start_noise);
+  io.Later("sensors", e.sensors);
   io("controllers", e.controllers);
   io("robot", e.robot);
 }

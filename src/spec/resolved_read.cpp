@@ -166,6 +166,11 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
       check(value.cable, robot.def.cables.size(), "cable");
     }
   }
+  for (const ScaleSpec& scale : experiment.scales) {
+    const bool of_bodies = scale.quantity == ScaleSpec::Quantity::kMass;
+    const std::size_t count = of_bodies ? robot.def.bodies.size() : robot.def.cables.size();
+    for (const int index : scale.index) check(index, count, of_bodies ? "body" : "cable");
+  }
   for (const PushSpec& push : experiment.pushes) check(push.node, robot.def.nodes.size(), "node");
   for (const DragSpec& drag : experiment.drags) check(drag.node, robot.def.nodes.size(), "node");
   if (robot.node_tags.size() != robot.def.nodes.size() ||

@@ -1,0 +1,53 @@
+/// Which steps an experiment takes: they are no longer than asked for, and land on every boundary
+/// (the tick of a controller or sensor, a corner of the timeline, the end). Shared by one world and
+/// by many: what differs between the worlds of a batch has no say in it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace taut::plant {
+
+class Schedule {
+ public:
+  Schedule(double step_s, double duration_s) : wanted_s_(step_s), duration_s_(duration_s) {}
+
+  double time_s() const noexcept { return time_s_; }
+  double step_s() const noexcept { return step_s_; }  ///< Of the steps up to the next boundary.
+  bool AtBoundary() const noexcept { return done_ >= steps_; }
+
+  /// At a boundary: `next_s` is the next of all ticks and corners; infinity if there is none.
+  void Aim(double next_s) {
+    from_s_ = time_s_;
+    const bool over = time_s_ >= duration_s_;
+    const double end_s = over ? time_s_ + kSpanAfterEndS : duration_s_;
+    const double next = std::min(end_s, next_s);
+    until_s_ = next > time_s_ ? next : std::min(end_s, time_s_ + wanted_s_);
+    const double span = until_s_ - from_s_;
+    steps_ =
+        std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(span / wanted_s_ - 1e-6)));
+    done_ = 0;
+    step_s_ = span / static_cast<double>(steps_);
+    // "n steps" that differ from the step asked for by rounding only are that step.
+    if (std::fabs(step_s_ - wanted_s_) < 1e-9 * wanted_s_) step_s_ = wanted_s_;
+  }
+
+  /// A step was done.
+  void Advance() {
+    ++done_;
+    time_s_ = done_ == steps_ ? until_s_ : from_s_ + static_cast<double>(done_) * step_s_;
+  }
+
+ private:
+  /// After the experiment's end there may be no boundary left; spans then have this length.
+  static constexpr double kSpanAfterEndS = 1.0;
+
+  double wanted_s_, duration_s_;
+  double time_s_ = 0, step_s_ = 0;
+  // The span between two boundaries: `steps_` steps, of which `done_` are done.
+  double from_s_ = 0, until_s_ = 0;
+  std::int64_t steps_ = 0, done_ = 0;
+};
+
+}  // namespace taut::plant
