@@ -1,0 +1,74 @@
+/// Many variants of one experiment, run side by side and scored without traces: a world a SIMD
+/// lane, a group of lanes a thread. A variant goes through the same bits as `RunExperiment` of
+/// `ExperimentOf(it)` does, whatever runs beside it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "taut/batch.h"
+#include "taut/objective.h"
+#include "taut/spec.h"
+
+namespace taut {
+
+/// What may differ between worlds of one experiment: numbers of its controllers (not their clocks,
+/// nor which cables they drive), factors on the model, the start, the seed.
+struct RolloutWorld {
+  std::vector<ControllerSpec> controllers;
+  std::vector<ScaleSpec> scales;
+  StartNoise start_noise;
+  std::uint64_t seed = 0;
+};
+
+RolloutWorld WorldOf(const ExperimentSpec& experiment);
+/// The experiment that runs this world alone.
+ExperimentSpec ExperimentOf(const ExperimentSpec& base, const RolloutWorld& world);
+
+struct RolloutResult {
+  bool done = false;   ///< False if the evaluation was stopped before its end.
+  double score = 0;    ///< Measure less penalties; NaN if the world failed.
+  std::string failed;  ///< Why it failed; empty if it did not.
+  double distance_m = 0;
+  double along_m = 0;   ///< Along the objective's direction.
+  double energy_j = 0;  ///< Of the motors, winding in, whole run.
+  double max_tension_n = 0;
+  double tracking_n = 0;         ///< Root mean square of tension less set point.
+  std::optional<double> fell_s;  ///< When it fell.
+  std::uint64_t state_hash = 0;  ///< Of the world at the end.
+};
+
+struct RolloutOptions {
+  int threads = 1;  ///< 0: one a core.
+  std::optional<Simd> simd;
+  const std::atomic<bool>* stop = nullptr;  ///< Once true, unfinished worlds are given up.
+};
+
+class Rollouts {
+ public:
+  /// Nothing, and diagnostics, if the experiment's model does not compile.
+  static std::unique_ptr<Rollouts> Create(const ExperimentSpec& experiment,
+                                          const ObjectiveSpec& objective,
+                                          const RolloutOptions& options, Diagnostics& out);
+  virtual ~Rollouts() = default;
+
+  /// Called with the index of a world that is done, by one thread at a time, in any order.
+  using Done = std::function<void(std::size_t world, const RolloutResult&)>;
+
+  /// Runs all worlds from start to end. Results in the order of `worlds`; they depend on each world
+  /// alone.
+  virtual std::vector<RolloutResult> Run(std::span<const RolloutWorld> worlds,
+                                         const Done& done = {}) = 0;
+
+  virtual int lanes() const noexcept = 0;
+  /// Worlds that run at once: lanes times threads. Batches of a multiple of this waste nothing.
+  virtual int parallel_worlds() const noexcept = 0;
+};
+
+}  // namespace taut

@@ -1,0 +1,7 @@
+#include "plant/lane_kernel.inl"
+
+namespace taut::plant {
+
+const LaneKernel kLanesAvx512 = MakeLaneKernel<simd::Wide<8>>();
+
+}  // namespace taut::plant

@@ -1,0 +1,48 @@
+/// The part of controllers and measures that runs over lanes: compiled once an instruction set, as
+/// the step is (lane_*.cpp). Rows hold cable (or driven cable) i of lane j at [i * lanes + j].
+#pragma once
+
+#include "plant/impedance_step.h"
+
+namespace taut::plant {
+
+struct ReadingRows;
+
+/// One controller's cables.
+struct ImpedanceRows {
+  int count = 0;
+  const int* cable = nullptr;  ///< Per driven cable: its index.
+  const double *tension_offset_n = nullptr, *length_offset_m = nullptr,
+               *position_gain_n_per_m = nullptr, *velocity_gain_n_s_per_m = nullptr,
+               *velocity_offset_m_per_s = nullptr;
+  double *error_before = nullptr, *integral = nullptr, *length_before_m = nullptr;  ///< Memory.
+};
+
+/// What is measured along the way, a number a lane.
+struct MeasureRows {
+  double* rest_before_m = nullptr;  ///< Per cable: at the end of the step before (becomes this).
+  double* wound_j = nullptr;        ///< Work done by winding in (adds).
+  double* max_tension_n = nullptr;  ///< Of any cable.
+  double* error_n2_s = nullptr;     ///< Integral of the mean squared tension error (adds).
+};
+
+struct LaneKernel {
+  int lanes;
+  /// A tick of impedance control: writes target_m and set_point_n (per cable).
+  void (*impedance)(const ImpedanceLaw&, const ImpedanceRows&, const ReadingRows&, double* target_m,
+                    double* set_point_n);
+  /// After a step of `step_s`. `motor[c]`: 1 if the cable has one. `driven`: cables with set
+  /// points.
+  void (*measure)(const ReadingRows&, int cables, const double* motor, const double* set_point_n,
+                  const int* driven, int driven_count, double step_s, const MeasureRows&);
+};
+
+extern const LaneKernel kLanesScalar;
+extern const LaneKernel kLanesSse2;
+extern const LaneKernel kLanesAvx2;
+extern const LaneKernel kLanesAvx512;
+
+/// The one for batches with this many lanes.
+const LaneKernel& LaneKernelOf(int lanes);
+
+}  // namespace taut::plant

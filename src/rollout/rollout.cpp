@@ -1,0 +1,154 @@
+#include "taut/rollout.h"
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+
+#include "base/thread_pool.h"
+#include "plant/start.h"
+#include "rollout/lane_stepper.h"
+#include "rollout/scorer.h"
+
+namespace taut {
+namespace {
+
+class LaneRollouts final : public Rollouts {
+ public:
+  LaneRollouts(const ExperimentSpec& experiment, const ObjectiveSpec& objective,
+               const RolloutOptions& options, std::shared_ptr<const Model> model)
+      : experiment_(experiment),
+        objective_(objective),
+        options_(options),
+        model_(std::move(model)),
+        pool_(options.threads) {
+    // A world alone takes scalar code: what it gives is the same.
+    BatchOptions probe;
+    probe.simd = options.simd ? *options.simd : BestSimd();
+    simd_ = *probe.simd;
+    lanes_ = Batch(model_, probe).lanes();
+    places_.resize(static_cast<std::size_t>(pool_.threads()));
+  }
+
+  int lanes() const noexcept override { return lanes_; }
+  int parallel_worlds() const noexcept override { return lanes_ * pool_.threads(); }
+
+  std::vector<RolloutResult> Run(std::span<const RolloutWorld> worlds, const Done& done) override {
+    std::vector<RolloutResult> results(worlds.size());
+    std::atomic<std::size_t> next{0};
+    std::mutex one_at_a_time;
+    const auto lanes = static_cast<std::size_t>(lanes_);
+    auto work = [&](int thread) {
+      std::unique_ptr<Workplace>& place = places_[static_cast<std::size_t>(thread)];
+      if (!place) place = std::make_unique<Workplace>(model_, simd_, lanes_);
+      for (;;) {
+        const std::size_t first = next.fetch_add(lanes);
+        if (first >= worlds.size() || Stopped()) return;
+        const std::size_t count = std::min(lanes, worlds.size() - first);
+        RunGroup(worlds.subspan(first, count), *place, results.data() + first);
+        if (!done) continue;
+        const std::lock_guard lock(one_at_a_time);
+        for (std::size_t i = first; i < first + count; ++i) {
+          if (results[i].done) done(i, results[i]);
+        }
+      }
+    };
+    pool_.Run(work);
+    return results;
+  }
+
+ private:
+  bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
+  /// A thread's batches, kept from group to group: making one costs as much as seconds of its
+  /// worlds.
+  struct Workplace {
+    Workplace(const std::shared_ptr<const Model>& model, Simd simd, int lanes)
+        : alone(model, {}), group(model, {.worlds = lanes, .simd = simd}) {
+      fresh = alone.Save(plant::kTheWorld);
+    }
+    Batch alone;  ///< One world, brings each lane to its start.
+    std::vector<std::uint8_t> fresh;
+    Batch group;
+  };
+
+  /// Brings a lane to its start. One that has none fails.
+  bool Prepare(const RolloutWorld& world, Workplace& place, int lane, std::string& failed) const {
+    place.alone.Restore(plant::kTheWorld, place.fresh);
+    Diagnostics complaints;
+    if (!plant::PrepareStart(ExperimentOf(experiment_, world), place.alone, complaints)) {
+      failed = complaints.items().empty() ? "no start" : complaints.items()[0].what;
+      return false;
+    }
+    return place.group.Restore(lane, place.alone.Save(plant::kTheWorld));
+  }
+
+  void RunGroup(std::span<const RolloutWorld> worlds, Workplace& place,
+                RolloutResult* results) const {
+    Batch& batch = place.group;
+    const int count = static_cast<int>(worlds.size());
+    std::vector<std::string> no_start(worlds.size());
+    std::vector<const RolloutWorld*> lanes;  // those left over repeat the first
+    for (int j = 0; j < lanes_; ++j) {
+      const int world = j < count ? j : 0;
+      lanes.push_back(&worlds[static_cast<std::size_t>(world)]);
+      std::string failed;
+      if (!Prepare(*lanes.back(), place, j, failed) && j < count) {
+        no_start[static_cast<std::size_t>(j)] = failed;
+      }
+    }
+    rollout::LaneStepper stepper(experiment_, lanes, batch);
+    rollout::Scorer scorer(experiment_, objective_, batch, stepper);
+    for (std::int64_t steps = 0; stepper.time_s() < experiment_.duration_s; ++steps) {
+      if ((steps & 1023) == 1023 && (Stopped() || !scorer.AnyAlive(count))) {
+        if (Stopped()) return;
+        break;
+      }
+      stepper.Step();
+      scorer.Take();
+    }
+    for (int j = 0; j < count; ++j) {
+      const std::string& failed = no_start[static_cast<std::size_t>(j)];
+      if (failed.empty()) {
+        results[j] = scorer.Result(j);
+      } else {
+        results[j].done = true;
+        results[j].failed = failed;
+        results[j].score = std::numeric_limits<double>::quiet_NaN();
+      }
+    }
+  }
+
+  const ExperimentSpec experiment_;
+  const ObjectiveSpec objective_;
+  const RolloutOptions options_;
+  std::shared_ptr<const Model> model_;
+  base::ThreadPool pool_;
+  std::vector<std::unique_ptr<Workplace>> places_;  ///< A thread.
+  Simd simd_ = Simd::kScalar;
+  int lanes_ = 1;
+};
+
+}  // namespace
+
+RolloutWorld WorldOf(const ExperimentSpec& experiment) {
+  return {experiment.controllers, experiment.scales, experiment.start_noise, experiment.seed};
+}
+
+ExperimentSpec ExperimentOf(const ExperimentSpec& base, const RolloutWorld& world) {
+  ExperimentSpec experiment = base;
+  experiment.controllers = world.controllers;
+  experiment.scales = world.scales;
+  experiment.start_noise = world.start_noise;
+  experiment.seed = world.seed;
+  return experiment;
+}
+
+std::unique_ptr<Rollouts> Rollouts::Create(const ExperimentSpec& experiment,
+                                           const ObjectiveSpec& objective,
+                                           const RolloutOptions& options, Diagnostics& out) {
+  auto model = Model::Compile(experiment.robot.def, out);
+  if (!model) return nullptr;
+  return std::make_unique<LaneRollouts>(experiment, objective, options, std::move(model));
+}
+
+}  // namespace taut

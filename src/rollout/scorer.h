@@ -1,0 +1,43 @@
+/// What is measured of the worlds of a group while they run, and the scores that follow.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "rollout/lane_stepper.h"
+#include "taut/objective.h"
+#include "taut/rollout.h"
+
+namespace taut::rollout {
+
+class Scorer {
+ public:
+  Scorer(const ExperimentSpec& experiment, const ObjectiveSpec& objective, Batch& batch,
+         const LaneStepper& stepper);
+
+  /// After every step.
+  void Take();
+  /// Whether a lane of `count` still has a chance.
+  bool AnyAlive(int count) const;
+  /// At the end.
+  RolloutResult Result(int lane) const;
+
+ private:
+  void LookAround();
+  Vec3 CenterOfMass(int lane) const;
+
+  const ObjectiveSpec& objective_;
+  Batch& batch_;
+  const LaneStepper& stepper_;
+  const plant::LaneKernel& kernel_;
+  double cos_max_tilt_;
+  std::vector<double> motor_;  ///< Per cable: 1 if it has one.
+  std::vector<double> rest_before_m_, wound_j_, max_tension_n_, error_n2_s_;
+  std::vector<std::optional<Vec3>> start_m_;  ///< Centre of mass at `from_s`.
+  std::vector<double> mass_kg_;               ///< Body b of lane j at [b * lanes + j].
+  std::vector<std::optional<double>> fell_s_;
+  std::vector<std::string> failed_;
+  std::int64_t looks_ = 0;
+};
+
+}  // namespace taut::rollout
