@@ -1,0 +1,34 @@
+#include "learn/draw.h"
+#include "learn/optimizers.h"
+
+namespace taut::learn {
+namespace {
+
+/// Points without any memory: the start, then uniform ones.
+class MonteCarlo final : public Optimizer {
+ public:
+  MonteCarlo(int batch, OptimizerStart start) : batch_(batch), start_(std::move(start)) {}
+
+  std::vector<UnitPoint> Ask() override {
+    std::vector<UnitPoint> points;
+    if (drawn_ == 0 && !start_.score) points.push_back(start_.point);
+    while (points.size() < static_cast<std::size_t>(batch_)) {
+      points.push_back(UniformPoint(start_.point.size(), DrawOf(start_, drawn_++)));
+    }
+    return points;
+  }
+  void Tell(const std::vector<double>&) override {}
+
+ private:
+  int batch_;
+  OptimizerStart start_;
+  std::uint64_t drawn_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Optimizer> MakeMonteCarlo(int batch, const OptimizerStart& start) {
+  return std::make_unique<MonteCarlo>(batch, start);
+}
+
+}  // namespace taut::learn

@@ -1,0 +1,73 @@
+#include <limits>
+
+#include "taut/study.h"
+
+namespace taut {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+void AddGains(ControllerSpec& controller, const RobotSpec& robot, std::vector<Tunable>& out) {
+  if (!controller.impedance) return;
+  for (ImpedanceGains& gains : controller.impedance->cables) {
+    const std::string name =
+        controller.name + "." + robot.def.cables[static_cast<std::size_t>(gains.cable)].name + ".";
+    out.push_back({name + "tension_offset_n", "N", &gains.tension_offset_n, 0.0, kInf});
+    out.push_back({name + "length_offset_m", "m", &gains.length_offset_m, 0.0, kInf});
+    out.push_back({name + "position_gain_n_per_m", "N/m", &gains.position_gain_n_per_m, 0.0, kInf});
+    out.push_back(
+        {name + "velocity_gain_n_s_per_m", "N s/m", &gains.velocity_gain_n_s_per_m, 0.0, kInf});
+    out.push_back(
+        {name + "velocity_offset_m_per_s", "m/s", &gains.velocity_offset_m_per_s, -kInf, kInf});
+  }
+}
+
+std::string ScaleName(const ScaleSpec& scale, const RobotSpec& robot) {
+  switch (scale.quantity) {
+    case ScaleSpec::Quantity::kFriction:
+      return "model.friction";
+    case ScaleSpec::Quantity::kMass:
+      return scale.index.empty()
+                 ? "model.mass"
+                 : "model.mass." + robot.def.bodies[static_cast<std::size_t>(scale.index[0])].name;
+    default:
+      break;
+  }
+  const std::string name =
+      scale.quantity == ScaleSpec::Quantity::kStiffness ? "model.stiffness" : "model.damping";
+  return scale.index.empty()
+             ? name
+             : name + "." + robot.def.cables[static_cast<std::size_t>(scale.index[0])].name;
+}
+
+}  // namespace
+
+std::vector<ScaleSpec> TunableScales(const RobotSpec& robot) {
+  using Quantity = ScaleSpec::Quantity;
+  std::vector<ScaleSpec> scales{{Quantity::kFriction, {}, 1.0}, {Quantity::kMass, {}, 1.0}};
+  const auto each = [&](Quantity quantity, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      scales.push_back({quantity, {static_cast<int>(i)}, 1.0});
+    }
+  };
+  each(Quantity::kMass, robot.def.bodies.size());
+  scales.push_back({Quantity::kStiffness, {}, 1.0});
+  each(Quantity::kStiffness, robot.def.cables.size());
+  scales.push_back({Quantity::kDamping, {}, 1.0});
+  each(Quantity::kDamping, robot.def.cables.size());
+  return scales;
+}
+
+std::vector<Tunable> FindTunables(std::vector<ControllerSpec>& controllers,
+                                  std::vector<ScaleSpec>& scales, const RobotSpec& robot) {
+  std::vector<Tunable> out;
+  for (ControllerSpec& controller : controllers) {
+    AddGains(controller, robot, out);
+  }
+  for (ScaleSpec& scale : scales) {
+    out.push_back({ScaleName(scale, robot), "1", &scale.factor, 0.0, kInf});
+  }
+  return out;
+}
+
+}  // namespace taut
