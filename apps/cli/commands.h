@@ -19,6 +19,7 @@ void AddCheck(CLI::App& app, int& exit_code);
 void AddRun(CLI::App& app, int& exit_code);
 void AddCompare(CLI::App& app, int& exit_code);
 void AddGait(CLI::App& app, int& exit_code);
+void AddLearn(CLI::App& app, int& exit_code);
 void AddReport(CLI::App& app, int& exit_code);
 void AddView(CLI::App& app, int& exit_code);
 

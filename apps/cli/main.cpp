@@ -38,6 +38,7 @@ int Run(int argc, char** argv) {
   AddRun(app, exit_code);
   AddCompare(app, exit_code);
   AddGait(app, exit_code);
+  AddLearn(app, exit_code);
   AddReport(app, exit_code);
   AddView(app, exit_code);
   try {
@@ -45,10 +46,10 @@ int Run(int argc, char** argv) {
   } catch (const CLI::RequiredError& error) {
     // CLI11 does not say which word it did not know.
     if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
-      fmt::print(
-          stderr,
-          "error: there is no command \"{}\"; one of: check, run, compare, gait, report, view\n",
-          argv[1]);
+      fmt::print(stderr,
+                 "error: there is no command \"{}\"; one of: check, run, compare, gait, learn, "
+                 "report, view\n",
+                 argv[1]);
       return kUsage;
     }
     return app.exit(error) == 0 ? kOk : kUsage;

@@ -58,8 +58,9 @@ class Rollouts {
                                           const RolloutOptions& options, Diagnostics& out);
   virtual ~Rollouts() = default;
 
-  /// Called with the index of a world that is done, by one thread at a time, in any order.
-  using Done = std::function<void(std::size_t world, const RolloutResult&)>;
+  /// Called with the index of a world that is done, by one thread at a time, in any order. False
+  /// gives up all that has not begun.
+  using Done = std::function<bool(std::size_t world, const RolloutResult&)>;
 
   /// Runs all worlds from start to end. Results in the order of `worlds`; they depend on each world
   /// alone.

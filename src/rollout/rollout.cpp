@@ -35,6 +35,7 @@ class LaneRollouts final : public Rollouts {
   std::vector<RolloutResult> Run(std::span<const RolloutWorld> worlds, const Done& done) override {
     std::vector<RolloutResult> results(worlds.size());
     std::atomic<std::size_t> next{0};
+    std::atomic<bool> given_up{false};
     std::mutex one_at_a_time;
     const auto lanes = static_cast<std::size_t>(lanes_);
     auto work = [&](int thread) {
@@ -42,13 +43,13 @@ class LaneRollouts final : public Rollouts {
       if (!place) place = std::make_unique<Workplace>(model_, simd_, lanes_);
       for (;;) {
         const std::size_t first = next.fetch_add(lanes);
-        if (first >= worlds.size() || Stopped()) return;
+        if (first >= worlds.size() || given_up || Stopped()) return;
         const std::size_t count = std::min(lanes, worlds.size() - first);
         RunGroup(worlds.subspan(first, count), *place, results.data() + first);
         if (!done) continue;
         const std::lock_guard lock(one_at_a_time);
         for (std::size_t i = first; i < first + count; ++i) {
-          if (results[i].done) done(i, results[i]);
+          if (results[i].done && !done(i, results[i])) given_up = true;
         }
       }
     };

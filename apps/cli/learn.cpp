@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "learn_show.h"
+#include "overrides.h"
+#include "taut/learn.h"
+#include "taut/study.h"
+
+namespace taut::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<bool> stop_asked{false};
+
+extern "C" void AskStop(int) { stop_asked = true; }
+
+struct LearnArguments {
+  std::string path, out;
+  std::vector<std::string> set;
+  int threads = 0, top = 0;
+  bool best = false, parameters = false, json = false, quiet = false;
+};
+
+int Fail(const Diagnostics& found, Exit exit) {
+  fmt::print(stderr, "{}", found.Format());
+  return exit;
+}
+
+std::string Duration(double s) {
+  const auto whole = static_cast<long long>(std::fmin(std::fmax(s, 0.0), 1e9) + 0.5);
+  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+/// One line that is rewritten on a terminal, a line every ten seconds elsewhere.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+  void Show(const LearnProgress& p) {
+    const auto now = std::chrono::steady_clock::now();
+    const auto wait = std::chrono::milliseconds(terminal_ ? 200 : 10'000);
+    if (quiet_ || (shown_ && now - last_ < wait)) return;
+    const std::string best = p.best_score ? fmt::format("{:.6g}", *p.best_score) : "none";
+    fmt::print(stderr, "{}{} of {}  best {}  {} failed  {:.0f} simulated s/s  {} left{}",
+               terminal_ ? "\r\033[K" : "", p.evaluations, p.budget, best, p.failed,
+               p.simulated_s_per_s, Duration(p.left_s), terminal_ ? "" : "\n");
+    std::fflush(stderr);
+    shown_ = true;
+    last_ = now;
+  }
+  void Clear() const {
+    if (shown_ && terminal_) fmt::print(stderr, "\r\033[K");
+  }
+
+ private:
+  bool quiet_, terminal_, shown_ = false;
+  std::chrono::steady_clock::time_point last_;
+};
+
+void PrintSummary(const LearnSummary& s, const StudySpec& study, const std::string& folder) {
+  fmt::print("{}: {} evaluations, {} failed", study.name, s.evaluations, s.failed);
+  if (s.resumed_from > 0) fmt::print(", {} of them from before", s.resumed_from);
+  if (s.wall_s > 0) {
+    fmt::print("; {} ({:.0f} simulated s/s)", Duration(s.wall_s), s.simulated_s / s.wall_s);
+  }
+  fmt::print("\n");
+  if (s.best) {
+    fmt::print("best: {:.6g}, evaluation {}\n", s.best->score, s.best->id);
+  } else {
+    fmt::print("best: none, every evaluation failed\n");
+  }
+  fmt::print("`taut learn --best {0}` replays it, `taut learn --top 10 {0}` lists the best\n",
+             folder);
+}
+
+int ListParameters(const LearnArguments& args, const Overrides& overrides) {
+  Diagnostics found;
+  auto experiment = LoadExperiment(args.path, overrides, found);
+  if (!experiment) return Fail(found, kBadInput);
+  auto scales = TunableScales(experiment->robot);
+  for (const Tunable& t : FindTunables(experiment->controllers, scales, experiment->robot)) {
+    fmt::print("{:<60} {:>14.8g} {}\n", t.name, *t.value, t.unit);
+  }
+  return kOk;
+}
+
+int Search(const LearnArguments& args, const Overrides& overrides) {
+  Diagnostics found;
+  const auto study = LoadStudy(args.path, overrides, found);
+  if (!study) return Fail(found, kBadInput);
+  const auto evaluator = MakeEvaluator(*study, args.threads, &stop_asked, found);
+  if (!evaluator) return Fail(found, kBadInput);
+  LearnOptions options;
+  options.folder = args.out.empty() ? (fs::path("runs") / study->name).string() : args.out;
+  options.stop = &stop_asked;
+  ProgressLine line(args.quiet);
+  options.progress = [&](const LearnProgress& p) { line.Show(p); };
+  std::signal(SIGINT, AskStop);
+  std::signal(SIGTERM, AskStop);
+  const auto summary = RunStudy(*study, *evaluator, options, found);
+  line.Clear();
+  if (!summary) {
+    const bool refused = found.Format().find("holds another study") != std::string::npos;
+    return Fail(found, refused ? kBadInput : kFailed);
+  }
+  if (!args.quiet) PrintSummary(*summary, *study, options.folder);
+  if (summary->interrupted) {
+    fmt::print(stderr, "interrupted; the same command goes on from here\n");
+    return kInterrupted;
+  }
+  return summary->best ? kOk : kFailed;
+}
+
+int Run(const LearnArguments& args) {
+  const auto overrides = ParseOverrides(args.set);
+  if (!overrides) return kUsage;
+  if (args.parameters) return ListParameters(args, *overrides);
+  if (args.best) return ReplayBest(args.path, args.quiet);
+  if (args.top > 0) return PrintTop(args.path, args.top, args.json);
+  return Search(args, *overrides);
+}
+
+}  // namespace
+
+void AddLearn(CLI::App& app, int& exit_code) {
+  auto args = std::make_shared<LearnArguments>();
+  CLI::App* learn = app.add_subcommand(
+      "learn", "Search for the numbers of a controller, gait or model that score best.");
+  learn
+      ->add_option("study", args->path,
+                   "Study file (YAML); for --best and --top a study's folder, for --parameters an "
+                   "experiment")
+      ->required();
+  learn->add_option("--set", args->set, "Parameter of the study, experiment or model: name=value")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  learn->add_option("--out", args->out, "Folder to write into (default: runs/<study>)");
+  learn->add_option("--threads", args->threads, "Threads, 0: one a core (default)")
+      ->check(CLI::Range(0, 1024));
+  auto* best = learn->add_flag("--best", args->best,
+                               "Replay the best of a folder: trace, summary, report in best/");
+  auto* top = learn->add_option("--top", args->top, "List the best N of a folder")
+                  ->type_name("N")
+                  ->check(CLI::Range(1, 1'000'000));
+  auto* parameters = learn->add_flag("--parameters", args->parameters,
+                                     "List all that a study of an experiment can vary");
+  learn->add_flag("--json", args->json, "With --top: JSON instead of a table")->needs(top);
+  learn->add_flag("--quiet", args->quiet, "No progress and no summary");
+  best->excludes(top)->excludes(parameters);
+  top->excludes(parameters);
+  learn->footer(
+      "Examples:\n"
+      "  taut learn studies/sidewinder3.yaml\n"
+      "  taut learn --top 10 runs/sidewinder3\n"
+      "  taut learn --best runs/sidewinder3\n"
+      "  taut learn --parameters experiments/push_20n.yaml\n"
+      "Stopped by Ctrl-C or killed, the same command goes on where it was, to the same result.");
+  learn->callback([args, &exit_code] { exit_code = Run(*args); });
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,140 @@
+#include "learn_show.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "apps/viewer/report.h"
+#include "commands.h"
+#include "taut/learn.h"
+#include "taut/run.h"
+#include "taut/summary.h"
+#include "taut/trace.h"
+
+namespace taut::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+int Fail(const Diagnostics& found, Exit exit) {
+  fmt::print(stderr, "{}", found.Format());
+  return exit;
+}
+
+bool WriteText(const fs::path& path, const std::string& text, Diagnostics& out) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (file) return true;
+  out.Error({path.string()}, "cannot be written", "is the disk full, or the folder not yours?");
+  return false;
+}
+
+void PrintValues(const StudyResult& study, const Evaluation& best) {
+  for (std::size_t i = 0; i < study.parameters.size(); ++i) {
+    fmt::print("  {:<58} {:>14.8g} {}\n", study.parameters[i].name, best.values[i],
+               study.parameters[i].unit);
+  }
+}
+
+nlohmann::json Json(const StudyResult& study, const Evaluation& evaluation) {
+  nlohmann::json values, worlds;
+  for (std::size_t i = 0; i < study.parameters.size(); ++i) {
+    values[study.parameters[i].name] = evaluation.values[i];
+  }
+  for (const RolloutResult& w : evaluation.worlds) {
+    nlohmann::json world{
+        {"score", w.score},       {"distance_m", w.distance_m},       {"along_m", w.along_m},
+        {"energy_j", w.energy_j}, {"max_tension_n", w.max_tension_n}, {"tracking_n", w.tracking_n}};
+    if (w.fell_s) world["fell_s"] = *w.fell_s;
+    worlds.push_back(std::move(world));
+  }
+  return {{"evaluation", evaluation.id},
+          {"search", evaluation.search},
+          {"score", evaluation.score},
+          {"values", std::move(values)},
+          {"worlds", std::move(worlds)}};
+}
+
+}  // namespace
+
+int ReplayBest(const std::string& folder, bool quiet) {
+  Diagnostics found;
+  const auto study = ReadStudyFolder(folder, found);
+  if (!study) return Fail(found, kBadInput);
+  const Evaluation* best = study->best();
+  if (best == nullptr) {
+    fmt::print(stderr, "{}: no evaluation has succeeded yet\n", folder);
+    return kFailed;
+  }
+  const ExperimentSpec experiment = study->ExperimentWith(best->values);
+  const fs::path out = fs::path(folder) / "best";
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) found.Error({out.string()}, "cannot make this folder: " + error.message());
+  if (!found.ok()) return Fail(found, kFailed);
+  const auto trace = CreateHdf5Trace((out / "trace.h5").string(), RunChannels(experiment),
+                                     RunMetadata(experiment), found);
+  WriteText(out / "inputs.yaml", ResolvedYaml(experiment), found);
+  if (!found.ok()) return Fail(found, kFailed);
+  RunOptions options;
+  options.traces = {trace.get()};
+  const auto summary = RunExperiment(experiment, options, found);
+  if (!summary) return Fail(found, kFailed);
+  WriteText(out / "summary.json", SummaryJson(*summary), found);
+  viewer::WriteReport((out / "trace.h5").string(), "", (out / "report.html").string(), found);
+  if (!quiet) {
+    fmt::print("{}: evaluation {} of {}, score {:.8g}\n", study->name, best->id,
+               study->evaluations.size(), best->score);
+    PrintValues(*study, *best);
+    fmt::print("{}", SummaryTable(*summary));
+    fmt::print("Trace, inputs, summary and report: {}\n", out.string());
+  }
+  if (!best->worlds.empty() && best->worlds[0].state_hash != summary->state_hash) {
+    found.Error({folder}, "the replay does not end in the state that was logged",
+                "another version or build of taut gives other numbers");
+  }
+  return found.ok() ? kOk : Fail(found, kFailed);
+}
+
+int PrintTop(const std::string& folder, int count, bool json) {
+  Diagnostics found;
+  const auto study = ReadStudyFolder(folder, found);
+  if (!study) return Fail(found, kBadInput);
+  const auto top = study->top(static_cast<std::size_t>(count));
+  if (json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Evaluation* evaluation : top) list.push_back(Json(*study, *evaluation));
+    fmt::print("{}\n", list.dump(1));
+    return kOk;
+  }
+  std::size_t failed = 0;
+  for (const Evaluation& evaluation : study->evaluations) failed += !evaluation.failed.empty();
+  fmt::print("{}: {} evaluations, {} failed\n\n", study->name, study->evaluations.size(), failed);
+  fmt::print("{:>10} {:>12} {:>11} {:>9} {:>9} {:>14} {:>6}\n", "evaluation", "score", "distance_m",
+             "along_m", "energy_j", "max_tension_n", "fell");
+  for (const Evaluation* evaluation : top) {
+    double distance = 0, along = 0, energy = 0, tension = 0;
+    int fell = 0;
+    const auto n = static_cast<double>(evaluation->worlds.size());
+    for (const RolloutResult& w : evaluation->worlds) {
+      distance += w.distance_m / n;
+      along += w.along_m / n;
+      energy += w.energy_j / n;
+      tension = std::max(tension, w.max_tension_n);
+      fell += w.fell_s.has_value();
+    }
+    fmt::print("{:>10} {:>12.6g} {:>11.4f} {:>9.4f} {:>9.3f} {:>14.2f} {:>6}\n", evaluation->id,
+               evaluation->score, distance, along, energy, tension, fell);
+  }
+  if (!top.empty() && top[0]->worlds.size() > 1) {
+    fmt::print("\nmeans of {} worlds; max_tension_n: of all; fell: how many\n",
+               top[0]->worlds.size());
+  }
+  return kOk;
+}
+
+}  // namespace taut::cli

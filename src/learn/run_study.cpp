@@ -1,0 +1,270 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+
+#include "learn/difference.h"
+#include "learn/draw.h"
+#include "learn/log.h"
+#include "taut/learn.h"
+#include "taut/optimizer.h"
+#include "taut/version.h"
+
+namespace taut {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using learn::Log;
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+std::string LogPath(const std::string& folder) {
+  return (fs::path(folder) / "study.sqlite").string();
+}
+
+/// The experiment in numbers, without the comment that says where it came from.
+std::string ExperimentText(const ExperimentSpec& experiment) {
+  ExperimentSpec portable = experiment;
+  portable.compare_with.reset();  // a path, which may differ from machine to machine
+  const std::string text = ResolvedYaml(portable);
+  return text.substr(text.find("taut: 1"));
+}
+
+/// Where the search begins: what the experiment says, within the bounds.
+UnitPoint FirstPoint(const StudySpec& study) {
+  std::vector<ControllerSpec> controllers = study.experiment.controllers;
+  std::vector<ScaleSpec> scales = TunableScales(study.experiment.robot);
+  std::map<std::string, double> present;
+  for (const Tunable& t : FindTunables(controllers, scales, study.experiment.robot)) {
+    present[t.name] = *t.value;
+  }
+  UnitPoint point;
+  for (const StudyParameter& p : study.parameters) {
+    const double value = std::min(p.high, std::max(p.low, present[p.targets[0]]));
+    double low = 0, high = 1;  // bisection: the inverse of ParameterValue to the last bit
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (ParameterValue(p, middle) < value ? low : high) = middle;
+    }
+    point.push_back(ParameterValue(p, 0.0) >= value ? 0.0 : high);
+  }
+  return point;
+}
+
+class StudyRun {
+ public:
+  StudyRun(const StudySpec& study, Evaluator& evaluator, const LearnOptions& options, Log& log)
+      : study_(study), evaluator_(evaluator), options_(options), log_(log) {
+    for (Evaluation& evaluation : log.Evaluations()) {
+      before_s_ = std::max(before_s_, evaluation.elapsed_s);
+      known_.emplace(evaluation.id, std::move(evaluation));
+    }
+    summary_.resumed_from = static_cast<std::int64_t>(known_.size());
+    for (const SearchSpec& search : study.searches) budget_ += search.evaluations;
+  }
+
+  std::optional<LearnSummary> Run(Diagnostics& out) {
+    started_ = Clock::now();
+    OptimizerStart start{FirstPoint(study_), std::nullopt, study_.seed, 0};
+    for (std::size_t s = 0; s < study_.searches.size(); ++s) {
+      start.stream = static_cast<std::uint32_t>(s);
+      if (!Search(static_cast<int>(s), start, out)) break;
+    }
+    if (!out.ok()) return std::nullopt;
+    summary_.wall_s = SinceStart();
+    summary_.simulated_s = simulated_s_;
+    return std::move(summary_);
+  }
+
+ private:
+  double SinceStart() const {
+    return std::chrono::duration<double>(Clock::now() - started_).count();
+  }
+  bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
+  /// One of the study's searches; `start` becomes the best so far. False if the study stops.
+  bool Search(int number, OptimizerStart& start, Diagnostics& out) {
+    const SearchSpec& search = study_.searches[static_cast<std::size_t>(number)];
+    const auto optimizer = MakeOptimizer(search, start);
+    for (std::int64_t left = search.evaluations; left > 0;) {
+      std::vector<UnitPoint> points = optimizer->Ask();
+      // The budget may end within a batch: the rest of it is not evaluated, and nobody is told.
+      const auto count = std::min(left, static_cast<std::int64_t>(points.size()));
+      points.resize(static_cast<std::size_t>(count));
+      std::vector<double> scores;
+      if (!EvaluateBatch(number, points, scores, out)) return false;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!learn::Better(scores[i], start.score.value_or(kNothing))) continue;
+        start.score = scores[i];
+        start.point = points[i];
+      }
+      left -= count;
+      if (left > 0) optimizer->Tell(scores);
+    }
+    if (!start.score) start.score = kNothing;  // it was tried, in vain
+    return true;
+  }
+
+  bool EvaluateBatch(int number, const std::vector<UnitPoint>& points, std::vector<double>& scores,
+                     Diagnostics& out) {
+    const std::int64_t first = next_id_;
+    next_id_ += static_cast<std::int64_t>(points.size());
+    scores.assign(points.size(), 0.0);
+    std::vector<Evaluator::Candidate> missing;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::int64_t id = first + static_cast<std::int64_t>(i);
+      std::vector<double> values;
+      for (std::size_t p = 0; p < study_.parameters.size(); ++p) {
+        values.push_back(ParameterValue(study_.parameters[p], points[i][p]));
+      }
+      const auto logged = known_.find(id);
+      if (logged == known_.end()) {
+        missing.push_back({id, std::move(values)});
+      } else if (logged->second.values != values) {
+        out.Error({LogPath(options_.folder)},
+                  "evaluation " + std::to_string(id) + " was of other values than now asked for",
+                  "the file was changed, or written by another build of taut");
+        return false;
+      } else {
+        scores[static_cast<std::size_t>(id - first)] = logged->second.score;
+        Count(logged->second);
+      }
+    }
+    if (missing.empty()) return true;
+    if (Stopped()) return Interrupted();
+    const bool finished =
+        evaluator_.Evaluate(missing, [&](std::size_t c, const Evaluator::Trial& trial) {
+          Evaluation evaluation{missing[c].id, number,       missing[c].values,
+                                trial.score,   trial.failed, before_s_ + SinceStart(),
+                                trial.seeds,   trial.worlds};
+          scores[static_cast<std::size_t>(evaluation.id - first)] = trial.score;
+          simulated_s_ += study_.experiment.duration_s * static_cast<double>(trial.worlds.size());
+          ++done_now_;
+          if (!log_.Add(evaluation)) {
+            out.Error({LogPath(options_.folder)}, "cannot be written: " + log_.error(),
+                      "what it holds is safe; make room and run the same command again");
+            return false;
+          }
+          Count(evaluation);
+          Report();
+          return !Stopped();
+        });
+    if (!out.ok()) return false;
+    if (!evaluator_.error().empty()) {
+      out.Error({}, evaluator_.error(), "run the same command again to go on");
+      return false;
+    }
+    return finished || Interrupted();
+  }
+
+  bool Interrupted() {
+    summary_.interrupted = true;
+    return false;
+  }
+
+  void Count(const Evaluation& evaluation) {
+    ++summary_.evaluations;
+    if (!evaluation.failed.empty()) ++summary_.failed;
+    if (std::isnan(evaluation.score) || !evaluation.failed.empty()) return;
+    // In the order of ids, whatever the order in which they end: of equal ones the first.
+    const bool better =
+        !summary_.best || evaluation.score > summary_.best->score ||
+        (evaluation.score == summary_.best->score && evaluation.id < summary_.best->id);
+    if (better) summary_.best = evaluation;
+  }
+
+  void Report() {
+    if (!options_.progress) return;
+    LearnProgress p;
+    p.evaluations = summary_.evaluations;
+    p.budget = budget_;
+    p.failed = summary_.failed;
+    if (summary_.best) p.best_score = summary_.best->score;
+    const double wall_s = SinceStart();
+    if (wall_s > 0) {
+      p.simulated_s_per_s = simulated_s_ / wall_s;
+      p.left_s =
+          static_cast<double>(budget_ - p.evaluations) * wall_s / static_cast<double>(done_now_);
+    }
+    options_.progress(p);
+  }
+
+  const StudySpec& study_;
+  Evaluator& evaluator_;
+  const LearnOptions& options_;
+  Log& log_;
+  std::map<std::int64_t, Evaluation> known_;
+  LearnSummary summary_;
+  std::int64_t next_id_ = 0, budget_ = 0, done_now_ = 0;
+  double before_s_ = 0, simulated_s_ = 0;
+  Clock::time_point started_;
+};
+
+/// Whether the folder is of this study; a new one becomes it.
+bool Claim(const StudySpec& study, const std::string& folder, Log& log, Diagnostics& out) {
+  const std::string path = LogPath(folder);
+  const std::pair<const char*, std::string> facts[] = {
+      {"taut_version", kVersion},
+      {"study", StudyText(study)},
+      {"experiment", ExperimentText(study.experiment)}};
+  for (const auto& [name, text] : facts) {
+    const auto old = log.Fact(name);
+    if (!old || *old == text) continue;
+    out.Error({path},
+              std::string("this folder holds another study: its ") + name + " differs\n" +
+                  learn::Difference(*old, text),
+              "give `--out` another folder, or undo the change; only the last search's evaluations "
+              "may change");
+  }
+  if (!out.ok()) return false;
+  if (log.Fact("complete")) return true;
+  bool good = log.SetParameters(study.parameters) && log.SetFact("name", study.name);
+  for (const auto& [name, text] : facts) good = good && log.SetFact(name, text);
+  if (good && log.SetFact("complete", "1")) return true;
+  out.Error({path}, "cannot be written: " + log.error(), "is the disk full?");
+  return false;
+}
+
+}  // namespace
+
+std::optional<LearnSummary> RunStudy(const StudySpec& study, Evaluator& evaluator,
+                                     const LearnOptions& options, Diagnostics& out) {
+  std::error_code error;
+  fs::create_directories(options.folder, error);
+  if (error) {
+    out.Error({options.folder}, "cannot make this folder: " + error.message());
+    return std::nullopt;
+  }
+  const auto log = Log::Open(LogPath(options.folder), out);
+  if (!log || !Claim(study, options.folder, *log, out)) return std::nullopt;
+  return StudyRun(study, evaluator, options, *log).Run(out);
+}
+
+std::optional<StudyResult> ReadStudyFolder(const std::string& folder, Diagnostics& out) {
+  const auto log = Log::OpenToRead(LogPath(folder), out);
+  if (!log) return std::nullopt;
+  StudyResult result;
+  result.name = log->Fact("name").value_or("");
+  result.parameters = log->Parameters();
+  result.evaluations = log->Evaluations();
+  // The reader of experiments reads files.
+  std::error_code ignored;
+  const fs::path file = fs::path(folder) / "experiment.yaml";
+  std::ofstream text(file, std::ios::binary);
+  text << log->Fact("experiment").value_or("");
+  text.close();
+  if (!text) {
+    out.Error({file.string()}, "cannot be written", "is the disk full, or the folder not yours?");
+    return std::nullopt;
+  }
+  auto experiment = LoadExperiment(file.string(), {}, out);
+  if (!experiment) return std::nullopt;
+  result.experiment = std::move(*experiment);
+  return result;
+}
+
+}  // namespace taut
