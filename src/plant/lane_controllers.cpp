@@ -6,7 +6,8 @@
 
 namespace taut::plant {
 
-LaneController::LaneController(const std::vector<const ControllerSpec*>& lanes)
+LaneController::LaneController(const std::vector<const ControllerSpec*>& lanes,
+                               const RobotSpec& robot)
     : kernel_(LaneKernelOf(static_cast<int>(lanes.size()))),
       clock_{lanes[0]->clock.period_s, lanes[0]->clock.phase_s} {
   for (const PositionProgram& program : lanes[0]->position) {
@@ -32,19 +33,48 @@ LaneController::LaneController(const std::vector<const ControllerSpec*>& lanes)
   for (std::vector<double>* memory : {&error_before_, &integral_, &length_before_m_}) {
     memory->resize(tension_offset_n_.size());
   }
+  if (lanes[0]->velocity_input) {
+    std::vector<const VelocityInputSpec*> inputs;
+    for (const ControllerSpec* lane : lanes) inputs.push_back(&*lane->velocity_input);
+    gait_.emplace(inputs, robot);
+    for (const int cable : gait_->cables()) {
+      const auto found = std::find(cables_.begin(), cables_.end(), cable);
+      gait_to_gains_.push_back(static_cast<std::size_t>(found - cables_.begin()));
+    }
+  }
+  velocity_input_ = velocity_offset_;
+  SetVelocityInput();
 }
 
-double LaneController::next_tick_s() const noexcept { return control::TickTime(clock_, tick_); }
+double LaneController::next_tick_s() const noexcept {
+  const double own_s = control::TickTime(clock_, tick_);
+  return gait_ ? std::min(own_s, gait_->next_tick_s()) : own_s;
+}
+
+/// The cable's own offset and what the gait says; cables that it leaves alone get 0 from it.
+void LaneController::SetVelocityInput() {
+  for (std::size_t k = 0; k < velocity_input_.size(); ++k) {
+    velocity_input_[k] = velocity_offset_[k] + 0.0;
+  }
+  const auto lanes = static_cast<std::size_t>(kernel_.lanes);
+  for (std::size_t i = 0; i < gait_to_gains_.size(); ++i) {
+    for (std::size_t j = 0; j < lanes; ++j) {
+      const std::size_t at = gait_to_gains_[i] * lanes + j;
+      velocity_input_[at] = velocity_offset_[at] + gait_->velocity_m_per_s()[i * lanes + j];
+    }
+  }
+}
 
 ImpedanceRows LaneController::Rows() {
   return {static_cast<int>(cables_.size()), cables_.data(),        tension_offset_n_.data(),
           length_offset_m_.data(),          position_gain_.data(), velocity_gain_.data(),
-          velocity_offset_.data(),          error_before_.data(),  integral_.data(),
+          velocity_input_.data(),           error_before_.data(),  integral_.data(),
           length_before_m_.data()};
 }
 
 void LaneController::Act(double time_s, const ReadingRows& sensed, double* target_m,
                          double* set_point_n) {
+  if (gait_ && gait_->Act(time_s, sensed.tension_n)) SetVelocityInput();
   if (!control::IsDue(clock_, tick_, time_s)) return;
   if (!cables_.empty()) kernel_.impedance(law_, Rows(), sensed, target_m, set_point_n);
   for (const Program& program : programs_) {

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "plant/lane_gait.h"
 #include "plant/lane_kernel.h"
 #include "plant/reading_rows.h"
 #include "taut/control/clock.h"
@@ -17,7 +19,7 @@ namespace taut::plant {
 class LaneController {
  public:
   /// `lanes[j]`: this controller in lane j.
-  explicit LaneController(const std::vector<const ControllerSpec*>& lanes);
+  LaneController(const std::vector<const ControllerSpec*>& lanes, const RobotSpec& robot);
 
   double next_tick_s() const noexcept;
 
@@ -29,6 +31,7 @@ class LaneController {
 
  private:
   ImpedanceRows Rows();
+  void SetVelocityInput();
 
   const LaneKernel& kernel_;
   control::Clock<double> clock_;
@@ -36,8 +39,10 @@ class LaneController {
   ImpedanceLaw law_;
   std::vector<int> cables_;
   std::vector<double> tension_offset_n_, length_offset_m_, position_gain_, velocity_gain_,
-      velocity_offset_;
+      velocity_offset_, velocity_input_;
   std::vector<double> error_before_, integral_, length_before_m_;
+  std::optional<LaneGait> gait_;
+  std::vector<std::size_t> gait_to_gains_;  ///< Per output of the gait: its place in `cables_`.
   struct Program {
     int cable = 0;
     std::vector<control::ProgramPoint<double>> points;

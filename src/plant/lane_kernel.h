@@ -2,6 +2,8 @@
 /// the step is (lane_*.cpp). Rows hold cable (or driven cable) i of lane j at [i * lanes + j].
 #pragma once
 
+#include <stddef.h>
+
 #include "plant/impedance_step.h"
 
 namespace taut::plant {
@@ -14,7 +16,7 @@ struct ImpedanceRows {
   const int* cable = nullptr;  ///< Per driven cable: its index.
   const double *tension_offset_n = nullptr, *length_offset_m = nullptr,
                *position_gain_n_per_m = nullptr, *velocity_gain_n_s_per_m = nullptr,
-               *velocity_offset_m_per_s = nullptr;
+               *velocity_input_m_per_s = nullptr;
   double *error_before = nullptr, *integral = nullptr, *length_before_m = nullptr;  ///< Memory.
 };
 
@@ -26,6 +28,23 @@ struct MeasureRows {
   double* error_n2_s = nullptr;     ///< Integral of the mean squared tension error (adds).
 };
 
+/// Sine waves: one an output.
+struct SineRows {
+  int count = 0;
+  const double *frequency_hz = nullptr, *amplitude_m_per_s = nullptr, *phase_turns = nullptr,
+               *offset_m_per_s = nullptr;
+};
+
+/// A network of oscillators, one an output, as numbers; `cpg_start` makes of it what `cpg_tick`
+/// works on.
+struct CpgRows {
+  int count = 0, coupling_count = 0;
+  const double *frequency_hz = nullptr, *amplitude_m_per_s = nullptr,
+               *convergence_per_s = nullptr;                     ///< Per oscillator.
+  const unsigned short *to = nullptr, *from = nullptr;           ///< Per coupling; all lanes.
+  const double *weight_per_m = nullptr, *phase_turns = nullptr;  ///< Per coupling.
+};
+
 struct LaneKernel {
   int lanes;
   /// A tick of impedance control: writes target_m and set_point_n (per cable).
@@ -35,6 +54,14 @@ struct LaneKernel {
   /// points.
   void (*measure)(const ReadingRows&, int cables, const double* motor, const double* set_point_n,
                   const int* driven, int driven_count, double step_s, const MeasureRows&);
+  void (*sine)(const SineRows&, double time_s, double* velocity_m_per_s);
+  /// Memory for a network [bytes], aligned to 64.
+  size_t (*cpg_bytes)(int count, int coupling_count);
+  void (*cpg_start)(const CpgRows&, void* memory);
+  /// `steps` of `step_s`, then the velocities times `sign` (per oscillator, all lanes). `feedback`
+  /// (rad/s) may be null.
+  void (*cpg_tick)(int count, int coupling_count, void* memory, const double* feedback,
+                   double step_s, int steps, const double* sign, double* velocity_m_per_s);
 };
 
 extern const LaneKernel kLanesScalar;

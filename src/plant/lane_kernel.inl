@@ -4,6 +4,8 @@
 #include "plant/lane_kernel.h"
 #include "plant/reading_rows.h"
 #include "simd/wide.h"
+#include "taut/control/cpg.h"
+#include "taut/control/sine.h"
 
 namespace taut::plant {
 
@@ -36,7 +38,7 @@ void ActCables(ImpedanceLaw law, const ImpedanceRows rows, const ReadingRows sen
     if (kByPid) memory.pid = {Load<W>(rows.error_before, i), Load<W>(rows.integral, i)};
     if (kDifferenced) memory.difference = {Load<W>(rows.length_before_m, i)};
     const ImpedanceCommand<W> command =
-        StepImpedance(law, gains, Load<W>(rows.velocity_offset_m_per_s, i), s, memory);
+        StepImpedance(law, gains, Load<W>(rows.velocity_input_m_per_s, i), s, memory);
     if (kByPid) {
       Store(rows.error_before, i, memory.pid.error_before);
       Store(rows.integral, i, memory.pid.integral);
@@ -86,8 +88,85 @@ void Measure(const ReadingRows& now, int cables, const double* motor, const doub
 }
 
 template <class W>
+void TickSine(const SineRows& rows, double time_s, double* velocity_m_per_s) {
+  const W t = W::Splat(time_s);
+  for (int i = 0; i < rows.count; ++i) {
+    const control::Sine<W> wave{Load<W>(rows.amplitude_m_per_s, i), Load<W>(rows.phase_turns, i),
+                                Load<W>(rows.offset_m_per_s, i)};
+    const W turns = control::ClockTurns(Load<W>(rows.frequency_hz, i), t);
+    Store(velocity_m_per_s, i, control::SineVelocity(wave, turns));
+  }
+}
+
+/// A network in memory that the caller keeps.
+template <class W>
+struct LaneCpg {
+  control::CpgLaw<W>* laws;
+  control::CpgCoupling<W>* couplings;
+  control::CpgState<W>* states;
+  control::CpgWork<W>* work;
+  W* feedback;
+  char* end;
+
+  LaneCpg(int count, int coupling_count, void* memory) noexcept : end(static_cast<char*>(memory)) {
+    laws = Take<control::CpgLaw<W>>(count);
+    couplings = Take<control::CpgCoupling<W>>(coupling_count);
+    states = Take<control::CpgState<W>>(count);
+    work = Take<control::CpgWork<W>>(count);
+    feedback = Take<W>(count);
+  }
+  template <class T>
+  T* Take(int count) noexcept {
+    T* const first = reinterpret_cast<T*>(end);
+    end += sizeof(T) * static_cast<size_t>(count);
+    return first;
+  }
+};
+
+template <class W>
+size_t CpgBytes(int count, int coupling_count) {
+  using control::CpgCoupling, control::CpgLaw, control::CpgState, control::CpgWork;
+  return static_cast<size_t>(count) *
+             (sizeof(CpgLaw<W>) + sizeof(CpgState<W>) + sizeof(CpgWork<W>) + sizeof(W)) +
+         static_cast<size_t>(coupling_count) * sizeof(CpgCoupling<W>);
+}
+
+template <class W>
+void StartCpg(const CpgRows& rows, void* memory) {
+  const LaneCpg<W> cpg(rows.count, rows.coupling_count, memory);
+  for (int i = 0; i < rows.count; ++i) {
+    cpg.laws[i] = {Load<W>(rows.frequency_hz, i), Load<W>(rows.amplitude_m_per_s, i),
+                   Load<W>(rows.convergence_per_s, i)};
+    cpg.states[i] = control::StartCpg<W>();
+  }
+  for (int k = 0; k < rows.coupling_count; ++k) {
+    cpg.couplings[k] = control::MakeCoupling(
+        rows.to[k], rows.from[k], Load<W>(rows.weight_per_m, k), Load<W>(rows.phase_turns, k));
+  }
+}
+
+template <class W>
+void TickCpg(int count, int coupling_count, void* memory, const double* feedback, double step_s,
+             int steps, const double* sign, double* velocity_m_per_s) {
+  const LaneCpg<W> cpg(count, coupling_count, memory);
+  const control::CpgNetwork<W> network{cpg.laws, static_cast<size_t>(count), cpg.couplings,
+                                       static_cast<size_t>(coupling_count)};
+  for (int i = 0; feedback != nullptr && i < count; ++i) cpg.feedback[i] = Load<W>(feedback, i);
+  for (int left = steps; left > 0;) {
+    const int now = left < 60000 ? left : 60000;
+    control::StepCpg(network, feedback != nullptr ? cpg.feedback : nullptr, W::Splat(step_s),
+                     static_cast<unsigned short>(now), cpg.states, cpg.work);
+    left -= now;
+  }
+  for (int i = 0; i < count; ++i) {
+    Store(velocity_m_per_s, i, W::Splat(sign[i]) * control::CpgVelocity(cpg.states[i]));
+  }
+}
+
+template <class W>
 constexpr LaneKernel MakeLaneKernel() {
-  return {W::kLanes, ActImpedance<W>, Measure<W>};
+  return {W::kLanes,   ActImpedance<W>, Measure<W>, TickSine<W>,
+          CpgBytes<W>, StartCpg<W>,     TickCpg<W>};
 }
 
 }  // namespace taut::plant

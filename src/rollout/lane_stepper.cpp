@@ -17,7 +17,7 @@ LaneStepper::LaneStepper(const ExperimentSpec& experiment,
   for (std::size_t c = 0; c < experiment.controllers.size(); ++c) {
     std::vector<const ControllerSpec*> same;
     for (const RolloutWorld* lane : lanes) same.push_back(&lane->controllers[c]);
-    controllers_.emplace_back(same);
+    controllers_.emplace_back(same, experiment.robot);
     const std::vector<int>& driven = controllers_.back().driven();
     driven_.insert(driven_.end(), driven.begin(), driven.end());
   }

@@ -63,6 +63,11 @@ std::vector<Tunable> FindTunables(std::vector<ControllerSpec>& controllers,
   std::vector<Tunable> out;
   for (ControllerSpec& controller : controllers) {
     AddGains(controller, robot, out);
+    if (!controller.velocity_input) continue;
+    for (const GaitValue& value : GaitValues(controller.velocity_input->gait)) {
+      out.push_back(
+          {controller.name + "." + value.name, value.unit, value.value, value.min, value.max});
+    }
   }
   for (ScaleSpec& scale : scales) {
     out.push_back({ScaleName(scale, robot), "1", &scale.factor, 0.0, kInf});

@@ -29,6 +29,9 @@ std::vector<RolloutWorld> Varied(const ExperimentSpec& experiment, int count) {
     for (ImpedanceGains& gains : world.controllers[0].impedance->cables) {
       gains.tension_offset_n *= 1 + 0.02 * i;
     }
+    if (auto& input = world.controllers[0].velocity_input) {
+      for (const GaitValue& value : GaitValues(input->gait)) *value.value *= 1 + 0.001 * i;
+    }
     if (i > 0) {
       world.scales.push_back({ScaleSpec::Quantity::kMass, {}, 1 + 0.01 * i});
       world.scales.push_back({ScaleSpec::Quantity::kFriction, {}, 1 - 0.01 * i});
@@ -96,6 +99,14 @@ TEST(Rollout, SoItDoesWithSensors) {
   experiment.sensors->load_cell = LoadCellSpec{0.1, 0.2, 0.0, 50.0, 0.05, 0.003};
   experiment.sensors->encoder = EncoderSpec{1e-5, 0.001};
   experiment.sensors->length_from_tension = true;
+  EveryWorldEqualsItsRun(experiment);
+}
+
+TEST(Rollout, SoItDoesWithASineGait) { EveryWorldEqualsItsRun(Load("sine_hand_tuned", 0.5)); }
+
+TEST(Rollout, SoItDoesWithOscillatorsThatFeel) {
+  ExperimentSpec experiment = Load("cpg_learned", 0.4);
+  experiment.controllers[0].velocity_input->gait.cpg->feedback = CpgFeedback{0.1, 10.0};
   EveryWorldEqualsItsRun(experiment);
 }
 

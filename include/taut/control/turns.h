@@ -35,7 +35,8 @@ struct SineTerms<float> {
   static constexpr int kCount = 7;
 };
 
-/// (-1)^n (2 pi)^(2n+1) / (2n+1)!, rounded.
+/// (-1)^n (2 pi)^(2n+1) / (2n+1)!, rounded. A template, so that instruction sets share no function.
+template <class Real>
 constexpr double SineTerm(int n) noexcept {
   constexpr double kTerms[] = {
       6.283185307179586,   -41.34170224039976,    81.60524927607506,     -76.70585975306139,
@@ -49,9 +50,9 @@ constexpr double SineTerm(int n) noexcept {
 template <class Real>
 constexpr Real SineSeries(Real x) noexcept {
   const Real x2 = x * x;
-  Real sum = control::FromScalar<Real>(SineTerm(SineTerms<Real>::kCount - 1));
+  Real sum = control::FromScalar<Real>(SineTerm<Real>(SineTerms<Real>::kCount - 1));
   for (int n = SineTerms<Real>::kCount - 2; n >= 0; --n) {
-    sum = sum * x2 + control::FromScalar<Real>(SineTerm(n));
+    sum = sum * x2 + control::FromScalar<Real>(SineTerm<Real>(n));
   }
   return sum * x;
 }

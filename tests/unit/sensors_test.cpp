@@ -1,0 +1,197 @@
+// Sensors between the robot and its controllers, against closed forms.
+#include "plant/sensors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "plant/stepper.h"
+
+namespace taut::plant {
+namespace {
+
+/// Rows for one cable in one world.
+struct One {
+  double rest = 1.0, length = 1.1, rate = 0.0, tension = 10.0, elastic = 9.0, stiffness = 100.0;
+  ReadingRows rows() const { return {&rest, &length, &rate, &tension, &elastic, &stiffness}; }
+};
+
+SensorSpec WithCell(const LoadCellSpec& cell) {
+  SensorSpec spec;
+  spec.load_cell = cell;
+  return spec;
+}
+
+/// Tensions that a cell says of a constant one.
+std::vector<double> Samples(const LoadCellSpec& cell, double tension_n, int count,
+                            std::uint64_t seed = 1) {
+  Sensors sensors(WithCell(cell), 1, {seed});
+  One exact;
+  exact.tension = tension_n;
+  std::vector<double> out;
+  for (int i = 0; i < count; ++i) {
+    sensors.Sample(sensors.next_tick_s(), exact.rows());
+    out.push_back(sensors.rows().tension_n[0]);
+  }
+  return out;
+}
+
+struct Moments {
+  double mean = 0, variance = 0;
+};
+Moments MomentsOf(const std::vector<double>& x) {
+  Moments m;
+  for (const double v : x) m.mean += v / static_cast<double>(x.size());
+  for (const double v : x)
+    m.variance += (v - m.mean) * (v - m.mean) / static_cast<double>(x.size());
+  return m;
+}
+
+TEST(Sensors, WithoutAnythingAreExact) {
+  Sensors sensors(SensorSpec{}, 1, {1});
+  One exact;
+  sensors.Sample(0.0, exact.rows());
+  const ReadingRows seen = sensors.rows();
+  EXPECT_EQ(*seen.rest_length_m, exact.rest);
+  EXPECT_EQ(*seen.length_m, exact.length);
+  EXPECT_EQ(*seen.tension_n, exact.tension);
+  EXPECT_EQ(*seen.elastic_n, exact.elastic);
+  EXPECT_EQ(*seen.stiffness_n_per_m, exact.stiffness);
+}
+
+// n = 100000 samples: the mean is good to s / sqrt(n), the variance to s^2 sqrt(2 / n); times five.
+TEST(Sensors, NoiseHasTheVarianceThatWasAskedFor) {
+  LoadCellSpec cell;
+  cell.noise_n = 0.3;
+  const int n = 100'000;
+  const Moments m = MomentsOf(Samples(cell, 10.0, n));
+  EXPECT_NEAR(m.mean, 10.0, 5 * 0.3 / std::sqrt(n));
+  EXPECT_NEAR(m.variance, 0.09, 5 * 0.09 * std::sqrt(2.0 / n));
+  EXPECT_EQ(Samples(cell, 10.0, 5, 7), Samples(cell, 10.0, 5, 7));
+  EXPECT_NE(Samples(cell, 10.0, 5, 7), Samples(cell, 10.0, 5, 8));
+}
+
+TEST(Sensors, ABiasStaysForARunAndDiffersBetweenRuns) {
+  LoadCellSpec cell;
+  cell.bias_n = 0.5;
+  std::vector<double> biases;
+  for (std::uint64_t seed = 0; seed < 20'000; ++seed) {
+    const auto samples = Samples(cell, 10.0, 2, seed);
+    ASSERT_EQ(samples[0], samples[1]);
+    biases.push_back(samples[0] - 10.0);
+  }
+  const Moments m = MomentsOf(biases);
+  EXPECT_NEAR(m.mean, 0.0, 5 * 0.5 / std::sqrt(20'000));
+  EXPECT_NEAR(m.variance, 0.25, 5 * 0.25 * std::sqrt(2.0 / 20'000));
+}
+
+// A rounded number is off by up to half a quantum, evenly: variance q^2 / 12. The number runs
+// through n = 1000 places of each quantum, whose own variance is q^2 / 12 (1 - 1 / n^2).
+TEST(Sensors, QuantaAreThoseOfTheConverter) {
+  LoadCellSpec cell;
+  cell.max_n = 100.0;
+  cell.quantum_n = 100.0 / 1023.0;
+  std::vector<double> errors;
+  for (int i = 0; i < 10'000; ++i) {
+    const double exact = 20.0 + cell.quantum_n * (i + 0.5) / 1000;
+    const double seen = Samples(cell, exact, 1)[0];
+    const double counts = seen / cell.quantum_n;
+    ASSERT_NEAR(counts, std::round(counts), 1e-9);
+    ASSERT_LE(std::fabs(seen - exact), 0.5 * cell.quantum_n * (1 + 1e-9));
+    errors.push_back(seen - exact);
+  }
+  const Moments m = MomentsOf(errors);
+  const double q = cell.quantum_n;
+  EXPECT_NEAR(m.variance, q * q / 12, 1e-3 * q * q);
+}
+
+TEST(Sensors, ACellSaturatesAtTheEndsOfItsRange) {
+  LoadCellSpec cell;
+  cell.min_n = 1.0;
+  cell.max_n = 50.0;
+  EXPECT_EQ(Samples(cell, 60.0, 1)[0], 50.0);
+  EXPECT_EQ(Samples(cell, 0.2, 1)[0], 1.0);
+  EXPECT_EQ(Samples(cell, 20.0, 1)[0], 20.0);
+}
+
+// A ramp seen d samples late is lower by d times its rise; before that, the first sample holds.
+TEST(Sensors, ADelayIsWholeSamples) {
+  LoadCellSpec cell;
+  cell.delay_s = 0.003;
+  SensorSpec spec = WithCell(cell);
+  spec.encoder = EncoderSpec{0.0, 0.001};
+  Sensors sensors(spec, 1, {1});
+  One exact;
+  for (int i = 0; i < 10; ++i) {
+    exact.tension = 10.0 + i;
+    exact.rest = 1.0 - 0.25 * i;
+    sensors.Sample(sensors.next_tick_s(), exact.rows());
+    EXPECT_EQ(*sensors.rows().tension_n, 10.0 + std::max(0, i - 3));
+    EXPECT_EQ(*sensors.rows().elastic_n, *sensors.rows().tension_n);  // all that a cell can tell
+    EXPECT_EQ(*sensors.rows().rest_length_m, 1.0 - 0.25 * std::max(0, i - 1));
+  }
+}
+
+TEST(Sensors, AnEncoderCounts) {
+  SensorSpec spec;
+  spec.encoder = EncoderSpec{0.25, 0.0};
+  Sensors sensors(spec, 1, {1});
+  One exact;
+  for (const auto& [rest, seen] : {std::pair{1.1, 1.0}, {1.13, 1.25}, {0.1, 0.0}}) {
+    exact.rest = rest;
+    sensors.Sample(sensors.next_tick_s(), exact.rows());
+    EXPECT_EQ(*sensors.rows().rest_length_m, seen);
+  }
+}
+
+// L + T / k, and its rate from one sample to the next.
+TEST(Sensors, LengthFollowsFromTensionAndRestLength) {
+  SensorSpec spec;
+  spec.length_from_tension = true;
+  Sensors sensors(spec, 1, {1});
+  One exact;
+  sensors.Sample(0.0, exact.rows());
+  EXPECT_DOUBLE_EQ(*sensors.rows().length_m, 1.0 + 10.0 / 100.0);
+  EXPECT_EQ(*sensors.rows().rate_m_per_s, 0.0);
+  exact.tension = 10.5;
+  sensors.Sample(0.001, exact.rows());
+  EXPECT_NEAR(*sensors.rows().rate_m_per_s, 0.005 / 0.001, 1e-9);
+}
+
+TEST(Sensors, SampleOnTheirOwnClock) {
+  SensorSpec spec;
+  spec.period_s = 0.01;
+  Sensors sensors(spec, 1, {1});
+  One exact;
+  for (int ms = 0; ms < 30; ++ms) {
+    exact.tension = ms;
+    sensors.Sample(0.001 * ms, exact.rows());
+    EXPECT_EQ(*sensors.rows().tension_n, ms / 10 * 10);
+  }
+}
+
+// The same noise whatever the step: samples are numbered, not steps.
+TEST(Sensors, NoiseDoesNotDependOnTheStep) {
+  Diagnostics out;
+  auto experiment =
+      LoadExperiment(std::string(TAUT_SOURCE_DIR) + "/experiments/stand_still.yaml", {}, out);
+  ASSERT_TRUE(experiment) << out.Format();
+  LoadCellSpec cell;
+  cell.noise_n = 1.0;
+  experiment->sensors = WithCell(cell);
+  const auto noise_at_end = [&](double step_s) {
+    experiment->step_s = step_s;
+    Batch batch(Model::Compile(experiment->robot.def, out), {});
+    Stepper stepper(*experiment, batch);
+    while (stepper.time_s() < 0.1 - 1e-9) stepper.Step();
+    const std::vector<CableReading> exact = stepper.readings();
+    stepper.Prepare();
+    return stepper.sensed()[3].tension_n - exact[3].tension_n;
+  };
+  const double noise = noise_at_end(0.001);
+  EXPECT_GT(std::fabs(noise), 1e-3);
+  EXPECT_NEAR(noise_at_end(0.0001), noise, 1e-12);
+}
+
+}  // namespace
+}  // namespace taut::plant
