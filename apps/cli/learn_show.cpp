@@ -85,13 +85,18 @@ int ReplayBest(const std::string& folder, bool quiet) {
   const auto summary = RunExperiment(experiment, options, found);
   if (!summary) return Fail(found, kFailed);
   WriteText(out / "summary.json", SummaryJson(*summary), found);
+  for (const ControllerSpec& controller : experiment.controllers) {
+    if (!controller.velocity_input) continue;
+    const fs::path gait = out / (controller.name + ".gait.yaml");
+    SaveGait(controller.velocity_input->gait, gait.string(), found);
+  }
   viewer::WriteReport((out / "trace.h5").string(), "", (out / "report.html").string(), found);
   if (!quiet) {
     fmt::print("{}: evaluation {} of {}, score {:.8g}\n", study->name, best->id,
                study->evaluations.size(), best->score);
     PrintValues(*study, *best);
     fmt::print("{}", SummaryTable(*summary));
-    fmt::print("Trace, inputs, summary and report: {}\n", out.string());
+    fmt::print("Trace, inputs, summary, gait and report: {}\n", out.string());
   }
   if (!best->worlds.empty() && best->worlds[0].state_hash != summary->state_hash) {
     found.Error({folder}, "the replay does not end in the state that was logged",

@@ -101,8 +101,8 @@ double ParameterValue(const StudyParameter& p, double x) {
   if (x <= 0) return p.low;
   if (x >= 1) return p.high;
   if (!p.log) return p.low + x * (p.high - p.low);
-  const double ratio = math::Log(p.high / p.low);
-  return std::min(p.high, std::max(p.low, p.low * math::Exp(x * ratio)));
+  const double low = math::Log(p.low), high = math::Log(p.high);
+  return std::min(p.high, std::max(p.low, math::Exp(low + x * (high - low))));
 }
 
 RolloutWorld NominalWorld(const StudySpec& study, const std::vector<double>& values) {
