@@ -12,8 +12,10 @@
 #include "commands.h"
 #include "learn_show.h"
 #include "overrides.h"
+#include "taut/cluster.h"
 #include "taut/learn.h"
 #include "taut/study.h"
+#include "taut/version.h"
 
 namespace taut::cli {
 namespace {
@@ -27,7 +29,7 @@ extern "C" void AskStop(int) { stop_asked = true; }
 struct LearnArguments {
   std::string path, out;
   std::vector<std::string> set;
-  int threads = 0, top = 0;
+  int threads = -1, top = 0;
   bool best = false, parameters = false, json = false, quiet = false;
 };
 
@@ -95,31 +97,55 @@ int ListParameters(const LearnArguments& args, const Overrides& overrides) {
   return kOk;
 }
 
-int Search(const LearnArguments& args, const Overrides& overrides) {
+/// What all processes of a cluster must agree on.
+std::string Agreed(const StudySpec& study) {
+  return std::string(kVersion) + "\n" + StudyText(study) + ResolvedYaml(study.experiment);
+}
+
+int SearchAlone(const StudySpec& study, const LearnArguments& args, Evaluator& evaluator) {
   Diagnostics found;
-  const auto study = LoadStudy(args.path, overrides, found);
-  if (!study) return Fail(found, kBadInput);
-  const auto evaluator = MakeEvaluator(*study, args.threads, &stop_asked, found);
-  if (!evaluator) return Fail(found, kBadInput);
   LearnOptions options;
-  options.folder = args.out.empty() ? (fs::path("runs") / study->name).string() : args.out;
+  options.folder = args.out.empty() ? (fs::path("runs") / study.name).string() : args.out;
   options.stop = &stop_asked;
   ProgressLine line(args.quiet);
   options.progress = [&](const LearnProgress& p) { line.Show(p); };
-  std::signal(SIGINT, AskStop);
-  std::signal(SIGTERM, AskStop);
-  const auto summary = RunStudy(*study, *evaluator, options, found);
+  const auto summary = RunStudy(study, evaluator, options, found);
   line.Clear();
   if (!summary) {
     const bool refused = found.Format().find("holds another study") != std::string::npos;
     return Fail(found, refused ? kBadInput : kFailed);
   }
-  if (!args.quiet) PrintSummary(*summary, *study, options.folder);
+  if (!args.quiet) PrintSummary(*summary, study, options.folder);
   if (summary->interrupted) {
     fmt::print(stderr, "interrupted; the same command goes on from here\n");
     return kInterrupted;
   }
   return summary->best ? kOk : kFailed;
+}
+
+int Search(const LearnArguments& args, const Overrides& overrides) {
+  Diagnostics found;
+  const auto cluster = Cluster::Join(found);
+  if (!cluster) return Fail(found, kFailed);
+  const auto study = LoadStudy(args.path, overrides, found);
+  // The processes of a cluster have a core each, unless told otherwise.
+  const int threads = args.threads < 0 ? (cluster->size() > 1 ? 1 : 0) : args.threads;
+  const auto local = study ? MakeEvaluator(*study, threads, &stop_asked, found) : nullptr;
+  std::signal(SIGINT, AskStop);
+  std::signal(SIGTERM, AskStop);
+  const bool agree = cluster->Agree(local ? Agreed(*study) : "");
+  if (cluster->rank() > 0) {
+    if (!agree || !local) return local ? kFailed : kBadInput;  // rank 0 says why
+    cluster->Serve(*local);
+    return kOk;
+  }
+  if (!local) return Fail(found, kBadInput);
+  if (!agree) {
+    found.Error({args.path}, "the processes of the cluster have read different studies",
+                "does every machine see the same files, and the same taut?");
+    return Fail(found, kFailed);
+  }
+  return SearchAlone(*study, args, *cluster->Spread(*local, &stop_asked));
 }
 
 int Run(const LearnArguments& args) {
@@ -146,7 +172,7 @@ void AddLearn(CLI::App& app, int& exit_code) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   learn->add_option("--out", args->out, "Folder to write into (default: runs/<study>)");
-  learn->add_option("--threads", args->threads, "Threads, 0: one a core (default)")
+  learn->add_option("--threads", args->threads, "Threads, 0: one a core (default; 1 under mpirun)")
       ->check(CLI::Range(0, 1024));
   auto* best = learn->add_flag("--best", args->best,
                                "Replay the best of a folder: trace, summary, report in best/");

@@ -1,0 +1,12 @@
+/// The cluster that is one process.
+#pragma once
+
+#include <memory>
+
+#include "taut/cluster.h"
+
+namespace taut::cluster {
+
+std::unique_ptr<Cluster> MakeAlone();
+
+}  // namespace taut::cluster
