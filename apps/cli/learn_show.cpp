@@ -88,7 +88,11 @@ int ReplayBest(const std::string& folder, bool quiet) {
   for (const ControllerSpec& controller : experiment.controllers) {
     if (!controller.velocity_input) continue;
     const fs::path gait = out / (controller.name + ".gait.yaml");
-    SaveGait(controller.velocity_input->gait, gait.string(), found);
+    GaitSpec learned = controller.velocity_input->gait;
+    learned.name = study->name;
+    learned.description = fmt::format("Learned: evaluation {} of the study {}, score {:.6g}.",
+                                      best->id, study->name, best->score);
+    SaveGait(learned, gait.string(), found);
   }
   viewer::WriteReport((out / "trace.h5").string(), "", (out / "report.html").string(), found);
   if (!quiet) {

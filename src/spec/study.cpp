@@ -48,7 +48,9 @@ class StudyReader {
     if (const Value* worlds = map_.Find("worlds")) {
       study_.perturbation = ReadPerturbation(*worlds, scope_);
     }
-    study_.searches = ReadSearches(map_.Require("search"), study_.parameters.size(), scope_);
+    // After complaints about `vary` nobody knows how many parameters were meant.
+    const std::size_t dimensions = scope_.out.ok() ? study_.parameters.size() : 0;
+    study_.searches = ReadSearches(map_.Require("search"), dimensions, scope_);
     return std::move(study_);
   }
 

@@ -33,7 +33,7 @@ std::vector<std::size_t> Match(const Value& value, const std::string& what,
     }
     if (any) continue;
     std::string hint = NameHint(text, names);
-    if (hint.size() > 200) hint = "`taut learn --parameters STUDY` lists them all";
+    if (hint.size() > 200) hint = "`taut learn --parameters EXPERIMENT` lists them all";
     scope.out.Error(pattern->at, what + ": nothing is called \"" + text + "\"", hint);
   }
   return {found.begin(), found.end()};

@@ -26,7 +26,7 @@ docs = importlib.util.module_from_spec(importlib.util.spec_from_loader("docs", l
 sys.dont_write_bytecode = True
 loader.exec_module(docs)
 
-KINDS = {"model": "models", "experiment": "experiments", "gait": "gaits"}
+KINDS = {"model": "models", "experiment": "experiments", "gait": "gaits", "study": "studies"}
 PROBE = ""
 
 
@@ -51,7 +51,7 @@ UNIT_OF_SUFFIX = {
     "_rad_per_n_s": "[rad/(N s)]", "convergence_per_s": "[1/s]", "weight_per_m": "[1/m]",
     "_n_s_per_m": "[N s/m]", "_n_per_m": "[N/m]", "_kg_per_m3": "[kg/m^3]", "_kg_per_m": "[kg/m]",
     "_rad_per_s": "[rad/s]", "_m_per_s2_n": "[m/(s^2 N)]", "_m_per_s_n": "[m/(s N)]",
-    "_m_per_s2": "[m/s^2]", "_m_per_s": "[m/s]", "_m_per_n": "[m/N]", "_kg": "[kg]",
+    "_m_per_s2": "[m/s^2]", "_m_per_s": "[m/s]", "_m_per_n": "[m/N]", "_per_n": "[1/N]", "_kg": "[kg]",
     "_rad": "[rad]", "_hz": "[Hz]", "_n": "[N]", "_s": "[s]", "_m": "[m]",
 }
 
@@ -124,6 +124,8 @@ def test_SchemasRefuseWhatTheReaderRefuses():
     push = (ROOT / "experiments" / "push_20n.yaml").read_text()
     push = push.replace("../models/", str(ROOT / "models") + "/")
     spine = (ROOT / "models" / "tetraspine3.yaml").read_text()
+    study = (ROOT / "studies" / "sidewinder3.yaml").read_text()
+    study = study.replace("../experiments/", str(ROOT / "experiments") + "/")
     changes = [
         ("experiment", push, "period_s: 0.001\n", "perod_s: 0.001\n"),
         ("experiment", push, "duration_s: 60", ""),
@@ -133,6 +135,15 @@ def test_SchemasRefuseWhatTheReaderRefuses():
         ("experiment", push, "start: as_described", "start: somehow"),
         ("experiment", push, "rate_hz: 100", "rate_hz: [100]"),
         ("experiment", push, "conversion: stiffness", "conversion: pid"),
+        ("experiment", push, "start: as_described", "scale: [{friction: 1, mass: 1}]"),
+        ("experiment", push, "start: as_described", "sensors: {load_cell: {bits: 10}}"),
+        ("study", study, "high: 2,", "height: 2,"),
+        ("study", study, "measure: distance", "measure: happiness"),
+        ("study", study, "measure: distance", "from_s: 2"),
+        ("study", study, "each: motion.sine.frequency_hz,", ""),
+        ("study", study, "method: monte_carlo", "method: magic"),
+        ("study", study, "evaluations: 256, ", ""),
+        ("study", study, "experiment: ", "# experiment: "),
         ("model", spine, "radius_m: rod_radius_m", "radius: rod_radius_m"),
         ("model", spine, "prestress_n: 7", "prestress_n: 7\n      rest_length_m: 0.1"),
         ("model", spine, "ends: surface", "ends: anywhere"),
@@ -178,6 +189,12 @@ def sample_key(schema, node, key, folder):
         return str(folder / f"base_{schema['properties']['kind']['const']}.yaml")
     if key == "model":
         return str(ROOT / "models" / "rod.yaml")
+    if key == "experiment":
+        return str(ROOT / "experiments" / "stand_still.yaml")
+    if key in ("each", "all"):
+        return "model.friction"
+    if key == "high":
+        return 2
     return sample(schema, node["properties"][key], folder)
 
 
@@ -192,6 +209,8 @@ def least_map(schema, node, folder, with_key=None):
     out = {key: sample_key(schema, node, key, folder) for key in needed if key != "base"}
     if with_key == "pid":
         out["conversion"] = "pid"
+    if with_key == "algorithm":
+        out["method"] = "nlopt"
     return out
 
 

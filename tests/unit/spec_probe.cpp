@@ -1,12 +1,13 @@
-// Loads model, experiment and gait files and prints what is wrong with them, for tests in other
-// languages: spec_probe [--set name=value]... [--resolved] FILE...
-// Exit status 1 if anything is wrong.
+// Loads model, experiment, gait and study files and prints what is wrong with them, for tests in
+// other languages: spec_probe [--set name=value]... [--resolved] FILE... Exit status 1 if anything
+// is wrong.
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <string>
 
 #include "taut/spec.h"
+#include "taut/study.h"
 
 namespace {
 
@@ -38,6 +39,8 @@ int main(int argc, char** argv) {
       taut::LoadRobot(argument, overrides, out);
     } else if (IsOfKind("gait", argument)) {
       taut::LoadGait(argument, out);
+    } else if (IsOfKind("study", argument)) {
+      taut::LoadStudy(argument, overrides, out);
     } else if (const auto experiment = taut::LoadExperiment(argument, overrides, out)) {
       if (resolved) std::cout << taut::ResolvedYaml(*experiment);
     }

@@ -1,0 +1,155 @@
+// What is wrong with a study is said, all at once, with its place and a hint.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "taut/study.h"
+
+namespace taut {
+namespace {
+
+const std::string kGood = R"(taut: 1
+kind: study
+name: s
+experiment: )" TAUT_SOURCE_DIR R"(/experiments/push_20n.yaml
+seed: 1
+vary:
+  - {each: impedance.outer_*_1.tension_offset_n, low: 1, high: 20}
+  - {name: friction, all: model.friction, low: 0.5, high: 2, scale: log}
+objective: {measure: heading, direction: [0, 2, 0], from_s: 5}
+worlds: {count: 4, friction: 0.2, start: {position_m: 0.001}, score: worst}
+search:
+  - {method: monte_carlo, evaluations: 10}
+  - {method: nlopt, algorithm: bobyqa, evaluations: 20}
+)";
+
+class StudyFile : public testing::Test {
+ protected:
+  std::optional<StudySpec> Load(const std::string& text) {
+    const auto path = std::filesystem::temp_directory_path() /
+                      ("taut_study_" + std::to_string(getpid()) + ".yaml");
+    std::ofstream(path) << text;
+    out_ = {};
+    auto study = LoadStudy(path.string(), {}, out_);
+    std::filesystem::remove(path);
+    return study;
+  }
+  /// The messages, without the file's name, for the good study with `old` replaced.
+  std::string Wrong(const std::string& old, const std::string& by) {
+    std::string text = kGood;
+    const std::size_t at = text.find(old);
+    EXPECT_NE(at, text.npos) << old;
+    EXPECT_FALSE(Load(text.replace(at, old.size(), by)));
+    std::string messages;
+    for (const Diagnostic& d : out_.items()) {
+      messages += std::to_string(d.at.line) + ": " + d.what +
+                  (d.hint.empty() ? "" : " (" + d.hint + ")") + "\n";
+    }
+    return messages;
+  }
+  Diagnostics out_;
+};
+
+TEST_F(StudyFile, IsRead) {
+  const auto study = Load(kGood);
+  ASSERT_TRUE(study) << out_.Format();
+  ASSERT_EQ(study->parameters.size(), 4u);
+  EXPECT_EQ(study->parameters[0].name, "impedance.outer_right_1.tension_offset_n");
+  EXPECT_EQ(study->parameters[0].unit, "N");
+  EXPECT_EQ(study->parameters[3].name, "friction");
+  EXPECT_TRUE(study->parameters[3].log);
+  EXPECT_EQ(study->objective.direction.y, 1.0);
+  EXPECT_TRUE(study->perturbation.worst);
+  EXPECT_EQ(std::get<NloptSpec>(study->searches[1].method).algorithm, "bobyqa");
+}
+
+TEST_F(StudyFile, UnknownNamesAreSaidWithTheLikelyOne) {
+  EXPECT_EQ(
+      Wrong("all: model.friction", "all: model.fricton"),
+      "8: vary.all: nothing is called \"model.fricton\" (did you mean \"model.friction\"?)\n");
+  const std::string far = Wrong("impedance.outer_*_1.tension_offset_n", "nothing.like.it");
+  EXPECT_EQ(far,
+            "7: vary.each: nothing is called \"nothing.like.it\" (`taut learn --parameters "
+            "EXPERIMENT` lists them all)\n");
+}
+
+TEST_F(StudyFile, BoundsMustLeaveRoom) {
+  EXPECT_EQ(Wrong("low: 1, high: 20", "low: 20, high: 1"),
+            "7: vary: low 20 is above high 1 (to keep a number fixed, write it in the "
+            "experiment)\n");
+  EXPECT_EQ(Wrong("low: 1, high: 20", "low: 3, high: 3"),
+            "7: vary: nothing lies between low and high, both 3 (to keep a number fixed, write it "
+            "in the experiment)\n");
+  EXPECT_EQ(Wrong("low: 1, high: 20", "low: .nan, high: 20").substr(0, 12), "7: vary.low ");
+  EXPECT_EQ(Wrong("low: 0.5, high: 2", "low: 0, high: 2"),
+            "8: vary: scale: log needs bounds above 0, got 0\n");
+  EXPECT_EQ(Wrong("low: 1, high: 20", "low: -1, high: 20"),
+            "7: vary: impedance.outer_right_1.tension_offset_n must stay within 0..inf N\n");
+}
+
+TEST_F(StudyFile, ANumberIsVariedOnce) {
+  EXPECT_EQ(Wrong("all: model.friction", "all: impedance.outer_top_1.tension_offset_n"),
+            "8: vary: impedance.outer_top_1.tension_offset_n is varied twice (first in line 7)\n");
+}
+
+TEST_F(StudyFile, AllErrorsAreSaidAtOnce) {
+  std::string text = kGood;
+  const auto replace = [&](const std::string& old, const std::string& by) {
+    text.replace(text.find(old), old.size(), by);
+  };
+  replace("name: s", "nam: s");
+  replace("high: 20}", "hig: 20}");
+  replace("friction: 0.2, start", "friction: 1.5, start");
+  replace("evaluations: 10", "evaluations: 0");
+  replace("from_s: 5", "from_s: 500");
+  EXPECT_FALSE(Load(text));
+  const std::string all = out_.Format();
+  for (const char* part :
+       {"unknown key \"nam\"", "needs the key \"name\"", "unknown key \"hig\"",
+        "worlds.friction must be below 1, got 1.5 (0.2 means factors from 0.8 to 1.2)",
+        "search.evaluations",
+        "objective.from_s is not before the experiment's end (that is at 60 "
+        "s)"}) {
+    EXPECT_NE(all.find(part), std::string::npos) << part << "\n" << all;
+  }
+}
+
+TEST_F(StudyFile, KeysOfOtherMethodsAreSaid) {
+  EXPECT_EQ(Wrong("method: monte_carlo,", "method: monte_carlo, deviation: 0.1,"),
+            "12: search.deviation has no effect here (it belongs to hill_climbing and cma_es)\n");
+  EXPECT_EQ(Wrong("method: monte_carlo,", "method: monte_carlo, starts: 3,"),
+            "12: search.starts has no effect here (it belongs to method: nlopt)\n");
+  EXPECT_EQ(
+      Wrong("algorithm: bobyqa,", "algorithm: bobyqa, batch: 3,"),
+      "13: search: nlopt has neither batch nor deviation (it runs `starts` side by side, with "
+      "steps of `initial_step`)\n");
+  EXPECT_EQ(Wrong("algorithm: bobyqa", "algorithm: praxis"),
+            "13: search.algorithm cannot be \"praxis\" (one of: nelder_mead, subplex, bobyqa, "
+            "cobyla)\n");
+}
+
+TEST_F(StudyFile, AHeadingNeedsADirection) {
+  EXPECT_EQ(Wrong("direction: [0, 2, 0], ", ""),
+            "9: objective: heading needs the key \"direction\" (such as [1, 0, 0])\n");
+}
+
+TEST_F(StudyFile, ErrorsOfItsExperimentAreItsErrors) {
+  const std::string all = Wrong("push_20n.yaml", "no_such.yaml");
+  EXPECT_NE(all.find("4: experiment: there is no file"), std::string::npos) << all;
+}
+
+TEST_F(StudyFile, WhatItFindsDoesNotDependOnTheLastBudget) {
+  const auto a = Load(kGood);
+  std::string text = kGood;
+  text.replace(text.find("evaluations: 20"), 15, "evaluations: 90");
+  const auto b = Load(text);
+  text.replace(text.find("evaluations: 10"), 15, "evaluations: 11");
+  const auto c = Load(text);
+  ASSERT_TRUE(a && b && c);
+  EXPECT_EQ(StudyText(*a), StudyText(*b));
+  EXPECT_NE(StudyText(*a), StudyText(*c));
+}
+
+}  // namespace
+}  // namespace taut
