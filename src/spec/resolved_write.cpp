@@ -124,6 +124,10 @@ class BlockWriter {
   void Later(const char* key, const std::vector<T>& items) {
     if (!items.empty()) (*this)(key, items);
   }
+  template <class T>
+  void Later(const char* key, const T& item) {
+    (*this)(key, item);
+  }
   const std::string& text() const { return text_; }
 
  private:
