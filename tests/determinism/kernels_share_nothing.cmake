@@ -1,7 +1,8 @@
 # cmake -DNM=... -DOBJECTS=a.o,b.o,... -P kernels_share_nothing.cmake
 #
-# No function is emitted by two of src/sim/step_*.cpp, nor by two of src/plant/lane_*.cpp: the linker would keep one of them, perhaps
-# that with instructions which the machine lacks. Optimisation hides it, so debug builds tell most.
+# No function is emitted by two of src/sim/step_*.cpp, nor by two of src/plant/lane_*.cpp: the linker
+# would keep one of them, perhaps that with instructions which the machine lacks. Optimisation hides
+# it, so debug builds tell most.
 cmake_minimum_required(VERSION 3.25)
 string(REPLACE "," ";" objects "${OBJECTS}")
 list(FILTER objects INCLUDE REGEX "/(step|lane)_(scalar|sse2|avx2|avx512)\\.cpp\\.o$")
