@@ -126,7 +126,13 @@ def test_SchemasRefuseWhatTheReaderRefuses():
     spine = (ROOT / "models" / "tetraspine3.yaml").read_text()
     study = (ROOT / "studies" / "sidewinder3.yaml").read_text()
     study = study.replace("../experiments/", str(ROOT / "experiments") + "/")
+    learned = (ROOT / "gaits" / "cpg_learned.yaml").read_text()
+    waves = (ROOT / "gaits" / "hand_tuned_sine.yaml").read_text()
     changes = [
+        ("gait", learned, "symmetry: index", "symmetry: indices"),
+        ("gait", learned, "weight_per_m:", "weight:"),
+        ("gait", learned, "cpg:", "table: {file: a.csv}\ncpg:"),
+        ("gait", waves, "cables: inner_top_1,", ""),
         ("experiment", push, "period_s: 0.001\n", "perod_s: 0.001\n"),
         ("experiment", push, "duration_s: 60", ""),
         ("experiment", push, "height_m: 0,", "height_m: 0, normal: [0, 0, 1],"),
