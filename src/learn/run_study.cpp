@@ -69,6 +69,7 @@ class StudyRun {
 
   std::optional<LearnSummary> Run(Diagnostics& out) {
     started_ = Clock::now();
+    if (!SameNumbers(out)) return std::nullopt;
     OptimizerStart start{FirstPoint(study_), std::nullopt, study_.seed, 0};
     for (std::size_t s = 0; s < study_.searches.size(); ++s) {
       start.stream = static_cast<std::uint32_t>(s);
@@ -85,6 +86,29 @@ class StudyRun {
     return std::chrono::duration<double>(Clock::now() - started_).count();
   }
   bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
+  /// Whether this build of taut still gives the numbers of the log: one evaluation done again.
+  bool SameNumbers(Diagnostics& out) {
+    for (const auto& [id, logged] : known_) {
+      if (!logged.failed.empty()) continue;  // has no state to compare
+      const Evaluator::Candidate again{id, logged.values};
+      bool same = true;
+      evaluator_.Evaluate({&again, 1}, [&](std::size_t, const Evaluator::Trial& trial) {
+        same = trial.worlds.size() == logged.worlds.size();
+        for (std::size_t w = 0; same && w < trial.worlds.size(); ++w) {
+          same = trial.worlds[w].state_hash == logged.worlds[w].state_hash;
+        }
+        return same;
+      });
+      if (same) return true;
+      out.Error({LogPath(options_.folder)},
+                "this folder holds another study: evaluation " + std::to_string(id) +
+                    " now ends in another state",
+                "another build of taut made it; give `--out` another folder");
+      return false;
+    }
+    return true;
+  }
 
   /// One of the study's searches; `start` becomes the best so far. False if the study stops.
   bool Search(int number, OptimizerStart& start, Diagnostics& out) {

@@ -1,6 +1,7 @@
 // `taut learn` and accidents: killed, interrupted, resumed, disks full, worlds that blow up.
 #include "taut/learn.h"
 
+#include <sqlite3.h>
 #include <sys/resource.h>
 
 #include <chrono>
@@ -165,6 +166,22 @@ TEST_F(Learn, AChangedStudyOrExperimentIsRefusedWithTheDifference) {
       << result.errors;
   Write("experiment.yaml", kExperiment);
   EXPECT_EQ(Search("run").status, 0);
+}
+
+TEST_F(Learn, AnotherBuildThatGivesOtherNumbersIsRefused) {
+  ASSERT_EQ(Search("run").status, 0);
+  sqlite3* log = nullptr;
+  ASSERT_EQ(sqlite3_open(Path("run/study.sqlite").c_str(), &log), SQLITE_OK);
+  EXPECT_EQ(
+      sqlite3_exec(log, "UPDATE world SET state_hash = '1' WHERE evaluation = 0 AND world = 1",
+                   nullptr, nullptr, nullptr),
+      SQLITE_OK);
+  sqlite3_close(log);
+  const CommandResult result = Search("run");
+  EXPECT_EQ(result.status, 3);
+  EXPECT_EQ(result.errors,
+            "run/study.sqlite: error: this folder holds another study: evaluation 0 now ends in "
+            "another state (another build of taut made it; give `--out` another folder)\n");
 }
 
 TEST_F(Learn, AFullDiskStopsItAndLosesNothing) {
