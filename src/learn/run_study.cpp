@@ -89,7 +89,9 @@ class StudyRun {
 
   /// Whether this build of taut still gives the numbers of the log: one evaluation done again.
   bool SameNumbers(Diagnostics& out) {
-    for (const auto& [id, logged] : known_) {
+    for (const auto& known : known_) {
+      const auto id = known.first;
+      const auto& logged = known.second;
       if (!logged.failed.empty()) continue;  // has no state to compare
       const Evaluator::Candidate again{id, logged.values};
       bool same = true;
