@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
-#include <map>
 #include <memory>
 
 #include "check_report.h"
 #include "commands.h"
 #include "gait_report.h"
+#include "output.h"
 #include "overrides.h"
 #include "taut/batch.h"
 #include "taut/run.h"
@@ -15,10 +14,6 @@
 
 namespace taut::cli {
 namespace {
-
-const std::map<std::string, CpgSymmetry> kSymmetries{{"segments", CpgSymmetry::kSegments},
-                                                     {"index", CpgSymmetry::kIndex},
-                                                     {"none", CpgSymmetry::kNone}};
 
 struct CheckArguments {
   std::string path;
@@ -30,9 +25,9 @@ struct CheckArguments {
 
 /// All errors, on stderr as text and, if asked for, on stdout as JSON.
 int Bad(const CheckArguments& args, const Diagnostics& found) {
-  fmt::print(stderr, "{}", found.Format());
+  const int exit = Fail(found, kBadInput);
   if (args.json) fmt::print("{}\n", ErrorsJson(args.path, found));
-  return kBadInput;
+  return exit;
 }
 
 /// The network that the experiment's own gait has, or the one that a new gait would have.
@@ -51,12 +46,7 @@ int Couplings(const CheckArguments& args, const RobotSpec& robot,
   if (!graph) return Bad(args, found);
   fmt::print("{}\n", args.json ? CouplingJson(robot, *graph) : CouplingTables(robot, *graph));
   if (args.svg.empty()) return kOk;
-  std::ofstream file(args.svg, std::ios::binary | std::ios::trunc);
-  file << CouplingSvg(robot, *graph);
-  file.flush();
-  if (file) return kOk;
-  fmt::print(stderr, "error: {} cannot be written\n", args.svg);
-  return kFailed;
+  return WriteNamed(args.svg, CouplingSvg(robot, *graph));
 }
 
 /// A gait by itself; whether it fits a robot, the experiment that plays it says.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "commands.h"
+#include "output.h"
 #include "taut/compare.h"
 
 namespace taut::cli {
@@ -45,10 +45,7 @@ int RunCompare(const CompareArguments& given) {
   Diagnostics found;
   const auto a = Load(given.path_a, given.map_a, found);
   const auto b = Load(given.path_b, given.map_b, found);
-  if (!a || !b) {
-    fmt::print(stderr, "{}", found.Format());
-    return kBadInput;
-  }
+  if (!a || !b) return Fail(found, kBadInput);
   const Comparison comparison = Compare(*a, *b, given.options);
   fmt::print("{}", given.json ? ComparisonJson(comparison, given.path_a, given.path_b)
                               : ComparisonTable(comparison, given.path_a, given.path_b));

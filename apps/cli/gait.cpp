@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <memory>
 
 #include "commands.h"
 #include "gait_report.h"
+#include "output.h"
 #include "overrides.h"
 #include "taut/gait.h"
 #include "taut/play.h"
@@ -24,16 +24,8 @@ struct GaitArguments {
   bool json = false;
 };
 
-const std::map<std::string, CpgSymmetry> kSymmetries{{"segments", CpgSymmetry::kSegments},
-                                                     {"index", CpgSymmetry::kIndex},
-                                                     {"none", CpgSymmetry::kNone}};
 const std::map<std::string, NtrtCableOrder> kOrders{{"paper2015", NtrtCableOrder::kPaper2015},
                                                     {"since2016", NtrtCableOrder::kSince2016}};
-
-int Bad(const Diagnostics& found) {
-  fmt::print(stderr, "{}", found.Format());
-  return kBadInput;
-}
 
 /// To the file that was asked for, or to standard output.
 int Write(const std::string& text, const std::string& path) {
@@ -41,12 +33,7 @@ int Write(const std::string& text, const std::string& path) {
     fmt::print("{}", text);
     return kOk;
   }
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << text;
-  file.flush();
-  if (file) return kOk;
-  fmt::print(stderr, "error: {} cannot be written\n", path);
-  return kFailed;
+  return WriteNamed(path, text);
 }
 
 /// The robot of a model file or of an experiment file.
@@ -66,9 +53,9 @@ int Export(const GaitArguments& args) {
   Diagnostics found;
   const auto gait = LoadGait(args.input, found);
   const auto robot = LoadAnyRobot(args.robot, *overrides, found);
-  if (!gait || !robot) return Bad(found);
+  if (!gait || !robot) return Fail(found, kBadInput);
   const auto table = PlayGait(*gait, *robot, args.rate_hz, args.duration_s, found);
-  if (!table) return Bad(found);
+  if (!table) return Fail(found, kBadInput);
   if (gait->cpg && gait->cpg->feedback) {
     fmt::print(stderr, "warning: the gait has feedback; a table has none\n");
   }
@@ -78,7 +65,7 @@ int Export(const GaitArguments& args) {
 int Import(const GaitArguments& args) {
   Diagnostics found;
   auto gait = ImportNtrtGait(args.input, args.order, found);
-  if (!gait) return Bad(found);
+  if (!gait) return Fail(found, kBadInput);
   if (!args.name.empty()) gait->name = args.name;
   return Write(GaitYaml(*gait), args.out);
 }
@@ -88,9 +75,9 @@ int Create(const GaitArguments& args) {
   if (!overrides) return kUsage;
   Diagnostics found;
   const auto robot = LoadAnyRobot(args.robot, *overrides, found);
-  if (!robot) return Bad(found);
+  if (!robot) return Fail(found, kBadInput);
   auto gait = NewCpgGait(*robot, args.symmetry, found);
-  if (!gait) return Bad(found);
+  if (!gait) return Fail(found, kBadInput);
   if (!args.name.empty()) gait->name = args.name;
   return Write(GaitYaml(*gait), args.out);
 }
@@ -98,21 +85,9 @@ int Create(const GaitArguments& args) {
 int Values(const GaitArguments& args) {
   Diagnostics found;
   auto gait = LoadGait(args.input, found);
-  if (!gait) return Bad(found);
+  if (!gait) return Fail(found, kBadInput);
   fmt::print("{}{}", args.json ? GaitJson(*gait) : GaitTable(*gait), args.json ? "\n" : "");
   return kOk;
-}
-
-CLI::Validator Finite(double least, double most) {
-  return CLI::Validator(
-      [=](const std::string& text) {
-        double number = 0;
-        if (CLI::detail::lexical_cast(text, number) && number >= least && number <= most) {
-          return std::string();
-        }
-        return fmt::format("{} is not within {}..{}", text, least, most);
-      },
-      fmt::format("{}..{}", least, most));
 }
 
 }  // namespace
@@ -132,10 +107,10 @@ void AddGait(CLI::App& app, int& exit_code) {
   export_->add_option("gait", args->input, "Gait file (YAML)")->required();
   export_->add_option("robot", args->robot, "Model or experiment file (YAML)")->required();
   export_->add_option("--rate_hz", args->rate_hz, "Rows a second; also the gait's own rate")
-      ->check(Finite(1e-3, 1e6))
+      ->check(NumberWithin(1e-3, 1e6))
       ->capture_default_str();
   export_->add_option("--duration_s", args->duration_s, "Up to here [s]")
-      ->check(Finite(0.0, 1e6))
+      ->check(NumberWithin(0.0, 1e6))
       ->capture_default_str();
   export_->add_option("--out", args->out, "File to write (default: print)");
   add_set(export_);
@@ -188,6 +163,6 @@ void AddGait(CLI::App& app, int& exit_code) {
       "  taut gait values gaits/hand_tuned_sine.yaml\n"
       "A table comes back as a gait by `table: {file: commands.csv}` (docs/formats/gait.md).\n"
       "Exit status: 0 good, 1 a file cannot be written, 2 bad usage, 3 bad input.");
-}  // namespace taut::cli
+}
 
 }  // namespace taut::cli

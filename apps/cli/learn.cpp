@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "learn_show.h"
+#include "output.h"
 #include "overrides.h"
 #include "taut/cluster.h"
 #include "taut/learn.h"
@@ -32,11 +32,6 @@ struct LearnArguments {
   int threads = -1, top = 0;
   bool best = false, parameters = false, json = false, quiet = false;
 };
-
-int Fail(const Diagnostics& found, Exit exit) {
-  fmt::print(stderr, "{}", found.Format());
-  return exit;
-}
 
 std::string Duration(double s) {
   const auto whole = static_cast<long long>(std::fmin(std::fmax(s, 0.0), 1e9) + 0.5);

@@ -4,34 +4,17 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "apps/viewer/report.h"
-#include "commands.h"
+#include "output.h"
 #include "taut/learn.h"
-#include "taut/run.h"
 #include "taut/summary.h"
-#include "taut/trace.h"
 
 namespace taut::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-int Fail(const Diagnostics& found, Exit exit) {
-  fmt::print(stderr, "{}", found.Format());
-  return exit;
-}
-
-bool WriteText(const fs::path& path, const std::string& text, Diagnostics& out) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (file) return true;
-  out.Error({path.string()}, "cannot be written", "is the disk full, or the folder not yours?");
-  return false;
-}
 
 void PrintValues(const StudyResult& study, const Evaluation& best) {
   for (std::size_t i = 0; i < study.parameters.size(); ++i) {
@@ -72,19 +55,8 @@ int ReplayBest(const std::string& folder, bool quiet) {
   }
   const ExperimentSpec experiment = study->ExperimentWith(best->values);
   const fs::path out = fs::path(folder) / "best";
-  std::error_code error;
-  fs::create_directories(out, error);
-  if (error) found.Error({out.string()}, "cannot make this folder: " + error.message());
-  if (!found.ok()) return Fail(found, kFailed);
-  const auto trace = CreateHdf5Trace((out / "trace.h5").string(), RunChannels(experiment),
-                                     RunMetadata(experiment), found);
-  WriteText(out / "inputs.yaml", ResolvedYaml(experiment), found);
-  if (!found.ok()) return Fail(found, kFailed);
-  RunOptions options;
-  options.traces = {trace.get()};
-  const auto summary = RunExperiment(experiment, options, found);
+  const auto summary = RunInto(out, experiment, {}, false, found);
   if (!summary) return Fail(found, kFailed);
-  WriteText(out / "summary.json", SummaryJson(*summary), found);
   for (const ControllerSpec& controller : experiment.controllers) {
     if (!controller.velocity_input) continue;
     const fs::path gait = out / (controller.name + ".gait.yaml");

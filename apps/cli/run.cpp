@@ -5,13 +5,12 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
-#include <system_error>
 
 #include "apps/viewer/report.h"
 #include "commands.h"
+#include "output.h"
 #include "overrides.h"
 #include "taut/batch.h"
 #include "taut/compare.h"
@@ -65,30 +64,6 @@ class ProgressLine {
   double last_s_ = 0;
 };
 
-int Fail(const Diagnostics& found, Exit exit) {
-  fmt::print(stderr, "{}", found.Format());
-  return exit;
-}
-
-bool WriteText(const fs::path& path, const std::string& text, Diagnostics& out) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (file) return true;
-  out.Error({path.string()}, "cannot be written", "is the disk full, or the folder not yours?");
-  return false;
-}
-
-/// The run's folder: the one asked for, or runs/<experiment>.
-fs::path MakeFolder(const RunArguments& args, const ExperimentSpec& experiment, Diagnostics& out) {
-  const fs::path folder =
-      args.out.empty() ? fs::path("runs") / experiment.name : fs::path(args.out);
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) out.Error({folder.string()}, "cannot make this folder: " + error.message());
-  return folder;
-}
-
 /// The result beside the trace that the experiment names.
 void CompareWith(const std::string& reference, const std::string& result, bool quiet,
                  Diagnostics& out) {
@@ -112,30 +87,18 @@ int Run(const RunArguments& args) {
     return Fail(found, kBadInput);
   }
 
-  const fs::path folder = MakeFolder(args, *experiment, found);
-  if (!found.ok()) return Fail(found, kFailed);
-  const std::vector<ChannelInfo> channels = RunChannels(*experiment);
-  std::vector<std::unique_ptr<TraceWriter>> writers;
-  writers.push_back(
-      CreateHdf5Trace((folder / "trace.h5").string(), channels, RunMetadata(*experiment), found));
-  if (args.csv) {
-    writers.push_back(CreateCsvTrace((folder / "trace.csv").string(), channels, found));
-  }
-  WriteText(folder / "inputs.yaml", ResolvedYaml(*experiment), found);
-  if (!found.ok()) return Fail(found, kFailed);
-
+  const fs::path folder =
+      args.out.empty() ? fs::path("runs") / experiment->name : fs::path(args.out);
   ProgressLine line(args.quiet);
   RunOptions options;
   options.threads = args.threads;
   options.progress = [&](const RunProgress& p) { return line.Show(p); };
-  for (const auto& writer : writers) options.traces.push_back(writer.get());
   std::signal(SIGINT, AskInterrupt);
   std::signal(SIGTERM, AskInterrupt);
-  const std::optional<RunSummary> summary = RunExperiment(*experiment, options, found);
+  const std::optional<RunSummary> summary = RunInto(folder, *experiment, options, args.csv, found);
   line.Clear();
   if (!summary) return Fail(found, kFailed);
 
-  WriteText(folder / "summary.json", SummaryJson(*summary), found);
   if (!args.quiet) {
     fmt::print("{}\n", SummaryTable(*summary));
     fmt::print("Trace, inputs and summary: {}\n", folder.string());

@@ -1,0 +1,36 @@
+/// What several subcommands write: complaints, files, the folder of a run.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "commands.h"
+#include "taut/run.h"
+#include "taut/spec.h"
+
+namespace taut::cli {
+
+/// Prints what was found on stderr. Returns `exit`.
+int Fail(const Diagnostics& found, Exit exit);
+
+/// False and a complaint if the file cannot be written.
+bool WriteText(const std::filesystem::path& path, const std::string& text, Diagnostics& out);
+
+/// The same for a file that the user named: complains on stderr, returns the exit status.
+int WriteNamed(const std::string& path, const std::string& text);
+
+/// Runs an experiment into a folder, which is made: traces, inputs.yaml, summary.json. `options`
+/// come without traces. Nothing, and a complaint, if it did not run; a summary that could not be
+/// written is a complaint, too.
+std::optional<RunSummary> RunInto(const std::filesystem::path& folder,
+                                  const ExperimentSpec& experiment, RunOptions options, bool csv,
+                                  Diagnostics& out);
+
+/// Words of `--symmetry`.
+inline const std::map<std::string, CpgSymmetry> kSymmetries{{"segments", CpgSymmetry::kSegments},
+                                                            {"index", CpgSymmetry::kIndex},
+                                                            {"none", CpgSymmetry::kNone}};
+
+}  // namespace taut::cli
