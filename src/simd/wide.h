@@ -20,7 +20,8 @@ struct VectorOf {
   typedef T Type __attribute__((vector_size(sizeof(T) * N)));
 };
 
-template <int N>
+/// `Isa` only tells apart what is compiled for several instruction sets: see Lane.
+template <int N, class Isa = void>
 struct Wide {
   static constexpr int kLanes = N;
   using Vector = typename VectorOf<double, N>::Type;
@@ -31,7 +32,7 @@ struct Wide {
   void Set(int i, double x) noexcept { v[i] = x; }
 };
 
-template <int N>
+template <int N, class Isa = void>
 struct Mask {
   using Vector = typename VectorOf<long long, N>::Type;
   Vector v;
@@ -41,52 +42,52 @@ struct Mask {
   static Mask Splat(bool x) noexcept { return {Vector{} - (x ? 1 : 0)}; }
 };
 
-template <int N>
-TAUT_INLINE Wide<N> operator+(Wide<N> a, Wide<N> b) noexcept {
+template <int N, class I>
+TAUT_INLINE Wide<N, I> operator+(Wide<N, I> a, Wide<N, I> b) noexcept {
   return {a.v + b.v};
 }
-template <int N>
-TAUT_INLINE Wide<N> operator-(Wide<N> a, Wide<N> b) noexcept {
+template <int N, class I>
+TAUT_INLINE Wide<N, I> operator-(Wide<N, I> a, Wide<N, I> b) noexcept {
   return {a.v - b.v};
 }
-template <int N>
-TAUT_INLINE Wide<N> operator*(Wide<N> a, Wide<N> b) noexcept {
+template <int N, class I>
+TAUT_INLINE Wide<N, I> operator*(Wide<N, I> a, Wide<N, I> b) noexcept {
   return {a.v * b.v};
 }
-template <int N>
-TAUT_INLINE Wide<N> operator/(Wide<N> a, Wide<N> b) noexcept {
+template <int N, class I>
+TAUT_INLINE Wide<N, I> operator/(Wide<N, I> a, Wide<N, I> b) noexcept {
   return {a.v / b.v};
 }
-template <int N>
-TAUT_INLINE Wide<N> operator-(Wide<N> a) noexcept {
+template <int N, class I>
+TAUT_INLINE Wide<N, I> operator-(Wide<N, I> a) noexcept {
   return {-a.v};
 }
-template <int N>
-TAUT_INLINE Mask<N> operator<(Wide<N> a, Wide<N> b) noexcept {
+template <int N, class I>
+TAUT_INLINE Mask<N, I> operator<(Wide<N, I> a, Wide<N, I> b) noexcept {
   return {a.v < b.v};
 }
-template <int N>
-TAUT_INLINE Mask<N> operator>(Wide<N> a, Wide<N> b) noexcept {
+template <int N, class I>
+TAUT_INLINE Mask<N, I> operator>(Wide<N, I> a, Wide<N, I> b) noexcept {
   return {a.v > b.v};
 }
-template <int N>
-TAUT_INLINE Mask<N> operator==(Wide<N> a, Wide<N> b) noexcept {
+template <int N, class I>
+TAUT_INLINE Mask<N, I> operator==(Wide<N, I> a, Wide<N, I> b) noexcept {
   return {a.v == b.v};
 }
-template <int N>
-TAUT_INLINE Mask<N> operator&(Mask<N> a, Mask<N> b) noexcept {
+template <int N, class I>
+TAUT_INLINE Mask<N, I> operator&(Mask<N, I> a, Mask<N, I> b) noexcept {
   return {a.v & b.v};
 }
-template <int N>
-TAUT_INLINE Mask<N> operator|(Mask<N> a, Mask<N> b) noexcept {
+template <int N, class I>
+TAUT_INLINE Mask<N, I> operator|(Mask<N, I> a, Mask<N, I> b) noexcept {
   return {a.v | b.v};
 }
-template <int N>
-TAUT_INLINE Mask<N> operator!(Mask<N> a) noexcept {
+template <int N, class I>
+TAUT_INLINE Mask<N, I> operator!(Mask<N, I> a) noexcept {
   return {~a.v};
 }
-template <int N>
-TAUT_INLINE Wide<N> Select(Mask<N> m, Wide<N> yes, Wide<N> no) noexcept {
+template <int N, class I>
+TAUT_INLINE Wide<N, I> Select(Mask<N, I> m, Wide<N, I> yes, Wide<N, I> no) noexcept {
   return {m.v ? yes.v : no.v};
 }
 
@@ -108,37 +109,72 @@ TAUT_INLINE bool Any(Mask<8> m) noexcept { return _mm512_movepi64_mask((__m512i)
 #endif
 
 /// One lane: a plain double, so that a single world costs no vector overhead.
-template <>
-struct Mask<1> {
+template <class I>
+struct Mask<1, I> {
   bool v;
   bool operator[](int) const noexcept { return v; }
   void Set(int, bool x) noexcept { v = x; }
   static Mask Splat(bool x) noexcept { return {x}; }
 };
-template <>
-struct Wide<1> {
+template <class I>
+struct Wide<1, I> {
   static constexpr int kLanes = 1;
   double v;
   static Wide Splat(double x) noexcept { return {x}; }
   double operator[](int) const noexcept { return v; }
   void Set(int, double x) noexcept { v = x; }
 };
-TAUT_INLINE Mask<1> operator&(Mask<1> a, Mask<1> b) noexcept { return {a.v && b.v}; }
-TAUT_INLINE Mask<1> operator|(Mask<1> a, Mask<1> b) noexcept { return {a.v || b.v}; }
-TAUT_INLINE Mask<1> operator!(Mask<1> a) noexcept { return {!a.v}; }
-TAUT_INLINE Wide<1> Select(Mask<1> m, Wide<1> yes, Wide<1> no) noexcept {
+template <class I>
+TAUT_INLINE Mask<1, I> operator&(Mask<1, I> a, Mask<1, I> b) noexcept {
+  return {a.v && b.v};
+}
+template <class I>
+TAUT_INLINE Mask<1, I> operator|(Mask<1, I> a, Mask<1, I> b) noexcept {
+  return {a.v || b.v};
+}
+template <class I>
+TAUT_INLINE Mask<1, I> operator!(Mask<1, I> a) noexcept {
+  return {!a.v};
+}
+template <class I>
+TAUT_INLINE Wide<1, I> Select(Mask<1, I> m, Wide<1, I> yes, Wide<1, I> no) noexcept {
   return {m.v ? yes.v : no.v};
 }
-TAUT_INLINE Wide<1> Sqrt(Wide<1> a) noexcept { return {__builtin_sqrt(a.v)}; }
-TAUT_INLINE bool Any(Mask<1> m) noexcept { return m.v; }
+template <class I>
+TAUT_INLINE Wide<1, I> Sqrt(Wide<1, I> a) noexcept {
+  return {__builtin_sqrt(a.v)};
+}
+template <class I>
+TAUT_INLINE bool Any(Mask<1, I> m) noexcept {
+  return m.v;
+}
+
+/// One lane of W by itself, where lanes have too little in common to walk together. Tagged with W,
+/// so that each instruction set has its own; for a single world W itself.
+template <class W>
+struct LaneOf {
+  using Type = Wide<1, W>;
+};
+template <class I>
+struct LaneOf<Wide<1, I>> {
+  using Type = Wide<1, I>;
+};
+template <class W>
+using Lane = typename LaneOf<W>::Type;
 
 /// The greater of two; `b` if either is NaN. So do the instructions: a > b ? a : b.
-TAUT_INLINE Wide<1> Max(Wide<1> a, Wide<1> b) noexcept { return {a.v > b.v ? a.v : b.v}; }
+template <class I>
+TAUT_INLINE Wide<1, I> Max(Wide<1, I> a, Wide<1, I> b) noexcept {
+  return {a.v > b.v ? a.v : b.v};
+}
 TAUT_INLINE Wide<2> Max(Wide<2> a, Wide<2> b) noexcept {
   return {(Wide<2>::Vector)_mm_max_pd((__m128d)a.v, (__m128d)b.v)};
 }
 /// The smaller of two; `b` if either is NaN.
-TAUT_INLINE Wide<1> Min(Wide<1> a, Wide<1> b) noexcept { return {a.v < b.v ? a.v : b.v}; }
+template <class I>
+TAUT_INLINE Wide<1, I> Min(Wide<1, I> a, Wide<1, I> b) noexcept {
+  return {a.v < b.v ? a.v : b.v};
+}
 TAUT_INLINE Wide<2> Min(Wide<2> a, Wide<2> b) noexcept {
   return {(Wide<2>::Vector)_mm_min_pd((__m128d)a.v, (__m128d)b.v)};
 }
@@ -159,18 +195,23 @@ TAUT_INLINE Wide<8> Min(Wide<8> a, Wide<8> b) noexcept {
 }
 #endif
 
-template <int N>
-TAUT_INLINE Wide<N> Abs(Wide<N> a) noexcept {
+template <int N, class I>
+TAUT_INLINE Wide<N, I> Abs(Wide<N, I> a) noexcept {
   return Max(a, -a);
 }
 
-template <int N>
-TAUT_INLINE Wide<N>& operator+=(Wide<N>& a, Wide<N> b) noexcept {
+template <int N, class I>
+TAUT_INLINE Wide<N, I>& operator+=(Wide<N, I>& a, Wide<N, I> b) noexcept {
   return a = a + b;
 }
-template <int N>
-TAUT_INLINE Wide<N>& operator-=(Wide<N>& a, Wide<N> b) noexcept {
+template <int N, class I>
+TAUT_INLINE Wide<N, I>& operator-=(Wide<N, I>& a, Wide<N, I> b) noexcept {
   return a = a - b;
+}
+
+template <int N, class I>
+TAUT_INLINE Wide<N, I>& operator*=(Wide<N, I>& a, Wide<N, I> b) noexcept {
+  return a = a * b;
 }
 
 }  // namespace taut::simd

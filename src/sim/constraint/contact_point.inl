@@ -1,0 +1,265 @@
+/// A kind of constraint: a point of contact (docs/theory/contact.md, section 1).
+///
+///   (C1)  ln >= 0,  un + bn >= 0,  ln (un + bn) = 0                    no penetration
+///   (C2)  |lt| <= mu ln,  and ut + bt = 0 or lt = -mu ln (ut + bt) / |ut + bt|     Coulomb's cone
+/// with u the contact's velocity after the step, b its biases, l its impulses: normal, tangents.
+
+namespace taut::sim {
+
+/// A contact with `kLinks` bodies: one, if the other side does not move.
+template <class Num, int kMaxLinks>
+struct ContactPoint {
+  using Number = Num;
+  static constexpr int kRows = 3;
+
+  Num live;              ///< 1 in lanes that have this contact, else 0.
+  Num wnn, wt;           ///< Inverse effective mass: of the normal, a bound of the tangents' [1/kg].
+  Num inv_wnn, inv_wt;   ///< [kg]
+  Num w1n, w2n, w11, w12, w22;  ///< The rest of the inverse effective mass [1/kg].
+  Num bias[3];           ///< Wanted: un >= -bias[0], ut = -bias[1..2] [m/s].
+  Num mu;
+  Num l[3];              ///< Impulses [N s].
+  bool one_direction;    ///< Friction acts along the first tangent only.
+  int link_count;
+  Link<Num, 3> links[kMaxLinks];
+
+  /// Which case of the law holds: open, sticking, sliding in a direction.
+  struct Branch {
+    MaskOf<Num> closed, slides;
+    Num s1, s2;   ///< Where it slides: direction of friction.
+    Num shrink;   ///< Radius of the cone / length of what reaches out of it.
+  };
+  static bool Same(const Branch& a, const Branch& b) noexcept {
+    if (Any(a.closed) != Any(b.closed) || Any(a.slides) != Any(b.slides)) return false;
+    return !Any(a.slides) || Any(a.s1 * b.s1 + a.s2 * b.s2 > Num::Splat(0.9999));
+  }
+
+  /// Inverse effective masses from the links, whose directions are orthonormal.
+  TAUT_INLINE void FinishMasses() noexcept {
+    wnn = w1n = w2n = w11 = w12 = w22 = Num::Splat(0.0);
+    for (int i = 0; i < link_count; ++i) {
+      const Link<Num, 3>& k = links[i];
+      wnn += k.inv_mass + Dot(k.ang[0], k.turn[0]);
+      w11 += k.inv_mass + Dot(k.ang[1], k.turn[1]);
+      w22 += k.inv_mass + Dot(k.ang[2], k.turn[2]);
+      w1n += Dot(k.ang[1], k.turn[0]);
+      w2n += Dot(k.ang[2], k.turn[0]);
+      w12 += Dot(k.ang[1], k.turn[2]);
+    }
+    wt = one_direction ? w11 : Max(w11, w22) + Abs(w12);
+    inv_wnn = Num::Splat(1.0) / wnn;
+    inv_wt = Num::Splat(1.0) / wt;
+  }
+
+  Branch Project(const Num* u, const Num* center, Num e, Num* out) const noexcept {
+    const Num zero = Num::Splat(0.0);
+    const Num inv_e = Num::Splat(1.0) / e;
+    const Num yn = center[0] - inv_e * inv_wnn * (u[0] + bias[0]);
+    out[0] = Max(yn, zero);
+    return Friction(u, center, inv_e, mu * out[0], yn > zero, out);
+  }
+
+  void ProjectFrozen(const Num* u, const Num* center, Num e, const Num* l0,
+                     Num* out) const noexcept {
+    const Num zero = Num::Splat(0.0);
+    const Num inv_e = Num::Splat(1.0) / e;
+    const Num yn = center[0] - inv_e * inv_wnn * (u[0] + bias[0]);
+    out[0] = Max(yn, zero);
+    Friction(u, center, inv_e, mu * l0[0], yn > zero, out);
+  }
+
+  /// 3x3, row by row. Not symmetric where it slides: friction follows the normal impulse.
+  void Derivative(const Branch& b, Num e, Num* g) const noexcept {
+    const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
+    const Num inv_e = one / e;
+    const Num n = inv_e * inv_wnn, t = inv_e * inv_wt;
+    g[0] = Select(b.closed, n, zero);
+    g[1] = g[2] = zero;
+    g[3] = Select(b.closed & b.slides, mu * b.s1 * n, zero);
+    g[6] = Select(b.closed & b.slides, mu * b.s2 * n, zero);
+    const Num q = b.shrink * t;
+    g[4] = Select(b.slides, q * (one - b.s1 * b.s1), t);
+    g[5] = g[7] = Select(b.slides, zero - q * b.s1 * b.s2, zero);
+    g[8] = Select(b.slides, q * (one - b.s2 * b.s2), t);
+    if (one_direction) g[4] = Select(b.slides, zero, t), g[5] = g[7] = g[8] = zero;
+    for (int i = 3; i < 9; ++i) g[i] = Select(b.closed, g[i], zero);
+  }
+
+  /// Adds `share` of what a law of frozen direction has along the sliding direction: where
+  /// directions turn a lot within a step, a larger matrix makes smaller steps.
+  void Stiffen(const Branch& b, Num share, Num* g) const noexcept {
+    if (!Any(b.closed & b.slides)) return;
+    const Num q = share * (g[4] + g[8]);
+    g[4] += q * b.s1 * b.s1, g[5] += q * b.s1 * b.s2;
+    g[7] += q * b.s1 * b.s2, g[8] += q * b.s2 * b.s2;
+  }
+
+  /// The case that u and l are in: that of the law's fixed point with steps 1 / w.
+  TAUT_INLINE Branch BranchOf(const Num* u, const Num* l_now) const noexcept {
+    const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
+    Branch b;
+    b.closed = (live > zero) & (l_now[0] - inv_wnn * (u[0] + bias[0]) > zero);
+    b.s1 = b.s2 = b.shrink = zero;
+    const Num y1 = l_now[1] - inv_wt * (u[1] + bias[1]);
+    const Num y2 = one_direction ? zero : l_now[2] - inv_wt * (u[2] + bias[2]);
+    const Num edge = mu * Max(l_now[0], zero);
+    const Num length2 = y1 * y1 + y2 * y2;
+    b.slides = b.closed & (length2 > edge * edge);
+    if (Any(b.slides)) {
+      const Num inverse = one / Sqrt(Max(length2, Num::Splat(1e-300)));
+      b.s1 = inverse * y1, b.s2 = inverse * y2, b.shrink = edge * inverse;
+    }
+    return b;
+  }
+
+  /// What one step of 1 / w would change, as a velocity.
+  TAUT_INLINE Num Residual(const Branch& b, const Num* u, const Num* l_now) const noexcept {
+    const Num zero = Num::Splat(0.0);
+    const Num edge = mu * Max(l_now[0], zero);
+    const Num off_n = Select(b.closed, u[0] + bias[0], wnn * l_now[0]);
+    Num off1 = wt * (l_now[1] - Select(b.slides, edge * b.s1, zero));
+    Num off2 = wt * (l_now[2] - Select(b.slides, edge * b.s2, zero));
+    const auto sticks = b.closed & !b.slides;
+    off1 = Select(sticks, u[1] + bias[1], off1);
+    off2 = Select(sticks, one_direction ? wt * l_now[2] : u[2] + bias[2], off2);
+    return Select(live > zero, Max(Abs(off_n), Max(Abs(off1), Abs(off2))), zero);
+  }
+
+  TAUT_INLINE void Linearize(const Branch& b, const Num* u, const Num* l_now, Num e,
+                             LinearLaw<Num, 3>& out) const noexcept {
+    const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
+    const auto sticks = b.closed & !b.slides;
+    out.A[0][0] = Select(b.closed, e * wnn, one);
+    out.S[0][0] = Select(b.closed, one, zero);
+    out.r[0] = Select(b.closed, zero - (u[0] + bias[0]), zero - l_now[0]);
+    out.A[0][1] = out.A[0][2] = out.S[0][1] = out.S[0][2] = out.S[1][0] = out.S[2][0] = zero;
+    // Sliding: (1 - (1 - e) M) dlt + M / wt dut - mu s dln = edge s - lt,  M = q (1 - s s^T)
+    const Num m11 = b.shrink * (one - b.s1 * b.s1), m12 = zero - b.shrink * b.s1 * b.s2,
+              m22 = b.shrink * (one - b.s2 * b.s2);
+    const Num edge = mu * Max(l_now[0], zero), soft = one - e, stuck = e * wt;
+    out.A[1][0] = Select(b.slides, zero - mu * b.s1, zero);
+    out.A[2][0] = Select(b.slides, zero - mu * b.s2, zero);
+    out.A[1][1] = Select(sticks, stuck, Select(b.slides, one - soft * m11, one));
+    out.A[1][2] = out.A[2][1] = Select(b.slides, zero - soft * m12, zero);
+    out.A[2][2] = Select(sticks, stuck, Select(b.slides, one - soft * m22, one));
+    out.S[1][1] = Select(sticks, one, Select(b.slides, m11 * inv_wt, zero));
+    out.S[1][2] = out.S[2][1] = Select(b.slides, m12 * inv_wt, zero);
+    out.S[2][2] = Select(sticks, one, Select(b.slides, m22 * inv_wt, zero));
+    out.r[1] = Select(b.slides, edge * b.s1, zero) - l_now[1];
+    out.r[2] = Select(b.slides, edge * b.s2, zero) - l_now[2];
+    out.r[1] = Select(sticks, zero - (u[1] + bias[1]), out.r[1]);
+    out.r[2] = Select(sticks, zero - (u[2] + bias[2]), out.r[2]);
+    if (!one_direction) return;
+    out.A[1][2] = out.A[2][1] = out.S[1][2] = out.S[2][1] = out.S[2][2] = zero;
+    out.A[2][0] = zero;
+    out.A[2][2] = one;
+    out.r[2] = zero - l_now[2];
+  }
+
+  /// The contact's own solution, found along the line of stiffnesses k that hold the slip back:
+  /// |lt(k)| - mu ln(k) changes its sign on it, so there always is one, however steep the cone
+  /// (Painleve's rod has one, too). One lane only.
+  void SolveAlone(const Num* u, Num* l_now) const noexcept {
+    static_assert(Num::kLanes == 1);
+    const Num zero = Num::Splat(0.0);
+    const Num lt2 = one_direction ? zero : l_now[2];
+    const Num qn = u[0] + bias[0] - (wnn * l_now[0] + w1n * l_now[1] + w2n * lt2);
+    const Num q1 = u[1] + bias[1] - (w1n * l_now[0] + w11 * l_now[1] + w12 * lt2);
+    const Num q2 = u[2] + bias[2] - (w2n * l_now[0] + w12 * l_now[1] + w22 * lt2);
+    if (!Any(qn < zero)) {
+      l_now[0] = l_now[1] = l_now[2] = zero;
+      return;
+    }
+    Slip slip;
+    slip.s11 = w11 - w1n * w1n * inv_wnn;
+    slip.s12 = one_direction ? zero : w12 - w1n * w2n * inv_wnn;
+    slip.s22 = one_direction ? Num::Splat(1.0) : w22 - w2n * w2n * inv_wnn;
+    slip.q1 = q1 - w1n * inv_wnn * qn;
+    slip.q2 = one_direction ? zero : q2 - w2n * inv_wnn * qn;
+    slip.qn = qn;
+    Num low = zero, at_low = Excess(slip, low);
+    if (Any(at_low > zero)) {
+      Num high = slip.s11 + slip.s22, at_high = Excess(slip, high);
+      for (int i = 0; i < 60 && Any(at_high > zero); ++i) {
+        high = Num::Splat(8.0) * high;
+        at_high = Excess(slip, high);
+      }
+      CloseIn(slip, low, at_low, high, at_high);
+    }
+    l_now[0] = Max(slip.ln, zero);
+    l_now[1] = slip.l1;
+    l_now[2] = slip.l2;
+    Clamp(l_now);
+  }
+
+  void Clamp(Num* l_now) const noexcept {
+    const Num zero = Num::Splat(0.0);
+    l_now[0] = Max(l_now[0], zero);
+    if (one_direction) l_now[2] = zero;
+    const Num edge = mu * l_now[0], length2 = l_now[1] * l_now[1] + l_now[2] * l_now[2];
+    const auto out = length2 > edge * edge;
+    if (!Any(out)) return;
+    const Num scale = edge / Sqrt(Max(length2, Num::Splat(1e-300)));
+    l_now[1] = Select(out, scale * l_now[1], l_now[1]);
+    l_now[2] = Select(out, scale * l_now[2], l_now[2]);
+  }
+
+ private:
+  struct Slip {
+    Num s11, s12, s22, q1, q2, qn;  ///< Tangential problem with the normal worked in.
+    Num ln, l1, l2;
+  };
+
+  /// |lt| - mu ln with the stiffness k against slipping.
+  Num Excess(Slip& s, Num k) const noexcept {
+    const Num zero = Num::Splat(0.0);
+    const Num a = s.s11 + k, c = s.s22 + k;
+    const Num inverse = Num::Splat(1.0) / (a * c - s.s12 * s.s12);
+    s.l1 = zero - inverse * (c * s.q1 - s.s12 * s.q2);
+    s.l2 = zero - inverse * (a * s.q2 - s.s12 * s.q1);
+    s.ln = zero - inv_wnn * (s.qn + w1n * s.l1 + w2n * s.l2);
+    return Sqrt(s.l1 * s.l1 + s.l2 * s.l2) - mu * s.ln;
+  }
+
+  /// Regula falsi (Illinois), every fourth step a geometric mean: k may range over many decades.
+  void CloseIn(Slip& s, Num low, Num at_low, Num high, Num at_high) const noexcept {
+    const Num half = Num::Splat(0.5), tiny = Num::Splat(1e-15);
+    int side = 0;
+    for (int i = 0; i < 80; ++i) {
+      const Num k = i % 4 == 3 ? Sqrt(Max(low, Num::Splat(1e-12) * high) * high)
+                               : (low * at_high - high * at_low) / (at_high - at_low);
+      const Num f = Excess(s, k);
+      if (!Any(Abs(f) > tiny * mu * Abs(s.ln)) || !Any(high - low > tiny * high)) return;
+      if (Any(f > Num::Splat(0.0))) {
+        low = k, at_low = f;
+        if (side == 1) at_high = half * at_high;
+        side = 1;
+      } else {
+        high = k, at_high = f;
+        if (side == -1) at_low = half * at_low;
+        side = -1;
+      }
+    }
+  }
+
+  TAUT_INLINE Branch Friction(const Num* u, const Num* center, Num inv_e, Num edge,
+                              MaskOf<Num> closed, Num* out) const noexcept {
+    const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), step = inv_e * inv_wt;
+    Branch b;
+    b.closed = closed;
+    b.s1 = b.s2 = b.shrink = zero;
+    out[1] = center[1] - step * (u[1] + bias[1]);
+    out[2] = one_direction ? zero : center[2] - step * (u[2] + bias[2]);
+    const Num length2 = out[1] * out[1] + out[2] * out[2];
+    b.slides = length2 > edge * edge;
+    if (Any(b.slides)) {
+      const Num inverse = one / Sqrt(Max(length2, Num::Splat(1e-300)));
+      b.s1 = inverse * out[1], b.s2 = inverse * out[2], b.shrink = edge * inverse;
+      out[1] = Select(b.slides, edge * b.s1, out[1]);
+      out[2] = Select(b.slides, edge * b.s2, out[2]);
+    }
+    return b;
+  }
+};
+
+}  // namespace taut::sim

@@ -1,0 +1,170 @@
+/// A solver's problem: bodies that act on each other through constraints, and the memory that its
+/// stages share (docs/theory/contact.md, section 5).
+///
+///   v = v_free + M^-1 J^T l,   u = J v,   every constraint's law between its u and its l
+///
+/// Bodies are numbered in the order of elimination. All constraints of a kind lie in one pool; the
+/// rows of all of them are numbered through, pool after pool.
+#pragma once
+
+#include "sim/constraint/links.h"
+
+namespace taut::sim {
+
+using simd::S3;
+
+inline constexpr int kDofs = 6;  ///< Velocities of a body: v, w.
+
+/// Which 6x6 blocks of a matrix over bodies there are, fill-in included.
+struct BlockPattern {
+  int* slot;         ///< [i * count + j]: number of block (i, j), or -1.
+  int* below;        ///< [first_below[k] ...]: rows under the diagonal of column k, rising.
+  int* first_below;  ///< count + 1 of them.
+  int count, lower_count, block_count;  ///< Bodies; blocks of the lower triangle, which come first.
+};
+
+/// A body of an island.
+template <class Num>
+struct Unknown {
+  int body;  ///< Its number in the world.
+  Num mass, inv_mass;
+  S3<Num> inertia, inv_inertia;  ///< In W.
+  Twist<Num> free;               ///< Its velocities without the island's constraints.
+};
+
+/// All constraints of one kind, and the branch of its law that each is on.
+template <class K>
+struct Pool {
+  K* items = nullptr;
+  typename K::Branch* branches = nullptr;
+  int count = 0;
+};
+
+template <class... K>
+struct Pools : Pool<K>... {
+  static_assert((ConstraintLaw<K> && ...));
+
+  /// Calls f(law, branch, first row, first cell of its kRows x kRows matrix) for each constraint.
+  template <class F>
+  TAUT_INLINE void ForEach(F&& f) const noexcept {
+    int row = 0, cell = 0;
+    (Visit(static_cast<const Pool<K>&>(*this), f, row, cell), ...);
+  }
+  int rows() const noexcept { return ((Pool<K>::count * K::kRows) + ... + 0); }
+  int cells() const noexcept { return ((Pool<K>::count * K::kRows * K::kRows) + ... + 0); }
+
+ private:
+  template <class K1, class F>
+  TAUT_INLINE static void Visit(const Pool<K1>& pool, F& f, int& row, int& cell) noexcept {
+    for (int i = 0; i < pool.count; ++i) {
+      f(pool.items[i], pool.branches[i], row, cell);
+      row += K1::kRows;
+      cell += K1::kRows * K1::kRows;
+    }
+  }
+};
+
+/// The law that `const Law&` or `Law&` names.
+template <class T>
+struct Named {
+  using Type = T;
+};
+template <class T>
+struct Named<T&> {
+  using Type = T;
+};
+template <class T>
+using LawOf = typename Named<T>::Type;
+
+/// The numbers that the stages of an island's solve work on.
+template <class Num>
+struct IslandMemory {
+  Num *v, *rhs, *direction, *trial_v;               ///< 6 a body.
+  Num *l, *u, *best, *center, *projected, *du, *u2; ///< 1 a row.
+  Num *g, *f;                                       ///< kRows^2, kRows a constraint.
+  Num* blocks;                                      ///< 36 a block.
+};
+
+template <class Num, class P>
+struct Island {
+  Unknown<Num>* bodies;
+  int body_count;
+  BlockPattern pattern;
+  P pools;
+  IslandMemory<Num> m;
+  int rows;
+
+  /// v <- v_free + M^-1 J^T l
+  void VelocitiesOf(const Num* l, Num* v) const noexcept {
+    for (int b = 0; b < body_count; ++b) Store(bodies[b].free, v + 6 * b);
+    pools.ForEach([&](auto& law, auto&, int row, int) {
+      for (int i = 0; i < law.link_count; ++i) {
+        Num* const at = v + 6 * law.links[i].body;
+        Twist<Num> t = Load(at);
+        Push(law.links[i], l + row, t.v, t.w);
+        Store(t, at);
+      }
+    });
+  }
+  /// u <- J v
+  void Measure(const Num* v, Num* u) const noexcept {
+    for (int i = 0; i < rows; ++i) u[i] = Num::Splat(0.0);
+    pools.ForEach([&](auto& law, auto&, int row, int) {
+      for (int i = 0; i < law.link_count; ++i) {
+        const Twist<Num> t = Load(v + 6 * law.links[i].body);
+        AddVelocity(law.links[i], t.v, t.w, u + row);
+      }
+    });
+  }
+  /// f += J^T l
+  template <class Law>
+  TAUT_INLINE static void AddForce(const Law& law, const Num* l, Num* f) noexcept {
+    for (int i = 0; i < law.link_count; ++i) {
+      Num* const at = f + 6 * law.links[i].body;
+      for (int r = 0; r < Law::kRows; ++r) {
+        const V3<Num>&d = law.links[i].lin[r], &a = law.links[i].ang[r];
+        at[0] += l[r] * d.x, at[1] += l[r] * d.y, at[2] += l[r] * d.z;
+        at[3] += l[r] * a.x, at[4] += l[r] * a.y, at[5] += l[r] * a.z;
+      }
+    }
+  }
+  /// The largest of all constraints [m/s]; leaves their branches.
+  Num Residual(const Num* u, const Num* l) const noexcept {
+    Num worst = Num::Splat(0.0);
+    pools.ForEach([&](auto& law, auto& branch, int row, int) {
+      branch = law.BranchOf(u + row, l + row);
+      worst = Max(law.Residual(branch, u + row, l + row), worst);
+    });
+    return worst;
+  }
+  /// Goes on from `l`, made admissible. Returns its residual [m/s].
+  double Return(const Num* from) noexcept {
+    for (int i = 0; i < rows; ++i) m.l[i] = from[i];
+    Clamp(m.l);
+    return Judge();
+  }
+  /// Velocities that belong to m.l, and their residual [m/s].
+  double Judge() noexcept {
+    VelocitiesOf(m.l, m.v);
+    Measure(m.v, m.u);
+    return Residual(m.u, m.l)[0];
+  }
+  void Clamp(Num* l) const noexcept {
+    pools.ForEach([&](auto& law, auto&, int row, int) { law.Clamp(l + row); });
+  }
+
+  TAUT_INLINE static Twist<Num> Load(const Num* x) noexcept {
+    return {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
+  }
+  TAUT_INLINE static void Store(const Twist<Num>& t, Num* x) noexcept {
+    x[0] = t.v.x, x[1] = t.v.y, x[2] = t.v.z, x[3] = t.w.x, x[4] = t.w.y, x[5] = t.w.z;
+  }
+  /// M x
+  TAUT_INLINE static void TimesMass(const Unknown<Num>& body, const Num* x, Num* out) noexcept {
+    const V3<Num> w = body.inertia * V3<Num>{x[3], x[4], x[5]};
+    out[0] = body.mass * x[0], out[1] = body.mass * x[1], out[2] = body.mass * x[2];
+    out[3] = w.x, out[4] = w.y, out[5] = w.z;
+  }
+};
+
+}  // namespace taut::sim

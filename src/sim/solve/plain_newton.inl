@@ -1,0 +1,102 @@
+/// First stage of an island's solve: Newton's method on all laws as they are, without
+/// globalisation. Two steps, mostly (docs/theory/contact.md, eq. 20-22).
+
+namespace taut::sim {
+
+/// Inverse of a small matrix without pivots: those of laws have large diagonals.
+template <class Num, int R>
+TAUT_INLINE void InvertSmall(const Num (&a)[R][R], Num (&out)[R][R]) noexcept {
+  const Num one = Num::Splat(1.0);
+  if constexpr (R == 1) {
+    out[0][0] = one / a[0][0];
+  } else {
+    static_assert(R == 3);
+    Num c[3][3];
+    for (int i = 0; i < 3; ++i) {
+      const int p = (i + 1) % 3, q = (i + 2) % 3;
+      for (int j = 0; j < 3; ++j) {
+        const int r = (j + 1) % 3, s = (j + 2) % 3;
+        c[i][j] = a[p][r] * a[q][s] - a[p][s] * a[q][r];
+      }
+    }
+    const Num inverse = one / (a[0][0] * c[0][0] + a[0][1] * c[0][1] + a[0][2] * c[0][2]);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) out[i][j] = inverse * c[j][i];
+    }
+  }
+}
+
+/// What has been done for an island, and what may be.
+struct SolverWork {
+  int linear_solves = 0, limit = 0;
+};
+
+/// Improves m.l; m.v and m.u belong to it before and after. Returns the residual [m/s].
+template <class Num, class P>
+double PlainNewton(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept {
+  constexpr int kMaxIterations = 12;
+  constexpr double kCompliance = 1e-6, kLostFactor = 1e3;
+  auto& m = island.m;
+  const Num zero = Num::Splat(0.0), e = Num::Splat(kCompliance);
+  BodyMatrix<Num> matrix(island.pattern, m.blocks);
+  double residual = island.Residual(m.u, m.l)[0], best = residual;
+  for (int i = 0; i < island.rows; ++i) m.best[i] = m.l[i];
+  for (int iteration = 0;
+       iteration < kMaxIterations && residual > tolerance && work.linear_solves < work.limit;
+       ++iteration) {
+    // dl = f - g du,  f = A^-1 r,  g = A^-1 S
+    for (int i = 0; i < 6 * island.body_count; ++i) m.rhs[i] = zero;
+    bool symmetric = true;
+    island.pools.ForEach([&](auto& law, auto& branch, int row, int cell) {
+      constexpr int R = LawOf<decltype(law)>::kRows;
+      LinearLaw<Num, R> linear;
+      law.Linearize(branch, m.u + row, m.l + row, e, linear);
+      Num inverse[R][R];
+      InvertSmall(linear.A, inverse);
+      for (int i = 0; i < R; ++i) {
+        Num f = inverse[i][0] * linear.r[0];
+        for (int k = 1; k < R; ++k) f += inverse[i][k] * linear.r[k];
+        m.f[row + i] = f;
+        for (int j = 0; j < R; ++j) {
+          Num g = inverse[i][0] * linear.S[0][j];
+          for (int k = 1; k < R; ++k) g += inverse[i][k] * linear.S[k][j];
+          m.g[cell + R * i + j] = g;
+        }
+      }
+      for (int i = 0; i < R; ++i) {
+        for (int j = 0; j < i; ++j) {
+          symmetric = symmetric && m.g[cell + R * i + j].v == m.g[cell + R * j + i].v;
+        }
+      }
+      island.AddForce(law, m.f + row, m.rhs);
+    });
+    matrix.Start(island.bodies, symmetric);
+    island.pools.ForEach([&](auto& law, auto&, int, int cell) { matrix.Add(law, m.g + cell); });
+    ++work.linear_solves;
+    if (!matrix.Factor()) break;
+    matrix.Solve(m.rhs);
+    island.Measure(m.rhs, m.du);
+    island.pools.ForEach([&](auto& law, auto&, int row, int cell) {
+      constexpr int R = LawOf<decltype(law)>::kRows;
+      for (int i = 0; i < R; ++i) {
+        Num dl = m.f[row + i];
+        for (int j = 0; j < R; ++j) dl -= m.g[cell + R * i + j] * m.du[row + j];
+        m.l[row + i] += dl;
+      }
+    });
+    island.VelocitiesOf(m.l, m.v);
+    island.Measure(m.v, m.u);
+    residual = island.Residual(m.u, m.l)[0];
+    if (!(residual - residual == 0)) break;
+    if (residual < best) {
+      best = residual;
+      for (int i = 0; i < island.rows; ++i) m.best[i] = m.l[i];
+    } else if (residual > kLostFactor * best && iteration > 1) {
+      break;
+    }
+  }
+  if (residual <= tolerance) return residual;
+  return island.Return(m.best);
+}
+
+}  // namespace taut::sim

@@ -1,0 +1,231 @@
+/// Third stage of an island's solve: rounds of Newton's method on softened laws, each round about
+/// the impulses that the one before found, with a line search (docs/theory/contact.md, eq. 23-28).
+///
+/// In a round every law is softened by a share `e` of its own compliance, so that its impulses are
+/// a function of the bodies' velocities: l(v) = Project(u, center, e). What is sought is
+///   F(v) = M (v - v_free) - J^T l(v) = 0.
+/// With friction's radii frozen F is the gradient of a convex function; it judges the steps. As the
+/// rounds' centers converge, the softness loses its effect.
+
+namespace taut::sim {
+
+template <class Num, class P>
+class Proximal {
+  static constexpr int kMaxRounds = 40, kMaxIterations = 40, kSweepsAfterFailure = 10;
+  static constexpr double kLeastSoftness = 1e-8;
+
+ public:
+  Proximal(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept
+      : island_(island), m_(island.m), matrix_(island.pattern, island.m.blocks),
+        tolerance_(tolerance), work_(work), size_(kDofs * island.body_count) {}
+
+  /// Improves m.l; m.v and m.u belong to it before and after. Returns the residual [m/s].
+  double Solve(double first_softness) noexcept {
+    double e = first_softness, failed_at = 0;
+    double residual = island_.Judge(), best = residual;
+    Keep(m_.best, m_.l, island_.rows);
+    bool carried = false;  // m.trial_v is where the last round ended
+    for (int round = 0; round < kMaxRounds && residual > tolerance_ && !Exhausted(); ++round) {
+      Keep(m_.center, m_.l, island_.rows);
+      if (!carried) Keep(m_.trial_v, m_.v, size_);
+      const bool ended_well = Round(e);
+      residual = island_.Judge();
+      KeepIfBest(residual, best);
+      carried = ended_well && residual - residual == 0;
+      if (ended_well) {
+        // Not in one leap to where a round failed before.
+        const bool near_failure = failed_at > 0 && 0.1 * e <= 1.01 * failed_at;
+        e *= near_failure ? 0.3 : 0.1;
+        if (e < kLeastSoftness) e = kLeastSoftness;
+        if (e < 0.5 * failed_at) failed_at = 0;
+        continue;
+      }
+      failed_at = e;
+      e = 30 * e < 1 ? 30 * e : 1;
+      residual = Sweep(island_, kSweepsAfterFailure);
+      KeepIfBest(residual, best);
+      if (!(residual <= 1e3 * best)) residual = island_.Return(m_.best);
+    }
+    return residual > best || !(residual - residual == 0) ? island_.Return(m_.best) : residual;
+  }
+
+ private:
+  bool Exhausted() const noexcept { return work_.linear_solves >= work_.limit; }
+  static void Keep(Num* to, const Num* from, int count) noexcept {
+    for (int i = 0; i < count; ++i) to[i] = from[i];
+  }
+  void KeepIfBest(double residual, double& best) noexcept {
+    if (!(residual < best)) return;
+    best = residual;
+    Keep(m_.best, m_.l, island_.rows);
+  }
+
+  /// One round with the softness e from m.trial_v. Leaves impulses in m.l, velocities in m.trial_v.
+  /// True if it got to the bottom: then the impulses come from the linear equations of the last
+  /// step, which are free of the noise that a small e blows up.
+  bool Round(double softness) noexcept {
+    const Num e = Num::Splat(softness);
+    island_.Measure(m_.trial_v, m_.u);
+    double theta = 1;  // share of the true curvature along the sliding direction, see Soften
+    for (int iteration = 0; iteration < kMaxIterations && !Exhausted(); ++iteration) {
+      Evaluate(e, theta);
+      bool symmetric = false;
+      double slope = Direction(false);
+      if (!(slope < 0)) {
+        symmetric = true;
+        DropCoupling();
+        slope = Direction(true);
+        if (!(slope < 0)) break;
+      }
+      island_.Measure(m_.direction, m_.du);
+      const double alpha = LineSearch(e, slope);
+      const double used = theta;
+      theta = alpha < 0.5 ? theta - 0.3 : theta + 0.3;
+      theta = theta < 0 ? 0 : theta > 1 ? 1 : theta;
+      const Num step = Num::Splat(alpha);
+      for (int i = 0; i < island_.rows; ++i) m_.u2[i] = m_.u[i] + step * m_.du[i];
+      for (int i = 0; i < size_; ++i) m_.trial_v[i] += step * m_.direction[i];
+      const bool same = SameBranches(e);
+      if (same && alpha == 1 && used == 1 && !symmetric) {
+        TakeLinear();
+        return true;
+      }
+      Keep(m_.u, m_.u2, island_.rows);
+    }
+    island_.pools.ForEach([&](auto& law, auto&, int row, int) {
+      law.Project(m_.u + row, m_.center + row, e, m_.l + row);
+    });
+    island_.Clamp(m_.l);
+    return false;
+  }
+
+  /// Impulses, their derivatives and F at m.u, m.trial_v.
+  void Evaluate(Num e, double theta) noexcept {
+    Gradient();
+    island_.pools.ForEach([&](auto& law, auto& branch, int row, int cell) {
+      branch = law.Project(m_.u + row, m_.center + row, e, m_.projected + row);
+      law.Derivative(branch, e, m_.g + cell);
+      if (theta < 1) law.Stiffen(branch, Num::Splat(1 - theta), m_.g + cell);
+      Num minus[LawOf<decltype(law)>::kRows];
+      for (int r = 0; r < LawOf<decltype(law)>::kRows; ++r) minus[r] = -m_.projected[row + r];
+      island_.AddForce(law, minus, m_.rhs);
+    });
+  }
+  /// rhs <- M (v - v_free)
+  void Gradient() noexcept {
+    for (int b = 0; b < island_.body_count; ++b) {
+      Num free[kDofs], x[kDofs];
+      island_.Store(island_.bodies[b].free, free);
+      for (int i = 0; i < kDofs; ++i) x[i] = m_.trial_v[kDofs * b + i] - free[i];
+      island_.TimesMass(island_.bodies[b], x, m_.rhs + kDofs * b);
+    }
+  }
+
+  /// direction <- -(M + J^T G J)^-1 F. Returns its slope, direction . F; NaN if there is none.
+  double Direction(bool symmetric) noexcept {
+    matrix_.Start(island_.bodies, symmetric);
+    island_.pools.ForEach([&](auto& law, auto&, int, int cell) { matrix_.Add(law, m_.g + cell); });
+    ++work_.linear_solves;
+    if (!matrix_.Factor()) return 0;
+    for (int i = 0; i < size_; ++i) m_.direction[i] = -m_.rhs[i];
+    matrix_.Solve(m_.direction);
+    Num slope = Num::Splat(0.0);
+    for (int i = 0; i < size_; ++i) slope += m_.direction[i] * m_.rhs[i];
+    return slope[0];
+  }
+
+  /// Without the change of friction with the normal impulse the matrix is positive definite.
+  void DropCoupling() noexcept {
+    island_.pools.ForEach([&](auto& law, auto&, int, int cell) {
+      constexpr int R = LawOf<decltype(law)>::kRows;
+      for (int i = 0; i < R; ++i) {
+        for (int j = 0; j < i; ++j) {
+          const Num upper = m_.g[cell + R * j + i];
+          m_.g[cell + R * i + j] = upper;
+        }
+      }
+    });
+  }
+
+  /// Slope of the convex function along the direction, at `alpha`; the constant part is M's.
+  double SlopeAt(Num e, double alpha, double at_zero, double per_alpha) noexcept {
+    Num sum = Num::Splat(at_zero + per_alpha * alpha);
+    const Num step = Num::Splat(alpha);
+    island_.pools.ForEach([&](auto& law, auto&, int row, int) {
+      constexpr int R = LawOf<decltype(law)>::kRows;
+      Num u[R], l[R];
+      for (int r = 0; r < R; ++r) u[r] = m_.u[row + r] + step * m_.du[row + r];
+      law.ProjectFrozen(u, m_.center + row, e, m_.projected + row, l);
+      for (int r = 0; r < R; ++r) sum -= l[r] * m_.du[row + r];
+    });
+    return sum[0];
+  }
+
+  /// The step's length: all of it if the slope at its end has not turned up by much, else to where
+  /// the slope is a tenth of what it was.
+  double LineSearch(Num e, double slope) noexcept {
+    Num straight = Num::Splat(0.0), bent = Num::Splat(0.0);  // d . M (v - v_free), d . M d
+    Num x[kDofs], md[kDofs], free[kDofs];
+    for (int b = 0; b < island_.body_count; ++b) {
+      const Num* const d = m_.direction + kDofs * b;
+      island_.TimesMass(island_.bodies[b], d, md);
+      island_.Store(island_.bodies[b].free, free);
+      for (int i = 0; i < kDofs; ++i) {
+        x[i] = m_.trial_v[kDofs * b + i] - free[i];
+        straight += md[i] * x[i];
+        bent += md[i] * d[i];
+      }
+    }
+    const double steep = -slope;
+    double low = 0, at_low = slope, high = 1;
+    double at_high = SlopeAt(e, 1, straight[0], bent[0]);
+    if (!(at_high > 0.25 * steep)) return 1;
+    double alpha = 1;
+    for (int i = 0; i < 25; ++i) {
+      double share = -at_low / (at_high - at_low);
+      share = share < 0.05 ? 0.05 : share > 0.95 ? 0.95 : share;
+      alpha = i % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * share;
+      const double at = SlopeAt(e, alpha, straight[0], bent[0]);
+      if ((at < 0 ? -at : at) < 0.1 * steep) break;
+      if (at > 0) {
+        high = alpha, at_high = at;
+      } else {
+        low = alpha, at_low = at;
+      }
+    }
+    return alpha;
+  }
+
+  /// Whether every law is at m.u2 on the branch that it was on at m.u.
+  bool SameBranches(Num e) noexcept {
+    bool same = true;
+    island_.pools.ForEach([&](auto& law, auto& branch, int row, int) {
+      using Law = LawOf<decltype(law)>;
+      Num l[Law::kRows];
+      same = same && Law::Same(branch, law.Project(m_.u2 + row, m_.center + row, e, l));
+    });
+    return same;
+  }
+
+  /// l <- l(v) - G J d
+  void TakeLinear() noexcept {
+    island_.pools.ForEach([&](auto& law, auto&, int row, int cell) {
+      constexpr int R = LawOf<decltype(law)>::kRows;
+      for (int i = 0; i < R; ++i) {
+        Num l = m_.projected[row + i];
+        for (int j = 0; j < R; ++j) l -= m_.g[cell + R * i + j] * m_.du[row + j];
+        m_.l[row + i] = l;
+      }
+    });
+    island_.Clamp(m_.l);
+  }
+
+  Island<Num, P>& island_;
+  IslandMemory<Num>& m_;
+  BodyMatrix<Num> matrix_;
+  double tolerance_;
+  SolverWork& work_;
+  int size_;
+};
+
+}  // namespace taut::sim

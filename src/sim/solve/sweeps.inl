@@ -1,0 +1,33 @@
+/// Second stage of an island's solve: from constraint to constraint, each solved by itself. Slow
+/// where bodies hand loads on, but it needs no good start, and each law is solved exactly.
+
+namespace taut::sim {
+
+/// Improves m.l; m.v and m.u belong to it before and after. Returns the residual [m/s].
+template <class Num, class P>
+double Sweep(Island<Num, P>& island, int count) noexcept {
+  auto& m = island.m;
+  for (int sweep = 0; sweep < count; ++sweep) {
+    island.pools.ForEach([&](auto& law, auto&, int row, int) {
+      constexpr int R = LawOf<decltype(law)>::kRows;
+      Num u[R], l[R];
+      for (int r = 0; r < R; ++r) u[r] = Num::Splat(0.0), l[r] = m.l[row + r];
+      for (int i = 0; i < law.link_count; ++i) {
+        const Twist<Num> t = island.Load(m.v + kDofs * law.links[i].body);
+        AddVelocity(law.links[i], t.v, t.w, u);
+      }
+      law.SolveAlone(u, l);
+      Num change[R];
+      for (int r = 0; r < R; ++r) change[r] = l[r] - m.l[row + r], m.l[row + r] = l[r];
+      for (int i = 0; i < law.link_count; ++i) {
+        Num* const at = m.v + kDofs * law.links[i].body;
+        Twist<Num> t = island.Load(at);
+        Push(law.links[i], change, t.v, t.w);
+        island.Store(t, at);
+      }
+    });
+  }
+  return island.Judge();
+}
+
+}  // namespace taut::sim
