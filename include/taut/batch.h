@@ -42,7 +42,7 @@ struct BatchOptions {
   int worlds = 1;
   int threads = 1;                   ///< 0: one a core.
   std::optional<Simd> simd;          ///< Nothing: `BestSimd()`, or scalar for a single world.
-  int max_sweeps = 1000;             ///< Of the contact solver; a step that needs more says so.
+  int max_linear_solves = 1000;      ///< Bound of a step's work, per island; what needs more says so.
   double tolerance_m_per_s = 1e-10;  ///< Residual at which the contact solve counts as done.
 };
 
@@ -50,7 +50,7 @@ struct BatchOptions {
 enum StatusBits : std::uint32_t {
   kStatusOk = 0,
   kStatusNonFinite = 1u << 0,        ///< A state is NaN or infinite: the world stands still.
-  kStatusNotConverged = 1u << 1,     ///< The contact solve stopped at max_sweeps.
+  kStatusNotConverged = 1u << 1,     ///< Contacts, stiff cables: not to the tolerance.
   kStatusContactOverflow = 1u << 2,  ///< More contacts than the model has room for.
   kStatusStepTooLong = 1u << 3,  ///< For a cable's tension, across it (docs/theory/cables.md, 12).
 };
@@ -61,7 +61,7 @@ struct WorldStatus {
   int body = kWorld;            ///< Concerned body, or kWorld.
   int cable = -1;               ///< Concerned cable, or -1.
   double residual_m_per_s = 0;  ///< Of the last solve.
-  int sweeps = 0;               ///< Of the last solve.
+  int linear_solves = 0;        ///< Of the last solve: in lanes, and of all islands.
 };
 
 /// A cable at the current time.

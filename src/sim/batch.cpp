@@ -66,24 +66,24 @@ Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
       view(model->View()),
       options(Sane(o)),
       kernel(&KernelOf(*options.simd)),
-      layout(model->MakeLayout(kernel->lanes)),
+      layout(model->MakeLayout()),
       pool(options.threads) {
   const int n = lanes();
   const auto group_count = static_cast<std::size_t>((options.worlds + n - 1) / n);
-  const auto contacts = static_cast<std::size_t>(model->ContactCapacity(n));
+  const auto bodies = static_cast<std::size_t>(model->body_count);
   const auto nodes = static_cast<std::size_t>(model->node_count);
   const std::size_t group_rows =
       static_cast<std::size_t>(layout.rows) * static_cast<std::size_t>(n);
   const std::size_t stride = (group_rows + 7) / 8 * 8;
   rows = AllocateAligned<double>(group_count * stride);
-  ids.resize(group_count * contacts);
+  slots_used.resize(group_count * bodies);
   forced.resize(group_count * nodes);
   status.resize(group_count * static_cast<std::size_t>(n));
   groups.resize(group_count);
   for (std::size_t g = 0; g < group_count; ++g) {
     groups[g].lanes = n;
     groups[g].rows = rows.get() + g * stride;
-    groups[g].contact_ids = ids.data() + g * contacts;
+    groups[g].slots_used = slots_used.data() + g * bodies;
     groups[g].forced_nodes = forced.data() + g * nodes;
     groups[g].status = status.data() + g * static_cast<std::size_t>(n);
   }
@@ -199,7 +199,7 @@ int Batch::lanes() const noexcept { return impl_->lanes(); }
 
 void Batch::Step(double step_s, int count) noexcept {
   Impl& d = *impl_;
-  const sim::StepSettings settings{d.options.max_sweeps, d.options.tolerance_m_per_s};
+  const sim::StepSettings settings{d.options.max_linear_solves, d.options.tolerance_m_per_s};
   const int threads = d.pool.threads();
   auto work = [&](int thread) {
     // A group stays with a thread: its rows stay in that core's cache.
@@ -315,9 +315,7 @@ double Batch::GetParameter(int world, Parameter parameter, int index) const noex
 
 std::size_t Batch::BytesPerWorld() const noexcept {
   const Impl& d = *impl_;
-  const std::size_t ids = static_cast<std::size_t>(d.model->ContactCapacity(d.lanes())) *
-                          sizeof(std::uint32_t) / static_cast<std::size_t>(d.lanes());
-  return static_cast<std::size_t>(d.layout.rows) * sizeof(double) + ids + sizeof(sim::LaneStatus);
+  return static_cast<std::size_t>(d.layout.rows) * sizeof(double) + sizeof(sim::LaneStatus);
 }
 
 }  // namespace taut

@@ -38,7 +38,7 @@ struct Batch::Impl {
   sim::Layout layout;
   mutable std::vector<sim::Group> groups;
   Aligned<double> rows;
-  std::vector<std::uint32_t> ids;
+  std::vector<int> slots_used;
   std::vector<int> forced;
   std::vector<sim::LaneStatus> status;
   std::vector<Aligned<char>> scratch;  ///< One a thread.
@@ -63,6 +63,18 @@ struct Batch::Impl {
   Quat quat(int world, int body) const noexcept {
     const int row = layout.quat + 4 * body;
     return {at(world, row), at(world, row + 1), at(world, row + 2), at(world, row + 3)};
+  }
+  /// Calls f(number of the memory) for each contact that a world remembers, keys rising by body.
+  template <class F>
+  void ForEachContact(int world, F&& f) const {
+    const sim::Group& g = group(world);
+    const auto visit = [&](int i) {
+      if (at(world, layout.contact_key + i) >= 0) f(i);
+    };
+    for (int b = 0; b < view.body_count; ++b) {
+      for (int k = 0; k < g.slots_used[b]; ++k) visit(view.first_slot[b] + k);
+    }
+    for (int k = 0; k < g.touches_used; ++k) visit(view.slot_count + k);
   }
   void SetMass(int world, int body, double mass_kg) noexcept;
   void InitializeWorld(int world) noexcept;

@@ -16,6 +16,8 @@ struct LaneStatus {
   int body = kWorld, cable = -1;
 };
 
+/// The key of a slot or of a memory that holds nothing. Others: see Tables.
+inline constexpr double kNoKey = -1.0;
 /// What a contact remembers of having slid (1) or stuck (0) where it did not press.
 inline constexpr double kSlipUnknown = -1.0;
 
@@ -23,8 +25,8 @@ inline constexpr double kSlipUnknown = -1.0;
 struct Group {
   int lanes = 1;
   double* rows = nullptr;
-  uint32_t* contact_ids = nullptr;  ///< Of the last step, rising.
-  int contact_count = 0;
+  int* slots_used = nullptr;  ///< Per body: its slots that some lane used in the last step.
+  int touches_used = 0;       ///< The longest lane's list of touches of the last step.
   int* forced_nodes = nullptr;  ///< Nodes that ever had a force, rising.
   int forced_count = 0;
   bool sensed = false;           ///< The sense_* rows belong to the current state.
@@ -32,7 +34,7 @@ struct Group {
 };
 
 struct StepSettings {
-  int max_sweeps = 1000;
+  int max_linear_solves = 1000;  ///< An island, a step.
   double tolerance_m_per_s = 1e-10;
 };
 

@@ -16,9 +16,16 @@
 #include "sim/stage_cables.inl"
 #include "sim/shape_pairs.inl"
 #include "sim/stage_collide.inl"
-#include "sim/contact_row.inl"
-#include "sim/stage_blocks.inl"
-#include "sim/lane_newton.inl"
+#include "sim/prepare_contact.inl"
+#include "sim/fit_biases.inl"
+#include "sim/solve/body_dual.inl"
+#include "sim/solve/world_dual.inl"
+#include "sim/solve/body_matrix.inl"
+#include "sim/solve/plain_newton.inl"
+#include "sim/solve/sweeps.inl"
+#include "sim/solve/proximal.inl"
+#include "sim/solve/island_solver.inl"
+#include "sim/solve/lane_solve.inl"
 #include "sim/stage_solve.inl"
 // clang-format on
 
@@ -40,7 +47,8 @@ void SaveStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
 
 /// Worlds that are halted keep the state of the start of this step.
 template <class W, class M>
-void KeepStart(const View& m, const Rows<W>& s, const Scratch<W>& work, M halted) noexcept {
+void KeepStart(const View& m, const Rows<W>& s, const Group& g, const Scratch<W>& work,
+               M halted) noexcept {
   const W zero = W::Splat(0.0);
   const V3<W> none{zero, zero, zero};
   for (int b = 0; b < m.body_count; ++b) {
@@ -59,9 +67,16 @@ void KeepStart(const View& m, const Rows<W>& s, const Scratch<W>& work, M halted
     s.rest_rate[c] = Select(halted, work.saved_rest_rate[c], s.rest_rate[c]);
     s.tension[c] = Select(halted, zero, s.tension[c]);
   }
-  for (int i = 0; i < work.contact_count; ++i) {  // NaN forces must not be remembered
-    s.cache_force[i] = Select3(halted, none, s.cache_force[i]);
-    s.cache_live[i] = Select(halted, zero, s.cache_live[i]);
+  const W no_key = W::Splat(kNoKey);  // NaN forces must not be remembered
+  for (int b = 0; b < m.body_count; ++b) {
+    for (int k = 0; k < g.slots_used[b]; ++k) {
+      W& key = s.contact_key[m.first_slot[b] + k];
+      key = Select(halted, no_key, key);
+    }
+  }
+  for (int i = 0; i < g.touches_used; ++i) {
+    W& key = s.contact_key[m.slot_count + i];
+    key = Select(halted, no_key, key);
   }
 }
 
@@ -78,19 +93,20 @@ void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& w
     s.mom[b] += none;
   }
   const W inv_h = W::Splat(1.0 / step_s);
-  g.contact_count = work.contact_count;
-  for (int i = 0; i < work.contact_count; ++i) {
-    const ContactRow<W>& row = work.contacts[i];
-    const auto live = row.live > zero;
-    g.contact_ids[i] = row.id;
-    const V3<W> f = row.ln * row.n + row.l1 * row.t1 + row.l2 * row.t2;
-    s.cache_force[i] = Select3(live, inv_h * f + none, none);
-    s.cache_slip[i] = Select(live & (row.ln > zero), row.slip, W::Splat(kSlipUnknown));
-    s.cache_bounce[i] = Select(live, row.bounce, zero);
-    s.cache_live[i] = row.live;
-    s.cache_arm[i] = row.arm_a;
-    s.cache_normal[i] = row.n;
-    s.cache_gap[i] = row.gap;
+  for (int b = 0; b < m.body_count; ++b) {
+    g.slots_used[b] = work.contact_count[b];
+    for (int k = 0; k < work.contact_count[b]; ++k) {
+      const int i = m.first_slot[b] + k;
+      const Contact<W, 1>& c = work.contacts[i];
+      const auto live = c.live > zero;
+      s.contact_key[i] = c.key;
+      s.contact_force[i] = Select3(live, inv_h * ImpulseOf(c) + none, none);
+      s.contact_slip[i] = Select(live & (c.l[0] > zero), c.slip, W::Splat(kSlipUnknown));
+      s.contact_bounce[i] = Select(live, c.bounce, zero);
+      s.contact_arm[i] = c.arm[0];
+      s.contact_normal[i] = c.links[0].lin[0];
+      s.contact_gap[i] = c.gap;
+    }
   }
 }
 
@@ -107,14 +123,16 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
   for (int c = 0; c < m.cable_count; ++c) sum += zero * s.rest[c];
   const auto was_halted = s.halted[0] > zero;
   const auto lost = (!(sum == zero)) & (!was_halted);
-  const auto unsolved = (solve.residual > W::Splat(settings.tolerance_m_per_s)) & (!was_halted);
+  const W tolerance = W::Splat(settings.tolerance_m_per_s);
+  const auto solved = (solve.residual < tolerance) | (solve.residual == tolerance);
+  const auto unsolved = !(solved | was_halted);
   W share = zero;
   for (int i = 0; i < work.stiff_count; ++i) {
     share = Max(ShareOfStableTension(s, work.stiff[i]), share);
   }
   const auto too_long = (share > W::Splat(1.0)) & (!was_halted);
   s.residual[0] = solve.residual;
-  s.sweeps[0] = solve.sweeps;
+  s.linear_solves[0] = solve.linear_solves;
   if (!Any(lost | unsolved | too_long) && overflow == 0) return;
   for (int lane = 0; lane < W::kLanes; ++lane) {
     if (was_halted[lane]) continue;
@@ -129,16 +147,7 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
       status.body = kWorld;
       status.cable = -1;
     }
-    if (bits & ~status.bits & kStatusNotConverged) {
-      W worst = zero;
-      for (int i = 0; i < work.contact_count; ++i) {
-        const ContactRow<W>& row = work.contacts[i];
-        if (row.ln[lane] > worst[lane]) {
-          worst.Set(lane, row.ln[lane]);
-          status.body = row.a;
-        }
-      }
-    }
+    if (bits & ~status.bits & kStatusNotConverged) status.body = solve.body[lane];
     if (bits & ~status.bits & kStatusStepTooLong) {
       for (int i = 0; i < work.stiff_count; ++i) {
         if (ShareOfStableTension(s, work.stiff[i])[lane] == share[lane]) {
@@ -215,7 +224,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   Judge(m, s, g, work, solve, settings, overflow);
 
   const auto halted = s.halted[0] > zero;
-  if (Any(halted)) KeepStart(m, s, work, halted);
+  if (Any(halted)) KeepStart(m, s, g, work, halted);
   s.time[0] += Select(halted, zero, h);
   s.last_step[0] = Select(halted, last, h);
   g.sensed = false;

@@ -248,25 +248,50 @@ class Compiler {
     return index < t_.body_count && !def_.bodies[static_cast<std::size_t>(index)].fixed;
   }
 
+  /// Pairs of which one body does not move come first, by the body that does: their contacts go
+  /// into that body's slots.
   void Pairs() {
     std::uint32_t id = t_.first_pair_id;
-    // Pairs with the world first: their contacts need the rows of one body only.
-    for (int a = 0; a < t_.body_count; ++a) AddPair(a, t_.body_count, id);
     std::vector<int> solid;
-    for (int a = 0; a < t_.body_count; ++a) {
+    for (int a = 0; a <= t_.body_count; ++a) {
       if (!shapes_of_[static_cast<std::size_t>(a)].empty()) solid.push_back(a);
     }
-    for (std::size_t i = 0; i < solid.size(); ++i) {
-      for (std::size_t j = i + 1; j < solid.size(); ++j) AddPair(solid[i], solid[j], id);
+    for (const int a : solid) {
+      for (const int b : solid) {
+        if (Moves(a) && !Moves(b)) AddPair(a, b, id);
+      }
     }
-    const auto possible = (id - t_.first_pair_id);
-    t_.pair_capacity = static_cast<int>(
-        std::min<std::uint64_t>(possible, static_cast<std::uint64_t>(16 + 12 * t_.body_count)));
+    t_.world_pair_count = static_cast<int>(t_.body_pairs.size());
+    Slots();
+    const std::uint32_t first_of_two = id;
+    for (std::size_t i = 0; i < solid.size(); ++i) {
+      for (std::size_t j = i + 1; j < solid.size(); ++j) {
+        if (Moves(solid[i]) && Moves(solid[j])) AddPair(solid[i], solid[j], id);
+      }
+    }
+    t_.pair_capacity = static_cast<int>(std::min<std::uint64_t>(
+        id - first_of_two, static_cast<std::uint64_t>(16 + 12 * t_.body_count)));
+  }
+
+  /// Room for a body's contacts with what does not move: every point on every plane, and as many
+  /// with other shapes as can be sensible.
+  void Slots() {
+    int first = 0;
+    for (int body = 0; body < t_.body_count; ++body) {
+      t_.first_slot.push_back(first);
+      const auto b = static_cast<std::size_t>(body);
+      first += (t_.first_point[b + 1] - t_.first_point[b]) * t_.plane_count;
+      int possible = 0;
+      for (const sim::BodyPairTable& pair : t_.body_pairs) {
+        if (pair.a == body) possible += sim::kMaxPointsPerPair * pair.pair_count;
+      }
+      first += std::min(possible, 24 + 8 * static_cast<int>(shapes_of_[b].size()));
+    }
+    t_.first_slot.push_back(first);
+    t_.slot_count = first;
   }
 
   void AddPair(int a, int b, std::uint32_t& id) {
-    if (!Moves(a) && !Moves(b)) return;
-    if (!Moves(a)) std::swap(a, b);
     sim::BodyPairTable pair{a, b, static_cast<int>(t_.shape_pairs.size()), 0};
     for (const std::size_t i : shapes_of_[static_cast<std::size_t>(a)]) {
       for (const std::size_t j : shapes_of_[static_cast<std::size_t>(b)]) {
@@ -316,6 +341,9 @@ View Tables::View() const noexcept {
           shapes.data(),
           shape_pairs.data(),
           body_pairs.data(),
+          world_pair_count,
+          first_slot.data(),
+          slot_count,
           first_pair_id,
           pair_capacity,
           max_attachments,
@@ -323,7 +351,7 @@ View Tables::View() const noexcept {
           along_slip};
 }
 
-Layout Tables::MakeLayout(int lanes) const {
+Layout Tables::MakeLayout() const {
   Layout l;
   int rows = 0;
   const auto take = [&](int count) {
@@ -356,17 +384,17 @@ Layout Tables::MakeLayout(int lanes) const {
   l.gravity = take(3);
   l.halted = take(1);
   l.snapshot_rows = rows;
-  const int contacts = ContactCapacity(lanes);
-  l.cache_force = take(3 * contacts);
-  l.cache_slip = take(contacts);
-  l.cache_bounce = take(contacts);
-  l.cache_live = take(contacts);
-  l.cache_arm = take(3 * contacts);
-  l.cache_normal = take(3 * contacts);
-  l.cache_gap = take(contacts);
+  const int contacts = ContactCapacity();
+  l.contact_key = take(contacts);
+  l.contact_force = take(3 * contacts);
+  l.contact_slip = take(contacts);
+  l.contact_bounce = take(contacts);
+  l.contact_arm = take(3 * contacts);
+  l.contact_normal = take(3 * contacts);
+  l.contact_gap = take(contacts);
   l.clearance = take(static_cast<int>(body_pairs.size()));
   l.residual = take(1);
-  l.sweeps = take(1);
+  l.linear_solves = take(1);
   l.sense_length = take(cable_count);
   l.sense_rate = take(cable_count);
   l.sense_tension = take(cable_count);

@@ -101,35 +101,44 @@ Vec3 Batch::AngularMomentum(int world) const noexcept {
   return sum;
 }
 
+namespace {
+
+struct Touching {
+  int a, b;
+};
+
+/// The bodies that a contact's key names.
+Touching BodiesOf(const sim::Tables& m, double key) {
+  const auto id = static_cast<std::uint32_t>(key);
+  if (id < m.first_pair_id) {
+    const int point = static_cast<int>(id) / m.plane_count;
+    const auto next = std::upper_bound(m.first_point.begin(), m.first_point.end(), point);
+    return {static_cast<int>(next - m.first_point.begin()) - 1, m.body_count};
+  }
+  const auto& pair = m.shape_pairs[(id - m.first_pair_id) /
+                                   static_cast<std::uint32_t>(sim::kMaxPointsPerPair)];
+  return {m.shapes[static_cast<std::size_t>(pair.a)].body,
+          m.shapes[static_cast<std::size_t>(pair.b)].body};
+}
+
+}  // namespace
+
 std::vector<ContactState> Batch::Contacts(int world) const {
   const Impl& d = *impl_;
   const sim::Tables& m = *d.model;
-  const sim::Group& g = d.group(world);
   std::vector<ContactState> out;
-  for (int i = 0; i < g.contact_count; ++i) {
-    if (!(d.at(world, d.layout.cache_live + i) > 0)) continue;
+  d.ForEachContact(world, [&](int i) {
     ContactState c;
-    const std::uint32_t id = g.contact_ids[i];
-    if (id < m.first_pair_id) {
-      const int point = static_cast<int>(id) / m.plane_count;
-      c.body_a =
-          static_cast<int>(std::upper_bound(m.first_point.begin(), m.first_point.end(), point) -
-                           m.first_point.begin()) -
-          1;
-    } else {
-      const auto& pair = m.shape_pairs[(id - m.first_pair_id) /
-                                       static_cast<std::uint32_t>(sim::kMaxPointsPerPair)];
-      c.body_a = m.shapes[static_cast<std::size_t>(pair.a)].body;
-      const int b = m.shapes[static_cast<std::size_t>(pair.b)].body;
-      c.body_b = b == m.body_count ? kWorld : b;
-    }
+    const Touching bodies = BodiesOf(m, d.at(world, d.layout.contact_key + i));
+    c.body_a = bodies.a;
+    c.body_b = bodies.b == m.body_count ? kWorld : bodies.b;
     c.point_m =
-        d.vec(world, d.layout.pos + 3 * c.body_a) + d.vec(world, d.layout.cache_arm + 3 * i);
-    c.normal = d.vec(world, d.layout.cache_normal + 3 * i);
-    c.force_n = d.vec(world, d.layout.cache_force + 3 * i);
-    c.gap_m = d.at(world, d.layout.cache_gap + i);
+        d.vec(world, d.layout.pos + 3 * c.body_a) + d.vec(world, d.layout.contact_arm + 3 * i);
+    c.normal = d.vec(world, d.layout.contact_normal + 3 * i);
+    c.force_n = d.vec(world, d.layout.contact_force + 3 * i);
+    c.gap_m = d.at(world, d.layout.contact_gap + i);
     out.push_back(c);
-  }
+  });
   return out;
 }
 
@@ -137,12 +146,12 @@ namespace {
 
 /// A snapshot: header, the state rows, then the live contacts.
 struct SnapshotHeader {
-  std::uint32_t magic = 0x74736e31;  // "tsn1"
+  std::uint32_t magic = 0x74736e32;  // "tsn2"
   std::uint32_t rows = 0, contacts = 0, bits = 0;
   double first_time_s = 0;
 };
 struct SnapshotContact {
-  std::uint64_t id = 0;
+  double key = sim::kNoKey;
   Vec3 force_n;
   double slip = 0, bounce = 0;
 };
@@ -176,12 +185,12 @@ std::vector<std::uint8_t> Batch::Save(int world) const {
   header.bits = status.bits;
   header.first_time_s = status.first_time_s;
   std::vector<SnapshotContact> contacts;
-  for (int i = 0; i < g.contact_count; ++i) {
-    if (!(d.at(world, d.layout.cache_live + i) > 0)) continue;
-    contacts.push_back({g.contact_ids[i], d.vec(world, d.layout.cache_force + 3 * i),
-                        d.at(world, d.layout.cache_slip + i),
-                        d.at(world, d.layout.cache_bounce + i)});
-  }
+  d.ForEachContact(world, [&](int i) {
+    contacts.push_back({d.at(world, d.layout.contact_key + i),
+                        d.vec(world, d.layout.contact_force + 3 * i),
+                        d.at(world, d.layout.contact_slip + i),
+                        d.at(world, d.layout.contact_bounce + i)});
+  });
   header.contacts = static_cast<std::uint32_t>(contacts.size());
   std::vector<std::uint8_t> out(SnapshotSize(header));
   std::uint8_t* at = out.data();
@@ -198,7 +207,7 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
   const auto header = Read<SnapshotHeader>(at);
   if (header.magic != SnapshotHeader().magic || snapshot.size() != SnapshotSize(header) ||
       header.rows != static_cast<std::uint32_t>(d.layout.snapshot_rows) ||
-      header.contacts > static_cast<std::uint32_t>(d.model->ContactCapacity(1))) {
+      header.contacts > static_cast<std::uint32_t>(d.model->ContactCapacity())) {
     return false;
   }
   for (int row = 0; row < d.layout.snapshot_rows; ++row) d.at(world, row) = Read<double>(at);
@@ -213,42 +222,27 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
   status.first_time_s = header.first_time_s;
 
   // This lane's contacts give way to the snapshot's; those of other lanes stay.
-  const auto clear = [&](int i) {
-    d.set(world, d.layout.cache_force + 3 * i, {});
-    d.at(world, d.layout.cache_slip + i) = sim::kSlipUnknown;
-    d.at(world, d.layout.cache_bounce + i) = 0.0;
-    d.at(world, d.layout.cache_live + i) = 0.0;
-  };
-  for (int i = 0; i < g.contact_count; ++i) clear(i);
+  d.ForEachContact(world, [&](int i) { d.at(world, d.layout.contact_key + i) = sim::kNoKey; });
+  const sim::Tables& m = *d.model;
+  int body = -1, next = 0;
   for (std::uint32_t k = 0; k < header.contacts; ++k) {
     const auto c = Read<SnapshotContact>(at);
-    const auto id = static_cast<std::uint32_t>(c.id);
-    std::uint32_t* const end = g.contact_ids + g.contact_count;
-    std::uint32_t* const place = std::lower_bound(g.contact_ids, end, id);
-    const int i = static_cast<int>(place - g.contact_ids);
-    if (place == end || *place != id) {
-      if (g.contact_count >= d.model->ContactCapacity(d.lanes())) continue;
-      std::copy_backward(place, end, end + 1);
-      *place = id;
-      for (int first : {d.layout.cache_force, d.layout.cache_arm, d.layout.cache_normal}) {
-        double* const rows = g.rows + (first + 3 * i) * g.lanes;
-        std::copy_backward(rows, rows + 3 * (g.contact_count - i) * g.lanes,
-                           rows + 3 * (g.contact_count - i + 1) * g.lanes);
-        std::fill_n(rows, 3 * g.lanes, 0.0);
-      }
-      for (int first :
-           {d.layout.cache_slip, d.layout.cache_bounce, d.layout.cache_live, d.layout.cache_gap}) {
-        double* const rows = g.rows + (first + i) * g.lanes;
-        std::copy_backward(rows, rows + (g.contact_count - i) * g.lanes,
-                           rows + (g.contact_count - i + 1) * g.lanes);
-        std::fill_n(rows, g.lanes, first == d.layout.cache_slip ? sim::kSlipUnknown : 0.0);
-      }
-      ++g.contact_count;
+    const Touching bodies = BodiesOf(m, c.key);
+    const bool moves = bodies.b < m.body_count && d.at(world, d.layout.mass + bodies.b) > 0;
+    const int list = moves ? m.body_count : bodies.a;  // a body's slots, or the touches behind them
+    if (list != body) next = moves ? m.slot_count : m.first_slot[static_cast<std::size_t>(list)];
+    body = list;
+    const int i = next++;
+    const int used = moves ? i - m.slot_count : i - m.first_slot[static_cast<std::size_t>(list)];
+    int& known = moves ? g.touches_used : g.slots_used[list];
+    if (used == known) {
+      ++known;
+      std::fill_n(g.rows + (d.layout.contact_key + i) * g.lanes, g.lanes, sim::kNoKey);
     }
-    d.set(world, d.layout.cache_force + 3 * i, c.force_n);
-    d.at(world, d.layout.cache_slip + i) = c.slip;
-    d.at(world, d.layout.cache_bounce + i) = c.bounce;
-    d.at(world, d.layout.cache_live + i) = 1.0;
+    d.at(world, d.layout.contact_key + i) = c.key;
+    d.set(world, d.layout.contact_force + 3 * i, c.force_n);
+    d.at(world, d.layout.contact_slip + i) = c.slip;
+    d.at(world, d.layout.contact_bounce + i) = c.bounce;
   }
   d.Moved(world);
   return true;
@@ -264,14 +258,12 @@ std::uint64_t Batch::Hash(int world) const noexcept {
     for (int i = 0; i < 8; ++i) hash = (hash ^ ((bits >> (8 * i)) & 0xff)) * 0x100000001b3u;
   };
   for (int row = 0; row < d.layout.snapshot_rows; ++row) add(d.at(world, row));
-  const sim::Group& g = d.group(world);
-  for (int i = 0; i < g.contact_count; ++i) {
-    if (!(d.at(world, d.layout.cache_live + i) > 0)) continue;
-    add(static_cast<double>(g.contact_ids[i]));
-    for (int k = 0; k < 3; ++k) add(d.at(world, d.layout.cache_force + 3 * i + k));
-    add(d.at(world, d.layout.cache_slip + i));
-    add(d.at(world, d.layout.cache_bounce + i));
-  }
+  d.ForEachContact(world, [&](int i) {
+    add(d.at(world, d.layout.contact_key + i));
+    for (int k = 0; k < 3; ++k) add(d.at(world, d.layout.contact_force + 3 * i + k));
+    add(d.at(world, d.layout.contact_slip + i));
+    add(d.at(world, d.layout.contact_bounce + i));
+  });
   return hash;
 }
 
@@ -283,7 +275,7 @@ WorldStatus Batch::Status(int world) const noexcept {
           s.body,
           s.cable,
           d.at(world, d.layout.residual),
-          static_cast<int>(d.at(world, d.layout.sweeps))};
+          static_cast<int>(d.at(world, d.layout.linear_solves))};
 }
 
 void Batch::ClearStatus(int world) noexcept {

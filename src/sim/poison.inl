@@ -13,12 +13,14 @@ void Poison([[maybe_unused]] const View& m, [[maybe_unused]] const Rows<W>& s,
   work.Fill(0xff);  // a NaN as double, -1 as int
   const W nan = W::Splat(__builtin_nan(""));
   const V3<W> nan3{nan, nan, nan};
-  const int capacity = static_cast<int>(m.first_pair_id) + W::kLanes * m.pair_capacity;
-  for (int i = g.contact_count; i < capacity; ++i) {
-    g.contact_ids[i] = 0xffffffffu;
-    s.cache_force[i] = s.cache_arm[i] = s.cache_normal[i] = nan3;
-    s.cache_slip[i] = s.cache_bounce[i] = s.cache_live[i] = s.cache_gap[i] = nan;
+  const auto forget = [&](int i) {
+    s.contact_force[i] = s.contact_arm[i] = s.contact_normal[i] = nan3;
+    s.contact_key[i] = s.contact_slip[i] = s.contact_bounce[i] = s.contact_gap[i] = nan;
+  };
+  for (int b = 0; b < m.body_count; ++b) {
+    for (int i = m.first_slot[b] + g.slots_used[b]; i < m.first_slot[b + 1]; ++i) forget(i);
   }
+  for (int i = g.touches_used; i < m.pair_capacity; ++i) forget(m.slot_count + i);
   for (int c = 0; c < m.cable_count; ++c) {
     s.sense_length[c] = s.sense_rate[c] = s.sense_tension[c] = s.sense_elastic[c] = nan;
   }

@@ -1,7 +1,10 @@
 /// Typed access to a group's rows, and what a step keeps only while it runs.
 #pragma once
 
+#include "sim/contacts.h"
+#include "sim/constraint/cable_row.h"
 #include "sim/group.h"
+#include "sim/solve/memory.h"
 #include "simd/vec3.h"
 
 namespace taut::sim {
@@ -15,11 +18,11 @@ using simd::V3;
 template <class W>
 struct Rows {
   W *time, *last_step, *rest, *rest_rate, *target, *mass, *inv_mass, *stiffness, *damping,
-      *friction_scale, *tension, *stiff_k, *stiff_b, *halted, *cache_slip, *cache_bounce,
-      *cache_live, *cache_gap, *clearance, *residual, *sweeps, *sense_length, *sense_rate,
+      *friction_scale, *tension, *stiff_k, *stiff_b, *halted, *contact_key, *contact_slip,
+      *contact_bounce, *contact_gap, *clearance, *residual, *linear_solves, *sense_length, *sense_rate,
       *sense_tension, *sense_elastic;
   V3<W>*pos, *vel, *mom, *old_vel, *old_spin, *node_force, *inertia, *inv_inertia, *gravity,
-      *cache_force, *cache_arm, *cache_normal;
+      *contact_force, *contact_arm, *contact_normal;
   Q4<W>* quat;
 
   Rows(const Layout& l, const Group& g) noexcept {
@@ -49,16 +52,16 @@ struct Rows {
     friction_scale = base + l.friction_scale;
     gravity = v3(l.gravity);
     halted = base + l.halted;
-    cache_force = v3(l.cache_force);
-    cache_slip = base + l.cache_slip;
-    cache_bounce = base + l.cache_bounce;
-    cache_live = base + l.cache_live;
-    cache_arm = v3(l.cache_arm);
-    cache_normal = v3(l.cache_normal);
-    cache_gap = base + l.cache_gap;
+    contact_key = base + l.contact_key;
+    contact_force = v3(l.contact_force);
+    contact_slip = base + l.contact_slip;
+    contact_bounce = base + l.contact_bounce;
+    contact_arm = v3(l.contact_arm);
+    contact_normal = v3(l.contact_normal);
+    contact_gap = base + l.contact_gap;
     clearance = base + l.clearance;
     residual = base + l.residual;
-    sweeps = base + l.sweeps;
+    linear_solves = base + l.linear_solves;
     sense_length = base + l.sense_length;
     sense_rate = base + l.sense_rate;
     sense_tension = base + l.sense_tension;
@@ -77,39 +80,6 @@ struct BodyWork {
   V3<W> force, torque;  ///< Of cables, gravity and nodes [N], [N m].
 };
 
-/// The Jacobian of a contact's three directions for one body.
-template <class W>
-struct Lever {
-  V3<W> n, t1, t2;  ///< arm x direction [m].
-};
-
-/// A contact while a step runs (docs/theory/contact.md). Force on body a, opposite on b.
-template <class W>
-struct ContactRow {
-  int a, b;
-  uint32_t id;
-  bool breaks_away;  ///< Static friction exceeds kinetic: it matters whether the contact slides.
-  bool rebounds;
-  V3<W> n, t1, t2;
-  W frame;  ///< Contacts with equal numbers have the same directions.
-  V3<W> arm_a, arm_b;
-  Lever<W> ja, jb;                 ///< arm x direction.
-  Lever<W> ga, gb;                 ///< inverse inertia times that.
-  W im_a, im_b;                    ///< Inverse masses.
-  W live;                          ///< 1 in lanes that have this contact, else 0.
-  W gap;                           ///< At the middle of the step [m].
-  W wnn, w1n, w2n, w11, w12, w22;  ///< Inverse effective mass, 3x3 [1/kg].
-  W inv_nn, p11, p12, p22;         ///< 1 / wnn; inverse of the tangential 2x2.
-  W rho1, rho2;                    ///< Step lengths of the sliding iteration [kg].
-  W bias;                          ///< Normal velocity to reach is -bias or more [m/s].
-  W static_friction, kinetic_friction;
-  W mu;      ///< Coefficient of this step.
-  W slip;    ///< 1 if it slides, 0 if it sticks.
-  W bounce;  ///< Rebound speed due in the next step [m/s], 0: none.
-  W restitution;
-  W ln, l1, l2;  ///< Impulses [N s].
-};
-
 /// An attachment while its cable's force is worked out; its velocity is the expected one.
 template <class W>
 struct AttachmentWork {
@@ -117,61 +87,21 @@ struct AttachmentWork {
   V3<W> u;  ///< Unit vector from the attachment before.
 };
 
-/// What a cable does to one body: pulls with tension T as T F at the centre, T Q about it.
+/// A cable whose tension is found together with the contacts.
 template <class W>
-struct CableLink {
-  int body;
-  V3<W> F, Q;  ///< Sum of directions [1], of arm x direction [m].
-  V3<W> GQ;    ///< Inverse inertia times Q.
-  W im;
+struct StiffCable : CableRow<W> {
+  int cable;
+  W across;  ///< Share of the largest stable tension, per tension [1/N] (cables.md, eq. 12).
 };
-
-/// A cable whose tension is found together with the contacts (docs/theory/cables.md, eq. 8-11):
-///   T = base + gain dl,  dl: rate after the step
-template <class W>
-struct StiffCable {
-  int cable, first_link, link_count;
-  W on;          ///< 1 in lanes in which this cable is stiff.
-  W A;           ///< Inverse effective mass along the cable [1/kg].
-  W base, gain;  ///< Impulse at dl = 0 [N s], and per dl [kg].
-  W inverse;     ///< 1 / (1 + gain A).
-  W upper;       ///< Largest impulse [N s].
-  W across;      ///< Share of the largest stable tension, per tension [1/N] (eq. 12).
-  W lambda;      ///< Impulse [N s].
-};
-
-/// The sum of a row's velocities over its bodies: lin . v + ang . w each.
-struct NewtonLink {
-  int body;
-  double lin[3], ang[3];  ///< The row's direction; its lever [m].
-  double g[3];            ///< Inverse inertia times lever.
-  double im;              ///< Inverse mass [1/kg].
-};
-
-/// One unknown: the impulse of a contact's normal or tangent, or of a stiff cable.
-struct NewtonRow {
-  int first_link, link_count;
-};
-
-struct NewtonMemory {
-  double *w, *a;  ///< Delassus matrix; that of the linear system. Row by row.
-  double *u, *lambda, *delta;
-  double *start, *best, *center, *center_u;  ///< Impulses and velocities kept for later.
-  NewtonLink* links;
-  NewtonRow* rows;
-  int* contacts;  ///< Numbers of the lane's contacts,
-  int* cables;    ///< and of its stiff cables.
-  int capacity;   ///< Rows.
-};
-
-/// More unknowns than this (80 contacts) are left to the sweeps.
-inline constexpr size_t kMaxNewtonRows = 240;
 
 template <class W>
 struct Scratch {
   BodyWork<W>* bodies;
   AttachmentWork<W>* attachments;
-  ContactRow<W>* contacts;
+  Contact<W, 1>* contacts;  ///< Slots of all bodies: those of body b from View::first_slot[b] on.
+  int* contact_count;       ///< Used slots, per body.
+  TouchingPair* touches;           ///< Those of a lane from lane * pair_capacity on.
+  int touch_count[W::kLanes];
   V3<W>* saved_pos;  ///< Start of the step, for worlds that turn non-finite.
   Q4<W>* saved_quat;
   V3<W>* saved_vel;
@@ -179,65 +109,47 @@ struct Scratch {
   W* saved_rest;
   W* saved_rest_rate;
   StiffCable<W>* stiff;
-  CableLink<W>* links;  ///< Of all stiff cables.
-  NewtonMemory newton;
-  int contact_count;
-  int plane_count;   ///< Contacts with planes come first,
-  int single_count;  ///< then those with other things of the world.
-  int stiff_count, link_count;
+  Link<W, 1>* links;  ///< Of all stiff cables.
+  W* unsolved;        ///< Per body: 1 in lanes in which it is left to the lane's own solve.
+  LaneMemory<simd::Lane<W>> lane;
+  DualMemory<W> dual;
+  int stiff_count = 0, link_count = 0;
 
   /// Overwrites all that the pointers point to.
-  void Fill(unsigned char byte) noexcept { __builtin_memset(memory_, byte, used_); }
+  void Fill(unsigned char byte) noexcept { __builtin_memset(room_.memory, byte, room_.used); }
 
-  static size_t Bytes(const View& m) noexcept { return Scratch(m, nullptr).used_; }
+  static size_t Bytes(const View& m) noexcept { return Scratch(m, nullptr).room_.used; }
 
-  Scratch(const View& m, void* memory) noexcept : memory_(static_cast<char*>(memory)) {
-    const size_t bodies_count = static_cast<size_t>(m.body_count) + 1;
-    const size_t cables_count = static_cast<size_t>(m.cable_count);
-    const size_t contacts_count =
-        m.first_pair_id + static_cast<size_t>(W::kLanes) * static_cast<size_t>(m.pair_capacity);
-    bodies = Take<BodyWork<W>>(bodies_count);
-    attachments = Take<AttachmentWork<W>>(static_cast<size_t>(m.max_attachments));
-    contacts = Take<ContactRow<W>>(contacts_count);
-    saved_pos = Take<V3<W>>(bodies_count);
-    saved_quat = Take<Q4<W>>(bodies_count);
-    saved_vel = Take<V3<W>>(bodies_count);
-    saved_mom = Take<V3<W>>(bodies_count);
-    saved_rest = Take<W>(cables_count);
-    saved_rest_rate = Take<W>(cables_count);
-    stiff = Take<StiffCable<W>>(cables_count);
-    links = Take<CableLink<W>>(static_cast<size_t>(m.attachment_count));
-    TakeNewton(3 * contacts_count + cables_count, static_cast<size_t>(m.attachment_count));
-    contact_count = plane_count = single_count = stiff_count = link_count = 0;
+  Scratch(const View& m, void* memory) noexcept : room_{static_cast<char*>(memory), 0} {
+    const int bodies_count = m.body_count + 1;
+    bodies = room_.Take<BodyWork<W>>(bodies_count);
+    attachments = room_.Take<AttachmentWork<W>>(m.max_attachments);
+    contacts = room_.Take<Contact<W, 1>>(m.slot_count);
+    contact_count = room_.Take<int>(bodies_count);
+    touches = room_.Take<TouchingPair>(W::kLanes * m.pair_capacity);
+    saved_pos = room_.Take<V3<W>>(bodies_count);
+    saved_quat = room_.Take<Q4<W>>(bodies_count);
+    saved_vel = room_.Take<V3<W>>(bodies_count);
+    saved_mom = room_.Take<V3<W>>(bodies_count);
+    saved_rest = room_.Take<W>(m.cable_count);
+    saved_rest_rate = room_.Take<W>(m.cable_count);
+    stiff = room_.Take<StiffCable<W>>(m.cable_count);
+    links = room_.Take<Link<W, 1>>(m.attachment_count);
+    unsolved = room_.Take<W>(bodies_count);
+    lane.Take(m, room_);
+    dual.Take(m, room_);
+  }
+
+  /// False if the lane's list is full.
+  bool AddTouch(const View& m, int lane_number, int pair, const TouchPoint& point) noexcept {
+    int& count = touch_count[lane_number];
+    if (count == m.pair_capacity) return false;
+    touches[lane_number * m.pair_capacity + count++] = {pair, point};
+    return true;
   }
 
  private:
-  void TakeNewton(size_t wanted, size_t attachments_count) noexcept {
-    const size_t rows = wanted < kMaxNewtonRows ? wanted : kMaxNewtonRows;
-    newton.capacity = static_cast<int>(rows);
-    newton.w = Take<double>(rows * rows);
-    newton.a = Take<double>(rows * rows);
-    newton.u = Take<double>(rows);
-    newton.lambda = Take<double>(rows);
-    newton.delta = Take<double>(rows);
-    newton.start = Take<double>(rows);
-    newton.best = Take<double>(rows);
-    newton.center = Take<double>(rows);
-    newton.center_u = Take<double>(rows);
-    newton.links = Take<NewtonLink>(2 * rows + attachments_count);
-    newton.rows = Take<NewtonRow>(rows);
-    newton.contacts = Take<int>(rows);
-    newton.cables = Take<int>(rows);
-  }
-  template <class T>
-  T* Take(size_t count) noexcept {
-    // Without memory only the sizes count: adding to a null pointer would be undefined.
-    T* const first = memory_ == nullptr ? nullptr : reinterpret_cast<T*>(memory_ + used_);
-    used_ += (count * sizeof(T) + 63) / 64 * 64;
-    return first;
-  }
-  char* memory_;
-  size_t used_ = 0;
+  Room room_;
 };
 
 }  // namespace taut::sim

@@ -25,64 +25,120 @@ TAUT_INLINE W TravelSinceLast(const View& m, const Scratch<W>& work, int body,
   return since_last * (Norm1(b.v0) + W::Splat(m.bound_m[body]) * Norm1(b.w0));
 }
 
-/// Starts a row; the solver fills in the rest.
+/// What the finding of a contact with the world says about it.
 template <class W>
-TAUT_INLINE ContactRow<W>& AddContact(Scratch<W>& work, int a, int b, uint32_t id,
-                                      double static_friction, double kinetic_friction,
-                                      double restitution) noexcept {
-  ContactRow<W>& row = work.contacts[work.contact_count++];
-  row.a = a;
-  row.b = b;
-  row.id = id;
-  row.frame = W::Splat(-work.contact_count);  // like no other
-  row.static_friction = W::Splat(static_friction);
-  row.kinetic_friction = W::Splat(kinetic_friction);
-  row.restitution = W::Splat(restitution);
-  row.breaks_away = static_friction > kinetic_friction;
-  row.rebounds = restitution > 0;
-  return row;
+struct Found {
+  W key, frame, gap, static_friction, kinetic_friction, restitution;
+  V3<W> n, t1, t2, arm;
+};
+
+template <class W, class M>
+TAUT_INLINE void PutContact(Contact<W, 1>& slot, const Found<W>& found, M lanes) noexcept {
+  const auto put = [lanes](W& to, W from) { to = Select(lanes, from, to); };
+  const auto put3 = [lanes](V3<W>& to, const V3<W>& from) { to = Select3(lanes, from, to); };
+  V3<W>* const d = slot.links[0].lin;
+  put3(d[0], found.n), put3(d[1], found.t1), put3(d[2], found.t2);
+  put3(slot.arm[0], found.arm);
+  put(slot.key, found.key), put(slot.frame, found.frame), put(slot.gap, found.gap);
+  put(slot.static_friction, found.static_friction);
+  put(slot.kinetic_friction, found.kinetic_friction);
+  put(slot.restitution, found.restitution);
 }
 
+/// The contacts of one body with the world that were found so far.
 template <class W>
-void CollidePlanes(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexcept {
-  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+class SlotFiller {
+ public:
+  SlotFiller(const View& m, Scratch<W>& work, int body) noexcept
+      : slots_(work.contacts + m.first_slot[body]),
+        capacity_(m.first_slot[body + 1] - m.first_slot[body]),
+        one_direction_(m.along_slip) {}
+
+  /// Puts it into the next slot of each of `lanes`; there is room for all points on all planes.
+  template <class M>
+  TAUT_INLINE void Add(const Found<W>& found, M lanes) noexcept {
+    const int last = count_;
+    for (int k = W::kLanes == 1 ? last : 0; k <= last; ++k) {
+      const auto here = lanes & (used_ == W::Splat(k));
+      if (Any(here)) Put(k, found, here);
+    }
+    used_ += Select(lanes, W::Splat(1.0), W::Splat(0.0));
+  }
+  /// The same for one lane. False if it has no room.
+  bool Add(const Found<W>& found, int lane) noexcept {
+    const int k = static_cast<int>(used_[lane]);
+    if (k == capacity_) return false;
+    auto here = MaskOf<W>::Splat(false);
+    here.Set(lane, true);
+    Put(k, found, here);
+    used_.Set(lane, k + 1);
+    return true;
+  }
+  int count() const noexcept { return count_; }
+
+ private:
+  template <class M>
+  TAUT_INLINE void Put(int k, const Found<W>& found, M here) noexcept {
+    Contact<W, 1>& slot = slots_[k];
+    if (k == count_) {
+      // Lanes that have no such contact keep a harmless one.
+      ++count_;
+      slot.one_direction = one_direction_;
+      slot.live = W::Splat(0.0);
+      PutContact(slot, found, MaskOf<W>::Splat(true));
+      slot.key = Select(here, found.key, W::Splat(kNoKey));
+    } else {
+      PutContact(slot, found, here);
+    }
+    slot.live = Select(here, W::Splat(1.0), slot.live);
+  }
+
+  Contact<W, 1>* slots_;
+  int capacity_, count_ = 0;
+  W used_ = W::Splat(0.0);
+  bool one_direction_;
+};
+
+template <class W>
+void CollidePlanes(const View& m, const Rows<W>& s, Scratch<W>& work, W h, int body,
+                   SlotFiller<W>& slots) noexcept {
   V3<W> normal_P[kMaxPlanes];
   W height[kMaxPlanes];
   bool near_plane[kMaxPlanes];
-  for (int body = 0; body < m.body_count; ++body) {
-    const int first = m.first_point[body], last = m.first_point[body + 1];
-    if (first == last) continue;
-    const BodyWork<W>& b = work.bodies[body];
-    const W margin = TravelBound(m, work, body, h) + W::Splat(kContactMarginM);
-    bool any = false;
+  const int first = m.first_point[body], last = m.first_point[body + 1];
+  if (first == last) return;
+  const BodyWork<W>& b = work.bodies[body];
+  const W margin = TravelBound(m, work, body, h) + W::Splat(kContactMarginM);
+  bool any = false;
+  for (int k = 0; k < m.plane_count; ++k) {
+    const V3<W> n = simd::Splat3<W>(m.planes[k].normal);
+    height[k] = Dot(n, s.pos[body]) - W::Splat(m.planes[k].offset_m);
+    near_plane[k] = Any(height[k] - W::Splat(m.bound_m[body]) < margin);
+    any = any || near_plane[k];
+    normal_P[k] = TransposeTimes(b.R, n);
+  }
+  if (!any) return;
+  for (int i = first; i < last; ++i) {
+    const PointTable& point = m.points[i];
+    const V3<W> p_P = simd::Splat3<W>(point.p_P);
     for (int k = 0; k < m.plane_count; ++k) {
-      const V3<W> n = simd::Splat3<W>(m.planes[k].normal);
-      height[k] = Dot(n, s.pos[body]) - W::Splat(m.planes[k].offset_m);
-      near_plane[k] = Any(height[k] - W::Splat(m.bound_m[body]) < margin);
-      any = any || near_plane[k];
-      normal_P[k] = TransposeTimes(b.R, n);
-    }
-    if (!any) continue;
-    for (int i = first; i < last; ++i) {
-      const PointTable& point = m.points[i];
-      const V3<W> p_P = simd::Splat3<W>(point.p_P);
-      for (int k = 0; k < m.plane_count; ++k) {
-        if (!near_plane[k]) continue;
-        const W gap = height[k] + Dot(normal_P[k], p_P) - W::Splat(point.radius_m);
-        const auto touching = gap < margin;
-        if (!Any(touching)) continue;
-        const PlaneTable& plane = m.planes[k];
-        ContactRow<W>& row =
-            AddContact(work, body, m.body_count, static_cast<uint32_t>(i * m.plane_count + k),
-                       point.static_friction[k], point.kinetic_friction[k], point.restitution[k]);
-        if (!m.along_slip) row.frame = W::Splat(k);
-        row.n = simd::Splat3<W>(plane.normal);
-        row.t1 = simd::Splat3<W>(plane.tangent1);
-        row.t2 = simd::Splat3<W>(plane.tangent2);
-        row.arm_a = b.R * p_P - W::Splat(point.radius_m) * row.n;
-        row.live = Select(touching, one, zero);
-        row.gap = gap;
-      }
+      if (!near_plane[k]) continue;
+      const W gap = height[k] + Dot(normal_P[k], p_P) - W::Splat(point.radius_m);
+      const auto touching = gap < margin;
+      if (!Any(touching)) continue;
+      const PlaneTable& plane = m.planes[k];
+      Found<W> found;
+      found.key = W::Splat(i * m.plane_count + k);
+      found.frame = m.along_slip ? W::Splat(-1.0) - found.key : W::Splat(k);
+      found.gap = gap;
+      found.static_friction = W::Splat(point.static_friction[k]);
+      found.kinetic_friction = W::Splat(point.kinetic_friction[k]);
+      found.restitution = W::Splat(point.restitution[k]);
+      found.n = simd::Splat3<W>(plane.normal);
+      found.t1 = simd::Splat3<W>(plane.tangent1);
+      found.t2 = simd::Splat3<W>(plane.tangent2);
+      found.arm = b.R * p_P - W::Splat(point.radius_m) * found.n;
+      slots.Add(found, touching);
     }
   }
 }
@@ -115,103 +171,101 @@ W DistanceOfBodies(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return least;
 }
 
-/// Rows of one pair of shapes: the union over the lanes of their points.
+/// A touching point of a body and a shape that does not move, for one lane of a slot.
+template <class W>
+Found<W> FoundTouch(const Rows<W>& s, const ShapePairTable& pair, const TouchPoint& t, int body,
+                    int lane) noexcept {
+  const V3<W>& x = s.pos[body];
+  Found<W> found;
+  found.key = W::Splat(pair.id + static_cast<uint32_t>(t.feature));
+  found.frame = W::Splat(-1.0) - found.key;  // like no other
+  found.gap = W::Splat(t.gap_m);
+  found.static_friction = W::Splat(pair.static_friction);
+  found.kinetic_friction = W::Splat(pair.kinetic_friction);
+  found.restitution = W::Splat(pair.restitution);
+  found.n = simd::Splat3<W>(t.normal);
+  found.t1 = found.t2 = found.n;  // to be made
+  found.arm = {W::Splat(t.point[0] - x.x[lane]), W::Splat(t.point[1] - x.y[lane]),
+               W::Splat(t.point[2] - x.z[lane])};
+  return found;
+}
+
+/// The points of one pair of shapes, in the order of their features: into the slots of a body if
+/// the other does not move, else into the lists of touches.
 template <class W>
 void CollideShapes(const View& m, const Rows<W>& s, Scratch<W>& work, const ShapePairTable& pair,
-                   W margin, W center_distance2, int* room, uint32_t* overflow) noexcept {
+                   W margin, W center_distance2, SlotFiller<W>* slots,
+                   uint32_t* overflow) noexcept {
   const double reach = m.shapes[pair.a].bound_m + m.shapes[pair.b].bound_m;
   const W limit = W::Splat(reach) + margin;
   const auto close = center_distance2 < limit * limit;
   if (!Any(close)) return;
-  ContactRow<W>* row_of[kMaxPointsPerPair] = {};
-  TouchPoint found[W::kLanes][kMaxPointsPerPair];
-  int found_count[W::kLanes];
+  const int body = m.shapes[pair.a].body;
   for (int lane = 0; lane < W::kLanes; ++lane) {
-    found_count[lane] =
-        close[lane] ? TouchLane(m, s, work, pair, lane, margin[lane], found[lane]) : 0;
-    if (found_count[lane] > room[lane]) {
-      found_count[lane] = room[lane];
-      *overflow |= 1u << lane;
-    }
-    room[lane] -= found_count[lane];
-  }
-  const W zero = W::Splat(0.0);
-  const int body_a = m.shapes[pair.a].body, body_b = m.shapes[pair.b].body;
-  for (int feature = 0; feature < kMaxPointsPerPair; ++feature) {
-    for (int lane = 0; lane < W::kLanes; ++lane) {
-      for (int i = 0; i < found_count[lane]; ++i) {
-        const TouchPoint& t = found[lane][i];
-        if (t.feature != feature) continue;
-        if (row_of[feature] == nullptr) {
-          row_of[feature] =
-              &AddContact(work, body_a, body_b, pair.id + static_cast<uint32_t>(feature),
-                          pair.static_friction, pair.kinetic_friction, pair.restitution);
-          ContactRow<W>& row = *row_of[feature];
-          // Lanes without this point keep a harmless one.
-          row.n = {zero, zero, W::Splat(1.0)};
-          row.arm_a = row.arm_b = {zero, zero, zero};
-          row.live = zero;
-          row.gap = W::Splat(1.0);
-        }
-        ContactRow<W>& row = *row_of[feature];
-        row.n.x.Set(lane, t.normal[0]);
-        row.n.y.Set(lane, t.normal[1]);
-        row.n.z.Set(lane, t.normal[2]);
-        const V3<W>& xa = s.pos[body_a];
-        row.arm_a.x.Set(lane, t.point[0] - xa.x[lane]);
-        row.arm_a.y.Set(lane, t.point[1] - xa.y[lane]);
-        row.arm_a.z.Set(lane, t.point[2] - xa.z[lane]);
-        if (body_b < m.body_count) {
-          const V3<W>& xb = s.pos[body_b];
-          row.arm_b.x.Set(lane, t.point[0] - xb.x[lane]);
-          row.arm_b.y.Set(lane, t.point[1] - xb.y[lane]);
-          row.arm_b.z.Set(lane, t.point[2] - xb.z[lane]);
-        }
-        row.live.Set(lane, 1.0);
-        row.gap.Set(lane, t.gap_m);
+    if (!close[lane]) continue;
+    TouchPoint points[kMaxPointsPerPair];
+    const int count = TouchLane(m, s, work, pair, lane, margin[lane], points);
+    for (int feature = 0, left = count; left > 0; ++feature) {
+      for (int i = 0; i < count; ++i) {
+        if (points[i].feature != feature) continue;
+        --left;
+        const bool room =
+            slots != nullptr
+                ? slots->Add(FoundTouch(s, pair, points[i], body, lane), lane)
+                : work.AddTouch(m, lane, static_cast<int>(&pair - m.shape_pairs), points[i]);
+        if (!room) *overflow |= 1u << lane;
       }
     }
   }
 }
 
+/// Whether two bodies may touch in some lane, and if so how far each may reach.
 template <class W>
-void CollideBodies(const View& m, const Rows<W>& s, Scratch<W>& work, W h, W since_last, int* room,
-                   uint32_t* overflow) noexcept {
-  for (int i = 0; i < m.body_pair_count; ++i) {
-    const BodyPairTable& bodies = m.body_pairs[i];
-    const W margin = TravelBound(m, work, bodies.a, h) + TravelBound(m, work, bodies.b, h) +
-                     W::Splat(kContactMarginM);
-    s.clearance[i] -= TravelSinceLast(m, work, bodies.a, since_last) +
-                      TravelSinceLast(m, work, bodies.b, since_last);
-    if (!Any(s.clearance[i] < margin)) continue;
-    s.clearance[i] = DistanceOfBodies(m, s, work, bodies);
-    if (!Any(s.clearance[i] < margin)) continue;
-    for (int k = 0; k < bodies.pair_count; ++k) {
-      const ShapePairTable& pair = m.shape_pairs[bodies.first_pair + k];
-      const V3<W> d = ShapeCenter(m, s, work, pair.a) - ShapeCenter(m, s, work, pair.b);
-      CollideShapes(m, s, work, pair, margin, Dot(d, d), room, overflow);
-    }
+bool MayTouch(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair, W h, W since_last,
+              W& margin) noexcept {
+  const BodyPairTable& bodies = m.body_pairs[pair];
+  margin = TravelBound(m, work, bodies.a, h) + TravelBound(m, work, bodies.b, h) +
+           W::Splat(kContactMarginM);
+  s.clearance[pair] -= TravelSinceLast(m, work, bodies.a, since_last) +
+                       TravelSinceLast(m, work, bodies.b, since_last);
+  if (!Any(s.clearance[pair] < margin)) return false;
+  s.clearance[pair] = DistanceOfBodies(m, s, work, bodies);
+  return Any(s.clearance[pair] < margin);
+}
+
+template <class W>
+void CollideBodies(const View& m, const Rows<W>& s, Scratch<W>& work, int pair, W h, W since_last,
+                   SlotFiller<W>* slots, uint32_t* overflow) noexcept {
+  W margin;
+  if (!MayTouch(m, s, work, pair, h, since_last, margin)) return;
+  const BodyPairTable& bodies = m.body_pairs[pair];
+  for (int k = 0; k < bodies.pair_count; ++k) {
+    const ShapePairTable& shapes = m.shape_pairs[bodies.first_pair + k];
+    const V3<W> d = ShapeCenter(m, s, work, shapes.a) - ShapeCenter(m, s, work, shapes.b);
+    CollideShapes(m, s, work, shapes, margin, Dot(d, d), slots, overflow);
   }
 }
 
 /// Stage: collide.
-///   reads   pos, bodies[]     writes  contacts[] (geometry and materials), clearance
-///   order   ids rising; contacts with the world first
+///   reads   pos, bodies[]     writes  contacts[], touches[] (geometry and materials), clearance
+///   order   keys rising, in each body's slots and in each lane's list
 /// Returns a bit for each lane that had more contacts than room.
 template <class W>
 uint32_t StageCollide(const View& m, const Rows<W>& s, Scratch<W>& work, W h,
                       W since_last) noexcept {
-  work.contact_count = 0;
-  CollidePlanes(m, s, work, h);
-  work.plane_count = work.contact_count;
-  int room[W::kLanes];
-  for (int lane = 0; lane < W::kLanes; ++lane) room[lane] = m.pair_capacity;
   uint32_t overflow = 0;
-  CollideBodies(m, s, work, h, since_last, room, &overflow);
-  work.single_count = 0;
-  while (work.single_count < work.contact_count &&
-         work.contacts[work.single_count].b == m.body_count) {
-    ++work.single_count;
+  int pair = 0;
+  for (int body = 0; body < m.body_count; ++body) {
+    SlotFiller<W> slots(m, work, body);
+    CollidePlanes(m, s, work, h, body, slots);
+    for (; pair < m.world_pair_count && m.body_pairs[pair].a == body; ++pair) {
+      CollideBodies(m, s, work, pair, h, since_last, &slots, &overflow);
+    }
+    work.contact_count[body] = slots.count();
+  }
+  for (int lane = 0; lane < W::kLanes; ++lane) work.touch_count[lane] = 0;
+  for (; pair < m.body_pair_count; ++pair) {
+    CollideBodies<W>(m, s, work, pair, h, since_last, nullptr, &overflow);
   }
   return overflow;
 }

@@ -1,107 +1,252 @@
-/// Stage: impulses of contacts and stiff cables. Sweeps go over all of them, solve each by itself
-/// or, for a body on the ground, its contacts together, and stop a lane when nothing changed a
-/// velocity by more than the tolerance. Where sweeps crawl, Newton's method takes all of a lane
-/// together. A lane that is done freezes: its neighbours cannot change it.
+/// Stage: impulses of contacts and stiff cables (docs/theory/contact.md, sections 4 and 5). One
+/// solve in three places: bodies that only stand on the world, and worlds that hang together by
+/// stiff cables, in all lanes at once; all else, and what those did not get, lane by lane.
 
 namespace taut::sim {
 
 template <class W>
 struct SolveResult {
-  W residual;  ///< Largest change of a contact velocity in a lane's last sweep [m/s].
-  W sweeps;
+  W residual;  ///< How far a lane is from solved [m/s].
+  W linear_solves;
+  int body[W::kLanes];  ///< Where it is furthest.
 };
 
-/// Contacts get their equations and start from the impulses of the step before.
+/// What a body's slot remembers, by its key. Both sides have their keys rising in every lane; the
+/// cursor stays behind the slots that no lane needs any more.
+template <class W>
+TAUT_INLINE ContactMemory<W> Recall(const Rows<W>& s, const Contact<W, 1>& c, int first, int used,
+                                    int& cursor) noexcept {
+  ContactMemory<W> found = ContactMemory<W>::None();
+  auto missing = c.live > W::Splat(0.0);
+  while (cursor < used && !Any(missing & !(s.contact_key[first + cursor] < c.key))) ++cursor;
+  for (int i = first + cursor; i < first + used && Any(missing); ++i) {
+    const auto here = missing & (s.contact_key[i] == c.key);
+    if (Any(here)) {
+      found.force = Select3(here, s.contact_force[i], found.force);
+      found.slip = Select(here, s.contact_slip[i], found.slip);
+      found.bounce = Select(here, s.contact_bounce[i], found.bounce);
+    }
+    missing = missing & !here & (s.contact_key[i] < c.key);
+  }
+  return found;
+}
+
+/// Two contacts of a body at most are solved to the last digit as they are.
+template <class W>
+TAUT_INLINE void FitCrowded(Contact<W, 1>* contacts, int count) noexcept {
+  constexpr int kFewest = 3;
+  if (count < kFewest) return;
+  const auto crowded = contacts[kFewest - 1].live > W::Splat(0.0);
+  if (Any(crowded)) FitBiases(contacts, count, crowded);
+}
+
+/// Contacts with the world get their equations and start from the impulses of the step before.
 template <class W>
 void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                      double step_s) noexcept {
-  int cursor = 0;
-  for (int i = 0; i < work.contact_count; ++i) {
-    ContactRow<W>& row = work.contacts[i];
-    const ContactMemory<W> memory = Recall(s, g, row.id, cursor);
-    if (i < work.single_count) {
-      PrepareContact<W, false>(m, s, work, row, memory, step_s);
-    } else {
-      PrepareContact<W, true>(m, s, work, row, memory, step_s);
+  for (int b = 0; b < m.body_count; ++b) {
+    int cursor = 0;
+    for (int k = 0; k < work.contact_count[b]; ++k) {
+      Contact<W, 1>& c = work.contacts[m.first_slot[b] + k];
+      const auto memory = Recall(s, c, m.first_slot[b], g.slots_used[b], cursor);
+      const BodyWork<W>& body = work.bodies[b];
+      PrepareContact(c, memory, body, b, s.inv_mass[b], body, b, s.inv_mass[b],
+                     s.friction_scale[0], step_s);
+    }
+    FitCrowded(work.contacts + m.first_slot[b], work.contact_count[b]);
+  }
+}
+
+/// Which lanes' bodies are left to the lane's own solve from the start: those that touch moving
+/// bodies, and all of a world with stiff cables that is not solved in lanes.
+template <class W, class M>
+void MarkUnsolved(const View& m, Scratch<W>& work, M alone) noexcept {
+  const W mark = Select(alone, W::Splat(1.0), W::Splat(0.0));
+  for (int b = 0; b < m.body_count; ++b) work.unsolved[b] = mark;
+  for (int lane = 0; lane < W::kLanes; ++lane) {
+    for (int i = 0; i < work.touch_count[lane]; ++i) {
+      const ShapePairTable& pair = m.shape_pairs[work.touches[lane * m.pair_capacity + i].pair];
+      work.unsolved[m.shapes[pair.a].body].Set(lane, 1.0);
+      work.unsolved[m.shapes[pair.b].body].Set(lane, 1.0);
     }
   }
-  // Only now, so that every contact has seen the velocities without contact.
-  for (int i = 0; i < work.contact_count; ++i) {
-    const ContactRow<W>& row = work.contacts[i];
-    ApplyImpulse(work.bodies[row.a], row.im_a, row, row.ga, row.ln, row.l1, row.l2);
-    if (i < work.single_count) continue;
-    ApplyImpulse(work.bodies[row.b], row.im_b, row, row.gb, -row.ln, -row.l1, -row.l2);
-  }
 }
 
-/// Sweeps after which to try Newton's method: 32, 64, 128, ...
-TAUT_INLINE bool NewtonIsDue(int sweeps) noexcept {
-  return sweeps >= kSweepsBeforeNewton && (sweeps & (sweeps - 1)) == 0;
-}
-
-/// One sweep over the contacts from number `first` on, each by itself: each ends inside its own
-/// cone. Returns the largest change of a velocity [m/s].
+/// Bodies whose contacts with the world are islands.
 template <class W, class M>
-W RelaxContacts(Scratch<W>& work, int first, M lanes) noexcept {
-  W change = W::Splat(0.0);
-  for (int i = first; i < work.single_count; ++i) {
-    change = Max(RelaxContact<W, false>(work, work.contacts[i], lanes), change);
+void SolveBodies(const View& m, Scratch<W>& work, Target target, M lanes,
+                 SolveResult<W>& result) noexcept {
+  const W zero = W::Splat(0.0);
+  for (int b = 0; b < m.body_count; ++b) {
+    const int count = work.contact_count[b];
+    if (count == 0) continue;
+    Contact<W, 1>* const rows = work.contacts + m.first_slot[b];
+    const auto left = work.unsolved[b] > zero;
+    auto mine = lanes & !left;
+    auto crowded = M::Splat(false);
+    if (count > kMaxDualContacts) crowded = rows[kMaxDualContacts].live > zero;
+    mine = mine & !crowded;
+    M failed = lanes & crowded;
+    if (Any(mine)) {
+      failed = failed | SolveBody(work.bodies[b], rows,
+                                  count < kMaxDualContacts ? count : kMaxDualContacts, target,
+                                  mine, result.residual, result.linear_solves);
+    }
+    if (Any(failed)) work.unsolved[b] = Select(failed, W::Splat(1.0), work.unsolved[b]);
   }
-  for (int i = work.single_count; i < work.contact_count; ++i) {
-    change = Max(RelaxContact<W, true>(work, work.contacts[i], lanes), change);
-  }
-  return change;
 }
 
-/// Lanes in which bodies on planes are not islands: something else hangs on them.
+/// A lane's touches as contacts, from what they remember.
 template <class W>
-auto CoupledLanes(const Scratch<W>& work) noexcept {
-  W others = W::Splat(0.0);
-  for (int i = work.plane_count; i < work.contact_count; ++i) others += work.contacts[i].live;
-  for (int i = 0; i < work.stiff_count; ++i) others += work.stiff[i].on;
-  return others > W::Splat(0.0);
+void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int lane,
+                    double step_s) noexcept {
+  using L = simd::Lane<W>;
+  int memory_at = m.slot_count;
+  const int memory_end = m.slot_count + g.touches_used;
+  for (int i = 0; i < work.touch_count[lane]; ++i) {
+    const TouchingPair& touch = work.touches[lane * m.pair_capacity + i];
+    const ShapePairTable& pair = m.shape_pairs[touch.pair];
+    const TouchPoint& point = touch.point;
+    const int bodies[2] = {m.shapes[pair.a].body, m.shapes[pair.b].body};
+    Contact<L, 2>& c = work.lane.pairs[i];
+    BodyWork<L> body[2];
+    for (int k = 0; k < 2; ++k) {
+      const BodyWork<W>& from = work.bodies[bodies[k]];
+      body[k].v = OfLane<L>(from.v, lane), body[k].w = OfLane<L>(from.w, lane);
+      body[k].v0 = OfLane<L>(from.v0, lane), body[k].w0 = OfLane<L>(from.w0, lane);
+      body[k].inv_inertia = OfLane<L>(from.inv_inertia, lane);
+      c.arm[k] = simd::Splat3<L>(point.point) - OfLane<L>(s.pos[bodies[k]], lane);
+    }
+    const double key = pair.id + static_cast<uint32_t>(point.feature);
+    c.key = L::Splat(key);
+    c.live = L::Splat(1.0);
+    c.frame = L::Splat(kNoKey);
+    c.gap = L::Splat(point.gap_m);
+    c.static_friction = L::Splat(pair.static_friction);
+    c.kinetic_friction = L::Splat(pair.kinetic_friction);
+    c.restitution = L::Splat(pair.restitution);
+    c.one_direction = m.along_slip;
+    c.links[0].lin[0] = simd::Splat3<L>(point.normal);
+    c.links[0].lin[1] = c.links[0].lin[2] = c.links[0].lin[0];  // to be made
+    ContactMemory<L> memory = ContactMemory<L>::None();
+    while (memory_at < memory_end && s.contact_key[memory_at][lane] >= 0 &&
+           s.contact_key[memory_at][lane] < key) {
+      ++memory_at;
+    }
+    if (memory_at < memory_end && s.contact_key[memory_at][lane] == key) {
+      memory.force = OfLane<L>(s.contact_force[memory_at], lane);
+      memory.slip = OfLane<L>(s.contact_slip[memory_at], lane);
+      memory.bounce = OfLane<L>(s.contact_bounce[memory_at], lane);
+    }
+    PrepareContact(c, memory, body[0], bodies[0], OfLane<L>(s.inv_mass[bodies[0]], lane), body[1],
+                   bodies[1], OfLane<L>(s.inv_mass[bodies[1]], lane),
+                   OfLane<L>(s.friction_scale[0], lane), step_s);
+  }
+  for (int first = 0, next = 0; first < work.touch_count[lane]; first = next) {
+    const Contact<L, 2>* const c = work.lane.pairs;
+    while (next < work.touch_count[lane] && c[next].links[0].body == c[first].links[0].body &&
+           c[next].links[1].body == c[first].links[1].body) {
+      ++next;
+    }
+    if (next - first > 1) FitBiases(work.lane.pairs + first, next - first, MaskOf<L>::Splat(true));
+  }
+}
+
+/// What a lane's touches came to, into momenta and memory.
+template <class W>
+void FinishTouches(const View& m, const Rows<W>& s, Scratch<W>& work, int lane,
+                   double step_s) noexcept {
+  using L = simd::Lane<W>;
+  const L inv_h = L::Splat(1.0 / step_s);
+  for (int i = 0; i < work.touch_count[lane]; ++i) {
+    Contact<L, 2>& c = work.lane.pairs[i];
+    L u[3] = {L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};
+    const V3<L> impulse = ImpulseOf(c);
+    for (int k = 0; k < 2; ++k) {
+      const int body = c.links[k].body;
+      AddVelocity(c.links[k], OfLane<L>(work.bodies[body].v, lane),
+                  OfLane<L>(work.bodies[body].w, lane), u);
+      const V3<L> turned = Cross(c.arm[k], impulse), before = OfLane<L>(s.mom[body], lane);
+      SetLane(s.mom[body], k == 0 ? before + turned : before - turned, lane);
+    }
+    JudgeSlip(c, u);
+    const int slot = m.slot_count + i;
+    s.contact_key[slot].Set(lane, c.key[0]);
+    SetLane(s.contact_force[slot], inv_h * impulse, lane);
+    s.contact_slip[slot].Set(lane, c.l[0][0] > 0 ? c.slip[0] : kSlipUnknown);
+    s.contact_bounce[slot].Set(lane, c.bounce[0]);
+    SetLane(s.contact_arm[slot], c.arm[0], lane);
+    SetLane(s.contact_normal[slot], c.links[0].lin[0], lane);
+    s.contact_gap[slot].Set(lane, c.gap[0]);
+  }
+}
+
+/// Lanes whose bodies are not all solved, one after the other.
+template <class W>
+void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
+                const StepSettings& settings, double step_s, SolveResult<W>& result) noexcept {
+  W unsolved = W::Splat(0.0);
+  for (int b = 0; b < m.body_count; ++b) unsolved += work.unsolved[b];
+  int touches = 0;
+  for (int lane = 0; lane < W::kLanes; ++lane) {
+    const bool halted = s.halted[0][lane] > 0;
+    if (work.touch_count[lane] > touches) touches = work.touch_count[lane];
+    if (!(unsolved[lane] > 0) || halted) continue;
+    PrepareTouches(m, s, g, work, lane, step_s);
+    const LaneResult lane_result = LaneSolve<W>(m, s, work, settings, lane).Solve();
+    result.linear_solves.Set(lane, result.linear_solves[lane] + lane_result.linear_solves);
+    if (!(lane_result.residual <= result.residual[lane])) {
+      result.residual.Set(lane, lane_result.residual);
+      result.body[lane] = lane_result.body;
+    }
+    FinishTouches(m, s, work, lane, step_s);
+  }
+  // Every lane must know where its list ends.
+  if (g.touches_used == 0 && touches == 0) return;
+  g.touches_used = touches;
+  for (int lane = 0; lane < W::kLanes; ++lane) {
+    for (int i = work.touch_count[lane]; i < touches; ++i) {
+      s.contact_key[m.slot_count + i].Set(lane, kNoKey);
+    }
+  }
 }
 
 /// Stage: solve.
-///   reads   contacts[] (geometry), stiff cables, cache of the step before
-///   writes  bodies[].v, .w, impulses, mom
+///   reads   contacts[], touches[] (geometry), stiff cables, memory of the step before
+///   writes  bodies[].v, .w, impulses, mom, memory of touches
 template <class W>
-SolveResult<W> StageSolve(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
                           const StepSettings& settings, double step_s) noexcept {
-  const W zero = W::Splat(0.0), one = W::Splat(1.0);
-  SolveResult<W> result{zero, zero};
+  const W zero = W::Splat(0.0);
+  const Target target{settings.tolerance_m_per_s};
+  SolveResult<W> result{zero, zero, {}};
+  for (int& body : result.body) body = kWorld;
   PrepareContacts(m, s, g, work, step_s);
-  StartStiffCables(work);
-  const bool anything = work.contact_count + work.stiff_count > 0;
-  const W tolerance = W::Splat(settings.tolerance_m_per_s);
-  auto busy = s.halted[0] == zero;
-  auto hopeful = busy;  // that Newton's method helps
-  const auto coupled = CoupledLanes(work);
-  for (int sweep = 0; anything && sweep < settings.max_sweeps && Any(busy); ++sweep) {
-    W change = RelaxStiffCables(work, busy);
-    change = Max(RelaxBlocks(m, work, tolerance, busy, coupled), change);
-    change = Max(RelaxContacts(work, work.plane_count, busy), change);
-    result.residual = Select(busy, change, result.residual);
-    result.sweeps += Select(busy, one, zero);
-    busy = busy & (change > tolerance);
-    if (!Any(busy) || !NewtonIsDue(sweep + 1)) continue;
-    for (int lane = 0; lane < W::kLanes; ++lane) {
-      if (!(busy & hopeful)[lane]) continue;
-      LaneNewton<W> newton(work, lane, m.along_slip);
-      hopeful.Set(lane, newton.Solve(settings.tolerance_m_per_s));
+  const auto busy = s.halted[0] == zero;
+  W cables = zero, touches = zero;
+  for (int i = 0; i < work.stiff_count; ++i) cables += work.stiff[i].live;
+  for (int lane = 0; lane < W::kLanes; ++lane) touches.Set(lane, work.touch_count[lane]);
+  const auto cabled = busy & (cables > zero);
+  const auto dual =
+      work.dual.capacity > 0 ? cabled & (touches == zero) : MaskOf<W>::Splat(false);
+  MarkUnsolved(m, work, cabled & !dual);
+  SolveBodies(m, work, target, busy & !cabled, result);
+  if (Any(dual)) {
+    const auto failed = WorldDual<W>(m, s, work).Solve(target, dual, result.residual,
+                                                       result.linear_solves);
+    for (int b = 0; b < m.body_count; ++b) {
+      work.unsolved[b] = Select(failed, W::Splat(1.0), work.unsolved[b]);
     }
   }
-  // What has not converged must at least not rub harder than Coulomb allows.
-  if (Any(busy)) RelaxContacts(work, 0, busy);
-  for (int i = 0; i < work.contact_count; ++i) {
-    ContactRow<W>& row = work.contacts[i];
-    const V3<W> f = row.ln * row.n + row.l1 * row.t1 + row.l2 * row.t2;
-    s.mom[row.a] += Cross(row.arm_a, f);
-    if (i < work.single_count) {
-      JudgeSlip<W, false>(work, row);
-    } else {
-      s.mom[row.b] -= Cross(row.arm_b, f);
-      JudgeSlip<W, true>(work, row);
+  SolveLanes(m, s, g, work, settings, step_s, result);
+  for (int b = 0; b < m.body_count; ++b) {
+    for (int k = 0; k < work.contact_count[b]; ++k) {
+      Contact<W, 1>& c = work.contacts[m.first_slot[b] + k];
+      s.mom[b] += Cross(c.arm[0], ImpulseOf(c));
+      W u[3] = {zero, zero, zero};
+      if (!Any(c.static_friction > c.kinetic_friction)) continue;
+      AddVelocity(c.links[0], work.bodies[b].v, work.bodies[b].w, u);
+      JudgeSlip(c, u);
     }
   }
   FinishStiffCables(s, work, step_s);

@@ -13,15 +13,12 @@ namespace taut::sim {
 inline constexpr double kSoftSpring = 0.1;
 inline constexpr double kSoftDamper = 0.8;
 
+/// The links of a cable: one a body, with the pulls of all its attachments there.
 template <class W>
-void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W length, W stretch,
-                   W h, W on) noexcept {
-  const W zero = W::Splat(0.0), one = W::Splat(1.0), half = W::Splat(0.5);
-  const CableTable& cable = m.cables[c];
-  StiffCable<W>& row = work.stiff[work.stiff_count++];
-  row.cable = c;
-  row.on = on;
-  row.first_link = work.link_count;
+void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work, const CableTable& cable,
+               StiffCable<W>& row) noexcept {
+  const W zero = W::Splat(0.0);
+  row.links = work.links + work.link_count;
   row.link_count = 0;
   for (int i = 0; i < cable.attachment_count; ++i) {
     const int body = m.attachments[cable.first_attachment + i].body;
@@ -29,27 +26,39 @@ void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W l
     V3<W> direction{zero, zero, zero};  // of the pull on this attachment
     if (i > 0) direction -= work.attachments[i].u;
     if (i + 1 < cable.attachment_count) direction += work.attachments[i + 1].u;
-    CableLink<W>* link = work.links + row.first_link;
-    CableLink<W>* const end = link + row.link_count;
+    Link<W, 1>* link = row.links;
+    Link<W, 1>* const end = link + row.link_count;
     while (link != end && link->body != body) ++link;
     if (link == end) {
       link->body = body;
-      link->F = link->Q = {zero, zero, zero};
+      link->lin[0] = link->ang[0] = {zero, zero, zero};
       ++row.link_count;
       ++work.link_count;
     }
-    link->F += direction;
-    link->Q += Cross(work.attachments[i].arm, direction);
+    link->lin[0] += direction;
+    link->ang[0] += Cross(work.attachments[i].arm, direction);
   }
-  row.A = zero;
+  for (int i = 0; i < row.link_count; ++i) {
+    Link<W, 1>& link = row.links[i];
+    link.inv_mass = s.inv_mass[link.body];
+    link.turn[0] = work.bodies[link.body].inv_inertia * link.ang[0];
+  }
+}
+
+template <class W>
+void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W length, W stretch,
+                   W h, W on) noexcept {
+  const W zero = W::Splat(0.0), half = W::Splat(0.5);
+  const CableTable& cable = m.cables[c];
+  StiffCable<W>& row = work.stiff[work.stiff_count++];
+  row.cable = c;
+  row.live = on;
+  LinkCable(m, s, work, cable, row);
   W rate = zero;  // before the step
   for (int i = 0; i < row.link_count; ++i) {
-    CableLink<W>& link = work.links[row.first_link + i];
+    const Link<W, 1>& link = row.links[i];
     const BodyWork<W>& body = work.bodies[link.body];
-    link.im = s.inv_mass[link.body];
-    link.GQ = body.inv_inertia * link.Q;
-    row.A += link.im * Dot(link.F, link.F) + Dot(link.Q, link.GQ);
-    rate -= Dot(link.F, body.v0) + Dot(link.Q, body.w0);
+    rate -= Dot(link.lin[0], body.v0) + Dot(link.ang[0], body.w0);
   }
   const W k = s.stiffness[c];
   // Stretched at the middle of the step before, a step's way ago, even if its damper held the
@@ -62,56 +71,17 @@ void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W l
   const W base = k * stretch + Select(was_taut, (half * b - quarter_hk) * rate, zero);
   row.base = h * base;
   row.gain = h * gain;
-  row.inverse = one / (one + row.gain * row.A);
+  row.FinishMasses();
   row.across = W::Splat(0.25) * h * h * s.stiff_k[c] / (k * length);
   row.upper = cable.clamped_damping ? h * Max(k * (stretch + stretch), zero) : W::Splat(1e300);
-  row.lambda = Select(on > zero, Min(h * s.tension[c], row.upper), zero);
-}
-
-template <class W>
-void PullLinks(Scratch<W>& work, const StiffCable<W>& row, W impulse) noexcept {
-  for (int i = 0; i < row.link_count; ++i) {
-    const CableLink<W>& link = work.links[row.first_link + i];
-    BodyWork<W>& body = work.bodies[link.body];
-    body.v += (link.im * impulse) * link.F;
-    body.w += impulse * link.GQ;
-  }
-}
-
-/// Stiff cables start from the tensions of the step before.
-template <class W>
-void StartStiffCables(Scratch<W>& work) noexcept {
-  for (int i = 0; i < work.stiff_count; ++i) PullLinks(work, work.stiff[i], work.stiff[i].lambda);
-}
-
-/// One sweep over the stiff cables. Returns the largest change of a rate [m/s].
-template <class W, class M>
-W RelaxStiffCables(Scratch<W>& work, M lanes) noexcept {
-  const W zero = W::Splat(0.0);
-  W change = zero;
-  for (int i = 0; i < work.stiff_count; ++i) {
-    StiffCable<W>& row = work.stiff[i];
-    W rate = zero;
-    for (int k = 0; k < row.link_count; ++k) {
-      const CableLink<W>& link = work.links[row.first_link + k];
-      const BodyWork<W>& body = work.bodies[link.body];
-      rate -= Dot(link.F, body.v) + Dot(link.Q, body.w);
-    }
-    const W wish = row.lambda + row.inverse * (row.base + row.gain * rate - row.lambda);
-    const W lambda = Min(Max(wish, zero), row.upper);
-    const W d = Select(lanes & (row.on > zero), lambda - row.lambda, zero);
-    row.lambda += d;
-    PullLinks(work, row, d);
-    change = Max(Abs(d) * row.A, change);
-  }
-  return change;
+  row.l[0] = Select(on > zero, Min(h * s.tension[c], row.upper), zero);
 }
 
 /// Share of the largest stable tension that a stiff cable has. Along itself it is stable at any
 /// tension; across itself its force is explicit.
 template <class W>
 W ShareOfStableTension(const Rows<W>& s, const StiffCable<W>& row) noexcept {
-  return Select(row.on > W::Splat(0.0), s.tension[row.cable] * row.across, W::Splat(0.0));
+  return Select(row.live > W::Splat(0.0), s.tension[row.cable] * row.across, W::Splat(0.0));
 }
 
 /// Tensions and angular momenta of what the solver found.
@@ -120,10 +90,9 @@ void FinishStiffCables(const Rows<W>& s, Scratch<W>& work, double step_s) noexce
   const W inv_h = W::Splat(1.0 / step_s);
   for (int i = 0; i < work.stiff_count; ++i) {
     const StiffCable<W>& row = work.stiff[i];
-    s.tension[row.cable] = Select(row.on > W::Splat(0.0), inv_h * row.lambda, s.tension[row.cable]);
+    s.tension[row.cable] = Select(row.live > W::Splat(0.0), inv_h * row.l[0], s.tension[row.cable]);
     for (int k = 0; k < row.link_count; ++k) {
-      const CableLink<W>& link = work.links[row.first_link + k];
-      s.mom[link.body] += row.lambda * link.Q;
+      s.mom[row.links[k].body] += row.l[0] * row.links[k].ang[0];
     }
   }
 }

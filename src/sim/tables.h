@@ -70,11 +70,12 @@ struct Layout {
   int mass = 0, inv_mass = 0, inertia = 0, inv_inertia = 0, stiffness = 0, damping = 0, stiff_k = 0,
       stiff_b = 0, friction_scale = 0, gravity = 0, halted = 0;
   int snapshot_rows = 0;
-  // Contacts of the last step (ids are shared by the lanes; `live` says which lanes have them).
-  int cache_force = 0, cache_slip = 0, cache_bounce = 0, cache_live = 0, cache_arm = 0,
-      cache_normal = 0, cache_gap = 0;
+  // Contacts of the last step: the slots of all bodies, then the lane's list of touches. What has
+  // no key is none.
+  int contact_key = 0, contact_force = 0, contact_slip = 0, contact_bounce = 0, contact_arm = 0,
+      contact_normal = 0, contact_gap = 0;
   // Derived; forgotten by snapshots.
-  int clearance = 0, residual = 0, sweeps = 0;
+  int clearance = 0, residual = 0, linear_solves = 0;
   int sense_length = 0, sense_rate = 0, sense_tension = 0, sense_elastic = 0;
   int rows = 0;
 };
@@ -92,6 +93,9 @@ struct View {
   const ShapeTable* shapes;
   const ShapePairTable* shape_pairs;
   const BodyPairTable* body_pairs;
+  int world_pair_count;
+  const int* first_slot;
+  int slot_count;
   std::uint32_t first_pair_id;
   int pair_capacity, max_attachments, attachment_count;
   bool along_slip;
@@ -114,9 +118,12 @@ class Tables final : public Model {
   std::vector<PointTable> points;
   std::vector<ShapeTable> shapes;
   std::vector<ShapePairTable> shape_pairs;
-  std::vector<BodyPairTable> body_pairs;  ///< Those with the world first.
-  std::uint32_t first_pair_id = 0;        ///< Ids below are plane contacts.
-  int pair_capacity = 0;                  ///< Pair contacts that one world may have at once.
+  std::vector<BodyPairTable> body_pairs;
+  int world_pair_count = 0;        ///< Of them, the first: `b` does not move; by `a`.
+  std::vector<int> first_slot;     ///< Of a body's contacts with what does not move; one more.
+  int slot_count = 0;
+  std::uint32_t first_pair_id = 0;  ///< Keys below are point * planes + plane, others of pairs.
+  int pair_capacity = 0;            ///< Contacts of moving bodies that one world may have at once.
   bool along_slip = false;
   std::vector<double> coupling;  ///< Per cable: sum over all cables of |coupling| [1/kg].
   double largest_coupling = 0;   ///< Largest eigenvalue of the couplings [1/kg].
@@ -124,10 +131,9 @@ class Tables final : public Model {
   /// The same tables as plain pointers, for code that is compiled for several instruction sets
   /// and must not touch the standard library.
   struct View View() const noexcept;
-  int ContactCapacity(int lanes) const noexcept {
-    return static_cast<int>(first_pair_id) + lanes * pair_capacity;
-  }
-  Layout MakeLayout(int lanes) const;
+  /// Contacts that one world may have at once.
+  int ContactCapacity() const noexcept { return slot_count + pair_capacity; }
+  Layout MakeLayout() const;
 };
 
 /// Fills coupling and largest_coupling.

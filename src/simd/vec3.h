@@ -19,6 +19,10 @@ TAUT_INLINE V3<W> operator-(const V3<W>& a, const V3<W>& b) noexcept {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <class W>
+TAUT_INLINE V3<W> operator-(const V3<W>& a) noexcept {
+  return {-a.x, -a.y, -a.z};
+}
+template <class W>
 TAUT_INLINE V3<W> operator*(W s, const V3<W>& a) noexcept {
   return {s * a.x, s * a.y, s * a.z};
 }

@@ -160,7 +160,7 @@ TEST_P(Lanes, AnObservedLaneIsThatOfItsWorldAlone) {
       EXPECT_EQ(contacts[k].gap_m, expected[k].gap_m);
     }
     EXPECT_EQ(batch->Time(i), alone.Time(0));
-    EXPECT_EQ(batch->Status(i).sweeps, alone.Status(0).sweeps);
+    EXPECT_EQ(batch->Status(i).linear_solves, alone.Status(0).linear_solves);
   }
 }
 

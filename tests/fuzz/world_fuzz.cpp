@@ -214,7 +214,7 @@ void Run(const std::uint8_t* data, std::size_t size) {
   BatchOptions options;
   options.worlds = draw.Int(1, 3);
   options.simd = static_cast<Simd>(1 << draw.Int(0, 3));
-  options.max_sweeps = 50;  // to be fast; a step that needs more says so
+  options.max_linear_solves = 50;  // to be fast; a step that needs more says so
   Diagnostics refused;
   const auto model = Model::Compile(RandomModel(draw), refused);
   Must((model != nullptr) == refused.ok(), "compiled or refused");

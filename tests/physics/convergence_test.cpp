@@ -51,7 +51,7 @@ TEST(Convergence, WedgedSegmentsTakeFewSweeps) {
     Disturb(batch, 0, 2, i);
     for (int k = 0; k < kStepsAStretch; ++k) {
       batch.Step(kVarietyStepS);
-      most = std::max(most, batch.Status(0).sweeps);
+      most = std::max(most, batch.Status(0).linear_solves);
     }
   }
   EXPECT_GT(most, 32);  // or this tests nothing: Newton's method is used from 32 sweeps on
@@ -63,7 +63,7 @@ constexpr double kFriction = 0.4;
 TEST(Convergence, FrictionOfAnUnfinishedSolveStaysInItsCone) {
   for (const int max_sweeps : {1, 2, 16}) {
     BatchOptions options;
-    options.max_sweeps = max_sweeps;
+    options.max_linear_solves = max_sweeps;
     int unfinished = 0, contacts = 0;
     for (ModelDef def : VariedModels()) {
       const auto rough = [](auto& shapes) {

@@ -240,7 +240,7 @@ TEST(Stack, ASolverThatIsStoppedEarlySaysSoInTheSameStep) {
            half, material);
   }
   BatchOptions options;
-  options.max_sweeps = 5;
+  options.max_linear_solves = 5;
   Batch world = MakeBatch(def, options);
   int stopped = 0;
   for (int n = 0; n < 10; ++n) {
@@ -251,7 +251,7 @@ TEST(Stack, ASolverThatIsStoppedEarlySaysSoInTheSameStep) {
     ASSERT_EQ(says, status.residual_m_per_s > options.tolerance_m_per_s) << n;
     if (!says) continue;
     ++stopped;
-    ASSERT_EQ(status.sweeps, options.max_sweeps) << n;
+    ASSERT_EQ(status.linear_solves, options.max_linear_solves) << n;
   }
   EXPECT_GT(stopped, 0);
 }

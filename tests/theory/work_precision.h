@@ -81,7 +81,7 @@ inline SchemeRun RunTaut(const Hanging& robot, const HangingState& start, double
   long visits = 0;
   for (int n = 0; n < steps; ++n) {
     world.Step(h);
-    visits += static_cast<long>(robot.masses) * (1 + world.Status(0).sweeps);
+    visits += static_cast<long>(robot.masses) * (1 + world.Status(0).linear_solves);
     run.x_m.push_back(-world.Body(0, robot.masses - 1).position_m.z - robot.masses);
   }
   run.visits_per_s = static_cast<double>(visits) / (steps * h);

@@ -74,7 +74,9 @@ class BodyMatrix {
   }
 
  private:
-  Num* At(int i, int j) const noexcept { return a_ + kBlock * p_.slot[i * p_.count + j]; }
+  Num* At(int i, int j) const noexcept {
+    return a_ + kBlock * p_.slot[static_cast<int64_t>(i) * p_.count + j];
+  }
 
   template <int R>
   static void Unpack(const Link<Num, R>& link, Num (*j)[kDofs]) noexcept {

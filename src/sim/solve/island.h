@@ -8,6 +8,7 @@
 #pragma once
 
 #include "sim/constraint/links.h"
+#include "sim/solve/elimination.h"
 
 namespace taut::sim {
 
@@ -15,12 +16,12 @@ using simd::S3;
 
 inline constexpr int kDofs = 6;  ///< Velocities of a body: v, w.
 
-/// Which 6x6 blocks of a matrix over bodies there are, fill-in included.
-struct BlockPattern {
-  int* slot;         ///< [i * count + j]: number of block (i, j), or -1.
-  int* below;        ///< [first_below[k] ...]: rows under the diagonal of column k, rising.
-  int* first_below;  ///< count + 1 of them.
-  int count, lower_count, block_count;  ///< Bodies; blocks of the lower triangle, which come first.
+/// When a solve is done [m/s]: `tolerance` is what it must reach; it goes on to `goal` as long as
+/// that pays, because what every step leaves over adds up.
+struct Target {
+  static constexpr double kGoal = 0.01, kPays = 0.5;
+  double tolerance;
+  double goal() const noexcept { return kGoal * tolerance; }
 };
 
 /// A body of an island.
@@ -93,6 +94,7 @@ struct Island {
   P pools;
   IslandMemory<Num> m;
   int rows;
+  bool has_matrix;  ///< There is room for linear systems.
 
   /// v <- v_free + M^-1 J^T l
   void VelocitiesOf(const Num* l, Num* v) const noexcept {

@@ -2,25 +2,34 @@
 
 namespace taut::sim {
 
+template <class Num, class P>
+double SolveStages(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
+  constexpr int kSweeps = 30, kSweepsWithoutMatrix = 1000;
+  constexpr double kSoftness[] = {1e-2, 1e-1, 1e-4, 1e-1};
+  double residual = island.Judge();
+  if (!island.has_matrix) return Sweep(island, kSweepsWithoutMatrix);
+  for (int again = 0;; ++again) {
+    residual = PlainNewton(island, target, work);
+    if (residual <= target.tolerance) return residual;
+    if (again == 2) break;
+    Sweep(island, kSweeps);
+  }
+  for (const double softness : kSoftness) {
+    if (residual <= target.tolerance || work.linear_solves >= work.limit) break;
+    if (softness != kSoftness[0]) Sweep(island, kSweeps);
+    residual = Proximal<Num, P>(island, target, work).Solve(softness);
+  }
+  return residual;
+}
+
 /// From m.l, which may be anything. Leaves the best impulses found, which the laws admit, in m.l
 /// with their velocities in m.v. Returns their residual [m/s].
 template <class Num, class P>
-double SolveIsland(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept {
-  constexpr int kSweeps = 30;
-  double residual = island.Judge();
-  if (residual <= tolerance) return residual;
-  for (int again = 0;; ++again) {
-    residual = PlainNewton(island, tolerance, work);
-    if (residual <= tolerance || again == 2) break;
-    residual = Sweep(island, kSweeps);
-    if (residual <= tolerance) return residual;
-  }
-  constexpr double kSoftness[] = {1e-2, 1e-1, 1e-4, 1e-1};
-  for (const double softness : kSoftness) {
-    if (residual <= tolerance || work.linear_solves >= work.limit) break;
-    if (softness != kSoftness[0]) Sweep(island, kSweeps);
-    residual = Proximal<Num, P>(island, tolerance, work).Solve(softness);
-  }
+double SolveIsland(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
+  const double residual = SolveStages(island, target, work);
+  // What Newton's method leaves a rounding outside of the cone is moved back into it.
+  island.Clamp(island.m.l);
+  island.VelocitiesOf(island.m.l, island.m.v);
   return residual;
 }
 

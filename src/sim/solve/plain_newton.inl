@@ -33,16 +33,16 @@ struct SolverWork {
 
 /// Improves m.l; m.v and m.u belong to it before and after. Returns the residual [m/s].
 template <class Num, class P>
-double PlainNewton(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept {
+double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   constexpr int kMaxIterations = 12;
-  constexpr double kCompliance = 1e-6, kLostFactor = 1e3;
+  constexpr double kCompliance = 1e-7, kLostFactor = 1e3;
   auto& m = island.m;
   const Num zero = Num::Splat(0.0), e = Num::Splat(kCompliance);
   BodyMatrix<Num> matrix(island.pattern, m.blocks);
   double residual = island.Residual(m.u, m.l)[0], best = residual;
   for (int i = 0; i < island.rows; ++i) m.best[i] = m.l[i];
   for (int iteration = 0;
-       iteration < kMaxIterations && residual > tolerance && work.linear_solves < work.limit;
+       iteration < kMaxIterations && (iteration == 0 || residual > target.goal()) && work.linear_solves < work.limit;
        ++iteration) {
     // dl = f - g du,  f = A^-1 r,  g = A^-1 S
     for (int i = 0; i < 6 * island.body_count; ++i) m.rhs[i] = zero;
@@ -86,7 +86,9 @@ double PlainNewton(Island<Num, P>& island, double tolerance, SolverWork& work) n
     });
     island.VelocitiesOf(m.l, m.v);
     island.Measure(m.v, m.u);
+    const double before = residual;
     residual = island.Residual(m.u, m.l)[0];
+    if (residual <= target.tolerance && residual > Target::kPays * before) break;
     if (!(residual - residual == 0)) break;
     if (residual < best) {
       best = residual;
@@ -95,7 +97,7 @@ double PlainNewton(Island<Num, P>& island, double tolerance, SolverWork& work) n
       break;
     }
   }
-  if (residual <= tolerance) return residual;
+  if (residual <= target.tolerance && residual <= best) return residual;
   return island.Return(m.best);
 }
 

@@ -15,9 +15,9 @@ class Proximal {
   static constexpr double kLeastSoftness = 1e-8;
 
  public:
-  Proximal(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept
+  Proximal(Island<Num, P>& island, Target target, SolverWork& work) noexcept
       : island_(island), m_(island.m), matrix_(island.pattern, island.m.blocks),
-        tolerance_(tolerance), work_(work), size_(kDofs * island.body_count) {}
+        tolerance_(target.tolerance), work_(work), size_(kDofs * island.body_count) {}
 
   /// Improves m.l; m.v and m.u belong to it before and after. Returns the residual [m/s].
   double Solve(double first_softness) noexcept {

@@ -3,6 +3,9 @@
 ///
 ///   l = base - gain u,  0 <= l <= upper;   u: the rate at which it shortens after the step
 /// The law is a spring and a damper by itself: its compliance is 1 / gain.
+#pragma once
+
+#include "sim/constraint/links.h"
 
 namespace taut::sim {
 

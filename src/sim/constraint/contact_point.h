@@ -3,6 +3,9 @@
 ///   (C1)  ln >= 0,  un + bn >= 0,  ln (un + bn) = 0                    no penetration
 ///   (C2)  |lt| <= mu ln,  and ut + bt = 0 or lt = -mu ln (ut + bt) / |ut + bt|     Coulomb's cone
 /// with u the contact's velocity after the step, b its biases, l its impulses: normal, tangents.
+#pragma once
+
+#include "sim/constraint/links.h"
 
 namespace taut::sim {
 

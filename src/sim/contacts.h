@@ -1,0 +1,43 @@
+/// Contacts while a step runs, and what they remember from step to step.
+///
+/// A contact of a body with what does not move lies in one of the body's slots: slot k of a lane is
+/// that lane's k-th contact of the body, whatever the other lanes touch. Contacts of two moving
+/// bodies are a list of each lane's own.
+#pragma once
+
+#include "sim/constraint/contact_point.h"
+#include "sim/group.h"
+#include "sim/shape_contacts.h"
+
+namespace taut::sim {
+
+template <class Num, int kLinks>
+struct Contact : ContactPoint<Num, kLinks> {
+  Num key;            ///< Pair and feature: finds the memory again.
+  Num frame;          ///< Contacts with equal numbers have the same directions.
+  Num gap;            ///< At the middle of the step [m].
+  V3<Num> arm[kLinks];  ///< From the centre of mass [m].
+  Num static_friction, kinetic_friction, restitution;
+  Num slip;    ///< 1 if it slides, 0 if it sticks.
+  Num bounce;  ///< Rebound speed due in the next step [m/s], 0: none.
+};
+
+/// What a contact remembers of the step before.
+template <class Num>
+struct ContactMemory {
+  V3<Num> force;  ///< [N]; 0 if there was none.
+  Num slip, bounce;
+
+  static ContactMemory None() noexcept {
+    const Num zero = Num::Splat(0.0);
+    return {{zero, zero, zero}, Num::Splat(kSlipUnknown), zero};
+  }
+};
+
+/// Two moving shapes that touch in one lane.
+struct TouchingPair {
+  int pair;  ///< ShapePairTable.
+  TouchPoint point;
+};
+
+}  // namespace taut::sim

@@ -1,0 +1,137 @@
+/// How a contact starts a step: directions, inverse masses, biases, and what it remembers
+/// (docs/theory/contact.md, sections 1 to 3).
+
+namespace taut::sim {
+
+/// Penetration is pushed out by this share a step, and at most this fast.
+inline constexpr double kPushOut = 0.2;
+inline constexpr double kMaxPushOutMPerS = 0.5;
+/// Slower impacts do not rebound [m/s].
+inline constexpr double kLeastImpactMPerS = 1e-3;
+/// A contact that moves faster than this along its surface slides, a slower one sticks [m/s].
+inline constexpr double kSlidingMPerS = 1e-6;
+
+template <class Num>
+TAUT_INLINE V3<Num> PointVelocity(const V3<Num>& v, const V3<Num>& w, const V3<Num>& arm) noexcept {
+  return v + Cross(w, arm);
+}
+
+/// Two unit tangents. With one friction direction the first lies along the sliding velocity that
+/// would result without contact, as Bullet chooses it. Where a plane has given them (frame >= 0)
+/// they stay.
+template <class Num, int kLinks>
+TAUT_INLINE void MakeTangents(Contact<Num, kLinks>& c, const V3<Num>& velocity) noexcept {
+  const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
+  V3<Num>* const d = c.links[0].lin;
+  // Start from the axis of W that is certainly not along the normal.
+  const auto steep = Abs(d[0].x) < Num::Splat(0.6);
+  V3<Num> t = Select3(steep, V3<Num>{one, zero, zero}, V3<Num>{zero, one, zero});
+  t -= Dot(t, d[0]) * d[0];
+  if (c.one_direction) {
+    const V3<Num> slide = velocity - Dot(velocity, d[0]) * d[0];
+    t = Select3(Dot(slide, slide) > Num::Splat(1e-20), slide, t);
+  }
+  const V3<Num> t1 = (one / Sqrt(Dot(t, t))) * t;
+  const auto own = c.frame < zero;
+  d[1] = Select3(own, t1, d[1]);
+  d[2] = Select3(own, Cross(d[0], t1), d[2]);
+}
+
+/// Levers and inverse masses of one link, whose directions are known.
+template <class Num>
+TAUT_INLINE void FinishLink(Link<Num, 3>& link, int body, Num inv_mass, const S3<Num>& inv_inertia,
+                            const V3<Num>& arm) noexcept {
+  link.body = body;
+  link.inv_mass = inv_mass;
+  for (int r = 0; r < 3; ++r) {
+    link.ang[r] = Cross(arm, link.lin[r]);
+    link.turn[r] = inv_inertia * link.ang[r];
+  }
+}
+
+/// Rebounding: as fast as due. An impact in this step: remember how fast to rebound in the next,
+/// when the surfaces touch. The approach speed is that of the moment of contact, and the rebound
+/// starts half a step before its own middle (docs/theory/contact.md, eq. 9-10).
+///   vn      normal velocity that would result without contact [m/s]
+///   before  normal velocity before the step [m/s]
+template <class Num, int kLinks>
+void PrepareRebound(Contact<Num, kLinks>& c, const ContactMemory<Num>& memory, Num h, Num inv_h,
+                    Num vn, Num before) noexcept {
+  const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), dv = vn - before;
+  c.bias[0] = Select(memory.bounce > zero, -memory.bounce, c.bias[0]);
+  const Num share = Min(Max(c.gap, zero) * inv_h / Max(-vn, Num::Splat(1e-12)), one);
+  const Num impact = vn - dv * (Num::Splat(0.5) - share);
+  const auto hits = (c.gap + h * vn < zero) & (memory.bounce == zero) &
+                    (Dot(memory.force, c.links[0].lin[0]) == zero) &
+                    (-impact > Max(Num::Splat(kLeastImpactMPerS), Abs(dv + dv))) &
+                    (c.live > zero) & (c.restitution > zero);
+  c.bounce = Select(hits, Max(Num::Splat(0.5) * dv - c.restitution * impact, zero), zero);
+}
+
+/// Fills in what the finding of a contact left open. `a`, `b`: its bodies, with their numbers and
+/// inverse masses; b only where there are two links.
+template <class Num, int kLinks>
+TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num>& memory,
+                                const BodyWork<Num>& a, int body_a, Num inv_mass_a,
+                                const BodyWork<Num>& b, int body_b, Num inv_mass_b,
+                                Num friction_scale, double step_s) noexcept {
+  constexpr bool kPair = kLinks == 2;
+  const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
+  const Num h = Num::Splat(step_s), inv_h = Num::Splat(1.0 / step_s);
+  V3<Num> free = PointVelocity(a.v, a.w, c.arm[0]);
+  V3<Num> before = PointVelocity(a.v0, a.w0, c.arm[0]);
+  if (kPair) {
+    free -= PointVelocity(b.v, b.w, c.arm[kLinks - 1]);
+    before -= PointVelocity(b.v0, b.w0, c.arm[kLinks - 1]);
+  }
+  if (kPair || Any(c.frame < zero)) MakeTangents(c, free);
+  c.link_count = kLinks;
+  FinishLink(c.links[0], body_a, inv_mass_a, a.inv_inertia, c.arm[0]);
+  if (kPair) {
+    Link<Num, 3>& other = c.links[kLinks - 1];
+    for (int r = 0; r < 3; ++r) other.lin[r] = -c.links[0].lin[r];
+    FinishLink(other, body_b, inv_mass_b, b.inv_inertia, c.arm[kLinks - 1]);
+  }
+  c.FinishMasses();
+
+  const V3<Num>& n = c.links[0].lin[0];
+  // Approaching: no further than to touch. Inside: out again, gently.
+  const Num out = Max(Num::Splat(kPushOut) * c.gap * inv_h, Num::Splat(-kMaxPushOutMPerS));
+  c.bias[0] = Select(c.gap > zero, c.gap * inv_h, out);
+  c.bias[1] = c.bias[2] = zero;
+  c.bounce = zero;
+  if (Any((c.restitution > zero) & (c.live > zero))) {
+    PrepareRebound(c, memory, h, inv_h, Dot(free, n), Dot(before, n));
+  }
+  c.slip = zero;
+  c.mu = c.kinetic_friction;
+  const auto breaks_away = c.static_friction > c.kinetic_friction;
+  if (Any(breaks_away)) {
+    const V3<Num> along = before - Dot(before, n) * n;
+    const auto moving = Dot(along, along) > Num::Splat(kSlidingMPerS * kSlidingMPerS);
+    const Num slip = Select(memory.slip < zero, Select(moving, one, zero), memory.slip);
+    c.slip = Select(breaks_away, slip, zero);
+    c.mu = Select(c.slip > zero, c.kinetic_friction, c.static_friction);
+  }
+  c.mu = friction_scale * c.mu;
+  c.l[0] = Max(h * Dot(memory.force, n), zero) * c.live;
+  c.l[1] = h * Dot(memory.force, c.links[0].lin[1]) * c.live;
+  c.l[2] = c.one_direction ? zero : h * Dot(memory.force, c.links[0].lin[2]) * c.live;
+}
+
+/// Whether a contact slid in this step: decides its coefficient in the next. `u`: its velocities.
+template <class Num, int kLinks>
+TAUT_INLINE void JudgeSlip(Contact<Num, kLinks>& c, const Num* u) noexcept {
+  const auto slides = u[1] * u[1] + u[2] * u[2] > Num::Splat(kSlidingMPerS * kSlidingMPerS);
+  const Num slip = Select(slides, Num::Splat(1.0), Num::Splat(0.0));
+  c.slip = Select(c.static_friction > c.kinetic_friction, slip, c.slip);
+}
+
+/// The force of the impulses found.
+template <class Num, int kLinks>
+TAUT_INLINE V3<Num> ImpulseOf(const Contact<Num, kLinks>& c) noexcept {
+  const V3<Num>* const d = c.links[0].lin;
+  return c.l[0] * d[0] + c.l[1] * d[1] + c.l[2] * d[2];
+}
+
+}  // namespace taut::sim

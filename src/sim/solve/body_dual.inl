@@ -1,0 +1,185 @@
+/// A body whose few contacts with the world are an island: Newton's method in their impulses, in
+/// all lanes at once (docs/theory/contact.md, eq. 20). A segment of a spine on its feet is this.
+
+namespace taut::sim {
+
+inline constexpr int kMaxDualContacts = 4;
+
+template <class W, int kContacts>
+class BodyDual {
+  static constexpr int kSize = 3 * kContacts;
+  static constexpr int kMaxIterations = 8;
+  /// Redundant friction (two contacts on one rod, along the rod) leaves the system singular; this
+  /// much compliance chooses the change that is smallest, and is iterated away.
+  static constexpr double kCompliance = 1e-9;
+  using Law = ContactPoint<W, 1>;
+
+ public:
+  BodyDual(BodyWork<W>& body, Contact<W, 1>* rows) noexcept : body_(body), rows_(rows) {}
+
+  /// Solves the contacts in `lanes`, whose impulses and velocities are written. Returns the lanes
+  /// in which it did not get there; those stay as they were.
+  template <class M>
+  M Solve(Target target, M lanes, W& residual, W& solves) noexcept {
+    const W zero = W::Splat(0.0), one = W::Splat(1.0);
+    const W tolerance = W::Splat(target.tolerance), goal = W::Splat(target.goal()),
+            pays = W::Splat(Target::kPays);
+    BuildMatrix();
+    for (int i = 0; i < kSize; ++i) l_[i] = rows_[i / 3].l[i % 3];
+    for (int c = 0; c < kContacts; ++c) {
+      W* const u = u_ + 3 * c;
+      u[0] = u[1] = u[2] = zero;
+      AddVelocity(rows_[c].links[0], body_.v, body_.w, u);
+    }
+    AddChange(l_);
+    W now = Residual();
+    auto busy = lanes & !(now < goal);
+    for (int iteration = 0; iteration < kMaxIterations && Any(busy); ++iteration) {
+      Linearize();
+      Eliminate();
+      for (int i = 0; i < kSize; ++i) delta_[i] = Select(busy, delta_[i], zero);
+      for (int i = 0; i < kSize; ++i) l_[i] += delta_[i];
+      AddChange(delta_);
+      solves += Select(busy, one, zero);
+      const W before = now;
+      now = Select(busy, Residual(), now);
+      const auto done = (now < goal) | ((now < tolerance) & (now > pays * before));
+      busy = busy & !done;  // a NaN stays busy
+    }
+    const auto solved = lanes & (now < tolerance);
+    residual = Max(Select(solved, now, zero), residual);
+    for (int c = 0; c < kContacts; ++c) {
+      Contact<W, 1>& row = rows_[c];
+      W l[3] = {l_[3 * c], l_[3 * c + 1], l_[3 * c + 2]};
+      l[0] = Max(l[0], zero);  // a contact that Newton leaves a rounding below zero is open
+      for (int k = 0; k < 3; ++k) {
+        row.l[k] = Select(solved, l[k], row.l[k]);
+        l[k] = Select(solved, l[k], zero);
+      }
+      Push(row.links[0], l, body_.v, body_.w);
+    }
+    return lanes & !solved;
+  }
+
+ private:
+  /// u += W dl
+  void AddChange(const W* dl) noexcept {
+    for (int i = 0; i < kSize; ++i) {
+      W change = w_[i][0] * dl[0];
+      for (int j = 1; j < kSize; ++j) change += w_[i][j] * dl[j];
+      u_[i] += change;
+    }
+  }
+
+  /// Leaves the branches.
+  W Residual() noexcept {
+    W worst = W::Splat(0.0);
+    for (int c = 0; c < kContacts; ++c) {
+      branches_[c] = rows_[c].BranchOf(u_ + 3 * c, l_ + 3 * c);
+      worst = Max(rows_[c].Residual(branches_[c], u_ + 3 * c, l_ + 3 * c), worst);
+    }
+    return worst;
+  }
+
+  /// W = J M^-1 J^T. Contacts with one plane share their directions, whose products are 0 and 1.
+  void BuildMatrix() noexcept {
+    for (int i = 0; i < kContacts; ++i) {
+      const Law& a = rows_[i];
+      const W own[9] = {a.wnn, a.w1n, a.w2n, a.w1n, a.w11, a.w12, a.w2n, a.w12, a.w22};
+      SetBlock(i, i, own);
+      for (int j = i + 1; j < kContacts; ++j) {
+        W block[9];
+        Couple(rows_[i], rows_[j], block);
+        SetBlock(i, j, block);
+        const W transposed[9] = {block[0], block[3], block[6], block[1], block[4],
+                                 block[7], block[2], block[5], block[8]};
+        SetBlock(j, i, transposed);
+      }
+    }
+  }
+  static void Couple(const Contact<W, 1>& x, const Contact<W, 1>& y, W* block) noexcept {
+    const W zero = W::Splat(0.0), one = W::Splat(1.0);
+    const Link<W, 3>&a = x.links[0], &b = y.links[0];
+    const auto same = x.frame == y.frame;
+    const bool all_same = !Any(!same);
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) {
+        W sum = Dot(a.ang[r], b.turn[c]);
+        const W known = r == c ? one : zero;
+        if (all_same) {
+          if (r == c) sum += a.inv_mass;
+        } else {
+          sum += a.inv_mass * Select(same, known, Dot(a.lin[r], b.lin[c]));
+        }
+        block[3 * r + c] = sum;
+      }
+    }
+  }
+  void SetBlock(int i, int j, const W* block) noexcept {
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) w_[3 * i + r][3 * j + c] = block[3 * r + c];
+    }
+  }
+
+  /// The rows of Newton's linear system: (A + S W) dl = r.
+  void Linearize() noexcept {
+    for (int c = 0; c < kContacts; ++c) {
+      const int n = 3 * c, t1 = n + 1, t2 = n + 2;
+      LinearLaw<W, 3> law;
+      rows_[c].Linearize(branches_[c], u_ + n, l_ + n, W::Splat(kCompliance), law);
+      for (int j = 0; j < kSize; ++j) {
+        a_[n][j] = law.S[0][0] * w_[n][j];
+        a_[t1][j] = law.S[1][1] * w_[t1][j] + law.S[1][2] * w_[t2][j];
+        a_[t2][j] = law.S[2][1] * w_[t1][j] + law.S[2][2] * w_[t2][j];
+      }
+      a_[n][n] += law.A[0][0];
+      a_[t1][n] += law.A[1][0];
+      a_[t2][n] += law.A[2][0];
+      for (int r = 1; r < 3; ++r) {
+        for (int k = 1; k < 3; ++k) a_[n + r][n + k] += law.A[r][k];
+      }
+      for (int r = 0; r < 3; ++r) delta_[n + r] = law.r[r];
+    }
+  }
+
+  /// Gaussian elimination; the diagonal dominates enough to go without pivots, and a lane for
+  /// which that is not so does not get there.
+  void Eliminate() noexcept {
+    for (int k = 0; k < kSize; ++k) {
+      const W inverse = W::Splat(1.0) / a_[k][k];
+      for (int i = k + 1; i < kSize; ++i) {
+        const W factor = a_[i][k] * inverse;
+        for (int j = k + 1; j < kSize; ++j) a_[i][j] -= factor * a_[k][j];
+        delta_[i] -= factor * delta_[k];
+      }
+      a_[k][k] = inverse;
+    }
+    for (int k = kSize - 1; k >= 0; --k) {
+      for (int j = k + 1; j < kSize; ++j) delta_[k] -= a_[k][j] * delta_[j];
+      delta_[k] = delta_[k] * a_[k][k];
+    }
+  }
+
+  BodyWork<W>& body_;
+  Contact<W, 1>* rows_;
+  typename Law::Branch branches_[kContacts];
+  W u_[kSize], l_[kSize], delta_[kSize];
+  W w_[kSize][kSize], a_[kSize][kSize];
+};
+
+template <class W, class M>
+M SolveBody(BodyWork<W>& body, Contact<W, 1>* rows, int count, Target target, M lanes, W& residual,
+            W& solves) noexcept {
+  switch (count) {
+    case 1:
+      return BodyDual<W, 1>(body, rows).Solve(target, lanes, residual, solves);
+    case 2:
+      return BodyDual<W, 2>(body, rows).Solve(target, lanes, residual, solves);
+    case 3:
+      return BodyDual<W, 3>(body, rows).Solve(target, lanes, residual, solves);
+    default:
+      return BodyDual<W, 4>(body, rows).Solve(target, lanes, residual, solves);
+  }
+}
+
+}  // namespace taut::sim

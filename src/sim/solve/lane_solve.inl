@@ -1,0 +1,280 @@
+/// One lane's islands: where lanes have too little in common to walk together (contacts of moving
+/// bodies, many contacts, what the solves in lanes did not get). Each island is gathered in the
+/// numbers of one lane, solved (island_solver.inl), and written back.
+
+namespace taut::sim {
+
+template <class L, class W>
+TAUT_INLINE L OfLane(W x, int lane) noexcept {
+  return L::Splat(x[lane]);
+}
+template <class L, class W>
+TAUT_INLINE V3<L> OfLane(const V3<W>& a, int lane) noexcept {
+  return {L::Splat(a.x[lane]), L::Splat(a.y[lane]), L::Splat(a.z[lane])};
+}
+template <class L, class W>
+TAUT_INLINE S3<L> OfLane(const S3<W>& a, int lane) noexcept {
+  return {L::Splat(a.xx[lane]), L::Splat(a.yy[lane]), L::Splat(a.zz[lane]),
+          L::Splat(a.xy[lane]), L::Splat(a.xz[lane]), L::Splat(a.yz[lane])};
+}
+template <class L, class W>
+TAUT_INLINE void SetLane(V3<W>& to, const V3<L>& from, int lane) noexcept {
+  to.x.Set(lane, from.x[0]);
+  to.y.Set(lane, from.y[0]);
+  to.z.Set(lane, from.z[0]);
+}
+
+/// What solving one lane came to.
+struct LaneResult {
+  double residual = 0;
+  int linear_solves = 0;
+  int body = kWorld;  ///< In the island that is furthest from solved.
+};
+
+template <class W>
+class LaneSolve {
+  using L = simd::Lane<W>;
+
+ public:
+  LaneSolve(const View& m, const Rows<W>& s, Scratch<W>& work, const StepSettings& settings,
+            int lane) noexcept
+      : m_(m), s_(s), work_(work), mem_(work.lane), settings_(settings), lane_(lane) {}
+
+  /// Solves the lane's islands that have touches, or bodies marked as unsolved. The touches must be
+  /// prepared (PrepareTouches).
+  LaneResult Solve() noexcept {
+    LaneResult result;
+    FindIslands();
+    for (int body = 0; body < m_.body_count; ++body) {
+      if (mem_.root[body] != body || !Gather(body)) continue;
+      SolverWork work{0, settings_.max_linear_solves};
+      const double residual = SolveIsland(mem_.island, Target{settings_.tolerance_m_per_s}, work);
+      Scatter();
+      result.linear_solves += work.linear_solves;
+      if (residual > result.residual || !(residual - residual == 0)) {
+        result.residual = residual;
+        result.body = body;
+      }
+    }
+    return result;
+  }
+
+ private:
+  bool Moves(int body) const noexcept {
+    return body < m_.body_count && s_.inv_mass[body][lane_] > 0;
+  }
+  int Root(int body) const noexcept {
+    while (mem_.root[body] != body) body = mem_.root[body] = mem_.root[mem_.root[body]];
+    return body;
+  }
+  void Join(int a, int b) noexcept {
+    a = Root(a), b = Root(b);
+    if (a < b) mem_.root[b] = a;
+    if (b < a) mem_.root[a] = b;
+  }
+  bool IsOn(const StiffCable<W>& cable) const noexcept { return cable.live[lane_] > 0; }
+  const TouchingPair& TouchAt(int i) const noexcept {
+    return work_.touches[lane_ * m_.pair_capacity + i];
+  }
+
+  /// root[b]: the lowest body of b's island, for bodies that are to be solved here; else -1.
+  void FindIslands() noexcept {
+    for (int b = 0; b < m_.body_count; ++b) mem_.root[b] = b;
+    for (int i = 0; i < work_.touch_count[lane_]; ++i) {
+      const ContactPoint<L, 2>& c = mem_.pairs[i];
+      Join(c.links[0].body, c.links[1].body);
+    }
+    for (int i = 0; i < work_.stiff_count; ++i) {
+      const StiffCable<W>& cable = work_.stiff[i];
+      int first = -1;
+      for (int k = 0; IsOn(cable) && k < cable.link_count; ++k) {
+        const int body = cable.links[k].body;
+        if (!Moves(body)) continue;
+        if (first >= 0) Join(first, body);
+        first = body;
+      }
+    }
+    for (int b = 0; b < m_.body_count; ++b) mem_.local[b] = 0;
+    for (int b = 0; b < m_.body_count; ++b) {
+      if (work_.unsolved[b][lane_] > 0) mem_.local[Root(b)] = 1;
+    }
+    for (int b = 0; b < m_.body_count; ++b) mem_.root[b] = Root(b);
+    for (int b = 0; b < m_.body_count; ++b) {
+      if (mem_.local[mem_.root[b]] == 0) mem_.root[b] = -1;
+    }
+  }
+
+  /// The island of `root` into the memory of the solver. False if nothing acts on it.
+  bool Gather(int root) noexcept {
+    count_ = 0;
+    for (int b = root; b < m_.body_count; ++b) {
+      if (mem_.root[b] != root) continue;
+      mem_.bodies[count_] = b;
+      mem_.local[b] = count_++;
+    }
+    island_root_ = root;
+    Order();
+    Island<L, StepPools<L>>& island = mem_.island;
+    island.body_count = count_;
+    for (int k = 0; k < count_; ++k) GatherBody(mem_.bodies[mem_.order[k]], island.bodies[k]);
+    GatherContacts(island.pools);
+    GatherCables(island.pools);
+    island.rows = island.pools.rows();
+    int row = 0;
+    Pool<ContactPoint<L, 2>>& contacts = island.pools;
+    for (int i = 0; i < contacts.count; ++i) {
+      for (int k = 0; k < 3; ++k) island.m.l[row++] = contacts.items[i].l[k];
+    }
+    Pool<CableRow<L>>& cables = island.pools;
+    for (int i = 0; i < cables.count; ++i) island.m.l[row++] = cables.items[i].l[0];
+    return row > 0;
+  }
+
+  /// Numbers of elimination: place[local number]. Without room for the blocks the solver has no
+  /// linear systems, only sweeps.
+  void Order() noexcept {
+    BodyGraph& graph = mem_.graph;
+    graph.count = count_;
+    graph.words = BodyGraph::WordsFor(count_);
+    graph.Clear();
+    for (int i = 0; i < work_.touch_count[lane_]; ++i) {
+      const ContactPoint<L, 2>& c = mem_.pairs[i];
+      if (mem_.root[c.links[0].body] != island_root_) continue;
+      graph.Join(mem_.local[c.links[0].body], mem_.local[c.links[1].body]);
+    }
+    for (int i = 0; i < work_.stiff_count; ++i) {
+      const StiffCable<W>& cable = work_.stiff[i];
+      for (int k = 0; IsOn(cable) && k < cable.link_count; ++k) {
+        const int a = cable.links[k].body;
+        if (!Moves(a) || mem_.root[a] != island_root_) continue;
+        for (int j = 0; j < k; ++j) {
+          const int b = cable.links[j].body;
+          if (Moves(b)) graph.Join(mem_.local[a], mem_.local[b]);
+        }
+      }
+    }
+    mem_.island.has_matrix = Eliminate(graph, mem_.block_capacity, mem_.order, mem_.place,
+                                       mem_.island.pattern);
+  }
+  int Number(int body) const noexcept { return mem_.place[mem_.local[body]]; }
+
+  void GatherBody(int body, Unknown<L>& out) const noexcept {
+    const BodyWork<W>& b = work_.bodies[body];
+    out.body = body;
+    out.mass = OfLane<L>(s_.mass[body], lane_);
+    out.inv_mass = OfLane<L>(s_.inv_mass[body], lane_);
+    out.inv_inertia = OfLane<L>(b.inv_inertia, lane_);
+    const M3<L> R{OfLane<L>(b.R.r0, lane_), OfLane<L>(b.R.r1, lane_), OfLane<L>(b.R.r2, lane_)};
+    out.inertia = Congruence(R, OfLane<L>(s_.inertia[body], lane_));
+    out.free = {OfLane<L>(b.v, lane_), OfLane<L>(b.w, lane_)};
+  }
+
+  template <int R>
+  void GatherLink(const Link<W, R>& from, Link<L, R>& to) const noexcept {
+    to.body = Number(from.body);
+    to.inv_mass = OfLane<L>(from.inv_mass, lane_);
+    for (int r = 0; r < R; ++r) {
+      to.lin[r] = OfLane<L>(from.lin[r], lane_);
+      to.ang[r] = OfLane<L>(from.ang[r], lane_);
+      to.turn[r] = OfLane<L>(from.turn[r], lane_);
+    }
+  }
+
+  void GatherContacts(Pool<ContactPoint<L, 2>>& pool) noexcept {
+    pool.count = 0;
+    for (int i = 0; i < count_; ++i) {
+      const int body = mem_.bodies[i];
+      for (int k = 0; k < work_.contact_count[body]; ++k) {
+        const int slot = m_.first_slot[body] + k;
+        const Contact<W, 1>& from = work_.contacts[slot];
+        if (!(from.live[lane_] > 0)) continue;
+        ContactPoint<L, 2>& to = pool.items[pool.count];
+        mem_.source[pool.count++] = slot;
+        to.live = OfLane<L>(from.live, lane_);
+        to.mu = OfLane<L>(from.mu, lane_);
+        for (int r = 0; r < 3; ++r) {
+          to.bias[r] = OfLane<L>(from.bias[r], lane_);
+          to.l[r] = OfLane<L>(from.l[r], lane_);
+        }
+        to.one_direction = from.one_direction;
+        to.link_count = 1;
+        GatherLink(from.links[0], to.links[0]);
+        to.FinishMasses();
+      }
+    }
+    for (int i = 0; i < work_.touch_count[lane_]; ++i) {
+      const ContactPoint<L, 2>& from = mem_.pairs[i];
+      if (mem_.root[from.links[0].body] != island_root_) continue;
+      ContactPoint<L, 2>& to = pool.items[pool.count];
+      mem_.source[pool.count++] = m_.slot_count + i;
+      to = from;
+      for (Link<L, 3>& link : to.links) link.body = Number(link.body);
+    }
+    cable_source_ = mem_.source + pool.count;
+  }
+
+  void GatherCables(Pool<CableRow<L>>& pool) noexcept {
+    pool.count = 0;
+    int link_count = 0;
+    for (int i = 0; i < work_.stiff_count; ++i) {
+      const StiffCable<W>& from = work_.stiff[i];
+      if (!IsOn(from)) continue;
+      CableRow<L>& to = pool.items[pool.count];
+      to.links = mem_.links + link_count;
+      to.link_count = 0;
+      for (int k = 0; k < from.link_count; ++k) {
+        const int body = from.links[k].body;
+        if (!Moves(body) || mem_.root[body] != island_root_) continue;
+        GatherLink(from.links[k], to.links[to.link_count++]);
+      }
+      if (to.link_count == 0) continue;
+      link_count += to.link_count;
+      cable_source_[pool.count++] = i;
+      to.live = OfLane<L>(from.live, lane_);
+      to.base = OfLane<L>(from.base, lane_);
+      to.gain = OfLane<L>(from.gain, lane_);
+      to.upper = OfLane<L>(from.upper, lane_);
+      to.l[0] = OfLane<L>(from.l[0], lane_);
+      to.FinishMasses();
+    }
+  }
+
+  /// Impulses and velocities back into the lane.
+  void Scatter() noexcept {
+    const Island<L, StepPools<L>>& island = mem_.island;
+    const L* l = island.m.l;
+    const Pool<ContactPoint<L, 2>>& contacts = island.pools;
+    for (int i = 0; i < contacts.count; ++i) {
+      const int from = mem_.source[i];
+      for (int k = 0; k < 3; ++k) {
+        if (from < m_.slot_count) {
+          work_.contacts[from].l[k].Set(lane_, l[0][0]);
+        } else {
+          mem_.pairs[from - m_.slot_count].l[k] = l[0];
+        }
+        ++l;
+      }
+    }
+    const Pool<CableRow<L>>& cables = island.pools;
+    for (int i = 0; i < cables.count; ++i) {
+      work_.stiff[cable_source_[i]].l[0].Set(lane_, (l++)->v);
+    }
+    for (int b = 0; b < count_; ++b) {
+      const Twist<L> t = island.Load(island.m.v + kDofs * b);
+      BodyWork<W>& body = work_.bodies[island.bodies[b].body];
+      SetLane(body.v, t.v, lane_);
+      SetLane(body.w, t.w, lane_);
+    }
+  }
+
+  const View& m_;
+  const Rows<W>& s_;
+  Scratch<W>& work_;
+  LaneMemory<L>& mem_;
+  const StepSettings& settings_;
+  int lane_;
+  int count_ = 0, island_root_ = 0;
+  int* cable_source_ = nullptr;
+};
+
+}  // namespace taut::sim

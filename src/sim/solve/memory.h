@@ -1,0 +1,107 @@
+/// The solver's memory, whose size follows from the model.
+#pragma once
+
+#include "sim/contacts.h"
+#include "sim/constraint/cable_row.h"
+#include "sim/solve/island.h"
+#include "sim/tables.h"
+
+namespace taut::sim {
+
+/// Memory that is handed out piece by piece, each aligned to 64 bytes. Without memory only the
+/// sizes count: adding to a null pointer would be undefined.
+struct Room {
+  char* memory;
+  size_t used;
+
+  template <class T>
+  T* Take(int64_t count) noexcept {
+    T* const first = memory == nullptr ? nullptr : reinterpret_cast<T*>(memory + used);
+    used += (static_cast<size_t>(count) * sizeof(T) + 63) / 64 * 64;
+    return first;
+  }
+};
+
+/// The kinds of constraints that a step knows.
+template <class Num>
+using StepPools = Pools<ContactPoint<Num, 2>, CableRow<Num>>;
+
+/// What solving one lane's islands takes. Systems with more blocks than there is room for (over 128
+/// bodies that are all tied together) are left to the sweeps.
+template <class Num>
+struct LaneMemory {
+  static constexpr int64_t kFullBodies = 128;
+
+  Contact<Num, 2>* pairs;      ///< The lane's list of touches, prepared.
+  int *root, *local, *bodies;  ///< Per body: its island; its number there; an island's bodies.
+  int *order, *place;          ///< Of elimination.
+  int* source;                 ///< Per constraint of an island: where it came from.
+  BodyGraph graph;
+  int block_capacity;
+  Island<Num, StepPools<Num>> island;
+  Link<Num, 1>* links;
+
+  void Take(const View& m, Room& room) noexcept {
+    const int64_t n = m.body_count, contacts = m.slot_count + m.pair_capacity;
+    const int64_t rows = 3 * contacts + m.cable_count, cells = 9 * contacts + m.cable_count;
+    const int64_t blocks = n < kFullBodies ? n * n : kFullBodies * n;
+    block_capacity = static_cast<int>(blocks);
+    pairs = room.Take<Contact<Num, 2>>(m.pair_capacity);
+    int** const per_body[] = {&root, &local, &bodies, &order, &place};
+    for (int** list : per_body) *list = room.Take<int>(n + 1);
+    source = room.Take<int>(contacts + m.cable_count);
+    graph.bits = room.Take<uint64_t>(n * BodyGraph::WordsFor(m.body_count));
+    links = room.Take<Link<Num, 1>>(m.attachment_count);
+    island.bodies = room.Take<Unknown<Num>>(n);
+    island.pattern.slot = room.Take<int>(n * n);
+    island.pattern.below = room.Take<int>(blocks);
+    island.pattern.first_below = room.Take<int>(n + 1);
+    Pool<ContactPoint<Num, 2>>& points = island.pools;
+    points.items = room.Take<ContactPoint<Num, 2>>(contacts);
+    points.branches = room.Take<typename ContactPoint<Num, 2>::Branch>(contacts);
+    Pool<CableRow<Num>>& cables = island.pools;
+    cables.items = room.Take<CableRow<Num>>(m.cable_count);
+    cables.branches = room.Take<typename CableRow<Num>::Branch>(m.cable_count);
+    IslandMemory<Num>& x = island.m;
+    Num** const per_dof[] = {&x.v, &x.rhs, &x.direction, &x.trial_v};
+    for (Num** list : per_dof) *list = room.Take<Num>(kDofs * n);
+    Num** const per_row[] = {&x.l, &x.u, &x.best, &x.center, &x.projected, &x.du, &x.u2, &x.f};
+    for (Num** list : per_row) *list = room.Take<Num>(rows);
+    x.g = room.Take<Num>(cells);
+    x.blocks = room.Take<Num>(36 * blocks);
+  }
+};
+
+/// What solving all cables and contacts of a world in lanes takes (world_dual.inl). Whether a world
+/// is solved so follows from the model alone, from all that might touch: not from other lanes.
+template <class W>
+struct DualMemory {
+  static constexpr int kMaxRows = 96, kMaxRowsPerBody = 12;
+
+  /// A row of J that acts on a body.
+  struct Column {
+    int row;
+    const V3<W>*lin, *ang, *turn;
+  };
+  int capacity;  ///< Rows; 0: not solved so.
+  W *w, *a;      ///< Inverse effective mass; the linear system. Row by row.
+  W *u, *l, *r;
+  Twist<W>* v;  ///< Per body.
+  Column* columns;
+
+  static int CapacityFor(const View& m) noexcept {
+    const int rows = 3 * m.slot_count + m.cable_count;
+    return rows <= kMaxRows && rows <= kMaxRowsPerBody * m.body_count ? rows : 0;
+  }
+  void Take(const View& m, Room& room) noexcept {
+    capacity = CapacityFor(m);
+    w = room.Take<W>(capacity * capacity);
+    a = room.Take<W>(capacity * capacity);
+    W** const per_row[] = {&u, &l, &r};
+    for (W** list : per_row) *list = room.Take<W>(capacity);
+    v = room.Take<Twist<W>>(m.body_count);
+    columns = room.Take<Column>(3 * m.slot_count + m.attachment_count);
+  }
+};
+
+}  // namespace taut::sim
