@@ -14,6 +14,7 @@
 #include "sim/stage_bodies.inl"
 #include "sim/stiff_cables.inl"
 #include "sim/stage_cables.inl"
+#include "sim/shape_pairs.inl"
 #include "sim/stage_collide.inl"
 #include "sim/contact_row.inl"
 #include "sim/stage_blocks.inl"

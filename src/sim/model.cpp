@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/rotation.h"
 #include "sim/model_check.h"
 #include "sim/principal_axes.h"
 #include "sim/tables.h"
@@ -15,34 +16,6 @@ struct Frame {
   double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< R_WP, row major.
   double origin[3] = {};
 };
-
-/// A rotation matrix as a unit quaternion (Shepperd's method: the largest component first).
-Quat QuatOf(const double r[9]) {
-  const double t[4] = {1 + r[0] + r[4] + r[8], 1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8],
-                       1 - r[0] - r[4] + r[8]};
-  const int best = static_cast<int>(std::max_element(t, t + 4) - t);
-  const double s = 0.5 / std::sqrt(t[best]), d = 0.5 * std::sqrt(t[best]);
-  const double x = r[7] - r[5], y = r[2] - r[6], z = r[3] - r[1];
-  switch (best) {
-    case 0:
-      return {d, x * s, y * s, z * s};
-    case 1:
-      return {x * s, d, (r[1] + r[3]) * s, (r[2] + r[6]) * s};
-    case 2:
-      return {y * s, (r[1] + r[3]) * s, d, (r[5] + r[7]) * s};
-    default:
-      return {z * s, (r[2] + r[6]) * s, (r[5] + r[7]) * s, d};
-  }
-}
-
-void MatrixOf(const Quat& q, double r[9]) {
-  const double n = 1 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-  const double w = q.w * n, x = q.x * n, y = q.y * n, z = q.z * n;
-  const double m[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
-                       2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                       2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
-  std::copy(m, m + 9, r);
-}
 
 void ToBody(const Frame& f, const Vec3& p, double out[3]) {
   const double d[3] = {p.x - f.origin[0], p.y - f.origin[1], p.z - f.origin[2]};
@@ -154,13 +127,14 @@ class Compiler {
   void Round(int body, const Vec3& from, const Vec3& to, double radius, const Material& material) {
     sim::ShapeTable s;
     s.body = Index(body);
-    s.radius_m = radius;
-    ToBody(frame(body), from, s.from_P);
-    ToBody(frame(body), to, s.to_P);
+    sim::RoundShape& round = s.shape_P.round;
+    round.radius_m = radius;
+    ToBody(frame(body), from, round.from);
+    ToBody(frame(body), to, round.to);
     double half[3];
     for (int i = 0; i < 3; ++i) {
-      s.center_P[i] = 0.5 * (s.from_P[i] + s.to_P[i]);
-      half[i] = 0.5 * (s.to_P[i] - s.from_P[i]);
+      s.center_P[i] = 0.5 * (round.from[i] + round.to[i]);
+      half[i] = 0.5 * (round.to[i] - round.from[i]);
     }
     s.bound_m = Length(half) + radius;
     s.material = material;
@@ -170,22 +144,24 @@ class Compiler {
   void Box(int body, const Vec3& center, const Quat& q, const Vec3& half,
            const Material& material) {
     sim::ShapeTable s;
-    s.is_box = true;
     s.body = Index(body);
-    ToBody(frame(body), center, s.center_P);
+    s.shape_P.kind = sim::ShapeKind::kBox;
+    sim::BoxShape& out = s.shape_P.box;
+    ToBody(frame(body), center, out.center);
+    std::copy(out.center, out.center + 3, s.center_P);
     double box[9];
     MatrixOf(q, box);  // columns: the box axes in W
     const Frame& f = frame(body);
     for (int axis = 0; axis < 3; ++axis) {
       for (int i = 0; i < 3; ++i) {
-        s.axes_P[3 * axis + i] =
+        out.axes[3 * axis + i] =
             f.r[i] * box[axis] + f.r[3 + i] * box[3 + axis] + f.r[6 + i] * box[6 + axis];
       }
     }
-    s.half_m[0] = half.x;
-    s.half_m[1] = half.y;
-    s.half_m[2] = half.z;
-    s.bound_m = Length(s.half_m);
+    out.half_m[0] = half.x;
+    out.half_m[1] = half.y;
+    out.half_m[2] = half.z;
+    s.bound_m = Length(out.half_m);
     s.material = material;
     AddShape(s);
   }
@@ -220,27 +196,31 @@ class Compiler {
       t_.first_point.push_back(static_cast<int>(t_.points.size()));
       if (def_.bodies[static_cast<std::size_t>(body)].fixed) continue;
       const std::size_t first = t_.points.size();
-      for (const std::size_t shape : shapes_of_[static_cast<std::size_t>(body)]) {
-        const sim::ShapeTable& s = t_.shapes[shape];
-        if (!s.is_box) {
-          AddPoint(first, s.from_P, s.radius_m, s.material);
-          AddPoint(first, s.to_P, s.radius_m, s.material);
-          continue;
-        }
-        for (int corner = 0; corner < 8; ++corner) {
-          double p[3];
-          for (int i = 0; i < 3; ++i) {
-            p[i] = s.center_P[i];
-            for (int axis = 0; axis < 3; ++axis) {
-              p[i] += ((corner >> axis) & 1 ? 1 : -1) * s.half_m[axis] * s.axes_P[3 * axis + i];
-            }
-          }
-          AddPoint(first, p, 0.0, s.material);
-        }
+      for (const std::size_t number : shapes_of_[static_cast<std::size_t>(body)]) {
+        const sim::ShapeTable& s = t_.shapes[number];
+        WithShape(s.shape_P, [&](const auto& shape) { AddPoints(first, shape, s.material); });
       }
     }
     t_.first_point.push_back(static_cast<int>(t_.points.size()));
     t_.first_pair_id = static_cast<std::uint32_t>(t_.points.size() * t_.planes.size());
+  }
+
+  void AddPoints(std::size_t first, const sim::RoundShape& s, const Material& material) {
+    AddPoint(first, s.from, s.radius_m, material);
+    AddPoint(first, s.to, s.radius_m, material);
+  }
+
+  void AddPoints(std::size_t first, const sim::BoxShape& s, const Material& material) {
+    for (int corner = 0; corner < 8; ++corner) {
+      double p[3];
+      for (int i = 0; i < 3; ++i) {
+        p[i] = s.center[i];
+        for (int axis = 0; axis < 3; ++axis) {
+          p[i] += ((corner >> axis) & 1 ? 1 : -1) * s.half_m[axis] * s.axes[3 * axis + i];
+        }
+      }
+      AddPoint(first, p, 0.0, material);
+    }
   }
 
   void AddPoint(std::size_t first, const double p[3], double radius, const Material& material) {

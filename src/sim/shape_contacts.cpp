@@ -60,7 +60,7 @@ CenterPair ClosestPair(const Segment& a, const Segment& b) noexcept {
 
 /// A unit vector at right angles to `a`, which is not zero.
 Vec3 Perpendicular(const Vec3& a) noexcept {
-  const double x = std::fabs(a.x), y = std::fabs(a.y), z = std::fabs(a.z);
+  const double x = Abs(a.x), y = Abs(a.y), z = Abs(a.z);
   const Vec3 axis = x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
   const Vec3 p = Cross(a, axis);
   return (1.0 / Norm(p)) * p;
@@ -110,7 +110,7 @@ Overlap FindOverlap(const RoundPair& pair) noexcept {
   const bool same_way = Dot(a.along, b.along) > 0.0;
   const Vec3 &b_low = same_way ? b.from : b.to, &b_high = same_way ? b.to : b.from;
   // Halfway between the two directions, so that it does not matter which one is `a`.
-  const Vec3 both = (1.0 / std::sqrt(a2)) * a.along + (1.0 / std::sqrt(b2)) * (b_high - b_low);
+  const Vec3 both = (1.0 / Sqrt(a2)) * a.along + (1.0 / Sqrt(b2)) * (b_high - b_low);
   overlap.direction = (1.0 / Norm(both)) * both;
   const double a_from = Dot(overlap.direction, a.from), b_from = Dot(overlap.direction, b_low);
   const double a_to = Dot(overlap.direction, a.to), b_to = Dot(overlap.direction, b_high);
@@ -229,7 +229,7 @@ void TouchOutside(RoundBoxPair& pair, const Stations& stations, double nearest) 
     const double t = stations.all[i].t;
     bool repeats = false;
     for (int k = 0; k < kept_count; ++k) {
-      repeats = repeats || std::fabs(t - kept[k]) * c.length_m < 1e-3 * c.radius_m;
+      repeats = repeats || Abs(t - kept[k]) * c.length_m < 1e-3 * c.radius_m;
     }
     if (repeats && i >= 2) continue;
     kept[kept_count++] = t;
@@ -302,8 +302,7 @@ WayOut AcrossEdge(const CapsuleAtBox& c) noexcept {
     const double length = Norm(n);
     if (length <= 1e-6 * c.length_m) continue;
     n = ((Dot(n, Load(c.from)) < 0.0 ? -1.0 : 1.0) / length) * n;
-    const double reach =
-        std::fabs(n.x) * c.half_m[0] + std::fabs(n.y) * c.half_m[1] + std::fabs(n.z) * c.half_m[2];
+    const double reach = Abs(n.x) * c.half_m[0] + Abs(n.y) * c.half_m[1] + Abs(n.z) * c.half_m[2];
     const double distance = Dot(n, Load(c.from)) - reach;
     if (distance > way.distance_m) way = {axis, false, n, distance};
   }
@@ -328,7 +327,7 @@ void TouchInside(RoundBoxPair& pair, const Stations& stations) noexcept {
   const CapsuleAtBox& c = pair.capsule;
   const WayOut face = ThroughFace(c, stations), edge = AcrossEdge(c);
   // A face gives two points instead of one, so it wins unless the edge is clearly better.
-  if (edge.distance_m > face.distance_m + 0.05 * std::fabs(face.distance_m)) {
+  if (edge.distance_m > face.distance_m + 0.05 * Abs(face.distance_m)) {
     pair.Add(NearestToEdge(c, edge), edge.normal, edge.distance_m, 2);
     return;
   }
@@ -342,8 +341,7 @@ void TouchInside(RoundBoxPair& pair, const Stations& stations) noexcept {
 
 }  // namespace
 
-int TouchRoundRound(const RoundShape& a, const RoundShape& b, double margin_m,
-                    TouchPoint* out) noexcept {
+int Touch(const RoundShape& a, const RoundShape& b, double margin_m, TouchPoint* out) noexcept {
   RoundPair pair{Segment(a), Segment(b), a.radius_m, b.radius_m, TouchList(out, margin_m)};
   const CenterPair closest = ClosestPair(pair.a, pair.b);
   if (!(pair.Gap(closest) < margin_m)) return 0;
@@ -365,8 +363,7 @@ int TouchRoundRound(const RoundShape& a, const RoundShape& b, double margin_m,
   return pair.list.count();
 }
 
-int TouchRoundBox(const RoundShape& a, const BoxShape& b, double margin_m,
-                  TouchPoint* out) noexcept {
+int Touch(const RoundShape& a, const BoxShape& b, double margin_m, TouchPoint* out) noexcept {
   RoundBoxPair pair{CapsuleAtBox(a, b), b, TouchList(out, margin_m)};
   const Stations stations(pair.capsule);
   const double nearest = NearestToBox(pair.capsule, stations);
@@ -380,12 +377,12 @@ int TouchRoundBox(const RoundShape& a, const BoxShape& b, double margin_m,
   return pair.list.count();
 }
 
-double DistanceRoundRound(const RoundShape& a, const RoundShape& b) noexcept {
+double Distance(const RoundShape& a, const RoundShape& b) noexcept {
   const CenterPair closest = ClosestPair(Segment(a), Segment(b));
   return Larger(closest.distance_m - a.radius_m - b.radius_m, 0.0);
 }
 
-double DistanceRoundBox(const RoundShape& a, const BoxShape& b) noexcept {
+double Distance(const RoundShape& a, const BoxShape& b) noexcept {
   const CapsuleAtBox capsule(a, b);
   const double nearest = NearestToBox(capsule, Stations(capsule));
   return Larger(Norm(capsule.Beyond(nearest)) - a.radius_m, 0.0);

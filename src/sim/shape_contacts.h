@@ -10,18 +10,9 @@
 ///   - Features number the points of a pair, so that a solver finds its last answer again.
 #pragma once
 
+#include "sim/shapes.h"
+
 namespace taut::sim {
-
-/// A sphere (from = to) or capsule in W.
-struct RoundShape {
-  double from[3], to[3];
-  double radius_m;
-};
-
-/// A box in W; rows of `axes` are its unit axes.
-struct BoxShape {
-  double center[3], axes[9], half_m[3];
-};
 
 /// A contact point: the unit normal points from the second shape to the first.
 struct TouchPoint {
@@ -31,27 +22,34 @@ struct TouchPoint {
   int feature;   ///< Below kMaxPointsPerPair; stable while the shapes slide.
 };
 
-/// Each fills `out` (kMaxPointsPerPair entries, see tables.h) with the points whose gap is below
-/// `margin_m`, and returns how many there are.
+/// What the features below need, and every pair that is to come.
+inline constexpr int kMaxPointsPerPair = 13;
+
+/// Each fills `out` (kMaxPointsPerPair entries) with the points whose gap is below `margin_m`, and
+/// returns how many there are.
 ///
 /// Features: 0 the closest points; 1, 2 the ends of the stretch that capsules at less than 30
 /// degrees have in common.
-int TouchRoundRound(const RoundShape& a, const RoundShape& b, double margin_m,
-                    TouchPoint* out) noexcept;
+int Touch(const RoundShape& a, const RoundShape& b, double margin_m, TouchPoint* out) noexcept;
 
 /// Features: 0, 1 the ends (a sphere has one); 2 the point of the centre line nearest to the box;
 /// 3..8 where the centre line crosses the planes of the box's faces.
-int TouchRoundBox(const RoundShape& a, const BoxShape& b, double margin_m,
-                  TouchPoint* out) noexcept;
+int Touch(const RoundShape& a, const BoxShape& b, double margin_m, TouchPoint* out) noexcept;
 
 /// Features: 0..3 corners of a face; 4..11 where its edges leave and enter the other box's face
 /// along each of that one's four sides; 12 edges that cross, or a
 /// corner beside the face that is nearer.
-int TouchBoxBox(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoint* out) noexcept;
+int Touch(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoint* out) noexcept;
 
 /// A lower bound of the distance between two shapes, 0 if they may touch. Exact where one is round.
-double DistanceRoundRound(const RoundShape& a, const RoundShape& b) noexcept;
-double DistanceRoundBox(const RoundShape& a, const BoxShape& b) noexcept;
-double DistanceBoxBox(const BoxShape& a, const BoxShape& b) noexcept;
+double Distance(const RoundShape& a, const RoundShape& b) noexcept;
+double Distance(const RoundShape& a, const BoxShape& b) noexcept;
+double Distance(const BoxShape& a, const BoxShape& b) noexcept;
+
+/// The same for shapes of any two kinds, in either order, each given in a frame of its own.
+int TouchShapes(const Shape& a, const ShapePose& at_a, const Shape& b, const ShapePose& at_b,
+                double margin_m, TouchPoint* out) noexcept;
+double DistanceOfShapes(const Shape& a, const ShapePose& at_a, const Shape& b,
+                        const ShapePose& at_b) noexcept;
 
 }  // namespace taut::sim

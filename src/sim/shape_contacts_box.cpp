@@ -1,6 +1,5 @@
 // Two boxes: separating axes, then the points of the face or the edges that belong to the best one.
 #include "sim/shape_contacts.h"
-#include "sim/tables.h"
 #include "sim/touch_list.h"
 
 namespace taut::sim {
@@ -23,14 +22,14 @@ double Sign(double x) noexcept { return x < 0.0 ? -1.0 : 1.0; }
 /// Half the width of a box along a unit direction.
 double Reach(const BoxShape& box, const Vec3& direction) noexcept {
   double reach = 0.0;
-  for (int i = 0; i < 3; ++i) reach += box.half_m[i] * std::fabs(Dot(AxisOf(box, i), direction));
+  for (int i = 0; i < 3; ++i) reach += box.half_m[i] * Abs(Dot(AxisOf(box, i), direction));
   return reach;
 }
 
 /// How far two boxes are apart along a unit direction; negative: how far they overlap.
 double Apart(const BoxShape& a, const BoxShape& b, const Vec3& direction) noexcept {
   const Vec3 ab = Load(b.center) - Load(a.center);
-  return std::fabs(Dot(ab, direction)) - Reach(a, direction) - Reach(b, direction);
+  return Abs(Dot(ab, direction)) - Reach(a, direction) - Reach(b, direction);
 }
 
 struct FaceAxis {
@@ -93,7 +92,7 @@ void TouchEdges(const BoxShape& a, const BoxShape& b, const EdgeAxis& edges,
   const double s = Dot(Cross(ab, along_b), c) / c2, t = Dot(Cross(ab, along_a), c) / c2;
   const double s_max = a.half_m[edges.a], t_max = b.half_m[edges.b];
   const double slack = 1.0 + kCutSlack;
-  if (std::fabs(s) > slack * s_max || std::fabs(t) > slack * t_max) return;
+  if (Abs(s) > slack * s_max || Abs(t) > slack * t_max) return;
   const Vec3 on_a = middle_a + Clamp(s, -s_max, s_max) * along_a;
   const Vec3 on_b = middle_b + Clamp(t, -t_max, t_max) * along_b;
   list.Add(0.5 * (on_a + on_b), -1.0 * edges.direction, edges.apart_m, kMeetingFeature);
@@ -143,7 +142,7 @@ Polygon FacingFace(const BoxShape& box, const Vec3& direction, const Vec3& origi
   int face = 0;
   double most = -1.0;
   for (int i = 0; i < 3; ++i) {
-    const double facing = std::fabs(Dot(AxisOf(box, i), direction));
+    const double facing = Abs(Dot(AxisOf(box, i), direction));
     if (facing <= most + 1e-9) continue;
     most = facing;
     face = i;
@@ -234,12 +233,12 @@ double DistanceAlongAxes(const BoxShape& a, const BoxShape& b) noexcept {
     const double apart = Larger(Apart(a, b, AxisOf(a, i)), 0.0);
     sum2 += apart * apart;
   }
-  return std::sqrt(sum2);
+  return Sqrt(sum2);
 }
 
 }  // namespace
 
-int TouchBoxBox(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoint* out) noexcept {
+int Touch(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoint* out) noexcept {
   TouchList list(out, margin_m);
   const FaceAxis face_a = BestFace(a, b), face_b = BestFace(b, a);
   if (!(Larger(face_a.apart_m, face_b.apart_m) < margin_m)) return 0;
@@ -262,7 +261,7 @@ int TouchBoxBox(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoin
   return list.count();
 }
 
-double DistanceBoxBox(const BoxShape& a, const BoxShape& b) noexcept {
+double Distance(const BoxShape& a, const BoxShape& b) noexcept {
   return Larger(Larger(DistanceAlongAxes(a, b), DistanceAlongAxes(b, a)), BestEdges(a, b).apart_m);
 }
 

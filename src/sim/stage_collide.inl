@@ -4,7 +4,7 @@
 /// Points against planes are tested in all lanes at once. Everything else hides behind bounds:
 /// a pair of bodies is looked at only when the motion since the last look may have used up the
 /// distance found then, a pair of shapes only when their bounding spheres meet, and then each
-/// lane by itself in scalar code (shape_contacts.h).
+/// lane by itself in scalar code (shape_pairs.inl).
 
 namespace taut::sim {
 
@@ -85,71 +85,6 @@ void CollidePlanes(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexc
       }
     }
   }
-}
-
-template <class W>
-void LaneShape(const View& m, const Rows<W>& s, const Scratch<W>& work, int shape, int lane,
-               RoundShape& round, BoxShape& box) noexcept {
-  const ShapeTable& t = m.shapes[shape];
-  const M3<W>& R = work.bodies[t.body].R;
-  const double r[9] = {R.r0.x[lane], R.r0.y[lane], R.r0.z[lane], R.r1.x[lane], R.r1.y[lane],
-                       R.r1.z[lane], R.r2.x[lane], R.r2.y[lane], R.r2.z[lane]};
-  double x[3] = {0, 0, 0};
-  if (t.body < m.body_count) {
-    x[0] = s.pos[t.body].x[lane];
-    x[1] = s.pos[t.body].y[lane];
-    x[2] = s.pos[t.body].z[lane];
-  }
-  for (int i = 0; i < 3; ++i) {
-    const double* row = r + 3 * i;
-    if (!t.is_box) {
-      round.from[i] = x[i] + row[0] * t.from_P[0] + row[1] * t.from_P[1] + row[2] * t.from_P[2];
-      round.to[i] = x[i] + row[0] * t.to_P[0] + row[1] * t.to_P[1] + row[2] * t.to_P[2];
-      continue;
-    }
-    box.center[i] = x[i] + row[0] * t.center_P[0] + row[1] * t.center_P[1] + row[2] * t.center_P[2];
-    box.half_m[i] = t.half_m[i];
-    for (int axis = 0; axis < 3; ++axis) {
-      const double* a = t.axes_P + 3 * axis;
-      box.axes[3 * axis + i] = row[0] * a[0] + row[1] * a[1] + row[2] * a[2];
-    }
-  }
-  round.radius_m = t.radius_m;
-}
-
-/// The two shapes of a pair in one lane.
-struct LanePair {
-  RoundShape round_a, round_b;
-  BoxShape box_a, box_b;
-};
-
-template <class W>
-int TouchLane(const View& m, const Rows<W>& s, const Scratch<W>& work, const ShapePairTable& pair,
-              int lane, double margin, TouchPoint* out) noexcept {
-  LanePair p;
-  LaneShape(m, s, work, pair.a, lane, p.round_a, p.box_a);
-  LaneShape(m, s, work, pair.b, lane, p.round_b, p.box_b);
-  const bool box_a = m.shapes[pair.a].is_box, box_b = m.shapes[pair.b].is_box;
-  if (!box_a && !box_b) return TouchRoundRound(p.round_a, p.round_b, margin, out);
-  if (box_a && box_b) return TouchBoxBox(p.box_a, p.box_b, margin, out);
-  if (box_b) return TouchRoundBox(p.round_a, p.box_b, margin, out);
-  const int count = TouchRoundBox(p.round_b, p.box_a, margin, out);
-  for (int i = 0; i < count; ++i) {
-    for (double& x : out[i].normal) x = -x;
-  }
-  return count;
-}
-
-template <class W>
-double DistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
-                    const ShapePairTable& pair, int lane) noexcept {
-  LanePair p;
-  LaneShape(m, s, work, pair.a, lane, p.round_a, p.box_a);
-  LaneShape(m, s, work, pair.b, lane, p.round_b, p.box_b);
-  const bool box_a = m.shapes[pair.a].is_box, box_b = m.shapes[pair.b].is_box;
-  if (!box_a && !box_b) return DistanceRoundRound(p.round_a, p.round_b);
-  if (box_a && box_b) return DistanceBoxBox(p.box_a, p.box_b);
-  return box_b ? DistanceRoundBox(p.round_a, p.box_b) : DistanceRoundBox(p.round_b, p.box_a);
 }
 
 template <class W>

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "sim/shape_contacts.h"
 #include "taut/batch.h"
 
 namespace taut::sim {
@@ -25,15 +26,11 @@ struct AttachmentTable {
   double p_P[3] = {};  ///< [m]
 };
 
-/// A shape that may touch another: a sphere (from = to), a capsule or a box.
+/// A shape that may touch another.
 struct ShapeTable {
-  bool is_box = false;
   int body = 0;
-  double radius_m = 0;  ///< 0 for a box.
-  double from_P[3] = {}, to_P[3] = {};
+  Shape shape_P;
   double center_P[3] = {};
-  double axes_P[9] = {};  ///< Box: rows are its axes in P.
-  double half_m[3] = {};
   double bound_m = 0;  ///< Radius of the sphere around `center_P` that holds it.
   Material material;
 };
@@ -63,7 +60,6 @@ struct BodyPairTable {
 };
 
 inline constexpr int kMaxPlanes = 8;
-inline constexpr int kMaxPointsPerPair = 13;  ///< What shape_contacts.h numbers.
 
 /// Offsets, in rows of one double a lane, of everything that a group of worlds keeps.
 struct Layout {

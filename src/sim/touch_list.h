@@ -1,7 +1,6 @@
-/// Helpers that the functions of shape_contacts.h share.
+/// Helpers that the functions of shape_contacts.h share; builtins, because the standard library has
+/// no place in a step.
 #pragma once
-
-#include <cmath>
 
 #include "math/vec.h"
 #include "sim/shape_contacts.h"
@@ -10,7 +9,9 @@ namespace taut::sim {
 
 inline Vec3 Load(const double* p) noexcept { return {p[0], p[1], p[2]}; }
 inline Vec3 AxisOf(const BoxShape& box, int axis) noexcept { return Load(box.axes + 3 * axis); }
-inline double Norm(const Vec3& a) noexcept { return std::sqrt(Dot(a, a)); }
+inline double Sqrt(double x) noexcept { return __builtin_sqrt(x); }
+inline double Abs(double x) noexcept { return __builtin_fabs(x); }
+inline double Norm(const Vec3& a) noexcept { return Sqrt(Dot(a, a)); }
 inline double Larger(double a, double b) noexcept { return a > b ? a : b; }
 inline double Smaller(double a, double b) noexcept { return a < b ? a : b; }
 inline double Clamp(double x, double low, double high) noexcept {

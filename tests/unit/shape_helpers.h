@@ -8,7 +8,6 @@
 
 #include "math/vec.h"
 #include "sim/shape_contacts.h"
-#include "sim/tables.h"
 
 namespace taut::sim {
 
@@ -65,31 +64,16 @@ inline BoxShape Moved(const BoxShape& s, const Motion& m) {
   return out;
 }
 
-inline int TouchInto(const RoundShape& a, const RoundShape& b, double margin, TouchPoint* out) {
-  return TouchRoundRound(a, b, margin, out);
-}
-inline int TouchInto(const RoundShape& a, const BoxShape& b, double margin, TouchPoint* out) {
-  return TouchRoundBox(a, b, margin, out);
-}
-inline int TouchInto(const BoxShape& a, const BoxShape& b, double margin, TouchPoint* out) {
-  return TouchBoxBox(a, b, margin, out);
-}
 /// The points of a pair, by rising feature.
 template <class A, class B>
 Points Touch(const A& a, const B& b, double margin_m = 1e-4) {
   TouchPoint out[kMaxPointsPerPair];
-  const int count = TouchInto(a, b, margin_m, out);
+  const int count = Touch(a, b, margin_m, out);
   Points points(out, out + count);
   std::sort(points.begin(), points.end(),
             [](const TouchPoint& p, const TouchPoint& q) { return p.feature < q.feature; });
   return points;
 }
-
-inline double Distance(const RoundShape& a, const RoundShape& b) {
-  return DistanceRoundRound(a, b);
-}
-inline double Distance(const RoundShape& a, const BoxShape& b) { return DistanceRoundBox(a, b); }
-inline double Distance(const BoxShape& a, const BoxShape& b) { return DistanceBoxBox(a, b); }
 
 inline TouchPoint Deepest(const Points& points) {
   return *std::min_element(

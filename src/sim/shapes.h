@@ -1,0 +1,82 @@
+/// The kinds of shapes that touch each other.
+///
+/// A new kind takes: a value of `ShapeKind`; a struct with its `kKind` and a function `Moved`; a
+/// member of `Shape` and a line in `WithShape`; a file with its `Touch` and `Distance`, one line
+/// each in shape_contacts.h for every kind that it may meet. A pair that is missing there does not
+/// compile. All of this is part of a step: no standard library, no heap, no function pointers.
+#pragma once
+
+namespace taut::sim {
+
+/// In this order pairs are written: `Touch(a, b)` where the kind of `a` is not behind that of `b`.
+enum class ShapeKind { kRound, kBox };
+
+/// A sphere (from = to) or capsule.
+struct RoundShape {
+  static constexpr ShapeKind kKind = ShapeKind::kRound;
+  double from[3], to[3];
+  double radius_m;
+};
+
+/// A box; rows of `axes` are its unit axes.
+struct BoxShape {
+  static constexpr ShapeKind kKind = ShapeKind::kBox;
+  double center[3], axes[9], half_m[3];
+};
+
+/// Where a frame is: x -> r x + origin.
+struct ShapePose {
+  double r[9];  ///< Row major.
+  double origin[3];
+};
+
+inline void Turn(const ShapePose& pose, const double* p, double* out) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    const double* const row = pose.r + 3 * i;
+    out[i] = row[0] * p[0] + row[1] * p[1] + row[2] * p[2];
+  }
+}
+inline void Move(const ShapePose& pose, const double* p, double* out) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    const double* const row = pose.r + 3 * i;
+    out[i] = pose.origin[i] + row[0] * p[0] + row[1] * p[1] + row[2] * p[2];
+  }
+}
+
+inline RoundShape Moved(const RoundShape& shape, const ShapePose& pose) noexcept {
+  RoundShape moved;
+  Move(pose, shape.from, moved.from);
+  Move(pose, shape.to, moved.to);
+  moved.radius_m = shape.radius_m;
+  return moved;
+}
+inline BoxShape Moved(const BoxShape& shape, const ShapePose& pose) noexcept {
+  BoxShape moved;
+  Move(pose, shape.center, moved.center);
+  for (int i = 0; i < 3; ++i) {
+    Turn(pose, shape.axes + 3 * i, moved.axes + 3 * i);
+    moved.half_m[i] = shape.half_m[i];
+  }
+  return moved;
+}
+
+/// A shape of any kind; of the others only the one that `kind` says is filled in.
+struct Shape {
+  ShapeKind kind = ShapeKind::kRound;
+  RoundShape round = {};
+  BoxShape box = {};
+};
+
+/// `use` with the struct of the shape's kind.
+template <class Use>
+auto WithShape(const Shape& shape, const Use& use) noexcept {
+  switch (shape.kind) {
+    case ShapeKind::kRound:
+      return use(shape.round);
+    case ShapeKind::kBox:
+      return use(shape.box);
+  }
+  __builtin_unreachable();
+}
+
+}  // namespace taut::sim

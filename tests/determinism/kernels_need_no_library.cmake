@@ -1,0 +1,29 @@
+# cmake -DNM=... -DOBJECTS=a.o,b.o,... -P kernels_need_no_library.cmake
+#
+# The text of a step, pairs of shapes included, calls nothing but itself: no heap, no container, no
+# exception, no libm. Compilers may copy and fill memory, sanitizers add calls of their own, and g++ names its
+# exception handling wherever a function that is noexcept calls one that is not.
+cmake_minimum_required(VERSION 3.25)
+string(REPLACE "," ";" objects "${OBJECTS}")
+list(FILTER objects INCLUDE REGEX
+  "/(step_(scalar|sse2|avx2|avx512)|shape_[a-z_]+)\\.cpp\\.o$")
+list(LENGTH objects count)
+if(count LESS 7)
+  message(FATAL_ERROR "4 kernels and 3 files of shapes expected, not ${count}: ${OBJECTS}")
+endif()
+set(foreign)
+foreach(object ${objects})
+  execute_process(COMMAND ${NM} --undefined-only --demangle ${object} OUTPUT_VARIABLE symbols
+    COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCHALL "[UVvw] [^\n]+" symbols "${symbols}")
+  foreach(symbol ${symbols})
+    if(NOT symbol MATCHES "^. (taut::sim::|mem(cpy|set|move)$|_GLOBAL_OFFSET_TABLE_$|__stack_chk_fail$|__gxx_personality_v0$|__(asan|ubsan|tsan)_)")
+      cmake_path(GET object FILENAME name)
+      list(APPEND foreign "${name}: ${symbol}")
+    endif()
+  endforeach()
+endforeach()
+if(foreign)
+  list(JOIN foreign "\n " text)
+  message(FATAL_ERROR "not of the step:\n ${text}")
+endif()
