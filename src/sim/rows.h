@@ -1,6 +1,7 @@
 /// Typed access to a group's rows, and what a step keeps only while it runs.
 #pragma once
 
+#include "math/cable_path.h"
 #include "sim/group.h"
 #include "simd/vec3.h"
 
@@ -112,10 +113,7 @@ struct ContactRow {
 
 /// An attachment while its cable's force is worked out; its velocity is the expected one.
 template <class W>
-struct AttachmentWork {
-  V3<W> p, v, arm;
-  V3<W> u;  ///< Unit vector from the attachment before.
-};
+using AttachmentWork = PathPoint<V3<W>>;
 
 /// What a cable does to one body: pulls with tension T as T F at the centre, T Q about it.
 template <class W>

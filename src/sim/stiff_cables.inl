@@ -26,9 +26,7 @@ void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W l
   for (int i = 0; i < cable.attachment_count; ++i) {
     const int body = m.attachments[cable.first_attachment + i].body;
     if (body == m.body_count) continue;
-    V3<W> direction{zero, zero, zero};  // of the pull on this attachment
-    if (i > 0) direction -= work.attachments[i].u;
-    if (i + 1 < cable.attachment_count) direction += work.attachments[i + 1].u;
+    const V3<W> direction = PullAt(cable.attachment_count, work.attachments, i);
     CableLink<W>* link = work.links + row.first_link;
     CableLink<W>* const end = link + row.link_count;
     while (link != end && link->body != body) ++link;

@@ -2,6 +2,7 @@
 #include <limits>
 #include <set>
 
+#include "math/cable_path.h"
 #include "math/vec.h"
 #include "spec/build.h"
 #include "spec/union_find.h"
@@ -12,7 +13,9 @@ namespace {
 
 constexpr double kShortest_m = 1e-9;  ///< A shorter leg has no direction.
 
-double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
+double LengthBetween(const AttachmentDef& a, const AttachmentDef& b) {
+  return MeasureThrough<Vec3>(2, [&](int i) { return (i == 0 ? a : b).position_m; }).l;
+}
 
 std::string Number(double value) {
   char text[32];
@@ -80,15 +83,14 @@ class CableMaker {
     const std::size_t last = nodes.size() - 1;
     const auto move = [&](std::size_t end, std::size_t next) {
       const Vec3 leg = nodes[next].position_m - nodes[end].position_m;
-      const double length = Length(leg);
+      const double length = LengthBetween(nodes[end], nodes[next]);
       const double radius = SurfaceRadius(pair.nodes[end], pair, builder);
       if (length < kShortest_m) return radius;
       cable.attachments[end].position_m = nodes[end].position_m + (radius / length) * leg;
       return radius;
     };
     const double first_radius = move(0, 1), last_radius = move(last, last - 1);
-    if (last == 1 &&
-        Length(nodes[1].position_m - nodes[0].position_m) < first_radius + last_radius) {
+    if (last == 1 && LengthBetween(nodes[0], nodes[1]) < first_radius + last_radius) {
       Once(pair.at, "the spheres at the ends of the cable \"" + pair.name + "\" overlap",
            "nothing is left for the cable between their surfaces");
     }
@@ -99,8 +101,7 @@ class CableMaker {
     bool one_body = true;
     for (std::size_t i = 1; i < cable.attachments.size(); ++i) {
       one_body = one_body && cable.attachments[i].body == cable.attachments[0].body;
-      const double leg =
-          Length(cable.attachments[i].position_m - cable.attachments[i - 1].position_m);
+      const double leg = LengthBetween(cable.attachments[i - 1], cable.attachments[i]);
       if (std::isnan(leg)) return false;
       if (leg >= kShortest_m) continue;
       Once(pair.at,
