@@ -1,11 +1,11 @@
-#include "sim/principal_axes.h"
+#include "math/principal_axes.h"
 
 #include <cmath>
 
-namespace taut::sim {
+namespace taut {
 
 // Cyclic Jacobi rotations: only + - * / sqrt.
-void PrincipalAxes(const Inertia& i, double r[9], double moments[3]) {
+void PrincipalAxes(const Inertia& i, double r[9], double moments[3]) noexcept {
   double a[3][3] = {{i.xx, i.xy, i.xz}, {i.xy, i.yy, i.yz}, {i.xz, i.yz, i.zz}};
   double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const double scale = std::fabs(i.xx) + std::fabs(i.yy) + std::fabs(i.zz);
@@ -43,4 +43,4 @@ void PrincipalAxes(const Inertia& i, double r[9], double moments[3]) {
   }
 }
 
-}  // namespace taut::sim
+}  // namespace taut
