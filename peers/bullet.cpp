@@ -5,9 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "math/principal_axes.h"
 #include "math/vec.h"
 #include "peers/adapters.h"
-#include "sim/principal_axes.h"
 
 namespace taut::peers {
 namespace {
@@ -130,7 +130,7 @@ class Bullet final : public World {
     const BodyDef& body = def.bodies[static_cast<std::size_t>(index)];
     Rotation axes;
     double moments[3];
-    sim::PrincipalAxes(body.inertia_kg_m2, axes.m, moments);
+    PrincipalAxes(body.inertia_kg_m2, axes.m, moments);
     start_.push_back(Transposed(axes));
     auto compound = std::make_unique<btCompoundShape>();
     for (const Shape& s : shapes) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "math/principal_axes.h"
 #include "math/vec.h"
 
 namespace taut {
@@ -122,31 +123,8 @@ Inertia BoundingBoxInertia(const Bounds& bounds, double mass_kg) {
 }
 
 Vec3 PrincipalMoments(const Inertia& inertia_kg_m2) {
-  // Cyclic Jacobi: a few sweeps reach round-off for any symmetric 3x3 matrix.
-  const Inertia& i = inertia_kg_m2;
-  double a[3][3] = {{i.xx, i.xy, i.xz}, {i.xy, i.yy, i.yz}, {i.xz, i.yz, i.zz}};
-  for (int sweep = 0; sweep < 12; ++sweep) {
-    for (int p = 0; p < 2; ++p) {
-      for (int q = p + 1; q < 3; ++q) {
-        if (a[p][q] == 0.0) continue;
-        const double theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-        const double t =
-            std::copysign(1.0, theta) / (std::fabs(theta) + std::sqrt(theta * theta + 1.0));
-        const double c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
-        for (int k = 0; k < 3; ++k) {
-          const double kp = a[k][p], kq = a[k][q];
-          a[k][p] = c * kp - s * kq;
-          a[k][q] = s * kp + c * kq;
-        }
-        for (int k = 0; k < 3; ++k) {
-          const double pk = a[p][k], qk = a[q][k];
-          a[p][k] = c * pk - s * qk;
-          a[q][k] = s * pk + c * qk;
-        }
-      }
-    }
-  }
-  double moments[3] = {a[0][0], a[1][1], a[2][2]};
+  double axes[9], moments[3];
+  PrincipalAxes(inertia_kg_m2, axes, moments);
   std::sort(moments, moments + 3);
   return {moments[0], moments[1], moments[2]};
 }

@@ -2,21 +2,15 @@
 
 #include <cmath>
 
+#include "math/cable_path.h"
 #include "math/vec.h"
 
 namespace taut {
-namespace {
-
-double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
-
-}  // namespace
-
 double CableLength(const CableDef& cable) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < cable.attachments.size(); ++i) {
-    length += Length(cable.attachments[i].position_m - cable.attachments[i - 1].position_m);
-  }
-  return length;
+  return MeasureThrough<Vec3>(
+             static_cast<int>(cable.attachments.size()),
+             [&](int i) { return cable.attachments[static_cast<std::size_t>(i)].position_m; })
+      .l;
 }
 
 double CableTension(const CableDef& cable) {
@@ -24,29 +18,30 @@ double CableTension(const CableDef& cable) {
 }
 
 std::vector<BodyLoad> StartLoads(const ModelDef& def) {
-  std::vector<BodyLoad> loads(def.bodies.size());
-  const auto pull = [&](const AttachmentDef& at, const Vec3& force) {
-    if (at.body == kWorld) return;
-    BodyLoad& load = loads[at.body];
-    load.cable_force_n = load.cable_force_n + force;
-    load.cable_torque_n_m =
-        load.cable_torque_n_m + Cross(at.position_m - def.bodies[at.body].com_m, force);
+  struct Sum {
+    Vec3 force, torque;  ///< About the centre of mass.
+  };
+  std::vector<Sum> sums(def.bodies.size() + 1);  // the world last
+  const auto index = [&](int body) {
+    return body == kWorld ? def.bodies.size() : static_cast<std::size_t>(body);
   };
   for (const CableDef& cable : def.cables) {
-    const double tension = CableTension(cable);
-    for (std::size_t i = 1; i < cable.attachments.size(); ++i) {
-      const AttachmentDef& a = cable.attachments[i - 1];
-      const AttachmentDef& b = cable.attachments[i];
-      const Vec3 leg = b.position_m - a.position_m;
-      const double length = Length(leg);
-      if (length == 0.0) continue;
-      const Vec3 force = (tension / length) * leg;
-      pull(a, force);
-      pull(b, -1.0 * force);
+    std::vector<PathPoint<Vec3>> path;
+    for (const AttachmentDef& at : cable.attachments) {
+      const Vec3 origin = at.body == kWorld ? Vec3{} : def.bodies[index(at.body)].com_m;
+      path.push_back({at.position_m, {}, at.position_m - origin, {}});
     }
+    const int count = static_cast<int>(path.size());
+    MeasurePath(count, path.data());
+    PullBodies(count, path.data(), CableTension(cable), [&](int i) -> Sum& {
+      return sums[index(cable.attachments[static_cast<std::size_t>(i)].body)];
+    });
   }
+  std::vector<BodyLoad> loads(def.bodies.size());
   for (std::size_t body = 0; body < loads.size(); ++body) {
     loads[body].weight_n = def.bodies[body].mass_kg * def.gravity_m_per_s2;
+    loads[body].cable_force_n = sums[body].force;
+    loads[body].cable_torque_n_m = sums[body].torque;
   }
   return loads;
 }

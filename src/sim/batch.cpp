@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "math/cable_path.h"
 #include "sim/batch_impl.h"
 
 namespace taut {
@@ -132,11 +133,10 @@ void Batch::Impl::InitializeWorld(int world) noexcept {
     at(world, layout.damping + c) = cable.damping_n_s_per_m;
     // A cable that is taut at the start is known to be so: a stiff one does not enter as if it had
     // been slack before (docs/theory/cables.md, eq. 10).
-    double length = 0;
-    for (std::size_t i = 1; i < cable.attachments.size(); ++i) {
-      const Vec3 d = cable.attachments[i].position_m - cable.attachments[i - 1].position_m;
-      length += std::sqrt(Dot(d, d));
-    }
+    const double length =
+        MeasureThrough<Vec3>(static_cast<int>(cable.attachments.size()), [&](int i) {
+          return cable.attachments[static_cast<std::size_t>(i)].position_m;
+        }).l;
     at(world, layout.tension + c) =
         std::max(cable.stiffness_n_per_m * (length - cable.rest_length_m), 0.0);
   }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "math/cable_path.h"
 #include "math/vec.h"
 #include "sim/tables.h"
 
@@ -27,21 +28,21 @@ Vec3 PointInWorld(const Tables& t, const AttachmentTable& a) {
 }
 
 std::vector<Pull> PullsOf(const Tables& t, const CableTable& cable) {
+  const AttachmentTable* const ends = t.attachments.data() + cable.first_attachment;
+  const int count = cable.attachment_count;
+  std::vector<PathPoint<Vec3>> path(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    path[static_cast<std::size_t>(i)].p = PointInWorld(t, ends[i]);
+  }
+  MeasurePath(count, path.data());
   std::vector<Pull> pulls;
-  const auto add = [&](const AttachmentTable& a, const Vec3& force) {
-    if (a.body == t.body_count) return;
-    const double* q = t.q_WP0.data() + static_cast<std::size_t>(4 * a.body);
+  for (int i = 0; i < count; ++i) {
+    if (ends[i].body == t.body_count) continue;
+    const double* q = t.q_WP0.data() + static_cast<std::size_t>(4 * ends[i].body);
+    const double* p = ends[i].p_P;
+    const Vec3 force = PullAt(count, path.data(), i);
     const Vec3 local = Rotate(Conjugate({q[0], q[1], q[2], q[3]}), force);
-    pulls.push_back({a.body, force, Cross({a.p_P[0], a.p_P[1], a.p_P[2]}, local)});
-  };
-  for (int i = 1; i < cable.attachment_count; ++i) {
-    const auto& from = t.attachments[static_cast<std::size_t>(cable.first_attachment + i - 1)];
-    const auto& to = t.attachments[static_cast<std::size_t>(cable.first_attachment + i)];
-    const Vec3 d = PointInWorld(t, to) - PointInWorld(t, from);
-    const double length = std::sqrt(Dot(d, d));
-    const Vec3 u = (length > 0 ? 1 / length : 0.0) * d;
-    add(from, u);
-    add(to, -1.0 * u);
+    pulls.push_back({ends[i].body, force, Cross({p[0], p[1], p[2]}, local)});
   }
   return pulls;
 }

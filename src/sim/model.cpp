@@ -1,15 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/principal_axes.h"
 #include "math/rotation.h"
 #include "sim/model_check.h"
-#include "sim/principal_axes.h"
 #include "sim/tables.h"
 
 namespace taut {
 namespace {
 
-using sim::PrincipalAxes;
 using sim::Tables;
 
 struct Frame {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/principal_axes.h"
+#include "math/principal_axes.h"
 #include "sim/tables.h"
 
 namespace taut::sim {

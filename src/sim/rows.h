@@ -3,6 +3,7 @@
 
 #include "sim/contacts.h"
 #include "sim/constraint/cable_row.h"
+#include "math/cable_path.h"
 #include "sim/group.h"
 #include "sim/solve/memory.h"
 #include "simd/vec3.h"
@@ -82,10 +83,7 @@ struct BodyWork {
 
 /// An attachment while its cable's force is worked out; its velocity is the expected one.
 template <class W>
-struct AttachmentWork {
-  V3<W> p, v, arm;
-  V3<W> u;  ///< Unit vector from the attachment before.
-};
+using AttachmentWork = PathPoint<V3<W>>;
 
 /// A cable whose tension is found together with the contacts.
 template <class W>

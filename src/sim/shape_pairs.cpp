@@ -9,9 +9,9 @@ namespace {
 template <class Use>
 auto WithPair(const Shape& a, const ShapePose& at_a, const Shape& b, const ShapePose& at_b,
               const Use& use) noexcept {
-  return WithShape(a, [&](const auto& shape_a) noexcept {
-    return WithShape(b, [&](const auto& shape_b) noexcept {
-      if constexpr (shape_a.kKind <= shape_b.kKind) {
+  return WithShape(a, [&]<class A>(const A& shape_a) noexcept {
+    return WithShape(b, [&]<class B>(const B& shape_b) noexcept {
+      if constexpr (A::kKind <= B::kKind) {
         return use(Moved(shape_a, at_a), Moved(shape_b, at_b), false);
       } else {
         return use(Moved(shape_b, at_b), Moved(shape_a, at_a), true);

@@ -39,23 +39,13 @@ TAUT_INLINE AttachmentWork<W> Attachment(const View& m, const AttachmentTable& t
 
 /// Length and rate of a cable; fills `ends` with its attachments.
 template <class W>
-TAUT_INLINE void MeasureCable(const View& m, const CableTable& cable, int attachment_count,
-                              const V3<W>* origin, const Scratch<W>& work, AttachmentWork<W>* ends,
-                              W& l, W& dl) noexcept {
+TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const CableTable& cable,
+                                           int attachment_count, const V3<W>* origin,
+                                           const Scratch<W>& work,
+                                           AttachmentWork<W>* ends) noexcept {
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
-  ends[0] = Attachment(m, tables[0], origin, work);
-  W length_sum = W::Splat(0.0), rate_sum = W::Splat(0.0);
-  for (int i = 1; i < attachment_count; ++i) {
-    ends[i] = Attachment(m, tables[i], origin, work);
-    const V3<W> d = ends[i].p - ends[i - 1].p;
-    const W length = Sqrt(Dot(d, d));
-    // Coinciding attachments have no direction; a length this small pulls with u = d / tiny ~ 0.
-    ends[i].u = (W::Splat(1.0) / Max(length, W::Splat(1e-12))) * d;
-    length_sum += length;
-    rate_sum += Dot(ends[i].u, ends[i].v - ends[i - 1].v);
-  }
-  l = length_sum;
-  dl = rate_sum;
+  for (int i = 0; i < attachment_count; ++i) ends[i] = Attachment(m, tables[i], origin, work);
+  return MeasurePath(attachment_count, ends);
 }
 
 /// A rest length follows its target for one step, within the actuator's limits. Limits are per
@@ -104,8 +94,7 @@ TAUT_INLINE void PullCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
                            int attachment_count, AttachmentWork<W>* ends, W h, W inv_h) noexcept {
   const W zero = W::Splat(0.0);
   const CableTable& cable = m.cables[c];
-  W l, dl;
-  MeasureCable(m, cable, attachment_count, s.pos, work, ends, l, dl);
+  const auto [l, dl] = MeasureCable(m, cable, attachment_count, s.pos, work, ends);
   W rest = s.rest[c], rate = s.rest_rate[c];
   const W mean = Actuate(cable, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
   s.rest[c] = rest;
@@ -122,15 +111,9 @@ TAUT_INLINE void PullCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
   } else {
     s.tension[c] = T;
   }
-  for (int i = 1; i < attachment_count; ++i) {
-    const V3<W> f = T * ends[i].u;
-    BodyWork<W>& a = work.bodies[m.attachments[cable.first_attachment + i - 1].body];
-    BodyWork<W>& b = work.bodies[m.attachments[cable.first_attachment + i].body];
-    a.force += f;
-    a.torque += Cross(ends[i - 1].arm, f);
-    b.force -= f;
-    b.torque -= Cross(ends[i].arm, f);
-  }
+  const AttachmentTable* const tables = m.attachments + cable.first_attachment;
+  PullBodies(attachment_count, ends, T,
+             [&](int i) -> BodyWork<W>& { return work.bodies[tables[i].body]; });
 }
 
 /// Stage: actuators move the rest lengths, cables pull on bodies.
@@ -159,8 +142,7 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
 template <class W>
 TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, const Scratch<W>& work, int c,
                             int attachment_count, AttachmentWork<W>* ends) noexcept {
-  W l, dl;
-  MeasureCable(m, m.cables[c], attachment_count, s.pos, work, ends, l, dl);
+  const auto [l, dl] = MeasureCable(m, m.cables[c], attachment_count, s.pos, work, ends);
   const CableForce<W> f =
       TensionOf(s.stiffness[c], s.damping[c], l, dl, s.rest[c], m.cables[c].clamped_damping);
   s.sense_length[c] = l;

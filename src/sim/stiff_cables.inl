@@ -23,9 +23,7 @@ void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work, const CableTab
   for (int i = 0; i < cable.attachment_count; ++i) {
     const int body = m.attachments[cable.first_attachment + i].body;
     if (body == m.body_count) continue;
-    V3<W> direction{zero, zero, zero};  // of the pull on this attachment
-    if (i > 0) direction -= work.attachments[i].u;
-    if (i + 1 < cable.attachment_count) direction += work.attachments[i + 1].u;
+    const V3<W> direction = PullAt(cable.attachment_count, work.attachments, i);
     Link<W, 1>* link = row.links;
     Link<W, 1>* const end = link + row.link_count;
     while (link != end && link->body != body) ++link;

@@ -2,6 +2,7 @@
 /// no place in a step.
 #pragma once
 
+#include "math/scalar.h"
 #include "math/vec.h"
 #include "sim/shape_contacts.h"
 
@@ -9,8 +10,6 @@ namespace taut::sim {
 
 inline Vec3 Load(const double* p) noexcept { return {p[0], p[1], p[2]}; }
 inline Vec3 AxisOf(const BoxShape& box, int axis) noexcept { return Load(box.axes + 3 * axis); }
-inline double Sqrt(double x) noexcept { return __builtin_sqrt(x); }
-inline double Abs(double x) noexcept { return __builtin_fabs(x); }
 inline double Norm(const Vec3& a) noexcept { return Sqrt(Dot(a, a)); }
 inline double Larger(double a, double b) noexcept { return a > b ? a : b; }
 inline double Smaller(double a, double b) noexcept { return a < b ? a : b; }

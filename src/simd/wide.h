@@ -9,9 +9,7 @@
 
 #include <immintrin.h>
 
-/// Wide numbers travel in registers or not at all: a call passes them through memory, and the
-/// compilers' rules of thumb would call.
-#define TAUT_INLINE [[gnu::always_inline]] inline
+#include "math/scalar.h"
 
 namespace taut::simd {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "spec/hash.h"
+#include "description/hash.h"
 #include "taut/run.h"
 #include "unit/experiment_fixture.h"
 
@@ -42,9 +42,9 @@ TEST_F(ExperimentRecord, TheHashIsFnv1a) {
   for (const unsigned char byte : {'3', ':', 'a', 'b', 'c'}) {
     expected = (expected ^ byte) * 0x100000001b3;
   }
-  EXPECT_EQ(spec::HashInputs({Path("abc")}, {}), expected);
-  EXPECT_EQ(spec::HashInputs({}, {}), 0xcbf29ce484222325);
-  EXPECT_EQ(spec::HashText(0x00f), "000000000000000f");
+  EXPECT_EQ(description::HashInputs({Path("abc")}, {}), expected);
+  EXPECT_EQ(description::HashInputs({}, {}), 0xcbf29ce484222325);
+  EXPECT_EQ(description::HashText(0x00f), "000000000000000f");
 }
 
 TEST_F(ExperimentRecord, EveryShippedExperimentComesBackToTheSameBits) {

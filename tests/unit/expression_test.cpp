@@ -1,12 +1,12 @@
-#include "spec/expression.h"
+#include "description/expression.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "spec/parameters.h"
+#include "description/parameters.h"
 
-namespace taut::spec {
+namespace taut::description {
 namespace {
 
 const NameTable kNames{{"edge_m", 0.38}, {"n", 3.0}, {"bad", NAN}};
@@ -221,4 +221,4 @@ TEST(Parameters, AHintPointsAtTheLikelyName) {
 }
 
 }  // namespace
-}  // namespace taut::spec
+}  // namespace taut::description

@@ -1,4 +1,4 @@
-#include "spec/reader.h"
+#include "description/reader.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <fstream>
 
-namespace taut::spec {
+namespace taut::description {
 namespace {
 
 std::string ParseErrors(const std::string& yaml) {
@@ -340,4 +340,4 @@ TEST(Paths, AreSeenFromTheFilesFolder) {
 }
 
 }  // namespace
-}  // namespace taut::spec
+}  // namespace taut::description

@@ -250,7 +250,7 @@ def lifted(schema, node, lift=lambda inner: inner):
 def vocabulary():
     """Every word that a reader could know as a key is a text somewhere in its source."""
     words = set()
-    for path in (ROOT / "src" / "spec").iterdir():
+    for path in (ROOT / "src" / "description").iterdir():
         if path.suffix in (".h", ".cpp"):
             words |= set(re.findall(r'"([a-z][a-z0-9_]*)"', path.read_text()))
     for kind in KINDS:

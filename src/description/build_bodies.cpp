@@ -1,0 +1,335 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "description/build.h"
+#include "description/union_find.h"
+#include "math/vec.h"
+#include "mechanics/mass_properties.h"
+#include "taut/statics.h"
+
+namespace taut::description {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kShortest_m = 1e-9;  ///< What is shorter has no direction.
+/// Inertia radius of a lone point mass. All that pulls at it acts at its centre and it has no
+/// shape, so it never turns and the value changes nothing; it only has to be a number.
+constexpr double kPointRadius_m = 0.01;
+
+/// What is welded into one body.
+struct Weld {
+  std::vector<int> nodes, pairs;  ///< `pairs`: its rods and beams.
+  std::vector<MassProperties> solids;
+  Bounds bounds;
+  bool anchored = false;
+  bool has_solid = false;
+  bool complete = true;  ///< False: one of its rods was complained about and is not in `solids`.
+};
+
+double MassOf(const MassText& mass, double volume_m3, double length_m) {
+  switch (mass.kind) {
+    case MassText::Kind::kTotal:
+      return mass.value;
+    case MassText::Kind::kDensity:
+      return mass.value * volume_m3;
+    case MassText::Kind::kPerLength:
+      return mass.value * length_m;
+  }
+  return mass.value;
+}
+
+/// Of a beam along the unit vector u of its part: x along it, y level, z up; a beam along z has
+/// its y along the part's y.
+Quat BeamOrientation(const Vec3& u) {
+  // Turn x to u's direction in the level plane (about z), then up to u (about the new y).
+  const double level = std::sqrt(u.x * u.x + u.y * u.y);
+  const double c = level > 1e-12 ? u.x / level : 1.0, s = level > 1e-12 ? u.y / level : 0.0;
+  const double half_c = std::sqrt(0.5 * (1.0 + c)),
+               half_s = std::copysign(std::sqrt(0.5 * (1.0 - c)), s);
+  const double pitch_c = std::sqrt(0.5 * (1.0 + level));
+  const double pitch_s = std::copysign(std::sqrt(0.5 * (1.0 - level)), -u.z);
+  return Quat{half_c, 0.0, 0.0, half_s} * Quat{pitch_c, 0.0, pitch_s, 0.0};
+}
+
+class BodyBuilder {
+ public:
+  BodyBuilder(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
+              RobotSpec& robot, Diagnostics& out)
+      : model_(model), assembly_(assembly), assignment_(assignment), robot_(robot), out_(out) {}
+
+  BodyOfNode Run() {
+    FindWelds();
+    for (Weld& weld : welds_) BuildWeld(weld);
+    SetVelocities();
+    for (std::size_t node = 0; node < assembly_.nodes.size(); ++node) {
+      const PlacedNode& placed = assembly_.nodes[node];
+      robot_.def.nodes.push_back({placed.name, body_of_node_[node], placed.position_m});
+      robot_.node_tags.push_back(placed.tags);
+    }
+    return std::move(body_of_node_);
+  }
+
+ private:
+  const BuilderText* PairBuilder(std::size_t pair) const {
+    const int b = assignment_.of_pair[pair];
+    return b < 0 ? nullptr : &model_.builders[b];
+  }
+
+  bool IsSolid(std::size_t pair) const {
+    const BuilderText* builder = PairBuilder(pair);
+    return builder && !std::holds_alternative<CableBuilder>(builder->build);
+  }
+
+  void FindWelds() {
+    UnionFind sets(assembly_.nodes.size());
+    for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
+      const std::vector<int>& nodes = assembly_.pairs[pair].nodes;
+      if (!IsSolid(pair)) continue;
+      if (nodes.size() != 2) {
+        out_.Error(assembly_.pairs[pair].at, "a " + PairBuilder(pair)->kind + " has two nodes, \"" +
+                                                 assembly_.pairs[pair].name + "\" has " +
+                                                 std::to_string(nodes.size()));
+      }
+      for (const int node : nodes) sets.Join(nodes[0], node);
+    }
+    for (std::size_t node = 0; node < assembly_.nodes.size(); ++node) {
+      if (assembly_.nodes[node].fixed_to >= 0) {
+        sets.Join(static_cast<int>(node), assembly_.nodes[node].fixed_to);
+      }
+    }
+    std::vector<int> weld_of_root(assembly_.nodes.size(), -1);
+    for (int node = 0; node < static_cast<int>(assembly_.nodes.size()); ++node) {
+      int& weld = weld_of_root[sets.Root(node)];
+      if (weld < 0) {
+        weld = static_cast<int>(welds_.size());
+        welds_.emplace_back();
+      }
+      welds_[weld].nodes.push_back(node);
+      for (const int b : assignment_.of_node[node]) {
+        const bool anchor = std::holds_alternative<AnchorBuilder>(model_.builders[b].build);
+        (anchor ? welds_[weld].anchored : welds_[weld].has_solid) = true;
+      }
+    }
+    for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
+      if (!IsSolid(pair) || assembly_.pairs[pair].nodes.size() != 2) continue;
+      Weld& weld = welds_[weld_of_root[sets.Root(assembly_.pairs[pair].nodes[0])]];
+      weld.pairs.push_back(static_cast<int>(pair));
+      weld.has_solid = true;
+    }
+    std::vector<int> welds_in_instance(assembly_.instances.size(), 0);
+    for (const Weld& weld : welds_) {
+      if (weld.has_solid) ++welds_in_instance[assembly_.nodes[weld.nodes[0]].instance];
+    }
+    bodies_in_instance_ = std::move(welds_in_instance);
+    body_of_node_.assign(assembly_.nodes.size(), kWorld);
+  }
+
+  void BuildWeld(Weld& weld) {
+    if (!weld.has_solid) {
+      if (!weld.anchored) ReportBodiless(weld);
+      return;
+    }
+    const int body = static_cast<int>(robot_.def.bodies.size());
+    for (const int node : weld.nodes) body_of_node_[node] = body;
+    for (const int pair : weld.pairs) AddPair(weld, pair, body);
+    for (const int node : weld.nodes) AddNode(weld, node, body);
+    const MassProperties whole = Combine(weld.solids);
+    BodyDef def;
+    def.name = Name(weld);
+    def.mass_kg = whole.mass_kg;
+    def.com_m = whole.mass_kg == 0.0 ? assembly_.nodes[weld.nodes[0]].position_m : whole.com_m;
+    def.inertia_kg_m2 = whole.inertia_kg_m2;
+    if (model_.bounding_box_inertia && weld.bounds.low.x < weld.bounds.high.x) {
+      def.inertia_kg_m2 = BoundingBoxInertia(weld.bounds, whole.mass_kg);
+    }
+    def.fixed = weld.anchored;
+    if (!def.fixed) CheckMass(weld, def);
+    if (!names_.insert(def.name).second) {
+      out_.Error(Source(weld), "two bodies would be called \"" + def.name + "\"",
+                 "give one of its pairs a `name:`");
+    }
+    robot_.def.bodies.push_back(std::move(def));
+    robot_.body_sources.push_back(Source(weld));
+    instance_of_body_.push_back(InstanceOf(weld));
+    welds_with_body_.push_back(&weld);
+  }
+
+  void ReportBodiless(const Weld& weld) {
+    const PlacedNode& node = assembly_.nodes[weld.nodes[0]];
+    if (!model_.builders_complete || !assembly_.complete ||
+        !bodiless_.insert({node.at.line, node.at.column}).second)
+      return;
+    out_.Error(node.at, "node \"" + node.name + "\" belongs to no body",
+               "a rod, box, sphere or point_mass makes a body of it, fixed_to joins it to another "
+               "node's, an anchor fixes it in the world");
+  }
+
+  void AddPair(Weld& weld, int pair, int body) {
+    const PlacedPair& placed = assembly_.pairs[pair];
+    const Vec3 from = assembly_.nodes[placed.nodes[0]].position_m;
+    const Vec3 to = assembly_.nodes[placed.nodes[1]].position_m;
+    const double length = std::sqrt(Dot(to - from, to - from));
+    weld.complete = weld.complete && length >= kShortest_m;
+    if (std::isnan(length)) return;
+    const BuilderText& builder = *PairBuilder(static_cast<std::size_t>(pair));
+    if (length < kShortest_m) {
+      if (short_.insert({placed.at.line, placed.at.column}).second) {
+        out_.Error(placed.at, "the " + builder.kind + " \"" + placed.name + "\" has no length",
+                   "its nodes are in one place");
+      }
+      return;
+    }
+    if (const auto* rod = std::get_if<RodBuilder>(&builder.build)) {
+      const double volume = kPi * rod->radius_m * rod->radius_m * length;
+      weld.solids.push_back(
+          SolidCylinder(from, to, rod->radius_m, MassOf(rod->mass, volume, length)));
+      weld.bounds = Union(weld.bounds, BulletCylinderBounds(from, to, rod->radius_m));
+      robot_.def.capsules.push_back(
+          {placed.name, body, from, to, rod->radius_m, rod->material, rod->collides});
+    } else if (const auto* beam = std::get_if<BeamBuilder>(&builder.build)) {
+      const Quat q_WPart =
+          placed.instance < 0 ? Quat{} : assembly_.instances[placed.instance].q_WPart;
+      const Vec3 u = Rotate(Conjugate(q_WPart), (1.0 / length) * (to - from));
+      AddBox(weld, placed.name, body, 0.5 * (from + to), q_WPart * BeamOrientation(u),
+             {0.5 * length, 0.5 * beam->width_m, 0.5 * beam->height_m},
+             MassOf(beam->mass, length * beam->width_m * beam->height_m, length), beam->material,
+             beam->collides);
+    }
+  }
+
+  void AddNode(Weld& weld, int node, int body) {
+    const PlacedNode& placed = assembly_.nodes[node];
+    for (const int b : assignment_.of_node[node]) {
+      const BuilderText& builder = model_.builders[b];
+      if (const auto* sphere = std::get_if<SphereBuilder>(&builder.build)) {
+        const double r = sphere->radius_m;
+        weld.solids.push_back(SolidSphere(placed.position_m, r,
+                                          MassOf(sphere->mass, 4.0 / 3.0 * kPi * r * r * r, 0.0)));
+        weld.bounds = Union(weld.bounds, SphereBounds(placed.position_m, r));
+        robot_.def.spheres.push_back(
+            {placed.name, body, placed.position_m, r, sphere->material, sphere->collides});
+      } else if (const auto* mass = std::get_if<PointMassBuilder>(&builder.build)) {
+        const bool lone = weld.nodes.size() == 1 && assignment_.of_node[node].size() == 1;
+        const double r = lone && mass->radius_m == 0.0 ? kPointRadius_m : mass->radius_m;
+        weld.solids.push_back(SolidSphere(placed.position_m, r, mass->mass_kg));
+      } else if (const auto* box = std::get_if<BoxBuilder>(&builder.build)) {
+        const Vec3 size = box->size_m;
+        AddBox(weld, placed.name, body, placed.position_m,
+               assembly_.instances[placed.instance].q_WPart, 0.5 * size,
+               MassOf(box->mass, size.x * size.y * size.z, 0.0), box->material, box->collides);
+      }
+    }
+  }
+
+  void AddBox(Weld& weld, const std::string& name, int body, const Vec3& center, const Quat& q,
+              const Vec3& half, double mass, const Material& material, bool collides) {
+    weld.solids.push_back(SolidBox(center, q, half, mass));
+    weld.bounds = Union(weld.bounds, BoxBounds(center, q, half));
+    robot_.def.boxes.push_back({name, body, center, q, half, material, collides});
+  }
+
+  void CheckMass(const Weld& weld, const BodyDef& def) {
+    if (!weld.complete || std::isnan(def.mass_kg) ||
+        std::isnan(def.com_m.x + def.com_m.y + def.com_m.z))
+      return;
+    if (def.mass_kg <= 0.0) {
+      out_.Error(Source(weld), "the body \"" + def.name + "\" has no mass");
+      return;
+    }
+    const Inertia& i = def.inertia_kg_m2;
+    if (!std::isfinite(i.xx + i.yy + i.zz + i.xy + i.xz + i.yz)) return;
+    const Vec3 moments = PrincipalMoments(i);
+    if (moments.x > 1e-12 * moments.z) return;
+    out_.Error(Source(weld), "the body \"" + def.name + "\" has no inertia about some axis",
+               "its mass is all on one line: give the point_mass a radius_m");
+  }
+
+  /// The instance that all nodes of the body are in, or -1.
+  int InstanceOf(const Weld& weld) const {
+    const int instance = assembly_.nodes[weld.nodes[0]].instance;
+    const bool same = std::all_of(weld.nodes.begin(), weld.nodes.end(), [&](int node) {
+      return assembly_.nodes[node].instance == instance;
+    });
+    return same ? instance : -1;
+  }
+
+  /// A placement that is one body gives it its name; otherwise the first rod does, or the node.
+  std::string Name(const Weld& weld) const {
+    const int instance = InstanceOf(weld);
+    if (instance >= 0 && bodies_in_instance_[instance] == 1) {
+      const std::string& name = assembly_.instances[instance].name;
+      if (!name.empty()) return name;
+      if (assembly_.instances.size() == 1) return model_.name;
+    }
+    return weld.pairs.empty() ? assembly_.nodes[weld.nodes[0]].name
+                              : assembly_.pairs[weld.pairs[0]].name;
+  }
+
+  SourceRef Source(const Weld& weld) const {
+    const int instance = InstanceOf(weld);
+    if (instance > 0 && bodies_in_instance_[instance] == 1) return assembly_.instances[instance].at;
+    return weld.pairs.empty() ? assembly_.nodes[weld.nodes[0]].at
+                              : assembly_.pairs[weld.pairs[0]].at;
+  }
+
+  /// A copy moves as one: its centre of mass has the given velocity and all turns about it.
+  void SetVelocities() {
+    std::vector<double> mass(assembly_.instances.size(), 0.0);
+    std::vector<Vec3> moment(assembly_.instances.size());
+    for (std::size_t body = 0; body < robot_.def.bodies.size(); ++body) {
+      const int instance = instance_of_body_[body];
+      if (instance < 0) continue;
+      const BodyDef& def = robot_.def.bodies[body];
+      mass[instance] += def.mass_kg;
+      moment[instance] = moment[instance] + def.mass_kg * def.com_m;
+    }
+    for (std::size_t body = 0; body < robot_.def.bodies.size(); ++body) {
+      BodyDef& def = robot_.def.bodies[body];
+      const int instance = instance_of_body_[body];
+      if (instance < 0) {
+        for (const int node : welds_with_body_[body]->nodes) {
+          const Instance& in = assembly_.instances[assembly_.nodes[node].instance];
+          if (Dot(in.velocity_m_per_s, in.velocity_m_per_s) +
+                  Dot(in.angular_velocity_rad_per_s, in.angular_velocity_rad_per_s) >
+              0.0) {
+            out_.Error(in.at, "the body \"" + def.name +
+                                  "\" joins placements, so none of them can have a velocity");
+            break;
+          }
+        }
+        continue;
+      }
+      if (def.fixed || mass[instance] == 0.0) continue;
+      const Instance& in = assembly_.instances[instance];
+      const Vec3 arm = def.com_m - (1.0 / mass[instance]) * moment[instance];
+      const bool alone = bodies_in_instance_[instance] == 1;  // then the arm is round-off
+      def.velocity_m_per_s = alone
+                                 ? in.velocity_m_per_s
+                                 : in.velocity_m_per_s + Cross(in.angular_velocity_rad_per_s, arm);
+      def.angular_velocity_rad_per_s = in.angular_velocity_rad_per_s;
+    }
+  }
+
+  const ModelText& model_;
+  const Assembly& assembly_;
+  const Assignment& assignment_;
+  RobotSpec& robot_;
+  Diagnostics& out_;
+  std::vector<Weld> welds_;
+  std::vector<const Weld*> welds_with_body_;  ///< Per body.
+  std::vector<int> instance_of_body_, bodies_in_instance_;
+  BodyOfNode body_of_node_;
+  std::set<std::string> names_;
+  std::set<std::pair<int, int>> bodiless_, short_;  ///< Complained about once in the file.
+};
+
+}  // namespace
+
+BodyOfNode BuildBodies(const ModelText& model, const Assembly& assembly,
+                       const Assignment& assignment, RobotSpec& robot, Diagnostics& out) {
+  return BodyBuilder(model, assembly, assignment, robot, out).Run();
+}
+
+}  // namespace taut::description

@@ -1,0 +1,200 @@
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "description/build.h"
+#include "description/union_find.h"
+#include "math/cable_path.h"
+#include "math/vec.h"
+#include "taut/statics.h"
+
+namespace taut::description {
+namespace {
+
+constexpr double kShortest_m = 1e-9;  ///< A shorter leg has no direction.
+
+double LengthBetween(const AttachmentDef& a, const AttachmentDef& b) {
+  return MeasureThrough<Vec3>(2, [&](int i) { return (i == 0 ? a : b).position_m; }).l;
+}
+
+std::string Number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+class CableMaker {
+ public:
+  CableMaker(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
+             const BodyOfNode& body_of_node, RobotSpec& robot, Diagnostics& out)
+      : model_(model),
+        assembly_(assembly),
+        assignment_(assignment),
+        body_of_node_(body_of_node),
+        robot_(robot),
+        out_(out) {}
+
+  void Run() {
+    for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
+      const int b = assignment_.of_pair[pair];
+      if (b < 0) continue;
+      if (const auto* cable = std::get_if<CableBuilder>(&model_.builders[b].build)) {
+        Make(assembly_.pairs[pair], *cable);
+      }
+    }
+  }
+
+ private:
+  void Make(const PlacedPair& pair, const CableBuilder& builder) {
+    CableDef cable;
+    cable.name = pair.name;
+    cable.stiffness_n_per_m = builder.stiffness_n_per_m;
+    cable.damping_n_s_per_m = builder.damping_n_s_per_m;
+    cable.damping_law = builder.damping_law;
+    cable.actuator = builder.actuator;
+    for (const int node : pair.nodes) {
+      cable.attachments.push_back({body_of_node_[node], assembly_.nodes[node].position_m});
+    }
+    if (builder.ends_on_surface) MoveEndsToSurface(pair, builder, cable);
+    if (CheckPath(pair, builder, cable)) SetRestLength(pair, builder, cable);
+    robot_.def.cables.push_back(std::move(cable));
+    robot_.cable_tags.push_back(pair.tags);
+    robot_.cable_sources.push_back(pair.at);
+  }
+
+  /// The radius of a node's sphere. In the world there is none and the end stays at the node.
+  double SurfaceRadius(int node, const PlacedPair& pair, const CableBuilder& builder) {
+    for (const int b : assignment_.of_node[node]) {
+      if (const auto* sphere = std::get_if<SphereBuilder>(&model_.builders[b].build)) {
+        return sphere->radius_m;
+      }
+    }
+    if (body_of_node_[node] != kWorld) {
+      Once(builder.ends_at,
+           "cable.ends: the node \"" + assembly_.nodes[node].name + "\" of the cable \"" +
+               pair.name + "\" has no sphere",
+           "give the node a sphere, or write `ends: node`");
+    }
+    return 0.0;
+  }
+
+  void MoveEndsToSurface(const PlacedPair& pair, const CableBuilder& builder, CableDef& cable) {
+    const std::vector<AttachmentDef> nodes = cable.attachments;
+    const std::size_t last = nodes.size() - 1;
+    const auto move = [&](std::size_t end, std::size_t next) {
+      const Vec3 leg = nodes[next].position_m - nodes[end].position_m;
+      const double length = LengthBetween(nodes[end], nodes[next]);
+      const double radius = SurfaceRadius(pair.nodes[end], pair, builder);
+      if (length < kShortest_m) return radius;
+      cable.attachments[end].position_m = nodes[end].position_m + (radius / length) * leg;
+      return radius;
+    };
+    const double first_radius = move(0, 1), last_radius = move(last, last - 1);
+    if (last == 1 && LengthBetween(nodes[0], nodes[1]) < first_radius + last_radius) {
+      Once(pair.at, "the spheres at the ends of the cable \"" + pair.name + "\" overlap",
+           "nothing is left for the cable between their surfaces");
+    }
+  }
+
+  /// False if there is no sensible length.
+  bool CheckPath(const PlacedPair& pair, const CableBuilder&, const CableDef& cable) {
+    bool one_body = true;
+    for (std::size_t i = 1; i < cable.attachments.size(); ++i) {
+      one_body = one_body && cable.attachments[i].body == cable.attachments[0].body;
+      const double leg = LengthBetween(cable.attachments[i - 1], cable.attachments[i]);
+      if (std::isnan(leg)) return false;
+      if (leg >= kShortest_m) continue;
+      Once(pair.at,
+           "the cable \"" + pair.name + "\" has no length between \"" +
+               assembly_.nodes[pair.nodes[i - 1]].name + "\" and \"" +
+               assembly_.nodes[pair.nodes[i]].name + "\"",
+           "these nodes are in one place");
+      return false;
+    }
+    if (one_body && model_.builders_complete && assembly_.complete) {
+      const int body = cable.attachments[0].body;
+      Once(pair.at,
+           "the cable \"" + pair.name + "\" ends twice on " +
+               (body == kWorld ? "the world" : "the body \"" + robot_.def.bodies[body].name + "\""),
+           "it would do nothing");
+    }
+    return true;
+  }
+
+  void SetRestLength(const PlacedPair& pair, const CableBuilder& builder, CableDef& cable) {
+    const double length = CableLength(cable);
+    switch (builder.rest) {
+      case CableBuilder::Rest::kPrestress:
+        cable.rest_length_m = length - builder.rest_value / builder.stiffness_n_per_m;
+        if (cable.rest_length_m <= 0.0) {
+          Once(builder.rest_at,
+               "cable.prestress_n: " + Number(builder.rest_value) +
+                   " N would stretch the cable \"" + pair.name + "\" to more than its length of " +
+                   Number(length) + " m",
+               "at " + Number(builder.stiffness_n_per_m) + " N/m at most " +
+                   Number(builder.stiffness_n_per_m * length) + " N");
+        }
+        break;
+      case CableBuilder::Rest::kLength:
+        cable.rest_length_m = builder.rest_value;
+        break;
+      case CableBuilder::Rest::kRatio:
+        cable.rest_length_m = builder.rest_value * length;
+        break;
+    }
+    if (cable.rest_length_m > 0.0 && cable.rest_length_m < cable.actuator.min_rest_length_m) {
+      Once(builder.rest_at, "the cable \"" + pair.name + "\" starts with a rest length of " +
+                                Number(cable.rest_length_m) +
+                                " m, below its min_rest_length_m of " +
+                                Number(cable.actuator.min_rest_length_m) + " m");
+    }
+  }
+
+  /// One complaint a place in the file: copies would only repeat it.
+  void Once(const SourceRef& at, std::string what, std::string hint = {}) {
+    if (reported_.insert({at.line, at.column}).second)
+      out_.Error(at, std::move(what), std::move(hint));
+  }
+
+  const ModelText& model_;
+  const Assembly& assembly_;
+  const Assignment& assignment_;
+  const BodyOfNode& body_of_node_;
+  RobotSpec& robot_;
+  Diagnostics& out_;
+  std::set<std::pair<int, int>> reported_;
+};
+
+}  // namespace
+
+void BuildCables(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
+                 const BodyOfNode& body_of_node, RobotSpec& robot, Diagnostics& out) {
+  CableMaker(model, assembly, assignment, body_of_node, robot, out).Run();
+}
+
+void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
+  const std::vector<BodyDef>& bodies = robot.def.bodies;
+  const int world = static_cast<int>(bodies.size());  // and all that is fixed in it
+  UnionFind sets(bodies.size() + 1);
+  const auto index = [&](int body) { return body == kWorld || bodies[body].fixed ? world : body; };
+  for (const CableDef& cable : robot.def.cables) {
+    for (const AttachmentDef& at : cable.attachments) {
+      sets.Join(index(cable.attachments[0].body), index(at.body));
+    }
+  }
+  // The first body's set is the robot. The world alone is no set of bodies.
+  int robot_set = -1;
+  std::set<int> reported;
+  for (int body = 0; body < world; ++body) {
+    if (bodies[body].fixed) continue;
+    const int set = sets.Root(body);
+    if (robot_set < 0) robot_set = set;
+    if (set == robot_set || !reported.insert(set).second) continue;
+    out.Error(robot.body_sources[body],
+              "no cable joins the body \"" + bodies[body].name + "\" to \"" +
+                  bodies[robot_set].name + "\"",
+              "if that is meant, write `allow_disconnected: true`");
+  }
+}
+
+}  // namespace taut::description

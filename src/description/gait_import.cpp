@@ -1,0 +1,192 @@
+// Gaits of NTRT: learned parameters (.nnw) and hand-tuned ones (controlVars.json). What the files
+// mean is in NTRT's code only; the facts used here are named at each place.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "description/gait_parts.h"
+#include "description/reader.h"
+
+namespace taut {
+namespace description {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kMetre = 0.01;  // the spines are in centimetres
+
+// BaseSpineCPGControl::Config of LearningSpineJSON: the learner's numbers are in 0..1 and stand for
+// 0..30 Hz, 0..30 cm/s, weights 0..1 per cm/s and second, and phases -pi..pi.
+constexpr double kHighestHz = 30.0, kHighestAmplitude = 30.0;
+// The descending command 2 makes frequency and amplitude offset + 2 scale, and both are the same.
+constexpr double kCommandFactor = 3.0;
+constexpr double kConvergencePerS = 20.0;
+/// Follows NTRT's own integration to 2e-6 m/s over a minute; 1 ms would be 2.5e-4 m/s off.
+constexpr double kIntegratorStepS = 0.00025;
+constexpr int kEdges = 57;
+/// Nodes whose sign LearningSpineJSON changes "for hardware comparison".
+constexpr int kInverted[] = {2, 4, 5, 6, 7, 8};
+
+/// Cables of three segments in the order of NTRT's nodes: at the paper's commit, and since 2016.
+const std::vector<std::string> kOrder2015{"outer_top_1",   "inner_top_1",   "outer_top_2",
+                                          "inner_top_2",   "outer_left_1",  "inner_left_1",
+                                          "outer_left_2",  "inner_left_2",  "outer_right_1",
+                                          "inner_right_1", "outer_right_2", "inner_right_2"};
+const std::vector<std::string> kOrder2016{
+    "outer_right_1", "outer_left_1", "outer_top_1", "inner_right_1", "inner_left_1", "inner_top_1",
+    "outer_right_2", "outer_left_2", "outer_top_2", "inner_right_2", "inner_left_2", "inner_top_2"};
+
+std::string ReadAll(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// "0.5036,0.9295": two numbers within 0..1.
+std::pair<double, double> ReadNnw(const fs::path& path, Diagnostics& out) {
+  std::string text = ReadAll(path.string());
+  for (char& c : text) {
+    if (c == ',') c = ' ';
+  }
+  std::istringstream words(text);
+  double numbers[2] = {0, 0};
+  bool good = true;
+  for (double& number : numbers) {
+    std::string word;
+    words >> word;
+    good = good && ToNumber(word, number);
+    good = good && number >= 0.0 && number <= 1.0;
+  }
+  std::string more;
+  if (!good || words >> more) {
+    out.Error({path.string(), 1, 1}, "is not two numbers within 0..1, such as 0.5036,0.9295");
+  }
+  return {numbers[0], numbers[1]};
+}
+
+/// "bestParameters-9" of "bestParameters-9_edge-0.nnw". Nothing, and a complaint, unless there is
+/// one such set in the folder.
+std::optional<std::string> FindSet(const std::string& folder, Diagnostics& out) {
+  std::vector<std::string> sets;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    const std::string ending = "_node-0.nnw";
+    if (name.ends_with(ending)) sets.push_back(name.substr(0, name.size() - ending.size()));
+  }
+  if (sets.size() == 1) return sets[0];
+  out.Error({folder, 0, 0},
+            sets.empty() ? "has no file ..._node-0.nnw" : "has several sets of learned parameters",
+            "a folder with bestParameters-9_node-0.nnw and bestParameters-9_edge-0.nnw to -56.nnw");
+  return std::nullopt;
+}
+
+/// What `FindCouplings` calls the groups of six roles by index, in the order in which
+/// BaseSpineCPGControl::scaleEdgeActions fills its table.
+std::vector<std::string> IndexGroups() {
+  std::vector<std::string> names;
+  for (int rp = 0; rp < 3; ++rp) {
+    for (int j = 0; j < 6; ++j) {
+      for (int k = j; k < 6; ++k) {
+        if (rp == 1 && j == k) continue;
+        names.push_back("rp" + std::to_string(rp) + "." + std::to_string(j) + "." +
+                        std::to_string(k));
+      }
+    }
+  }
+  return names;
+}
+
+std::optional<GaitSpec> ImportLearned(const std::string& folder, NtrtCableOrder order,
+                                      Diagnostics& out) {
+  const std::size_t errors_before = out.items().size();
+  const auto set = FindSet(folder, out);
+  if (!set) return std::nullopt;
+  const auto [frequency, amplitude] = ReadNnw(fs::path(folder) / (*set + "_node-0.nnw"), out);
+  CpgGait cpg;
+  cpg.frequency_hz = kCommandFactor * (kHighestHz * frequency);
+  cpg.amplitude_m_per_s = kMetre * kCommandFactor * (kHighestAmplitude * amplitude);
+  cpg.convergence_per_s = kConvergencePerS;
+  cpg.integrator_step_s = kIntegratorStepS;
+  cpg.symmetry = CpgSymmetry::kIndex;
+  cpg.order = order == NtrtCableOrder::kPaper2015 ? kOrder2015 : kOrder2016;
+  for (const int node : kInverted) {
+    cpg.inverted.push_back({cpg.order[static_cast<std::size_t>(node)]});
+  }
+  const std::vector<std::string> names = IndexGroups();
+  for (int i = 0; i < kEdges; ++i) {
+    // actions are taken from the back: the last file fills the first entry
+    const std::string file = *set + "_edge-" + std::to_string(kEdges - 1 - i) + ".nnw";
+    const auto [weight, phase] = ReadNnw(fs::path(folder) / file, out);
+    cpg.groups.push_back({names[static_cast<std::size_t>(i)], weight / kMetre,
+                          -kPi + 2.0 * kPi * phase, SourceRef{}});
+  }
+  if (out.items().size() != errors_before) return std::nullopt;
+  GaitSpec gait;
+  gait.name = "ntrt_learned";
+  gait.description = "Learned by NTRT, imported from " + *set + "_*.nnw.";
+  gait.cpg = std::move(cpg);
+  return gait;
+}
+
+/// htSpineSine's numbers: V0 = A cos(2 pi f t + phi) - A, and one A for left and right.
+std::optional<GaitSpec> ImportHandTuned(const std::string& path, Diagnostics& out) {
+  std::string text = ReadAll(path);
+  for (char& c : text) {
+    if (c == '\t') c = ' ';  // JSON's, which YAML does not indent with
+  }
+  const std::size_t errors_before = out.items().size();
+  const ValuePtr root = ParseYaml(text, path, out);
+  if (!root) return std::nullopt;
+  const NameTable no_names;
+  const Scope scope{no_names, out};
+  std::vector<std::string> keys;
+  for (const Entry& entry : root->entries) keys.push_back(entry.key);
+  const MapReader map(*root, "controlVars", keys, scope);
+  SineGait sine;
+  sine.frequency_hz = map.Number("cpg_frequency", Bound::kPositive);
+  for (int segment = 1; segment <= 2; ++segment) {
+    const bool front = segment == 1;
+    const double phase_rad = map.Number(front ? "front_offset" : "back_offset", Bound::kAny);
+    for (const bool inner : {true, false}) {
+      for (const bool top : {true, false}) {
+        const std::string key = std::string(inner ? "in_" : "out_") + (top ? "top" : "bottom") +
+                                "_amp_" + (front ? "a" : "b");
+        const std::string end = "_" + std::to_string(segment), side = inner ? "inner" : "outer";
+        const double A = kMetre * map.Number(key, Bound::kAny);
+        SineWave wave;
+        wave.name = "seg" + std::to_string(segment) + "_" + side + (top ? "_top" : "_bottom");
+        wave.cables = top ? CableMatch{{side + "_top" + end}}
+                          : CableMatch{{side + "_left" + end}, {side + "_right" + end}};
+        wave.amplitude_m_per_s = A;
+        wave.phase_rad = phase_rad;
+        wave.offset_m_per_s = -A;
+        sine.waves.push_back(std::move(wave));
+      }
+    }
+  }
+  if (out.items().size() != errors_before) return std::nullopt;
+  GaitSpec gait;
+  gait.name = "ntrt_hand_tuned";
+  gait.description =
+      "Hand-tuned for NTRT, imported from " + fs::path(path).filename().string() + ".";
+  gait.sine = std::move(sine);
+  return gait;
+}
+
+}  // namespace
+}  // namespace description
+
+std::optional<GaitSpec> ImportNtrtGait(const std::string& path, NtrtCableOrder order,
+                                       Diagnostics& out) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    return description::ImportLearned(path, order, out);
+  if (std::filesystem::is_regular_file(path, ignored))
+    return description::ImportHandTuned(path, out);
+  out.Error({path, 0, 0}, "there is no such file or folder");
+  return std::nullopt;
+}
+
+}  // namespace taut

@@ -1,0 +1,31 @@
+/// Laws that model files name and experiments may replace, as both spell them.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "taut/model_def.h"
+
+namespace taut::description {
+
+template <class E>
+using Choices = std::vector<std::pair<std::string, E>>;
+
+inline const Choices<CombineRule> kCombineRules{{"product", CombineRule::kProduct},
+                                                {"geometric_mean", CombineRule::kGeometricMean},
+                                                {"minimum", CombineRule::kMinimum},
+                                                {"maximum", CombineRule::kMaximum}};
+inline const Choices<FrictionLaw> kFrictionLaws{{"cone", FrictionLaw::kCone},
+                                                {"along_slip", FrictionLaw::kAlongSlip}};
+inline const Choices<DampingLaw> kDampingLaws{{"exact", DampingLaw::kExact},
+                                              {"clamped", DampingLaw::kClamped}};
+/// How a body's inertia follows from its parts.
+enum class InertiaLaw {
+  kExact,        ///< The sum of the parts'.
+  kBoundingBox,  ///< A solid box of the body's size and mass, as Bullet takes it for compounds.
+};
+inline const Choices<InertiaLaw> kInertiaLaws{{"exact", InertiaLaw::kExact},
+                                              {"bounding_box", InertiaLaw::kBoundingBox}};
+
+}  // namespace taut::description

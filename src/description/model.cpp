@@ -1,0 +1,104 @@
+#include "description/model.h"
+
+#include <cmath>
+
+#include "description/build.h"
+#include "description/resolved.h"
+
+namespace taut::description {
+namespace {
+
+/// Numbers that are finite one by one can still overflow together.
+void CheckFinite(const RobotSpec& robot, Diagnostics& out) {
+  for (std::size_t i = 0; i < robot.def.bodies.size(); ++i) {
+    const BodyDef& body = robot.def.bodies[i];
+    const Inertia& inertia = body.inertia_kg_m2;
+    if (std::isfinite(body.mass_kg + body.com_m.x + body.com_m.y + body.com_m.z) &&
+        std::isfinite(inertia.xx + inertia.yy + inertia.zz + inertia.xy + inertia.xz +
+                      inertia.yz)) {
+      continue;
+    }
+    out.Error(robot.body_sources[i],
+              "the body \"" + body.name + "\" is too large or too heavy to be calculated with");
+  }
+  for (std::size_t i = 0; i < robot.def.cables.size(); ++i) {
+    const CableDef& cable = robot.def.cables[i];
+    if (std::isfinite(cable.rest_length_m)) continue;
+    out.Error(robot.cable_sources[i], "the cable \"" + cable.name + "\" has no finite rest length");
+  }
+}
+
+}  // namespace
+
+LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnostics& out,
+                      std::optional<InertiaLaw> inertia) {
+  const auto errors = [&out] { return out.items().size(); };
+  const std::size_t errors_before = errors();
+  LoadedModel result;
+  MergedFile file = ReadMergedFile(path, "model", out);
+  if (!file.root) {
+    overrides.Silence();
+    return result;
+  }
+  overrides.Apply(file.parameters);
+  const NameTable values = ResolveParameters(file.parameters, out);
+  RobotSpec robot;
+  bool numbers_known = true;  // an experiment may have passed on one that it complained about
+  for (const auto& [name, value] : values) {
+    robot.parameters[name] = value;
+    result.parameter_names.push_back(name);
+    numbers_known = numbers_known && !std::isnan(value);
+  }
+  robot.files = std::move(file.files);
+
+  ModelText model = ReadModelText(*file.root, {values, out});
+  if (inertia) model.bounding_box_inertia = *inertia == InertiaLaw::kBoundingBox;
+  const std::size_t errors_in_text = errors();
+  const Assembly assembly = Assemble(model, out);
+  const Assignment assignment = AssignBuilders(model, assembly, out);
+  const bool complete = errors() == errors_in_text && model.nodes_complete &&
+                        model.pairs_complete && model.builders_complete;
+  const BodyOfNode body_of_node = BuildBodies(model, assembly, assignment, robot, out);
+  BuildCables(model, assembly, assignment, body_of_node, robot, out);
+
+  // Only a model that is otherwise good: a cable that could not be read joins nothing.
+  if (errors() == errors_before && !model.allow_disconnected) CheckConnected(robot, out);
+  if (errors() == errors_before && numbers_known) CheckFinite(robot, out);
+  result.good = errors() == errors_before;
+  if (!result.good && !complete) return result;
+  robot.def.name = model.name;
+  robot.def.gravity_m_per_s2 = model.gravity_m_per_s2;
+  robot.def.friction_combine = model.friction_combine;
+  robot.def.restitution_combine = model.restitution_combine;
+  robot.def.friction_law = model.friction_law;
+  result.robot = std::move(robot);
+  return result;
+}
+
+}  // namespace taut::description
+
+namespace taut {
+
+std::optional<RobotSpec> LoadRobot(const std::string& path, const Overrides& overrides,
+                                   Diagnostics& out) {
+  const std::size_t errors_before = out.items().size();
+  description::OverrideSet set(overrides);
+  description::LoadedModel model = description::LoadModel(path, set, out);
+  set.ReportUnused(model.parameter_names, out);
+  return out.items().size() == errors_before ? std::move(model.robot) : std::nullopt;
+}
+
+std::optional<std::string> FileKind(const std::string& path, Diagnostics& out) {
+  const description::ValuePtr root = description::ReadYaml(path, out);
+  if (!root) return std::nullopt;
+  const description::Value* kind = root->Find("kind");
+  for (const char* known : {"model", "experiment", "gait"}) {
+    if (kind && kind->text == known) return kind->text;
+  }
+  if (kind && kind->text == description::kResolvedKind) return "experiment";
+  out.Error(kind ? kind->at : root->at, "a file is of kind model, experiment or gait",
+            "write `kind: model`, `kind: experiment` or `kind: gait` at its top");
+  return std::nullopt;
+}
+
+}  // namespace taut

@@ -1,0 +1,29 @@
+/// Reading a model file on behalf of an experiment, which shares its overrides.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "description/laws.h"
+#include "description/parameters.h"
+#include "taut/spec.h"
+
+namespace taut::description {
+
+/// A model file as far as it could be read.
+struct LoadedModel {
+  /// There if every node and cable that the file describes is: then an experiment can be checked
+  /// against it even though some of its numbers are wrong.
+  std::optional<RobotSpec> robot;
+  bool good = false;                         ///< Nothing was wrong.
+  std::vector<std::string> parameter_names;  ///< Known as soon as the file is YAML.
+};
+
+/// As `LoadRobot`, but overrides that the model does not know are left for the caller to report
+/// (`OverrideSet::ReportUnused`). If the file cannot be read at all, the overrides are silenced.
+/// `inertia`, if given, replaces what the file says.
+LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnostics& out,
+                      std::optional<InertiaLaw> inertia = std::nullopt);
+
+}  // namespace taut::description

@@ -1,0 +1,400 @@
+#include "description/reader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+namespace taut::description {
+namespace {
+
+constexpr std::size_t kMaxNameLength = 200;  ///< A model has many copies of each.
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+std::string Joined(const std::vector<std::string>& words, std::string_view between) {
+  std::string out;
+  for (const std::string& word : words) (out += out.empty() ? "" : between) += word;
+  return out;
+}
+
+/// Whether a text may be a name; with `dots`, a full name such as segment_0.tip.
+bool IsNameText(std::string_view text, bool dots) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [dots](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || (dots && c == '.');
+  });
+}
+
+std::string ReadNameText(const Value& value, std::string_view what, bool dots, const Scope& scope) {
+  if (value.kind != Value::Kind::kScalar) {
+    WrongType(value, what, "a name", scope);
+    return {};
+  }
+  if (value.text.size() > kMaxNameLength) {
+    scope.out.Error(value.at, std::string(what) + ": a name has at most " +
+                                  std::to_string(kMaxNameLength) + " characters");
+    return {};
+  }
+  if (IsNameText(value.text, dots)) return value.text;
+  scope.out.Error(value.at, std::string(what) + ": \"" + value.text + "\" cannot be a name",
+                  "letters, digits, _ and -");
+  return {};
+}
+
+std::vector<std::string> ReadNameTexts(const Value& value, std::string_view what, bool dots,
+                                       const Scope& scope) {
+  std::vector<std::string> names;
+  const auto add = [&](const Value& item) {
+    std::string name = ReadNameText(item, what, dots, scope);
+    if (!name.empty()) names.push_back(std::move(name));
+  };
+  if (value.kind == Value::Kind::kSequence) {
+    for (const ValuePtr& item : value.items) add(*item);
+  } else if (value.kind == Value::Kind::kScalar) {
+    add(value);
+  } else {
+    WrongType(value, what, "a name or a list of names", scope);
+  }
+  return names;
+}
+
+}  // namespace
+
+std::string Shown(double number) {
+  char buffer[32];
+  const auto [end, status] = std::to_chars(buffer, buffer + sizeof buffer, number);
+  return status == std::errc() ? std::string(buffer, end) : "?";
+}
+
+void WrongType(const Value& value, std::string_view what, std::string_view wanted,
+               const Scope& scope) {
+  scope.out.Error(value.at, std::string(what) + " must be " + std::string(wanted) + ", got " +
+                                std::string(KindName(value)));
+}
+
+std::string KeyHint(std::string_view key, const std::vector<std::string>& known) {
+  std::vector<std::string> longer;
+  for (const std::string& candidate : known) {
+    if (candidate.size() > key.size() && candidate.compare(0, key.size(), key) == 0 &&
+        candidate[key.size()] == '_') {
+      longer.push_back("\"" + candidate + "\"");
+    }
+  }
+  if (longer.empty()) return NameHint(key, known);
+  return "did you mean " + Joined(longer, " or ") + "?";
+}
+
+std::string NameHint(std::string_view name, const std::vector<std::string>& known) {
+  return known.size() <= 300 && name.size() <= 60 ? DidYouMean(name, known) : std::string();
+}
+
+double ReadNumber(const Value& value, std::string_view what, Bound bound, const Scope& scope) {
+  if (value.kind != Value::Kind::kScalar) {
+    WrongType(value, what, "a number", scope);
+    return kNan;
+  }
+  std::string text = value.text;
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (text == ".nan" || text == "nan" || text == ".inf" || text == "inf" || text == "-.inf" ||
+      text == "-inf") {
+    scope.out.Error(value.at, std::string(what) + " must be a finite number, got " + value.text);
+    return kNan;
+  }
+  Evaluated result = Evaluate(value.text, scope.names);
+  if (!result.error.empty()) {
+    scope.out.Error(value.at, std::string(what) + ": " + result.error, std::move(result.hint));
+    return kNan;
+  }
+  const double number = result.value;
+  const char* wanted = nullptr;  // every comparison is false for a NaN that was complained about
+  if (bound == Bound::kPositive && number <= 0.0) wanted = " must be positive, got ";
+  if (bound == Bound::kNonNegative && number < 0.0) wanted = " must not be negative, got ";
+  if (bound == Bound::kFraction && (number < 0.0 || number > 1.0))
+    wanted = " must be within 0..1, got ";
+  if (!wanted) return number;
+  scope.out.Error(value.at, std::string(what) + wanted + Shown(number));
+  return kNan;
+}
+
+std::optional<int> ReadInteger(const Value& value, std::string_view what, int least, int most,
+                               const Scope& scope) {
+  const double number = ReadNumber(value, what, Bound::kAny, scope);
+  if (std::isnan(number)) return std::nullopt;
+  if (number != std::floor(number) || number < least || number > most) {
+    scope.out.Error(value.at, std::string(what) + " must be a whole number within " +
+                                  std::to_string(least) + ".." + std::to_string(most) + ", got " +
+                                  Shown(number));
+    return std::nullopt;
+  }
+  return static_cast<int>(number);
+}
+
+std::optional<bool> ReadBool(const Value& value, std::string_view what, const Scope& scope) {
+  if (value.kind == Value::Kind::kScalar && !value.quoted) {
+    if (value.text == "true") return true;
+    if (value.text == "false") return false;
+    scope.out.Error(value.at,
+                    std::string(what) + " must be true or false, got \"" + value.text + "\"");
+    return std::nullopt;
+  }
+  WrongType(value, what, "true or false", scope);
+  return std::nullopt;
+}
+
+std::optional<std::vector<double>> ReadNumbers(const Value& value, std::string_view what,
+                                               std::size_t count, const Scope& scope) {
+  if (value.kind != Value::Kind::kSequence) {
+    WrongType(value, what, "a list of " + std::to_string(count) + " numbers", scope);
+    return std::nullopt;
+  }
+  if (value.items.size() != count) {
+    scope.out.Error(value.at, std::string(what) + " must have " + std::to_string(count) +
+                                  " numbers, got " + std::to_string(value.items.size()));
+    return std::nullopt;
+  }
+  std::vector<double> numbers;
+  for (const ValuePtr& item : value.items) {
+    numbers.push_back(ReadNumber(*item, what, Bound::kAny, scope));
+  }
+  if (std::any_of(numbers.begin(), numbers.end(), [](double x) { return std::isnan(x); })) {
+    return std::nullopt;
+  }
+  return numbers;
+}
+
+Vec3 ReadVec3(const Value& value, std::string_view what, const Scope& scope) {
+  const auto numbers = ReadNumbers(value, what, 3, scope);
+  return numbers ? Vec3{(*numbers)[0], (*numbers)[1], (*numbers)[2]} : Vec3{kNan, kNan, kNan};
+}
+
+Vec3 ReadDirection(const Value& value, std::string_view what, const Scope& scope) {
+  const Vec3 v = ReadVec3(value, what, scope);
+  // Scaled first, so that neither 1e200 nor 1e-200 is lost in its square.
+  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  if (largest == 0.0) {
+    scope.out.Error(value.at, std::string(what) + " must not be zero", "it is a direction");
+    return {kNan, kNan, kNan};
+  }
+  const Vec3 s{v.x / largest, v.y / largest, v.z / largest};
+  const double length = std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z);
+  return {s.x / length, s.y / length, s.z / length};
+}
+
+std::string ReadText(const Value& value, std::string_view what, const Scope& scope) {
+  if (value.kind == Value::Kind::kScalar) return value.text;
+  WrongType(value, what, "a text", scope);
+  return {};
+}
+
+std::string ReadName(const Value& value, std::string_view what, const Scope& scope) {
+  return ReadNameText(value, what, false, scope);
+}
+
+std::vector<std::string> ReadNames(const Value& value, std::string_view what, const Scope& scope) {
+  return ReadNameTexts(value, what, false, scope);
+}
+
+std::vector<std::vector<std::string>> ReadMatch(const Value& value, std::string_view what,
+                                                const Scope& scope) {
+  const auto is_list = [](const ValuePtr& item) { return item->kind == Value::Kind::kSequence; };
+  std::vector<std::vector<std::string>> match;
+  if (value.kind == Value::Kind::kSequence && value.items.empty()) {
+    scope.out.Error(value.at, std::string(what) + " must not be empty", "name the tags to match");
+  } else if (value.kind == Value::Kind::kSequence &&
+             std::any_of(value.items.begin(), value.items.end(), is_list)) {
+    for (const ValuePtr& item : value.items) {
+      std::vector<std::string> set = ReadNameTexts(*item, what, true, scope);
+      if (is_list(item) && item->items.empty()) {
+        scope.out.Error(item->at, std::string(what) + " must not be empty",
+                        "name the tags to match");
+      }
+      if (!set.empty()) match.push_back(std::move(set));
+    }
+  } else {
+    std::vector<std::string> set = ReadNameTexts(value, what, true, scope);
+    if (!set.empty()) match.push_back(std::move(set));
+  }
+  return match;
+}
+
+bool Matches(const std::vector<std::vector<std::string>>& match,
+             const std::vector<std::string>& tags) {
+  const auto has = [&](const std::string& tag) {
+    return std::find(tags.begin(), tags.end(), tag) != tags.end();
+  };
+  return std::any_of(match.begin(), match.end(), [&](const std::vector<std::string>& set) {
+    return std::all_of(set.begin(), set.end(), has);
+  });
+}
+
+MapReader::MapReader(const Value& value, std::string what, std::vector<std::string> known,
+                     const Scope& scope)
+    : value_(value), what_(std::move(what)), known_(std::move(known)), scope_(scope) {
+  if (!is_map()) {
+    WrongType(value_, what_.empty() ? "the file" : what_, "a map", scope_);
+    return;
+  }
+  for (const Entry& entry : value_.entries) {
+    if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
+    scope_.out.Error(entry.key_at,
+                     "unknown key \"" + entry.key + "\"" + (what_.empty() ? "" : " in " + what_),
+                     KeyHint(entry.key, known_));
+  }
+}
+
+std::string MapReader::Path(std::string_view key) const {
+  return what_.empty() ? std::string(key) : what_ + "." + std::string(key);
+}
+
+const Value* MapReader::Find(std::string_view key) const { return value_.Find(key); }
+
+const Value* MapReader::Require(std::string_view key) const {
+  const Value* found = Find(key);
+  if (!found && is_map()) {
+    scope_.out.Error(
+        at(), (what_.empty() ? "the file" : what_) + " needs the key \"" + std::string(key) + "\"");
+  }
+  return found;
+}
+
+SourceRef MapReader::KeyAt(std::string_view key) const {
+  for (const Entry& entry : value_.entries) {
+    if (entry.key == key) return entry.key_at;
+  }
+  return at();
+}
+
+void MapReader::Error(std::string_view key, std::string what, std::string hint) const {
+  scope_.out.Error(KeyAt(key), std::move(what), std::move(hint));
+}
+
+std::string MapReader::ExactlyOne(const std::vector<std::string>& keys) const {
+  if (!is_map()) return {};
+  std::vector<std::string> present;
+  for (const std::string& key : keys) {
+    if (Has(key)) present.push_back(key);
+  }
+  if (present.size() == 1) return present[0];
+  const std::string what = what_.empty() ? "the file" : what_;
+  if (present.empty()) {
+    scope_.out.Error(at(),
+                     what + " needs " + (keys.size() == 1 ? "" : "one of ") + Joined(keys, ", "));
+  } else {
+    Error(present[1], what + " has both " + Joined(present, " and "),
+          "only one of them may be there");
+  }
+  return {};
+}
+
+double MapReader::Number(std::string_view key, Bound bound) const {
+  const Value* found = Require(key);
+  return found ? ReadNumber(*found, Path(key), bound, scope_) : kNan;
+}
+
+double MapReader::NumberOr(std::string_view key, double fallback, Bound bound) const {
+  const Value* found = Find(key);
+  return found ? ReadNumber(*found, Path(key), bound, scope_) : fallback;
+}
+
+std::optional<double> MapReader::FindNumber(std::string_view key, Bound bound) const {
+  const Value* found = Find(key);
+  if (!found) return std::nullopt;
+  return ReadNumber(*found, Path(key), bound, scope_);
+}
+
+bool MapReader::BoolOr(std::string_view key, bool fallback) const {
+  const Value* found = Find(key);
+  return found ? ReadBool(*found, Path(key), scope_).value_or(fallback) : fallback;
+}
+
+Vec3 MapReader::Vector(std::string_view key) const {
+  const Value* found = Require(key);
+  return found ? ReadVec3(*found, Path(key), scope_) : Vec3{kNan, kNan, kNan};
+}
+
+Vec3 MapReader::VectorOr(std::string_view key, const Vec3& fallback) const {
+  const Value* found = Find(key);
+  return found ? ReadVec3(*found, Path(key), scope_) : fallback;
+}
+
+std::string MapReader::Text(std::string_view key) const {
+  const Value* found = Require(key);
+  return found ? ReadText(*found, Path(key), scope_) : std::string();
+}
+
+std::string MapReader::TextOr(std::string_view key, std::string fallback) const {
+  const Value* found = Find(key);
+  return found ? ReadText(*found, Path(key), scope_) : std::move(fallback);
+}
+
+std::string MapReader::Name(std::string_view key) const {
+  const Value* found = Require(key);
+  return found ? ReadName(*found, Path(key), scope_) : std::string();
+}
+
+std::string MapReader::NameOr(std::string_view key, std::string fallback) const {
+  const Value* found = Find(key);
+  return found ? ReadName(*found, Path(key), scope_) : std::move(fallback);
+}
+
+std::vector<std::string> MapReader::NamesOr(std::string_view key,
+                                            std::vector<std::string> fallback) const {
+  const Value* found = Find(key);
+  return found ? ReadNames(*found, Path(key), scope_) : std::move(fallback);
+}
+
+const std::vector<ValuePtr>& Items(const Value* value, std::string_view what, const Scope& scope) {
+  static const std::vector<ValuePtr> kNone;
+  if (!value) return kNone;
+  if (value->kind != Value::Kind::kSequence) {
+    WrongType(*value, what, "a list", scope);
+    return kNone;
+  }
+  return value->items;
+}
+
+const std::vector<Entry>& Entries(const Value* value, std::string_view what, const Scope& scope) {
+  static const std::vector<Entry> kNone;
+  if (!value) return kNone;
+  if (value->kind != Value::Kind::kMap) {
+    WrongType(*value, what, "a map", scope);
+    return kNone;
+  }
+  return value->entries;
+}
+
+bool CheckHeader(const Value& root, std::string_view kind, Diagnostics& out) {
+  if (root.kind != Value::Kind::kMap) {
+    out.Error(root.at, "the file must be a map, got " + std::string(KindName(root)),
+              "it starts with `taut: 1` and `kind: " + std::string(kind) + "`");
+    return false;
+  }
+  bool good = true;
+  const auto check = [&](const char* key, std::string_view wanted, const std::string& hint) {
+    const Value* found = root.Find(key);
+    if (!found) {
+      out.Error(root.at, std::string("the file needs the key \"") + key + "\"",
+                "write `" + std::string(key) + ": " + std::string(wanted) + "`");
+    } else if (found->kind != Value::Kind::kScalar || found->text != wanted) {
+      const std::string got =
+          found->kind == Value::Kind::kScalar ? found->text : std::string(KindName(*found));
+      out.Error(found->at, std::string(key) + " must be " + std::string(wanted) + ", got " + got,
+                hint);
+    } else {
+      return;
+    }
+    good = false;
+  };
+  check("taut", "1", "the version of the format; this taut reads version 1");
+  check("kind", kind, "a file is a model, an experiment or a gait");
+  return good;
+}
+
+std::string PathBeside(const std::string& file, const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  return (folder / path).lexically_normal().string();
+}
+
+}  // namespace taut::description

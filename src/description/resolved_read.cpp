@@ -1,0 +1,202 @@
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "description/experiment_parts.h"
+#include "description/parameters.h"
+#include "description/reader.h"
+#include "description/resolved.h"
+#include "description/resolved_fields.h"
+
+namespace taut::description {
+namespace {
+
+/// The keys of a struct.
+struct KeyList {
+  std::vector<std::string> keys;
+  template <class... Rest>
+  void operator()(const char* key, const Rest&...) {
+    keys.push_back(key);
+  }
+  void Limit(const char* key, double) { keys.push_back(key); }
+  template <class T>
+  void Later(const char* key, const T&) {
+    keys.push_back(key);
+  }
+};
+
+void Read(const Value& value, const std::string& what, const Scope& scope, double& out) {
+  out = ReadNumber(value, what, Bound::kAny, scope);
+}
+void Read(const Value& value, const std::string& what, const Scope& scope, bool& out) {
+  out = ReadBool(value, what, scope).value_or(false);
+}
+void Read(const Value& value, const std::string& what, const Scope& scope, int& out) {
+  out = ReadInteger(value, what, kWorld, std::numeric_limits<int>::max(), scope).value_or(0);
+}
+void Read(const Value& value, const std::string& what, const Scope& scope, std::uint64_t& out) {
+  const char* end = value.text.data() + value.text.size();
+  const auto [stop, status] = std::from_chars(value.text.data(), end, out);
+  if (status == std::errc() && stop == end) return;
+  scope.out.Error(value.at, what + " must be a whole number");
+}
+void Read(const Value& value, const std::string& what, const Scope& scope, std::string& out) {
+  out = ReadText(value, what, scope);
+}
+void Read(const Value& value, const std::string& what, const Scope& scope, Vec3& out) {
+  out = ReadVec3(value, what, scope);
+}
+void Read(const Value& value, const std::string& what, const Scope& scope, Quat& out) {
+  if (const auto q = ReadNumbers(value, what, 4, scope)) out = {(*q)[0], (*q)[1], (*q)[2], (*q)[3]};
+}
+void Read(const Value& value, const std::string& what, const Scope& scope, Inertia& out) {
+  if (const auto i = ReadNumbers(value, what, 6, scope)) {
+    out = {(*i)[0], (*i)[1], (*i)[2], (*i)[3], (*i)[4], (*i)[5]};
+  }
+}
+void Read(const Value& value, const std::string& what, const Scope& scope,
+          std::pair<double, double>& out) {
+  if (const auto point = ReadNumbers(value, what, 2, scope)) out = {(*point)[0], (*point)[1]};
+}
+template <class T>
+void Read(const Value& value, const std::string& what, const Scope& scope, T& out);  // a struct
+template <class T>
+void Read(const Value& value, const std::string& what, const Scope& scope, std::vector<T>& out) {
+  for (const ValuePtr& item : Items(&value, what, scope)) {
+    Read(*item, what, scope, out.emplace_back());
+  }
+}
+
+class FieldReader {
+ public:
+  explicit FieldReader(const MapReader& map) : map_(map) {}
+
+  template <class T>
+  void operator()(const char* key, T& out) {
+    if (const Value* value = map_.Require(key)) Read(*value, map_.Path(key), map_.scope(), out);
+  }
+  template <class T>
+  void operator()(const char* key, std::optional<T>& out) {
+    if (map_.Has(key)) (*this)(key, out.emplace());
+  }
+  template <class E>
+  void operator()(const char* key, E& out, const Choices<E>& choices) {
+    if (map_.Require(key)) out = map_.ChoiceOr(key, out, choices);
+  }
+  /// What earlier versions of taut did not write.
+  template <class T>
+  void Later(const char* key, T& out) {
+    if (map_.Has(key)) (*this)(key, out);
+  }
+  void Limit(const char* key, double& out) {
+    out = map_.NumberOr(key, std::numeric_limits<double>::infinity(), Bound::kNonNegative);
+  }
+
+ private:
+  const MapReader& map_;
+};
+
+template <class T>
+void ReadStruct(const Value& value, const std::string& what, std::vector<std::string> more_keys,
+                const Scope& scope, T& out) {
+  KeyList known;
+  Fields(known, out);
+  known.keys.insert(known.keys.end(), more_keys.begin(), more_keys.end());
+  const MapReader map(value, what, known.keys, scope);
+  FieldReader reader(map);
+  Fields(reader, out);
+}
+
+template <class T>
+void Read(const Value& value, const std::string& what, const Scope& scope, T& out) {
+  ReadStruct(value, what, {}, scope, out);
+}
+
+/// Its cables must be there, and its numbers what a gait file's would have to be.
+void CheckGait(const ControllerSpec& controller, const RobotSpec& robot, const SourceRef& at,
+               Diagnostics& out) {
+  const VelocityInputSpec& input = *controller.velocity_input;
+  if (!(input.clock.period_s > 0.0)) out.Error(at, "velocity_input.period_s must be positive");
+  const GaitSpec& gait = input.gait;
+  if (gait.sine.has_value() + gait.cpg.has_value() + gait.table.has_value() != 1) {
+    out.Error(at, "a gait is one of sine, cpg and table");
+    return;
+  }
+  if (gait.cpg && !(gait.cpg->convergence_per_s > 0.0 && gait.cpg->integrator_step_s > 0.0)) {
+    out.Error(at, "cpg.convergence_per_s and cpg.integrator_step_s must be positive");
+  }
+  if (gait.table) {
+    const std::size_t errors_before = out.items().size();
+    if (gait.table->rows.size() != gait.table->time_s.size()) {
+      out.Error(at, "a table needs a time for each row");
+    }
+    for (const std::vector<double>& row : gait.table->rows) {
+      if (row.size() == gait.table->cables.size()) continue;
+      out.Error(at, "a table's row needs a velocity for each cable");
+      break;
+    }
+    if (out.items().size() != errors_before) return;
+    CheckTable(*gait.table, at, out);
+  }
+  CheckGaitDrives(controller, robot, at, out);
+}
+
+/// What `Model::Compile` does not look at.
+void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnostics& out) {
+  const RobotSpec& robot = experiment.robot;
+  const auto check = [&](int index, std::size_t count, const char* what) {
+    if (index >= 0 && static_cast<std::size_t>(index) < count) return;
+    out.Error(at, "there is no " + std::string(what) + " " + std::to_string(index));
+  };
+  for (const ControllerSpec& controller : experiment.controllers) {
+    for (const PositionProgram& program : controller.position) {
+      check(program.cable, robot.def.cables.size(), "cable");
+    }
+    if (!controller.impedance) {
+      if (controller.velocity_input) out.Error(at, "velocity_input goes with impedance");
+      continue;
+    }
+    if (controller.velocity_input) CheckGait(controller, robot, at, out);
+    for (const ImpedanceGains& gains : controller.impedance->cables) {
+      check(gains.cable, robot.def.cables.size(), "cable");
+    }
+  }
+  for (const ReferenceSpec& reference : experiment.references) {
+    for (const ReferenceSpec::Value& value : reference.values) {
+      check(value.cable, robot.def.cables.size(), "cable");
+    }
+  }
+  for (const ScaleSpec& scale : experiment.scales) {
+    const bool of_bodies = scale.quantity == ScaleSpec::Quantity::kMass;
+    const std::size_t count = of_bodies ? robot.def.bodies.size() : robot.def.cables.size();
+    for (const int index : scale.index) check(index, count, of_bodies ? "body" : "cable");
+  }
+  for (const PushSpec& push : experiment.pushes) check(push.node, robot.def.nodes.size(), "node");
+  for (const DragSpec& drag : experiment.drags) check(drag.node, robot.def.nodes.size(), "node");
+  if (robot.node_tags.size() != robot.def.nodes.size() ||
+      robot.cable_tags.size() != robot.def.cables.size()) {
+    out.Error(at, "every node and every cable needs its tags");
+  }
+}
+
+}  // namespace
+
+std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Overrides& overrides,
+                                           Diagnostics& out) {
+  const std::size_t errors_before = out.items().size();
+  const ValuePtr root = ReadYaml(path, out);
+  if (!root || !CheckHeader(*root, kResolvedKind, out)) return std::nullopt;
+  OverrideSet(overrides).ReportUnused({}, out);
+  const NameTable no_names;
+  const Scope scope{no_names, out};
+  ExperimentSpec experiment;
+  ReadStruct(*root, "", {"taut", "kind"}, scope, experiment);
+  if (out.items().size() == errors_before) CheckIndices(experiment, root->at, out);
+  if (out.items().size() != errors_before) return std::nullopt;
+  experiment.robot.cable_sources.resize(experiment.robot.def.cables.size(), {path, 0, 0});
+  experiment.robot.body_sources.resize(experiment.robot.def.bodies.size(), {path, 0, 0});
+  experiment.files = {path};
+  return experiment;
+}
+
+}  // namespace taut::description

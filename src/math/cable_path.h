@@ -1,0 +1,96 @@
+/// The path of a cable, from where it is held to what it pulls (docs/theory/cables.md, eq. 2, 3).
+/// The one text for the step, its sensors, the start, the bounds of stiffness and the statics: on
+/// V3<W> of the step and on Vec3 alike, without the standard library.
+///
+/// A path is a row of points that belong to bodies, and the spans between them. Its users see three
+/// things only: its length, its rate, and what each point is pulled with per unit of tension.
+///
+/// Today every point is an attachment, and every span straight with the cable's full tension. Other
+/// elements fit in without their users' knowledge:
+///   - a span that carries `w` times the tension (block and tackle): AddSpan with w u in place of
+///     u, and w times the length;
+///   - a pulley: two points, where the cable arrives and where it leaves, and between them a span
+///     that adds the arc to the length and has no `u`. The rate is right without the arc: the
+///     points slide along the spans that they end.
+#pragma once
+
+#include "math/scalar.h"
+
+namespace taut {
+
+template <class V>
+struct PathPoint {
+  V p;    ///< Place; one frame for the whole path [m].
+  V v;    ///< Velocity; only rates need it [m/s].
+  V arm;  ///< From the origin of its body; only torques need it [m].
+  V u;    ///< Of the span from the point before: its direction, per unit of tension.
+};
+
+/// Of a path or a part of it. `dl` is the exact rate.
+template <class V>
+struct PathLength {
+  using S = decltype(V::x);
+  S l = Constant<S>::Of(0.0), dl = Constant<S>::Of(0.0);
+};
+
+/// Adds the span between two neighbours, and fills in `to.u`. Points in one place have no
+/// direction; a length this small pulls with u = d / tiny ~ 0.
+template <class V>
+TAUT_INLINE void AddSpan(const PathPoint<V>& from, PathPoint<V>& to, PathLength<V>& path) noexcept {
+  using S = typename PathLength<V>::S;
+  const V d = to.p - from.p;
+  const S length = Sqrt(Dot(d, d));
+  to.u = (Constant<S>::Of(1.0) / Max(length, Constant<S>::Of(1e-12))) * d;
+  path.l = path.l + length;
+  path.dl = path.dl + Dot(to.u, to.v - from.v);
+}
+
+/// Length and rate of a path; fills in the directions.
+template <class V>
+TAUT_INLINE PathLength<V> MeasurePath(int count, PathPoint<V>* points) noexcept {
+  PathLength<V> path;
+  for (int i = 1; i < count; ++i) AddSpan(points[i - 1], points[i], path);
+  return path;
+}
+
+/// The same for points that `place(i)` puts somewhere, where nobody needs the directions.
+template <class V, class Place>
+PathLength<V> MeasureThrough(int count, const Place& place) noexcept {
+  PathLength<V> path;
+  PathPoint<V> from{};
+  for (int i = 0; i < count; ++i) {
+    PathPoint<V> to{};
+    to.p = place(i);
+    if (i > 0) AddSpan(from, to, path);
+    from = to;
+  }
+  return path;
+}
+
+/// The force on point `i` per unit of tension: u_i+1 - u_i.
+template <class V>
+TAUT_INLINE V PullAt(int count, const PathPoint<V>* points, int i) noexcept {
+  const auto zero = Constant<typename PathLength<V>::S>::Of(0.0);
+  V pull{zero, zero, zero};
+  if (i > 0) pull = pull - points[i].u;
+  if (i + 1 < count) pull = pull + points[i + 1].u;
+  return pull;
+}
+
+/// Adds what a tension does to the bodies. `body(i)` refers to the sums of point i's body: its
+/// `force`, and its `torque` about the origin of the arms.
+template <class V, class Body>
+TAUT_INLINE void PullBodies(int count, const PathPoint<V>* points,
+                            typename PathLength<V>::S tension, const Body& body) noexcept {
+  for (int i = 1; i < count; ++i) {
+    const V f = tension * points[i].u;
+    auto& a = body(i - 1);
+    auto& b = body(i);
+    a.force = a.force + f;
+    a.torque = a.torque + Cross(points[i - 1].arm, f);
+    b.force = b.force - f;
+    b.torque = b.torque - Cross(points[i].arm, f);
+  }
+}
+
+}  // namespace taut

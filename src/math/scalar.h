@@ -1,0 +1,26 @@
+/// Plain doubles under the names that wide numbers have (simd/wide.h), so that one text serves
+/// both. Builtins: the standard library has no place in a step.
+#pragma once
+
+/// Wide numbers travel in registers or not at all: a call passes them through memory, and the
+/// compilers' rules of thumb would call.
+#define TAUT_INLINE [[gnu::always_inline]] inline
+
+namespace taut {
+
+TAUT_INLINE double Sqrt(double a) noexcept { return __builtin_sqrt(a); }
+TAUT_INLINE double Abs(double a) noexcept { return __builtin_fabs(a); }
+/// The greater of two; `b` if either is NaN.
+TAUT_INLINE double Max(double a, double b) noexcept { return a > b ? a : b; }
+
+/// A constant as a number of type `S`.
+template <class S>
+struct Constant {
+  TAUT_INLINE static S Of(double x) noexcept { return S::Splat(x); }
+};
+template <>
+struct Constant<double> {
+  TAUT_INLINE static double Of(double x) noexcept { return x; }
+};
+
+}  // namespace taut
