@@ -211,8 +211,9 @@ inline void ReadCables(Streams& from, std::vector<ProblemCable>& cables) {
 /// All problems of a file; throws if it is not such a file, or not whole.
 inline std::vector<ContactProblem> LoadProblems(const std::string& path = TAUT_SOURCE_DIR
                                                 "/tests/solver/problems.bin.gz") {
-  using namespace problem_file;
-  Content file(path);
+  using problem_file::kMagic;
+  using problem_file::kVersion;
+  problem_file::Content file(path);
   const std::size_t magic = sizeof kMagic - 1;
   if (std::memcmp(file.Take(magic).data(), kMagic, magic) != 0) {
     throw std::runtime_error(path + " holds no contact problems");
@@ -226,12 +227,12 @@ inline std::vector<ContactProblem> LoadProblems(const std::string& path = TAUT_S
   std::vector<std::string> scenes;
   for (std::uint32_t i = 0; i < scene_count; ++i) {
     std::string name;
-    for (const unsigned char c : file.Take(kNameBytes)) {
+    for (const unsigned char c : file.Take(problem_file::kNameBytes)) {
       if (c != 0) name += static_cast<char>(c);
     }
     scenes.push_back(name);
   }
-  Streams from(file, int_count, number_count);
+  problem_file::Streams from(file, int_count, number_count);
   std::vector<ContactProblem> problems;
   for (std::uint32_t i = 0; i < problem_count; ++i) {
     ContactProblem p;
@@ -242,9 +243,9 @@ inline std::vector<ContactProblem> LoadProblems(const std::string& path = TAUT_S
     p.cables.resize(from.Count());
     p.step_s = from.Number();
     p.residual_m_per_s = from.Number();
-    ReadBodies(from, p.bodies);
-    ReadContacts(from, p.contacts);
-    ReadCables(from, p.cables);
+    problem_file::ReadBodies(from, p.bodies);
+    problem_file::ReadContacts(from, p.contacts);
+    problem_file::ReadCables(from, p.cables);
     problems.push_back(std::move(p));
   }
   if (!from.empty() || !file.empty()) throw std::runtime_error(path + " holds more than it says");
