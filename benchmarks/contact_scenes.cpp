@@ -189,6 +189,7 @@ void Measure(const Wanted& wanted, const ContactScene& scene, std::uint64_t seed
                 {"setting", setting},
                 {"lanes", lanes},
                 {"held_out", scene.held_out},
+                {"planned_steps", std::min(scene.steps, wanted.most_steps) * lanes},
                 {"bodies", def.bodies.size()},
                 {"cables", def.cables.size()}};
     run.update(found);
@@ -235,9 +236,15 @@ void MeasurePainleve(Json& runs) {
     record.contacts += static_cast<double>(batch.Contacts(0).size());
   }
   record.contacts /= static_cast<double>(record.step_us.size());
-  Json run = {{"scene", "painleve"},  {"seed", 1},  {"engine", "taut"},
-              {"setting", "default"}, {"lanes", 1}, {"held_out", false},
-              {"bodies", 1},          {"cables", 0}};
+  Json run = {{"scene", "painleve"},
+              {"seed", 1},
+              {"engine", "taut"},
+              {"setting", "default"},
+              {"lanes", 1},
+              {"held_out", false},
+              {"planned_steps", record.world_steps},
+              {"bodies", 1},
+              {"cables", 0}};
   run.update(record.Taut());
   runs.push_back(run);
 }

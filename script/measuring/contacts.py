@@ -15,6 +15,7 @@ NOT_MEASURED = "Not measured in this run; `script/bench --contacts` does."
 PAINLEVE = "painleve"
 REFERENCE = "tetraspine3"  # a robot on the flat, with few contacts
 ODE = ("ode", "full_step")
+CUT = "*"
 
 
 def run(program, only, seeds, steps, seconds, load):
@@ -31,16 +32,16 @@ def together(runs):
     first = runs[0]
     steps = sum(one["steps"] for one in runs)
 
-    def mean(of):
+    def over_steps(of):
         return sum(of(one) * one["steps"] for one in runs) / steps
 
     means = [one["time_us"]["mean"] for one in runs]
     item = {"kind": KIND, "engine": first["engine"], "setting": first["setting"], "robot": first["scene"],
             "worlds": first["lanes"], "lanes": first["lanes"], "threads": 1,
             "held_out": first["held_out"], "bodies": first["bodies"], "cables": first["cables"],
-            "steps": steps, "repetitions": len(runs),
+            "steps": steps, "cut": any(one["steps"] < one["planned_steps"] for one in runs), "repetitions": len(runs),
             "spread": (max(means) - min(means)) / statistics.median(means),
-            "time_us": {"mean": mean(lambda one: one["time_us"]["mean"]),
+            "time_us": {"mean": over_steps(lambda one: one["time_us"]["mean"]),
                         "median": statistics.median(one["time_us"]["median"] for one in runs),
                         **{key: max(one["time_us"][key] for one in runs) for key in ("p99", "p999", "worst")}}}
     item["steps_per_s"] = 1e6 / item["time_us"]["mean"]
@@ -49,12 +50,12 @@ def together(runs):
         item["share_solved"] = item["solved"] / steps
         item["worst_residual_m_per_s"] = max(one["worst_residual_m_per_s"] for one in runs)
         item["went_wrong"] = any(one["other_status_bits"] for one in runs)
-        item["contacts"] = mean(lambda one: one["contacts"])
-        item["iterations"] = {"mean": mean(lambda one: one["iterations"]["mean"]),
+        item["contacts"] = over_steps(lambda one: one["contacts"])
+        item["iterations"] = {"mean": over_steps(lambda one: one["iterations"]["mean"]),
                               "p99": max(one["iterations"]["p99"] for one in runs),
                               "worst": max(one["iterations"]["worst"] for one in runs)}
         if all("share_within_16_of_ode" in one for one in runs):
-            item["share_within_16_of_ode"] = mean(lambda one: one["share_within_16_of_ode"])
+            item["share_within_16_of_ode"] = over_steps(lambda one: one["share_within_16_of_ode"])
     return item
 
 
@@ -89,6 +90,15 @@ class Scenes:
         return max(item["lanes"] for item in self.items)
 
 
+def mean(item):
+    """An asterisk where a run was cut: its mean is that of fewer steps than others took."""
+    return number(item["time_us"]["mean"]) + (CUT if item["cut"] else "")
+
+
+def not_solved(item):
+    return count(item["steps"] - item["solved"])
+
+
 def name(item):
     return item["robot"] + (" (held out)" if item["held_out"] else "")
 
@@ -102,13 +112,13 @@ def steps(items):
         if one is None:
             continue
         time, iterations = one["time_us"], one["iterations"]
-        wide = number(lanes["time_us"]["mean"]) if lanes and scenes.widest > 1 else NOTHING
+        wide = [mean(lanes), not_solved(lanes)] if lanes and scenes.widest > 1 else [NOTHING, NOTHING]
         rows.append([name(one), number(one["contacts"]), count(one["steps"]),
-                     count(one["steps"] - one["solved"]), f"{one['worst_residual_m_per_s']:.1e}",
+                     not_solved(one), f"{one['worst_residual_m_per_s']:.1e}",
                      *(number(iterations[key]) for key in ("mean", "p99", "worst")),
-                     *(number(time[key]) for key in ("mean", "median", "p99", "p999", "worst")), wide])
+                     mean(one), *(number(time[key]) for key in ("median", "p99", "p999", "worst")), *wide])
     return table(["scene", "contacts", "steps", "not solved", "worst residual, m/s", "iterations", "99 %", "most",
-                  "us a step", "median", "99 %", "99.9 %", "worst", f"{scenes.widest} lanes"], rows)
+                  "us a step", "median", "99 %", "99.9 %", "worst", f"{scenes.widest} lanes", "not solved"], rows)
 
 
 def beside(items):
@@ -121,7 +131,7 @@ def beside(items):
         if sum(item is not None for item in found) < 2:
             continue
         first = next(item for item in found if item)
-        rows.append([name(first), *(f"{number(item['time_us']['mean'])} ({number(item['time_us']['median'])})"
+        rows.append([name(first), *(f"{mean(item)} ({number(item['time_us']['median'])})"
                                     if item else NOTHING for item in found)])
     return table(["scene", *(SETTINGS[key] for key in engines)], rows)
 
@@ -132,7 +142,10 @@ def ratios(items):
 
     def over(scene, other):
         ours = scenes.of(scene)
-        return number(ours["time_us"]["mean"] / other["time_us"]["mean"]) if ours and other else NOTHING
+        if not (ours and other):
+            return NOTHING
+        cut = CUT if ours["cut"] or other["cut"] else ""
+        return number(ours["time_us"]["mean"] / other["time_us"]["mean"]) + cut
 
     def share(scene):
         item = scenes.of(scene)
