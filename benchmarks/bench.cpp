@@ -63,7 +63,7 @@ void Measure(benchmark::State& state, Runner& runner) {
   if (auto* const ours = dynamic_cast<TautRunner*>(&runner)) {
     state.counters["bytes_per_world"] = static_cast<double>(ours->batch().BytesPerWorld());
     state.counters["converged"] = ours->converged() ? 1 : 0;
-    state.counters["sweeps"] = ours->batch().Status(0).linear_solves;
+    state.counters["linear_solves"] = ours->batch().Status(0).linear_solves;
   }
 }
 
@@ -187,7 +187,7 @@ int main(int argc, char** argv) {
     benchmark::AddCustomContext(taut::peers::Name(engine), taut::peers::Version(engine));
   }
   benchmark::AddCustomContext("step_s", std::to_string(taut::bench::kStepS));
-  benchmark::AddCustomContext("max_sweeps", std::to_string(taut::BatchOptions().max_linear_solves));
+  benchmark::AddCustomContext("max_linear_solves", std::to_string(taut::BatchOptions().max_linear_solves));
   char tolerance[32];
   std::snprintf(tolerance, sizeof tolerance, "%g", taut::BatchOptions().tolerance_m_per_s);
   benchmark::AddCustomContext("tolerance_m_per_s", tolerance);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "scenes/many_rows.h"
 #include "scenes/tetraspine3.h"
 #include "taut/spec.h"
 
@@ -44,27 +45,9 @@ ModelDef Spine(int segments) {
 }
 
 ModelDef Footed(int contacts) {
-  ModelDef def;
-  def.name = "footed";
-  def.planes = {Ground()};
-  const double foot_m = 0.01, disc_m = 0.3;
-  scenes::Parts parts;
-  parts.AddCylinder(2, {0, 0, 0.03}, {0, 0, 0.05}, disc_m);
-  def.bodies.push_back(parts.Body("disc"));
-  for (int i = 0; i < contacts; ++i) {
-    const double a = 2 * kPi * i / contacts;
-    const Vec3 at{disc_m * std::cos(a), disc_m * std::sin(a), foot_m};
-    def.spheres.push_back({"foot_" + std::to_string(i), 0, at, foot_m, {0.5, 0.5, 0.0}});
-  }
-  CableDef cable;
-  cable.name = "drag";
-  cable.attachments = {{0, {0, 0, 0.05}}, {kWorld, {1, 0.2, 0.05}}};
-  cable.stiffness_n_per_m = 500;
-  cable.damping_n_s_per_m = 5;
-  cable.rest_length_m = 1.0;
-  cable.actuator.kind = ActuatorDef::Kind::kIdeal;
-  def.cables.push_back(cable);
-  return def;
+  scenes::FootedDisc disc;
+  disc.feet = contacts;
+  return disc.Def();
 }
 
 Motion::Motion(const ModelDef& def) {

@@ -103,12 +103,21 @@ std::vector<Shape> ShapesOf(const ModelDef& def) {
         if (sphere.radius_m <= c.radius_m) sphere.meets_bodies = false;
       }
     }
-    shapes.push_back({.body = c.body,
+    shapes.push_back({.kind = Shape::Kind::kCapsule,
+                      .body = c.body,
                       .center_m = 0.5 * (ends[0] + ends[1]),
-                      .axis = (1 / length) * d,
+                      .turn = RotationFromZ((1 / length) * d),
                       .half_length_m = 0.5 * length,
                       .radius_m = c.radius_m,
                       .meets_planes = !(covered[0] && covered[1])});
+  }
+  for (const BoxDef& b : def.boxes) {
+    if (!b.collides) continue;
+    shapes.push_back({.kind = Shape::Kind::kBox,
+                      .body = b.body,
+                      .center_m = b.center_m - Com(def, b.body),
+                      .turn = RotationOf(b.orientation),
+                      .half_extents_m = b.half_extents_m});
   }
   return shapes;
 }

@@ -21,17 +21,20 @@ Rotation RotationFromZ(const Vec3& axis);
 /// r diag(moments) r^T.
 Inertia Turned(const Rotation& r, const Vec3& moments);
 
-/// A sphere or a capsule (a sphere's `half_length_m` is 0), relative to its body's centre of mass
-/// in axes parallel to W at the start.
+/// A sphere, a capsule or a box, relative to its body's centre of mass in axes parallel to W at the
+/// start.
 ///
 /// What a shape need not be tested with costs the engines time and adds contacts in the place of
 /// others: a rod whose ends carry spheres meets a plane with these alone, and a sphere no thicker
 /// than the rod that ends in it meets other bodies as part of the rod. taut leaves the same out.
 struct Shape {
+  enum class Kind { kSphere, kCapsule, kBox };
+  Kind kind = Kind::kSphere;
   int body = 0;
   Vec3 center_m;
-  Vec3 axis{0, 0, 1};
+  Rotation turn{};  ///< From the axes of the shape; a capsule lies along z.
   double half_length_m = 0, radius_m = 0;
+  Vec3 half_extents_m{};
   bool meets_planes = true, meets_bodies = true;
 };
 std::vector<Shape> ShapesOf(const ModelDef& def);

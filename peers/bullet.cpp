@@ -136,15 +136,16 @@ class Bullet final : public World {
     for (const Shape& s : shapes) {
       if (s.body != index) continue;
       std::unique_ptr<btCollisionShape> part;
-      if (s.half_length_m > 0) {
+      if (s.kind == Shape::Kind::kSphere) {
+        part = std::make_unique<btSphereShape>(s.radius_m);
+      } else if (s.kind == Shape::Kind::kCapsule) {
         part = std::make_unique<btCapsuleShapeZ>(s.radius_m, 2 * s.half_length_m);
       } else {
-        part = std::make_unique<btSphereShape>(s.radius_m);
+        part = std::make_unique<btBoxShape>(Bt(s.half_extents_m));
       }
       part->setUserIndex((s.meets_planes ? kPlaneBit : 0) | (s.meets_bodies ? kBodyBit : 0));
       compound->addChildShape(
-          btTransform(Bt(start_.back() * RotationFromZ(s.axis)), Bt(start_.back() * s.center_m)),
-          part.get());
+          btTransform(Bt(start_.back() * s.turn), Bt(start_.back() * s.center_m)), part.get());
       shapes_.push_back(std::move(part));
     }
     btRigidBody::btRigidBodyConstructionInfo info(body.mass_kg, nullptr, compound.get(),

@@ -24,8 +24,12 @@ std::ostream& operator<<(std::ostream& out, const Vec3& v) {
 void WriteShapes(std::ostream& xml, const std::vector<Shape>& shapes, int body) {
   for (const Shape& s : shapes) {
     if (s.body != body) continue;
-    const Vec3 half = s.half_length_m * s.axis;
-    if (s.half_length_m > 0) {
+    if (s.kind == Shape::Kind::kBox) {
+      const Quat q = QuatOf(s.turn);
+      xml << "<geom type='box' pos=" << s.center_m << " quat='" << q.w << ' ' << q.x << ' ' << q.y
+          << ' ' << q.z << "' size=" << s.half_extents_m;
+    } else if (s.kind == Shape::Kind::kCapsule) {
+      const Vec3 half = s.half_length_m * (s.turn * Vec3{0, 0, 1});
       const Vec3 a = s.center_m - half, b = s.center_m + half;
       xml << "<geom type='capsule' fromto='" << a.x << ' ' << a.y << ' ' << a.z << ' ' << b.x << ' '
           << b.y << ' ' << b.z << "' size='" << s.radius_m << "'";
@@ -61,7 +65,7 @@ void WritePlanes(std::ostream& xml, const ModelDef& def) {
 
 std::string Mjcf(const ModelDef& def, const Options& options) {
   const std::vector<Shape> shapes = ShapesOf(def);
-  const std::size_t contacts = 100 + 12 * def.bodies.size();
+  const std::size_t contacts = 100 + 12 * def.bodies.size() + 8 * shapes.size();
   std::ostringstream xml;
   xml.precision(17);
   xml << "<mujoco>\n<compiler angle='radian' inertiafromgeom='false' boundmass='0' "
@@ -127,6 +131,7 @@ class Mujoco final : public World {
  public:
   Mujoco(const ModelDef& def, const Options& options)
       : model_(Compile(Mjcf(def, options))), data_(mj_makeData(model_)) {
+    mju_user_warning = [](const char*) {};  // Step looks at the warnings; no file of them
     for (std::size_t b = 0; b < def.bodies.size(); ++b) {
       const BodyDef& body = def.bodies[b];
       const Vec3 &v = body.velocity_m_per_s, &w = body.angular_velocity_rad_per_s;

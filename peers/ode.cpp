@@ -113,17 +113,27 @@ class Ode final : public World {
     const dSpaceID own = dSimpleSpaceCreate(space_);  // so that bodies are told apart at once
     for (const Shape& s : shapes) {
       if (s.body != index) continue;
-      const dGeomID geom = s.half_length_m > 0
-                               ? dCreateCapsule(own, s.radius_m, 2 * s.half_length_m)
-                               : dCreateSphere(own, s.radius_m);
+      const dGeomID geom = GeomOf(own, s);
       dGeomSetBody(geom, id);
       dGeomSetOffsetPosition(geom, s.center_m.x, s.center_m.y, s.center_m.z);
-      const Rotation r = RotationFromZ(s.axis);
+      const Rotation& r = s.turn;
       const dMatrix3 turn = {r.m[0], r.m[1], r.m[2], 0,      r.m[3], r.m[4],
                              r.m[5], 0,      r.m[6], r.m[7], r.m[8], 0};
       dGeomSetOffsetRotation(geom, turn);
       dGeomSetCategoryBits(geom, s.meets_bodies ? kBodyBit : 0);
       dGeomSetCollideBits(geom, (s.meets_planes ? kPlaneBit : 0) | (s.meets_bodies ? kBodyBit : 0));
+    }
+  }
+
+  static dGeomID GeomOf(dSpaceID space, const Shape& s) {
+    const Vec3& half = s.half_extents_m;
+    switch (s.kind) {
+      case Shape::Kind::kSphere:
+        return dCreateSphere(space, s.radius_m);
+      case Shape::Kind::kCapsule:
+        return dCreateCapsule(space, s.radius_m, 2 * s.half_length_m);
+      default:
+        return dCreateBox(space, 2 * half.x, 2 * half.y, 2 * half.z);
     }
   }
 
@@ -134,7 +144,7 @@ class Ode final : public World {
       dSpaceCollide2(a, b, this, Near);
       return;
     }
-    std::array<dContact, 4> found;
+    std::array<dContact, 8> found;  // as many as two boxes can have
     const int count =
         dCollide(a, b, static_cast<int>(found.size()), &found[0].geom, sizeof(dContact));
     const void* const plane = dGeomGetData(a) != nullptr ? dGeomGetData(a) : dGeomGetData(b);

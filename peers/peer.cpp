@@ -52,6 +52,9 @@ const Material* FirstMaterial(const ModelDef& def) {
   for (const CapsuleDef& c : def.capsules) {
     if (c.collides) return &c.material;
   }
+  for (const BoxDef& b : def.boxes) {
+    if (b.collides) return &b.material;
+  }
   return nullptr;
 }
 
@@ -82,7 +85,7 @@ std::string Version(Engine engine) {
 }
 
 std::string Unsupported(const ModelDef& def) {
-  if (!def.boxes.empty() || !def.terrain_boxes.empty()) return "boxes";
+  if (!def.terrain_boxes.empty()) return "terrain boxes";
   for (const BodyDef& body : def.bodies) {
     if (body.fixed) return "the fixed body " + body.name;
   }
@@ -96,6 +99,9 @@ std::string Unsupported(const ModelDef& def) {
   }
   for (const CapsuleDef& c : def.capsules) {
     if (c.collides && !fits(c.material)) return "shapes of different materials";
+  }
+  for (const BoxDef& b : def.boxes) {
+    if (b.collides && !fits(b.material)) return "shapes of different materials";
   }
   for (const PlaneDef& p : def.planes) {
     if (p.material.static_friction != p.material.kinetic_friction) {

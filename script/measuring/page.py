@@ -3,31 +3,14 @@
 import pathlib
 import statistics
 
+from measuring import contacts
+from measuring.figures import NOTHING, SETTINGS, number
 from validation.runs import Problem, fill, table
 
 TEMPLATE = pathlib.Path(__file__).with_name("performance.md.in")
 ROBOTS = ("tetraspine3", "tetraspine12", "six_strut")
-SETTINGS = {  # in the order of the tables
-    ("taut", "default"): "taut",
-    ("mujoco", "euler_pyramidal"): "MuJoCo, Euler, pyramidal cones",
-    ("mujoco", "euler_elliptic"): "MuJoCo, Euler, elliptic cones",
-    ("bullet", "iterations_10"): "Bullet, 10 iterations",
-    ("bullet", "iterations_50"): "Bullet, 50 iterations",
-    ("bullet", "two_directions"): "Bullet, 10 iterations, two friction directions",
-    ("ode", "quick_10"): "ODE, quick step, 10 iterations",
-    ("ode", "full_step"): "ODE, full step",
-}
 STAGES = ("start", "kinematics", "cables", "kick", "collide", "solve", "integrate", "judge")
-NOTHING = "-"
-UNCONVERGED = "*"  # some step of it stopped at the largest number of sweeps
-
-
-def number(value, digits=3):
-    """Rounded to significant digits, groups of three apart: 1 230 000."""
-    if value == 0:
-        return "0"
-    rounded = float(f"{value:.{digits}g}")
-    return f"{rounded:,.0f}".replace(",", " ") if abs(rounded) >= 10 ** (digits - 1) else f"{rounded:.{digits}g}"
+UNCONVERGED = "*"  # some step of it stopped at the largest number of linear solves
 
 
 class Results:
@@ -150,11 +133,15 @@ def text(items):
     machine = items[0]["machine"]
     if any(item["machine"] != machine for item in items):
         raise Problem("these results are of several machines or versions")
+    scenes = contacts.section(items)
+    items = [item for item in items if item["kind"] != contacts.KIND]
+    if not items:
+        raise Problem("these results are of contact-rich scenes alone; the page needs all others, too")
     values = {"one": one_world(items), "batches": batches(items), "against": against_batches(items),
               "stages": stages(items), "memory": memory(items), "segments": growth(items, "segments"),
-              "contacts": growth(items, "contacts"),
+              "contacts": growth(items, "contacts"), "contact_scenes": scenes,
               **spread(items),
               "repetitions": str(min(item["repetitions"] for item in items)),
-              "load": f"{machine['load'][0]:.1f}", "tolerance": machine["tolerance_m_per_s"], "sweeps": machine["max_sweeps"],
+              "load": f"{machine['load'][0]:.1f}", "tolerance": machine["tolerance_m_per_s"], "linear_solves": machine["max_linear_solves"],
               **{key: str(machine[key]) for key in ("processor", "cores", "commit", "mujoco", "bullet", "ode")}}
     return fill(TEMPLATE.read_text(), values)

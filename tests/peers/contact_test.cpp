@@ -4,8 +4,10 @@
 
 #include <cmath>
 
+#include "math/vec.h"
 #include "peers/settings.h"
 #include "peers/sled.h"
+#include "scenes/block_on_slope.h"
 
 namespace taut::peers {
 namespace {
@@ -60,6 +62,29 @@ TEST_P(ContactOf, OnlyBulletSlidesUnderACouple) {
     EXPECT_NEAR(speed, slip, 1e-3 * slip);
   } else {
     EXPECT_NEAR(speed, 0, 1e-3 * slip);
+  }
+}
+
+TEST_P(ContactOf, BoxesLieAsTheyAreTurned) {
+  // On a slope of 0.3 rad a block lies flat, rough enough not to slide: turned otherwise it would
+  // stand on an edge and fall. The bottom one of two carries the other.
+  scenes::BlockOnSlope scene;
+  scene.slope.angle_rad = 0.3;
+  scene.slope.material = scene.material = {0.8, 0.8, 0.0};
+  ModelDef def = scene.Def();
+  const Vec3 normal = scene.slope.normal(), half = scene.half_m;
+  def.bodies.push_back(def.bodies[0]);
+  def.bodies[1].com_m = 3 * half.z * normal;
+  def.boxes.push_back(def.boxes[0]);
+  def.boxes[1].body = 1;
+  def.boxes[1].center_m = def.bodies[1].com_m;
+  const auto world = Make(def);
+  world->Step(kStepS, 300);
+  for (int i = 0; i < 2; ++i) {
+    const BodyState state = world->Body(i);
+    EXPECT_NEAR(Dot(state.position_m, normal), (2 * i + 1) * half.z, 0.001) << i;
+    EXPECT_LT(std::abs(Dot(state.position_m, scene.slope.downhill())), 0.002) << i;
+    EXPECT_GT(std::abs(state.orientation.w), std::cos(0.01)) << i;
   }
 }
 

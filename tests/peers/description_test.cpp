@@ -80,8 +80,8 @@ TEST(Peers, SayWhatTheyDoNotKnow) {
   ModelDef def = test::OnGround(test::Robot("tetraspine3"));
   EXPECT_EQ(Unsupported(def), "");
   ModelDef other = def;
-  other.boxes.emplace_back();
-  EXPECT_EQ(Unsupported(other), "boxes");
+  other.terrain_boxes.emplace_back();
+  EXPECT_EQ(Unsupported(other), "terrain boxes");
   other = def;
   other.bodies[1].fixed = true;
   EXPECT_EQ(Unsupported(other), "the fixed body " + def.bodies[1].name);

@@ -95,7 +95,7 @@ def NumbersAreRoundedAndGrouped():
 
 
 def AMedianIsTakenOfTheRepetitions():
-    context = {"load_avg": [0.5], "mujoco": "1", "bullet": "2", "ode": "3", "step_s": "0.001", "max_sweeps": "10",
+    context = {"load_avg": [0.5], "mujoco": "1", "bullet": "2", "ode": "3", "step_s": "0.001", "max_linear_solves": "10",
                "tolerance_m_per_s": "0.1"}
     runs = [{"name": "x", "run_name": "batch/taut/default/robot/128/8/2/real_time", "run_type": "iteration",
              "steps_per_s": rate} for rate in (1.0, 4.0, 2.0)]
