@@ -18,6 +18,8 @@ struct Contact : ContactPoint<Num, kLinks> {
   Num gap;            ///< At the middle of the step [m].
   V3<Num> arm[kLinks];  ///< From the centre of mass [m].
   Num static_friction, kinetic_friction, restitution;
+  Num patch;       ///< While biases are fitted: in which state it is.
+  Num rebounding;  ///< 1 if its bias is a rebound that is due.
   Num slip;    ///< 1 if it slides, 0 if it sticks.
   Num bounce;  ///< Rebound speed due in the next step [m/s], 0: none.
 };

@@ -58,6 +58,7 @@ template <class Num, int kLinks>
 void PrepareRebound(Contact<Num, kLinks>& c, const ContactMemory<Num>& memory, Num h, Num inv_h,
                     Num vn, Num before) noexcept {
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), dv = vn - before;
+  c.rebounding = Select(memory.bounce > zero, one, zero);
   c.bias[0] = Select(memory.bounce > zero, -memory.bounce, c.bias[0]);
   const Num share = Min(Max(c.gap, zero) * inv_h / Max(-vn, Num::Splat(1e-12)), one);
   const Num impact = vn - dv * (Num::Splat(0.5) - share);
@@ -99,7 +100,7 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   const Num out = Max(Num::Splat(kPushOut) * c.gap * inv_h, Num::Splat(-kMaxPushOutMPerS));
   c.bias[0] = Select(c.gap > zero, c.gap * inv_h, out);
   c.bias[1] = c.bias[2] = zero;
-  c.bounce = zero;
+  c.bounce = c.rebounding = zero;
   if (Any((c.restitution > zero) & (c.live > zero))) {
     PrepareRebound(c, memory, h, inv_h, Dot(free, n), Dot(before, n));
   }
@@ -122,7 +123,8 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
 /// Whether a contact slid in this step: decides its coefficient in the next. `u`: its velocities.
 template <class Num, int kLinks>
 TAUT_INLINE void JudgeSlip(Contact<Num, kLinks>& c, const Num* u) noexcept {
-  const auto slides = u[1] * u[1] + u[2] * u[2] > Num::Splat(kSlidingMPerS * kSlidingMPerS);
+  const Num u1 = u[1] + c.bias[1], u2 = u[2] + c.bias[2];
+  const auto slides = u1 * u1 + u2 * u2 > Num::Splat(kSlidingMPerS * kSlidingMPerS);
   const Num slip = Select(slides, Num::Splat(1.0), Num::Splat(0.0));
   c.slip = Select(c.static_friction > c.kinetic_friction, slip, c.slip);
 }

@@ -31,15 +31,6 @@ TAUT_INLINE ContactMemory<W> Recall(const Rows<W>& s, const Contact<W, 1>& c, in
   return found;
 }
 
-/// Two contacts of a body at most are solved to the last digit as they are.
-template <class W>
-TAUT_INLINE void FitCrowded(Contact<W, 1>* contacts, int count) noexcept {
-  constexpr int kFewest = 3;
-  if (count < kFewest) return;
-  const auto crowded = contacts[kFewest - 1].live > W::Splat(0.0);
-  if (Any(crowded)) FitBiases(contacts, count, crowded);
-}
-
 /// Contacts with the world get their equations and start from the impulses of the step before.
 template <class W>
 void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
@@ -53,7 +44,22 @@ void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
       PrepareContact(c, memory, body, b, s.inv_mass[b], body, b, s.inv_mass[b],
                      s.friction_scale[0], step_s);
     }
-    FitCrowded(work.contacts + m.first_slot[b], work.contact_count[b]);
+  }
+}
+
+/// Biases of bodies with more than two contacts, or that are not islands of their own: two
+/// contacts by themselves are solved to the last digit as they are.
+template <class W, class M>
+void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
+  constexpr int kFewest = 3;
+  const W zero = W::Splat(0.0);
+  for (int b = 0; b < m.body_count; ++b) {
+    const int count = work.contact_count[b];
+    if (count < 2) continue;
+    Contact<W, 1>* const contacts = work.contacts + m.first_slot[b];
+    auto lanes = tied | (work.unsolved[b] > zero);
+    if (count >= kFewest) lanes = lanes | (contacts[kFewest - 1].live > zero);
+    if (Any(lanes)) FitBiases(contacts, count, lanes);
   }
 }
 
@@ -230,6 +236,7 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
   const auto dual =
       work.dual.capacity > 0 ? cabled & (touches == zero) : MaskOf<W>::Splat(false);
   MarkUnsolved(m, work, cabled & !dual);
+  FitWorldBiases(m, work, cabled);
   SolveBodies(m, work, target, busy & !cabled, result);
   if (Any(dual)) {
     const auto failed = WorldDual<W>(m, s, work).Solve(target, dual, result.residual,

@@ -84,10 +84,14 @@ struct DualMemory {
     const V3<W>*lin, *ang, *turn;
   };
   int capacity;  ///< Rows; 0: not solved so.
-  W *w, *a;      ///< Inverse effective mass; the linear system. Row by row.
-  W *u, *l, *r;
+  W* a;                  ///< Inverse effective mass, then factors: an upper triangle, row by row.
+  W* c;                  ///< The contacts' system.
+  W *u, *l, *r, *q;      ///< Velocities, impulses; right sides, then changes.
+  W *d, *now;            ///< Changes and impulses of the contacts alone.
+  W *diagonal, *active;  ///< Of the cables' A and S.
   Twist<W>* v;  ///< Per body.
-  Column* columns;
+  Column* columns;   ///< By body:
+  int* first_column;  ///< where each body's start.
 
   static int CapacityFor(const View& m) noexcept {
     const int rows = 3 * m.slot_count + m.cable_count;
@@ -95,11 +99,12 @@ struct DualMemory {
   }
   void Take(const View& m, Room& room) noexcept {
     capacity = CapacityFor(m);
-    w = room.Take<W>(capacity * capacity);
-    a = room.Take<W>(capacity * capacity);
-    W** const per_row[] = {&u, &l, &r};
+    a = room.Take<W>(capacity * (capacity + 1) / 2);
+    c = room.Take<W>(9 * m.slot_count * (capacity > 0 ? m.slot_count : 0));
+    W** const per_row[] = {&u, &l, &r, &q, &d, &now, &diagonal, &active};
     for (W** list : per_row) *list = room.Take<W>(capacity);
     v = room.Take<Twist<W>>(m.body_count);
+    first_column = room.Take<int>(m.body_count + 1);
     columns = room.Take<Column>(3 * m.slot_count + m.attachment_count);
   }
 };

@@ -78,18 +78,19 @@ class Proximal {
         if (!(slope < 0)) break;
       }
       island_.Measure(m_.direction, m_.du);
-      const double alpha = LineSearch(e, slope);
-      const double used = theta;
-      theta = alpha < 0.5 ? theta - 0.3 : theta + 0.3;
-      theta = theta < 0 ? 0 : theta > 1 ? 1 : theta;
-      const Num step = Num::Splat(alpha);
-      for (int i = 0; i < island_.rows; ++i) m_.u2[i] = m_.u[i] + step * m_.du[i];
-      for (int i = 0; i < size_; ++i) m_.trial_v[i] += step * m_.direction[i];
-      const bool same = SameBranches(e);
-      if (same && alpha == 1 && used == 1 && !symmetric) {
+      // On the same branches at its end the step solves the equations: the judge has no say.
+      StepTo(1);
+      if (theta == 1 && !symmetric && SameBranches(e)) {
         TakeLinear();
+        for (int i = 0; i < size_; ++i) m_.trial_v[i] += m_.direction[i];
         return true;
       }
+      const double alpha = LineSearch(e, slope);
+      theta = alpha < 0.5 ? theta - 0.3 : theta + 0.3;
+      theta = theta < 0 ? 0 : theta > 1 ? 1 : theta;
+      StepTo(alpha);
+      const Num step = Num::Splat(alpha);
+      for (int i = 0; i < size_; ++i) m_.trial_v[i] += step * m_.direction[i];
       Keep(m_.u, m_.u2, island_.rows);
     }
     island_.pools.ForEach([&](auto& law, auto&, int row, int) {
@@ -97,6 +98,12 @@ class Proximal {
     });
     island_.Clamp(m_.l);
     return false;
+  }
+
+  /// u2 <- u + alpha du
+  void StepTo(double alpha) noexcept {
+    const Num step = Num::Splat(alpha);
+    for (int i = 0; i < island_.rows; ++i) m_.u2[i] = m_.u[i] + step * m_.du[i];
   }
 
   /// Impulses, their derivatives and F at m.u, m.trial_v.

@@ -1,16 +1,20 @@
 /// A world whose bodies hang together by stiff cables, and touch only what does not move: Newton's
-/// method in all impulses, in all lanes at once (docs/theory/contact.md, eq. 20).
+/// method in all impulses, in all lanes at once (docs/theory/contact.md, section 5).
 ///
-/// Rows are those that some lane has; one that a lane has not stands in its system as 1 x = 0.
-/// What a lane gets does not depend on the others: its rows have the same order alone.
+/// Cables are eliminated first, by a symmetric factorisation that serves as long as the same cables
+/// are taut. What is left is a system of the contacts alone, as small as a body's; it has its own
+/// Newton iterations. Rows are those that some lane has; one that a lane has not stands in its
+/// system as 1 x = 0. What a lane gets does not depend on the others: its rows have the same order
+/// alone.
 
 namespace taut::sim {
 
 template <class W>
 class WorldDual {
-  static constexpr int kMaxIterations = 10;
+  static constexpr int kMaxIterations = 10, kMaxContactIterations = 8;
   static constexpr double kCompliance = 1e-9;
   using M = MaskOf<W>;
+  using Column = typename DualMemory<W>::Column;
 
  public:
   WorldDual(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept
@@ -22,21 +26,18 @@ class WorldDual {
     const W tolerance = W::Splat(target.tolerance), goal = W::Splat(target.goal()),
             pays = W::Splat(Target::kPays);
     Start();
+    SortColumns();
     W now = Residual();
     // At least one step: what cables leave over swings on and adds up.
     M busy = lanes;
-    BuildMatrix();
     for (int iteration = 0; iteration < kMaxIterations && Any(busy); ++iteration) {
-      SolveLinear(busy);
-      for (int i = 0; i < rows_; ++i) {
-        mem_.r[i] = Select(busy, mem_.r[i], zero);
-        mem_.l[i] += mem_.r[i];
-      }
-      for (int i = 0; i < rows_; ++i) {
-        W change = zero;
-        for (int j = 0; j < rows_; ++j) change += mem_.w[i * rows_ + j] * mem_.r[j];
-        mem_.u[i] += change;
-      }
+      if (LinearizeCables(iteration == 0)) Factor();
+      Forward();
+      SolveContacts(busy, goal);
+      Back();
+      Take(busy);
+      Velocities();
+      Measure();
       solves += Select(busy, one, zero);
       const W before = now;
       now = Select(busy, Residual(), now);
@@ -50,42 +51,56 @@ class WorldDual {
   }
 
  private:
-  /// Calls f(law, first row) for all contacts with the world and all stiff cables.
+  /// Calls f(law, first row) for all stiff cables,
   template <class F>
-  void ForEach(F&& f) noexcept {
-    int row = 0;
+  TAUT_INLINE void ForEachCable(F&& f) noexcept {
+    for (int i = 0; i < work_.stiff_count; ++i) f(work_.stiff[i], i);
+  }
+  /// for all contacts with the world,
+  template <class F>
+  TAUT_INLINE void ForEachContact(F&& f) noexcept {
+    int row = work_.stiff_count;
     for (int b = 0; b < m_.body_count; ++b) {
       for (int k = 0; k < work_.contact_count[b]; ++k, row += 3) {
         f(work_.contacts[m_.first_slot[b] + k], row);
       }
     }
-    for (int i = 0; i < work_.stiff_count; ++i) f(work_.stiff[i], row++);
     rows_ = row;
+  }
+  /// for both.
+  template <class F>
+  TAUT_INLINE void ForEach(F&& f) noexcept {
+    ForEachCable(f);
+    ForEachContact(f);
   }
 
   /// Impulses, and velocities with them.
   void Start() noexcept {
-    const W zero = W::Splat(0.0);
+    cables_ = work_.stiff_count;
     ForEach([&](auto& law, int row) {
       for (int r = 0; r < LawOf<decltype(law)>::kRows; ++r) mem_.l[row + r] = law.l[r];
     });
-    for (int b = 0; b < m_.body_count; ++b) {
-      mem_.v[b] = {work_.bodies[b].v, work_.bodies[b].w};
-    }
-    Apply(mem_.l);
-    for (int i = 0; i < rows_; ++i) mem_.u[i] = zero;
-    ForEach([&](auto& law, int row) {
-      for (int i = 0; i < law.link_count; ++i) {
-        const Twist<W>& t = mem_.v[law.links[i].body];
-        AddVelocity(law.links[i], t.v, t.w, mem_.u + row);
-      }
-    });
+    Velocities();
+    Measure();
   }
-  void Apply(const W* l) noexcept {
+  /// v <- v_free + M^-1 J^T l
+  void Velocities() noexcept {
+    for (int b = 0; b < m_.body_count; ++b) mem_.v[b] = {work_.bodies[b].v, work_.bodies[b].w};
     ForEach([&](auto& law, int row) {
       for (int i = 0; i < law.link_count; ++i) {
         Twist<W>& t = mem_.v[law.links[i].body];
-        Push(law.links[i], l + row, t.v, t.w);
+        Push(law.links[i], mem_.l + row, t.v, t.w);
+      }
+    });
+  }
+  /// u <- J v
+  void Measure() noexcept {
+    ForEach([&](auto& law, int row) {
+      constexpr int R = LawOf<decltype(law)>::kRows;
+      for (int r = 0; r < R; ++r) mem_.u[row + r] = W::Splat(0.0);
+      for (int i = 0; i < law.link_count; ++i) {
+        const Twist<W>& t = mem_.v[law.links[i].body];
+        AddVelocity(law.links[i], t.v, t.w, mem_.u + row);
       }
     });
   }
@@ -99,91 +114,268 @@ class WorldDual {
     return worst;
   }
 
-  /// W = J M^-1 J^T: links that share a body, body by body.
+  /// Row i of an upper triangle, from the diagonal on: Row(i)[j], j >= i.
+  TAUT_INLINE W* Row(int i) const noexcept { return mem_.a + i * (2 * rows_ - i - 1) / 2; }
+
+  /// a <- W = J M^-1 J^T, its upper triangle: rows that share a body, body by body.
   void BuildMatrix() noexcept {
-    for (int i = 0; i < rows_ * rows_; ++i) mem_.w[i] = W::Splat(0.0);
+    const int n = rows_;
+    for (int i = 0; i < n; ++i) {
+      W* const row = Row(i);
+      for (int j = i; j < n; ++j) row[j] = W::Splat(0.0);
+    }
     for (int b = 0; b < m_.body_count; ++b) {
-      int count = 0;  // columns that act on the body
-      ForEach([&](auto& law, int row) {
-        for (int i = 0; i < law.link_count; ++i) {
-          if (law.links[i].body != b) continue;
-          for (int r = 0; r < LawOf<decltype(law)>::kRows; ++r) {
-            mem_.columns[count++] = {row + r, &law.links[i].lin[r], &law.links[i].ang[r],
-                                     &law.links[i].turn[r]};
-          }
-        }
-      });
-      if (count == 0) continue;
+      const Column* const columns = mem_.columns + mem_.first_column[b];
+      const int count = mem_.first_column[b + 1] - mem_.first_column[b];
       const W inv_mass = s_.inv_mass[b];
       for (int i = 0; i < count; ++i) {
-        const auto& x = mem_.columns[i];
-        for (int j = 0; j <= i; ++j) {
-          const auto& y = mem_.columns[j];
-          mem_.w[x.row * rows_ + y.row] +=
-              inv_mass * Dot(*x.lin, *y.lin) + Dot(*x.ang, *y.turn);
+        const auto& x = columns[i];
+        const V3<W> lin = inv_mass * *x.lin, turn = *x.turn;
+        W* const row = Row(x.row);
+        for (int j = i; j < count; ++j) {
+          const auto& y = columns[j];
+          row[y.row] += Dot(lin, *y.lin) + Dot(turn, *y.ang);
         }
       }
     }
-    for (int i = 0; i < rows_; ++i) {
-      for (int j = 0; j < i; ++j) mem_.w[j * rows_ + i] = mem_.w[i * rows_ + j];
-    }
   }
 
-  /// Newton's step: (A + S W) dl = r, by the way that fits the lane: the others have no say in it.
-  void SolveLinear(M lanes) noexcept {
-    M slides = M::Splat(false);
-    ForEach([&](auto& law, int row) {
-      constexpr int R = LawOf<decltype(law)>::kRows;
-      const auto branch = law.BranchOf(mem_.u + row, mem_.l + row);
-      LinearLaw<W, R> linear;
-      law.Linearize(branch, mem_.u + row, mem_.l + row, W::Splat(kCompliance), linear);
-      if constexpr (R == 3) slides = slides | branch.slides;
-      for (int r = 0; r < R; ++r) {
-        W* const a = mem_.a + (row + r) * rows_;
-        for (int j = 0; j < rows_; ++j) {
-          W sum = linear.S[r][0] * mem_.w[row * rows_ + j];
-          for (int k = 1; k < R; ++k) sum += linear.S[r][k] * mem_.w[(row + k) * rows_ + j];
-          a[j] = sum;
-        }
-        for (int k = 0; k < R; ++k) a[row + k] += linear.A[r][k];
-        mem_.r[row + r] = linear.r[r];
+  /// Which rows act on which body.
+  void SortColumns() noexcept {
+    int* const next = mem_.first_column;  // shifted by one until the end
+    for (int b = 0; b <= m_.body_count; ++b) next[b] = 0;
+    ForEach([&](auto& law, int) {
+      for (int i = 0; i < law.link_count; ++i) {
+        next[law.links[i].body + 1] += LawOf<decltype(law)>::kRows;
       }
     });
-    static_cast<void>(lanes);
-    Eliminate();
+    for (int b = 0; b < m_.body_count; ++b) next[b + 1] += next[b];
+    ForEach([&](auto& law, int row) {
+      for (int i = 0; i < law.link_count; ++i) {
+        const auto& link = law.links[i];
+        for (int r = 0; r < LawOf<decltype(law)>::kRows; ++r) {
+          mem_.columns[next[link.body]++] = {row + r, &link.lin[r], &link.ang[r], &link.turn[r]};
+        }
+      }
+    });
+    for (int b = m_.body_count; b > 0; --b) next[b] = next[b - 1];
+    next[0] = 0;
   }
 
-  /// Gaussian elimination without pivots; a lane that this spoils does not get there.
-  void Eliminate() noexcept {
+  /// Newton's equations of the cables. True if other cables are taut than before.
+  bool LinearizeCables(bool first) noexcept {
+    bool changed = first;
+    ForEachCable([&](auto& law, int row) {
+      const auto branch = law.BranchOf(mem_.u + row, mem_.l + row);
+      LinearLaw<W, 1> linear;
+      law.Linearize(branch, mem_.u + row, mem_.l + row, W::Splat(0.0), linear);
+      mem_.r[row] = linear.r[0];
+      mem_.diagonal[row] = linear.A[0][0];
+      changed = changed || Any(!(linear.S[0][0] == mem_.active[row]));
+      mem_.active[row] = linear.S[0][0];
+    });
+    return changed;
+  }
+
+  /// a: rows of the cables, eliminated (D L^T, the inverse of D on the diagonal); behind them what
+  /// is left for the contacts, W'.
+  void Factor() noexcept {
+    BuildMatrix();
+    const W one = W::Splat(1.0), zero = W::Splat(0.0);
+    auto idle = M::Splat(false);
+    for (int i = 0; i < cables_; ++i) idle = idle | (mem_.active[i] == zero);
+    const bool some_idle = Any(idle);
+    for (int i = 0; i < cables_; ++i) {
+      W* const a = Row(i);
+      const W in = mem_.active[i];
+      a[i] = Select(in > zero, a[i] + mem_.diagonal[i], one);
+      if (!some_idle) continue;
+      for (int j = i + 1; j < cables_; ++j) a[j] = in * mem_.active[j] * a[j];
+      for (int j = cables_; j < rows_; ++j) a[j] = in * a[j];
+    }
+    constexpr int kPivots = 4;
+    int k = 0;
+    for (; k + kPivots <= cables_; k += kPivots) EliminatePivots<kPivots>(k);
+    for (; k < cables_; ++k) EliminatePivots<1>(k);
+  }
+
+  /// Pivots k to k + P - 1: first among themselves, then out of all rows below at once, each entry
+  /// by one pivot after the other.
+  template <int P>
+  void EliminatePivots(int k) noexcept {
     const int n = rows_;
-    W* const a = mem_.a;
-    W* const x = mem_.r;
-    for (int k = 0; k < n; ++k) {
-      const W inverse = W::Splat(1.0) / a[k * n + k];
-      for (int i = k + 1; i < n; ++i) {
-        const W factor = a[i * n + k] * inverse;
-        for (int j = k + 1; j < n; ++j) a[i * n + j] -= factor * a[k * n + j];
+    const W* x[P];
+    W inverse[P], f[P];
+    for (int p = 0; p < P; ++p) {
+      W* const row = Row(k + p);
+      for (int q = 0; q < p; ++q) {
+        f[0] = -(x[q][k + p] * inverse[q]);
+        AddMultiple(row + k + p, x[q] + k + p, f[0], n - k - p);
+      }
+      x[p] = row;
+      inverse[p] = W::Splat(1.0) / row[k + p];
+    }
+    for (int i = k + P; i < n; ++i) {
+      W* const row = Row(i);
+      for (int p = 0; p < P; ++p) f[p] = -(x[p][i] * inverse[p]);
+      TAUT_NO_OVERLAP for (int j = i; j < n; ++j) {
+        W sum = row[j];
+        for (int p = 0; p < P; ++p) sum += f[p] * x[p][j];
+        row[j] = sum;
+      }
+    }
+    for (int p = 0; p < P; ++p) Row(k + p)[k + p] = inverse[p];
+  }
+
+  /// y += f x. None of the callers' x and y overlap.
+  TAUT_INLINE static void AddMultiple(W* y, const W* x, W f, int count) noexcept {
+    TAUT_NO_OVERLAP for (int i = 0; i < count; ++i) y[i] += f * x[i];
+  }
+
+  /// Right sides forward through the cables; what that does to the contacts' velocities into q.
+  void Forward() noexcept {
+    const W zero = W::Splat(0.0);
+    for (int i = cables_; i < rows_; ++i) mem_.q[i] = zero;
+    PassOnKnown();
+    for (int k = 0; k < cables_; ++k) {
+      const W* const a = Row(k);
+      const W f = a[k] * mem_.r[k];
+      AddMultiple(mem_.r + k + 1, a + k + 1, -f, cables_ - k - 1);
+      AddMultiple(mem_.q + cables_, a + cables_, f, rows_ - cables_);
+    }
+  }
+  /// The change of a cable that is not taut is known, dl = r; all others feel it, through the bodies.
+  void PassOnKnown() noexcept {
+    const W zero = W::Splat(0.0);
+    bool any = false;
+    ForEachCable([&](auto&, int row) {
+      any = any || Any(!(Select(mem_.active[row] > zero, zero, mem_.r[row]) == zero));
+    });
+    if (!any) return;
+    const V3<W> none{zero, zero, zero};
+    for (int b = 0; b < m_.body_count; ++b) mem_.v[b] = {none, none};
+    ForEachCable([&](auto& law, int row) {
+      const W known = Select(mem_.active[row] > zero, zero, mem_.r[row]);
+      for (int i = 0; i < law.link_count; ++i) {
+        Twist<W>& t = mem_.v[law.links[i].body];
+        Push(law.links[i], &known, t.v, t.w);
+      }
+    });
+    ForEachCable([&](auto& law, int row) {
+      W u = zero;
+      for (int i = 0; i < law.link_count; ++i) {
+        const Twist<W>& t = mem_.v[law.links[i].body];
+        AddVelocity(law.links[i], t.v, t.w, &u);
+      }
+      mem_.r[row] -= mem_.active[row] * u;
+    });
+    ForEachContact([&](auto& law, int row) {
+      const Twist<W>& t = mem_.v[law.links[0].body];
+      AddVelocity(law.links[0], t.v, t.w, mem_.q + row);
+    });
+  }
+
+  /// Newton's method for the contacts, with the cables giving way: u = u* + W' dl,  u* = u + q.
+  /// Leaves dl in r.
+  void SolveContacts(M lanes, W goal) noexcept {
+    const W zero = W::Splat(0.0);
+    const int first = cables_, size = rows_ - cables_;
+    for (int i = first; i < rows_; ++i) {
+      mem_.r[i] = zero;
+      mem_.q[i] += mem_.u[i];
+    }
+    M busy = lanes;
+    for (int iteration = 0; iteration < kMaxContactIterations; ++iteration) {
+      W residual = zero;
+      ForEachContact([&](auto& law, int row) {
+        W* const l = mem_.now + (row - first);
+        for (int r = 0; r < 3; ++r) l[r] = mem_.l[row + r] + mem_.r[row + r];
+        residual = Max(law.Residual(law.BranchOf(mem_.q + row, l), mem_.q + row, l), residual);
+      });
+      busy = busy & !(residual < goal);
+      if (!Any(busy)) return;
+      LinearizeContacts(size);
+      EliminateContacts(size);
+      for (int i = 0; i < size; ++i) {
+        mem_.d[i] = Select(busy, mem_.d[i], zero);
+        mem_.r[first + i] += mem_.d[i];
+      }
+      for (int i = 0; i < size; ++i) {
+        for (int j = 0; j < size; ++j) mem_.q[first + i] += Left(first + i, first + j) * mem_.d[j];
+      }
+    }
+  }
+  /// Newton's equations of the contacts: c d = d.
+  void LinearizeContacts(int size) noexcept {
+    const int first = cables_;
+    ForEachContact([&](auto& law, int row) {
+      const W* const l = mem_.now + (row - first);
+      LinearLaw<W, 3> linear;
+      law.Linearize(law.BranchOf(mem_.q + row, l), mem_.q + row, l, W::Splat(kCompliance), linear);
+      for (int r = 0; r < 3; ++r) {
+        W* const c = mem_.c + (row - first + r) * size;
+        for (int j = 0; j < size; ++j) {
+          c[j] = linear.S[r][0] * Left(row, first + j);
+          for (int k = 1; k < 3; ++k) c[j] += linear.S[r][k] * Left(row + k, first + j);
+        }
+        for (int k = 0; k < 3; ++k) c[row - first + k] += linear.A[r][k];
+        mem_.d[row - first + r] = linear.r[r];
+      }
+    });
+  }
+  /// W', of which a has the upper triangle.
+  TAUT_INLINE W Left(int i, int j) const noexcept { return i < j ? Row(i)[j] : Row(j)[i]; }
+
+  /// d <- c^-1 d, without pivots; a lane that this spoils does not get there.
+  void EliminateContacts(int size) noexcept {
+    W* const x = mem_.d;
+    for (int k = 0; k < size; ++k) {
+      W* const pivot_row = mem_.c + k * size;
+      const W inverse = W::Splat(1.0) / pivot_row[k];
+      for (int i = k + 1; i < size; ++i) {
+        W* const row = mem_.c + i * size;
+        const W factor = row[k] * inverse;
+        AddMultiple(row + k + 1, pivot_row + k + 1, -factor, size - k - 1);
         x[i] -= factor * x[k];
       }
-      a[k * n + k] = inverse;
+      pivot_row[k] = inverse;
     }
-    for (int k = n - 1; k >= 0; --k) {
-      for (int j = k + 1; j < n; ++j) x[k] -= a[k * n + j] * x[j];
-      x[k] = x[k] * a[k * n + k];
+    for (int k = size - 1; k >= 0; --k) {
+      const W* const row = mem_.c + k * size;
+      for (int j = k + 1; j < size; ++j) x[k] -= row[j] * x[j];
+      x[k] = x[k] * row[k];
     }
   }
 
-  /// What was found, made admissible, into the laws and the bodies of `solved`.
+  /// The cables' changes, from the contacts' back.
+  void Back() noexcept {
+    for (int k = cables_ - 1; k >= 0; --k) {
+      const W* const a = Row(k);
+      W sum = mem_.r[k];
+      for (int j = k + 1; j < rows_; ++j) sum -= a[j] * mem_.r[j];
+      mem_.r[k] = a[k] * sum;
+    }
+  }
+
+  /// The step's impulses, made admissible.
+  void Take(M lanes) noexcept {
+    ForEach([&](auto& law, int row) {
+      constexpr int R = LawOf<decltype(law)>::kRows;
+      W l[R];
+      for (int r = 0; r < R; ++r) l[r] = mem_.l[row + r] + mem_.r[row + r];
+      law.Clamp(l);
+      for (int r = 0; r < R; ++r) mem_.l[row + r] = Select(lanes, l[r], mem_.l[row + r]);
+    });
+  }
+
+  /// What was found into the laws and the bodies of `solved`.
   void Finish(M solved) noexcept {
     if (!Any(solved)) return;
-    for (int b = 0; b < m_.body_count; ++b) mem_.v[b] = {work_.bodies[b].v, work_.bodies[b].w};
     ForEach([&](auto& law, int row) {
-      law.Clamp(mem_.l + row);
       for (int r = 0; r < LawOf<decltype(law)>::kRows; ++r) {
         law.l[r] = Select(solved, mem_.l[row + r], law.l[r]);
       }
     });
-    Apply(mem_.l);
     for (int b = 0; b < m_.body_count; ++b) {
       BodyWork<W>& body = work_.bodies[b];
       body.v = Select3(solved, mem_.v[b].v, body.v);
@@ -195,7 +387,7 @@ class WorldDual {
   const Rows<W>& s_;
   Scratch<W>& work_;
   DualMemory<W>& mem_;
-  int rows_ = 0;
+  int rows_ = 0, cables_ = 0;
 };
 
 }  // namespace taut::sim
