@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "sim/batch_impl.h"
+#include "sim/start_values.h"
 
 namespace taut {
 namespace {
@@ -70,7 +71,7 @@ Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
       pool(options.threads) {
   const int n = lanes();
   const auto group_count = static_cast<std::size_t>((options.worlds + n - 1) / n);
-  const auto contacts = static_cast<std::size_t>(model->ContactCapacity(n));
+  const auto contacts = static_cast<std::size_t>(view.ContactCapacity(n));
   const auto nodes = static_cast<std::size_t>(model->node_count);
   const std::size_t group_rows =
       static_cast<std::size_t>(layout.rows) * static_cast<std::size_t>(n);
@@ -91,58 +92,36 @@ Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
     scratch.push_back(AllocateAligned<char>(kernel->scratch_bytes(view)));
   }
   // The lanes behind the last world are worlds, too: no special cases, and no NaN.
-  for (int world = 0; world < static_cast<int>(group_count) * n; ++world) InitializeWorld(world);
+  for (int world = 0; world < static_cast<int>(group_count) * n; ++world) StartWorld(world);
 }
 
 void Batch::Impl::SetMass(int world, int body, double mass_kg) noexcept {
-  const BodyDef& def = model->def().bodies[static_cast<std::size_t>(body)];
-  at(world, layout.mass + body) = def.fixed ? 0.0 : mass_kg;
-  at(world, layout.inv_mass + body) = def.fixed ? 0.0 : 1.0 / mass_kg;
-  for (int i = 0; i < 3; ++i) {
-    const double moment = def.fixed ? 0.0
-                                    : model->inertia[static_cast<std::size_t>(3 * body + i)] *
-                                          (mass_kg / def.mass_kg);
-    at(world, layout.inertia + 3 * body + i) = moment;
-    at(world, layout.inv_inertia + 3 * body + i) = def.fixed ? 0.0 : 1.0 / moment;
-  }
+  const sim::start_of::Masses m = sim::start_of::MassesOf(*model, body, mass_kg);
+  at(world, layout.mass + body) = m.mass;
+  at(world, layout.inv_mass + body) = m.inv_mass;
+  set(world, layout.inertia + 3 * body, m.inertia);
+  set(world, layout.inv_inertia + 3 * body, m.inv_inertia);
 }
 
-void Batch::Impl::InitializeWorld(int world) noexcept {
-  const ModelDef& def = model->def();
-  for (int b = 0; b < view.body_count; ++b) {
-    const BodyDef& body = def.bodies[static_cast<std::size_t>(b)];
-    SetMass(world, b, body.mass_kg);
-    set(world, layout.pos + 3 * b, body.com_m);
-    set(world, layout.vel + 3 * b, body.fixed ? Vec3{} : body.velocity_m_per_s);
-    for (int i = 0; i < 4; ++i) {
-      at(world, layout.quat + 4 * b + i) = model->q_WP0[static_cast<std::size_t>(4 * b + i)];
-    }
-    const Inertia& j = body.inertia_kg_m2;
-    const Vec3& w = body.angular_velocity_rad_per_s;
-    const Vec3 momentum{j.xx * w.x + j.xy * w.y + j.xz * w.z, j.xy * w.x + j.yy * w.y + j.yz * w.z,
-                        j.xz * w.x + j.yz * w.y + j.zz * w.z};
-    set(world, layout.mom + 3 * b, body.fixed ? Vec3{} : momentum);
-    set(world, layout.old_vel + 3 * b, body.fixed ? Vec3{} : body.velocity_m_per_s);
-    set(world, layout.old_spin + 3 * b, body.fixed ? Vec3{} : w);
+void Batch::Impl::StartWorld(int world) noexcept {
+#define TAUT_ROW(name, type, per, role, halted, start)                 \
+  for (int i = 0; i < view.Count(sim::Per::per, 0); ++i) {             \
+    const sim::start_of::type first = sim::start_of::start(*model, i); \
+    set(world, layout.name + sim::kWidth##type * i, first);            \
   }
-  for (int c = 0; c < view.cable_count; ++c) {
-    const CableDef& cable = def.cables[static_cast<std::size_t>(c)];
-    at(world, layout.rest + c) = at(world, layout.target + c) = cable.rest_length_m;
-    at(world, layout.stiffness + c) = cable.stiffness_n_per_m;
-    at(world, layout.damping + c) = cable.damping_n_s_per_m;
-    // A cable that is taut at the start is known to be so: a stiff one does not enter as if it had
-    // been slack before (docs/theory/cables.md, eq. 10).
-    double length = 0;
-    for (std::size_t i = 1; i < cable.attachments.size(); ++i) {
-      const Vec3 d = cable.attachments[i].position_m - cable.attachments[i - 1].position_m;
-      length += std::sqrt(Dot(d, d));
-    }
-    at(world, layout.tension + c) =
-        std::max(cable.stiffness_n_per_m * (length - cable.rest_length_m), 0.0);
-  }
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
   JudgeStiffness(world);
-  at(world, layout.friction_scale) = 1.0;
-  set(world, layout.gravity, def.gravity_m_per_s2);
+}
+
+void Batch::Impl::StartContact(int world, int contact) noexcept {
+#define TAUT_ROW(name, type, per, role, halted, start)                       \
+  if (sim::Per::per == sim::Per::kContact) {                                 \
+    const sim::start_of::type first = sim::start_of::start(*model, contact); \
+    set(world, layout.name + sim::kWidth##type * contact, first);            \
+  }
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
 }
 
 void Batch::Impl::JudgeStiffness(int world) noexcept {
@@ -235,11 +214,7 @@ void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
   d.set(world, d.layout.vel + 3 * body, state.velocity_m_per_s);
   d.set(world, d.layout.old_vel + 3 * body, state.velocity_m_per_s);
   d.set(world, d.layout.old_spin + 3 * body, state.angular_velocity_rad_per_s);
-  const int row = d.layout.quat + 4 * body;
-  d.at(world, row) = q.w;
-  d.at(world, row + 1) = q.x;
-  d.at(world, row + 2) = q.y;
-  d.at(world, row + 3) = q.z;
+  d.set(world, d.layout.quat + 4 * body, q);
   // Angular momentum in W: R diag(I) R^T w.
   const Vec3 w = Rotate(Conjugate(q), state.angular_velocity_rad_per_s);
   const Vec3 inertia = d.vec(world, d.layout.inertia + 3 * body);
@@ -315,7 +290,7 @@ double Batch::GetParameter(int world, Parameter parameter, int index) const noex
 
 std::size_t Batch::BytesPerWorld() const noexcept {
   const Impl& d = *impl_;
-  const std::size_t ids = static_cast<std::size_t>(d.model->ContactCapacity(d.lanes())) *
+  const std::size_t ids = static_cast<std::size_t>(d.view.ContactCapacity(d.lanes())) *
                           sizeof(std::uint32_t) / static_cast<std::size_t>(d.lanes());
   return static_cast<std::size_t>(d.layout.rows) * sizeof(double) + ids + sizeof(sim::LaneStatus);
 }

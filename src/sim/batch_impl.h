@@ -55,6 +55,11 @@ struct Batch::Impl {
   Vec3 vec(int world, int row) const noexcept {
     return {at(world, row), at(world, row + 1), at(world, row + 2)};
   }
+  void set(int world, int row, double x) const noexcept { at(world, row) = x; }
+  void set(int world, int row, const Quat& q) const noexcept {
+    at(world, row) = q.w;
+    set(world, row + 1, Vec3{q.x, q.y, q.z});
+  }
   void set(int world, int row, const Vec3& x) const noexcept {
     at(world, row) = x.x;
     at(world, row + 1) = x.y;
@@ -65,7 +70,20 @@ struct Batch::Impl {
     return {at(world, row), at(world, row + 1), at(world, row + 2), at(world, row + 3)};
   }
   void SetMass(int world, int body, double mass_kg) noexcept;
-  void InitializeWorld(int world) noexcept;
+  void StartWorld(int world) noexcept;
+  /// As a contact that was not there before.
+  void StartContact(int world, int contact) noexcept;
+  /// Where the group's contact of this id is; makes room for it if no lane has it. -1: none left.
+  int PlaceContact(int world, std::uint32_t id) noexcept;
+  /// f(number) of all that a snapshot holds of a contact.
+  template <class F>
+  void EachMemory(int world, int contact, F f) const noexcept {
+    for (const sim::RowInfo& row : sim::kStateRows) {
+      if (row.role != sim::Role::kMemory) continue;
+      const int first = layout.*row.first + row.width * contact;
+      for (int k = 0; k < row.width; ++k) f(at(world, first + k));
+    }
+  }
   /// After a change of masses, stiffnesses or dampings: which cables are how stiff.
   void JudgeStiffness(int world) noexcept;
   /// Bodies moved by hand: what was known about distances is void.

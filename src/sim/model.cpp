@@ -343,55 +343,29 @@ View Tables::View() const noexcept {
           along_slip};
 }
 
+namespace {
+
+/// Snapshots and hashes take state and parameters as one piece.
+constexpr bool RolesRise() {
+  Role last = Role::kState;
+  for (const RowInfo& row : kStateRows) {
+    if (row.role < last) return false;
+    last = row.role;
+  }
+  return true;
+}
+static_assert(RolesRise());
+
+}  // namespace
+
 Layout Tables::MakeLayout(int lanes) const {
+  const struct View m = View();
   Layout l;
-  int rows = 0;
-  const auto take = [&](int count) {
-    const int first = rows;
-    rows += count;
-    return first;
-  };
-  l.time = take(1);
-  l.last_step = take(1);
-  l.pos = take(3 * body_count);
-  l.quat = take(4 * body_count);
-  l.vel = take(3 * body_count);
-  l.mom = take(3 * body_count);
-  l.old_vel = take(3 * body_count);
-  l.old_spin = take(3 * body_count);
-  l.rest = take(cable_count);
-  l.rest_rate = take(cable_count);
-  l.target = take(cable_count);
-  l.tension = take(cable_count);
-  l.node_force = take(3 * node_count);
-  l.mass = take(body_count);
-  l.inv_mass = take(body_count);
-  l.inertia = take(3 * body_count);
-  l.inv_inertia = take(3 * body_count);
-  l.stiffness = take(cable_count);
-  l.damping = take(cable_count);
-  l.stiff_k = take(cable_count);
-  l.stiff_b = take(cable_count);
-  l.friction_scale = take(1);
-  l.gravity = take(3);
-  l.halted = take(1);
-  l.snapshot_rows = rows;
-  const int contacts = ContactCapacity(lanes);
-  l.cache_force = take(3 * contacts);
-  l.cache_slip = take(contacts);
-  l.cache_bounce = take(contacts);
-  l.cache_live = take(contacts);
-  l.cache_arm = take(3 * contacts);
-  l.cache_normal = take(3 * contacts);
-  l.cache_gap = take(contacts);
-  l.clearance = take(static_cast<int>(body_pairs.size()));
-  l.residual = take(1);
-  l.sweeps = take(1);
-  l.sense_length = take(cable_count);
-  l.sense_rate = take(cable_count);
-  l.sense_tension = take(cable_count);
-  l.sense_elastic = take(cable_count);
-  l.rows = rows;
+  for (const RowInfo& row : kStateRows) {
+    l.*row.first = l.rows;
+    l.rows += row.width * m.Count(row.per, m.ContactCapacity(lanes));
+    if (row.role <= Role::kParameter) l.snapshot_rows = l.rows;
+  }
   return l;
 }
 

@@ -135,21 +135,25 @@ std::vector<ContactState> Batch::Contacts(int world) const {
 
 namespace {
 
-/// A snapshot: header, the state rows, then the live contacts.
+/// A snapshot: header, the state rows, then the live contacts: id (64 bits) and memory.
 struct SnapshotHeader {
   std::uint32_t magic = 0x74736e31;  // "tsn1"
   std::uint32_t rows = 0, contacts = 0, bits = 0;
   double first_time_s = 0;
 };
-struct SnapshotContact {
-  std::uint64_t id = 0;
-  Vec3 force_n;
-  double slip = 0, bounce = 0;
-};
+
+/// Numbers of a contact after its id.
+constexpr std::size_t MemoryWidth() {
+  std::size_t width = 0;
+  for (const sim::RowInfo& row : sim::kStateRows) {
+    if (row.role == sim::Role::kMemory) width += static_cast<std::size_t>(row.width);
+  }
+  return width;
+}
 
 std::size_t SnapshotSize(const SnapshotHeader& header) {
   return sizeof(SnapshotHeader) + sizeof(double) * header.rows +
-         sizeof(SnapshotContact) * header.contacts;
+         (sizeof(std::uint64_t) + sizeof(double) * MemoryWidth()) * header.contacts;
 }
 
 template <class T>
@@ -167,6 +171,28 @@ T Read(const std::uint8_t*& at) {
 
 }  // namespace
 
+int Batch::Impl::PlaceContact(int world, std::uint32_t id) noexcept {
+  sim::Group& g = group(world);
+  std::uint32_t* const end = g.contact_ids + g.contact_count;
+  std::uint32_t* const place = std::lower_bound(g.contact_ids, end, id);
+  const int contact = static_cast<int>(place - g.contact_ids);
+  if (place != end && *place == id) return contact;
+  if (g.contact_count >= view.ContactCapacity(g.lanes)) return -1;
+  std::copy_backward(place, end, end + 1);
+  *place = id;
+  for (const sim::RowInfo& row : sim::kStateRows) {
+    if (row.per != sim::Per::kContact) continue;
+    const int size = row.width * g.lanes;
+    double* const first = g.rows + layout.*row.first * g.lanes;
+    std::copy_backward(first + size * contact, first + size * g.contact_count,
+                       first + size * (g.contact_count + 1));
+  }
+  ++g.contact_count;
+  const int first_world = world - world % g.lanes;
+  for (int lane = 0; lane < g.lanes; ++lane) StartContact(first_world + lane, contact);
+  return contact;
+}
+
 std::vector<std::uint8_t> Batch::Save(int world) const {
   const Impl& d = *impl_;
   const sim::Group& g = d.group(world);
@@ -175,19 +201,19 @@ std::vector<std::uint8_t> Batch::Save(int world) const {
   header.rows = static_cast<std::uint32_t>(d.layout.snapshot_rows);
   header.bits = status.bits;
   header.first_time_s = status.first_time_s;
-  std::vector<SnapshotContact> contacts;
+  std::vector<int> live;
   for (int i = 0; i < g.contact_count; ++i) {
-    if (!(d.at(world, d.layout.cache_live + i) > 0)) continue;
-    contacts.push_back({g.contact_ids[i], d.vec(world, d.layout.cache_force + 3 * i),
-                        d.at(world, d.layout.cache_slip + i),
-                        d.at(world, d.layout.cache_bounce + i)});
+    if (d.at(world, d.layout.cache_live + i) > 0) live.push_back(i);
   }
-  header.contacts = static_cast<std::uint32_t>(contacts.size());
+  header.contacts = static_cast<std::uint32_t>(live.size());
   std::vector<std::uint8_t> out(SnapshotSize(header));
   std::uint8_t* at = out.data();
   Write(at, header);
   for (int row = 0; row < d.layout.snapshot_rows; ++row) Write(at, d.at(world, row));
-  for (const SnapshotContact& c : contacts) Write(at, c);
+  for (const int i : live) {
+    Write(at, std::uint64_t{g.contact_ids[i]});
+    d.EachMemory(world, i, [&](double x) { Write(at, x); });
+  }
   return out;
 }
 
@@ -198,7 +224,7 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
   const auto header = Read<SnapshotHeader>(at);
   if (header.magic != SnapshotHeader().magic || snapshot.size() != SnapshotSize(header) ||
       header.rows != static_cast<std::uint32_t>(d.layout.snapshot_rows) ||
-      header.contacts > static_cast<std::uint32_t>(d.model->ContactCapacity(1))) {
+      header.contacts > static_cast<std::uint32_t>(d.view.ContactCapacity(1))) {
     return false;
   }
   for (int row = 0; row < d.layout.snapshot_rows; ++row) d.at(world, row) = Read<double>(at);
@@ -213,41 +239,15 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
   status.first_time_s = header.first_time_s;
 
   // This lane's contacts give way to the snapshot's; those of other lanes stay.
-  const auto clear = [&](int i) {
-    d.set(world, d.layout.cache_force + 3 * i, {});
-    d.at(world, d.layout.cache_slip + i) = sim::kSlipUnknown;
-    d.at(world, d.layout.cache_bounce + i) = 0.0;
-    d.at(world, d.layout.cache_live + i) = 0.0;
-  };
-  for (int i = 0; i < g.contact_count; ++i) clear(i);
+  for (int i = 0; i < g.contact_count; ++i) d.StartContact(world, i);
   for (std::uint32_t k = 0; k < header.contacts; ++k) {
-    const auto c = Read<SnapshotContact>(at);
-    const auto id = static_cast<std::uint32_t>(c.id);
-    std::uint32_t* const end = g.contact_ids + g.contact_count;
-    std::uint32_t* const place = std::lower_bound(g.contact_ids, end, id);
-    const int i = static_cast<int>(place - g.contact_ids);
-    if (place == end || *place != id) {
-      if (g.contact_count >= d.model->ContactCapacity(d.lanes())) continue;
-      std::copy_backward(place, end, end + 1);
-      *place = id;
-      for (int first : {d.layout.cache_force, d.layout.cache_arm, d.layout.cache_normal}) {
-        double* const rows = g.rows + (first + 3 * i) * g.lanes;
-        std::copy_backward(rows, rows + 3 * (g.contact_count - i) * g.lanes,
-                           rows + 3 * (g.contact_count - i + 1) * g.lanes);
-        std::fill_n(rows, 3 * g.lanes, 0.0);
-      }
-      for (int first :
-           {d.layout.cache_slip, d.layout.cache_bounce, d.layout.cache_live, d.layout.cache_gap}) {
-        double* const rows = g.rows + (first + i) * g.lanes;
-        std::copy_backward(rows, rows + (g.contact_count - i) * g.lanes,
-                           rows + (g.contact_count - i + 1) * g.lanes);
-        std::fill_n(rows, g.lanes, first == d.layout.cache_slip ? sim::kSlipUnknown : 0.0);
-      }
-      ++g.contact_count;
+    const auto id = static_cast<std::uint32_t>(Read<std::uint64_t>(at));
+    const int i = d.PlaceContact(world, id);
+    if (i < 0) {  // no room
+      at += sizeof(double) * MemoryWidth();
+      continue;
     }
-    d.set(world, d.layout.cache_force + 3 * i, c.force_n);
-    d.at(world, d.layout.cache_slip + i) = c.slip;
-    d.at(world, d.layout.cache_bounce + i) = c.bounce;
+    d.EachMemory(world, i, [&](double& x) { x = Read<double>(at); });
     d.at(world, d.layout.cache_live + i) = 1.0;
   }
   d.Moved(world);
@@ -268,9 +268,7 @@ std::uint64_t Batch::Hash(int world) const noexcept {
   for (int i = 0; i < g.contact_count; ++i) {
     if (!(d.at(world, d.layout.cache_live + i) > 0)) continue;
     add(static_cast<double>(g.contact_ids[i]));
-    for (int k = 0; k < 3; ++k) add(d.at(world, d.layout.cache_force + 3 * i + k));
-    add(d.at(world, d.layout.cache_slip + i));
-    add(d.at(world, d.layout.cache_bounce + i));
+    d.EachMemory(world, i, add);
   }
   return hash;
 }

@@ -12,16 +12,18 @@ void Poison([[maybe_unused]] const View& m, [[maybe_unused]] const Rows<W>& s,
 #ifndef NDEBUG
   work.Fill(0xff);  // a NaN as double, -1 as int
   const W nan = W::Splat(__builtin_nan(""));
-  const V3<W> nan3{nan, nan, nan};
-  const int capacity = static_cast<int>(m.first_pair_id) + W::kLanes * m.pair_capacity;
-  for (int i = g.contact_count; i < capacity; ++i) {
-    g.contact_ids[i] = 0xffffffffu;
-    s.cache_force[i] = s.cache_arm[i] = s.cache_normal[i] = nan3;
-    s.cache_slip[i] = s.cache_bounce[i] = s.cache_live[i] = s.cache_gap[i] = nan;
-  }
-  for (int c = 0; c < m.cable_count; ++c) {
-    s.sense_length[c] = s.sense_rate[c] = s.sense_tension[c] = s.sense_elastic[c] = nan;
-  }
+  const int capacity = m.ContactCapacity(W::kLanes);
+  for (int i = g.contact_count; i < capacity; ++i) g.contact_ids[i] = 0xffffffffu;
+  const auto fill = [nan](void* row, int first, int end) {
+    for (int i = first; i < end; ++i) static_cast<W*>(row)[i] = nan;
+  };
+#define TAUT_ROW(name, type, per, role, halted, start)                   \
+  if (Per::per == Per::kContact) {                                       \
+    fill(s.name, g.contact_count* kWidth##type, capacity* kWidth##type); \
+  }                                                                      \
+  if (Role::role == Role::kSensed) fill(s.name, 0, m.Count(Per::per, 0) * kWidth##type);
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
 #endif
 }
 

@@ -11,58 +11,22 @@ using simd::Q4;
 using simd::S3;
 using simd::V3;
 
-/// A group's rows as wide numbers (names as in Layout).
+/// A group's rows as wide numbers: row `pos` of body b is pos[b] (state_rows.h).
 template <class W>
 struct Rows {
-  W *time, *last_step, *rest, *rest_rate, *target, *mass, *inv_mass, *stiffness, *damping,
-      *friction_scale, *tension, *stiff_k, *stiff_b, *halted, *cache_slip, *cache_bounce,
-      *cache_live, *cache_gap, *clearance, *residual, *sweeps, *sense_length, *sense_rate,
-      *sense_tension, *sense_elastic;
-  V3<W>*pos, *vel, *mom, *old_vel, *old_spin, *node_force, *inertia, *inv_inertia, *gravity,
-      *cache_force, *cache_arm, *cache_normal;
-  Q4<W>* quat;
+  using Number = W;
+  using V3 = simd::V3<W>;
+  using Q4 = simd::Q4<W>;
+
+#define TAUT_ROW(name, type, ...) type* name;
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
 
   Rows(const Layout& l, const Group& g) noexcept {
     W* const base = reinterpret_cast<W*>(g.rows);
-    const auto v3 = [base](int row) { return reinterpret_cast<V3<W>*>(base + row); };
-    time = base + l.time;
-    last_step = base + l.last_step;
-    pos = v3(l.pos);
-    quat = reinterpret_cast<Q4<W>*>(base + l.quat);
-    vel = v3(l.vel);
-    mom = v3(l.mom);
-    old_vel = v3(l.old_vel);
-    old_spin = v3(l.old_spin);
-    rest = base + l.rest;
-    rest_rate = base + l.rest_rate;
-    target = base + l.target;
-    tension = base + l.tension;
-    stiff_k = base + l.stiff_k;
-    stiff_b = base + l.stiff_b;
-    node_force = v3(l.node_force);
-    mass = base + l.mass;
-    inv_mass = base + l.inv_mass;
-    inertia = v3(l.inertia);
-    inv_inertia = v3(l.inv_inertia);
-    stiffness = base + l.stiffness;
-    damping = base + l.damping;
-    friction_scale = base + l.friction_scale;
-    gravity = v3(l.gravity);
-    halted = base + l.halted;
-    cache_force = v3(l.cache_force);
-    cache_slip = base + l.cache_slip;
-    cache_bounce = base + l.cache_bounce;
-    cache_live = base + l.cache_live;
-    cache_arm = v3(l.cache_arm);
-    cache_normal = v3(l.cache_normal);
-    cache_gap = base + l.cache_gap;
-    clearance = base + l.clearance;
-    residual = base + l.residual;
-    sweeps = base + l.sweeps;
-    sense_length = base + l.sense_length;
-    sense_rate = base + l.sense_rate;
-    sense_tension = base + l.sense_tension;
-    sense_elastic = base + l.sense_elastic;
+#define TAUT_ROW(name, type, ...) name = reinterpret_cast<type*>(base + l.name);
+    TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
   }
 };
 
@@ -172,12 +136,7 @@ struct Scratch {
   BodyWork<W>* bodies;
   AttachmentWork<W>* attachments;
   ContactRow<W>* contacts;
-  V3<W>* saved_pos;  ///< Start of the step, for worlds that turn non-finite.
-  Q4<W>* saved_quat;
-  V3<W>* saved_vel;
-  V3<W>* saved_mom;
-  W* saved_rest;
-  W* saved_rest_rate;
+  W* start;  ///< Rows that go back to the start of the step in worlds that turn non-finite.
   StiffCable<W>* stiff;
   CableLink<W>* links;  ///< Of all stiff cables.
   NewtonMemory newton;
@@ -194,17 +153,16 @@ struct Scratch {
   Scratch(const View& m, void* memory) noexcept : memory_(static_cast<char*>(memory)) {
     const size_t bodies_count = static_cast<size_t>(m.body_count) + 1;
     const size_t cables_count = static_cast<size_t>(m.cable_count);
-    const size_t contacts_count =
-        m.first_pair_id + static_cast<size_t>(W::kLanes) * static_cast<size_t>(m.pair_capacity);
+    const size_t contacts_count = static_cast<size_t>(m.ContactCapacity(W::kLanes));
     bodies = Take<BodyWork<W>>(bodies_count);
     attachments = Take<AttachmentWork<W>>(static_cast<size_t>(m.max_attachments));
     contacts = Take<ContactRow<W>>(contacts_count);
-    saved_pos = Take<V3<W>>(bodies_count);
-    saved_quat = Take<Q4<W>>(bodies_count);
-    saved_vel = Take<V3<W>>(bodies_count);
-    saved_mom = Take<V3<W>>(bodies_count);
-    saved_rest = Take<W>(cables_count);
-    saved_rest_rate = Take<W>(cables_count);
+    size_t start_rows = 0;
+    for (const RowInfo& row : kStateRows) {
+      if (row.halted != Halted::kGoesBack) continue;
+      start_rows += static_cast<size_t>(row.width * m.Count(row.per, 0));
+    }
+    start = Take<W>(start_rows);
     stiff = Take<StiffCable<W>>(cables_count);
     links = Take<CableLink<W>>(static_cast<size_t>(m.attachment_count));
     TakeNewton(3 * contacts_count + cables_count, static_cast<size_t>(m.attachment_count));
