@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "taut/cable_readings.h"
 #include "taut/diagnostics.h"
 #include "taut/model_def.h"
 
@@ -65,24 +66,12 @@ struct WorldStatus {
 };
 
 /// A cable at the current time.
-struct CableState {
-  double length_m = 0;       ///< l: between its ends, along all attachments.
-  double rate_m_per_s = 0;   ///< dl/dt, exact.
-  double rest_length_m = 0;  ///< L.
-  double tension_n = 0;      ///< What a load cell feels: spring and damper.
-  double elastic_n = 0;      ///< max(0, k (l - L)) alone: what NTRT logs.
-};
+using CableState = CableReadings<double>;
 
 /// All cables of the worlds that share a register: cable c of world `first_world + j` is at
 /// [c * lanes + j]. Points into the batch; what was sensed is void after the next step or change.
-struct CableRows {
+struct CableRows : ReadingRows {
   int lanes = 1, first_world = 0;
-  const double* length_m = nullptr;
-  const double* rate_m_per_s = nullptr;
-  const double* rest_length_m = nullptr;
-  const double* tension_n = nullptr;
-  const double* elastic_n = nullptr;
-  const double* stiffness_n_per_m = nullptr;
   double* rest_length_target_m = nullptr;  ///< As `SetRestLengthTarget` sets them; may be written.
 };
 

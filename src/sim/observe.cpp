@@ -7,12 +7,24 @@
 
 namespace taut {
 
+namespace {
+
+/// The rows that hold what is read of a cable.
+CableReadings<int> RowsOf(const sim::Layout& l) {
+  return {.rest_length_m = l.rest,
+          .length_m = l.sense_length,
+          .rate_m_per_s = l.sense_rate,
+          .tension_n = l.sense_tension,
+          .elastic_n = l.sense_elastic,
+          .stiffness_n_per_m = l.stiffness};
+}
+
+}  // namespace
+
 CableState Batch::Cable(int world, int cable) const noexcept {
   const Impl& d = *impl_;
   d.Sense(world);
-  return {d.at(world, d.layout.sense_length + cable), d.at(world, d.layout.sense_rate + cable),
-          d.at(world, d.layout.rest + cable), d.at(world, d.layout.sense_tension + cable),
-          d.at(world, d.layout.sense_elastic + cable)};
+  return MapReadings([&](int row) { return d.at(world, row + cable); }, RowsOf(d.layout));
 }
 
 int Batch::groups() const noexcept { return static_cast<int>(impl_->groups.size()); }
@@ -21,16 +33,9 @@ CableRows Batch::Cables(int group) noexcept {
   const Impl& d = *impl_;
   const int first_world = group * d.lanes();
   d.Sense(first_world);
-  const auto row = [&](int first) { return &d.at(first_world, first); };
-  return {d.lanes(),
-          first_world,
-          row(d.layout.sense_length),
-          row(d.layout.sense_rate),
-          row(d.layout.rest),
-          row(d.layout.sense_tension),
-          row(d.layout.sense_elastic),
-          row(d.layout.stiffness),
-          row(d.layout.target)};
+  const auto first = [&](int row) { return &d.at(first_world, row); };
+  return {MapReadings([&](int row) -> const double* { return first(row); }, RowsOf(d.layout)),
+          d.lanes(), first_world, first(d.layout.target)};
 }
 
 BodyState Batch::Body(int world, int body) const noexcept {
