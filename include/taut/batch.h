@@ -17,7 +17,8 @@
 
 namespace taut {
 
-/// A model, checked and laid out for stepping. Immutable; shared by all worlds of a batch.
+/// A model, checked and laid out for stepping. Immutable; shared by all worlds of a batch, and by
+/// any number of threads.
 class Model {
  public:
   /// Checks the numbers of `def`. Nothing and diagnostics (without file positions) if one is
@@ -36,7 +37,8 @@ class Model {
 enum class Simd { kScalar = 1, kSse2 = 2, kAvx2 = 4, kAvx512 = 8 };
 
 /// The widest that this machine has, or what the environment variable TAUT_SIMD asks for
-/// (scalar, sse2, avx2, avx512; what the machine lacks falls back to what it has).
+/// (scalar, sse2, avx2, avx512; what the machine lacks falls back to what it has). Any thread may
+/// call it while none changes the environment.
 Simd BestSimd();
 
 struct BatchOptions {
@@ -105,6 +107,9 @@ enum class Parameter {
   kGravityZ,  ///< [m/s^2]; index 0.
 };
 
+/// Threads: any number may call const functions of a batch at once. A function that is not const,
+/// and writing where `Cables` points to, needs the batch for itself. Batches do not know of each
+/// other, even those of one model.
 class Batch {
  public:
   Batch(std::shared_ptr<const Model> model, const BatchOptions& options);

@@ -1,8 +1,10 @@
 #include "taut/batch.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 #include <string_view>
 
 #include "sim/batch_impl.h"
@@ -146,14 +148,21 @@ void Batch::Impl::JudgeStiffness(int world) noexcept {
   }
 }
 
-void Batch::Impl::Moved(int world) const noexcept {
+void Batch::Impl::Moved(int world) noexcept {
   for (int i = 0; i < view.body_pair_count; ++i) at(world, layout.clearance + i) = 0.0;
   group(world).sensed = false;
 }
 
 void Batch::Impl::Sense(int world) const noexcept {
   sim::Group& g = group(world);
-  if (!g.sensed) kernel->sense(view, layout, g, scratch[0].get());
+  // Several threads may read at once: one senses, the others wait for it. Whoever comes later in
+  // the same step takes no lock.
+  const std::atomic_ref<bool> sensed(g.sensed);
+  if (sensed.load(std::memory_order_acquire)) return;
+  const std::lock_guard lock(sensing);
+  if (sensed.load(std::memory_order_relaxed)) return;
+  kernel->sense(view, layout, g, scratch[0].get());
+  sensed.store(true, std::memory_order_release);
 }
 
 void Batch::Impl::ForceNode(int world, int node) noexcept {

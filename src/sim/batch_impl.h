@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "base/thread_pool.h"
@@ -43,6 +44,7 @@ struct Batch::Impl {
   std::vector<sim::LaneStatus> status;
   std::vector<Aligned<char>> scratch;  ///< One a thread.
   base::ThreadPool pool;
+  mutable std::mutex sensing;  ///< Guards scratch[0] and the kSensed rows in const functions.
 
   int lanes() const noexcept { return kernel->lanes; }
   sim::Group& group(int world) const noexcept {
@@ -87,7 +89,8 @@ struct Batch::Impl {
   /// After a change of masses, stiffnesses or dampings: which cables are how stiff.
   void JudgeStiffness(int world) noexcept;
   /// Bodies moved by hand: what was known about distances is void.
-  void Moved(int world) const noexcept;
+  void Moved(int world) noexcept;
+  /// Makes the kSensed rows of the world's group belong to the current state.
   void Sense(int world) const noexcept;
   void ForceNode(int world, int node) noexcept;
 };

@@ -27,7 +27,7 @@ struct Group {
   int contact_count = 0;
   int* forced_nodes = nullptr;  ///< Nodes that ever had a force, rising.
   int forced_count = 0;
-  bool sensed = false;           ///< The sense_* rows belong to the current state.
+  bool sensed = false;  ///< The kSensed rows belong to the current state. Const readers share it.
   LaneStatus* status = nullptr;  ///< Per lane.
 };
 

@@ -240,7 +240,6 @@ void SenseGroup(const View& m, const Layout& layout, Group& g, void* scratch) {
   Poison(m, s, g, work);
   StageSenseBodies(m, s, work);
   StageSense(m, s, work);
-  g.sensed = true;
 }
 
 template <class W, class Watch = NoWatch>
