@@ -201,21 +201,28 @@ void Batch::Step(double step_s, int count) noexcept {
   d.pool.Run(work);
 }
 
-double Batch::Time(int world) const noexcept { return impl_->at(world, impl_->layout.time); }
+double Batch::Time(int world) const noexcept {
+  impl_->CheckWorld(__func__, world);
+  return impl_->at(world, impl_->layout.time);
+}
 
 void Batch::SetRestLengthTarget(int world, int cable, double rest_length_m) noexcept {
+  impl_->CheckCable(__func__, world, cable);
   impl_->at(world, impl_->layout.target + cable) = rest_length_m;
 }
 double Batch::RestLengthTarget(int world, int cable) const noexcept {
+  impl_->CheckCable(__func__, world, cable);
   return impl_->at(world, impl_->layout.target + cable);
 }
 void Batch::SetNodeForce(int world, int node, const Vec3& force_n) noexcept {
+  impl_->CheckNode(__func__, world, node);
   impl_->ForceNode(world, node);
   impl_->set(world, impl_->layout.node_force + 3 * node, force_n);
 }
 
 void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
   Impl& d = *impl_;
+  d.CheckBody(__func__, world, body);
   const auto first = static_cast<std::size_t>(4 * body);
   const double* q0 = d.model->q_WP0.data() + first;
   const Quat q = state.orientation * Quat{q0[0], q0[1], q0[2], q0[3]};
@@ -233,19 +240,51 @@ void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
 }
 
 void Batch::SetTime(int world, double time_s) noexcept {
+  impl_->CheckWorld(__func__, world);
   impl_->at(world, impl_->layout.time) = time_s;
 }
 
 void Batch::SetRestLength(int world, int cable, double rest_length_m) noexcept {
   Impl& d = *impl_;
+  d.CheckCable(__func__, world, cable);
   d.at(world, d.layout.rest + cable) = rest_length_m;
   d.at(world, d.layout.target + cable) = rest_length_m;
   d.at(world, d.layout.rest_rate + cable) = 0.0;
   d.group(world).sensed = false;
 }
 
+int Batch::Impl::ParameterRow(const char* function, int world, Parameter parameter,
+                              int index) const noexcept {
+  switch (parameter) {
+    case Parameter::kBodyMass:
+      CheckBody(function, world, index);
+      return layout.mass + index;
+    case Parameter::kCableStiffness:
+      CheckCable(function, world, index);
+      return layout.stiffness + index;
+    case Parameter::kCableDamping:
+      CheckCable(function, world, index);
+      return layout.damping + index;
+    default:
+      break;
+  }
+  CheckWorld(function, world);
+  sim::CheckIndex(function, "parameter of the world", index, 1);
+  switch (parameter) {
+    case Parameter::kFrictionScale:
+      return layout.friction_scale;
+    case Parameter::kGravityX:
+      return layout.gravity;
+    case Parameter::kGravityY:
+      return layout.gravity + 1;
+    default:
+      return layout.gravity + 2;
+  }
+}
+
 void Batch::SetParameter(int world, Parameter parameter, int index, double value) noexcept {
   Impl& d = *impl_;
+  const int row = d.ParameterRow(__func__, world, parameter, index);
   if (parameter == Parameter::kBodyMass) {
     const BodyState state = Body(world, index);
     d.SetMass(world, index, value);
@@ -253,48 +292,13 @@ void Batch::SetParameter(int world, Parameter parameter, int index, double value
     SetBodyState(world, index, state);  // same velocity, other momentum
     return;
   }
+  d.at(world, row) = value;
   d.group(world).sensed = false;
-  switch (parameter) {
-    case Parameter::kCableStiffness:
-      d.at(world, d.layout.stiffness + index) = value;
-      break;
-    case Parameter::kCableDamping:
-      d.at(world, d.layout.damping + index) = value;
-      break;
-    case Parameter::kFrictionScale:
-      d.at(world, d.layout.friction_scale) = value;
-      break;
-    case Parameter::kGravityX:
-      d.at(world, d.layout.gravity) = value;
-      break;
-    case Parameter::kGravityY:
-      d.at(world, d.layout.gravity + 1) = value;
-      break;
-    default:
-      d.at(world, d.layout.gravity + 2) = value;
-      break;
-  }
   d.JudgeStiffness(world);
 }
 
 double Batch::GetParameter(int world, Parameter parameter, int index) const noexcept {
-  const Layout& l = impl_->layout;
-  switch (parameter) {
-    case Parameter::kBodyMass:
-      return impl_->at(world, l.mass + index);
-    case Parameter::kCableStiffness:
-      return impl_->at(world, l.stiffness + index);
-    case Parameter::kCableDamping:
-      return impl_->at(world, l.damping + index);
-    case Parameter::kFrictionScale:
-      return impl_->at(world, l.friction_scale);
-    case Parameter::kGravityX:
-      return impl_->at(world, l.gravity);
-    case Parameter::kGravityY:
-      return impl_->at(world, l.gravity + 1);
-    default:
-      return impl_->at(world, l.gravity + 2);
-  }
+  return impl_->at(world, impl_->ParameterRow(__func__, world, parameter, index));
 }
 
 std::size_t Batch::BytesPerWorld() const noexcept {

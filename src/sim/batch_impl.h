@@ -8,6 +8,7 @@
 
 #include "base/thread_pool.h"
 #include "math/vec.h"
+#include "sim/check_index.h"
 #include "sim/group.h"
 #include "taut/batch.h"
 
@@ -45,6 +46,25 @@ struct Batch::Impl {
   std::vector<Aligned<char>> scratch;  ///< One a thread.
   base::ThreadPool pool;
   mutable std::mutex sensing;  ///< Guards scratch[0] and the kSensed rows in const functions.
+
+  // What callers give (sim/check_index.h); `function` is the caller's name.
+  void CheckWorld(const char* function, int world) const noexcept {
+    sim::CheckIndex(function, "world", world, options.worlds);
+  }
+  void CheckBody(const char* function, int world, int body) const noexcept {
+    CheckWorld(function, world);
+    sim::CheckIndex(function, "body", body, view.body_count);
+  }
+  void CheckCable(const char* function, int world, int cable) const noexcept {
+    CheckWorld(function, world);
+    sim::CheckIndex(function, "cable", cable, view.cable_count);
+  }
+  void CheckNode(const char* function, int world, int node) const noexcept {
+    CheckWorld(function, world);
+    sim::CheckIndex(function, "node", node, view.node_count);
+  }
+  /// The row of a parameter.
+  int ParameterRow(const char* function, int world, Parameter parameter, int index) const noexcept;
 
   int lanes() const noexcept { return kernel->lanes; }
   sim::Group& group(int world) const noexcept {

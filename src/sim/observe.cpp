@@ -23,6 +23,7 @@ CableReadings<int> RowsOf(const sim::Layout& l) {
 
 CableState Batch::Cable(int world, int cable) const noexcept {
   const Impl& d = *impl_;
+  d.CheckCable(__func__, world, cable);
   d.Sense(world);
   return MapReadings([&](int row) { return d.at(world, row + cable); }, RowsOf(d.layout));
 }
@@ -31,6 +32,7 @@ int Batch::groups() const noexcept { return static_cast<int>(impl_->groups.size(
 
 CableRows Batch::Cables(int group) noexcept {
   const Impl& d = *impl_;
+  sim::CheckIndex(__func__, "group", group, groups());
   const int first_world = group * d.lanes();
   d.Sense(first_world);
   const auto first = [&](int row) { return &d.at(first_world, row); };
@@ -40,6 +42,7 @@ CableRows Batch::Cables(int group) noexcept {
 
 BodyState Batch::Body(int world, int body) const noexcept {
   const Impl& d = *impl_;
+  d.CheckBody(__func__, world, body);
   const Quat q = d.quat(world, body);
   const double* q0 = d.model->q_WP0.data() + static_cast<std::size_t>(4 * body);
   const Vec3 l = Rotate(Conjugate(q), d.vec(world, d.layout.mom + 3 * body));
@@ -51,6 +54,7 @@ BodyState Batch::Body(int world, int body) const noexcept {
 
 Vec3 Batch::NodePosition(int world, int node) const noexcept {
   const Impl& d = *impl_;
+  d.CheckNode(__func__, world, node);
   const sim::AttachmentTable& n = d.view.nodes[node];
   const Vec3 p{n.p_P[0], n.p_P[1], n.p_P[2]};
   if (n.body == d.view.body_count) return p;
@@ -59,6 +63,7 @@ Vec3 Batch::NodePosition(int world, int node) const noexcept {
 
 Vec3 Batch::NodeVelocity(int world, int node) const noexcept {
   const Impl& d = *impl_;
+  d.CheckNode(__func__, world, node);
   const sim::AttachmentTable& n = d.view.nodes[node];
   if (n.body == d.view.body_count) return {};
   const BodyState b = Body(world, n.body);
@@ -68,6 +73,7 @@ Vec3 Batch::NodeVelocity(int world, int node) const noexcept {
 
 Energy Batch::TotalEnergy(int world) const noexcept {
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   Energy e;
   const Vec3 gravity = d.vec(world, d.layout.gravity);
   for (int b = 0; b < d.view.body_count; ++b) {
@@ -89,6 +95,7 @@ Energy Batch::TotalEnergy(int world) const noexcept {
 
 Vec3 Batch::Momentum(int world) const noexcept {
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   Vec3 sum;
   for (int b = 0; b < d.view.body_count; ++b) {
     sum = sum + d.at(world, d.layout.mass + b) * d.vec(world, d.layout.vel + 3 * b);
@@ -98,6 +105,7 @@ Vec3 Batch::Momentum(int world) const noexcept {
 
 Vec3 Batch::AngularMomentum(int world) const noexcept {
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   Vec3 sum;
   for (int b = 0; b < d.view.body_count; ++b) {
     const Vec3 p = d.at(world, d.layout.mass + b) * d.vec(world, d.layout.vel + 3 * b);
@@ -108,6 +116,7 @@ Vec3 Batch::AngularMomentum(int world) const noexcept {
 
 std::vector<ContactState> Batch::Contacts(int world) const {
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   const sim::Tables& m = *d.model;
   const sim::Group& g = d.group(world);
   std::vector<ContactState> out;
@@ -200,6 +209,7 @@ int Batch::Impl::PlaceContact(int world, std::uint32_t id) noexcept {
 
 std::vector<std::uint8_t> Batch::Save(int world) const {
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   const sim::Group& g = d.group(world);
   const sim::LaneStatus& status = g.status[world % d.lanes()];
   SnapshotHeader header;
@@ -224,6 +234,7 @@ std::vector<std::uint8_t> Batch::Save(int world) const {
 
 bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexcept {
   Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   if (snapshot.size() < sizeof(SnapshotHeader)) return false;
   const std::uint8_t* at = snapshot.data();
   const auto header = Read<SnapshotHeader>(at);
@@ -262,6 +273,7 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
 std::uint64_t Batch::Hash(int world) const noexcept {
   // FNV-1a over what a snapshot holds, without building one.
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   std::uint64_t hash = 0xcbf29ce484222325u;
   const auto add = [&](double x) {
     std::uint64_t bits;
@@ -280,6 +292,7 @@ std::uint64_t Batch::Hash(int world) const noexcept {
 
 WorldStatus Batch::Status(int world) const noexcept {
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   const sim::LaneStatus& s = d.group(world).status[world % d.lanes()];
   return {s.bits,
           s.first_time_s,
@@ -290,6 +303,7 @@ WorldStatus Batch::Status(int world) const noexcept {
 }
 
 void Batch::ClearStatus(int world) noexcept {
+  impl_->CheckWorld(__func__, world);
   impl_->group(world).status[world % impl_->lanes()] = {};
   impl_->at(world, impl_->layout.halted) = 0.0;
 }
