@@ -22,7 +22,7 @@ def command(*words, **more):
 
 
 def build():
-    command("bash", "-c", "source script/common.sh; script/setup; build release taut_bench", cwd=ROOT)
+    command("bash", "-c", "source script/common.sh; script/setup; build install taut_bench", cwd=ROOT)
 
 
 def processor():

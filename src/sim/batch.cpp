@@ -170,6 +170,7 @@ void Batch::Impl::ForceNode(int world, int node) noexcept {
   int* const end = g.forced_nodes + g.forced_count;
   int* const place = std::lower_bound(g.forced_nodes, end, node);
   if (place != end && *place == node) return;
+  TAUT_ASSERT(g.forced_count < view.node_count);
   std::copy_backward(place, end, end + 1);
   *place = node;
   ++g.forced_count;

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include "base/assert.h"
 #include "base/thread_pool.h"
 #include "math/vec.h"
 #include "sim/check_index.h"
@@ -68,10 +69,12 @@ struct Batch::Impl {
 
   int lanes() const noexcept { return kernel->lanes; }
   sim::Group& group(int world) const noexcept {
+    TAUT_ASSERT(0 <= world && static_cast<std::size_t>(world / lanes()) < groups.size());
     return groups[static_cast<std::size_t>(world / lanes())];
   }
   /// Row `row` of a world.
   double& at(int world, int row) const noexcept {
+    TAUT_ASSERT(0 <= row && row < layout.rows);
     return group(world).rows[row * lanes() + world % lanes()];
   }
   Vec3 vec(int world, int row) const noexcept {
@@ -100,6 +103,7 @@ struct Batch::Impl {
   /// f(number) of all that a snapshot holds of a contact.
   template <class F>
   void EachMemory(int world, int contact, F f) const noexcept {
+    TAUT_ASSERT(0 <= contact && contact < group(world).contact_count);
     for (const sim::RowInfo& row : sim::kStateRows) {
       if (row.role != sim::Role::kMemory) continue;
       const int first = layout.*row.first + row.width * contact;

@@ -26,7 +26,7 @@ namespace taut::sim {
 template <class W>
 void SaveStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   // Rows that follow one another are copied in one piece.
-  const W* from = reinterpret_cast<const W*>(s.time);
+  const W* from = s.time.data();
   W* to = work.start;
   size_t count = 0;
   const auto save = [&](const void* row, int more) {
@@ -39,7 +39,7 @@ void SaveStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
     count += static_cast<size_t>(more);
   };
 #define TAUT_ROW(name, type, per, role, halted, start) \
-  if (Halted::halted == Halted::kGoesBack) save(s.name, m.Count(Per::per, 0) * kWidth##type);
+  if (Halted::halted == Halted::kGoesBack) save(s.name.data(), m.Count(Per::per, 0) * kWidth##type);
   TAUT_STATE_ROWS(TAUT_ROW)
 #undef TAUT_ROW
   __builtin_memcpy(to, from, count * sizeof(W));
@@ -58,7 +58,7 @@ void KeepStart(const View& m, const Rows<W>& s, const Scratch<W>& work, M halted
     if (what == Halted::kGoesBack) from += count;
   };
 #define TAUT_ROW(name, type, per, role, halted, start) \
-  keep(Halted::halted, s.name, m.Count(Per::per, work.contact_count) * kWidth##type);
+  keep(Halted::halted, s.name.data(), m.Count(Per::per, work.contact_count) * kWidth##type);
   TAUT_STATE_ROWS(TAUT_ROW)
 #undef TAUT_ROW
 }
@@ -185,7 +185,7 @@ template <class W, class Watch>
 void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings& settings,
               Scratch<W>& work, double step_s, Watch& watch) noexcept {
   watch.Begin();
-  const Rows<W> s(layout, g);
+  const Rows<W> s(m, layout, g);
   const W zero = W::Splat(0.0);
   const W h = W::Splat(step_s), half_h = W::Splat(0.5 * step_s);
 
@@ -236,7 +236,7 @@ void StepGroup(const View& m, const Layout& layout, Group& g, const StepSettings
 template <class W>
 void SenseGroup(const View& m, const Layout& layout, Group& g, void* scratch) {
   Scratch<W> work(m, scratch);
-  const Rows<W> s(layout, g);
+  const Rows<W> s(m, layout, g);
   Poison(m, s, g, work);
   StageSenseBodies(m, s, work);
   StageSense(m, s, work);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/assert.h"
 #include "sim/model_check.h"
 #include "sim/principal_axes.h"
 #include "sim/tables.h"
@@ -82,11 +83,35 @@ class Compiler {
     Points();
     Pairs();
     sim::CoupleCables(t_);
+    Check();
   }
 
  private:
   const Frame& frame(int body) const { return frames_[static_cast<std::size_t>(Index(body))]; }
-  int Index(int body) const { return body == kWorld ? t_.body_count : body; }
+  int Index(int body) const {
+    TAUT_ASSERT(kWorld <= body && body < t_.body_count);
+    return body == kWorld ? t_.body_count : body;
+  }
+
+  /// What stepping takes for granted about the tables.
+  void Check() const {
+    const auto bodies = static_cast<std::size_t>(t_.body_count);
+    TAUT_ASSERT(t_.q_WP0.size() == 4 * bodies && t_.inertia.size() == 3 * bodies);
+    TAUT_ASSERT(t_.bound_m.size() == bodies + 1 && t_.first_point.size() == bodies + 1);
+    TAUT_ASSERT(std::is_sorted(t_.first_point.begin(), t_.first_point.end()));
+    TAUT_ASSERT(t_.planes.size() <= sim::kMaxPlanes);
+    TAUT_ASSERT(t_.coupling.size() == t_.cables.size());
+    std::size_t attachments = 0;
+    for ([[maybe_unused]] const sim::CableTable& cable : t_.cables) {
+      TAUT_ASSERT(static_cast<std::size_t>(cable.first_attachment) == attachments);
+      TAUT_ASSERT(cable.attachment_count >= 2);
+      attachments += static_cast<std::size_t>(cable.attachment_count);
+    }
+    TAUT_ASSERT(attachments == t_.attachments.size());
+    for ([[maybe_unused]] const sim::BodyPairTable& pair : t_.body_pairs) {
+      TAUT_ASSERT(Moves(pair.a) && pair.a != pair.b && pair.b <= t_.body_count);
+    }
+  }
 
   void Bodies() {
     frames_.resize(def_.bodies.size() + 1);

@@ -35,7 +35,8 @@ CableRows Batch::Cables(int group) noexcept {
   sim::CheckIndex(__func__, "group", group, groups());
   const int first_world = group * d.lanes();
   d.Sense(first_world);
-  const auto first = [&](int row) { return &d.at(first_world, row); };
+  // Of a model without cables the rows are empty, and may be behind the last.
+  const auto first = [&](int row) { return d.group(first_world).rows + row * d.lanes(); };
   return {MapReadings([&](int row) -> const double* { return first(row); }, RowsOf(d.layout)),
           d.lanes(), first_world, first(d.layout.target)};
 }
@@ -124,6 +125,7 @@ std::vector<ContactState> Batch::Contacts(int world) const {
     if (!(d.at(world, d.layout.cache_live + i) > 0)) continue;
     ContactState c;
     const std::uint32_t id = g.contact_ids[i];
+    TAUT_ASSERT(i == 0 || g.contact_ids[i - 1] < id);
     if (id < m.first_pair_id) {
       const int point = static_cast<int>(id) / m.plane_count;
       c.body_a =
@@ -131,6 +133,7 @@ std::vector<ContactState> Batch::Contacts(int world) const {
                            m.first_point.begin()) -
           1;
     } else {
+      TAUT_ASSERT((id - m.first_pair_id) / sim::kMaxPointsPerPair < m.shape_pairs.size());
       const auto& pair = m.shape_pairs[(id - m.first_pair_id) /
                                        static_cast<std::uint32_t>(sim::kMaxPointsPerPair)];
       c.body_a = m.shapes[static_cast<std::size_t>(pair.a)].body;
@@ -202,6 +205,7 @@ int Batch::Impl::PlaceContact(int world, std::uint32_t id) noexcept {
                        first + size * (g.contact_count + 1));
   }
   ++g.contact_count;
+  TAUT_ASSERT(std::is_sorted(g.contact_ids, g.contact_ids + g.contact_count));
   const int first_world = world - world % g.lanes;
   for (int lane = 0; lane < g.lanes; ++lane) StartContact(first_world + lane, contact);
   return contact;

@@ -1,4 +1,4 @@
-/// Builds with assertions fill with NaN what a step must not read before it has written it, so that
+/// Builds without NDEBUG fill with NaN what a step must not read before it has written it, so that
 /// a stale value shows as a world that is not finite or as another golden hash.
 
 namespace taut::sim {
@@ -17,11 +17,11 @@ void Poison([[maybe_unused]] const View& m, [[maybe_unused]] const Rows<W>& s,
   const auto fill = [nan](void* row, int first, int end) {
     for (int i = first; i < end; ++i) static_cast<W*>(row)[i] = nan;
   };
-#define TAUT_ROW(name, type, per, role, halted, start)                   \
-  if (Per::per == Per::kContact) {                                       \
-    fill(s.name, g.contact_count* kWidth##type, capacity* kWidth##type); \
-  }                                                                      \
-  if (Role::role == Role::kSensed) fill(s.name, 0, m.Count(Per::per, 0) * kWidth##type);
+#define TAUT_ROW(name, type, per, role, halted, start)                          \
+  if (Per::per == Per::kContact) {                                              \
+    fill(s.name.data(), g.contact_count* kWidth##type, capacity* kWidth##type); \
+  }                                                                             \
+  if (Role::role == Role::kSensed) fill(s.name.data(), 0, m.Count(Per::per, 0) * kWidth##type);
   TAUT_STATE_ROWS(TAUT_ROW)
 #undef TAUT_ROW
 #endif

@@ -1,6 +1,7 @@
 /// Typed access to a group's rows, and what a step keeps only while it runs.
 #pragma once
 
+#include "base/assert.h"
 #include "sim/group.h"
 #include "simd/vec3.h"
 
@@ -11,6 +12,32 @@ using simd::Q4;
 using simd::S3;
 using simd::V3;
 
+/// Elements of one type, one behind the other: a pointer that in builds with assertions knows its
+/// end.
+template <class T>
+class Row {
+ public:
+  Row() = default;
+  TAUT_INLINE Row(T* first, [[maybe_unused]] int count) noexcept : first_(first) {
+#ifdef TAUT_ASSERTS
+    count_ = count;
+#endif
+  }
+  TAUT_INLINE T& operator[](int i) const noexcept {
+#ifdef TAUT_ASSERTS
+    TAUT_ASSERT(0 <= i && i < count_);
+#endif
+    return first_[i];
+  }
+  TAUT_INLINE T* data() const noexcept { return first_; }
+
+ private:
+  T* first_;
+#ifdef TAUT_ASSERTS
+  int count_;
+#endif
+};
+
 /// A group's rows as wide numbers: row `pos` of body b is pos[b] (state_rows.h).
 template <class W>
 struct Rows {
@@ -18,13 +45,15 @@ struct Rows {
   using V3 = simd::V3<W>;
   using Q4 = simd::Q4<W>;
 
-#define TAUT_ROW(name, type, ...) type* name;
+#define TAUT_ROW(name, type, ...) Row<type> name;
   TAUT_STATE_ROWS(TAUT_ROW)
 #undef TAUT_ROW
 
-  Rows(const Layout& l, const Group& g) noexcept {
+  Rows(const View& m, const Layout& l, const Group& g) noexcept {
     W* const base = reinterpret_cast<W*>(g.rows);
-#define TAUT_ROW(name, type, ...) name = reinterpret_cast<type*>(base + l.name);
+    const int contacts = m.ContactCapacity(W::kLanes);
+#define TAUT_ROW(name, type, per, ...) \
+  name = Row<type>(reinterpret_cast<type*>(base + l.name), m.Count(Per::per, contacts));
     TAUT_STATE_ROWS(TAUT_ROW)
 #undef TAUT_ROW
   }

@@ -105,7 +105,7 @@ TAUT_INLINE void PullCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
   const W zero = W::Splat(0.0);
   const CableTable& cable = m.cables[c];
   W l, dl;
-  MeasureCable(m, cable, attachment_count, s.pos, work, ends, l, dl);
+  MeasureCable(m, cable, attachment_count, s.pos.data(), work, ends, l, dl);
   W rest = s.rest[c], rate = s.rest_rate[c];
   const W mean = Actuate(cable, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
   s.rest[c] = rest;
@@ -160,7 +160,7 @@ template <class W>
 TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, const Scratch<W>& work, int c,
                             int attachment_count, AttachmentWork<W>* ends) noexcept {
   W l, dl;
-  MeasureCable(m, m.cables[c], attachment_count, s.pos, work, ends, l, dl);
+  MeasureCable(m, m.cables[c], attachment_count, s.pos.data(), work, ends, l, dl);
   const CableForce<W> f =
       TensionOf(s.stiffness[c], s.damping[c], l, dl, s.rest[c], m.cables[c].clamped_damping);
   s.sense_length[c] = l;
