@@ -1,4 +1,4 @@
-# `cmake --install build/release --prefix ~/.local`: the command, the library for find_package(taut),
+# `cmake --install build/install --prefix ~/.local`: the command, the library for find_package(taut),
 # and the files of share/taut.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)

@@ -156,6 +156,7 @@ CableState Springs::Measure(const Cable& cable, const std::vector<Pose>& poses) 
     from = to;
   }
   state.rest_length_m = cable.rest_m;
+  state.stiffness_n_per_m = cable.k;
   const double stretch = state.length_m - cable.rest_m;
   state.elastic_n = std::fmax(0.0, cable.k * stretch);
   state.tension_n =

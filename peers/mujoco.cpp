@@ -169,8 +169,9 @@ class Mujoco final : public World {
     state.rate_m_per_s = data_->ten_velocity[cable];
     state.rest_length_m = data_->ctrl[cable];
     state.tension_n = -data_->actuator_force[cable];
-    const double k = model_->actuator_gainprm[cable * mjNGAIN];
-    state.elastic_n = std::max(0.0, k * (state.length_m - state.rest_length_m));
+    state.stiffness_n_per_m = model_->actuator_gainprm[cable * mjNGAIN];
+    state.elastic_n =
+        std::max(0.0, state.stiffness_n_per_m * (state.length_m - state.rest_length_m));
     return state;
   }
   BodyState Body(int body) const override {

@@ -11,12 +11,14 @@
 #include <utility>
 #include <vector>
 
+#include "taut/cable_readings.h"
 #include "taut/diagnostics.h"
 #include "taut/model_def.h"
 
 namespace taut {
 
-/// A model, checked and laid out for stepping. Immutable; shared by all worlds of a batch.
+/// A model, checked and laid out for stepping. Immutable; shared by all worlds of a batch, and by
+/// any number of threads.
 class Model {
  public:
   /// Checks the numbers of `def`. Nothing and diagnostics (without file positions) if one is
@@ -35,7 +37,8 @@ class Model {
 enum class Simd { kScalar = 1, kSse2 = 2, kAvx2 = 4, kAvx512 = 8 };
 
 /// The widest that this machine has, or what the environment variable TAUT_SIMD asks for
-/// (scalar, sse2, avx2, avx512; what the machine lacks falls back to what it has).
+/// (scalar, sse2, avx2, avx512; what the machine lacks falls back to what it has). Any thread may
+/// call it while none changes the environment.
 Simd BestSimd();
 
 struct BatchOptions {
@@ -65,24 +68,12 @@ struct WorldStatus {
 };
 
 /// A cable at the current time.
-struct CableState {
-  double length_m = 0;       ///< l: between its ends, along all attachments.
-  double rate_m_per_s = 0;   ///< dl/dt, exact.
-  double rest_length_m = 0;  ///< L.
-  double tension_n = 0;      ///< What a load cell feels: spring and damper.
-  double elastic_n = 0;      ///< max(0, k (l - L)) alone: what NTRT logs.
-};
+using CableState = CableReadings<double>;
 
 /// All cables of the worlds that share a register: cable c of world `first_world + j` is at
 /// [c * lanes + j]. Points into the batch; what was sensed is void after the next step or change.
-struct CableRows {
+struct CableRows : ReadingRows {
   int lanes = 1, first_world = 0;
-  const double* length_m = nullptr;
-  const double* rate_m_per_s = nullptr;
-  const double* rest_length_m = nullptr;
-  const double* tension_n = nullptr;
-  const double* elastic_n = nullptr;
-  const double* stiffness_n_per_m = nullptr;
   double* rest_length_target_m = nullptr;  ///< As `SetRestLengthTarget` sets them; may be written.
 };
 
@@ -116,6 +107,12 @@ enum class Parameter {
   kGravityZ,  ///< [m/s^2]; index 0.
 };
 
+/// An index that is out of range (world, group, body, cable, node) is a mistake of the program that
+/// calls: a line on stderr names it, and the program ends by abort().
+///
+/// Threads: any number may call const functions of a batch at once. A function that is not const,
+/// and writing where `Cables` points to, needs the batch for itself. Batches do not know of each
+/// other, even those of one model.
 class Batch {
  public:
   Batch(std::shared_ptr<const Model> model, const BatchOptions& options);

@@ -1,5 +1,8 @@
 /// Searching: a study, run until its budget is spent. Everything is kept in one folder, so that it
 /// can be stopped, killed and resumed, and comes to the same end bit for bit.
+///
+/// Threads: any number may call these functions at once, each with a folder, an evaluator and
+/// diagnostics of its own; they only read a study. Whoever sets `stop` may be any thread.
 #pragma once
 
 #include <atomic>
@@ -37,7 +40,8 @@ std::vector<RolloutWorld> CandidateWorlds(const StudySpec& study, const std::vec
 /// What a parameter is at x in [0, 1] of its bounds.
 double ParameterValue(const StudyParameter& parameter, double x);
 
-/// Tries candidates: here, or on the processes of a cluster.
+/// Tries candidates: here, or on the processes of a cluster. One thread at a time; it calls `Done`
+/// from threads of its own.
 class Evaluator {
  public:
   virtual ~Evaluator() = default;

@@ -32,6 +32,8 @@ struct HandSpec {
   Vec3 target_m;  ///< In W.
 };
 
+/// Threads: any number may call const functions of a run at once; the others need it for
+/// themselves. Runs do not know of each other.
 class LiveRun {
  public:
   /// Brings the experiment to its start. Nothing and diagnostics as from `RunExperiment`.

@@ -27,6 +27,7 @@ struct RolloutWorld {
   std::uint64_t seed = 0;
 };
 
+/// Threads: any number may call these two at once.
 RolloutWorld WorldOf(const ExperimentSpec& experiment);
 /// The experiment that runs this world alone.
 ExperimentSpec ExperimentOf(const ExperimentSpec& base, const RolloutWorld& world);
@@ -50,6 +51,9 @@ struct RolloutOptions {
   const std::atomic<bool>* stop = nullptr;  ///< Once true, unfinished worlds are given up.
 };
 
+/// Threads: it has its own. Callers' threads: one at a time in `Run`, which calls `Done` from its
+/// threads; `lanes` and `parallel_worlds` from any, and `RolloutOptions::stop` may be set by any.
+/// Rollouts do not know of each other.
 class Rollouts {
  public:
   /// Nothing, and diagnostics, if the experiment's model does not compile.

@@ -1,4 +1,8 @@
 /// Running one experiment: the world, its controllers on their clocks, the timeline, the trace.
+///
+/// Threads: any number may call these functions at once, each with diagnostics, traces and batches
+/// of its own; they only read an experiment. `RunOptions::progress` is called by the caller's
+/// thread.
 #pragma once
 
 #include <functional>

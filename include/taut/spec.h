@@ -1,5 +1,8 @@
 /// Robots and experiments as files describe them. Reading never throws and never prints: all
 /// that is wrong with a file ends up in `Diagnostics`.
+///
+/// Threads: any number may call these functions at once, each with diagnostics of its own. A spec
+/// is plain data.
 #pragma once
 
 #include <cstdint>

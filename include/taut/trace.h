@@ -1,4 +1,8 @@
 /// Recordings of a run: named channels against time (docs/formats/trace.md).
+///
+/// Threads: any number may read and write traces at once, each its own writer, file and diagnostics
+/// (HDF5 as Debian builds it is safe for that). A writer belongs to one thread at a time; a `Trace`
+/// is plain data.
 #pragma once
 
 #include <cstddef>

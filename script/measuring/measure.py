@@ -22,7 +22,7 @@ def command(*words, **more):
 
 
 def build(*targets):
-    command("bash", "-c", f"source script/common.sh; script/setup; build release {' '.join(targets)}", cwd=ROOT)
+    command("bash", "-c", f"source script/common.sh; script/setup; build install {' '.join(targets)}", cwd=ROOT)
 
 
 def processor():

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/assert.h"
+
 namespace taut::base {
 
 ThreadPool::ThreadPool(int threads) {
@@ -23,6 +25,7 @@ void ThreadPool::RunErased(void* context, Call call) {
   if (workers_.empty()) return call(context, 0);
   {
     const std::lock_guard lock(mutex_);
+    TAUT_ASSERT(busy_ == 0);  // one caller at a time
     context_ = context;
     call_ = call;
     busy_ = static_cast<int>(workers_.size());

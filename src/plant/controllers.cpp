@@ -48,7 +48,7 @@ double Controller::next_tick_s() const noexcept {
   return gait_ ? std::min(own_s, gait_->next_tick_s()) : own_s;
 }
 
-void Controller::ActGait(double time_s, const std::vector<CableReading>& readings) {
+void Controller::ActGait(double time_s, const std::vector<CableState>& readings) {
   gait_->Act(time_s,
              [&](int cable) { return readings[static_cast<std::size_t>(cable)].tension_n; });
   for (std::size_t i = 0; i < gait_to_gains_.size(); ++i) {
@@ -56,7 +56,7 @@ void Controller::ActGait(double time_s, const std::vector<CableReading>& reading
   }
 }
 
-void Controller::Act(double time_s, const std::vector<CableReading>& readings,
+void Controller::Act(double time_s, const std::vector<CableState>& readings,
                      CableCommands& commands) {
   if (gait_) ActGait(time_s, readings);
   if (!control::IsDue(clock_, tick_, time_s)) return;
@@ -100,18 +100,15 @@ bool Controller::Hold(int cable, double rest_length_m) {
   return false;
 }
 
-void Controller::ActImpedance(std::size_t i, const CableReading& reading, CableCommands& commands) {
+void Controller::ActImpedance(std::size_t i, const CableState& reading, CableCommands& commands) {
   const ImpedanceGains& gains = spec_.impedance->cables[i];
   const auto cable = static_cast<std::size_t>(gains.cable);
   double& velocity_input = commands.velocity_input_m_per_s[cable];
   velocity_input = gains.velocity_offset_m_per_s + (gait_ ? gait_velocity_m_per_s_[i] : 0.0);
   const control::Impedance<double> law{gains.tension_offset_n, gains.length_offset_m,
                                        gains.position_gain_n_per_m, gains.velocity_gain_n_s_per_m};
-  const CableSenses<double> sensed{reading.rest_length_m, reading.length_m,
-                                   reading.rate_m_per_s,  reading.tension_n,
-                                   reading.elastic_n,     reading.stiffness_n_per_m};
   const ImpedanceCommand<double> command =
-      StepImpedance(law_, law, velocity_input, sensed, memory_[i]);
+      StepImpedance(law_, law, velocity_input, reading, memory_[i]);
   commands.target_m[cable] = command.target_m;
   commands.set_point_n[cable] = command.set_point_n;
 }

@@ -14,16 +14,6 @@
 
 namespace taut::plant {
 
-/// What a robot tells its controller about a cable, simulated or real.
-struct CableReading {
-  double rest_length_m = 0;  ///< From the encoder.
-  double length_m = 0;       ///< Between the cable's ends.
-  double rate_m_per_s = 0;   ///< Of that.
-  double tension_n = 0;      ///< From the load cell.
-  double elastic_n = 0;      ///< The spring's part of it.
-  double stiffness_n_per_m = 0;
-};
-
 /// What controllers tell the robot, per cable.
 struct CableCommands {
   std::vector<double> target_m;                ///< Rest lengths.
@@ -53,11 +43,11 @@ class Controller {
 
   /// Acts if a tick is due at `time_s`, the gait before the law that it feeds. Reads
   /// `readings[cable]`, writes the commands of its cables.
-  void Act(double time_s, const std::vector<CableReading>& readings, CableCommands& commands);
+  void Act(double time_s, const std::vector<CableState>& readings, CableCommands& commands);
 
  private:
-  void ActGait(double time_s, const std::vector<CableReading>& readings);
-  void ActImpedance(std::size_t i, const CableReading& reading, CableCommands& commands);
+  void ActGait(double time_s, const std::vector<CableState>& readings);
+  void ActImpedance(std::size_t i, const CableState& reading, CableCommands& commands);
 
   ControllerSpec spec_;
   control::Clock<double> clock_;

@@ -3,6 +3,7 @@
 /// (Real = a wide number).
 #pragma once
 
+#include "taut/cable_readings.h"
 #include "taut/control/impedance.h"
 #include "taut/control/pid.h"
 #include "taut/control/rate.h"
@@ -20,11 +21,6 @@ struct ImpedanceLaw {
 };
 
 template <class Real>
-struct CableSenses {
-  Real rest_length_m, length_m, rate_m_per_s, tension_n, elastic_n, stiffness_n_per_m;
-};
-
-template <class Real>
 struct ImpedanceMemory {
   control::PidState<Real> pid;
   control::DifferenceState<Real> difference;
@@ -38,7 +34,7 @@ struct ImpedanceCommand {
 template <class Real>
 [[gnu::always_inline]] inline ImpedanceCommand<Real> StepImpedance(
     const ImpedanceLaw& law, const control::Impedance<Real>& gains, Real velocity_offset_m_per_s,
-    const CableSenses<Real>& sensed, ImpedanceMemory<Real>& memory) noexcept {
+    const CableReadings<Real>& sensed, ImpedanceMemory<Real>& memory) noexcept {
   Real rate_m_per_s = sensed.rate_m_per_s;
   const Real period_s = control::FromScalar<Real>(law.period_s);
   if (law.differenced_rate) {

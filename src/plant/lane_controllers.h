@@ -8,7 +8,6 @@
 
 #include "plant/lane_gait.h"
 #include "plant/lane_kernel.h"
-#include "plant/reading_rows.h"
 #include "taut/control/clock.h"
 #include "taut/control/position.h"
 #include "taut/spec.h"

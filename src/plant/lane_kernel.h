@@ -8,8 +8,6 @@
 
 namespace taut::plant {
 
-struct ReadingRows;
-
 /// One controller's cables.
 struct ImpedanceRows {
   int count = 0;

@@ -2,7 +2,6 @@
 /// step, nothing here uses the standard library, and every function is a template of W.
 
 #include "plant/lane_kernel.h"
-#include "plant/reading_rows.h"
 #include "simd/wide.h"
 #include "taut/control/cpg.h"
 #include "taut/control/sine.h"
@@ -31,9 +30,7 @@ void ActCables(ImpedanceLaw law, const ImpedanceRows rows, const ReadingRows sen
     const control::Impedance<W> gains{
         Load<W>(rows.tension_offset_n, i), Load<W>(rows.length_offset_m, i),
         Load<W>(rows.position_gain_n_per_m, i), Load<W>(rows.velocity_gain_n_s_per_m, i)};
-    const CableSenses<W> s{Load<W>(sensed.rest_length_m, c), Load<W>(sensed.length_m, c),
-                           Load<W>(sensed.rate_m_per_s, c),  Load<W>(sensed.tension_n, c),
-                           Load<W>(sensed.elastic_n, c),     Load<W>(sensed.stiffness_n_per_m, c)};
+    const auto s = MapReadings([c](const double* row) { return Load<W>(row, c); }, sensed);
     ImpedanceMemory<W> memory;
     if (kByPid) memory.pid = {Load<W>(rows.error_before, i), Load<W>(rows.integral, i)};
     if (kDifferenced) memory.difference = {Load<W>(rows.length_before_m, i)};

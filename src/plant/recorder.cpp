@@ -63,7 +63,7 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
          {"setpoint_n", "N"},
          {"velocity_input_m_per_s", "m/s"}},
         [c](const RecordSource& s, double* out) {
-          const CableReading& r = (*s.readings)[c];
+          const CableState& r = (*s.readings)[c];
           const double values[] = {r.tension_n,
                                    r.elastic_n,
                                    r.length_m,
@@ -79,7 +79,7 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
     Add("sensor/" + def.cables[c].name + "/",
         {{"tension_n", "N"}, {"length_m", "m"}, {"rate_m_per_s", "m/s"}, {"rest_length_m", "m"}},
         [c](const RecordSource& s, double* out) {
-          const CableReading& r = (*s.sensed)[c];
+          const CableState& r = (*s.sensed)[c];
           const double values[] = {r.tension_n, r.length_m, r.rate_m_per_s, r.rest_length_m};
           std::copy(std::begin(values), std::end(values), out);
         });

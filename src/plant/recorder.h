@@ -16,8 +16,8 @@ namespace taut::plant {
 struct RecordSource {
   const Batch* batch = nullptr;
   int world = 0;
-  const std::vector<CableReading>* readings = nullptr;
-  const std::vector<CableReading>* sensed = nullptr;  ///< By the controllers.
+  const std::vector<CableState>* readings = nullptr;
+  const std::vector<CableState>* sensed = nullptr;  ///< By the controllers.
   const CableCommands* commands = nullptr;
   const Timeline* timeline = nullptr;
 };

@@ -29,10 +29,8 @@ Sensors::Sensors(const SensorSpec& spec, std::size_t cable_count, std::vector<st
       rest_delay_(spec.encoder ? spec.encoder->delay_s : 0.0, spec.period_s,
                   cable_count * seeds_.size()) {
   const std::size_t size = cable_count * seeds_.size();
-  for (std::vector<double>* row :
-       {&bias_n_, &rest_m_, &length_m_, &rate_m_per_s_, &tension_n_, &elastic_n_, &stiffness_}) {
-    row->resize(size);
-  }
+  bias_n_.resize(size);
+  EachReading([size](std::vector<double>& row) { row.resize(size); }, seen_);
   if (!spec_.load_cell || spec_.load_cell->bias_n == 0) return;
   for (std::size_t i = 0; i < size; ++i) {
     math::Random random(seeds_[i % seeds_.size()], kLoadCellBias, i / seeds_.size());
@@ -45,23 +43,23 @@ void Sensors::Sample(double time_s, const ReadingRows& exact) {
   const std::size_t size = bias_n_.size();
   SampleTension(exact.tension_n);
   SampleRestLength(exact.rest_length_m);
-  std::copy_n(exact.stiffness_n_per_m, size, stiffness_.begin());
+  std::copy_n(exact.stiffness_n_per_m, size, seen_.stiffness_n_per_m.begin());
   if (spec_.length_from_tension) {
     EstimateLength(exact.stiffness_n_per_m);
   } else {
-    std::copy_n(exact.length_m, size, length_m_.begin());
-    std::copy_n(exact.rate_m_per_s, size, rate_m_per_s_.begin());
+    std::copy_n(exact.length_m, size, seen_.length_m.begin());
+    std::copy_n(exact.rate_m_per_s, size, seen_.rate_m_per_s.begin());
   }
   // A load cell cannot tell the spring from the damper.
-  const double* const elastic = spec_.load_cell ? tension_n_.data() : exact.elastic_n;
-  std::copy_n(elastic, size, elastic_n_.begin());
+  const double* const elastic = spec_.load_cell ? seen_.tension_n.data() : exact.elastic_n;
+  std::copy_n(elastic, size, seen_.elastic_n.begin());
   ++tick_;
 }
 
 void Sensors::SampleTension(const double* exact) {
-  const std::size_t size = tension_n_.size(), lanes = seeds_.size();
+  const std::size_t size = seen_.tension_n.size(), lanes = seeds_.size();
   if (!spec_.load_cell) {
-    std::copy_n(exact, size, tension_n_.begin());
+    std::copy_n(exact, size, seen_.tension_n.begin());
     return;
   }
   const LoadCellSpec& cell = *spec_.load_cell;
@@ -81,13 +79,13 @@ void Sensors::SampleTension(const double* exact) {
     }
     newest[i] = x;
   }
-  std::copy_n(tension_delay_.Oldest(tick_), size, tension_n_.begin());
+  std::copy_n(tension_delay_.Oldest(tick_), size, seen_.tension_n.begin());
 }
 
 void Sensors::SampleRestLength(const double* exact) {
-  const std::size_t size = rest_m_.size();
+  const std::size_t size = seen_.rest_length_m.size();
   if (!spec_.encoder) {
-    std::copy_n(exact, size, rest_m_.begin());
+    std::copy_n(exact, size, seen_.rest_length_m.begin());
     return;
   }
   const double quantum = spec_.encoder->quantum_m;
@@ -95,20 +93,20 @@ void Sensors::SampleRestLength(const double* exact) {
   for (std::size_t i = 0; i < size; ++i) {
     newest[i] = quantum > 0 ? quantum * std::floor(exact[i] / quantum + 0.5) : exact[i];
   }
-  std::copy_n(rest_delay_.Oldest(tick_), size, rest_m_.begin());
+  std::copy_n(rest_delay_.Oldest(tick_), size, seen_.rest_length_m.begin());
 }
 
 void Sensors::EstimateLength(const double* stiffness) {
-  for (std::size_t i = 0; i < length_m_.size(); ++i) {
-    const double length = control::LengthFromTension(rest_m_[i], tension_n_[i], stiffness[i]);
-    rate_m_per_s_[i] = tick_ == 0 ? 0.0 : (length - length_m_[i]) / clock_.period_s;
-    length_m_[i] = length;
+  for (std::size_t i = 0; i < seen_.length_m.size(); ++i) {
+    const double length =
+        control::LengthFromTension(seen_.rest_length_m[i], seen_.tension_n[i], stiffness[i]);
+    seen_.rate_m_per_s[i] = tick_ == 0 ? 0.0 : (length - seen_.length_m[i]) / clock_.period_s;
+    seen_.length_m[i] = length;
   }
 }
 
 ReadingRows Sensors::rows() const noexcept {
-  return {rest_m_.data(),    length_m_.data(),  rate_m_per_s_.data(),
-          tension_n_.data(), elastic_n_.data(), stiffness_.data()};
+  return MapReadings([](const std::vector<double>& row) { return row.data(); }, seen_);
 }
 
 }  // namespace taut::plant

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "plant/reading_rows.h"
+#include "taut/cable_readings.h"
 #include "taut/control/clock.h"
 #include "taut/spec.h"
 
@@ -51,8 +51,8 @@ class Sensors {
   std::size_t cable_count_;
   std::vector<std::uint64_t> seeds_;
   Delay tension_delay_, rest_delay_;
-  std::vector<double> bias_n_, rest_m_, length_m_, rate_m_per_s_, tension_n_;
-  std::vector<double> elastic_n_, stiffness_;
+  std::vector<double> bias_n_;
+  CableReadings<std::vector<double>> seen_;
 };
 
 }  // namespace taut::plant

@@ -22,6 +22,7 @@ Stepper::Stepper(const ExperimentSpec& experiment, Batch& batch)
     sensors_.emplace(*experiment.sensors, readings_.size(),
                      std::vector<std::uint64_t>{experiment.seed});
     sensed_.resize(readings_.size());
+    EachReading([this](std::vector<double>& row) { row.resize(readings_.size()); }, exact_);
   }
   for (std::size_t c = 0; c < commands_.target_m.size(); ++c) {
     commands_.target_m[c] = batch.RestLengthTarget(kTheWorld, static_cast<int>(c));
@@ -60,31 +61,19 @@ void Stepper::SetTarget(int cable, double rest_length_m) {
 
 void Stepper::Observe() {
   for (std::size_t c = 0; c < readings_.size(); ++c) {
-    const int cable = static_cast<int>(c);
-    const CableState s = batch_.Cable(kTheWorld, cable);
-    readings_[c] = {
-        s.rest_length_m, s.length_m,
-        s.rate_m_per_s,  s.tension_n,
-        s.elastic_n,     batch_.GetParameter(kTheWorld, Parameter::kCableStiffness, cable)};
+    readings_[c] = batch_.Cable(kTheWorld, static_cast<int>(c));
   }
 }
 
 void Stepper::Sense() {
-  std::vector<double> rows[6];
-  for (const CableReading& r : readings_) {
-    rows[0].push_back(r.rest_length_m);
-    rows[1].push_back(r.length_m);
-    rows[2].push_back(r.rate_m_per_s);
-    rows[3].push_back(r.tension_n);
-    rows[4].push_back(r.elastic_n);
-    rows[5].push_back(r.stiffness_n_per_m);
+  for (std::size_t c = 0; c < readings_.size(); ++c) {
+    EachReading([c](std::vector<double>& row, double x) { row[c] = x; }, exact_, readings_[c]);
   }
-  sensors_->Sample(time_s(), {rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data(),
-                              rows[4].data(), rows[5].data()});
+  sensors_->Sample(time_s(),
+                   MapReadings([](const std::vector<double>& row) { return row.data(); }, exact_));
   const ReadingRows seen = sensors_->rows();
   for (std::size_t c = 0; c < sensed_.size(); ++c) {
-    sensed_[c] = {seen.rest_length_m[c], seen.length_m[c],  seen.rate_m_per_s[c],
-                  seen.tension_n[c],     seen.elastic_n[c], seen.stiffness_n_per_m[c]};
+    sensed_[c] = MapReadings([c](const double* row) { return row[c]; }, seen);
   }
 }
 

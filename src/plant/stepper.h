@@ -32,10 +32,8 @@ class Stepper {
   bool finite() const noexcept;
 
   /// As it is; and what the controllers saw of it at their last tick.
-  const std::vector<CableReading>& readings() const noexcept { return readings_; }
-  const std::vector<CableReading>& sensed() const noexcept {
-    return sensors_ ? sensed_ : readings_;
-  }
+  const std::vector<CableState>& readings() const noexcept { return readings_; }
+  const std::vector<CableState>& sensed() const noexcept { return sensors_ ? sensed_ : readings_; }
   const CableCommands& commands() const noexcept { return commands_; }
   const std::vector<double>& set_point_n() const noexcept { return commands_.set_point_n; }
   Timeline& timeline() noexcept { return timeline_; }
@@ -56,7 +54,8 @@ class Stepper {
   Timeline timeline_;
   std::vector<Controller> controllers_;
   std::optional<Sensors> sensors_;
-  std::vector<CableReading> readings_, sensed_;
+  std::vector<CableState> readings_, sensed_;
+  CableReadings<std::vector<double>> exact_;  ///< `readings_` as the sensors want them.
   CableCommands commands_;
 };
 

@@ -29,14 +29,9 @@ LaneStepper::LaneStepper(const ExperimentSpec& experiment,
   }
 }
 
-plant::ReadingRows LaneStepper::readings() const noexcept {
-  return {cables_.rest_length_m, cables_.length_m,  cables_.rate_m_per_s,
-          cables_.tension_n,     cables_.elastic_n, cables_.stiffness_n_per_m};
-}
-
 void LaneStepper::Prepare() {
   if (!schedule_.AtBoundary()) return;
-  plant::ReadingRows seen = readings();
+  ReadingRows seen = readings();
   if (sensors_) {
     sensors_->Sample(time_s(), seen);
     seen = sensors_->rows();

@@ -27,7 +27,7 @@ class LaneStepper {
   double step_s() const noexcept { return schedule_.step_s(); }
 
   /// Of the state after the last step.
-  plant::ReadingRows readings() const noexcept;
+  const ReadingRows& readings() const noexcept { return cables_; }
   const std::vector<double>& set_point_n() const noexcept { return set_point_n_; }
   /// Cables that have set points, ascending.
   const std::vector<int>& driven() const noexcept { return driven_; }

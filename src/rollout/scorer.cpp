@@ -51,11 +51,11 @@ Scorer::Scorer(const ExperimentSpec& experiment, const ObjectiveSpec& objective,
 }
 
 void Scorer::Take() {
-  const plant::ReadingRows now = stepper_.readings();
   const std::vector<int>& driven = stepper_.driven();
   kernel_.measure(
-      now, static_cast<int>(motor_.size()), motor_.data(), stepper_.set_point_n().data(),
-      driven.data(), static_cast<int>(driven.size()), stepper_.step_s(),
+      stepper_.readings(), static_cast<int>(motor_.size()), motor_.data(),
+      stepper_.set_point_n().data(), driven.data(), static_cast<int>(driven.size()),
+      stepper_.step_s(),
       {rest_before_m_.data(), wound_j_.data(), max_tension_n_.data(), error_n2_s_.data()});
   const double time_s = stepper_.time_s();
   if (!start_m_[0] && time_s >= objective_.from_s - kTimeToleranceS) {

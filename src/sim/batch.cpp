@@ -1,12 +1,14 @@
 #include "taut/batch.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 #include <string_view>
 
-#include "math/cable_path.h"
 #include "sim/batch_impl.h"
+#include "sim/start_values.h"
 
 namespace taut {
 namespace {
@@ -92,57 +94,26 @@ Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
     scratch.push_back(AllocateAligned<char>(kernel->scratch_bytes(view)));
   }
   // The lanes behind the last world are worlds, too: no special cases, and no NaN.
-  for (int world = 0; world < static_cast<int>(group_count) * n; ++world) InitializeWorld(world);
+  for (int world = 0; world < static_cast<int>(group_count) * n; ++world) StartWorld(world);
 }
 
 void Batch::Impl::SetMass(int world, int body, double mass_kg) noexcept {
-  const BodyDef& def = model->def().bodies[static_cast<std::size_t>(body)];
-  at(world, layout.mass + body) = def.fixed ? 0.0 : mass_kg;
-  at(world, layout.inv_mass + body) = def.fixed ? 0.0 : 1.0 / mass_kg;
-  for (int i = 0; i < 3; ++i) {
-    const double moment = def.fixed ? 0.0
-                                    : model->inertia[static_cast<std::size_t>(3 * body + i)] *
-                                          (mass_kg / def.mass_kg);
-    at(world, layout.inertia + 3 * body + i) = moment;
-    at(world, layout.inv_inertia + 3 * body + i) = def.fixed ? 0.0 : 1.0 / moment;
-  }
+  const sim::start_of::Masses m = sim::start_of::MassesOf(*model, body, mass_kg);
+  at(world, layout.mass + body) = m.mass;
+  at(world, layout.inv_mass + body) = m.inv_mass;
+  set(world, layout.inertia + 3 * body, m.inertia);
+  set(world, layout.inv_inertia + 3 * body, m.inv_inertia);
 }
 
-void Batch::Impl::InitializeWorld(int world) noexcept {
-  const ModelDef& def = model->def();
-  for (int b = 0; b < view.body_count; ++b) {
-    const BodyDef& body = def.bodies[static_cast<std::size_t>(b)];
-    SetMass(world, b, body.mass_kg);
-    set(world, layout.pos + 3 * b, body.com_m);
-    set(world, layout.vel + 3 * b, body.fixed ? Vec3{} : body.velocity_m_per_s);
-    for (int i = 0; i < 4; ++i) {
-      at(world, layout.quat + 4 * b + i) = model->q_WP0[static_cast<std::size_t>(4 * b + i)];
-    }
-    const Inertia& j = body.inertia_kg_m2;
-    const Vec3& w = body.angular_velocity_rad_per_s;
-    const Vec3 momentum{j.xx * w.x + j.xy * w.y + j.xz * w.z, j.xy * w.x + j.yy * w.y + j.yz * w.z,
-                        j.xz * w.x + j.yz * w.y + j.zz * w.z};
-    set(world, layout.mom + 3 * b, body.fixed ? Vec3{} : momentum);
-    set(world, layout.old_vel + 3 * b, body.fixed ? Vec3{} : body.velocity_m_per_s);
-    set(world, layout.old_spin + 3 * b, body.fixed ? Vec3{} : w);
+void Batch::Impl::StartWorld(int world) noexcept {
+#define TAUT_ROW(name, type, per, role, halted, start)                 \
+  for (int i = 0; i < view.Count(sim::Per::per); ++i) {             \
+    const sim::start_of::type first = sim::start_of::start(*model, i); \
+    set(world, layout.name + sim::kWidth##type * i, first);            \
   }
-  for (int c = 0; c < view.cable_count; ++c) {
-    const CableDef& cable = def.cables[static_cast<std::size_t>(c)];
-    at(world, layout.rest + c) = at(world, layout.target + c) = cable.rest_length_m;
-    at(world, layout.stiffness + c) = cable.stiffness_n_per_m;
-    at(world, layout.damping + c) = cable.damping_n_s_per_m;
-    // A cable that is taut at the start is known to be so: a stiff one does not enter as if it had
-    // been slack before (docs/theory/cables.md, eq. 10).
-    const double length =
-        MeasureThrough<Vec3>(static_cast<int>(cable.attachments.size()), [&](int i) {
-          return cable.attachments[static_cast<std::size_t>(i)].position_m;
-        }).l;
-    at(world, layout.tension + c) =
-        std::max(cable.stiffness_n_per_m * (length - cable.rest_length_m), 0.0);
-  }
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
   JudgeStiffness(world);
-  at(world, layout.friction_scale) = 1.0;
-  set(world, layout.gravity, def.gravity_m_per_s2);
 }
 
 void Batch::Impl::JudgeStiffness(int world) noexcept {
@@ -167,14 +138,21 @@ void Batch::Impl::JudgeStiffness(int world) noexcept {
   }
 }
 
-void Batch::Impl::Moved(int world) const noexcept {
+void Batch::Impl::Moved(int world) noexcept {
   for (int i = 0; i < view.body_pair_count; ++i) at(world, layout.clearance + i) = 0.0;
   group(world).sensed = false;
 }
 
 void Batch::Impl::Sense(int world) const noexcept {
   sim::Group& g = group(world);
-  if (!g.sensed) kernel->sense(view, layout, g, scratch[0].get());
+  // Several threads may read at once: one senses, the others wait for it. Whoever comes later in
+  // the same step takes no lock.
+  const std::atomic_ref<bool> sensed(g.sensed);
+  if (sensed.load(std::memory_order_acquire)) return;
+  const std::lock_guard lock(sensing);
+  if (sensed.load(std::memory_order_relaxed)) return;
+  kernel->sense(view, layout, g, scratch[0].get());
+  sensed.store(true, std::memory_order_release);
 }
 
 void Batch::Impl::ForceNode(int world, int node) noexcept {
@@ -182,6 +160,7 @@ void Batch::Impl::ForceNode(int world, int node) noexcept {
   int* const end = g.forced_nodes + g.forced_count;
   int* const place = std::lower_bound(g.forced_nodes, end, node);
   if (place != end && *place == node) return;
+  TAUT_ASSERT(g.forced_count < view.node_count);
   std::copy_backward(place, end, end + 1);
   *place = node;
   ++g.forced_count;
@@ -213,21 +192,28 @@ void Batch::Step(double step_s, int count) noexcept {
   d.pool.Run(work);
 }
 
-double Batch::Time(int world) const noexcept { return impl_->at(world, impl_->layout.time); }
+double Batch::Time(int world) const noexcept {
+  impl_->CheckWorld(__func__, world);
+  return impl_->at(world, impl_->layout.time);
+}
 
 void Batch::SetRestLengthTarget(int world, int cable, double rest_length_m) noexcept {
+  impl_->CheckCable(__func__, world, cable);
   impl_->at(world, impl_->layout.target + cable) = rest_length_m;
 }
 double Batch::RestLengthTarget(int world, int cable) const noexcept {
+  impl_->CheckCable(__func__, world, cable);
   return impl_->at(world, impl_->layout.target + cable);
 }
 void Batch::SetNodeForce(int world, int node, const Vec3& force_n) noexcept {
+  impl_->CheckNode(__func__, world, node);
   impl_->ForceNode(world, node);
   impl_->set(world, impl_->layout.node_force + 3 * node, force_n);
 }
 
 void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
   Impl& d = *impl_;
+  d.CheckBody(__func__, world, body);
   const auto first = static_cast<std::size_t>(4 * body);
   const double* q0 = d.model->q_WP0.data() + first;
   const Quat q = state.orientation * Quat{q0[0], q0[1], q0[2], q0[3]};
@@ -235,11 +221,7 @@ void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
   d.set(world, d.layout.vel + 3 * body, state.velocity_m_per_s);
   d.set(world, d.layout.old_vel + 3 * body, state.velocity_m_per_s);
   d.set(world, d.layout.old_spin + 3 * body, state.angular_velocity_rad_per_s);
-  const int row = d.layout.quat + 4 * body;
-  d.at(world, row) = q.w;
-  d.at(world, row + 1) = q.x;
-  d.at(world, row + 2) = q.y;
-  d.at(world, row + 3) = q.z;
+  d.set(world, d.layout.quat + 4 * body, q);
   // Angular momentum in W: R diag(I) R^T w.
   const Vec3 w = Rotate(Conjugate(q), state.angular_velocity_rad_per_s);
   const Vec3 inertia = d.vec(world, d.layout.inertia + 3 * body);
@@ -249,19 +231,51 @@ void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
 }
 
 void Batch::SetTime(int world, double time_s) noexcept {
+  impl_->CheckWorld(__func__, world);
   impl_->at(world, impl_->layout.time) = time_s;
 }
 
 void Batch::SetRestLength(int world, int cable, double rest_length_m) noexcept {
   Impl& d = *impl_;
+  d.CheckCable(__func__, world, cable);
   d.at(world, d.layout.rest + cable) = rest_length_m;
   d.at(world, d.layout.target + cable) = rest_length_m;
   d.at(world, d.layout.rest_rate + cable) = 0.0;
   d.group(world).sensed = false;
 }
 
+int Batch::Impl::ParameterRow(const char* function, int world, Parameter parameter,
+                              int index) const noexcept {
+  switch (parameter) {
+    case Parameter::kBodyMass:
+      CheckBody(function, world, index);
+      return layout.mass + index;
+    case Parameter::kCableStiffness:
+      CheckCable(function, world, index);
+      return layout.stiffness + index;
+    case Parameter::kCableDamping:
+      CheckCable(function, world, index);
+      return layout.damping + index;
+    default:
+      break;
+  }
+  CheckWorld(function, world);
+  sim::CheckIndex(function, "parameter of the world", index, 1);
+  switch (parameter) {
+    case Parameter::kFrictionScale:
+      return layout.friction_scale;
+    case Parameter::kGravityX:
+      return layout.gravity;
+    case Parameter::kGravityY:
+      return layout.gravity + 1;
+    default:
+      return layout.gravity + 2;
+  }
+}
+
 void Batch::SetParameter(int world, Parameter parameter, int index, double value) noexcept {
   Impl& d = *impl_;
+  const int row = d.ParameterRow(__func__, world, parameter, index);
   if (parameter == Parameter::kBodyMass) {
     const BodyState state = Body(world, index);
     d.SetMass(world, index, value);
@@ -269,48 +283,13 @@ void Batch::SetParameter(int world, Parameter parameter, int index, double value
     SetBodyState(world, index, state);  // same velocity, other momentum
     return;
   }
+  d.at(world, row) = value;
   d.group(world).sensed = false;
-  switch (parameter) {
-    case Parameter::kCableStiffness:
-      d.at(world, d.layout.stiffness + index) = value;
-      break;
-    case Parameter::kCableDamping:
-      d.at(world, d.layout.damping + index) = value;
-      break;
-    case Parameter::kFrictionScale:
-      d.at(world, d.layout.friction_scale) = value;
-      break;
-    case Parameter::kGravityX:
-      d.at(world, d.layout.gravity) = value;
-      break;
-    case Parameter::kGravityY:
-      d.at(world, d.layout.gravity + 1) = value;
-      break;
-    default:
-      d.at(world, d.layout.gravity + 2) = value;
-      break;
-  }
   d.JudgeStiffness(world);
 }
 
 double Batch::GetParameter(int world, Parameter parameter, int index) const noexcept {
-  const Layout& l = impl_->layout;
-  switch (parameter) {
-    case Parameter::kBodyMass:
-      return impl_->at(world, l.mass + index);
-    case Parameter::kCableStiffness:
-      return impl_->at(world, l.stiffness + index);
-    case Parameter::kCableDamping:
-      return impl_->at(world, l.damping + index);
-    case Parameter::kFrictionScale:
-      return impl_->at(world, l.friction_scale);
-    case Parameter::kGravityX:
-      return impl_->at(world, l.gravity);
-    case Parameter::kGravityY:
-      return impl_->at(world, l.gravity + 1);
-    default:
-      return impl_->at(world, l.gravity + 2);
-  }
+  return impl_->at(world, impl_->ParameterRow(__func__, world, parameter, index));
 }
 
 std::size_t Batch::BytesPerWorld() const noexcept {

@@ -3,10 +3,13 @@
 
 #include <cstdlib>
 #include <memory>
+#include <mutex>
 #include <vector>
 
+#include "base/assert.h"
 #include "base/thread_pool.h"
 #include "math/vec.h"
+#include "sim/check_index.h"
 #include "sim/group.h"
 #include "taut/batch.h"
 
@@ -43,17 +46,44 @@ struct Batch::Impl {
   std::vector<sim::LaneStatus> status;
   std::vector<Aligned<char>> scratch;  ///< One a thread.
   base::ThreadPool pool;
+  mutable std::mutex sensing;  ///< Guards scratch[0] and the kSensed rows in const functions.
+
+  // What callers give (sim/check_index.h); `function` is the caller's name.
+  void CheckWorld(const char* function, int world) const noexcept {
+    sim::CheckIndex(function, "world", world, options.worlds);
+  }
+  void CheckBody(const char* function, int world, int body) const noexcept {
+    CheckWorld(function, world);
+    sim::CheckIndex(function, "body", body, view.body_count);
+  }
+  void CheckCable(const char* function, int world, int cable) const noexcept {
+    CheckWorld(function, world);
+    sim::CheckIndex(function, "cable", cable, view.cable_count);
+  }
+  void CheckNode(const char* function, int world, int node) const noexcept {
+    CheckWorld(function, world);
+    sim::CheckIndex(function, "node", node, view.node_count);
+  }
+  /// The row of a parameter.
+  int ParameterRow(const char* function, int world, Parameter parameter, int index) const noexcept;
 
   int lanes() const noexcept { return kernel->lanes; }
   sim::Group& group(int world) const noexcept {
+    TAUT_ASSERT(0 <= world && static_cast<std::size_t>(world / lanes()) < groups.size());
     return groups[static_cast<std::size_t>(world / lanes())];
   }
   /// Row `row` of a world.
   double& at(int world, int row) const noexcept {
+    TAUT_ASSERT(0 <= row && row < layout.rows);
     return group(world).rows[row * lanes() + world % lanes()];
   }
   Vec3 vec(int world, int row) const noexcept {
     return {at(world, row), at(world, row + 1), at(world, row + 2)};
+  }
+  void set(int world, int row, double x) const noexcept { at(world, row) = x; }
+  void set(int world, int row, const Quat& q) const noexcept {
+    at(world, row) = q.w;
+    set(world, row + 1, Vec3{q.x, q.y, q.z});
   }
   void set(int world, int row, const Vec3& x) const noexcept {
     at(world, row) = x.x;
@@ -77,11 +107,22 @@ struct Batch::Impl {
     for (int k = 0; k < g.touches_used; ++k) visit(view.slot_count + k);
   }
   void SetMass(int world, int body, double mass_kg) noexcept;
-  void InitializeWorld(int world) noexcept;
+  void StartWorld(int world) noexcept;
+  /// f(number) of all that a snapshot holds of a contact.
+  template <class F>
+  void EachMemory(int world, int contact, F f) const noexcept {
+    TAUT_ASSERT(0 <= contact && contact < view.ContactCapacity());
+    for (const sim::RowInfo& row : sim::kStateRows) {
+      if (row.role != sim::Role::kMemory) continue;
+      const int first = layout.*row.first + row.width * contact;
+      for (int k = 0; k < row.width; ++k) f(at(world, first + k));
+    }
+  }
   /// After a change of masses, stiffnesses or dampings: which cables are how stiff.
   void JudgeStiffness(int world) noexcept;
   /// Bodies moved by hand: what was known about distances is void.
-  void Moved(int world) const noexcept;
+  void Moved(int world) noexcept;
+  /// Makes the kSensed rows of the world's group belong to the current state.
   void Sense(int world) const noexcept;
   void ForceNode(int world, int node) noexcept;
 };

@@ -29,7 +29,7 @@ struct Group {
   int touches_used = 0;       ///< The longest lane's list of touches of the last step.
   int* forced_nodes = nullptr;  ///< Nodes that ever had a force, rising.
   int forced_count = 0;
-  bool sensed = false;           ///< The sense_* rows belong to the current state.
+  bool sensed = false;  ///< The kSensed rows belong to the current state. Const readers share it.
   LaneStatus* status = nullptr;  ///< Per lane.
 };
 

@@ -33,51 +33,43 @@ namespace taut::sim {
 
 template <class W>
 void SaveStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
-  for (int b = 0; b < m.body_count; ++b) {
-    work.saved_pos[b] = s.pos[b];
-    work.saved_quat[b] = s.quat[b];
-    work.saved_vel[b] = s.vel[b];
-    work.saved_mom[b] = s.mom[b];
-  }
-  for (int c = 0; c < m.cable_count; ++c) {
-    work.saved_rest[c] = s.rest[c];
-    work.saved_rest_rate[c] = s.rest_rate[c];
-  }
+  // Rows that follow one another are copied in one piece.
+  const W* from = s.time.data();
+  W* to = work.start;
+  size_t count = 0;
+  const auto save = [&](const void* row, int more) {
+    if (row != from + count) {
+      __builtin_memcpy(to, from, count * sizeof(W));
+      to += count;
+      from = static_cast<const W*>(row);
+      count = 0;
+    }
+    count += static_cast<size_t>(more);
+  };
+#define TAUT_ROW(name, type, per, role, halted, start) \
+  if (Halted::halted == Halted::kGoesBack) save(s.name.data(), m.Count(Per::per) * kWidth##type);
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
+  __builtin_memcpy(to, from, count * sizeof(W));
 }
 
-/// Worlds that are halted keep the state of the start of this step.
+/// Worlds that are halted keep the state of the start of this step, and nothing that is not finite.
 template <class W, class M>
-void KeepStart(const View& m, const Rows<W>& s, const Group& g, const Scratch<W>& work,
-               M halted) noexcept {
-  const W zero = W::Splat(0.0);
-  const V3<W> none{zero, zero, zero};
-  for (int b = 0; b < m.body_count; ++b) {
-    s.pos[b] = Select3(halted, work.saved_pos[b], s.pos[b]);
-    s.vel[b] = Select3(halted, work.saved_vel[b], s.vel[b]);
-    s.mom[b] = Select3(halted, work.saved_mom[b], s.mom[b]);
-    s.old_vel[b] = Select3(halted, work.saved_vel[b], s.old_vel[b]);
-    s.old_spin[b] = Select3(halted, none, s.old_spin[b]);
-    Q4<W>& q = s.quat[b];
-    const Q4<W>& old = work.saved_quat[b];
-    q = {Select(halted, old.w, q.w), Select(halted, old.x, q.x), Select(halted, old.y, q.y),
-         Select(halted, old.z, q.z)};
-  }
-  for (int c = 0; c < m.cable_count; ++c) {
-    s.rest[c] = Select(halted, work.saved_rest[c], s.rest[c]);
-    s.rest_rate[c] = Select(halted, work.saved_rest_rate[c], s.rest_rate[c]);
-    s.tension[c] = Select(halted, zero, s.tension[c]);
-  }
-  const W no_key = W::Splat(kNoKey);  // NaN forces must not be remembered
-  for (int b = 0; b < m.body_count; ++b) {
-    for (int k = 0; k < g.slots_used[b]; ++k) {
-      W& key = s.contact_key[m.first_slot[b] + k];
-      key = Select(halted, no_key, key);
+void KeepStart(const View& m, const Rows<W>& s, const Scratch<W>& work, M halted_worlds) noexcept {
+  const W* from = work.start;
+  const auto keep = [&](Halted what, void* row, int count) {
+    if (what == Halted::kStays) return;
+    const W value = W::Splat(what == Halted::kForgets ? kNoKey : 0.0);
+    W* const to = static_cast<W*>(row);
+    for (int i = 0; i < count; ++i) {
+      to[i] = Select(halted_worlds, what == Halted::kGoesBack ? from[i] : value, to[i]);
     }
-  }
-  for (int i = 0; i < g.touches_used; ++i) {
-    W& key = s.contact_key[m.slot_count + i];
-    key = Select(halted, no_key, key);
-  }
+    if (what == Halted::kGoesBack) from += count;
+  };
+#define TAUT_ROW(name, type, per, role, halted, start) \
+  keep(Halted::halted, s.name.data(), m.Count(Per::per) * kWidth##type);
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
 }
 
 /// Velocities back into the state; what the contacts remember.
@@ -196,7 +188,7 @@ template <class W, class Watch>
 void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings& settings,
               Scratch<W>& work, double step_s, Watch& watch) noexcept {
   watch.Begin();
-  const Rows<W> s(layout, g);
+  const Rows<W> s(m, layout, g);
   const W zero = W::Splat(0.0);
   const W h = W::Splat(step_s), half_h = W::Splat(0.5 * step_s);
 
@@ -224,7 +216,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   Judge(m, s, g, work, solve, settings, overflow);
 
   const auto halted = s.halted[0] > zero;
-  if (Any(halted)) KeepStart(m, s, g, work, halted);
+  if (Any(halted)) KeepStart(m, s, work, halted);
   s.time[0] += Select(halted, zero, h);
   s.last_step[0] = Select(halted, last, h);
   g.sensed = false;
@@ -247,11 +239,10 @@ void StepGroup(const View& m, const Layout& layout, Group& g, const StepSettings
 template <class W>
 void SenseGroup(const View& m, const Layout& layout, Group& g, void* scratch) {
   Scratch<W> work(m, scratch);
-  const Rows<W> s(layout, g);
+  const Rows<W> s(m, layout, g);
   Poison(m, s, g, work);
   StageSenseBodies(m, s, work);
   StageSense(m, s, work);
-  g.sensed = true;
 }
 
 template <class W, class Watch = NoWatch>

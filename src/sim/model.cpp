@@ -3,6 +3,7 @@
 
 #include "math/principal_axes.h"
 #include "math/rotation.h"
+#include "base/assert.h"
 #include "sim/model_check.h"
 #include "sim/tables.h"
 
@@ -54,11 +55,35 @@ class Compiler {
     Points();
     Pairs();
     sim::CoupleCables(t_);
+    Check();
   }
 
  private:
   const Frame& frame(int body) const { return frames_[static_cast<std::size_t>(Index(body))]; }
-  int Index(int body) const { return body == kWorld ? t_.body_count : body; }
+  int Index(int body) const {
+    TAUT_ASSERT(kWorld <= body && body < t_.body_count);
+    return body == kWorld ? t_.body_count : body;
+  }
+
+  /// What stepping takes for granted about the tables.
+  void Check() const {
+    const auto bodies = static_cast<std::size_t>(t_.body_count);
+    TAUT_ASSERT(t_.q_WP0.size() == 4 * bodies && t_.inertia.size() == 3 * bodies);
+    TAUT_ASSERT(t_.bound_m.size() == bodies + 1 && t_.first_point.size() == bodies + 1);
+    TAUT_ASSERT(std::is_sorted(t_.first_point.begin(), t_.first_point.end()));
+    TAUT_ASSERT(t_.planes.size() <= sim::kMaxPlanes);
+    TAUT_ASSERT(t_.coupling.size() == t_.cables.size());
+    std::size_t attachments = 0;
+    for ([[maybe_unused]] const sim::CableTable& cable : t_.cables) {
+      TAUT_ASSERT(static_cast<std::size_t>(cable.first_attachment) == attachments);
+      TAUT_ASSERT(cable.attachment_count >= 2);
+      attachments += static_cast<std::size_t>(cable.attachment_count);
+    }
+    TAUT_ASSERT(attachments == t_.attachments.size());
+    for ([[maybe_unused]] const sim::BodyPairTable& pair : t_.body_pairs) {
+      TAUT_ASSERT(Moves(pair.a) && pair.a != pair.b && pair.b <= t_.body_count);
+    }
+  }
 
   void Bodies() {
     frames_.resize(def_.bodies.size() + 1);
@@ -350,55 +375,29 @@ View Tables::View() const noexcept {
           along_slip};
 }
 
+namespace {
+
+/// Snapshots and hashes take state and parameters as one piece.
+constexpr bool RolesRise() {
+  Role last = Role::kState;
+  for (const RowInfo& row : kStateRows) {
+    if (row.role < last) return false;
+    last = row.role;
+  }
+  return true;
+}
+static_assert(RolesRise());
+
+}  // namespace
+
 Layout Tables::MakeLayout() const {
+  const struct View m = View();
   Layout l;
-  int rows = 0;
-  const auto take = [&](int count) {
-    const int first = rows;
-    rows += count;
-    return first;
-  };
-  l.time = take(1);
-  l.last_step = take(1);
-  l.pos = take(3 * body_count);
-  l.quat = take(4 * body_count);
-  l.vel = take(3 * body_count);
-  l.mom = take(3 * body_count);
-  l.old_vel = take(3 * body_count);
-  l.old_spin = take(3 * body_count);
-  l.rest = take(cable_count);
-  l.rest_rate = take(cable_count);
-  l.target = take(cable_count);
-  l.tension = take(cable_count);
-  l.node_force = take(3 * node_count);
-  l.mass = take(body_count);
-  l.inv_mass = take(body_count);
-  l.inertia = take(3 * body_count);
-  l.inv_inertia = take(3 * body_count);
-  l.stiffness = take(cable_count);
-  l.damping = take(cable_count);
-  l.stiff_k = take(cable_count);
-  l.stiff_b = take(cable_count);
-  l.friction_scale = take(1);
-  l.gravity = take(3);
-  l.halted = take(1);
-  l.snapshot_rows = rows;
-  const int contacts = ContactCapacity();
-  l.contact_key = take(contacts);
-  l.contact_force = take(3 * contacts);
-  l.contact_slip = take(contacts);
-  l.contact_bounce = take(contacts);
-  l.contact_arm = take(3 * contacts);
-  l.contact_normal = take(3 * contacts);
-  l.contact_gap = take(contacts);
-  l.clearance = take(static_cast<int>(body_pairs.size()));
-  l.residual = take(1);
-  l.linear_solves = take(1);
-  l.sense_length = take(cable_count);
-  l.sense_rate = take(cable_count);
-  l.sense_tension = take(cable_count);
-  l.sense_elastic = take(cable_count);
-  l.rows = rows;
+  for (const RowInfo& row : kStateRows) {
+    l.*row.first = l.rows;
+    l.rows += row.width * m.Count(row.per);
+    if (row.role <= Role::kParameter) l.snapshot_rows = l.rows;
+  }
   return l;
 }
 

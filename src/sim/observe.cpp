@@ -7,34 +7,43 @@
 
 namespace taut {
 
+namespace {
+
+/// The rows that hold what is read of a cable.
+CableReadings<int> RowsOf(const sim::Layout& l) {
+  return {.rest_length_m = l.rest,
+          .length_m = l.sense_length,
+          .rate_m_per_s = l.sense_rate,
+          .tension_n = l.sense_tension,
+          .elastic_n = l.sense_elastic,
+          .stiffness_n_per_m = l.stiffness};
+}
+
+}  // namespace
+
 CableState Batch::Cable(int world, int cable) const noexcept {
   const Impl& d = *impl_;
+  d.CheckCable(__func__, world, cable);
   d.Sense(world);
-  return {d.at(world, d.layout.sense_length + cable), d.at(world, d.layout.sense_rate + cable),
-          d.at(world, d.layout.rest + cable), d.at(world, d.layout.sense_tension + cable),
-          d.at(world, d.layout.sense_elastic + cable)};
+  return MapReadings([&](int row) { return d.at(world, row + cable); }, RowsOf(d.layout));
 }
 
 int Batch::groups() const noexcept { return static_cast<int>(impl_->groups.size()); }
 
 CableRows Batch::Cables(int group) noexcept {
   const Impl& d = *impl_;
+  sim::CheckIndex(__func__, "group", group, groups());
   const int first_world = group * d.lanes();
   d.Sense(first_world);
-  const auto row = [&](int first) { return &d.at(first_world, first); };
-  return {d.lanes(),
-          first_world,
-          row(d.layout.sense_length),
-          row(d.layout.sense_rate),
-          row(d.layout.rest),
-          row(d.layout.sense_tension),
-          row(d.layout.sense_elastic),
-          row(d.layout.stiffness),
-          row(d.layout.target)};
+  // Of a model without cables the rows are empty, and may be behind the last.
+  const auto first = [&](int row) { return d.group(first_world).rows + row * d.lanes(); };
+  return {MapReadings([&](int row) -> const double* { return first(row); }, RowsOf(d.layout)),
+          d.lanes(), first_world, first(d.layout.target)};
 }
 
 BodyState Batch::Body(int world, int body) const noexcept {
   const Impl& d = *impl_;
+  d.CheckBody(__func__, world, body);
   const Quat q = d.quat(world, body);
   const double* q0 = d.model->q_WP0.data() + static_cast<std::size_t>(4 * body);
   const Vec3 l = Rotate(Conjugate(q), d.vec(world, d.layout.mom + 3 * body));
@@ -46,6 +55,7 @@ BodyState Batch::Body(int world, int body) const noexcept {
 
 Vec3 Batch::NodePosition(int world, int node) const noexcept {
   const Impl& d = *impl_;
+  d.CheckNode(__func__, world, node);
   const sim::AttachmentTable& n = d.view.nodes[node];
   const Vec3 p{n.p_P[0], n.p_P[1], n.p_P[2]};
   if (n.body == d.view.body_count) return p;
@@ -54,6 +64,7 @@ Vec3 Batch::NodePosition(int world, int node) const noexcept {
 
 Vec3 Batch::NodeVelocity(int world, int node) const noexcept {
   const Impl& d = *impl_;
+  d.CheckNode(__func__, world, node);
   const sim::AttachmentTable& n = d.view.nodes[node];
   if (n.body == d.view.body_count) return {};
   const BodyState b = Body(world, n.body);
@@ -63,6 +74,7 @@ Vec3 Batch::NodeVelocity(int world, int node) const noexcept {
 
 Energy Batch::TotalEnergy(int world) const noexcept {
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   Energy e;
   const Vec3 gravity = d.vec(world, d.layout.gravity);
   for (int b = 0; b < d.view.body_count; ++b) {
@@ -84,6 +96,7 @@ Energy Batch::TotalEnergy(int world) const noexcept {
 
 Vec3 Batch::Momentum(int world) const noexcept {
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   Vec3 sum;
   for (int b = 0; b < d.view.body_count; ++b) {
     sum = sum + d.at(world, d.layout.mass + b) * d.vec(world, d.layout.vel + 3 * b);
@@ -93,6 +106,7 @@ Vec3 Batch::Momentum(int world) const noexcept {
 
 Vec3 Batch::AngularMomentum(int world) const noexcept {
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   Vec3 sum;
   for (int b = 0; b < d.view.body_count; ++b) {
     const Vec3 p = d.at(world, d.layout.mass + b) * d.vec(world, d.layout.vel + 3 * b);
@@ -106,6 +120,12 @@ namespace {
 struct Touching {
   int a, b;
 };
+
+/// Keys are whole numbers below this.
+double KeyEnd(const sim::Tables& m) {
+  return static_cast<double>(m.first_pair_id) +
+         static_cast<double>(sim::kMaxPointsPerPair) * static_cast<double>(m.shape_pairs.size());
+}
 
 /// The bodies that a contact's key names.
 Touching BodiesOf(const sim::Tables& m, double key) {
@@ -125,6 +145,7 @@ Touching BodiesOf(const sim::Tables& m, double key) {
 
 std::vector<ContactState> Batch::Contacts(int world) const {
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   const sim::Tables& m = *d.model;
   std::vector<ContactState> out;
   d.ForEachContact(world, [&](int i) {
@@ -144,21 +165,25 @@ std::vector<ContactState> Batch::Contacts(int world) const {
 
 namespace {
 
-/// A snapshot: header, the state rows, then the live contacts.
+/// A snapshot: header, the state rows, then what contacts are remembered by.
 struct SnapshotHeader {
   std::uint32_t magic = 0x74736e32;  // "tsn2"
   std::uint32_t rows = 0, contacts = 0, bits = 0;
   double first_time_s = 0;
 };
-struct SnapshotContact {
-  double key = sim::kNoKey;
-  Vec3 force_n;
-  double slip = 0, bounce = 0;
-};
+
+/// Numbers of a contact, its key first.
+constexpr std::size_t MemoryWidth() {
+  std::size_t width = 0;
+  for (const sim::RowInfo& row : sim::kStateRows) {
+    if (row.role == sim::Role::kMemory) width += static_cast<std::size_t>(row.width);
+  }
+  return width;
+}
 
 std::size_t SnapshotSize(const SnapshotHeader& header) {
   return sizeof(SnapshotHeader) + sizeof(double) * header.rows +
-         sizeof(SnapshotContact) * header.contacts;
+         sizeof(double) * MemoryWidth() * header.contacts;
 }
 
 template <class T>
@@ -178,37 +203,42 @@ T Read(const std::uint8_t*& at) {
 
 std::vector<std::uint8_t> Batch::Save(int world) const {
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   const sim::Group& g = d.group(world);
   const sim::LaneStatus& status = g.status[world % d.lanes()];
   SnapshotHeader header;
   header.rows = static_cast<std::uint32_t>(d.layout.snapshot_rows);
   header.bits = status.bits;
   header.first_time_s = status.first_time_s;
-  std::vector<SnapshotContact> contacts;
-  d.ForEachContact(world, [&](int i) {
-    contacts.push_back({d.at(world, d.layout.contact_key + i),
-                        d.vec(world, d.layout.contact_force + 3 * i),
-                        d.at(world, d.layout.contact_slip + i),
-                        d.at(world, d.layout.contact_bounce + i)});
-  });
-  header.contacts = static_cast<std::uint32_t>(contacts.size());
+  std::vector<int> live;
+  d.ForEachContact(world, [&](int i) { live.push_back(i); });
+  header.contacts = static_cast<std::uint32_t>(live.size());
   std::vector<std::uint8_t> out(SnapshotSize(header));
   std::uint8_t* at = out.data();
   Write(at, header);
   for (int row = 0; row < d.layout.snapshot_rows; ++row) Write(at, d.at(world, row));
-  for (const SnapshotContact& c : contacts) Write(at, c);
+  for (const int i : live) {
+    d.EachMemory(world, i, [&](double x) { Write(at, x); });
+  }
   return out;
 }
 
 bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexcept {
   Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   if (snapshot.size() < sizeof(SnapshotHeader)) return false;
   const std::uint8_t* at = snapshot.data();
   const auto header = Read<SnapshotHeader>(at);
   if (header.magic != SnapshotHeader().magic || snapshot.size() != SnapshotSize(header) ||
       header.rows != static_cast<std::uint32_t>(d.layout.snapshot_rows) ||
-      header.contacts > static_cast<std::uint32_t>(d.model->ContactCapacity())) {
+      header.contacts > static_cast<std::uint32_t>(d.view.ContactCapacity())) {
     return false;
+  }
+  const std::uint8_t* key_at = at + sizeof(double) * header.rows;
+  for (std::uint32_t k = 0; k < header.contacts; ++k) {
+    const double key = Read<double>(key_at);
+    key_at += sizeof(double) * (MemoryWidth() - 1);
+    if (!(key >= 0 && key < KeyEnd(*d.model))) return false;
   }
   for (int row = 0; row < d.layout.snapshot_rows; ++row) d.at(world, row) = Read<double>(at);
   for (int node = 0; node < d.view.node_count; ++node) {
@@ -224,25 +254,28 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
   // This lane's contacts give way to the snapshot's; those of other lanes stay.
   d.ForEachContact(world, [&](int i) { d.at(world, d.layout.contact_key + i) = sim::kNoKey; });
   const sim::Tables& m = *d.model;
-  int body = -1, next = 0;
+  int list = -1, next = 0;
   for (std::uint32_t k = 0; k < header.contacts; ++k) {
-    const auto c = Read<SnapshotContact>(at);
-    const Touching bodies = BodiesOf(m, c.key);
+    const Touching bodies = BodiesOf(m, Read<double>(at));
+    at -= sizeof(double);
+    // A body's slots, or the touches behind all of them.
     const bool moves = bodies.b < m.body_count && d.at(world, d.layout.mass + bodies.b) > 0;
-    const int list = moves ? m.body_count : bodies.a;  // a body's slots, or the touches behind them
-    if (list != body) next = moves ? m.slot_count : m.first_slot[static_cast<std::size_t>(list)];
-    body = list;
+    const int first = moves ? m.slot_count : m.first_slot[static_cast<std::size_t>(bodies.a)];
+    if (list != first) next = first;
+    list = first;
+    const int room = moves ? m.pair_capacity
+                           : m.first_slot[static_cast<std::size_t>(bodies.a) + 1] - first;
+    int& used = moves ? g.touches_used : g.slots_used[bodies.a];
     const int i = next++;
-    const int used = moves ? i - m.slot_count : i - m.first_slot[static_cast<std::size_t>(list)];
-    int& known = moves ? g.touches_used : g.slots_used[list];
-    if (used == known) {
-      ++known;
+    if (i - first >= room) {  // no snapshot that Save made has so many
+      at += sizeof(double) * MemoryWidth();
+      continue;
+    }
+    if (i - first == used) {
+      ++used;
       std::fill_n(g.rows + (d.layout.contact_key + i) * g.lanes, g.lanes, sim::kNoKey);
     }
-    d.at(world, d.layout.contact_key + i) = c.key;
-    d.set(world, d.layout.contact_force + 3 * i, c.force_n);
-    d.at(world, d.layout.contact_slip + i) = c.slip;
-    d.at(world, d.layout.contact_bounce + i) = c.bounce;
+    d.EachMemory(world, i, [&](double& x) { x = Read<double>(at); });
   }
   d.Moved(world);
   return true;
@@ -251,6 +284,7 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
 std::uint64_t Batch::Hash(int world) const noexcept {
   // FNV-1a over what a snapshot holds, without building one.
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   std::uint64_t hash = 0xcbf29ce484222325u;
   const auto add = [&](double x) {
     std::uint64_t bits;
@@ -258,17 +292,13 @@ std::uint64_t Batch::Hash(int world) const noexcept {
     for (int i = 0; i < 8; ++i) hash = (hash ^ ((bits >> (8 * i)) & 0xff)) * 0x100000001b3u;
   };
   for (int row = 0; row < d.layout.snapshot_rows; ++row) add(d.at(world, row));
-  d.ForEachContact(world, [&](int i) {
-    add(d.at(world, d.layout.contact_key + i));
-    for (int k = 0; k < 3; ++k) add(d.at(world, d.layout.contact_force + 3 * i + k));
-    add(d.at(world, d.layout.contact_slip + i));
-    add(d.at(world, d.layout.contact_bounce + i));
-  });
+  d.ForEachContact(world, [&](int i) { d.EachMemory(world, i, add); });
   return hash;
 }
 
 WorldStatus Batch::Status(int world) const noexcept {
   const Impl& d = *impl_;
+  d.CheckWorld(__func__, world);
   const sim::LaneStatus& s = d.group(world).status[world % d.lanes()];
   return {s.bits,
           s.first_time_s,
@@ -279,6 +309,7 @@ WorldStatus Batch::Status(int world) const noexcept {
 }
 
 void Batch::ClearStatus(int world) noexcept {
+  impl_->CheckWorld(__func__, world);
   impl_->group(world).status[world % impl_->lanes()] = {};
   impl_->at(world, impl_->layout.halted) = 0.0;
 }

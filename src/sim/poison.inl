@@ -1,4 +1,4 @@
-/// Builds with assertions fill with NaN what a step must not read before it has written it, so that
+/// Builds without NDEBUG fill with NaN what a step must not read before it has written it, so that
 /// a stale value shows as a world that is not finite or as another golden hash.
 
 namespace taut::sim {
@@ -12,18 +12,21 @@ void Poison([[maybe_unused]] const View& m, [[maybe_unused]] const Rows<W>& s,
 #ifndef NDEBUG
   work.Fill(0xff);  // a NaN as double, -1 as int
   const W nan = W::Splat(__builtin_nan(""));
-  const V3<W> nan3{nan, nan, nan};
-  const auto forget = [&](int i) {
-    s.contact_force[i] = s.contact_arm[i] = s.contact_normal[i] = nan3;
-    s.contact_key[i] = s.contact_slip[i] = s.contact_bounce[i] = s.contact_gap[i] = nan;
+  const auto fill = [nan](void* row, int first, int end) {
+    for (int i = first; i < end; ++i) static_cast<W*>(row)[i] = nan;
   };
-  for (int b = 0; b < m.body_count; ++b) {
-    for (int i = m.first_slot[b] + g.slots_used[b]; i < m.first_slot[b + 1]; ++i) forget(i);
-  }
-  for (int i = g.touches_used; i < m.pair_capacity; ++i) forget(m.slot_count + i);
-  for (int c = 0; c < m.cable_count; ++c) {
-    s.sense_length[c] = s.sense_rate[c] = s.sense_tension[c] = s.sense_elastic[c] = nan;
-  }
+  const auto forget = [&](void* row, int width) {
+    for (int b = 0; b < m.body_count; ++b) {
+      const int first = m.first_slot[b] + g.slots_used[b];
+      fill(row, width * first, width * m.first_slot[b + 1]);
+    }
+    fill(row, width * (m.slot_count + g.touches_used), width * m.ContactCapacity());
+  };
+#define TAUT_ROW(name, type, per, role, halted, start)                             \
+  if (Per::per == Per::kContact) forget(s.name.data(), kWidth##type);               \
+  if (Role::role == Role::kSensed) fill(s.name.data(), 0, m.Count(Per::per) * kWidth##type);
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
 #endif
 }
 

@@ -1,6 +1,7 @@
 /// Typed access to a group's rows, and what a step keeps only while it runs.
 #pragma once
 
+#include "base/assert.h"
 #include "sim/contacts.h"
 #include "sim/constraint/cable_row.h"
 #include "math/cable_path.h"
@@ -15,58 +16,49 @@ using simd::Q4;
 using simd::S3;
 using simd::V3;
 
-/// A group's rows as wide numbers (names as in Layout).
+/// Elements of one type, one behind the other: a pointer that in builds with assertions knows its
+/// end.
+template <class T>
+class Row {
+ public:
+  Row() = default;
+  TAUT_INLINE Row(T* first, [[maybe_unused]] int count) noexcept : first_(first) {
+#ifdef TAUT_ASSERTS
+    count_ = count;
+#endif
+  }
+  TAUT_INLINE T& operator[](int i) const noexcept {
+#ifdef TAUT_ASSERTS
+    TAUT_ASSERT(0 <= i && i < count_);
+#endif
+    return first_[i];
+  }
+  TAUT_INLINE T* data() const noexcept { return first_; }
+
+ private:
+  T* first_;
+#ifdef TAUT_ASSERTS
+  int count_;
+#endif
+};
+
+/// A group's rows as wide numbers: row `pos` of body b is pos[b] (state_rows.h).
 template <class W>
 struct Rows {
-  W *time, *last_step, *rest, *rest_rate, *target, *mass, *inv_mass, *stiffness, *damping,
-      *friction_scale, *tension, *stiff_k, *stiff_b, *halted, *contact_key, *contact_slip,
-      *contact_bounce, *contact_gap, *clearance, *residual, *linear_solves, *sense_length, *sense_rate,
-      *sense_tension, *sense_elastic;
-  V3<W>*pos, *vel, *mom, *old_vel, *old_spin, *node_force, *inertia, *inv_inertia, *gravity,
-      *contact_force, *contact_arm, *contact_normal;
-  Q4<W>* quat;
+  using Number = W;
+  using V3 = simd::V3<W>;
+  using Q4 = simd::Q4<W>;
 
-  Rows(const Layout& l, const Group& g) noexcept {
+#define TAUT_ROW(name, type, ...) Row<type> name;
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
+
+  Rows(const View& m, const Layout& l, const Group& g) noexcept {
     W* const base = reinterpret_cast<W*>(g.rows);
-    const auto v3 = [base](int row) { return reinterpret_cast<V3<W>*>(base + row); };
-    time = base + l.time;
-    last_step = base + l.last_step;
-    pos = v3(l.pos);
-    quat = reinterpret_cast<Q4<W>*>(base + l.quat);
-    vel = v3(l.vel);
-    mom = v3(l.mom);
-    old_vel = v3(l.old_vel);
-    old_spin = v3(l.old_spin);
-    rest = base + l.rest;
-    rest_rate = base + l.rest_rate;
-    target = base + l.target;
-    tension = base + l.tension;
-    stiff_k = base + l.stiff_k;
-    stiff_b = base + l.stiff_b;
-    node_force = v3(l.node_force);
-    mass = base + l.mass;
-    inv_mass = base + l.inv_mass;
-    inertia = v3(l.inertia);
-    inv_inertia = v3(l.inv_inertia);
-    stiffness = base + l.stiffness;
-    damping = base + l.damping;
-    friction_scale = base + l.friction_scale;
-    gravity = v3(l.gravity);
-    halted = base + l.halted;
-    contact_key = base + l.contact_key;
-    contact_force = v3(l.contact_force);
-    contact_slip = base + l.contact_slip;
-    contact_bounce = base + l.contact_bounce;
-    contact_arm = v3(l.contact_arm);
-    contact_normal = v3(l.contact_normal);
-    contact_gap = base + l.contact_gap;
-    clearance = base + l.clearance;
-    residual = base + l.residual;
-    linear_solves = base + l.linear_solves;
-    sense_length = base + l.sense_length;
-    sense_rate = base + l.sense_rate;
-    sense_tension = base + l.sense_tension;
-    sense_elastic = base + l.sense_elastic;
+#define TAUT_ROW(name, type, per, ...) \
+  name = Row<type>(reinterpret_cast<type*>(base + l.name), m.Count(Per::per));
+    TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
   }
 };
 
@@ -98,14 +90,9 @@ struct Scratch {
   AttachmentWork<W>* attachments;
   Contact<W, 1>* contacts;  ///< Slots of all bodies: those of body b from View::first_slot[b] on.
   int* contact_count;       ///< Used slots, per body.
-  TouchingPair* touches;           ///< Those of a lane from lane * pair_capacity on.
+  TouchingPair* touches;    ///< Those of a lane from lane * pair_capacity on.
   int touch_count[W::kLanes];
-  V3<W>* saved_pos;  ///< Start of the step, for worlds that turn non-finite.
-  Q4<W>* saved_quat;
-  V3<W>* saved_vel;
-  V3<W>* saved_mom;
-  W* saved_rest;
-  W* saved_rest_rate;
+  W* start;  ///< Rows that go back to the start of the step in worlds that turn non-finite.
   StiffCable<W>* stiff;
   Link<W, 1>* links;  ///< Of all stiff cables.
   W* unsolved;        ///< Per body: 1 in lanes in which it is left to the lane's own solve.
@@ -125,12 +112,11 @@ struct Scratch {
     contacts = room_.Take<Contact<W, 1>>(m.slot_count);
     contact_count = room_.Take<int>(bodies_count);
     touches = room_.Take<TouchingPair>(W::kLanes * m.pair_capacity);
-    saved_pos = room_.Take<V3<W>>(bodies_count);
-    saved_quat = room_.Take<Q4<W>>(bodies_count);
-    saved_vel = room_.Take<V3<W>>(bodies_count);
-    saved_mom = room_.Take<V3<W>>(bodies_count);
-    saved_rest = room_.Take<W>(m.cable_count);
-    saved_rest_rate = room_.Take<W>(m.cable_count);
+    int start_rows = 0;
+    for (const RowInfo& row : kStateRows) {
+      if (row.halted == Halted::kGoesBack) start_rows += row.width * m.Count(row.per);
+    }
+    start = room_.Take<W>(start_rows);
     stiff = room_.Take<StiffCable<W>>(m.cable_count);
     links = room_.Take<Link<W, 1>>(m.attachment_count);
     unsolved = room_.Take<W>(bodies_count);

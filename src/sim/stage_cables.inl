@@ -94,7 +94,7 @@ TAUT_INLINE void PullCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
                            int attachment_count, AttachmentWork<W>* ends, W h, W inv_h) noexcept {
   const W zero = W::Splat(0.0);
   const CableTable& cable = m.cables[c];
-  const auto [l, dl] = MeasureCable(m, cable, attachment_count, s.pos, work, ends);
+  const auto [l, dl] = MeasureCable(m, cable, attachment_count, s.pos.data(), work, ends);
   W rest = s.rest[c], rate = s.rest_rate[c];
   const W mean = Actuate(cable, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
   s.rest[c] = rest;
@@ -142,7 +142,7 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
 template <class W>
 TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, const Scratch<W>& work, int c,
                             int attachment_count, AttachmentWork<W>* ends) noexcept {
-  const auto [l, dl] = MeasureCable(m, m.cables[c], attachment_count, s.pos, work, ends);
+  const auto [l, dl] = MeasureCable(m, m.cables[c], attachment_count, s.pos.data(), work, ends);
   const CableForce<W> f =
       TensionOf(s.stiffness[c], s.damping[c], l, dl, s.rest[c], m.cables[c].clamped_damping);
   s.sense_length[c] = l;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/shape_contacts.h"
+#include "sim/state_rows.h"
 #include "taut/batch.h"
 
 namespace taut::sim {
@@ -61,23 +62,30 @@ struct BodyPairTable {
 
 inline constexpr int kMaxPlanes = 8;
 
-/// Offsets, in rows of one double a lane, of everything that a group of worlds keeps.
+/// Offsets, in rows of one double a lane, of everything that a group of worlds keeps
+/// (state_rows.h).
 struct Layout {
-  // State and commands: what a snapshot holds.
-  int time = 0, last_step = 0, pos = 0, quat = 0, vel = 0, mom = 0, old_vel = 0, old_spin = 0,
-      rest = 0, rest_rate = 0, target = 0, tension = 0, node_force = 0;
-  // Parameters, also part of a snapshot.
-  int mass = 0, inv_mass = 0, inertia = 0, inv_inertia = 0, stiffness = 0, damping = 0, stiff_k = 0,
-      stiff_b = 0, friction_scale = 0, gravity = 0, halted = 0;
-  int snapshot_rows = 0;
-  // Contacts of the last step: the slots of all bodies, then the lane's list of touches. What has
-  // no key is none.
-  int contact_key = 0, contact_force = 0, contact_slip = 0, contact_bounce = 0, contact_arm = 0,
-      contact_normal = 0, contact_gap = 0;
-  // Derived; forgotten by snapshots.
-  int clearance = 0, residual = 0, linear_solves = 0;
-  int sense_length = 0, sense_rate = 0, sense_tension = 0, sense_elastic = 0;
+#define TAUT_ROW(name, ...) int name = 0;
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
+  int snapshot_rows = 0;  ///< State and parameters, which come first.
   int rows = 0;
+};
+
+/// A line of state_rows.h, for loops over all rows.
+struct RowInfo {
+  int width;
+  Per per;
+  Role role;
+  Halted halted;
+  int Layout::*first;
+};
+
+inline constexpr RowInfo kStateRows[] = {
+#define TAUT_ROW(name, type, per, role, halted, start) \
+  {kWidth##type, Per::per, Role::role, Halted::halted, &Layout::name},
+    TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
 };
 
 /// `Tables` without the standard library.
@@ -99,6 +107,27 @@ struct View {
   std::uint32_t first_pair_id;
   int pair_capacity, max_attachments, attachment_count;
   bool along_slip;
+
+  // Always inline: of a function that several instruction sets emit the linker keeps any one.
+  /// Contacts that one world may have at once.
+  [[gnu::always_inline]] int ContactCapacity() const noexcept { return slot_count + pair_capacity; }
+  /// How many elements a row has.
+  [[gnu::always_inline]] int Count(Per per) const noexcept {
+    switch (per) {
+      case Per::kBody:
+        return body_count;
+      case Per::kCable:
+        return cable_count;
+      case Per::kNode:
+        return node_count;
+      case Per::kBodyPair:
+        return body_pair_count;
+      case Per::kContact:
+        return ContactCapacity();
+      default:
+        return 1;
+    }
+  }
 };
 
 class Tables final : public Model {
@@ -131,8 +160,6 @@ class Tables final : public Model {
   /// The same tables as plain pointers, for code that is compiled for several instruction sets
   /// and must not touch the standard library.
   struct View View() const noexcept;
-  /// Contacts that one world may have at once.
-  int ContactCapacity() const noexcept { return slot_count + pair_capacity; }
   Layout MakeLayout() const;
 };
 

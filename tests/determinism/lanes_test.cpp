@@ -88,7 +88,8 @@ TEST_P(LanesOf, SayOfAllCablesAtOnceWhatTheySayOfEach) {
       EXPECT_EQ(rows.rest_length_m[at], cable.rest_length_m);
       EXPECT_EQ(rows.tension_n[at], cable.tension_n);
       EXPECT_EQ(rows.elastic_n[at], cable.elastic_n);
-      EXPECT_EQ(rows.stiffness_n_per_m[at], batch.GetParameter(i, Parameter::kCableStiffness, c));
+      EXPECT_EQ(rows.stiffness_n_per_m[at], cable.stiffness_n_per_m);
+      EXPECT_EQ(cable.stiffness_n_per_m, batch.GetParameter(i, Parameter::kCableStiffness, c));
       rows.rest_length_target_m[at] = 0.1 + 0.01 * at;
       EXPECT_EQ(batch.RestLengthTarget(i, c), 0.1 + 0.01 * at);
     }

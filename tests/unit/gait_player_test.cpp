@@ -195,7 +195,7 @@ TEST(GaitPlayer, TheGaitActsBeforeTheLawThatItFeeds) {
   spec.velocity_input = VelocityInputSpec{{0.25, 0.0}, OneTable(false)};
   plant::Controller controller(spec, robot);
   const std::size_t count = robot.def.cables.size();
-  std::vector<plant::CableReading> readings(count);
+  std::vector<CableState> readings(count);
   for (auto& reading : readings) reading = {0.15, 0.2, 0.0, 10.0, 10.0, 229.16};
   plant::CableCommands commands{std::vector<double>(count), std::vector<double>(count),
                                 std::vector<double>(count)};

@@ -12,8 +12,15 @@ namespace {
 
 /// Rows for one cable in one world.
 struct One {
-  double rest = 1.0, length = 1.1, rate = 0.0, tension = 10.0, elastic = 9.0, stiffness = 100.0;
-  ReadingRows rows() const { return {&rest, &length, &rate, &tension, &elastic, &stiffness}; }
+  CableState cable{.rest_length_m = 1.0,
+                   .length_m = 1.1,
+                   .rate_m_per_s = 0.0,
+                   .tension_n = 10.0,
+                   .elastic_n = 9.0,
+                   .stiffness_n_per_m = 100.0};
+  ReadingRows rows() const {
+    return MapReadings([](const double& x) { return &x; }, cable);
+  }
 };
 
 SensorSpec WithCell(const LoadCellSpec& cell) {
@@ -27,7 +34,7 @@ std::vector<double> Samples(const LoadCellSpec& cell, double tension_n, int coun
                             std::uint64_t seed = 1) {
   Sensors sensors(WithCell(cell), 1, {seed});
   One exact;
-  exact.tension = tension_n;
+  exact.cable.tension_n = tension_n;
   std::vector<double> out;
   for (int i = 0; i < count; ++i) {
     sensors.Sample(sensors.next_tick_s(), exact.rows());
@@ -52,11 +59,11 @@ TEST(Sensors, WithoutAnythingAreExact) {
   One exact;
   sensors.Sample(0.0, exact.rows());
   const ReadingRows seen = sensors.rows();
-  EXPECT_EQ(*seen.rest_length_m, exact.rest);
-  EXPECT_EQ(*seen.length_m, exact.length);
-  EXPECT_EQ(*seen.tension_n, exact.tension);
-  EXPECT_EQ(*seen.elastic_n, exact.elastic);
-  EXPECT_EQ(*seen.stiffness_n_per_m, exact.stiffness);
+  EXPECT_EQ(*seen.rest_length_m, exact.cable.rest_length_m);
+  EXPECT_EQ(*seen.length_m, exact.cable.length_m);
+  EXPECT_EQ(*seen.tension_n, exact.cable.tension_n);
+  EXPECT_EQ(*seen.elastic_n, exact.cable.elastic_n);
+  EXPECT_EQ(*seen.stiffness_n_per_m, exact.cable.stiffness_n_per_m);
 }
 
 // n = 100000 samples: the mean is good to s / sqrt(n), the variance to s^2 sqrt(2 / n); times five.
@@ -123,8 +130,8 @@ TEST(Sensors, ADelayIsWholeSamples) {
   Sensors sensors(spec, 1, {1});
   One exact;
   for (int i = 0; i < 10; ++i) {
-    exact.tension = 10.0 + i;
-    exact.rest = 1.0 - 0.25 * i;
+    exact.cable.tension_n = 10.0 + i;
+    exact.cable.rest_length_m = 1.0 - 0.25 * i;
     sensors.Sample(sensors.next_tick_s(), exact.rows());
     EXPECT_EQ(*sensors.rows().tension_n, 10.0 + std::max(0, i - 3));
     EXPECT_EQ(*sensors.rows().elastic_n, *sensors.rows().tension_n);  // all that a cell can tell
@@ -138,7 +145,7 @@ TEST(Sensors, AnEncoderCounts) {
   Sensors sensors(spec, 1, {1});
   One exact;
   for (const auto& [rest, seen] : {std::pair{1.1, 1.0}, {1.13, 1.25}, {0.1, 0.0}}) {
-    exact.rest = rest;
+    exact.cable.rest_length_m = rest;
     sensors.Sample(sensors.next_tick_s(), exact.rows());
     EXPECT_EQ(*sensors.rows().rest_length_m, seen);
   }
@@ -153,7 +160,7 @@ TEST(Sensors, LengthFollowsFromTensionAndRestLength) {
   sensors.Sample(0.0, exact.rows());
   EXPECT_DOUBLE_EQ(*sensors.rows().length_m, 1.0 + 10.0 / 100.0);
   EXPECT_EQ(*sensors.rows().rate_m_per_s, 0.0);
-  exact.tension = 10.5;
+  exact.cable.tension_n = 10.5;
   sensors.Sample(0.001, exact.rows());
   EXPECT_NEAR(*sensors.rows().rate_m_per_s, 0.005 / 0.001, 1e-9);
 }
@@ -164,7 +171,7 @@ TEST(Sensors, SampleOnTheirOwnClock) {
   Sensors sensors(spec, 1, {1});
   One exact;
   for (int ms = 0; ms < 30; ++ms) {
-    exact.tension = ms;
+    exact.cable.tension_n = ms;
     sensors.Sample(0.001 * ms, exact.rows());
     EXPECT_EQ(*sensors.rows().tension_n, ms / 10 * 10);
   }
@@ -184,7 +191,7 @@ TEST(Sensors, NoiseDoesNotDependOnTheStep) {
     Batch batch(Model::Compile(experiment->robot.def, out), {});
     Stepper stepper(*experiment, batch);
     while (stepper.time_s() < 0.1 - 1e-9) stepper.Step();
-    const std::vector<CableReading> exact = stepper.readings();
+    const std::vector<CableState> exact = stepper.readings();
     stepper.Prepare();
     return stepper.sensed()[3].tension_n - exact[3].tension_n;
   };

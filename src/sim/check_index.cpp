@@ -1,0 +1,19 @@
+#include "sim/check_index.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace taut::sim {
+
+void WrongIndex(const char* function, const char* what, int index, int count) noexcept {
+  if (count == 0) {
+    std::fprintf(stderr, "taut: Batch::%s: there is no %s %d: there is none at all\n", function,
+                 what, index);
+  } else {
+    std::fprintf(stderr, "taut: Batch::%s: there is no %s %d: they are 0 to %d\n", function, what,
+                 index, count - 1);
+  }
+  std::abort();
+}
+
+}  // namespace taut::sim

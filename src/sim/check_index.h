@@ -1,0 +1,16 @@
+/// The indices that callers give. A wrong one is a mistake of theirs, and would write what belongs
+/// to something else: it is named and ends the program, in every build.
+#pragma once
+
+namespace taut::sim {
+
+/// `function` and `what` as the caller knows them: "Cable", "cable".
+[[noreturn]] void WrongIndex(const char* function, const char* what, int index, int count) noexcept;
+
+inline void CheckIndex(const char* function, const char* what, int index, int count) noexcept {
+  if (index < 0 || index >= count) [[unlikely]] {
+    WrongIndex(function, what, index, count);
+  }
+}
+
+}  // namespace taut::sim

@@ -1,0 +1,75 @@
+/// Every row that a group of worlds keeps, once. Where it lies, how a step reaches it, how it
+/// starts, what a snapshot holds and what becomes of it when a world is halted all follow from this
+/// list. Without the standard library: the step includes it.
+#pragma once
+
+namespace taut::sim {
+
+/// How many of a row there are.
+enum class Per { kWorld, kBody, kCable, kNode, kBodyPair, kContact };
+
+/// What it is for, in the order in which the rows lie.
+enum class Role {
+  kState,      ///< With commands: advances; in snapshots and hashes.
+  kParameter,  ///< Does not change by itself; in snapshots and hashes.
+  kMemory,     ///< Of the contacts of the last step; snapshots and hashes have those with a key.
+  kDerived,    ///< Follows from the rest or only reports; in no snapshot.
+  kSensed,     ///< Derived, and only when somebody asks for it (Group::sensed).
+};
+
+/// What becomes of it when a step has left a world that is not finite.
+enum class Halted {
+  kStays,     ///< The step did not write it, or writes nothing there that is not finite.
+  kGoesBack,  ///< To the start of the step.
+  kZero,
+  kForgets,   ///< Becomes kNoKey: a contact that is remembered no more.
+};
+
+/// Numbers that one element has.
+inline constexpr int kWidthNumber = 1, kWidthV3 = 3, kWidthQ4 = 4;
+
+}  // namespace taut::sim
+
+/// ROW(name, type, how many, role, when halted, start): `start` is a function of start_values.h.
+/// Snapshots and hashes have the order of this list.
+// clang-format off
+#define TAUT_STATE_ROWS(ROW) \
+  ROW(time,           Number, kWorld,    kState,     kStays,    Zero)             /* [s] */ \
+  ROW(last_step,      Number, kWorld,    kState,     kStays,    Zero)             /* [s] */ \
+  ROW(pos,            V3,     kBody,     kState,     kGoesBack, CentreOfMass)     /* [m] */ \
+  ROW(quat,           Q4,     kBody,     kState,     kGoesBack, PrincipalFrame)   /* q_WP */ \
+  ROW(vel,            V3,     kBody,     kState,     kGoesBack, Velocity)         /* [m/s] */ \
+  ROW(mom,            V3,     kBody,     kState,     kGoesBack, AngularMomentum)  /* about com, in W [kg m^2/s] */ \
+  ROW(old_vel,        V3,     kBody,     kState,     kStays,    Velocity)         /* vel before the last step */ \
+  ROW(old_spin,       V3,     kBody,     kState,     kZero,     Spin)             /* its angular velocity [rad/s] */ \
+  ROW(rest,           Number, kCable,    kState,     kGoesBack, RestLength)       /* [m] */ \
+  ROW(rest_rate,      Number, kCable,    kState,     kGoesBack, Zero)             /* [m/s] */ \
+  ROW(target,         Number, kCable,    kState,     kStays,    RestLength)       /* [m] */ \
+  ROW(tension,        Number, kCable,    kState,     kZero,     Tension)          /* [N] */ \
+  ROW(node_force,     V3,     kNode,     kState,     kStays,    Zero)             /* in W [N] */ \
+  ROW(mass,           Number, kBody,     kParameter, kStays,    Mass)             /* [kg] */ \
+  ROW(inv_mass,       Number, kBody,     kParameter, kStays,    InverseMass)      /* [1/kg] */ \
+  ROW(inertia,        V3,     kBody,     kParameter, kStays,    Moments)          /* principal [kg m^2] */ \
+  ROW(inv_inertia,    V3,     kBody,     kParameter, kStays,    InverseMoments)   /* [1/(kg m^2)] */ \
+  ROW(stiffness,      Number, kCable,    kParameter, kStays,    Stiffness)        /* [N/m] */ \
+  ROW(damping,        Number, kCable,    kParameter, kStays,    Damping)          /* [N s/m] */ \
+  ROW(stiff_k,        Number, kCable,    kParameter, kStays,    ByJudgeStiffness) /* [1/s^2] */ \
+  ROW(stiff_b,        Number, kCable,    kParameter, kStays,    ByJudgeStiffness) /* [1/s] */ \
+  ROW(friction_scale, Number, kWorld,    kParameter, kStays,    One)              /* [1] */ \
+  ROW(gravity,        V3,     kWorld,    kParameter, kStays,    Gravity)          /* [m/s^2] */ \
+  ROW(halted,         Number, kWorld,    kParameter, kStays,    Zero)             /* 1 if it stands still */ \
+  ROW(contact_key,    Number, kContact,  kMemory,    kForgets,  NoKey)            /* pair and feature; -1: none */ \
+  ROW(contact_force,  V3,     kContact,  kMemory,    kStays,    Zero)             /* in W [N] */ \
+  ROW(contact_slip,   Number, kContact,  kMemory,    kStays,    SlipUnknown)      /* 1 slid, 0 stuck */ \
+  ROW(contact_bounce, Number, kContact,  kMemory,    kStays,    Zero)             /* due rebound [m/s] */ \
+  ROW(contact_arm,    V3,     kContact,  kDerived,   kStays,    Zero)             /* from body a, in W [m] */ \
+  ROW(contact_normal, V3,     kContact,  kDerived,   kStays,    Zero)             /* in W */ \
+  ROW(contact_gap,    Number, kContact,  kDerived,   kStays,    Zero)             /* [m] */ \
+  ROW(clearance,      Number, kBodyPair, kDerived,   kStays,    Zero)             /* at least this far apart [m] */ \
+  ROW(residual,       Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last solve [m/s] */ \
+  ROW(linear_solves,  Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last solve */ \
+  ROW(sense_length,   Number, kCable,    kSensed,    kStays,    Zero)             /* [m] */ \
+  ROW(sense_rate,     Number, kCable,    kSensed,    kStays,    Zero)             /* [m/s] */ \
+  ROW(sense_tension,  Number, kCable,    kSensed,    kStays,    Zero)             /* [N] */ \
+  ROW(sense_elastic,  Number, kCable,    kSensed,    kStays,    Zero)             /* [N] */
+// clang-format on

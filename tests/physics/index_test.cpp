@@ -1,0 +1,109 @@
+/// An index out of range ends the program and says which; it never writes somewhere else.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scenes/hanging_mass.h"
+#include "tests/physics/world.h"
+
+namespace taut::test {
+namespace {
+
+/// Two worlds, each with one body and one cable.
+Batch TwoWorlds() {
+  BatchOptions options;
+  options.worlds = 2;
+  options.simd = Simd::kScalar;
+  return MakeBatch(scenes::HangingMass{}.Def(), options);
+}
+
+TEST(IndexDeathTest, ACableThatTheModelLacksIsNamedAndNothingElseIsWritten) {
+  Batch batch = TwoWorlds();
+  ASSERT_EQ(batch.model().def().cables.size(), 1u);
+  // Damping of cable 0 lies behind stiffness of cable 0.
+  EXPECT_DEATH(batch.SetParameter(0, Parameter::kCableStiffness, 1, 7.0),
+               "taut: Batch::SetParameter: there is no cable 1: they are 0 to 0");
+  EXPECT_DEATH(batch.Cable(0, -1), "taut: Batch::Cable: there is no cable -1: they are 0 to 0");
+}
+
+TEST(IndexDeathTest, AKindOfWhichTheModelHasNoneIsSaidToBeEmpty) {
+  ModelDef def = scenes::HangingMass{}.Def();
+  def.cables.clear();
+  Batch batch = MakeBatch(def);
+  EXPECT_DEATH(batch.Cable(0, 0), "taut: Batch::Cable: there is no cable 0: there is none at all");
+}
+
+TEST(IndexDeathTest, EveryFunctionLooksAtEveryIndex) {
+  Batch batch = TwoWorlds();
+  const auto count = [&](const auto& all) { return static_cast<int>(all.size()); };
+  const ModelDef& def = batch.model().def();
+  const int bodies = count(def.bodies), cables = count(def.cables), nodes = count(def.nodes);
+  const std::vector<std::uint8_t> snapshot = batch.Save(0);
+  struct Call {
+    std::string function;
+    std::function<void(Batch&, int world, int index)> call;
+    int indices = 0;  ///< That `index` may be; 0: it is not used.
+  };
+  const std::vector<Call> calls = {
+      {"Time", [](Batch& b, int w, int) { b.Time(w); }},
+      {"SetRestLengthTarget", [](Batch& b, int w, int i) { b.SetRestLengthTarget(w, i, 1); },
+       cables},
+      {"RestLengthTarget", [](Batch& b, int w, int i) { b.RestLengthTarget(w, i); }, cables},
+      {"SetNodeForce", [](Batch& b, int w, int i) { b.SetNodeForce(w, i, {}); }, nodes},
+      {"Cable", [](Batch& b, int w, int i) { b.Cable(w, i); }, cables},
+      {"Cables", [](Batch& b, int w, int) { b.Cables(w); }},  // scalar: a group is a world
+      {"Body", [](Batch& b, int w, int i) { b.Body(w, i); }, bodies},
+      {"NodePosition", [](Batch& b, int w, int i) { b.NodePosition(w, i); }, nodes},
+      {"NodeVelocity", [](Batch& b, int w, int i) { b.NodeVelocity(w, i); }, nodes},
+      {"TotalEnergy", [](Batch& b, int w, int) { b.TotalEnergy(w); }},
+      {"Momentum", [](Batch& b, int w, int) { b.Momentum(w); }},
+      {"AngularMomentum", [](Batch& b, int w, int) { b.AngularMomentum(w); }},
+      {"Contacts", [](Batch& b, int w, int) { b.Contacts(w); }},
+      {"SetBodyState", [](Batch& b, int w, int i) { b.SetBodyState(w, i, {}); }, bodies},
+      {"SetTime", [](Batch& b, int w, int) { b.SetTime(w, 0); }},
+      {"SetRestLength", [](Batch& b, int w, int i) { b.SetRestLength(w, i, 1); }, cables},
+      {"Save", [](Batch& b, int w, int) { b.Save(w); }},
+      {"Restore", [&](Batch& b, int w, int) { b.Restore(w, snapshot); }},
+      {"Hash", [](Batch& b, int w, int) { b.Hash(w); }},
+      {"Status", [](Batch& b, int w, int) { b.Status(w); }},
+      {"ClearStatus", [](Batch& b, int w, int) { b.ClearStatus(w); }},
+  };
+  const auto dies = [&](const Call& each, int world, int index) {
+    EXPECT_DEATH(each.call(batch, world, index), "taut: Batch::" + each.function + ": there is no ")
+        << each.function << ' ' << world << ' ' << index;
+  };
+  for (const Call& each : calls) {
+    each.call(batch, 1, 0);  // the last world is one
+    dies(each, 2, 0);
+    dies(each, -1, 0);
+    if (each.indices == 0) continue;
+    each.call(batch, 0, each.indices - 1);
+    dies(each, 0, each.indices);
+    dies(each, 0, -1);
+  }
+}
+
+TEST(IndexDeathTest, AParameterHasAsManyIndicesAsTheModelHasOfItsKind) {
+  Batch batch = TwoWorlds();
+  const ModelDef& def = batch.model().def();
+  const auto bodies = static_cast<int>(def.bodies.size());
+  const std::vector<std::pair<Parameter, int>> limits = {
+      {Parameter::kBodyMass, bodies}, {Parameter::kCableStiffness, 1},
+      {Parameter::kCableDamping, 1},  {Parameter::kFrictionScale, 1},
+      {Parameter::kGravityX, 1},      {Parameter::kGravityY, 1},
+      {Parameter::kGravityZ, 1},
+  };
+  for (const auto& [parameter, limit] : limits) {
+    const double now = batch.GetParameter(0, parameter, limit - 1);
+    batch.SetParameter(0, parameter, limit - 1, now);
+    EXPECT_DEATH(batch.GetParameter(0, parameter, limit), "Batch::GetParameter: there is no ");
+    EXPECT_DEATH(batch.SetParameter(0, parameter, limit, now), "Batch::SetParameter: there is no ");
+    EXPECT_DEATH(batch.GetParameter(2, parameter, 0), "Batch::GetParameter: there is no world 2");
+  }
+}
+
+}  // namespace
+}  // namespace taut::test
