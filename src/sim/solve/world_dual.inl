@@ -129,7 +129,7 @@ class WorldDual {
     }
   }
 
-  /// Newton's step: (A + S W) dl = r, by the way that fits the lane: the others have no say in it.
+  /// Newton's step: (A + S W) dl = r.
   void SolveLinear(M lanes) noexcept {
     M slides = M::Splat(false);
     ForEach([&](auto& law, int row) {
