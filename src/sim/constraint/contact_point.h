@@ -159,9 +159,9 @@ struct ContactPoint {
     out.r[2] = zero - l_now[2];
   }
 
-  /// The contact's own solution (eq. 23), found along the line of stiffnesses k that hold the slip back:
-  /// |lt(k)| - mu ln(k) changes its sign on it, so there always is one, however steep the cone
-  /// (Painleve's rod has one, too). One lane only.
+  /// The contact's own solution (eq. 23), found along the line of stiffnesses k that hold the slip
+  /// back: |lt(k)| - mu ln(k) changes its sign on it, so there always is one, however steep the
+  /// cone (Painleve's rod has one, too). One lane only.
   void SolveAlone(const Num* u, Num* l_now) const noexcept {
     static_assert(Num::kLanes == 1);
     const Num zero = Num::Splat(0.0);
