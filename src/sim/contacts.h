@@ -1,4 +1,5 @@
-/// Contacts while a step runs, and what they remember from step to step.
+/// Contacts while a step runs, and what they remember from step to step (docs/theory/contact.md,
+/// section 7).
 ///
 /// A contact of a body with what does not move lies in one of the body's slots: slot k of a lane is
 /// that lane's k-th contact of the body, whatever the other lanes touch. Contacts of two moving

@@ -1,5 +1,5 @@
 /// Stage: where bodies touch the world and each other, at the middle of the step
-/// (docs/theory/contact.md).
+/// (docs/theory/contact.md, section 7).
 ///
 /// Points against planes are tested in all lanes at once. Everything else hides behind bounds:
 /// a pair of bodies is looked at only when the motion since the last look may have used up the

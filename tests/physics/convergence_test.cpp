@@ -42,7 +42,7 @@ TEST(Convergence, RoughWorldsAreSolvedAtEveryStep) {
 }
 
 /// The spine of seed 2 falls on its side and wedges its segments into each other; loads shared by
-/// ten contacts at once took thousands of sweeps.
+/// ten contacts at once took thousands of sweeps when each was solved by itself.
 TEST(Convergence, WedgedSegmentsTakeFewSweeps) {
   Batch batch = MakeBatch(scenes::Tetraspine().Def());
   Scatter(batch, 0, 2);

@@ -32,9 +32,9 @@ inline double RoundOff(int steps, double size) {
   return 4 * steps * std::numeric_limits<double>::epsilon() * size;
 }
 
-/// What n contact solves may be off by together. A solve stops when a sweep changes no velocity by
-/// more than the tolerance; one that converges by a factor of 0.9 a sweep is then ten times that
-/// from its limit, and ours are faster than that.
+/// What n contact solves may be off by together. A residual is what one step of the natural map
+/// would still change (docs/theory/contact.md, eq. 16), and below the tolerance. The solution may
+/// be further away where contacts share loads: ten times that is taken.
 inline double SolverError(int solves, double tolerance_m_per_s = BatchOptions().tolerance_m_per_s) {
   return 10 * solves * tolerance_m_per_s;
 }

@@ -1,5 +1,5 @@
 /// A kind of constraint: a cable whose tension is found together with the contacts
-/// (docs/theory/cables.md, eq. 8-11).
+/// (docs/theory/cables.md, eq. 8-11; docs/theory/contact.md, eq. 14, 17).
 ///
 ///   l = base - gain u,  0 <= l <= upper;   u: the rate at which it shortens after the step
 /// The law is a spring and a damper by itself: its compliance is 1 / gain.

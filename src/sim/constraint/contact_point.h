@@ -1,4 +1,4 @@
-/// A kind of constraint: a point of contact (docs/theory/contact.md, section 1).
+/// A kind of constraint: a point of contact (docs/theory/contact.md, sections 1 and 4).
 ///
 ///   (C1)  ln >= 0,  un + bn >= 0,  ln (un + bn) = 0                    no penetration
 ///   (C2)  |lt| <= mu ln,  and ut + bt = 0 or lt = -mu ln (ut + bt) / |ut + bt|     Coulomb's cone
@@ -97,7 +97,7 @@ struct ContactPoint {
     g[7] += q * b.s1 * b.s2, g[8] += q * b.s2 * b.s2;
   }
 
-  /// The case that u and l are in: that of the law's fixed point with steps 1 / w.
+  /// The case that u and l are in: that of the law's fixed point with steps 1 / w (eq. 15).
   TAUT_INLINE Branch BranchOf(const Num* u, const Num* l_now) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     Branch b;
@@ -115,7 +115,7 @@ struct ContactPoint {
     return b;
   }
 
-  /// What one step of 1 / w would change, as a velocity.
+  /// What one step of 1 / w would change, as a velocity (eq. 16).
   TAUT_INLINE Num Residual(const Branch& b, const Num* u, const Num* l_now) const noexcept {
     const Num zero = Num::Splat(0.0);
     const Num edge = mu * Max(l_now[0], zero);
@@ -159,9 +159,9 @@ struct ContactPoint {
     out.r[2] = zero - l_now[2];
   }
 
-  /// The contact's own solution, found along the line of stiffnesses k that hold the slip back:
-  /// |lt(k)| - mu ln(k) changes its sign on it, so there always is one, however steep the cone
-  /// (Painleve's rod has one, too). One lane only.
+  /// The contact's own solution (eq. 23), found along the line of stiffnesses k that hold the slip
+  /// back: |lt(k)| - mu ln(k) changes its sign on it, so there always is one, however steep the
+  /// cone (Painleve's rod has one, too). One lane only.
   void SolveAlone(const Num* u, Num* l_now) const noexcept {
     static_assert(Num::kLanes == 1);
     const Num zero = Num::Splat(0.0);

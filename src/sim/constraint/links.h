@@ -56,6 +56,7 @@ TAUT_INLINE void AddCoupling(const Link<Num, A>& a, const Link<Num, B>& b, Num* 
 }
 
 /// A law near some u and l: the change dl of its impulses that Newton's method asks for satisfies
+/// (docs/theory/contact.md, eq. 18)
 ///   A dl + S du = r,   du: change of its velocities.
 template <class Num, int R>
 struct LinearLaw {

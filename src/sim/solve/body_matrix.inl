@@ -1,6 +1,6 @@
 /// The linear system of Newton's method in the velocities of bodies: 6x6 blocks, one a pair of
 /// bodies that act on each other, factored in the order of the bodies (docs/theory/contact.md,
-/// section 5). No pivots: M + J^T G J is positive definite but for the coupling of friction to the
+/// eq. 21, 25). No pivots: M + J^T G J is positive definite but for the coupling of friction to the
 /// normal impulse, and a step that a bad pivot spoils is refused by what judges it.
 
 namespace taut::sim {

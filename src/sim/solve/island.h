@@ -1,5 +1,5 @@
 /// A solver's problem: bodies that act on each other through constraints, and the memory that its
-/// stages share (docs/theory/contact.md, section 5).
+/// stages share (docs/theory/contact.md, section 5 and eq. 11).
 ///
 ///   v = v_free + M^-1 J^T l,   u = J v,   every constraint's law between its u and its l
 ///

@@ -1,5 +1,5 @@
 /// First stage of an island's solve: Newton's method on all laws as they are, without
-/// globalisation. Two steps, mostly (docs/theory/contact.md, eq. 20-22).
+/// globalisation. Two steps, mostly (docs/theory/contact.md, eq. 18, 21-22).
 
 namespace taut::sim {
 

@@ -1,5 +1,5 @@
 /// Third stage of an island's solve: rounds of Newton's method on softened laws, each round about
-/// the impulses that the one before found, with a line search (docs/theory/contact.md, eq. 23-28).
+/// the impulses that the one before found, with a line search (docs/theory/contact.md, eq. 24-28).
 ///
 /// In a round every law is softened by a share `e` of its own compliance, so that its impulses are
 /// a function of the bodies' velocities: l(v) = Project(u, center, e). What is sought is
@@ -66,7 +66,7 @@ class Proximal {
   bool Round(double softness) noexcept {
     const Num e = Num::Splat(softness);
     island_.Measure(m_.trial_v, m_.u);
-    double theta = 1;  // share of the true curvature along the sliding direction, see Soften
+    double theta = 1;  // share of the true curvature along the sliding direction, see Stiffen
     for (int iteration = 0; iteration < kMaxIterations && !Exhausted(); ++iteration) {
       Evaluate(e, theta);
       bool symmetric = false;
