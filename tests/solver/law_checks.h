@@ -12,13 +12,16 @@
 #include <cmath>
 
 #include "math/random.h"
-#include "sim/constraint/links.h"
+#include "sim/constraint/cable_row.h"
+#include "sim/constraint/contact_point.h"
 
 namespace taut::test {
 
 /// Own numbers of one lane: no template of a test is one of the library's.
 struct TestNumbers {};
 using Num = simd::Wide<1, TestNumbers>;
+using Contact2 = sim::ContactPoint<Num, 2>;
+using Cable = sim::CableRow<Num>;
 
 template <int R>
 using Rows = std::array<double, static_cast<std::size_t>(R)>;

@@ -9,9 +9,6 @@
 
 namespace taut::test {
 
-using Contact2 = sim::ContactPoint<Num, 2>;
-using Cable = sim::CableRow<Num>;
-
 inline Vec3 RandomVector(math::Random& random) {
   const double x = random.Normal(), y = random.Normal();
   return {x, y, random.Normal()};
