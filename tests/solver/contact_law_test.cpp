@@ -123,6 +123,9 @@ TEST(ContactLaw, DerivativesEqualDifferences) {
     State s = Solution(c, which, random);
     for (double& x : s.u) x += random.Uniform(-0.05, 0.05);
     for (const double e : {1.0, 1e-2}) checked[which] += CheckDerivative(c, s.u, s.l, e);
+    if (which != kOpen) return;
+    s.u[1] = -c.bias[1][0], s.u[2] = -c.bias[2][0];  // open and not slipping: no friction to come
+    EXPECT_TRUE(CheckDerivative(c, s.u, s.l, 1.0));
   });
   for (const int count : checked) EXPECT_GT(count, 0.95 * 2 * 2 * kInstances) << "next to a kink";
 }

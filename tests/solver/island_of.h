@@ -47,6 +47,8 @@ inline Inertia Inverse(const Inertia& m) {
   return out;
 }
 
+inline constexpr int kManyBlocks = 1 << 20;
+
 /// Bodies first, then constraints between them; Start() numbers them for the solver.
 template <class... K>
 class OwnIsland {
@@ -84,10 +86,6 @@ class OwnIsland {
   }
   /// Memory for the links of a kind that does not hold its own.
   sim::Link<Num, 1>* Links(std::size_t count) { return links_.emplace_back(count).data(); }
-  template <class Law>
-  const std::vector<Law>& All() const {
-    return std::get<std::vector<Law>>(laws_);
-  }
   int PlaceOf(int body) const { return place_[At(body)]; }
   /// Of a body by its first number.
   Vec3 VelocityOf(int body) const { return Plain3(TwistOf(body).v); }
@@ -100,8 +98,9 @@ class OwnIsland {
 
   sim::Island<Num, P> island{};
 
-  /// Orders the bodies, hands out memory for `blocks` blocks at most, and starts from the laws' l.
-  void Start(int block_capacity = 1 << 20) {
+  /// Orders the bodies, hands out memory and starts from the laws' l; once. With more blocks than
+  /// `block_capacity` there are no matrices.
+  void Start(int block_capacity = kManyBlocks) {
     const int n = island.body_count = static_cast<int>(bodies_.size());
     (SetPool<K>(), ...);
     island.rows = island.pools.rows();
@@ -170,7 +169,7 @@ class OwnIsland {
 using StepIsland = OwnIsland<Contact2, Cable>;
 
 /// A stored problem, all of it in one island.
-inline StepIsland IslandOf(const ContactProblem& p) {
+inline StepIsland IslandOf(const ContactProblem& p, int block_capacity = kManyBlocks) {
   StepIsland out;
   for (const ProblemBody& b : p.bodies) {
     out.AddBody(b.inverse_mass, b.inverse_inertia, b.free_v, b.free_w);
@@ -205,7 +204,7 @@ inline StepIsland IslandOf(const ContactProblem& p) {
     }
     c.FinishMasses();
   }
-  out.Start();
+  out.Start(block_capacity);
   return out;
 }
 
