@@ -91,8 +91,9 @@ struct ContactPoint {
   /// Adds `share` of what a law of frozen direction has along the sliding direction: where
   /// directions turn a lot within a step, a larger matrix makes smaller steps.
   void Stiffen(const Branch& b, Num share, Num* g) const noexcept {
-    if (!Any(b.closed & b.slides)) return;
-    const Num q = share * (g[4] + g[8]);
+    const auto slides = b.closed & b.slides;
+    if (!Any(slides)) return;
+    const Num q = Select(slides, share * (g[4] + g[8]), Num::Splat(0.0));
     g[4] += q * b.s1 * b.s1, g[5] += q * b.s1 * b.s2;
     g[7] += q * b.s1 * b.s2, g[8] += q * b.s2 * b.s2;
   }

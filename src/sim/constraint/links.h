@@ -75,7 +75,7 @@ struct LinearLaw {
 ///   Linearize    Newton's equations, with the compliance e,
 ///   Residual     how far u and l are from the law [m/s].
 ///   SolveAlone   impulses that satisfy the law if nothing else changes.
-///   Clamp        the nearest impulses that the law admits (no pull, inside the cone).
+///   Clamp        impulses nearby that the law admits (no pull, inside the cone).
 template <class K>
 concept ConstraintLaw =
     requires(const K k, const typename K::Number* u, typename K::Number* l,

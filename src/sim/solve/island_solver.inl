@@ -2,8 +2,10 @@
 
 namespace taut::sim {
 
+/// From m.l, which may be anything. Leaves the best impulses found, which the laws admit, in m.l
+/// with their velocities in m.v. Returns their residual [m/s].
 template <class Num, class P>
-double SolveStages(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
+double SolveIsland(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   constexpr int kSweeps = 30, kSweepsWithoutMatrix = 1000;
   constexpr double kSoftness[] = {1e-2, 1e-1, 1e-4, 1e-1};
   double residual = island.Judge();
@@ -19,17 +21,6 @@ double SolveStages(Island<Num, P>& island, Target target, SolverWork& work) noex
     if (softness != kSoftness[0]) Sweep(island, kSweeps);
     residual = Proximal<Num, P>(island, target, work).Solve(softness);
   }
-  return residual;
-}
-
-/// From m.l, which may be anything. Leaves the best impulses found, which the laws admit, in m.l
-/// with their velocities in m.v. Returns their residual [m/s].
-template <class Num, class P>
-double SolveIsland(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
-  const double residual = SolveStages(island, target, work);
-  // What Newton's method leaves a rounding outside of the cone is moved back into it.
-  island.Clamp(island.m.l);
-  island.VelocitiesOf(island.m.l, island.m.v);
   return residual;
 }
 

@@ -31,7 +31,8 @@ struct SolverWork {
   int linear_solves = 0, limit = 0;
 };
 
-/// Improves m.l; m.v and m.u belong to it before and after. Returns the residual [m/s].
+/// Leaves the best impulses that it came by, made admissible, in m.l; m.v and m.u belong to it before
+/// and after. Returns the residual [m/s].
 template <class Num, class P>
 double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   constexpr int kMaxIterations = 12;
@@ -97,8 +98,8 @@ double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work) noex
       break;
     }
   }
-  if (residual <= target.tolerance && residual <= best) return residual;
-  return island.Return(m.best);
+  // What Newton's method leaves a rounding outside of the cone is moved back into it.
+  return island.Return(residual <= best ? m.l : m.best);
 }
 
 }  // namespace taut::sim

@@ -1,0 +1,211 @@
+/// An island with memory of its own, from bodies and constraints of any kinds; and stored problems
+/// as such.
+#pragma once
+
+#include <deque>
+#include <tuple>
+#include <vector>
+
+#include "sim/solve/island.h"
+#include "tests/solver/law_checks.h"
+#include "tests/solver/problems.h"
+
+// In the order of use, as in sim/kernel.inl.
+// clang-format off
+#include "sim/solve/body_matrix.inl"
+#include "sim/solve/plain_newton.inl"
+#include "sim/solve/sweeps.inl"
+#include "sim/solve/proximal.inl"
+#include "sim/solve/island_solver.inl"
+// clang-format on
+
+namespace taut::test {
+
+inline simd::V3<Num> Wide3(const Vec3& v) {
+  return {Num::Splat(v.x), Num::Splat(v.y), Num::Splat(v.z)};
+}
+inline Vec3 Plain3(const simd::V3<Num>& v) { return {v.x[0], v.y[0], v.z[0]}; }
+
+using Inertia = std::array<std::array<double, 3>, 3>;
+
+inline simd::S3<Num> WideInertia(const Inertia& m) {
+  return {Num::Splat(m[0][0]), Num::Splat(m[1][1]), Num::Splat(m[2][2]),
+          Num::Splat(m[0][1]), Num::Splat(m[0][2]), Num::Splat(m[1][2])};
+}
+inline Inertia Inverse(const Inertia& m) {
+  Inertia out{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t p = (i + 1) % 3, q = (i + 2) % 3, r = (j + 1) % 3, s = (j + 2) % 3;
+      out[j][i] = m[p][r] * m[q][s] - m[p][s] * m[q][r];
+    }
+  }
+  const double det = m[0][0] * out[0][0] + m[0][1] * out[1][0] + m[0][2] * out[2][0];
+  for (auto& row : out) {
+    for (double& x : row) x /= det;
+  }
+  return out;
+}
+
+inline constexpr int kManyBlocks = 1 << 20;
+
+/// Bodies first, then constraints between them; Start() numbers them for the solver.
+template <class... K>
+class OwnIsland {
+ public:
+  using P = sim::Pools<K...>;
+
+  OwnIsland() = default;
+  OwnIsland(const OwnIsland&) = delete;  // the island points into its memory
+  OwnIsland(OwnIsland&&) = default;
+
+  int AddBody(double inverse_mass, const Inertia& inverse_inertia, const Vec3& free_v,
+              const Vec3& free_w) {
+    bodies_.push_back({static_cast<int>(bodies_.size()),
+                       Num::Splat(1 / inverse_mass),
+                       Num::Splat(inverse_mass),
+                       WideInertia(Inverse(inverse_inertia)),
+                       WideInertia(inverse_inertia),
+                       {Wide3(free_v), Wide3(free_w)}});
+    return static_cast<int>(bodies_.size()) - 1;
+  }
+  /// One row of a link: what an impulse along `lin` with the lever `ang` does to the body.
+  template <int R>
+  void SetRow(sim::Link<Num, R>& link, int row, int body, const Vec3& lin, const Vec3& ang) {
+    const sim::Unknown<Num>& b = bodies_[At(body)];
+    link.body = body;
+    link.inv_mass = b.inv_mass;
+    link.lin[row] = Wide3(lin);
+    link.ang[row] = Wide3(ang);
+    link.turn[row] = b.inv_inertia * link.ang[row];
+  }
+  /// A new constraint of a kind. Its impulses `l` are what the solver starts from.
+  template <class Law>
+  Law& Add() {
+    return std::get<std::vector<Law>>(laws_).emplace_back();
+  }
+  /// Memory for the links of a kind that does not hold its own.
+  sim::Link<Num, 1>* Links(std::size_t count) { return links_.emplace_back(count).data(); }
+  int PlaceOf(int body) const { return place_[At(body)]; }
+  /// Of a body by its first number.
+  Vec3 VelocityOf(int body) const { return Plain3(TwistOf(body).v); }
+  Vec3 SpinOf(int body) const { return Plain3(TwistOf(body).w); }
+  std::vector<double> Impulses() const {
+    std::vector<double> out;
+    for (int i = 0; i < island.rows; ++i) out.push_back(island.m.l[i][0]);
+    return out;
+  }
+
+  sim::Island<Num, P> island{};
+
+  /// Orders the bodies, hands out memory and starts from the laws' l; once. With more blocks than
+  /// `block_capacity` there are no matrices.
+  void Start(int block_capacity = kManyBlocks) {
+    const int n = island.body_count = static_cast<int>(bodies_.size());
+    (SetPool<K>(), ...);
+    island.rows = island.pools.rows();
+    Order(block_capacity);
+    std::vector<sim::Unknown<Num>> ordered(bodies_.size());
+    for (int b = 0; b < n; ++b) ordered[At(PlaceOf(b))] = bodies_[At(b)];
+    bodies_ = ordered;
+    island.bodies = bodies_.data();
+    auto& m = island.m;
+    numbers_.clear();
+    for (Num** const list : {&m.v, &m.rhs, &m.direction, &m.trial_v}) *list = Take(6 * n);
+    for (Num** const list : {&m.l, &m.u, &m.best, &m.center, &m.projected, &m.du, &m.u2, &m.f}) {
+      *list = Take(island.rows);
+    }
+    m.g = Take(island.pools.cells());
+    m.blocks = Take(island.has_matrix ? 36 * island.pattern.block_count : 0);
+    island.pools.ForEach([&](auto& law, auto&, int row, int) {
+      for (int i = 0; i < law.link_count; ++i) law.links[i].body = PlaceOf(law.links[i].body);
+      for (int r = 0; r < sim::LawOf<decltype(law)>::kRows; ++r) m.l[row + r] = law.l[r];
+    });
+  }
+  /// The residual that the solver reports [m/s].
+  double Solve(sim::SolverWork& work, double tolerance = 1e-10) {
+    return sim::SolveIsland(island, sim::Target{tolerance}, work);
+  }
+
+ private:
+  template <class Law>
+  void SetPool() {
+    auto& items = std::get<std::vector<Law>>(laws_);
+    auto& branches = std::get<std::vector<typename Law::Branch>>(branches_);
+    branches.resize(items.size());
+    static_cast<sim::Pool<Law>&>(island.pools) = {items.data(), branches.data(),
+                                                  static_cast<int>(items.size())};
+  }
+  void Order(int block_capacity) {
+    const int n = island.body_count;
+    const int words = sim::BodyGraph::WordsFor(n);
+    std::vector<std::uint64_t> bits(At(n * words));
+    sim::BodyGraph graph{bits.data(), n, words};
+    island.pools.ForEach([&](auto& law, auto&, int, int) {
+      for (int i = 0; i < law.link_count; ++i) {
+        for (int j = 0; j < i; ++j) graph.Join(law.links[i].body, law.links[j].body);
+      }
+    });
+    std::vector<int> order(At(n));
+    place_.resize(At(n)), slot_.resize(At(n * n)), below_.resize(At(n * n));
+    first_below_.resize(At(n + 1));
+    island.pattern = {slot_.data(), below_.data(), first_below_.data(), 0, 0, 0};
+    island.has_matrix =
+        sim::Eliminate(graph, block_capacity, order.data(), place_.data(), island.pattern);
+  }
+  Num* Take(int count) { return numbers_.emplace_back(At(count)).data(); }
+  sim::Twist<Num> TwistOf(int body) const {
+    return island.Load(island.m.v + sim::kDofs * PlaceOf(body));
+  }
+
+  std::vector<sim::Unknown<Num>> bodies_;
+  std::tuple<std::vector<K>...> laws_;
+  std::tuple<std::vector<typename K::Branch>...> branches_;
+  std::deque<std::vector<sim::Link<Num, 1>>> links_;
+  std::deque<std::vector<Num>> numbers_;
+  std::vector<int> place_, slot_, below_, first_below_;
+};
+
+using StepIsland = OwnIsland<Contact2, Cable>;
+
+/// A stored problem, all of it in one island.
+inline StepIsland IslandOf(const ContactProblem& p, int block_capacity = kManyBlocks) {
+  StepIsland out;
+  for (const ProblemBody& b : p.bodies) {
+    out.AddBody(b.inverse_mass, b.inverse_inertia, b.free_v, b.free_w);
+  }
+  for (const ProblemContact& from : p.contacts) {
+    auto& c = out.Add<Contact2>();
+    c.live = Num::Splat(1.0);
+    c.mu = Num::Splat(from.mu);
+    c.bias[0] = Num::Splat(from.bias);
+    c.one_direction = false;
+    c.link_count = from.b < 0 ? 1 : 2;
+    const Vec3 directions[3] = {from.n, from.t1, from.t2};
+    for (int r = 0; r < 3; ++r) {
+      c.l[r] = Num::Splat(from.impulse[At(r)]);
+      out.SetRow(c.links[0], r, from.a, directions[r], from.lever_a[At(r)]);
+      if (from.b < 0) continue;
+      out.SetRow(c.links[1], r, from.b, -1.0 * directions[r], -1.0 * from.lever_b[At(r)]);
+    }
+    c.FinishMasses();
+  }
+  for (const ProblemCable& from : p.cables) {
+    auto& c = out.Add<Cable>();
+    c.live = Num::Splat(1.0);
+    c.base = Num::Splat(from.base);
+    c.gain = Num::Splat(from.gain);
+    c.upper = Num::Splat(from.upper);
+    c.l[0] = Num::Splat(from.impulse);
+    c.link_count = static_cast<int>(from.links.size());
+    c.links = out.Links(from.links.size());
+    for (std::size_t i = 0; i < from.links.size(); ++i) {
+      out.SetRow(c.links[i], 0, from.links[i].body, from.links[i].pull, from.links[i].lever);
+    }
+    c.FinishMasses();
+  }
+  out.Start(block_capacity);
+  return out;
+}
+
+}  // namespace taut::test

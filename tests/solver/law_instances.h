@@ -1,0 +1,122 @@
+/// Random contacts and cables between two bodies, and their laws as theory states them.
+#pragma once
+
+#include <vector>
+
+#include "math/vec.h"
+#include "tests/solver/law_checks.h"
+#include "tests/solver/law_lanes.h"
+
+namespace taut::test {
+
+inline Vec3 RandomVector(math::Random& random) {
+  const double x = random.Normal(), y = random.Normal();
+  return {x, y, random.Normal()};
+}
+inline Vec3 Unit(const Vec3& v) { return (1 / std::sqrt(Dot(v, v))) * v; }
+
+/// Inverse mass and inverse inertia of order 1, both positive definite.
+inline void AddMasses(math::Random& random, std::vector<double>& out) {
+  out.push_back(random.Uniform(0.3, 3));
+  const Vec3 a = RandomVector(random), b = RandomVector(random), c = RandomVector(random);
+  const auto entry = [&](double Vec3::*i, double Vec3::*j) {
+    return (i == j ? 0.1 : 0.0) + 0.3 * (a.*i * (a.*j) + b.*i * (b.*j) + c.*i * (c.*j));
+  };
+  out.insert(out.end(),
+             {entry(&Vec3::x, &Vec3::x), entry(&Vec3::y, &Vec3::y), entry(&Vec3::z, &Vec3::z),
+              entry(&Vec3::x, &Vec3::y), entry(&Vec3::x, &Vec3::z), entry(&Vec3::y, &Vec3::z)});
+}
+inline void AddVector(const Vec3& v, std::vector<double>& out) {
+  out.insert(out.end(), {v.x, v.y, v.z});
+}
+
+/// A contact in the numbers that ReadContact takes.
+inline std::vector<double> RandomContactNumbers(math::Random& random, double max_mu) {
+  std::vector<double> out = {1, random.Uniform(0.1, max_mu)};
+  for (const double x : RandomRows<3>(random, 0.5)) out.push_back(x);
+  for (const double x : RandomRows<3>(random)) out.push_back(x);
+  const Vec3 n = Unit(RandomVector(random)), t1 = Unit(Cross(n, RandomVector(random)));
+  for (const double sign : {1.0, -1.0}) {
+    AddMasses(random, out);
+    for (const Vec3& d : {n, t1, Cross(n, t1)}) AddVector(sign * d, out);
+    for (const double x : RandomRows<3>(random)) out.push_back(x);
+  }
+  return out;
+}
+/// A cable in the numbers that ReadCable takes.
+inline std::vector<double> RandomCableNumbers(math::Random& random) {
+  const double base = random.Uniform(-1, 2);
+  std::vector<double> out = {1, base, random.Uniform(0.1, 2), random.Uniform(0.5, 2), 0};
+  for (int i = 0; i < 2; ++i) {
+    AddMasses(random, out);
+    AddVector(Unit(RandomVector(random)), out);
+    for (const double x : RandomRows<3>(random)) out.push_back(x);
+  }
+  return out;
+}
+
+inline Contact2 RandomContact(math::Random& random, bool one_direction, double max_mu = 1.5) {
+  const std::vector<double> numbers = RandomContactNumbers(random, max_mu);
+  LaneReader<Num> in{numbers.data(), 0};
+  return ReadContact(in, one_direction, random.Uniform() < 0.5 ? 1 : 2);
+}
+/// A cable with the memory of its links.
+struct OwnedCable {
+  sim::Link<Num, 1> links[2];
+  Cable law;
+  explicit OwnedCable(math::Random& random) {
+    const std::vector<double> numbers = RandomCableNumbers(random);
+    LaneReader<Num> in{numbers.data(), 0};
+    law = ReadCable(in, links);
+  }
+  OwnedCable(const OwnedCable&) = delete;
+};
+
+/// Velocities against what is wanted: (C1) and (C2) want them zero.
+inline Rows<3> Excess(const Contact2& c, const Rows<3>& u) {
+  return {u[0] + c.bias[0][0], u[1] + c.bias[1][0], u[2] + c.bias[2][0]};
+}
+
+/// (C1), (C2) of docs/theory/contact.md, as they stand there. With one direction of friction the
+/// second tangent has no impulse, and its velocity is free.
+inline double Violation(const Contact2& c, const Rows<3>& u, const Rows<3>& l) {
+  const Rows<3> v = Excess(c, u);
+  const double mu = c.mu[0], v2 = c.one_direction ? 0 : v[2];
+  const double speed = std::hypot(v[1], v2);
+  return std::max({-l[0], -v[0], std::min(std::abs(l[0]), std::abs(v[0])),
+                   std::hypot(l[1], l[2]) - mu * l[0],
+                   std::hypot(speed * l[1] + mu * l[0] * v[1], speed * l[2] + mu * l[0] * v2),
+                   c.one_direction ? std::abs(l[2]) : 0});
+}
+
+/// Alart's and Curnier's function, eq. 14-16, of the trial impulses l about `center`:
+///   w (l - P(l - u/w - e (l - center))),  P: onto ln >= 0, onto the disc of radius mu ln
+inline Rows<3> NewtonFunction(const Contact2& c, const Rows<3>& u, const Rows<3>& l,
+                              const Rows<3>& center, double e) {
+  const Rows<3> v = Excess(c, u);
+  const double w[3] = {c.wnn[0], c.wt[0], c.wt[0]};
+  Rows<3> y;
+  for (std::size_t r = 0; r < 3; ++r) y[r] = l[r] - v[r] / w[r] - e * (l[r] - center[r]);
+  if (c.one_direction) y[2] = 0;
+  if (y[0] <= 0) return {w[0] * l[0], w[1] * l[1], w[2] * l[2]};
+  const double radius = c.mu[0] * std::max(l[0], 0.0), length = std::hypot(y[1], y[2]);
+  const double shrink = length > radius ? radius / length : 1;
+  return {w[0] * (l[0] - y[0]), w[1] * (l[1] - shrink * y[1]), w[2] * (l[2] - shrink * y[2])};
+}
+
+/// Eq. 11 of docs/theory/cables.md, as a complementarity between limits.
+inline double Violation(const Cable& c, const Rows<1>& u, const Rows<1>& l) {
+  const double wish = c.base[0] - c.gain[0] * u[0], upper = c.upper[0];
+  const double off = l[0] - wish;  // slack: may be above its wish; at its limit: may be below
+  return std::max({-l[0], l[0] - upper, off > 0 ? std::min(off, std::abs(l[0])) : 0.0,
+                   off < 0 ? std::min(-off, std::abs(upper - l[0])) : 0.0});
+}
+
+/// The change of velocity that would set it right, alone: A (l - clamp(wish)) / (1 + gain A).
+inline Rows<1> NewtonFunction(const Cable& c, const Rows<1>& u, const Rows<1>& l, const Rows<1>&,
+                              double) {
+  const double wish = c.base[0] - c.gain[0] * u[0], a = InverseMassOf(c)[0][0];
+  return {a / (1 + c.gain[0] * a) * (l[0] - std::clamp(wish, 0.0, c.upper[0]))};
+}
+
+}  // namespace taut::test
