@@ -187,7 +187,8 @@ int main(int argc, char** argv) {
     benchmark::AddCustomContext(taut::peers::Name(engine), taut::peers::Version(engine));
   }
   benchmark::AddCustomContext("step_s", std::to_string(taut::bench::kStepS));
-  benchmark::AddCustomContext("max_linear_solves", std::to_string(taut::BatchOptions().max_linear_solves));
+  benchmark::AddCustomContext("max_linear_solves",
+                              std::to_string(taut::BatchOptions().max_linear_solves));
   char tolerance[32];
   std::snprintf(tolerance, sizeof tolerance, "%g", taut::BatchOptions().tolerance_m_per_s);
   benchmark::AddCustomContext("tolerance_m_per_s", tolerance);

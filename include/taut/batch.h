@@ -43,9 +43,9 @@ Simd BestSimd();
 
 struct BatchOptions {
   int worlds = 1;
-  int threads = 1;                   ///< 0: one a core.
-  std::optional<Simd> simd;          ///< Nothing: `BestSimd()`, or scalar for a single world.
-  int max_linear_solves = 1000;      ///< Bound of a step's work, per island; what needs more says so.
+  int threads = 1;               ///< 0: one a core.
+  std::optional<Simd> simd;      ///< Nothing: `BestSimd()`, or scalar for a single world.
+  int max_linear_solves = 1000;  ///< Bound of a step's work, per island; what needs more says so.
   double tolerance_m_per_s = 1e-10;  ///< Residual at which the contact solve counts as done.
 };
 

@@ -107,7 +107,7 @@ void Batch::Impl::SetMass(int world, int body, double mass_kg) noexcept {
 
 void Batch::Impl::StartWorld(int world) noexcept {
 #define TAUT_ROW(name, type, per, role, halted, start)                 \
-  for (int i = 0; i < view.Count(sim::Per::per); ++i) {             \
+  for (int i = 0; i < view.Count(sim::Per::per); ++i) {                \
     const sim::start_of::type first = sim::start_of::start(*model, i); \
     set(world, layout.name + sim::kWidth##type * i, first);            \
   }

@@ -14,15 +14,15 @@ namespace taut::sim {
 
 template <class Num, int kLinks>
 struct Contact : ContactPoint<Num, kLinks> {
-  Num key;            ///< Pair and feature: finds the memory again.
-  Num frame;          ///< Contacts with equal numbers have the same directions.
-  Num gap;            ///< At the middle of the step [m].
+  Num key;              ///< Pair and feature: finds the memory again.
+  Num frame;            ///< Contacts with equal numbers have the same directions.
+  Num gap;              ///< At the middle of the step [m].
   V3<Num> arm[kLinks];  ///< From the centre of mass [m].
   Num static_friction, kinetic_friction, restitution;
   Num patch;       ///< While biases are fitted: in which state it is.
   Num rebounding;  ///< 1 if its bias is a rebound that is due.
-  Num slip;    ///< 1 if it slides, 0 if it sticks.
-  Num bounce;  ///< Rebound speed due in the next step [m/s], 0: none.
+  Num slip;        ///< 1 if it slides, 0 if it sticks.
+  Num bounce;      ///< Rebound speed due in the next step [m/s], 0: none.
 };
 
 /// What a contact remembers of the step before.

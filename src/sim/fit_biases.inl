@@ -103,9 +103,8 @@ void FitBiases(Contact<Num, kLinks>* contacts, int count, M lanes) noexcept {
       Num& patch = contacts[i].patch;
       patch = Select(starts & (patch == free) & same, mine, patch);
     }
-    FitPatch(contacts + first, count - first, d[0], d[1], d[2], [&](int i) {
-      return Select(contacts[first + i].patch == mine, one, zero);
-    });
+    FitPatch(contacts + first, count - first, d[0], d[1], d[2],
+             [&](int i) { return Select(contacts[first + i].patch == mine, one, zero); });
     for (int i = first; i < count; ++i) {
       Num& patch = contacts[i].patch;
       patch = Select(patch == mine, taken, patch);

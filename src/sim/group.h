@@ -25,8 +25,8 @@ inline constexpr double kSlipUnknown = -1.0;
 struct Group {
   int lanes = 1;
   double* rows = nullptr;
-  int* slots_used = nullptr;  ///< Per body: its slots that some lane used in the last step.
-  int touches_used = 0;       ///< The longest lane's list of touches of the last step.
+  int* slots_used = nullptr;    ///< Per body: its slots that some lane used in the last step.
+  int touches_used = 0;         ///< The longest lane's list of touches of the last step.
   int* forced_nodes = nullptr;  ///< Nodes that ever had a force, rising.
   int forced_count = 0;
   bool sensed = false;  ///< The kSensed rows belong to the current state. Const readers share it.

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/assert.h"
 #include "math/principal_axes.h"
 #include "math/rotation.h"
-#include "base/assert.h"
 #include "sim/model_check.h"
 #include "sim/tables.h"
 

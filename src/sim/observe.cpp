@@ -135,8 +135,8 @@ Touching BodiesOf(const sim::Tables& m, double key) {
     const auto next = std::upper_bound(m.first_point.begin(), m.first_point.end(), point);
     return {static_cast<int>(next - m.first_point.begin()) - 1, m.body_count};
   }
-  const auto& pair = m.shape_pairs[(id - m.first_pair_id) /
-                                   static_cast<std::uint32_t>(sim::kMaxPointsPerPair)];
+  const auto& pair =
+      m.shape_pairs[(id - m.first_pair_id) / static_cast<std::uint32_t>(sim::kMaxPointsPerPair)];
   return {m.shapes[static_cast<std::size_t>(pair.a)].body,
           m.shapes[static_cast<std::size_t>(pair.b)].body};
 }
@@ -263,8 +263,8 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
     const int first = moves ? m.slot_count : m.first_slot[static_cast<std::size_t>(bodies.a)];
     if (list != first) next = first;
     list = first;
-    const int room = moves ? m.pair_capacity
-                           : m.first_slot[static_cast<std::size_t>(bodies.a) + 1] - first;
+    const int room =
+        moves ? m.pair_capacity : m.first_slot[static_cast<std::size_t>(bodies.a) + 1] - first;
     int& used = moves ? g.touches_used : g.slots_used[bodies.a];
     const int i = next++;
     if (i - first >= room) {  // no snapshot that Save made has so many

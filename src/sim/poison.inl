@@ -22,8 +22,8 @@ void Poison([[maybe_unused]] const View& m, [[maybe_unused]] const Rows<W>& s,
     }
     fill(row, width * (m.slot_count + g.touches_used), width * m.ContactCapacity());
   };
-#define TAUT_ROW(name, type, per, role, halted, start)                             \
-  if (Per::per == Per::kContact) forget(s.name.data(), kWidth##type);               \
+#define TAUT_ROW(name, type, per, role, halted, start)                \
+  if (Per::per == Per::kContact) forget(s.name.data(), kWidth##type); \
   if (Role::role == Role::kSensed) fill(s.name.data(), 0, m.Count(Per::per) * kWidth##type);
   TAUT_STATE_ROWS(TAUT_ROW)
 #undef TAUT_ROW

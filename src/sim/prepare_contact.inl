@@ -64,8 +64,8 @@ void PrepareRebound(Contact<Num, kLinks>& c, const ContactMemory<Num>& memory, N
   const Num impact = vn - dv * (Num::Splat(0.5) - share);
   const auto hits = (c.gap + h * vn < zero) & (memory.bounce == zero) &
                     (Dot(memory.force, c.links[0].lin[0]) == zero) &
-                    (-impact > Max(Num::Splat(kLeastImpactMPerS), Abs(dv + dv))) &
-                    (c.live > zero) & (c.restitution > zero);
+                    (-impact > Max(Num::Splat(kLeastImpactMPerS), Abs(dv + dv))) & (c.live > zero) &
+                    (c.restitution > zero);
   c.bounce = Select(hits, Max(Num::Splat(0.5) * dv - c.restitution * impact, zero), zero);
 }
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "base/assert.h"
-#include "sim/contacts.h"
-#include "sim/constraint/cable_row.h"
 #include "math/cable_path.h"
+#include "sim/constraint/cable_row.h"
+#include "sim/contacts.h"
 #include "sim/group.h"
 #include "sim/solve/memory.h"
 #include "simd/vec3.h"

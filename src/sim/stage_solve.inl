@@ -41,8 +41,8 @@ void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
       Contact<W, 1>& c = work.contacts[m.first_slot[b] + k];
       const auto memory = Recall(s, c, m.first_slot[b], g.slots_used[b], cursor);
       const BodyWork<W>& body = work.bodies[b];
-      PrepareContact(c, memory, body, b, s.inv_mass[b], body, b, s.inv_mass[b],
-                     s.friction_scale[0], step_s);
+      PrepareContact(c, memory, body, b, s.inv_mass[b], body, b, s.inv_mass[b], s.friction_scale[0],
+                     step_s);
     }
   }
 }
@@ -95,8 +95,8 @@ void SolveBodies(const View& m, Scratch<W>& work, Target target, M lanes,
     M failed = lanes & crowded;
     if (Any(mine)) {
       failed = failed | SolveBody(work.bodies[b], rows,
-                                  count < kMaxDualContacts ? count : kMaxDualContacts, target,
-                                  mine, result.residual, result.linear_solves);
+                                  count < kMaxDualContacts ? count : kMaxDualContacts, target, mine,
+                                  result.residual, result.linear_solves);
     }
     if (Any(failed)) work.unsolved[b] = Select(failed, W::Splat(1.0), work.unsolved[b]);
   }
@@ -233,14 +233,13 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
   for (int i = 0; i < work.stiff_count; ++i) cables += work.stiff[i].live;
   for (int lane = 0; lane < W::kLanes; ++lane) touches.Set(lane, work.touch_count[lane]);
   const auto cabled = busy & (cables > zero);
-  const auto dual =
-      work.dual.capacity > 0 ? cabled & (touches == zero) : MaskOf<W>::Splat(false);
+  const auto dual = work.dual.capacity > 0 ? cabled & (touches == zero) : MaskOf<W>::Splat(false);
   MarkUnsolved(m, work, cabled & !dual);
   FitWorldBiases(m, work, cabled);
   SolveBodies(m, work, target, busy & !cabled, result);
   if (Any(dual)) {
-    const auto failed = WorldDual<W>(m, s, work).Solve(target, dual, result.residual,
-                                                       result.linear_solves);
+    const auto failed =
+        WorldDual<W>(m, s, work).Solve(target, dual, result.residual, result.linear_solves);
     for (int b = 0; b < m.body_count; ++b) {
       work.unsolved[b] = Select(failed, W::Splat(1.0), work.unsolved[b]);
     }

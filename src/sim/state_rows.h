@@ -22,7 +22,7 @@ enum class Halted {
   kStays,     ///< The step did not write it, or writes nothing there that is not finite.
   kGoesBack,  ///< To the start of the step.
   kZero,
-  kForgets,   ///< Becomes kNoKey: a contact that is remembered no more.
+  kForgets,  ///< Becomes kNoKey: a contact that is remembered no more.
 };
 
 /// Numbers that one element has.

@@ -148,8 +148,8 @@ class Tables final : public Model {
   std::vector<ShapeTable> shapes;
   std::vector<ShapePairTable> shape_pairs;
   std::vector<BodyPairTable> body_pairs;
-  int world_pair_count = 0;        ///< Of them, the first: `b` does not move; by `a`.
-  std::vector<int> first_slot;     ///< Of a body's contacts with what does not move; one more.
+  int world_pair_count = 0;     ///< Of them, the first: `b` does not move; by `a`.
+  std::vector<int> first_slot;  ///< Of a body's contacts with what does not move; one more.
   int slot_count = 0;
   std::uint32_t first_pair_id = 0;  ///< Keys below are point * planes + plane, others of pairs.
   int pair_capacity = 0;            ///< Contacts of moving bodies that one world may have at once.

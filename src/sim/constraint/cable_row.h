@@ -81,9 +81,7 @@ struct CableRow {
     l_now[0] += inverse * (base - gain * u[0] - l_now[0]);
     Clamp(l_now);
   }
-  void Clamp(Num* l_now) const noexcept {
-    l_now[0] = Min(Max(l_now[0], Num::Splat(0.0)), upper);
-  }
+  void Clamp(Num* l_now) const noexcept { l_now[0] = Min(Max(l_now[0], Num::Splat(0.0)), upper); }
 };
 
 }  // namespace taut::sim

@@ -15,22 +15,22 @@ struct ContactPoint {
   using Number = Num;
   static constexpr int kRows = 3;
 
-  Num live;              ///< 1 in lanes that have this contact, else 0.
-  Num wnn, wt;           ///< Inverse effective mass: of the normal, a bound of the tangents' [1/kg].
-  Num inv_wnn, inv_wt;   ///< [kg]
+  Num live;             ///< 1 in lanes that have this contact, else 0.
+  Num wnn, wt;          ///< Inverse effective mass: of the normal, a bound of the tangents' [1/kg].
+  Num inv_wnn, inv_wt;  ///< [kg]
   Num w1n, w2n, w11, w12, w22;  ///< The rest of the inverse effective mass [1/kg].
-  Num bias[3];           ///< Wanted: un >= -bias[0], ut = -bias[1..2] [m/s].
+  Num bias[3];                  ///< Wanted: un >= -bias[0], ut = -bias[1..2] [m/s].
   Num mu;
-  Num l[3];              ///< Impulses [N s].
-  bool one_direction;    ///< Friction acts along the first tangent only.
+  Num l[3];            ///< Impulses [N s].
+  bool one_direction;  ///< Friction acts along the first tangent only.
   int link_count;
   Link<Num, 3> links[kMaxLinks];
 
   /// Which case of the law holds: open, sticking, sliding in a direction.
   struct Branch {
     MaskOf<Num> closed, slides;
-    Num s1, s2;   ///< Where it slides: direction of friction.
-    Num shrink;   ///< Radius of the cone / length of what reaches out of it.
+    Num s1, s2;  ///< Where it slides: direction of friction.
+    Num shrink;  ///< Radius of the cone / length of what reaches out of it.
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {
     if (Any(a.closed) != Any(b.closed) || Any(a.slides) != Any(b.slides)) return false;

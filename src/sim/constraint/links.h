@@ -17,7 +17,7 @@ using MaskOf = decltype(Num() < Num());
 template <class Num, int R>
 struct Link {
   int body;
-  Num inv_mass;   ///< [1/kg]
+  Num inv_mass;     ///< [1/kg]
   V3<Num> lin[R];   ///< Of each row: its direction,
   V3<Num> ang[R];   ///< its lever about the centre of mass [m],
   V3<Num> turn[R];  ///< and inverse inertia times that: spin per impulse [rad/s per N s].
@@ -77,21 +77,20 @@ struct LinearLaw {
 ///   SolveAlone   impulses that satisfy the law if nothing else changes.
 ///   Clamp        impulses nearby that the law admits (no pull, inside the cone).
 template <class K>
-concept ConstraintLaw =
-    requires(const K k, const typename K::Number* u, typename K::Number* l,
-             typename K::Number e, typename K::Branch branch,
-             LinearLaw<typename K::Number, K::kRows>& linear) {
-      branch = k.Project(u, u, e, l);
-      k.Derivative(branch, e, l);
-      k.Stiffen(branch, e, l);
-      k.ProjectFrozen(u, u, e, u, l);
-      K::Same(branch, branch);
-      branch = k.BranchOf(u, u);
-      k.Linearize(branch, u, u, e, linear);
-      e = k.Residual(branch, u, u);
-      k.SolveAlone(u, l);
-      k.Clamp(l);
-      k.links[0].body + k.link_count;
-    };
+concept ConstraintLaw = requires(const K k, const typename K::Number* u, typename K::Number* l,
+                                 typename K::Number e, typename K::Branch branch,
+                                 LinearLaw<typename K::Number, K::kRows>& linear) {
+  branch = k.Project(u, u, e, l);
+  k.Derivative(branch, e, l);
+  k.Stiffen(branch, e, l);
+  k.ProjectFrozen(u, u, e, u, l);
+  K::Same(branch, branch);
+  branch = k.BranchOf(u, u);
+  k.Linearize(branch, u, u, e, linear);
+  e = k.Residual(branch, u, u);
+  k.SolveAlone(u, l);
+  k.Clamp(l);
+  k.links[0].body + k.link_count;
+};
 
 }  // namespace taut::sim

@@ -80,10 +80,10 @@ using LawOf = typename Named<T>::Type;
 /// The numbers that the stages of an island's solve work on.
 template <class Num>
 struct IslandMemory {
-  Num *v, *rhs, *direction, *trial_v;               ///< 6 a body.
-  Num *l, *u, *best, *center, *projected, *du, *u2; ///< 1 a row.
-  Num *g, *f;                                       ///< kRows^2, kRows a constraint.
-  Num* blocks;                                      ///< 36 a block.
+  Num *v, *rhs, *direction, *trial_v;                ///< 6 a body.
+  Num *l, *u, *best, *center, *projected, *du, *u2;  ///< 1 a row.
+  Num *g, *f;                                        ///< kRows^2, kRows a constraint.
+  Num* blocks;                                       ///< 36 a block.
 };
 
 template <class Num, class P>

@@ -153,8 +153,8 @@ class LaneSolve {
         }
       }
     }
-    mem_.island.has_matrix = Eliminate(graph, mem_.block_capacity, mem_.order, mem_.place,
-                                       mem_.island.pattern);
+    mem_.island.has_matrix =
+        Eliminate(graph, mem_.block_capacity, mem_.order, mem_.place, mem_.island.pattern);
   }
   int Number(int body) const noexcept { return mem_.place[mem_.local[body]]; }
 

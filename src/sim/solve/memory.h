@@ -1,8 +1,8 @@
 /// The solver's memory, whose size follows from the model.
 #pragma once
 
-#include "sim/contacts.h"
 #include "sim/constraint/cable_row.h"
+#include "sim/contacts.h"
 #include "sim/solve/island.h"
 #include "sim/tables.h"
 
@@ -83,15 +83,15 @@ struct DualMemory {
     int row;
     const V3<W>*lin, *ang, *turn;
   };
-  int capacity;  ///< Rows; 0: not solved so.
+  int capacity;          ///< Rows; 0: not solved so.
   W* a;                  ///< Inverse effective mass, then factors: an upper triangle, row by row.
   W* c;                  ///< The contacts' system.
   W *u, *l, *r, *q;      ///< Velocities, impulses; right sides, then changes.
   W *d, *now;            ///< Changes and impulses of the contacts alone.
   W *diagonal, *active;  ///< Of the cables' A and S.
-  Twist<W>* v;  ///< Per body.
-  Column* columns;   ///< By body:
-  int* first_column;  ///< where each body's start.
+  Twist<W>* v;           ///< Per body.
+  Column* columns;       ///< By body:
+  int* first_column;     ///< where each body's start.
 
   static int CapacityFor(const View& m) noexcept {
     const int rows = 3 * m.slot_count + m.cable_count;

@@ -31,8 +31,8 @@ struct SolverWork {
   int linear_solves = 0, limit = 0;
 };
 
-/// Leaves the best impulses that it came by, made admissible, in m.l; m.v and m.u belong to it before
-/// and after. Returns the residual [m/s].
+/// Leaves the best impulses that it came by, made admissible, in m.l; m.v and m.u belong to it
+/// before and after. Returns the residual [m/s].
 template <class Num, class P>
 double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   constexpr int kMaxIterations = 12;
@@ -43,7 +43,8 @@ double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work) noex
   double residual = island.Residual(m.u, m.l)[0], best = residual;
   for (int i = 0; i < island.rows; ++i) m.best[i] = m.l[i];
   for (int iteration = 0;
-       iteration < kMaxIterations && (iteration == 0 || residual > target.goal()) && work.linear_solves < work.limit;
+       iteration < kMaxIterations && (iteration == 0 || residual > target.goal()) &&
+       work.linear_solves < work.limit;
        ++iteration) {
     // dl = f - g du,  f = A^-1 r,  g = A^-1 S
     for (int i = 0; i < 6 * island.body_count; ++i) m.rhs[i] = zero;

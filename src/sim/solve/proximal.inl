@@ -16,8 +16,12 @@ class Proximal {
 
  public:
   Proximal(Island<Num, P>& island, Target target, SolverWork& work) noexcept
-      : island_(island), m_(island.m), matrix_(island.pattern, island.m.blocks),
-        tolerance_(target.tolerance), work_(work), size_(kDofs * island.body_count) {}
+      : island_(island),
+        m_(island.m),
+        matrix_(island.pattern, island.m.blocks),
+        tolerance_(target.tolerance),
+        work_(work),
+        size_(kDofs * island.body_count) {}
 
   /// Improves m.l; m.v and m.u belong to it before and after. Returns the residual [m/s].
   double Solve(double first_softness) noexcept {

@@ -244,7 +244,8 @@ class WorldDual {
       AddMultiple(mem_.q + cables_, a + cables_, f, rows_ - cables_);
     }
   }
-  /// The change of a cable that is not taut is known, dl = r; all others feel it, through the bodies.
+  /// The change of a cable that is not taut is known, dl = r; all others feel it, through the
+  /// bodies.
   void PassOnKnown() noexcept {
     const W zero = W::Splat(0.0);
     bool any = false;
