@@ -375,21 +375,6 @@ View Tables::View() const noexcept {
           along_slip};
 }
 
-namespace {
-
-/// Snapshots and hashes take state and parameters as one piece.
-constexpr bool RolesRise() {
-  Role last = Role::kState;
-  for (const RowInfo& row : kStateRows) {
-    if (row.role < last) return false;
-    last = row.role;
-  }
-  return true;
-}
-static_assert(RolesRise());
-
-}  // namespace
-
 Layout Tables::MakeLayout() const {
   const struct View m = View();
   Layout l;

@@ -88,6 +88,17 @@ inline constexpr RowInfo kStateRows[] = {
 #undef TAUT_ROW
 };
 
+/// Snapshots and hashes take state and parameters as one piece.
+constexpr bool RolesRise() {
+  Role last = Role::kState;
+  for (const RowInfo& row : kStateRows) {
+    if (row.role < last) return false;
+    last = row.role;
+  }
+  return true;
+}
+static_assert(RolesRise());
+
 /// `Tables` without the standard library.
 struct View {
   int body_count, cable_count, node_count, plane_count, body_pair_count;

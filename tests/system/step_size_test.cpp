@@ -18,7 +18,7 @@
 namespace taut {
 namespace {
 
-constexpr int kStarts = 6;
+constexpr int kStarts = 48;
 constexpr double kApartM = 1e-6;
 constexpr int kFrontCables = 6;
 

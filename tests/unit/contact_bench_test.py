@@ -18,7 +18,7 @@ from measuring import contacts, page  # noqa: E402
 from validation.runs import Problem  # noqa: E402
 
 PROGRAM = sys.argv[1]
-CONTEXT = {"mujoco": "1", "bullet": "2", "ode": "3", "step_s": "0.001", "max_sweeps": "10", "tolerance_m_per_s": "0.1"}
+CONTEXT = {"mujoco": "1", "bullet": "2", "ode": "3", "step_s": "0.001", "max_linear_solves": "10", "tolerance_m_per_s": "0.1"}
 
 
 def bench(*words):
