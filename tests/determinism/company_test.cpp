@@ -1,0 +1,86 @@
+// Worlds rich in contacts and stiff cables, where neighbours touch at other places, go other ways
+// through the solver and need other numbers of its steps: each gives the bits that it gives alone.
+#include <gtest/gtest.h>
+
+#include "scenes/heap.h"
+#include "scenes/many_rows.h"
+#include "scenes/six_strut.h"
+#include "scenes/spine_on_rubble.h"
+#include "scenes/stacks.h"
+#include "tests/physics/world.h"
+
+namespace taut::test {
+namespace {
+
+constexpr int kWorlds = 8;
+constexpr double kStepS = 1e-3;
+
+/// Every body gets a velocity of its own, up to 0.1 m/s each way.
+void Jolt(Batch& batch, int world, int number) {
+  std::uint64_t state = static_cast<std::uint64_t>(number) + 1;
+  const auto chance = [&state] {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return 0.2 * (static_cast<double>(state >> 11) / 9007199254740992.0 - 0.5);
+  };
+  for (std::size_t b = 0; b < batch.model().def().bodies.size(); ++b) {
+    if (batch.model().def().bodies[b].fixed) continue;
+    const int body = static_cast<int>(b);
+    BodyState at = batch.Body(world, body);
+    at.velocity_m_per_s = {chance(), chance(), chance()};
+    batch.SetBodyState(world, body, at);
+  }
+}
+
+void ExpectTheSameInAnyCompany(const ModelDef& def, int steps) {
+  BatchOptions wide;
+  wide.worlds = kWorlds;
+  Batch together = MakeBatch(def, wide);
+  wide.simd = Simd::kAvx2;  // what the machine lacks falls back to what it has
+  wide.threads = 2;
+  Batch reversed = MakeBatch(def, wide);
+  for (int i = 0; i < kWorlds; ++i) {
+    Jolt(together, i, i);
+    Jolt(reversed, i, kWorlds - 1 - i);
+  }
+  together.Step(kStepS, steps);
+  reversed.Step(kStepS, steps);
+  for (int i = 0; i < kWorlds; ++i) {
+    Batch alone = MakeBatch(def, {});
+    Jolt(alone, 0, i);
+    alone.Step(kStepS, steps);
+    EXPECT_EQ(together.Hash(i), alone.Hash(0)) << i;
+    EXPECT_EQ(reversed.Hash(kWorlds - 1 - i), alone.Hash(0)) << i;
+  }
+}
+
+TEST(Company, AHeapOfRods) {
+  scenes::RodHeap heap;
+  heap.rods = 8;
+  ExpectTheSameInAnyCompany(heap.Def(), 400);
+}
+TEST(Company, AStackOfBoxes) {
+  scenes::BoxStack stack;
+  stack.boxes = 4;
+  ExpectTheSameInAnyCompany(stack.Def(), 300);
+}
+TEST(Company, ASlabOnRods) { ExpectTheSameInAnyCompany(scenes::SlabOnRods().Def(), 200); }
+TEST(Company, ADiscOnManyFeet) {
+  scenes::FootedDisc disc;
+  disc.feet = 16;
+  ExpectTheSameInAnyCompany(disc.Def(), 300);
+}
+TEST(Company, ABallInANetOfStiffCables) {
+  ExpectTheSameInAnyCompany(scenes::BallInNet().Def(), 200);
+}
+TEST(Company, ASpineOnRubble) { ExpectTheSameInAnyCompany(scenes::SpineOnRubble().Def(), 300); }
+TEST(Company, SixStrutsWithStrongDampersOnTheGround) {
+  scenes::SixStrut robot;
+  robot.damping_n_s_per_m = 200;
+  robot.center_m = {0, 0, 0.6};
+  ModelDef def = robot.Def();
+  def.planes.emplace_back().name = "ground";
+  ExpectTheSameInAnyCompany(def, 400);
+}
+
+}  // namespace
+}  // namespace taut::test
