@@ -6,8 +6,8 @@
 /// compilers' rules of thumb would call.
 #define TAUT_INLINE [[gnu::always_inline]] inline
 
-/// Before a loop whose turns may run side by side: what it writes, no other turn reads. clang++ finds
-/// that out by itself, and complains where it cannot make use of being told.
+/// Before a loop whose turns may run side by side: what it writes, no other turn reads. clang++
+/// finds that out by itself, and complains where it cannot make use of being told.
 #if defined(__clang__)
 #define TAUT_NO_OVERLAP
 #else
