@@ -65,7 +65,10 @@ void WritePlanes(std::ostream& xml, const ModelDef& def) {
 
 std::string Mjcf(const ModelDef& def, const Options& options) {
   const std::vector<Shape> shapes = ShapesOf(def);
-  const std::size_t contacts = 100 + 12 * def.bodies.size() + 8 * shapes.size();
+  // Bodies of many shapes, a disc on feet, need more; but its memory grows with the square of this.
+  const std::size_t usual = 12 * def.bodies.size();
+  const std::size_t contacts =
+      100 + usual + 8 * (shapes.size() > usual ? shapes.size() - usual : 0);
   std::ostringstream xml;
   xml.precision(17);
   xml << "<mujoco>\n<compiler angle='radian' inertiafromgeom='false' boundmass='0' "
