@@ -54,16 +54,16 @@ TEST(Convergence, WedgedSegmentsTakeFewSweeps) {
       most = std::max(most, batch.Status(0).linear_solves);
     }
   }
-  EXPECT_GT(most, 32);  // or this tests nothing: Newton's method is used from 32 sweeps on
+  EXPECT_GT(most, 32);  // or this tests nothing: plain Newton ends within twelve
   EXPECT_LE(most, 128);
 }
 
 constexpr double kFriction = 0.4;
 
 TEST(Convergence, FrictionOfAnUnfinishedSolveStaysInItsCone) {
-  for (const int max_sweeps : {1, 2, 16}) {
+  for (const int most_solves : {1, 2, 16}) {
     BatchOptions options;
-    options.max_linear_solves = max_sweeps;
+    options.max_linear_solves = most_solves;
     int unfinished = 0, contacts = 0;
     for (ModelDef def : VariedModels()) {
       const auto rough = [](auto& shapes) {
@@ -92,7 +92,7 @@ TEST(Convergence, FrictionOfAnUnfinishedSolveStaysInItsCone) {
         }
       }
     }
-    EXPECT_GT(unfinished, 100) << max_sweeps << " sweeps";
+    EXPECT_GT(unfinished, 100) << most_solves << " linear solves";
     EXPECT_GT(contacts, unfinished);
   }
 }

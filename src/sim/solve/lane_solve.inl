@@ -73,9 +73,6 @@ class LaneSolve {
     if (b < a) mem_.root[a] = b;
   }
   bool IsOn(const StiffCable<W>& cable) const noexcept { return cable.live[lane_] > 0; }
-  const TouchingPair& TouchAt(int i) const noexcept {
-    return work_.touches[lane_ * m_.pair_capacity + i];
-  }
 
   /// root[b]: the lowest body of b's island, for bodies that are to be solved here; else -1.
   void FindIslands() noexcept {
