@@ -18,6 +18,7 @@
 #include "sim/stage_collide.inl"
 #include "sim/prepare_contact.inl"
 #include "sim/fit_biases.inl"
+#include "sim/solve/impacts.inl"
 #include "sim/solve/body_dual.inl"
 #include "sim/solve/world_dual.inl"
 #include "sim/solve/body_matrix.inl"
@@ -94,7 +95,6 @@ void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& w
       s.contact_key[i] = c.key;
       s.contact_force[i] = Select3(live, inv_h * ImpulseOf(c) + none, none);
       s.contact_slip[i] = Select(live & (c.l[0] > zero), c.slip, W::Splat(kSlipUnknown));
-      s.contact_bounce[i] = Select(live, c.bounce, zero);
       s.contact_arm[i] = c.arm[0];
       s.contact_normal[i] = c.links[0].lin[0];
       s.contact_gap[i] = c.gap;

@@ -24,7 +24,6 @@ TAUT_INLINE ContactMemory<W> Recall(const Rows<W>& s, const Contact<W, 1>& c, in
     if (Any(here)) {
       found.force = Select3(here, s.contact_force[i], found.force);
       found.slip = Select(here, s.contact_slip[i], found.slip);
-      found.bounce = Select(here, s.contact_bounce[i], found.bounce);
     }
     missing = missing & !here & (s.contact_key[i] < c.key);
   }
@@ -142,7 +141,6 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
     if (memory_at < memory_end && s.contact_key[memory_at][lane] == key) {
       memory.force = OfLane<L>(s.contact_force[memory_at], lane);
       memory.slip = OfLane<L>(s.contact_slip[memory_at], lane);
-      memory.bounce = OfLane<L>(s.contact_bounce[memory_at], lane);
     }
     PrepareContact(c, memory, body[0], bodies[0], OfLane<L>(s.inv_mass[bodies[0]], lane), body[1],
                    bodies[1], OfLane<L>(s.inv_mass[bodies[1]], lane),
@@ -180,7 +178,6 @@ void FinishTouches(const View& m, const Rows<W>& s, Scratch<W>& work, int lane,
     s.contact_key[slot].Set(lane, c.key[0]);
     SetLane(s.contact_force[slot], inv_h * impulse, lane);
     s.contact_slip[slot].Set(lane, c.l[0][0] > 0 ? c.slip[0] : kSlipUnknown);
-    s.contact_bounce[slot].Set(lane, c.bounce[0]);
     SetLane(s.contact_arm[slot], c.arm[0], lane);
     SetLane(s.contact_normal[slot], c.links[0].lin[0], lane);
     s.contact_gap[slot].Set(lane, c.gap[0]);

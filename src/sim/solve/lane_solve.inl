@@ -164,6 +164,7 @@ class LaneSolve {
     const M3<L> R{OfLane<L>(b.R.r0, lane_), OfLane<L>(b.R.r1, lane_), OfLane<L>(b.R.r2, lane_)};
     out.inertia = Congruence(R, OfLane<L>(s_.inertia[body], lane_));
     out.free = {OfLane<L>(b.v, lane_), OfLane<L>(b.w, lane_)};
+    out.before = {OfLane<L>(b.v0, lane_), OfLane<L>(b.w0, lane_)};
   }
 
   template <int R>
@@ -189,6 +190,7 @@ class LaneSolve {
         mem_.source[pool.count++] = slot;
         to.live = OfLane<L>(from.live, lane_);
         to.mu = OfLane<L>(from.mu, lane_);
+        to.restitution = OfLane<L>(from.restitution, lane_);
         for (int r = 0; r < 3; ++r) {
           to.bias[r] = OfLane<L>(from.bias[r], lane_);
           to.l[r] = OfLane<L>(from.l[r], lane_);
