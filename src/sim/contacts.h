@@ -17,6 +17,7 @@ struct Contact : ContactPoint<Num, kLinks> {
   Num key;              ///< Pair and feature: finds the memory again.
   Num frame;            ///< Contacts with equal numbers have the same directions.
   Num gap;              ///< At the middle of the step [m].
+  Num deep;             ///< What velocities leave of it for displacements, below 0 [m]; or 0.
   V3<Num> arm[kLinks];  ///< From the centre of mass [m].
   Num static_friction, kinetic_friction;
   Num patch;  ///< While biases are fitted: in which state it is.

@@ -10,7 +10,7 @@
 // clang-format off
 #include "sim/rows.h"
 #include "sim/poison.inl"
-#include "sim/shape_contacts.h"
+#include "sim/passing.h"
 #include "sim/stage_bodies.inl"
 #include "sim/stiff_cables.inl"
 #include "sim/stage_cables.inl"
@@ -206,7 +206,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   watch.Mark(Stage::kCables);
   StageKick(m, s, work, h);
   watch.Mark(Stage::kKick);
-  const uint32_t overflow = StageCollide(m, s, work, h, Max(h, last));
+  const uint32_t overflow = StageCollide(m, s, g, work, step_s, Max(h, last));
   watch.Mark(Stage::kCollide);
   const SolveResult<W> solve = StageSolve(m, s, g, work, settings, step_s);
   watch.Mark(Stage::kSolve);

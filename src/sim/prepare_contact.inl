@@ -3,9 +3,8 @@
 
 namespace taut::sim {
 
-/// Penetration is pushed out by this share a step, and at most this fast.
-inline constexpr double kPushOut = 0.2;
-inline constexpr double kMaxPushOutMPerS = 0.5;
+/// A contact that is inside may leave at this share of its speed.
+inline constexpr double kPushOutShare = 1e-3;
 /// A contact that moves faster than this along its surface slides, a slower one sticks [m/s].
 inline constexpr double kSlidingMPerS = 1e-6;
 
@@ -74,9 +73,12 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   c.FinishMasses();
 
   const V3<Num>& n = c.links[0].lin[0];
-  // Approaching: no further than to touch. Inside: out again, gently.
-  const Num out = Max(Num::Splat(kPushOut) * c.gap * inv_h, Num::Splat(-kMaxPushOutMPerS));
-  c.bias[0] = Select(c.gap > zero, c.gap * inv_h, out);
+  // Approaching: no further than to touch. Inside: out again, no faster than this step's forces
+  // take back, so that nothing flies; what that leaves goes out by displacements (push_out.inl).
+  const Num before_n = Dot(before, n), kick = Max(before_n - Dot(free, n), zero);
+  const Num slowly = Num::Splat(kPushOutShare) * (Abs(before_n) + Norm1(before));
+  c.bias[0] = Max(c.gap * inv_h, zero - (Num::Splat(0.5) * kick + slowly));
+  c.deep = Select(c.live > zero, Min(c.gap - h * c.bias[0], zero), zero);
   c.bias[1] = c.bias[2] = zero;
   c.slip = zero;
   c.mu = c.kinetic_friction;

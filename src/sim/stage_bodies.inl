@@ -2,11 +2,11 @@
 ///
 ///   state   pos x, quat q_WP, vel v, mom L: angular momentum about the centre of mass, in W
 ///
-/// Free rotation keeps L and turns q. H = L^2 / (2 Ix) + the rest, which is small for rods: z is the
-/// axis of near symmetry (model.cpp). The rest turns the body about its own y and z, the first term
-/// about L itself (docs/theory/integrator.md, eq. 3; after Dullweber, Leimkuhler, McLachlan, J. Chem.
-/// Phys. 107, 1997, eq. 2.4). L is kept to round-off, and the energy of a body with an axis of
-/// symmetry too, however fast it spins; else the energy's error stays bounded.
+/// Free rotation keeps L and turns q. H = L^2 / (2 Ix) + the rest, which is small for rods: z is
+/// the axis of near symmetry (model.cpp). The rest turns the body about its own y and z, the first
+/// term about L itself (docs/theory/integrator.md, eq. 3; after Dullweber, Leimkuhler, McLachlan,
+/// J. Chem. Phys. 107, 1997, eq. 2.4). L is kept to round-off, and the energy of a body with an
+/// axis of symmetry too, however fast it spins; else the energy's error stays bounded.
 
 namespace taut::sim {
 

@@ -184,25 +184,41 @@ void FinishTouches(const View& m, const Rows<W>& s, Scratch<W>& work, int lane,
   }
 }
 
+template <class W>
+bool AnyDeep(const Scratch<W>& work, int lane, double deepest_m) noexcept {
+  bool deep = deepest_m < 0;
+  for (int i = 0; i < work.touch_count[lane]; ++i) {
+    deep = deep || work.lane.pairs[i].deep[0] < 0;
+  }
+  return deep;
+}
+
 /// Lanes whose bodies are not all solved, one after the other.
 template <class W>
 void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
                 const StepSettings& settings, double step_s, SolveResult<W>& result) noexcept {
-  W unsolved = W::Splat(0.0);
-  for (int b = 0; b < m.body_count; ++b) unsolved += work.unsolved[b];
+  W unsolved = W::Splat(0.0), deepest = unsolved;
+  for (int b = 0; b < m.body_count; ++b) {
+    unsolved += work.unsolved[b];
+    for (int k = 0; k < work.contact_count[b]; ++k) {
+      deepest = Min(work.contacts[m.first_slot[b] + k].deep, deepest);
+    }
+  }
   int touches = 0;
   for (int lane = 0; lane < W::kLanes; ++lane) {
     const bool halted = s.halted[0][lane] > 0;
     if (work.touch_count[lane] > touches) touches = work.touch_count[lane];
-    if (!(unsolved[lane] > 0) || halted) continue;
+    if (!(unsolved[lane] > 0 || deepest[lane] < 0) || halted) continue;
     PrepareTouches(m, s, g, work, lane, step_s);
-    const LaneResult lane_result = LaneSolve<W>(m, s, work, settings, lane).Solve();
+    LaneSolve<W> solver(m, s, work, settings, lane, step_s);
+    const LaneResult lane_result = solver.Solve();
     result.linear_solves.Set(lane, result.linear_solves[lane] + lane_result.linear_solves);
     if (!(lane_result.residual <= result.residual[lane])) {
       result.residual.Set(lane, lane_result.residual);
       result.body[lane] = lane_result.body;
     }
     FinishTouches(m, s, work, lane, step_s);
+    if (AnyDeep(work, lane, deepest[lane])) solver.PushOut();
   }
   // Every lane must know where its list ends.
   if (g.touches_used == 0 && touches == 0) return;

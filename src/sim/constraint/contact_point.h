@@ -23,7 +23,7 @@ struct ContactPoint {
   Num mu, restitution;
   Num rebound;  ///< How fast it leaves if it takes part in an impact in this step [m/s], or 0.
   Num closing;  ///< bias[0] without an impact [m/s].
-  Num l[3];            ///< Impulses [N s].
+  Num l[3];     ///< Impulses [N s].
   bool one_direction;  ///< Friction acts along the first tangent only.
   int link_count;
   Link<Num, 3> links[kMaxLinks];
@@ -198,9 +198,10 @@ struct ContactPoint {
     Clamp(l_now);
   }
 
-  /// Sets `rebound` (eq. 9-10): as high as restitution asks for, at the gap where the step finds it,
-  /// under the acceleration that goes on. `warm`: the normal velocity that forces and the impulses
-  /// of the step before lead to; `before`: at the start of the step. False if there is none.
+  /// Sets `rebound` (eq. 9-10): as high as restitution asks for, at the gap where the step finds
+  /// it, under the acceleration that goes on. `warm`: the normal velocity that forces and the
+  /// impulses of the step before lead to; `before`: at the start of the step. False if there is
+  /// none.
   TAUT_INLINE bool ExpectRebound(Num warm, Num before) noexcept {
     // Slower ones are lost in what a solve leaves over [m/s].
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), least = Num::Splat(1e-9);

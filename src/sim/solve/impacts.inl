@@ -2,8 +2,8 @@
 /// (docs/theory/contact.md, section 3). The problem is solved as if nothing rebounded, then again
 /// with the rebounds of those contacts that took part; others that come in by that join. If the
 /// result has more energy than it may have (friction at several contacts can do that), it goes back
-/// towards the first solution, as far as it must: between two solutions all is linear, and cones are
-/// convex.
+/// towards the first solution, as far as it must: between two solutions all is linear, and cones
+/// are convex.
 ///
 /// A Problem is one of the solvers in the middle of its work:
 ///   ForEach(f)       f(law, first row) for all constraints
@@ -16,7 +16,9 @@
 namespace taut::sim {
 
 template <class Law>
-inline constexpr bool kRebounds = requires(Law& law) { law.rebound; };
+inline constexpr bool kRebounds = requires(Law& law) {
+  law.rebound;
+};
 
 /// Work of the constraints, as a share x of the way from the first solution to the second:
 /// c0 + c1 x + c2 x^2.
