@@ -1,5 +1,6 @@
 #include "math/principal_axes.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace taut {
@@ -41,6 +42,22 @@ void PrincipalAxes(const Inertia& i, double r[9], double moments[3]) noexcept {
     moments[k] = a[k][k];
     for (int j = 0; j < 3; ++j) r[3 * k + j] = v[k][j];
   }
+}
+
+void SymmetryAxisLast(double r[9], double moments[3]) noexcept {
+  constexpr double kEqual = 2e-15;
+  const auto unlike = [&](int a, int b) {
+    return std::fabs(moments[a] - moments[b]) / (moments[a] + moments[b]);
+  };
+  int z = 2;
+  for (const int axis : {1, 0}) {
+    const double now = unlike((axis + 1) % 3, (axis + 2) % 3);
+    if (now < unlike((z + 1) % 3, (z + 2) % 3)) z = axis;
+  }
+  const int x = (z + 1) % 3;
+  std::rotate(moments, moments + x, moments + 3);
+  for (int row = 0; row < 3; ++row) std::rotate(r + 3 * row, r + 3 * row + x, r + 3 * row + 3);
+  if (unlike(0, 1) < kEqual) moments[0] = moments[1] = 0.5 * (moments[0] + moments[1]);
 }
 
 }  // namespace taut

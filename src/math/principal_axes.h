@@ -10,4 +10,8 @@ namespace taut {
 /// everywhere.
 void PrincipalAxes(const Inertia& inertia, double r[9], double moments[3]) noexcept;
 
+/// Names the axes anew, in a cycle, so that the two whose moments are nearest come first: the drift
+/// of a body is exact if those are equal. Moments that differ by rounding are made so.
+void SymmetryAxisLast(double r[9], double moments[3]) noexcept;
+
 }  // namespace taut

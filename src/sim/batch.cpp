@@ -118,14 +118,13 @@ void Batch::Impl::StartWorld(int world) noexcept {
 
 void Batch::Impl::JudgeStiffness(int world) noexcept {
   const ModelDef& def = model->def();
-  double lighter = 1, k_max = 0, b_max = 0;
+  double lighter = 1, k_max = 0;
   for (int b = 0; b < view.body_count; ++b) {
     const BodyDef& body = def.bodies[static_cast<std::size_t>(b)];
     if (!body.fixed) lighter = std::max(lighter, body.mass_kg / at(world, layout.mass + b));
   }
   for (int c = 0; c < view.cable_count; ++c) {
     k_max = std::max(k_max, at(world, layout.stiffness + c));
-    b_max = std::max(b_max, at(world, layout.damping + c));
   }
   // Two bounds of the same spectral radius: by columns, and of the whole.
   for (int c = 0; c < view.cable_count; ++c) {
@@ -133,8 +132,6 @@ void Batch::Impl::JudgeStiffness(int world) noexcept {
     const double all = model->largest_coupling;
     at(world, layout.stiff_k + c) =
         lighter * std::min(own * at(world, layout.stiffness + c), all * k_max);
-    at(world, layout.stiff_b + c) =
-        lighter * std::min(own * at(world, layout.damping + c), all * b_max);
   }
 }
 

@@ -15,6 +15,7 @@
 #include "sim/stiff_cables.inl"
 #include "sim/stage_cables.inl"
 #include "sim/shape_pairs.inl"
+#include "sim/rod_distance.inl"
 #include "sim/stage_collide.inl"
 #include "sim/prepare_contact.inl"
 #include "sim/fit_biases.inl"
@@ -192,7 +193,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   const W zero = W::Splat(0.0);
   const W h = W::Splat(step_s), half_h = W::Splat(0.5 * step_s);
 
-  // Dampers act on velocities at the middle of the step, extrapolated from this step and the last.
+  // Dampers act on mean velocities over the step; a guess goes on as the last step did.
   const W last = s.last_step[0];
   const W ahead = Select(last > zero, half_h / Max(last, W::Splat(1e-300)), zero);
 
@@ -201,6 +202,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   watch.Mark(Stage::kStart);
   StageDriftFirst(m, s, half_h);
   StageKinematics(m, s, g, work, ahead);
+  StageSpots(m, s, work);
   watch.Mark(Stage::kKinematics);
   StageCables(m, s, work, step_s);
   watch.Mark(Stage::kCables);
@@ -242,6 +244,7 @@ void SenseGroup(const View& m, const Layout& layout, Group& g, void* scratch) {
   const Rows<W> s(m, layout, g);
   Poison(m, s, g, work);
   StageSenseBodies(m, s, work);
+  StageSpots(m, s, work);
   StageSense(m, s, work);
 }
 

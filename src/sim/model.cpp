@@ -37,24 +37,6 @@ double Combine(CombineRule rule, double a, double b) {
   }
 }
 
-/// Names the principal axes anew, in a cycle, so that the two whose moments are nearest come first:
-/// the drift is exact about z if those are equal. Moments that differ by rounding are made so.
-void SymmetryAxisLast(double r[9], double moments[3]) {
-  constexpr double kEqual = 2e-15;
-  const auto unlike = [&](int a, int b) {
-    return std::fabs(moments[a] - moments[b]) / (moments[a] + moments[b]);
-  };
-  int z = 2;
-  for (const int axis : {1, 0}) {
-    const double now = unlike((axis + 1) % 3, (axis + 2) % 3);
-    if (now < unlike((z + 1) % 3, (z + 2) % 3)) z = axis;
-  }
-  const int x = (z + 1) % 3;
-  std::rotate(moments, moments + x, moments + 3);
-  for (int row = 0; row < 3; ++row) std::rotate(r + 3 * row, r + 3 * row + x, r + 3 * row + 3);
-  if (unlike(0, 1) < kEqual) moments[0] = moments[1] = 0.5 * (moments[0] + moments[1]);
-}
-
 /// Turns a checked definition into tables.
 class Compiler {
  public:
@@ -129,6 +111,16 @@ class Compiler {
     return a;
   }
 
+  /// Where many attachments are one point of a body, that point.
+  int Spot(const sim::AttachmentTable& a) {
+    for (std::size_t i = 0; i < t_.spots.size(); ++i) {
+      const sim::AttachmentTable& spot = t_.spots[i];
+      if (spot.body == a.body && std::equal(a.p_P, a.p_P + 3, spot.p_P)) return static_cast<int>(i);
+    }
+    t_.spots.push_back(a);
+    return static_cast<int>(t_.spots.size()) - 1;
+  }
+
   void Cables() {
     for (const CableDef& c : def_.cables) {
       sim::CableTable table;
@@ -139,7 +131,11 @@ class Compiler {
       table.inv_max_speed = 1.0 / c.actuator.max_speed_m_per_s;
       for (const AttachmentDef& a : c.attachments) {
         t_.attachments.push_back(Attach(a.body, a.position_m));
+        t_.attachments.back().spot = Spot(t_.attachments.back());
       }
+      const auto* const ends = &t_.attachments[static_cast<std::size_t>(table.first_attachment)];
+      table.joins_two = table.attachment_count == 2 && ends[0].body != ends[1].body &&
+                        ends[0].body < t_.body_count && ends[1].body < t_.body_count;
       t_.max_attachments = std::max(t_.max_attachments, table.attachment_count);
       t_.cables.push_back(table);
     }
@@ -379,6 +375,7 @@ View Tables::View() const noexcept {
           bound_m.data(),
           cables.data(),
           attachments.data(),
+          spots.data(),
           nodes.data(),
           planes.data(),
           first_point.data(),
@@ -393,6 +390,7 @@ View Tables::View() const noexcept {
           pair_capacity,
           max_attachments,
           static_cast<int>(attachments.size()),
+          static_cast<int>(spots.size()),
           along_slip};
 }
 

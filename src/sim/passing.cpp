@@ -61,7 +61,7 @@ int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint3
                 TouchPoint* points, int count) noexcept {
   // As good as touching: this share of what they travel, or of their size.
   constexpr double kNearTravel = 1e-3, kNearSize = 1e-9;
-  constexpr int kMaxLooks = 200;
+  constexpr int kMaxLooks = 1000;
   const double speed = FastestApproach(a, b);
   const double near_m = kNearTravel * speed * step_s + kNearSize * (a.bound_m + b.bound_m);
   double t = 0.0;

@@ -46,6 +46,18 @@ TAUT_INLINE void FinishLink(Link<Num, 3>& link, int body, Num inv_mass, const S3
   }
 }
 
+/// Velocity along one of a contact's directions.
+template <class Num, int kLinks>
+TAUT_INLINE Num RowVelocity(const Contact<Num, kLinks>& c, int row, const V3<Num>& va,
+                            const V3<Num>& wa, const V3<Num>& vb, const V3<Num>& wb) noexcept {
+  Num u = Dot(c.links[0].lin[row], va) + Dot(c.links[0].ang[row], wa);
+  if (kLinks == 2) {
+    const Link<Num, 3>& other = c.links[kLinks - 1];
+    u += Dot(other.lin[row], vb) + Dot(other.ang[row], wb);
+  }
+  return u;
+}
+
 /// Fills in what the finding of a contact left open. `a`, `b`: its bodies, with their numbers and
 /// inverse masses; b only where there are two links.
 template <class Num, int kLinks>
@@ -56,13 +68,11 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   constexpr bool kPair = kLinks == 2;
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
   const Num h = Num::Splat(step_s), inv_h = Num::Splat(1.0 / step_s);
-  V3<Num> free = PointVelocity(a.v, a.w, c.arm[0]);
-  V3<Num> before = PointVelocity(a.v0, a.w0, c.arm[0]);
-  if (kPair) {
-    free -= PointVelocity(b.v, b.w, c.arm[kLinks - 1]);
-    before -= PointVelocity(b.v0, b.w0, c.arm[kLinks - 1]);
+  if (kPair || Any(c.frame < zero)) {
+    V3<Num> free = PointVelocity(a.v, a.w, c.arm[0]);
+    if (kPair) free -= PointVelocity(b.v, b.w, c.arm[kLinks - 1]);
+    MakeTangents(c, free);
   }
-  if (kPair || Any(c.frame < zero)) MakeTangents(c, free);
   c.link_count = kLinks;
   FinishLink(c.links[0], body_a, inv_mass_a, a.inv_inertia, c.arm[0]);
   if (kPair) {
@@ -72,26 +82,28 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   }
   c.FinishMasses();
 
-  const V3<Num>& n = c.links[0].lin[0];
   // Approaching: no further than to touch. Inside: out again, no faster than this step's forces
-  // take back, so that nothing flies; what that leaves goes out by displacements (push_out.inl).
-  const Num before_n = Dot(before, n), kick = Max(before_n - Dot(free, n), zero);
-  const Num slowly = Num::Splat(kPushOutShare) * (Abs(before_n) + Norm1(before));
+  // take back, so that nothing flies; what that leaves goes out by displacements
+  // (solve/lane_solve.inl, PushOut).
+  const Num before = RowVelocity(c, 0, a.v0, a.w0, b.v0, b.w0);
+  const Num kick = Max(before - RowVelocity(c, 0, a.v, a.w, b.v, b.w), zero);
+  const Num slowly = Num::Splat(kPushOutShare) * Abs(before);
   c.bias[0] = Max(c.gap * inv_h, zero - (Num::Splat(0.5) * kick + slowly));
-  c.deep = Select(c.live > zero, Min(c.gap - h * c.bias[0], zero), zero);
+  c.deep = Select((c.live > zero) & (c.gap < zero), Min(c.gap - h * c.bias[0], zero), zero);
   c.bias[1] = c.bias[2] = zero;
   c.slip = zero;
   c.mu = c.kinetic_friction;
   const auto breaks_away = c.static_friction > c.kinetic_friction;
   if (Any(breaks_away)) {
-    const V3<Num> along = before - Dot(before, n) * n;
-    const auto moving = Dot(along, along) > Num::Splat(kSlidingMPerS * kSlidingMPerS);
+    const Num u1 = RowVelocity(c, 1, a.v0, a.w0, b.v0, b.w0);
+    const Num u2 = RowVelocity(c, 2, a.v0, a.w0, b.v0, b.w0);
+    const auto moving = u1 * u1 + u2 * u2 > Num::Splat(kSlidingMPerS * kSlidingMPerS);
     const Num slip = Select(memory.slip < zero, Select(moving, one, zero), memory.slip);
     c.slip = Select(breaks_away, slip, zero);
     c.mu = Select(c.slip > zero, c.kinetic_friction, c.static_friction);
   }
   c.mu = friction_scale * c.mu;
-  c.l[0] = Max(h * Dot(memory.force, n), zero) * c.live;
+  c.l[0] = Max(h * Dot(memory.force, c.links[0].lin[0]), zero) * c.live;
   c.l[1] = h * Dot(memory.force, c.links[0].lin[1]) * c.live;
   c.l[2] = c.one_direction ? zero : h * Dot(memory.force, c.links[0].lin[2]) * c.live;
 }

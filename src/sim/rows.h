@@ -69,13 +69,37 @@ struct BodyWork {
   S3<W> inv_inertia;    ///< In W [1/(kg m^2)].
   V3<W> v, w;           ///< Current velocities [m/s], [rad/s].
   V3<W> v0, w0;         ///< Before this step's forces.
-  V3<W> v_mid, w_mid;   ///< Expected at the middle of the step, for dampers.
+  V3<W> v_mid, w_mid;   ///< Means over the step, as far as known: for dampers.
   V3<W> force, torque;  ///< Of cables, gravity and nodes [N], [N m].
+  W turns;              ///< No point goes further by turning in this step, without contacts [m],
+  W turned;             ///< and since the middle of the step before.
+};
+
+/// A point of a body that cables are attached to.
+template <class W>
+struct Spot {
+  V3<W> p, arm;  ///< In W; from the body's centre of mass [m].
 };
 
 /// An attachment while its cable's force is worked out; its velocity is the expected one.
 template <class W>
 using AttachmentWork = PathPoint<V3<W>>;
+
+/// A cable while the tensions of soft ones are found. From `links` on: only in worlds with dampers
+/// or stiff cables.
+template <class W>
+struct CableWork {
+  MaskOf<W> soft;  ///< Lanes in which it is.
+  W spring;        ///< Its part of the tension [N].
+  Link<W, 1>* links;
+  int link_count;
+  W A;  ///< Inverse effective mass along the cable [1/kg].
+  MaskOf<W> damped;
+  W damping;  ///< [N s/m]
+  W share;    ///< Of what is missing to its law, so that its own effect is in.
+  W upper;    ///< Largest tension [N].
+  W tension;  ///< As found so far [N].
+};
 
 /// A cable whose tension is found together with the contacts.
 template <class W>
@@ -87,14 +111,16 @@ struct StiffCable : CableRow<W> {
 template <class W>
 struct Scratch {
   BodyWork<W>* bodies;
+  Spot<W>* spots;
   AttachmentWork<W>* attachments;
   Contact<W, 1>* contacts;  ///< Slots of all bodies: those of body b from View::first_slot[b] on.
   int* contact_count;       ///< Used slots, per body.
   TouchingPair* touches;    ///< Those of a lane from lane * pair_capacity on.
   int touch_count[W::kLanes];
   W* start;  ///< Rows that go back to the start of the step in worlds that turn non-finite.
+  CableWork<W>* cables;
   StiffCable<W>* stiff;
-  Link<W, 1>* links;  ///< Of all stiff cables.
+  Link<W, 1>* links;  ///< Of all cables.
   W* unsolved;        ///< Per body: 1 in lanes in which it is left to the lane's own solve.
   LaneMemory<simd::Lane<W>> lane;
   DualMemory<W> dual;
@@ -108,6 +134,7 @@ struct Scratch {
   Scratch(const View& m, void* memory) noexcept : room_{static_cast<char*>(memory), 0} {
     const int bodies_count = m.body_count + 1;
     bodies = room_.Take<BodyWork<W>>(bodies_count);
+    spots = room_.Take<Spot<W>>(m.spot_count);
     attachments = room_.Take<AttachmentWork<W>>(m.max_attachments);
     contacts = room_.Take<Contact<W, 1>>(m.slot_count);
     contact_count = room_.Take<int>(bodies_count);
@@ -117,6 +144,7 @@ struct Scratch {
       if (row.halted == Halted::kGoesBack) start_rows += row.width * m.Count(row.per);
     }
     start = room_.Take<W>(start_rows);
+    cables = room_.Take<CableWork<W>>(m.cable_count);
     stiff = room_.Take<StiffCable<W>>(m.cable_count);
     links = room_.Take<Link<W, 1>>(m.attachment_count);
     unsolved = room_.Take<W>(bodies_count);

@@ -4,7 +4,7 @@
 ///
 /// Free rotation keeps L and turns q. H = L^2 / (2 Ix) + the rest, which is small for rods: z is
 /// the axis of near symmetry (model.cpp). The rest turns the body about its own y and z, the first
-/// term about L itself (docs/theory/integrator.md, eq. 3; after Dullweber, Leimkuhler, McLachlan,
+/// term about L itself (docs/theory/integrator.md, I5-I6; after Dullweber, Leimkuhler, McLachlan,
 /// J. Chem. Phys. 107, 1997, eq. 2.4). L is kept to round-off, and the energy of a body with an
 /// axis of symmetry too, however fast it spins; else the energy's error stays bounded.
 
@@ -106,6 +106,18 @@ void StageDriftSecond(const View& m, const Rows<W>& s, const Scratch<W>& work, W
     s.quat[b] = {q.w + zero, q.x + zero, q.y + zero, q.z + zero};
     s.pos[b] += half_h * s.vel[b];
     s.pos[b] += V3<W>{zero, zero, zero};
+  }
+}
+
+/// Where cables are attached.
+///   reads   pos, bodies[].R     writes  spots[]
+template <class W>
+void StageSpots(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
+  for (int i = 0; i < m.spot_count; ++i) {
+    const AttachmentTable& table = m.spots[i];
+    Spot<W>& spot = work.spots[i];
+    spot.arm = work.bodies[table.body].R * simd::Splat3<W>(table.p_P);
+    spot.p = table.body < m.body_count ? s.pos[table.body] + spot.arm : spot.arm;
   }
 }
 

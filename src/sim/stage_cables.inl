@@ -27,12 +27,13 @@ TAUT_INLINE CableForce<W> TensionOf(W k, W b, W l, W dl, W rest, bool clamped) n
 
 /// Where an attachment is and how fast it is expected to move.
 template <class W>
-TAUT_INLINE AttachmentWork<W> Attachment(const View& m, const AttachmentTable& table,
-                                         const V3<W>* origin, const Scratch<W>& work) noexcept {
+TAUT_INLINE AttachmentWork<W> Attachment(const AttachmentTable& table,
+                                         const Scratch<W>& work) noexcept {
   const BodyWork<W>& body = work.bodies[table.body];
+  const Spot<W>& spot = work.spots[table.spot];
   AttachmentWork<W> here;
-  here.arm = body.R * simd::Splat3<W>(table.p_P);
-  here.p = table.body < m.body_count ? origin[table.body] + here.arm : here.arm;
+  here.arm = spot.arm;
+  here.p = spot.p;
   here.v = body.v_mid + Cross(body.w_mid, here.arm);
   return here;
 }
@@ -40,11 +41,10 @@ TAUT_INLINE AttachmentWork<W> Attachment(const View& m, const AttachmentTable& t
 /// Length and rate of a cable; fills `ends` with its attachments.
 template <class W>
 TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const CableTable& cable,
-                                           int attachment_count, const V3<W>* origin,
-                                           const Scratch<W>& work,
+                                           int attachment_count, const Scratch<W>& work,
                                            AttachmentWork<W>* ends) noexcept {
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
-  for (int i = 0; i < attachment_count; ++i) ends[i] = Attachment(m, tables[i], origin, work);
+  for (int i = 0; i < attachment_count; ++i) ends[i] = Attachment(tables[i], work);
   return MeasurePath(attachment_count, ends);
 }
 
@@ -87,62 +87,184 @@ TAUT_INLINE W Actuate(const CableTable& cable, W k, W l, W target, W h, W inv_h,
   return rest - W::Splat(0.5) * share * (rest - before);
 }
 
-/// One cable of the stage below. `ends` is room for its attachments: known to be two, they stay
-/// in registers.
 template <class W>
-TAUT_INLINE void PullCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
-                           int attachment_count, AttachmentWork<W>* ends, W h, W inv_h) noexcept {
-  const W zero = W::Splat(0.0);
-  const CableTable& cable = m.cables[c];
-  const auto [l, dl] = MeasureCable(m, cable, attachment_count, s.pos.data(), work, ends);
-  W rest = s.rest[c], rate = s.rest_rate[c];
-  const W mean = Actuate(cable, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
-  s.rest[c] = rest;
-  s.rest_rate[c] = rate;
-  W T = TensionOf(s.stiffness[c], s.damping[c], l, dl, mean, cable.clamped_damping).tension;
-  const auto stiff =
-      (h * h * s.stiff_k[c] > W::Splat(kSoftSpring)) | (h * s.stiff_b[c] > W::Splat(kSoftDamper));
-  if (Any(stiff)) {
-    for (int i = 0; i < attachment_count; ++i) work.attachments[i] = ends[i];
-    AddStiffCable(m, s, work, c, l, l - mean, h, Select(stiff, W::Splat(1.0), zero));
-    T = Select(stiff, zero, T);
-    s.tension[c] = Select(stiff, s.tension[c], T);
-    if (!Any(!stiff)) return;
-  } else {
-    s.tension[c] = T;
-  }
-  const AttachmentTable* const tables = m.attachments + cable.first_attachment;
-  PullBodies(attachment_count, ends, T,
-             [&](int i) -> BodyWork<W>& { return work.bodies[tables[i].body]; });
+TAUT_INLINE void AddLink(const Rows<W>& s, CableWork<W>& row, int body, const V3<W>& direction,
+                         const V3<W>& arm) noexcept {
+  Link<W, 1>& link = row.links[row.link_count++];
+  link.body = body;
+  link.inv_mass = s.inv_mass[body];
+  link.lin[0] = direction;
+  link.ang[0] = Cross(arm, direction);
 }
 
-/// Stage: actuators move the rest lengths, cables pull on bodies.
-///   reads   pos, bodies[], target     writes  rest, rest_rate, tension, bodies[].force, .torque
-///           (adds), stiff[]
-///   order   cables ascending within a group: sums do not depend on anything else
-/// The force is that of the middle of the step: geometry and expected velocities there, and the
-/// rest length's mean over the step. Lanes in which that would not be stable leave the
-/// cable to the solver (stiff_cables.inl).
-template <class W>
-void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
-  const W h = W::Splat(step_s), inv_h = W::Splat(1.0 / step_s);
-  work.stiff_count = work.link_count = 0;
-  for (int c = 0; c < m.cable_count; ++c) {
-    const int count = m.cables[c].attachment_count;
-    if (count == 2) {
-      AttachmentWork<W> ends[2];
-      PullCable(m, s, work, c, 2, ends, h, inv_h);
-    } else {
-      PullCable(m, s, work, c, count, work.attachments, h, inv_h);
+/// The links of a cable: one a body, with the pulls of all its attachments there. `kTwo`, here and
+/// below: that it joins two bodies (CableTable::joins_two) is known to the compiler, which keeps
+/// them in registers.
+template <bool kTwo, class W>
+TAUT_INLINE void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work,
+                           const CableTable& cable, const AttachmentWork<W>* ends,
+                           CableWork<W>& row) noexcept {
+  const AttachmentTable* const tables = m.attachments + cable.first_attachment;
+  row.links = work.links + work.link_count;
+  row.link_count = 0;
+  if constexpr (kTwo) {
+    AddLink(s, row, tables[0].body, ends[1].u, ends[0].arm);
+    AddLink(s, row, tables[1].body, -ends[1].u, ends[1].arm);
+  } else {
+    for (int i = 0; i < cable.attachment_count; ++i) {
+      const int body = tables[i].body;
+      if (body == m.body_count) continue;
+      const V3<W> direction = PullAt(cable.attachment_count, ends, i);
+      Link<W, 1>* link = row.links;
+      Link<W, 1>* const end = link + row.link_count;
+      while (link != end && link->body != body) ++link;
+      if (link == end) {
+        AddLink(s, row, body, direction, ends[i].arm);
+      } else {
+        link->lin[0] += direction;
+        link->ang[0] += Cross(ends[i].arm, direction);
+      }
+    }
+  }
+  work.link_count += row.link_count;
+}
+
+/// What impulses along a cable do.
+template <bool kTwo, class W>
+TAUT_INLINE void FinishLinks(const Scratch<W>& work, CableWork<W>& row) noexcept {
+  if constexpr (kTwo) {
+    Link<W, 1>&a = row.links[0], &b = row.links[1];
+    a.turn[0] = work.bodies[a.body].inv_inertia * a.ang[0];
+    b.turn[0] = work.bodies[b.body].inv_inertia * b.ang[0];
+    row.A = a.inv_mass + b.inv_mass + (Dot(a.ang[0], a.turn[0]) + Dot(b.ang[0], b.turn[0]));
+  } else {
+    row.A = W::Splat(0.0);
+    for (int i = 0; i < row.link_count; ++i) {
+      Link<W, 1>& link = row.links[i];
+      link.turn[0] = work.bodies[link.body].inv_inertia * link.ang[0];
+      AddCoupling(link, link, &row.A);
     }
   }
 }
 
-/// One cable of the stage below; `ends` as in PullCable.
+/// Brings a soft cable's tension nearer to its law, T = k s + b dl >= 0 with dl the mean rate over
+/// the step: exact if nothing else changes. The bodies' mean velocities follow.
+template <bool kTwo, class W>
+TAUT_INLINE void RelaxCable(Scratch<W>& work, CableWork<W>& row, W half_h) noexcept {
+  const W zero = W::Splat(0.0);
+  const int link_count = kTwo ? 2 : row.link_count;
+  W dl = zero;
+  for (int i = 0; i < link_count; ++i) {
+    const BodyWork<W>& body = work.bodies[row.links[i].body];
+    dl -= Dot(row.links[i].lin[0], body.v_mid) + Dot(row.links[i].ang[0], body.w_mid);
+  }
+  const W wish = row.tension + row.share * (row.spring + row.damping * dl - row.tension);
+  const W tension = Select(row.damped, Min(Max(wish, zero), row.upper), row.spring);
+  const W change = Select(row.soft, half_h * (tension - row.tension), zero);
+  row.tension = tension;
+  for (int i = 0; i < link_count; ++i) {
+    BodyWork<W>& body = work.bodies[row.links[i].body];
+    Push(row.links[i], &change, body.v_mid, body.w_mid);
+  }
+}
+
+/// Tension and pull of a soft cable that was found.
+template <bool kTwo, class W>
+TAUT_INLINE void PullCable(const Rows<W>& s, Scratch<W>& work, int c) noexcept {
+  const CableWork<W>& row = work.cables[c];
+  const int link_count = kTwo ? 2 : row.link_count;
+  const W pull = Select(row.soft, row.tension, W::Splat(0.0));
+  s.tension[c] = Select(row.soft, row.tension, s.tension[c]);
+  for (int i = 0; i < link_count; ++i) {
+    BodyWork<W>& body = work.bodies[row.links[i].body];
+    body.force += pull * row.links[i].lin[0];
+    body.torque += pull * row.links[i].ang[0];
+  }
+}
+
+/// A cable's length, actuator and spring. `damped`: the tensions of soft cables are still to be
+/// found.
+template <bool kTwo, class W>
+TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, bool damped,
+                           double step_s) noexcept {
+  const W zero = W::Splat(0.0), h = W::Splat(step_s), inv_h = W::Splat(1.0 / step_s);
+  const CableTable& cable = m.cables[c];
+  CableWork<W>& row = work.cables[c];
+  W l;
+  if constexpr (kTwo) {
+    AttachmentWork<W> ends[2];
+    l = MeasureCable(m, cable, 2, work, ends).l;
+    LinkCable<true>(m, s, work, cable, ends, row);
+  } else {
+    l = MeasureCable(m, cable, cable.attachment_count, work, work.attachments).l;
+    LinkCable<false>(m, s, work, cable, work.attachments, row);
+  }
+  W rest = s.rest[c], rate = s.rest_rate[c];
+  const W mean = Actuate(cable, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
+  s.rest[c] = rest;
+  s.rest_rate[c] = rate;
+  const W stretch = l - mean;
+  const auto stiff = h * h * s.stiff_k[c] > W::Splat(kSoftSpring);
+  row.soft = !stiff;
+  row.spring = Max(s.stiffness[c] * stretch, zero);
+  const bool any_stiff = Any(stiff);
+  if (damped || any_stiff) FinishLinks<kTwo>(work, row);
+  if (any_stiff) AddStiffCable(m, s, work, c, row, l, stretch, h, stiff);
+  if (!damped) {
+    row.tension = row.spring;
+    return PullCable<kTwo>(s, work, c);
+  }
+  const W half_h = W::Splat(0.5 * step_s);
+  row.damping = s.damping[c];
+  // With nothing to damp, or slack, the spring alone: to the bit.
+  row.damped = (row.damping > zero) & (row.spring > zero);
+  row.share = W::Splat(1.0) / (W::Splat(1.0) + half_h * row.damping * row.A);
+  row.upper = cable.clamped_damping ? row.spring + row.spring : W::Splat(1e300);
+  row.tension = Select(s.last_step[0] > zero, s.tension[c], zero);
+  RelaxCable<kTwo>(work, row, half_h);
+}
+
+/// Stage: actuators move the rest lengths, cables pull on bodies.
+///   reads   pos, bodies[], target     writes  rest, rest_rate, tension, bodies[].force, .torque
+///           (adds), cables[], stiff[]
+///   order   cables ascending, then descending: sums do not depend on anything else
+/// The force is that of the middle of the step: geometry there, the rest length's mean over the
+/// step, and the mean of the rates at its start and its end (docs/theory/cables.md, eq. 6). The
+/// mean velocities start as expected from the step before, which had these cables' tensions in
+/// them; two passes over the cables put the new ones in. Lanes in which a spring would not be
+/// stable leave the cable to the solver (stiff_cables.inl).
+template <class W>
+void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
+  const W zero = W::Splat(0.0), half_h = W::Splat(0.5 * step_s);
+  work.stiff_count = work.link_count = 0;
+  auto some_damped = zero > zero;
+  for (int c = 0; c < m.cable_count; ++c) some_damped = some_damped | (s.damping[c] > zero);
+  const bool damped = Any(some_damped);
+  for (int c = 0; c < m.cable_count; ++c) {
+    if (m.cables[c].joins_two) {
+      MeetCable<true>(m, s, work, c, damped, step_s);
+    } else {
+      MeetCable<false>(m, s, work, c, damped, step_s);
+    }
+  }
+  if (!damped) return;
+  for (int c = m.cable_count - 1; c >= 0; --c) {
+    if (m.cables[c].joins_two) {
+      RelaxCable<true>(work, work.cables[c], half_h);
+      PullCable<true>(s, work, c);
+    } else {
+      RelaxCable<false>(work, work.cables[c], half_h);
+      PullCable<false>(s, work, c);
+    }
+  }
+}
+
+/// One cable of the stage below; `ends` is room for its attachments: known to be two, they stay in
+/// registers.
 template <class W>
 TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, const Scratch<W>& work, int c,
                             int attachment_count, AttachmentWork<W>* ends) noexcept {
-  const auto [l, dl] = MeasureCable(m, m.cables[c], attachment_count, s.pos.data(), work, ends);
+  const auto [l, dl] = MeasureCable(m, m.cables[c], attachment_count, work, ends);
   const CableForce<W> f =
       TensionOf(s.stiffness[c], s.damping[c], l, dl, s.rest[c], m.cables[c].clamped_damping);
   s.sense_length[c] = l;

@@ -11,18 +11,16 @@ namespace taut::sim {
 /// How close a contact must be to get a row: what its body may travel in this step, and a bit.
 inline constexpr double kContactMarginM = 1e-5;
 
+/// How far turning may take any point of each body in this step, and may have taken it since the
+/// middle of the step before.
 template <class W>
-TAUT_INLINE W TravelBound(const View& m, const Scratch<W>& work, int body, W h) noexcept {
-  const BodyWork<W>& b = work.bodies[body];
-  return h * (Norm1(b.v) + W::Splat(m.bound_m[body]) * Norm1(b.w));
-}
-
-/// How far any point of a body may have come since the middle of the step before.
-template <class W>
-TAUT_INLINE W TravelSinceLast(const View& m, const Scratch<W>& work, int body,
-                              W since_last) noexcept {
-  const BodyWork<W>& b = work.bodies[body];
-  return since_last * (Norm1(b.v0) + W::Splat(m.bound_m[body]) * Norm1(b.w0));
+void BoundTurns(const View& m, Scratch<W>& work, W h, W since_last) noexcept {
+  for (int body = 0; body <= m.body_count; ++body) {
+    BodyWork<W>& b = work.bodies[body];
+    const W bound = W::Splat(m.bound_m[body]);
+    b.turns = h * (bound * Norm1(b.w));
+    b.turned = since_last * (bound * Norm1(b.w0));
+  }
 }
 
 /// What the finding of a contact with the world says about it.
@@ -108,7 +106,7 @@ void CollidePlanes(const View& m, const Rows<W>& s, Scratch<W>& work, W h, int b
   const int first = m.first_point[body], last = m.first_point[body + 1];
   if (first == last) return;
   const BodyWork<W>& b = work.bodies[body];
-  const W margin = TravelBound(m, work, body, h) + W::Splat(kContactMarginM);
+  const W margin = h * Norm1(b.v) + b.turns + W::Splat(kContactMarginM);
   bool any = false;
   for (int k = 0; k < m.plane_count; ++k) {
     const V3<W> n = simd::Splat3<W>(m.planes[k].normal);
@@ -150,16 +148,24 @@ V3<W> ShapeCenter(const View& m, const Rows<W>& s, const Scratch<W>& work, int s
   return t.body < m.body_count ? s.pos[t.body] + p : p;
 }
 
-/// A lower bound of the distance between all shapes of two bodies, in every lane.
-template <class W>
+/// A lower bound of the distance between all shapes of two bodies, in `lanes`.
+template <class W, class M>
 W DistanceOfBodies(const View& m, const Rows<W>& s, const Scratch<W>& work,
-                   const BodyPairTable& bodies) noexcept {
+                   const BodyPairTable& bodies, M lanes) noexcept {
   W least = W::Splat(1e300);
   for (int i = 0; i < bodies.pair_count; ++i) {
     const ShapePairTable& pair = m.shape_pairs[bodies.first_pair + i];
+    const ShapeTable &a = m.shapes[pair.a], &b = m.shapes[pair.b];
+    if (a.shape_P.kind == ShapeKind::kRound && b.shape_P.kind == ShapeKind::kRound) {
+      const W radii = W::Splat(a.shape_P.round.radius_m + b.shape_P.round.radius_m);
+      const W lines =
+          LineDistance(CenterLineOf(m, s, work, pair.a), CenterLineOf(m, s, work, pair.b));
+      least = Min(lines - radii, least);
+      continue;
+    }
     const V3<W> d = ShapeCenter(m, s, work, pair.a) - ShapeCenter(m, s, work, pair.b);
     W bound = Sqrt(Dot(d, d)) - W::Splat(m.shapes[pair.a].bound_m + m.shapes[pair.b].bound_m);
-    const auto closer = bound < least;
+    const auto closer = lanes & (bound < least);
     if (!Any(closer)) continue;
     for (int lane = 0; lane < W::kLanes; ++lane) {
       if (!closer[lane]) continue;
@@ -229,12 +235,20 @@ template <class W>
 bool MayTouch(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair, W h, W since_last,
               W& margin) noexcept {
   const BodyPairTable& bodies = m.body_pairs[pair];
-  margin = TravelBound(m, work, bodies.a, h) + TravelBound(m, work, bodies.b, h) +
-           W::Splat(kContactMarginM);
-  s.clearance[pair] -= TravelSinceLast(m, work, bodies.a, since_last) +
-                       TravelSinceLast(m, work, bodies.b, since_last);
-  if (!Any(s.clearance[pair] < margin)) return false;
-  s.clearance[pair] = DistanceOfBodies(m, s, work, bodies);
+  const BodyWork<W>&a = work.bodies[bodies.a], &b = work.bodies[bodies.b];
+  margin = h * Norm1(a.v - b.v) + (a.turns + b.turns) + W::Splat(kContactMarginM);
+  s.clearance[pair] -= since_last * Norm1(a.v0 - b.v0) + (a.turned + b.turned);
+  auto near = s.clearance[pair] < margin;
+  if (!Any(near)) return false;
+  if (bodies.b < m.body_count) {
+    const V3<W> d = s.pos[bodies.a] - s.pos[bodies.b];
+    const W reach = W::Splat(m.bound_m[bodies.a] + m.bound_m[bodies.b]);
+    s.clearance[pair] = Max(s.clearance[pair], Sqrt(Dot(d, d)) - reach);
+    near = s.clearance[pair] < margin;
+    if (!Any(near)) return false;
+  }
+  const W exact = DistanceOfBodies(m, s, work, bodies, near);
+  s.clearance[pair] = Select(near, exact, s.clearance[pair]);
   return Any(s.clearance[pair] < margin);
 }
 
@@ -259,6 +273,7 @@ template <class W>
 uint32_t StageCollide(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                       double step_s, W since_last) noexcept {
   const W h = W::Splat(step_s);
+  BoundTurns(m, work, h, since_last);
   uint32_t overflow = 0;
   int pair = 0;
   for (int body = 0; body < m.body_count; ++body) {

@@ -54,7 +54,6 @@ inline constexpr int kWidthNumber = 1, kWidthV3 = 3, kWidthQ4 = 4;
   ROW(stiffness,      Number, kCable,    kParameter, kStays,    Stiffness)        /* [N/m] */ \
   ROW(damping,        Number, kCable,    kParameter, kStays,    Damping)          /* [N s/m] */ \
   ROW(stiff_k,        Number, kCable,    kParameter, kStays,    ByJudgeStiffness) /* [1/s^2] */ \
-  ROW(stiff_b,        Number, kCable,    kParameter, kStays,    ByJudgeStiffness) /* [1/s] */ \
   ROW(friction_scale, Number, kWorld,    kParameter, kStays,    One)              /* [1] */ \
   ROW(gravity,        V3,     kWorld,    kParameter, kStays,    Gravity)          /* [m/s^2] */ \
   ROW(halted,         Number, kWorld,    kParameter, kStays,    Zero)             /* 1 if it stands still */ \

@@ -8,50 +8,20 @@
 
 namespace taut::sim {
 
-/// Limits of explicit forces: h^2 K / m and h B / m, summed over the cables that a cable is coupled
-/// to (the explicit scheme is stable below 4 and 1).
+/// Limit of explicit springs: h^2 K / m, summed over the cables that a cable is coupled to (the
+/// explicit scheme is stable below 4).
 inline constexpr double kSoftSpring = 0.1;
-inline constexpr double kSoftDamper = 0.8;
-
-/// The links of a cable: one a body, with the pulls of all its attachments there.
-template <class W>
-void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work, const CableTable& cable,
-               StiffCable<W>& row) noexcept {
-  const W zero = W::Splat(0.0);
-  row.links = work.links + work.link_count;
-  row.link_count = 0;
-  for (int i = 0; i < cable.attachment_count; ++i) {
-    const int body = m.attachments[cable.first_attachment + i].body;
-    if (body == m.body_count) continue;
-    const V3<W> direction = PullAt(cable.attachment_count, work.attachments, i);
-    Link<W, 1>* link = row.links;
-    Link<W, 1>* const end = link + row.link_count;
-    while (link != end && link->body != body) ++link;
-    if (link == end) {
-      link->body = body;
-      link->lin[0] = link->ang[0] = {zero, zero, zero};
-      ++row.link_count;
-      ++work.link_count;
-    }
-    link->lin[0] += direction;
-    link->ang[0] += Cross(work.attachments[i].arm, direction);
-  }
-  for (int i = 0; i < row.link_count; ++i) {
-    Link<W, 1>& link = row.links[i];
-    link.inv_mass = s.inv_mass[link.body];
-    link.turn[0] = work.bodies[link.body].inv_inertia * link.ang[0];
-  }
-}
 
 template <class W>
-void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W length, W stretch,
-                   W h, W on) noexcept {
+void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
+                   const CableWork<W>& linked, W length, W stretch, W h, MaskOf<W> on) noexcept {
   const W zero = W::Splat(0.0), half = W::Splat(0.5);
   const CableTable& cable = m.cables[c];
   StiffCable<W>& row = work.stiff[work.stiff_count++];
   row.cable = c;
-  row.live = on;
-  LinkCable(m, s, work, cable, row);
+  row.live = Select(on, W::Splat(1.0), zero);
+  row.links = linked.links;
+  row.link_count = linked.link_count;
   W rate = zero;  // before the step
   for (int i = 0; i < row.link_count; ++i) {
     const Link<W, 1>& link = row.links[i];
@@ -72,7 +42,7 @@ void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W l
   row.FinishMasses();
   row.across = W::Splat(0.25) * h * h * s.stiff_k[c] / (k * length);
   row.upper = cable.clamped_damping ? h * Max(k * (stretch + stretch), zero) : W::Splat(1e300);
-  row.l[0] = Select(on > zero, Min(h * s.tension[c], row.upper), zero);
+  row.l[0] = Select(on, Min(h * s.tension[c], row.upper), zero);
 }
 
 /// Share of the largest stable tension that a stiff cable has. Along itself it is stable at any

@@ -18,6 +18,7 @@ namespace taut::sim {
 struct CableTable {
   int first_attachment = 0, attachment_count = 0;
   bool clamped_damping = false;
+  bool joins_two = false;  ///< Two bodies that are not the world, and no more.
   ActuatorDef actuator;
   double inv_max_speed = 0;  ///< 1 / actuator.max_speed_m_per_s [s/m].
 };
@@ -25,6 +26,7 @@ struct CableTable {
 struct AttachmentTable {
   int body = 0;
   double p_P[3] = {};  ///< [m]
+  int spot = 0;        ///< Of a cable: the number of that point among all distinct ones.
 };
 
 /// A shape that may touch another.
@@ -105,6 +107,7 @@ struct View {
   const double* bound_m;
   const CableTable* cables;
   const AttachmentTable* attachments;
+  const AttachmentTable* spots;
   const AttachmentTable* nodes;
   const PlaneTable* planes;
   const int* first_point;
@@ -116,7 +119,7 @@ struct View {
   const int* first_slot;
   int slot_count;
   std::uint32_t first_pair_id;
-  int pair_capacity, max_attachments, attachment_count;
+  int pair_capacity, max_attachments, attachment_count, spot_count;
   bool along_slip;
 
   // Always inline: of a function that several instruction sets emit the linker keeps any one.
@@ -151,7 +154,8 @@ class Tables final : public Model {
   std::vector<double> bound_m;  ///< Per body and the world: reach of its shapes from its origin.
   std::vector<CableTable> cables;
   std::vector<AttachmentTable> attachments;
-  int max_attachments = 0;  ///< Of one cable.
+  std::vector<AttachmentTable> spots;  ///< The distinct points of bodies among them.
+  int max_attachments = 0;             ///< Of one cable.
   std::vector<AttachmentTable> nodes;
   std::vector<PlaneTable> planes;
   std::vector<int> first_point;  ///< Per body, and one past the last.
