@@ -192,7 +192,7 @@ TEST(FreeMotion, ASpinAboutAPrincipalAxisTurnsByItsSpeedTimesTime) {
 
 TEST(FreeMotion, ASlantedRodPrecessesAboutItsMomentumAtTheClosedFormsRate) {
   // An axisymmetric body: its axis turns about L at |L| / I_across. The rod lies askew in W, so its
-  // principal axes do, too; the scheme is of second order, so half the step is a quarter the error.
+  // principal axes do, too. What error there is is that of the turns' angles.
   const Vec3 axis{2.0 / 7, 3.0 / 7, 6.0 / 7};
   const Vec3 spin = 40.0 * axis + Vec3{3, -2, 0};  // the second part is across the axis
   scenes::FreeRod rod;

@@ -1,4 +1,4 @@
-/// What starts inside comes out, and takes no speed with it (docs/theory/contact.md, section 2).
+/// What starts inside comes out, and takes no speed with it (docs/theory/contact.md, section 3).
 
 #include <gtest/gtest.h>
 
