@@ -118,7 +118,7 @@ TEST(BodyContact, ARodHitNearItsEndTurnsAsNewtonsLawSays) {
       ASSERT_LT(steps, 250);
       world.Step(h);
     }
-    // An impact takes up to three steps: up to the surface, without approach, rebound.
+    // It rebounds in the step that moved the rod; two more change nothing.
     world.Step(h, 2);
     const double impulse = (1 + e) * v / (1 / m + 1 / mass + a * a / moment);
     // Meanwhile the rod turns by 3 h w, and the point of contact wanders by that times the distance

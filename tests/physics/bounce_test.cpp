@@ -93,7 +93,7 @@ TEST(Bounce, AnImpactWithoutRestitutionStopsAtTheSurface) {
     }
     // It arrives with 4.43 m/s, and contacts are found at the middle of a step: half a step's way.
     EXPECT_GT(lowest, -4.43 * h / 2);
-    // What it went in comes out by a constant share a step.
+    // What it went in comes out by displacements.
     world.Step(h, 300);
     EXPECT_NEAR(world.Body(0, 0).position_m.z, scene.radius_m, 1e-9);
     EXPECT_LT(Norm(world.Body(0, 0).velocity_m_per_s), 1e-9);

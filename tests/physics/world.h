@@ -39,6 +39,12 @@ inline double SolverError(int solves, double tolerance_m_per_s = BatchOptions().
   return 10 * solves * tolerance_m_per_s;
 }
 
+/// Of world 0: kinetic, of weight and of cables [J].
+inline double EnergyOf(const Batch& world) {
+  const Energy e = world.TotalEnergy(0);
+  return e.kinetic_j + e.gravity_j + e.elastic_j;
+}
+
 inline double Norm(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 inline double Distance(const Vec3& a, const Vec3& b) { return Norm(a - b); }
 
