@@ -179,17 +179,11 @@ int Batch::lanes() const noexcept { return impl_->lanes(); }
 void Batch::Step(double step_s, int count) noexcept {
   Impl& d = *impl_;
   const sim::StepSettings settings{d.options.max_linear_solves, d.options.tolerance_m_per_s};
-  const int threads = d.pool.threads();
-  auto work = [&](int thread) {
-    // A group stays with a thread: its rows stay in that core's cache.
-    const std::size_t n = d.groups.size(), t = static_cast<std::size_t>(thread);
-    const std::size_t first = n * t / static_cast<std::size_t>(threads);
-    const std::size_t last = n * (t + 1) / static_cast<std::size_t>(threads);
-    for (std::size_t g = first; g < last; ++g) {
-      d.kernel->step(d.view, d.layout, d.groups[g], settings, d.scratch[t].get(), step_s, count);
-    }
+  auto work = [&](int thread, std::size_t g) {
+    d.kernel->step(d.view, d.layout, d.groups[g], settings,
+                   d.scratch[static_cast<std::size_t>(thread)].get(), step_s, count);
   };
-  d.pool.Run(work);
+  d.pool.ForEach(d.groups.size(), work);
 }
 
 double Batch::Time(int world) const noexcept {
