@@ -9,8 +9,10 @@ namespace taut::base {
 namespace {
 
 /// How long a thread looks before it sleeps. Falling asleep and waking take 50 us together, so that
-/// a thread never looks for much longer than it would have taken to wake.
-constexpr std::chrono::microseconds kLooking{60};
+/// a thread never looks for much longer than it would have taken to wake. Soon it gives way to
+/// whoever wants its core: that may be the very thread that it waits for. Not at once, since it may
+/// then be gone for milliseconds, and the next call is often a few microseconds away.
+constexpr std::chrono::microseconds kLooking{60}, kGivingWay{10};
 
 /// A moment, in which another thread of the core gets on.
 void Pause() {
@@ -75,14 +77,16 @@ std::uint64_t ThreadPool::WaitUntil(const Good& good, std::atomic<int>& sleepers
   std::uint64_t state = state_.load();
   if (good(state)) return state;
   if (spins_) {
-    const auto until = std::chrono::steady_clock::now() + kLooking;
-    do {
+    const auto start = std::chrono::steady_clock::now();
+    for (;;) {
       for (int i = 0; i < 16; ++i) {
         Pause();
         if (good(state = state_.load())) return state;
       }
-      std::this_thread::yield();  // whoever else wants this core gets it
-    } while (std::chrono::steady_clock::now() < until);
+      const auto looked = std::chrono::steady_clock::now() - start;
+      if (looked > kLooking) break;
+      if (looked > kGivingWay) std::this_thread::yield();
+    }
   }
   // Either whoever changes `state_` next sees a sleeper and takes the mutex to ring, or the change
   // comes before the look below: both sides write first and then read, in one order for all.
