@@ -69,12 +69,17 @@ int Main(int argc, char** argv) {
   const int calls = std::max(1, static_cast<int>(kRoundS / call_s));
   std::vector<double> all, undisturbed, one_s, several_s;
   for (int round = 0; round < kRounds; ++round) {
-    const long before = Disturbances();
-    const double one_took_s = one.Seconds(calls), worked_before_s = WorkedS();
+    one.Seconds(1);
+    long before = Disturbances();
+    const double one_took_s = one.Seconds(calls);
+    const bool one_disturbed = Disturbances() != before;
+    several.Seconds(1);  // they have been idle, and may sleep
+    before = Disturbances();
+    const double worked_before_s = WorkedS();
     const double several_took_s = several.Seconds(calls);
     all.push_back(one_took_s / several_took_s);
     const double cores = (WorkedS() - worked_before_s) / several_took_s;
-    if (Disturbances() != before || cores < 1 + 0.4 * (threads - 1)) continue;
+    if (one_disturbed || Disturbances() != before || cores < 1 + 0.4 * (threads - 1)) continue;
     undisturbed.push_back(all.back());
     one_s.push_back(one_took_s / calls);
     several_s.push_back(several_took_s / calls);
