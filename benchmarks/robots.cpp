@@ -62,17 +62,18 @@ double Motion::RestLength(int world, int cable, int tick) const {
   return rest_m_[static_cast<std::size_t>(cable)] * factor_[static_cast<std::size_t>(at)];
 }
 
-TautRunner::TautRunner(const ModelDef& def, const BatchOptions& options)
-    : motion_(def), batch_(Compiled(def), options) {}
+TautRunner::TautRunner(const ModelDef& def, const BatchOptions& options, int control_steps)
+    : motion_(def), batch_(Compiled(def), options), control_steps_(control_steps) {}
 
 void TautRunner::Run(int control_periods) {
   for (int i = 0; i < control_periods; ++i, ++tick_) {
+    targets_m_.clear();
     for (int w = 0; w < batch_.worlds(); ++w) {
       for (int c = 0; c < motion_.cables(); ++c) {
-        batch_.SetRestLengthTarget(w, c, motion_.RestLength(w, c, tick_));
+        targets_m_.push_back(motion_.RestLength(w, c, tick_));
       }
     }
-    batch_.Step(kStepS, kControlSteps);
+    batch_.Step(kStepS, control_steps_, targets_m_);
   }
   for (int w = 0; w < batch_.worlds(); ++w) {
     const std::uint32_t bits = batch_.Status(w).bits;

@@ -50,7 +50,7 @@ class Runner {
 /// taut. A world that is not finite or has too many contacts becomes an exception.
 class TautRunner final : public Runner {
  public:
-  TautRunner(const ModelDef& def, const BatchOptions& options);
+  TautRunner(const ModelDef& def, const BatchOptions& options, int control_steps = kControlSteps);
   void Run(int control_periods) override;
   int worlds() const override { return batch_.worlds(); }
   double contacts() override { return static_cast<double>(batch_.Contacts(0).size()); }
@@ -61,6 +61,8 @@ class TautRunner final : public Runner {
  private:
   Motion motion_;
   Batch batch_;
+  std::vector<double> targets_m_;  ///< Of all cables of all worlds.
+  int control_steps_;
   bool converged_ = true;
   int tick_ = 0;
 };

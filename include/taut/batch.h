@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -126,6 +127,10 @@ class Batch {
 
   /// Advances every world by `count` steps of `step_s`. Allocates nothing.
   void Step(double step_s, int count = 1) noexcept;
+  /// The same under new targets for the rest lengths of all cables of all worlds [m], cable c of
+  /// world w at [w * cables + c]. The thread that steps a world sets them, where
+  /// `SetRestLengthTarget` for each would keep the other threads waiting.
+  void Step(double step_s, int count, std::span<const double> rest_length_targets_m) noexcept;
 
   /// Simulated time of a world [s].
   double Time(int world) const noexcept;

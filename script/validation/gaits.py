@@ -300,16 +300,16 @@ def inverted():
     return {name.strip(" []") for name in line.split(":", 1)[1].split(",")}
 
 
-def export(taut, gait_path, name):
-    path = taut.folder / f"{name}.csv"
-    taut("gait", "export", gait_path, "models/tetraspine3.yaml", "--rate_hz", 1000, "--duration_s", 60,
+def export(taut, gait_path, rate_hz=1000):
+    path = taut.folder / (pathlib.Path(gait_path).stem + ".csv")
+    taut("gait", "export", gait_path, "models/tetraspine3.yaml", "--rate_hz", rate_hz, "--duration_s", 60,
          "--out", path)
     with open(path, newline="") as file:
         return [{key: float(x) for key, x in row.items()} for row in csv.DictReader(file)]
 
 
-def worst_command(ntrt, gait, table_, signs, until_s):
-    return max(abs(signs.get(cable, 1) * table_[round(row["time_s"] * 1000)][cable + "_m_per_s"]
+def worst_command(ntrt, gait, table_, signs, until_s, rate_hz=1000):
+    return max(abs(signs.get(cable, 1) * table_[round(row["time_s"] * rate_hz)][cable + "_m_per_s"]
                    - row[cable + gait.column])
                for row in ntrt.rows if 0 < row["time_s"] <= until_s for cable in CABLES)
 
@@ -317,17 +317,14 @@ def worst_command(ntrt, gait, table_, signs, until_s):
 def command_values(taut, ntrts):
     signs = {cable: -1 for cable in inverted()}
     taut.folder.mkdir(parents=True, exist_ok=True)
-    waves = export(taut, "gaits/hand_tuned_sine.yaml", "hand_tuned_sine")
-    learned = export(taut, "gaits/cpg_learned.yaml", "cpg_learned")
-    coarse_gait = taut.folder / "cpg_coarse.yaml"
-    coarse_gait.write_text(replaced((ROOT / "gaits/cpg_learned.yaml").read_text(), "integrator_step_s: 0.00025",
-                                  "integrator_step_s: 0.001"))
-    coarse = export(taut, coarse_gait, "cpg_coarse")
+    waves = export(taut, "gaits/hand_tuned_sine.yaml")
+    fine = export(taut, "gaits/cpg_learned_ntrt.yaml")
+    shipped = export(taut, "gaits/cpg_learned.yaml", 100)  # no faster than its own steps
     return {
         "sine_command": f"{worst_command(ntrts[SINE.key], SINE, waves, {}, 60):.1e}",
-        "cpg_command_10": f"{worst_command(ntrts[CPG.key], CPG, learned, signs, 10):.1e}",
-        "cpg_command_60": f"{worst_command(ntrts[CPG.key], CPG, learned, signs, 60):.1e}",
-        "cpg_command_coarse": f"{worst_command(ntrts[CPG.key], CPG, coarse, signs, 60):.1e}",
+        "cpg_command_10": f"{worst_command(ntrts[CPG.key], CPG, fine, signs, 10):.1e}",
+        "cpg_command_60": f"{worst_command(ntrts[CPG.key], CPG, fine, signs, 60):.1e}",
+        "cpg_command_coarse": f"{worst_command(ntrts[CPG.key], CPG, shipped, signs, 60, 100):.1e}",
     }
 
 

@@ -1,56 +1,107 @@
 #include "base/thread_pool.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "base/assert.h"
 
 namespace taut::base {
+namespace {
+
+/// How long a thread looks before it sleeps. Falling asleep and waking take 50 us together, so that
+/// a thread never looks for much longer than it would have taken to wake. Soon it gives way to
+/// whoever wants its core: that may be the very thread that it waits for. Not at once, since it may
+/// then be gone for milliseconds, and the next call is often a few microseconds away.
+constexpr std::chrono::microseconds kLooking{60}, kGivingWay{10};
+
+/// A moment, in which another thread of the core gets on.
+void Pause() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  __asm__ volatile("yield");
+#endif
+}
+
+}  // namespace
 
 ThreadPool::ThreadPool(int threads) {
-  if (threads <= 0) threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (threads <= 0) threads = cores;
+  spins_ = threads <= cores;
+  shares_ = std::vector<Share>(static_cast<std::size_t>(threads));
   workers_.reserve(static_cast<std::size_t>(threads - 1));
-  for (int i = 1; i < threads; ++i) workers_.emplace_back([this, i] { Wait(i); });
+  for (int i = 1; i < threads; ++i) workers_.emplace_back([this, i] { Work(i); });
 }
 
 ThreadPool::~ThreadPool() {
-  {
-    const std::lock_guard lock(mutex_);
-    stop_ = true;
-  }
-  start_.notify_all();
+  state_.fetch_or(kStop);
+  Ring(idle_sleepers_, start_);
   for (std::thread& worker : workers_) worker.join();
 }
 
 void ThreadPool::RunErased(void* context, Call call) {
   if (workers_.empty()) return call(context, 0);
-  {
-    const std::lock_guard lock(mutex_);
-    TAUT_ASSERT(busy_ == 0);  // one caller at a time
-    context_ = context;
-    call_ = call;
-    busy_ = static_cast<int>(workers_.size());
-    ++round_;
-  }
-  start_.notify_all();
+  const std::uint64_t before = state_.load(std::memory_order_relaxed);
+  TAUT_ASSERT((before & (kOpen | kJoined)) == 0);  // one caller at a time
+  context_ = context;
+  call_ = call;
+  state_.store(((before >> 32) + 1) << 32 | kOpen);
+  Ring(idle_sleepers_, start_);
   call(context, 0);
-  std::unique_lock lock(mutex_);
-  done_.wait(lock, [this] { return busy_ == 0; });
+  // Who has not joined by now will not: this round's context is about to end.
+  state_.fetch_and(~kOpen);
+  WaitUntil([](std::uint64_t state) { return (state & kJoined) == 0; }, caller_sleeps_, done_);
 }
 
-void ThreadPool::Wait(int thread) {
+void ThreadPool::Work(int thread) {
   std::uint64_t seen = 0;
   for (;;) {
-    std::unique_lock lock(mutex_);
-    start_.wait(lock, [&] { return stop_ || round_ != seen; });
-    if (stop_) return;
-    seen = round_;
-    const Call call = call_;
-    void* const context = context_;
-    lock.unlock();
-    call(context, thread);
-    lock.lock();
-    if (--busy_ == 0) done_.notify_one();
+    std::uint64_t state = WaitUntil(
+        [&](std::uint64_t now) {
+          return (now & kStop) != 0 || ((now & kOpen) != 0 && now >> 32 != seen);
+        },
+        idle_sleepers_, start_);
+    if ((state & kStop) != 0) return;
+    // The whole word is compared, so nobody joins a round that has closed since.
+    if (!state_.compare_exchange_strong(state, state + 1)) continue;
+    seen = state >> 32;
+    call_(context_, thread);
+    if (((state_.fetch_sub(1) - 1) & (kOpen | kJoined)) == 0) Ring(caller_sleeps_, done_);
   }
+}
+
+template <class Good>
+std::uint64_t ThreadPool::WaitUntil(const Good& good, std::atomic<int>& sleepers,
+                                    std::condition_variable& bell) {
+  std::uint64_t state = state_.load();
+  if (good(state)) return state;
+  if (spins_) {
+    const auto start = std::chrono::steady_clock::now();
+    for (;;) {
+      for (int i = 0; i < 16; ++i) {
+        Pause();
+        if (good(state = state_.load())) return state;
+      }
+      const auto looked = std::chrono::steady_clock::now() - start;
+      if (looked > kLooking) break;
+      if (looked > kGivingWay) std::this_thread::yield();
+    }
+  }
+  // Either whoever changes `state_` next sees a sleeper and takes the mutex to ring, or the change
+  // comes before the look below: both sides write first and then read, in one order for all.
+  std::unique_lock lock(mutex_);
+  sleepers.fetch_add(1);
+  bell.wait(lock, [&] { return good(state = state_.load()); });
+  sleepers.fetch_sub(1);
+  return state;
+}
+
+void ThreadPool::Ring(const std::atomic<int>& sleepers, std::condition_variable& bell) {
+  if (sleepers.load() == 0) return;
+  // Who counts as a sleeper holds the mutex until it sleeps.
+  { const std::lock_guard lock(mutex_); }
+  bell.notify_all();
 }
 
 }  // namespace taut::base

@@ -1,7 +1,9 @@
-/// Threads that wait for work which splits into numbered pieces.
+/// Threads that share out work which splits into numbered pieces.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <thread>
@@ -9,6 +11,9 @@
 
 namespace taut::base {
 
+/// Waking a thread takes longer than stepping a few worlds, so a thread that has nothing to do
+/// looks for work for some tens of microseconds before it sleeps, and gives way to others while it
+/// looks. Where there are more threads than cores it sleeps at once.
 class ThreadPool {
  public:
   /// `threads` includes the caller; 0 means one a core.
@@ -19,26 +24,74 @@ class ThreadPool {
 
   int threads() const noexcept { return static_cast<int>(workers_.size()) + 1; }
 
-  /// Calls work(thread) once on every thread, 0 being the caller, and waits for all. Allocates
-  /// nothing.
+  /// Calls work(thread) on the caller, which is thread 0, and at most once on each other thread, as
+  /// soon as it is awake; returns when all that were called are done. Threads that are late are not
+  /// waited for, so `work` must share out what there is to do as it goes. Allocates nothing. One
+  /// caller at a time.
   template <class Work>
   void Run(Work& work) {
     RunErased(&work, [](void* context, int thread) { (*static_cast<Work*>(context))(thread); });
   }
 
+  /// Calls work(thread, piece) once for each piece from 0 to count - 1. A thread begins with pieces
+  /// of its own, the same ones each time (what it needs is still in that core's cache), and then
+  /// takes what others have not begun.
+  template <class Work>
+  void ForEach(std::size_t count, Work& work) {
+    const std::size_t threads = shares_.size();
+    for (std::size_t t = 0; t < threads; ++t) {
+      shares_[t].next.store(count * t / threads, std::memory_order_relaxed);
+      shares_[t].end = count * (t + 1) / threads;
+    }
+    auto take = [&](int thread) {
+      for (std::size_t k = 0; k < threads; ++k) {
+        Share& share = shares_[(static_cast<std::size_t>(thread) + k) % threads];
+        for (;;) {
+          const std::size_t piece = share.next.fetch_add(1, std::memory_order_relaxed);
+          if (piece >= share.end) break;
+          work(thread, piece);
+        }
+      }
+    };
+    if (count > 1) {
+      Run(take);
+    } else {
+      take(0);  // nobody needs to wake for that
+    }
+  }
+
  private:
   using Call = void (*)(void*, int);
-  void RunErased(void* context, Call call);
-  void Wait(int thread);
+  /// Pieces that a thread begins with; on a cache line of its own.
+  struct alignas(64) Share {
+    std::atomic<std::size_t> next{0};
+    std::size_t end = 0;
+  };
 
-  std::vector<std::thread> workers_;
-  std::mutex mutex_;
-  std::condition_variable start_, done_;
+  void RunErased(void* context, Call call);
+  void Work(int thread);
+  /// Spins, then sleeps, until `state_` fulfils `good`; returns it.
+  template <class Good>
+  std::uint64_t WaitUntil(const Good& good, std::atomic<int>& sleepers,
+                          std::condition_variable& bell);
+  /// After a change of `state_`: wakes those who sleep.
+  void Ring(const std::atomic<int>& sleepers, std::condition_variable& bell);
+
+  /// The number of the round from bit 32 on, `kOpen` while threads may join it, `kStop` at the end;
+  /// below them how many have joined and are not done.
+  std::atomic<std::uint64_t> state_{0};
+  static constexpr std::uint64_t kOpen = 1u << 30, kStop = 1u << 31, kJoined = kOpen - 1;
+
+  // Of the round; written before it opens, read by those who have joined.
   void* context_ = nullptr;
   Call call_ = nullptr;
-  std::uint64_t round_ = 0;
-  int busy_ = 0;
-  bool stop_ = false;
+
+  bool spins_ = false;
+  std::mutex mutex_;  ///< Guards falling asleep, nothing else.
+  std::condition_variable start_, done_;
+  std::atomic<int> idle_sleepers_{0}, caller_sleeps_{0};
+  std::vector<Share> shares_;  ///< One a thread.
+  std::vector<std::thread> workers_;
 };
 
 }  // namespace taut::base

@@ -23,7 +23,8 @@ constexpr double kHighestHz = 30.0, kHighestAmplitude = 30.0;
 // The descending command 2 makes frequency and amplitude offset + 2 scale, and both are the same.
 constexpr double kCommandFactor = 3.0;
 constexpr double kConvergencePerS = 20.0;
-/// Follows NTRT's own integration to 2e-6 m/s over a minute; 1 ms would be 2.5e-4 m/s off.
+/// Follows NTRT's own integration to 2e-6 m/s over a minute. To walk, steps of 2 ms would do: 4e-3
+/// m/s off (docs/theory/gaits.md).
 constexpr double kIntegratorStepS = 0.00025;
 constexpr int kEdges = 57;
 /// Nodes whose sign LearningSpineJSON changes "for hardware comparison".

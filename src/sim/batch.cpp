@@ -173,20 +173,34 @@ const Model& Batch::model() const noexcept { return *impl_->model; }
 int Batch::worlds() const noexcept { return impl_->options.worlds; }
 int Batch::lanes() const noexcept { return impl_->lanes(); }
 
-void Batch::Step(double step_s, int count) noexcept {
-  Impl& d = *impl_;
-  const sim::StepSettings settings{d.options.max_linear_solves, d.options.tolerance_m_per_s};
-  const int threads = d.pool.threads();
-  auto work = [&](int thread) {
-    // A group stays with a thread: its rows stay in that core's cache.
-    const std::size_t n = d.groups.size(), t = static_cast<std::size_t>(thread);
-    const std::size_t first = n * t / static_cast<std::size_t>(threads);
-    const std::size_t last = n * (t + 1) / static_cast<std::size_t>(threads);
-    for (std::size_t g = first; g < last; ++g) {
-      d.kernel->step(d.view, d.layout, d.groups[g], settings, d.scratch[t].get(), step_s, count);
-    }
+void Batch::Impl::Step(double step_s, int count, const double* targets_m) noexcept {
+  const sim::StepSettings settings{options.max_linear_solves, options.tolerance_m_per_s};
+  auto work = [&](int thread, std::size_t g) {
+    if (targets_m != nullptr) SetTargets(static_cast<int>(g), targets_m);
+    kernel->step(view, layout, groups[g], settings, scratch[static_cast<std::size_t>(thread)].get(),
+                 step_s, count);
   };
-  d.pool.Run(work);
+  pool.ForEach(groups.size(), work);
+}
+
+void Batch::Impl::SetTargets(int group_number, const double* targets_m) const noexcept {
+  const int cables = view.cable_count, first = group_number * lanes();
+  const int here = std::min(lanes(), options.worlds - first);
+  for (int c = 0; c < cables; ++c) {
+    for (int j = 0; j < here; ++j) {
+      at(first + j, layout.target + c) =
+          targets_m[static_cast<std::ptrdiff_t>(first + j) * cables + c];
+    }
+  }
+}
+
+void Batch::Step(double step_s, int count) noexcept { impl_->Step(step_s, count, nullptr); }
+
+void Batch::Step(double step_s, int count, std::span<const double> rest_length_targets_m) noexcept {
+  const auto worlds = static_cast<std::size_t>(impl_->options.worlds);
+  sim::CheckCount(__func__, "target for each cable of each world", rest_length_targets_m.size(),
+                  worlds * static_cast<std::size_t>(impl_->view.cable_count));
+  impl_->Step(step_s, count, rest_length_targets_m.data());
 }
 
 double Batch::Time(int world) const noexcept {

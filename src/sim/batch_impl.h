@@ -106,6 +106,9 @@ struct Batch::Impl {
     }
     for (int k = 0; k < g.touches_used; ++k) visit(view.slot_count + k);
   }
+  /// Steps all worlds; first the targets of all cables of all worlds, unless null.
+  void Step(double step_s, int count, const double* targets_m) noexcept;
+  void SetTargets(int group_number, const double* targets_m) const noexcept;
   void SetMass(int world, int body, double mass_kg) noexcept;
   void StartWorld(int world) noexcept;
   /// f(number) of all that a snapshot holds of a contact.

@@ -16,4 +16,11 @@ void WrongIndex(const char* function, const char* what, int index, int count) no
   std::abort();
 }
 
+void WrongCount(const char* function, const char* what, std::size_t given,
+                std::size_t needed) noexcept {
+  std::fprintf(stderr, "taut: Batch::%s: needs one %s, which is %zu, and got %zu\n", function, what,
+               needed, given);
+  std::abort();
+}
+
 }  // namespace taut::sim

@@ -2,6 +2,8 @@
 /// to something else: it is named and ends the program, in every build.
 #pragma once
 
+#include <cstddef>
+
 namespace taut::sim {
 
 /// `function` and `what` as the caller knows them: "Cable", "cable".
@@ -10,6 +12,17 @@ namespace taut::sim {
 inline void CheckIndex(const char* function, const char* what, int index, int count) noexcept {
   if (index < 0 || index >= count) [[unlikely]] {
     WrongIndex(function, what, index, count);
+  }
+}
+
+[[noreturn]] void WrongCount(const char* function, const char* what, std::size_t given,
+                             std::size_t needed) noexcept;
+
+/// For arrays with one value for `what`.
+inline void CheckCount(const char* function, const char* what, std::size_t given,
+                       std::size_t needed) noexcept {
+  if (given != needed) [[unlikely]] {
+    WrongCount(function, what, given, needed);
   }
 }
 

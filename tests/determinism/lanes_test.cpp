@@ -67,6 +67,32 @@ TEST_P(LanesOf, EqualTheirWorldsAloneOnAnyNumberOfThreads) {
   }
 }
 
+TEST_P(LanesOf, TakeTargetsAllAtOnceAsOneByOne) {
+  const auto [simd, model] = GetParam();
+  const ModelDef def = VariedModels()[model];
+  constexpr int kWorlds = 19;
+  if (!BatchOn(simd, def, 1, 1)) GTEST_SKIP() << "this machine has no " << NameOf(simd);
+  const int cables = static_cast<int>(def.cables.size());
+  for (const int threads : {1, 3}) {
+    Batch one_by_one = *BatchOn(simd, def, kWorlds, 1),
+          at_once = *BatchOn(simd, def, kWorlds, threads);
+    Dice dice(7);
+    for (int period = 0; period < 5; ++period) {
+      std::vector<double> targets;
+      for (int i = 0; i < kWorlds; ++i) {
+        for (int c = 0; c < cables; ++c) {
+          const double rest_m = def.cables[static_cast<std::size_t>(c)].rest_length_m;
+          targets.push_back(rest_m * (1 + dice.Roll(0.1)));
+          one_by_one.SetRestLengthTarget(i, c, targets.back());
+        }
+      }
+      one_by_one.Step(kVarietyStepS, 10);
+      at_once.Step(kVarietyStepS, 10, targets);
+    }
+    for (int i = 0; i < kWorlds; ++i) ASSERT_EQ(at_once.Save(i), one_by_one.Save(i)) << i;
+  }
+}
+
 TEST_P(LanesOf, SayOfAllCablesAtOnceWhatTheySayOfEach) {
   const auto [simd, model] = GetParam();
   const ModelDef def = VariedModels()[model];

@@ -36,6 +36,15 @@ TEST(IndexDeathTest, AKindOfWhichTheModelHasNoneIsSaidToBeEmpty) {
   EXPECT_DEATH(batch.Cable(0, 0), "taut: Batch::Cable: there is no cable 0: there is none at all");
 }
 
+TEST(IndexDeathTest, TargetsForAllCablesOfAllWorldsAreAsMany) {
+  Batch batch = TwoWorlds();
+  const std::vector<double> targets(3, 1.0);
+  EXPECT_DEATH(batch.Step(0.001, 1, {targets.data(), 1}),
+               "taut: Batch::Step: needs one target for each cable of each world, which is 2, and "
+               "got 1");
+  EXPECT_DEATH(batch.Step(0.001, 1, targets), "which is 2, and got 3");
+}
+
 TEST(IndexDeathTest, EveryFunctionLooksAtEveryIndex) {
   Batch batch = TwoWorlds();
   const auto count = [&](const auto& all) { return static_cast<int>(all.size()); };

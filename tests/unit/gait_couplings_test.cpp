@@ -234,7 +234,7 @@ double WorstAgainstTrace(const std::string& gait_file, const std::string& trace_
 // Of 0.515 m/s (docs/validation/gaits.md); NTRT integrates with a tolerance of 1e-6 a step.
 TEST(Couplings, TheLearnedGaitCommandsWhatNtrtsDid) {
   EXPECT_LT(
-      WorstAgainstTrace("gaits/cpg_learned.yaml", "cpg_learned_1000hz.csv.gz", "_cpg_m_s", 60),
+      WorstAgainstTrace("gaits/cpg_learned_ntrt.yaml", "cpg_learned_1000hz.csv.gz", "_cpg_m_s", 60),
       3e-6);
 }
 
@@ -256,7 +256,7 @@ TEST(NtrtGait, TheShippedGaitsAreTheImportedOnes) {
     GTEST_SKIP() << "no gaits of NTRT: set TAUT_REFERENCE";
   }
   for (const auto& [name, source] :
-       {std::pair("cpg_learned", ReferenceFolder()),
+       {std::pair("cpg_learned_ntrt", ReferenceFolder()),
         {"hand_tuned_sine", ReferenceFolder() + "/handTunedSineWaves_controlVars.json"}}) {
     Diagnostics out;
     auto imported = ImportNtrtGait(source, NtrtCableOrder::kPaper2015, out);

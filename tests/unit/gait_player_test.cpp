@@ -132,7 +132,7 @@ TEST(GaitPlayer, OscillatorsStartAtTheFirstTickAndSomeAreInverted) {
 // steps; periods divided by 40 and by 4 may be a rounding apart.
 TEST(GaitPlayer, TheRateOfTheGaitDoesNotChangeItsOscillators) {
   Diagnostics out;
-  const auto gait = LoadGait(kRoot + "gaits/cpg_learned.yaml", out);
+  const auto gait = LoadGait(kRoot + "gaits/cpg_learned_ntrt.yaml", out);
   ASSERT_TRUE(gait) << out.Format();
   const auto fast = PlayGait(*gait, Spine(), 1000.0, 2.0, out);
   const auto slow = PlayGait(*gait, Spine(), 100.0, 2.0, out);

@@ -62,8 +62,11 @@ constexpr Real CpgVelocity(const CpgState<Real>& state) noexcept {
 /// What a step needs and forgets, one an oscillator.
 template <class Real>
 struct CpgWork {
-  CpgState<Real> stage, rate, sum;
-  Real sine, cosine, pull_sine, pull_cosine;
+  CpgState<Real> stage, sum;
+  // Of the phase; the same times the amplitude, as neighbours see it; S and C of eq. G.6, in turns.
+  // Were S and C side by side, g++ 12 would sum them twice: as a pair and one by one.
+  Real sine, scaled_sine, pull_sine;
+  Real cosine, scaled_cosine, pull_cosine;
 };
 
 /// A network: `count` oscillators, and couplings in any order (the order of the sums).
@@ -77,41 +80,58 @@ struct CpgNetwork {
 
 namespace internal {
 
-/// `work.rate` at `work.stage`:
-///   theta_i' = 2 pi v_i + sum_j w_ij r_j sin(theta_j - theta_i - phi_ij) + s_i cos theta_i  (G.3)
-///   r_i''    = a_i (a_i / 4 (R_i - r_i) - r_i')                                             (G.4)
-/// The sine of the difference is taken apart (G.6), so that every oscillator needs one sine and
-/// one cosine and a coupling none.
+/// One sine and one cosine for each oscillator, and none for a coupling: the sine of a difference
+/// is taken apart (G.6).
 template <class Real>
-constexpr void CpgRates(const CpgNetwork<Real>& network, const Real* feedback,
-                        CpgWork<Real>* work) noexcept {
+constexpr void CpgWaves(const CpgNetwork<Real>& network, CpgWork<Real>* work) noexcept {
   for (size_t i = 0; i < network.count; ++i) {
     CpgWork<Real>& w = work[i];
-    const Real turns = WrapTurns(w.stage.phase_turns);
+    const Real turns = WrapTurns(w.stage.phase_turns), r = w.stage.amplitude_m_per_s;
     w.sine = SinTurns(turns);
     w.cosine = CosTurns(turns);
-    w.pull_sine =
-        feedback ? feedback[i] * control::FromScalar<Real>(kTurnsPerRad) : Literal<Real>(0.0f);
-    w.pull_cosine = Literal<Real>(0.0f);
+    w.scaled_sine = r * w.sine;
+    w.scaled_cosine = r * w.cosine;
   }
-  for (size_t k = 0; k < network.coupling_count; ++k) {
-    const CpgCoupling<Real>& link = network.couplings[k];
-    const CpgWork<Real>& from = work[link.from];
-    CpgWork<Real>& to = work[link.to];
-    const Real r = from.stage.amplitude_m_per_s;
-    to.pull_sine = to.pull_sine + r * (link.along * from.sine - link.across * from.cosine);
-    to.pull_cosine = to.pull_cosine + r * (link.along * from.cosine + link.across * from.sine);
-  }
+}
+
+/// S and C (G.6). Couplings that pull at one oscillator are cheapest one after the other: their
+/// sums stay in registers.
+template <class Real>
+constexpr void CpgPulls(const CpgNetwork<Real>& network, const Real* feedback,
+                        CpgWork<Real>* work) noexcept {
   for (size_t i = 0; i < network.count; ++i) {
-    CpgWork<Real>& w = work[i];
-    const CpgLaw<Real>& law = network.laws[i];
-    const Real a = law.convergence_per_s;
-    w.rate.phase_turns = law.frequency_hz + (w.pull_sine * w.cosine - w.pull_cosine * w.sine);
-    w.rate.amplitude_m_per_s = w.stage.amplitude_rate_m_per_s2;
-    w.rate.amplitude_rate_m_per_s2 =
-        a * (Literal<Real>(0.25f) * a * (law.amplitude_m_per_s - w.stage.amplitude_m_per_s) -
-             w.stage.amplitude_rate_m_per_s2);
+    work[i].pull_sine =
+        feedback ? feedback[i] * control::FromScalar<Real>(kTurnsPerRad) : Literal<Real>(0.0f);
+    work[i].pull_cosine = Literal<Real>(0.0f);
   }
+  const CpgCoupling<Real>* link = network.couplings;
+  const CpgCoupling<Real>* const end = link + network.coupling_count;
+  while (link != end) {
+    CpgWork<Real>& to = work[link->to];
+    const uint16_t target = link->to;
+    Real sine = to.pull_sine, cosine = to.pull_cosine;
+    do {
+      const CpgWork<Real>& from = work[link->from];
+      sine = sine + (link->along * from.scaled_sine - link->across * from.scaled_cosine);
+      cosine = cosine + (link->along * from.scaled_cosine + link->across * from.scaled_sine);
+      ++link;
+    } while (link != end && link->to == target);
+    to.pull_sine = sine;
+    to.pull_cosine = cosine;
+  }
+}
+
+/// The rate of an oscillator's state:
+///   theta_i' = 2 pi v_i + sum_j w_ij r_j sin(theta_j - theta_i - phi_ij) + s_i cos theta_i  (G.3)
+///   r_i''    = a_i (a_i / 4 (R_i - r_i) - r_i')                                             (G.4)
+template <class Real>
+constexpr CpgState<Real> CpgRate(const CpgLaw<Real>& law, const CpgWork<Real>& w) noexcept {
+  const Real a = law.convergence_per_s;
+  return CpgState<Real>{
+      law.frequency_hz + (w.pull_sine * w.cosine - w.pull_cosine * w.sine),
+      w.stage.amplitude_rate_m_per_s2,
+      a * (Literal<Real>(0.25f) * a * (law.amplitude_m_per_s - w.stage.amplitude_m_per_s) -
+           w.stage.amplitude_rate_m_per_s2)};
 }
 
 template <class Real>
@@ -140,11 +160,13 @@ constexpr void StepCpg(const CpgNetwork<Real>& network, const Real* feedback, Re
   for (uint16_t step = 0; step < step_count; ++step) {
     for (size_t i = 0; i < network.count; ++i) work[i].stage = work[i].sum = states[i];
     for (int stage = 0; stage < 4; ++stage) {
-      internal::CpgRates(network, feedback, work);
+      internal::CpgWaves(network, work);
+      internal::CpgPulls(network, feedback, work);
       for (size_t i = 0; i < network.count; ++i) {
         CpgWork<Real>& w = work[i];
-        w.sum = internal::Advanced(w.sum, w.rate, weight[stage]);
-        w.stage = internal::Advanced(states[i], w.rate, to_next[stage]);
+        const CpgState<Real> rate = internal::CpgRate(network.laws[i], w);
+        w.sum = internal::Advanced(w.sum, rate, weight[stage]);
+        w.stage = internal::Advanced(states[i], rate, to_next[stage]);
       }
     }
     for (size_t i = 0; i < network.count; ++i) {

@@ -1,0 +1,132 @@
+/// Threads that share out pieces: each piece once, nobody forgotten, no data race (preset tsan).
+#include "base/thread_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+#include <vector>
+
+namespace taut::base {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Far longer than a thread looks for work before it sleeps.
+constexpr auto kUntilAllSleep = 5ms;
+
+/// Waits until `good()`; false if that takes so long that it never will.
+template <class Good>
+bool Eventually(const Good& good) {
+  const auto deadline = std::chrono::steady_clock::now() + 60s;
+  while (!good()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+int Cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+// What threads write is no atomic: that it is seen, by the caller and by whoever works next, is the
+// pool's promise.
+TEST(ThreadPool, EachPieceIsDoneOnceAndSeenByTheCaller) {
+  for (const int threads : {1, 2, 3, 4 * Cores()}) {
+    ThreadPool pool(threads);
+    ASSERT_EQ(pool.threads(), threads);
+    for (const std::size_t count : {0u, 1u, 2u, 3u, 16u, 101u}) {
+      std::vector<int> done(count);
+      std::vector<long> by(static_cast<std::size_t>(threads));
+      auto work = [&](int thread, std::size_t piece) {
+        ++done[piece];
+        ++by[static_cast<std::size_t>(thread)];
+      };
+      constexpr int kRounds = 200;
+      for (int round = 1; round <= kRounds; ++round) {
+        pool.ForEach(count, work);
+        ASSERT_EQ(done, std::vector<int>(count, round)) << threads << " threads";
+      }
+      long sum = 0;
+      for (const long times : by) sum += times;
+      EXPECT_EQ(sum, static_cast<long>(count) * kRounds);
+    }
+  }
+}
+
+// The second thread does not finish its first piece before all others are done, and the caller not
+// its own before the second has begun: so somebody else does the rest of the second's share.
+TEST(ThreadPool, WhatAThreadHasNotBegunIsDoneByOthers) {
+  ThreadPool pool(2);
+  constexpr std::size_t kPieces = 16;
+  for (int round = 0; round < 100; ++round) {
+    std::atomic<std::size_t> others{0};
+    std::atomic<bool> begun{false};
+    auto work = [&](int thread, std::size_t) {
+      if (thread == 1 && !begun.exchange(true)) {
+        EXPECT_TRUE(Eventually([&] { return others == kPieces - 1; }));
+      } else {
+        EXPECT_TRUE(Eventually([&] { return begun.load(); }));
+        ++others;
+      }
+    };
+    pool.ForEach(kPieces, work);
+    ASSERT_EQ(others, kPieces - 1);
+  }
+}
+
+// Without pauses the threads are still looking for work, after a pause they sleep; with more
+// threads than cores they sleep at once. The caller stays until all have come, so a thread that is
+// not woken would be missed.
+TEST(ThreadPool, EveryThreadComesWhetherItLooksOrSleeps) {
+  for (const int threads : {2, Cores(), 4 * Cores() + 1}) {
+    ThreadPool pool(threads);
+    for (int round = 0; round < 60; ++round) {
+      if (round % 3 == 0) std::this_thread::sleep_for(kUntilAllSleep);
+      std::atomic<int> come{0};
+      std::vector<int> calls(static_cast<std::size_t>(threads));
+      auto work = [&](int thread) {
+        ++calls[static_cast<std::size_t>(thread)];
+        ++come;
+        if (thread != 0) return;
+        EXPECT_TRUE(Eventually([&] { return come == threads; }));
+      };
+      pool.Run(work);
+      ASSERT_EQ(calls, std::vector<int>(static_cast<std::size_t>(threads), 1)) << "round " << round;
+    }
+  }
+}
+
+// A caller that has to wait longer than it looks sleeps, and is woken.
+TEST(ThreadPool, TheCallerWaitsForThoseWhoHaveBegun) {
+  ThreadPool pool(3);
+  for (int round = 0; round < 20; ++round) {
+    std::atomic<int> begun{0};
+    std::vector<int> ended(3);
+    auto work = [&](int thread) {
+      ++begun;
+      if (thread == 0) {
+        EXPECT_TRUE(Eventually([&] { return begun == 3; }));
+      } else {
+        std::this_thread::sleep_for(kUntilAllSleep);
+      }
+      ended[static_cast<std::size_t>(thread)] = 1;
+    };
+    pool.Run(work);
+    ASSERT_EQ(ended, std::vector<int>(3, 1));
+  }
+}
+
+TEST(ThreadPool, EndsWhateverItsThreadsDo) {
+  for (int i = 0; i < 100; ++i) {
+    ThreadPool pool(1 + i % 5);
+    std::atomic<int> calls{0};
+    auto work = [&](int) { ++calls; };
+    for (int round = 0; round < i % 3; ++round) pool.Run(work);
+    if (i % 10 == 0) std::this_thread::sleep_for(kUntilAllSleep);
+    EXPECT_LE(calls, pool.threads() * (i % 3));
+    EXPECT_GE(calls, i % 3);
+  }
+}
+
+}  // namespace
+}  // namespace taut::base
