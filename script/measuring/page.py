@@ -3,7 +3,7 @@
 import pathlib
 import statistics
 
-from measuring import contacts
+from measuring import contacts, wasm
 from measuring.figures import NOTHING, SETTINGS, number
 from validation.runs import Problem, fill, table
 
@@ -48,6 +48,29 @@ def one_world(items):
             row.append(number(item["steps_per_s"]) + mark(item) + times if item else NOTHING)
         rows.append(row)
     return table(["engine", *ROBOTS], rows)
+
+
+def mujocos(items):
+    """How many times as many steps MuJoCo in WebAssembly does as the one that is built in."""
+    results = Results(items)
+    rows = []
+    for setting, name in {"euler_pyramidal": "pyramidal cones", "euler_elliptic": "elliptic cones"}.items():
+        rates = [(results.rate(kind="one", engine=wasm.ENGINE, setting=setting, robot=robot),
+                  results.rate(kind="one", engine="mujoco", setting=setting, robot=robot)) for robot in ROBOTS]
+        rows.append([name, *(f"{number(new / old, 2)}x" if new and old else NOTHING for new, old in rates)])
+    return table(["MuJoCo 3 (WebAssembly) over MuJoCo", *ROBOTS], rows)
+
+
+def which_mujoco(items):
+    version = items[0]["machine"].get("mujoco_wasm", wasm.ABSENT)
+    if version == wasm.ABSENT:
+        return "MuJoCo 3 was not measured in this run: that takes node and npm's `@mujoco/mujoco`."
+    apart = max((item["apart_m"] for item in items if "apart_m" in item), default=None)
+    same = ("There was no other one in this run to compare with." if apart is None else
+            "It is measured only if it makes the same bodies and masses of it and has them, after 100 steps without contacts, "
+            f"within 1e-9 m of where the other one has them; the largest distance was {apart:.1e} m.")
+    return (f"MuJoCo 3 in the tables is npm's `@mujoco/mujoco` {version}: WebAssembly, one thread. It loads the text that "
+            f"the other one compiles, but for a bound on memory, and stays at its own version's defaults. {same}")
 
 
 def batches(items):
@@ -137,7 +160,7 @@ def text(items):
     items = [item for item in items if item["kind"] != contacts.KIND]
     if not items:
         raise Problem("these results are of contact-rich scenes alone; the page needs all others, too")
-    values = {"one": one_world(items), "batches": batches(items), "against": against_batches(items),
+    values = {"one": one_world(items), "mujocos": mujocos(items), "which_mujoco": which_mujoco(items), "batches": batches(items), "against": against_batches(items),
               "stages": stages(items), "memory": memory(items), "segments": growth(items, "segments"),
               "contacts": growth(items, "contacts"), "contact_scenes": scenes,
               **spread(items),
