@@ -2,6 +2,7 @@
 
 import pathlib
 import statistics
+import textwrap
 
 from measuring import contacts, wasm
 from measuring.figures import NOTHING, SETTINGS, number
@@ -63,14 +64,17 @@ def mujocos(items):
 
 def which_mujoco(items):
     version = items[0]["machine"].get("mujoco_wasm", wasm.ABSENT)
+    words = "Debian's MuJoCo is of 2022. "
     if version == wasm.ABSENT:
-        return "MuJoCo 3 was not measured in this run: that takes node and npm's `@mujoco/mujoco`."
-    apart = max((item["apart_m"] for item in items if "apart_m" in item), default=None)
-    same = ("There was no other one in this run to compare with." if apart is None else
-            "It is measured only if it makes the same bodies and masses of it and has them, after 100 steps without contacts, "
-            f"within 1e-9 m of where the other one has them; the largest distance was {apart:.1e} m.")
-    return (f"MuJoCo 3 in the tables is npm's `@mujoco/mujoco` {version}: WebAssembly, one thread. It loads the text that "
-            f"the other one compiles, but for a bound on memory, and stays at its own version's defaults. {same}")
+        words += "MuJoCo 3 was not measured in this run: that takes node and npm's `@mujoco/mujoco`."
+    else:
+        words += (f"MuJoCo 3 in the tables is npm's `@mujoco/mujoco` {version}: WebAssembly, one thread. It loads the text "
+                  "that the other one compiles, but for a bound on memory, and stays at its own version's defaults. ")
+        apart = [item["apart_m"] for item in items if "apart_m" in item]
+        words += ("It is measured only if it makes the same bodies and masses of it and has them, after 100 steps without "
+                  f"contacts, within 1e-9 m of where the other one has them; the largest distance was {max(apart):.1e} m."
+                  if apart else "There was no other one in this run to compare with.")
+    return textwrap.fill(words, 110, break_on_hyphens=False)
 
 
 def batches(items):
@@ -152,6 +156,13 @@ def spread(items):
             "worst_name": f"{name}, {worst['robot']}, {worst['worlds']} worlds, {worst['lanes']} lanes"}
 
 
+def company(machine):
+    """Whether others worked there, which the wall's clock shows."""
+    if machine["load"][0] <= machine["cores"] / 2:
+        return ""
+    return "\nOthers worked there at the same time: rows of several threads say little, all others more in their ratios."
+
+
 def text(items):
     machine = items[0]["machine"]
     if any(item["machine"] != machine for item in items):
@@ -165,6 +176,6 @@ def text(items):
               "contacts": growth(items, "contacts"), "contact_scenes": scenes,
               **spread(items),
               "repetitions": str(min(item["repetitions"] for item in items)),
-              "load": f"{machine['load'][0]:.1f}", "tolerance": machine["tolerance_m_per_s"], "linear_solves": machine["max_linear_solves"],
+              "load": f"{machine['load'][0]:.1f}", "company": company(machine), "tolerance": machine["tolerance_m_per_s"], "linear_solves": machine["max_linear_solves"],
               **{key: str(machine[key]) for key in ("processor", "cores", "commit", "mujoco", "bullet", "ode")}}
     return fill(TEMPLATE.read_text(), values)
