@@ -85,9 +85,11 @@ std::string Mjcf(const ModelDef& def, const Options& options) {
   xml.precision(17);
   xml << "<mujoco>\n<compiler angle='radian' inertiafromgeom='false' boundmass='0' "
          "boundinertia='0'/>\n"
-      << "<option integrator='Euler' cone='" << (options.elliptic ? "elliptic" : "pyramidal")
-      << "' gravity=" << def.gravity_m_per_s2 << "/>\n<size nconmax='" << contacts << "' njmax='"
-      << 4 * contacts << "'/>\n<default><geom condim='3' friction='" << BetweenBodies(def).friction
+      // the solver's are the defaults of MuJoCo 2, for versions that may have others
+      << "<option solver='Newton' iterations='100' tolerance='1e-8' integrator='Euler' cone='"
+      << (options.elliptic ? "elliptic" : "pyramidal") << "' gravity=" << def.gravity_m_per_s2
+      << "/>\n<size nconmax='" << contacts << "' njmax='" << 4 * contacts
+      << "'/>\n<default><geom condim='3' friction='" << BetweenBodies(def).friction
       << " 0 0'/></default>\n<worldbody>\n";
   WritePlanes(xml, def);
   WriteSites(xml, def, kWorld);

@@ -69,7 +69,8 @@ def which_mujoco(items):
         words += "MuJoCo 3 was not measured in this run: that takes node and npm's `@mujoco/mujoco`."
     else:
         words += (f"MuJoCo 3 in the tables is npm's `@mujoco/mujoco` {version}: WebAssembly, one thread. It loads the text "
-                  "that the other one compiles, but for a bound on memory, and stays at its own version's defaults. ")
+                  "that the other one compiles, but for a bound on memory, with the same solver, number of iterations and "
+                  "tolerance; what that text does not name is at each version's own defaults. ")
         apart = [item["apart_m"] for item in items if "apart_m" in item]
         words += ("It is measured only if it makes the same bodies and masses of it and has them, after 100 steps without "
                   f"contacts, within 1e-9 m of where the other one has them; the largest distance was {max(apart):.1e} m."
