@@ -1,6 +1,9 @@
 // How fast: taut beside MuJoCo, Bullet and ODE on the same robots. script/bench runs it and makes
 // medians and the page docs/performance.md of what it says.
 //
+// With --mjcf REGEX it measures nothing and prints, as JSON, what another MuJoCo (benchmarks/wasm)
+// must run: all benchmarks of MuJoCo, under that one's name, whose names match.
+//
 // A benchmark's name says what it measured: KIND/engine/setting/robot/worlds/lanes/threads, and
 // its counters the rest. Every robot stands on the ground, has had time to settle, and moves.
 #include <benchmark/benchmark.h>
@@ -10,8 +13,10 @@
 #include <cstdio>
 #include <ctime>
 #include <functional>
+#include <regex>
 #include <thread>
 
+#include "benchmarks/mujoco_files.h"
 #include "benchmarks/robots.h"
 #include "benchmarks/stage_watch.h"
 #include "peers/settings.h"
@@ -31,6 +36,14 @@ struct Case {
     return kind + "/" + engine + "/" + setting + "/" + robot + "/" + std::to_string(worlds) + "/" +
            std::to_string(lanes) + "/" + std::to_string(threads);
   }
+};
+
+/// A benchmark of the MuJoCo peer for another program to run.
+struct Elsewhere {
+  Case what;
+  ModelDef def;
+  peers::Options options;
+  int settle_periods;
 };
 
 /// Worlds that a benchmark goes on with when it is called again.
@@ -126,9 +139,16 @@ void RegisterTaut(Case what, const ModelDef& def, int settle_periods) {
   Register(what, make, settle_periods, stages);
 }
 
-void RegisterPeers(Case what, const ModelDef& def, int settle_periods, bool all) {
+void RegisterPeers(Case what, const ModelDef& def, int settle_periods, bool all,
+                   std::vector<Elsewhere>& elsewhere) {
   for (const peers::Setting& setting : peers::kSettings) {
-    if (!peers::Available(setting.engine) || !(setting.main || all)) continue;
+    if (!(setting.main || all)) continue;
+    if (setting.engine == peers::Engine::kMujoco) {
+      what.engine = kMujocoElsewhere;
+      what.setting = setting.name;
+      elsewhere.push_back({what, def, setting.options, settle_periods});
+    }
+    if (!peers::Available(setting.engine)) continue;
     what.engine = peers::Name(setting.engine);
     what.setting = setting.name;
     Register(
@@ -140,7 +160,8 @@ void RegisterPeers(Case what, const ModelDef& def, int settle_periods, bool all)
   }
 }
 
-void RegisterAll() {
+std::vector<Elsewhere> RegisterAll() {
+  std::vector<Elsewhere> elsewhere;
   const int widest = static_cast<int>(BestSimd());
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
   for (const char* robot : {"tetraspine3", "tetraspine12", "six_strut"}) {
@@ -159,7 +180,7 @@ void RegisterAll() {
                     .threads = cores},
                    def, kSettle);
     }
-    RegisterPeers({.kind = "one", .robot = robot}, def, kSettle, true);
+    RegisterPeers({.kind = "one", .robot = robot}, def, kSettle, true, elsewhere);
     for (int lanes : {1, widest}) {
       RegisterTaut({.kind = "stages", .robot = robot, .worlds = lanes, .lanes = lanes}, def,
                    kSettle);
@@ -169,7 +190,7 @@ void RegisterAll() {
     constexpr int kSettle = 50;
     RegisterTaut({.kind = kind, .robot = robot}, def, kSettle);
     RegisterTaut({.kind = kind, .robot = robot, .worlds = widest, .lanes = widest}, def, kSettle);
-    RegisterPeers({.kind = kind, .robot = robot}, def, kSettle, false);
+    RegisterPeers({.kind = kind, .robot = robot}, def, kSettle, false, elsewhere);
   };
   for (int segments = 1; segments <= 64; segments *= 2) {
     growth("segments", "spine_" + std::to_string(segments), Spine(segments));
@@ -177,6 +198,25 @@ void RegisterAll() {
   for (int contacts : {0, 4, 8, 16, 32, 64}) {
     growth("contacts", "footed_" + std::to_string(contacts), Footed(contacts));
   }
+  return elsewhere;
+}
+
+int Print(const std::vector<Elsewhere>& cases, const char* wanted) {
+  auto list = nlohmann::ordered_json::array();
+  try {
+    const std::regex names(wanted);
+    for (const Elsewhere& one : cases) {
+      if (!std::regex_search(one.what.Name(), names)) continue;
+      list.push_back({{"name", one.what.Name()},
+                      {"settle_periods", one.settle_periods},
+                      {"file", MujocoFile(one.def, one.options, true)}});
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "taut_bench: %s\n", error.what());
+    return 2;
+  }
+  std::printf("%s\n", list.dump().c_str());
+  return 0;
 }
 
 }  // namespace
@@ -192,7 +232,10 @@ int main(int argc, char** argv) {
   char tolerance[32];
   std::snprintf(tolerance, sizeof tolerance, "%g", taut::BatchOptions().tolerance_m_per_s);
   benchmark::AddCustomContext("tolerance_m_per_s", tolerance);
-  taut::bench::RegisterAll();
+  const auto elsewhere = taut::bench::RegisterAll();
+  if (argc == 3 && std::string(argv[1]) == "--mjcf") {
+    return taut::bench::Print(elsewhere, argv[2]);
+  }
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

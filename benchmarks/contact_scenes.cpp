@@ -1,10 +1,11 @@
 // Contact-rich scenes, step by step: whether each step is solved, how long it takes, and how long
 // the peers take for the same scene in the same run. Prints JSON; script/bench makes tables of it.
 //
-//   taut_contact_bench [--scene REGEX] [--seeds N] [--steps N] [--seconds S]
+//   taut_contact_bench [--scene REGEX] [--seeds N] [--steps N] [--seconds S] [--mjcf]
 //
 // --scene: only scenes whose name matches. --seeds: so many starts of each (3). --steps: at most so
 // many steps of each run. --seconds: a run ends once it has taken that much processor time (20).
+// With --mjcf nothing is measured: it prints what another MuJoCo (benchmarks/wasm) must run.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,6 +18,7 @@
 #include <utility>
 
 #include "benchmarks/contact_catalogue.h"
+#include "benchmarks/mujoco_files.h"
 #include "benchmarks/robots.h"
 #include "peers/settings.h"
 #include "scenes/chance.h"
@@ -31,6 +33,7 @@ struct Wanted {
   int seeds = 3;
   int most_steps = 1 << 30;
   double most_s = 20;
+  bool print = false;
 };
 
 /// The processor's time of this thread: others who work here do not count.
@@ -179,19 +182,36 @@ std::vector<double> RunPeer(const Wanted& wanted, const ContactScene& scene, con
       });
 }
 
+Json About(const Wanted& wanted, const ContactScene& scene, std::uint64_t seed, const ModelDef& def,
+           const char* engine, const char* setting, int lanes) {
+  return {{"scene", scene.name},
+          {"seed", seed},
+          {"engine", engine},
+          {"setting", setting},
+          {"lanes", lanes},
+          {"held_out", scene.held_out},
+          {"planned_steps", std::min(scene.steps, wanted.most_steps) * lanes},
+          {"bodies", def.bodies.size()},
+          {"cables", def.cables.size()}};
+}
+
+/// One start of a scene, for another MuJoCo to run.
+void Print(const Wanted& wanted, const ContactScene& scene, std::uint64_t seed, Json& runs) {
+  const ModelDef def = scene.def(seed);
+  if (!scene.for_peers || !peers::Unsupported(def).empty()) return;
+  for (const peers::Setting& setting : peers::kSettings) {
+    if (setting.engine != peers::Engine::kMujoco || !setting.main) continue;
+    Json run = About(wanted, scene, seed, def, kMujocoElsewhere, setting.name, 1);
+    run["file"] = MujocoFile(def, setting.options, scene.moves);
+    runs.push_back(run);
+  }
+}
+
 /// One start of a scene: the peers, then taut in one world and in the widest batch.
 void Measure(const Wanted& wanted, const ContactScene& scene, std::uint64_t seed, Json& runs) {
   const ModelDef def = scene.def(seed);
   const auto add = [&](const char* engine, const char* setting, int lanes, const Json& found) {
-    Json run = {{"scene", scene.name},
-                {"seed", seed},
-                {"engine", engine},
-                {"setting", setting},
-                {"lanes", lanes},
-                {"held_out", scene.held_out},
-                {"planned_steps", std::min(scene.steps, wanted.most_steps) * lanes},
-                {"bodies", def.bodies.size()},
-                {"cables", def.cables.size()}};
+    Json run = About(wanted, scene, seed, def, engine, setting, lanes);
     run.update(found);
     runs.push_back(run);
   };
@@ -264,9 +284,14 @@ Json Context() {
 
 /// False if a word is none of ours.
 bool Read(int argc, char** argv, Wanted& wanted) {
-  for (int i = 1; i + 1 < argc; i += 2) {
+  for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    const char* const value = argv[i + 1];
+    if (word == "--mjcf") {
+      wanted.print = true;
+      continue;
+    }
+    if (++i == argc) return false;
+    const char* const value = argv[i];
     if (word == "--scene") {
       wanted.scene = value;
     } else if (word == "--seeds") {
@@ -279,7 +304,7 @@ bool Read(int argc, char** argv, Wanted& wanted) {
       return false;
     }
   }
-  return argc % 2 == 1 && wanted.seeds > 0 && wanted.most_steps > 0 && wanted.most_s > 0;
+  return wanted.seeds > 0 && wanted.most_steps > 0 && wanted.most_s > 0;
 }
 
 int Main(int argc, char** argv) {
@@ -287,7 +312,7 @@ int Main(int argc, char** argv) {
   if (!Read(argc, argv, wanted)) {
     std::fprintf(stderr,
                  "usage: taut_contact_bench [--scene REGEX] [--seeds N] [--steps N] "
-                 "[--seconds S]\n");
+                 "[--seconds S] [--mjcf]\n");
     return 2;
   }
   Json runs = Json::array();
@@ -296,10 +321,11 @@ int Main(int argc, char** argv) {
     for (const ContactScene& scene : ContactScenes()) {
       if (!std::regex_search(scene.name, names)) continue;
       for (int seed = 1; seed <= wanted.seeds; ++seed) {
-        Measure(wanted, scene, static_cast<std::uint64_t>(seed), runs);
+        const auto start = static_cast<std::uint64_t>(seed);
+        wanted.print ? Print(wanted, scene, start, runs) : Measure(wanted, scene, start, runs);
       }
     }
-    if (std::regex_search("painleve", names)) MeasurePainleve(runs);
+    if (!wanted.print && std::regex_search("painleve", names)) MeasurePainleve(runs);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "taut_contact_bench: %s\n", error.what());
     return 1;

@@ -28,6 +28,7 @@ class Motion {
  public:
   explicit Motion(const ModelDef& def);
   int cables() const { return static_cast<int>(rest_m_.size()); }
+  int period() const { return static_cast<int>(factor_.size()); }  ///< In ticks.
   double RestLength(int world, int cable, int tick) const;
 
  private:

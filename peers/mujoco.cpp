@@ -6,7 +6,6 @@
 #include <mujoco/mujoco.h>
 
 #include <cstring>
-#include <sstream>
 #include <stdexcept>
 
 #include "math/vec.h"
@@ -14,98 +13,6 @@
 
 namespace taut::peers {
 namespace {
-
-constexpr int kPlaneBit = 1, kBodyBit = 2;
-
-std::ostream& operator<<(std::ostream& out, const Vec3& v) {
-  return out << '"' << v.x << ' ' << v.y << ' ' << v.z << '"';
-}
-
-void WriteShapes(std::ostream& xml, const std::vector<Shape>& shapes, int body) {
-  for (const Shape& s : shapes) {
-    if (s.body != body) continue;
-    if (s.kind == Shape::Kind::kBox) {
-      const Quat q = QuatOf(s.turn);
-      xml << "<geom type='box' pos=" << s.center_m << " quat='" << q.w << ' ' << q.x << ' ' << q.y
-          << ' ' << q.z << "' size=" << s.half_extents_m;
-    } else if (s.kind == Shape::Kind::kCapsule) {
-      const Vec3 half = s.half_length_m * (s.turn * Vec3{0, 0, 1});
-      const Vec3 a = s.center_m - half, b = s.center_m + half;
-      xml << "<geom type='capsule' fromto='" << a.x << ' ' << a.y << ' ' << a.z << ' ' << b.x << ' '
-          << b.y << ' ' << b.z << "' size='" << s.radius_m << "'";
-    } else {
-      xml << "<geom type='sphere' pos=" << s.center_m << " size='" << s.radius_m << "'";
-    }
-    xml << " contype='" << (s.meets_bodies ? kBodyBit : 0) << "' conaffinity='"
-        << (s.meets_planes ? kPlaneBit : 0) + (s.meets_bodies ? kBodyBit : 0) << "'/>\n";
-  }
-}
-
-void WriteSites(std::ostream& xml, const ModelDef& def, int body) {
-  for (std::size_t c = 0; c < def.cables.size(); ++c) {
-    const std::vector<AttachmentDef>& ends = def.cables[c].attachments;
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (ends[i].body != body) continue;
-      const Vec3 origin =
-          body == kWorld ? Vec3{} : def.bodies[static_cast<std::size_t>(body)].com_m;
-      xml << "<site name='s" << c << '_' << i << "' pos=" << ends[i].position_m - origin << "/>\n";
-    }
-  }
-}
-
-void WritePlanes(std::ostream& xml, const ModelDef& def) {
-  for (std::size_t i = 0; i < def.planes.size(); ++i) {
-    const PlaneDef& p = def.planes[i];
-    // Of two geoms the one of higher priority says the friction.
-    xml << "<geom type='plane' size='1 1 1' priority='1' pos=" << p.point_m << " zaxis=" << p.normal
-        << " contype='" << kPlaneBit << "' conaffinity='0' friction='"
-        << WithPlane(def, static_cast<int>(i)).friction << " 0 0'/>\n";
-  }
-}
-
-std::string Mjcf(const ModelDef& def, const Options& options) {
-  const std::vector<Shape> shapes = ShapesOf(def);
-  // Bodies of many shapes, a disc on feet, need more; but its memory grows with the square of this.
-  const std::size_t usual = 12 * def.bodies.size();
-  const std::size_t contacts =
-      100 + usual + 8 * (shapes.size() > usual ? shapes.size() - usual : 0);
-  std::ostringstream xml;
-  xml.precision(17);
-  xml << "<mujoco>\n<compiler angle='radian' inertiafromgeom='false' boundmass='0' "
-         "boundinertia='0'/>\n"
-      << "<option integrator='Euler' cone='" << (options.elliptic ? "elliptic" : "pyramidal")
-      << "' gravity=" << def.gravity_m_per_s2 << "/>\n<size nconmax='" << contacts << "' njmax='"
-      << 4 * contacts << "'/>\n<default><geom condim='3' friction='" << BetweenBodies(def).friction
-      << " 0 0'/></default>\n<worldbody>\n";
-  WritePlanes(xml, def);
-  WriteSites(xml, def, kWorld);
-  for (std::size_t b = 0; b < def.bodies.size(); ++b) {
-    const BodyDef& body = def.bodies[b];
-    const Inertia& j = body.inertia_kg_m2;
-    xml << "<body pos=" << body.com_m << "><freejoint/><inertial pos='0 0 0' mass='" << body.mass_kg
-        << "' fullinertia='" << j.xx << ' ' << j.yy << ' ' << j.zz << ' ' << j.xy << ' ' << j.xz
-        << ' ' << j.yz << "'/>\n";
-    WriteShapes(xml, shapes, static_cast<int>(b));
-    WriteSites(xml, def, static_cast<int>(b));
-    xml << "</body>\n";
-  }
-  xml << "</worldbody>\n<tendon>\n";
-  for (std::size_t c = 0; c < def.cables.size(); ++c) {
-    xml << "<spatial name='t" << c << "'>";
-    for (std::size_t i = 0; i < def.cables[c].attachments.size(); ++i) {
-      xml << "<site site='s" << c << '_' << i << "'/>";
-    }
-    xml << "</spatial>\n";
-  }
-  xml << "</tendon>\n<actuator>\n";
-  for (std::size_t c = 0; c < def.cables.size(); ++c) {
-    const double k = def.cables[c].stiffness_n_per_m, b = def.cables[c].damping_n_s_per_m;
-    xml << "<general tendon='t" << c << "' gainprm='" << k << "' biastype='affine' biasprm='0 "
-        << -k << ' ' << -b << "' ctrllimited='false' forcelimited='true' forcerange='-1e12 0'/>\n";
-  }
-  xml << "</actuator>\n</mujoco>\n";
-  return xml.str();
-}
 
 struct Files {
   mjVFS* vfs = new mjVFS;
@@ -135,14 +42,7 @@ class Mujoco final : public World {
   Mujoco(const ModelDef& def, const Options& options)
       : model_(Compile(Mjcf(def, options))), data_(mj_makeData(model_)) {
     mju_user_warning = [](const char*) {};  // Step looks at the warnings; no file of them
-    for (std::size_t b = 0; b < def.bodies.size(); ++b) {
-      const BodyDef& body = def.bodies[b];
-      const Vec3 &v = body.velocity_m_per_s, &w = body.angular_velocity_rad_per_s;
-      const double qvel[6] = {v.x, v.y, v.z, w.x, w.y, w.z};
-      std::copy(qvel, qvel + 6, data_->qvel + 6 * b);
-    }
-    for (std::size_t c = 0; c < def.cables.size(); ++c)
-      data_->ctrl[c] = def.cables[c].rest_length_m;
+    mj_resetDataKeyframe(model_, data_, 0);
   }
   Mujoco(const Mujoco&) = delete;
   Mujoco& operator=(const Mujoco&) = delete;

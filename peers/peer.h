@@ -55,6 +55,10 @@ class World {
 /// Why the peers cannot run a model, in words; empty if they can.
 std::string Unsupported(const ModelDef& def);
 
+/// The model in MuJoCo's language, with a keyframe of its start: what the engine of that name runs,
+/// for other versions of it. The model is supported.
+std::string Mjcf(const ModelDef& def, const Options& options = {});
+
 /// A world as `def` describes it. The engine is available and the model supported, otherwise
 /// std::invalid_argument says what is wrong.
 std::unique_ptr<World> MakeWorld(Engine engine, const ModelDef& def, const Options& options = {});

@@ -6,7 +6,9 @@ import pathlib
 import statistics
 
 from measuring.figures import NOTHING, SETTINGS, count, number
-from measuring.measure import command, machine
+from measuring import wasm
+from measuring.commands import command
+from measuring.measure import machine
 from validation.runs import Problem, fill, table
 
 KIND = "contact_scenes"
@@ -23,8 +25,12 @@ def run(program, only, seeds, steps, seconds, load):
     if not os.access(program, os.X_OK):
         raise Problem(f"there is no {program}")
     limit = ["--steps", steps] if steps else []
-    raw = command(program, "--scene", only, "--seeds", seeds, "--seconds", seconds, *limit)
-    return results(json.loads(raw), load)
+    wanted = ["--scene", only, "--seeds", seeds, "--seconds", seconds, *limit]
+    raw = json.loads(command(program, *wanted))
+    raw["context"]["mujoco_wasm"] = wasm.version()
+    elsewhere = wasm.measured("steps", command(program, *wanted, "--mjcf"), seconds)
+    raw["runs"] += elsewhere["runs"] if elsewhere else []
+    return results(raw, load)
 
 
 def together(runs):

@@ -4,6 +4,8 @@ SETTINGS = {  # in the order of the tables
     ("taut", "default"): "taut",
     ("mujoco", "euler_pyramidal"): "MuJoCo, Euler, pyramidal cones",
     ("mujoco", "euler_elliptic"): "MuJoCo, Euler, elliptic cones",
+    ("mujoco_wasm", "euler_pyramidal"): "MuJoCo 3 (WebAssembly), Euler, pyramidal cones",
+    ("mujoco_wasm", "euler_elliptic"): "MuJoCo 3 (WebAssembly), Euler, elliptic cones",
     ("bullet", "iterations_10"): "Bullet, 10 iterations",
     ("bullet", "iterations_50"): "Bullet, 50 iterations",
     ("bullet", "two_directions"): "Bullet, 10 iterations, two friction directions",

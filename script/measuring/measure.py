@@ -8,17 +8,11 @@ import statistics
 import subprocess
 import tempfile
 
+from measuring import wasm
+from measuring.commands import command
 from validation.runs import ROOT, Problem
 
 STAGE = "ns_"  # begins the counters that are times of stages
-
-
-def command(*words, **more):
-    """Runs a command, shows what it said only if it fails."""
-    run = subprocess.run([str(word) for word in words], capture_output=True, text=True, **more)
-    if run.returncode != 0:
-        raise Problem(f"{' '.join(map(str, words))}\n{run.stdout}{run.stderr}".rstrip())
-    return run.stdout
 
 
 def build(*targets):
@@ -44,7 +38,7 @@ def commit():
 def machine(context):
     """What figures hold for: Google Benchmark's context and what it does not know."""
     return {"processor": processor(), "cores": os.cpu_count(), "load": context["load_avg"][:1],
-            "commit": commit(),
+            "commit": commit(), "mujoco_wasm": context.get("mujoco_wasm", wasm.ABSENT),
             **{key: context[key] for key in ("mujoco", "bullet", "ode", "step_s", "max_linear_solves",
                                              "tolerance_m_per_s")}}
 
@@ -66,8 +60,8 @@ def results(raw):
                 "worlds": int(worlds), "lanes": int(lanes), "threads": int(threads),
                 "steps_per_s": statistics.median(rates), "repetitions": len(rates),
                 "spread": (max(rates) - min(rates)) / statistics.median(rates)}
-        for key in ("contacts", "linear_solves", "bytes_per_world"):
-            if key in runs[0]:
+        for key in ("contacts", "linear_solves", "bytes_per_world", "apart_m"):
+            if runs[0].get(key) is not None:
                 item[key] = statistics.median(run[key] for run in runs)
         if "converged" in runs[0]:
             item["converged"] = all(run["converged"] == 1 for run in runs)
@@ -88,5 +82,10 @@ def run(program, only, repetitions, seconds):
         command(program, f"--benchmark_filter={only}", f"--benchmark_repetitions={repetitions}",
                 f"--benchmark_min_time={seconds}", "--benchmark_enable_random_interleaving=true",
                 f"--benchmark_out={out}", "--benchmark_out_format=json")
-        raw = out.read_text()  # empty if there was nothing to run
-        return results(json.loads(raw)) if raw else []
+        text = out.read_text()  # empty if there was nothing to run
+    if not text:
+        return []
+    raw = json.loads(text)
+    raw["context"]["mujoco_wasm"] = wasm.version()
+    raw["benchmarks"] += wasm.measured("rates", command(program, "--mjcf", only), repetitions, seconds) or []
+    return results(raw)

@@ -2,8 +2,9 @@
 
 import pathlib
 import statistics
+import textwrap
 
-from measuring import contacts
+from measuring import contacts, wasm
 from measuring.figures import NOTHING, SETTINGS, number
 from validation.runs import Problem, fill, table
 
@@ -48,6 +49,33 @@ def one_world(items):
             row.append(number(item["steps_per_s"]) + mark(item) + times if item else NOTHING)
         rows.append(row)
     return table(["engine", *ROBOTS], rows)
+
+
+def mujocos(items):
+    """How many times as many steps MuJoCo in WebAssembly does as the one that is built in."""
+    results = Results(items)
+    rows = []
+    for setting, name in {"euler_pyramidal": "pyramidal cones", "euler_elliptic": "elliptic cones"}.items():
+        rates = [(results.rate(kind="one", engine=wasm.ENGINE, setting=setting, robot=robot),
+                  results.rate(kind="one", engine="mujoco", setting=setting, robot=robot)) for robot in ROBOTS]
+        rows.append([name, *(f"{number(new / old, 2)}x" if new and old else NOTHING for new, old in rates)])
+    return table(["MuJoCo 3 (WebAssembly) over MuJoCo", *ROBOTS], rows)
+
+
+def which_mujoco(items):
+    version = items[0]["machine"].get("mujoco_wasm", wasm.ABSENT)
+    words = "Debian's MuJoCo is of 2022. "
+    if version == wasm.ABSENT:
+        words += "MuJoCo 3 was not measured in this run: that takes node and npm's `@mujoco/mujoco`."
+    else:
+        words += (f"MuJoCo 3 in the tables is npm's `@mujoco/mujoco` {version}: WebAssembly, one thread. It loads the text "
+                  "that the other one compiles, but for a bound on memory, with the same solver, number of iterations and "
+                  "tolerance; what that text does not name is at each version's own defaults. ")
+        apart = [item["apart_m"] for item in items if "apart_m" in item]
+        words += ("It is measured only if it makes the same bodies and masses of it and has them, after 100 steps without "
+                  f"contacts, within 1e-9 m of where the other one has them; the largest distance was {max(apart):.1e} m."
+                  if apart else "There was no other one in this run to compare with.")
+    return textwrap.fill(words, 110, break_on_hyphens=False)
 
 
 def batches(items):
@@ -129,6 +157,13 @@ def spread(items):
             "worst_name": f"{name}, {worst['robot']}, {worst['worlds']} worlds, {worst['lanes']} lanes"}
 
 
+def company(machine):
+    """Whether others worked there, which the wall's clock shows."""
+    if machine["load"][0] <= machine["cores"] / 2:
+        return ""
+    return "\nOthers worked there at the same time: rows of several threads say little, all others more in their ratios."
+
+
 def text(items):
     machine = items[0]["machine"]
     if any(item["machine"] != machine for item in items):
@@ -137,11 +172,11 @@ def text(items):
     items = [item for item in items if item["kind"] != contacts.KIND]
     if not items:
         raise Problem("these results are of contact-rich scenes alone; the page needs all others, too")
-    values = {"one": one_world(items), "batches": batches(items), "against": against_batches(items),
+    values = {"one": one_world(items), "mujocos": mujocos(items), "which_mujoco": which_mujoco(items), "batches": batches(items), "against": against_batches(items),
               "stages": stages(items), "memory": memory(items), "segments": growth(items, "segments"),
               "contacts": growth(items, "contacts"), "contact_scenes": scenes,
               **spread(items),
               "repetitions": str(min(item["repetitions"] for item in items)),
-              "load": f"{machine['load'][0]:.1f}", "tolerance": machine["tolerance_m_per_s"], "linear_solves": machine["max_linear_solves"],
+              "load": f"{machine['load'][0]:.1f}", "company": company(machine), "tolerance": machine["tolerance_m_per_s"], "linear_solves": machine["max_linear_solves"],
               **{key: str(machine[key]) for key in ("processor", "cores", "commit", "mujoco", "bullet", "ode")}}
     return fill(TEMPLATE.read_text(), values)

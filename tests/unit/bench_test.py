@@ -6,31 +6,40 @@ or empty where it could not be built.
 """
 
 import json
+import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "script"))
 
-from measuring import compare, measure, page  # noqa: E402
+from measuring import compare, measure, page, wasm  # noqa: E402
 from validation.runs import Problem  # noqa: E402
 
 PROGRAM = sys.argv[1]
 FEW = "(one|batch|stages)/.*/tetraspine3/|/(spine|footed)_4/"
 
 
-def bench(*words):
-    return subprocess.run([sys.executable, ROOT / "script/bench", *map(str, words)], capture_output=True, text=True)
+def bench(*words, **more):
+    return subprocess.run([sys.executable, ROOT / "script/bench", *map(str, words)], capture_output=True, text=True,
+                          **more)
 
 
-def measured(folder):
+def measured(folder, only=FEW):
     """The list of one short repetition of some benchmarks."""
     path = pathlib.Path(folder, "results.json")
-    run = bench("--program", PROGRAM, "--repetitions", 1, "--seconds", 0.001, "--filter", FEW, "--json", path)
+    run = bench("--program", PROGRAM, "--repetitions", 1, "--seconds", 0.001, "--filter", only, "--json", path)
     assert run.returncode == 0, run.stderr
     return path, json.loads(path.read_text())
+
+
+def elsewhere(only):
+    """What the program prints for another MuJoCo."""
+    return json.loads(subprocess.run([PROGRAM, "--mjcf", only], capture_output=True, check=True).stdout)
 
 
 def WritesAListOfWhatItMeasured():
@@ -43,8 +52,8 @@ def WritesAListOfWhatItMeasured():
             assert isinstance(item[key], kind), (key, item)
         assert item["steps_per_s"] > 0, item
         assert item["machine"]["processor"], item
-    engines = {"taut"} | {name for name in ("mujoco", "bullet", "ode")
-                          if results[0]["machine"][name] != "not built in"}
+    engines = {"taut"} | {name for name in ("mujoco", "mujoco_wasm", "bullet", "ode")
+                          if results[0]["machine"][name] not in ("not built in", wasm.ABSENT)}
     for robot in ("tetraspine3", "spine_4", "footed_4"):
         assert {item["engine"] for item in results if item["robot"] == robot} == engines, robot
     ours = [item for item in results if item["engine"] == "taut" and item["robot"] == "tetraspine3"]
@@ -73,6 +82,89 @@ def MakesThePageFromItsList():
         assert str(problem) == "these results are of several machines or versions"
     else:
         raise AssertionError("results of two machines on one page")
+
+
+def AMujocoElsewhereGetsTheRobotAsText():
+    (one,) = elsewhere("^one/.*pyramidal/tetraspine3/")
+    assert one["name"] == "one/mujoco_wasm/euler_pyramidal/tetraspine3/1/1/1", one["name"]
+    file = one["file"]
+    tree = xml.etree.ElementTree.fromstring(file["mjcf"])
+    # models/tetraspine3.yaml: three segments, four cables between neighbours and as many from edge to edge
+    assert file["bodies"] == len(tree.findall("worldbody/body")) == 3
+    assert len(tree.findall("tendon/spatial")) == 12 and len(tree.findall("worldbody/geom[@type='plane']")) == 1
+    assert len(tree.find("keyframe/key").get("qvel").split()) == 18
+    start = [float(word) for word in tree.find("keyframe/key").get("ctrl").split()]
+    commands = file["rest_lengths_m"]
+    assert len(commands) * file["control_steps"] * file["step_s"] == 1 and {len(row) for row in commands} == {12}
+    for cable, length in enumerate(start):  # a sine of 2 %
+        own = [row[cable] / length - 1 for row in commands]
+        assert abs(max(own) - 0.02) < 1e-5 and abs(min(own) + 0.02) < 1e-5 and abs(sum(own)) < 1e-9, own
+    free = xml.etree.ElementTree.fromstring(file["free"]["mjcf"])
+    assert not free.findall("worldbody//geom") and len(free.findall("worldbody/body")) == 3
+
+
+def AMujocoElsewhereIsTheSame():
+    needs_webassembly()
+    for item in wasm.measured("rates", json.dumps(elsewhere("^one/.*pyramidal|spine_4/|footed_4/")), 1, 0.001):
+        assert item["steps_per_s"] > 0 and item["apart_m"] < 1e-12, item  # rounding of 100 steps
+        assert item["contacts"] >= 3, item  # it stands
+
+
+def AMujocoThatDiffersIsNotMeasured():
+    needs_webassembly()
+    good = elsewhere("^one/.*pyramidal/tetraspine3/")
+    for change, said in ((lambda file: file.update(bodies=4), "18 speeds where 4 and the world are free"),
+                         (lambda file: file["free"]["masses_kg"].__setitem__(0, 1), "body 0 has"),
+                         (lambda file: file["free"]["positions_m"][2].__setitem__(1, 1), "after 100 steps without contacts"),
+                         (lambda file: file["free"].update(mjcf=file["free"]["mjcf"].replace("-9.81", "-9.82")),
+                          "after 100 steps without contacts"),
+                         (lambda file: file.update(mjcf="<mujoco"), "XML")):
+        bad = json.loads(json.dumps(good))
+        change(bad[0]["file"])
+        assert bad != good, said
+        try:
+            wasm.measured("rates", json.dumps(bad), 1, 0.001)
+        except Problem as problem:
+            assert said in str(problem), problem
+        else:
+            raise AssertionError(said)
+
+
+def needs_webassembly():
+    if wasm.version() == wasm.ABSENT:
+        print("skipped: MuJoCo in WebAssembly is not there")
+        sys.exit(0)
+
+
+def WithoutNodeAllElseIsMeasured():
+    with tempfile.TemporaryDirectory() as folder:
+        pathlib.Path(folder, "git").symlink_to(shutil.which("git"))
+        path = pathlib.Path(folder, "results.json")
+        run = bench("--program", PROGRAM, "--repetitions", 1, "--seconds", 0.001, "--filter", "one/.*/tetraspine3/",
+                    "--json", path, env={**os.environ, "PATH": folder})
+        assert run.returncode == 0, run.stderr
+        assert run.stderr.count("MuJoCo in WebAssembly is not measured: there is no node") == 1, run.stderr
+        results = json.loads(path.read_text())
+    assert results[0]["machine"]["mujoco_wasm"] == wasm.ABSENT
+    assert "taut" in {item["engine"] for item in results} and wasm.ENGINE not in {item["engine"] for item in results}
+    assert "MuJoCo 3 was not measured in this run" in page.text(results)
+
+
+def BothMujocosStandBesideEachOther():
+    def item(engine, rate, robot="six_strut", **more):
+        return {"kind": "one", "engine": engine, "setting": "euler_pyramidal", "robot": robot, "steps_per_s": rate,
+                "machine": {"mujoco_wasm": "3.1.4 (node v9)"}, **more}
+    items = [item("mujoco", 200.0), item(wasm.ENGINE, 50.0, apart_m=2e-16), item("mujoco", 9.0, "tetraspine3")]
+    assert "| pyramidal cones | - | - | 0.25x |" in page.mujocos(items), page.mujocos(items)
+    text = " ".join(page.which_mujoco(items).split())
+    assert "`@mujoco/mujoco` 3.1.4 (node v9): WebAssembly, one thread" in text and "distance was 2.0e-16 m" in text, text
+    del items[1]["apart_m"]
+    assert "no other one in this run to compare with" in " ".join(page.which_mujoco(items).split())
+
+
+def ThePageSaysThatOthersWorkedThere():
+    assert page.company({"load": [1.0], "cores": 2}) == ""
+    assert "Others worked there" in page.company({"load": [1.1], "cores": 2})
 
 
 def SaysWhatIsWrong():

@@ -14,7 +14,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "script"))
 
-from measuring import contacts, page  # noqa: E402
+from measuring import contacts, page, wasm  # noqa: E402
 from validation.runs import Problem  # noqa: E402
 
 PROGRAM = sys.argv[1]
@@ -59,6 +59,9 @@ def EveryStepOfAFewScenesIsMeasured():
         if item["engine"] == "taut":
             assert 0 <= item["solved"] <= steps and not item["went_wrong"], item
             assert item["contacts"] == {"feet_8": 8, "painleve": 1}.get(item["robot"], item["contacts"]), item
+    if items[0]["machine"]["mujoco_wasm"] != wasm.ABSENT:
+        elsewhere = {item["robot"]: item for item in items if item["engine"] == wasm.ENGINE}
+        assert set(elsewhere) == {"wedge", "feet_8", "prisms_4"}, elsewhere
     easy = [item for item in items if item["engine"] == "taut" and item["robot"] == "wedge"]
     assert easy and all(item["share_solved"] == 1 for item in easy), easy
     assert "a disc on 64 feet" in run.stdout and "wedge" in run.stdout, run.stdout
