@@ -17,23 +17,22 @@ struct Contact : ContactPoint<Num, kLinks> {
   Num key;              ///< Pair and feature: finds the memory again.
   Num frame;            ///< Contacts with equal numbers have the same directions.
   Num gap;              ///< At the middle of the step [m].
+  Num deep;             ///< What velocities leave of it for displacements, below 0 [m]; or 0.
   V3<Num> arm[kLinks];  ///< From the centre of mass [m].
-  Num static_friction, kinetic_friction, restitution;
-  Num patch;       ///< While biases are fitted: in which state it is.
-  Num rebounding;  ///< 1 if its bias is a rebound that is due.
-  Num slip;        ///< 1 if it slides, 0 if it sticks.
-  Num bounce;      ///< Rebound speed due in the next step [m/s], 0: none.
+  Num static_friction, kinetic_friction;
+  Num patch;  ///< While biases are fitted: in which state it is.
+  Num slip;   ///< 1 if it slides, 0 if it sticks.
 };
 
 /// What a contact remembers of the step before.
 template <class Num>
 struct ContactMemory {
   V3<Num> force;  ///< [N]; 0 if there was none.
-  Num slip, bounce;
+  Num slip;
 
   static ContactMemory None() noexcept {
     const Num zero = Num::Splat(0.0);
-    return {{zero, zero, zero}, Num::Splat(kSlipUnknown), zero};
+    return {{zero, zero, zero}, Num::Splat(kSlipUnknown)};
   }
 };
 

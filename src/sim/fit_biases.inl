@@ -92,7 +92,7 @@ void FitBiases(Contact<Num, kLinks>* contacts, int count, M lanes) noexcept {
   for (int i = 0; i < count; ++i) {
     Contact<Num, kLinks>& c = contacts[i];
     const auto slow = Abs(c.bias[0]) < Num::Splat(kFittedMPerS);
-    c.patch = Select(lanes & (c.live > zero) & slow & (c.rebounding == zero), free, taken);
+    c.patch = Select(lanes & (c.live > zero) & slow, free, taken);
   }
   for (int first = 0; first + 1 < count; ++first) {
     const auto starts = contacts[first].patch == free;

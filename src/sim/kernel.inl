@@ -10,7 +10,7 @@
 // clang-format off
 #include "sim/rows.h"
 #include "sim/poison.inl"
-#include "sim/shape_contacts.h"
+#include "sim/passing.h"
 #include "sim/stage_bodies.inl"
 #include "sim/stiff_cables.inl"
 #include "sim/stage_cables.inl"
@@ -18,6 +18,7 @@
 #include "sim/stage_collide.inl"
 #include "sim/prepare_contact.inl"
 #include "sim/fit_biases.inl"
+#include "sim/solve/impacts.inl"
 #include "sim/solve/body_dual.inl"
 #include "sim/solve/world_dual.inl"
 #include "sim/solve/body_matrix.inl"
@@ -94,7 +95,6 @@ void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& w
       s.contact_key[i] = c.key;
       s.contact_force[i] = Select3(live, inv_h * ImpulseOf(c) + none, none);
       s.contact_slip[i] = Select(live & (c.l[0] > zero), c.slip, W::Splat(kSlipUnknown));
-      s.contact_bounce[i] = Select(live, c.bounce, zero);
       s.contact_arm[i] = c.arm[0];
       s.contact_normal[i] = c.links[0].lin[0];
       s.contact_gap[i] = c.gap;
@@ -206,7 +206,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   watch.Mark(Stage::kCables);
   StageKick(m, s, work, h);
   watch.Mark(Stage::kKick);
-  const uint32_t overflow = StageCollide(m, s, work, h, Max(h, last));
+  const uint32_t overflow = StageCollide(m, s, g, work, step_s, Max(h, last));
   watch.Mark(Stage::kCollide);
   const SolveResult<W> solve = StageSolve(m, s, g, work, settings, step_s);
   watch.Mark(Stage::kSolve);

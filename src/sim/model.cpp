@@ -37,6 +37,24 @@ double Combine(CombineRule rule, double a, double b) {
   }
 }
 
+/// Names the principal axes anew, in a cycle, so that the two whose moments are nearest come first:
+/// the drift is exact about z if those are equal. Moments that differ by rounding are made so.
+void SymmetryAxisLast(double r[9], double moments[3]) {
+  constexpr double kEqual = 2e-15;
+  const auto unlike = [&](int a, int b) {
+    return std::fabs(moments[a] - moments[b]) / (moments[a] + moments[b]);
+  };
+  int z = 2;
+  for (const int axis : {1, 0}) {
+    const double now = unlike((axis + 1) % 3, (axis + 2) % 3);
+    if (now < unlike((z + 1) % 3, (z + 2) % 3)) z = axis;
+  }
+  const int x = (z + 1) % 3;
+  std::rotate(moments, moments + x, moments + 3);
+  for (int row = 0; row < 3; ++row) std::rotate(r + 3 * row, r + 3 * row + x, r + 3 * row + 3);
+  if (unlike(0, 1) < kEqual) moments[0] = moments[1] = 0.5 * (moments[0] + moments[1]);
+}
+
 /// Turns a checked definition into tables.
 class Compiler {
  public:
@@ -90,7 +108,10 @@ class Compiler {
     for (std::size_t b = 0; b < def_.bodies.size(); ++b) {
       const BodyDef& body = def_.bodies[b];
       double moments[3] = {0, 0, 0};
-      if (!body.fixed) PrincipalAxes(body.inertia_kg_m2, frames_[b].r, moments);
+      if (!body.fixed) {
+        PrincipalAxes(body.inertia_kg_m2, frames_[b].r, moments);
+        SymmetryAxisLast(frames_[b].r, moments);
+      }
       frames_[b].origin[0] = body.com_m.x;
       frames_[b].origin[1] = body.com_m.y;
       frames_[b].origin[2] = body.com_m.z;

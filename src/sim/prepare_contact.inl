@@ -3,11 +3,8 @@
 
 namespace taut::sim {
 
-/// Penetration is pushed out by this share a step, and at most this fast.
-inline constexpr double kPushOut = 0.2;
-inline constexpr double kMaxPushOutMPerS = 0.5;
-/// Slower impacts do not rebound [m/s].
-inline constexpr double kLeastImpactMPerS = 1e-3;
+/// A contact that is inside may leave at this share of its speed.
+inline constexpr double kPushOutShare = 1e-3;
 /// A contact that moves faster than this along its surface slides, a slower one sticks [m/s].
 inline constexpr double kSlidingMPerS = 1e-6;
 
@@ -49,26 +46,6 @@ TAUT_INLINE void FinishLink(Link<Num, 3>& link, int body, Num inv_mass, const S3
   }
 }
 
-/// Rebounding: as fast as due. An impact in this step: remember how fast to rebound in the next,
-/// when the surfaces touch. The approach speed is that of the moment of contact, and the rebound
-/// starts half a step before its own middle (docs/theory/contact.md, eq. 9-10).
-///   vn      normal velocity that would result without contact [m/s]
-///   before  normal velocity before the step [m/s]
-template <class Num, int kLinks>
-void PrepareRebound(Contact<Num, kLinks>& c, const ContactMemory<Num>& memory, Num h, Num inv_h,
-                    Num vn, Num before) noexcept {
-  const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), dv = vn - before;
-  c.rebounding = Select(memory.bounce > zero, one, zero);
-  c.bias[0] = Select(memory.bounce > zero, -memory.bounce, c.bias[0]);
-  const Num share = Min(Max(c.gap, zero) * inv_h / Max(-vn, Num::Splat(1e-12)), one);
-  const Num impact = vn - dv * (Num::Splat(0.5) - share);
-  const auto hits = (c.gap + h * vn < zero) & (memory.bounce == zero) &
-                    (Dot(memory.force, c.links[0].lin[0]) == zero) &
-                    (-impact > Max(Num::Splat(kLeastImpactMPerS), Abs(dv + dv))) & (c.live > zero) &
-                    (c.restitution > zero);
-  c.bounce = Select(hits, Max(Num::Splat(0.5) * dv - c.restitution * impact, zero), zero);
-}
-
 /// Fills in what the finding of a contact left open. `a`, `b`: its bodies, with their numbers and
 /// inverse masses; b only where there are two links.
 template <class Num, int kLinks>
@@ -96,14 +73,13 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   c.FinishMasses();
 
   const V3<Num>& n = c.links[0].lin[0];
-  // Approaching: no further than to touch. Inside: out again, gently.
-  const Num out = Max(Num::Splat(kPushOut) * c.gap * inv_h, Num::Splat(-kMaxPushOutMPerS));
-  c.bias[0] = Select(c.gap > zero, c.gap * inv_h, out);
+  // Approaching: no further than to touch. Inside: out again, no faster than this step's forces
+  // take back, so that nothing flies; what that leaves goes out by displacements (push_out.inl).
+  const Num before_n = Dot(before, n), kick = Max(before_n - Dot(free, n), zero);
+  const Num slowly = Num::Splat(kPushOutShare) * (Abs(before_n) + Norm1(before));
+  c.bias[0] = Max(c.gap * inv_h, zero - (Num::Splat(0.5) * kick + slowly));
+  c.deep = Select(c.live > zero, Min(c.gap - h * c.bias[0], zero), zero);
   c.bias[1] = c.bias[2] = zero;
-  c.bounce = c.rebounding = zero;
-  if (Any((c.restitution > zero) & (c.live > zero))) {
-    PrepareRebound(c, memory, h, inv_h, Dot(free, n), Dot(before, n));
-  }
   c.slip = zero;
   c.mu = c.kinetic_friction;
   const auto breaks_away = c.static_friction > c.kinetic_friction;

@@ -18,8 +18,8 @@ namespace taut::sim {
 struct TouchPoint {
   double point[3];  ///< Midway between the two surfaces [m].
   double normal[3];
-  double gap_m;  ///< Negative: penetration.
-  int feature;   ///< Below kMaxPointsPerPair; stable while the shapes slide.
+  double gap_m;     ///< Negative: penetration.
+  int feature;      ///< Below kMaxPointsPerPair; stable while the shapes slide.
 };
 
 /// What the features below need, and every pair that is to come.

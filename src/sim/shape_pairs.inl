@@ -28,6 +28,52 @@ int TouchLane(const View& m, const Rows<W>& s, const Scratch<W>& work, const Sha
                      LanePose(m, s, work, b.body, lane), margin, out);
 }
 
+/// A shape of a pair with the way of its body through the step.
+template <class W>
+MovingShape LaneMoving(const View& m, const Rows<W>& s, const Scratch<W>& work, int shape,
+                       int lane) noexcept {
+  const int body = m.shapes[shape].body;
+  const V3<W>&v = work.bodies[body].v, &w = work.bodies[body].w;
+  return {&m.shapes[shape].shape_P,
+          LanePose(m, s, work, body, lane),
+          {v.x[lane], v.y[lane], v.z[lane]},
+          {w.x[lane], w.y[lane], w.z[lane]},
+          body < m.body_count,
+          m.bound_m[body]};
+}
+
+/// Features of a pair that pressed in the step before, a bit each. `first`, `count`: where the
+/// memory of its contacts lies.
+template <class W>
+uint32_t PressingFeatures(const Rows<W>& s, uint32_t id, int first, int count, int lane) noexcept {
+  uint32_t features = 0;
+  for (int i = first; i < first + count; ++i) {
+    const double feature = s.contact_key[i][lane] - id;
+    if (!(feature >= 0 && feature < kMaxPointsPerPair)) continue;
+    const V3<W>& f = s.contact_force[i];
+    if (Norm1(f)[lane] > 0) features |= 1u << static_cast<int>(feature);
+  }
+  return features;
+}
+
+/// Points of shapes that only pass by each other go (passing.h). What pressed in the step before
+/// stays: things at rest all fall alike before contacts hold them.
+template <class W>
+int KeepTouching(const View& m, const Rows<W>& s, const Scratch<W>& work,
+                 const ShapePairTable& pair, int lane, double step_s, int first, int memory,
+                 TouchPoint* points, int count) noexcept {
+  if (count == 0) return 0;
+  const MovingShape a = LaneMoving(m, s, work, pair.a, lane);
+  const MovingShape b = LaneMoving(m, s, work, pair.b, lane);
+  uint32_t closing = ClosingPoints(a, b, step_s, points, count);
+  if (closing == 0) return count;
+  const uint32_t pressing = PressingFeatures(s, pair.id, first, memory, lane);
+  for (int i = 0; i < count; ++i) {
+    if (pressing >> points[i].feature & 1u) closing &= ~(1u << i);
+  }
+  return closing == 0 ? count : KeepMeeting(a, b, step_s, closing, points, count);
+}
+
 /// A lower bound of the distance of a pair.
 template <class W>
 double DistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work,

@@ -2,22 +2,28 @@
 ///
 ///   state   pos x, quat q_WP, vel v, mom L: angular momentum about the centre of mass, in W
 ///
-/// Free rotation keeps L and turns q. It is split into rotations about the body's principal axes
-/// (Dullweber, Leimkuhler, McLachlan, J. Chem. Phys. 107, 1997, eq. 2.4), x y z in the first half
-/// of a step and z y x in the second, which is symmetric: L is kept to round-off and the energy's
-/// error stays bounded however fast a thin rod spins about its own axis.
+/// Free rotation keeps L and turns q. H = L^2 / (2 Ix) + the rest, which is small for rods: z is
+/// the axis of near symmetry (model.cpp). The rest turns the body about its own y and z, the first
+/// term about L itself (docs/theory/integrator.md, eq. 3; after Dullweber, Leimkuhler, McLachlan,
+/// J. Chem. Phys. 107, 1997, eq. 2.4). L is kept to round-off, and the energy of a body with an
+/// axis of symmetry too, however fast it spins; else the energy's error stays bounded.
 
 namespace taut::sim {
 
+/// tan(theta / 2) for a turn by theta; with a vector's length in theta^2, per theta. It is taken as
+/// theta/2 (1 + theta^2/12): a rotation for any theta, and its angle is right to O(theta^5).
+template <class W>
+TAUT_INLINE W HalfAngle(W theta, W theta2) noexcept {
+  return W::Splat(0.5) * theta * (W::Splat(1.0) + W::Splat(1.0 / 12.0) * theta2);
+}
+
 /// Where a body's angular momentum turns as the body turns by theta about one axis.
-/// tan(theta / 2) is taken as theta/2 (1 + theta^2/12): a rotation for any theta, and its angle
-/// is right to O(theta^5).
 template <class W>
 struct AxisTurn {
   W t, c, s;
   explicit AxisTurn(W theta) noexcept {
     const W one = W::Splat(1.0);
-    t = W::Splat(0.5) * theta * (one + W::Splat(1.0 / 12.0) * theta * theta);
+    t = HalfAngle(theta, theta * theta);
     const W tt = t * t;
     const W scale = one / (one + tt);
     c = (one - tt) * scale;
@@ -38,10 +44,6 @@ TAUT_INLINE void NormalizeQuat(Q4<W>& q) noexcept {
 
 /// q <- q (1, t e_axis), not normalised.
 template <class W>
-TAUT_INLINE void TurnX(Q4<W>& q, W t) noexcept {
-  q = {q.w - t * q.x, q.x + t * q.w, q.y + t * q.z, q.z - t * q.y};
-}
-template <class W>
 TAUT_INLINE void TurnY(Q4<W>& q, W t) noexcept {
   q = {q.w - t * q.y, q.x - t * q.z, q.y + t * q.w, q.z + t * q.x};
 }
@@ -50,23 +52,46 @@ TAUT_INLINE void TurnZ(Q4<W>& q, W t) noexcept {
   q = {q.w - t * q.z, q.x + t * q.y, q.y - t * q.x, q.z + t * q.w};
 }
 
+/// q <- (1, u) q: a turn about u, fixed in W, not normalised.
+template <class W>
+TAUT_INLINE void TurnAbout(Q4<W>& q, const V3<W>& u) noexcept {
+  q = {q.w - (u.x * q.x + u.y * q.y + u.z * q.z), q.x + (u.x * q.w + u.y * q.z - u.z * q.y),
+       q.y + (u.y * q.w + u.z * q.x - u.x * q.z), q.z + (u.z * q.w + u.x * q.y - u.y * q.x)};
+}
+
+/// Half a drift of a body that is free, and its mirror image. `R`: the rotation that `q` is.
+enum class Half { kFirst, kSecond };
+template <Half kHalf, class W>
+TAUT_INLINE void DriftTurn(Q4<W>& q, const M3<W>& R, const V3<W>& L, const V3<W>& inv_inertia,
+                           W half_h) noexcept {
+  const W zero = W::Splat(0.0);
+  const W y = inv_inertia.y - inv_inertia.x, z = inv_inertia.z - inv_inertia.x;
+  V3<W> l = TransposeTimes(R, L);
+  // No turn about y is the same as a turn by nothing, to the bit.
+  const bool has_y = Any(!(y == zero));
+  if (has_y && kHalf == Half::kFirst) {
+    const AxisTurn<W> turn(half_h * l.y * y);
+    turn.Turn(l.z, l.x);
+    TurnY(q, turn.t);
+  }
+  const AxisTurn<W> turn(half_h * l.z * z);
+  if (has_y && kHalf == Half::kSecond) turn.Turn(l.x, l.y);
+  TurnZ(q, turn.t);
+  if (has_y && kHalf == Half::kSecond) TurnY(q, AxisTurn<W>(half_h * l.y * y).t);
+  // A turn about L leaves l as it is: its place in the order does not matter.
+  const W theta = half_h * inv_inertia.x;
+  TurnAbout(q, HalfAngle(theta, theta * theta * Dot(L, L)) * L);
+  NormalizeQuat(q);
+}
+
 /// Stage: first half of the drift.
 ///   reads   vel, mom     writes  pos, quat
 template <class W>
 void StageDriftFirst(const View& m, const Rows<W>& s, W half_h) noexcept {
   for (int b = 0; b < m.body_count; ++b) {
     s.pos[b] += half_h * s.vel[b];
-    V3<W> l = TransposeTimes(RotationOf(s.quat[b]), s.mom[b]);
     Q4<W> q = s.quat[b];
-    const AxisTurn<W> x(half_h * l.x * s.inv_inertia[b].x);
-    x.Turn(l.y, l.z);
-    TurnX(q, x.t);
-    const AxisTurn<W> y(half_h * l.y * s.inv_inertia[b].y);
-    y.Turn(l.z, l.x);
-    TurnY(q, y.t);
-    const AxisTurn<W> z(half_h * l.z * s.inv_inertia[b].z);
-    TurnZ(q, z.t);
-    NormalizeQuat(q);
+    DriftTurn<Half::kFirst>(q, RotationOf(q), s.mom[b], s.inv_inertia[b], half_h);
     s.quat[b] = q;
   }
 }
@@ -76,17 +101,8 @@ template <class W>
 void StageDriftSecond(const View& m, const Rows<W>& s, const Scratch<W>& work, W half_h) noexcept {
   const W zero = W::Splat(0.0);  // x + 0 turns -0 into 0: lanes must not differ in the sign of zero
   for (int b = 0; b < m.body_count; ++b) {
-    V3<W> l = TransposeTimes(work.bodies[b].R, s.mom[b]);
     Q4<W> q = s.quat[b];
-    const AxisTurn<W> z(half_h * l.z * s.inv_inertia[b].z);
-    z.Turn(l.x, l.y);
-    TurnZ(q, z.t);
-    const AxisTurn<W> y(half_h * l.y * s.inv_inertia[b].y);
-    y.Turn(l.z, l.x);
-    TurnY(q, y.t);
-    const AxisTurn<W> x(half_h * l.x * s.inv_inertia[b].x);
-    TurnX(q, x.t);
-    NormalizeQuat(q);
+    DriftTurn<Half::kSecond>(q, work.bodies[b].R, s.mom[b], s.inv_inertia[b], half_h);
     s.quat[b] = {q.w + zero, q.x + zero, q.y + zero, q.z + zero};
     s.pos[b] += half_h * s.vel[b];
     s.pos[b] += V3<W>{zero, zero, zero};

@@ -193,9 +193,9 @@ Found<W> FoundTouch(const Rows<W>& s, const ShapePairTable& pair, const TouchPoi
 /// The points of one pair of shapes, in the order of their features: into the slots of a body if
 /// the other does not move, else into the lists of touches.
 template <class W>
-void CollideShapes(const View& m, const Rows<W>& s, Scratch<W>& work, const ShapePairTable& pair,
-                   W margin, W center_distance2, SlotFiller<W>* slots,
-                   uint32_t* overflow) noexcept {
+void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+                   const ShapePairTable& pair, W margin, W center_distance2, double step_s,
+                   SlotFiller<W>* slots, uint32_t* overflow) noexcept {
   const double reach = m.shapes[pair.a].bound_m + m.shapes[pair.b].bound_m;
   const W limit = W::Splat(reach) + margin;
   const auto close = center_distance2 < limit * limit;
@@ -204,7 +204,12 @@ void CollideShapes(const View& m, const Rows<W>& s, Scratch<W>& work, const Shap
   for (int lane = 0; lane < W::kLanes; ++lane) {
     if (!close[lane]) continue;
     TouchPoint points[kMaxPointsPerPair];
-    const int count = TouchLane(m, s, work, pair, lane, margin[lane], points);
+    const int found = TouchLane(m, s, work, pair, lane, margin[lane], points);
+    const int count = slots != nullptr
+                          ? KeepTouching(m, s, work, pair, lane, step_s, m.first_slot[body],
+                                         g.slots_used[body], points, found)
+                          : KeepTouching(m, s, work, pair, lane, step_s, m.slot_count,
+                                         g.touches_used, points, found);
     for (int feature = 0, left = count; left > 0; ++feature) {
       for (int i = 0; i < count; ++i) {
         if (points[i].feature != feature) continue;
@@ -234,15 +239,15 @@ bool MayTouch(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair,
 }
 
 template <class W>
-void CollideBodies(const View& m, const Rows<W>& s, Scratch<W>& work, int pair, W h, W since_last,
-                   SlotFiller<W>* slots, uint32_t* overflow) noexcept {
+void CollideBodies(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
+                   double step_s, W since_last, SlotFiller<W>* slots, uint32_t* overflow) noexcept {
   W margin;
-  if (!MayTouch(m, s, work, pair, h, since_last, margin)) return;
+  if (!MayTouch(m, s, work, pair, W::Splat(step_s), since_last, margin)) return;
   const BodyPairTable& bodies = m.body_pairs[pair];
   for (int k = 0; k < bodies.pair_count; ++k) {
     const ShapePairTable& shapes = m.shape_pairs[bodies.first_pair + k];
     const V3<W> d = ShapeCenter(m, s, work, shapes.a) - ShapeCenter(m, s, work, shapes.b);
-    CollideShapes(m, s, work, shapes, margin, Dot(d, d), slots, overflow);
+    CollideShapes(m, s, g, work, shapes, margin, Dot(d, d), step_s, slots, overflow);
   }
 }
 
@@ -251,21 +256,22 @@ void CollideBodies(const View& m, const Rows<W>& s, Scratch<W>& work, int pair, 
 ///   order   keys rising, in each body's slots and in each lane's list
 /// Returns a bit for each lane that had more contacts than room.
 template <class W>
-uint32_t StageCollide(const View& m, const Rows<W>& s, Scratch<W>& work, W h,
-                      W since_last) noexcept {
+uint32_t StageCollide(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+                      double step_s, W since_last) noexcept {
+  const W h = W::Splat(step_s);
   uint32_t overflow = 0;
   int pair = 0;
   for (int body = 0; body < m.body_count; ++body) {
     SlotFiller<W> slots(m, work, body);
     CollidePlanes(m, s, work, h, body, slots);
     for (; pair < m.world_pair_count && m.body_pairs[pair].a == body; ++pair) {
-      CollideBodies(m, s, work, pair, h, since_last, &slots, &overflow);
+      CollideBodies(m, s, g, work, pair, step_s, since_last, &slots, &overflow);
     }
     work.contact_count[body] = slots.count();
   }
   for (int lane = 0; lane < W::kLanes; ++lane) work.touch_count[lane] = 0;
   for (; pair < m.body_pair_count; ++pair) {
-    CollideBodies<W>(m, s, work, pair, h, since_last, nullptr, &overflow);
+    CollideBodies<W>(m, s, g, work, pair, step_s, since_last, nullptr, &overflow);
   }
   return overflow;
 }

@@ -24,7 +24,6 @@ TAUT_INLINE ContactMemory<W> Recall(const Rows<W>& s, const Contact<W, 1>& c, in
     if (Any(here)) {
       found.force = Select3(here, s.contact_force[i], found.force);
       found.slip = Select(here, s.contact_slip[i], found.slip);
-      found.bounce = Select(here, s.contact_bounce[i], found.bounce);
     }
     missing = missing & !here & (s.contact_key[i] < c.key);
   }
@@ -142,7 +141,6 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
     if (memory_at < memory_end && s.contact_key[memory_at][lane] == key) {
       memory.force = OfLane<L>(s.contact_force[memory_at], lane);
       memory.slip = OfLane<L>(s.contact_slip[memory_at], lane);
-      memory.bounce = OfLane<L>(s.contact_bounce[memory_at], lane);
     }
     PrepareContact(c, memory, body[0], bodies[0], OfLane<L>(s.inv_mass[bodies[0]], lane), body[1],
                    bodies[1], OfLane<L>(s.inv_mass[bodies[1]], lane),
@@ -180,32 +178,47 @@ void FinishTouches(const View& m, const Rows<W>& s, Scratch<W>& work, int lane,
     s.contact_key[slot].Set(lane, c.key[0]);
     SetLane(s.contact_force[slot], inv_h * impulse, lane);
     s.contact_slip[slot].Set(lane, c.l[0][0] > 0 ? c.slip[0] : kSlipUnknown);
-    s.contact_bounce[slot].Set(lane, c.bounce[0]);
     SetLane(s.contact_arm[slot], c.arm[0], lane);
     SetLane(s.contact_normal[slot], c.links[0].lin[0], lane);
     s.contact_gap[slot].Set(lane, c.gap[0]);
   }
 }
 
+template <class W>
+bool AnyDeep(const Scratch<W>& work, int lane, double deepest_m) noexcept {
+  bool deep = deepest_m < 0;
+  for (int i = 0; i < work.touch_count[lane]; ++i) {
+    deep = deep || work.lane.pairs[i].deep[0] < 0;
+  }
+  return deep;
+}
+
 /// Lanes whose bodies are not all solved, one after the other.
 template <class W>
 void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
                 const StepSettings& settings, double step_s, SolveResult<W>& result) noexcept {
-  W unsolved = W::Splat(0.0);
-  for (int b = 0; b < m.body_count; ++b) unsolved += work.unsolved[b];
+  W unsolved = W::Splat(0.0), deepest = unsolved;
+  for (int b = 0; b < m.body_count; ++b) {
+    unsolved += work.unsolved[b];
+    for (int k = 0; k < work.contact_count[b]; ++k) {
+      deepest = Min(work.contacts[m.first_slot[b] + k].deep, deepest);
+    }
+  }
   int touches = 0;
   for (int lane = 0; lane < W::kLanes; ++lane) {
     const bool halted = s.halted[0][lane] > 0;
     if (work.touch_count[lane] > touches) touches = work.touch_count[lane];
-    if (!(unsolved[lane] > 0) || halted) continue;
+    if (!(unsolved[lane] > 0 || deepest[lane] < 0) || halted) continue;
     PrepareTouches(m, s, g, work, lane, step_s);
-    const LaneResult lane_result = LaneSolve<W>(m, s, work, settings, lane).Solve();
+    LaneSolve<W> solver(m, s, work, settings, lane, step_s);
+    const LaneResult lane_result = solver.Solve();
     result.linear_solves.Set(lane, result.linear_solves[lane] + lane_result.linear_solves);
     if (!(lane_result.residual <= result.residual[lane])) {
       result.residual.Set(lane, lane_result.residual);
       result.body[lane] = lane_result.body;
     }
     FinishTouches(m, s, work, lane, step_s);
+    if (AnyDeep(work, lane, deepest[lane])) solver.PushOut();
   }
   // Every lane must know where its list ends.
   if (g.touches_used == 0 && touches == 0) return;

@@ -61,7 +61,6 @@ inline constexpr int kWidthNumber = 1, kWidthV3 = 3, kWidthQ4 = 4;
   ROW(contact_key,    Number, kContact,  kMemory,    kForgets,  NoKey)            /* pair and feature; -1: none */ \
   ROW(contact_force,  V3,     kContact,  kMemory,    kStays,    Zero)             /* in W [N] */ \
   ROW(contact_slip,   Number, kContact,  kMemory,    kStays,    SlipUnknown)      /* 1 slid, 0 stuck */ \
-  ROW(contact_bounce, Number, kContact,  kMemory,    kStays,    Zero)             /* due rebound [m/s] */ \
   ROW(contact_arm,    V3,     kContact,  kDerived,   kStays,    Zero)             /* from body a, in W [m] */ \
   ROW(contact_normal, V3,     kContact,  kDerived,   kStays,    Zero)             /* in W */ \
   ROW(contact_gap,    Number, kContact,  kDerived,   kStays,    Zero)             /* [m] */ \

@@ -209,8 +209,10 @@ TEST(FreeMotion, ASlantedRodPrecessesAboutItsMomentumAtTheClosedFormsRate) {
     const Vec3 now = (1 / 0.38) * (world.NodePosition(0, 1) - world.NodePosition(0, 0));
     errors[i] = Distance(now, expected);
   }
-  EXPECT_LT(errors[0], angle * 1e-6 * Dot(spin, spin));  // angle (h w)^2
-  EXPECT_NEAR(errors[0] / errors[1], 4, 0.1);
+  // A body with an axis of symmetry turns about its momentum and that axis, which commute: only the
+  // tangents of the half angles err, by angle (h w)^4 / 80 or so.
+  EXPECT_LT(errors[0], angle * 1e-12 * Dot(spin, spin) * Dot(spin, spin));
+  EXPECT_NEAR(errors[0] / errors[1], 16, 0.5);
 }
 
 }  // namespace

@@ -157,12 +157,16 @@ TEST(Loads, ParametersAreThoseOfOneWorld) {
 TEST(Loads, AnInertiaScalesWithItsMassAndTheSpinStays) {
   scenes::FreeRod rod;
   rod.angular_velocity_rad_per_s = {5, 1, -2};
+  // A rounding of the momentum along the rod is this much larger in its spin.
+  const Vec3 along = rod.to_m - rod.from_m;
+  const double own = rod.radius_m * rod.radius_m / 2;
+  const double across = Dot(along, along) / 12 + own / 2;
   Batch world = MakeBatch(rod.Def());
   const Vec3 l = world.AngularMomentum(0);
   world.SetParameter(0, Parameter::kBodyMass, 0, 3 * rod.mass_kg);
   EXPECT_LE(Distance(world.AngularMomentum(0), 3.0 * l), RoundOff(2, Norm(l)));
   EXPECT_LE(Distance(world.Body(0, 0).angular_velocity_rad_per_s, rod.angular_velocity_rad_per_s),
-            RoundOff(2, 10));
+            RoundOff(2, 10 * across / own));
 }
 
 }  // namespace

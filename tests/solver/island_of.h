@@ -16,6 +16,7 @@
 #include "sim/solve/plain_newton.inl"
 #include "sim/solve/sweeps.inl"
 #include "sim/solve/proximal.inl"
+#include "sim/solve/impacts.inl"
 #include "sim/solve/island_solver.inl"
 // clang-format on
 
@@ -66,6 +67,7 @@ class OwnIsland {
                        Num::Splat(inverse_mass),
                        WideInertia(Inverse(inverse_inertia)),
                        WideInertia(inverse_inertia),
+                       {Wide3(free_v), Wide3(free_w)},
                        {Wide3(free_v), Wide3(free_w)}});
     return static_cast<int>(bodies_.size()) - 1;
   }
@@ -180,6 +182,7 @@ inline StepIsland IslandOf(const ContactProblem& p, int block_capacity = kManyBl
     c.mu = Num::Splat(from.mu);
     c.bias[0] = Num::Splat(from.bias);
     c.one_direction = false;
+    c.restitution = Num::Splat(0.0);
     c.link_count = from.b < 0 ? 1 : 2;
     const Vec3 directions[3] = {from.n, from.t1, from.t2};
     for (int r = 0; r < 3; ++r) {

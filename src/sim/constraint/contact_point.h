@@ -20,8 +20,10 @@ struct ContactPoint {
   Num inv_wnn, inv_wt;  ///< [kg]
   Num w1n, w2n, w11, w12, w22;  ///< The rest of the inverse effective mass [1/kg].
   Num bias[3];                  ///< Wanted: un >= -bias[0], ut = -bias[1..2] [m/s].
-  Num mu;
-  Num l[3];            ///< Impulses [N s].
+  Num mu, restitution;
+  Num rebound;  ///< How fast it leaves if it takes part in an impact in this step [m/s], or 0.
+  Num closing;  ///< bias[0] without an impact [m/s].
+  Num l[3];     ///< Impulses [N s].
   bool one_direction;  ///< Friction acts along the first tangent only.
   int link_count;
   Link<Num, 3> links[kMaxLinks];
@@ -195,6 +197,36 @@ struct ContactPoint {
     l_now[2] = slip.l2;
     Clamp(l_now);
   }
+
+  /// Sets `rebound` (eq. 9-10): as high as restitution asks for, at the gap where the step finds
+  /// it, under the acceleration that goes on. `warm`: the normal velocity that forces and the
+  /// impulses of the step before lead to; `before`: at the start of the step. False if there is
+  /// none.
+  TAUT_INLINE bool ExpectRebound(Num warm, Num before) noexcept {
+    // Slower ones are lost in what a solve leaves over [m/s].
+    const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), least = Num::Splat(1e-9);
+    const Num fastest = zero - restitution * before;
+    closing = bias[0];
+    rebound = zero;
+    const auto may = (fastest > least) & (live > zero);
+    if (!Any(may)) return false;
+    const Num half = Num::Splat(0.5), kick = Max(before - warm, zero);
+    const Num arrives = half * kick - before, e2 = restitution * restitution;
+    const Num fall = (one - e2) * (kick + kick) * Max(bias[0], zero);
+    const Num leaves = Sqrt(Max(e2 * arrives * arrives - fall, zero)) - half * kick;
+    const Num speed = Min(leaves, fastest);
+    rebound = Select(may & (speed > least), speed, zero);
+    return true;
+  }
+  /// Those of `lanes` in which it closed and now is to rebound: their bias says so from now on.
+  MaskOf<Num> Rebound(const Num* l_now, MaskOf<Num> lanes) noexcept {
+    const Num zero = Num::Splat(0.0);
+    const auto now = lanes & (l_now[0] > zero) & (rebound > zero) & (rebound + bias[0] > zero);
+    bias[0] = Select(now, zero - rebound, bias[0]);
+    return now;
+  }
+  /// Takes that back.
+  void ForgetRebound(MaskOf<Num> lanes) noexcept { bias[0] = Select(lanes, closing, bias[0]); }
 
   void Clamp(Num* l_now) const noexcept {
     const Num zero = Num::Splat(0.0);

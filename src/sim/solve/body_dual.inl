@@ -21,33 +21,20 @@ class BodyDual {
   /// in which it did not get there; those stay as they were.
   template <class M>
   M Solve(Target target, M lanes, W& residual, W& solves) noexcept {
-    const W zero = W::Splat(0.0), one = W::Splat(1.0);
-    const W tolerance = W::Splat(target.tolerance), goal = W::Splat(target.goal()),
-            pays = W::Splat(Target::kPays);
+    const W zero = W::Splat(0.0);
     BuildMatrix();
     for (int i = 0; i < kSize; ++i) l_[i] = rows_[i / 3].l[i % 3];
-    for (int c = 0; c < kContacts; ++c) {
-      W* const u = u_ + 3 * c;
-      u[0] = u[1] = u[2] = zero;
-      AddVelocity(rows_[c].links[0], body_.v, body_.w, u);
-    }
+    Measure(body_.v, body_.w, u_);
     AddChange(l_);
-    W now = Residual();
-    auto busy = lanes & !(now < goal);
-    for (int iteration = 0; iteration < kMaxIterations && Any(busy); ++iteration) {
-      Linearize();
-      Eliminate();
-      for (int i = 0; i < kSize; ++i) delta_[i] = Select(busy, delta_[i], zero);
-      for (int i = 0; i < kSize; ++i) l_[i] += delta_[i];
-      AddChange(delta_);
-      solves += Select(busy, one, zero);
-      const W before = now;
-      now = Select(busy, Residual(), now);
-      const auto done = (now < goal) | ((now < tolerance) & (now > pays * before));
-      busy = busy & !done;  // a NaN stays busy
-    }
-    const auto solved = lanes & (now < tolerance);
-    residual = Max(Select(solved, now, zero), residual);
+    target_ = target;
+    now_ = Residual();
+    solves_ = W::Splat(0.0);
+    const bool impacts = ExpectImpacts(*this);
+    Iterate(lanes);
+    if (impacts) SolveImpacts<W>(*this, kSize, lanes & Solved());
+    const auto solved = lanes & Solved();
+    residual = Max(Select(solved, now_, zero), residual);
+    solves += solves_;
     for (int c = 0; c < kContacts; ++c) {
       Contact<W, 1>& row = rows_[c];
       W l[3] = {l_[3 * c], l_[3 * c + 1], l_[3 * c + 2]};
@@ -57,11 +44,58 @@ class BodyDual {
         l[k] = Select(solved, l[k], zero);
       }
       Push(row.links[0], l, body_.v, body_.w);
+      if (impacts) row.ForgetRebound(lanes & !solved);
     }
     return lanes & !solved;
   }
 
+  // What impacts.inl asks for.
+  template <class F>
+  TAUT_INLINE void ForEach(F&& f) noexcept {
+    for (int c = 0; c < kContacts; ++c) f(rows_[c], 3 * c);
+  }
+  W* u() noexcept { return u_; }
+  W* l() noexcept { return l_; }
+  ImpactRows<W> impacts() noexcept { return {before_, kept_u_, kept_l_}; }
+  TAUT_INLINE W NormalBefore(const Contact<W, 1>& c) const noexcept {
+    return Dot(c.links[0].lin[0], body_.v0) + Dot(c.links[0].ang[0], body_.w0);
+  }
+  void MeasureBefore() noexcept { Measure(body_.v0, body_.w0, before_); }
+  template <class M>
+  void SolveAgain(M lanes) noexcept {
+    now_ = Select(lanes, Residual(), now_);
+    Iterate(lanes);
+  }
+  void Update() noexcept {}
+
  private:
+  auto Solved() const noexcept { return now_ < W::Splat(target_.tolerance); }
+
+  template <class M>
+  void Iterate(M lanes) noexcept {
+    const W zero = W::Splat(0.0), one = W::Splat(1.0);
+    const W tolerance = W::Splat(target_.tolerance), goal = W::Splat(target_.goal()),
+            pays = W::Splat(Target::kPays);
+    auto busy = lanes & !(now_ < goal);
+    for (int iteration = 0; iteration < kMaxIterations && Any(busy); ++iteration) {
+      Linearize();
+      Eliminate();
+      for (int i = 0; i < kSize; ++i) delta_[i] = Select(busy, delta_[i], zero);
+      for (int i = 0; i < kSize; ++i) l_[i] += delta_[i];
+      AddChange(delta_);
+      solves_ += Select(busy, one, zero);
+      const W before = now_;
+      now_ = Select(busy, Residual(), now_);
+      const auto done = (now_ < goal) | ((now_ < tolerance) & (now_ > pays * before));
+      busy = busy & !done;  // a NaN stays busy
+    }
+  }
+
+  void Measure(const V3<W>& v, const V3<W>& w, W* u) const noexcept {
+    for (int i = 0; i < kSize; ++i) u[i] = W::Splat(0.0);
+    for (int c = 0; c < kContacts; ++c) AddVelocity(rows_[c].links[0], v, w, u + 3 * c);
+  }
+
   /// u += W dl
   void AddChange(const W* dl) noexcept {
     for (int i = 0; i < kSize; ++i) {
@@ -165,6 +199,9 @@ class BodyDual {
   typename Law::Branch branches_[kContacts];
   W u_[kSize], l_[kSize], delta_[kSize];
   W w_[kSize][kSize], a_[kSize][kSize];
+  W before_[kSize], kept_u_[kSize], kept_l_[kSize];
+  W now_, solves_;
+  Target target_;
 };
 
 template <class W, class M>

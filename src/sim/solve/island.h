@@ -30,7 +30,8 @@ struct Unknown {
   int body;  ///< Its number in the world.
   Num mass, inv_mass;
   S3<Num> inertia, inv_inertia;  ///< In W.
-  Twist<Num> free;               ///< Its velocities without the island's constraints.
+  Twist<Num> free;               ///< Its velocities without the island's constraints,
+  Twist<Num> before;             ///< and at the start of the step.
 };
 
 /// All constraints of one kind, and the branch of its law that each is on.
@@ -77,6 +78,12 @@ struct Named<T&> {
 template <class T>
 using LawOf = typename Named<T>::Type;
 
+/// What impacts need: velocities before the step, and the solution without rebounds; a row each.
+template <class Num>
+struct ImpactRows {
+  Num *before, *u, *l;
+};
+
 /// The numbers that the stages of an island's solve work on.
 template <class Num>
 struct IslandMemory {
@@ -84,6 +91,7 @@ struct IslandMemory {
   Num *l, *u, *best, *center, *projected, *du, *u2;  ///< 1 a row.
   Num *g, *f;                                        ///< kRows^2, kRows a constraint.
   Num* blocks;                                       ///< 36 a block.
+  ImpactRows<Num> impacts;
 };
 
 template <class Num, class P>

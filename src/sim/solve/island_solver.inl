@@ -3,12 +3,12 @@
 namespace taut::sim {
 
 /// From m.l, which may be anything. Leaves the best impulses found, which the laws admit, in m.l
-/// with their velocities in m.v. Returns their residual [m/s].
+/// with their velocities in m.v and m.u. Returns their residual [m/s].
 template <class Num, class P>
-double SolveIsland(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
+double SolveInStages(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   constexpr int kSweeps = 30, kSweepsWithoutMatrix = 1000;
   constexpr double kSoftness[] = {1e-2, 1e-1, 1e-4, 1e-1};
-  double residual = island.Judge();
+  double residual = 0;
   if (!island.has_matrix) return Sweep(island, kSweepsWithoutMatrix);
   for (int again = 0;; ++again) {
     residual = PlainNewton(island, target, work);
@@ -22,6 +22,62 @@ double SolveIsland(Island<Num, P>& island, Target target, SolverWork& work) noex
     residual = Proximal<Num, P>(island, target, work).Solve(softness);
   }
   return residual;
+}
+
+/// An island as impacts.inl sees it.
+template <class Num, class P>
+class IslandImpacts {
+ public:
+  IslandImpacts(Island<Num, P>& island, Target target, SolverWork& work) noexcept
+      : island_(island), target_(target), work_(work) {}
+
+  template <class F>
+  void ForEach(F&& f) noexcept {
+    island_.pools.ForEach([&](auto& law, auto&, int row, int) { f(law, row); });
+  }
+  Num* u() noexcept { return island_.m.u; }
+  Num* l() noexcept { return island_.m.l; }
+  ImpactRows<Num> impacts() noexcept { return island_.m.impacts; }
+  template <class Law>
+  Num NormalBefore(const Law& law) const noexcept {
+    Num sum = Num::Splat(0.0);
+    for (int i = 0; i < law.link_count; ++i) {
+      const auto& link = law.links[i];
+      const Twist<Num>& t = island_.bodies[link.body].before;
+      sum += Dot(link.lin[0], t.v) + Dot(link.ang[0], t.w);
+    }
+    return sum;
+  }
+  void MeasureBefore() noexcept {
+    Num* const v = island_.m.trial_v;
+    for (int b = 0; b < island_.body_count; ++b) {
+      island_.Store(island_.bodies[b].before, v + kDofs * b);
+    }
+    island_.Measure(v, island_.m.impacts.before);
+  }
+  void SolveAgain(MaskOf<Num>) noexcept {
+    island_.Judge();
+    residual = SolveInStages(island_, target_, work_);
+  }
+  void Update() noexcept { island_.Judge(); }
+
+  double residual = 0;
+
+ private:
+  Island<Num, P>& island_;
+  Target target_;
+  SolverWork& work_;
+};
+
+/// The same, with impacts.
+template <class Num, class P>
+double SolveIsland(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
+  IslandImpacts<Num, P> problem(island, target, work);
+  island.Judge();
+  const bool impacts = ExpectImpacts(problem);
+  problem.residual = SolveInStages(island, target, work);
+  if (impacts) SolveImpacts<Num>(problem, island.rows, MaskOf<Num>::Splat(true));
+  return problem.residual;
 }
 
 }  // namespace taut::sim

@@ -23,6 +23,13 @@ TAUT_INLINE void SetLane(V3<W>& to, const V3<L>& from, int lane) noexcept {
   to.y.Set(lane, from.y[0]);
   to.z.Set(lane, from.z[0]);
 }
+template <class L, class W>
+TAUT_INLINE void SetLane(Q4<W>& to, const Q4<L>& from, int lane) noexcept {
+  to.w.Set(lane, from.w[0]);
+  to.x.Set(lane, from.x[0]);
+  to.y.Set(lane, from.y[0]);
+  to.z.Set(lane, from.z[0]);
+}
 
 /// What solving one lane came to.
 struct LaneResult {
@@ -37,14 +44,20 @@ class LaneSolve {
 
  public:
   LaneSolve(const View& m, const Rows<W>& s, Scratch<W>& work, const StepSettings& settings,
-            int lane) noexcept
-      : m_(m), s_(s), work_(work), mem_(work.lane), settings_(settings), lane_(lane) {}
+            int lane, double step_s) noexcept
+      : m_(m),
+        s_(s),
+        work_(work),
+        mem_(work.lane),
+        settings_(settings),
+        lane_(lane),
+        h_(L::Splat(step_s)) {}
 
   /// Solves the lane's islands that have touches, or bodies marked as unsolved. The touches must be
   /// prepared (PrepareTouches).
   LaneResult Solve() noexcept {
     LaneResult result;
-    FindIslands();
+    FindIslands([&](int body) { return work_.unsolved[body][lane_] > 0; });
     for (int body = 0; body < m_.body_count; ++body) {
       if (mem_.root[body] != body || !Gather(body)) continue;
       SolverWork work{0, settings_.max_linear_solves};
@@ -59,7 +72,78 @@ class LaneSolve {
     return result;
   }
 
+  /// Displacements that take what is deep out of each other at once, with the least motion: as
+  /// velocities times the step, without friction and cables. Bodies go, and nothing else changes
+  /// (docs/theory/contact.md, eq. 8).
+  void PushOut() noexcept {
+    displaces_ = true;
+    FindIslands([&](int body) { return IsDeep(body); });
+    for (int body = 0; body < m_.body_count; ++body) {
+      if (mem_.root[body] != body || !Gather(body)) continue;
+      SolverWork work{0, settings_.max_linear_solves};
+      mem_.island.Judge();
+      SolveInStages(mem_.island, Target{settings_.tolerance_m_per_s}, work);
+      Displace();
+    }
+    // How far bodies are from each other is to be looked up again.
+    for (int pair = 0; pair < m_.body_pair_count; ++pair) s_.clearance[pair].Set(lane_, 0.0);
+  }
+
  private:
+  bool IsDeep(int body) const noexcept {
+    bool deep = false;
+    for (int k = 0; k < work_.contact_count[body]; ++k) {
+      deep = deep || work_.contacts[m_.first_slot[body] + k].deep[lane_] < 0;
+    }
+    for (int i = 0; i < work_.touch_count[lane_]; ++i) {
+      const Contact<L, 2>& c = mem_.pairs[i];
+      deep = deep || (c.links[0].body == body && Any(c.deep < L::Splat(0.0)));
+    }
+    return deep;
+  }
+
+  /// Moves the island's bodies. Of an island by itself the angular momentum stays: a body that goes
+  /// sideways to its velocity turns the slower for it.
+  void Displace() noexcept {
+    const L zero = L::Splat(0.0), half = L::Splat(0.5);
+    const Island<L, StepPools<L>>& island = mem_.island;
+    const Pool<ContactPoint<L, 2>>& contacts = island.pools;
+    bool alone = true;
+    for (int i = 0; i < contacts.count; ++i) {
+      const bool both = contacts.items[i].link_count == 2 && Moves(Body(contacts.items[i], 0)) &&
+                        Moves(Body(contacts.items[i], 1));
+      alone = alone && (both || !Any(island.m.l[3 * i] > zero));
+    }
+    V3<L> momentum{zero, zero, zero};
+    L mass = zero;
+    for (int b = 0; b < count_; ++b) {
+      momentum += island.bodies[b].mass * OfLane<L>(work_.bodies[island.bodies[b].body].v, lane_);
+      mass += island.bodies[b].mass;
+    }
+    const V3<L> common = (L::Splat(1.0) / mass) * momentum;
+    for (int b = 0; b < count_; ++b) {
+      const Twist<L> t = island.Load(island.m.v + kDofs * b);
+      const V3<L> dx = h_ * t.v;
+      const int body = island.bodies[b].body;
+      BodyWork<W>& to = work_.bodies[body];
+      SetLane(s_.pos[body], OfLane<L>(s_.pos[body], lane_) + dx, lane_);
+      const Q4<W>& from = s_.quat[body];
+      Q4<L> q{OfLane<L>(from.w, lane_), OfLane<L>(from.x, lane_), OfLane<L>(from.y, lane_),
+              OfLane<L>(from.z, lane_)};
+      TurnAbout(q, (half * h_) * t.w);
+      NormalizeQuat(q);
+      SetLane(s_.quat[body], q, lane_);
+      const M3<L> R = RotationOf(q);
+      SetLane(to.R.r0, R.r0, lane_), SetLane(to.R.r1, R.r1, lane_), SetLane(to.R.r2, R.r2, lane_);
+      if (!alone) continue;
+      const V3<L> own = island.bodies[b].mass * (OfLane<L>(to.v, lane_) - common);
+      SetLane(s_.mom[body], OfLane<L>(s_.mom[body], lane_) - Cross(dx, own), lane_);
+    }
+  }
+  int Body(const ContactPoint<L, 2>& c, int k) const noexcept {
+    return mem_.island.bodies[c.links[k].body].body;
+  }
+
   bool Moves(int body) const noexcept {
     return body < m_.body_count && s_.inv_mass[body][lane_] > 0;
   }
@@ -72,10 +156,13 @@ class LaneSolve {
     if (a < b) mem_.root[b] = a;
     if (b < a) mem_.root[a] = b;
   }
-  bool IsOn(const StiffCable<W>& cable) const noexcept { return cable.live[lane_] > 0; }
+  bool IsOn(const StiffCable<W>& cable) const noexcept {
+    return !displaces_ && cable.live[lane_] > 0;
+  }
 
-  /// root[b]: the lowest body of b's island, for bodies that are to be solved here; else -1.
-  void FindIslands() noexcept {
+  /// root[b]: the lowest body of b's island, for islands with a body that `asks` for it; else -1.
+  template <class Asks>
+  void FindIslands(const Asks& asks) noexcept {
     for (int b = 0; b < m_.body_count; ++b) mem_.root[b] = b;
     for (int i = 0; i < work_.touch_count[lane_]; ++i) {
       const ContactPoint<L, 2>& c = mem_.pairs[i];
@@ -93,7 +180,7 @@ class LaneSolve {
     }
     for (int b = 0; b < m_.body_count; ++b) mem_.local[b] = 0;
     for (int b = 0; b < m_.body_count; ++b) {
-      if (work_.unsolved[b][lane_] > 0) mem_.local[Root(b)] = 1;
+      if (asks(b)) mem_.local[Root(b)] = 1;
     }
     for (int b = 0; b < m_.body_count; ++b) mem_.root[b] = Root(b);
     for (int b = 0; b < m_.body_count; ++b) {
@@ -163,7 +250,10 @@ class LaneSolve {
     out.inv_inertia = OfLane<L>(b.inv_inertia, lane_);
     const M3<L> R{OfLane<L>(b.R.r0, lane_), OfLane<L>(b.R.r1, lane_), OfLane<L>(b.R.r2, lane_)};
     out.inertia = Congruence(R, OfLane<L>(s_.inertia[body], lane_));
+    const V3<L> none{L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};
     out.free = {OfLane<L>(b.v, lane_), OfLane<L>(b.w, lane_)};
+    if (displaces_) out.free = {none, none};
+    out.before = {OfLane<L>(b.v0, lane_), OfLane<L>(b.w0, lane_)};
   }
 
   template <int R>
@@ -189,6 +279,7 @@ class LaneSolve {
         mem_.source[pool.count++] = slot;
         to.live = OfLane<L>(from.live, lane_);
         to.mu = OfLane<L>(from.mu, lane_);
+        to.restitution = OfLane<L>(from.restitution, lane_);
         for (int r = 0; r < 3; ++r) {
           to.bias[r] = OfLane<L>(from.bias[r], lane_);
           to.l[r] = OfLane<L>(from.l[r], lane_);
@@ -197,17 +288,27 @@ class LaneSolve {
         to.link_count = 1;
         GatherLink(from.links[0], to.links[0]);
         to.FinishMasses();
+        if (displaces_) Displacing(to, from.deep[lane_], from.gap[lane_]);
       }
     }
     for (int i = 0; i < work_.touch_count[lane_]; ++i) {
-      const ContactPoint<L, 2>& from = mem_.pairs[i];
+      const Contact<L, 2>& from = mem_.pairs[i];
       if (mem_.root[from.links[0].body] != island_root_) continue;
       ContactPoint<L, 2>& to = pool.items[pool.count];
       mem_.source[pool.count++] = m_.slot_count + i;
       to = from;
       for (Link<L, 3>& link : to.links) link.body = Number(link.body);
+      if (displaces_) Displacing(to, from.deep[0], from.gap[0]);
     }
     cable_source_ = mem_.source + pool.count;
+  }
+
+  /// The law of a displacement: out, or no further in than to touch.
+  void Displacing(ContactPoint<L, 2>& c, double deep, double gap) const noexcept {
+    const L zero = L::Splat(0.0);
+    c.bias[0] = L::Splat(deep < 0 ? deep : gap < 0 ? 0 : gap) / h_;
+    c.bias[1] = c.bias[2] = c.mu = zero;
+    for (L& l : c.l) l = zero;
   }
 
   void GatherCables(Pool<CableRow<L>>& pool) noexcept {
@@ -270,6 +371,8 @@ class LaneSolve {
   LaneMemory<L>& mem_;
   const StepSettings& settings_;
   int lane_;
+  L h_;
+  bool displaces_ = false;
   int count_ = 0, island_root_ = 0;
   int* cable_source_ = nullptr;
 };

@@ -65,7 +65,8 @@ struct LaneMemory {
     IslandMemory<Num>& x = island.m;
     Num** const per_dof[] = {&x.v, &x.rhs, &x.direction, &x.trial_v};
     for (Num** list : per_dof) *list = room.Take<Num>(kDofs * n);
-    Num** const per_row[] = {&x.l, &x.u, &x.best, &x.center, &x.projected, &x.du, &x.u2, &x.f};
+    Num** const per_row[] = {&x.l,  &x.u, &x.best,           &x.center,    &x.projected, &x.du,
+                             &x.u2, &x.f, &x.impacts.before, &x.impacts.u, &x.impacts.l};
     for (Num** list : per_row) *list = room.Take<Num>(rows);
     x.g = room.Take<Num>(cells);
     x.blocks = room.Take<Num>(36 * blocks);
@@ -89,9 +90,10 @@ struct DualMemory {
   W *u, *l, *r, *q;      ///< Velocities, impulses; right sides, then changes.
   W *d, *now;            ///< Changes and impulses of the contacts alone.
   W *diagonal, *active;  ///< Of the cables' A and S.
-  Twist<W>* v;           ///< Per body.
-  Column* columns;       ///< By body:
-  int* first_column;     ///< where each body's start.
+  ImpactRows<W> impacts;
+  Twist<W>* v;        ///< Per body.
+  Column* columns;    ///< By body:
+  int* first_column;  ///< where each body's start.
 
   static int CapacityFor(const View& m) noexcept {
     const int rows = 3 * m.slot_count + m.cable_count;
@@ -101,7 +103,8 @@ struct DualMemory {
     capacity = CapacityFor(m);
     a = room.Take<W>(capacity * (capacity + 1) / 2);
     c = room.Take<W>(9 * m.slot_count * (capacity > 0 ? m.slot_count : 0));
-    W** const per_row[] = {&u, &l, &r, &q, &d, &now, &diagonal, &active};
+    W** const per_row[] = {
+        &u, &l, &r, &q, &d, &now, &diagonal, &active, &impacts.before, &impacts.u, &impacts.l};
     for (W** list : per_row) *list = room.Take<W>(capacity);
     v = room.Take<Twist<W>>(m.body_count);
     first_column = room.Take<int>(m.body_count + 1);

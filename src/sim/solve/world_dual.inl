@@ -22,41 +22,76 @@ class WorldDual {
 
   /// Solves `lanes`; returns those in which it did not get there, which stay as they were.
   M Solve(Target target, M lanes, W& residual, W& solves) noexcept {
-    const W zero = W::Splat(0.0), one = W::Splat(1.0);
-    const W tolerance = W::Splat(target.tolerance), goal = W::Splat(target.goal()),
-            pays = W::Splat(Target::kPays);
+    target_ = target;
+    solves_ = now_ = W::Splat(0.0);
     Start();
     SortColumns();
-    W now = Residual();
+    const bool impacts = ExpectImpacts(*this);
+    Iterate(lanes, true);
+    if (impacts) SolveImpacts<W>(*this, rows_, lanes & Solved());
+    const M solved = lanes & Solved();
+    residual = Max(Select(solved, now_, W::Splat(0.0)), residual);
+    solves += solves_;
+    if (impacts) ForEachContact([&](auto& law, int) { law.ForgetRebound(lanes & !solved); });
+    Finish(solved);
+    return lanes & !solved;
+  }
+
+  // What impacts.inl asks for.
+  template <class F>
+  TAUT_INLINE void ForEach(F&& f) noexcept {
+    ForEachCable(f);
+    ForEachContact(f);
+  }
+  W* u() noexcept { return mem_.u; }
+  W* l() noexcept { return mem_.l; }
+  ImpactRows<W> impacts() noexcept { return mem_.impacts; }
+  TAUT_INLINE W NormalBefore(const Contact<W, 1>& c) const noexcept {
+    const BodyWork<W>& body = work_.bodies[c.links[0].body];
+    return Dot(c.links[0].lin[0], body.v0) + Dot(c.links[0].ang[0], body.w0);
+  }
+  void MeasureBefore() noexcept {
+    ForEachContact([&](auto& law, int row) {
+      const BodyWork<W>& body = work_.bodies[law.links[0].body];
+      for (int r = 0; r < 3; ++r) mem_.impacts.before[row + r] = W::Splat(0.0);
+      AddVelocity(law.links[0], body.v0, body.w0, mem_.impacts.before + row);
+    });
+  }
+  void SolveAgain(M lanes) noexcept { Iterate(lanes, false); }
+  void Update() noexcept { Velocities(); }
+
+ private:
+  M Solved() const noexcept { return now_ < W::Splat(target_.tolerance); }
+
+  void Iterate(M lanes, bool first) noexcept {
+    const W one = W::Splat(1.0);
+    const W tolerance = W::Splat(target_.tolerance), goal = W::Splat(target_.goal()),
+            pays = W::Splat(Target::kPays);
+    now_ = Select(lanes, Residual(), now_);
     // At least one step: what cables leave over swings on and adds up.
     M busy = lanes;
     for (int iteration = 0; iteration < kMaxIterations && Any(busy); ++iteration) {
-      if (LinearizeCables(iteration == 0)) Factor();
+      if (LinearizeCables(first && iteration == 0)) Factor();
       Forward();
       SolveContacts(busy, goal);
       Back();
       Take(busy);
       Velocities();
       Measure();
-      solves += Select(busy, one, zero);
-      const W before = now;
-      now = Select(busy, Residual(), now);
-      const auto done = (now < goal) | ((now < tolerance) & (now > pays * before));
+      solves_ += Select(busy, one, W::Splat(0.0));
+      const W before = now_;
+      now_ = Select(busy, Residual(), now_);
+      const auto done = (now_ < goal) | ((now_ < tolerance) & (now_ > pays * before));
       busy = busy & !done;  // a NaN stays busy
     }
-    const M solved = lanes & (now < tolerance);
-    residual = Max(Select(solved, now, zero), residual);
-    Finish(solved);
-    return lanes & !solved;
   }
 
- private:
   /// Calls f(law, first row) for all stiff cables,
   template <class F>
   TAUT_INLINE void ForEachCable(F&& f) noexcept {
     for (int i = 0; i < work_.stiff_count; ++i) f(work_.stiff[i], i);
   }
-  /// for all contacts with the world,
+  /// for all contacts with the world.
   template <class F>
   TAUT_INLINE void ForEachContact(F&& f) noexcept {
     int row = work_.stiff_count;
@@ -66,12 +101,6 @@ class WorldDual {
       }
     }
     rows_ = row;
-  }
-  /// for both.
-  template <class F>
-  TAUT_INLINE void ForEach(F&& f) noexcept {
-    ForEachCable(f);
-    ForEachContact(f);
   }
 
   /// Impulses, and velocities with them.
@@ -389,6 +418,8 @@ class WorldDual {
   Scratch<W>& work_;
   DualMemory<W>& mem_;
   int rows_ = 0, cables_ = 0;
+  W now_, solves_;
+  Target target_;
 };
 
 }  // namespace taut::sim

@@ -1,0 +1,99 @@
+/// Impacts: contacts that close against an approach rebound within the same step, all together
+/// (docs/theory/contact.md, section 3). The problem is solved as if nothing rebounded, then again
+/// with the rebounds of those contacts that took part; others that come in by that join. If the
+/// result has more energy than it may have (friction at several contacts can do that), it goes back
+/// towards the first solution, as far as it must: between two solutions all is linear, and cones
+/// are convex.
+///
+/// A Problem is one of the solvers in the middle of its work:
+///   ForEach(f)       f(law, first row) for all constraints
+///   u(), l()         velocities and impulses, a row each
+///   impacts()        room for this
+///   MeasureBefore()  impacts().before <- velocities at the start of the step
+///   SolveAgain(M)    goes on from l, in the lanes M
+///   Update()         makes all else belong to l
+
+namespace taut::sim {
+
+template <class Law>
+inline constexpr bool kRebounds = requires(Law& law) {
+  law.rebound;
+};
+
+/// Work of the constraints, as a share x of the way from the first solution to the second:
+/// c0 + c1 x + c2 x^2.
+template <class Num>
+struct WorkOfImpacts {
+  Num c0 = Num::Splat(0.0), c1 = Num::Splat(0.0), c2 = Num::Splat(0.0);
+
+  void Add(Num before, Num u1, Num l1, Num u2, Num l2) noexcept {
+    const Num l = l2 - l1, u = u2 - u1, sum = before + u1;
+    c0 += l1 * sum;
+    c1 += l * sum + l1 * u;
+    c2 += l * u;
+  }
+  /// The largest admissible share; 1 where all of it is.
+  Num Share() const noexcept {
+    constexpr double kRounding = 1e-12;
+    const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
+    const Num limit = Max(c0, zero), most = Abs(c0) + Abs(c1) + Abs(c2);
+    const auto gains = c0 + c1 + c2 > limit + Num::Splat(kRounding) * most;
+    if (!Any(gains)) return one;
+    const Num root = Sqrt(Max(c1 * c1 - Num::Splat(4.0) * c2 * (c0 - limit), zero));
+    const Num share = (root - c1) / Max(c2 + c2, Num::Splat(1e-300));
+    return Select(gains, Max(Min(share, one), zero), one);
+  }
+};
+
+/// How fast each contact would rebound if it took part in an impact; from the velocities that the
+/// impulses of the step before lead to. False if none would, in any lane.
+template <class Problem>
+bool ExpectImpacts(Problem& p) noexcept {
+  bool any = false;
+  p.ForEach([&](auto& law, int row) {
+    if constexpr (kRebounds<decltype(law)>) {
+      any = law.ExpectRebound(p.u()[row], p.NormalBefore(law)) || any;
+    }
+  });
+  return any;
+}
+
+/// After a solve. `lanes`: those that are solved. Returns those that had an impact.
+template <class Num, class Problem, class M>
+M SolveImpacts(Problem& p, int rows, M lanes) noexcept {
+  constexpr int kMaxRounds = 4;
+  const ImpactRows<Num> kept = p.impacts();
+  auto hit = M::Splat(false);
+  for (int round = 0; round < kMaxRounds; ++round) {
+    auto fresh = M::Splat(false);
+    p.ForEach([&](auto& law, int row) {
+      if constexpr (kRebounds<decltype(law)>) fresh = fresh | law.Rebound(p.l() + row, lanes);
+    });
+    if (!Any(fresh)) break;
+    for (int i = 0; round == 0 && i < rows; ++i) kept.u[i] = p.u()[i], kept.l[i] = p.l()[i];
+    hit = hit | fresh;
+    p.SolveAgain(fresh);
+  }
+  if (!Any(hit)) return hit;
+  p.MeasureBefore();
+  WorkOfImpacts<Num> work;
+  p.ForEach([&](auto& law, int row) {
+    if constexpr (kRebounds<decltype(law)>) {
+      for (int i = row; i < row + 3; ++i) {
+        work.Add(kept.before[i], kept.u[i], kept.l[i], p.u()[i], p.l()[i]);
+      }
+    }
+  });
+  const Num share = work.Share();
+  const auto back = hit & (share < Num::Splat(1.0));
+  if (!Any(back)) return hit;
+  for (int i = 0; i < rows; ++i) {
+    Num &u = p.u()[i], &l = p.l()[i];
+    u = Select(back, kept.u[i] + share * (u - kept.u[i]), u);
+    l = Select(back, kept.l[i] + share * (l - kept.l[i]), l);
+  }
+  p.Update();
+  return hit;
+}
+
+}  // namespace taut::sim
