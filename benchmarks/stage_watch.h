@@ -25,7 +25,7 @@ inline constexpr const char* kStageNames[kStages] = {"start",   "kinematics", "c
 /// Ticks of the processor's clock spent in each stage so far. Of batches with one thread.
 extern std::uint64_t g_stage_ticks[kStages];
 
-extern const Kernel kWatchedScalar, kWatchedSse2, kWatchedAvx2, kWatchedAvx512;
+extern const Kernel kWatchedScalar, kWatchedNeon, kWatchedSse2, kWatchedAvx2, kWatchedAvx512;
 
 }  // namespace sim
 }  // namespace taut

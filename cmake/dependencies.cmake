@@ -1,5 +1,8 @@
 # What taut stands on, all from Debian 12; why each is there is said in script/packages.txt.
 find_package(Threads REQUIRED)
+if(TAUT_CORE_ONLY)
+  return()
+endif()
 find_package(PkgConfig REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(fmt REQUIRED)

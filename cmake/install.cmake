@@ -22,7 +22,7 @@ install(TARGETS taut_library taut_options ${layer_targets} EXPORT taut
 install(EXPORT taut NAMESPACE taut:: FILE tautTargets.cmake DESTINATION ${config_dir})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/taut DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.h")
-if(TAUT_BUILD_APPS)
+if(TARGET taut)
   install(TARGETS taut RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(DIRECTORY ${PROJECT_BINARY_DIR}/web DESTINATION ${CMAKE_INSTALL_DATADIR}/taut OPTIONAL)
 endif()

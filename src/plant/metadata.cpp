@@ -30,8 +30,9 @@ std::string ProcessorName() {
 std::string MachineName() {
   utsname name{};
   if (uname(&name) != 0) return ProcessorName();
-  return std::string(name.sysname) + " " + name.release + " " + name.machine + ", " +
-         ProcessorName();
+  const std::string system = std::string(name.sysname) + " " + name.release + " " + name.machine;
+  const std::string processor = ProcessorName();  // AArch64's Linux knows none
+  return processor.empty() ? system : system + ", " + processor;
 }
 
 std::string NowUtc() {

@@ -15,34 +15,38 @@ namespace {
 
 using sim::Layout;
 
-bool MachineHas(Simd simd) {
+/// The kernel of this width; null if the build or the machine has none.
+const sim::Kernel* KernelOf(Simd simd) {
   switch (simd) {
+#ifdef TAUT_HAS_AVX512
     case Simd::kAvx512:
-      return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
-             __builtin_cpu_supports("avx512vl") != 0;
+      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                     __builtin_cpu_supports("avx512vl")
+                 ? &sim::kKernelAvx512
+                 : nullptr;
+#endif
+#ifdef TAUT_HAS_AVX2
     case Simd::kAvx2:
-      return __builtin_cpu_supports("avx2") != 0;
-    default:
-      return true;
-  }
-}
-
-const sim::Kernel& KernelOf(Simd simd) {
-  switch (simd) {
-    case Simd::kAvx512:
-      return sim::kKernelAvx512;
-    case Simd::kAvx2:
-      return sim::kKernelAvx2;
+      return __builtin_cpu_supports("avx2") ? &sim::kKernelAvx2 : nullptr;
+#endif
+#ifdef TAUT_HAS_SSE2
     case Simd::kSse2:
-      return sim::kKernelSse2;
+      return &sim::kKernelSse2;
+#endif
+#ifdef TAUT_HAS_NEON
+    case Simd::kNeon:
+      return &sim::kKernelNeon;
+#endif
+    case Simd::kScalar:
+      return &sim::kKernelScalar;
     default:
-      return sim::kKernelScalar;
+      return nullptr;
   }
 }
 
 Simd WidestUpTo(Simd wish) {
   for (Simd simd : {Simd::kAvx512, Simd::kAvx2, Simd::kSse2}) {
-    if (static_cast<int>(simd) <= static_cast<int>(wish) && MachineHas(simd)) return simd;
+    if (static_cast<int>(simd) <= static_cast<int>(wish) && KernelOf(simd)) return simd;
   }
   return Simd::kScalar;
 }
@@ -59,7 +63,7 @@ Simd BestSimd() {
   const char* const text = std::getenv("TAUT_SIMD");
   const std::string_view wish = text == nullptr ? "" : text;
   if (wish == "scalar") return Simd::kScalar;
-  if (wish == "sse2") return Simd::kSse2;
+  if (wish == "sse2" || wish == "neon") return WidestUpTo(Simd::kSse2);
   if (wish == "avx2") return WidestUpTo(Simd::kAvx2);
   return WidestUpTo(Simd::kAvx512);
 }
@@ -68,7 +72,7 @@ Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
     : model(std::static_pointer_cast<const sim::Tables>(std::move(m))),
       view(model->View()),
       options(Sane(o)),
-      kernel(&KernelOf(*options.simd)),
+      kernel(KernelOf(*options.simd)),
       layout(model->MakeLayout()),
       pool(options.threads) {
   const int n = lanes();

@@ -47,7 +47,9 @@ struct Kernel {
   void (*sense)(const View&, const Layout&, Group&, void* scratch);
 };
 
+// Those that the build has (cmake/instruction_sets.cmake): TAUT_HAS_AVX2 and the like.
 extern const Kernel kKernelScalar;
+extern const Kernel kKernelNeon;
 extern const Kernel kKernelSse2;
 extern const Kernel kKernelAvx2;
 extern const Kernel kKernelAvx512;

@@ -4,12 +4,16 @@
 /// The storage is a compiler vector and not an array: with arrays, g++ 12 leaves most of the step
 /// scalar. There are no shuffles, no horizontal sums and no fused multiply-adds. Every width is
 /// used in exactly one instruction set, so that no template instance is compiled twice with
-/// different flags. This folder is the only one that knows intrinsics.
+/// different flags. This folder is the only one that knows intrinsics: where the compiler does not
+/// find an instruction by itself, wide_x86.h and wide_neon.h name it.
 #pragma once
 
-#include <immintrin.h>
+#include <float.h>
 
 #include "math/scalar.h"
+
+// Where numbers are kept wider between operations, as on the x87, results are other ones.
+static_assert(FLT_EVAL_METHOD == 0, "taut needs arithmetic that rounds to double each time");
 
 namespace taut::simd {
 
@@ -89,22 +93,29 @@ TAUT_INLINE Wide<N, I> Select(Mask<N, I> m, Wide<N, I> yes, Wide<N, I> no) noexc
   return {m.v ? yes.v : no.v};
 }
 
-TAUT_INLINE Wide<2> Sqrt(Wide<2> a) noexcept {
-  return {(Wide<2>::Vector)_mm_sqrt_pd((__m128d)a.v)};
+// For all widths and machines; wide_x86.h and wide_neon.h have better ones for theirs.
+template <int N, class I>
+TAUT_INLINE Wide<N, I> Sqrt(Wide<N, I> a) noexcept {
+  for (int i = 0; i < N; ++i) a.v[i] = __builtin_sqrt(a.v[i]);
+  return a;
 }
-TAUT_INLINE bool Any(Mask<2> m) noexcept { return _mm_movemask_pd((__m128d)m.v) != 0; }
-#ifdef __AVX2__
-TAUT_INLINE Wide<4> Sqrt(Wide<4> a) noexcept {
-  return {(Wide<4>::Vector)_mm256_sqrt_pd((__m256d)a.v)};
+template <int N, class I>
+TAUT_INLINE bool Any(Mask<N, I> m) noexcept {
+  long long any = 0;
+  for (int i = 0; i < N; ++i) any |= m.v[i];
+  return any != 0;
 }
-TAUT_INLINE bool Any(Mask<4> m) noexcept { return _mm256_movemask_pd((__m256d)m.v) != 0; }
-#endif
-#ifdef __AVX512DQ__
-TAUT_INLINE Wide<8> Sqrt(Wide<8> a) noexcept {
-  return {(Wide<8>::Vector)_mm512_maskz_sqrt_pd(0xff, (__m512d)a.v)};
+/// The greater of two; `b` if either is NaN or both are zero: a > b ? a : b. That is what x86-64's
+/// instruction does. AArch64's FMAX differs in both, so nothing may stand for this but a selection.
+template <int N, class I>
+TAUT_INLINE Wide<N, I> Max(Wide<N, I> a, Wide<N, I> b) noexcept {
+  return {a.v > b.v ? a.v : b.v};
 }
-TAUT_INLINE bool Any(Mask<8> m) noexcept { return _mm512_movepi64_mask((__m512i)m.v) != 0; }
-#endif
+/// The smaller of two; `b` if either is NaN or both are zero.
+template <int N, class I>
+TAUT_INLINE Wide<N, I> Min(Wide<N, I> a, Wide<N, I> b) noexcept {
+  return {a.v < b.v ? a.v : b.v};
+}
 
 /// One lane: a plain double, so that a single world costs no vector overhead.
 template <class I>
@@ -139,6 +150,14 @@ TAUT_INLINE Wide<1, I> Select(Mask<1, I> m, Wide<1, I> yes, Wide<1, I> no) noexc
   return {m.v ? yes.v : no.v};
 }
 template <class I>
+TAUT_INLINE Wide<1, I> Max(Wide<1, I> a, Wide<1, I> b) noexcept {
+  return {a.v > b.v ? a.v : b.v};
+}
+template <class I>
+TAUT_INLINE Wide<1, I> Min(Wide<1, I> a, Wide<1, I> b) noexcept {
+  return {a.v < b.v ? a.v : b.v};
+}
+template <class I>
 TAUT_INLINE Wide<1, I> Sqrt(Wide<1, I> a) noexcept {
   return {__builtin_sqrt(a.v)};
 }
@@ -160,39 +179,6 @@ struct LaneOf<Wide<1, I>> {
 template <class W>
 using Lane = typename LaneOf<W>::Type;
 
-/// The greater of two; `b` if either is NaN. So do the instructions: a > b ? a : b.
-template <class I>
-TAUT_INLINE Wide<1, I> Max(Wide<1, I> a, Wide<1, I> b) noexcept {
-  return {a.v > b.v ? a.v : b.v};
-}
-TAUT_INLINE Wide<2> Max(Wide<2> a, Wide<2> b) noexcept {
-  return {(Wide<2>::Vector)_mm_max_pd((__m128d)a.v, (__m128d)b.v)};
-}
-/// The smaller of two; `b` if either is NaN.
-template <class I>
-TAUT_INLINE Wide<1, I> Min(Wide<1, I> a, Wide<1, I> b) noexcept {
-  return {a.v < b.v ? a.v : b.v};
-}
-TAUT_INLINE Wide<2> Min(Wide<2> a, Wide<2> b) noexcept {
-  return {(Wide<2>::Vector)_mm_min_pd((__m128d)a.v, (__m128d)b.v)};
-}
-#ifdef __AVX2__
-TAUT_INLINE Wide<4> Max(Wide<4> a, Wide<4> b) noexcept {
-  return {(Wide<4>::Vector)_mm256_max_pd((__m256d)a.v, (__m256d)b.v)};
-}
-TAUT_INLINE Wide<4> Min(Wide<4> a, Wide<4> b) noexcept {
-  return {(Wide<4>::Vector)_mm256_min_pd((__m256d)a.v, (__m256d)b.v)};
-}
-#endif
-#ifdef __AVX512DQ__
-TAUT_INLINE Wide<8> Max(Wide<8> a, Wide<8> b) noexcept {
-  return {(Wide<8>::Vector)_mm512_maskz_max_pd(0xff, (__m512d)a.v, (__m512d)b.v)};
-}
-TAUT_INLINE Wide<8> Min(Wide<8> a, Wide<8> b) noexcept {
-  return {(Wide<8>::Vector)_mm512_maskz_min_pd(0xff, (__m512d)a.v, (__m512d)b.v)};
-}
-#endif
-
 template <int N, class I>
 TAUT_INLINE Wide<N, I> Abs(Wide<N, I> a) noexcept {
   return Max(a, -a);
@@ -213,3 +199,9 @@ TAUT_INLINE Wide<N, I>& operator*=(Wide<N, I>& a, Wide<N, I> b) noexcept {
 }
 
 }  // namespace taut::simd
+
+#if defined(__SSE2__)
+#include "simd/wide_x86.h"
+#elif defined(__aarch64__)
+#include "simd/wide_neon.h"
+#endif

@@ -1,15 +1,18 @@
-# cmake -DNM=... -DOBJECTS=a.o,b.o,... -P kernels_need_no_library.cmake
+# cmake -DNM=... -DSETS=scalar,sse2,... -DOBJECTS=a.o,b.o,... -P kernels_need_no_library.cmake
 #
 # The text of a step, pairs of shapes included, calls nothing but itself: no heap, no container, no
 # exception, no libm. Compilers may copy and fill memory, sanitizers add calls of their own, and g++ names its
 # exception handling wherever a function that is noexcept calls one that is not.
 cmake_minimum_required(VERSION 3.25)
 string(REPLACE "," ";" objects "${OBJECTS}")
-list(FILTER objects INCLUDE REGEX
-  "/(step_(scalar|sse2|avx2|avx512)|shape_[a-z_]+)\\.cpp\\.o$")
+string(REPLACE "," "|" sets "${SETS}")
+list(FILTER objects INCLUDE REGEX "/(step_(${sets})|shape_[a-z_]+)\\.cpp\\.o$")
 list(LENGTH objects count)
-if(count LESS 7)
-  message(FATAL_ERROR "4 kernels and 3 files of shapes expected, not ${count}: ${OBJECTS}")
+string(REPLACE "," ";" sets "${SETS}")
+list(LENGTH sets expected)
+math(EXPR expected "${expected} + 3")
+if(count LESS expected)
+  message(FATAL_ERROR "kernels of ${SETS} and 3 files of shapes expected, not ${count}: ${OBJECTS}")
 endif()
 set(foreign)
 foreach(object ${objects})

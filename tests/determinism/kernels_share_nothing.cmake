@@ -1,14 +1,17 @@
-# cmake -DNM=... -DOBJECTS=a.o,b.o,... -P kernels_share_nothing.cmake
+# cmake -DNM=... -DSETS=scalar,sse2,... -DOBJECTS=a.o,b.o,... -P kernels_share_nothing.cmake
 #
 # No function is emitted by two of src/sim/step_*.cpp, nor by two of src/plant/lane_*.cpp: the linker
 # would keep one of them, perhaps that with instructions which the machine lacks. Optimisation hides
 # it, so debug builds tell most.
 cmake_minimum_required(VERSION 3.25)
 string(REPLACE "," ";" objects "${OBJECTS}")
-list(FILTER objects INCLUDE REGEX "/(step|lane)_(scalar|sse2|avx2|avx512)\\.cpp\\.o$")
+string(REPLACE "," "|" sets "${SETS}")
+list(FILTER objects INCLUDE REGEX "/(step|lane)_(${sets})\\.cpp\\.o$")
 list(LENGTH objects count)
-if(NOT count EQUAL 4)
-  message(FATAL_ERROR "4 kernels expected, not ${count}: ${OBJECTS}")
+string(REPLACE "," ";" sets "${SETS}")
+list(LENGTH sets expected)
+if(NOT count EQUAL expected)
+  message(FATAL_ERROR "kernels of ${SETS} expected, not ${count}: ${OBJECTS}")
 endif()
 set(seen)
 set(shared)

@@ -8,22 +8,10 @@
 #include <tuple>
 
 #include "tests/determinism/variety.h"
+#include "tests/instruction_sets.h"
 
 namespace taut::test {
 namespace {
-
-const char* NameOf(Simd simd) {
-  switch (simd) {
-    case Simd::kSse2:
-      return "sse2";
-    case Simd::kAvx2:
-      return "avx2";
-    case Simd::kAvx512:
-      return "avx512";
-    default:
-      return "scalar";
-  }
-}
 
 /// A batch of `worlds` on this instruction set; nothing if the machine lacks it.
 std::optional<Batch> BatchOn(Simd simd, const ModelDef& def, int worlds, int threads) {
@@ -36,14 +24,15 @@ std::optional<Batch> BatchOn(Simd simd, const ModelDef& def, int worlds, int thr
   return batch;
 }
 
-using SimdAndModel = std::tuple<Simd, std::size_t>;
-class LanesOf : public testing::TestWithParam<SimdAndModel> {};
+using SetAndModel = std::tuple<InstructionSet, std::size_t>;
+class LanesOf : public testing::TestWithParam<SetAndModel> {};
 
 TEST_P(LanesOf, EqualTheirWorldsAloneOnAnyNumberOfThreads) {
-  const auto [simd, model] = GetParam();
+  const auto [set, model] = GetParam();
+  const Simd simd = set.simd;
   const ModelDef def = VariedModels()[model];
   constexpr int kWorlds = 19;
-  if (!BatchOn(simd, def, 1, 1)) GTEST_SKIP() << "this machine has no " << NameOf(simd);
+  if (!BatchOn(simd, def, 1, 1)) GTEST_SKIP() << "this machine has no " << set.name;
   std::vector<Outcome> expected;  // in scalar code
   for (int i = 0; i < kWorlds; ++i) expected.push_back(Alone(def, i));
   for (const int threads : {1, 2, 3}) {
@@ -94,10 +83,11 @@ TEST_P(LanesOf, TakeTargetsAllAtOnceAsOneByOne) {
 }
 
 TEST_P(LanesOf, SayOfAllCablesAtOnceWhatTheySayOfEach) {
-  const auto [simd, model] = GetParam();
+  const auto [set, model] = GetParam();
+  const Simd simd = set.simd;
   const ModelDef def = VariedModels()[model];
   constexpr int kWorlds = 11;
-  if (!BatchOn(simd, def, 1, 1)) GTEST_SKIP() << "this machine has no " << NameOf(simd);
+  if (!BatchOn(simd, def, 1, 1)) GTEST_SKIP() << "this machine has no " << set.name;
   Batch batch = *BatchOn(simd, def, kWorlds, 1);
   for (int i = 0; i < kWorlds; ++i) Scatter(batch, i, i);
   batch.Step(kVarietyStepS, kStepsAStretch);
@@ -122,23 +112,23 @@ TEST_P(LanesOf, SayOfAllCablesAtOnceWhatTheySayOfEach) {
   }
 }
 
-std::string NameOfBoth(const testing::TestParamInfo<SimdAndModel>& each) {
-  return std::string(NameOf(std::get<0>(each.param))) + "_" +
+std::string NameOfBoth(const testing::TestParamInfo<SetAndModel>& each) {
+  return std::string(std::get<0>(each.param).name) + "_" +
          VariedModels()[std::get<1>(each.param)].name;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LanesOf,
-                         testing::Combine(testing::Values(Simd::kScalar, Simd::kSse2, Simd::kAvx2,
-                                                          Simd::kAvx512),
+                         testing::Combine(testing::ValuesIn(kInstructionSets),
                                           testing::Range<std::size_t>(0, VariedModels().size())),
                          NameOfBoth);
 
-class Lanes : public testing::TestWithParam<Simd> {};
+class Lanes : public testing::TestWithParam<InstructionSet> {};
 
 TEST_P(Lanes, ObservingAWorldChangesNothing) {
-  std::optional<Batch> seen = BatchOn(GetParam(), scenes::Jumble().Def(), 9, 1);
-  if (!seen) GTEST_SKIP() << "this machine has no " << NameOf(GetParam());
-  Batch unseen = *BatchOn(GetParam(), scenes::Jumble().Def(), 9, 1);
+  const auto [name, simd] = GetParam();
+  std::optional<Batch> seen = BatchOn(simd, scenes::Jumble().Def(), 9, 1);
+  if (!seen) GTEST_SKIP() << "this machine has no " << name;
+  Batch unseen = *BatchOn(simd, scenes::Jumble().Def(), 9, 1);
   for (int i = 0; i < 9; ++i) {
     Scatter(*seen, i, i);
     Scatter(unseen, i, i);
@@ -159,9 +149,10 @@ TEST_P(Lanes, ObservingAWorldChangesNothing) {
 }
 
 TEST_P(Lanes, AnObservedLaneIsThatOfItsWorldAlone) {
+  const auto [name, simd] = GetParam();
   const ModelDef def = scenes::Jumble().Def();
-  std::optional<Batch> batch = BatchOn(GetParam(), def, 9, 1);
-  if (!batch) GTEST_SKIP() << "this machine has no " << NameOf(GetParam());
+  std::optional<Batch> batch = BatchOn(simd, def, 9, 1);
+  if (!batch) GTEST_SKIP() << "this machine has no " << name;
   for (int i = 0; i < 9; ++i) Scatter(*batch, i, i);
   batch->Step(1e-3, 150);
   for (int i = 0; i < 9; ++i) {
@@ -191,9 +182,8 @@ TEST_P(Lanes, AnObservedLaneIsThatOfItsWorldAlone) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Lanes,
-                         testing::Values(Simd::kScalar, Simd::kSse2, Simd::kAvx2, Simd::kAvx512),
-                         [](const auto& each) { return std::string(NameOf(each.param)); });
+INSTANTIATE_TEST_SUITE_P(All, Lanes, testing::ValuesIn(kInstructionSets),
+                         [](const auto& each) { return std::string(each.param.name); });
 
 TEST(Threads, ZeroMeansOneACoreAndGivesTheSameBits) {
   BatchOptions options;
@@ -234,13 +224,20 @@ TEST(TautSimd, ChoosesTheInstructionSetOfABatchThatDoesNotSay) {
     options.worlds = worlds;
     return MakeBatch(def, options).lanes();
   };
+  // What the machine lacks falls back to what it has, and either name of two lanes will do.
+  const auto widest_up_to = [&](Simd wish) {
+    int lanes = 1;
+    for (const auto& [name, simd] : kInstructionSets) {
+      if (simd <= wish && BatchOn(simd, def, 1, 1)) lanes = static_cast<int>(simd);
+    }
+    return lanes;
+  };
   EXPECT_EQ(lanes_of("scalar", 3), 1);
-  EXPECT_EQ(lanes_of("sse2", 3), 2);
-  // What the machine lacks falls back to what it has.
-  EXPECT_EQ(lanes_of("avx2", 3), BatchOn(Simd::kAvx2, def, 1, 1) ? 4 : 2);
-  const int widest = BatchOn(Simd::kAvx512, def, 1, 1) ? 8 : lanes_of("avx2", 3);
-  EXPECT_EQ(lanes_of("avx512", 3), widest);
-  EXPECT_EQ(lanes_of("", 3), widest);
+  EXPECT_EQ(lanes_of("sse2", 3), widest_up_to(Simd::kSse2));
+  EXPECT_EQ(lanes_of("neon", 3), widest_up_to(Simd::kNeon));
+  EXPECT_EQ(lanes_of("avx2", 3), widest_up_to(Simd::kAvx2));
+  EXPECT_EQ(lanes_of("avx512", 3), widest_up_to(Simd::kAvx512));
+  EXPECT_EQ(lanes_of("", 3), widest_up_to(Simd::kAvx512));
   // A single world is scalar; what a program asks for counts more than the environment.
   EXPECT_EQ(lanes_of("sse2", 1), 1);
   const WithEnvironment environment("TAUT_SIMD", "scalar");
@@ -248,7 +245,14 @@ TEST(TautSimd, ChoosesTheInstructionSetOfABatchThatDoesNotSay) {
   BatchOptions options;
   options.worlds = 3;
   options.simd = Simd::kSse2;
-  EXPECT_EQ(MakeBatch(def, options).lanes(), 2);
+  EXPECT_EQ(MakeBatch(def, options).lanes(), widest_up_to(Simd::kSse2));
+}
+
+TEST(TautSimd, EveryX8664AndEveryAArch64HasTwoLanes) {
+  if (std::size(kInstructionSets) == 1) GTEST_SKIP() << "this build has one lane only";
+  const ModelDef def = scenes::HangingMass().Def();
+  EXPECT_TRUE(BatchOn(Simd::kSse2, def, 3, 1));
+  EXPECT_TRUE(BatchOn(Simd::kNeon, def, 3, 1));
 }
 
 }  // namespace

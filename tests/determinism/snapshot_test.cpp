@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/determinism/variety.h"
+#include "tests/instruction_sets.h"
 
 namespace taut::test {
 namespace {
@@ -13,9 +14,6 @@ BatchOptions Of(int worlds, Simd simd) {
   options.simd = simd;
   return options;
 }
-
-/// Widths to try; a machine that lacks one gets its next best, twice.
-const Simd kWidths[] = {Simd::kScalar, Simd::kSse2, Simd::kAvx2, Simd::kAvx512};
 
 TEST(Snapshot, ARestoredWorldGoesOnAsItWouldHave) {
   for (const ModelDef& def : VariedModels()) {
@@ -47,7 +45,7 @@ TEST(Snapshot, ARestoredWorldGoesOnAsItWouldHave) {
 }
 
 TEST(Snapshot, AWorldGoesOnAlikeInAnotherLaneAndItsNewNeighboursDoNotNotice) {
-  for (const Simd simd : kWidths) {
+  for (const auto& [name, simd] : kInstructionSets) {
     for (const ModelDef& def : VariedModels()) {
       Batch batch = MakeBatch(def, Of(11, simd)), without = MakeBatch(def, Of(11, simd));
       for (int i = 0; i < 11; ++i) {
@@ -71,8 +69,7 @@ TEST(Snapshot, AWorldGoesOnAlikeInAnotherLaneAndItsNewNeighboursDoNotNotice) {
       guest.Step(1e-3, 60);
       for (int i = 0; i < 11; ++i) {
         const std::uint64_t expected = i == 3 ? guest.Hash(0) : without.Hash(i == 10 ? 1 : i);
-        EXPECT_EQ(batch.Hash(i), expected)
-            << def.name << ", world " << i << " of " << batch.lanes() << " lanes";
+        EXPECT_EQ(batch.Hash(i), expected) << def.name << ", world " << i << ", " << name;
       }
     }
   }

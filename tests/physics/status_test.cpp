@@ -7,6 +7,7 @@
 
 #include "scenes/ball.h"
 #include "scenes/tetraspine3.h"
+#include "tests/instruction_sets.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
@@ -24,7 +25,8 @@ bool Finite(const Batch& batch, int world, int body) {
 
 /// Breaks world 1 of three after 0.05 s; it must say so, stand still, and be alone with that.
 void BreaksAlone(const std::function<void(Batch&)>& breaks, int body) {
-  for (const Simd simd : {Simd::kScalar, Simd::kSse2, Simd::kAvx2, Simd::kAvx512}) {
+  for (const auto& [name, simd] : kInstructionSets) {
+    SCOPED_TRACE(name);
     BatchOptions options;
     options.worlds = 3;
     options.simd = simd;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "taut/run.h"
+#include "tests/instruction_sets.h"
 
 namespace taut {
 namespace {
@@ -60,12 +61,12 @@ void EveryWorldEqualsItsRun(const ExperimentSpec& experiment) {
     Diagnostics out;
     alone.push_back(*RunExperiment(ExperimentOf(experiment, world), {}, out));
   }
-  for (const Simd simd : {Simd::kScalar, Simd::kSse2, Simd::kAvx2, Simd::kAvx512}) {
+  for (const auto& [name, simd] : test::kInstructionSets) {
     for (const int threads : {1, 3}) {
       const auto results = RunAll(experiment, worlds, threads, simd);
       for (std::size_t i = 0; i < worlds.size(); ++i) {
         ASSERT_EQ(results[i].failed, "");
-        EXPECT_EQ(results[i].state_hash, alone[i].state_hash) << i << ", " << int(simd) << " lanes";
+        EXPECT_EQ(results[i].state_hash, alone[i].state_hash) << i << ", " << name;
         double energy_j = 0;
         for (const CableSummary& cable : alone[i].cables) energy_j += cable.energy_j;
         // the sums go over cables and steps in another order
