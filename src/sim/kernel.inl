@@ -28,6 +28,7 @@
 #include "sim/solve/proximal.inl"
 #include "sim/solve/island_solver.inl"
 #include "sim/solve/lane_solve.inl"
+#include "sim/solve/push_out.inl"
 #include "sim/stage_solve.inl"
 // clang-format on
 

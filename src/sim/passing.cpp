@@ -79,7 +79,6 @@ int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint3
   const int later_count =
       meet ? TouchShapes(*a.shape, PoseAfter(a, t), *b.shape, PoseAfter(b, t), 2.0 * near_m, later)
            : 0;
-  const double share = b.moves ? 0.5 : 1.0;
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     const TouchPoint* met = nullptr;
@@ -93,9 +92,7 @@ int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint3
       if (!(rate < 0.0)) continue;
       p.feature = points[i].feature;
       p.gap_m -= rate * t;
-      // Levers are those of the moment of touch; of two moving bodies, in the mean: a pair needs
-      // one point, or its impulses would change the angular momentum.
-      for (int k = 0; k < 3; ++k) p.point[k] -= t * (share * a.v[k] + (1.0 - share) * b.v[k]);
+      p.when_s = t;
     }
     points[kept++] = p;
   }

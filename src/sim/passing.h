@@ -13,7 +13,6 @@ struct MovingShape {
   const Shape* shape;  ///< In the body's frame.
   ShapePose at;        ///< Now, at the middle of the step.
   double v[3], w[3];   ///< Of its body, without contacts [m/s], [rad/s].
-  bool moves;          ///< The world does not.
   double bound_m;      ///< No point of the body is further from its centre.
 };
 

@@ -18,8 +18,9 @@ namespace taut::sim {
 struct TouchPoint {
   double point[3];  ///< Midway between the two surfaces [m].
   double normal[3];
-  double gap_m;  ///< Negative: penetration.
-  int feature;   ///< Below kMaxPointsPerPair; stable while the shapes slide.
+  double gap_m;   ///< Negative: penetration.
+  int feature;    ///< Below kMaxPointsPerPair; stable while the shapes slide.
+  double when_s;  ///< Point and normal are those of this moment, from now; 0 but for passing.h.
 };
 
 /// What the features below need, and every pair that is to come.

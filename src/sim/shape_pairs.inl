@@ -38,7 +38,6 @@ MovingShape LaneMoving(const View& m, const Rows<W>& s, const Scratch<W>& work, 
           LanePose(m, s, work, body, lane),
           {v.x[lane], v.y[lane], v.z[lane]},
           {w.x[lane], w.y[lane], w.z[lane]},
-          body < m.body_count && s.inv_mass[body][lane] > 0,
           m.bound_m[body]};
 }
 

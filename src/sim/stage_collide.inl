@@ -179,8 +179,8 @@ W DistanceOfBodies(const View& m, const Rows<W>& s, const Scratch<W>& work,
 
 /// A touching point of a body and a shape that does not move, for one lane of a slot.
 template <class W>
-Found<W> FoundTouch(const Rows<W>& s, const ShapePairTable& pair, const TouchPoint& t, int body,
-                    int lane) noexcept {
+Found<W> FoundTouch(const Rows<W>& s, const Scratch<W>& work, const ShapePairTable& pair,
+                    const TouchPoint& t, int body, int lane) noexcept {
   const V3<W>& x = s.pos[body];
   Found<W> found;
   found.key = W::Splat(pair.id + static_cast<uint32_t>(t.feature));
@@ -191,8 +191,10 @@ Found<W> FoundTouch(const Rows<W>& s, const ShapePairTable& pair, const TouchPoi
   found.restitution = W::Splat(pair.restitution);
   found.n = simd::Splat3<W>(t.normal);
   found.t1 = found.t2 = found.n;  // to be made
-  found.arm = {W::Splat(t.point[0] - x.x[lane]), W::Splat(t.point[1] - x.y[lane]),
-               W::Splat(t.point[2] - x.z[lane])};
+  const V3<W>& v = work.bodies[body].v;
+  found.arm = {W::Splat(t.point[0] - (x.x[lane] + t.when_s * v.x[lane])),
+               W::Splat(t.point[1] - (x.y[lane] + t.when_s * v.y[lane])),
+               W::Splat(t.point[2] - (x.z[lane] + t.when_s * v.z[lane]))};
   return found;
 }
 
@@ -222,7 +224,7 @@ void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
         --left;
         const bool room =
             slots != nullptr
-                ? slots->Add(FoundTouch(s, pair, points[i], body, lane), lane)
+                ? slots->Add(FoundTouch(s, work, pair, points[i], body, lane), lane)
                 : work.AddTouch(m, lane, static_cast<int>(&pair - m.shape_pairs), points[i]);
         if (!room) *overflow |= 1u << lane;
       }
@@ -263,6 +265,13 @@ void CollideBodies(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
     const V3<W> d = ShapeCenter(m, s, work, shapes.a) - ShapeCenter(m, s, work, shapes.b);
     CollideShapes(m, s, g, work, shapes, margin, Dot(d, d), step_s, slots, overflow);
   }
+}
+
+/// After bodies of a lane have been moved otherwise than by their velocities: how far they are from
+/// each other is to be looked up again.
+template <class W>
+void LookAgain(const View& m, const Rows<W>& s, int lane) noexcept {
+  for (int pair = 0; pair < m.body_pair_count; ++pair) s.clearance[pair].Set(lane, 0.0);
 }
 
 /// Stage: collide.

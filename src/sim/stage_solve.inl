@@ -101,6 +101,20 @@ void SolveBodies(const View& m, Scratch<W>& work, Target target, M lanes,
   }
 }
 
+/// Where, by the places of now, a touching point of two bodies is. Levers are those of the moment
+/// of touch; of two moving bodies, in the mean: a pair needs one point, or its impulses would
+/// change the angular momentum.
+template <class W, class L>
+V3<L> MeetingPoint(const Rows<W>& s, const TouchPoint& point, const int* bodies,
+                   const BodyWork<L>* at, int lane) noexcept {
+  const V3<L> p = simd::Splat3<L>(point.point);
+  if (!(point.when_s > 0)) return p;
+  const bool a_moves = s.inv_mass[bodies[0]][lane] > 0, b_moves = s.inv_mass[bodies[1]][lane] > 0;
+  const double share = a_moves && b_moves ? 0.5 : a_moves ? 1.0 : 0.0;
+  const V3<L> way = L::Splat(share) * at[0].v + L::Splat(1.0 - share) * at[1].v;
+  return p - L::Splat(point.when_s) * way;
+}
+
 /// A lane's touches as contacts, from what they remember.
 template <class W>
 void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int lane,
@@ -120,8 +134,9 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
       body[k].v = OfLane<L>(from.v, lane), body[k].w = OfLane<L>(from.w, lane);
       body[k].v0 = OfLane<L>(from.v0, lane), body[k].w0 = OfLane<L>(from.w0, lane);
       body[k].inv_inertia = OfLane<L>(from.inv_inertia, lane);
-      c.arm[k] = simd::Splat3<L>(point.point) - OfLane<L>(s.pos[bodies[k]], lane);
     }
+    const V3<L> at = MeetingPoint(s, point, bodies, body, lane);
+    for (int k = 0; k < 2; ++k) c.arm[k] = at - OfLane<L>(s.pos[bodies[k]], lane);
     const double key = pair.id + static_cast<uint32_t>(point.feature);
     c.key = L::Splat(key);
     c.live = L::Splat(1.0);

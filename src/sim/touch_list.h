@@ -25,7 +25,8 @@ class TouchList {
   void Add(const Vec3& point, const Vec3& normal, double gap_m, int feature) noexcept {
     if (!(gap_m < margin_m_)) return;
     least_gap_m_ = Smaller(least_gap_m_, gap_m);
-    out_[count_++] = {{point.x, point.y, point.z}, {normal.x, normal.y, normal.z}, gap_m, feature};
+    out_[count_++] = {
+        {point.x, point.y, point.z}, {normal.x, normal.y, normal.z}, gap_m, feature, 0.0};
   }
   int count() const noexcept { return count_; }
   double margin_m() const noexcept { return margin_m_; }

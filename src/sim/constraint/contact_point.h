@@ -14,6 +14,8 @@ template <class Num, int kMaxLinks>
 struct ContactPoint {
   using Number = Num;
   static constexpr int kRows = 3;
+  /// Slower rebounds are lost in what a solve leaves over [m/s].
+  static constexpr double kLeastRebound = 1e-9;
 
   Num live;             ///< 1 in lanes that have this contact, else 0.
   Num wnn, wt;          ///< Inverse effective mass: of the normal, a bound of the tangents' [1/kg].
@@ -23,6 +25,7 @@ struct ContactPoint {
   Num mu, restitution;
   Num rebound;  ///< How fast it leaves if it takes part in an impact in this step [m/s], or 0.
   Num closing;  ///< bias[0] without an impact [m/s].
+  Num again;    ///< Its restitution if it opens at the start of the step, else 0.
   Num l[3];     ///< Impulses [N s].
   bool one_direction;  ///< Friction acts along the first tangent only.
   int link_count;
@@ -203,11 +206,11 @@ struct ContactPoint {
   /// impulses of the step before lead to; `before`: at the start of the step. False if there is
   /// none.
   TAUT_INLINE bool ExpectRebound(Num warm, Num before) noexcept {
-    // Slower ones are lost in what a solve leaves over [m/s].
-    const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), least = Num::Splat(1e-9);
+    const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), least = Num::Splat(kLeastRebound);
     const Num fastest = zero - restitution * before;
     closing = bias[0];
     rebound = zero;
+    again = Select((before > least) & (live > zero), restitution, zero);
     const auto may = (fastest > least) & (live > zero);
     if (!Any(may)) return false;
     const Num half = Num::Splat(0.5), kick = Max(before - warm, zero);
@@ -218,9 +221,16 @@ struct ContactPoint {
     rebound = Select(may & (speed > least), speed, zero);
     return true;
   }
-  /// Those of `lanes` in which it closed and now is to rebound: their bias says so from now on.
-  MaskOf<Num> Rebound(const Num* l_now, MaskOf<Num> lanes) noexcept {
+  /// Those of `lanes` in which it closed and now is to rebound: their bias says so from now on. One
+  /// that others have closed (`later`) rebounds from as fast as they did.
+  MaskOf<Num> Rebound(const Num* u, const Num* l_now, MaskOf<Num> lanes, bool later) noexcept {
     const Num zero = Num::Splat(0.0);
+    if (later && Any(again > zero)) {
+      const Num own = wnn * l_now[0] + w1n * l_now[1] + w2n * l_now[2];
+      const Num speed = again * (own - u[0]);
+      const auto hit = lanes & (rebound == zero) & (speed > Num::Splat(kLeastRebound));
+      rebound = Select(hit, speed, rebound);
+    }
     const auto now = lanes & (l_now[0] > zero) & (rebound > zero) & (rebound + bias[0] > zero);
     bias[0] = Select(now, zero - rebound, bias[0]);
     return now;

@@ -67,7 +67,8 @@ M SolveImpacts(Problem& p, int rows, M lanes) noexcept {
   for (int round = 0; round < kMaxRounds; ++round) {
     auto fresh = M::Splat(false);
     p.ForEach([&](auto& law, int row) {
-      if constexpr (kRebounds<decltype(law)>) fresh = fresh | law.Rebound(p.l() + row, lanes);
+      if constexpr (kRebounds<decltype(law)>)
+        fresh = fresh | law.Rebound(p.u() + row, p.l() + row, lanes, round > 0);
     });
     if (!Any(fresh)) break;
     for (int i = 0; round == 0 && i < rows; ++i) kept.u[i] = p.u()[i], kept.l[i] = p.l()[i];

@@ -72,74 +72,15 @@ class LaneSolve {
     return result;
   }
 
-  /// Displacements that take what is deep out of each other at once, with the least motion: as
-  /// velocities times the step, without friction and cables. Bodies go, and nothing else changes
-  /// (docs/theory/contact.md, eq. 8).
-  void PushOut() noexcept {
-    displaces_ = true;
-    FindIslands([&](int body) { return IsDeep(body); });
-    for (int body = 0; body < m_.body_count; ++body) {
-      if (mem_.root[body] != body || !Gather(body)) continue;
-      SolverWork work{0, settings_.max_linear_solves};
-      mem_.island.Judge();
-      SolveInStages(mem_.island, Target{settings_.tolerance_m_per_s}, work);
-      Displace();
-    }
-    // How far bodies are from each other is to be looked up again.
-    for (int pair = 0; pair < m_.body_pair_count; ++pair) s_.clearance[pair].Set(lane_, 0.0);
-  }
+  /// Takes what is deep out of each other (push_out.inl).
+  void PushOut() noexcept;
 
  private:
-  bool IsDeep(int body) const noexcept {
-    bool deep = false;
-    for (int k = 0; k < work_.contact_count[body]; ++k) {
-      deep = deep || work_.contacts[m_.first_slot[body] + k].deep[lane_] < 0;
-    }
-    for (int i = 0; i < work_.touch_count[lane_]; ++i) {
-      const Contact<L, 2>& c = mem_.pairs[i];
-      deep = deep || (c.links[0].body == body && Any(c.deep < L::Splat(0.0)));
-    }
-    return deep;
-  }
-
-  /// Moves the island's bodies. Of an island by itself the angular momentum stays: a body that goes
-  /// sideways to its velocity turns the slower for it.
-  void Displace() noexcept {
-    const L zero = L::Splat(0.0), half = L::Splat(0.5);
-    const Island<L, StepPools<L>>& island = mem_.island;
-    const Pool<ContactPoint<L, 2>>& contacts = island.pools;
-    bool alone = true;
-    for (int i = 0; i < contacts.count; ++i) {
-      const bool both = contacts.items[i].link_count == 2 && Moves(Body(contacts.items[i], 0)) &&
-                        Moves(Body(contacts.items[i], 1));
-      alone = alone && (both || !Any(island.m.l[3 * i] > zero));
-    }
-    V3<L> momentum{zero, zero, zero};
-    L mass = zero;
-    for (int b = 0; b < count_; ++b) {
-      momentum += island.bodies[b].mass * OfLane<L>(work_.bodies[island.bodies[b].body].v, lane_);
-      mass += island.bodies[b].mass;
-    }
-    const V3<L> common = (L::Splat(1.0) / mass) * momentum;
-    for (int b = 0; b < count_; ++b) {
-      const Twist<L> t = island.Load(island.m.v + kDofs * b);
-      const V3<L> dx = h_ * t.v;
-      const int body = island.bodies[b].body;
-      BodyWork<W>& to = work_.bodies[body];
-      SetLane(s_.pos[body], OfLane<L>(s_.pos[body], lane_) + dx, lane_);
-      const Q4<W>& from = s_.quat[body];
-      Q4<L> q{OfLane<L>(from.w, lane_), OfLane<L>(from.x, lane_), OfLane<L>(from.y, lane_),
-              OfLane<L>(from.z, lane_)};
-      TurnAbout(q, (half * h_) * t.w);
-      NormalizeQuat(q);
-      SetLane(s_.quat[body], q, lane_);
-      const M3<L> R = RotationOf(q);
-      SetLane(to.R.r0, R.r0, lane_), SetLane(to.R.r1, R.r1, lane_), SetLane(to.R.r2, R.r2, lane_);
-      if (!alone) continue;
-      const V3<L> own = island.bodies[b].mass * (OfLane<L>(to.v, lane_) - common);
-      SetLane(s_.mom[body], OfLane<L>(s_.mom[body], lane_) - Cross(dx, own), lane_);
-    }
-  }
+  bool IsDeep(int body) const noexcept;
+  bool IsAlone() const noexcept;
+  V3<L> Pending(int body) const noexcept;
+  V3<L> Displace(int number) noexcept;
+  void KeepMomentum(const V3<L>& gained) noexcept;
   int Body(const ContactPoint<L, 2>& c, int k) const noexcept {
     return mem_.island.bodies[c.links[k].body].body;
   }
@@ -304,12 +245,7 @@ class LaneSolve {
   }
 
   /// The law of a displacement: out, or no further in than to touch.
-  void Displacing(ContactPoint<L, 2>& c, double deep, double gap) const noexcept {
-    const L zero = L::Splat(0.0);
-    c.bias[0] = L::Splat(deep < 0 ? deep : gap < 0 ? 0 : gap) / h_;
-    c.bias[1] = c.bias[2] = c.mu = zero;
-    for (L& l : c.l) l = zero;
-  }
+  void Displacing(ContactPoint<L, 2>& c, double deep, double gap) const noexcept;
 
   void GatherCables(Pool<CableRow<L>>& pool) noexcept {
     pool.count = 0;

@@ -1,0 +1,145 @@
+/// Displacements that take what is deep out of each other at once, with the least motion: as
+/// velocities times the step, without friction and cables (docs/theory/contact.md, eq. 8). Bodies
+/// go, and turn with their spin: no velocity changes, and no energy but that of place. Lane by
+/// lane: it is rare.
+
+namespace taut::sim {
+
+template <class W>
+void LaneSolve<W>::PushOut() noexcept {
+  displaces_ = true;
+  FindIslands([&](int body) { return IsDeep(body); });
+  for (int body = 0; body < m_.body_count; ++body) {
+    if (mem_.root[body] != body || !Gather(body)) continue;
+    SolverWork work{0, settings_.max_linear_solves};
+    mem_.island.Judge();
+    SolveInStages(mem_.island, Target{settings_.tolerance_m_per_s}, work);
+    V3<L> gained{L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};
+    for (int b = 0; b < count_; ++b) gained += Displace(b);
+    if (IsAlone()) KeepMomentum(gained);
+  }
+  LookAgain(m_, s_, lane_);
+}
+
+template <class W>
+bool LaneSolve<W>::IsDeep(int body) const noexcept {
+  bool deep = false;
+  for (int k = 0; k < work_.contact_count[body]; ++k) {
+    deep = deep || work_.contacts[m_.first_slot[body] + k].deep[lane_] < 0;
+  }
+  for (int i = 0; i < work_.touch_count[lane_]; ++i) {
+    const Contact<L, 2>& c = mem_.pairs[i];
+    deep = deep || (c.links[0].body == body && Any(c.deep < L::Splat(0.0)));
+  }
+  return deep;
+}
+
+template <class W>
+void LaneSolve<W>::Displacing(ContactPoint<L, 2>& c, double deep, double gap) const noexcept {
+  const L zero = L::Splat(0.0);
+  c.bias[0] = L::Splat(deep < 0 ? deep : gap < 0 ? 0 : gap) / h_;
+  c.bias[1] = c.bias[2] = c.mu = zero;
+  for (L& l : c.l) l = zero;
+}
+
+/// Whether nothing but its own bodies pushed the island.
+template <class W>
+bool LaneSolve<W>::IsAlone() const noexcept {
+  const Pool<ContactPoint<L, 2>>& contacts = mem_.island.pools;
+  bool alone = true;
+  for (int i = 0; i < contacts.count; ++i) {
+    const ContactPoint<L, 2>& c = contacts.items[i];
+    const bool both = c.link_count == 2 && Moves(Body(c, 0)) && Moves(Body(c, 1));
+    alone = alone && (both || !Any(mem_.island.m.l[3 * i] > L::Splat(0.0)));
+  }
+  return alone;
+}
+
+/// Angular momentum that this step's contacts with the world and stiff cables have yet to add to a
+/// body's.
+template <class W>
+V3<simd::Lane<W>> LaneSolve<W>::Pending(int body) const noexcept {
+  V3<L> sum{L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};
+  for (int k = 0; k < work_.contact_count[body]; ++k) {
+    const Contact<W, 1>& c = work_.contacts[m_.first_slot[body] + k];
+    if (c.live[lane_] > 0) sum += OfLane<L>(Cross(c.arm[0], ImpulseOf(c)), lane_);
+  }
+  for (int i = 0; i < work_.stiff_count; ++i) {
+    const StiffCable<W>& cable = work_.stiff[i];
+    if (!(cable.live[lane_] > 0)) continue;
+    for (int k = 0; k < cable.link_count; ++k) {
+      if (cable.links[k].body != body) continue;
+      sum += OfLane<L>(cable.l[0] * cable.links[k].ang[0], lane_);
+    }
+  }
+  return sum;
+}
+
+/// Moves a body of the island; its momentum turns with it. Returns by how much that changes the
+/// angular momentum of all.
+template <class W>
+V3<simd::Lane<W>> LaneSolve<W>::Displace(int number) noexcept {
+  const Unknown<L>& unknown = mem_.island.bodies[number];
+  const int body = unknown.body;
+  BodyWork<W>& work = work_.bodies[body];
+  const Twist<L> t = mem_.island.Load(mem_.island.m.v + kDofs * number);
+  const V3<L> dx = h_ * t.v;
+  SetLane(s_.pos[body], OfLane<L>(s_.pos[body], lane_) + dx, lane_);
+  const Q4<W>& from = s_.quat[body];
+  Q4<L> q{OfLane<L>(from.w, lane_), OfLane<L>(from.x, lane_), OfLane<L>(from.y, lane_),
+          OfLane<L>(from.z, lane_)};
+  TurnAbout(q, (L::Splat(0.5) * h_) * t.w);
+  NormalizeQuat(q);
+  SetLane(s_.quat[body], q, lane_);
+  const M3<L> before{OfLane<L>(work.R.r0, lane_), OfLane<L>(work.R.r1, lane_),
+                     OfLane<L>(work.R.r2, lane_)};
+  const M3<L> R = RotationOf(q);
+  SetLane(work.R.r0, R.r0, lane_);
+  SetLane(work.R.r1, R.r1, lane_);
+  SetLane(work.R.r2, R.r2, lane_);
+  const V3<L> pending = Pending(body);
+  const V3<L> spin = OfLane<L>(s_.mom[body], lane_) + pending;
+  const V3<L> turned = R * TransposeTimes(before, spin);
+  SetLane(s_.mom[body], turned - pending, lane_);
+  return turned - spin + Cross(dx, unknown.mass * OfLane<L>(work.v, lane_));
+}
+
+/// Of an island by itself the angular momentum stays: all of it turns the slower together for what
+/// its bodies gained.
+template <class W>
+void LaneSolve<W>::KeepMomentum(const V3<L>& gained) noexcept {
+  const L zero = L::Splat(0.0);
+  V3<L> centre{zero, zero, zero};
+  L mass = zero;
+  for (int b = 0; b < count_; ++b) {
+    const Unknown<L>& body = mem_.island.bodies[b];
+    centre += body.mass * OfLane<L>(s_.pos[body.body], lane_);
+    mass += body.mass;
+  }
+  centre = (L::Splat(1.0) / mass) * centre;
+  L a[3][3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}};
+  for (int b = 0; b < count_; ++b) {
+    const Unknown<L>& body = mem_.island.bodies[b];
+    const V3<L> r = OfLane<L>(s_.pos[body.body], lane_) - centre;
+    const S3<L>& i = body.inertia;
+    a[0][0] += i.xx + body.mass * (r.y * r.y + r.z * r.z);
+    a[1][1] += i.yy + body.mass * (r.x * r.x + r.z * r.z);
+    a[2][2] += i.zz + body.mass * (r.x * r.x + r.y * r.y);
+    a[1][0] += i.xy - body.mass * r.x * r.y;
+    a[2][0] += i.xz - body.mass * r.x * r.z;
+    a[2][1] += i.yz - body.mass * r.y * r.z;
+  }
+  L x[3] = {zero - gained.x, zero - gained.y, zero - gained.z};
+  SolveThree(a, x);
+  const V3<L> w{x[0], x[1], x[2]};
+  for (int b = 0; b < count_; ++b) {
+    const Unknown<L>& body = mem_.island.bodies[b];
+    const V3<L> r = OfLane<L>(s_.pos[body.body], lane_) - centre;
+    V3<W>& v = work_.bodies[body.body].v;
+    SetLane(v, OfLane<L>(v, lane_) + Cross(w, r), lane_);
+    V3<W>& momentum = s_.mom[body.body];
+    SetLane(momentum, OfLane<L>(momentum, lane_) + body.inertia * w, lane_);
+  }
+}
+
+}  // namespace taut::sim
