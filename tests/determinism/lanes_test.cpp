@@ -57,10 +57,11 @@ TEST_P(LanesOf, EqualTheirWorldsAloneOnAnyNumberOfThreads) {
 }
 
 TEST_P(LanesOf, TakeTargetsAllAtOnceAsOneByOne) {
-  const auto [simd, model] = GetParam();
+  const auto [set, model] = GetParam();
+  const Simd simd = set.simd;
   const ModelDef def = VariedModels()[model];
   constexpr int kWorlds = 19;
-  if (!BatchOn(simd, def, 1, 1)) GTEST_SKIP() << "this machine has no " << NameOf(simd);
+  if (!BatchOn(simd, def, 1, 1)) GTEST_SKIP() << "this machine has no " << set.name;
   const int cables = static_cast<int>(def.cables.size());
   for (const int threads : {1, 3}) {
     Batch one_by_one = *BatchOn(simd, def, kWorlds, 1),
