@@ -37,6 +37,7 @@ struct CableSummary {
   double max_speed_m_per_s = 0;  ///< Largest rate of the rest length.
   double max_power_w = 0;        ///< Largest tension times winding-in rate.
   double energy_j = 0;           ///< Work done while winding in.
+  double net_energy_j = 0;       ///< The same less what paying out gave back.
 };
 
 struct DragSummary {

@@ -14,6 +14,9 @@
 #define TAUT_NO_OVERLAP _Pragma("GCC ivdep")
 #endif
 
+/// Before a loop of few turns, whose number is known: written out, indices cost nothing.
+#define TAUT_UNROLL _Pragma("GCC unroll 12")
+
 namespace taut {
 
 TAUT_INLINE double Sqrt(double a) noexcept { return __builtin_sqrt(a); }

@@ -63,6 +63,7 @@ void Statistics::Take(double time_s, double step_s, const std::vector<CableState
         cable.max_speed = std::max(cable.max_speed, std::fabs(wound_m) / step_s);
         cable.max_power_w = std::max(cable.max_power_w, r.tension_n * wound_m / step_s);
         cable.energy_j += r.tension_n * std::max(wound_m, 0.0);
+        cable.net_energy_j += r.tension_n * wound_m;
       }
     }
     cable.rest_length_m = r.rest_length_m;
@@ -91,6 +92,7 @@ void Statistics::Fill(RunSummary& summary) const {
     out.max_speed_m_per_s = cable.max_speed;
     out.max_power_w = cable.max_power_w;
     out.energy_j = cable.energy_j;
+    out.net_energy_j = cable.net_energy_j;
     if (out.tension.max_n > summary.system_max_tension_n) {
       summary.system_max_tension_n = out.tension.max_n;
       summary.system_max_tension_cable = out.name;

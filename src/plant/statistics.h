@@ -32,7 +32,8 @@ class Statistics {
   };
   struct Cable {
     Quantity tension, elastic;
-    double rest_length_m = 0, max_force_n = 0, max_speed = 0, max_power_w = 0, energy_j = 0;
+    double rest_length_m = 0, max_force_n = 0, max_speed = 0, max_power_w = 0, energy_j = 0,
+           net_energy_j = 0;
   };
   void Take(Quantity& quantity, double time_s, double force_n) const;
 

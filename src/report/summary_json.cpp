@@ -36,7 +36,8 @@ Json ToJson(const CableSummary& cable, const RunSummary& run) {
            {{"max_force_n", cable.max_force_n},
             {"max_speed_m_per_s", cable.max_speed_m_per_s},
             {"max_power_w", cable.max_power_w},
-            {"energy_j", cable.energy_j}}}};
+            {"energy_j", cable.energy_j},
+            {"net_energy_j", cable.net_energy_j}}}};
 }
 
 Json ToJson(const ReferenceSpec& reference, const RunSummary& run) {

@@ -106,13 +106,13 @@ std::string ActuatorTable(const RunSummary& run) {
   const std::size_t name_width = NameWidth(run.cables);
   for (const CableSummary& cable : run.cables) {
     if (cable.max_force_n == 0.0 && cable.max_speed_m_per_s == 0.0) continue;
-    rows +=
-        fmt::format("{:<{}} {:>12.2f}{:>16.4f}{:>14.3f}{:>12.3f}\n", cable.name, name_width,
-                    cable.max_force_n, cable.max_speed_m_per_s, cable.max_power_w, cable.energy_j);
+    rows += fmt::format("{:<{}} {:>12.2f}{:>16.4f}{:>14.3f}{:>12.3f}{:>12.3f}\n", cable.name,
+                        name_width, cable.max_force_n, cable.max_speed_m_per_s, cable.max_power_w,
+                        cable.energy_j, cable.net_energy_j);
   }
   if (rows.empty()) return {};
-  return fmt::format("\n{:<{}} {:>12}{:>16}{:>14}{:>12}\n", "actuator", name_width, "max force N",
-                     "max speed m/s", "max power W", "energy J") +
+  return fmt::format("\n{:<{}} {:>12}{:>16}{:>14}{:>12}{:>12}\n", "actuator", name_width,
+                     "max force N", "max speed m/s", "max power W", "energy J", "net J") +
          rows;
 }
 

@@ -18,6 +18,9 @@ struct Contact : ContactPoint<Num, kLinks> {
   Num frame;            ///< Contacts with equal numbers have the same directions.
   Num gap;              ///< At the middle of the step [m].
   Num deep;             ///< What velocities leave of it for displacements, below 0 [m]; or 0.
+  Num lands;            ///< 1 if it closes faster than this step's forces make it.
+  Num radius;           ///< From the shape's skeleton to its surface [m].
+  bool upright;         ///< Its directions are z, x and y, in all lanes.
   V3<Num> arm[kLinks];  ///< From the centre of mass [m].
   Num static_friction, kinetic_friction;
   Num patch;  ///< While biases are fitted: in which state it is.

@@ -19,6 +19,7 @@
 #include "sim/stage_collide.inl"
 #include "sim/prepare_contact.inl"
 #include "sim/fit_biases.inl"
+#include "sim/follow_arcs.inl"
 #include "sim/solve/impacts.inl"
 #include "sim/solve/body_dual.inl"
 #include "sim/solve/world_dual.inl"
@@ -75,18 +76,33 @@ void KeepStart(const View& m, const Rows<W>& s, const Scratch<W>& work, M halted
 #undef TAUT_ROW
 }
 
-/// Velocities back into the state; what the contacts remember.
+/// Velocities back into the state, and what the next step goes by: that it will be pushed as in
+/// this one, but for impacts.
+template <class W>
+TAUT_INLINE void StoreBody(const Rows<W>& s, const BodyWork<W>& body, int b,
+                           double step_s) noexcept {
+  const W zero = W::Splat(0.0);  // + 0: see StageDriftSecond
+  const V3<W> none{zero, zero, zero};
+  s.old_vel[b] = s.vel[b];
+  s.old_spin[b] = body.w0 + none;
+  s.vel[b] = body.v + none;
+  s.mom[b] += none;
+  s.held_torque[b] = W::Splat(1.0 / step_s) * (s.mom[b] - body.mom_free);
+  const auto landed = body.landed > zero;
+  if (!Any(landed)) return;
+  const V3<W> v_free = body.v0 + (W::Splat(step_s) * s.inv_mass[b]) * body.force;
+  const V3<W> w_free = body.inv_inertia * body.mom_free;
+  s.old_vel[b] = Select3(landed, s.old_vel[b] + (body.v - v_free) + none, s.old_vel[b]);
+  s.old_spin[b] = Select3(landed, s.old_spin[b] + (body.w - w_free) + none, s.old_spin[b]);
+  s.held_torque[b] = Select3(landed, none, s.held_torque[b]);
+}
+
+/// What the bodies and the contacts remember.
 template <class W>
 void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
                   double step_s) noexcept {
   const W zero = W::Splat(0.0);  // + 0: see StageDriftSecond
   const V3<W> none{zero, zero, zero};
-  for (int b = 0; b < m.body_count; ++b) {
-    s.old_vel[b] = s.vel[b];
-    s.old_spin[b] = work.bodies[b].w0 + none;
-    s.vel[b] = work.bodies[b].v + none;
-    s.mom[b] += none;
-  }
   const W inv_h = W::Splat(1.0 / step_s);
   for (int b = 0; b < m.body_count; ++b) {
     g.slots_used[b] = work.contact_count[b];
@@ -101,6 +117,7 @@ void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& w
       s.contact_normal[i] = c.links[0].lin[0];
       s.contact_gap[i] = c.gap;
     }
+    StoreBody(s, work.bodies[b], b, step_s);
   }
 }
 

@@ -160,6 +160,7 @@ class Compiler {
       std::copy(n, n + 3, table.normal);
       std::copy(t1, t1 + 3, table.tangent1);
       std::copy(t2, t2 + 3, table.tangent2);
+      table.upright = n[2] == 1 && t1[0] == 1 && t2[1] == 1;
       table.offset_m = n[0] * p.point_m.x + n[1] * p.point_m.y + n[2] * p.point_m.z;
       t_.planes.push_back(table);
     }

@@ -46,6 +46,24 @@ TAUT_INLINE void FinishLink(Link<Num, 3>& link, int body, Num inv_mass, const S3
   }
 }
 
+/// The same with the directions z, x, y: with the same bits but for zeros' signs.
+template <class Num>
+TAUT_INLINE void FinishUprightLink(Link<Num, 3>& link, int body, Num inv_mass, const S3<Num>& i,
+                                   const V3<Num>& arm) noexcept {
+  const Num zero = Num::Splat(0.0);
+  link.body = body;
+  link.inv_mass = inv_mass;
+  link.ang[0] = {arm.y, -arm.x, zero};
+  link.ang[1] = {zero, arm.z, -arm.y};
+  link.ang[2] = {-arm.z, zero, arm.x};
+  link.turn[0] = {i.xx * arm.y - i.xy * arm.x, i.xy * arm.y - i.yy * arm.x,
+                  i.xz * arm.y - i.yz * arm.x};
+  link.turn[1] = {i.xy * arm.z - i.xz * arm.y, i.yy * arm.z - i.yz * arm.y,
+                  i.yz * arm.z - i.zz * arm.y};
+  link.turn[2] = {i.xz * arm.x - i.xx * arm.z, i.yz * arm.x - i.xy * arm.z,
+                  i.zz * arm.x - i.xz * arm.z};
+}
+
 /// Velocity along one of a contact's directions.
 template <class Num, int kLinks>
 TAUT_INLINE Num RowVelocity(const Contact<Num, kLinks>& c, int row, const V3<Num>& va,
@@ -74,7 +92,11 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
     MakeTangents(c, free);
   }
   c.link_count = kLinks;
-  FinishLink(c.links[0], body_a, inv_mass_a, a.inv_inertia, c.arm[0]);
+  if (!kPair && c.upright) {
+    FinishUprightLink(c.links[0], body_a, inv_mass_a, a.inv_inertia, c.arm[0]);
+  } else {
+    FinishLink(c.links[0], body_a, inv_mass_a, a.inv_inertia, c.arm[0]);
+  }
   if (kPair) {
     Link<Num, 3>& other = c.links[kLinks - 1];
     for (int r = 0; r < 3; ++r) other.lin[r] = -c.links[0].lin[r];
@@ -89,6 +111,7 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   const Num kick = Max(before - RowVelocity(c, 0, a.v, a.w, b.v, b.w), zero);
   const Num slowly = Num::Splat(kPushOutShare) * Abs(before);
   c.bias[0] = Max(c.gap * inv_h, zero - (Num::Splat(0.5) * kick + slowly));
+  c.lands = Select(before < -kick, one, zero);
   c.deep = Select((c.live > zero) & (c.gap < zero), Min(c.gap - h * c.bias[0], zero), zero);
   c.bias[1] = c.bias[2] = zero;
   c.slip = zero;

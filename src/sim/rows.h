@@ -71,6 +71,8 @@ struct BodyWork {
   V3<W> v0, w0;         ///< Before this step's forces.
   V3<W> v_mid, w_mid;   ///< Means over the step, as far as known: for dampers.
   V3<W> force, torque;  ///< Of cables, gravity and nodes [N], [N m].
+  V3<W> mom_free;       ///< Angular momentum without contacts and stiff cables.
+  W landed;             ///< 1 where a contact of the body landed in this step.
   W turns;              ///< No point goes further by turning in this step, without contacts [m],
   W turned;             ///< and since the middle of the step before.
 };

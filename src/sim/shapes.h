@@ -67,6 +67,11 @@ struct Shape {
   BoxShape box = {};
 };
 
+/// How far its surface is from its skeleton of points and lines.
+inline double RadiusOf(const Shape& shape) noexcept {
+  return shape.kind == ShapeKind::kRound ? shape.round.radius_m : 0.0;
+}
+
 /// `use` with the struct of the shape's kind.
 template <class Use>
 auto WithShape(const Shape& shape, const Use& use) noexcept {

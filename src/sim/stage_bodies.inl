@@ -180,6 +180,8 @@ void StageKick(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexcept 
     BodyWork<W>& body = work.bodies[b];
     body.v = body.v0 + (h * s.inv_mass[b]) * body.force;
     s.mom[b] += h * body.torque;
+    body.mom_free = s.mom[b];
+    body.landed = W::Splat(0.0);
     body.w = body.inv_inertia * s.mom[b];
   }
 }

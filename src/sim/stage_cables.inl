@@ -160,7 +160,7 @@ TAUT_INLINE void RelaxCable(Scratch<W>& work, CableWork<W>& row, W half_h) noexc
   }
   const W wish = row.tension + row.share * (row.spring + row.damping * dl - row.tension);
   const W tension = Select(row.damped, Min(Max(wish, zero), row.upper), row.spring);
-  const W change = Select(row.soft, half_h * (tension - row.tension), zero);
+  const W change = half_h * (tension - row.tension);
   row.tension = tension;
   for (int i = 0; i < link_count; ++i) {
     BodyWork<W>& body = work.bodies[row.links[i].body];
@@ -216,10 +216,12 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
   }
   const W half_h = W::Splat(0.5 * step_s);
   row.damping = s.damping[c];
-  // With nothing to damp, or slack, the spring alone: to the bit.
-  row.damped = (row.damping > zero) & (row.spring > zero);
+  // With nothing to damp, or slack, the spring alone: to the bit. Stiff ones stay as they are.
+  row.damped = stiff | ((row.damping > zero) & (row.spring > zero));
   row.share = W::Splat(1.0) / (W::Splat(1.0) + half_h * row.damping * row.A);
-  row.upper = cable.clamped_damping ? row.spring + row.spring : W::Splat(1e300);
+  if (any_stiff) row.share = Select(stiff, zero, row.share);
+  row.upper = W::Splat(1e300);
+  if (cable.clamped_damping) row.upper = Select(stiff, row.upper, row.spring + row.spring);
   row.tension = Select(s.last_step[0] > zero, s.tension[c], zero);
   RelaxCable<kTwo>(work, row, half_h);
 }

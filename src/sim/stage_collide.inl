@@ -26,8 +26,9 @@ void BoundTurns(const View& m, Scratch<W>& work, W h, W since_last) noexcept {
 /// What the finding of a contact with the world says about it.
 template <class W>
 struct Found {
-  W key, frame, gap, static_friction, kinetic_friction, restitution;
+  W key, frame, gap, radius, static_friction, kinetic_friction, restitution;
   V3<W> n, t1, t2, arm;
+  bool upright;
 };
 
 template <class W, class M>
@@ -38,6 +39,7 @@ TAUT_INLINE void PutContact(Contact<W, 1>& slot, const Found<W>& found, M lanes)
   put3(d[0], found.n), put3(d[1], found.t1), put3(d[2], found.t2);
   put3(slot.arm[0], found.arm);
   put(slot.key, found.key), put(slot.frame, found.frame), put(slot.gap, found.gap);
+  put(slot.radius, found.radius);
   put(slot.static_friction, found.static_friction);
   put(slot.kinetic_friction, found.kinetic_friction);
   put(slot.restitution, found.restitution);
@@ -82,10 +84,12 @@ class SlotFiller {
       // Lanes that have no such contact keep a harmless one.
       ++count_;
       slot.one_direction = one_direction_;
+      slot.upright = found.upright;
       slot.live = W::Splat(0.0);
       PutContact(slot, found, MaskOf<W>::Splat(true));
       slot.key = Select(here, found.key, W::Splat(kNoKey));
     } else {
+      slot.upright = slot.upright && found.upright;
       PutContact(slot, found, here);
     }
     slot.live = Select(here, W::Splat(1.0), slot.live);
@@ -129,9 +133,11 @@ void CollidePlanes(const View& m, const Rows<W>& s, Scratch<W>& work, W h, int b
       found.key = W::Splat(i * m.plane_count + k);
       found.frame = m.along_slip ? W::Splat(-1.0) - found.key : W::Splat(k);
       found.gap = gap;
+      found.radius = W::Splat(point.radius_m);
       found.static_friction = W::Splat(point.static_friction[k]);
       found.kinetic_friction = W::Splat(point.kinetic_friction[k]);
       found.restitution = W::Splat(point.restitution[k]);
+      found.upright = plane.upright && !m.along_slip;
       found.n = simd::Splat3<W>(plane.normal);
       found.t1 = simd::Splat3<W>(plane.tangent1);
       found.t2 = simd::Splat3<W>(plane.tangent2);
@@ -179,16 +185,18 @@ W DistanceOfBodies(const View& m, const Rows<W>& s, const Scratch<W>& work,
 
 /// A touching point of a body and a shape that does not move, for one lane of a slot.
 template <class W>
-Found<W> FoundTouch(const Rows<W>& s, const Scratch<W>& work, const ShapePairTable& pair,
-                    const TouchPoint& t, int body, int lane) noexcept {
+Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
+                    const ShapePairTable& pair, const TouchPoint& t, int body, int lane) noexcept {
   const V3<W>& x = s.pos[body];
   Found<W> found;
   found.key = W::Splat(pair.id + static_cast<uint32_t>(t.feature));
   found.frame = W::Splat(-1.0) - found.key;  // like no other
   found.gap = W::Splat(t.gap_m);
+  found.radius = W::Splat(RadiusOf(m.shapes[pair.a].shape_P));
   found.static_friction = W::Splat(pair.static_friction);
   found.kinetic_friction = W::Splat(pair.kinetic_friction);
   found.restitution = W::Splat(pair.restitution);
+  found.upright = false;
   found.n = simd::Splat3<W>(t.normal);
   found.t1 = found.t2 = found.n;  // to be made
   const V3<W>& v = work.bodies[body].v;
@@ -224,7 +232,7 @@ void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
         --left;
         const bool room =
             slots != nullptr
-                ? slots->Add(FoundTouch(s, work, pair, points[i], body, lane), lane)
+                ? slots->Add(FoundTouch(m, s, work, pair, points[i], body, lane), lane)
                 : work.AddTouch(m, lane, static_cast<int>(&pair - m.shape_pairs), points[i]);
         if (!room) *overflow |= 1u << lane;
       }

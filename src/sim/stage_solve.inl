@@ -62,6 +62,15 @@ void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
   }
 }
 
+template <class W>
+void FollowWorldArcs(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
+  for (int b = 0; b < m.body_count; ++b) {
+    const int count = work.contact_count[b];
+    if (count == 0) continue;
+    FollowArcs(s, work.bodies[b], b, work.contacts + m.first_slot[b], count, W::Splat(step_s));
+  }
+}
+
 /// Which lanes' bodies are left to the lane's own solve from the start: those that touch moving
 /// bodies, and all of a world with stiff cables that is not solved in lanes.
 template <class W, class M>
@@ -189,6 +198,9 @@ void FinishTouches(const View& m, const Rows<W>& s, Scratch<W>& work, int lane,
       SetLane(s.mom[body], k == 0 ? before + turned : before - turned, lane);
     }
     JudgeSlip(c, u);
+    for (int k = 0; k < 2 && Any((c.lands > L::Splat(0.0)) & (c.l[0] > L::Splat(0.0))); ++k) {
+      work.bodies[c.links[k].body].landed.Set(lane, 1.0);
+    }
     const int slot = m.slot_count + i;
     s.contact_key[slot].Set(lane, c.key[0]);
     SetLane(s.contact_force[slot], inv_h * impulse, lane);
@@ -264,6 +276,7 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
   const auto dual = work.dual.capacity > 0 ? cabled & (touches == zero) : MaskOf<W>::Splat(false);
   MarkUnsolved(m, work, cabled & !dual);
   FitWorldBiases(m, work, cabled);
+  FollowWorldArcs(m, s, work, step_s);
   SolveBodies(m, work, target, busy & !cabled, result);
   if (Any(dual)) {
     const auto failed =
@@ -278,6 +291,7 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
       Contact<W, 1>& c = work.contacts[m.first_slot[b] + k];
       s.mom[b] += Cross(c.arm[0], ImpulseOf(c));
       W u[3] = {zero, zero, zero};
+      work.bodies[b].landed = Max(Select(c.l[0] > zero, c.lands, zero), work.bodies[b].landed);
       if (!Any(c.static_friction > c.kinetic_friction)) continue;
       AddVelocity(c.links[0], work.bodies[b].v, work.bodies[b].w, u);
       JudgeSlip(c, u);

@@ -42,6 +42,7 @@ inline constexpr int kWidthNumber = 1, kWidthV3 = 3, kWidthQ4 = 4;
   ROW(mom,            V3,     kBody,     kState,     kGoesBack, AngularMomentum)  /* about com, in W [kg m^2/s] */ \
   ROW(old_vel,        V3,     kBody,     kState,     kStays,    Velocity)         /* vel before the last step */ \
   ROW(old_spin,       V3,     kBody,     kState,     kZero,     Spin)             /* its angular velocity [rad/s] */ \
+  ROW(held_torque,    V3,     kBody,     kState,     kZero,    Zero)             /* of contacts and stiff cables in the last step [N m]; 0 after a landing */ \
   ROW(rest,           Number, kCable,    kState,     kGoesBack, RestLength)       /* [m] */ \
   ROW(rest_rate,      Number, kCable,    kState,     kGoesBack, Zero)             /* [m/s] */ \
   ROW(target,         Number, kCable,    kState,     kStays,    RestLength)       /* [m] */ \

@@ -47,7 +47,8 @@ struct PointTable {
 
 struct PlaneTable {
   double normal[3] = {}, tangent1[3] = {}, tangent2[3] = {};
-  double offset_m = 0;  ///< normal . x of its points.
+  double offset_m = 0;   ///< normal . x of its points.
+  bool upright = false;  ///< Normal and tangents are z, x and y.
 };
 
 struct ShapePairTable {

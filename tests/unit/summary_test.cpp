@@ -24,6 +24,7 @@ CableSummary Cable(const std::string& name, double base, std::size_t phase_count
   cable.max_speed_m_per_s = 0.07;
   cable.max_power_w = 2.1875;
   cable.energy_j = 0.5;
+  cable.net_energy_j = 0.375;
   return cable;
 }
 
@@ -74,6 +75,7 @@ TEST(SummaryJson, HoldsEverythingUnderItsName) {
   EXPECT_EQ(cable["actuator"]["max_speed_m_per_s"], 0.07);
   EXPECT_EQ(cable["actuator"]["max_power_w"], 2.1875);
   EXPECT_EQ(cable["actuator"]["energy_j"], 0.5);
+  EXPECT_EQ(cable["actuator"]["net_energy_j"], 0.375);
   EXPECT_EQ(json["drags"][0]["name"], "scale");
   EXPECT_EQ(json["drags"][0]["force"]["mean_n"], 1.5);
   EXPECT_EQ(json.begin().key(), "format_version") << "keys stay in order";
@@ -160,9 +162,9 @@ elastic part alone: 39.250 N; from 5 s on: 38.250 N
 drag [N]       mean     min     max
 scale         1.500   1.250   1.750
 
-actuator     max force N   max speed m/s   max power W    energy J
-inner_top_1        31.25          0.0700         2.188       0.500
-outer_top_2        31.25          0.0700         2.188       0.500
+actuator     max force N   max speed m/s   max power W    energy J       net J
+inner_top_1        31.25          0.0700         2.188       0.500       0.375
+outer_top_2        31.25          0.0700         2.188       0.500       0.375
 )");
 }
 

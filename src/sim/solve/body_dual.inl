@@ -179,17 +179,17 @@ class BodyDual {
   /// Gaussian elimination; the diagonal dominates enough to go without pivots, and a lane for
   /// which that is not so does not get there.
   void Eliminate() noexcept {
-    for (int k = 0; k < kSize; ++k) {
+    TAUT_UNROLL for (int k = 0; k < kSize; ++k) {
       const W inverse = W::Splat(1.0) / a_[k][k];
-      for (int i = k + 1; i < kSize; ++i) {
+      TAUT_UNROLL for (int i = k + 1; i < kSize; ++i) {
         const W factor = a_[i][k] * inverse;
-        for (int j = k + 1; j < kSize; ++j) a_[i][j] -= factor * a_[k][j];
+        TAUT_UNROLL for (int j = k + 1; j < kSize; ++j) a_[i][j] -= factor * a_[k][j];
         delta_[i] -= factor * delta_[k];
       }
       a_[k][k] = inverse;
     }
-    for (int k = kSize - 1; k >= 0; --k) {
-      for (int j = k + 1; j < kSize; ++j) delta_[k] -= a_[k][j] * delta_[j];
+    TAUT_UNROLL for (int k = kSize - 1; k >= 0; --k) {
+      TAUT_UNROLL for (int j = k + 1; j < kSize; ++j) delta_[k] -= a_[k][j] * delta_[j];
       delta_[k] = delta_[k] * a_[k][k];
     }
   }

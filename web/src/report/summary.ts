@@ -5,7 +5,7 @@ import { facts, section } from "./page";
 
 interface Span { mean_n: number; min_n: number; max_n: number }
 interface Force { max_n: number; max_after_start_n?: number; phases?: Record<string, Span> }
-interface CableSummary { name: string; tension?: Force; actuator?: { max_power_w?: number; energy_j?: number; max_speed_m_per_s?: number } }
+interface CableSummary { name: string; tension?: Force; actuator?: { max_power_w?: number; energy_j?: number; net_energy_j?: number; max_speed_m_per_s?: number } }
 interface Summary extends Record<string, unknown> { cables?: CableSummary[]; phases?: { name: string; from_s: number; to_s: number }[] }
 
 export function summarySection(report: Report): HTMLElement[] {
@@ -21,11 +21,11 @@ export function summarySection(report: Report): HTMLElement[] {
 
 function cableTable({ cables = [], phases = [] }: Summary): HTMLElement[] {
   if (cables.length === 0) return [];
-  const head = el("tr", {}, ...["cable", "largest", "after the start", ...phases.map(({ name, from_s, to_s }) => `${name} (${from_s}–${to_s} s)`), "largest power", "energy"]
+  const head = el("tr", {}, ...["cable", "largest", "after the start", ...phases.map(({ name, from_s, to_s }) => `${name} (${from_s}–${to_s} s)`), "largest power", "energy", "net"]
     .map((text) => el("th", { scope: "col" }, text)));
-  const units = el("tr.units", {}, ...["", "N", "N", ...phases.map(() => "mean N"), "W", "J"].map((text) => el("td", {}, text)));
+  const units = el("tr.units", {}, ...["", "N", "N", ...phases.map(() => "mean N"), "W", "J", "J"].map((text) => el("td", {}, text)));
   const rows = cables.map(({ name, tension, actuator }) => el("tr", {}, el("th", { scope: "row" }, name),
-    ...[tension?.max_n, tension?.max_after_start_n, ...phases.map((phase) => tension?.phases?.[phase.name]?.mean_n), actuator?.max_power_w, actuator?.energy_j]
+    ...[tension?.max_n, tension?.max_after_start_n, ...phases.map((phase) => tension?.phases?.[phase.name]?.mean_n), actuator?.max_power_w, actuator?.energy_j, actuator?.net_energy_j]
       .map((value) => el("td", {}, number(value ?? NaN, 4)))));
   return [el("h3", {}, "Tensions"), el("div.scroll", {}, el("table.numbers", {}, el("thead", {}, head, units), el("tbody", {}, ...rows)))];
 }
