@@ -8,9 +8,9 @@
 namespace taut::sim {
 
 /// The contacts of one body.
-template <class W>
+template <class W, class M>
 void FollowArcs(const Rows<W>& s, const BodyWork<W>& body, int b, Contact<W, 1>* contacts,
-                int count, W h) noexcept {
+                int count, M lanes, W h) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
   const W half_h = W::Splat(0.5) * h, sixth_h2 = W::Splat(1.0 / 6.0) * h * h;
   W number = zero;
@@ -32,7 +32,7 @@ void FollowArcs(const Rows<W>& s, const BodyWork<W>& body, int b, Contact<W, 1>*
   // Until the middle of the next step the middle goes on by h (w x c + ahead), and the body turns
   // by h (w + spin); where a step turns it by about a radian, series mean nothing any more.
   const W w_w = Dot(w, w), radians4 = (h * h * w_w) * (h * h * w_w);
-  const W good = one / (one + radians4);
+  const W good = Select(lanes, one / (one + radians4), zero);
   const V3<W> spin = good * (half_h * w1 + sixth_h2 * (w2 - W::Splat(0.5) * bend - w_w * w));
   const V3<W> ahead = good * (half_h * c2 + sixth_h2 * c3) - Cross(spin, c);
   const V3<W> faster = (good * half_h) * w1;

@@ -62,12 +62,18 @@ void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
   }
 }
 
-template <class W>
-void FollowWorldArcs(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
+/// Not where bodies touch others that move: biases that agree on a body contradict each other around
+/// a loop of bodies, and heaps are left unsolved by it.
+template <class W, class M>
+void FollowWorldArcs(const View& m, const Rows<W>& s, Scratch<W>& work, M tied,
+                     double step_s) noexcept {
   for (int b = 0; b < m.body_count; ++b) {
     const int count = work.contact_count[b];
     if (count == 0) continue;
-    FollowArcs(s, work.bodies[b], b, work.contacts + m.first_slot[b], count, W::Splat(step_s));
+    const auto lanes = tied | !(work.unsolved[b] > W::Splat(0.0));
+    if (!Any(lanes)) continue;
+    FollowArcs(s, work.bodies[b], b, work.contacts + m.first_slot[b], count, lanes,
+               W::Splat(step_s));
   }
 }
 
@@ -276,7 +282,7 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
   const auto dual = work.dual.capacity > 0 ? cabled & (touches == zero) : MaskOf<W>::Splat(false);
   MarkUnsolved(m, work, cabled & !dual);
   FitWorldBiases(m, work, cabled);
-  FollowWorldArcs(m, s, work, step_s);
+  FollowWorldArcs(m, s, work, cabled, step_s);
   SolveBodies(m, work, target, busy & !cabled, result);
   if (Any(dual)) {
     const auto failed =
