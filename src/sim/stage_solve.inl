@@ -62,8 +62,8 @@ void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
   }
 }
 
-/// Not where bodies touch others that move: biases that agree on a body contradict each other around
-/// a loop of bodies, and heaps are left unsolved by it.
+/// Not where bodies touch others that move: biases that agree on a body contradict each other
+/// around a loop of bodies, and heaps are left unsolved by it.
 template <class W, class M>
 void FollowWorldArcs(const View& m, const Rows<W>& s, Scratch<W>& work, M tied,
                      double step_s) noexcept {

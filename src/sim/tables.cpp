@@ -1,0 +1,45 @@
+// The tables as the step sees them, and where a group of worlds keeps what.
+#include "sim/tables.h"
+
+namespace taut::sim {
+
+View Tables::View() const noexcept {
+  return {body_count,
+          cable_count,
+          node_count,
+          plane_count,
+          static_cast<int>(body_pairs.size()),
+          bound_m.data(),
+          cables.data(),
+          attachments.data(),
+          spots.data(),
+          nodes.data(),
+          planes.data(),
+          first_point.data(),
+          points.data(),
+          shapes.data(),
+          shape_pairs.data(),
+          body_pairs.data(),
+          world_pair_count,
+          first_slot.data(),
+          slot_count,
+          first_pair_id,
+          pair_capacity,
+          max_attachments,
+          static_cast<int>(attachments.size()),
+          static_cast<int>(spots.size()),
+          along_slip};
+}
+
+Layout Tables::MakeLayout() const {
+  const struct View m = View();
+  Layout l;
+  for (const RowInfo& row : kStateRows) {
+    l.*row.first = l.rows;
+    l.rows += row.width * m.Count(row.per);
+    if (row.role <= Role::kParameter) l.snapshot_rows = l.rows;
+  }
+  return l;
+}
+
+}  // namespace taut::sim
