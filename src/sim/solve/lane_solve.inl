@@ -245,6 +245,7 @@ class LaneSolve {
   void GatherBody(int body, Unknown<L>& out) const noexcept {
     const BodyWork<W>& b = work_.bodies[body];
     out.body = body;
+    out.size = kDofs;
     out.mass = OfLane<L>(s_.mass[body], lane_);
     out.inv_mass = OfLane<L>(s_.inv_mass[body], lane_);
     out.inv_inertia = OfLane<L>(b.inv_inertia, lane_);
