@@ -268,6 +268,15 @@ class LaneSolve {
     }
   }
 
+  /// As the lanes have worked them out, all together (prepare_contact.inl).
+  void GatherMasses(const Contact<W, 1>& from, ContactPoint<L, 2>& to) const noexcept {
+    to.wnn = OfLane<L>(from.wnn, lane_), to.wt = OfLane<L>(from.wt, lane_);
+    to.inv_wnn = OfLane<L>(from.inv_wnn, lane_), to.inv_wt = OfLane<L>(from.inv_wt, lane_);
+    to.w1n = OfLane<L>(from.w1n, lane_), to.w2n = OfLane<L>(from.w2n, lane_);
+    to.w11 = OfLane<L>(from.w11, lane_), to.w12 = OfLane<L>(from.w12, lane_);
+    to.w22 = OfLane<L>(from.w22, lane_);
+  }
+
   void GatherContacts(Pool<ContactPoint<L, 2>>& pool) noexcept {
     pool.count = 0;
     for (int i = 0; i < count_; ++i) {
@@ -288,7 +297,7 @@ class LaneSolve {
         to.one_direction = from.one_direction;
         to.link_count = 1;
         GatherLink(from.links[0], to.links[0]);
-        to.FinishMasses();
+        GatherMasses(from, to);
         if (displaces_) Displacing(to, from.deep[lane_], from.gap[lane_]);
       }
     }
