@@ -28,10 +28,10 @@ class Variant:
 
 
 class Taut:
-    """The taut command and the folder that holds what it makes."""
+    """The taut command and the folder that holds what it makes. `writes`: pages are made, not checked."""
 
-    def __init__(self, command, folder):
-        self.command, self.folder = command, folder
+    def __init__(self, command, folder, writes=True):
+        self.command, self.folder, self.writes = command, folder, writes
         if not os.access(command, os.X_OK):
             raise Problem(f"there is no {command}; build it with script/build, or name it with --taut")
 
@@ -76,6 +76,15 @@ class Result:
 
     def max(self, cable, quantity, after_start=False):
         return self.cables[cable][quantity]["max_after_start_n" if after_start else "max_n"]
+
+
+def keep_picture(taut, path, text):
+    """Writes a page's picture, or complains if it is another one."""
+    path = ROOT / path
+    if taut.writes:
+        path.write_text(text)
+    elif not path.exists() or path.read_text() != text:
+        raise Problem(f"{path.relative_to(ROOT)} is not up to date")
 
 
 def yaml_block(path, key):

@@ -1,9 +1,10 @@
-// The blocks of a sparse matrix over bodies: ordered and filled as counting by hand says, and
-// solved as a dense matrix is.
+// The blocks of a sparse matrix over bodies, point masses and rotors: ordered and filled as
+// counting by hand says, and solved as a dense matrix is, and as its transpose.
 #include <gtest/gtest.h>
 
 #include <set>
 
+#include "tests/solver/dense_solve.h"
 #include "tests/solver/island_of.h"
 
 namespace taut::test {
@@ -123,26 +124,6 @@ TEST(Elimination, TakesTheLowestOfLeastDegreeAndFillsWhatItMust) {
   }
 }
 
-/// x with A x = b; Gauss with pivots.
-std::vector<double> DenseSolve(std::vector<std::vector<double>> a, std::vector<double> b) {
-  const std::size_t n = b.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    std::size_t best = k;
-    for (std::size_t i = k; i < n; ++i) best = std::abs(a[i][k]) > std::abs(a[best][k]) ? i : best;
-    std::swap(a[k], a[best]), std::swap(b[k], b[best]);
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const double f = a[i][k] / a[k][k];
-      for (std::size_t j = k; j < n; ++j) a[i][j] -= f * a[k][j];
-      b[i] -= f * b[k];
-    }
-  }
-  for (std::size_t k = n; k-- > 0;) {
-    for (std::size_t j = k + 1; j < n; ++j) b[k] -= a[k][j] * b[j];
-    b[k] /= a[k][k];
-  }
-  return b;
-}
-
 /// What the matrix needs of a law: rows on up to three bodies.
 struct ThreeLinks {
   static constexpr int kRows = 3;
@@ -155,12 +136,13 @@ struct System {
   std::vector<sim::Unknown<Num>> bodies;
   std::vector<ThreeLinks> laws;
   Edges edges;
-  std::vector<std::vector<double>> dense;
+  Dense dense;
   std::vector<double> rhs;
 };
 
-/// M + sum of J^T G J, G positive definite, or not symmetric but nearly so.
-System RandomSystem(int count, bool symmetric, math::Random& random) {
+/// M + sum of J^T G J, G positive definite, or not symmetric but nearly so. `mixed`: some unknowns
+/// have 3 velocities or 1; of what they lack the dense matrix has a one on its diagonal.
+System RandomSystem(int count, bool symmetric, math::Random& random, bool mixed = false) {
   System s;
   const std::size_t n = At(6 * count);
   s.dense.assign(n, std::vector<double>(n));
@@ -171,11 +153,19 @@ System RandomSystem(int count, bool symmetric, math::Random& random) {
     const Inertia inertia = {{{1, off, 0.1}, {off, 1.5, -0.2}, {0.1, -0.2, 2}}};
     body.mass = Num::Splat(mass);
     body.inertia = WideInertia(inertia);
+    const int sizes[] = {6, 3, 1};
+    body.size = mixed ? sizes[random.Bits() % 3] : 6;
     s.bodies.push_back(body);
     for (std::size_t i = 0; i < 3; ++i) {
       s.dense[At(6 * b) + i][At(6 * b) + i] = mass;
       for (std::size_t j = 0; j < 3; ++j)
         s.dense[At(6 * b) + 3 + i][At(6 * b) + 3 + j] = inertia[i][j];
+    }
+    for (std::size_t i = At(6 * b + body.size); i < At(6 * b + 6); ++i) {
+      s.rhs[i] = 0;
+      s.dense[i].assign(n, 0);
+      for (auto& row : s.dense) row[i] = 0;
+      s.dense[i][i] = 1;
     }
   }
   const auto pick = [&] { return static_cast<int>(random.Uniform() * count); };
@@ -189,6 +179,7 @@ System RandomSystem(int count, bool symmetric, math::Random& random) {
       law.links[k].body = body;
       for (auto& row : j[k]) {
         for (double& x : row) x = random.Uniform(-1, 1);
+        for (int i = s.bodies[At(body)].size; i < 6; ++i) row[i] = 0;
       }
       for (int r = 0; r < 3; ++r) {
         const double* const x = j[k][r];
@@ -224,7 +215,8 @@ System RandomSystem(int count, bool symmetric, math::Random& random) {
 }
 
 /// The system's solution by blocks, its bodies renumbered as the pattern says.
-std::vector<double> BlockSolve(const System& s, const OwnPattern& own, bool symmetric) {
+std::vector<double> BlockSolve(const System& s, const OwnPattern& own, bool symmetric,
+                               bool transposed = false) {
   const int count = own.pattern.count;
   std::vector<sim::Unknown<Num>> bodies(At(count));
   std::vector<Num> x(At(6 * count)), blocks(At(36 * own.pattern.block_count));
@@ -240,7 +232,11 @@ std::vector<double> BlockSolve(const System& s, const OwnPattern& own, bool symm
     matrix.Add(law, law.g);
   }
   EXPECT_TRUE(matrix.Factor());
-  matrix.Solve(x.data());
+  if (transposed) {
+    matrix.SolveTransposed(x.data());
+  } else {
+    matrix.Solve(x.data());
+  }
   std::vector<double> out;
   for (int b = 0; b < count; ++b) {
     for (int i = 0; i < 6; ++i) out.push_back(x[At(6 * own.place[At(b)] + i)][0]);
@@ -278,6 +274,28 @@ TEST(BodyMatrix, SolvesAsADenseMatrixDoesInAnyOrder) {
     }
   }
   EXPECT_GT(fill, 1000) << "without fill-in this test sees little";
+}
+
+TEST(BodyMatrix, SolvesSmallerUnknownsAndItsTransposeAsADenseMatrixDoes) {
+  double askew = 0;
+  for (std::uint64_t index = 0; index < 300; ++index) {
+    const bool symmetric = index % 3 == 0, mixed = index % 2 == 0;
+    math::Random random(19, 0, index);
+    const int count = 1 + static_cast<int>(random.Uniform(0, 12));
+    const System s = RandomSystem(count, symmetric, random, mixed);
+    OwnPattern own(count);
+    ASSERT_TRUE(own.Eliminate(s.edges, count * count));
+    const std::vector<double> straight = DenseSolve(s.dense, s.rhs);
+    const std::vector<double> across = DenseSolve(Transposed(s.dense), s.rhs);
+    for (const bool transposed : {false, true}) {
+      const std::vector<double> found = BlockSolve(s, own, symmetric, transposed);
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_NEAR(found[i], (transposed ? across : straight)[i], 1e-11) << index << ", row " << i;
+        askew = std::max(askew, std::abs(straight[i] - across[i]));
+      }
+    }
+  }
+  EXPECT_GT(askew, 0.01) << "without a difference this test sees little";
 }
 
 TEST(BodyMatrix, RefusesWhatItCannotFactor) {

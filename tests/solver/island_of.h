@@ -14,6 +14,7 @@
 // clang-format off
 #include "sim/solve/body_matrix.inl"
 #include "sim/solve/plain_newton.inl"
+#include "sim/solve/tangent.inl"
 #include "sim/solve/sweeps.inl"
 #include "sim/solve/proximal.inl"
 #include "sim/solve/impacts.inl"
@@ -63,13 +64,24 @@ class OwnIsland {
   int AddBody(double inverse_mass, const Inertia& inverse_inertia, const Vec3& free_v,
               const Vec3& free_w) {
     bodies_.push_back({static_cast<int>(bodies_.size()),
+                       sim::kDofs,
                        Num::Splat(1 / inverse_mass),
                        Num::Splat(inverse_mass),
                        WideInertia(Inverse(inverse_inertia)),
                        WideInertia(inverse_inertia),
                        {Wide3(free_v), Wide3(free_w)},
                        {Wide3(free_v), Wide3(free_w)}});
+    prescribed_.push_back(false);
     return static_cast<int>(bodies_.size()) - 1;
+  }
+  int AddPointMass(double mass, const Vec3& free_v) { return AddSmall(3, mass, free_v); }
+  /// Its rows have their lever as lin.x.
+  int AddRotor(double inertia, double free_spin) { return AddSmall(1, inertia, {free_spin, 0, 0}); }
+  /// Its velocity is given. Before any link to it is made.
+  void Prescribe(int body) {
+    sim::Unknown<Num>& b = bodies_[At(body)];
+    prescribed_[At(body)] = true;
+    b.inv_mass = Num::Splat(0.0), b.inv_inertia = WideInertia({});
   }
   /// One row of a link: what an impulse along `lin` with the lever `ang` does to the body.
   template <int R>
@@ -138,22 +150,44 @@ class OwnIsland {
     static_cast<sim::Pool<Law>&>(island.pools) = {items.data(), branches.data(),
                                                   static_cast<int>(items.size())};
   }
+  int AddSmall(int size, double mass, const Vec3& free_v) {
+    const int body = AddBody(1 / mass, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, free_v, {});
+    sim::Unknown<Num>& b = bodies_[At(body)];
+    b.size = size;
+    b.inertia = b.inv_inertia = WideInertia({});
+    return body;
+  }
+  /// Those that are prescribed go behind the others, which are ordered among themselves.
   void Order(int block_capacity) {
-    const int n = island.body_count;
+    const int all = island.body_count;
+    std::vector<int> number, solved, order;
+    for (int b = 0; b < all; ++b) {
+      number.push_back(prescribed_[At(b)] ? -1 : static_cast<int>(solved.size()));
+      if (!prescribed_[At(b)]) solved.push_back(b);
+    }
+    const int n = static_cast<int>(solved.size());
     const int words = sim::BodyGraph::WordsFor(n);
     std::vector<std::uint64_t> bits(At(n * words));
     sim::BodyGraph graph{bits.data(), n, words};
     island.pools.ForEach([&](auto& law, auto&, int, int) {
       for (int i = 0; i < law.link_count; ++i) {
-        for (int j = 0; j < i; ++j) graph.Join(law.links[i].body, law.links[j].body);
+        for (int j = 0; j < i; ++j) {
+          const int a = number[At(law.links[i].body)], b = number[At(law.links[j].body)];
+          if (a >= 0 && b >= 0) graph.Join(a, b);
+        }
       }
     });
-    std::vector<int> order(At(n));
-    place_.resize(At(n)), slot_.resize(At(n * n)), below_.resize(At(n * n));
+    order.resize(At(n));
+    std::vector<int> place(At(n));
+    slot_.resize(At(n * n)), below_.resize(At(n * n));
     first_below_.resize(At(n + 1));
     island.pattern = {slot_.data(), below_.data(), first_below_.data(), 0, 0, 0};
     island.has_matrix =
-        sim::Eliminate(graph, block_capacity, order.data(), place_.data(), island.pattern);
+        sim::Eliminate(graph, block_capacity, order.data(), place.data(), island.pattern);
+    int next = n;
+    for (int b = 0; b < all; ++b) {
+      place_.push_back(number[At(b)] < 0 ? next++ : place[At(number[At(b)])]);
+    }
   }
   Num* Take(int count) { return numbers_.emplace_back(At(count)).data(); }
   sim::Twist<Num> TwistOf(int body) const {
@@ -161,6 +195,7 @@ class OwnIsland {
   }
 
   std::vector<sim::Unknown<Num>> bodies_;
+  std::vector<bool> prescribed_;
   std::tuple<std::vector<K>...> laws_;
   std::tuple<std::vector<typename K::Branch>...> branches_;
   std::deque<std::vector<sim::Link<Num, 1>>> links_;

@@ -2,6 +2,10 @@
 /// bodies that act on each other, factored in the order of the bodies (docs/theory/contact.md,
 /// eq. 21, 25). No pivots: M + J^T G J is positive definite but for the coupling of friction to the
 /// normal impulse, and a step that a bad pivot spoils is refused by what judges it.
+///
+/// Blocks of smaller unknowns are filled up with zeros. Only an unknown's own velocities are
+/// eliminated; what they do to others is worked out six by six, so that the loops have lengths
+/// that the compiler knows. Unknowns that are prescribed have no column at all.
 
 namespace taut::sim {
 
@@ -12,16 +16,19 @@ class BodyMatrix {
  public:
   BodyMatrix(const BlockPattern& pattern, Num* blocks) noexcept : p_(pattern), a_(blocks) {}
 
-  /// M on the diagonal, else 0. `symmetric`: only the lower triangle is kept and filled.
-  template <class Bodies>
-  void Start(const Bodies* bodies, bool symmetric) noexcept {
+  /// M on the diagonal, else 0. `symmetric`: only the lower triangle is kept and filled. `bodies`
+  /// stay where they are until the last solve.
+  void Start(const Unknown<Num>* bodies, bool symmetric) noexcept {
     symmetric_ = symmetric;
     const Num zero = Num::Splat(0.0);
     const int used = symmetric ? p_.lower_count : p_.block_count;
     for (int i = 0; i < kBlock * used; ++i) a_[i] = zero;
+    bodies_ = bodies;
+    bodies_only_ = true;
     for (int b = 0; b < p_.count; ++b) {
       Num* const d = At(b, b);
       const auto& body = bodies[b];
+      bodies_only_ = bodies_only_ && body.size == kDofs;
       for (int i = 0; i < 3; ++i) d[7 * i] = body.mass;
       d[21] = body.inertia.xx, d[28] = body.inertia.yy, d[35] = body.inertia.zz;
       d[27] = d[22] = body.inertia.xy;
@@ -30,11 +37,13 @@ class BodyMatrix {
     }
   }
 
-  /// += J^T G J of one constraint; G: R x R, row by row.
+  /// += J^T G J of one constraint, without what is prescribed; G: R x R, row by row. A function by
+  /// itself: among other code g++ took up to a fifth more instructions for the same loops.
   template <class Law>
-  void Add(const Law& law, const Num* G) noexcept {
+  [[gnu::noinline]] void Add(const Law& law, const Num* G) noexcept {
     constexpr int R = Law::kRows;
     for (int k = 0; k < law.link_count; ++k) {
+      if (law.links[k].body >= p_.count) continue;
       Num j[R][kDofs], gj[R][kDofs];
       Unpack(law.links[k], j);
       for (int r = 0; r < R; ++r) {
@@ -46,7 +55,7 @@ class BodyMatrix {
       }
       for (int i = 0; i < law.link_count; ++i) {
         const int row = law.links[i].body, column = law.links[k].body;
-        if (symmetric_ && row < column) continue;
+        if (row >= p_.count || (symmetric_ && row < column)) continue;
         Num* const block = At(row, column);
         Num ji[R][kDofs];
         Unpack(law.links[i], ji);
@@ -62,18 +71,32 @@ class BodyMatrix {
   }
 
   /// A = L D L^T, or L U. False if a pivot is not positive, or zero.
-  bool Factor() noexcept { return symmetric_ ? FactorSymmetric() : FactorGeneral(); }
+  bool Factor() noexcept {
+    if (bodies_only_) return symmetric_ ? FactorSymmetric<true>() : FactorGeneral<true>();
+    return symmetric_ ? FactorSymmetric<false>() : FactorGeneral<false>();
+  }
 
-  /// x <- A^-1 x; 6 numbers a body.
-  void Solve(Num* x) const noexcept {
-    if (symmetric_) {
-      SolveSymmetric(x);
-    } else {
-      SolveGeneral(x);
-    }
+  /// x <- A^-1 x; 6 numbers an unknown, of which those beyond its size stay as they are.
+  void Solve(Num* x) const noexcept { bodies_only_ ? SolveAs<true>(x) : SolveAs<false>(x); }
+
+  /// x <- A^-T x.
+  void SolveTransposed(Num* x) const noexcept {
+    if (symmetric_) return Solve(x);
+    Rising<ForwardTransposedU, false>(x);
+    Falling<BackwardTransposedL<false>, false>(x);
   }
 
  private:
+  template <bool kBodiesOnly>
+  TAUT_INLINE void SolveAs(Num* x) const noexcept {
+    Rising<ForwardL, kBodiesOnly>(x);
+    if (symmetric_) {
+      Falling<BackwardTransposedL<true>, kBodiesOnly>(x);
+    } else {
+      Falling<BackwardU, kBodiesOnly>(x);
+    }
+  }
+
   Num* At(int i, int j) const noexcept {
     return a_ + kBlock * p_.slot[static_cast<int64_t>(i) * p_.count + j];
   }
@@ -86,177 +109,255 @@ class BodyMatrix {
     }
   }
 
-  /// a -= l u, all 6x6.
+  /// a -= l u over the N velocities that are eliminated.
+  template <int N>
   static void Subtract(Num* a, const Num* l, const Num* u) noexcept {
     for (int x = 0; x < kDofs; ++x) {
       Num line[kDofs];
       for (int y = 0; y < kDofs; ++y) line[y] = a[kDofs * x + y];
-      for (int m = 0; m < kDofs; ++m) {
+      for (int m = 0; m < N; ++m) {
         const Num f = l[kDofs * x + m];
         for (int y = 0; y < kDofs; ++y) line[y] -= f * u[kDofs * m + y];
       }
       for (int y = 0; y < kDofs; ++y) a[kDofs * x + y] = line[y];
     }
   }
-
-  bool FactorSymmetric() noexcept {
-    const Num one = Num::Splat(1.0), zero = Num::Splat(0.0);
-    bool good = true;
-    for (int k = 0; k < p_.count; ++k) {
-      Num* const d = At(k, k);
-      for (int p = 0; p < kDofs; ++p) {
-        good = good && Any(d[7 * p] > zero);
-        const Num inverse = one / d[7 * p];
-        for (int i = p + 1; i < kDofs; ++i) {
-          const Num f = d[6 * i + p] * inverse;
-          for (int j = p + 1; j <= i; ++j) d[6 * i + j] -= f * d[6 * j + p];
-        }
-        for (int i = p + 1; i < kDofs; ++i) d[6 * i + p] *= inverse;
-        d[7 * p] = inverse;
-      }
-      const int first = p_.first_below[k], last = p_.first_below[k + 1];
-      // B L^-T = (L D)_ik; its transpose serves the updates, B becomes L_ik.
-      for (int q = first; q < last; ++q) {
-        Num* const b = At(p_.below[q], k);
-        for (int r = 0; r < kDofs; ++r) {
-          Num* const line = b + kDofs * r;
-          for (int m = 0; m < kDofs; ++m) {
-            const Num f = line[m];
-            for (int c = m + 1; c < kDofs; ++c) line[c] -= f * d[6 * c + m];
-          }
-        }
-      }
-      for (int q = first; q < last; ++q) {
-        const int j = p_.below[q];
-        Num* const bj = At(j, k);
-        Num transposed[kBlock];
-        for (int r = 0; r < kDofs; ++r) {
-          for (int c = 0; c < kDofs; ++c) transposed[kDofs * c + r] = bj[kDofs * r + c];
-        }
-        for (int r = 0; r < kDofs; ++r) {
-          for (int c = 0; c < kDofs; ++c) bj[kDofs * r + c] *= d[7 * c];
-        }
-        // Column j of the update: rows from j on. Those further down still hold (L D).
-        Subtract(At(j, j), bj, transposed);
-        for (int s = q + 1; s < last; ++s) {
-          const int i = p_.below[s];
-          SubtractTransposed(At(i, j), At(i, k), bj);
-        }
-      }
-    }
-    return good;
-  }
-
   /// a -= l u^T.
+  template <int N>
   static void SubtractTransposed(Num* a, const Num* l, const Num* u) noexcept {
     Num transposed[kBlock];
+    Transpose<N>(u, transposed);
+    Subtract<N>(a, l, transposed);
+  }
+  /// The first N columns.
+  template <int N>
+  static void Transpose(const Num* a, Num* out) noexcept {
     for (int r = 0; r < kDofs; ++r) {
-      for (int c = 0; c < kDofs; ++c) transposed[kDofs * c + r] = u[kDofs * r + c];
+      for (int c = 0; c < N; ++c) out[kDofs * c + r] = a[kDofs * r + c];
     }
-    Subtract(a, l, transposed);
   }
 
-  bool FactorGeneral() noexcept {
-    const Num one = Num::Splat(1.0);
+  template <bool kBodiesOnly>
+  bool FactorSymmetric() noexcept {
     bool good = true;
     for (int k = 0; k < p_.count; ++k) {
-      Num* const d = At(k, k);
-      for (int p = 0; p < kDofs; ++p) {
-        good = good && Any(Abs(d[7 * p]) > Num::Splat(1e-300));
-        const Num inverse = one / d[7 * p];
-        d[7 * p] = inverse;
-        for (int i = p + 1; i < kDofs; ++i) {
-          const Num f = d[6 * i + p] * inverse;
-          d[6 * i + p] = f;
-          for (int j = p + 1; j < kDofs; ++j) d[6 * i + j] -= f * d[6 * p + j];
+      const int size = kBodiesOnly ? kDofs : bodies_[k].size;
+      const bool column = size == kDofs ? EliminateSymmetric<kDofs>(k)
+                          : size == 3   ? EliminateSymmetric<3>(k)
+                                        : EliminateSymmetric<1>(k);
+      good = good && column;
+    }
+    return good;
+  }
+
+  template <int N>
+  TAUT_INLINE bool EliminateSymmetric(int k) noexcept {
+    const Num one = Num::Splat(1.0), zero = Num::Splat(0.0);
+    bool good = true;
+    Num* const d = At(k, k);
+    for (int p = 0; p < N; ++p) {
+      good = good && Any(d[7 * p] > zero);
+      const Num inverse = one / d[7 * p];
+      for (int i = p + 1; i < N; ++i) {
+        const Num f = d[6 * i + p] * inverse;
+        for (int j = p + 1; j <= i; ++j) d[6 * i + j] -= f * d[6 * j + p];
+      }
+      for (int i = p + 1; i < N; ++i) d[6 * i + p] *= inverse;
+      d[7 * p] = inverse;
+    }
+    const int first = p_.first_below[k], last = p_.first_below[k + 1];
+    // B L^-T = (L D)_ik; its transpose serves the updates, B becomes L_ik.
+    for (int q = first; q < last; ++q) {
+      Num* const b = At(p_.below[q], k);
+      for (int r = 0; r < kDofs; ++r) {
+        Num* const line = b + kDofs * r;
+        for (int m = 0; m < N; ++m) {
+          const Num f = line[m];
+          for (int c = m + 1; c < N; ++c) line[c] -= f * d[6 * c + m];
         }
       }
-      const int first = p_.first_below[k], last = p_.first_below[k + 1];
-      for (int q = first; q < last; ++q) {
-        Num* const l = At(p_.below[q], k);  // <- l U^-1
-        for (int r = 0; r < kDofs; ++r) {
-          Num* const line = l + kDofs * r;
-          for (int m = 0; m < kDofs; ++m) {
-            line[m] *= d[7 * m];
-            const Num f = line[m];
-            for (int c = m + 1; c < kDofs; ++c) line[c] -= f * d[6 * m + c];
-          }
-        }
-        Num* const u = At(k, p_.below[q]);  // <- L^-1 u
-        for (int r = 1; r < kDofs; ++r) {
-          for (int m = 0; m < r; ++m) {
-            const Num f = d[6 * r + m];
-            for (int c = 0; c < kDofs; ++c) u[kDofs * r + c] -= f * u[kDofs * m + c];
-          }
-        }
+    }
+    for (int q = first; q < last; ++q) {
+      const int j = p_.below[q];
+      Num* const bj = At(j, k);
+      Num transposed[kBlock];
+      Transpose<N>(bj, transposed);
+      for (int r = 0; r < kDofs; ++r) {
+        for (int c = 0; c < N; ++c) bj[kDofs * r + c] *= d[7 * c];
       }
-      for (int q = first; q < last; ++q) {
-        for (int s = first; s < last; ++s) {
-          Subtract(At(p_.below[q], p_.below[s]), At(p_.below[q], k), At(k, p_.below[s]));
-        }
+      // Column j of the update: rows from j on. Those further down still hold (L D).
+      Subtract<N>(At(j, j), bj, transposed);
+      for (int s = q + 1; s < last; ++s) {
+        const int i = p_.below[s];
+        SubtractTransposed<N>(At(i, j), At(i, k), bj);
       }
     }
     return good;
   }
 
-  void Forward(Num* x) const noexcept {
+  template <bool kBodiesOnly>
+  bool FactorGeneral() noexcept {
+    bool good = true;
     for (int k = 0; k < p_.count; ++k) {
-      const Num* const d = At(k, k);
+      const int size = kBodiesOnly ? kDofs : bodies_[k].size;
+      const bool column = size == kDofs ? EliminateGeneral<kDofs>(k)
+                          : size == 3   ? EliminateGeneral<3>(k)
+                                        : EliminateGeneral<1>(k);
+      good = good && column;
+    }
+    return good;
+  }
+
+  template <int N>
+  TAUT_INLINE bool EliminateGeneral(int k) noexcept {
+    const Num one = Num::Splat(1.0);
+    bool good = true;
+    Num* const d = At(k, k);
+    for (int p = 0; p < N; ++p) {
+      good = good && Any(Abs(d[7 * p]) > Num::Splat(1e-300));
+      const Num inverse = one / d[7 * p];
+      d[7 * p] = inverse;
+      for (int i = p + 1; i < N; ++i) {
+        const Num f = d[6 * i + p] * inverse;
+        d[6 * i + p] = f;
+        for (int j = p + 1; j < N; ++j) d[6 * i + j] -= f * d[6 * p + j];
+      }
+    }
+    const int first = p_.first_below[k], last = p_.first_below[k + 1];
+    for (int q = first; q < last; ++q) {
+      Num* const l = At(p_.below[q], k);  // <- l U^-1
+      for (int r = 0; r < kDofs; ++r) {
+        Num* const line = l + kDofs * r;
+        for (int m = 0; m < N; ++m) {
+          line[m] *= d[7 * m];
+          const Num f = line[m];
+          for (int c = m + 1; c < N; ++c) line[c] -= f * d[6 * m + c];
+        }
+      }
+      Num* const u = At(k, p_.below[q]);  // <- L^-1 u
+      for (int r = 1; r < N; ++r) {
+        for (int m = 0; m < r; ++m) {
+          const Num f = d[6 * r + m];
+          for (int c = 0; c < kDofs; ++c) u[kDofs * r + c] -= f * u[kDofs * m + c];
+        }
+      }
+    }
+    for (int q = first; q < last; ++q) {
+      for (int s = first; s < last; ++s) {
+        Subtract<N>(At(p_.below[q], p_.below[s]), At(p_.below[q], k), At(k, p_.below[s]));
+      }
+    }
+    return good;
+  }
+
+  // Triangular solves, of which each takes the columns one by one. L has ones on its diagonal.
+
+  /// x <- L^-1 x, of both factorisations.
+  struct ForwardL {
+    template <int N>
+    TAUT_INLINE static void Column(const BodyMatrix& a, int k, Num* x) noexcept {
+      const Num* const d = a.At(k, k);
       Num* const b = x + kDofs * k;
-      for (int i = 1; i < kDofs; ++i) {
+      for (int i = 1; i < N; ++i) {
         for (int m = 0; m < i; ++m) b[i] -= d[6 * i + m] * b[m];
       }
-      for (int q = p_.first_below[k]; q < p_.first_below[k + 1]; ++q) {
-        const Num* const l = At(p_.below[q], k);
-        Num* const y = x + kDofs * p_.below[q];
+      for (int q = a.p_.first_below[k]; q < a.p_.first_below[k + 1]; ++q) {
+        const Num* const l = a.At(a.p_.below[q], k);
+        Num* const y = x + kDofs * a.p_.below[q];
         for (int r = 0; r < kDofs; ++r) {
-          for (int m = 0; m < kDofs; ++m) y[r] -= l[kDofs * r + m] * b[m];
+          Num sum = y[r];
+          for (int m = 0; m < N; ++m) sum -= l[kDofs * r + m] * b[m];
+          y[r] = sum;
         }
       }
     }
-  }
-
-  void SolveSymmetric(Num* x) const noexcept {
-    Forward(x);
-    for (int k = p_.count - 1; k >= 0; --k) {
-      const Num* const d = At(k, k);
+  };
+  /// x <- L^-T x, or with `kScaled` L^-T D^-1 x.
+  template <bool kScaled>
+  struct BackwardTransposedL {
+    template <int N>
+    TAUT_INLINE static void Column(const BodyMatrix& a, int k, Num* x) noexcept {
+      const Num* const d = a.At(k, k);
       Num* const b = x + kDofs * k;
-      for (int i = 0; i < kDofs; ++i) b[i] *= d[7 * i];
-      for (int q = p_.first_below[k]; q < p_.first_below[k + 1]; ++q) {
-        const Num* const l = At(p_.below[q], k);
-        const Num* const y = x + kDofs * p_.below[q];
-        for (int r = 0; r < kDofs; ++r) {
-          for (int m = 0; m < kDofs; ++m) b[m] -= l[kDofs * r + m] * y[r];
+      for (int i = 0; kScaled && i < N; ++i) b[i] *= d[7 * i];
+      for (int q = a.p_.first_below[k]; q < a.p_.first_below[k + 1]; ++q) {
+        const Num* const l = a.At(a.p_.below[q], k);
+        const Num* const y = x + kDofs * a.p_.below[q];
+        for (int m = 0; m < N; ++m) {
+          Num sum = b[m];
+          for (int r = 0; r < kDofs; ++r) sum -= l[kDofs * r + m] * y[r];
+          b[m] = sum;
         }
       }
-      for (int i = kDofs - 1; i >= 0; --i) {
-        for (int m = i + 1; m < kDofs; ++m) b[i] -= d[6 * m + i] * b[m];
+      for (int i = N - 1; i >= 0; --i) {
+        for (int m = i + 1; m < N; ++m) b[i] -= d[6 * m + i] * b[m];
       }
     }
-  }
-
-  void SolveGeneral(Num* x) const noexcept {
-    Forward(x);
-    for (int k = p_.count - 1; k >= 0; --k) {
-      const Num* const d = At(k, k);
+  };
+  /// x <- U^-1 x.
+  struct BackwardU {
+    template <int N>
+    TAUT_INLINE static void Column(const BodyMatrix& a, int k, Num* x) noexcept {
+      const Num* const d = a.At(k, k);
       Num* const b = x + kDofs * k;
-      for (int q = p_.first_below[k]; q < p_.first_below[k + 1]; ++q) {
-        const Num* const u = At(k, p_.below[q]);
-        const Num* const y = x + kDofs * p_.below[q];
-        for (int r = 0; r < kDofs; ++r) {
-          for (int m = 0; m < kDofs; ++m) b[r] -= u[kDofs * r + m] * y[m];
+      for (int q = a.p_.first_below[k]; q < a.p_.first_below[k + 1]; ++q) {
+        const Num* const u = a.At(k, a.p_.below[q]);
+        const Num* const y = x + kDofs * a.p_.below[q];
+        for (int r = 0; r < N; ++r) {
+          Num sum = b[r];
+          for (int m = 0; m < kDofs; ++m) sum -= u[kDofs * r + m] * y[m];
+          b[r] = sum;
         }
       }
-      for (int i = kDofs - 1; i >= 0; --i) {
-        for (int m = i + 1; m < kDofs; ++m) b[i] -= d[6 * i + m] * b[m];
+      for (int i = N - 1; i >= 0; --i) {
+        for (int m = i + 1; m < N; ++m) b[i] -= d[6 * i + m] * b[m];
         b[i] *= d[7 * i];
       }
     }
+  };
+  /// x <- U^-T x.
+  struct ForwardTransposedU {
+    template <int N>
+    TAUT_INLINE static void Column(const BodyMatrix& a, int k, Num* x) noexcept {
+      const Num* const d = a.At(k, k);
+      Num* const b = x + kDofs * k;
+      for (int i = 0; i < N; ++i) {
+        for (int m = 0; m < i; ++m) b[i] -= d[6 * m + i] * b[m];
+        b[i] *= d[7 * i];
+      }
+      for (int q = a.p_.first_below[k]; q < a.p_.first_below[k + 1]; ++q) {
+        const Num* const u = a.At(k, a.p_.below[q]);
+        Num* const y = x + kDofs * a.p_.below[q];
+        for (int m = 0; m < kDofs; ++m) {
+          for (int r = 0; r < N; ++r) y[m] -= u[kDofs * r + m] * b[r];
+        }
+      }
+    }
+  };
+  template <class Triangle, bool kBodiesOnly>
+  TAUT_INLINE void Column(int k, Num* x) const noexcept {
+    const int size = kBodiesOnly ? kDofs : bodies_[k].size;
+    if (size == kDofs) {
+      Triangle::template Column<kDofs>(*this, k, x);
+    } else if (size == 3) {
+      Triangle::template Column<3>(*this, k, x);
+    } else {
+      Triangle::template Column<1>(*this, k, x);
+    }
+  }
+  template <class Triangle, bool kBodiesOnly>
+  TAUT_INLINE void Rising(Num* x) const noexcept {
+    for (int k = 0; k < p_.count; ++k) Column<Triangle, kBodiesOnly>(k, x);
+  }
+  template <class Triangle, bool kBodiesOnly>
+  TAUT_INLINE void Falling(Num* x) const noexcept {
+    for (int k = p_.count - 1; k >= 0; --k) Column<Triangle, kBodiesOnly>(k, x);
   }
 
   const BlockPattern& p_;
+  const Unknown<Num>* bodies_ = nullptr;
   Num* a_;
-  bool symmetric_ = true;
+  bool symmetric_ = true, bodies_only_ = true;
 };
 
 }  // namespace taut::sim

@@ -3,8 +3,10 @@
 ///
 ///   v = v_free + M^-1 J^T l,   u = J v,   every constraint's law between its u and its l
 ///
-/// Bodies are numbered in the order of elimination. All constraints of a kind lie in one pool; the
-/// rows of all of them are numbered through, pool after pool.
+/// An unknown is what moves by itself: a body, a point mass or a rotor. Those that are solved for
+/// are numbered in the order of elimination; behind them come those that are prescribed, whose
+/// velocity is given. All constraints of a kind lie in one pool; the rows of all of them are
+/// numbered through, pool after pool.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -14,7 +16,7 @@ namespace taut::sim {
 
 using simd::S3;
 
-inline constexpr int kDofs = 6;  ///< Velocities of a body: v, w.
+inline constexpr int kDofs = 6;  ///< Velocities of a body: v, w. The most that an unknown has.
 
 /// When a solve is done [m/s]: `tolerance` is what it must reach; it goes on to `goal` as long as
 /// that pays, because what every step leaves over adds up.
@@ -24,10 +26,17 @@ struct Target {
   double goal() const noexcept { return kGoal * tolerance; }
 };
 
-/// A body of an island.
+/// A body of an island, or something smaller. All have room for six velocities (v, w); of those
+/// beyond its size, and of links to them, an unknown has zeros.
+///
+///   size 6: a body
+///        3: a point mass: v, mass; no inertia
+///        1: a rotor: v.x is its spin, mass its moment of inertia; lin.x of a link its lever
+/// Links to one that is prescribed have no inverse mass and no turn: no impulse moves it.
 template <class Num>
 struct Unknown {
-  int body;  ///< Its number in the world.
+  int body;          ///< Its number in the world.
+  int size = kDofs;  ///< 6, 3 or 1 velocities.
   Num mass, inv_mass;
   S3<Num> inertia, inv_inertia;  ///< In W.
   Twist<Num> free;               ///< Its velocities without the island's constraints,
@@ -87,7 +96,7 @@ struct ImpactRows {
 /// The numbers that the stages of an island's solve work on.
 template <class Num>
 struct IslandMemory {
-  Num *v, *rhs, *direction, *trial_v;                ///< 6 a body.
+  Num *v, *rhs, *direction, *trial_v;                ///< 6 an unknown.
   Num *l, *u, *best, *center, *projected, *du, *u2;  ///< 1 a row.
   Num *g, *f;                                        ///< kRows^2, kRows a constraint.
   Num* blocks;                                       ///< 36 a block.
@@ -97,8 +106,8 @@ struct IslandMemory {
 template <class Num, class P>
 struct Island {
   Unknown<Num>* bodies;
-  int body_count;
-  BlockPattern pattern;
+  int body_count;        ///< With those that are prescribed: from pattern.count on.
+  BlockPattern pattern;  ///< Of those that are not.
   P pools;
   IslandMemory<Num> m;
   int rows;
@@ -126,16 +135,20 @@ struct Island {
       }
     });
   }
-  /// f += J^T l
+  /// f += J^T l, but for what is prescribed.
   template <class Law>
-  TAUT_INLINE static void AddForce(const Law& law, const Num* l, Num* f) noexcept {
+  TAUT_INLINE void AddForce(const Law& law, const Num* l, Num* f) const noexcept {
     for (int i = 0; i < law.link_count; ++i) {
-      Num* const at = f + 6 * law.links[i].body;
-      for (int r = 0; r < Law::kRows; ++r) {
-        const V3<Num>&d = law.links[i].lin[r], &a = law.links[i].ang[r];
-        at[0] += l[r] * d.x, at[1] += l[r] * d.y, at[2] += l[r] * d.z;
-        at[3] += l[r] * a.x, at[4] += l[r] * a.y, at[5] += l[r] * a.z;
-      }
+      if (law.links[i].body < pattern.count) AddForce(law.links[i], l, f);
+    }
+  }
+  template <int R>
+  TAUT_INLINE static void AddForce(const Link<Num, R>& link, const Num* l, Num* f) noexcept {
+    Num* const at = f + 6 * link.body;
+    for (int r = 0; r < R; ++r) {
+      const V3<Num>&d = link.lin[r], &a = link.ang[r];
+      at[0] += l[r] * d.x, at[1] += l[r] * d.y, at[2] += l[r] * d.z;
+      at[3] += l[r] * a.x, at[4] += l[r] * a.y, at[5] += l[r] * a.z;
     }
   }
   /// The largest of all constraints [m/s]; leaves their branches.

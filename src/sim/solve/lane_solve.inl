@@ -186,6 +186,7 @@ class LaneSolve {
   void GatherBody(int body, Unknown<L>& out) const noexcept {
     const BodyWork<W>& b = work_.bodies[body];
     out.body = body;
+    out.size = kDofs;
     out.mass = OfLane<L>(s_.mass[body], lane_);
     out.inv_mass = OfLane<L>(s_.inv_mass[body], lane_);
     out.inv_inertia = OfLane<L>(b.inv_inertia, lane_);
@@ -208,6 +209,15 @@ class LaneSolve {
     }
   }
 
+  /// As the lanes have worked them out, all together (prepare_contact.inl).
+  void GatherMasses(const Contact<W, 1>& from, ContactPoint<L, 2>& to) const noexcept {
+    to.wnn = OfLane<L>(from.wnn, lane_), to.wt = OfLane<L>(from.wt, lane_);
+    to.inv_wnn = OfLane<L>(from.inv_wnn, lane_), to.inv_wt = OfLane<L>(from.inv_wt, lane_);
+    to.w1n = OfLane<L>(from.w1n, lane_), to.w2n = OfLane<L>(from.w2n, lane_);
+    to.w11 = OfLane<L>(from.w11, lane_), to.w12 = OfLane<L>(from.w12, lane_);
+    to.w22 = OfLane<L>(from.w22, lane_);
+  }
+
   void GatherContacts(Pool<ContactPoint<L, 2>>& pool) noexcept {
     pool.count = 0;
     for (int i = 0; i < count_; ++i) {
@@ -228,7 +238,7 @@ class LaneSolve {
         to.one_direction = from.one_direction;
         to.link_count = 1;
         GatherLink(from.links[0], to.links[0]);
-        to.FinishMasses();
+        GatherMasses(from, to);
         if (displaces_) Displacing(to, from.deep[lane_], from.gap[lane_]);
       }
     }

@@ -26,6 +26,28 @@ TAUT_INLINE void InvertSmall(const Num (&a)[R][R], Num (&out)[R][R]) noexcept {
   }
 }
 
+/// G = A^-1 S and f = A^-1 r of a law: dl = f - G du. Returns whether G is symmetric.
+template <class Num, int R>
+TAUT_INLINE bool SolveLaw(const LinearLaw<Num, R>& linear, Num* g, Num* f) noexcept {
+  Num inverse[R][R];
+  InvertSmall(linear.A, inverse);
+  for (int i = 0; i < R; ++i) {
+    Num wish = inverse[i][0] * linear.r[0];
+    for (int k = 1; k < R; ++k) wish += inverse[i][k] * linear.r[k];
+    f[i] = wish;
+    for (int j = 0; j < R; ++j) {
+      Num sum = inverse[i][0] * linear.S[0][j];
+      for (int k = 1; k < R; ++k) sum += inverse[i][k] * linear.S[k][j];
+      g[R * i + j] = sum;
+    }
+  }
+  bool symmetric = true;
+  for (int i = 0; i < R; ++i) {
+    for (int j = 0; j < i; ++j) symmetric = symmetric && g[R * i + j].v == g[R * j + i].v;
+  }
+  return symmetric;
+}
+
 /// What has been done for an island, and what may be.
 struct SolverWork {
   int linear_solves = 0, limit = 0;
@@ -53,23 +75,8 @@ double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work) noex
       constexpr int R = LawOf<decltype(law)>::kRows;
       LinearLaw<Num, R> linear;
       law.Linearize(branch, m.u + row, m.l + row, e, linear);
-      Num inverse[R][R];
-      InvertSmall(linear.A, inverse);
-      for (int i = 0; i < R; ++i) {
-        Num f = inverse[i][0] * linear.r[0];
-        for (int k = 1; k < R; ++k) f += inverse[i][k] * linear.r[k];
-        m.f[row + i] = f;
-        for (int j = 0; j < R; ++j) {
-          Num g = inverse[i][0] * linear.S[0][j];
-          for (int k = 1; k < R; ++k) g += inverse[i][k] * linear.S[k][j];
-          m.g[cell + R * i + j] = g;
-        }
-      }
-      for (int i = 0; i < R; ++i) {
-        for (int j = 0; j < i; ++j) {
-          symmetric = symmetric && m.g[cell + R * i + j].v == m.g[cell + R * j + i].v;
-        }
-      }
+      const bool even = SolveLaw(linear, m.g + cell, m.f + row);
+      symmetric = symmetric && even;
       island.AddForce(law, m.f + row, m.rhs);
     });
     matrix.Start(island.bodies, symmetric);
