@@ -93,6 +93,7 @@ template <class W>
 struct CableWork {
   MaskOf<W> soft;  ///< Lanes in which it is.
   W spring;        ///< Its part of the tension [N].
+  W stretch;       ///< At the middle of the step [m].
   Link<W, 1>* links;
   int link_count;
   W A;  ///< Inverse effective mass along the cable [1/kg].
@@ -119,6 +120,7 @@ struct Scratch {
   int* contact_count;       ///< Used slots, per body.
   TouchingPair* touches;    ///< Those of a lane from lane * pair_capacity on.
   int touch_count[W::kLanes];
+  V3<W>* start_spots;  ///< Spots at the start of the step [m], if start_known.
   W* start;  ///< Rows that go back to the start of the step in worlds that turn non-finite.
   CableWork<W>* cables;
   StiffCable<W>* stiff;
@@ -127,6 +129,7 @@ struct Scratch {
   LaneMemory<simd::Lane<W>> lane;
   DualMemory<W> dual;
   int stiff_count = 0, link_count = 0;
+  bool start_known = false;
 
   /// Overwrites all that the pointers point to.
   void Fill(unsigned char byte) noexcept { __builtin_memset(room_.memory, byte, room_.used); }
@@ -137,6 +140,7 @@ struct Scratch {
     const int bodies_count = m.body_count + 1;
     bodies = room_.Take<BodyWork<W>>(bodies_count);
     spots = room_.Take<Spot<W>>(m.spot_count);
+    start_spots = room_.Take<V3<W>>(m.spot_count);
     attachments = room_.Take<AttachmentWork<W>>(m.max_attachments);
     contacts = room_.Take<Contact<W, 1>>(m.slot_count);
     contact_count = room_.Take<int>(bodies_count);

@@ -147,17 +147,24 @@ TAUT_INLINE void FinishLinks(const Scratch<W>& work, CableWork<W>& row) noexcept
   }
 }
 
-/// Brings a soft cable's tension nearer to its law, T = k s + b dl >= 0 with dl the mean rate over
-/// the step: exact if nothing else changes. The bodies' mean velocities follow.
+/// The mean rate over the step, as far as it is known.
 template <bool kTwo, class W>
-TAUT_INLINE void RelaxCable(Scratch<W>& work, CableWork<W>& row, W half_h) noexcept {
-  const W zero = W::Splat(0.0);
-  const int link_count = kTwo ? 2 : row.link_count;
-  W dl = zero;
-  for (int i = 0; i < link_count; ++i) {
+TAUT_INLINE W MeanRate(const Scratch<W>& work, const CableWork<W>& row) noexcept {
+  W dl = W::Splat(0.0);
+  for (int i = 0; i < (kTwo ? 2 : row.link_count); ++i) {
     const BodyWork<W>& body = work.bodies[row.links[i].body];
     dl -= Dot(row.links[i].lin[0], body.v_mid) + Dot(row.links[i].ang[0], body.w_mid);
   }
+  return dl;
+}
+
+/// Brings a soft cable's tension nearer to its law, T = k s + b dl >= 0 with dl the mean rate over
+/// the step: exact if nothing else changes. The bodies' mean velocities follow, but for `half_h` =
+/// 0.
+template <bool kTwo, class W>
+TAUT_INLINE void RelaxCable(Scratch<W>& work, CableWork<W>& row, W dl, W half_h) noexcept {
+  const W zero = W::Splat(0.0);
+  const int link_count = kTwo ? 2 : row.link_count;
   const W wish = row.tension + row.share * (row.spring + row.damping * dl - row.tension);
   const W tension = Select(row.damped, Min(Max(wish, zero), row.upper), row.spring);
   const W change = half_h * (tension - row.tension);
@@ -168,13 +175,13 @@ TAUT_INLINE void RelaxCable(Scratch<W>& work, CableWork<W>& row, W half_h) noexc
   }
 }
 
-/// Tension and pull of a soft cable that was found.
-template <bool kTwo, class W>
+/// Tension and pull of a soft cable that was found. `kAllSoft`: in all lanes it is.
+template <bool kTwo, bool kAllSoft, class W>
 TAUT_INLINE void PullCable(const Rows<W>& s, Scratch<W>& work, int c) noexcept {
   const CableWork<W>& row = work.cables[c];
   const int link_count = kTwo ? 2 : row.link_count;
-  const W pull = Select(row.soft, row.tension, W::Splat(0.0));
-  s.tension[c] = Select(row.soft, row.tension, s.tension[c]);
+  const W pull = kAllSoft ? row.tension : Select(row.soft, row.tension, W::Splat(0.0));
+  s.tension[c] = kAllSoft ? pull : Select(row.soft, row.tension, s.tension[c]);
   for (int i = 0; i < link_count; ++i) {
     BodyWork<W>& body = work.bodies[row.links[i].body];
     body.force += pull * row.links[i].lin[0];
@@ -182,12 +189,37 @@ TAUT_INLINE void PullCable(const Rows<W>& s, Scratch<W>& work, int c) noexcept {
   }
 }
 
-/// A cable's length, actuator and spring. `damped`: the tensions of soft cables are still to be
-/// found.
+/// The second pass over the cables, back to the first.
+template <bool kAllSoft, class W>
+TAUT_INLINE void RelaxBack(const View& m, const Rows<W>& s, Scratch<W>& work, W half_h) noexcept {
+  for (int c = m.cable_count - 1; c >= 0; --c) {
+    CableWork<W>& row = work.cables[c];
+    if (!kAllSoft && !Any(row.soft)) continue;
+    if (m.cables[c].joins_two) {
+      RelaxCable<true>(work, row, MeanRate<true>(work, row), half_h);
+      PullCable<true, kAllSoft>(s, work, c);
+    } else {
+      RelaxCable<false>(work, row, MeanRate<false>(work, row), half_h);
+      PullCable<false, kAllSoft>(s, work, c);
+    }
+  }
+}
+
+/// What is the same for all cables of a step.
+template <class W>
+struct CableStep {
+  W h, inv_h;
+  W soft_limit;       ///< The stiffest soft cable's K [1/s^2].
+  MaskOf<W> goes_on;  ///< There was a step before, and its tensions are known.
+  W push;             ///< Half a step in lanes with dampers, where tensions are still to be found.
+  W room;             ///< Below zero if a cable may go slack or get taut [m^2].
+};
+
+/// A cable's length, actuator and spring. `damped`: some lane's cables are.
 template <bool kTwo, class W>
 TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, bool damped,
-                           double step_s) noexcept {
-  const W zero = W::Splat(0.0), h = W::Splat(step_s), inv_h = W::Splat(1.0 / step_s);
+                           CableStep<W>& step) noexcept {
+  const W zero = W::Splat(0.0), h = step.h;
   const CableTable& cable = m.cables[c];
   CableWork<W>& row = work.cables[c];
   W l;
@@ -200,30 +232,74 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
     LinkCable<false>(m, s, work, cable, work.attachments, row);
   }
   W rest = s.rest[c], rate = s.rest_rate[c];
-  const W mean = Actuate(cable, s.stiffness[c], l, s.target[c], h, inv_h, rest, rate);
+  const W mean = Actuate(cable, s.stiffness[c], l, s.target[c], h, step.inv_h, rest, rate);
   s.rest[c] = rest;
   s.rest_rate[c] = rate;
   const W stretch = l - mean;
-  const auto stiff = h * h * s.stiff_k[c] > W::Splat(kSoftSpring);
+  const auto stiff = s.stiff_k[c] > step.soft_limit;
   row.soft = !stiff;
   row.spring = Max(s.stiffness[c] * stretch, zero);
   const bool any_stiff = Any(stiff);
   if (damped || any_stiff) FinishLinks<kTwo>(work, row);
-  if (any_stiff) AddStiffCable(m, s, work, c, row, l, stretch, h, stiff);
-  if (!damped) {
-    row.tension = row.spring;
-    return PullCable<kTwo>(s, work, c);
+  if (any_stiff) {
+    AddStiffCable(m, s, work, c, row, l, stretch, h, stiff);
+    if (!Any(row.soft)) return;
   }
-  const W half_h = W::Splat(0.5 * step_s);
+  const W dl = MeanRate<kTwo>(work, row);
+  row.stretch = stretch;
+  const W way = h * (dl - rate);
+  if (!damped) {
+    step.room = Min(step.room, stretch * stretch - way * way);
+    row.damped = MaskOf<W>::Splat(false);
+    return;
+  }
+  row.tension = Select(step.goes_on, s.tension[c], zero);
   row.damping = s.damping[c];
   // With nothing to damp, or slack, the spring alone: to the bit. Stiff ones stay as they are.
   row.damped = stiff | ((row.damping > zero) & (row.spring > zero));
-  row.share = W::Splat(1.0) / (W::Splat(1.0) + half_h * row.damping * row.A);
+  row.share = W::Splat(1.0) / (W::Splat(1.0) + step.push * row.damping * row.A);
   if (any_stiff) row.share = Select(stiff, zero, row.share);
   row.upper = W::Splat(1e300);
   if (cable.clamped_damping) row.upper = Select(stiff, row.upper, row.spring + row.spring);
-  row.tension = Select(s.last_step[0] > zero, s.tension[c], zero);
-  RelaxCable<kTwo>(work, row, half_h);
+  step.room = Min(step.room, stretch * stretch - way * way);
+  RelaxCable<kTwo>(work, row, dl, step.push);
+}
+
+/// Soft cables that go slack or get taut in this step have a tension of their own law, for good:
+/// their spring's mean over the step, implicit in the end's length (docs/theory/cables.md, eq. 11).
+/// Between them explicit steps keep v^2 + w^2 x^2 / (1 - w^2 h^2 / 4), so that is what the spring
+/// must store, or energy would come and go with every catch.
+template <class W>
+[[gnu::noinline, gnu::cold]] void SettleKinks(const View& m, const Rows<W>& s, Scratch<W>& work,
+                                              CableStep<W> step) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  for (int c = 0; c < m.cable_count; ++c) {
+    CableWork<W>& row = work.cables[c];
+    const W dl = MeanRate<false>(work, row);
+    const W way = step.h * (dl - s.rest_rate[c]);
+    const auto near = row.soft & (row.stretch * row.stretch < way * way);
+    if (!Any(near)) continue;
+    if (m.cables[c].joins_two) {
+      FinishLinks<true>(work, row);
+    } else {
+      FinishLinks<false>(work, row);
+    }
+    AttachmentWork<W>* const ends = work.attachments;
+    const W length = MeasureCable(m, m.cables[c], m.cables[c].attachment_count, work, ends).l;
+    const W before = RateBefore(work, row.links, row.link_count);
+    const W spring = W::Splat(0.25) * step.h * step.h * s.stiffness[c];
+    CableRow<W> law;
+    law.A = row.A;
+    SetCableLaw(m, s, work, c, length, row.stretch, before, step.h, spring / (one - spring * law.A),
+                law);
+    // The mean rate has the tension in it that was found so far; without dampers, the last step's.
+    const W last = Select(step.goes_on, s.tension[c], zero);
+    const W u = before - (dl + dl), now = step.h * Select(step.push > zero, row.tension, last);
+    W l;
+    const auto crosses = near & law.Project(&u, &now, one, &l).crosses;
+    row.damped = row.damped & !crosses;
+    row.spring = Select(crosses, step.inv_h * l, row.spring);
+  }
 }
 
 /// Stage: actuators move the rest lengths, cables pull on bodies.
@@ -237,27 +313,37 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
 /// stable leave the cable to the solver (stiff_cables.inl).
 template <class W>
 void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
-  const W zero = W::Splat(0.0), half_h = W::Splat(0.5 * step_s);
+  const W zero = W::Splat(0.0);
   work.stiff_count = work.link_count = 0;
-  auto some_damped = zero > zero;
-  for (int c = 0; c < m.cable_count; ++c) some_damped = some_damped | (s.damping[c] > zero);
-  const bool damped = Any(some_damped);
+  work.start_known = false;
+  auto damps = zero > zero;
+  for (int c = 0; c < m.cable_count && Any(!damps); ++c) damps = damps | (s.damping[c] > zero);
+  const bool damped = Any(damps);
+  CableStep<W> step{W::Splat(step_s),
+                    W::Splat(1.0 / step_s),
+                    W::Splat(kSoftSpring / (step_s * step_s)),
+                    s.last_step[0] > zero,
+                    Select(damps, W::Splat(0.5 * step_s), zero),
+                    W::Splat(1e300)};
   for (int c = 0; c < m.cable_count; ++c) {
     if (m.cables[c].joins_two) {
-      MeetCable<true>(m, s, work, c, damped, step_s);
+      MeetCable<true>(m, s, work, c, damped, step);
     } else {
-      MeetCable<false>(m, s, work, c, damped, step_s);
+      MeetCable<false>(m, s, work, c, damped, step);
     }
   }
-  if (!damped) return;
-  for (int c = m.cable_count - 1; c >= 0; --c) {
-    if (m.cables[c].joins_two) {
-      RelaxCable<true>(work, work.cables[c], half_h);
-      PullCable<true>(s, work, c);
-    } else {
-      RelaxCable<false>(work, work.cables[c], half_h);
-      PullCable<false>(s, work, c);
+  if (Any(step.room < zero)) SettleKinks(m, s, work, step);
+  if (!damped) {
+    for (int c = 0; c < m.cable_count; ++c) {
+      work.cables[c].tension = work.cables[c].spring;
+      PullCable<false, false>(s, work, c);
     }
+    return;
+  }
+  if (work.stiff_count == 0) {
+    RelaxBack<true>(m, s, work, step.push);
+  } else {
+    RelaxBack<false>(m, s, work, step.push);
   }
 }
 

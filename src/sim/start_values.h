@@ -82,8 +82,7 @@ inline Vec3 InverseMoments(const Tables& t, int i) noexcept {
 inline double RestLength(const Tables& t, int i) noexcept { return CableOf(t, i).rest_length_m; }
 inline double Stiffness(const Tables& t, int i) noexcept { return CableOf(t, i).stiffness_n_per_m; }
 inline double Damping(const Tables& t, int i) noexcept { return CableOf(t, i).damping_n_s_per_m; }
-/// A cable that is taut at the start is known to be so: a stiff one does not enter as if it had
-/// been slack before (docs/theory/cables.md, eq. 10).
+/// Where the solver starts from; also what a cable shows before the first step.
 inline double Tension(const Tables& t, int i) noexcept {
   const CableDef& cable = CableOf(t, i);
   const double length =

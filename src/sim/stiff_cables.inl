@@ -1,10 +1,10 @@
-/// Cables that explicit forces would make unstable at this step: their tension is an impulse that
-/// the solver finds together with the contacts (docs/theory/cables.md, eq. 8-11).
+/// Cables whose tension is the mean over the step of what their spring has on its way from the
+/// length at the start to that at the end (docs/theory/cables.md, eq. 8-11): work is then exactly
+/// what the spring stores or gives, through slackness too.
 ///
-/// While taut, the implicit midpoint rule: length and rate are means of the start and the end of
-/// the step. It is stable for any stiffness and loses no energy. A cable that was slack enters by
-/// the length at the end of the step instead, so that a sudden stop of a fast end does not turn
-/// into a larger rebound; its damper joins one step later, when the cable is known to be taut.
+/// Those that explicit forces would make unstable at this step are left to the solver, which finds
+/// them together with the contacts. Soft ones are explicit, but in a step in which they go slack or
+/// get taut.
 
 namespace taut::sim {
 
@@ -12,36 +12,78 @@ namespace taut::sim {
 /// explicit scheme is stable below 4).
 inline constexpr double kSoftSpring = 0.1;
 
+/// Where cables are attached, at the start of the step: from the places that SaveStart has kept.
+template <class W>
+void MeasureStart(const View& m, Scratch<W>& work) noexcept {
+  const auto* const pos = reinterpret_cast<const V3<W>*>(work.start);
+  const auto* const quat = reinterpret_cast<const Q4<W>*>(pos + m.body_count);
+  M3<W> R = work.bodies[m.body_count].R;
+  int body = m.body_count;
+  for (int i = 0; i < m.spot_count; ++i) {
+    const AttachmentTable& table = m.spots[i];
+    if (table.body == m.body_count) {
+      work.start_spots[i] = simd::Splat3<W>(table.p_P);
+      continue;
+    }
+    if (table.body != body) R = RotationOf(quat[table.body]);
+    body = table.body;
+    work.start_spots[i] = pos[body] + R * simd::Splat3<W>(table.p_P);
+  }
+  work.start_known = true;
+}
+
+template <class W>
+TAUT_INLINE W StartLength(const View& m, Scratch<W>& work, const CableTable& cable) noexcept {
+  if (!work.start_known) MeasureStart(m, work);
+  const AttachmentTable* const tables = m.attachments + cable.first_attachment;
+  return MeasureThrough<V3<W>>(cable.attachment_count,
+                               [&](int i) { return work.start_spots[tables[i].spot]; })
+      .l;
+}
+
+/// At what rate a cable lengthened before the step.
+template <class W>
+TAUT_INLINE W RateBefore(const Scratch<W>& work, const Link<W, 1>* links, int count) noexcept {
+  W rate = W::Splat(0.0);
+  for (int i = 0; i < count; ++i) {
+    const BodyWork<W>& body = work.bodies[links[i].body];
+    rate -= Dot(links[i].lin[0], body.v0) + Dot(links[i].ang[0], body.w0);
+  }
+  return rate;
+}
+
+/// A cable's law over the step, from its length and stretch at the middle. Its true length at the
+/// start says how far the middle's directions are wrong; they are so at the end by as much.
+template <class W>
+TAUT_INLINE void SetCableLaw(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W length,
+                             W stretch, W rate, W h, W spring, CableRow<W>& row) noexcept {
+  const CableTable& cable = m.cables[c];
+  const W half_h = W::Splat(0.5) * h, inv_half = W::Splat(1.0) / half_h;
+  const W wound = s.rest_rate[c];
+  const W mid = stretch + (StartLength(m, work, cable) - (length - half_h * rate));
+  const W z = inv_half * mid;
+  row.SetLaw(z - (rate - wound), z - wound, spring, half_h * s.damping[c], wound + wound);
+  row.upper = W::Splat(1e300);
+  if (!cable.clamped_damping) return;
+  // Twice the spring's, as far as it is known before the step.
+  const W twice = row.SpringImpulse(row.start + W::Splat(2.0) * (rate - wound));
+  row.upper = Select(s.damping[c] > W::Splat(0.0), twice + twice, row.upper);
+}
+
 template <class W>
 void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
                    const CableWork<W>& linked, W length, W stretch, W h, MaskOf<W> on) noexcept {
-  const W zero = W::Splat(0.0), half = W::Splat(0.5);
-  const CableTable& cable = m.cables[c];
+  const W zero = W::Splat(0.0);
   StiffCable<W>& row = work.stiff[work.stiff_count++];
   row.cable = c;
   row.live = Select(on, W::Splat(1.0), zero);
   row.links = linked.links;
   row.link_count = linked.link_count;
-  W rate = zero;  // before the step
-  for (int i = 0; i < row.link_count; ++i) {
-    const Link<W, 1>& link = row.links[i];
-    const BodyWork<W>& body = work.bodies[link.body];
-    rate -= Dot(link.lin[0], body.v0) + Dot(link.ang[0], body.w0);
-  }
-  const W k = s.stiffness[c];
-  // Stretched at the middle of the step before, a step's way ago, even if its damper held the
-  // tension at zero.
-  const W stretch_before = stretch - h * (rate - s.rest_rate[c]);
-  const auto was_taut = (s.tension[c] > zero) | (stretch_before > zero);
-  const W b = Select(was_taut & (stretch > zero), s.damping[c], zero);
-  const W quarter_hk = W::Splat(0.25) * h * k;
-  const W gain = Select(was_taut, quarter_hk + half * b, half * h * k);
-  const W base = k * stretch + Select(was_taut, (half * b - quarter_hk) * rate, zero);
-  row.base = h * base;
-  row.gain = h * gain;
+  const W rate = RateBefore(work, row.links, row.link_count);
+  const W spring = W::Splat(0.25) * h * h * s.stiffness[c];
+  SetCableLaw(m, s, work, c, length, stretch, rate, h, spring, row);
   row.FinishMasses();
-  row.across = W::Splat(0.25) * h * h * s.stiff_k[c] / (k * length);
-  row.upper = cable.clamped_damping ? h * Max(k * (stretch + stretch), zero) : W::Splat(1e300);
+  row.across = W::Splat(0.25) * h * h * s.stiff_k[c] / (s.stiffness[c] * length);
   row.l[0] = Select(on, Min(h * s.tension[c], row.upper), zero);
 }
 

@@ -136,7 +136,7 @@ TEST(BallJoint, TwoRodsLeanOnEachOtherHeldByFrictionOrByACable) {
     }
     if (!friction) {
       auto& cable = island.Add<Cable>();
-      cable.live = Num::Splat(1.0), cable.base = Num::Splat(push), cable.gain = Num::Splat(2.0);
+      cable.live = Num::Splat(1.0), cable.SetLine(Num::Splat(push), Num::Splat(2.0));
       cable.upper = Num::Splat(1.0), cable.link_count = 2, cable.links = island.Links(2);
       for (int i = 0; i < 2; ++i) {
         const Vec3 pull = {i == 0 ? 1.0 : -1.0, 0, 0};

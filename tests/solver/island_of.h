@@ -231,8 +231,7 @@ inline StepIsland IslandOf(const ContactProblem& p, int block_capacity = kManyBl
   for (const ProblemCable& from : p.cables) {
     auto& c = out.Add<Cable>();
     c.live = Num::Splat(1.0);
-    c.base = Num::Splat(from.base);
-    c.gain = Num::Splat(from.gain);
+    c.SetLine(Num::Splat(from.base), Num::Splat(from.gain));
     c.upper = Num::Splat(from.upper);
     c.l[0] = Num::Splat(from.impulse);
     c.link_count = static_cast<int>(from.links.size());

@@ -43,10 +43,13 @@ inline std::vector<double> RandomContactNumbers(math::Random& random, double max
   }
   return out;
 }
-/// A cable in the numbers that ReadCable takes.
+/// A cable in the numbers that ReadCable takes. Half of them have no damper, and half no limit.
 inline std::vector<double> RandomCableNumbers(math::Random& random) {
-  const double base = random.Uniform(-1, 2);
-  std::vector<double> out = {1, base, random.Uniform(0.1, 2), random.Uniform(0.5, 2), 0};
+  const double start = random.Uniform(-1, 1), end = random.Uniform(-1, 1);
+  const double spring = random.Uniform(0.1, 1), damper = random.Uniform(-1, 1);
+  const double winding = random.Uniform(-0.3, 0.3), upper = random.Uniform(-1, 1);
+  std::vector<double> out = {
+      1, start, end, spring, std::max(damper, 0.0), winding, upper > 0.2 ? upper : 1e300, 0};
   for (int i = 0; i < 2; ++i) {
     AddMasses(random, out);
     AddVector(Unit(RandomVector(random)), out);
@@ -104,19 +107,34 @@ inline Rows<3> NewtonFunction(const Contact2& c, const Rows<3>& u, const Rows<3>
   return {w[0] * (l[0] - y[0]), w[1] * (l[1] - shrink * y[1]), w[2] * (l[2] - shrink * y[2])};
 }
 
-/// Eq. 11 of docs/theory/cables.md, as a complementarity between limits.
-inline double Violation(const Cable& c, const Rows<1>& u, const Rows<1>& l) {
-  const double wish = c.base[0] - c.gain[0] * u[0], upper = c.upper[0];
-  const double off = l[0] - wish;  // slack: may be above its wish; at its limit: may be below
-  return std::max({-l[0], l[0] - upper, off > 0 ? std::min(off, std::abs(l[0])) : 0.0,
-                   off < 0 ? std::min(-off, std::abs(upper - l[0])) : 0.0});
+/// Twice the stretch, per step, at its end.
+inline double EndOf(const Cable& c, const Rows<1>& u) { return c.end[0] - u[0]; }
+
+/// Eq. 8 and 9 of docs/theory/cables.md, without limits: what the spring stores on its way, and
+/// what the damper takes while it is stretched, by how far its length goes and its rest length
+/// winds.
+inline double Wish(const Cable& c, const Rows<1>& u) {
+  const double z = EndOf(c, u), z0 = c.start[0], way = z - z0;
+  const double p = std::max(z, 0.0), p0 = std::max(z0, 0.0);
+  return (c.spring[0] * (p * p - p0 * p0) + c.damper[0] * (p - p0) * (way + c.winding[0])) / way;
+}
+/// -d Wish / du, by the rule of the quotient.
+inline double SlopeOfWish(const Cable& c, const Rows<1>& u) {
+  const double z = EndOf(c, u), z0 = c.start[0], way = z - z0, far = way + c.winding[0];
+  const double gone = std::max(z, 0.0) - std::max(z0, 0.0);
+  const double taut = z > 0 ? 2 * c.spring[0] * z + c.damper[0] * far : 0;
+  return (taut + c.damper[0] * gone - Wish(c, u)) / way;
 }
 
-/// The change of velocity that would set it right, alone: A (l - clamp(wish)) / (1 + gain A).
+inline double Violation(const Cable& c, const Rows<1>& u, const Rows<1>& l) {
+  return std::abs(l[0] - std::clamp(Wish(c, u), 0.0, c.upper[0]));
+}
+
+/// Times what its velocity changes by per impulse, alone and taut at both ends.
 inline Rows<1> NewtonFunction(const Cable& c, const Rows<1>& u, const Rows<1>& l, const Rows<1>&,
                               double) {
-  const double wish = c.base[0] - c.gain[0] * u[0], a = InverseMassOf(c)[0][0];
-  return {a / (1 + c.gain[0] * a) * (l[0] - std::clamp(wish, 0.0, c.upper[0]))};
+  const double a = InverseMassOf(c)[0][0];
+  return {a / (1 + c.gain[0] * a) * (l[0] - std::clamp(Wish(c, u), 0.0, c.upper[0]))};
 }
 
 }  // namespace taut::test

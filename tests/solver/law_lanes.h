@@ -58,7 +58,7 @@ sim::Link<W, R> ReadLink(LaneReader<W>& in) noexcept {
 template <int R>
 inline constexpr int kLinkNumbers = 10 + 3 * R;
 inline constexpr int kContactNumbers = 8 + 2 * kLinkNumbers<3>;
-inline constexpr int kCableNumbers = 5 + 2 * kLinkNumbers<1>;
+inline constexpr int kCableNumbers = 8 + 2 * kLinkNumbers<1>;
 
 template <class W>
 sim::ContactPoint<W, 2> ReadContact(LaneReader<W>& in, bool one_direction,
@@ -82,8 +82,8 @@ template <class W>
 sim::CableRow<W> ReadCable(LaneReader<W>& in, sim::Link<W, 1>* links) noexcept {
   sim::CableRow<W> c;
   c.live = in.Next();
-  c.base = in.Next();
-  c.gain = in.Next();
+  const W start = in.Next(), end = in.Next(), spring = in.Next(), damper = in.Next();
+  c.SetLaw(start, end, spring, damper, in.Next());
   c.upper = in.Next();
   c.l[0] = in.Next();
   for (int i = 0; i < 2; ++i) {

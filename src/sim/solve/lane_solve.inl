@@ -274,11 +274,7 @@ class LaneSolve {
       if (to.link_count == 0) continue;
       link_count += to.link_count;
       cable_source_[pool.count++] = i;
-      to.live = OfLane<L>(from.live, lane_);
-      to.base = OfLane<L>(from.base, lane_);
-      to.gain = OfLane<L>(from.gain, lane_);
-      to.upper = OfLane<L>(from.upper, lane_);
-      to.l[0] = OfLane<L>(from.l[0], lane_);
+      to.TakeLaw(from, [&](W x) { return OfLane<L>(x, lane_); });
       to.FinishMasses();
     }
   }

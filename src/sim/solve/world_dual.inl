@@ -2,10 +2,10 @@
 /// method in all impulses, in all lanes at once (docs/theory/contact.md, section 5).
 ///
 /// Cables are eliminated first, by a symmetric factorisation that serves as long as the same cables
-/// are taut. What is left is a system of the contacts alone, as small as a body's; it has its own
-/// Newton iterations. Rows are those that some lane has; one that a lane has not stands in its
-/// system as 1 x = 0. What a lane gets does not depend on the others: its rows have the same order
-/// alone.
+/// are taut and none bends. What is left is a system of the contacts alone, as small as a body's;
+/// it has its own Newton iterations. Rows are those that some lane has; one that a lane has not
+/// stands in its system as 1 x = 0. What a lane gets does not depend on the others: its rows have
+/// the same order alone.
 
 namespace taut::sim {
 
@@ -191,7 +191,8 @@ class WorldDual {
     next[0] = 0;
   }
 
-  /// Newton's equations of the cables. True if other cables are taut than before.
+  /// Newton's equations of the cables. True if other cables are taut than before, or one has
+  /// another stiffness: those that go slack or get taut in this step are curves.
   bool LinearizeCables(bool first) noexcept {
     bool changed = first;
     ForEachCable([&](auto& law, int row) {
@@ -199,8 +200,9 @@ class WorldDual {
       LinearLaw<W, 1> linear;
       law.Linearize(branch, mem_.u + row, mem_.l + row, W::Splat(0.0), linear);
       mem_.r[row] = linear.r[0];
+      changed = changed || Any(!(linear.S[0][0] == mem_.active[row]) |
+                               !(linear.A[0][0] == mem_.diagonal[row]));
       mem_.diagonal[row] = linear.A[0][0];
-      changed = changed || Any(!(linear.S[0][0] == mem_.active[row]));
       mem_.active[row] = linear.S[0][0];
     });
     return changed;
