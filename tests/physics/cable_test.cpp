@@ -221,8 +221,7 @@ TEST(Cable, AStiffCableFollowsTheMidpointRulesClosedFormAndKeepsItsEnergy) {
     const double middle = scene.rest_length_m + sag, theta = 2 * std::atan(w * h / 2);
     scene.length_m = middle;
     Batch world = MakeBatch(scene.Def());
-    world.Step(h);                       // from now on the cable is known to be taut
-    const double amplitude = 0.7 * sag;  // and stays so
+    const double amplitude = 0.7 * sag;  // it stays taut
     world.SetBodyState(0, 0, {{0, 0, -middle - amplitude}, {}, {}, {}});
     const double x0 = -Height(world) - middle;
     for (int n = 1; n <= 2000; ++n) {
