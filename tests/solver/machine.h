@@ -39,7 +39,7 @@ inline void Build(Machine& m, double friction, const Vec3& belt_speed = kBeltSpe
   }
   foot.FinishMasses();
   auto& cable = island.Add<Cable>();
-  cable.live = Num::Splat(1.0), cable.base = Num::Splat(kBase), cable.gain = Num::Splat(kGain);
+  cable.live = Num::Splat(1.0), cable.SetLine(Num::Splat(kBase), Num::Splat(kGain));
   cable.upper = Num::Splat(1.0), cable.link_count = 3, cable.links = island.Links(3);
   // Its rate of shortening: the rotor takes in, the ends come nearer.
   island.SetRow(cable.links[0], 0, m.rotor, {-kRadius, 0, 0}, {});

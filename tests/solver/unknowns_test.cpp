@@ -122,7 +122,7 @@ TEST(Unknowns, ALockedRotorAndAHeavyOneAreTheSame) {
     const int rotor = island.AddRotor(1e9, 7), mass = island.AddPointMass(0.5, {0, 0, -0.1});
     if (locked) island.Prescribe(rotor);
     auto& cable = island.Add<Cable>();
-    cable.live = Num::Splat(1.0), cable.base = Num::Splat(0.05), cable.gain = Num::Splat(3.0);
+    cable.live = Num::Splat(1.0), cable.SetLine(Num::Splat(0.05), Num::Splat(3.0));
     cable.upper = Num::Splat(10.0), cable.link_count = 2, cable.links = island.Links(2);
     island.SetRow(cable.links[0], 0, rotor, {-kRadius, 0, 0}, {});
     island.SetRow(cable.links[1], 0, mass, {0, 0, 1}, {});
