@@ -149,10 +149,8 @@ void NeverGains(std::uint64_t kind, const std::string& name, int count) {
     worst = std::max(worst, gain);
   }
   testing::Test::RecordProperty("worst_gain_ppm", static_cast<int>(1e6 * worst));
-  // Heaps may leave one step in some thousand unsolved (docs/theory/contact.md, section 6); a box
-  // that lands on a face one in a million, to 2e-10 m/s instead of 1e-10.
-  const int may = name == "boxes" ? count / 10 : name == "box" ? count / 400 : 0;
-  EXPECT_LE(unsolved, may) << name;
+  // Heaps may leave one step in some thousand unsolved (docs/theory/contact.md, section 6).
+  EXPECT_LE(unsolved, name == "boxes" ? count / 10 : 0) << name;
 }
 
 TEST(Drops, ABoxNeverGainsEnergy) { NeverGains(0, "box", 60); }
