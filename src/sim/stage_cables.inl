@@ -253,7 +253,8 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
     row.damped = MaskOf<W>::Splat(false);
     return;
   }
-  row.tension = Select(step.goes_on, s.tension[c], zero);
+  // Before the first step, that at rest: then nothing moves what is in balance.
+  row.tension = Select(step.goes_on, s.tension[c], row.spring);
   row.damping = s.damping[c];
   // With nothing to damp, or slack, the spring alone: to the bit. Stiff ones stay as they are.
   row.damped = stiff | ((row.damping > zero) & (row.spring > zero));

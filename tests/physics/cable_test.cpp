@@ -42,13 +42,15 @@ TEST(Cable, AnUndampedSpringFollowsTheLeapfrogsClosedFormForAHundredPeriods) {
 
 /// The scheme for a mass on a damped spring, by itself: the spring of the middle of the step, the
 /// damper with the mean of the rates before and after it. The first step does not know yet what
-/// else pulls: its mean lacks gravity. `x`, `v`: downward from where the spring holds the weight.
+/// else pulls: it takes the tension at rest for balanced. `x`, `v`: downward from where the spring
+/// holds the weight.
 struct DampedSpring {
   double k, b, m, x, v;
   bool first = true;
   void Step(double h) {
     const double g = 9.81, middle = x + h / 2 * v;
-    const double mean = v + (first ? 0.0 : h / 2 * g);  // but for the tension's own part
+    // But for the tension's own part:
+    const double mean = v + h / 2 * (first ? (k * middle + m * g) / m : g);
     const double tension = (k * (middle + m * g / k) + b * mean) / (1 + h * b / (2 * m));
     v += h * (g - tension / m);
     x = middle + h / 2 * v;
