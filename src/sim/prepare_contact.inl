@@ -108,10 +108,10 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   // take back, so that nothing flies; what that leaves goes out by displacements
   // (solve/lane_solve.inl, PushOut).
   const Num before = RowVelocity(c, 0, a.v0, a.w0, b.v0, b.w0);
-  const Num kick = Max(before - RowVelocity(c, 0, a.v, a.w, b.v, b.w), zero);
+  const Num change = before - RowVelocity(c, 0, a.v, a.w, b.v, b.w), kick = Max(change, zero);
   const Num slowly = Num::Splat(kPushOutShare) * Abs(before);
   c.bias[0] = Max(c.gap * inv_h, zero - (Num::Splat(0.5) * kick + slowly));
-  c.lands = Select(before < -kick, one, zero);
+  c.lands = Select(before < -Abs(change), one, zero);
   c.deep = Select((c.live > zero) & (c.gap < zero), Min(c.gap - h * c.bias[0], zero), zero);
   c.bias[1] = c.bias[2] = zero;
   c.slip = zero;
