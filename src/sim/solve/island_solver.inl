@@ -69,8 +69,8 @@ class IslandImpacts {
   SolverWork& work_;
 };
 
-/// The same, with impacts. Rebounds that friction does not let happen (one point that slides under a
-/// steep rod has none) are left out: the solution without them is one, too.
+/// The same, with impacts. Rebounds that friction does not let happen (one point that slides under
+/// a steep rod has none) are left out: the solution without them is one, too.
 template <class Num, class P>
 double SolveIsland(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   IslandImpacts<Num, P> problem(island, target, work);
