@@ -23,6 +23,7 @@
 #include "sim/solve/impacts.inl"
 #include "sim/solve/body_dual.inl"
 #include "sim/solve/world_dual.inl"
+#include "sim/solve/world_dual_contacts.inl"
 #include "sim/solve/body_matrix.inl"
 #include "sim/solve/plain_newton.inl"
 #include "sim/solve/tangent.inl"

@@ -106,8 +106,8 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
 
   // Approaching: no further than to touch. Inside: out again, no faster than this step's forces
   // take back, so that nothing flies; what that leaves goes out by displacements
-  // (solve/lane_solve.inl, PushOut).
-  const Num before = RowVelocity(c, 0, a.v0, a.w0, b.v0, b.w0);
+  // (solve/push_out.inl).
+  const Num before = c.before = RowVelocity(c, 0, a.v0, a.w0, b.v0, b.w0);
   const Num change = before - RowVelocity(c, 0, a.v, a.w, b.v, b.w), kick = Max(change, zero);
   const Num slowly = Num::Splat(kPushOutShare) * Abs(before);
   c.bias[0] = Max(c.gap * inv_h, zero - (Num::Splat(0.5) * kick + slowly));

@@ -3,6 +3,13 @@
 
 namespace taut::sim {
 
+template <class W>
+V3<W> ShapeCenter(const View& m, const Rows<W>& s, const Scratch<W>& work, int shape) noexcept {
+  const ShapeTable& t = m.shapes[shape];
+  const V3<W> p = work.bodies[t.body].R * simd::Splat3<W>(t.center_P);
+  return t.body < m.body_count ? s.pos[t.body] + p : p;
+}
+
 /// The centre line of a round shape in W: centre -+ half.
 template <class W>
 struct CenterLine {
@@ -17,8 +24,7 @@ CenterLine<W> CenterLineOf(const View& m, const Rows<W>& s, const Scratch<W>& wo
   const M3<W>& R = work.bodies[t.body].R;
   const double half[3] = {0.5 * (round.to[0] - round.from[0]), 0.5 * (round.to[1] - round.from[1]),
                           0.5 * (round.to[2] - round.from[2])};
-  const V3<W> p = R * simd::Splat3<W>(t.center_P);
-  return {t.body < m.body_count ? s.pos[t.body] + p : p, R * simd::Splat3<W>(half)};
+  return {ShapeCenter(m, s, work, shape), R * simd::Splat3<W>(half)};
 }
 
 /// A lower bound of the distance of two centre lines: that of their nearest points, but for what

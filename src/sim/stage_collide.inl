@@ -147,13 +147,6 @@ void CollidePlanes(const View& m, const Rows<W>& s, Scratch<W>& work, W h, int b
   }
 }
 
-template <class W>
-V3<W> ShapeCenter(const View& m, const Rows<W>& s, const Scratch<W>& work, int shape) noexcept {
-  const ShapeTable& t = m.shapes[shape];
-  const V3<W> p = work.bodies[t.body].R * simd::Splat3<W>(t.center_P);
-  return t.body < m.body_count ? s.pos[t.body] + p : p;
-}
-
 /// A lower bound of the distance between all shapes of two bodies, in `lanes`.
 template <class W, class M>
 W DistanceOfBodies(const View& m, const Rows<W>& s, const Scratch<W>& work,

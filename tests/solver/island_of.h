@@ -217,7 +217,7 @@ inline StepIsland IslandOf(const ContactProblem& p, int block_capacity = kManyBl
     c.mu = Num::Splat(from.mu);
     c.bias[0] = Num::Splat(from.bias);
     c.one_direction = false;
-    c.restitution = Num::Splat(0.0);
+    c.restitution = c.before = Num::Splat(0.0);
     c.link_count = from.b < 0 ? 1 : 2;
     const Vec3 directions[3] = {from.n, from.t1, from.t2};
     for (int r = 0; r < 3; ++r) {

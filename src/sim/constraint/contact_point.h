@@ -23,6 +23,7 @@ struct ContactPoint {
   Num w1n, w2n, w11, w12, w22;  ///< The rest of the inverse effective mass [1/kg].
   Num bias[3];                  ///< Wanted: un >= -bias[0], ut = -bias[1..2] [m/s].
   Num mu, restitution;
+  Num before;   ///< Normal velocity at the start of the step [m/s].
   Num rebound;  ///< How fast it leaves if it takes part in an impact in this step [m/s], or 0.
   Num closing;  ///< bias[0] without an impact [m/s].
   Num again;    ///< Its restitution if it opens at the start of the step, else 0.
@@ -203,9 +204,8 @@ struct ContactPoint {
 
   /// Sets `rebound` (eq. 9-10): as high as restitution asks for, at the gap where the step finds
   /// it, under the acceleration that goes on. `warm`: the normal velocity that forces and the
-  /// impulses of the step before lead to; `before`: at the start of the step. False if there is
-  /// none.
-  TAUT_INLINE bool ExpectRebound(Num warm, Num before) noexcept {
+  /// impulses of the step before lead to. False if there is none.
+  TAUT_INLINE bool ExpectRebound(Num warm) noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), least = Num::Splat(kLeastRebound);
     const Num fastest = zero - restitution * before;
     closing = bias[0];

@@ -57,9 +57,6 @@ class BodyDual {
   W* u() noexcept { return u_; }
   W* l() noexcept { return l_; }
   ImpactRows<W> impacts() noexcept { return {before_, kept_u_, kept_l_}; }
-  TAUT_INLINE W NormalBefore(const Contact<W, 1>& c) const noexcept {
-    return Dot(c.links[0].lin[0], body_.v0) + Dot(c.links[0].ang[0], body_.w0);
-  }
   void MeasureBefore() noexcept { Measure(body_.v0, body_.w0, before_); }
   template <class M>
   void SolveAgain(M lanes) noexcept {

@@ -52,7 +52,7 @@ bool ExpectImpacts(Problem& p) noexcept {
   bool any = false;
   p.ForEach([&](auto& law, int row) {
     if constexpr (kRebounds<decltype(law)>) {
-      any = law.ExpectRebound(p.u()[row], p.NormalBefore(law)) || any;
+      any = law.ExpectRebound(p.u()[row]) || any;
     }
   });
   return any;

@@ -8,8 +8,8 @@ template <class Num, class P>
 double SolveInStages(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   constexpr int kSweeps = 30, kSweepsWithoutMatrix = 1000;
   constexpr double kSoftness[] = {1e-2, 1e-1, 1e-4, 1e-1};
-  double residual = 0;
   if (!island.has_matrix) return Sweep(island, kSweepsWithoutMatrix);
+  double residual = 0;
   for (int again = 0;; ++again) {
     residual = PlainNewton(island, target, work);
     if (residual <= target.tolerance) return residual;
@@ -38,16 +38,6 @@ class IslandImpacts {
   Num* u() noexcept { return island_.m.u; }
   Num* l() noexcept { return island_.m.l; }
   ImpactRows<Num> impacts() noexcept { return island_.m.impacts; }
-  template <class Law>
-  Num NormalBefore(const Law& law) const noexcept {
-    Num sum = Num::Splat(0.0);
-    for (int i = 0; i < law.link_count; ++i) {
-      const auto& link = law.links[i];
-      const Twist<Num>& t = island_.bodies[link.body].before;
-      sum += Dot(link.lin[0], t.v) + Dot(link.ang[0], t.w);
-    }
-    return sum;
-  }
   void MeasureBefore() noexcept {
     Num* const v = island_.m.trial_v;
     for (int b = 0; b < island_.body_count; ++b) {

@@ -231,6 +231,7 @@ class LaneSolve {
         to.live = OfLane<L>(from.live, lane_);
         to.mu = OfLane<L>(from.mu, lane_);
         to.restitution = OfLane<L>(from.restitution, lane_);
+        to.before = OfLane<L>(from.before, lane_);
         for (int r = 0; r < 3; ++r) {
           to.bias[r] = OfLane<L>(from.bias[r], lane_);
           to.l[r] = OfLane<L>(from.l[r], lane_);
