@@ -14,20 +14,20 @@ inline constexpr double kFittedMPerS = 0.05;
 /// Normals this near are the same (as cosine).
 inline constexpr double kSameNormal = 0.999;
 
-/// x <- A^-1 x, 3x3, symmetric positive definite; the lower triangle counts.
-template <class Num>
-TAUT_INLINE void SolveThree(Num (&a)[3][3], Num (&x)[3]) noexcept {
-  for (int k = 0; k < 3; ++k) {
+/// x <- A^-1 x, symmetric positive definite; the lower triangle counts.
+template <class Num, int N>
+TAUT_INLINE void SolveSymmetric(Num (&a)[N][N], Num (&x)[N]) noexcept {
+  for (int k = 0; k < N; ++k) {
     const Num inverse = Num::Splat(1.0) / a[k][k];
-    for (int i = k + 1; i < 3; ++i) {
+    for (int i = k + 1; i < N; ++i) {
       const Num f = a[i][k] * inverse;
       for (int j = k + 1; j <= i; ++j) a[i][j] -= f * a[j][k];
       x[i] -= f * x[k];
     }
     a[k][k] = inverse;
   }
-  for (int k = 2; k >= 0; --k) {
-    for (int j = k + 1; j < 3; ++j) x[k] -= a[j][k] * x[j];
+  for (int k = N - 1; k >= 0; --k) {
+    for (int j = k + 1; j < N; ++j) x[k] -= a[j][k] * x[j];
     x[k] = x[k] * a[k][k];
   }
 }
@@ -70,7 +70,7 @@ void FitPatch(Contact<Num, kLinks>* contacts, int count, const V3<Num>& n, const
       x[r] -= f * contacts[i].bias[0];
     }
   }
-  SolveThree(a, x);
+  SolveSymmetric(a, x);
   const V3<Num> v = x[0] * n, w = scale * (x[1] * t1 + x[2] * t2);
   for (int i = 0; i < count; ++i) {
     Contact<Num, kLinks>& c = contacts[i];
@@ -109,6 +109,69 @@ void FitBiases(Contact<Num, kLinks>* contacts, int count, M lanes) noexcept {
       Num& patch = contacts[i].patch;
       patch = Select(patch == mine, taken, patch);
     }
+  }
+}
+
+/// A body's contacts with what does not move, in several directions: jammed in a groove, it sticks
+/// with more rows than it has motions. Where the motion that fits best misses nearly nothing, the
+/// biases become its own (docs/theory/contact.md, eq. 12b).
+template <class Num, class M>
+[[gnu::noinline, gnu::cold]] void AgreeBiases(Contact<Num, 1>* contacts, int count,
+                                              M lanes) noexcept {
+  constexpr double kTiny = 1e-9, kNearlyClosed = 10 * kDisagreementMPerS;
+  const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
+  auto several = M::Splat(false);
+  for (int i = 1; i < count; ++i) {
+    const Num cosine = Dot(contacts[i].links[0].lin[0], contacts[0].links[0].lin[0]);
+    several = several | ((contacts[i].live > zero) & (cosine < Num::Splat(kSameNormal)));
+  }
+  lanes = lanes & several;
+  if (!Any(lanes)) return;
+  Num reach = zero;
+  for (int i = 0; i < count; ++i) {
+    const auto closed = Abs(contacts[i].bias[0]) < Num::Splat(kNearlyClosed);
+    contacts[i].patch = Select(lanes & (contacts[i].live > zero) & closed, one, zero);
+    reach = Max(contacts[i].patch * Dot(contacts[i].arm[0], contacts[i].arm[0]), reach);
+  }
+  const Num scale = one / Sqrt(Max(reach, Num::Splat(1e-300)));
+  Num a[6][6], x[6];
+  for (int r = 0; r < 6; ++r) {
+    for (int c = 0; c < 6; ++c) a[r][c] = zero;
+    a[r][r] = Num::Splat(kTiny);
+    x[r] = zero;
+  }
+  const auto row_of = [&](const Contact<Num, 1>& c, int r, Num(&row)[6]) {
+    const V3<Num>& d = c.links[0].lin[r];
+    const V3<Num> turn = Cross(scale * c.arm[0], d);
+    row[0] = d.x, row[1] = d.y, row[2] = d.z, row[3] = turn.x, row[4] = turn.y, row[5] = turn.z;
+  };
+  Num row[6];
+  for (int i = 0; i < count; ++i) {
+    for (int r = 0; r < (contacts[i].one_direction ? 2 : 3); ++r) {
+      row_of(contacts[i], r, row);
+      for (int j = 0; j < 6; ++j) {
+        const Num f = contacts[i].patch * row[j];
+        for (int k = 0; k <= j; ++k) a[j][k] += f * row[k];
+        x[j] -= f * contacts[i].bias[r];
+      }
+    }
+  }
+  SolveSymmetric(a, x);
+  const auto missed = [&](const Contact<Num, 1>& c, int r) {
+    row_of(c, r, row);
+    Num miss = c.bias[r];
+    for (int j = 0; j < 6; ++j) miss += row[j] * x[j];
+    return c.patch * miss;
+  };
+  Num most = zero;
+  for (int i = 0; i < count; ++i) {
+    const int rows = contacts[i].one_direction ? 2 : 3;
+    for (int r = 0; r < rows; ++r) most = Max(Abs(missed(contacts[i], r)), most);
+  }
+  const Num give_in = Select(most < Num::Splat(kDisagreementMPerS), one, zero);
+  for (int i = 0; i < count; ++i) {
+    const int rows = contacts[i].one_direction ? 2 : 3;
+    for (int r = 0; r < rows; ++r) contacts[i].bias[r] -= give_in * missed(contacts[i], r);
   }
 }
 

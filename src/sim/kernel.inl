@@ -25,6 +25,7 @@
 #include "sim/solve/world_dual.inl"
 #include "sim/solve/world_dual_contacts.inl"
 #include "sim/solve/body_matrix.inl"
+#include "sim/solve/deadlock.inl"
 #include "sim/solve/plain_newton.inl"
 #include "sim/solve/tangent.inl"
 #include "sim/solve/sweeps.inl"

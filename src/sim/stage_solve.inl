@@ -62,18 +62,22 @@ void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
   }
 }
 
+/// Biases of contacts with the world that follow the body's arc, and agree.
 /// Not where bodies touch others that move: biases that agree on a body contradict each other
 /// around a loop of bodies, and heaps are left unsolved by it.
 template <class W, class M>
 void FollowWorldArcs(const View& m, const Rows<W>& s, Scratch<W>& work, M tied,
                      double step_s) noexcept {
+  const W zero = W::Splat(0.0);
+  const bool in_several_directions = m.plane_count > 1 || m.world_pair_count > 0;
   for (int b = 0; b < m.body_count; ++b) {
     const int count = work.contact_count[b];
     if (count == 0) continue;
-    const auto lanes = tied | !(work.unsolved[b] > W::Splat(0.0));
+    const auto lanes = tied | !(work.unsolved[b] > zero);
     if (!Any(lanes)) continue;
-    FollowArcs(s, work.bodies[b], b, work.contacts + m.first_slot[b], count, lanes,
-               W::Splat(step_s));
+    Contact<W, 1>* const contacts = work.contacts + m.first_slot[b];
+    FollowArcs(s, work.bodies[b], b, contacts, count, lanes, W::Splat(step_s));
+    if (in_several_directions) AgreeBiases(contacts, count, lanes);
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include "scenes/ball.h"
 #include "scenes/block_on_slope.h"
+#include "scenes/chance.h"
+#include "scenes/single_rod.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
@@ -154,6 +156,37 @@ TEST(Terrain, AWedgeOfTwoPlanesHoldsABall) {
   for (const ContactState& contact : contacts) {
     EXPECT_NEAR(Norm(contact.force_n), 0.2 * kG / (2 * std::cos(a)), 0.2 * SolverError(1) / 1e-3);
     EXPECT_NEAR(Dot(contact.force_n, contact.normal), Norm(contact.force_n), 1e-12);
+  }
+}
+
+TEST(Terrain, ARodJammedAcrossAGrooveStaysAndItsForcesDoNotGrow) {
+  // It hangs by friction, at whatever force along it: two points that stick have six rows, and one
+  // of them too many. Gaps that differ by 1e-11 m contradict each other there.
+  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+    scenes::Chance chance(seed);
+    scenes::RodInWedge rod;
+    rod.tilt_rad = chance.Within(-0.4, 0.4);
+    ModelDef def = rod.Def();
+    def.bodies[0].velocity_m_per_s = chance.Jolt(0.01);
+    Batch world = MakeBatch(def);
+    double jammed_n = 0;
+    Vec3 jammed_m;
+    for (int step = 0; step < 1000; ++step) {
+      world.Step(1e-3);
+      ASSERT_EQ(world.Status(0).bits, 0u) << seed << ", step " << step;
+      const auto contacts = world.Contacts(0);
+      if (step != 300 && step != 999) continue;
+      ASSERT_EQ(contacts.size(), 2u) << seed;
+      const Vec3 sum = contacts[0].force_n + contacts[1].force_n;
+      EXPECT_NEAR(sum.z, rod.mass_kg * kG, 1e-4) << seed;
+      const double size = Norm(contacts[0].force_n);
+      if (step == 300) {
+        jammed_n = size, jammed_m = world.Body(0, 0).position_m;
+        continue;
+      }
+      EXPECT_NEAR(size, jammed_n, 0.01 * jammed_n) << seed;
+      EXPECT_NEAR(world.Body(0, 0).position_m.z, jammed_m.z, 1e-7) << seed;
+    }
   }
 }
 

@@ -107,6 +107,52 @@ TEST(ContactLaw, NothingElseStays) {
   });
 }
 
+TEST(ContactLaw, ReachIsWhereARayOfImpulsesLeavesItsBranch) {
+  int leaves = 0, stays = 0;
+  ForEachInstance([&](const Contact2& c, Case which, math::Random& random) {
+    const State s = Solution(c, which, random);
+    const auto branch = c.BranchOf(Packed(s.u), Packed(s.l));
+    Rows<3> dl = RandomRows<3>(random);
+    if (random.Uniform(0, 1) < 0.5) dl[0] += 3;  // some never leave
+    const double t = c.Reach(branch, Packed(s.l), Packed(dl))[0];
+    if (which == kOpen) {
+      EXPECT_EQ(t, 1e300);
+      return;
+    }
+    const auto holds = [&](double at) {
+      const double n = s.l[0] + at * dl[0], t1 = s.l[1] + at * dl[1];
+      const double t2 = c.one_direction ? 0 : s.l[2] + at * dl[2];
+      return n > 0 && (which == kSliding || std::hypot(t1, t2) < c.mu[0] * n);
+    };
+    if (t > 1e9) {
+      ++stays;
+      EXPECT_TRUE(holds(1e6));
+      return;
+    }
+    ++leaves;
+    EXPECT_TRUE(holds(0.999 * t)) << t;
+    EXPECT_FALSE(holds(1.001 * t)) << t;
+  });
+  EXPECT_GT(leaves, 1000);
+  EXPECT_GT(stays, 300);
+}
+
+TEST(ContactLaw, WhatGivesInMissesNothing) {
+  ForEachInstance([](Contact2 c, Case which, math::Random& random) {
+    const State s = Solution(c, which, random);
+    const auto branch = c.BranchOf(Packed(s.u), Packed(s.l));
+    Rows<3> u = s.u;
+    for (double& x : u) x += random.Uniform(-1, 1);
+    Num miss[3];
+    c.Miss(branch, Packed(u), miss);
+    c.GiveIn(miss);
+    const Rows<3> had{-c.bias[0][0], -c.bias[1][0], -c.bias[2][0]};
+    const std::size_t held = which == kOpen ? 0 : which == kSliding ? 1 : c.one_direction ? 2 : 3;
+    for (std::size_t r = 0; r < 3; ++r) EXPECT_EQ(miss[r][0] != 0, r < held);
+    for (std::size_t r = 0; r < held; ++r) EXPECT_NEAR(had[r], u[r], 1e-15);
+  });
+}
+
 TEST(ContactLaw, ResidualIsWhatOneStepWouldChange) {
   ForEachInstance([](const Contact2& c, Case which, math::Random& random) {
     State s = Solution(c, which, random);

@@ -13,6 +13,7 @@
 // In the order of use, as in sim/kernel.inl.
 // clang-format off
 #include "sim/solve/body_matrix.inl"
+#include "sim/solve/deadlock.inl"
 #include "sim/solve/plain_newton.inl"
 #include "sim/solve/tangent.inl"
 #include "sim/solve/sweeps.inl"
@@ -126,7 +127,8 @@ class OwnIsland {
     auto& m = island.m;
     numbers_.clear();
     for (Num** const list : {&m.v, &m.rhs, &m.direction, &m.trial_v}) *list = Take(6 * n);
-    for (Num** const list : {&m.l, &m.u, &m.best, &m.center, &m.projected, &m.du, &m.u2, &m.f}) {
+    for (Num** const list :
+         {&m.l, &m.u, &m.best, &m.center, &m.projected, &m.du, &m.u2, &m.f, &m.start}) {
       *list = Take(island.rows);
     }
     m.g = Take(island.pools.cells());

@@ -238,6 +238,35 @@ struct ContactPoint {
   /// Takes that back.
   void ForgetRebound(MaskOf<Num> lanes) noexcept { bias[0] = Select(lanes, closing, bias[0]); }
 
+  /// By how much velocities miss those that it holds on the branch `b`; 0 where it holds none.
+  void Miss(const Branch& b, const Num* u, Num* out) const noexcept {
+    const Num zero = Num::Splat(0.0);
+    const auto sticks = b.closed & !b.slides;
+    out[0] = Select(b.closed, u[0] + bias[0], zero);
+    out[1] = Select(sticks, u[1] + bias[1], zero);
+    out[2] = one_direction ? zero : Select(sticks, u[2] + bias[2], zero);
+  }
+  /// The largest t for which l + t dl holds what it holds on the branch `b`; 1e300 if all do.
+  Num Reach(const Branch& b, const Num* l_now, const Num* dl) const noexcept {
+    const Num zero = Num::Splat(0.0), never = Num::Splat(1e300);
+    // Of the cone's edge: |lt + t dlt|^2 = mu^2 (ln + t dln)^2
+    const Num dl2 = one_direction ? zero : dl[2], mu2 = mu * mu;
+    const Num a = dl[1] * dl[1] + dl2 * dl2 - mu2 * dl[0] * dl[0];
+    const Num half = l_now[1] * dl[1] + l_now[2] * dl2 - mu2 * l_now[0] * dl[0];
+    const Num inside =
+        Max(mu2 * l_now[0] * l_now[0] - l_now[1] * l_now[1] - l_now[2] * l_now[2], zero);
+    const Num square = half * half + a * inside;
+    // In the form that does not cancel; a root only if the ray leaves the cone.
+    const Num divisor = half + Sqrt(Max(square, zero));
+    const Num leaves = Select((square > zero) & (divisor > zero), inside / divisor, never);
+    const Num ends = Select(dl[0] < zero, Max(l_now[0], zero) / (zero - dl[0]), never);
+    return Select(b.closed, Min(ends, Select(b.slides, never, leaves)), never);
+  }
+  /// Holds such velocities instead.
+  void GiveIn(const Num* miss) noexcept {
+    for (int r = 0; r < kRows; ++r) bias[r] -= miss[r];
+  }
+
   void Clamp(Num* l_now) const noexcept {
     const Num zero = Num::Splat(0.0);
     l_now[0] = Max(l_now[0], zero);

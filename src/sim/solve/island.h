@@ -16,6 +16,9 @@ namespace taut::sim {
 
 using simd::S3;
 
+/// The most that biases may contradict each other by, to be made to agree [m/s].
+inline constexpr double kDisagreementMPerS = 1e-6;
+
 inline constexpr int kDofs = 6;  ///< Velocities of a body: v, w. The most that an unknown has.
 
 /// When a solve is done [m/s]: `tolerance` is what it must reach; it goes on to `goal` as long as
@@ -96,10 +99,10 @@ struct ImpactRows {
 /// The numbers that the stages of an island's solve work on.
 template <class Num>
 struct IslandMemory {
-  Num *v, *rhs, *direction, *trial_v;                ///< 6 an unknown.
-  Num *l, *u, *best, *center, *projected, *du, *u2;  ///< 1 a row.
-  Num *g, *f;                                        ///< kRows^2, kRows a constraint.
-  Num* blocks;                                       ///< 36 a block.
+  Num *v, *rhs, *direction, *trial_v;                        ///< 6 an unknown.
+  Num *l, *u, *best, *start, *center, *projected, *du, *u2;  ///< 1 a row.
+  Num *g, *f;                                                ///< kRows^2, kRows a constraint.
+  Num* blocks;                                               ///< 36 a block.
   ImpactRows<Num> impacts;
 };
 

@@ -53,52 +53,80 @@ struct SolverWork {
   int linear_solves = 0, limit = 0;
 };
 
-/// Leaves the best impulses that it came by, made admissible, in m.l; m.v and m.u belong to it
-/// before and after. Returns the residual [m/s].
+/// One step of Newton's method from m.l, m.u and the branches that the laws are said to be on.
+/// Leaves m.l with its velocities in m.v and m.u; false if there is no step.
 template <class Num, class P>
-double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
-  constexpr int kMaxIterations = 12;
-  constexpr double kCompliance = 1e-7, kLostFactor = 1e3;
+bool NewtonStep(Island<Num, P>& island, SolverWork& work) noexcept {
+  constexpr double kCompliance = 1e-7;
   auto& m = island.m;
   const Num zero = Num::Splat(0.0), e = Num::Splat(kCompliance);
   BodyMatrix<Num> matrix(island.pattern, m.blocks);
+  // dl = f - g du,  f = A^-1 r,  g = A^-1 S
+  for (int i = 0; i < kDofs * island.body_count; ++i) m.rhs[i] = zero;
+  bool symmetric = true;
+  island.pools.ForEach([&](auto& law, auto& branch, int row, int cell) {
+    constexpr int R = LawOf<decltype(law)>::kRows;
+    LinearLaw<Num, R> linear;
+    law.Linearize(branch, m.u + row, m.l + row, e, linear);
+    const bool even = SolveLaw(linear, m.g + cell, m.f + row);
+    symmetric = symmetric && even;
+    island.AddForce(law, m.f + row, m.rhs);
+  });
+  matrix.Start(island.bodies, symmetric);
+  island.pools.ForEach([&](auto& law, auto&, int, int cell) { matrix.Add(law, m.g + cell); });
+  ++work.linear_solves;
+  if (!matrix.Factor()) return false;
+  matrix.Solve(m.rhs);
+  island.Measure(m.rhs, m.du);
+  island.pools.ForEach([&](auto& law, auto&, int row, int cell) {
+    constexpr int R = LawOf<decltype(law)>::kRows;
+    for (int i = 0; i < R; ++i) {
+      Num dl = m.f[row + i];
+      for (int j = 0; j < R; ++j) dl -= m.g[cell + R * i + j] * m.du[row + j];
+      m.l[row + i] += dl;
+    }
+  });
+  island.VelocitiesOf(m.l, m.v);
+  island.Measure(m.v, m.u);
+  return true;
+}
+
+/// Leaves the best impulses that it came by, made admissible, in m.l; m.v and m.u belong to it
+/// before and after. `give_in`: what laws may give in by
+/// [m/s]; then it goes on from m.start (deadlock.inl). Returns the residual [m/s].
+template <class Num, class P>
+double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work,
+                   double give_in = 0) noexcept {
+  constexpr int kMaxIterations = 12, kMaxDeadlocks = 8;
+  constexpr double kLostFactor = 1e3, kStays = 0.1;
+  auto& m = island.m;
   double residual = island.Residual(m.u, m.l)[0], best = residual;
   for (int i = 0; i < island.rows; ++i) m.best[i] = m.l[i];
-  for (int iteration = 0;
-       iteration < kMaxIterations && (iteration == 0 || residual > target.goal()) &&
-       work.linear_solves < work.limit;
+  int iterations = kMaxIterations, stayed = 0, deadlocks = 0;
+  for (int iteration = 0; iteration < iterations && (iteration == 0 || residual > target.goal()) &&
+                          work.linear_solves < work.limit;
        ++iteration) {
-    // dl = f - g du,  f = A^-1 r,  g = A^-1 S
-    for (int i = 0; i < 6 * island.body_count; ++i) m.rhs[i] = zero;
-    bool symmetric = true;
-    island.pools.ForEach([&](auto& law, auto& branch, int row, int cell) {
-      constexpr int R = LawOf<decltype(law)>::kRows;
-      LinearLaw<Num, R> linear;
-      law.Linearize(branch, m.u + row, m.l + row, e, linear);
-      const bool even = SolveLaw(linear, m.g + cell, m.f + row);
-      symmetric = symmetric && even;
-      island.AddForce(law, m.f + row, m.rhs);
-    });
-    matrix.Start(island.bodies, symmetric);
-    island.pools.ForEach([&](auto& law, auto&, int, int cell) { matrix.Add(law, m.g + cell); });
-    ++work.linear_solves;
-    if (!matrix.Factor()) break;
-    matrix.Solve(m.rhs);
-    island.Measure(m.rhs, m.du);
-    island.pools.ForEach([&](auto& law, auto&, int row, int cell) {
-      constexpr int R = LawOf<decltype(law)>::kRows;
-      for (int i = 0; i < R; ++i) {
-        Num dl = m.f[row + i];
-        for (int j = 0; j < R; ++j) dl -= m.g[cell + R * i + j] * m.du[row + j];
-        m.l[row + i] += dl;
-      }
-    });
-    island.VelocitiesOf(m.l, m.v);
-    island.Measure(m.v, m.u);
+    for (int i = 0; stayed > 0 && i < island.rows; ++i) {
+      m.u2[i] = m.u[i], m.projected[i] = m.l[i];
+    }
+    if (!NewtonStep(island, work)) break;
     const double before = residual;
     residual = island.Residual(m.u, m.l)[0];
     if (residual <= target.tolerance && residual > Target::kPays * before) break;
     if (!(residual - residual == 0)) break;
+    const double change = residual - before;
+    stayed = change < kStays * before && -change < kStays * before ? stayed + 1 : 0;
+    if (stayed > 1 && residual < kDisagreementMPerS && deadlocks < kMaxDeadlocks) {
+      const Deadlock found = DeadlockBreaker<Num, P>(island).Break(give_in);
+      if (found != Deadlock::kNone) {
+        ++deadlocks, stayed = 0, iterations = iteration + kMaxIterations;
+        const bool gave_in = found == Deadlock::kGaveIn;
+        for (int i = 0; gave_in && i < island.rows; ++i) m.l[i] = m.start[i];
+        residual = island.Judge();
+        if (gave_in) best = residual;  // of another problem
+        continue;
+      }
+    }
     if (residual < best) {
       best = residual;
       for (int i = 0; i < island.rows; ++i) m.best[i] = m.l[i];

@@ -12,7 +12,8 @@ namespace taut::sim {
 template <class Num, class P>
 class Proximal {
   static constexpr int kMaxRounds = 40, kMaxIterations = 40, kSweepsAfterFailure = 10;
-  static constexpr double kLeastSoftness = 1e-8;
+  static constexpr double kLeastSoftness = 1e-8, kStays = 1e-3;
+  static constexpr int kMaxStays = 4;
 
  public:
   Proximal(Island<Num, P>& island, Target target, SolverWork& work) noexcept
@@ -29,11 +30,17 @@ class Proximal {
     double residual = island_.Judge(), best = residual;
     Keep(m_.best, m_.l, island_.rows);
     bool carried = false;  // m.trial_v is where the last round ended
+    int stayed = 0;
     for (int round = 0; round < kMaxRounds && residual > tolerance_ && !Exhausted(); ++round) {
       Keep(m_.center, m_.l, island_.rows);
       if (!carried) Keep(m_.trial_v, m_.v, size_);
       const bool ended_well = Round(e);
+      const double before = residual;
       residual = island_.Judge();
+      // Biases that contradict each other: deadlock.inl
+      const double change = Abs(Num::Splat(residual - before))[0];
+      stayed = ended_well && change < kStays * residual ? stayed + 1 : 0;
+      if (stayed == kMaxStays && best < kDisagreementMPerS) break;
       KeepIfBest(residual, best);
       carried = ended_well && residual - residual == 0;
       if (ended_well) {

@@ -130,7 +130,7 @@ void LaneSolve<W>::KeepMomentum(const V3<L>& gained) noexcept {
     a[2][1] += i.yz - body.mass * r.y * r.z;
   }
   L x[3] = {zero - gained.x, zero - gained.y, zero - gained.z};
-  SolveThree(a, x);
+  SolveSymmetric(a, x);
   const V3<L> w{x[0], x[1], x[2]};
   for (int b = 0; b < count_; ++b) {
     const Unknown<L>& body = mem_.island.bodies[b];

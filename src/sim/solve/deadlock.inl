@@ -1,0 +1,92 @@
+/// Between the stages of an island's solve: what to do where Newton's steps stay on the same
+/// branches and still miss what the laws there hold (docs/theory/contact.md, section 5).
+///
+/// Contacts that stick along a closed chain (a rod jammed across a groove, a slab on rollers) have
+/// more rows than the bodies have motions, and biases that differ in the last digits of gaps and
+/// arcs. No velocities fulfil them all, and each step adds the same impulses along the chain. If
+/// these sooner or later open a contact or make it slide, that is the way to a solution, and is
+/// gone at once. If they never do, there is none: then the laws that can give in by what they miss
+/// do.
+
+namespace taut::sim {
+
+template <class Law>
+inline constexpr bool kGivesIn = requires(Law& law) {
+  law.GiveIn(nullptr);
+};
+
+enum class Deadlock {
+  kNone,    ///< There is none, or no way out. Nothing has changed.
+  kLeft,    ///< m.l is where a law leaves its branch.
+  kGaveIn,  ///< Biases have changed.
+};
+
+/// After a step of Newton's method from the velocities m.u2 and the impulses m.projected to m.u and
+/// m.l.
+template <class Num, class P>
+class DeadlockBreaker {
+  static constexpr double kStays = 1e-2;  ///< Share of what is missed.
+  /// So many times the largest impulse are no way to a solution.
+  static constexpr double kFar = 1e3;
+
+ public:
+  explicit DeadlockBreaker(Island<Num, P>& island) noexcept : island_(island), m_(island.m) {}
+
+  /// Laws give in by no more than `most_m_per_s`.
+  Deadlock Break(double most_m_per_s) noexcept {
+    const double missed = Missed();
+    if (missed == 0) return Deadlock::kNone;
+    // m.projected <- what a step adds to the impulses
+    for (int i = 0; i < island_.rows; ++i) m_.projected[i] = m_.l[i] - m_.projected[i];
+    Num reach = Num::Splat(1e300), size = Num::Splat(0.0), added = size;
+    ForEach([&](auto& law, auto& branch, int row) {
+      for (int r = 0; r < LawOf<decltype(law)>::kRows; ++r) {
+        size = Max(Abs(m_.l[row + r]), size);
+        added = Max(Abs(m_.projected[row + r]), added);
+      }
+      reach = Min(law.Reach(branch, m_.l + row, m_.projected + row), reach);
+    });
+    if (Any(reach * added < Num::Splat(kFar) * size)) {
+      const Num beyond = Num::Splat(1.0 + 1e-9) * reach;
+      for (int i = 0; i < island_.rows; ++i) m_.l[i] += beyond * m_.projected[i];
+      return Deadlock::kLeft;
+    }
+    if (missed > most_m_per_s) return Deadlock::kNone;
+    ForEach([&](auto& law, auto& branch, int row) {
+      Num miss[LawOf<decltype(law)>::kRows];
+      law.Miss(branch, m_.u + row, miss);
+      law.GiveIn(miss);
+    });
+    return Deadlock::kGaveIn;
+  }
+
+ private:
+  template <class F>
+  void ForEach(F&& f) noexcept {
+    island_.pools.ForEach([&](auto& law, auto& branch, int row, int) {
+      if constexpr (kGivesIn<decltype(law)>) f(law, branch, row);
+    });
+  }
+
+  /// By how much the step misses what laws hold, if that is little and the same as before it; or 0.
+  double Missed() noexcept {
+    Num most = Num::Splat(0.0), changed = most;
+    ForEach([&](auto& law, auto& branch, int row) {
+      constexpr int R = LawOf<decltype(law)>::kRows;
+      Num now[R], before[R];
+      law.Miss(branch, m_.u + row, now);
+      law.Miss(branch, m_.u2 + row, before);
+      for (int r = 0; r < R; ++r) {
+        most = Max(Abs(now[r]), most);
+        changed = Max(Abs(now[r] - before[r]), changed);
+      }
+    });
+    const bool stays = most[0] <= kDisagreementMPerS && changed[0] <= kStays * most[0];
+    return stays ? most[0] : 0;
+  }
+
+  Island<Num, P>& island_;
+  IslandMemory<Num>& m_;
+};
+
+}  // namespace taut::sim
