@@ -1,5 +1,6 @@
 """Running the benchmark program and making a list of what it measured."""
 
+import functools
 import json
 import os
 import pathlib
@@ -16,6 +17,7 @@ STAGE = "ns_"  # begins the counters that are times of stages
 
 
 def build(*targets):
+    commit()
     command("bash", "-c", f"source script/common.sh; script/setup; build install {' '.join(targets)}", cwd=ROOT)
 
 
@@ -29,6 +31,7 @@ def processor():
     return platform.processor() or platform.machine()
 
 
+@functools.cache  # what was built at the start is measured, whatever is edited meanwhile
 def commit():
     run = subprocess.run(["git", "describe", "--always", "--dirty", "--exclude", "*"], cwd=ROOT,
                          capture_output=True, text=True)
