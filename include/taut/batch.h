@@ -23,7 +23,8 @@ namespace taut {
 class Model {
  public:
   /// Checks the numbers of `def`. Nothing and diagnostics (without file positions) if one is
-  /// wrong: a negative mass, NaN, an index out of range.
+  /// wrong: a negative mass, NaN, an index out of range. The same if the environment variable
+  /// TAUT_SIMD names no instruction set.
   static std::shared_ptr<const Model> Compile(const ModelDef& def, Diagnostics& out);
 
   virtual ~Model() = default;
@@ -38,8 +39,9 @@ class Model {
 enum class Simd { kScalar = 1, kSse2 = 2, kNeon = 2, kAvx2 = 4, kAvx512 = 8 };
 
 /// The widest that this machine has, or what the environment variable TAUT_SIMD asks for
-/// (scalar, sse2, neon, avx2, avx512; what the machine lacks falls back to what it has). Any thread
-/// may call it while none changes the environment.
+/// (scalar, sse2, neon, avx2, avx512; what the machine lacks falls back to what it has; a name that
+/// is none of these counts as none, and `Model::Compile` complains about it). Any thread may call
+/// it while none changes the environment.
 Simd BestSimd();
 
 struct BatchOptions {
@@ -95,6 +97,23 @@ struct ContactState {
   Vec3 point_m, normal;             ///< In W; normal points from B to A.
   Vec3 force_n;                     ///< On A, in W.
   double gap_m = 0;
+};
+
+/// A shape or plane of a `ModelDef`: in which of its lists, and which of them.
+struct ShapeRef {
+  enum class List { kSpheres, kCapsules, kBoxes, kTerrainBoxes, kPlanes };
+  List list = List::kSpheres;
+  int index = 0;
+};
+
+/// Two shapes of different bodies, or a shape and a part of the terrain, that are in each other.
+struct Overlap {
+  ShapeRef a, b;  ///< `a` is of a body that moves.
+  int body_a = 0, body_b = kWorld;
+  double depth_m = 0;  ///< How far they have to part to touch only, > 0.
+  /// Half the thickness of the thinner one: its radius, or half the smallest edge of a box; of `a`
+  /// alone where `b` is a plane. Deeper than this, the way out may be the other side.
+  double half_thickness_m = 0;
 };
 
 /// Which per-world parameter `SetParameter` changes. `index`: a body, a cable or a surface.
@@ -156,6 +175,9 @@ class Batch {
   Vec3 Momentum(int world) const noexcept;              ///< [kg m/s], in W.
   Vec3 AngularMomentum(int world) const noexcept;       ///< About W's origin [kg m^2/s].
   std::vector<ContactState> Contacts(int world) const;  ///< Of the last step.
+  /// What is in each other as the bodies are now: of every two bodies, and of every body and plane,
+  /// the overlap that is deepest in half thicknesses.
+  std::vector<Overlap> Overlaps(int world) const;
 
   // --- state -------------------------------------------------------------------------------
   void SetBodyState(int world, int body, const BodyState& state) noexcept;

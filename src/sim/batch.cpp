@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstring>
 #include <mutex>
+#include <string>
 #include <string_view>
 
 #include "sim/batch_impl.h"
+#include "sim/model_check.h"
 #include "sim/start_values.h"
 
 namespace taut {
@@ -51,6 +53,33 @@ Simd WidestUpTo(Simd wish) {
   return Simd::kScalar;
 }
 
+#ifdef TAUT_HAS_SSE2
+constexpr bool kHasSse2 = true;
+#else
+constexpr bool kHasSse2 = false;
+#endif
+#ifdef TAUT_HAS_NEON
+constexpr bool kHasNeon = true;
+#else
+constexpr bool kHasNeon = false;
+#endif
+
+/// What TAUT_SIMD may say. Two of them are of one width, of which a build has one.
+constexpr struct {
+  std::string_view name;
+  Simd simd;
+  bool built;
+} kSimdNames[] = {{"scalar", Simd::kScalar, true},
+                  {"sse2", Simd::kSse2, kHasSse2},
+                  {"neon", Simd::kNeon, kHasNeon},
+                  {"avx2", Simd::kAvx2, true},
+                  {"avx512", Simd::kAvx512, true}};
+
+std::string_view SimdWish() {
+  const char* const text = std::getenv("TAUT_SIMD");
+  return text == nullptr ? "" : text;
+}
+
 BatchOptions Sane(BatchOptions o) {
   o.worlds = std::max(o.worlds, 1);
   o.simd = o.simd ? WidestUpTo(*o.simd) : (o.worlds == 1 ? Simd::kScalar : BestSimd());
@@ -60,12 +89,23 @@ BatchOptions Sane(BatchOptions o) {
 }  // namespace
 
 Simd BestSimd() {
-  const char* const text = std::getenv("TAUT_SIMD");
-  const std::string_view wish = text == nullptr ? "" : text;
-  if (wish == "scalar") return Simd::kScalar;
-  if (wish == "sse2" || wish == "neon") return WidestUpTo(Simd::kSse2);
-  if (wish == "avx2") return WidestUpTo(Simd::kAvx2);
+  for (const auto& [name, simd, built] : kSimdNames) {
+    if (SimdWish() == name) return WidestUpTo(simd);
+  }
   return WidestUpTo(Simd::kAvx512);
+}
+
+bool sim::CheckEnvironment(Diagnostics& out) {
+  std::string known, here;
+  if (SimdWish().empty()) return true;
+  for (const auto& [name, simd, built] : kSimdNames) {
+    if (SimdWish() == name) return true;
+    known += (known.empty() ? "" : ", ") + std::string(name);
+    if (built && KernelOf(simd)) here += (here.empty() ? "" : ", ") + std::string(name);
+  }
+  out.Error({}, "the environment variable TAUT_SIMD is \"" + std::string(SimdWish()) + "\"",
+            "one of: " + known + "; this taut on this machine runs: " + here);
+  return false;
 }
 
 Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)

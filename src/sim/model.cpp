@@ -166,7 +166,8 @@ class Compiler {
     }
   }
 
-  void Round(int body, const Vec3& from, const Vec3& to, double radius, const Material& material) {
+  void Round(const ShapeRef& ref, int body, const Vec3& from, const Vec3& to, double radius,
+             const Material& material) {
     sim::ShapeTable s;
     s.body = Index(body);
     sim::RoundShape& round = s.shape_P.round;
@@ -180,10 +181,10 @@ class Compiler {
     }
     s.bound_m = Length(half) + radius;
     s.material = material;
-    AddShape(s);
+    AddShape(s, ref);
   }
 
-  void Box(int body, const Vec3& center, const Quat& q, const Vec3& half,
+  void Box(const ShapeRef& ref, int body, const Vec3& center, const Quat& q, const Vec3& half,
            const Material& material) {
     sim::ShapeTable s;
     s.body = Index(body);
@@ -205,30 +206,35 @@ class Compiler {
     out.half_m[2] = half.z;
     s.bound_m = Length(out.half_m);
     s.material = material;
-    AddShape(s);
+    AddShape(s, ref);
   }
 
-  void AddShape(const sim::ShapeTable& s) {
+  void AddShape(const sim::ShapeTable& s, const ShapeRef& ref) {
     double& bound = t_.bound_m[static_cast<std::size_t>(s.body)];
     bound = std::max(bound, Length(s.center_P) + s.bound_m);
     shapes_of_[static_cast<std::size_t>(s.body)].push_back(t_.shapes.size());
     t_.shapes.push_back(s);
+    t_.shape_refs.push_back(ref);
   }
 
   void Shapes() {
     shapes_of_.resize(def_.bodies.size() + 1);
-    for (const SphereDef& s : def_.spheres) {
-      if (s.collides) Round(s.body, s.center_m, s.center_m, s.radius_m, s.material);
-    }
-    for (const CapsuleDef& c : def_.capsules) {
-      if (c.collides) Round(c.body, c.from_m, c.to_m, c.radius_m, c.material);
-    }
-    for (const BoxDef& b : def_.boxes) {
-      if (b.collides) Box(b.body, b.center_m, b.orientation, b.half_extents_m, b.material);
-    }
-    for (const TerrainBoxDef& b : def_.terrain_boxes) {
-      Box(kWorld, b.center_m, b.orientation, b.half_extents_m, b.material);
-    }
+    using List = ShapeRef::List;
+    const auto each = [](List list, const auto& defs, const auto& add) {
+      for (std::size_t i = 0; i < defs.size(); ++i) add({list, static_cast<int>(i)}, defs[i]);
+    };
+    each(List::kSpheres, def_.spheres, [&](const ShapeRef& ref, const SphereDef& s) {
+      if (s.collides) Round(ref, s.body, s.center_m, s.center_m, s.radius_m, s.material);
+    });
+    each(List::kCapsules, def_.capsules, [&](const ShapeRef& ref, const CapsuleDef& c) {
+      if (c.collides) Round(ref, c.body, c.from_m, c.to_m, c.radius_m, c.material);
+    });
+    each(List::kBoxes, def_.boxes, [&](const ShapeRef& ref, const BoxDef& b) {
+      if (b.collides) Box(ref, b.body, b.center_m, b.orientation, b.half_extents_m, b.material);
+    });
+    each(List::kTerrainBoxes, def_.terrain_boxes, [&](const ShapeRef& ref, const TerrainBoxDef& b) {
+      Box(ref, kWorld, b.center_m, b.orientation, b.half_extents_m, b.material);
+    });
   }
 
   /// Points that can touch planes. Of several in one place the thickest counts, spheres first:
@@ -359,7 +365,7 @@ class Compiler {
 }  // namespace
 
 std::shared_ptr<const Model> Model::Compile(const ModelDef& def, Diagnostics& out) {
-  if (!sim::CheckModel(def, out)) return nullptr;
+  if (!sim::CheckModel(def, out) || !sim::CheckEnvironment(out)) return nullptr;
   auto tables = std::make_shared<Tables>(def);
   Compiler(*tables).Run();
   return tables;

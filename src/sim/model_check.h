@@ -13,4 +13,7 @@ inline constexpr long kMaxCouplings = 10'000'000;
 /// False, with a diagnostic (without file position) for every wrong number or index.
 bool CheckModel(const ModelDef& def, Diagnostics& out);
 
+/// Complains about a TAUT_SIMD that names no instruction set.
+bool CheckEnvironment(Diagnostics& out);
+
 }  // namespace taut::sim

@@ -162,6 +162,7 @@ class Tables final : public Model {
   std::vector<int> first_point;  ///< Per body, and one past the last.
   std::vector<PointTable> points;
   std::vector<ShapeTable> shapes;
+  std::vector<ShapeRef> shape_refs;  ///< Per shape: what it is made from.
   std::vector<ShapePairTable> shape_pairs;
   std::vector<BodyPairTable> body_pairs;
   int world_pair_count = 0;     ///< Of them, the first: `b` does not move; by `a`.

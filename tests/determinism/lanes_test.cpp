@@ -249,6 +249,29 @@ TEST(TautSimd, ChoosesTheInstructionSetOfABatchThatDoesNotSay) {
   EXPECT_EQ(MakeBatch(def, options).lanes(), widest_up_to(Simd::kSse2));
 }
 
+TEST(TautSimd, AnUnknownNameIsAnErrorThatSaysWhatThereIs) {
+  const auto complaint = [](const char* wish) {
+    const WithEnvironment environment("TAUT_SIMD", wish);
+    Diagnostics out;
+    EXPECT_EQ(Model::Compile(scenes::HangingMass().Def(), out) != nullptr, out.ok());
+    return out.Format();
+  };
+  std::string here;
+  for (const auto& [name, simd] : kInstructionSets) {
+    if (BatchOn(simd, scenes::HangingMass().Def(), 3, 1))
+      here += std::string(here.empty() ? "" : ", ") + name;
+  }
+  EXPECT_EQ(
+      complaint("avx"),
+      "error: the environment variable TAUT_SIMD is \"avx\" (one of: scalar, sse2, neon, avx2, "
+      "avx512; this taut on this machine runs: " +
+          here + ")\n");
+  EXPECT_NE(complaint("AVX2"), "");
+  for (const char* known : {"", "scalar", "sse2", "neon", "avx2", "avx512"}) {
+    EXPECT_EQ(complaint(known), "") << known;
+  }
+}
+
 TEST(TautSimd, EveryX8664AndEveryAArch64HasTwoLanes) {
   if (std::size(kInstructionSets) == 1) GTEST_SKIP() << "this build has one lane only";
   const ModelDef def = scenes::HangingMass().Def();
