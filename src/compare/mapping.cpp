@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/input_file.h"
 #include "base/pattern.h"
 #include "taut/compare.h"
 #include "trace/channel_names.h"
@@ -18,6 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kAxisNames[] = {"x", "y", "z"};
+constexpr std::size_t kMaxBytes = 10'000'000;
 constexpr std::string_view kAxisMark = "{axis}";
 
 /// Which axis of the file an axis of taut is, and whether it points the other way.
@@ -44,12 +45,9 @@ class MappingReader {
   MappingReader(const std::string& path, Diagnostics& out) : path_(path), out_(out) {}
 
   std::optional<Mapping> Read() {
-    std::ifstream file(path_);
-    if (!file) {
-      Error("", "cannot be opened");
-      return std::nullopt;
-    }
-    const Json json = Parse(file);
+    const auto text = base::ReadInputFile(path_, kMaxBytes, "a mapping has a few rules", out_);
+    if (!text) return std::nullopt;
+    const Json json = Parse(*text);
     if (good_) Root(json);
     if (!good_) return std::nullopt;
     return std::move(mapping_);
@@ -57,7 +55,7 @@ class MappingReader {
 
  private:
   /// JSON lets a later key overwrite an earlier one; here that is an error.
-  Json Parse(std::istream& file) {
+  Json Parse(const std::string& text) {
     std::vector<std::set<std::string>> keys;
     const auto watch = [&](int, Json::parse_event_t event, Json& value) {
       if (event == Json::parse_event_t::object_start) keys.emplace_back();
@@ -68,7 +66,7 @@ class MappingReader {
       return true;
     };
     try {
-      return Json::parse(file, watch);
+      return Json::parse(text, watch);
     } catch (const Json::exception& failure) {
       const std::string what = failure.what();  // "[json...] parse error at line 1, ...: ..."
       Error("", "is not JSON: " + what.substr(what.find("] ") + 2));
@@ -187,7 +185,11 @@ class MappingReader {
   std::string Text(const Json& object, const char* key, const std::string& at) {
     const auto found = object.find(key);
     if (found != object.end() && found->is_string() && !found->get<std::string>().empty()) {
-      return *found;
+      std::string text = *found;
+      if (std::any_of(text.begin(), text.end(), base::IsControl)) {
+        Error(fmt::format("{}.{}", at, key), "has a control character in it");
+      }
+      return text;
     }
     Error(fmt::format("{}.{}", at, key), found == object.end() ? "is missing" : "is not a text");
     return {};

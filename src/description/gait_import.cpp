@@ -1,10 +1,10 @@
 // Gaits of NTRT: learned parameters (.nnw) and hand-tuned ones (controlVars.json). What the files
 // mean is in NTRT's code only; the facts used here are named at each place.
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
+#include "base/input_file.h"
 #include "description/gait_parts.h"
 #include "description/reader.h"
 
@@ -39,18 +39,12 @@ const std::vector<std::string> kOrder2016{
     "outer_right_1", "outer_left_1", "outer_top_1", "inner_right_1", "inner_left_1", "inner_top_1",
     "outer_right_2", "outer_left_2", "outer_top_2", "inner_right_2", "inner_left_2", "inner_top_2"};
 
-std::string ReadAll(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// "0.5036,0.9295": two numbers within 0..1.
 std::pair<double, double> ReadNnw(const fs::path& path, Diagnostics& out) {
-  std::string text = ReadAll(path.string());
-  for (char& c : text) {
-    if (c == ',') c = ' ';
-  }
-  std::istringstream words(text);
+  auto text = base::ReadInputFile(path.string(), kMaxFileBytes, "", out);
+  if (!text) return {};
+  std::replace(text->begin(), text->end(), ',', ' ');
+  std::istringstream words(*text);
   double numbers[2] = {0, 0};
   bool good = true;
   for (double& number : numbers) {
@@ -133,12 +127,11 @@ std::optional<GaitSpec> ImportLearned(const std::string& folder, NtrtCableOrder 
 
 /// htSpineSine's numbers: V0 = A cos(2 pi f t + phi) - A, and one A for left and right.
 std::optional<GaitSpec> ImportHandTuned(const std::string& path, Diagnostics& out) {
-  std::string text = ReadAll(path);
-  for (char& c : text) {
-    if (c == '\t') c = ' ';  // JSON's, which YAML does not indent with
-  }
+  auto text = base::ReadInputFile(path, kMaxFileBytes, "", out);
+  if (!text) return std::nullopt;
+  std::replace(text->begin(), text->end(), '\t', ' ');  // JSON's, which YAML does not indent with
   const std::size_t errors_before = out.items().size();
-  const ValuePtr root = ParseYaml(text, path, out);
+  const ValuePtr root = ParseYaml(*text, path, out);
   if (!root) return std::nullopt;
   const NameTable no_names;
   const Scope scope{no_names, out};

@@ -1,6 +1,7 @@
 #include <charconv>
-#include <fstream>
+#include <sstream>
 
+#include "base/input_file.h"
 #include "description/gait_parts.h"
 #include "description/yaml_tree.h"
 
@@ -68,22 +69,14 @@ bool ToNumber(const std::string& text, double& number) {
 
 std::optional<TableGait> ReadGaitTable(const std::string& path, Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    out.Error({path, 0, 0}, "cannot be read");
-    return std::nullopt;
-  }
+  const auto text = base::ReadInputFile(path, kMaxFileBytes, "", out);
+  if (!text) return std::nullopt;
+  std::istringstream in(*text);
   TableGait table;
   bool header = false, good = true;
-  std::size_t bytes = 0;
   int number = 0;
   for (std::string line; good && std::getline(in, line);) {
     const SourceRef at{path, ++number, 1};
-    bytes += line.size() + 1;
-    if (bytes > kMaxFileBytes) {
-      out.Error(at, "the table is larger than " + std::to_string(kMaxFileBytes) + " bytes");
-      break;
-    }
     if (line.empty() || line == "\r" || line.front() == '#') continue;
     const std::vector<std::string> cells = Cells(line);
     if (!header) {

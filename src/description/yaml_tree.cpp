@@ -5,18 +5,23 @@
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
-#include <array>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
+#include <algorithm>
 #include <optional>
 #include <sstream>
 #include <unordered_map>
 #include <unordered_set>
 
+#include "base/input_file.h"
+
 namespace taut::description {
 namespace {
+
+std::string ControlText(char c) {
+  return "the control character " + std::to_string(static_cast<int>(c)) + " is in no text";
+}
+
+constexpr const char* kControlHint =
+    "files are UTF-8, without control characters but tab and line end";
 
 /// Leaves the parser at the first error that makes going on pointless. Never leaves this file.
 struct StopReading {};
@@ -47,6 +52,11 @@ class TreeBuilder : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& text) override {
     CheckTag(mark, tag);
+    // As an escape in quotes; as it is, `ParseYaml` has seen it.
+    if (const auto bad = std::find_if(text.begin(), text.end(), base::IsControl);
+        bad != text.end()) {
+      out_.Error(At(mark), ControlText(*bad), kControlHint);
+    }
     auto value = NewValue(mark, Value::Kind::kScalar);
     value->text = text;
     value->quoted = tag == "!";  // yaml-cpp's non-specific tags: "!" quoted, "?" plain
@@ -217,6 +227,15 @@ std::string_view KindName(const Value& value) {
 
 ValuePtr ParseYaml(const std::string& text, const std::string& file, Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
+  if (const auto bad = std::find_if(text.begin(), text.end(), base::IsControl); bad != text.end()) {
+    const auto before = static_cast<std::size_t>(bad - text.begin());
+    const std::size_t line_end = text.rfind('\n', before);
+    const std::size_t line_begin = line_end == std::string::npos ? 0 : line_end + 1;
+    const auto line = 1 + std::count(text.begin(), bad, '\n');
+    out.Error({file, static_cast<int>(line), static_cast<int>(before - line_begin) + 1},
+              ControlText(*bad), kControlHint);
+    return nullptr;
+  }
   TreeBuilder builder(file, out);
   try {
     std::istringstream in(text);
@@ -237,31 +256,9 @@ ValuePtr ParseYaml(const std::string& text, const std::string& file, Diagnostics
 }
 
 ValuePtr ReadYaml(const std::string& path, Diagnostics& out) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    out.Error({path, 0, 0}, "is a directory, not a file");
-    return nullptr;
-  }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    out.Error({path, 0, 0}, std::string("cannot be opened: ") + std::strerror(errno));
-    return nullptr;
-  }
-  std::string text;
-  for (std::array<char, 65536> chunk; in && text.size() <= kMaxFileBytes;) {
-    in.read(chunk.data(), chunk.size());
-    text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
-  }
-  if (in.bad()) {
-    out.Error({path, 0, 0}, "cannot read the file");
-    return nullptr;
-  }
-  if (text.size() > kMaxFileBytes) {
-    out.Error({path, 0, 0}, "larger than " + std::to_string(kMaxFileBytes / 1'000'000) + " MB",
-              "what repeats can be a part with `copies:`");
-    return nullptr;
-  }
-  return ParseYaml(text, path, out);
+  const auto text =
+      base::ReadInputFile(path, kMaxFileBytes, "what repeats can be a part with `copies:`", out);
+  return text ? ParseYaml(*text, path, out) : nullptr;
 }
 
 }  // namespace taut::description

@@ -82,7 +82,7 @@ TEST_F(CompareCommand, BadInputEndsWithThreeAndSaysWhatIsWrong) {
   EXPECT_EQ(outcome.status, 3);
   EXPECT_EQ(outcome.errors,
             "none.h5: error: cannot be opened: No such file or directory\n"
-            "none.json: error: cannot be opened\n");
+            "none.json: error: cannot be opened: No such file or directory\n");
   EXPECT_EQ(outcome.output, "");
   outcome = Run("a.h5 b.csv");
   EXPECT_EQ(outcome.status, 3);

@@ -197,7 +197,13 @@ TEST_F(MappingTest, ComplaintsNameTheKeyAndComeAllAtOnce) {
   EXPECT_EQ(syntax.substr(0, 43), "is not JSON: parse error at line 2, column ") << syntax;
   Diagnostics out;
   EXPECT_FALSE(LoadMapping(Path("none.json"), out));
-  EXPECT_EQ(out.Format(), Path("none.json") + ": error: cannot be opened\n");
+  EXPECT_EQ(out.Format(),
+            Path("none.json") + ": error: cannot be opened: No such file or directory\n");
+  Diagnostics folder;
+  EXPECT_FALSE(LoadMapping(TAUT_SOURCE_DIR, folder));
+  EXPECT_EQ(folder.Format(), TAUT_SOURCE_DIR ": error: is a directory, not a file\n");
+  EXPECT_EQ(Complaint(R"({"version": 1, "channels": [{"from": "a", "to": "\u001b[2J"}]})"),
+            "channels[0].to has a control character in it\n");
 }
 
 TEST_F(MappingTest, AxesMustBeARotation) {

@@ -80,6 +80,21 @@ TEST(YamlTree, OneDocumentWithoutTagsAndWithTextKeys) {
   EXPECT_EQ(ParseErrors("a: &a [*a]\n"), "f.yaml:1:8: error: an anchor may not contain itself\n");
 }
 
+TEST(YamlTree, NoTextHasControlCharacters) {
+  const std::string hint =
+      " is in no text (files are UTF-8, without control characters but tab and line end)\n";
+  // A NUL would cut the path where the system reads it.
+  EXPECT_EQ(ParseErrors("model: \"a.yaml\\0.txt\"\n"),
+            "f.yaml:1:8: error: the control character 0" + hint);
+  EXPECT_EQ(ParseErrors("a: {\"\\e[2J\": 1}\n"),
+            "f.yaml:1:5: error: the control character 27" + hint);
+  EXPECT_EQ(ParseErrors(std::string("a: 1\nb: x\0y\n", 12)),
+            "f.yaml:2:5: error: the control character 0" + hint);
+  // yaml-cpp would take it for the end of the file, and `b` for absent.
+  EXPECT_EQ(ParseErrors("a: 1\n\x04\nb: 2\n"), "f.yaml:2:1: error: the control character 4" + hint);
+  EXPECT_EQ(ParseErrors("a: \"b\\tc\\n\"\r\n"), "");
+}
+
 TEST(YamlTree, NestingIsLimited) {
   EXPECT_EQ(ParseErrors(std::string(65, '[') + std::string(65, ']')),
             "f.yaml:1:65: error: nested more than 64 levels deep\n");

@@ -1,0 +1,31 @@
+#include "base/input_file.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace taut::base {
+
+std::optional<std::string> ReadInputFile(const std::string& path, std::size_t most_bytes,
+                                         const std::string& hint, Diagnostics& out) {
+  const auto refuse = [&](std::string what, const std::string& hint_of = {}) {
+    out.Error({path, 0, 0}, std::move(what), hint_of);
+    return std::nullopt;
+  };
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return refuse("is a directory, not a file");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return refuse(std::string("cannot be opened: ") + std::strerror(errno));
+  std::string text;
+  for (std::array<char, 65536> chunk; in && text.size() <= most_bytes;) {
+    in.read(chunk.data(), chunk.size());
+    text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
+  }
+  if (in.bad()) return refuse("cannot be read");
+  if (text.size() <= most_bytes) return text;
+  return refuse("larger than " + std::to_string(most_bytes / 1'000'000) + " MB", hint);
+}
+
+}  // namespace taut::base
