@@ -8,7 +8,6 @@
 #include "gait_report.h"
 #include "output.h"
 #include "overrides.h"
-#include "taut/batch.h"
 #include "taut/run.h"
 #include "taut/spec.h"
 
@@ -18,12 +17,12 @@ namespace {
 struct CheckArguments {
   std::string path;
   std::vector<std::string> set;
-  bool json = false, quiet = false, couplings = false;
+  bool json = false, quiet = false, couplings = false, strict = false;
   CpgSymmetry symmetry = CpgSymmetry::kSegments;
   std::string svg;
 };
 
-/// All errors, on stderr as text and, if asked for, on stdout as JSON.
+/// All that was found, on stderr as text and, if asked for, on stdout as JSON.
 int Bad(const CheckArguments& args, const Diagnostics& found) {
   const int exit = Fail(found, kBadInput);
   if (args.json) fmt::print("{}\n", ErrorsJson(args.path, found));
@@ -52,7 +51,7 @@ int Couplings(const CheckArguments& args, const RobotSpec& robot,
 /// A gait by itself; whether it fits a robot, the experiment that plays it says.
 int CheckGait(const CheckArguments& args, Diagnostics& found) {
   auto gait = LoadGait(args.path, found);
-  if (!gait) return Bad(args, found);
+  if (!gait || !Pass(found, args.strict)) return Bad(args, found);
   if (args.json) {
     fmt::print("{}\n", GaitJson(*gait));
   } else if (!args.quiet) {
@@ -78,12 +77,15 @@ int Check(const CheckArguments& args) {
     robot = LoadRobot(args.path, *overrides, found);
   }
   // What the simulator refuses is wrong, too.
-  if (!robot || !Model::Compile(robot->def, found)) return Bad(args, found);
-  if (experiment && !CheckRecord(*experiment, found)) return Bad(args, found);
+  const StartKind start = experiment ? experiment->start : StartKind::kAsDescribed;
+  if (!robot || !CheckStart(*robot, start, found)) return Bad(args, found);
+  if (experiment) CheckRecord(*experiment, found);
+  const Diagnostics all = found;
+  if (!Pass(found, args.strict)) return Bad(args, found);
 
   if (args.couplings) return Couplings(args, *robot, experiment ? &*experiment : nullptr);
   if (args.json) {
-    fmt::print("{}\n", CheckJson(*robot, experiment ? &*experiment : nullptr));
+    fmt::print("{}\n", CheckJson(*robot, experiment ? &*experiment : nullptr, all));
   } else if (!args.quiet) {
     fmt::print("{}: good\n", args.path);
     if (experiment) fmt::print("\n{}", ExperimentTables(*experiment));
@@ -111,6 +113,7 @@ void AddCheck(CLI::App& app, int& exit_code) {
   check->add_option("--svg", args->svg, "With --couplings: draw them into this file");
   check->add_flag("--json", args->json, "JSON instead of tables");
   check->add_flag("--quiet", args->quiet, "Say nothing about a good file");
+  check->add_flag("--strict", args->strict, kStrictHelp);
   check->footer(
       "Examples:\n"
       "  taut check models/tetraspine3.yaml\n"

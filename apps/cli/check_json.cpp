@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <tuple>
 
 #include "check_report.h"
 #include "taut/statics.h"
@@ -62,6 +60,19 @@ Json CablesJson(const RobotSpec& robot) {
   return cables;
 }
 
+/// `kind`: the key of what each says.
+Json ToJson(const std::vector<Diagnostic>& found, const char* kind) {
+  Json list = Json::array();
+  for (const Diagnostic& d : Sorted(found)) {
+    list.push_back({{"file", d.at.file},
+                    {"line", d.at.line},
+                    {"column", d.at.column},
+                    {kind, d.what},
+                    {"hint", d.hint}});
+  }
+  return list;
+}
+
 /// Names may hold any bytes that the file had; JSON wants UTF-8.
 std::string Dump(const Json& json) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -69,7 +80,8 @@ std::string Dump(const Json& json) {
 
 }  // namespace
 
-std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment) {
+std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment,
+                      const Diagnostics& found) {
   Json nodes = Json::array();
   for (std::size_t i = 0; i < robot.def.nodes.size(); ++i) {
     const NodeDef& node = robot.def.nodes[i];
@@ -79,6 +91,7 @@ std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment) 
                      {"tags", robot.node_tags[i]}});
   }
   Json json{{"ok", true}, {"name", robot.def.name}};
+  json["warnings"] = ToJson(found.warnings(), "warning");
   if (experiment) {
     json["experiment"] = {{"name", experiment->name},
                           {"duration_s", experiment->duration_s},
@@ -95,20 +108,10 @@ std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment) 
 }
 
 std::string ErrorsJson(const std::string& path, const Diagnostics& found) {
-  std::vector<Diagnostic> sorted = found.items();  // in the order of the file, as in the text
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return std::tie(a.at.file, a.at.line, a.at.column) <
-           std::tie(b.at.file, b.at.line, b.at.column);
-  });
-  Json errors = Json::array();
-  for (const Diagnostic& d : sorted) {
-    errors.push_back({{"file", d.at.file},
-                      {"line", d.at.line},
-                      {"column", d.at.column},
-                      {"error", d.what},
-                      {"hint", d.hint}});
-  }
-  return Dump({{"ok", false}, {"file", path}, {"errors", std::move(errors)}});
+  return Dump({{"ok", false},
+               {"file", path},
+               {"errors", ToJson(found.items(), "error")},
+               {"warnings", ToJson(found.warnings(), "warning")}});
 }
 
 }  // namespace taut::cli

@@ -13,10 +13,11 @@ std::string RobotTables(const RobotSpec& robot);
 /// One line on what an experiment does, and its controllers, events and phases.
 std::string ExperimentTables(const ExperimentSpec& experiment);
 
-/// The same facts for programs. `experiment` may be null.
-std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment);
+/// The same facts for programs, and the warnings. `experiment` may be null.
+std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment,
+                      const Diagnostics& found);
 
-/// The errors of a file for programs.
+/// The errors and warnings of a file for programs.
 std::string ErrorsJson(const std::string& path, const Diagnostics& found);
 
 }  // namespace taut::cli

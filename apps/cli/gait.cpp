@@ -53,7 +53,7 @@ int Export(const GaitArguments& args) {
   Diagnostics found;
   const auto gait = LoadGait(args.input, found);
   const auto robot = LoadAnyRobot(args.robot, *overrides, found);
-  if (!gait || !robot) return Fail(found, kBadInput);
+  if (!gait || !robot || !Pass(found, false)) return Fail(found, kBadInput);
   const auto table = PlayGait(*gait, *robot, args.rate_hz, args.duration_s, found);
   if (!table) return Fail(found, kBadInput);
   if (gait->cpg && gait->cpg->feedback) {
@@ -75,7 +75,7 @@ int Create(const GaitArguments& args) {
   if (!overrides) return kUsage;
   Diagnostics found;
   const auto robot = LoadAnyRobot(args.robot, *overrides, found);
-  if (!robot) return Fail(found, kBadInput);
+  if (!robot || !Pass(found, false)) return Fail(found, kBadInput);
   auto gait = NewCpgGait(*robot, args.symmetry, found);
   if (!gait) return Fail(found, kBadInput);
   if (!args.name.empty()) gait->name = args.name;
@@ -85,7 +85,7 @@ int Create(const GaitArguments& args) {
 int Values(const GaitArguments& args) {
   Diagnostics found;
   auto gait = LoadGait(args.input, found);
-  if (!gait) return Fail(found, kBadInput);
+  if (!gait || !Pass(found, false)) return Fail(found, kBadInput);
   fmt::print("{}{}", args.json ? GaitJson(*gait) : GaitTable(*gait), args.json ? "\n" : "");
   return kOk;
 }
@@ -129,7 +129,7 @@ void AddGait(CLI::App& app, int& exit_code) {
       ->add_option("--order", args->order,
                    "Order of NTRT's cables when it learned: paper2015 (default) or since2016")
       ->transform(CLI::CheckedTransformer(kOrders));
-  import_->add_option("--name", args->name, "Name of the gait");
+  import_->add_option("--name", args->name, "Name of the gait")->check(CheckName);
   import_->add_option("--out", args->out, "File to write (default: print)");
   import_->footer(
       "Example:\n  taut gait import ntrt/hardwareLearning/logs --name sidewinder --out "
@@ -143,7 +143,7 @@ void AddGait(CLI::App& app, int& exit_code) {
       ->add_option("--symmetry", args->symmetry,
                    "Which couplings are alike: segments (default), index or none")
       ->transform(CLI::CheckedTransformer(kSymmetries));
-  create->add_option("--name", args->name, "Name of the gait");
+  create->add_option("--name", args->name, "Name of the gait")->check(CheckName);
   create->add_option("--out", args->out, "File to write (default: print)");
   add_set(create);
   create->footer("Example:\n  taut gait create models/tetraspine12.yaml --out blank.yaml");

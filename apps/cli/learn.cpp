@@ -14,6 +14,7 @@
 #include "overrides.h"
 #include "taut/cluster.h"
 #include "taut/learn.h"
+#include "taut/run.h"
 #include "taut/study.h"
 #include "taut/version.h"
 
@@ -30,7 +31,7 @@ struct LearnArguments {
   std::string path, out;
   std::vector<std::string> set;
   int threads = -1, top = 0;
-  bool best = false, parameters = false, json = false, quiet = false;
+  bool best = false, parameters = false, json = false, quiet = false, strict = false;
 };
 
 std::string Duration(double s) {
@@ -84,7 +85,7 @@ void PrintSummary(const LearnSummary& s, const StudySpec& study, const std::stri
 int ListParameters(const LearnArguments& args, const Overrides& overrides) {
   Diagnostics found;
   auto experiment = LoadExperiment(args.path, overrides, found);
-  if (!experiment) return Fail(found, kBadInput);
+  if (!experiment || !Pass(found, args.strict)) return Fail(found, kBadInput);
   auto scales = TunableScales(experiment->robot);
   for (const Tunable& t : FindTunables(experiment->controllers, scales, experiment->robot)) {
     fmt::print("{:<60} {:>14.8g} {}\n", t.name, *t.value, t.unit);
@@ -125,7 +126,9 @@ int Search(const LearnArguments& args, const Overrides& overrides) {
   const auto study = LoadStudy(args.path, overrides, found);
   // The processes of a cluster have a core each, unless told otherwise.
   const int threads = args.threads < 0 ? (cluster->size() > 1 ? 1 : 0) : args.threads;
-  const auto local = study ? MakeEvaluator(*study, threads, &stop_asked, found) : nullptr;
+  const bool good = study && CheckStart(study->experiment.robot, study->experiment.start, found) &&
+                    !(args.strict && !found.warnings().empty());
+  const auto local = good ? MakeEvaluator(*study, threads, &stop_asked, found) : nullptr;
   std::signal(SIGINT, AskStop);
   std::signal(SIGTERM, AskStop);
   const bool agree = cluster->Agree(local ? Agreed(*study) : "");
@@ -134,7 +137,7 @@ int Search(const LearnArguments& args, const Overrides& overrides) {
     cluster->Serve(*local);
     return kOk;
   }
-  if (!local) return Fail(found, kBadInput);
+  if (!Pass(found, args.strict) || !local) return Fail(found, kBadInput);
   if (!agree) {
     found.Error({args.path}, "the processes of the cluster have read different studies",
                 "does every machine see the same files, and the same taut?");
@@ -178,6 +181,7 @@ void AddLearn(CLI::App& app, int& exit_code) {
                                      "List all that a study of an experiment can vary");
   learn->add_flag("--json", args->json, "With --top: JSON instead of a table")->needs(top);
   learn->add_flag("--quiet", args->quiet, "No progress and no summary");
+  learn->add_flag("--strict", args->strict, kStrictHelp);
   best->excludes(top)->excludes(parameters);
   top->excludes(parameters);
   learn->footer(

@@ -29,6 +29,14 @@ int Fail(const Diagnostics& found, Exit exit) {
   return exit;
 }
 
+bool Pass(Diagnostics& found, bool strict) {
+  if (strict) found.WarningsToErrors();
+  if (!found.ok()) return false;
+  fmt::print(stderr, "{}", found.Format());
+  found = {};
+  return true;
+}
+
 bool WriteText(const fs::path& path, const std::string& text, Diagnostics& out) {
   if (Put(path, text)) return true;
   out.Error({path.string()}, "cannot be written", "is the disk full, or the folder not yours?");

@@ -15,6 +15,13 @@ namespace taut::cli {
 /// Prints what was found on stderr. Returns `exit`.
 int Fail(const Diagnostics& found, Exit exit);
 
+/// Whether a command goes on with what it has read: prints warnings on stderr and forgets them.
+/// `strict` makes errors of them; those, like all others, are left for `Fail`.
+bool Pass(Diagnostics& found, bool strict);
+
+/// What `--strict` does, for help texts.
+inline constexpr const char* kStrictHelp = "Warnings about files are errors";
+
 /// False and a complaint if the file cannot be written.
 bool WriteText(const std::filesystem::path& path, const std::string& text, Diagnostics& out);
 

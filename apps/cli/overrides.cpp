@@ -31,4 +31,9 @@ std::function<std::string(const std::string&)> NumberWithin(double least, double
   };
 }
 
+std::string CheckName(const std::string& text) {
+  if (IsName(text)) return {};
+  return fmt::format("\"{}\" cannot be a name: letters, digits, _ and -", text);
+}
+
 }  // namespace taut::cli

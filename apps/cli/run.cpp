@@ -12,7 +12,6 @@
 #include "commands.h"
 #include "output.h"
 #include "overrides.h"
-#include "taut/batch.h"
 #include "taut/compare.h"
 #include "taut/run.h"
 #include "taut/spec.h"
@@ -35,7 +34,7 @@ struct RunArguments {
   double step_s = 0, duration_s = -1;
   std::uint64_t seed = 0;
   int threads = 1;
-  bool csv = false, report = false, quiet = false, has_seed = false;
+  bool csv = false, report = false, quiet = false, has_seed = false, strict = false;
 };
 
 /// One line that is rewritten on a terminal, a line every ten seconds elsewhere.
@@ -83,7 +82,8 @@ int Run(const RunArguments& args) {
   if (args.has_seed) experiment->seed = args.seed;
 
   // Before anything is written over an earlier run.
-  if (!Model::Compile(experiment->robot.def, found) || !CheckRecord(*experiment, found)) {
+  if (!CheckStart(experiment->robot, experiment->start, found) ||
+      !CheckRecord(*experiment, found) || !Pass(found, args.strict)) {
     return Fail(found, kBadInput);
   }
 
@@ -144,6 +144,7 @@ void AddRun(CLI::App& app, int& exit_code) {
   run->add_flag("--report", args->report,
                 "Write report.html as well: one file that opens anywhere");
   run->add_flag("--quiet", args->quiet, "No progress and no table");
+  run->add_flag("--strict", args->strict, kStrictHelp);
   run->footer(
       "Examples:\n"
       "  taut run experiments/push_20n.yaml\n"

@@ -13,6 +13,7 @@
 #include "apps/viewer/server.h"
 #include "apps/viewer/web_files.h"
 #include "commands.h"
+#include "output.h"
 #include "overrides.h"
 #include "taut/run.h"
 #include "taut/spec.h"
@@ -76,9 +77,9 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
     experiment =
         model ? ModelAlone(args, *overrides, found) : LoadExperiment(args.file, *overrides, found);
   }
-  if (!experiment || !Model::Compile(experiment->robot.def, found) ||
-      !CheckRecord(*experiment, found)) {
-    fmt::print(stderr, "{}", found.Format());
+  if (!experiment || !CheckStart(experiment->robot, experiment->start, found) ||
+      !CheckRecord(*experiment, found) || !Pass(found, false)) {
+    Fail(found, kBadInput);
     return nullptr;
   }
   if (args.step_s > 0) experiment->step_s = args.step_s;

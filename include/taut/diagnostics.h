@@ -26,17 +26,25 @@ struct Diagnostic {
 class Diagnostics {
  public:
   void Error(SourceRef at, std::string what, std::string hint = {});
+  /// What can be used, but is hardly meant. No function returns less because of one.
+  void Warning(SourceRef at, std::string what, std::string hint = {});
+  /// For those who want no warnings: makes errors of all so far.
+  void WarningsToErrors();
 
-  bool ok() const noexcept { return items_.empty(); }
-  const std::vector<Diagnostic>& items() const noexcept { return items_; }
+  bool ok() const noexcept { return items_.empty(); }  ///< No errors; maybe warnings.
+  const std::vector<Diagnostic>& items() const noexcept { return items_; }  ///< The errors.
+  const std::vector<Diagnostic>& warnings() const noexcept { return warnings_; }
 
   /// One line each, sorted by file, line and column, without repetitions:
-  /// `prism.yaml:12:7: error: <what> (<hint>)`.
+  /// `prism.yaml:12:7: error: <what> (<hint>)`, or `warning:`.
   std::string Format() const;
 
  private:
-  std::vector<Diagnostic> items_;
+  std::vector<Diagnostic> items_, warnings_;
 };
+
+/// By file, line and column, without repetitions: in the order of `Diagnostics::Format`.
+std::vector<Diagnostic> Sorted(std::vector<Diagnostic> items);
 
 /// The candidate closest to `word` if it is close enough to be a likely misspelling, else empty.
 std::string_view ClosestMatch(std::string_view word, const std::vector<std::string>& candidates);

@@ -85,12 +85,18 @@ std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment);
 /// False, and a complaint each, if the experiment asks for channels that no run of it has.
 bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out);
 
+/// All that a start can be refused for before it is prepared: that the model compiles, and that
+/// nothing is deeper in the terrain or in another body than half its thickness (`Overlap`), as
+/// described. What is in each other less gets a warning, if it starts so: it is pushed out without
+/// speed, and a robot that settles first has none of it. False if there was an error.
+bool CheckStart(const RobotSpec& robot, StartKind start, Diagnostics& out);
+
 /// What a trace says about how it came to be: version, machine, seed, step, hash of the inputs.
 TraceMetadata RunMetadata(const ExperimentSpec& experiment);
 
 /// Runs an experiment from start to end. Nothing and diagnostics if it cannot start (a model that
-/// does not compile, a start that does not settle); what happens later is in the summary. A trace
-/// that cannot be written ends the run with a diagnostic.
+/// does not compile, a start that does not settle or has bodies deep in each other); what happens
+/// later is in the summary. A trace that cannot be written ends the run with a diagnostic.
 std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment, const RunOptions& options,
                                         Diagnostics& out);
 

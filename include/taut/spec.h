@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,10 @@
 #include "taut/model_def.h"
 
 namespace taut {
+
+/// Whether a text may be what a user calls something: letters, digits, `_` and `-`. Names become
+/// parts of channel names, of file names and of pages.
+bool IsName(std::string_view text);
 
 /// `--set name=value` pairs: named parameters whose value replaces the file's. The value may be
 /// an expression such as `2 * edge_m`.
@@ -29,12 +34,14 @@ using Tags = std::vector<std::string>;
 /// A model file, resolved: numbers in `def`, plus what only files know (tags, places).
 struct RobotSpec {
   ModelDef def;
-  std::vector<Tags> cable_tags;              ///< Per cable of `def`; includes the cable's name.
-  std::vector<Tags> node_tags;               ///< Per node of `def`; includes the node's name.
-  std::vector<SourceRef> cable_sources;      ///< Per cable: the pair that it came from.
-  std::vector<SourceRef> body_sources;       ///< Per body.
-  std::map<std::string, double> parameters;  ///< As resolved, overrides applied.
-  std::vector<std::string> files;            ///< Every file that was read, the model first.
+  std::vector<Tags> cable_tags;          ///< Per cable of `def`; includes the cable's name.
+  std::vector<Tags> node_tags;           ///< Per node of `def`; includes the node's name.
+  std::vector<SourceRef> cable_sources;  ///< Per cable: the pair that it came from.
+  std::vector<SourceRef> body_sources;   ///< Per body.
+  std::vector<SourceRef> node_sources;   ///< Per node.
+  std::vector<SourceRef> plane_sources, terrain_box_sources;  ///< Per part of the terrain.
+  std::map<std::string, double> parameters;                   ///< As resolved, overrides applied.
+  std::vector<std::string> files;  ///< Every file that was read, the model first.
 };
 
 /// Reads a model file. Returns nothing if there was any error.

@@ -29,31 +29,59 @@ int EditDistance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+namespace {
+
+auto Key(const Diagnostic& d) {
+  return std::tie(d.at.file, d.at.line, d.at.column, d.what, d.hint);
+}
+
+std::string Line(const Diagnostic& d, std::string_view kind) {
+  std::string out;
+  if (!d.at.file.empty()) out += d.at.file + ":";
+  if (d.at.line > 0) out += std::to_string(d.at.line) + ":";
+  if (d.at.line > 0 && d.at.column > 0) out += std::to_string(d.at.column) + ":";
+  if (!out.empty()) out += ' ';
+  out += std::string(kind) + ": " + d.what;
+  if (!d.hint.empty()) out += " (" + d.hint + ")";
+  return out + '\n';
+}
+
+}  // namespace
+
 void Diagnostics::Error(SourceRef at, std::string what, std::string hint) {
   items_.push_back({std::move(at), std::move(what), std::move(hint)});
 }
 
+void Diagnostics::Warning(SourceRef at, std::string what, std::string hint) {
+  warnings_.push_back({std::move(at), std::move(what), std::move(hint)});
+}
+
+void Diagnostics::WarningsToErrors() {
+  items_.insert(items_.end(), warnings_.begin(), warnings_.end());
+  warnings_.clear();
+}
+
+std::vector<Diagnostic> Sorted(std::vector<Diagnostic> items) {
+  std::stable_sort(items.begin(), items.end(),
+                   [](const Diagnostic& a, const Diagnostic& b) { return Key(a) < Key(b); });
+  items.erase(
+      std::unique(items.begin(), items.end(),
+                  [](const Diagnostic& a, const Diagnostic& b) { return Key(a) == Key(b); }),
+      items.end());
+  return items;
+}
+
 std::string Diagnostics::Format() const {
-  const auto key = [](const Diagnostic& d) {
-    return std::tie(d.at.file, d.at.line, d.at.column, d.what, d.hint);
-  };
-  std::vector<Diagnostic> sorted = items_;
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [&](const Diagnostic& a, const Diagnostic& b) { return key(a) < key(b); });
-  sorted.erase(
-      std::unique(sorted.begin(), sorted.end(),
-                  [&](const Diagnostic& a, const Diagnostic& b) { return key(a) == key(b); }),
-      sorted.end());
+  const std::vector<Diagnostic> errors = Sorted(items_), warnings = Sorted(warnings_);
   std::string out;
-  for (const Diagnostic& d : sorted) {
-    if (!d.at.file.empty()) out += d.at.file + ":";
-    if (d.at.line > 0) out += std::to_string(d.at.line) + ":";
-    if (d.at.line > 0 && d.at.column > 0) out += std::to_string(d.at.column) + ":";
-    if (!out.empty() && out.back() == ':') out += ' ';
-    out += "error: " + d.what;
-    if (!d.hint.empty()) out += " (" + d.hint + ")";
-    out += '\n';
+  auto warning = warnings.begin();
+  for (const Diagnostic& error : errors) {
+    for (; warning != warnings.end() && Key(*warning) < Key(error); ++warning) {
+      out += Line(*warning, "warning");
+    }
+    out += Line(error, "error");
   }
+  for (; warning != warnings.end(); ++warning) out += Line(*warning, "warning");
   return out;
 }
 

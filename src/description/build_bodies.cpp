@@ -67,6 +67,7 @@ class BodyBuilder {
       const PlacedNode& placed = assembly_.nodes[node];
       robot_.def.nodes.push_back({placed.name, body_of_node_[node], placed.position_m});
       robot_.node_tags.push_back(placed.tags);
+      robot_.node_sources.push_back(placed.at);
     }
     return std::move(body_of_node_);
   }

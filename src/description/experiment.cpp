@@ -7,6 +7,7 @@
 #include "description/laws.h"
 #include "description/merged_file.h"
 #include "description/model.h"
+#include "description/plausible.h"
 #include "description/resolved.h"
 
 namespace taut {
@@ -78,9 +79,8 @@ std::optional<std::string> FindFile(const MapReader& map, std::string_view key) 
 
 class ExperimentReader {
  public:
-  ExperimentReader(const MergedFile& file, OverrideSet& overrides, const NameTable& names,
-                   Diagnostics& out)
-      : scope_{names, out},
+  ExperimentReader(const MergedFile& file, OverrideSet& overrides, const Scope& scope)
+      : scope_(scope),
         map_(*file.root, "",
              {"taut",      "kind",        "base",        "name",          "description",
               "model",     "set",         "parameters",  "model_options", "gravity_m_per_s2",
@@ -117,8 +117,10 @@ class ExperimentReader {
     if (model.robot) spec_.robot = std::move(*model.robot);
     ModelDef& def = spec_.robot.def;
     def.gravity_m_per_s2 = map_.VectorOr("gravity_m_per_s2", def.gravity_m_per_s2);
-    if (const Value* place = map_.Find("place")) ReadPlace(*place, spec_.start, scope_, def);
-    ReadTerrain(map_.Find("terrain"), scope_, def);
+    const Value* place = map_.Find("place");
+    if (place) ReadPlace(*place, spec_.start, scope_, def);
+    ReadTerrain(map_.Find("terrain"), scope_, spec_.robot);
+    if (scope_.out.ok()) CheckPositions(spec_.robot, scope_.out, place ? &place->at : nullptr);
     return std::move(spec_);
   }
 
@@ -194,7 +196,11 @@ std::optional<ExperimentSpec> LoadExperiment(const std::string& path, const Over
     description::OverrideSet set(overrides);
     set.Apply(file.parameters);
     const description::NameTable names = description::ResolveParameters(file.parameters, out);
-    experiment = description::ExperimentReader(file, set, names, out).Read();
+    description::NameSet used;
+    experiment = description::ExperimentReader(file, set, {names, out, &used}).Read();
+    if (out.items().size() == errors_before) {
+      description::WarnOfUnused(file.parameters, std::move(used), file.files, out);
+    }
     experiment->parameters.insert(names.begin(), names.end());
     experiment->files = std::move(file.files);
   }

@@ -56,8 +56,8 @@ std::vector<ScaleSpec> ReadScales(const Value* list, const RobotSpec* robot, con
 StartNoise ReadStartNoise(const Value& value, const Scope& scope);
 SensorSpec ReadSensors(const Value& value, const Scope& scope);
 
-/// Planes and boxes, appended to `def`.
-void ReadTerrain(const Value* list, const Scope& scope, ModelDef& def);
+/// Planes and boxes, appended to what `robot` has.
+void ReadTerrain(const Value* list, const Scope& scope, RobotSpec& robot);
 
 /// Moves the robot in `def` (but not the terrain) and gives it a velocity. `start` is for the
 /// complaint about velocities that settling would take away.

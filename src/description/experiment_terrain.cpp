@@ -130,7 +130,8 @@ void AddVelocity(const Vec3& v, const Vec3& w, ModelDef& def) {
 
 }  // namespace
 
-void ReadTerrain(const Value* list, const Scope& scope, ModelDef& def) {
+void ReadTerrain(const Value* list, const Scope& scope, RobotSpec& robot) {
+  ModelDef& def = robot.def;
   std::map<std::string, SourceRef> names;
   for (const ValuePtr& item : Items(list, "terrain", scope)) {
     const MapReader map(*item, "terrain", {"name", "plane", "box"}, scope);
@@ -139,9 +140,11 @@ void ReadTerrain(const Value* list, const Scope& scope, ModelDef& def) {
     if (kind == "plane") {
       def.planes.push_back(ReadPlane(*map.Find(kind), scope));
       def.planes.back().name = name;
+      robot.plane_sources.push_back(item->at);
     } else if (kind == "box") {
       def.terrain_boxes.push_back(ReadTerrainBox(*map.Find(kind), scope));
       def.terrain_boxes.back().name = name;
+      robot.terrain_box_sources.push_back(item->at);
     }
     if (name.empty()) continue;
     const auto [first, fresh] = names.emplace(name, map.Find("name")->at);

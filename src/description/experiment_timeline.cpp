@@ -68,12 +68,8 @@ DragSpec ReadDrag(const Value& value, const RobotSpec* robot, const Scope& scope
 void ReadPhases(const Value* value, double duration_s, const Scope& scope,
                 std::vector<PhaseSpec>& phases) {
   for (const Entry& entry : Entries(value, "timeline.phases", scope)) {
-    Value key;  // a key is a name like any other
-    key.kind = Value::Kind::kScalar;
-    key.text = entry.key;
-    key.at = entry.key_at;
     PhaseSpec phase;
-    phase.name = ReadName(key, "timeline.phases", scope);
+    phase.name = ReadKey(entry, "timeline.phases", scope);
     const std::string what = "phase " + entry.key;
     const auto span = ReadNumbers(*entry.value, what, 2, scope);
     if (!span) continue;

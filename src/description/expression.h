@@ -7,6 +7,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,8 @@ namespace taut::description {
 /// Named numbers. A value of NaN says: the name exists, but what it stands for was already
 /// complained about, so whatever uses it must stay silent.
 using NameTable = std::map<std::string, double, std::less<>>;
+
+using NameSet = std::set<std::string, std::less<>>;
 
 struct Evaluated {
   double value = 0.0;       ///< Finite if all went well, else NaN.

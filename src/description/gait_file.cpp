@@ -166,7 +166,8 @@ std::optional<GaitSpec> LoadGait(const std::string& path, Diagnostics& out) {
   const description::MergedFile file = description::ReadMergedFile(path, "gait", out);
   if (!file.root) return std::nullopt;
   const description::NameTable names = description::ResolveParameters(file.parameters, out);
-  const description::Scope scope{names, out};
+  description::NameSet used;
+  const description::Scope scope{names, out, &used};
   const description::MapReader map(
       *file.root, "",
       {"taut", "kind", "base", "name", "description", "parameters", "sine", "cpg", "table"}, scope);
@@ -179,6 +180,7 @@ std::optional<GaitSpec> LoadGait(const std::string& path, Diagnostics& out) {
   if (kind == "cpg") gait.cpg = description::ReadCpg(*map.Find(kind), scope);
   if (kind == "table") gait.table = description::ReadTable(*map.Find(kind), gait.files, scope);
   if (out.items().size() != errors_before) return std::nullopt;
+  description::WarnOfUnused(file.parameters, std::move(used), file.files, out);
   return gait;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "description/build.h"
+#include "description/plausible.h"
 #include "description/resolved.h"
 
 namespace taut::description {
@@ -49,9 +50,10 @@ LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnosti
     result.parameter_names.push_back(name);
     numbers_known = numbers_known && !std::isnan(value);
   }
-  robot.files = std::move(file.files);
+  robot.files = file.files;
 
-  ModelText model = ReadModelText(*file.root, {values, out});
+  NameSet used;
+  ModelText model = ReadModelText(*file.root, {values, out, &used});
   if (inertia) model.bounding_box_inertia = *inertia == InertiaLaw::kBoundingBox;
   const std::size_t errors_in_text = errors();
   const Assembly assembly = Assemble(model, out);
@@ -63,8 +65,15 @@ LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnosti
 
   // Only a model that is otherwise good: a cable that could not be read joins nothing.
   if (errors() == errors_before && !model.allow_disconnected) CheckConnected(robot, out);
-  if (errors() == errors_before && numbers_known) CheckFinite(robot, out);
+  if (errors() == errors_before && numbers_known) {
+    CheckPositions(robot, out);
+    if (errors() == errors_before) CheckFinite(robot, out);
+  }
   result.good = errors() == errors_before;
+  if (result.good) {
+    WarnOfUnused(file.parameters, std::move(used), file.files, out);
+    WarnOfOddNumbers(robot, out);
+  }
   if (!result.good && !complete) return result;
   robot.def.name = model.name;
   robot.def.gravity_m_per_s2 = model.gravity_m_per_s2;

@@ -35,6 +35,8 @@ ModelText ReadModelText(const Value& root, const Scope& scope) {
 
   for (const Entry& entry : Entries(map.Find("parts"), "parts", scope)) {
     const MapReader part(*entry.value, "parts." + entry.key, {"nodes", "pairs"}, scope);
+    // Kept for those who name it, who have made no mistake.
+    if (ReadKey(entry, "parts", scope).empty()) model.nodes_complete = false;
     model.parts.push_back({entry.key, {}, {}});
     ReadNodesAndPairs(part, model.parts.back(), model);
     if (part.is_map() && !part.Has("nodes")) {

@@ -43,14 +43,6 @@ NodeText ReadNode(const Entry& entry, const std::string& what, const Scope& scop
   return node;
 }
 
-bool IsName(const Entry& entry, const std::string& what, const Scope& scope) {
-  Value key;
-  key.kind = Value::Kind::kScalar;
-  key.at = entry.key_at;
-  key.text = entry.key;
-  return !ReadName(key, what, scope).empty();
-}
-
 /// `[a, b]`, or more nodes for a cable with via points. Adds `pair` with them to `pairs`.
 void ReadPairNodes(const Value& nodes, const std::string& what, bool placed_names,
                    const Scope& scope, PairText pair, std::vector<PairText>& pairs) {
@@ -104,7 +96,7 @@ void ReadNodesAndPairs(const MapReader& map, PartText& part, ModelText& model) {
   std::vector<std::string> names;
   const Value* nodes = map.Find("nodes");
   for (const Entry& entry : Entries(nodes, map.Path("nodes"), scope)) {
-    if (!IsName(entry, map.Path("nodes"), scope)) {
+    if (ReadKey(entry, map.Path("nodes"), scope).empty()) {
       model.nodes_complete = false;
       continue;
     }

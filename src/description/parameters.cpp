@@ -109,6 +109,28 @@ void MergeParameters(std::vector<ParameterText>& base, const std::vector<Paramet
   }
 }
 
+void WarnOfUnused(const std::vector<ParameterText>& parameters, NameSet used,
+                  const std::vector<std::string>& files, Diagnostics& out) {
+  std::vector<std::string> open(used.begin(), used.end());
+  std::unordered_map<std::string, const ParameterText*> by_name;
+  for (const ParameterText& parameter : parameters) by_name[parameter.name] = &parameter;
+  while (!open.empty()) {
+    const auto found = by_name.find(open.back());
+    open.pop_back();
+    if (found == by_name.end()) continue;
+    for (std::string& name : NamesIn(found->second->expression)) {
+      if (used.insert(name).second) open.push_back(std::move(name));
+    }
+  }
+  for (const ParameterText& parameter : parameters) {
+    const bool of_base =
+        std::find(files.begin() + 1, files.end(), parameter.at.file) != files.end();
+    if (of_base || used.contains(parameter.name)) continue;
+    out.Warning(parameter.at, "nothing reads the parameter \"" + parameter.name + "\"",
+                "its value changes nothing");
+  }
+}
+
 NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagnostics& out) {
   // In the order of their needs (Kahn), not by recursion: a chain of any length is fine.
   std::unordered_map<std::string, std::size_t> places;

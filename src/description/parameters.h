@@ -61,4 +61,9 @@ void MergeParameters(std::vector<ParameterText>& base, const std::vector<Paramet
 /// evaluated is complained about once and is NaN in the result.
 NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagnostics& out);
 
+/// A warning for each parameter that neither the file (`used`) nor another parameter that it uses
+/// refers to: who changes it changes nothing. Those that only a base file has are left out.
+void WarnOfUnused(const std::vector<ParameterText>& parameters, NameSet used,
+                  const std::vector<std::string>& files, Diagnostics& out);
+
 }  // namespace taut::description

@@ -9,54 +9,12 @@
 namespace taut::description {
 namespace {
 
-constexpr std::size_t kMaxNameLength = 200;  ///< A model has many copies of each.
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::string Joined(const std::vector<std::string>& words, std::string_view between) {
   std::string out;
   for (const std::string& word : words) (out += out.empty() ? "" : between) += word;
   return out;
-}
-
-/// Whether a text may be a name; with `dots`, a full name such as segment_0.tip.
-bool IsNameText(std::string_view text, bool dots) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [dots](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-' || (dots && c == '.');
-  });
-}
-
-std::string ReadNameText(const Value& value, std::string_view what, bool dots, const Scope& scope) {
-  if (value.kind != Value::Kind::kScalar) {
-    WrongType(value, what, "a name", scope);
-    return {};
-  }
-  if (value.text.size() > kMaxNameLength) {
-    scope.out.Error(value.at, std::string(what) + ": a name has at most " +
-                                  std::to_string(kMaxNameLength) + " characters");
-    return {};
-  }
-  if (IsNameText(value.text, dots)) return value.text;
-  scope.out.Error(value.at, std::string(what) + ": \"" + value.text + "\" cannot be a name",
-                  "letters, digits, _ and -");
-  return {};
-}
-
-std::vector<std::string> ReadNameTexts(const Value& value, std::string_view what, bool dots,
-                                       const Scope& scope) {
-  std::vector<std::string> names;
-  const auto add = [&](const Value& item) {
-    std::string name = ReadNameText(item, what, dots, scope);
-    if (!name.empty()) names.push_back(std::move(name));
-  };
-  if (value.kind == Value::Kind::kSequence) {
-    for (const ValuePtr& item : value.items) add(*item);
-  } else if (value.kind == Value::Kind::kScalar) {
-    add(value);
-  } else {
-    WrongType(value, what, "a name or a list of names", scope);
-  }
-  return names;
 }
 
 }  // namespace
@@ -101,6 +59,9 @@ double ReadNumber(const Value& value, std::string_view what, Bound bound, const 
       text == "-inf") {
     scope.out.Error(value.at, std::string(what) + " must be a finite number, got " + value.text);
     return kNan;
+  }
+  if (scope.used) {
+    for (std::string& name : NamesIn(value.text)) scope.used->insert(std::move(name));
   }
   Evaluated result = Evaluate(value.text, scope.names);
   if (!result.error.empty()) {
@@ -186,47 +147,6 @@ std::string ReadText(const Value& value, std::string_view what, const Scope& sco
   if (value.kind == Value::Kind::kScalar) return value.text;
   WrongType(value, what, "a text", scope);
   return {};
-}
-
-std::string ReadName(const Value& value, std::string_view what, const Scope& scope) {
-  return ReadNameText(value, what, false, scope);
-}
-
-std::vector<std::string> ReadNames(const Value& value, std::string_view what, const Scope& scope) {
-  return ReadNameTexts(value, what, false, scope);
-}
-
-std::vector<std::vector<std::string>> ReadMatch(const Value& value, std::string_view what,
-                                                const Scope& scope) {
-  const auto is_list = [](const ValuePtr& item) { return item->kind == Value::Kind::kSequence; };
-  std::vector<std::vector<std::string>> match;
-  if (value.kind == Value::Kind::kSequence && value.items.empty()) {
-    scope.out.Error(value.at, std::string(what) + " must not be empty", "name the tags to match");
-  } else if (value.kind == Value::Kind::kSequence &&
-             std::any_of(value.items.begin(), value.items.end(), is_list)) {
-    for (const ValuePtr& item : value.items) {
-      std::vector<std::string> set = ReadNameTexts(*item, what, true, scope);
-      if (is_list(item) && item->items.empty()) {
-        scope.out.Error(item->at, std::string(what) + " must not be empty",
-                        "name the tags to match");
-      }
-      if (!set.empty()) match.push_back(std::move(set));
-    }
-  } else {
-    std::vector<std::string> set = ReadNameTexts(value, what, true, scope);
-    if (!set.empty()) match.push_back(std::move(set));
-  }
-  return match;
-}
-
-bool Matches(const std::vector<std::vector<std::string>>& match,
-             const std::vector<std::string>& tags) {
-  const auto has = [&](const std::string& tag) {
-    return std::find(tags.begin(), tags.end(), tag) != tags.end();
-  };
-  return std::any_of(match.begin(), match.end(), [&](const std::vector<std::string>& set) {
-    return std::all_of(set.begin(), set.end(), has);
-  });
 }
 
 MapReader::MapReader(const Value& value, std::string what, std::vector<std::string> known,

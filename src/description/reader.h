@@ -15,15 +15,17 @@
 #include "description/expression.h"
 #include "description/yaml_tree.h"
 #include "taut/diagnostics.h"
+#include "taut/spec.h"
 #include "taut/types.h"
 
 namespace taut::description {
 
-/// What every reading function needs: the parameters that expressions may use, and where to
-/// complain.
+/// What every reading function needs: the parameters that expressions may use, where to complain,
+/// and, if somebody asks, which parameters were used.
 struct Scope {
   const NameTable& names;
   Diagnostics& out;
+  NameSet* used = nullptr;
 };
 
 /// What a number has to be, besides finite.
@@ -48,8 +50,12 @@ Vec3 ReadDirection(const Value& value, std::string_view what, const Scope& scope
 std::optional<std::vector<double>> ReadNumbers(const Value& value, std::string_view what,
                                                std::size_t count, const Scope& scope);
 std::string ReadText(const Value& value, std::string_view what, const Scope& scope);
-/// A text of letters, digits, `_` and `-`: what may be part of a node, body or channel name.
+/// A text that `IsName`, and not too long.
 std::string ReadName(const Value& value, std::string_view what, const Scope& scope);
+/// The same of a map's free key.
+std::string ReadKey(const Entry& entry, std::string_view what, const Scope& scope);
+/// Names with dots between them, such as segment_0.tip: what a placed part's nodes are called.
+bool IsFullName(std::string_view text);
 /// A list of names; one name alone is a list of one.
 std::vector<std::string> ReadNames(const Value& value, std::string_view what, const Scope& scope);
 /// Tags to match: `a` (has tag a), `[a, b]` (has both), `[[a, b], [c]]` (has a and b, or c).

@@ -4,6 +4,7 @@
 
 #include "description/experiment_parts.h"
 #include "description/parameters.h"
+#include "description/plausible.h"
 #include "description/reader.h"
 #include "description/resolved.h"
 #include "description/resolved_fields.h"
@@ -141,6 +142,24 @@ void CheckGait(const ControllerSpec& controller, const RobotSpec& robot, const S
   CheckGaitDrives(controller, robot, at, out);
 }
 
+/// The rules of names that the files had which were resolved.
+void CheckNames(const ExperimentSpec& experiment, const SourceRef& at, Diagnostics& out) {
+  const auto check = [&](const std::string& name, bool good) {
+    if (!good) out.Error(at, "\"" + name + "\" cannot be a name", "letters, digits, _ and -");
+  };
+  const auto check_all = [&](const auto& list) {
+    for (const auto& item : list) check(item.name, IsFullName(item.name));
+  };
+  check(experiment.name, IsName(experiment.name));
+  const ModelDef& def = experiment.robot.def;
+  check(def.name, IsName(def.name));
+  check_all(def.bodies), check_all(def.nodes), check_all(def.cables);
+  check_all(def.spheres), check_all(def.capsules), check_all(def.boxes);
+  check_all(def.planes), check_all(def.terrain_boxes);
+  check_all(experiment.controllers), check_all(experiment.pushes), check_all(experiment.drags);
+  check_all(experiment.phases);
+}
+
 /// What `Model::Compile` does not look at.
 void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnostics& out) {
   const RobotSpec& robot = experiment.robot;
@@ -191,10 +210,21 @@ std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Overri
   const Scope scope{no_names, out};
   ExperimentSpec experiment;
   ReadStruct(*root, "", {"taut", "kind"}, scope, experiment);
-  if (out.items().size() == errors_before) CheckIndices(experiment, root->at, out);
+  if (out.items().size() == errors_before) {
+    CheckNames(experiment, root->at, out);
+    CheckIndices(experiment, root->at, out);
+  }
   if (out.items().size() != errors_before) return std::nullopt;
-  experiment.robot.cable_sources.resize(experiment.robot.def.cables.size(), {path, 0, 0});
-  experiment.robot.body_sources.resize(experiment.robot.def.bodies.size(), {path, 0, 0});
+  const SourceRef at{path, 0, 0};
+  RobotSpec& robot = experiment.robot;
+  robot.cable_sources.resize(robot.def.cables.size(), at);
+  robot.body_sources.resize(robot.def.bodies.size(), at);
+  robot.node_sources.resize(robot.def.nodes.size(), at);
+  robot.plane_sources.resize(robot.def.planes.size(), at);
+  robot.terrain_box_sources.resize(robot.def.terrain_boxes.size(), at);
+  CheckPositions(robot, out);
+  if (out.items().size() != errors_before) return std::nullopt;
+  WarnOfOddNumbers(robot, out);
   experiment.files = {path};
   return experiment;
 }

@@ -18,9 +18,8 @@ namespace {
 
 class StudyReader {
  public:
-  StudyReader(const MergedFile& file, OverrideSet& overrides, const NameTable& names,
-              Diagnostics& out)
-      : scope_{names, out},
+  StudyReader(const MergedFile& file, OverrideSet& overrides, const Scope& scope)
+      : scope_(scope),
         map_(*file.root, "",
              {"taut", "kind", "base", "name", "description", "experiment", "set", "parameters",
               "seed", "search", "vary", "objective", "worlds"},
@@ -100,8 +99,10 @@ std::optional<StudySpec> LoadStudy(const std::string& path, const Overrides& ove
   description::OverrideSet set(overrides);
   set.Apply(file.parameters);
   const description::NameTable names = description::ResolveParameters(file.parameters, out);
-  StudySpec study = description::StudyReader(file, set, names, out).Read();
+  description::NameSet used;
+  StudySpec study = description::StudyReader(file, set, {names, out, &used}).Read();
   if (out.items().size() != errors_before) return std::nullopt;
+  description::WarnOfUnused(file.parameters, std::move(used), file.files, out);
   study.files = std::move(file.files);
   const std::vector<std::string>& more = study.experiment.files;
   study.files.insert(study.files.end(), more.begin(), more.end());

@@ -106,10 +106,15 @@ void ApplyScales(const std::vector<ScaleSpec>& scales, Batch& batch, int world) 
 
 bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out) {
   ApplyScales(experiment.scales, batch, kTheWorld);
+  const RobotSpec& robot = experiment.robot;
+  const bool terrain = experiment.start != StartKind::kSettledFloating;
+  if (!CheckOverlaps(robot, batch, terrain, false, out)) return false;
   if (!FindStart(experiment, batch, out)) return false;
   const StartNoise& noise = experiment.start_noise;
-  if (noise.position_m > 0 || noise.heading_rad > 0) Disturb(experiment, batch);
-  return true;
+  const bool noisy = noise.position_m > 0 || noise.heading_rad > 0;
+  if (noisy) Disturb(experiment, batch);
+  if (!noisy && experiment.start == StartKind::kAsDescribed) return true;
+  return CheckOverlaps(robot, batch, true, false, out);
 }
 
 }  // namespace taut::plant

@@ -15,7 +15,13 @@ inline constexpr int kTheWorld = 0;
 void ApplyScales(const std::vector<ScaleSpec>& scales, Batch& batch, int world);
 
 /// Brings a new batch of one world to the start that the experiment asks for: its scales, its
-/// equilibrium, its noise. False and a diagnostic if there is no such state.
+/// equilibrium, its noise. False and a diagnostic if there is no such state, or if bodies are deep
+/// in something there or where settling begins.
 bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out);
+
+/// What `CheckStart` says of overlaps, of the only world as it is. `terrain`: whether it is there;
+/// `warn`: whether to speak of what is less than half through, too.
+bool CheckOverlaps(const RobotSpec& robot, const Batch& batch, bool terrain, bool warn,
+                   Diagnostics& out);
 
 }  // namespace taut::plant

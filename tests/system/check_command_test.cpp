@@ -120,6 +120,76 @@ TEST_F(CheckCommand, ErrorsGoToStderrWithTheirPlace) {
   EXPECT_EQ(missing.errors, "no_such.yaml: error: cannot be opened: No such file or directory\n");
 }
 
+TEST_F(CheckCommand, WarningsAreErrorsWithStrict) {
+  const std::string path = folder_ + "/odd.yaml";
+  std::ofstream(path) << Text(TAUT_SOURCE_DIR "/models/rod.yaml") << "inertia: exact\n";
+  EXPECT_EQ(Run("'" + path + "' --quiet --strict").errors, "");
+  const std::string where = "--set height_m=1";
+  std::string text = Text(path);
+  text.replace(text.find("front: [length_m / 2, 0, height_m]"), 34,
+               "front: [length_m / 2, 0, 0.5]");
+  text.replace(text.find("back: [-length_m / 2, 0, height_m]"), 34,
+               "back: [-length_m / 2, 0, 0.5]");
+  std::ofstream(path) << text;
+  const std::string what =
+      ": nothing reads the parameter \"height_m\" (its value changes nothing)\n";
+  const Outcome warned = Run("'" + path + "' " + where + " --json");
+  EXPECT_EQ(warned.status, 0);
+  EXPECT_EQ(warned.errors, where + ": warning" + what);
+  const auto good = nlohmann::json::parse(warned.output);
+  EXPECT_EQ(good["ok"], true);
+  EXPECT_EQ(good["warnings"][0]["file"], where);
+  const Outcome refused = Run("'" + path + "' " + where + " --json --strict");
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_EQ(refused.errors, where + ": error" + what);
+  EXPECT_EQ(nlohmann::json::parse(refused.output)["errors"].size(), 1u);
+}
+
+TEST_F(CheckCommand, ShippedFilesHaveNoWarnings) {
+  int count = 0;
+  for (const char* const folder : {"models", "experiments", "gaits"}) {
+    for (const auto& file :
+         std::filesystem::directory_iterator(TAUT_SOURCE_DIR "/" + std::string(folder))) {
+      const Outcome outcome = Run("'" + file.path().string() + "' --quiet --strict");
+      EXPECT_EQ(outcome.status, 0) << outcome.errors;
+      ++count;
+    }
+  }
+  EXPECT_GE(count, 30);
+}
+
+TEST_F(CheckCommand, ARobotInTheGroundIsRefused) {
+  const std::string path = folder_ + "/low.yaml";
+  std::ofstream(path) << "taut: 1\nkind: experiment\nname: low\nmodel: " TAUT_SOURCE_DIR
+                         "/models/rod.yaml\nset: {height_m: -0.01}\nduration_s: 1\n"
+                         "terrain: [{name: ground, plane: {height_m: 0}}]\n";
+  const Outcome refused = Run("'" + path + "'");
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_EQ(
+      refused.errors,
+      path +
+          ":7:11: error: the rod \"back-front\" is 0.015 m deep in the terrain \"ground\" at "
+          "the start, more than half the thickness of the thinner one, 0.005 m (`place` moves "
+          "the robot)\n");
+  EXPECT_EQ(
+      Run("'" + path + "' --set height_m=0.002 --quiet").errors,
+      path +
+          ":7:11: warning: the rod \"back-front\" is 0.003 m deep in the terrain \"ground\" at "
+          "the start (it is pushed out, without speed)\n");
+}
+
+TEST_F(CheckCommand, AnInstructionSetThatNobodyKnowsIsRefused) {
+  setenv("TAUT_SIMD", "fastest", 1);
+  const Outcome refused = Run("models/rod.yaml");
+  unsetenv("TAUT_SIMD");
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_EQ(refused.errors.find("error: the environment variable TAUT_SIMD is \"fastest\" (one of: "
+                                "scalar, sse2, neon, avx2, avx512; this taut on this machine runs: "
+                                "scalar"),
+            0u)
+      << refused.errors;
+}
+
 TEST_F(CheckCommand, WrongUsageIsNotABadFile) {
   EXPECT_EQ(Run("").status, 2);
   EXPECT_EQ(Run("models/rod.yaml --no-such-flag").status, 2);

@@ -90,9 +90,37 @@ TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
                   "none.yaml: error: cannot be opened: No such file or directory\n");
     ExpectRefused({command, "."}, 3, ".: error: is a directory, not a file\n");
   }
+  ExpectRefused({"learn", "."}, 3, ".: error: is a directory, not a file\n");
+  ExpectRefused({"gait", "values", "."}, 3, ".: error: is a directory, not a file\n");
+  Write("a.csv", "time_s,x_m\n0,1\n1,2\n");
+  ExpectRefused({"compare", "a.csv", "a.csv", "--map", "."}, 3,
+                ".: error: is a directory, not a file\n");
+  for (const char* const folder : {"folder.h5", "folder.csv"}) {
+    std::filesystem::create_directory(Path(folder));
+    const CommandResult result = Taut({"compare", "a.csv", folder});
+    EXPECT_EQ(result.status, 3) << result.errors;
+    EXPECT_EQ(result.errors, std::string(folder) + ": error: is a directory, not a file\n");
+  }
   ExpectRefused({"compare", "none.h5", "none.csv"}, 3,
                 "none.csv: error: cannot be opened: No such file or directory\n"
                 "none.h5: error: cannot be opened: No such file or directory\n");
+}
+
+TEST_F(Limits, StrictRunsAndSearchesRefuseWarnings) {
+  const std::string warning = "nothing reads the parameter \"idle\" (its value changes nothing)\n";
+  Write("odd.yaml",
+        "taut: 1\nkind: experiment\nbase: " + kHang + "\nname: odd\nparameters: {idle: 1}\n");
+  const CommandResult run = Taut({"run", "odd.yaml", "--quiet", "--duration_s", "0"});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.errors, "odd.yaml:5:20: warning: " + warning);
+  std::filesystem::remove_all(Path("runs"));
+  ExpectRefused({"run", "odd.yaml", "--strict"}, 3, "odd.yaml:5:20: error: " + warning);
+  EXPECT_FALSE(std::filesystem::exists(Path("runs")));
+  Write("study.yaml",
+        "taut: 1\nkind: study\nname: odd\nexperiment: odd.yaml\n"
+        "vary: [{all: model.mass, low: 1, high: 2}]\nobjective: {measure: distance}\n"
+        "search: [{method: monte_carlo, evaluations: 1}]\n");
+  ExpectRefused({"learn", "study.yaml", "--strict"}, 3, "odd.yaml:5:20: error: " + warning);
 }
 
 TEST_F(Limits, AFileThatMayNotBeReadIsBadInput) {

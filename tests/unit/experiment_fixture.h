@@ -8,6 +8,7 @@
 #include <string>
 
 #include "taut/spec.h"
+#include "unit/errors_of.h"
 
 namespace taut::test {
 
@@ -98,7 +99,7 @@ class ExperimentFolder : public testing::Test {
     Diagnostics out;
     const bool loaded = LoadExperiment(Path(name), overrides, out).has_value();
     EXPECT_EQ(loaded, out.ok()) << out.Format();
-    return Without(folder_.string() + "/", out.Format());
+    return Without(folder_.string() + "/", ErrorsOf(out));
   }
 
   static std::string Without(const std::string& word, std::string text) {

@@ -47,6 +47,22 @@ TEST_F(ExperimentRecord, TheHashIsFnv1a) {
   EXPECT_EQ(description::HashText(0x00f), "000000000000000f");
 }
 
+TEST_F(ExperimentRecord, ItsNamesFollowTheRulesOfNames) {
+  const std::string text = ResolvedYaml(Load());
+  const auto with = [&](const std::string& old_name, const std::string& new_name) {
+    std::string changed = text;
+    const std::string old_text = "name: \"" + old_name + "\"";
+    const std::size_t at = changed.find(old_text);
+    EXPECT_NE(at, std::string::npos) << old_text;
+    Write("changed.yaml", changed.replace(at, old_text.size(), "name: \"" + new_name + "\""));
+    return Complaints("changed.yaml");
+  };
+  EXPECT_EQ(with("trial", "trial"), "");
+  EXPECT_NE(with("trial", "..").find("\"..\" cannot be a name"), std::string::npos);
+  EXPECT_NE(with("left", "a,b").find("\"a,b\" cannot be a name"), std::string::npos);
+  EXPECT_NE(with("ground", "<b>").find("\"<b>\" cannot be a name"), std::string::npos);
+}
+
 TEST_F(ExperimentRecord, EveryShippedExperimentComesBackToTheSameBits) {
   int count = 0;
   for (const auto& file :
@@ -73,7 +89,7 @@ TEST_F(ExperimentRecord, NumbersTextsAndMissingLimitsSurvive) {
   Write("trace.csv", "time_s\n");
   Change("duration_s: 10",
          "step_s: 0.1 / 3\nduration_s: 10\ncompare_with: trace.csv\n"
-         "description: \"says \\\"no\\\", \\\\, \\t\\n\\x01 and \u00e9\"\n"
+         "description: \"says \\\"no\\\", \\\\, \\t\\n and \u00e9\"\n"
          "place: {at_m: [0.1, 1e-300, -0.0], velocity_m_per_s: [pi, 0, 0]}");
   const ExperimentSpec before = Load(), after = ThereAndBack(before);
   EXPECT_EQ(after.step_s, 0.1 / 3);

@@ -157,11 +157,11 @@ TEST(ModelBuildErrors, BodiesHaveInertia) {
 }
 
 TEST(ModelBuildErrors, NumbersThatOverflow) {
-  EXPECT_EQ(
-      Errors("nodes: {a: [0, 0, 0], b: [1e200, 0, 0]}\npairs: [{nodes: [a, b], tags: [rod]}]\n"
-             "builders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1}}]\n"),
-      "robot.yaml:5:9: error: the body \"robot\" is too large or too heavy to be calculated "
-      "with\n");
+  EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [2, 0, 0]}\n"
+                   "pairs: [{each: [[a, b], [b, c]], tags: [rod]}]\n"
+                   "builders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1e308}}]\n"),
+            "robot.yaml:5:17: error: the body \"robot\" is too large or too heavy to be calculated "
+            "with\n");
   EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [1e100, 0, 0]}\npairs: [{nodes: [a, b], tags: [c]}]\n"
                    "builders: [{match: [[a], [b]], point_mass: {mass_kg: 1}}, {match: c, cable: "
                    "{stiffness_n_per_m: 1, rest_length_ratio: 1e300}}]\n"),

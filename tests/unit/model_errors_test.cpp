@@ -36,6 +36,20 @@ TEST(ModelErrors, NumbersAreInTheirRange) {
             "robot.yaml:11:88: error: cable.damping_n_s_per_m must not be negative, got -1\n");
 }
 
+TEST(ModelErrors, PartsHaveNamesLikeNodes) {
+  // Part names become names of bodies, channels and columns.
+  for (const char* name : {"a,b", "..", "a/b", "<script>", "a b", "\u202eb", "a.b"}) {
+    const std::string quoted = std::string("\"") + name + "\"";
+    EXPECT_EQ(
+        Errors("parts: {" + quoted +
+               ": {nodes: {a: [0, 0, 0], b: [1, 0, 0]}, pairs: [{nodes: [a, b], tags: [rod]}]}}\n"
+               "structure: [{part: " +
+               quoted + "}]\nbuilders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1}}]\n"),
+        "robot.yaml:4:9: error: parts: " + quoted +
+            " cannot be a name (letters, digits, _ and -)\n");
+  }
+}
+
 TEST(ModelErrors, MassIsGivenOnce) {
   EXPECT_EQ(Errors(OneRod("{radius_m: 0.1, mass_kg: 1, density_kg_per_m3: 1}")),
             "robot.yaml:6:58: error: rod has both mass_kg and density_kg_per_m3 (only one of them "

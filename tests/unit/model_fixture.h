@@ -10,12 +10,14 @@
 #include <string>
 
 #include "taut/spec.h"
+#include "unit/errors_of.h"
 
 namespace taut {
 
 struct Read {
   std::optional<RobotSpec> robot;
-  std::string errors;  ///< As printed, the file called robot.yaml.
+  std::string found;   ///< Errors and warnings as printed, the file called robot.yaml.
+  std::string errors;  ///< The errors alone.
 };
 
 /// Reads a model that starts with these three lines; `yaml` starts in line 4.
@@ -25,13 +27,16 @@ inline Read ReadModel(const std::string& yaml, const Overrides& overrides = {}) 
                            ".yaml";
   std::ofstream(path) << "taut: 1\nkind: model\nname: robot\n" << yaml;
   Diagnostics out;
-  Read read{LoadRobot(path, overrides, out), out.Format()};
-  EXPECT_EQ(read.robot.has_value(), read.errors.empty());
-  for (std::size_t at; (at = read.errors.find(path)) != std::string::npos;) {
-    read.errors.replace(at, path.size(), "robot.yaml");
-  }
+  auto robot = LoadRobot(path, overrides, out);
+  EXPECT_EQ(robot.has_value(), out.ok());
+  const auto shown = [&](std::string text) {
+    for (std::size_t at; (at = text.find(path)) != std::string::npos;) {
+      text.replace(at, path.size(), "robot.yaml");
+    }
+    return text;
+  };
   std::remove(path.c_str());
-  return read;
+  return {std::move(robot), shown(out.Format()), shown(ErrorsOf(out))};
 }
 
 inline RobotSpec Good(const std::string& yaml, const Overrides& overrides = {}) {

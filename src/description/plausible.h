@@ -1,0 +1,15 @@
+/// Numbers that are allowed one by one and make no sense together (docs/formats/checks.md).
+#pragma once
+
+#include "taut/spec.h"
+
+namespace taut::description {
+
+/// Complains about what is so far from the origin that positions there are too coarse for the
+/// robot. `place`: of an experiment's, which then is to blame.
+void CheckPositions(const RobotSpec& robot, Diagnostics& out, const SourceRef* place = nullptr);
+
+/// Warns of a robot that nobody can have meant: units mixed up, a zero too many.
+void WarnOfOddNumbers(const RobotSpec& robot, Diagnostics& out);
+
+}  // namespace taut::description

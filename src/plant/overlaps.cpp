@@ -1,0 +1,88 @@
+// Bodies that are in each other at the start (docs/formats/checks.md).
+#include <string>
+
+#include "base/brief.h"
+#include "plant/start.h"
+#include "taut/run.h"
+
+namespace taut {
+namespace plant {
+namespace {
+
+using base::Brief;
+using List = ShapeRef::List;
+
+/// What is less deep, in half thicknesses, counts as touching.
+constexpr double kTouching = 0.01;
+
+bool IsTerrain(const ShapeRef& ref) {
+  return ref.list == List::kPlanes || ref.list == List::kTerrainBoxes;
+}
+
+std::string NameOf(const ModelDef& def, const ShapeRef& ref) {
+  const auto i = static_cast<std::size_t>(ref.index);
+  switch (ref.list) {
+    case List::kSpheres:
+      return "the sphere \"" + def.spheres[i].name + '"';
+    case List::kCapsules:
+      return "the rod \"" + def.capsules[i].name + '"';
+    case List::kBoxes:
+      return "the box \"" + def.boxes[i].name + '"';
+    case List::kTerrainBoxes:
+      return "the terrain \"" + def.terrain_boxes[i].name + '"';
+    case List::kPlanes:
+      return "the terrain \"" + def.planes[i].name + '"';
+  }
+  return {};
+}
+
+/// With terrain, its entry; else where the file has the body.
+SourceRef PlaceOf(const RobotSpec& robot, const Overlap& overlap) {
+  const auto at = [](const std::vector<SourceRef>& sources, int index) {
+    const auto i = static_cast<std::size_t>(index);
+    return index >= 0 && i < sources.size() ? sources[i] : SourceRef{};
+  };
+  if (overlap.b.list == List::kPlanes) return at(robot.plane_sources, overlap.b.index);
+  if (overlap.b.list == List::kTerrainBoxes) return at(robot.terrain_box_sources, overlap.b.index);
+  return at(robot.body_sources, overlap.body_a);
+}
+
+}  // namespace
+
+bool CheckOverlaps(const RobotSpec& robot, const Batch& batch, bool terrain, bool warn,
+                   Diagnostics& out) {
+  bool good = true;
+  for (const Overlap& overlap : batch.Overlaps(kTheWorld)) {
+    const bool with_terrain = IsTerrain(overlap.b);
+    if (with_terrain && !terrain) continue;
+    const bool deep = overlap.depth_m > overlap.half_thickness_m;
+    if (!deep && (!warn || overlap.depth_m <= kTouching * overlap.half_thickness_m)) continue;
+    const std::string a = NameOf(robot.def, overlap.a), b = NameOf(robot.def, overlap.b);
+    const std::string depth = Brief(overlap.depth_m) + " m deep in ";
+    const std::string what =
+        with_terrain ? a + " is " + depth + b : a + " and " + b + " are " + depth + "each other";
+    if (deep) {
+      out.Error(PlaceOf(robot, overlap),
+                what + " at the start, more than half the thickness of the thinner one, " +
+                    Brief(overlap.half_thickness_m) + " m",
+                with_terrain ? "`place` moves the robot"
+                             : "move one of them, or write `collides: false`");
+      good = false;
+    } else {
+      out.Warning(PlaceOf(robot, overlap), what + " at the start",
+                  "it is pushed out, without speed");
+    }
+  }
+  return good;
+}
+
+}  // namespace plant
+
+bool CheckStart(const RobotSpec& robot, StartKind start, Diagnostics& out) {
+  const auto model = Model::Compile(robot.def, out);
+  if (!model) return false;
+  return plant::CheckOverlaps(robot, Batch(model, {}), start != StartKind::kSettledFloating,
+                              start == StartKind::kAsDescribed, out);
+}
+
+}  // namespace taut

@@ -1,0 +1,17 @@
+/// For tests of errors whose inputs may be odd.
+#pragma once
+
+#include <string>
+
+#include "taut/diagnostics.h"
+
+namespace taut {
+
+/// As printed, without warnings.
+inline std::string ErrorsOf(const Diagnostics& found) {
+  Diagnostics errors;
+  for (const Diagnostic& error : found.items()) errors.Error(error.at, error.what, error.hint);
+  return errors.Format();
+}
+
+}  // namespace taut
