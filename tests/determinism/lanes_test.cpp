@@ -253,7 +253,8 @@ TEST(TautSimd, AnUnknownNameIsAnErrorThatSaysWhatThereIs) {
   const auto complaint = [](const char* wish) {
     const WithEnvironment environment("TAUT_SIMD", wish);
     Diagnostics out;
-    EXPECT_EQ(Model::Compile(scenes::HangingMass().Def(), out) != nullptr, out.ok());
+    const bool compiled = Model::Compile(scenes::HangingMass().Def(), out) != nullptr;
+    EXPECT_EQ(compiled, out.ok());
     return out.Format();
   };
   std::string here;

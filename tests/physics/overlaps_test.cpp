@@ -92,7 +92,9 @@ TEST(Overlaps, AreThoseOfTheMoment) {
   def.bodies = {BodyAt({0, 0, 1})};
   def.spheres = {{"ball", 0, {0, 0, 1}, 0.1, {}, true}};
   def.planes = {Ground()};
-  Batch world = MakeBatch(def, {.worlds = 2});
+  BatchOptions two;
+  two.worlds = 2;
+  Batch world = MakeBatch(def, two);
   EXPECT_TRUE(world.Overlaps(1).empty());
   BodyState state = world.Body(1, 0);
   state.position_m.z = 0.07;

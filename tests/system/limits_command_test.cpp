@@ -99,7 +99,7 @@ TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
     std::filesystem::create_directory(Path(folder));
     const CommandResult result = Taut({"compare", "a.csv", folder});
     EXPECT_EQ(result.status, 3) << result.errors;
-    EXPECT_EQ(result.errors, std::string(folder) + ": error: is a directory, not a file\n");
+    EXPECT_EQ(result.errors, std::string(folder) + ": error: is not a regular file\n");
   }
   ExpectRefused({"compare", "none.h5", "none.csv"}, 3,
                 "none.csv: error: cannot be opened: No such file or directory\n"
