@@ -112,7 +112,9 @@ TEST(FarAway, PositionsThatAreRoundedCoarserThanAMillionthOfTheRadius) {
            " + 1, 0, 0]}\npairs: [{nodes: [a, b], tags: [rod]}]\n"
            "builders: [{match: rod, rod: {radius_m: 0.01, mass_kg: 1}}]\n";
   };
-  EXPECT_EQ(Found(rod_at("1e7")), "");  // 1.9e-9 m
+  // From 2^26 m on the next number is 1.5e-8 m away, below half of that.
+  EXPECT_EQ(Found(rod_at("6.7e7")), "");
+  EXPECT_NE(Found(rod_at("6.8e7")), "");
   EXPECT_EQ(Found(rod_at("1e10")),
             "robot.yaml:4:9: error: the node \"a\" is 1e+10 m from the origin, where positions are "
             "rounded to 1.907e-06 m (at most a millionth of the smallest size, 0.01 m of the rod "
