@@ -10,6 +10,7 @@
 
 #include "protocol_messages.h"
 #include "taut/compare.h"
+#include "taut/files.h"
 #include "web_files.h"
 
 namespace taut::viewer {
@@ -171,12 +172,7 @@ bool WriteReport(const std::string& trace, const std::string& compare, const std
               "build the viewer's pages again: script/build");
     return false;
   }
-  std::ofstream file(path, std::ios::binary);
-  file << *page;
-  file.close();
-  if (file) return true;
-  out.Error({path}, "cannot be written", "is the disk full, or the folder not yours?");
-  return false;
+  return WriteWholeFile(path, *page, out);
 }
 
 }  // namespace taut::viewer

@@ -26,8 +26,9 @@ struct ChannelInfo {
 /// Text that makes a run reproducible: pairs such as ("taut_version", "0.1.0"), ("seed", "0").
 using TraceMetadata = std::vector<std::pair<std::string, std::string>>;
 
-/// Writes a trace while the run goes on. A file cut off at any moment (kill -9) is readable and
-/// lacks at most the last second of wall-clock time.
+/// Writes a trace while the run goes on. Its file appears with the first row, or when it is
+/// finished; until then what was at its path stays. A file cut off at any moment (kill -9) is
+/// readable and lacks at most the last second of wall-clock time.
 class TraceWriter {
  public:
   virtual ~TraceWriter() = default;
@@ -36,11 +37,13 @@ class TraceWriter {
   /// Returns false once writing has failed (disk full, ...); `error()` then says why.
   virtual bool Append(double time_s, const double* values) = 0;
 
-  /// Writes what has been in memory for half a second. `Append` does so, too; a program whose rows
-  /// are seldom calls this in between. Returns as `Append` does.
+  /// Writes the first row at once, later ones when they have been in memory for half a second.
+  /// `Append` does so, too; a program whose rows are seldom calls this in between. Returns as
+  /// `Append` does.
   virtual bool FlushOld() = 0;
 
-  /// Writes what is still in memory and closes the file. False: see `error()`.
+  /// Writes what is still in memory, brings all to the disk and closes the file, which from then on
+  /// says that it is finished (HDF5). False: see `error()`.
   virtual bool Finish() = 0;
 
   virtual const std::string& error() const = 0;
@@ -63,6 +66,8 @@ struct Trace {
   std::vector<double> time_s;
   std::vector<std::vector<double>> values;  ///< values[channel][row].
   TraceMetadata metadata;
+  /// HDF5: the writer was killed, or goes on in another process. Other files do not tell.
+  bool unfinished = false;
 
   /// The position of a channel, or nothing.
   std::optional<std::size_t> Find(const std::string& name) const;

@@ -1,7 +1,6 @@
-#include <fstream>
-
 #include "description/gait_parts.h"
 #include "description/reader.h"
+#include "taut/files.h"
 
 namespace taut {
 namespace description {
@@ -109,11 +108,7 @@ std::string GaitTableText(const TableGait& table) {
 }
 
 bool SaveGait(const GaitSpec& gait, const std::string& path, Diagnostics& out) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << GaitYaml(gait);
-  file.flush();
-  if (!file) out.Error({path, 0, 0}, "cannot be written");
-  return static_cast<bool>(file);
+  return WriteWholeFile(path, GaitYaml(gait), out);
 }
 
 }  // namespace taut

@@ -1,9 +1,6 @@
 #include "learn/log.h"
 
-#include <fcntl.h>
 #include <sqlite3.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -105,26 +102,12 @@ sqlite3* OpenFile(const std::string& path, int flags, Diagnostics& out) {
 
 }  // namespace
 
-Log::~Log() {
-  sqlite3_close(db_);
-  if (lock_ >= 0) close(lock_);
-}
+Log::~Log() { sqlite3_close(db_); }
 
 std::unique_ptr<Log> Log::Open(const std::string& path, Diagnostics& out) {
-  const int lock = open((path + ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-  if (lock < 0 || flock(lock, LOCK_EX | LOCK_NB) != 0) {
-    out.Error({path}, lock < 0 ? "cannot be written" : "another process is working on this study",
-              lock < 0 ? "is the folder yours, and the disk not full?" : "wait for it or stop it");
-    if (lock >= 0) close(lock);
-    return nullptr;
-  }
   sqlite3* const db = OpenFile(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, out);
-  if (db == nullptr) {
-    close(lock);
-    return nullptr;
-  }
+  if (db == nullptr) return nullptr;
   std::unique_ptr<Log> log(new Log(db, path));
-  log->lock_ = lock;
   if (!log->Execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;") ||
       !log->Execute(kSchema)) {
     out.Error({path}, "cannot be used: " + log->error(),

@@ -23,8 +23,8 @@ class Log {
   Log(const Log&) = delete;
   Log& operator=(const Log&) = delete;
 
-  /// Opens the file for writing, or makes it. Null and a complaint if it cannot, if it is something
-  /// else, or if another process writes to it.
+  /// Opens the file for writing, or makes it; the caller holds the folder's lock. Null and a
+  /// complaint if it cannot or if it is something else.
   static std::unique_ptr<Log> Open(const std::string& path, Diagnostics& out);
   /// For reading; it must be there.
   static std::unique_ptr<Log> OpenToRead(const std::string& path, Diagnostics& out);
@@ -51,7 +51,6 @@ class Log {
 
   sqlite3* db_;
   std::string path_;
-  int lock_ = -1;
 };
 
 }  // namespace taut::learn

@@ -2,13 +2,13 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
 
 #include "learn/difference.h"
 #include "learn/draw.h"
 #include "learn/log.h"
+#include "taut/files.h"
 #include "taut/learn.h"
 #include "taut/optimizer.h"
 #include "taut/version.h"
@@ -259,13 +259,8 @@ bool Claim(const StudySpec& study, const std::string& folder, Log& log, Diagnost
 
 std::optional<LearnSummary> RunStudy(const StudySpec& study, Evaluator& evaluator,
                                      const LearnOptions& options, Diagnostics& out) {
-  std::error_code error;
-  fs::create_directories(options.folder, error);
-  if (error) {
-    out.Error({options.folder}, "cannot make this folder: " + error.message());
-    return std::nullopt;
-  }
-  const auto log = Log::Open(LogPath(options.folder), out);
+  const auto lock = FolderLock::Take(options.folder, out);
+  const auto log = lock ? Log::Open(LogPath(options.folder), out) : nullptr;
   if (!log || !Claim(study, options.folder, *log, out)) return std::nullopt;
   return StudyRun(study, evaluator, options, *log).Run(out);
 }
@@ -278,15 +273,9 @@ std::optional<StudyResult> ReadStudyFolder(const std::string& folder, Diagnostic
   result.parameters = log->Parameters();
   result.evaluations = log->Evaluations();
   // The reader of experiments reads files.
-  std::error_code ignored;
   const fs::path file = fs::path(folder) / "experiment.yaml";
-  std::ofstream text(file, std::ios::binary);
-  text << log->Fact("experiment").value_or("");
-  text.close();
-  if (!text) {
-    out.Error({file.string()}, "cannot be written", "is the disk full, or the folder not yours?");
+  if (!WriteWholeFile(file.string(), log->Fact("experiment").value_or(""), out))
     return std::nullopt;
-  }
   auto experiment = LoadExperiment(file.string(), {}, out);
   if (!experiment) return std::nullopt;
   result.experiment = std::move(*experiment);

@@ -1,44 +1,39 @@
 // A trace as text: one line a row, the shortest digits that read back as the same number.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <charconv>
-#include <chrono>
-#include <cstring>
 #include <utility>
 
+#include "base/new_file.h"
 #include "taut/trace.h"
 #include "trace/channel_names.h"
+#include "trace/flush_clock.h"
 
 namespace taut::trace {
 namespace {
 
 constexpr std::size_t kBlockBytes = 1 << 18;
 
-/// As in the HDF5 writer: half of what the interface promises.
-constexpr std::chrono::milliseconds kMaxAge{500};
-
 class CsvWriter final : public TraceWriter {
  public:
-  CsvWriter(std::string path, std::size_t channel_count)
-      : path_(std::move(path)), channel_count_(channel_count) {}
+  CsvWriter(const std::string& path, std::size_t channel_count)
+      : path_(path), channel_count_(channel_count), file_(path) {}
 
-  ~CsvWriter() override { Finish(); }
+  ~CsvWriter() override {
+    if (file_.published()) Finish();
+  }
 
   bool Start(const std::vector<ChannelInfo>& channels) {
-    file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file_ < 0) return Fail(std::strerror(errno));
+    if (!file_.Create()) return Fail(file_.why());
     text_ = "time_s";
     for (const ChannelInfo& channel : channels) text_ += "," + channel.name;
     text_ += '\n';
-    return Flush();
+    return Write();
   }
 
   bool Append(double time_s, const double* values) override {
     if (!error_.empty()) return false;
-    if (file_ < 0) return Fail("was finished before this row");
+    if (finished_) return Fail("was finished before this row");
     AppendNumber(time_s);
     for (std::size_t i = 0; i < channel_count_; ++i) {
       text_ += ',';
@@ -50,14 +45,13 @@ class CsvWriter final : public TraceWriter {
 
   bool FlushOld() override {
     if (!error_.empty()) return false;
-    return file_ < 0 || std::chrono::steady_clock::now() - flushed_ < kMaxAge || Flush();
+    return finished_ || !clock_.due() || Flush();
   }
 
   bool Finish() override {
-    if (file_ >= 0 && error_.empty()) Flush();
-    const int file = std::exchange(file_, -1);
-    if (file >= 0 && close(file) != 0 && error_.empty()) Fail(std::strerror(errno));
-    return error_.empty();
+    if (!error_.empty()) return false;
+    if (std::exchange(finished_, true)) return true;
+    return Flush() && (file_.Sync() || Fail(file_.why()));
   }
 
   const std::string& error() const override { return error_; }
@@ -70,15 +64,14 @@ class CsvWriter final : public TraceWriter {
   }
 
   bool Flush() {
-    std::size_t done = 0;
-    while (done < text_.size()) {
-      const ssize_t count = write(file_, text_.data() + done, text_.size() - done);
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) return Fail(std::strerror(errno));
-      done += static_cast<std::size_t>(count);
-    }
+    if (!Write()) return false;
+    clock_.Flushed();
+    return file_.Publish() || Fail(file_.why());
+  }
+
+  bool Write() {
+    if (!file_.Write(text_)) return Fail(file_.why());
     text_.clear();
-    flushed_ = std::chrono::steady_clock::now();
     return true;
   }
 
@@ -89,9 +82,10 @@ class CsvWriter final : public TraceWriter {
 
   std::string path_, error_;
   std::size_t channel_count_;
-  int file_ = -1;
+  base::NewFile file_;
+  bool finished_ = false;
   std::string text_;  ///< Whole lines, not yet written.
-  std::chrono::steady_clock::time_point flushed_;
+  FlushClock clock_;
 };
 
 }  // namespace

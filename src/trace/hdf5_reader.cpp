@@ -100,14 +100,14 @@ class Receiver {
   }
 
   /// False: see `error`, empty if the child's end is the reason.
-  bool All(Trace& trace, bool& cut_off) {
+  bool All(Trace& trace) {
     std::uint64_t flag = 0, rows = 0;
     std::vector<std::pair<std::string, std::string>> channels;
     if (!Text(error) || !error.empty() || !Number(flag, 1) || !Pairs(trace.metadata) ||
         !Pairs(channels) || !Number(rows, UINT64_MAX)) {
       return false;
     }
-    cut_off = flag != 0;
+    trace.unfinished = flag != 0;
     for (auto& [name, unit] : channels) trace.channels.push_back({name, unit});
     trace.values.resize(channels.size());
     if (!Column(trace.time_s, rows)) return false;
@@ -137,8 +137,7 @@ std::optional<Trace> ReadHdf5(const std::string& path, Diagnostics& out) {
   ChildProcess child([&](const ChildOutput& to) { SendTrace(path, to); }, kMemoryBytes, kPatience);
   Receiver receiver(child);
   Trace trace;
-  bool cut_off = false;
-  if (!receiver.All(trace, cut_off)) {
+  if (!receiver.All(trace)) {
     std::string what = receiver.error;
     if (what.empty()) {
       const std::string how = child.End();
@@ -148,7 +147,7 @@ std::optional<Trace> ReadHdf5(const std::string& path, Diagnostics& out) {
     return std::nullopt;
   }
   const std::size_t rows = RisingRows(trace.time_s);
-  if (rows < trace.time_s.size() && !cut_off) {
+  if (rows < trace.time_s.size() && !trace.unfinished) {
     out.Error({path}, fmt::format("is damaged: time does not rise at row {}", rows));
     return std::nullopt;
   }

@@ -6,14 +6,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
-#include <cstdio>
-#include <cstring>
 #include <utility>
 
+#include "base/new_file.h"
 #include "taut/trace.h"
 #include "trace/channel_names.h"
+#include "trace/flush_clock.h"
 #include "trace/hdf5.h"
 
 namespace taut::trace {
@@ -22,10 +20,6 @@ namespace {
 /// Rows of a chunk. 8 kB: a short run wastes little on its last chunk, an hour at 1 kHz is still
 /// only 3500 chunks a channel.
 constexpr hsize_t kChunkRows = 1024;
-
-/// How old rows in memory may become before they are written. Half of what the interface
-/// promises, because the next look at the clock is at the next row.
-constexpr std::chrono::milliseconds kMaxAge{500};
 
 bool WriteText(hid_t object, const std::string& name, const std::string& text) {
   const Hdf5Id type = StringType(text.size());
@@ -62,11 +56,14 @@ Hdf5Id CreateColumn(hid_t file, const std::string& path, const std::string& unit
 
 class Hdf5Writer final : public TraceWriter {
  public:
-  Hdf5Writer(std::string path, std::size_t channel_count)
-      : path_(std::move(path)), width_(channel_count + 1), rows_(kChunkRows * width_) {}
+  Hdf5Writer(const std::string& path, std::size_t channel_count)
+      : path_(path), new_(path), width_(channel_count + 1), rows_(kChunkRows * width_) {}
 
   ~Hdf5Writer() override {
-    if (file_ && error_.empty()) Finish();
+    if (new_.published()) Finish();
+    const QuietHdf5 quiet;  // what is not published is closed, too, and then gone
+    columns_.clear();
+    file_.Reset();
   }
 
   /// Makes the file and all that it will ever contain except rows.
@@ -86,7 +83,7 @@ class Hdf5Writer final : public TraceWriter {
 
   bool FlushOld() override {
     if (!error_.empty()) return false;
-    return !file_ || std::chrono::steady_clock::now() - flushed_ < kMaxAge || Flush();
+    return !file_ || !clock_.due() || Flush();
   }
 
   bool Finish() override {
@@ -97,7 +94,8 @@ class Hdf5Writer final : public TraceWriter {
     for (Hdf5Id& column : columns_) {
       if (!column.Reset()) return Fail(quiet.why());
     }
-    return file_.Reset() || Fail(quiet.why());
+    if (!file_.Reset()) return Fail(quiet.why());
+    return (new_.Publish() && new_.Sync()) || Fail(new_.why());
   }
 
   const std::string& error() const override { return error_; }
@@ -107,8 +105,8 @@ class Hdf5Writer final : public TraceWriter {
     if (!WriteRows()) return false;
     const QuietHdf5 quiet;
     if (H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0) return Fail(quiet.why());
-    flushed_ = std::chrono::steady_clock::now();
-    return true;
+    clock_.Flushed();
+    return new_.Publish() || Fail(new_.why());
   }
 
   /// Time goes last: a row that has a time has everything else.
@@ -146,6 +144,7 @@ class Hdf5Writer final : public TraceWriter {
   }
 
   std::string path_, error_;
+  base::NewFile new_;
   std::size_t width_;  ///< Numbers of a row: time and channels.
   Hdf5Id file_;
   std::vector<Hdf5Id> columns_;  ///< Time, then the channels.
@@ -153,7 +152,7 @@ class Hdf5Writer final : public TraceWriter {
   std::size_t row_count_ = 0;    ///< In `rows_`.
   hsize_t written_ = 0;          ///< Rows in the file.
   double block_[kChunkRows] = {};
-  std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
+  FlushClock clock_;
 };
 
 bool Hdf5Writer::Start(const std::vector<ChannelInfo>& channels, const TraceMetadata& metadata) {
@@ -166,9 +165,9 @@ bool Hdf5Writer::Start(const std::vector<ChannelInfo>& channels, const TraceMeta
   const Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
 
-  // Under another name until it is a trace: at `path` is always a whole one, this or the last.
-  const std::string unfinished = path_ + ".part";
-  file_ = Hdf5Id(H5Fcreate(unfinished.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
+  // The file is ours already, made anew: HDF5 opens it and begins.
+  if (!new_.Create()) return Fail(new_.why());
+  file_ = Hdf5Id(H5Fcreate(new_.made_at().c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
   if (!file_) return Fail(quiet.why());
   bool good = WriteText(file_, "format", kFormatName) &&
               WriteNumber(file_, "format_version", kFormatVersion);
@@ -181,14 +180,7 @@ bool Hdf5Writer::Start(const std::vector<ChannelInfo>& channels, const TraceMeta
                                              channels[i - 1].unit, static_cast<int>(i)));
     good = static_cast<bool>(columns_.back());
   }
-  good = good && H5Fstart_swmr_write(file_) >= 0;
-  if (!good) {
-    Fail(quiet.why());
-  } else if (std::rename(unfinished.c_str(), path_.c_str()) != 0) {
-    Fail(std::strerror(errno));
-  }
-  if (!error_.empty()) std::remove(unfinished.c_str());
-  return error_.empty();
+  return (good && H5Fstart_swmr_write(file_) >= 0) || Fail(quiet.why());
 }
 
 bool CheckMetadata(const std::string& path, const TraceMetadata& metadata, Diagnostics& out) {

@@ -208,8 +208,8 @@ TEST_F(Learn, TwoAtOnceAreRefused) {
   const CommandResult second = Search("run");
   EXPECT_EQ(second.status, 1);
   EXPECT_EQ(second.errors,
-            "run/study.sqlite: error: another process is working on this study (wait for it or "
-            "stop it)\n");
+            "run: error: another process is writing into this folder (wait for it, stop it, or "
+            "give `--out` another folder)\n");
   kill(first, SIGKILL);
   End(first);
 }

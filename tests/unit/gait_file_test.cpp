@@ -142,7 +142,7 @@ TEST_F(Gait, WhatIsWrittenReadsBackToTheSameBits) {
 TEST_F(Gait, AFileThatCannotBeWrittenIsSaid) {
   Diagnostics out;
   EXPECT_FALSE(SaveGait(LoadText(kSine), "/nowhere/g.yaml", out));
-  EXPECT_EQ(out.Format(), "/nowhere/g.yaml: error: cannot be written\n");
+  EXPECT_EQ(out.Format(), "/nowhere/g.yaml: error: cannot be written: No such file or directory\n");
 }
 
 TEST_F(Gait, ValuesAreNamedAndPointIntoTheGait) {

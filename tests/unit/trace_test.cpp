@@ -70,7 +70,8 @@ TEST_F(TraceTest, Hdf5KeepsEveryBitTheOrderTheUnitsAndTheMetadata) {
   ASSERT_TRUE(trace) << out.Format();
   ExpectAll(*trace);
   EXPECT_EQ(trace->metadata, metadata);
-  EXPECT_FALSE(std::filesystem::exists(Path("t.h5.part")));
+  EXPECT_FALSE(trace->unfinished);
+  EXPECT_EQ(Names(), std::vector<std::string>{"t.h5"});
 }
 
 TEST_F(TraceTest, CsvKeepsEveryBitOfFiniteNumbers) {
@@ -101,7 +102,10 @@ TEST_F(TraceTest, ManyRowsAcrossChunksAndAFileWithoutRowsAreKept) {
       for (std::size_t row = 0; row < rows; ++row) {
         ASSERT_TRUE(AppendRow(*writer, row, 3, 0.001 * static_cast<double>(row)));
       }
-      writer.reset();  // finishes, too
+      if (rows == 0) {
+        ASSERT_TRUE(writer->Finish());
+      }
+      writer.reset();  // finishes what has rows, too
       const auto trace = ReadTrace(Path(name), out);
       ASSERT_TRUE(trace) << out.Format();
       EXPECT_EQ(trace->time_s.size(), rows);
@@ -238,6 +242,45 @@ TEST_F(TraceTest, ANewTraceReplacesTheOldOneOnlyWhenItIsOne) {
   writer = CreateHdf5Trace(Path("t.h5"), Channels(2), {}, out);
   ASSERT_TRUE(writer && writer->Finish());
   EXPECT_EQ(ReadTrace(Path("t.h5"), reading)->channels.size(), 2u);
+}
+
+TEST_F(TraceTest, TheOldOneStaysUntilTheFirstRowWhichIsThereAtOnce) {
+  for (const std::string name : {"t.h5", "t.csv"}) {
+    const auto create = [&](int channel_count, Diagnostics& out) {
+      return name == "t.h5" ? CreateHdf5Trace(Path(name), Channels(channel_count), {}, out)
+                            : CreateCsvTrace(Path(name), Channels(channel_count), out);
+    };
+    Diagnostics out;
+    auto writer = create(1, out);
+    ASSERT_TRUE(writer && AppendRow(*writer, 0, 1, 0.0) && writer->Finish());
+    create(2, out).reset();  // never had a row
+    writer = create(3, out);
+    ASSERT_TRUE(writer) << out.Format();
+    auto trace = ReadTrace(Path(name), out);
+    ASSERT_TRUE(trace) << out.Format();
+    EXPECT_EQ(trace->channels.size(), 1u);
+    ASSERT_TRUE(AppendRow(*writer, 0, 3, 0.0));
+    trace = ReadTrace(Path(name), out);
+    ASSERT_TRUE(trace) << out.Format();
+    EXPECT_EQ(trace->channels.size(), 3u);
+    EXPECT_EQ(trace->time_s.size(), 1u);
+    EXPECT_EQ(Names(), std::vector<std::string>{name});
+    writer.reset();
+    std::filesystem::remove(Path(name));
+  }
+}
+
+TEST_F(TraceTest, ALinkInItsPlaceIsReplacedAndNotFollowed) {
+  for (const std::string name : {"t.h5", "t.csv"}) {
+    WriteFile("victim", "untouched");
+    std::filesystem::create_symlink("victim", Path(name));
+    Diagnostics out;
+    const auto writer = name == "t.h5" ? CreateHdf5Trace(Path(name), Channels(1), {}, out)
+                                       : CreateCsvTrace(Path(name), Channels(1), out);
+    ASSERT_TRUE(writer && AppendRow(*writer, 0, 1, 0.0) && writer->Finish()) << out.Format();
+    EXPECT_EQ(ReadFile(Path("victim")), "untouched");
+    EXPECT_FALSE(std::filesystem::is_symlink(Path(name)));
+  }
 }
 
 TEST_F(TraceTest, AProcessMayReadWhatItIsStillWriting) {

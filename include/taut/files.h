@@ -1,0 +1,44 @@
+/// Files that are there complete or not at all, and folders that one process writes to.
+///
+/// Threads: any number may call these functions at once. Processes: two that write the same file
+/// leave the whole text of one of them.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "taut/diagnostics.h"
+
+namespace taut {
+
+/// Writes `text` to `path`. At every moment, also after a kill or a power cut, the file is the old
+/// one or the new one: the text goes to another file beside it (`<path>.<process>.part`), to the
+/// disk, and then gets the name. A symbolic link at `path` is replaced, what it points to stays as
+/// it is. What is no file (a pipe, a terminal, all below /dev) is written to as it is. False and a
+/// complaint if that fails.
+bool WriteWholeFile(const std::string& path, std::string_view text, Diagnostics& out);
+
+/// The right to write into a folder, which one process at a time has. It ends with the object or
+/// with the process, however that ends; the empty file `.lock` stays.
+class FolderLock {
+ public:
+  /// Makes the folder where there is none. Null and a complaint if it cannot be made or written, or
+  /// if another process has the right.
+  static std::unique_ptr<FolderLock> Take(const std::string& folder, Diagnostics& out);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+  /// False once the folder was deleted or replaced by another, which is then somebody else's.
+  bool Holds() const;
+
+ private:
+  FolderLock(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
+
+  std::string path_;
+  int descriptor_;
+};
+
+}  // namespace taut

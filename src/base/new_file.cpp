@@ -1,0 +1,103 @@
+#include "base/new_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "taut/files.h"
+
+namespace taut {
+namespace base {
+namespace {
+
+/// Whether the name is of something that can only be written to, not replaced.
+bool IsDevice(const std::string& path) {
+  if (path.starts_with("/dev/")) return true;  // /dev/stdout is a link, to a file perhaps
+  struct stat info {};
+  return lstat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISLNK(info.st_mode) &&
+         !S_ISDIR(info.st_mode);
+}
+
+/// There are files that cannot be synchronised, pipes for instance: that is no error.
+bool SyncDescriptor(int descriptor) {
+  return fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS || errno == ENOTSUP;
+}
+
+/// A new name is on the disk once its folder is.
+bool SyncFolderOf(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const int descriptor =
+      open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return true;  // one may write into a folder that one may not read
+  const bool good = SyncDescriptor(descriptor);
+  const int error = errno;
+  close(descriptor);
+  errno = error;
+  return good;
+}
+
+}  // namespace
+
+NewFile::~NewFile() {
+  if (descriptor_ < 0) return;
+  close(descriptor_);
+  if (!published_) unlink(made_at_.c_str());
+}
+
+bool NewFile::Fail() {
+  why_ = std::strerror(errno);
+  return false;
+}
+
+bool NewFile::Create() {
+  if (IsDevice(path_)) {
+    made_at_ = path_;
+    published_ = true;
+    descriptor_ = open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY);
+    return descriptor_ >= 0 || Fail();
+  }
+  const std::string name = path_ + "." + std::to_string(getpid());
+  for (int i = 1; descriptor_ < 0; ++i) {
+    made_at_ = name + (i == 1 ? "" : "_" + std::to_string(i)) + ".part";
+    descriptor_ =
+        open(made_at_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && errno != EEXIST) return Fail();
+  }
+  return true;
+}
+
+bool NewFile::Write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = write(descriptor_, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return Fail();
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+bool NewFile::Publish() {
+  if (published_) return true;
+  if (!Sync()) return false;
+  if (std::rename(made_at_.c_str(), path_.c_str()) != 0) return Fail();
+  published_ = true;
+  return SyncFolderOf(path_) || Fail();
+}
+
+bool NewFile::Sync() { return SyncDescriptor(descriptor_) || Fail(); }
+
+}  // namespace base
+
+bool WriteWholeFile(const std::string& path, std::string_view text, Diagnostics& out) {
+  base::NewFile file(path);
+  if (file.Create() && file.Write(text) && file.Publish()) return true;
+  out.Error({path}, "cannot be written: " + file.why());
+  return false;
+}
+
+}  // namespace taut
