@@ -7,6 +7,7 @@
 
 #include "output.h"
 #include "taut/compare.h"
+#include "taut/run_folder.h"
 
 namespace taut::cli {
 namespace {
@@ -34,7 +35,7 @@ std::optional<TimeWindow> ParsePhase(const std::string& text) {
 }
 
 std::optional<Trace> Load(const std::string& path, const std::string& map, Diagnostics& out) {
-  auto trace = ReadTrace(path, out);
+  auto trace = ReadTraceOfRun(path, out);
   if (map.empty()) return trace;
   const auto mapping = LoadMapping(map, out);
   if (!trace || !mapping) return std::nullopt;

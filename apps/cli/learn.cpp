@@ -1,17 +1,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
+#include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "learn_show.h"
 #include "output.h"
 #include "overrides.h"
+#include "streams.h"
 #include "taut/cluster.h"
 #include "taut/learn.h"
 #include "taut/run.h"
@@ -22,10 +23,6 @@ namespace taut::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::atomic<bool> stop_asked{false};
-
-extern "C" void AskStop(int) { stop_asked = true; }
 
 struct LearnArguments {
   std::string path, out;
@@ -102,7 +99,7 @@ int SearchAlone(const StudySpec& study, const LearnArguments& args, Evaluator& e
   Diagnostics found;
   LearnOptions options;
   options.folder = args.out.empty() ? (fs::path("runs") / study.name).string() : args.out;
-  options.stop = &stop_asked;
+  options.stop = &interrupt_asked;
   ProgressLine line(args.quiet);
   options.progress = [&](const LearnProgress& p) { line.Show(p); };
   const auto summary = RunStudy(study, evaluator, options, found);
@@ -120,6 +117,7 @@ int SearchAlone(const StudySpec& study, const LearnArguments& args, Evaluator& e
 }
 
 int Search(const LearnArguments& args, const Overrides& overrides) {
+  OutputIsNews();
   Diagnostics found;
   const auto cluster = Cluster::Join(found);
   if (!cluster) return Fail(found, kFailed);
@@ -128,9 +126,8 @@ int Search(const LearnArguments& args, const Overrides& overrides) {
   const int threads = args.threads < 0 ? (cluster->size() > 1 ? 1 : 0) : args.threads;
   const bool good = study && CheckStart(study->experiment.robot, study->experiment.start, found) &&
                     !(args.strict && !found.warnings().empty());
-  const auto local = good ? MakeEvaluator(*study, threads, &stop_asked, found) : nullptr;
-  std::signal(SIGINT, AskStop);
-  std::signal(SIGTERM, AskStop);
+  const auto local = good ? MakeEvaluator(*study, threads, &interrupt_asked, found) : nullptr;
+  CatchInterrupts();
   const bool agree = cluster->Agree(local ? Agreed(*study) : "");
   if (cluster->rank() > 0) {
     if (!agree || !local) return local ? kFailed : kBadInput;  // rank 0 says why
@@ -143,7 +140,7 @@ int Search(const LearnArguments& args, const Overrides& overrides) {
                 "does every machine see the same files, and the same taut?");
     return Fail(found, kFailed);
   }
-  return SearchAlone(*study, args, *cluster->Spread(*local, &stop_asked));
+  return SearchAlone(*study, args, *cluster->Spread(*local, &interrupt_asked));
 }
 
 int Run(const LearnArguments& args) {

@@ -8,6 +8,7 @@
 
 #include "apps/viewer/report.h"
 #include "output.h"
+#include "streams.h"
 #include "taut/learn.h"
 #include "taut/summary.h"
 
@@ -54,25 +55,31 @@ int ReplayBest(const std::string& folder, bool quiet) {
     return kFailed;
   }
   const ExperimentSpec experiment = study->ExperimentWith(best->values);
-  const fs::path out = fs::path(folder) / "best";
-  const auto summary = RunInto(out, experiment, {}, false, found);
-  if (!summary) return Fail(found, kFailed);
+  const auto gait_name = [](const ControllerSpec& c) { return c.name + ".gait.yaml"; };
+  std::vector<std::string> gaits;
+  for (const ControllerSpec& controller : experiment.controllers) {
+    if (controller.velocity_input) gaits.push_back(gait_name(controller));
+  }
+  const auto out = RunFolder::Open((fs::path(folder) / "best").string(), gaits, found);
+  if (!out) return Fail(found, kFailed);
+  OutputIsNews();
+  const auto summary = RunInto(*out, experiment, {}, false, found);
+  if (!summary || !found.ok()) return Fail(found, kFailed);
   for (const ControllerSpec& controller : experiment.controllers) {
     if (!controller.velocity_input) continue;
-    const fs::path gait = out / (controller.name + ".gait.yaml");
     GaitSpec learned = controller.velocity_input->gait;
     learned.name = study->name;
     learned.description = fmt::format("Learned: evaluation {} of the study {}, score {:.6g}.",
                                       best->id, study->name, best->score);
-    SaveGait(learned, gait.string(), found);
+    SaveGait(learned, out->Path(gait_name(controller)), found);
   }
-  viewer::WriteReport((out / "trace.h5").string(), "", (out / "report.html").string(), found);
+  viewer::WriteReport(out->Path("trace.h5"), "", out->Path("report.html"), found);
   if (!quiet) {
     fmt::print("{}: evaluation {} of {}, score {:.8g}\n", study->name, best->id,
                study->evaluations.size(), best->score);
     PrintValues(*study, *best);
     fmt::print("{}", SummaryTable(*summary));
-    fmt::print("Trace, inputs, summary, gait and report: {}\n", out.string());
+    fmt::print("Trace, inputs, summary, gait and report: {}\n", out->Path(""));
   }
   if (!best->worlds.empty() && best->worlds[0].state_hash != summary->state_hash) {
     found.Error({folder}, "the replay does not end in the state that was logged",

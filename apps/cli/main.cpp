@@ -1,23 +1,25 @@
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <new>
+#include <sstream>
 #include <system_error>
 
 #include "commands.h"
+#include "streams.h"
 #include "taut/version.h"
 
 namespace taut::cli {
 namespace {
 
-/// What a command has printed must have arrived: a full disk is no success.
-int Printed(int exit_code) {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
-  fmt::print(stderr, "error: standard output cannot be written: {}\n", std::strerror(errno));
-  return exit_code == kOk ? kFailed : exit_code;
+/// Help that was asked for, or what is wrong with the command line.
+int Explain(const CLI::App& app, const CLI::ParseError& error) {
+  std::ostringstream output, errors;
+  const int exit_code = app.exit(error, output, errors);
+  fmt::print("{}", output.str());
+  fmt::print(stderr, "{}", errors.str());
+  return exit_code == 0 ? kOk : kUsage;
 }
 
 int Run(int argc, char** argv) {
@@ -52,9 +54,9 @@ int Run(int argc, char** argv) {
                  argv[1]);
       return kUsage;
     }
-    return app.exit(error) == 0 ? kOk : kUsage;
+    return Explain(app, error);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kUsage;
+    return Explain(app, error);
   }
   return exit_code;
 }
@@ -64,13 +66,14 @@ int Run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace taut::cli;
+  GuardStreams();
   // A file that reaches a limit of its size is an error of writing, not the end of the program.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
-    return Printed(Run(argc, argv));
+    return FinishOutput(Run(argc, argv));
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "error: not enough memory\n");
-  } catch (const std::system_error& error) {  // fmt cannot print, threads cannot start
+  } catch (const std::system_error& error) {  // threads cannot start
     fmt::print(stderr, "error: {}\n", error.what());
   }
   return kFailed;

@@ -1,13 +1,13 @@
 /// What several subcommands write: complaints, files, the folder of a run.
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 
 #include "commands.h"
 #include "taut/run.h"
+#include "taut/run_folder.h"
 #include "taut/spec.h"
 
 namespace taut::cli {
@@ -22,18 +22,14 @@ bool Pass(Diagnostics& found, bool strict);
 /// What `--strict` does, for help texts.
 inline constexpr const char* kStrictHelp = "Warnings about files are errors";
 
-/// False and a complaint if the file cannot be written.
-bool WriteText(const std::filesystem::path& path, const std::string& text, Diagnostics& out);
-
-/// The same for a file that the user named: complains on stderr, returns the exit status.
+/// Writes a file that the user named. Complains on stderr, returns the exit status.
 int WriteNamed(const std::string& path, const std::string& text);
 
-/// Runs an experiment into a folder, which is made: traces, inputs.yaml, summary.json. `options`
-/// come without traces. Nothing, and a complaint, if it did not run; a summary that could not be
-/// written is a complaint, too.
-std::optional<RunSummary> RunInto(const std::filesystem::path& folder,
-                                  const ExperimentSpec& experiment, RunOptions options, bool csv,
-                                  Diagnostics& out);
+/// Runs an experiment into a folder: traces, inputs.yaml, summary.json. `options` come without
+/// traces. Nothing, and a complaint, if it did not run; a file that could not be written is a
+/// complaint, too, and then there is no summary.json.
+std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& experiment,
+                                  RunOptions options, bool csv, Diagnostics& out);
 
 /// Words of `--symmetry`.
 inline const std::map<std::string, CpgSymmetry> kSymmetries{{"segments", CpgSymmetry::kSegments},

@@ -7,6 +7,7 @@
 #include "apps/viewer/report.h"
 #include "apps/viewer/web_files.h"
 #include "commands.h"
+#include "streams.h"
 
 namespace taut::cli {
 namespace {
@@ -24,6 +25,7 @@ int Report(const ReportArguments& args) {
   const std::string path =
       args.out.empty() ? (std::filesystem::path(args.trace).parent_path() / "report.html").string()
                        : args.out;
+  OutputIsNews();
   Diagnostics found;
   if (!viewer::WriteReport(args.trace, args.compare, path, found)) {
     fmt::print(stderr, "{}", found.Format());

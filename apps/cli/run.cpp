@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -10,8 +8,11 @@
 
 #include "apps/viewer/report.h"
 #include "commands.h"
+#include "interrupt.h"
 #include "output.h"
 #include "overrides.h"
+#include "streams.h"
+#include "taut/batch.h"
 #include "taut/compare.h"
 #include "taut/run.h"
 #include "taut/spec.h"
@@ -23,10 +24,6 @@ namespace taut::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::atomic<bool> interrupt_asked{false};
-
-extern "C" void AskInterrupt(int) { interrupt_asked = true; }
 
 struct RunArguments {
   std::string experiment, out;
@@ -66,7 +63,7 @@ class ProgressLine {
 /// The result beside the trace that the experiment names.
 void CompareWith(const std::string& reference, const std::string& result, bool quiet,
                  Diagnostics& out) {
-  const std::optional<Trace> a = ReadTrace(result, out), b = ReadTrace(reference, out);
+  const std::optional<Trace> a = ReadTraceOfRun(result, out), b = ReadTraceOfRun(reference, out);
   if (!a || !b || quiet) return;
   fmt::print("\n{}", ComparisonTable(Compare(*a, *b, {}), result, reference));
 }
@@ -87,31 +84,32 @@ int Run(const RunArguments& args) {
     return Fail(found, kBadInput);
   }
 
-  const fs::path folder =
-      args.out.empty() ? fs::path("runs") / experiment->name : fs::path(args.out);
+  const std::string path =
+      args.out.empty() ? (fs::path("runs") / experiment->name).string() : args.out;
+  const auto folder = RunFolder::Open(path, {}, found);
+  if (!folder) return Fail(found, kFailed);
+  OutputIsNews();
   ProgressLine line(args.quiet);
   RunOptions options;
   options.threads = args.threads;
   options.progress = [&](const RunProgress& p) { return line.Show(p); };
-  std::signal(SIGINT, AskInterrupt);
-  std::signal(SIGTERM, AskInterrupt);
-  const std::optional<RunSummary> summary = RunInto(folder, *experiment, options, args.csv, found);
+  CatchInterrupts();
+  const std::optional<RunSummary> summary = RunInto(*folder, *experiment, options, args.csv, found);
   line.Clear();
   if (!summary) return Fail(found, kFailed);
 
   if (!args.quiet) {
     fmt::print("{}\n", SummaryTable(*summary));
-    fmt::print("Trace, inputs and summary: {}\n", folder.string());
+    if (found.ok()) fmt::print("Trace, inputs and summary: {}\n", path);
   }
-  if (args.report) {
-    const fs::path report = folder / "report.html";
-    if (viewer::WriteReport((folder / "trace.h5").string(), "", report.string(), found) &&
-        !args.quiet) {
-      fmt::print("Report: {}\n", report.string());
+  if (args.report && found.ok()) {
+    const std::string report = folder->Path("report.html");
+    if (viewer::WriteReport(folder->Path("trace.h5"), "", report, found) && !args.quiet) {
+      fmt::print("Report: {}\n", report);
     }
   }
-  if (experiment->compare_with) {
-    CompareWith(*experiment->compare_with, (folder / "trace.h5").string(), args.quiet, found);
+  if (experiment->compare_with && found.ok()) {
+    CompareWith(*experiment->compare_with, folder->Path("trace.h5"), args.quiet, found);
   }
   if (!summary->status_text.empty()) fmt::print(stderr, "warning: {}\n", summary->status_text);
   if (!found.ok()) return Fail(found, kFailed);
@@ -150,7 +148,8 @@ void AddRun(CLI::App& app, int& exit_code) {
       "  taut run experiments/push_20n.yaml\n"
       "  taut run experiments/push_20n.yaml --set push_n=15 --step_s 0.0005 --out runs/push_15n\n"
       "  taut run experiments/push_20n.yaml --csv --quiet\n"
-      "Ctrl-C ends a run early; its trace is complete up to there (exit status 130).");
+      "Ctrl-C ends a run early; its trace is complete up to there (exit status 130).\n"
+      "A folder holds one run: a new one replaces it, and two at once are refused.");
   run->callback([args, &exit_code] { exit_code = Run(*args); });
 }
 

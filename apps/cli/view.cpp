@@ -15,6 +15,7 @@
 #include "commands.h"
 #include "output.h"
 #include "overrides.h"
+#include "streams.h"
 #include "taut/run.h"
 #include "taut/spec.h"
 
@@ -51,16 +52,16 @@ std::optional<ExperimentSpec> ModelAlone(const ViewArguments& args, const Overri
   return experiment;
 }
 
-/// A replay, or what is wrong with the trace: both are shown in the browser.
-std::unique_ptr<Session> MakeReplay(const ViewArguments& args) {
+/// A replay. Nothing: `exit` says how to end.
+std::unique_ptr<Session> MakeReplay(const ViewArguments& args, int& exit) {
   Diagnostics found;
   auto recorded = viewer::Recorded::Load(args.file, args.compare, found);
   if (recorded) {
     return std::make_unique<viewer::ReplaySession>(std::move(recorded), args.max ? 0 : args.speed);
   }
   fmt::print(stderr, "{}", found.Format());
-  return std::make_unique<viewer::ErrorSession>(fs::path(args.file).filename().string(),
-                                                found.Format());
+  exit = kBadInput;
+  return nullptr;
 }
 
 /// A live run of an experiment or of a model alone. Nothing: `exit` says how to end.
@@ -121,6 +122,7 @@ std::string Url(const viewer::ServerOptions& options, std::uint16_t port) {
 }
 
 int View(ViewArguments args) {
+  OutputIsNews();
   std::string error;
   const std::optional<std::string> web = viewer::FindWebFolder(error);
   if (!web) {
@@ -138,7 +140,7 @@ int View(ViewArguments args) {
   }
   int exit = kOk;
   const std::unique_ptr<Session> session =
-      IsTrace(args.file) ? MakeReplay(args) : MakeLive(args, exit);
+      IsTrace(args.file) ? MakeReplay(args, exit) : MakeLive(args, exit);
   if (!session) return exit;
   if (!viewer::IsLoopback(args.server.address)) args.server.token = viewer::RandomToken();
   viewer::Server server(*session, viewer::ReadWebFiles(*web), args.server);

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "taut/run_folder.h"
+
 namespace taut::viewer {
 namespace {
 
@@ -39,7 +41,7 @@ double ValueAt(const std::vector<double>* column, std::size_t row) {
 
 std::unique_ptr<Recorded> Recorded::Load(const std::string& path, const std::string& compare,
                                          Diagnostics& out) {
-  auto trace = ReadTrace(path, out);
+  auto trace = ReadTraceOfRun(path, out);
   if (!trace) return nullptr;
   if (trace->time_s.empty()) {
     out.Error({path}, "has no rows: there is nothing to show");
@@ -49,6 +51,11 @@ std::unique_ptr<Recorded> Recorded::Load(const std::string& path, const std::str
   recorded->path_ = path;
   recorded->trace_ = std::move(*trace);
   recorded->FindInputs();
+  if (recorded->trace_.unfinished) {
+    std::string& notice = recorded->notice_;
+    notice += fmt::format("{}the trace is not finished: its run goes on, or was killed",
+                          notice.empty() ? "" : "; ");
+  }
   recorded->FindColumns();
   std::string other = compare;
   if (other.empty() && recorded->experiment_ && recorded->experiment_->compare_with &&
@@ -56,18 +63,14 @@ std::unique_ptr<Recorded> Recorded::Load(const std::string& path, const std::str
     other = *recorded->experiment_->compare_with;
   }
   if (other.empty()) return recorded;
-  recorded->reference_ = ReadTrace(other, out);
+  recorded->reference_ = ReadTraceOfRun(other, out);
   recorded->reference_name_ = fs::path(other).filename().string();
   if (!recorded->reference_) return nullptr;
   return recorded;
 }
 
 void Recorded::FindInputs() {
-  const fs::path folder = fs::path(path_).parent_path();
-  // A live run that was reset leaves trace_2.h5 and inputs_2.yaml.
-  std::string name = fs::path(path_).stem().string();
-  const std::string suffix = name.starts_with("trace") ? name.substr(5) : "";
-  const fs::path inputs = folder / ("inputs" + suffix + ".yaml");
+  const fs::path inputs = BesideTrace(path_, "inputs", ".yaml");
   std::error_code failed;
   if (!fs::exists(inputs, failed)) {
     notice_ = fmt::format("no {} beside the trace: bodies are shown as balls",
@@ -84,10 +87,12 @@ void Recorded::FindInputs() {
   }
   inputs_ = ReadText(inputs);
   const double end_s = trace_.time_s.back();
-  if (suffix.empty() && end_s < experiment_->duration_s * (1 - 1e-9) - 1e-9) {
+  // Of a live run that was reset (inputs_2.yaml) nobody knows how long it was meant to be.
+  const bool planned = inputs.filename() == "inputs.yaml";
+  if (planned && end_s < experiment_->duration_s * (1 - 1e-9) - 1e-9) {
     notice_ = fmt::format("the trace ends at {:g} s of {:g} s", end_s, experiment_->duration_s);
   }
-  summary_ = Json::parse(ReadText(folder / ("summary" + suffix + ".json")), nullptr, false);
+  summary_ = Json::parse(ReadText(BesideTrace(path_, "summary", ".json")), nullptr, false);
   if (summary_.is_discarded()) summary_ = nullptr;
 }
 

@@ -245,6 +245,9 @@ std::uint16_t Server::port() const {
 void Server::Run() {
   impl_->signals.add(SIGINT);
   impl_->signals.add(SIGTERM);
+  struct sigaction hangup {};
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) impl_->signals.add(SIGHUP);  // nohup stays nohup
   impl_->signals.async_wait([this](beast::error_code failed, int) {
     if (!failed) impl_->io.stop();
   });

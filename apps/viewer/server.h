@@ -31,7 +31,7 @@ class Server {
   bool Listen(std::string& error);
   std::uint16_t port() const;  ///< Bound to.
 
-  /// Serves until Stop, SIGINT or SIGTERM.
+  /// Serves until Stop, SIGINT, SIGTERM or SIGHUP.
   void Run();
   void Stop();  ///< From any thread.
 

@@ -47,6 +47,7 @@ struct DragSummary {
 
 struct RunSummary {
   std::string experiment;
+  std::string run;  ///< Its id in its folder (taut/run_folder.h); empty outside of one.
   double simulated_s = 0;
   double wall_s = 0;
   bool interrupted = false;
@@ -75,6 +76,9 @@ struct RunOptions {
   int threads = 1;
   /// Called a few times a second of wall-clock time. False stops the run at once, cleanly.
   std::function<bool(const RunProgress&)> progress;
+  /// Called when the start is prepared, before the first row: from here on there are results.
+  /// False, with a complaint, ends the run.
+  std::function<bool(Diagnostics&)> begin;
   /// Get every recorded row; made by the caller, finished by the run.
   std::vector<TraceWriter*> traces;
 };

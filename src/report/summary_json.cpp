@@ -5,6 +5,7 @@
 
 #include "report/facts.h"
 #include "report/reference.h"
+#include "taut/run_folder.h"
 #include "taut/summary.h"
 #include "taut/version.h"
 
@@ -61,6 +62,7 @@ std::string SummaryJson(const RunSummary& summary) {
   json["format_version"] = 1;
   json["taut_version"] = kVersion;
   json["experiment"] = summary.experiment;
+  json[kRunIdKey] = summary.run.empty() ? Json() : Json(summary.run);
   json["simulated_s"] = summary.simulated_s;
   json["wall_s"] = summary.wall_s;
   json["real_time_factor"] = report::RealTimeFactor(summary);

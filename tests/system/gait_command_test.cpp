@@ -49,7 +49,8 @@ TEST_F(GaitCommand, WhatCannotBeDrawnOrWrittenFails) {
   EXPECT_EQ(Taut({"check", spine, "--couplings", "--svg", "/nowhere/c.svg"}).status, 1);
   const CommandResult created = Taut({"gait", "create", spine, "--out", "/nowhere/g.yaml"});
   EXPECT_EQ(created.status, 1);
-  EXPECT_EQ(created.errors, "error: /nowhere/g.yaml cannot be written\n");
+  EXPECT_EQ(created.errors,
+            "/nowhere/g.yaml: error: cannot be written: No such file or directory\n");
 }
 
 TEST_F(GaitCommand, ACreatedGaitIsGoodAndHasEveryNumber) {

@@ -122,6 +122,14 @@ TEST_F(Learn, InterruptedItSaysSoAndGoesOn) {
   }
 }
 
+TEST_F(Learn, EndsWithItsTerminalAsInterrupted) {
+  Write("study.yaml", Replaced(kStudy, "evaluations: 24", "evaluations: 100000"));
+  const pid_t pid = Start({"learn", "study.yaml", "--out", "run"});
+  while (!std::filesystem::exists(Path("run/study.sqlite"))) std::this_thread::yield();
+  kill(pid, SIGHUP);
+  EXPECT_EQ(End(pid).status, 130);
+}
+
 TEST_F(Learn, ThreadsAndInstructionSetsChangeNothing) {
   ASSERT_EQ(Search("a").status, 0);
   ASSERT_EQ(Search("b", {"--threads", "1"}, [] { setenv("TAUT_SIMD", "scalar", 1); }).status, 2)

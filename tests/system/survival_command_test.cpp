@@ -138,7 +138,7 @@ TEST_F(Survival, AKilledRunLeavesAllButItsLastSecond) { Kill(4, 2, 4); }
 TEST_F(Survival, LongTwentyKilledRunsOfUpToAMinuteLeaveAllButTheirLastSecond) { Kill(20, 5, 60); }
 
 TEST_F(Survival, AnInterruptedRunIsSaved) {
-  for (const int number : {SIGINT, SIGTERM}) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     LongRun run(Path("run"));
     run.ReadLines(2);
     ASSERT_EQ(run.times().size(), 2u);
@@ -153,7 +153,8 @@ TEST_F(Survival, AnInterruptedRunIsSaved) {
 }
 
 TEST_F(Survival, AFullDiskIsSaidAndWhatFitsIsReadable) {
-  // To a program, a limit of a file's size is as a disk that fills up. The trace's head takes 9 kB.
+  // To a program, a limit of a file's size is as a disk that fills up. The trace's head takes 9 kB,
+  // and every 1024 rows 150 kB.
   const auto at_most = [](rlim_t bytes) {
     return [bytes] {
       const rlimit size{bytes, bytes};
@@ -162,34 +163,19 @@ TEST_F(Survival, AFullDiskIsSaidAndWhatFitsIsReadable) {
   };
   const CommandResult small = Taut({"run", kHang, "--quiet", "--out", "a"}, at_most(500));
   EXPECT_EQ(small.status, 1);
-  EXPECT_EQ(
-      small.errors,
-      "error: a/trace.h5: cannot be written: File too large\n"
-      "a/inputs.yaml: error: cannot be written (is the disk full, or the folder not yours?)\n");
-  const CommandResult larger = Taut({"run", kHang, "--quiet", "--out", "b"}, at_most(100'000));
+  EXPECT_EQ(small.errors,
+            "error: a/trace.h5: cannot be written: File too large\n"
+            "a/inputs.yaml: error: cannot be written: File too large\n");
+  const CommandResult larger =
+      Taut({"run", kHang, "--duration_s", "30", "--quiet", "--out", "b"}, at_most(500'000));
   EXPECT_EQ(larger.status, 1);
   EXPECT_EQ(larger.errors, "error: b/trace.h5: cannot be written: File too large\n");
   Diagnostics out;
   const auto trace = ReadTrace(Path("b/trace.h5"), out);
   ASSERT_TRUE(trace) << out.Format();
-  EXPECT_LT(trace->time_s.size(), 1001u);
-}
-
-TEST_F(Survival, OutputThatCannotBeWrittenIsAFailure) {
-  if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
-  const auto full = [] {
-    const int file = open("/dev/full", O_WRONLY);
-    if (file < 0 || dup2(file, STDOUT_FILENO) < 0) _exit(96);
-  };
-  const std::string said = "error: standard output cannot be written: No space left on device\n";
-  for (const auto& words : {std::vector<std::string>{"check", kHang},
-                            {"check", "--json", kHang},
-                            {"run", kHang, "--out", "run"},
-                            {"--version"}}) {
-    const CommandResult result = Taut(words, full);
-    EXPECT_EQ(result.status, 1) << words[0];
-    EXPECT_EQ(result.errors, said) << words[0];
-  }
+  EXPECT_GT(trace->time_s.size(), 0u);
+  EXPECT_LT(trace->time_s.size(), 6001u);
+  EXPECT_FALSE(std::filesystem::exists(Path("b/summary.json")));
 }
 
 TEST_F(Survival, AFolderThatCannotBeMadeIsAFailure) {
@@ -206,9 +192,7 @@ TEST_F(Survival, AFileThatCannotBeWrittenIsAFailure) {
   std::filesystem::create_directories(Path("run/inputs.yaml"));  // a folder of that name
   const CommandResult result = Taut({"run", kHang, "--quiet", "--out", "run"});
   EXPECT_EQ(result.status, 1);
-  EXPECT_EQ(result.errors,
-            "run/inputs.yaml: error: cannot be written (is the disk full, or the folder not "
-            "yours?)\n");
+  EXPECT_EQ(result.errors, "run/inputs.yaml: error: cannot be written: Is a directory\n");
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ CableSummary Cable(const std::string& name, double base, std::size_t phase_count
 RunSummary Summary() {
   RunSummary summary;
   summary.experiment = "push_20n";
+  summary.run = "00112233445566ff";
   summary.simulated_s = 60;
   summary.wall_s = 0.125;
   summary.phases = {{"before", 25, 30}, {"during", 35, 40}, {"after", 50, 60}};
@@ -49,6 +50,7 @@ TEST(SummaryJson, HoldsEverythingUnderItsName) {
   const std::string text = SummaryJson(summary);
   const auto json = nlohmann::ordered_json::parse(text);
   EXPECT_EQ(json["experiment"], "push_20n");
+  EXPECT_EQ(json["run"], "00112233445566ff");
   EXPECT_EQ(json["taut_version"], "0.1.0");
   EXPECT_EQ(json["format_version"], 1);
   EXPECT_EQ(json["simulated_s"], 60);
@@ -80,6 +82,9 @@ TEST(SummaryJson, HoldsEverythingUnderItsName) {
   EXPECT_EQ(json["drags"][0]["force"]["mean_n"], 1.5);
   EXPECT_EQ(json.begin().key(), "format_version") << "keys stay in order";
   EXPECT_EQ(text, SummaryJson(summary));
+  summary.run.clear();
+  EXPECT_TRUE(nlohmann::json::parse(SummaryJson(summary))["run"].is_null())
+      << "outside of a folder";
 }
 
 /// The robot's maxima, and a book's means of the second phase.

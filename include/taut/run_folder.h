@@ -1,0 +1,75 @@
+/// The folder that a run writes (docs/cli.md): trace.h5, perhaps trace.csv, inputs.yaml,
+/// summary.json, perhaps report.html. A run is one transaction: its folder has one writer, all
+/// pieces carry the run's id, those of the run before are gone before the first of it is there, and
+/// readers refuse pieces of different runs.
+///
+/// Threads: a `RunFolder` belongs to one thread at a time; the functions may be called by any
+/// number at once.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "taut/diagnostics.h"
+#include "taut/files.h"
+#include "taut/trace.h"
+
+namespace taut {
+
+namespace base {
+class NewFile;
+}
+
+/// The key under which a trace's metadata and a summary have the run's id.
+inline constexpr char kRunIdKey[] = "run";
+
+/// 16 hexadecimal digits that no other run has.
+std::string NewRunId();
+
+/// `inputs.yaml` of a run: the experiment's text after a first line with the id.
+std::string InputsOfRun(const std::string& id, const std::string& experiment);
+
+class RunFolder {
+ public:
+  /// Makes the folder and becomes its only writer. `more`: names of what will be written there
+  /// besides the pieces above. Null and a complaint if that fails.
+  static std::unique_ptr<RunFolder> Open(const std::string& folder,
+                                         const std::vector<std::string>& more, Diagnostics& out);
+  ~RunFolder();
+
+  const std::string& id() const { return id_; }
+  std::string Path(const std::string& name) const;
+
+  /// Puts the text of the experiment on the disk, still without a name. False and a complaint if
+  /// there is no room: then what the folder holds is still all of the run before.
+  bool Prepare(const std::string& experiment, Diagnostics& out);
+
+  /// The run begins: the pieces of the one before go, the summary first, and inputs.yaml is there.
+  /// Traces appear with their first rows. False and a complaint if that fails.
+  bool Begin(Diagnostics& out);
+
+  /// The run's last word, once its traces are finished. False and a complaint if it cannot be
+  /// written or the folder is no longer ours.
+  bool Finish(const std::string& summary_json, Diagnostics& out);
+
+ private:
+  RunFolder(std::string folder, const std::vector<std::string>& more,
+            std::unique_ptr<FolderLock> lock);
+
+  std::string folder_, id_;
+  std::vector<std::string> removed_;  ///< At the beginning, in this order.
+  std::unique_ptr<FolderLock> lock_;
+  std::unique_ptr<base::NewFile> inputs_;
+};
+
+/// The path of what a run wrote beside its trace: of `trace.h5`, "summary" and ".json" it is
+/// `summary.json`, of `trace_2.h5` (a live run that was reset) `summary_2.json`.
+std::string BesideTrace(const std::string& trace, const std::string& name, const std::string& end);
+
+/// As `ReadTrace`, and refuses a trace beside which there are inputs or a summary of another run. A
+/// trace in CSV has no id, so there only the other two are held against each other.
+std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out);
+
+}  // namespace taut

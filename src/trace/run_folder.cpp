@@ -1,0 +1,175 @@
+#include "taut/run_folder.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <vector>
+
+#include "base/new_file.h"
+
+namespace taut {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kInputs = "inputs.yaml";
+constexpr const char* kSummary = "summary.json";
+/// In the order in which they go when a new run begins. The inputs do not: they are replaced.
+constexpr const char* kPieces[] = {kSummary, "report.html", "trace.csv", "trace.h5", kInputs};
+constexpr std::string_view kIdLine = "# run ";
+
+bool IsLeftover(const std::string& name) {
+  const auto of = [&](const std::string& piece) { return name.starts_with(piece + "."); };
+  return name.ends_with(".part") && std::any_of(std::begin(kPieces), std::end(kPieces), of);
+}
+
+/// What writers left that were killed before their file had its name.
+void RemoveLeftovers(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    if (IsLeftover(entry.path().filename().string())) found.push_back(entry.path());
+  }
+  for (const fs::path& path : found) unlink(path.c_str());
+}
+
+std::optional<std::string> ReadText(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+std::string IdOfInputs(const std::string& text) {
+  if (!text.starts_with(kIdLine)) return {};
+  return text.substr(kIdLine.size(), text.find('\n') - kIdLine.size());
+}
+
+std::string IdOfSummary(const std::string& text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains(kRunIdKey) || !json[kRunIdKey].is_string()) return {};
+  return json[kRunIdKey].get<std::string>();
+}
+
+std::string IdOfTrace(const Trace& trace) {
+  const auto has_key = [](const auto& pair) { return pair.first == kRunIdKey; };
+  const auto at = std::find_if(trace.metadata.begin(), trace.metadata.end(), has_key);
+  return at == trace.metadata.end() ? std::string() : at->second;
+}
+
+struct Piece {
+  std::string path, id;  ///< Of an earlier version's run the id is empty.
+};
+
+/// What is there of the run that a trace is of.
+std::vector<Piece> PiecesOfRun(const std::string& path, const Trace& trace) {
+  std::vector<Piece> pieces;
+  const std::string id = IdOfTrace(trace);
+  // A measured trace in a run's folder is no piece of it, and text does not say what it is of.
+  const bool named = fs::path(path).filename().string().starts_with("trace");
+  if (path.ends_with(".h5") && (named || !id.empty())) {
+    pieces.push_back({path, id});
+  } else if (!named) {
+    return pieces;
+  }
+  const std::string inputs = BesideTrace(path, "inputs", ".yaml");
+  if (const auto text = ReadText(inputs)) pieces.push_back({inputs, IdOfInputs(*text)});
+  const std::string summary = BesideTrace(path, "summary", ".json");
+  if (const auto text = ReadText(summary)) pieces.push_back({summary, IdOfSummary(*text)});
+  return pieces;
+}
+
+}  // namespace
+
+RunFolder::RunFolder(std::string folder, const std::vector<std::string>& more,
+                     std::unique_ptr<FolderLock> lock)
+    : folder_(std::move(folder)),
+      id_(NewRunId()),
+      removed_(std::begin(kPieces), std::end(kPieces) - 1),
+      lock_(std::move(lock)) {
+  removed_.insert(removed_.end(), more.begin(), more.end());
+}
+
+RunFolder::~RunFolder() = default;
+
+std::unique_ptr<RunFolder> RunFolder::Open(const std::string& folder,
+                                           const std::vector<std::string>& more, Diagnostics& out) {
+  auto lock = FolderLock::Take(folder, out);
+  if (!lock) return nullptr;
+  RemoveLeftovers(folder);
+  return std::unique_ptr<RunFolder>(new RunFolder(folder, more, std::move(lock)));
+}
+
+std::string RunFolder::Path(const std::string& name) const {
+  return (fs::path(folder_) / name).string();
+}
+
+bool RunFolder::Prepare(const std::string& experiment, Diagnostics& out) {
+  inputs_ = std::make_unique<base::NewFile>(Path(kInputs));
+  if (inputs_->Create() && inputs_->Write(InputsOfRun(id_, experiment)) && inputs_->Sync()) {
+    return true;
+  }
+  out.Error({Path(kInputs)}, "cannot be written: " + inputs_->why());
+  return false;
+}
+
+bool RunFolder::Begin(Diagnostics& out) {
+  for (const std::string& name : removed_) {
+    if (unlink(Path(name).c_str()) == 0 || errno == ENOENT) continue;
+    out.Error({Path(name)},
+              fmt::format("of the run before cannot be removed: {}", std::strerror(errno)));
+    return false;
+  }
+  if (inputs_->Publish()) return true;
+  out.Error({Path(kInputs)}, "cannot be written: " + inputs_->why());
+  return false;
+}
+
+bool RunFolder::Finish(const std::string& summary_json, Diagnostics& out) {
+  if (lock_->Holds()) return WriteWholeFile(Path(kSummary), summary_json, out);
+  out.Error({folder_}, "was deleted while the run wrote into it: there is no summary");
+  return false;
+}
+
+std::string NewRunId() {
+  std::random_device device;  // the kernel's generator
+  return fmt::format("{:08x}{:08x}", device(), device());
+}
+
+std::string InputsOfRun(const std::string& id, const std::string& experiment) {
+  return fmt::format("{}{}\n{}", kIdLine, id, experiment);
+}
+
+std::string BesideTrace(const std::string& trace, const std::string& name, const std::string& end) {
+  const fs::path path(trace);
+  std::string stem = path.filename().string();
+  stem.erase(std::min(stem.find('.'), stem.size()));
+  const std::string suffix = stem.starts_with("trace") ? stem.substr(5) : "";
+  return (path.parent_path() / (name + suffix + end)).string();
+}
+
+std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out) {
+  auto trace = ReadTrace(path, out);
+  if (!trace) return std::nullopt;
+  const auto shown = [](const Piece& piece) { return piece.id.empty() ? "none" : piece.id; };
+  const std::vector<Piece> pieces = PiecesOfRun(path, *trace);
+  for (const Piece& piece : pieces) {
+    if (piece.id == pieces.front().id) continue;
+    out.Error({piece.path},
+              fmt::format("is not of the run of {} (run {}, there {})", pieces.front().path,
+                          shown(piece), shown(pieces.front())),
+              "take away the one that does not belong there, or run the experiment again");
+    return std::nullopt;
+  }
+  return trace;
+}
+
+}  // namespace taut

@@ -1,0 +1,201 @@
+// A run is one transaction: its folder has one writer, and holds one run or says that it does not.
+#include <sys/resource.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "taut/run_folder.h"
+#include "tests/system/command.h"
+
+namespace taut::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
+
+class RunCommand : public CommandTest {
+ protected:
+  RunCommand() {
+    fs::create_directory(Path("web"));
+    Write("web/index.html", "<p>the page");
+    Write("web/report.html",
+          R"(<!doctype html><script type="application/json" id="taut-report"></script>)");
+    setenv("TAUT_WEB", Path("web").c_str(), 1);
+  }
+  ~RunCommand() override { unsetenv("TAUT_WEB"); }
+
+  /// The run's id by its trace; empty if there is none.
+  std::string IdOfTrace(const std::string& path) const {
+    Diagnostics not_yet;
+    const auto trace = ReadTrace(Path(path), not_yet);
+    for (const auto& [key, value] : trace ? trace->metadata : TraceMetadata{}) {
+      if (key == kRunIdKey) return value;
+    }
+    return {};
+  }
+
+  /// Starts a run that would take hours, and waits until it has written a row. `id`: of the trace
+  /// that is there already.
+  pid_t StartLong(const std::string& folder, const std::string& id = "") const {
+    const pid_t pid = Start({"run", kHang, "--duration_s", "1e6", "--out", folder, "--quiet"});
+    for (std::string now; now.empty() || now == id; now = IdOfTrace(folder + "/trace.h5")) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return pid;
+  }
+  CommandResult Kill(pid_t pid, int number) const {
+    kill(pid, number);
+    return End(pid);
+  }
+
+  std::vector<std::string> Names(const std::string& folder) const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(Path(folder))) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  /// The scene's notice in a report.
+  std::string NoticeOf(const std::string& report) const {
+    const std::string page = Read(Path(report));
+    const std::string key = R"("notice":")";
+    const std::size_t at = page.find(key);
+    if (at == page.npos) return {};
+    return page.substr(at + key.size(), page.find('"', at + key.size()) - at - key.size());
+  }
+};
+
+TEST_F(RunCommand, EveryPieceHasTheRunsId) {
+  ASSERT_EQ(Taut({"run", kHang, "--out", "a", "--csv", "--report", "--quiet"}).status, 0);
+  ASSERT_EQ(Taut({"run", kHang, "--out", "b", "--quiet"}).status, 0);
+  const std::string id = IdOfTrace("a/trace.h5");
+  EXPECT_EQ(id.size(), 16u);
+  EXPECT_EQ(Read(Path("a/inputs.yaml")).rfind("# run " + id + "\n", 0), 0u);
+  EXPECT_EQ(nlohmann::json::parse(Read(Path("a/summary.json"))).at("run"), id);
+  EXPECT_NE(IdOfTrace("b/trace.h5"), id);
+  EXPECT_EQ(Names("a"), (std::vector<std::string>{".lock", "inputs.yaml", "report.html",
+                                                  "summary.json", "trace.csv", "trace.h5"}));
+}
+
+TEST_F(RunCommand, TwoAtOnceAreRefused) {
+  const pid_t first = StartLong("run");
+  const CommandResult second = Taut({"run", kHang, "--out", "run", "--quiet"});
+  EXPECT_EQ(second.status, 1);
+  EXPECT_EQ(second.errors,
+            "run: error: another process is writing into this folder (wait for it, stop it, or "
+            "give `--out` another folder)\n");
+  EXPECT_EQ(Kill(first, SIGTERM).status, 130);
+  EXPECT_EQ(Taut({"run", kHang, "--out", "run", "--quiet"}).status, 0);
+}
+
+TEST_F(RunCommand, AKilledRunLeavesItsFirstRowAndNothingOfTheRunBefore) {
+  ASSERT_EQ(Taut({"run", kHang, "--out", "run", "--csv", "--report", "--quiet"}).status, 0);
+  const std::string before = IdOfTrace("run/trace.h5");
+  Kill(StartLong("run", before), SIGKILL);
+  EXPECT_EQ(Names("run"), (std::vector<std::string>{".lock", "inputs.yaml", "trace.h5"}));
+  Diagnostics out;
+  const auto trace = ReadTraceOfRun(Path("run/trace.h5"), out);
+  ASSERT_TRUE(trace) << out.Format();
+  EXPECT_TRUE(trace->unfinished);
+  EXPECT_GE(trace->time_s.size(), 1u);
+  const CommandResult report = Taut({"report", "run/trace.h5"});
+  EXPECT_EQ(report.status, 0) << report.errors;
+  EXPECT_NE(NoticeOf("run/report.html").find("the trace is not finished"), std::string::npos);
+  EXPECT_NE(Read(Path("run/report.html")).find(R"("summary":null)"), std::string::npos);
+}
+
+TEST_F(RunCommand, PiecesOfDifferentRunsAreBadInput) {
+  ASSERT_EQ(Taut({"run", kHang, "--out", "a", "--quiet"}).status, 0);
+  ASSERT_EQ(Taut({"run", kHang, "--out", "b", "--quiet"}).status, 0);
+  fs::copy_file(Path("a/summary.json"), Path("b/summary.json"),
+                fs::copy_options::overwrite_existing);
+  const std::string said = "b/summary.json: error: is not of the run of b/trace.h5 (run " +
+                           IdOfTrace("a/trace.h5") + ", there " + IdOfTrace("b/trace.h5") +
+                           ") (take away the one that does not belong there, or run the "
+                           "experiment again)\n";
+  for (const auto& words : {std::vector<std::string>{"report", "b/trace.h5"},
+                            {"report", "a/trace.h5", "--compare", "b/trace.h5"},
+                            {"compare", "b/trace.h5", "a/trace.h5"},
+                            {"compare", "a/trace.h5", "b/trace.h5"},
+                            {"view", "b/trace.h5", "--port", "0"}}) {
+    const CommandResult result = Taut(words);
+    EXPECT_EQ(result.status, 3) << words[0];
+    EXPECT_EQ(result.errors, said) << words[0];
+  }
+}
+
+TEST_F(RunCommand, ARunThatCannotBeginLeavesTheRunBefore) {
+  ASSERT_EQ(Taut({"run", kHang, "--out", "run", "--csv", "--report", "--quiet"}).status, 0);
+  const std::vector<std::string> names = Names("run");
+  const std::string summary = Read(Path("run/summary.json")), id = IdOfTrace("run/trace.h5");
+  // no room: to a program, a limit of a file's size is as a disk that fills up
+  const CommandResult full = Taut({"run", kHang, "--out", "run", "--quiet"}, [] {
+    const rlimit size{500, 500};
+    setrlimit(RLIMIT_FSIZE, &size);
+  });
+  EXPECT_EQ(full.status, 1) << full.errors;
+  // no equilibrium to start from: a ball falls for ever
+  Write("falls.yaml",
+        "taut: 1\nkind: model\nname: falls\nnodes:\n  ball: [0, 0, 1]\nbuilders:\n"
+        "  - {match: ball, point_mass: {mass_kg: 1}}\n");
+  Write("never.yaml",
+        "taut: 1\nkind: experiment\nname: never\nmodel: falls.yaml\nduration_s: 1\n"
+        "start: settled\n");
+  const CommandResult never = Taut({"run", "never.yaml", "--out", "run", "--quiet"});
+  EXPECT_EQ(never.status, 1) << never.errors;
+  EXPECT_NE(never.errors.find("does not settle"), std::string::npos) << never.errors;
+  EXPECT_EQ(Names("run"), names);
+  EXPECT_EQ(Read(Path("run/summary.json")), summary);
+  EXPECT_EQ(IdOfTrace("run/trace.h5"), id);
+  EXPECT_EQ(Taut({"report", "run/trace.h5"}).status, 0);
+}
+
+TEST_F(RunCommand, LinksInTheFolderAreReplacedAndNotFollowed) {
+  fs::create_directory(Path("run"));
+  Write("victim", "untouched");
+  const std::vector<std::string> pieces{"inputs.yaml", "report.html", "summary.json", "trace.csv",
+                                        "trace.h5"};
+  for (const std::string& name : pieces) fs::create_symlink("../victim", Path("run/" + name));
+  const CommandResult result = Taut({"run", kHang, "--out", "run", "--csv", "--report", "--quiet"});
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_EQ(Read(Path("victim")), "untouched");
+  for (const std::string& name : pieces) {
+    EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(Path("run/" + name)))) << name;
+  }
+}
+
+TEST_F(RunCommand, AFolderThatIsDeletedUnderTheRunIsSaid) {
+  const pid_t run = StartLong("run");
+  fs::remove_all(Path("run"));
+  fs::create_directory(Path("run"));  // somebody else's
+  const CommandResult result = Kill(run, SIGTERM);
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.errors,
+            "run: error: was deleted while the run wrote into it: there is no summary\n");
+  EXPECT_TRUE(fs::is_empty(Path("run")));
+}
+
+TEST_F(RunCommand, UnderNohupItOutlivesTheTerminal) {
+  const pid_t run = Start({"run", kHang, "--duration_s", "1e6", "--out", "run", "--quiet"},
+                          [] { signal(SIGHUP, SIG_IGN); });
+  while (IdOfTrace("run/trace.h5").empty()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  kill(run, SIGHUP);
+  Diagnostics out;
+  const std::size_t rows = ReadTrace(Path("run/trace.h5"), out)->time_s.size();
+  // It writes on: had the signal been taken, no more than one block would follow.
+  while (waitpid(run, nullptr, WNOHANG) == 0 &&
+         ReadTrace(Path("run/trace.h5"), out)->time_s.size() < rows + 5000) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_EQ(kill(run, 0), 0) << "it has ended";
+  Kill(run, SIGKILL);
+}
+
+}  // namespace
+}  // namespace taut::test
