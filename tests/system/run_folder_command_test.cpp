@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <thread>
 
 #include "taut/run_folder.h"
@@ -42,6 +43,7 @@ class RunCommand : public CommandTest {
     const pid_t pid = Start({"run", kHang, "--duration_s", "1e6", "--out", folder, "--quiet"});
     for (std::string now; now.empty() || now == id; now = IdOfTrace(folder + "/trace.h5")) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      if (waitpid(pid, nullptr, WNOHANG) != 0) throw std::runtime_error("the run has ended");
     }
     return pid;
   }
@@ -177,24 +179,6 @@ TEST_F(RunCommand, AFolderThatIsDeletedUnderTheRunIsSaid) {
   EXPECT_EQ(result.errors,
             "run: error: was deleted while the run wrote into it: there is no summary\n");
   EXPECT_TRUE(fs::is_empty(Path("run")));
-}
-
-TEST_F(RunCommand, UnderNohupItOutlivesTheTerminal) {
-  const pid_t run = Start({"run", kHang, "--duration_s", "1e6", "--out", "run", "--quiet"},
-                          [] { signal(SIGHUP, SIG_IGN); });
-  while (IdOfTrace("run/trace.h5").empty()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  kill(run, SIGHUP);
-  Diagnostics out;
-  const std::size_t rows = ReadTrace(Path("run/trace.h5"), out)->time_s.size();
-  // It writes on: had the signal been taken, no more than one block would follow.
-  while (waitpid(run, nullptr, WNOHANG) == 0 &&
-         ReadTrace(Path("run/trace.h5"), out)->time_s.size() < rows + 5000) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  EXPECT_EQ(kill(run, 0), 0) << "it has ended";
-  Kill(run, SIGKILL);
 }
 
 }  // namespace

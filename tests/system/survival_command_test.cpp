@@ -23,7 +23,7 @@ const std::string kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
 /// of its own clock.
 class LongRun {
  public:
-  explicit LongRun(const std::string& folder) {
+  explicit LongRun(const std::string& folder, bool nohup = false) {
     std::vector<std::string> words{TAUT_COMMAND,   "run", kHang,   "--step_s", "1e-5",
                                    "--duration_s", "1e6", "--out", folder};
     pid_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
@@ -35,6 +35,7 @@ class LongRun {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
+    if (nohup) signal(SIGHUP, SIG_IGN);
     execv(TAUT_COMMAND, arguments.data());
     _exit(97);
   }
@@ -58,9 +59,11 @@ class LongRun {
     }
   }
 
+  void Send(int number) const { kill(pid_, number); }
+
   /// Sends the signal, reads what is left to read, and says how the run ended.
   int End(int number) {
-    kill(pid_, number);
+    Send(number);
     ReadLines(SIZE_MAX);
     int status = 0;
     waitpid(pid_, &status, 0);
@@ -150,6 +153,14 @@ TEST_F(Survival, AnInterruptedRunIsSaved) {
     EXPECT_EQ(summary.at("interrupted"), true);
     EXPECT_NEAR(summary.at("simulated_s").get<double>(), static_cast<double>(*rows) * kRowS, kRowS);
   }
+}
+
+TEST_F(Survival, UnderNohupARunOutlivesItsTerminal) {
+  LongRun run(Path("run"), true);
+  run.ReadLines(1);
+  run.Send(SIGHUP);
+  run.ReadLines(4);  // one that is interrupted says no more than one
+  EXPECT_EQ(run.times().size(), 4u);
 }
 
 TEST_F(Survival, AFullDiskIsSaidAndWhatFitsIsReadable) {
