@@ -1,5 +1,6 @@
 // Reads a trace from text. zlib reads plain files as they are, so compressed or not is one path.
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <zlib.h>
 
 #include <cerrno>
@@ -11,6 +12,7 @@
 
 #include "trace/channel_names.h"
 #include "trace/readers.h"
+#include "trace/unpack_limit.h"
 
 namespace taut::trace {
 namespace {
@@ -42,6 +44,9 @@ class CsvParser {
     Row(line);
     return error_count_ < kMaxErrors;
   }
+
+  /// How many it was given.
+  int lines() const { return line_; }
 
   std::optional<Trace> Take() {
     if (line_ == 0) Error(1, 0, "has no header line");
@@ -124,21 +129,38 @@ class CsvParser {
   std::size_t error_count_ = 0;
 };
 
+/// Why no more can be unpacked; empty at the end of the file.
+std::string WhyItEnds(gzFile file, const std::string& path) {
+  int code = 0;
+  std::string_view why = gzerror(file, &code);
+  if (code == Z_OK || code == Z_STREAM_END) return {};
+  if (code == Z_ERRNO) return fmt::format("cannot be read: {}", std::strerror(errno));
+  if (code == Z_BUF_ERROR) return "is cut off after this line: its packed data goes on";
+  if (why.starts_with(path + ": ")) why.remove_prefix(path.size() + 2);
+  return fmt::format("is damaged after this line: {}", why);
+}
+
 /// Hands every line that has its end to `parser`. What follows the last line end was cut off.
-/// False, with a diagnostic, if the file cannot be read.
-bool ReadLines(gzFile file, CsvParser& parser, const std::string& path, Diagnostics& out) {
+/// False, with a diagnostic, if the file cannot be read to its end.
+bool ReadLines(gzFile file, double file_bytes, CsvParser& parser, const std::string& path,
+               Diagnostics& out) {
   std::string text;
+  double unpacked_bytes = 0;
   char block[1 << 16];
   for (;;) {
     const int count = gzread(file, block, sizeof block);
-    if (count < 0) {
-      int code = 0;
-      const char* why = gzerror(file, &code);
-      out.Error({path}, code == Z_ERRNO ? fmt::format("cannot be read: {}", std::strerror(errno))
-                                        : fmt::format("is damaged: {}", why));
+    if (count <= 0) {
+      const std::string why = WhyItEnds(file, path);
+      if (why.empty()) return true;
+      out.Error({path, parser.lines()}, why, "`zcat` into a .csv keeps what is there");
       return false;
     }
-    if (count == 0) return true;
+    unpacked_bytes += count;
+    if (unpacked_bytes > MostUnpackedBytes(file_bytes)) {
+      out.Error({path}, fmt::format("unpacks to {}", kUnpackLimit),
+                "if it is what it should be, unpack it with `gunzip` first");
+      return false;
+    }
     text.append(block, static_cast<std::size_t>(count));
     std::size_t from = 0;
     for (std::size_t to; (to = text.find('\n', from)) != text.npos; from = to + 1) {
@@ -160,8 +182,10 @@ std::optional<Trace> ReadCsv(const std::string& path, Diagnostics& out) {
     out.Error({path}, fmt::format("cannot be opened: {}", std::strerror(errno)));
     return std::nullopt;
   }
+  struct stat info {};
+  const double bytes = stat(path.c_str(), &info) == 0 ? static_cast<double>(info.st_size) : 0.0;
   CsvParser parser(path, out);
-  if (!ReadLines(file.get(), parser, path, out)) return std::nullopt;
+  if (!ReadLines(file.get(), bytes, parser, path, out)) return std::nullopt;
   return parser.Take();
 }
 

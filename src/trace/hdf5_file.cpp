@@ -5,11 +5,17 @@
 
 #include <algorithm>
 #include <climits>
+#include <cmath>
+
+#include "trace/unpack_limit.h"
 
 namespace taut::trace {
 namespace {
 
 constexpr std::size_t kMaxTextBytes = 64 << 20;
+
+/// The widest number that a machine has.
+constexpr std::size_t kMostNumberBytes = 16;
 
 /// How often HDF5 looks again when a live file does not add up. It waits twice as long each time,
 /// from 1 ns: about 30 ms in all (its own 100 attempts take more than a minute).
@@ -75,24 +81,59 @@ struct Walk {
   std::string& error;
 };
 
-/// Takes the dataset behind a link. Links to other files are not followed: a trace is one file.
+/// Why a dataset is no column of a trace; empty if it is one. Looks at its layout before anything
+/// that could make HDF5 open another file: a trace is one file.
+std::string WhyNoColumn(hid_t dataset, Hdf5Column& column) {
+  const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
+  const H5D_layout_t layout = plan ? H5Pget_layout(plan) : H5D_LAYOUT_ERROR;
+  if (layout == H5D_VIRTUAL) return "is a virtual dataset; a trace is one file";
+  if (!plan || H5Pget_external_count(plan) != 0) {
+    return "has its numbers in another file; a trace is one file";
+  }
+  const Hdf5Id type(H5Dget_type(dataset), H5Tclose);
+  const Hdf5Id space(H5Dget_space(dataset), H5Sclose);
+  const H5T_class_t kind = type ? H5Tget_class(type) : H5T_NO_CLASS;
+  if ((kind != H5T_FLOAT && kind != H5T_INTEGER) || H5Tget_size(type) > kMostNumberBytes ||
+      H5Sget_simple_extent_ndims(space) != 1) {
+    return "is not a column of numbers";
+  }
+  for (int i = 0; i < H5Pget_nfilters(plan); ++i) {
+    char name[64] = {};
+    unsigned flags = 0;
+    std::size_t none = 0;
+    const H5Z_filter_t filter = H5Pget_filter2(plan, static_cast<unsigned>(i), &flags, &none,
+                                               nullptr, sizeof name, name, nullptr);
+    if (filter >= 0 && H5Zfilter_avail(filter) > 0) continue;
+    return fmt::format("is packed with filter {} \"{}\", which this HDF5 library does not have",
+                       static_cast<int>(filter), name);
+  }
+  H5Sget_simple_extent_dims(space, &column.rows, nullptr);
+  if (layout == H5D_CHUNKED && H5Pget_chunk(plan, 1, &column.chunk_rows) != 1) {
+    return "is not a column of numbers";
+  }
+  return {};
+}
+
+/// Takes the dataset behind a link. A soft link is another name of one that has its own.
 herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* context) {
   const Walk& walk = *static_cast<Walk*>(context);
-  if (link->type != H5L_TYPE_HARD) return 0;
+  if (link->type == H5L_TYPE_SOFT) return 0;
+  if (link->type != H5L_TYPE_HARD) {
+    walk.error = fmt::format("/{} is a link to another file; a trace is one file", name);
+    return -1;
+  }
   Hdf5Id object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
   if (!object) return -1;
   if (H5Iget_type(object) == H5I_GROUP) return 0;
 
   Hdf5Column column;
   column.name = name;
-  const Hdf5Id type(H5Dget_type(object), H5Tclose);
-  const Hdf5Id space(H5Dget_space(object), H5Sclose);
-  const H5T_class_t kind = type ? H5Tget_class(type) : H5T_NO_CLASS;
-  if ((kind != H5T_FLOAT && kind != H5T_INTEGER) || H5Sget_simple_extent_ndims(space) != 1) {
-    walk.error = fmt::format("/{} is not a column of numbers", name);
+  const std::string why =
+      H5Iget_type(object) == H5I_DATASET ? WhyNoColumn(object, column) : "is no dataset";
+  if (!why.empty()) {
+    walk.error = fmt::format("/{} {}", name, why);
     return -1;
   }
-  H5Sget_simple_extent_dims(space, &column.rows, nullptr);
   column.unit = TextAttribute(object, "unit").value_or("1");
   column.place = NumberAttribute(object, "column").value_or(INT_MAX);
   column.dataset = std::move(object);
@@ -104,16 +145,58 @@ herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* co
   return 0;
 }
 
-/// A damaged extent may promise more numbers than any file of this size can hold. Compression
-/// (deflate: at most 1032 to 1) is for files of other programs.
-bool Holds(const std::string& path, const Hdf5File& trace) {
-  struct stat info {};
-  if (stat(path.c_str(), &info) != 0) return false;
-  double most_bytes = 2.0 * static_cast<double>(info.st_size);
-  const Hdf5Id layout(H5Dget_create_plist(trace.time.dataset), H5Pclose);
-  if (H5Pget_nfilters(layout) > 0) most_bytes *= 1032.0;
-  const double columns = static_cast<double>(trace.channels.size() + 1);
-  return columns * static_cast<double>(trace.rows) * sizeof(double) <= most_bytes;
+/// Every column, time first.
+std::vector<const Hdf5Column*> AllColumns(const Hdf5File& trace) {
+  std::vector<const Hdf5Column*> all{&trace.time};
+  for (const Hdf5Column& channel : trace.channels) all.push_back(&channel);
+  return all;
+}
+
+/// What reading takes, as numbers of the machine: whole chunks. A damaged extent may promise more
+/// than any file of this size can hold.
+bool FitsInMemory(double file_bytes, const Hdf5File& trace, std::string& error) {
+  double bytes = 0;
+  for (const Hdf5Column* column : AllColumns(trace)) {
+    const auto rows = static_cast<double>(column->rows);
+    const auto chunk = static_cast<double>(std::max<hsize_t>(column->chunk_rows, 1));
+    bytes += std::ceil(rows / chunk) * chunk * sizeof(double);
+  }
+  if (bytes <= MostUnpackedBytes(file_bytes)) return true;
+  error = fmt::format(
+      "is damaged or packed too tightly: its numbers take {:.0f} MiB, {}; if it is what it should "
+      "be, unpack it with `h5repack -f NONE` first",
+      bytes / (1 << 20), kUnpackLimit);
+  return false;
+}
+
+/// Whether all rows were ever written, and to places of their own. Only of a file that was
+/// finished: one that was cut off has room beyond its rows.
+bool IsComplete(double file_bytes, const Hdf5File& trace, std::string& error) {
+  double stored_bytes = 0;
+  for (const Hdf5Column* column : AllColumns(trace)) {
+    if (column->rows != trace.time.rows) {
+      error = fmt::format("is damaged: {} has {} rows, time_s has {}", column->name, column->rows,
+                          trace.time.rows);
+      return false;
+    }
+    const Hdf5Id type(H5Dget_type(column->dataset), H5Tclose);
+    const Hdf5Id space(H5Dget_space(column->dataset), H5Sclose);
+    const auto bytes = static_cast<double>(H5Dget_storage_size(column->dataset));
+    stored_bytes += bytes;
+    auto rows = static_cast<hsize_t>(bytes / static_cast<double>(H5Tget_size(type)));
+    if (column->chunk_rows > 0) {
+      hsize_t chunks = 0;
+      if (H5Dget_num_chunks(column->dataset, space, &chunks) < 0) chunks = 0;
+      rows = chunks * column->chunk_rows;
+    }
+    if (rows >= column->rows) continue;
+    error =
+        fmt::format("is damaged: {} claims {} rows and holds {}", column->name, column->rows, rows);
+    return false;
+  }
+  if (stored_bytes <= file_bytes) return true;
+  error = "is damaged: its columns share their place";
+  return false;
 }
 
 }  // namespace
@@ -158,10 +241,10 @@ std::optional<Hdf5File> OpenHdf5Trace(const std::string& path, std::string& erro
                    [](const Hdf5Column& a, const Hdf5Column& b) { return a.place < b.place; });
   trace.rows = trace.time.rows;
   for (const Hdf5Column& channel : trace.channels) trace.rows = std::min(trace.rows, channel.rows);
-  if (!Holds(path, trace)) {
-    error = fmt::format("is damaged: claims {} rows, more than its size allows", trace.rows);
-    return std::nullopt;
-  }
+  struct stat info {};
+  const double bytes = stat(path.c_str(), &info) == 0 ? static_cast<double>(info.st_size) : 0.0;
+  if (!FitsInMemory(bytes, trace, error)) return std::nullopt;
+  if (!trace.cut_off && !IsComplete(bytes, trace, error)) return std::nullopt;
   return trace;
 }
 

@@ -17,6 +17,7 @@ struct Hdf5Column {
   std::string unit;
   Hdf5Id dataset;
   hsize_t rows = 0;
+  hsize_t chunk_rows = 0;  ///< Rows that can only be unpacked together; 0: each alone.
   int place = 0;  ///< Attribute `column`: its place in a row. Without one: after all that have.
 };
 

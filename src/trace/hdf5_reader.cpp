@@ -1,7 +1,7 @@
 // Reads a trace from HDF5 through a child process. What goes through the pipe: texts as length and
 // bytes, numbers in the machine's own form.
 //   error (empty: none) | cut_off | metadata count, key, text, ... | channel count, name, unit, ...
-//   | row count | time | values of each channel, in blocks, each after an error text (empty: none)
+//   | row count | time | values of each channel, in blocks: error (empty: none), count, values
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,13 +30,17 @@ void SendText(const ChildOutput& to, const std::string& text) {
 }
 
 void SendColumn(const ChildOutput& to, const Hdf5Column& column, std::uint64_t rows) {
-  std::vector<double> block(std::min(rows, kBlockRows));
-  for (std::uint64_t from = 0; from < rows; from += kBlockRows) {
-    const std::uint64_t count = std::min(rows - from, kBlockRows);
+  // Whole chunks: HDF5 would unpack one again for every block that begins in it.
+  const std::uint64_t chunk = std::max<std::uint64_t>(column.chunk_rows, 1);
+  const std::uint64_t most = std::min(rows, std::max<std::uint64_t>(kBlockRows / chunk, 1) * chunk);
+  std::vector<double> block(most);
+  for (std::uint64_t from = 0; from < rows; from += most) {
+    const std::uint64_t count = std::min(rows - from, most);
     std::string error;
     const bool good = ReadHdf5Rows(column, from, count, block.data(), error);
     SendText(to, error);
     if (!good) return;
+    SendNumber(to, count);
     to.Write(block.data(), count * sizeof(double));
   }
 }
@@ -90,9 +94,9 @@ class Receiver {
   }
 
   bool Column(std::vector<double>& values, std::uint64_t rows) {
-    for (std::uint64_t from = 0; from < rows; from += kBlockRows) {
-      const std::uint64_t count = std::min(rows - from, kBlockRows);
-      if (!Text(error) || !error.empty()) return false;
+    std::uint64_t count = 0;
+    for (std::uint64_t from = 0; from < rows; from += count) {
+      if (!Text(error) || !error.empty() || !Number(count, rows - from) || count == 0) return false;
       values.resize(from + count);
       if (!child_.Read(values.data() + from, count * sizeof(double))) return false;
     }

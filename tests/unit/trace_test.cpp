@@ -25,6 +25,13 @@ class TraceTest : public TraceFolder {
   std::string CsvComplaint(const std::string& content) const {
     return Complaint(WriteFile("t.csv", content));
   }
+  /// gzip's bytes of a text, by way of a file.
+  static std::string Packed(const std::string& text, const std::string& path) {
+    gzFile file = gzopen(path.c_str(), "wb1");
+    gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
+    gzclose(file);
+    return ReadFile(path);
+  }
 };
 
 // Names on purpose neither in alphabetic order nor grouped: the order of columns is kept.
@@ -140,21 +147,51 @@ TEST_F(TraceTest, ACutOffCsvLosesOnlyTheRowThatIsNotWhole) {
   const auto trace = ReadTrace(WriteFile("t.csv", "time_s,a\n0,1\n1,2\n2,4"), out);
   ASSERT_TRUE(trace) << out.Format();
   EXPECT_EQ(trace->time_s, (std::vector<double>{0, 1}));
+}
 
+TEST_F(TraceTest, ACutOffGzippedCsvIsAnErrorThatSaysWhere) {
   std::string text = "time_s,a\n";
   for (int i = 0; i < 20000; ++i) text += std::to_string(i) + "," + std::to_string(i * i) + "\n";
-  gzFile file = gzopen(Path("t.csv.gz").c_str(), "wb");
-  gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
-  gzclose(file);
-  std::string packed = ReadFile(Path("t.csv.gz"));
-  WriteFile("t.csv.gz", packed.substr(0, packed.size() / 2));
-  const auto half = ReadTrace(Path("t.csv.gz"), out);
-  ASSERT_TRUE(half) << out.Format();
-  EXPECT_GT(half->time_s.size(), 1000u);
-  EXPECT_LT(half->time_s.size(), 20000u);
-  packed[packed.size() / 2] ^= 0x55;
-  WriteFile("t.csv.gz", packed);
-  EXPECT_NE(Complaint(Path("t.csv.gz")).find("t.csv.gz: error: is damaged: "), std::string::npos);
+  const std::string path = Path("t.csv.gz"), whole = Packed(text, path);
+  int last_line = 0;
+  for (const std::size_t bytes : {whole.size() / 4, whole.size() / 2, whole.size() - 1}) {
+    WriteFile("t.csv.gz", whole.substr(0, bytes));
+    const std::string complaint = Complaint(path);
+    const int line = std::atoi(complaint.c_str() + std::strlen("t.csv.gz:"));
+    EXPECT_EQ(complaint, "t.csv.gz:" + std::to_string(line) +
+                             ": error: is cut off after this line: its packed data goes on (`zcat` "
+                             "into a .csv keeps what is there)\n");
+    EXPECT_GT(line, last_line);
+    last_line = line;
+  }
+  EXPECT_EQ(last_line, 20001) << "all is there but gzip's own end, and so its checksum";
+  for (std::size_t bytes = 0; bytes < 40; ++bytes) {
+    Diagnostics out;
+    EXPECT_FALSE(ReadTrace(WriteFile("t.csv.gz", whole.substr(0, bytes)), out)) << bytes;
+  }
+  std::string damaged = whole;
+  damaged[damaged.size() - 6] ^= 0x55;  // in its checksum
+  WriteFile("t.csv.gz", damaged);
+  EXPECT_NE(Complaint(path).find(": error: is damaged after this line: incorrect data check ("),
+            std::string::npos);
+}
+
+TEST_F(TraceTest, AFewGzippedBytesDoNotBecomeGigabytes) {
+  // Rows of 1 MiB of blanks; gzip's files may be put one behind the other.
+  const std::string path = Path("t.csv.gz");
+  const std::string blanks = Packed(std::string(1 << 20, ' '), path), end = Packed("1\n", path);
+  std::string file = Packed("time_s,a\n", path);
+  for (int row = 0; row < 260; ++row) {
+    file += Packed(std::to_string(row) + ",", path) + blanks + end;
+    if (row != 250) continue;
+    Diagnostics out;
+    const auto trace = ReadTrace(WriteFile("t.csv.gz", file), out);
+    ASSERT_TRUE(trace) << out.Format();
+    EXPECT_EQ(trace->time_s.size(), 251u) << "still within the limit";
+  }
+  EXPECT_EQ(Complaint(WriteFile("t.csv.gz", file)),
+            "t.csv.gz: error: unpacks to more than 256 MiB and than 100 times its size (if it is "
+            "what it should be, unpack it with `gunzip` first)\n");
 }
 
 TEST_F(TraceTest, CsvComplaintsNameTheLineAndComeAllAtOnce) {
