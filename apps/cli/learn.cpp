@@ -29,6 +29,7 @@ struct LearnArguments {
   std::vector<std::string> set;
   int threads = -1, top = 0;
   bool best = false, parameters = false, json = false, quiet = false, strict = false;
+  bool skip_damaged = false;
 };
 
 std::string Duration(double s) {
@@ -102,18 +103,17 @@ int SearchAlone(const StudySpec& study, const LearnArguments& args, Evaluator& e
   options.stop = &interrupt_asked;
   ProgressLine line(args.quiet);
   options.progress = [&](const LearnProgress& p) { line.Show(p); };
-  const auto summary = RunStudy(study, evaluator, options, found);
+  options.skip_damaged = args.skip_damaged;
+  const LearnSummary summary = RunStudy(study, evaluator, options, found);
   line.Clear();
-  if (!summary) {
-    const bool refused = found.Format().find("holds another study") != std::string::npos;
-    return Fail(found, refused ? kBadInput : kFailed);
-  }
-  if (!args.quiet) PrintSummary(*summary, study, options.folder);
-  if (summary->interrupted) {
+  WarnOfDamage(options.folder, summary.skipped);
+  if (!found.ok()) return Fail(found, summary.end == LearnEnd::kRefused ? kBadInput : kFailed);
+  if (!args.quiet) PrintSummary(summary, study, options.folder);
+  if (summary.end == LearnEnd::kInterrupted) {
     fmt::print(stderr, "interrupted; the same command goes on from here\n");
     return kInterrupted;
   }
-  return summary->best ? kOk : kFailed;
+  return summary.best ? kOk : kFailed;
 }
 
 int Search(const LearnArguments& args, const Overrides& overrides) {
@@ -147,8 +147,8 @@ int Run(const LearnArguments& args) {
   const auto overrides = ParseOverrides(args.set);
   if (!overrides) return kUsage;
   if (args.parameters) return ListParameters(args, *overrides);
-  if (args.best) return ReplayBest(args.path, args.quiet);
-  if (args.top > 0) return PrintTop(args.path, args.top, args.json);
+  if (args.best) return ReplayBest(args.path, args.skip_damaged, args.quiet);
+  if (args.top > 0) return PrintTop(args.path, args.top, args.skip_damaged, args.json);
   return Search(args, *overrides);
 }
 
@@ -177,6 +177,11 @@ void AddLearn(CLI::App& app, int& exit_code) {
   auto* parameters = learn->add_flag("--parameters", args->parameters,
                                      "List all that a study of an experiment can vary");
   learn->add_flag("--json", args->json, "With --top: JSON instead of a table")->needs(top);
+  learn
+      ->add_flag("--skip-damaged", args->skip_damaged,
+                 "Where records of the folder are damaged: use the others; a search does these "
+                 "again")
+      ->excludes(parameters);
   learn->add_flag("--quiet", args->quiet, "No progress and no summary");
   learn->add_flag("--strict", args->strict, kStrictHelp);
   best->excludes(top)->excludes(parameters);

@@ -45,10 +45,17 @@ nlohmann::json Json(const StudyResult& study, const Evaluation& evaluation) {
 
 }  // namespace
 
-int ReplayBest(const std::string& folder, bool quiet) {
+void WarnOfDamage(const std::string& folder, const std::vector<std::string>& skipped) {
+  for (const std::string& what : skipped) {
+    fmt::print(stderr, "warning: {}: skipped: {}\n", folder, what);
+  }
+}
+
+int ReplayBest(const std::string& folder, bool skip_damaged, bool quiet) {
   Diagnostics found;
-  const auto study = ReadStudyFolder(folder, found);
+  const auto study = ReadStudyFolder(folder, found, skip_damaged);
   if (!study) return Fail(found, kBadInput);
+  WarnOfDamage(folder, study->skipped);
   const Evaluation* best = study->best();
   if (best == nullptr) {
     fmt::print(stderr, "{}: no evaluation has succeeded yet\n", folder);
@@ -88,15 +95,17 @@ int ReplayBest(const std::string& folder, bool quiet) {
   return found.ok() ? kOk : Fail(found, kFailed);
 }
 
-int PrintTop(const std::string& folder, int count, bool json) {
+int PrintTop(const std::string& folder, int count, bool skip_damaged, bool json) {
   Diagnostics found;
-  const auto study = ReadStudyFolder(folder, found);
+  const auto study = ReadStudyFolder(folder, found, skip_damaged);
   if (!study) return Fail(found, kBadInput);
+  WarnOfDamage(folder, study->skipped);
   const auto top = study->top(static_cast<std::size_t>(count));
   if (json) {
     nlohmann::json list = nlohmann::json::array();
     for (const Evaluation* evaluation : top) list.push_back(Json(*study, *evaluation));
-    fmt::print("{}\n", list.dump(1));
+    // A text may have been written by anybody; JSON wants UTF-8.
+    fmt::print("{}\n", list.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
     return kOk;
   }
   std::size_t failed = 0;

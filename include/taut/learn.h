@@ -78,18 +78,27 @@ struct LearnOptions {
   std::string folder;
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const LearnProgress&)> progress;
+  bool skip_damaged = false;  ///< Do evaluations again whose record in the folder is damaged.
+};
+
+enum class LearnEnd {
+  kFinished,
+  kInterrupted,  ///< It can go on from here.
+  kFailed,       ///< The folder cannot be written, or is gone; processes of the cluster are.
+  kRefused,      ///< The folder holds another study, or is damaged.
 };
 
 struct LearnSummary {
+  LearnEnd end = LearnEnd::kFinished;
   std::int64_t evaluations = 0, failed = 0, resumed_from = 0;
   std::optional<Evaluation> best;
-  bool interrupted = false;
   double wall_s = 0, simulated_s = 0;  ///< Of this session.
+  std::vector<std::string> skipped;    ///< What was damaged: "evaluation 17: ...".
 };
 
-/// Runs or resumes. Nothing and diagnostics if the folder holds another study or cannot be written.
-std::optional<LearnSummary> RunStudy(const StudySpec& study, Evaluator& evaluator,
-                                     const LearnOptions& options, Diagnostics& out);
+/// Runs or resumes. Diagnostics say why if it failed or was refused.
+LearnSummary RunStudy(const StudySpec& study, Evaluator& evaluator, const LearnOptions& options,
+                      Diagnostics& out);
 
 /// A study's folder, read back.
 struct StudyResult {
@@ -97,6 +106,7 @@ struct StudyResult {
   std::vector<StudyParameter> parameters;
   std::vector<Evaluation> evaluations;  ///< By id.
   ExperimentSpec experiment;            ///< As it was resolved.
+  std::vector<std::string> skipped;     ///< What was damaged: "evaluation 17: ...".
 
   /// The best, or nothing if none succeeded; of equal ones the first.
   const Evaluation* best() const;
@@ -106,6 +116,9 @@ struct StudyResult {
   ExperimentSpec ExperimentWith(const std::vector<double>& values) const;
 };
 
-std::optional<StudyResult> ReadStudyFolder(const std::string& folder, Diagnostics& out);
+/// Nothing and diagnostics if the folder holds no study, or if any record of it is damaged, unless
+/// those are to be skipped.
+std::optional<StudyResult> ReadStudyFolder(const std::string& folder, Diagnostics& out,
+                                           bool skip_damaged = false);
 
 }  // namespace taut

@@ -73,10 +73,10 @@ struct Trace {
   std::optional<std::size_t> Find(const std::string& name) const;
 };
 
-/// Reads `.h5`, `.csv` or `.csv.gz`. Nothing and a diagnostic if that fails. An `.h5` or `.csv` that
-/// was cut off gives the rows that are complete in every channel; a cut-off `.csv.gz`, anything that
-/// leads to other files and anything that unpacks to far more than its size are refused
-/// (docs/formats/trace.md).
+/// Reads `.h5`, `.csv` or `.csv.gz`. Nothing and a diagnostic if that fails. An `.h5` or `.csv`
+/// that was cut off gives the rows that are complete in every channel; a cut-off `.csv.gz`,
+/// anything that leads to other files and anything that unpacks to far more than its size are
+/// refused (docs/formats/trace.md).
 std::optional<Trace> ReadTrace(const std::string& path, Diagnostics& out);
 
 }  // namespace taut

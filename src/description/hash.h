@@ -13,7 +13,4 @@ namespace taut::description {
 /// and what they are called does not matter. A file that cannot be read counts as empty.
 std::uint64_t HashInputs(const std::vector<std::string>& files, const Overrides& overrides);
 
-/// 16 hexadecimal digits.
-std::string HashText(std::uint64_t hash);
-
 }  // namespace taut::description

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "description/hash.h"
+#include "base/hash.h"
 #include "description/reader.h"
 #include "description/resolved.h"
 #include "description/resolved_fields.h"
@@ -145,7 +145,7 @@ std::string ResolvedYaml(const ExperimentSpec& experiment) {
     out += ' ';
     out += description::Quoted(std::filesystem::path(file).filename().string());
   }
-  out += "\n# (inputs " + description::HashText(experiment.input_hash) + "); repeats that run.\n";
+  out += "\n# (inputs " + base::HashText(experiment.input_hash) + "); repeats that run.\n";
   out += "taut: 1\nkind: ";
   out += description::kResolvedKind;
   out += '\n';

@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using learn::Log;
+using learn::LogContents;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
@@ -57,9 +58,10 @@ UnitPoint FirstPoint(const StudySpec& study) {
 
 class StudyRun {
  public:
-  StudyRun(const StudySpec& study, Evaluator& evaluator, const LearnOptions& options, Log& log)
+  StudyRun(const StudySpec& study, Evaluator& evaluator, const LearnOptions& options, Log& log,
+           std::vector<Evaluation> known)
       : study_(study), evaluator_(evaluator), options_(options), log_(log) {
-    for (Evaluation& evaluation : log.Evaluations()) {
+    for (Evaluation& evaluation : known) {
       before_s_ = std::max(before_s_, evaluation.elapsed_s);
       known_.emplace(evaluation.id, std::move(evaluation));
     }
@@ -67,15 +69,19 @@ class StudyRun {
     for (const SearchSpec& search : study.searches) budget_ += search.evaluations;
   }
 
-  std::optional<LearnSummary> Run(Diagnostics& out) {
+  LearnSummary Run(Diagnostics& out) {
     started_ = Clock::now();
-    if (!SameNumbers(out)) return std::nullopt;
+    if (!SameNumbers(out)) {
+      summary_.end = LearnEnd::kRefused;
+      return std::move(summary_);
+    }
     OptimizerStart start{FirstPoint(study_), std::nullopt, study_.seed, 0};
     for (std::size_t s = 0; s < study_.searches.size(); ++s) {
       start.stream = static_cast<std::uint32_t>(s);
       if (!Search(static_cast<int>(s), start, out)) break;
     }
-    if (!out.ok()) return std::nullopt;
+    // It may have gone since the last evaluation.
+    if (out.ok() && !log_.IsThere(out)) summary_.end = LearnEnd::kFailed;
     summary_.wall_s = SinceStart();
     summary_.simulated_s = simulated_s_;
     return std::move(summary_);
@@ -154,14 +160,14 @@ class StudyRun {
         out.Error({LogPath(options_.folder)},
                   "evaluation " + std::to_string(id) + " was of other values than now asked for",
                   "the file was changed, or written by another build of taut");
-        return false;
+        return End(LearnEnd::kRefused);
       } else {
         scores[static_cast<std::size_t>(id - first)] = logged->second.score;
         Count(logged->second);
       }
     }
     if (missing.empty()) return true;
-    if (Stopped()) return Interrupted();
+    if (Stopped()) return End(LearnEnd::kInterrupted);
     const bool finished =
         evaluator_.Evaluate(missing, [&](std::size_t c, const Evaluator::Trial& trial) {
           Evaluation evaluation{missing[c].id, number,       missing[c].values,
@@ -170,25 +176,21 @@ class StudyRun {
           scores[static_cast<std::size_t>(evaluation.id - first)] = trial.score;
           simulated_s_ += study_.experiment.duration_s * static_cast<double>(trial.worlds.size());
           ++done_now_;
-          if (!log_.Add(evaluation)) {
-            out.Error({LogPath(options_.folder)}, "cannot be written: " + log_.error(),
-                      "what it holds is safe; make room and run the same command again");
-            return false;
-          }
+          if (!log_.Add(evaluation, out)) return false;
           Count(evaluation);
           Report();
           return !Stopped();
         });
-    if (!out.ok()) return false;
-    if (!evaluator_.error().empty()) {
+    if (out.ok() && !evaluator_.error().empty()) {
       out.Error({}, evaluator_.error(), "run the same command again to go on");
-      return false;
     }
-    return finished || Interrupted();
+    if (!out.ok()) return End(LearnEnd::kFailed);
+    return finished || End(LearnEnd::kInterrupted);
   }
 
-  bool Interrupted() {
-    summary_.interrupted = true;
+  /// Always false.
+  bool End(LearnEnd end) {
+    summary_.end = end;
     return false;
   }
 
@@ -230,52 +232,69 @@ class StudyRun {
   Clock::time_point started_;
 };
 
-/// Whether the folder is of this study; a new one becomes it.
-bool Claim(const StudySpec& study, const std::string& folder, Log& log, Diagnostics& out) {
-  const std::string path = LogPath(folder);
+/// Whether the log is of this study; an empty one becomes it.
+bool Claim(const StudySpec& study, const std::string& path, LogContents& log, Diagnostics& out) {
+  log.facts.emplace("name", study.name);
   const std::pair<const char*, std::string> facts[] = {
       {"taut_version", kVersion},
       {"study", StudyText(study)},
       {"experiment", ExperimentText(study.experiment)}};
   for (const auto& [name, text] : facts) {
-    const auto old = log.Fact(name);
-    if (!old || *old == text) continue;
+    const auto [fact, is_new] = log.facts.emplace(name, text);
+    if (is_new) log.version = 0;  // empty, or whoever began it was killed at once
+    if (is_new || fact->second == text) continue;
     out.Error({path},
               std::string("this folder holds another study: its ") + name + " differs\n" +
-                  learn::Difference(*old, text),
+                  learn::Difference(fact->second, text),
               "give `--out` another folder, or undo the change; only the last search's evaluations "
               "may change");
   }
-  if (!out.ok()) return false;
-  if (log.Fact("complete")) return true;
-  bool good = log.SetParameters(study.parameters) && log.SetFact("name", study.name);
-  for (const auto& [name, text] : facts) good = good && log.SetFact(name, text);
-  if (good && log.SetFact("complete", "1")) return true;
-  out.Error({path}, "cannot be written: " + log.error(), "is the disk full?");
-  return false;
+  if (log.version == 0) log.parameters = study.parameters;
+  return out.ok();
 }
 
 }  // namespace
 
-std::optional<LearnSummary> RunStudy(const StudySpec& study, Evaluator& evaluator,
-                                     const LearnOptions& options, Diagnostics& out) {
+LearnSummary RunStudy(const StudySpec& study, Evaluator& evaluator, const LearnOptions& options,
+                      Diagnostics& out) {
+  LearnSummary none;
+  none.end = LearnEnd::kFailed;
   const auto lock = FolderLock::Take(options.folder, out);
-  const auto log = lock ? Log::Open(LogPath(options.folder), out) : nullptr;
-  if (!log || !Claim(study, options.folder, *log, out)) return std::nullopt;
-  return StudyRun(study, evaluator, options, *log).Run(out);
+  if (!lock) return none;
+  const std::string path = LogPath(options.folder);
+  const auto log = Log::Open(path, out);
+  if (!log) return none;
+  auto contents = log->Read(out);
+  if (!contents || !Accept(*contents, path, options.skip_damaged, out) ||
+      !Claim(study, path, *contents, out)) {
+    none.end = LearnEnd::kRefused;
+    return none;
+  }
+  if (!log->Begin(*contents, out)) return none;
+  auto summary =
+      StudyRun(study, evaluator, options, *log, std::move(contents->evaluations)).Run(out);
+  summary.skipped = std::move(contents->damage);
+  return summary;
 }
 
-std::optional<StudyResult> ReadStudyFolder(const std::string& folder, Diagnostics& out) {
-  const auto log = Log::OpenToRead(LogPath(folder), out);
-  if (!log) return std::nullopt;
+std::optional<StudyResult> ReadStudyFolder(const std::string& folder, Diagnostics& out,
+                                           bool skip_damaged) {
+  const std::string path = LogPath(folder);
+  const auto log = Log::OpenToRead(path, out);
+  auto contents = log ? log->Read(out) : std::nullopt;
+  if (!contents || !Accept(*contents, path, skip_damaged, out)) return std::nullopt;
+  if (contents->version == 0) {
+    out.Error({path}, "is empty", "did `taut learn STUDY` end at once?");
+    return std::nullopt;
+  }
   StudyResult result;
-  result.name = log->Fact("name").value_or("");
-  result.parameters = log->Parameters();
-  result.evaluations = log->Evaluations();
+  result.name = contents->facts["name"];
+  result.parameters = std::move(contents->parameters);
+  result.evaluations = std::move(contents->evaluations);
+  result.skipped = std::move(contents->damage);
   // The reader of experiments reads files.
   const fs::path file = fs::path(folder) / "experiment.yaml";
-  if (!WriteWholeFile(file.string(), log->Fact("experiment").value_or(""), out))
-    return std::nullopt;
+  if (!WriteWholeFile(file.string(), contents->facts["experiment"], out)) return std::nullopt;
   auto experiment = LoadExperiment(file.string(), {}, out);
   if (!experiment) return std::nullopt;
   result.experiment = std::move(*experiment);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/hash.h"
 #include "description/hash.h"
 #include "taut/run.h"
 #include "unit/experiment_fixture.h"
@@ -44,7 +45,7 @@ TEST_F(ExperimentRecord, TheHashIsFnv1a) {
   }
   EXPECT_EQ(description::HashInputs({Path("abc")}, {}), expected);
   EXPECT_EQ(description::HashInputs({}, {}), 0xcbf29ce484222325);
-  EXPECT_EQ(description::HashText(0x00f), "000000000000000f");
+  EXPECT_EQ(base::HashText(0x00f), "000000000000000f");
 }
 
 TEST_F(ExperimentRecord, ItsNamesFollowTheRulesOfNames) {

@@ -1,0 +1,37 @@
+/// A fingerprint of texts and numbers.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace taut::base {
+
+/// FNV-1a (64 bit), Fowler, Noll, Vo: http://www.isthe.com/chongo/tech/comp/fnv/
+class Fnv1a {
+ public:
+  void Add(std::string_view bytes) {
+    for (const char byte : bytes) {
+      hash_ = (hash_ ^ static_cast<unsigned char>(byte)) * 1099511628211u;
+    }
+  }
+  /// With its length, so that the border between two texts counts, too.
+  void AddText(std::string_view text) {
+    Add(std::to_string(text.size()) + ":");
+    Add(text);
+  }
+  /// To the bit, but for the sign of zero and the kind of NaN, which files do not keep.
+  void AddNumber(double x) {
+    AddText(x != x ? "nan" : std::to_string(std::bit_cast<std::uint64_t>(x + 0.0)));
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037u;
+};
+
+/// 16 hexadecimal digits.
+std::string HashText(std::uint64_t hash);
+
+}  // namespace taut::base
