@@ -1,6 +1,5 @@
 #include "learn/log.h"
 
-
 #include <algorithm>
 #include <filesystem>
 
