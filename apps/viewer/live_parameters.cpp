@@ -3,28 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/trace.h"
+
 namespace taut::viewer {
-namespace {
-
-/// The unit that a name such as push_n ends with; "1" if none.
-std::string UnitOfName(const std::string& name) {
-  static const std::pair<const char*, const char*> kUnits[] = {{"_n_s_per_m", "N s/m"},
-                                                               {"_n_per_m", "N/m"},
-                                                               {"_m_per_s", "m/s"},
-                                                               {"_kg_per_m3", "kg/m^3"},
-                                                               {"_rad", "rad"},
-                                                               {"_kg", "kg"},
-                                                               {"_hz", "Hz"},
-                                                               {"_n", "N"},
-                                                               {"_m", "m"},
-                                                               {"_s", "s"}};
-  for (const auto& [end, unit] : kUnits) {
-    if (name.ends_with(end)) return unit;
-  }
-  return "1";
-}
-
-}  // namespace
 
 std::vector<LiveParameter> Parameters(const LiveRun& run, const ExperimentSpec& experiment) {
   std::vector<LiveParameter> all;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct ChannelInfo {
   std::string name;
   std::string unit;  ///< SI: "N", "m", "m/s", "rad", "1".
 };
+
+/// The unit that a name ends with: "N" for `cable/a/tension_n`, "kg/m" for `mass_kg_per_m`, "1"
+/// where it states none that is known. For what cannot store units.
+std::string UnitOfName(std::string_view name);
 
 /// Text that makes a run reproducible: pairs such as ("taut_version", "0.1.0"), ("seed", "0").
 using TraceMetadata = std::vector<std::pair<std::string, std::string>>;

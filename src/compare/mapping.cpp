@@ -10,7 +10,6 @@
 #include "base/input_file.h"
 #include "base/pattern.h"
 #include "taut/compare.h"
-#include "trace/channel_names.h"
 
 namespace taut {
 namespace {
@@ -257,7 +256,7 @@ std::optional<Trace> ApplyMapping(const Mapping& mapping, Trace trace, const std
       if (const std::size_t star = name.find('*'); star != name.npos) {
         name.replace(star, 1, *wildcard);
       }
-      channel = {name, rule.unit.empty() ? trace::UnitOfName(name) : rule.unit};
+      channel = {name, rule.unit.empty() ? UnitOfName(name) : rule.unit};
       for (double& value : trace.values[i]) value = rule.scale * value + rule.offset;
       break;
     }

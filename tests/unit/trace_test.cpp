@@ -372,8 +372,17 @@ TEST(ChannelNames, EndWithTheUnit) {
            {"angle_rad", "rad"},
            {"rate_hz", "Hz"},
            {"mass_kg", "kg"},
-           {"age_s", "s"}}) {
-    EXPECT_EQ(trace::UnitOfName(name), unit) << name;
+           {"age_s", "s"},
+           {"mass_kg_per_m", "kg/m"},
+           {"density_kg_per_m3", "kg/m^3"},
+           {"inertia_kg_m2", "kg m^2"},
+           {"gain_rad_per_n_s", "rad/(N s)"},
+           {"body/a_n/turns_per_s", "1"},
+           {"mass_lb_per_m", "1"},
+           {"steps_per_", "1"},
+           {"m", "1"},
+           {"", "1"}}) {
+    EXPECT_EQ(UnitOfName(name), unit) << name;
   }
 }
 
