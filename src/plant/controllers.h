@@ -16,8 +16,8 @@ namespace taut::plant {
 
 /// What controllers tell the robot, per cable.
 struct CableCommands {
-  std::vector<double> target_m;                ///< Rest lengths.
-  std::vector<double> set_point_n;             ///< Under impedance control; else 0.
+  std::vector<double> target_m;     ///< Rest lengths.
+  std::vector<double> set_point_n;  ///< Under impedance control; else 0, and not recorded.
   std::vector<double> velocity_input_m_per_s;  ///< V0 of the impedance law, gait included.
 };
 

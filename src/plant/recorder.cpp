@@ -48,21 +48,31 @@ void FillSystem(const Batch& batch, int world, double* out) {
   Put(CenterOfMass(batch, world), out + 5);
 }
 
+/// Whether the impedance law drives a cable; without it there is no set point to record.
+bool UnderImpedance(const ExperimentSpec& experiment, int cable) {
+  return std::any_of(
+      experiment.controllers.begin(), experiment.controllers.end(), [&](const auto& controller) {
+        if (!controller.impedance) return false;
+        const auto& gains = controller.impedance->cables;
+        return std::any_of(gains.begin(), gains.end(),
+                           [&](const ImpedanceGains& each) { return each.cable == cable; });
+      });
+}
+
 }  // namespace
 
 Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.record.channels) {
   const ModelDef& def = experiment.robot.def;
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
-    Add("cable/" + def.cables[c].name + "/",
-        {{"tension_n", "N"},
-         {"elastic_n", "N"},
-         {"length_m", "m"},
-         {"rate_m_per_s", "m/s"},
-         {"rest_length_m", "m"},
-         {"target_rest_length_m", "m"},
-         {"setpoint_n", "N"},
-         {"velocity_input_m_per_s", "m/s"}},
-        [c](const RecordSource& s, double* out) {
+    std::vector<ChannelInfo> names = {{"tension_n", "N"},     {"elastic_n", "N"},
+                                      {"length_m", "m"},      {"rate_m_per_s", "m/s"},
+                                      {"rest_length_m", "m"}, {"target_rest_length_m", "m"}};
+    if (UnderImpedance(experiment, static_cast<int>(c))) {
+      names.push_back({"setpoint_n", "N"});
+      names.push_back({"velocity_input_m_per_s", "m/s"});
+    }
+    Add("cable/" + def.cables[c].name + "/", names,
+        [c, count = names.size()](const RecordSource& s, double* out) {
           const CableState& r = (*s.readings)[c];
           const double values[] = {r.tension_n,
                                    r.elastic_n,
@@ -72,7 +82,7 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
                                    s.commands->target_m[c],
                                    s.commands->set_point_n[c],
                                    s.commands->velocity_input_m_per_s[c]};
-          std::copy(std::begin(values), std::end(values), out);
+          std::copy_n(values, count, out);
         });
   }
   for (std::size_t c = 0; experiment.sensors && c < def.cables.size(); ++c) {
