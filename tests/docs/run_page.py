@@ -159,7 +159,7 @@ def run(page, taut, bless):
                 done = subprocess.run(
                     ["bash", "-o", "pipefail", "-c", command.text], cwd=work, env=environment,
                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
-                    text=True, errors="replace", timeout=300,
+                    text=True, errors="replace",
                 )
                 where, printed = f"{page.name}:{command.line}", printed_lines(done.stdout)
                 if done.returncode != command.status:
