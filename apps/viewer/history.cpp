@@ -39,38 +39,41 @@ void History::Lists<T>::Thin() {
   *this = std::move(kept);
 }
 
-History::History(const ModelDef& def, double period_s, std::size_t max_bytes)
+History::History(const ModelDef& def, const std::vector<bool>& has_set_point, double period_s,
+                 std::size_t max_bytes)
     : bodies_(def.bodies.size()),
       cables_(def.cables.size()),
       max_bytes_(max_bytes),
       first_period_s_(period_s),
       period_s_(period_s) {
   for (const char* energy : {"kinetic", "gravity", "elastic"}) {
-    AddChannel(std::string("system/") + energy + "_j", "J");
+    AddColumn(std::string("system/") + energy + "_j", "J");
   }
-  AddChannel("system/contact_count", "1");
-  AddChannel("real_time_factor", "1");
+  AddColumn("system/contact_count", "1");
+  AddColumn("real_time_factor", "1");
   for (const BodyDef& body : def.bodies) {
     for (const char* axis : {"x", "y", "z"}) {
-      AddChannel("body/" + body.name + "/position_" + axis + "_m", "m");
+      AddColumn("body/" + body.name + "/position_" + axis + "_m", "m");
     }
     for (const char* part : {"w", "x", "y", "z"}) {
-      AddChannel("body/" + body.name + "/orientation_" + part, "1");
+      AddColumn("body/" + body.name + "/orientation_" + part, "1");
     }
   }
-  for (const CableDef& cable : def.cables) {
-    const std::string prefix = "cable/" + cable.name + "/";
-    AddChannel(prefix + "tension_n", "N");
-    AddChannel(prefix + "length_m", "m");
-    AddChannel(prefix + "rest_length_m", "m");
-    AddChannel(prefix + "setpoint_n", "N");
+  for (std::size_t c = 0; c < def.cables.size(); ++c) {
+    const std::string prefix = "cable/" + def.cables[c].name + "/";
+    AddColumn(prefix + "tension_n", "N");
+    AddColumn(prefix + "length_m", "m");
+    AddColumn(prefix + "rest_length_m", "m");
+    AddColumn(prefix + "setpoint_n", "N", has_set_point[c]);
   }
-  columns_.resize(channels_.size());
 }
 
-void History::AddChannel(std::string name, std::string unit) {
-  places_[name] = channels_.size();
-  channels_.push_back({std::move(name), std::move(unit)});
+void History::AddColumn(std::string name, std::string unit, bool is_channel) {
+  if (is_channel) {
+    places_[name] = columns_.size();
+    channels_.push_back({std::move(name), std::move(unit)});
+  }
+  columns_.emplace_back();
 }
 
 void History::Clear() {

@@ -14,8 +14,9 @@ namespace taut::viewer {
 /// the distance doubles: the whole run stays, more coarsely the longer it lasts.
 class History {
  public:
-  /// `period_s`: simulated time between rows, for a start.
-  History(const ModelDef& def, double period_s, std::size_t max_bytes = 128u << 20);
+  /// `period_s`: simulated time between rows, for a start. `has_set_point`: by cable.
+  History(const ModelDef& def, const std::vector<bool>& has_set_point, double period_s,
+          std::size_t max_bytes = 128u << 20);
 
   /// Of the run that begins now.
   void Clear();
@@ -47,7 +48,7 @@ class History {
     std::size_t bytes() const { return items.size() * sizeof(T) + ends.size() * sizeof(ends[0]); }
   };
 
-  void AddChannel(std::string name, std::string unit);
+  void AddColumn(std::string name, std::string unit, bool is_channel = true);
   void Thin();
 
   std::vector<ChannelInfo> channels_;
@@ -55,7 +56,7 @@ class History {
   std::size_t bodies_, cables_, max_bytes_;
   double first_period_s_, period_s_, due_s_ = 0;
   std::vector<double> time_s_;
-  std::vector<std::vector<double>> columns_;  ///< By channel.
+  std::vector<std::vector<double>> columns_;  ///< All that a frame holds, channel or not.
   Lists<Frame::Contact> contacts_;
   Lists<OutsideForce> pushes_;
 };

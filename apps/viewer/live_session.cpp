@@ -58,7 +58,12 @@ LiveSession::~LiveSession() {
 }
 
 void LiveSession::StartHistory() {
-  history_.emplace(experiment_.robot.def, speed_ == 0 ? kFastHistoryPeriodS : kHistoryPeriodS);
+  has_set_point_.assign(experiment_.robot.def.cables.size(), false);
+  for (const LiveControl& control : run_->Controls()) {
+    has_set_point_[static_cast<std::size_t>(control.cable)] = control.impedance.has_value();
+  }
+  history_.emplace(experiment_.robot.def, has_set_point_,
+                   speed_ == 0 ? kFastHistoryPeriodS : kHistoryPeriodS);
   past_row_.reset();
   Fill(moment_);
   history_->Take(moment_);
@@ -327,8 +332,9 @@ void LiveSession::Fill(Frame& frame) const {
   frame.cables.clear();
   for (int c = 0; c < static_cast<int>(def.cables.size()); ++c) {
     const CableState cable = batch.Cable(0, c);
+    const auto place = static_cast<std::size_t>(c);
     frame.cables.push_back({cable.tension_n, cable.length_m, cable.rest_length_m,
-                            run_->set_point_n()[static_cast<std::size_t>(c)]});
+                            has_set_point_[place] ? run_->set_point_n()[place] : Frame::kUnknown});
   }
   frame.contacts.clear();
   for (const ContactState& contact : batch.Contacts(0)) {

@@ -60,6 +60,7 @@ class LiveSession final : public Session {
   ExperimentSpec experiment_;  ///< As read; `run_` may have been changed by hand since.
   std::unique_ptr<LiveRun> run_;
   std::unique_ptr<Recording> recording_;
+  std::vector<bool> has_set_point_;  ///< By cable: under impedance control.
   std::optional<History> history_;
   std::optional<std::size_t> past_row_;  ///< What is shown; nothing: the present.
   Frame moment_;                         ///< Kept, so that taking a moment allocates little.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace taut::viewer {
 
@@ -13,21 +12,18 @@ constexpr std::size_t kFan = 4;
 }  // namespace
 
 void Pyramid::Block::Take(const Block& other) {
-  if (other.count == 0) return;
-  min = count == 0 ? other.min : std::min(min, other.min);
-  max = count == 0 ? other.max : std::max(max, other.max);
-  sum += other.sum;
-  count += other.count;
+  min = std::min(min, other.min);
+  max = std::max(max, other.max);
 }
 
 Pyramid::Block Pyramid::Row(double value) {
-  if (!std::isfinite(value)) return {0, 0, 0, 0};
-  return {value, value, value, 1};
+  if (!std::isfinite(value)) return {};
+  return {value, value};
 }
 
 Pyramid::Pyramid(const std::vector<double>& column) {
   for (std::size_t size = column.size() / kFan; size > 0; size /= kFan) {
-    std::vector<Block> level(size, Block{0, 0, 0, 0});
+    std::vector<Block> level(size);
     for (std::size_t i = 0; i < size; ++i) {
       for (std::size_t k = i * kFan; k < (i + 1) * kFan; ++k) {
         level[i].Take(levels_.empty() ? Row(column[k]) : levels_.back()[k]);
@@ -37,9 +33,9 @@ Pyramid::Pyramid(const std::vector<double>& column) {
   }
 }
 
-Pyramid::Block Pyramid::Sum(const std::vector<double>& column, std::size_t first,
-                            std::size_t last) const {
-  Block sum{0, 0, 0, 0};
+Pyramid::Block Pyramid::Range(const std::vector<double>& column, std::size_t first,
+                              std::size_t last) const {
+  Block range;
   while (first < last) {
     // the largest stored block that begins here and does not go too far
     std::size_t size = 1, level = 0;
@@ -47,10 +43,10 @@ Pyramid::Block Pyramid::Sum(const std::vector<double>& column, std::size_t first
       size *= kFan;
       ++level;
     }
-    sum.Take(level == 0 ? Row(column[first]) : levels_[level - 1][first / size]);
+    range.Take(level == 0 ? Row(column[first]) : levels_[level - 1][first / size]);
     first += size;
   }
-  return sum;
+  return range;
 }
 
 Series Pyramid::Get(const std::vector<double>& time_s, const std::vector<double>& column, double t0,
@@ -68,13 +64,13 @@ Series Pyramid::Get(const std::vector<double>& time_s, const std::vector<double>
   }
   first -= first % series.level;
   for (; first < last; first += series.level) {
-    const Block block = Sum(column, first, std::min(first + series.level, time_s.size()));
-    const bool known = block.count > 0;
+    const Block block = Range(column, first, std::min(first + series.level, time_s.size()));
+    const bool known = block.min <= block.max;
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     series.time_s.push_back(time_s[first]);
+    series.first.push_back(column[first]);
     series.min.push_back(known ? block.min : unknown);
     series.max.push_back(known ? block.max : unknown);
-    series.mean.push_back(known ? block.sum / static_cast<double>(block.count) : unknown);
   }
   return series;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace taut::viewer {
@@ -9,12 +10,12 @@ namespace taut::viewer {
 /// Blocks of `level` rows each; see SeriesData in web/protocol/messages.json.
 struct Series {
   std::size_t level = 1;
-  std::vector<double> time_s;  ///< Of each block's first row.
-  std::vector<double> min, max, mean;
+  std::vector<double> time_s, first;  ///< Of each block's first row.
+  std::vector<double> min, max;
 };
 
-/// Least, greatest and sum of blocks of 4, 16, 64, ... rows of one column. The column itself stays
-/// where it is. Rows that are not numbers do not count; a block of such rows is NaN.
+/// Least and greatest of blocks of 4, 16, 64, ... rows of one column. The column itself stays where
+/// it is. Rows that are not numbers do not count; a block of such rows is NaN.
 class Pyramid {
  public:
   explicit Pyramid(const std::vector<double>& column);
@@ -27,13 +28,12 @@ class Pyramid {
 
  private:
   struct Block {
-    double min, max, sum;
-    std::size_t count;
+    double min = std::numeric_limits<double>::infinity(), max = -min;  ///< Of nothing.
     void Take(const Block& other);
   };
   static Block Row(double value);
   /// Rows first .. last - 1.
-  Block Sum(const std::vector<double>& column, std::size_t first, std::size_t last) const;
+  Block Range(const std::vector<double>& column, std::size_t first, std::size_t last) const;
 
   std::vector<std::vector<Block>> levels_;
 };

@@ -33,6 +33,23 @@ bool Belongs(const Trace& trace, const ExperimentSpec& experiment) {
   });
 }
 
+/// What a trace's metadata say under a key; empty if nothing.
+std::string Said(const Trace& trace, std::string_view key) {
+  const auto found = std::find_if(trace.metadata.begin(), trace.metadata.end(),
+                                  [&](const auto& pair) { return pair.first == key; });
+  return found == trace.metadata.end() ? "" : found->second;
+}
+
+/// What to call another trace. Every run's is a trace.h5, so its folder belongs to the name.
+std::string NameOf(const Trace& trace, const fs::path& path) {
+  const std::string place = (path.parent_path().filename() / path.filename()).generic_string();
+  for (const char* key : {"measured", "experiment"}) {
+    const std::string name = Said(trace, key);
+    if (!name.empty()) return fmt::format("{} ({})", name, place);
+  }
+  return place;
+}
+
 double ValueAt(const std::vector<double>* column, std::size_t row) {
   return column == nullptr ? Frame::kUnknown : (*column)[row];
 }
@@ -64,8 +81,8 @@ std::unique_ptr<Recorded> Recorded::Load(const std::string& path, const std::str
   }
   if (other.empty()) return recorded;
   recorded->reference_ = ReadTraceOfRun(other, out);
-  recorded->reference_name_ = fs::path(other).filename().string();
   if (!recorded->reference_) return nullptr;
+  recorded->reference_name_ = NameOf(*recorded->reference_, other);
   return recorded;
 }
 
@@ -161,7 +178,9 @@ Json Recorded::scene() const {
   scene["first_s"] = trace_.time_s.front();
   scene["duration_s"] = trace_.time_s.back();
   if (reference_) {
-    scene["reference"] = {{"name", reference_name_}, {"channels", ToJson(reference_->channels)}};
+    scene["reference"] = {{"name", reference_name_},
+                          {"measured", !Said(*reference_, "measured").empty()},
+                          {"channels", ToJson(reference_->channels)}};
   }
   if (!notice_.empty()) scene["notice"] = notice_;
   return scene;
@@ -209,16 +228,15 @@ std::size_t Recorded::RowAt(double time_s) const {
              : static_cast<std::size_t>(after - trace_.time_s.begin()) - 1;
 }
 
-Json Recorded::SeriesOf(const std::string& channel, int source, double t0, double t1,
-                        std::size_t points) const {
-  if (source == 1 && !reference_) return nullptr;
+std::optional<Series> Recorded::SeriesOf(const std::string& channel, int source, double t0,
+                                         double t1, std::size_t points) const {
+  if (source == 1 && !reference_) return std::nullopt;
   const Trace& trace = source == 1 ? *reference_ : trace_;
   const auto at = trace.Find(channel);
-  if (!at) return nullptr;
+  if (!at) return std::nullopt;
   const std::vector<double>& column = trace.values[*at];
   const auto pyramid = pyramids_.try_emplace({source, *at}, column).first;
-  const Series series = pyramid->second.Get(trace.time_s, column, t0, t1, points);
-  return SeriesJson(channel, source, series);
+  return pyramid->second.Get(trace.time_s, column, t0, t1, points);
 }
 
 }  // namespace taut::viewer

@@ -29,7 +29,7 @@ class Recorded {
   std::string title() const;
   const Trace& trace() const { return trace_; }
   const std::optional<Trace>& reference() const { return reference_; }
-  const std::string& reference_name() const { return reference_name_; }
+  const std::string& reference_name() const { return reference_name_; }  ///< What to call it.
   const std::optional<ExperimentSpec>& experiment() const { return experiment_; }
   const std::string& inputs() const { return inputs_; }  ///< The text of inputs.yaml, or empty.
   const Json& summary() const { return summary_; }       ///< Or null.
@@ -40,9 +40,9 @@ class Recorded {
   Frame FrameOf(std::size_t row) const;
   /// The last row at or before a time; 0 before the first.
   std::size_t RowAt(double time_s) const;
-  /// SeriesData of a channel of the trace (source 0) or of the other (1); null if there is none.
-  Json SeriesOf(const std::string& channel, int source, double t0, double t1,
-                std::size_t points) const;
+  /// A channel of the trace (source 0) or of the other (1); nothing if there is none.
+  std::optional<Series> SeriesOf(const std::string& channel, int source, double t0, double t1,
+                                 std::size_t points) const;
 
  private:
   void FindInputs();

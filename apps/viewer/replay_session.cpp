@@ -40,12 +40,14 @@ void ReplaySession::Handle(int client, const Command& command) {
   const double now_s = PlayedTo(Clock::now());
   const std::vector<double>& times = recorded_->trace().time_s;
   if (type == "want_series") {
-    Json series = recorded_->SeriesOf(command.name, command.source, command.t0, command.t1,
-                                      static_cast<std::size_t>(command.points));
-    if (series.is_null()) {
+    const auto series = recorded_->SeriesOf(command.name, command.source, command.t0, command.t1,
+                                            static_cast<std::size_t>(command.points));
+    if (!series) {
       SayError(client, fmt::format("there is no channel \"{}\"", command.name));
     } else {
-      Say(client, {{"type", "series"}, {"id", command.id}, {"series", std::move(series)}});
+      Say(client, {{"type", "series"},
+                   {"id", command.id},
+                   {"series", SeriesJson(command.name, command.source, *series)}});
     }
   } else if (type == "pause") {
     Anchor(now_s);

@@ -1,7 +1,6 @@
 #include "report.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -18,8 +17,6 @@ namespace {
 
 constexpr double kFramesPerS = 30;
 constexpr std::size_t kMaxFrames = 4000;
-/// Points of a plot: about two for each of its pixels.
-constexpr std::size_t kPoints = 800;
 
 std::string Base64(const std::string& bytes) {
   static constexpr char kDigits[] =
@@ -38,8 +35,10 @@ std::string Base64(const std::string& bytes) {
   return text;
 }
 
-/// What a report plots. Poses are in its frames; velocities would only make it larger.
-bool IsPlotted(const ChannelInfo& channel) { return !channel.name.starts_with("body/"); }
+/// What a report plots. How bodies turn is in its frames; velocities would only make it larger.
+bool IsPlotted(const ChannelInfo& channel) {
+  return !channel.name.starts_with("body/") || channel.name.find("/position_") != std::string::npos;
+}
 
 std::vector<ChannelInfo> Plotted(const std::vector<ChannelInfo>& channels) {
   std::vector<ChannelInfo> plotted;
@@ -47,29 +46,40 @@ std::vector<ChannelInfo> Plotted(const std::vector<ChannelInfo>& channels) {
   return plotted;
 }
 
-/// To seven digits, more than a plot shows: a third of the size.
-void Round(Json& numbers) {
-  for (Json& number : numbers) {
-    const double x = number.get<double>();
-    if (!std::isfinite(x)) continue;
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.7g", x);
-    number = std::strtod(text.data(), nullptr);
-  }
+void AppendNumbers(const std::vector<double>& numbers, std::string& bytes) {
+  bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
 }
 
-void AddSeries(const Recorded& recorded, const Trace& trace, int source, Json& all) {
-  if (trace.time_s.empty()) return;
-  for (const ChannelInfo& channel : trace.channels) {
-    if (!IsPlotted(channel)) continue;
-    Json series =
-        recorded.SeriesOf(channel.name, source, trace.time_s.front(), trace.time_s.back(), kPoints);
-    for (const char* key : {"time_s", "min", "max", "mean"}) Round(series[key]);
-    all.push_back(std::move(series));
+/// The Rows of web/protocol/messages.json: every row of what is plotted if those are at most
+/// `max_numbers`, else the smallest blocks that are.
+Json RowsOf(const Recorded& recorded, const Trace& trace, int source, std::size_t max_numbers) {
+  const std::vector<ChannelInfo> channels = Plotted(trace.channels);
+  const std::size_t rows = trace.time_s.size();
+  std::size_t level = 1;
+  const auto count = [&] { return (rows + level - 1) / level; };
+  while (count() > 1 && count() * (1 + channels.size() * (level == 1 ? 1 : 3)) > max_numbers) {
+    level *= 2;
   }
+  Json names = Json::array();
+  std::vector<double> times;
+  for (std::size_t row = 0; row < rows; row += level) times.push_back(trace.time_s[row]);
+  std::string bytes;
+  AppendNumbers(times, bytes);
+  for (const ChannelInfo& channel : channels) {
+    names.push_back(channel.name);
+    const auto series = recorded.SeriesOf(channel.name, source, times.front(), HUGE_VAL, count());
+    AppendNumbers(series->first, bytes);
+    if (level == 1) continue;
+    AppendNumbers(series->min, bytes);
+    AppendNumbers(series->max, bytes);
+  }
+  return {{"source", source},
+          {"level", level},
+          {"count", count()},
+          {"channels", names},
+          {"base64", Base64(bytes)}};
 }
 
-/// Every frame's numbers as Float32.
 void AddFrames(const Recorded& recorded, Json& report) {
   const std::vector<double>& times = recorded.trace().time_s;
   const double span_s = times.back() - times.front();
@@ -91,9 +101,8 @@ void AddFrames(const Recorded& recorded, Json& report) {
     frame.run = 1;
     frame.now_s = frame.time_s;
     const std::vector<double> numbers = FrameNumbers(frame);
-    const std::vector<float> small(numbers.begin(), numbers.end());
-    values = small.size();
-    bytes.append(reinterpret_cast<const char*>(small.data()), values * sizeof(float));
+    values = numbers.size();
+    AppendNumbers(numbers, bytes);
   }
   report["frame_count"] = frames;
   report["frame_values"] = values;
@@ -107,7 +116,7 @@ std::string ReadText(const std::string& path) {
 
 }  // namespace
 
-Json ReportOf(const Recorded& recorded) {
+Json ReportOf(const Recorded& recorded, std::size_t max_numbers) {
   Json report;
   report["version"] = kProtocolVersion;
   report["title"] = recorded.title();
@@ -118,11 +127,11 @@ Json ReportOf(const Recorded& recorded) {
   report["inputs"] = recorded.inputs();
   report["summary"] = recorded.summary();
   report["comparison"] = nullptr;
-  report["series"] = Json::array();
-  AddSeries(recorded, recorded.trace(), 0, report["series"]);
+  report["rows"] = Json::array({RowsOf(recorded, recorded.trace(), 0, max_numbers)});
   if (const auto& reference = recorded.reference()) {
     report["scene"]["reference"]["channels"] = ToJson(Plotted(reference->channels));
-    AddSeries(recorded, *reference, 1, report["series"]);
+    if (!reference->time_s.empty())
+      report["rows"].push_back(RowsOf(recorded, *reference, 1, max_numbers));
     CompareOptions options;
     if (recorded.experiment()) {
       for (const PhaseSpec& phase : recorded.experiment()->phases) {

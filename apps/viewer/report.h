@@ -9,8 +9,12 @@
 
 namespace taut::viewer {
 
-/// The Report of web/protocol/messages.json.
-Json ReportOf(const Recorded& recorded);
+/// Numbers of a trace that a report holds at most, besides its frames: 24 MB, in base64 32.
+inline constexpr std::size_t kMaxReportNumbers = 3'000'000;
+
+/// The Report of web/protocol/messages.json. A trace with more numbers than `max_numbers` is in it
+/// as blocks of rows.
+Json ReportOf(const Recorded& recorded, std::size_t max_numbers = kMaxReportNumbers);
 
 /// The page `page` with the data in its empty <script id="taut-report">. Nothing if it has none.
 std::optional<std::string> ReportPage(const Json& report, const std::string& page);

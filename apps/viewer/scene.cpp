@@ -119,9 +119,9 @@ Json ToJson(const std::vector<ChannelInfo>& channels) {
 }
 
 Json SeriesJson(const std::string& channel, int source, const Series& series) {
-  return {{"channel", channel},      {"source", source},  {"level", series.level},
-          {"time_s", series.time_s}, {"min", series.min}, {"max", series.max},
-          {"mean", series.mean}};
+  return {{"channel", channel},      {"source", source},      {"level", series.level},
+          {"time_s", series.time_s}, {"first", series.first}, {"min", series.min},
+          {"max", series.max}};
 }
 
 Json SceneOf(const ExperimentSpec& experiment) {

@@ -19,6 +19,10 @@ ModelDef OneOfEach() {
   return def;
 }
 
+History HistoryOfOneOfEach(std::size_t max_bytes = 128u << 20) {
+  return {OneOfEach(), {true}, 0.01, max_bytes};
+}
+
 /// A frame whose numbers all follow from its place; every third has a push, every fourth contacts.
 Frame Moment(int i) {
   Frame frame;
@@ -36,7 +40,7 @@ Frame Moment(int i) {
 std::vector<double> Numbers(const Frame& frame) { return viewer::FrameNumbers(frame); }
 
 TEST(History, ShowsEveryMomentAsItWas) {
-  History history(OneOfEach(), 0.01);
+  History history = HistoryOfOneOfEach();
   for (int i = 0; i < 100; ++i) {
     ASSERT_TRUE(history.IsDue(0.01 * i)) << i;
     history.Take(Moment(i));
@@ -52,19 +56,37 @@ TEST(History, ShowsEveryMomentAsItWas) {
   EXPECT_EQ(history.RowAt(1e9), 99u);
 }
 
+TEST(History, ASetPointIsAChannelWhereThereIsOne) {
+  for (const bool controlled : {false, true}) {
+    History history(OneOfEach(), {controlled}, 0.01);
+    history.Take(Moment(3));
+    EXPECT_EQ(history.SeriesOf("cable/string/setpoint_n", 0, 1, 9).is_null(), !controlled);
+    EXPECT_EQ(history.SeriesOf("cable/string/rest_length_m", 0, 1, 9)["first"][0], 0.25);
+    EXPECT_EQ(history.channels().size(), 5u + 7u + (controlled ? 4u : 3u));
+    Frame frame;
+    frame.real_time_factor = 1;
+    history.Show(0, frame);
+    EXPECT_EQ(Numbers(frame), Numbers(Moment(3)));
+  }
+}
+
 TEST(History, SeriesHaveTheLeastAndGreatestOfTheirBlocks) {
-  History history(OneOfEach(), 0.01);
+  History history = HistoryOfOneOfEach();
   for (int i = 0; i < 100; ++i) history.Take(Moment(i));
   const Json all = history.SeriesOf("cable/string/tension_n", 0, 1, 1000);
   EXPECT_EQ(all["level"], 1);
-  ASSERT_EQ(all["mean"].size(), 100u);
-  EXPECT_EQ(all["mean"][42], 47);
+  ASSERT_EQ(all["first"].size(), 100u);
+  EXPECT_EQ(all["first"][42], 47);
   const Json few = history.SeriesOf("cable/string/tension_n", 0, 1, 25);
   EXPECT_EQ(few["level"], 4);
-  ASSERT_EQ(few["mean"].size(), 25u);
+  ASSERT_EQ(few["first"].size(), 25u);
   EXPECT_EQ(few["min"][3], 17);
   EXPECT_EQ(few["max"][3], 20);
-  EXPECT_EQ(few["mean"][3], 18.5);
+  EXPECT_EQ(few["first"][3], 17);
+  // A narrow span has the rows themselves, whatever is drawn.
+  const Json row = history.SeriesOf("cable/string/tension_n", 0.4249, 0.4249, 4);
+  EXPECT_EQ(row["level"], 1);
+  EXPECT_EQ(row["first"], Json({47, 48}));
   EXPECT_EQ(history.SeriesOf("body/rod/position_z_m", 0, 1, 1000)["max"][99], 0.3 * 99);
   EXPECT_EQ(history.SeriesOf("system/elastic_j", 0, 1, 1000)["max"][99], 297);
   EXPECT_TRUE(history.SeriesOf("cable/absent/tension_n", 0, 1, 100).is_null());
@@ -73,7 +95,7 @@ TEST(History, SeriesHaveTheLeastAndGreatestOfTheirBlocks) {
 
 TEST(History, KeepsTheWholeRunMoreCoarselyTheLongerItLasts) {
   constexpr std::size_t kBytes = 40000;  // some 100 rows
-  History history(OneOfEach(), 0.01, kBytes);
+  History history = HistoryOfOneOfEach(kBytes);
   int taken = 0;
   for (int i = 0; i < 10000; ++i) {
     if (!history.IsDue(0.01 * i)) continue;

@@ -1,14 +1,14 @@
 // A report as a source: answers like a server that replays, out of the data inside the page.
 import { decodeFrame, type Frame } from "./frame";
-import { FRAME, VALUES } from "./layout";
-import type { ClientMessage, Report, SeriesData, WantSeriesMessage } from "./protocol";
-import { bodyPosition } from "./series";
+import { type Points, rowsOf, thinned } from "./points";
+import type { ClientMessage, Report, Rows, WantSeriesMessage } from "./protocol";
 import type { Listener, Source } from "./source";
 import { lastAtMost } from "./util";
 
 export class ReportSource implements Source {
-  private readonly values: Float32Array;
+  private readonly values: Float64Array;
   private readonly times_s: Float64Array;
+  private readonly tables: readonly Table[];
   private listener: Listener | null = null;
   private time_s: number;
   private speed = 1;
@@ -20,6 +20,7 @@ export class ReportSource implements Source {
     if (this.values.length !== report.frame_count * report.frame_values) {
       throw new Error(`the report holds ${this.values.length} numbers of frames, not ${report.frame_count} times ${report.frame_values}`);
     }
+    this.tables = report.rows.map((rows) => new Table(rows));
     this.times_s = Float64Array.from({ length: report.frame_count }, (_, i) => this.values[i * report.frame_values]!);
     this.time_s = report.scene.first_s;
   }
@@ -77,9 +78,7 @@ export class ReportSource implements Source {
   }
 
   private place(): number {
-    // half a frame on, so that rounding to float does not show the frame before
-    const rounding_s = 1e-6 * Math.max(1, Math.abs(this.time_s));
-    return this.clamp(lastAtMost(this.times_s, this.time_s + rounding_s));
+    return this.clamp(lastAtMost(this.times_s, this.time_s));
   }
 
   private show(): void {
@@ -108,43 +107,49 @@ export class ReportSource implements Source {
     requestAnimationFrame((next_ms) => this.tick(next_ms));
   }
 
-  /** Where bodies are is in the frames only. */
-  private position(channel: string): SeriesData | undefined {
-    const found = bodyPosition(channel, this.report.scene);
-    if (!found) return undefined;
-    const { frame_values: size, frame_count: count } = this.report;
-    const at = FRAME.header.length + found.body * VALUES.bodies + found.axis;
-    const mean = Array.from({ length: count }, (_, i) => this.values[i * size + at]!);
-    return { channel, source: 0, level: 1, time_s: [...this.times_s], min: mean, max: mean, mean };
-  }
-
-  private answer(question: WantSeriesMessage): void {
-    const found = this.report.series.find(
-      (series) => series.channel === question.channel && series.source === (question.source ?? 0),
-    ) ?? this.position(question.channel);
-    const reply = found === undefined ? { type: "error" as const, text: `the report has no ${question.channel}` }
-      : { type: "series" as const, id: question.id, series: cut(found, question.t0, question.t1) };
-    queueMicrotask(() => this.listener?.message(reply));
+  private answer({ id, channel, source = 0, t0, t1, points: most }: WantSeriesMessage): void {
+    const all = this.tables.find(({ rows, places }) => rows.source === source && places.has(channel))?.points(channel);
+    if (!all) {
+      queueMicrotask(() => this.listener?.message({ type: "error", text: `the report has no ${channel}` }));
+      return;
+    }
+    const { t, first, min, max, rows: level } = thinned(all, t0, t1, most);
+    queueMicrotask(() => this.listener?.message({ type: "series", id, series: { channel, source, level, time_s: t, first, min, max } }));
   }
 }
 
-/** The points between two times, and one more at either end so that a line reaches the border. */
-function cut(series: SeriesData, t0: number, t1: number): SeriesData {
-  const times = series.time_s as number[];
-  const from = Math.max(0, lastAtMost(times, t0));
-  const to = Math.min(times.length, lastAtMost(times, t1) + 2);
-  return {
-    ...series,
-    time_s: series.time_s.slice(from, to),
-    min: series.min.slice(from, to),
-    max: series.max.slice(from, to),
-    mean: series.mean.slice(from, to),
-  };
+/** The channels of one trace; each is taken out of the numbers when somebody asks for it. */
+class Table {
+  readonly places: Map<string, number>;
+  private readonly values: Float64Array;
+  private readonly t: number[];
+  private readonly known = new Map<string, Points>();
+
+  constructor(readonly rows: Rows) {
+    this.values = decodeFloats(rows.base64);
+    const wanted = rows.count * (1 + rows.channels.length * (rows.level === 1 ? 1 : 3));
+    if (this.values.length !== wanted) throw new Error(`the report holds ${this.values.length} numbers of rows, not ${wanted}`);
+    this.places = new Map(rows.channels.map((name, place) => [name, place]));
+    this.t = Array.from(this.values.subarray(0, rows.count));
+  }
+
+  points(channel: string): Points {
+    let points = this.known.get(channel);
+    if (points) return points;
+    const { level, count } = this.rows;
+    const lists = level === 1 ? 1 : 3;
+    const at = count * (1 + lists * this.places.get(channel)!);
+    const list = (k: number) => Array.from(this.values.subarray(at + k * count, at + (k + 1) * count), (value) => (Number.isFinite(value) ? value : null));
+    const first = list(0);
+    points = level === 1 ? rowsOf(this.t, first) : { t: this.t, first, min: list(1), max: list(2), rows: level };
+    this.known.set(channel, points);
+    return points;
+  }
 }
 
-function decodeFloats(base64: string): Float32Array {
+function decodeFloats(base64: string): Float64Array {
   const text = atob(base64);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
-  return new Float32Array(bytes.buffer);
+  return new Float64Array(bytes.buffer);
 }

@@ -5,13 +5,11 @@ import type { Scene } from "./protocol";
 
 type Header = (typeof FRAME.header)[number];
 type Section = (typeof FRAME.sections)[number]["name"];
-type Numbers = Float64Array | Float32Array;
 
-export type Frame = Record<Header, number> & Record<Section, Numbers>;
-
+export type Frame = Record<Header, number> & Record<Section, Float64Array>;
 
 /** Reads the frame that the numbers hold; throws where they are too few or too many. */
-export function decodeFrame(values: Numbers): Frame {
+export function decodeFrame(values: Float64Array): Frame {
   const frame = {} as Frame;
   FRAME.header.forEach((name, place) => (frame[name] = values[place] ?? NaN));
   let place: number = FRAME.header.length;

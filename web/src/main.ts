@@ -43,7 +43,7 @@ function start(root: HTMLElement): void {
 
   view.element.append(legend(app, view), inspector(app));
   plots.element.prepend(drawer);
-  const top = header(app, () => help.toggle(), [controlsButton, recorder(app, view), gifMaker(app, view)]);
+  const top = header(app, () => help.toggle(), [controlsButton, recorder(app, view), gifMaker(app, store, view)]);
   const overlays = [help.element, notices(app), failurePage(app)];
   if (report) reportPage(root, report, { top, view, plots, timeline: timeline(app), overlays });
   else root.append(top, el("main.split", {}, view.element, plots.element), timeline(app), ...overlays);

@@ -2,7 +2,7 @@
 //
 // What the viewer's server and its pages say to each other. JSON texts, except frames, which are binary. script/protocol makes web/src/protocol.ts, web/src/layout.ts and apps/viewer/protocol_messages.h of this file. SI units; W is the world frame, z up; quaternions are unit, order w, x, y, z. A field whose name ends with ? may be absent.
 
-export const PROTOCOL_VERSION = 2;
+export const PROTOCOL_VERSION = 3;
 
 export type Vec3 = [number, number, number];
 /** w, x, y, z */
@@ -124,27 +124,42 @@ export interface Phase {
 
 /** What a run is compared with. */
 export interface Reference {
-  /** What to call it: a path or a title. */
+  /** What to call it: what it says of itself, and its folder and file. */
   name: string;
+  /** It says of itself that it was measured: metadata "measured" (docs/formats/trace.md). */
+  measured: boolean;
   /** Its channels; series of them are asked for with source 1. */
   channels: Channel[];
 }
 
-/** A channel over a span of time, at the resolution asked for. Points are blocks of `level` rows; at level 1, min, max and mean are the value. */
+/** A channel over a span of time, at the resolution asked for. Points are blocks of `level` rows; at level 1, first, min and max are the value. A span with no more rows, one beyond each end included, than points were asked for comes at level 1; out of a report, at that of its Rows. */
 export interface SeriesData {
   channel: string;
   /** 0: the run; 1: what it is compared with. */
   source: number;
-  /** Rows a point, a power of two. */
+  /** Rows a point. */
   level: number;
   /** Of each block's first row. */
   time_s: (number | null)[];
-  /** null: not a number */
+  /** The value in that row; null: not a number */
+  first: (number | null)[];
+  /** Of the block; null: not a number */
   min: (number | null)[];
-  /** null: not a number */
+  /** Of the block; null: not a number */
   max: (number | null)[];
-  /** null: not a number */
-  mean: (number | null)[];
+}
+
+/** The plotted channels of a trace from its start to its end. */
+export interface Rows {
+  /** 0: the run; 1: what it is compared with. */
+  source: number;
+  /** 1: every row is here. More: blocks of so many rows, as in SeriesData. */
+  level: number;
+  /** Rows or blocks. */
+  count: number;
+  channels: string[];
+  /** Float64, little endian: `count` times [s]; then for each channel `count` values, those of the rows or of the blocks' first rows, and, unless level is 1, as many least and as many greatest values. */
+  base64: string;
 }
 
 /** What a report holds, in <script type="application/json" id="taut-report">. */
@@ -161,12 +176,12 @@ export interface Report {
   summary: unknown;
   /** The content of `taut compare --json`, or null. */
   comparison: unknown;
-  /** Every channel, decimated; with source 1 those of the other trace. */
-  series: SeriesData[];
+  /** Of the run and of what it is compared with. */
+  rows: Rows[];
   frame_count: number;
   /** Numbers a frame. */
   frame_values: number;
-  /** Float32, little endian: frames as defined below, one after the other, contacts left out. Each has as many pushes as the one with the most; what does not act has no force. */
+  /** Float64, little endian: frames as defined below, one after the other, contacts left out. Each has as many pushes as the one with the most; what does not act has no force. */
   frames_base64: string;
 }
 

@@ -2,21 +2,15 @@
 import type { App } from "./app";
 import { cableState, type Frame } from "./frame";
 import { VALUES } from "./layout";
-import type { Scene, SeriesData } from "./protocol";
-import { lastAtMost } from "./util";
+import { between, joined, NOTHING, type Points, pointsOf, rowsOf, thinned } from "./points";
+import type { Scene } from "./protocol";
+import { type Row, rowAt, RowReader } from "./rows";
+import type { Signal } from "./util";
 
 const LIVE_CAPACITY = 36_000; // ten minutes of 60 frames a second
 const ASK_AT_ONCE = 8; // questions on their way at the same time
-
-/** Points of one channel; min and max differ from mean where a point stands for several rows. */
-export interface Points {
-  t: number[];
-  mean: (number | null)[];
-  min: (number | null)[];
-  max: (number | null)[];
-}
-
-export const NOTHING: Points = { t: [], mean: [], min: [], max: [] };
+const GAP_S = 0.05; // between the frames of a live run: what lies between them is asked for
+const LATE = 0.02; // of what is shown: by how much an answer about a live run may be older
 
 type Receiver = (points: Points) => void;
 
@@ -29,7 +23,7 @@ interface Question {
   receive: Receiver;
 }
 
-/** An answer about the time before the page came. */
+/** An answer about what this page was not shown: the time before it came, or between its frames. */
 interface Past {
   t0: number;
   t1: number;
@@ -40,8 +34,12 @@ interface Past {
 export class SeriesStore {
   private readonly history = new Map<string, Points>();
   private readonly past = new Map<string, Past>();
+  private readonly rows = new RowReader((...question) => this.ask(...question));
+  private present: { frame: Frame; values: Map<string, number> } | null = null;
   private run = -1;
   private last_s = -Infinity;
+  /** Since then frames have come without gaps. */
+  private dense_s = Infinity;
   private readonly waiting: Question[] = [];
   private readonly asked = new Map<number, Question>();
   private next = 1;
@@ -53,60 +51,91 @@ export class SeriesStore {
       const question = this.asked.get(answer.id);
       this.asked.delete(answer.id);
       question?.receive(pointsOf(answer.series));
-      this.ask();
+      this.sendWaiting();
     });
     // A live scene comes anew whenever a slider moves; which run it is, frames say.
     app.scene.watch(() => app.live || this.forget());
     app.link.watch((link) => link === "lost" && this.forget());
   }
 
-  /** Names of the channels of the run (source 0) or of what it is compared with (1). */
-  has(channel: string, source: number): boolean {
-    const { report } = this.app;
+  /** The unit of a channel of the run (source 0) or of what it is compared with (1); undefined: there is no such channel. */
+  unit(channel: string, source: number): string | undefined {
     const scene = this.app.scene.value;
-    if (!scene) return false;
-    if (report) return bodyPosition(channel, scene) !== null || report.series.some((each) => each.channel === channel && each.source === source);
-    if (source === 1) return scene.reference?.channels.some((each) => each.name === channel) ?? false;
-    return scene.channels.some((each) => each.name === channel);
+    const channels = source === 1 ? scene?.reference?.channels : scene?.channels;
+    return channels?.find(({ name }) => name === channel)?.unit;
+  }
+
+  has(channel: string, source: number): boolean {
+    return this.unit(channel, source) !== undefined;
+  }
+
+  /**
+   * The row at a time, or the last before it; null: it has been asked for, and `rowsCame` says when it is
+   * there. `drawn`: what a plot has of the channel around that time.
+   */
+  row(channel: string, source: number, time_s: number, drawn: Points): Row | null {
+    const now = source === 0 ? this.inFrame(channel, time_s) : undefined;
+    if (now !== undefined) return { time_s, value: now, every: 1 };
+    if (!this.app.live || source !== 0) return this.rows.at(channel, source, time_s, drawn);
+    // of what the page was shown and what the server keeps, the later
+    const own = rowAt(this.history.get(channel) ?? NOTHING, time_s);
+    if (time_s >= this.last_s) return own;
+    const kept = this.rows.at(channel, source, time_s, NOTHING);
+    return kept === null || kept.time_s > own.time_s || Number.isNaN(own.time_s) ? kept : own;
+  }
+
+  /** The time of the run's row at a time, or of the last before it; NaN where that is not known. */
+  rowTime(time_s: number): Promise<number> {
+    const channel = this.app.scene.value?.channels[0]?.name;
+    if (channel === undefined) return Promise.resolve(NaN);
+    return new Promise((resolve) => this.ask(channel, 0, time_s, time_s, 10, (points) => resolve(rowAt(points, time_s).time_s)));
+  }
+
+  /** Rises when rows have come that `row` did not have. */
+  get rowsCame(): Signal<number> {
+    return this.rows.came;
+  }
+
+  /** The value in the frame that is shown, if that is of this time. */
+  private inFrame(channel: string, time_s: number): number | undefined {
+    const { value: frame } = this.app.frame;
+    const { value: scene } = this.app.scene;
+    if (!scene || !frame || frame.time_s !== time_s || frame.run < 0) return undefined;
+    if (this.present?.frame !== frame) this.present = { frame, values: new Map(frameValues(scene, frame)) };
+    return this.present.values.get(channel);
   }
 
   want(channel: string, source: number, t0: number, t1: number, points: number, receive: Receiver): void {
     if (this.app.live && source === 0) {
-      const own = this.history.get(channel) ?? NOTHING;
-      const first_s = own.t[0] ?? Infinity;
-      const seen = thinned(own, t0, t1, points);
-      receive(t0 < first_s ? joined(this.before(channel, t0, Math.min(t1, first_s), points), seen) : seen);
+      const own = thinned(this.history.get(channel) ?? NOTHING, t0, t1, points);
+      receive(t0 < this.dense_s ? joined(this.kept(channel, t0, Math.min(t1, this.dense_s), points), own) : own);
       return;
     }
-    this.put({ channel, source, t0, t1, points, receive });
+    this.ask(channel, source, t0, t1, points, receive);
   }
 
-  private put(question: Question): void {
-    this.waiting.push({ ...question, points: Math.round(Math.min(Math.max(question.points, 2), 10_000)) });
-    this.ask();
+  private ask(channel: string, source: number, t0: number, t1: number, points: number, receive: Receiver): void {
+    this.waiting.push({ channel, source, t0, t1, points: Math.round(Math.min(Math.max(points, 2), 10_000)), receive });
+    this.sendWaiting();
   }
 
-  /** What a live run showed before this page came, as far as the server has answered. */
-  private before(channel: string, t0: number, t1: number, points: number): Points {
-    const kept = this.past.get(channel);
-    const covers = kept !== undefined && kept.t0 <= t0 && kept.t1 >= t1;
-    if (!covers || (kept.coarse && kept.t1 - kept.t0 > 3 * (t1 - t0))) {
-      // kept until the answer is there, so that the plot does not blink; not asked for twice
-      const asked: Past = { t0, t1, coarse: false, points: kept?.points ?? NOTHING };
+  /** What the server has kept of a live run, as far as it has answered. */
+  private kept(channel: string, t0: number, t1: number, points: number): Points {
+    const past = this.past.get(channel);
+    const covers = past !== undefined && past.t0 <= t0 && past.t1 >= t1 - LATE * (t1 - t0);
+    if (!covers || (past.coarse && past.t1 - past.t0 > 3 * (t1 - t0))) {
+      // the answer before is shown until this one is there, so that the plot does not blink; not asked for twice
+      const asked: Past = { t0, t1, coarse: false, points: past?.points ?? NOTHING };
       this.past.set(channel, asked);
-      this.put({ channel, source: 0, t0, t1, points, receive: (received) => {
+      this.ask(channel, 0, t0, t1, points, (received) => {
         asked.points = received;
         asked.coarse = received.t.length > points / 3;
-      } });
+      });
     }
-    const { points: found } = this.past.get(channel)!;
-    const from = Math.max(0, lastAtMost(found.t, t0));
-    let to = lastAtMost(found.t, t1) + 1;
-    if (to > 0 && found.t[to - 1]! >= t1) --to; // the page has that one itself
-    return { t: found.t.slice(from, to), mean: found.mean.slice(from, to), min: found.min.slice(from, to), max: found.max.slice(from, to) };
+    return between(this.past.get(channel)!.points, t0, t1);
   }
 
-  private ask(): void {
+  private sendWaiting(): void {
     while (this.asked.size < ASK_AT_ONCE && this.waiting.length > 0) {
       const question = this.waiting.shift()!;
       const id = this.next++;
@@ -124,6 +153,7 @@ export class SeriesStore {
     this.past.clear();
     this.waiting.length = 0;
     this.asked.clear();
+    this.rows.forget();
     this.last_s = -Infinity;
   }
 
@@ -137,19 +167,20 @@ export class SeriesStore {
     }
     // while paused, and at the start, the latest word about a time is the right one
     const again = frame.time_s === this.last_s;
+    if (frame.time_s - this.last_s > GAP_S) this.dense_s = frame.time_s;
     this.last_s = frame.time_s;
     const add = (channel: string, value: number) => {
       let points = this.history.get(channel);
-      if (!points) this.history.set(channel, (points = { t: [], mean: [], min: [], max: [] }));
+      if (!points) this.history.set(channel, (points = rowsOf([], [])));
       if (again && points.t.length > 0) {
         points.t.pop();
-        points.mean.pop();
+        points.first.pop();
       }
       points.t.push(frame.time_s);
-      points.mean.push(Number.isFinite(value) ? value : null);
+      points.first.push(Number.isFinite(value) ? value : null);
       if (points.t.length > 1.2 * LIVE_CAPACITY) {
         points.t.splice(0, points.t.length - LIVE_CAPACITY);
-        points.mean.splice(0, points.mean.length - LIVE_CAPACITY);
+        points.first.splice(0, points.first.length - LIVE_CAPACITY);
       }
     };
     for (const [channel, value] of frameValues(scene, frame)) add(channel, value);
@@ -174,49 +205,4 @@ export function* frameValues(scene: Scene, frame: Frame): Generator<[string, num
   yield ["system/elastic_j", frame.elastic_j];
   yield ["system/contact_count", frame.contact_count];
   yield ["real_time_factor", frame.real_time_factor];
-}
-
-/** Place of a body and axis of "body/<name>/position_<axis>_m"; null if the channel is another. */
-export function bodyPosition(channel: string, scene: Scene): { body: number; axis: number } | null {
-  const [, name, axis] = /^body\/(.*)\/position_([xyz])_m$/.exec(channel) ?? [];
-  const body = scene.bodies.findIndex((each) => each.name === name);
-  return axis === undefined || body < 0 ? null : { body, axis: "xyz".indexOf(axis) };
-}
-
-function pointsOf(series: SeriesData): Points {
-  return { t: series.time_s.map((value) => value ?? NaN), mean: series.mean, min: series.min, max: series.max };
-}
-
-/** At most so many points between two times: least, greatest and mean of equal blocks of rows. */
-export function thinned(all: Points, t0: number, t1: number, points: number): Points {
-  const from = Math.max(0, lastAtMost(all.t, t0));
-  const to = Math.min(all.t.length, lastAtMost(all.t, t1) + 2);
-  const block = Math.max(1, Math.ceil((to - from) / points));
-  if (block === 1) {
-    const mean = all.mean.slice(from, to);
-    return { t: all.t.slice(from, to), mean, min: mean, max: mean };
-  }
-  const thin: Points = { t: [], mean: [], min: [], max: [] };
-  // blocks begin at multiples of their size, so that a picture that moves does not flicker
-  for (let start = from - (from % block); start < to; start += block) {
-    let [least, greatest, sum, count] = [Infinity, -Infinity, 0, 0];
-    for (let i = Math.max(start, 0); i < Math.min(start + block, all.t.length); ++i) {
-      const value = all.mean[i];
-      if (value === null || value === undefined) continue;
-      least = Math.min(least, value);
-      greatest = Math.max(greatest, value);
-      sum += value;
-      ++count;
-    }
-    thin.t.push(all.t[start]!);
-    thin.mean.push(count ? sum / count : null);
-    thin.min.push(count ? least : null);
-    thin.max.push(count ? greatest : null);
-  }
-  return thin;
-}
-
-function joined(first: Points, then: Points): Points {
-  if (first.t.length === 0) return then;
-  return { t: first.t.concat(then.t), mean: first.mean.concat(then.mean), min: first.min.concat(then.min), max: first.max.concat(then.max) };
 }

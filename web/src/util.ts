@@ -57,13 +57,27 @@ export function number(value: number, digits = 3): string {
   return value.toFixed(Math.min(decimals, 6)).replace("-", "−");
 }
 
-/** "tension_n" -> "N": the unit that a channel's name ends with, written as on paper. */
+/** A unit as on paper: "m/s^2" -> "m/s²"; nothing for "1". */
 export function unitText(unit: string): string {
-  const known: Record<string, string> = {
-    n: "N", m: "m", s: "s", j: "J", w: "W", kg: "kg", rad: "rad", hz: "Hz",
-    m_per_s: "m/s", rad_per_s: "rad/s", n_per_m: "N/m", n_s_per_m: "N s/m", m_per_s2: "m/s²", "m/s^2": "m/s²", "1": "",
-  };
-  return known[unit.toLowerCase()] ?? unit;
+  return unit === "1" ? "" : unit.replace(/\^2/g, "²").replace(/\^3/g, "³");
+}
+
+const UNITS: Record<string, string> = { m: "m", s: "s", kg: "kg", n: "N", j: "J", w: "W", hz: "Hz", rad: "rad", pa: "Pa" };
+
+function unitOfWord(word: string): string {
+  const [, written = "", power = ""] = /^([a-z]+)([23]?)$/.exec(word) ?? [];
+  return UNITS[written] === undefined ? "" : UNITS[written] + { "": "", 2: "²", 3: "³" }[power as "" | "2" | "3"];
+}
+
+/** "max_speed_m_per_s" -> ["max speed", "m/s"]; a unit is all the words at the end that are of one, as in UnitOfName (taut/trace.h). */
+export function nameAndUnit(name: string): [string, string] {
+  const words = name.split("_");
+  let from = words.length;
+  while (from > 1 && (words[from - 1] === "per" || unitOfWord(words[from - 1]!) !== "")) --from;
+  const [over, under, ...more] = words.slice(from).join(" ").split(/ ?per ?/).map((part) => part === "" ? [] : part.split(" ").map(unitOfWord));
+  if (over!.length === 0 || under?.length === 0 || more.length > 0) return [words.join(" "), ""];
+  const below = under === undefined ? "" : under.length > 1 ? `/(${under.join(" ")})` : `/${under[0]}`;
+  return [words.slice(0, from).join(" "), over!.join(" ") + below];
 }
 
 /** 12.345 s -> "0:12.35"; long times get hours. */
@@ -80,9 +94,12 @@ export function clock(time_s: number, decimals = 2): string {
     : `${sign}${minutes}:${seconds}`;
 }
 
-/** As a tick of an axis: no zeros at the end. */
+/** As a tick of an axis: no zeros at the end, and short enough for it. */
 export function tickText(value: number): string {
-  return `${+value.toPrecision(6)}`.replace("-", "−");
+  const rounded = +value.toPrecision(6);
+  const size = Math.abs(rounded);
+  const text = size !== 0 && (size < 1e-3 || size >= 1e5) ? rounded.toExponential().replace("e+", "e") : String(rounded);
+  return text.replace(/-/g, "−");
 }
 
 const NICE = [1, 1.5, 2, 3, 4, 5, 6, 8, 10];

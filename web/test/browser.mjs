@@ -1,5 +1,6 @@
 // A real browser without a screen: Debian's Chromium, driven by playwright-core, with graphics in
-// software. Environment: TAUT_PAGE: the built page; TAUT_CHROMIUM; TAUT_PICTURES: where to put
+// software. Nothing here gives up after some seconds: how long a machine takes says nothing about the
+// page. What never comes is ended by ctest. Environment: TAUT_PAGE: the built page; TAUT_CHROMIUM; TAUT_PICTURES: where to put
 // pictures of what the tests see.
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -17,7 +18,7 @@ let browser = null;
 export async function openBrowser() {
   if (!existsSync(PAGE)) throw new Error(`${PAGE} is not there: build it first (npm run build)`);
   browser ??= await chromium.launch({
-    executablePath: CHROMIUM,
+    executablePath: CHROMIUM, timeout: 0,
     args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox", "--force-color-profile=srgb"],
   });
   return browser;
@@ -33,6 +34,7 @@ export async function openPage(url, { width = 1000, height = 560, theme = "light
   const context = await (await openBrowser()).newContext({
     viewport: { width, height }, colorScheme: theme, acceptDownloads: true, deviceScaleFactor: scale,
   });
+  context.setDefaultTimeout(0);
   const page = await context.newPage();
   page.complaints = [];
   page.requests = [];
@@ -65,13 +67,37 @@ export async function drawn(page) {
   }));
 }
 
-/** Waits until something here, not in the page, is so. */
+/** Waits until something that the page cannot see is so; `what` is said where that takes long. */
 export async function until(condition, what) {
-  for (let round = 0; round < 600; ++round) {
-    if (condition()) return;
+  for (let round = 1; !(await condition()); ++round) {
+    if (round % 600 === 0) console.log(`still waiting: ${what}`);
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
-  throw new Error(`30 s have gone by and not: ${what}`);
+}
+
+/** From now on all that the page says at its bottom, also what has gone away since: said(pattern) waits for it. */
+export async function listenToNotices(page) {
+  await page.evaluate(() => {
+    window.notices = [];
+    window.taut.app.notice.watch((text) => text !== null && window.notices.push(text));
+  });
+  return (pattern) => page.waitForFunction(({ source }) => window.notices.some((text) => new RegExp(source).test(text)), { source: pattern.source });
+}
+
+/** What stands beside plots that are in sight, by figure, once all of it is there: text and numbers. */
+export async function numbersBeside(page, figures) {
+  const texts = await page.waitForFunction((ids) => {
+    const found = ids.map((id) => document.querySelector(`[data-figure="${id}"] .values`));
+    if (!found.every((values) => /^[^…]+$/.test(values.textContent))) return null;
+    return found.map((values) => ({ text: values.textContent.trim(), numbers: [...values.children].map(({ textContent }) => textContent) }));
+  }, figures);
+  const numbers = (list) => list.map((text) => Number(text.replace(/−/g, "-")));
+  return (await texts.jsonValue()).map((each) => ({ text: each.text, numbers: numbers(each.numbers) }));
+}
+
+/** Puts the cursor of all plots to a time. */
+export async function cursorTo(page, time_s) {
+  await page.evaluate((wanted) => (window.taut.app.cursor_s.value = wanted), time_s);
 }
 
 export async function picture(page, name, options = {}) {

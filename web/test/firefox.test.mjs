@@ -68,11 +68,7 @@ class Firefox {
   }
 
   async untilSo(expression) {
-    for (let round = 0; round < 600; ++round) {
-      if (await this.run(`Boolean(${expression})`)) return;
-      await new Promise((resolve) => setTimeout(resolve, 50));
-    }
-    throw new Error(`not within 30 s: ${expression}; the page: ${await this.run("document.body.innerText")} ${this.complaints.join("; ")}`);
+    await until(() => this.run(`Boolean(${expression})`), expression);
   }
 
   async picture(name) {
@@ -132,7 +128,7 @@ test("FirefoxReplays", options, async () => {
   (await position(1)).forEach((value, k) => assert.ok(Math.abs(value - pose(1, 6).position_m[k]) < 1e-9));
   await firefox.untilSo(`document.querySelectorAll('[data-figure^="tension:"] .uplot').length === 9`);
   await firefox.untilSo(`!document.querySelector('[data-figure="tension:top_1"] .values').textContent.includes("–")`);
-  assert.match(await firefox.run(`document.querySelector('[data-figure="tension:top_1"] .values').textContent`), new RegExp(tension_n(4, 6).toFixed(1)));
+  assert.match(await firefox.run(`document.querySelector('[data-figure="tension:top_1"] .values').textContent`), new RegExp(tension_n(4, 6).toFixed(2)));
   const share = await showsRods("replay");
   assert.ok(share > 0.005 && share < 0.2, `${share} of the view is dark`);
   await firefox.key(" ");
@@ -158,7 +154,7 @@ test("FirefoxOpensAReportFromDisk", options, async () => {
   await firefox.open(writeReport(report(), folder));
   await firefox.untilSo(DRAWN);
   await firefox.run("window.taut.app.seek(4)");
-  (await position(2)).forEach((value, k) => assert.ok(Math.abs(value - pose(2, 4).position_m[k]) < 1e-6));
+  (await position(2)).forEach((value, k) => assert.ok(Math.abs(value - pose(2, 4).position_m[k]) < 1e-9));
   assert.match(await firefox.run('document.querySelector("main.report").innerText'), /a machine/);
   await firefox.picture("report");
   assert.deepEqual(firefox.complaints, []);

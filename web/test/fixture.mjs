@@ -3,7 +3,7 @@
 import { readFileSync } from "node:fs";
 
 export const DURATION_S = 10;
-export const RATE_HZ = 50;
+export const RATE_HZ = 200;
 const RADIUS_M = 0.2;
 const HEIGHT_M = 0.4;
 const LIFT_M = 0.02;
@@ -41,10 +41,20 @@ export const cables = [
 export const tension_n = (i, time_s) => (i === SLACK ? 0 : 4 * (i + 1) * (1 + 0.2 * Math.sin(time_s)));
 export const setpoint_n = (i) => (i === SLACK ? 0 : 4 * (i + 1));
 
-const ends = ["tension_n", "setpoint_n", "length_m", "rest_length_m"];
+/** The time of the row at a time, or of the last before it. */
+export function rowTime(time_s) {
+  const near = Math.round(time_s * RATE_HZ);
+  return (near / RATE_HZ <= time_s ? near : near - 1) / RATE_HZ;
+}
+
+/** Another in every row: a mean of rows is none of them. */
+export const contactCount = (time_s) => 3 + (Math.round(time_s * RATE_HZ) % 4);
+
+const ends = { tension_n: "N", setpoint_n: "N", length_m: "m", rest_length_m: "m" };
 const channels = [
-  ...cables.flatMap(({ name }) => ends.map((key) => ({ name: `cable/${name}/${key}`, unit: key.split("_").pop() }))),
-  ...["kinetic_j", "gravity_j", "elastic_j", "contact_count"].map((key) => ({ name: `system/${key}`, unit: "j" })),
+  ...cables.flatMap(({ name }) => Object.entries(ends).map(([key, unit]) => ({ name: `cable/${name}/${key}`, unit }))),
+  ...["kinetic_j", "gravity_j", "elastic_j"].map((key) => ({ name: `system/${key}`, unit: "J" })),
+  { name: "system/contact_count", unit: "1" },
   ...["x", "y", "z"].map((axis) => ({ name: `system/com_${axis}_m`, unit: "m" })),
   ...[0, 1, 2].flatMap((i) => ["x", "y", "z"].map((axis) => ({ name: `body/rod_${i}/position_${axis}_m`, unit: "m" }))),
 ];
@@ -72,8 +82,8 @@ export const scene = {
 export const liveScene = {
   ...scene, duration_s: 0, drag_stiffness_n_per_m: 200,
   parameters: [
-    { name: "friction_scale", value: 1, unit: "", min: 0, max: 2, restarts: false },
-    { name: "push_n", value: 20, unit: "n", min: 0, max: 60, restarts: true },
+    { name: "friction_scale", value: 1, unit: "1", min: 0, max: 2, restarts: false },
+    { name: "push_n", value: 20, unit: "N", min: 0, max: 60, restarts: true },
   ],
   controls: cables.map(({ name }, i) => ({
     cable: name, kind: "impedance", tension_offset_n: setpoint_n(i), length_offset_m: 0.2,
@@ -107,7 +117,7 @@ export function frameValues(time_s, more = {}) {
   const pushes = more.pushes ?? [];
   const header = {
     time_s, now_s: time_s, real_time_factor: 1, speed: 1, paused: 0, driver: 1, kinetic_j: 0.1 * time_s, gravity_j: 2, elastic_j: 3,
-    run: 0, body_count: 3, cable_count: CABLE_COUNT, contact_count: 3, contact_rows: contacts.length, push_count: pushes.length,
+    run: 0, body_count: 3, cable_count: CABLE_COUNT, contact_count: contactCount(time_s), contact_rows: contacts.length, push_count: pushes.length,
     ...more.header,
   };
   return [
@@ -135,7 +145,7 @@ function channelValue(name, time_s) {
   if (body !== undefined) return pose(Number(body), time_s).position_m["xyz".indexOf(along)];
   const axis = { "system/com_x_m": 0, "system/com_y_m": 1, "system/com_z_m": 2 }[name];
   if (axis !== undefined) return centre.reduce((sum, p) => sum + p[axis] / 3, 0);
-  return { "system/kinetic_j": 0.1 * time_s, "system/gravity_j": 2, "system/elastic_j": 3, "system/contact_count": 3 }[name] ?? null;
+  return { "system/kinetic_j": 0.1 * time_s, "system/gravity_j": 2, "system/elastic_j": 3, "system/contact_count": contactCount(time_s) }[name] ?? null;
 }
 
 /** As the server answers want_series: blocks of 1, 2, 4 ... rows. */
@@ -144,29 +154,40 @@ export function seriesOf(channel, source, t0, t1, points) {
   const last = Math.min(DURATION_S * RATE_HZ, Math.ceil(t1 * RATE_HZ) + 1);
   let level = 1;
   while ((last - first + 1) / level > points) level *= 2;
-  const series = { channel, source, level, time_s: [], min: [], max: [], mean: [] };
+  const series = { channel, source, level, time_s: [], first: [], min: [], max: [] };
   const offset = source === 1 ? 1.5 : 0; // what was measured lies above
   for (let row = first; row <= last; row += level) {
     const values = [];
     for (let k = row; k < Math.min(row + level, last + 1); ++k) values.push(channelValue(channel, k / RATE_HZ) + offset);
     series.time_s.push(row / RATE_HZ);
+    series.first.push(values[0]);
     series.min.push(Math.min(...values));
     series.max.push(Math.max(...values));
-    series.mean.push(values.reduce((a, b) => a + b) / values.length);
   }
   return series;
 }
 
 export const reference = {
-  name: "measured.h5",
+  name: "another prism (runs/trace.h5)",
+  measured: false,
   channels: channels.filter(({ name }) => name.endsWith("/tension_n")),
 };
 
-/** What a report holds; every second frame of the trace. */
-export function report(changes = {}) {
+const base64 = (numbers) => Buffer.from(new Float64Array(numbers).buffer).toString("base64");
+
+/** Channels as a report holds them: every row, or blocks of `level` rows. */
+export function rowsOf(channels, source, level, value = seriesOf) {
+  const count = Math.ceil((DURATION_S * RATE_HZ + 1) / level);
+  const all = channels.map((name) => value(name, source, 0, DURATION_S, count));
+  const numbers = all.flatMap(({ first, min, max }) => (level === 1 ? first : [...first, ...min, ...max]));
+  return { source, level, count, channels, base64: base64([...all[0].time_s, ...numbers]) };
+}
+
+/** What a report holds; every eighth row has its frame. `level`: rows a block. */
+export function report(changes = {}, level = 1) {
   const frames = [];
-  for (let k = 0; k <= (DURATION_S * RATE_HZ) / 2; ++k) frames.push(frameValues((2 * k) / RATE_HZ));
-  const asked = [...channels.map(({ name }) => [name, 0]), ...(changes.scene?.reference?.channels ?? []).map(({ name }) => [name, 1])];
+  for (let k = 0; k <= (DURATION_S * RATE_HZ) / 8; ++k) frames.push(frameValues((8 * k) / RATE_HZ));
+  const others = (changes.scene?.reference?.channels ?? []).map(({ name }) => name);
   return {
     version: VERSION, title: "turning prism", scene,
     metadata: { taut_version: "1.2.3", seed: "42", machine: "a machine" },
@@ -180,9 +201,9 @@ export function report(changes = {}) {
       cables: cables.map(({ name }, i) => ({ name, tension: { max_n: 4.8 * (i + 1), phases: { before: { mean_n: i, min_n: 0, max_n: 9 } } } })),
     },
     comparison: null,
-    series: asked.map(([name, source]) => seriesOf(name, source, 0, DURATION_S, 300)),
+    rows: [rowsOf(channels.map(({ name }) => name), 0, level), ...(others.length > 0 ? [rowsOf(others, 1, level)] : [])],
     frame_count: frames.length, frame_values: frames[0].length,
-    frames_base64: Buffer.from(new Float32Array(frames.flat()).buffer).toString("base64"),
+    frames_base64: base64(frames.flat()),
     ...changes,
   };
 }

@@ -3,7 +3,7 @@
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { WebSocketServer } from "ws";
-import { contactsAt, DURATION_S, frameValues, liveScene, nodes, RATE_HZ, reference, scene, seriesOf, VERSION, worldPoint } from "./fixture.mjs";
+import { contactsAt, DURATION_S, frameValues, liveScene, nodes, RATE_HZ, reference, rowTime, scene, seriesOf, VERSION, worldPoint } from "./fixture.mjs";
 
 const FRAME_MS = 20;
 const IDLE_TICKS = 12;
@@ -57,6 +57,11 @@ export class MockServer {
   /** The scene with the parameters as they are now. */
   liveScene() {
     return { ...liveScene, parameters: liveScene.parameters.map((each) => ({ ...each, value: this.parameters[each.name] ?? each.value })) };
+  }
+
+  /** The time that is shown: of a replay that of a row. */
+  get shown_s() {
+    return this.mode === "live" ? (this.past_s ?? this.time_s) : rowTime(this.time_s);
   }
 
   /** The messages of one type, in their order. */
@@ -115,7 +120,7 @@ export class MockServer {
     switch (message.type) {
       case "pause": this.paused = true; break;
       case "resume": [this.paused, this.past_s] = [false, null]; break;
-      case "step": this.paused = true; this.time_s = limit(this.time_s + (message.count ?? 1) / RATE_HZ); break;
+      case "step": this.paused = true; this.time_s = limit((Math.round(this.time_s * RATE_HZ) + (message.count ?? 1)) / RATE_HZ); break;
       case "reset": this.time_s = 0; this.run += this.mode === "live" ? 1 : 0; break;
       case "speed": this.speed = message.factor; break;
       case "seek":
@@ -145,7 +150,7 @@ export class MockServer {
 
   frame() {
     if (this.mode === "error") return;
-    const shown_s = this.past_s ?? this.time_s;
+    const shown_s = this.shown_s;
     const pushes = this.pushed.filter(({ until_s }) => until_s > this.time_s)
       .map(({ node, force_n }) => [nodes.findIndex(({ name }) => name === node), ...force_n]);
     const tensions = {};
@@ -158,7 +163,7 @@ export class MockServer {
     }
     const values = frameValues(shown_s, {
       header: {
-        now_s: this.time_s, paused: this.paused ? 1 : 0, speed: this.speed, driver: this.driver, run: this.run },
+        now_s: this.mode === "live" ? this.time_s : shown_s, paused: this.paused ? 1 : 0, speed: this.speed, driver: this.driver, run: this.run },
       contacts: contactsAt(shown_s), pushes, tension_n: tensions,
     });
     const bytes = new Float64Array(values);

@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, beforeEach, test } from "node:test";
-import { closeBrowser, openPage, PAGE, picture, until, untilTime } from "./browser.mjs";
-import { DURATION_S, pose, RATE_HZ, setpoint_n, tension_n } from "./fixture.mjs";
+import { closeBrowser, cursorTo, drawn, numbersBeside, openPage, PAGE, picture, until, untilTime } from "./browser.mjs";
+import { contactCount, DURATION_S, pose, RATE_HZ, reference, rowTime, setpoint_n, tension_n } from "./fixture.mjs";
 import { MockServer } from "./mock_server.mjs";
 
 let server;
@@ -35,7 +35,7 @@ test("SpacePlaysAndPauses", async () => {
   await page.waitForFunction(() => document.querySelector(".timeline").dataset.paused === "true");
   const stopped_s = await shownTime();
   assert.equal(server.paused, true);
-  assert.equal(server.time_s, stopped_s);
+  assert.equal(server.shown_s, stopped_s);
 });
 
 test("ScrubbingShowsTheTimeUnderTheMouse", async () => {
@@ -83,15 +83,41 @@ test("PosesAreThoseOfTheTrace", async () => {
   }
 });
 
-test("PlotsShowSetPointMeasuredAndSimulated", async () => {
+test("TheNumbersBesideAPlotAreThoseOfTheRow", async (t) => {
+  t.after(() => cursorTo(page, null));
+  const tension = async (time_s) => {
+    const wanted = [setpoint_n(4), tension_n(4, time_s) + 1.5, tension_n(4, time_s)];
+    const [{ numbers }] = await numbersBeside(page, ["tension:top_1"]);
+    assert.deepEqual(numbers, wanted.map((value) => Number(value.toPrecision(4))));
+  };
   await page.waitForFunction(() => document.querySelectorAll('[data-figure^="tension:"] .uplot').length === 9);
   await page.evaluate(() => window.taut.app.seek(3));
   await untilTime(page, 3);
-  const values = await page.locator('[data-figure="tension:top_1"] .values span').allInnerTexts();
-  const wanted = [setpoint_n(4), tension_n(4, 3) + 1.5, tension_n(4, 3)];
-  values.forEach((text, k) => assert.ok(Math.abs(Number(text) - wanted[k]) < 0.11, `${text} is not ${wanted[k]}`));
+  await tension(3);
   const titles = await page.locator('[data-figure="tension:top_1"] .values span').evaluateAll((spans) => spans.map(({ title }) => title));
-  assert.deepEqual(titles, ["set point", "measured", "simulated"]);
+  ["set point", reference.name, "this run"].forEach((label, k) => assert.ok(titles[k].startsWith(`${label}: `) && titles[k].endsWith(" N in the row at 3 s"), titles[k]));
+  // what is drawn is coarser, and says so
+  assert.match(await page.locator('[data-figure="tension:top_1"] .coarse').innerText(), /^min to max of 4 rows$/);
+  const times_s = [0.0049, 1.2345, 7.777, 10];
+  for (const time_s of times_s) {
+    await cursorTo(page, time_s);
+    await tension(rowTime(time_s));
+  }
+  // a cursor that moves does not ask for every row by itself
+  const asked = server.of("want_series").length;
+  for (let i = 0; i < 20; ++i) {
+    await cursorTo(page, 5 + i / RATE_HZ);
+    await tension(5 + i / RATE_HZ);
+  }
+  const lines = 9 * 3 + 3;
+  assert.ok(server.of("want_series").length - asked <= 2 * lines, `${server.of("want_series").length - asked} questions`);
+  await page.locator('[data-figure="contacts"]').scrollIntoViewIfNeeded();
+  await drawn(page);
+  for (const time_s of times_s) {
+    await cursorTo(page, time_s);
+    assert.equal((await numbersBeside(page, ["contacts"]))[0].text, String(contactCount(rowTime(time_s))));
+  }
+  await page.locator('[data-figure="tension:bottom_0"]').scrollIntoViewIfNeeded();
 });
 
 test("ACursorInAPlotIsOneInTheTimeline", async () => {
@@ -207,8 +233,7 @@ test("AReplayIsSavedAsAGif", async () => {
     const { app, view } = window.taut;
     await new Promise((resolve) => {
       app.seek(4);
-      const wait = () => (app.frame.value.time_s === 4 ? resolve() : setTimeout(wait, 10));
-      wait();
+      const stop = app.frame.watch((frame) => frame.time_s === 4 && (queueMicrotask(() => stop()), resolve()));
     });
     view.draw();
     const context = canvas.getContext("2d", { willReadFrequently: true });

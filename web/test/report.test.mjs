@@ -4,8 +4,8 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { closeBrowser, openPage, picture, untilTime, writeReport } from "./browser.mjs";
-import { pose, reference, report, scene, tension_n } from "./fixture.mjs";
+import { closeBrowser, cursorTo, numbersBeside, openPage, picture, untilTime, writeReport } from "./browser.mjs";
+import { contactCount, pose, RATE_HZ, reference, report, rowsOf, rowTime, scene, seriesOf, setpoint_n, tension_n } from "./fixture.mjs";
 
 let folder;
 let page;
@@ -48,13 +48,77 @@ test("EveryPlotIsThereBeforeItIsScrolledTo", async () => {
 
 test("ItReplaysWithoutAServer", async () => {
   await page.evaluate(() => window.taut.app.seek(6));
-  await untilTime(page, 6, 1e-3);
+  await untilTime(page, 6);
   const shown = await page.evaluate(() => window.taut.view.world.bodies.object.children.map((group) => group.position.toArray()));
-  shown.forEach((place, body) => place.forEach((value, k) => assert.ok(Math.abs(value - pose(body, 6).position_m[k]) < 1e-6)));
+  shown.forEach((place, body) => place.forEach((value, k) => assert.ok(Math.abs(value - pose(body, 6).position_m[k]) < 1e-12)));
   await page.locator(".view canvas").first().focus();
   await page.keyboard.press(" ");
   await page.waitForFunction(() => Number(document.querySelector(".timeline").dataset.time) > 6.2);
   await page.keyboard.press(" ");
+});
+
+const TIMES_S = [0, 0.003, 1.2345, 5, 7.777, 9.9999, 10];
+const four = (value) => Number(value.toPrecision(4));
+
+test("TheNumbersBesideAPlotAreThoseOfTheRowUnderTheCursor", async (t) => {
+  t.after(() => cursorTo(page, null));
+  for (const time_s of TIMES_S) {
+    await cursorTo(page, time_s);
+    const at_s = rowTime(time_s);
+    const [contacts, tension] = await numbersBeside(page, ["contacts", "tension:top_1"]);
+    assert.equal(contacts.text, String(contactCount(at_s)), `contacts at ${time_s} s`);
+    assert.deepEqual(tension.numbers, [setpoint_n(4), tension_n(4, at_s) + 1.5, tension_n(4, at_s)].map(four));
+    assert.match(tension.text, / N$/);
+  }
+});
+
+test("WithoutACursorTheNumbersAreThoseOfTheTimeThatIsShown", async () => {
+  await page.evaluate(() => window.taut.app.seek(3.33));
+  const shown_s = await page.evaluate(() => window.taut.app.frame.value.time_s);
+  const [contacts, tension] = await numbersBeside(page, ["contacts", "tension:top_1"]);
+  assert.equal(contacts.text, String(contactCount(shown_s)));
+  assert.deepEqual(tension.numbers.slice(1), [tension_n(4, shown_s) + 1.5, tension_n(4, shown_s)].map(four));
+});
+
+test("WhatIsDrawnCoarserThanTheRowsSaysSo", async () => {
+  const note = page.locator('[data-figure="tension:top_1"] .coarse');
+  assert.match(await note.innerText(), /^min to max of 4 rows$/); // 2001 rows, 600 points
+  const lines = await page.evaluate(() => new Promise((resolve) => window.taut.store.want("system/contact_count", 0, 0, 10, 600, resolve)));
+  lines.t.forEach((time_s, i) => {
+    const rows = [0, 1, 2, 3].map((k) => time_s + k / RATE_HZ).filter((each) => each <= 10 + 1e-9).map(contactCount);
+    assert.deepEqual([lines.first[i], lines.min[i], lines.max[i]], [rows[0], Math.min(...rows), Math.max(...rows)]);
+  });
+  await page.evaluate(() => (window.taut.app.range_s.value = [2, 3]));
+  await page.waitForFunction(() => document.querySelector('[data-figure="tension:top_1"] .coarse').textContent === "");
+  await page.evaluate(() => (window.taut.app.range_s.value = null));
+  await page.waitForFunction(() => document.querySelector('[data-figure="tension:top_1"] .coarse').textContent !== "");
+});
+
+test("AReportWithoutEveryRowSaysWhichRowANumberIsOf", async () => {
+  const long = await openPage(writeReport(report({ scene: { ...scene, reference } }, 8), folder));
+  await cursorTo(long, 5.033);
+  const at_s = 5; // blocks of 8 rows begin every 0.04 s: 5.00, 5.04
+  const [contacts, tension] = await numbersBeside(long, ["contacts", "tension:top_1"]);
+  assert.match(tension.text, / N at 5 s$/);
+  assert.deepEqual(tension.numbers.slice(1), [tension_n(4, at_s) + 1.5, tension_n(4, at_s)].map(four));
+  assert.equal(contacts.text.replace(/\s+/g, " "), `${contactCount(at_s)} at 5 s`);
+  assert.match(await long.locator('[data-figure="contacts"] .coarse').innerText(), /^min to max of 8 rows$/);
+  await long.context().close();
+});
+
+test("LinesAreCalledWhatTheyAre", async () => {
+  const key = page.locator(".key");
+  assert.deepEqual(await key.locator("span").allInnerTexts(), ["set point", "another prism (runs/trace.h5)", "this run"]);
+  const free = scene.channels.filter(({ name }) => !name.endsWith("/setpoint_n"));
+  const robot = { ...reference, name: "a robot (lab/trial_3.h5)", measured: true,
+    channels: reference.channels.map((each) => (each.name === "cable/top_0/tension_n" ? { ...each, unit: "lbf" } : each)) };
+  const data = report({ scene: { ...scene, channels: free, reference: robot }, rows: [rowsOf(free.map(({ name }) => name), 0, 1), rowsOf(robot.channels.map(({ name }) => name), 1, 1)] });
+  const other = await openPage(writeReport(data, folder));
+  assert.deepEqual(await other.locator(".key span").allInnerTexts(), ["measured: a robot (lab/trial_3.h5)", "this run"]);
+  const [both, one] = await numbersBeside(other, ["tension:top_1", "tension:top_0"]);
+  assert.equal(both.numbers.length, 2);
+  assert.equal(one.numbers.length, 1, "pounds are not drawn on an axis of newtons");
+  await other.context().close();
 });
 
 test("PlotsAreSavedAsSvgPngAndCsv", async () => {
@@ -74,27 +138,39 @@ test("PlotsAreSavedAsSvgPngAndCsv", async () => {
   const csv = (await save("CSV")).content.toString().trim().split("\n");
   const names = csv[0].split(",");
   const row = csv.find((line) => line.startsWith("5,")).split(",").map(Number);
-  const value = row[names.indexOf("cable/top_1/tension_n")];
-  // blocks of two rows: the mean of two neighbours
-  assert.ok(Math.abs(value - (tension_n(4, 5) + tension_n(4, 5.02)) / 2) < 1e-9, `${value}`);
+  assert.equal(row[names.indexOf("cable/top_1/tension_n")], tension_n(4, 5));
+  assert.ok(names.some((name) => /tension_n:min of [0-9]+ rows/.test(name)), csv[0]);
   assert.ok(names.includes("reference:cable/top_1/tension_n") && names.includes("cable/top_1/setpoint_n"));
   await picture(page, "report", { fullPage: true });
 });
 
-test("ASetPointFarAwayDoesNotFlattenThePlots", async () => {
-  const data = report();
-  const series = data.series.find(({ channel }) => channel === "cable/top_2/setpoint_n");
-  series.max[0] = series.mean[0] = 13000;
-  const far = await openPage(writeReport(data, folder));
-  const [file] = await Promise.all([far.waitForEvent("download"), far.getByRole("button", { name: "save all tensions as SVG" }).click()]);
-  const ticks = [...readFileSync(await file.path(), "utf8").matchAll(/text-anchor="end">(\d+)</g)].map(([, tick]) => Number(tick));
-  assert.ok(ticks.length > 20 && Math.max(...ticks) >= 40 && Math.max(...ticks) < 100, ticks.join());
+test("AxesFitWhatTheyShow", async () => {
+  const names = scene.channels.map(({ name }) => name);
+  const first = rowsOf(names, 0, 1, (name, ...where) => {
+    const series = seriesOf(name, ...where);
+    if (name === "cable/top_2/setpoint_n") series.first[0] = 13000;
+    if (name === "system/kinetic_j") series.first = series.first.map((value) => 1e-5 * value);
+    if (/gravity|elastic|contact/.test(name)) series.first.fill(0);
+    return series;
+  });
+  const far = await openPage(writeReport(report({ rows: [first] }), folder));
+  const ticksOf = async (what) => {
+    const save = far.locator(`button[title="save ${what} as SVG"]`);
+    const [file] = await Promise.all([far.waitForEvent("download"), save.evaluate((element) => element.click())]);
+    return [...readFileSync(await file.path(), "utf8").matchAll(/text-anchor="end">([-−.\de]+)</g)].map(([, tick]) => tick);
+  };
+  // a set point far away does not flatten the plots
+  const tensions = (await ticksOf("all tensions")).map(Number);
+  assert.ok(tensions.length > 20 && Math.max(...tensions) >= 40 && Math.max(...tensions) < 100, tensions.join());
+  assert.deepEqual(await ticksOf("energy"), ["0", "5e−6", "1e−5"]);
+  assert.deepEqual(await ticksOf("contacts"), ["0", "0.5", "1"]);
   await far.context().close();
 });
 
 for (const [what, data, says] of [
-  ["OfAnotherVersion", { ...report(), version: 7 }, /version 7, this page reads version 2/],
+  ["OfAnotherVersion", { ...report(), version: 7 }, /version 7, this page reads version 3/],
   ["CutOff", { ...report(), frame_count: 3 }, /holds \d+ numbers of frames, not 3 times/],
+  ["WithTooFewRows", { ...report(), rows: [{ ...report().rows[0], count: 3 }] }, /holds \d+ numbers of rows, not \d+/],
 ]) {
   test(`AReport${what}SaysSo`, async () => {
     const broken = await openPage(writeReport(data, folder), { wait: false });

@@ -2,11 +2,13 @@
 import uPlot from "uplot";
 import type { App } from "../app";
 import { palette } from "../colours";
-import type { Points } from "../series";
-import { el, lastAtMost, number, tickText } from "../util";
-import { type Figure, type Filled, ink, valueRange } from "./figure";
+import { NOTHING, type Points } from "../points";
+import type { SeriesStore } from "../series";
+import { el, number, tickText } from "../util";
+import { coarseness, type Figure, type Filled, ink, valueRange } from "./figure";
 
 const SYNC = "taut";
+const DIGITS = 4; // of a number beside a plot
 
 export class Chart {
   readonly element: HTMLElement;
@@ -15,15 +17,17 @@ export class Chart {
   private readonly place = el("div.canvas");
   private readonly values = el("span.values");
   private readonly now = el("div.now");
+  private readonly coarse = el("div.coarse");
   private shared: [number, number] | null = null;
   private span: readonly [number, number] = [0, 1];
 
   constructor(
     private readonly app: App,
+    private readonly store: SeriesStore,
     readonly figure: Figure,
     tools: HTMLElement,
   ) {
-    this.filled = { figure, data: figure.lines.map(() => ({ t: [], mean: [], min: [], max: [] })) };
+    this.filled = { figure, data: figure.lines.map(() => NOTHING) };
     this.element = el("figure.chart", { "data-figure": figure.id },
       el("figcaption", {}, el("span.name", {}, figure.title), this.values, tools), this.place);
     new ResizeObserver(() => this.resize()).observe(this.place);
@@ -38,6 +42,7 @@ export class Chart {
     this.filled = filled;
     this.shared = shared;
     this.span = span;
+    this.coarse.textContent = coarseness(filled.data);
     if (this.place.clientWidth === 0) return;
     const data = aligned(filled.data);
     if (this.plot) this.plot.setData(data);
@@ -45,7 +50,7 @@ export class Chart {
     this.mark();
   }
 
-  /** The line at the present time, and the values under the cursor or at that time. */
+  /** The line at the present time, and the numbers of the row under the cursor or at that time. */
   mark(): void {
     const plot = this.plot;
     const frame = this.app.frame.value;
@@ -55,12 +60,18 @@ export class Chart {
     if (inside) this.now.style.transform = `translateX(${plot.valToPos(frame.time_s, "x")}px)`;
     const time_s = this.app.cursor_s.value ?? frame.time_s;
     const colours = palette(this.app.theme.value);
+    const { unit } = this.figure;
+    let away_s = NaN;
     const texts = this.figure.lines.map((line, i) => {
-      const shown = el("span", { title: line.label }, number(valueAt(this.filled.data[i]!, time_s)));
+      const row = this.store.row(line.channel, line.source, time_s, this.filled.data[i]!);
+      if (row && row.every > 1) away_s = row.time_s;
+      const title = row ? `${line.label}: ${row.value} ${unit} in the row at ${row.time_s} s` : line.label;
+      const shown = el("span", { title }, row ? number(row.value, DIGITS) : "…");
       shown.style.color = ink(colours, line.ink);
       return shown;
     });
-    this.values.replaceChildren(...texts.flatMap((text) => [text, " "]), this.figure.unit);
+    const where = Number.isNaN(away_s) ? "" : ` at ${tickText(away_s)} s`;
+    this.values.replaceChildren(...texts.flatMap((text) => [text, " "]), unit + where);
   }
 
   /** Colours have changed. */
@@ -95,12 +106,9 @@ export class Chart {
     for (const line of this.figure.lines) {
       const stroke = ink(colours, line.ink);
       const at = series.length;
-      series.push(
-        { label: line.label, stroke, width: 1.4, spanGaps: true, points: { show: false } },
-        { stroke: "transparent", spanGaps: true, points: { show: false } },
-        { stroke: "transparent", spanGaps: true, points: { show: false } },
-      );
-      bands.push({ series: [at + 2, at + 1], fill: `${stroke}38` });
+      // least and greatest; where points are single rows, both are the one line
+      for (let k = 0; k < 2; ++k) series.push({ label: line.label, stroke, width: 1.4, points: { show: false } });
+      bands.push({ series: [at + 1, at], fill: `${stroke}60` });
     }
     const options: uPlot.Options = {
       width: this.place.clientWidth, height: this.place.clientHeight,
@@ -126,7 +134,7 @@ export class Chart {
       },
     };
     const plot = new uPlot(options, data, this.place);
-    plot.over.append(this.now);
+    plot.over.append(this.now, this.coarse);
     plot.over.addEventListener("click", () => {
       const left = plot.cursor.left ?? -1;
       if (left >= 0 && plot.select.width === 0) this.app.seek(plot.posToVal(left, "x"));
@@ -150,22 +158,17 @@ export class Chart {
   }
 }
 
-function valueAt(points: Points, time_s: number): number {
-  const at = lastAtMost(points.t, time_s);
-  return points.mean[at] ?? NaN;
-}
-
 /** uPlot wants one list of times for all lines; two recordings have two. */
 function aligned(data: readonly Points[]): uPlot.AlignedData {
   const tables = data
     .filter((points) => points.t.length > 0)
-    .map((points) => [points.t, points.mean, points.min, points.max] as uPlot.AlignedData);
-  if (tables.length === 0) return [[], ...data.flatMap(() => [[], [], []])] as unknown as uPlot.AlignedData;
+    .map((points) => [points.t, points.min, points.max] as uPlot.AlignedData);
+  if (tables.length === 0) return [[], ...data.flatMap(() => [[], []])] as unknown as uPlot.AlignedData;
   const joined = tables.length === 1 ? tables[0]! : uPlot.join(tables);
   let next = 1;
   const lists: (number | null | undefined)[][] = [joined[0] as number[]];
   for (const points of data) {
-    for (let i = 0; i < 3; ++i) {
+    for (let i = 0; i < 2; ++i) {
       lists.push(points.t.length > 0 ? (joined[next++] as number[]) : new Array<null>(joined[0].length).fill(null));
     }
   }

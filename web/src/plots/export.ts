@@ -1,8 +1,9 @@
 // Plots as files: SVG drawn here in the colours of paper, PNG made of that, CSV of the data in sight.
 import { palette } from "../colours";
-import type { Points } from "../series";
+import type { Points } from "../points";
 import { download, tickText } from "../util";
-import { type Filled, ink, valueRange } from "./figure";
+import { coarseness, type Filled, ink, valueRange } from "./figure";
+import { linesOf } from "./key";
 
 const CELL = { width: 300, height: 170, left: 42, right: 10, top: 22, bottom: 24 };
 const KEY_PX = 26;
@@ -27,7 +28,7 @@ export async function exportPng(filled: Filled[], span: readonly [number, number
   canvas.toBlob((blob) => blob && download(`${fileName(name)}.png`, blob), "image/png");
 }
 
-/** One row a time; a channel's least and greatest value where a row stands for several. */
+/** The rows at the times of what is drawn; where that is coarser, least and greatest of the rows up to the next, too. */
 export function exportCsv(filled: Filled[], name: string): void {
   download(`${fileName(name)}.csv`, new Blob([csv(filled)], { type: "text/csv" }));
 }
@@ -41,10 +42,10 @@ export function csv(filled: readonly Filled[]): string {
     figure.lines.forEach((line, i) => {
       const points = data[i]!;
       const label = line.source === 1 ? `reference:${line.channel}` : line.channel;
-      add(label, points.t, points.mean);
-      if (points.mean.some((value, k) => value !== points.min[k] || value !== points.max[k])) {
-        add(`${label}:min`, points.t, points.min);
-        add(`${label}:max`, points.t, points.max);
+      add(label, points.t, points.first);
+      if (points.rows > 1) {
+        add(`${label}:min of ${points.rows} rows`, points.t, points.min);
+        add(`${label}:max of ${points.rows} rows`, points.t, points.max);
       }
     });
   }
@@ -79,6 +80,8 @@ function cell({ figure, data }: Filled, [t0, t1]: readonly [number, number], [y0
   const x = (t: number) => CELL.left + ((t - t0) / (t1 - t0)) * (right - CELL.left);
   const y = (v: number) => bottom - ((v - y0) / (y1 - y0)) * (bottom - CELL.top);
   const parts = [`<text x="${CELL.left}" y="15" font-weight="600">${escape(figure.title)}${figure.unit ? ` [${escape(figure.unit)}]` : ""}</text>`];
+  const coarse = coarseness(data);
+  if (coarse) parts.push(`<text x="${right}" y="15" text-anchor="end" font-size="9" fill="#666">${coarse}</text>`);
   for (const tick of ticks(y0, y1, 4)) {
     parts.push(`<path d="M${CELL.left} ${y(tick).toFixed(1)}H${right}" stroke="#ddd"/><text x="${CELL.left - 4}" y="${(y(tick) + 4).toFixed(1)}" text-anchor="end">${tickText(tick)}</text>`);
   }
@@ -89,8 +92,11 @@ function cell({ figure, data }: Filled, [t0, t1]: readonly [number, number], [y0
   figure.lines.forEach((line, i) => {
     const colour = ink(palette("light"), line.ink);
     const points = data[i]!;
-    if (points.mean.some((value, k) => value !== points.min[k])) parts.push(`<path d="${band(points, x, y)}" fill="${colour}" fill-opacity="0.22"/>`);
-    parts.push(`<path d="${path(points.t, points.mean, x, y)}" fill="none" stroke="${colour}" stroke-width="1.2"/>`);
+    const draw = (values: Points["min"]) => parts.push(`<path d="${path(points.t, values, x, y)}" fill="none" stroke="${colour}" stroke-width="1.2"/>`);
+    draw(points.min);
+    if (points.rows === 1) return;
+    parts.push(`<path d="${band(points, x, y)}" fill="${colour}" fill-opacity="0.38"/>`);
+    draw(points.max);
   });
   parts.push(`</svg><path d="M${CELL.left} ${CELL.top}V${bottom}H${right}" fill="none" stroke="#444"/>`);
   return parts.join("");
@@ -115,11 +121,9 @@ function band(points: Points, x: Scale, y: Scale): string {
 }
 
 function keyOf(filled: readonly Filled[]): string {
-  const lines = new Map<string, string>();
-  for (const { figure } of filled) for (const line of figure.lines) lines.set(line.label, ink(palette("light"), line.ink));
   let left = 0;
-  return [...lines].map(([label, colour]) => {
-    const text = `<path d="M${left} -4h18" stroke="${colour}" stroke-width="2"/><text x="${left + 23}">${escape(label)}</text>`;
+  return [...linesOf(filled.map(({ figure }) => figure))].map(([label, which]) => {
+    const text = `<path d="M${left} -4h18" stroke="${ink(palette("light"), which)}" stroke-width="2"/><text x="${left + 23}">${escape(label)}</text>`;
     left += 40 + 6.5 * label.length;
     return text;
   }).join("");

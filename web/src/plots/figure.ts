@@ -1,9 +1,11 @@
 // What a plot shows: lines over time with their channels; the same for the screen and for export.
 import type { Palette } from "../colours";
+import { NOTHING, type Points } from "../points";
 import type { Scene } from "../protocol";
-import { NOTHING, type Points, type SeriesStore } from "../series";
+import type { SeriesStore } from "../series";
+import { nameAndUnit, unitText } from "../util";
 
-export type Ink = "simulated" | "setpoint" | "measured" | number;
+export type Ink = "own" | "setpoint" | "reference" | number;
 
 export interface Line {
   label: string;
@@ -31,17 +33,19 @@ export function ink(palette: Palette, which: Ink): string {
   return palette[which];
 }
 
-/** In the manner of the paper's Figs. 3-5: set point blue, measured red, simulated black. */
+/** In the manner of the paper's Figs. 3-5: set point blue, what it is compared with red, this run black. */
 export function standardFigures(scene: Scene, store: SeriesStore): Figure[] {
+  const { reference } = scene;
+  const other = reference?.measured ? `measured: ${reference.name}` : (reference?.name ?? "");
   const figures: Figure[] = scene.cables.map(({ name }) => ({
     id: `tension:${name}`,
     title: name,
     unit: "N",
     group: "tension",
     lines: [
-      { label: "set point", channel: `cable/${name}/setpoint_n`, source: store.has(`cable/${name}/setpoint_n`, 1) ? 1 : 0, ink: "setpoint" },
-      { label: "measured", channel: `cable/${name}/tension_n`, source: 1, ink: "measured" },
-      { label: "simulated", channel: `cable/${name}/tension_n`, source: 0, ink: "simulated" },
+      { label: "set point", channel: `cable/${name}/setpoint_n`, source: 0, ink: "setpoint" },
+      { label: other, channel: `cable/${name}/tension_n`, source: 1, ink: "reference" },
+      { label: "this run", channel: `cable/${name}/tension_n`, source: 0, ink: "own" },
     ],
   }));
   const system = (id: string, title: string, unit: string, parts: [string, string][]): Figure => ({
@@ -60,7 +64,7 @@ export function standardFigures(scene: Scene, store: SeriesStore): Figure[] {
 export function ownFigures(store: SeriesStore, kind: "cable" | "body", name: string): Figure[] {
   const figure = (id: string, unit: string, title: string, keys: string[]): Figure => ({
     id: `own:${kind}:${name}:${id}`, title: `${name} ${title}`, unit, group: "own",
-    lines: keys.map((key, i) => ({ label: key.replace(/_(m|n|rad)(_per_s)?$/, "").replace(/_/g, " "), channel: `${kind}/${name}/${key}`, source: 0, ink: i })),
+    lines: keys.map((key, i) => ({ label: nameAndUnit(key)[0], channel: `${kind}/${name}/${key}`, source: 0, ink: i })),
   });
   const figures = kind === "cable"
     ? [
@@ -76,8 +80,17 @@ export function ownFigures(store: SeriesStore, kind: "cable" | "body", name: str
   return figures.map((each) => known(each, store)).filter((each) => each.lines.length > 0);
 }
 
+/** Without the lines of channels that are not there, or there in another unit. */
 function known(figure: Figure, store: SeriesStore): Figure {
-  return { ...figure, lines: figure.lines.filter((line) => store.has(line.channel, line.source)) };
+  const fits = ({ channel, source }: Line) => store.has(channel, source) && unitText(store.unit(channel, source)!) === figure.unit;
+  return { ...figure, lines: figure.lines.filter(fits) };
+}
+
+/** What a plot's points are where they are not the rows; else nothing. */
+export function coarseness(data: readonly Points[]): string {
+  const most = Math.max(...data.map(({ rows }) => rows));
+  if (most <= 1) return "";
+  return `min to max of ${data.every(({ rows }) => rows === most) ? "" : "up to "}${most} rows`;
 }
 
 /** Fetches the points of all lines between two times. */
@@ -106,7 +119,7 @@ export function valueRange(filled: readonly Filled[]): [number, number] {
   }
   if (least > greatest) return [0, 1];
   if (least > 0 && least < 0.6 * greatest) least = 0;
-  const room = 0.05 * (greatest - least) || Math.max(0.05 * Math.abs(greatest), 1e-6);
+  const room = 0.05 * (greatest - least) || 0.05 * Math.abs(greatest) || 1;
   return [least === 0 ? 0 : least - room, greatest + room];
 }
 

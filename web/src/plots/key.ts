@@ -1,23 +1,22 @@
 // Which colour is what in the tension plots; a line is named only where there is one.
-import type { App } from "../app";
 import { palette } from "../colours";
+import type { Theme } from "../app";
 import { el } from "../util";
+import { type Figure, ink, type Ink } from "./figure";
 
-export function key(app: App): HTMLElement {
-  const element = el("span.key", { "aria-label": "lines" });
-  const draw = () => {
-    const scene = app.scene.value;
-    const colours = palette(app.theme.value);
-    const entries: [string, string][] = [[colours.setpoint, "set point"]];
-    if (scene?.reference && scene.reference.channels.length > 0) entries.push([colours.measured, `measured (${scene.reference.name})`]);
-    entries.push([colours.simulated, "simulated"]);
-    element.replaceChildren(...entries.map(([colour, text]) => {
+/** The lines of figures, each once: what they are called and their ink. */
+export function linesOf(figures: readonly Figure[]): Map<string, Ink> {
+  return new Map(figures.flatMap(({ lines }) => lines.map((line) => [line.label, line.ink] as const)));
+}
+
+export class Key {
+  readonly element = el("span.key", { "aria-label": "lines" });
+
+  show(figures: readonly Figure[], theme: Theme): void {
+    this.element.replaceChildren(...[...linesOf(figures)].map(([label, which]) => {
       const dash = el("i");
-      dash.style.background = colour;
-      return el("span", {}, dash, text);
+      dash.style.background = ink(palette(theme), which);
+      return el("span", {}, dash, label);
     }));
-  };
-  app.scene.watch(draw);
-  app.theme.watch(draw);
-  return element;
+  }
 }

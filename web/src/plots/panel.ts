@@ -5,7 +5,7 @@ import type { SeriesStore } from "../series";
 import { Chart } from "./chart";
 import { exportCsv, exportPng, exportSvg } from "./export";
 import { type Figure, fill, type Filled, ownFigures, standardFigures, valueRange } from "./figure";
-import { key } from "./key";
+import { Key } from "./key";
 
 const LIVE_SPAN_S = 20;
 const LIVE_EVERY_MS = 100;
@@ -14,6 +14,7 @@ const POINTS = 600; // a plot; about two for each pixel of its width
 export class PlotPanel {
   readonly element = el("section.plots", { "aria-label": "plots" });
   private readonly grids = { tension: el("div.grid"), own: el("div.grid.wide"), system: el("div.grid.wide") };
+  private readonly key = new Key();
   private charts: Chart[] = [];
   private readonly visible = new Set<Chart>();
   private readonly seen: IntersectionObserver;
@@ -34,11 +35,15 @@ export class PlotPanel {
         if (entry.isIntersecting) this.visible.add(chart);
         else this.visible.delete(chart);
       }
+      this.mark(); // its numbers are those of when it was seen last
       this.refresh();
     }, { rootMargin: "1500px 0px" });
     app.scene.watch(() => this.rebuild());
     app.range_s.watch(() => this.refresh());
-    app.theme.watch(() => this.charts.forEach((chart) => chart.repaint()));
+    app.theme.watch(() => {
+      this.showKey();
+      this.charts.forEach((chart) => chart.repaint());
+    });
     app.selection.watch((selection) => {
       const scene = app.scene.value;
       if (!scene || !selection || selection.kind === "node") return;
@@ -46,6 +51,7 @@ export class PlotPanel {
       this.plotOwn(selection.kind, list[selection.index]!.name);
     });
     app.cursor_s.watch(() => this.mark());
+    store.rowsCame.watch(() => this.mark());
     app.frame.watch(() => {
       this.mark();
       if (app.live && performance.now() >= this.due) this.refresh();
@@ -77,7 +83,12 @@ export class PlotPanel {
     this.drop(() => true);
     const scene = this.app.scene.value;
     if (scene) for (const figure of standardFigures(scene, this.store)) this.add(figure);
+    this.showKey();
     if (this.app.report) this.refresh();
+  }
+
+  private showKey(): void {
+    this.key.show(this.charts.map(({ figure }) => figure).filter(({ group }) => group === "tension"), this.app.theme.value);
   }
 
   private drop(which: (chart: Chart) => boolean): void {
@@ -93,7 +104,7 @@ export class PlotPanel {
     const save = (name: string, write: (filled: Filled[], name: string) => void) =>
       button(name, `save ${figure.title} as ${name}`, () => write([chart.filled], figure.title), "button.small");
     const tools = el("span.tools", {}, save("PNG", (f, n) => void exportPng(f, this.span, n)), save("SVG", (f, n) => exportSvg(f, this.span, n)), save("CSV", exportCsv));
-    const chart: Chart = new Chart(this.app, figure, tools);
+    const chart: Chart = new Chart(this.app, this.store, figure, tools);
     this.charts.push(chart);
     this.grids[figure.group].append(chart.element);
     // a report may be printed, so all of it is there; else what is far away is not asked for
@@ -149,7 +160,7 @@ export class PlotPanel {
     const zoomOut = button("zoom out", "show all of the time again (double click in a plot)", () => (this.app.range_s.value = null));
     this.app.range_s.watch((range) => (zoomOut.hidden = range === null));
     return el("div.toolbar", {},
-      key(this.app),
+      this.key.element,
       el("label", { title: "one scale for all tensions, so that heights compare" }, scale, " same scale"),
       wholeLabel, zoomOut,
       el("span.spring"),

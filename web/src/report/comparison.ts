@@ -1,8 +1,7 @@
 // Our numbers beside others: the references that an experiment names, and `taut compare`.
 import type { Report } from "../protocol";
-import { el, number } from "../util";
+import { el, nameAndUnit, number } from "../util";
 import { facts, section } from "./page";
-import { labelled } from "./summary";
 
 interface Reference {
   source: string;
@@ -47,16 +46,16 @@ export function comparisonSection(report: Report): HTMLElement[] {
   const parts: HTMLElement[] = [];
   const plain = Object.entries(comparison).filter(([, value]) => value === null || typeof value !== "object");
   if (plain.length > 0) {
-    parts.push(facts(plain.map(([name, value]) => [labelled(name)[0], text(value, labelled(name)[1])] as const)));
+    parts.push(facts(plain.map(([name, value]) => [nameAndUnit(name)[0], text(value, nameAndUnit(name)[1])] as const)));
   }
   for (const [name, value] of Object.entries(comparison)) {
     if (!Array.isArray(value) || value.length === 0 || typeof value[0] !== "object") continue;
     const columns = Object.keys(value[0] as object).filter((key) => typeof (value[0] as Record<string, unknown>)[key] !== "object");
-    const head = el("tr", {}, ...columns.map((key) => el("th", { scope: "col" }, [labelled(key)[0], labelled(key)[1] && `[${labelled(key)[1]}]`].join(" "))));
+    const head = el("tr", {}, ...columns.map((key) => el("th", { scope: "col" }, [nameAndUnit(key)[0], nameAndUnit(key)[1] && `[${nameAndUnit(key)[1]}]`].join(" "))));
     const rows = (value as Record<string, unknown>[]).map((row) => el("tr", {}, ...columns.map((key) => el("td", {}, text(row[key], "")))));
     parts.push(el("h3", {}, name.replace(/_/g, " ")), el("div.scroll", {}, el("table.numbers", {}, el("thead", {}, head), el("tbody", {}, ...rows))));
   }
-  return parts.length > 0 ? [section("Comparison", ...parts)] : [];
+  return parts.length > 0 ? [section(`This run (a) and ${report.scene.reference?.name ?? "another"} (b)`, ...parts)] : [];
 }
 
 function text(value: unknown, unit: string): string {

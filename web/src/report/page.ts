@@ -2,9 +2,9 @@
 import type { PlotPanel } from "../plots/panel";
 import type { Report } from "../protocol";
 import type { View } from "../scene/view";
-import { el } from "../util";
+import { el, nameAndUnit } from "../util";
 import { comparisonSection, referenceSection } from "./comparison";
-import { labelled, summarySection } from "./summary";
+import { summarySection } from "./summary";
 
 interface Parts {
   top: HTMLElement;
@@ -22,7 +22,7 @@ export function reportPage(root: HTMLElement, report: Report, { top, view, plots
     ...referenceSection(report),
     ...comparisonSection(report),
     section("Plots", plots.element),
-    section("What was run", facts(Object.entries(report.metadata).map(([name, value]) => [labelled(name)[0], `${value} ${labelled(name)[1]}`] as const)), inputs(report.inputs)),
+    section("What was run", facts(Object.entries(report.metadata).map(([name, value]) => [nameAndUnit(name)[0], `${value} ${nameAndUnit(name)[1]}`] as const)), inputs(report.inputs)),
   ), ...overlays);
 }
 

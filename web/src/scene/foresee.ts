@@ -3,7 +3,8 @@
 import { Vector3 } from "three";
 import type { App } from "../app";
 import { niceAbove } from "../util";
-import { NOTHING, type Points, type SeriesStore } from "../series";
+import { NOTHING, type Points } from "../points";
+import type { SeriesStore } from "../series";
 import type { View } from "./view";
 
 const POINTS = 5000;
@@ -32,7 +33,7 @@ export function foresee(app: App, store: SeriesStore, view: View): void {
         parts[k] = points;
         if (--missing > 0 || view.world?.scene !== scene) return;
         const [x, y, z] = parts as [Points, Points, Points];
-        view.world.path.set(x.t, x.t.map((_, i) => new Vector3(x.mean[i] ?? 0, y.mean[i] ?? 0, z.mean[i] ?? 0)));
+        view.world.path.set(x.t, x.t.map((_, i) => new Vector3(x.first[i] ?? 0, y.first[i] ?? 0, z.first[i] ?? 0)));
         view.invalidate();
       }),
     );

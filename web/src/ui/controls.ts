@@ -2,7 +2,7 @@
 // does not drop; what it refuses comes back as an error and is shown.
 import type { App } from "../app";
 import type { Control, Parameter, Vec3 } from "../protocol";
-import { button, el, number, unitText } from "../util";
+import { button, el, nameAndUnit, number, unitText } from "../util";
 
 export function controls(app: App): HTMLElement {
   const body = el("div");
@@ -21,7 +21,7 @@ export function controls(app: App): HTMLElement {
     const one = (kind: "cable" | "body", names: string[], more: (name: string) => HTMLElement[]) => {
       const parts = (name: string) => {
         const prefix = `${kind}/${name}/`;
-        return [...more(name), ...owned(prefix).map((each) => parameter(app, each, labelOf(each.name.slice(prefix.length))))];
+        return [...more(name), ...owned(prefix).map((each) => parameter(app, each, nameAndUnit(each.name.slice(prefix.length))[0]))];
       };
       if (names.some((name) => parts(name).length > 0)) body.append(group(kind === "cable" ? "Cable" : "Body", [chooser(app, kind, names, parts)]));
     };
@@ -36,11 +36,6 @@ export function controls(app: App): HTMLElement {
 
 function group(title: string, content: HTMLElement[]): HTMLElement {
   return el("details", { open: true }, el("summary", {}, title), ...content);
-}
-
-/** "stiffness_n_per_m" -> "stiffness": the unit stands beside the slider. */
-function labelOf(key: string): string {
-  return key.replace(/_(n_s_per_m|n_per_m|m_per_s2|kg|n|m)$/, "").replace(/_/g, " ");
 }
 
 /** Fields of one cable or body of many; the one that is selected in the view, if one is. */

@@ -2,15 +2,15 @@
 import { applyPalette, GIFEncoder, type GifPalette, quantize } from "gifenc";
 import type { App } from "../app";
 import type { View } from "../scene/view";
+import type { SeriesStore } from "../series";
 import { button, download } from "../util";
 
 const FRAME_MS = 80;
 const MOST_FRAMES = 400;
 const WIDEST_PX = 640;
 const COLOURS = 256;
-const PATIENCE_MS = 300;
 
-export function gifMaker(app: App, view: View): HTMLElement {
+export function gifMaker(app: App, store: SeriesStore, view: View): HTMLElement {
   let running = false;
   const made = button("GIF", "save what the plots' time shows as an animated picture (GIF)", () => {
     if (running) running = false;
@@ -30,16 +30,15 @@ export function gifMaker(app: App, view: View): HTMLElement {
     const wanted = Math.floor((1000 * (to_s - from_s)) / speed / FRAME_MS) + 1;
     const count = Math.min(Math.max(wanted, 1), MOST_FRAMES);
     const times_s = Array.from({ length: count }, (_, i) => (count === 1 ? from_s : from_s + ((to_s - from_s) * i) / (count - 1)));
-    const near_s = count === 1 ? Infinity : (to_s - from_s) / (count - 1) / 2;
     const film = new Film(view);
     app.send({ type: "pause" });
     // one set of colours for all, from the ends and the middle, so that nothing flickers
     for (const i of [0, count >> 1, count - 1]) {
-      await goTo(app, times_s[i]!, near_s);
+      if (!(await goTo(app, store, times_s[i]!))) running = false;
       film.learn();
     }
     for (let i = 0; i < count && running; ++i) {
-      await goTo(app, times_s[i]!, near_s);
+      if (!(await goTo(app, store, times_s[i]!))) running = false;
       film.take();
       made.textContent = `stop GIF (${Math.round((100 * i) / count)} %)`;
     }
@@ -103,20 +102,23 @@ function together(parts: readonly Uint8ClampedArray[]): Uint8ClampedArray {
   return all;
 }
 
-/** Until the frame of that time is there; rows may be farther apart than the pictures of a film. */
-function goTo(app: App, time_s: number, near_s: number): Promise<void> {
+/** Shows the row at a time; false if that will not happen: the server is gone, or somebody else drives. */
+function goTo(app: App, store: SeriesStore, time_s: number): Promise<boolean> {
+  app.seek(time_s);
+  if (app.report) return Promise.resolve(true); // a report has shown it already
   return new Promise((resolve) => {
-    let timer = 0;
-    const stop = app.frame.watch((frame) => {
-      if (frame === null || Math.abs(frame.time_s - time_s) > near_s) return;
-      clearTimeout(timer);
-      queueMicrotask(() => stop());
-      resolve();
+    let row_s: number | null = null;
+    const stops: (() => void)[] = [];
+    const look = () => {
+      const there = row_s !== null && (Number.isNaN(row_s) || app.frame.value?.time_s === row_s);
+      if (!there && app.link.value === "open" && app.drives) return;
+      queueMicrotask(() => stops.forEach((stop) => stop()));
+      resolve(there);
+    };
+    stops.push(...[app.frame.watch(look), app.link.watch(look), app.driver.watch(look)]);
+    void store.rowTime(time_s).then((found_s) => {
+      row_s = found_s;
+      look();
     });
-    timer = window.setTimeout(() => {
-      stop();
-      resolve();
-    }, PATIENCE_MS);
-    app.seek(time_s);
   });
 }

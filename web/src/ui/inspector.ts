@@ -44,7 +44,7 @@ function rowsOf(scene: Scene, frame: Frame, { kind, index }: Selection): Row[] {
     const ends = cable.attachments.map(({ body }) => (body < 0 ? "world" : scene.bodies[body]!.name));
     return [
       ["tension", `${number(state.tension_n, 4)} N${isSlack(state) ? " (slack)" : ""}`],
-      ["set point", `${number(state.setpoint_n, 4)} N`],
+      ...(Number.isNaN(state.setpoint_n) ? [] : [["set point", `${number(state.setpoint_n, 4)} N`] as Row]),
       ["length", `${number(state.length_m, 5)} m`],
       ["rest length", `${number(state.rest_length_m, 5)} m`],
       ["stretch", `${number(1000 * (state.length_m - state.rest_length_m), 4)} mm`],
