@@ -64,6 +64,13 @@ std::unique_ptr<Session> MakeReplay(const ViewArguments& args, int& exit) {
   return nullptr;
 }
 
+/// On the terminal, if there still is one.
+void Tell(const std::string& text) {
+  const std::string line = text + "\n";
+  std::fputs(line.c_str(), stderr);
+  std::fflush(stderr);
+}
+
 /// A live run of an experiment or of a model alone. Nothing: `exit` says how to end.
 std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
   Diagnostics found;
@@ -83,8 +90,11 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
     Fail(found, kBadInput);
     return nullptr;
   }
+  viewer::LiveOptions options;
+  options.inputs = {args.file, *overrides, args.step_s, std::nullopt};
+  if (args.settled && !model) options.inputs.start = StartKind::kSettled;
   if (args.step_s > 0) experiment->step_s = args.step_s;
-  if (args.settled && !model) experiment->start = StartKind::kSettled;
+  if (options.inputs.start) experiment->start = *options.inputs.start;
   exit = kFailed;
   if (!args.out.empty()) {
     std::error_code error;
@@ -94,13 +104,10 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
       return nullptr;
     }
   }
-  viewer::LiveOptions options;
-  options.path = args.file;
-  options.overrides = *overrides;
-  options.step_s = args.step_s;
   options.speed = args.max ? 0 : args.speed;
   options.paused = args.paused || model;
   options.record_folder = args.out;
+  options.tell = Tell;
   auto session = viewer::LiveSession::Create(model ? "model" : "live", *experiment, options, found);
   if (!session) fmt::print(stderr, "{}", found.Format());
   return session;
@@ -151,7 +158,7 @@ int View(ViewArguments args) {
   fmt::print("{}: {}\nCtrl-C ends it.\n", session->title(), Url(args.server, server.port()));
   std::fflush(stdout);
   server.Run();
-  return kOk;
+  return session->Finish() ? kOk : kFailed;
 }
 
 }  // namespace

@@ -7,7 +7,14 @@
 
 namespace taut::viewer {
 
-std::vector<LiveParameter> Parameters(const LiveRun& run, const ExperimentSpec& experiment) {
+NamedValues ParametersOfFiles(const ExperimentSpec& experiment) {
+  NamedValues named = experiment.robot.parameters;
+  named.insert(experiment.parameters.begin(), experiment.parameters.end());
+  return named;
+}
+
+std::vector<LiveParameter> Parameters(const LiveRun& run, const ExperimentSpec& experiment,
+                                      const NamedValues& given) {
   std::vector<LiveParameter> all;
   const auto now = [&](std::string name, const char* unit, Parameter kind, int index, double min,
                        double max) {
@@ -31,10 +38,9 @@ std::vector<LiveParameter> Parameters(const LiveRun& run, const ExperimentSpec& 
     now("cable/" + cable.name + "/damping_n_s_per_m", "N s/m", Parameter::kCableDamping, index, 0,
         std::max(10.0, 10 * cable.damping_n_s_per_m));
   }
-  std::map<std::string, double> named = experiment.robot.parameters;
-  named.insert(experiment.parameters.begin(), experiment.parameters.end());
-  for (const auto& [name, value] : named) {
-    const double far = value == 0 ? 1 : 4 * value;
+  for (const auto& [name, value] : ParametersOfFiles(experiment)) {
+    const auto first = given.find(name);
+    const double far = first == given.end() || first->second == 0 ? 1 : 4 * first->second;
     all.push_back({name, UnitOfName(name), value, std::min(0.0, far), std::max(0.0, far), true,
                    Parameter::kFrictionScale, 0});
   }
@@ -42,16 +48,17 @@ std::vector<LiveParameter> Parameters(const LiveRun& run, const ExperimentSpec& 
 }
 
 std::optional<LiveParameter> FindParameter(const LiveRun& run, const ExperimentSpec& experiment,
-                                           const std::string& name) {
-  for (LiveParameter& parameter : Parameters(run, experiment)) {
+                                           const NamedValues& given, const std::string& name) {
+  for (LiveParameter& parameter : Parameters(run, experiment, given)) {
     if (parameter.name == name) return std::move(parameter);
   }
   return std::nullopt;
 }
 
-Json ParametersJson(const LiveRun& run, const ExperimentSpec& experiment) {
+Json ParametersJson(const LiveRun& run, const ExperimentSpec& experiment,
+                    const NamedValues& given) {
   Json json = Json::array();
-  for (const LiveParameter& p : Parameters(run, experiment)) {
+  for (const LiveParameter& p : Parameters(run, experiment, given)) {
     json.push_back({{"name", p.name},
                     {"value", p.value},
                     {"unit", p.unit},

@@ -1,6 +1,7 @@
 /// What sliders may change in a live run.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,14 +20,20 @@ struct LiveParameter {
   int index = 0;
 };
 
-/// Friction, gravity, masses, stiffnesses and dampings; then the parameters of experiment and
-/// model, whose range is from nothing to four times their value.
-std::vector<LiveParameter> Parameters(const LiveRun& run, const ExperimentSpec& experiment);
+using NamedValues = std::map<std::string, double>;
+
+/// The parameters of experiment and model.
+NamedValues ParametersOfFiles(const ExperimentSpec& experiment);
+
+/// Friction, gravity, masses, stiffnesses and dampings; then the parameters of the files, whose
+/// range is from nothing to four times the value that they had when they were `given`.
+std::vector<LiveParameter> Parameters(const LiveRun& run, const ExperimentSpec& experiment,
+                                      const NamedValues& given);
 std::optional<LiveParameter> FindParameter(const LiveRun& run, const ExperimentSpec& experiment,
-                                           const std::string& name);
+                                           const NamedValues& given, const std::string& name);
 
 /// Parameter[] and Control[] of web/protocol/messages.json.
-Json ParametersJson(const LiveRun& run, const ExperimentSpec& experiment);
+Json ParametersJson(const LiveRun& run, const ExperimentSpec& experiment, const NamedValues& given);
 Json ControlsJson(const LiveRun& run);
 
 }  // namespace taut::viewer

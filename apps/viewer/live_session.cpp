@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "live_parameters.h"
-#include "recording.h"
 
 namespace taut::viewer {
 namespace {
@@ -37,7 +36,17 @@ std::unique_ptr<LiveSession> LiveSession::Create(const std::string& mode,
   if (!run) return nullptr;
   std::unique_ptr<LiveSession> session(new LiveSession(mode, std::move(run), options));
   session->experiment_ = experiment;
-  if (!session->StartRecording(out)) return nullptr;
+  session->given_ = ParametersOfFiles(experiment);
+  if (!options.record_folder.empty()) {
+    const auto say = [self = session.get()](const std::string& text) {
+      self->SayEvent(self->run_->time_s(), text);
+      self->scene_changed_ = true;  // has the notice for those who come later
+      self->options_.tell(text);
+    };
+    session->recording_ =
+        Recording::Start(options.record_folder, *session->run_, experiment, say, out);
+    if (!session->recording_) return nullptr;
+  }
   session->StartHistory();
   session->SetScene(session->MakeScene(), false);
   return session;
@@ -46,6 +55,7 @@ std::unique_ptr<LiveSession> LiveSession::Create(const std::string& mode,
 LiveSession::LiveSession(const std::string& mode, std::unique_ptr<LiveRun> run, LiveOptions options)
     : Session(mode, run->experiment().name),
       options_(std::move(options)),
+      restarts_(options_.inputs),
       run_(std::move(run)),
       paused_(options_.paused),
       speed_(options_.speed) {
@@ -54,8 +64,10 @@ LiveSession::LiveSession(const std::string& mode, std::unique_ptr<LiveRun> run, 
 
 LiveSession::~LiveSession() {
   Stop();
-  if (recording_) recording_->Finish();
+  Finish();
 }
+
+bool LiveSession::Finish() { return !recording_ || recording_->Finish(); }
 
 void LiveSession::StartHistory() {
   has_set_point_.assign(experiment_.robot.def.cables.size(), false);
@@ -69,12 +81,6 @@ void LiveSession::StartHistory() {
   history_->Take(moment_);
 }
 
-bool LiveSession::StartRecording(Diagnostics& out) {
-  if (options_.record_folder.empty()) return true;
-  recording_ = Recording::Start(options_.record_folder, ++recordings_, *run_, experiment_, out);
-  return recording_ != nullptr;
-}
-
 void LiveSession::Handle(int client, const Command& command) {
   std::string error;
   if (command.type == "want_series") {
@@ -86,11 +92,18 @@ void LiveSession::Handle(int client, const Command& command) {
     return SayError(client, fmt::format("there is no channel \"{}\"", command.name));
   }
   changed_ = true;
-  if (!Drive(command, error)) SayError(client, error);
+  if (!Drive(client, command, error)) SayError(client, error);
 }
 
-bool LiveSession::Drive(const Command& command, std::string& error) {
+bool LiveSession::Drive(int client, const Command& command, std::string& error) {
   const std::string& type = command.type;
+  // These wait for more of their kind; anything else is about the run that they lead to.
+  if (type == "set_parameter") return SetParameter(client, command, error);
+  if (type == "reset") {
+    restarts_.Reset(client);
+    return true;
+  }
+  Restart();
   if (type == "pause" || type == "resume") {
     paused_ = type == "pause";
     Anchor();
@@ -100,7 +113,7 @@ bool LiveSession::Drive(const Command& command, std::string& error) {
     if (past_row_ || command.count < 0) {
       LookAt(static_cast<std::int64_t>(past_row_.value_or(PresentRow())) + command.count);
     } else {
-      for (int i = 0; i < command.count; ++i) StepOnce();
+      for (int i = 0; i < command.count && !stopping(); ++i) StepOnce();
     }
     Anchor();
   } else if (type == "seek") {
@@ -109,8 +122,6 @@ bool LiveSession::Drive(const Command& command, std::string& error) {
     if (command.value < run_->time_s())
       LookAt(static_cast<std::int64_t>(history_->RowAt(command.value)));
     Anchor();
-  } else if (type == "reset") {
-    return Restart(experiment_, error);
   } else if (type == "speed") {
     speed_ = command.value;
     Anchor();
@@ -135,8 +146,6 @@ bool LiveSession::Drive(const Command& command, std::string& error) {
       Log(fmt::format("push {} with ({:.4g}, {:.4g}, {:.4g}) N for {:g} s", command.name, v.x, v.y,
                       v.z, command.value));
     }
-  } else if (type == "set_parameter") {
-    return SetParameter(command, error);
   } else if (type == "set_setpoint" || type == "set_gain") {
     return SetControl(command, error);
   } else {
@@ -146,8 +155,10 @@ bool LiveSession::Drive(const Command& command, std::string& error) {
   return true;
 }
 
-bool LiveSession::SetParameter(const Command& command, std::string& error) {
-  const std::optional<LiveParameter> parameter = FindParameter(*run_, experiment_, command.name);
+bool LiveSession::SetParameter(int client, const Command& command, std::string& error) {
+  if (!given_.contains(command.name)) Restart();  // it may be one of the run that comes
+  const std::optional<LiveParameter> parameter =
+      FindParameter(*run_, experiment_, given_, command.name);
   if (!parameter) {
     error = fmt::format("there is no parameter \"{}\"", command.name);
     return false;
@@ -157,24 +168,14 @@ bool LiveSession::SetParameter(const Command& command, std::string& error) {
         fmt::format("{} must be within {:g} to {:g}", command.name, parameter->min, parameter->max);
     return false;
   }
-  if (!parameter->restarts) {
+  if (parameter->restarts) {
+    restarts_.Set(client, command.name, command.value);
+  } else {
+    Restart();
     run_->SetParameter(parameter->kind, parameter->index, command.value);
     Log(fmt::format("{} = {:g}", command.name, command.value));
     scene_changed_ = true;
-    return true;
   }
-  Overrides overrides = options_.overrides;
-  std::erase_if(overrides, [&](const auto& set) { return set.first == command.name; });
-  overrides.emplace_back(command.name, fmt::format("{}", command.value));
-  Diagnostics found;
-  auto experiment = LoadExperiment(options_.path, overrides, found);
-  if (!experiment) {
-    error = found.Format();
-    return false;
-  }
-  if (options_.step_s > 0) experiment->step_s = options_.step_s;
-  if (!Restart(*experiment, error)) return false;
-  options_.overrides = std::move(overrides);  // a change that failed leaves the earlier ones
   return true;
 }
 
@@ -212,24 +213,22 @@ bool LiveSession::SetControl(const Command& command, std::string& error) {
   return false;
 }
 
-bool LiveSession::Restart(const ExperimentSpec& experiment, std::string& error) {
-  Diagnostics found;
-  auto run = LiveRun::Start(experiment, found);
-  if (!run) {
-    error = found.Format();
-    return false;
+void LiveSession::Restart(Clock::time_point deadline) {
+  if (!restarts_.pending()) return;
+  auto start = restarts_.Make(experiment_, deadline, [this] { return !stopping(); });
+  for (const Restarts::Refusal& refusal : restarts_.TakeRefusals()) {
+    SayError(refusal.client, refusal.why);
   }
-  if (recording_) recording_->Finish();
-  run_ = std::move(run);
-  experiment_ = experiment;
+  if (!start) return;
+  run_ = std::move(start->run);
+  experiment_ = std::move(start->experiment);
   ++run_number_;
   end_told_ = broken_told_ = dragging_ = false;
-  if (!StartRecording(found)) SayEvent(0, found.Format());
+  if (recording_) recording_->Restart(*run_, experiment_);
   StartHistory();
   Anchor();
-  scene_changed_ = true;
+  changed_ = scene_changed_ = true;
   SayEvent(0, "from the start");
-  return true;
 }
 
 void LiveSession::Log(const std::string& text) {
@@ -247,10 +246,7 @@ bool LiveSession::StepOnce() {
     Fill(moment_);
     history_->Take(moment_);
   }
-  if (recording_ && !recording_->Take(*run_)) {
-    SayEvent(run_->time_s(), recording_->error());
-    recording_.reset();
-  }
+  if (recording_) recording_->Take(*run_);
   if (!end_told_ && run_->time_s() >= experiment_.duration_s && mode() == "live") {
     end_told_ = true;
     Log("the experiment's end; resume goes on");
@@ -261,7 +257,7 @@ bool LiveSession::StepOnce() {
 }
 
 void LiveSession::StepUntil(double time_s, Clock::time_point deadline) {
-  for (int steps = 0; run_->time_s() < time_s; ++steps) {
+  for (int steps = 0; run_->time_s() < time_s && !stopping(); ++steps) {
     if (!StepOnce()) return;
     if ((steps & 15) == 15 && Clock::now() >= deadline) return;
   }
@@ -274,8 +270,10 @@ void LiveSession::Anchor() {
 }
 
 Session::Clock::time_point LiveSession::Work() {
-  if (std::exchange(scene_changed_, false)) SetScene(MakeScene(), true);
   const Clock::time_point start = Clock::now();
+  // One restart a picture is enough, however many are asked for.
+  if (idle() && start - shown_wall_ >= kFramePeriod) Restart(start + kFramePeriod);
+  if (std::exchange(scene_changed_, false)) SetScene(MakeScene(), true);
   const bool full_speed = speed_ == 0;
   if (!paused_) {
     const double wanted =
@@ -299,6 +297,7 @@ Session::Clock::time_point LiveSession::Work() {
     shown_wall_ = now;
     changed_ = false;
   }
+  if (restarts_.pending()) changed_ = true;
   if (paused_) return shown_wall_ + (changed_ ? Clock::duration(kFramePeriod) : kIdlePeriod);
   return full_speed ? now : std::min(shown_wall_ + kFramePeriod, now + microseconds(4000));
 }
@@ -353,10 +352,11 @@ void LiveSession::Show() {
 
 Json LiveSession::MakeScene() const {
   Json scene = SceneOf(experiment_);
-  scene["parameters"] = ParametersJson(*run_, experiment_);
+  scene["parameters"] = ParametersJson(*run_, experiment_, given_);
   scene["controls"] = ControlsJson(*run_);
   scene["channels"] = ToJson(history_->channels());
   scene["drag_stiffness_n_per_m"] = run_->DragStiffness();
+  if (recording_ && !recording_->failure().empty()) scene["notice"] = recording_->failure();
   return scene;
 }
 

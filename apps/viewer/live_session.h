@@ -1,24 +1,28 @@
 /// A live run, in real time or at another speed.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "history.h"
+#include "live_restarts.h"
+#include "recording.h"
 #include "session.h"
 #include "taut/live.h"
 
 namespace taut::viewer {
 
 struct LiveOptions {
-  std::string path;     ///< Of the experiment, read again when a parameter of the files changes.
-  Overrides overrides;  ///< Of those parameters.
-  double step_s = 0;    ///< Instead of the experiment's; 0: as that says.
-  double speed = 1;     ///< Simulated seconds a second; 0: as fast as it can.
+  Restarts::Inputs inputs;  ///< Read again when a parameter of the files changes.
+  double speed = 1;         ///< Simulated seconds a second; 0: as fast as it can.
   bool paused = false;
   /// Where to record traces, events and inputs; empty: nowhere. An existing folder.
   std::string record_folder;
+  /// Lines for the terminal: what is not recorded. Called on the session's thread and by Finish.
+  std::function<void(const std::string&)> tell = [](const std::string&) {};
 };
 
 class LiveSession final : public Session {
@@ -29,19 +33,18 @@ class LiveSession final : public Session {
                                              const LiveOptions& options, Diagnostics& out);
   ~LiveSession() override;
 
- private:
-  class Recording;
+  bool Finish() override;
 
+ private:
   LiveSession(const std::string& mode, std::unique_ptr<LiveRun> run, LiveOptions options);
 
   void Handle(int client, const Command& command) override;
   Clock::time_point Work() override;
 
-  bool Drive(const Command& command, std::string& error);
-  bool SetParameter(const Command& command, std::string& error);
+  bool Drive(int client, const Command& command, std::string& error);
+  bool SetParameter(int client, const Command& command, std::string& error);
   bool SetControl(const Command& command, std::string& error);
-  bool Restart(const ExperimentSpec& experiment, std::string& error);
-  bool StartRecording(Diagnostics& out);
+  void Restart(Clock::time_point deadline = Clock::time_point::max());
   void StartHistory();
   void Log(const std::string& text);
   bool StepOnce();
@@ -57,14 +60,17 @@ class LiveSession final : public Session {
   std::optional<int> FindNode(const std::string& name) const;
 
   LiveOptions options_;
+  Restarts restarts_;
   ExperimentSpec experiment_;  ///< As read; `run_` may have been changed by hand since.
+  /// Parameters of the files as they were at first: what the ranges of sliders follow from.
+  std::map<std::string, double> given_;
   std::unique_ptr<LiveRun> run_;
   std::unique_ptr<Recording> recording_;
   std::vector<bool> has_set_point_;  ///< By cable: under impedance control.
   std::optional<History> history_;
   std::optional<std::size_t> past_row_;  ///< What is shown; nothing: the present.
   Frame moment_;                         ///< Kept, so that taking a moment allocates little.
-  int run_number_ = 1, recordings_ = 0;
+  int run_number_ = 1;
   bool paused_ = false, end_told_ = false, broken_told_ = false, dragging_ = false;
   double speed_ = 1;
   // Simulated time keeps up with wall-clock time since this pair.

@@ -107,7 +107,6 @@ struct Server::Impl {
     Json hello = {{"type", "hello"},        {"version", kProtocolVersion},
                   {"mode", session.mode()}, {"title", session.title()},
                   {"client", who.client()}, {"driver", drivers.driver()}};
-    if (!session.notice().empty()) hello["notice"] = session.notice();
     who.SendText(Dump(hello));
     if (std::string scene = session.scene(); !scene.empty()) who.SendText(std::move(scene));
     if (const auto frame = session.frame()) who.SendFrame(frame);
@@ -134,7 +133,7 @@ struct Server::Impl {
     const int before = drivers.driver();
     drivers.Leave(who.client());
     // A hand that has gone holds nothing.
-    if (before == who.client() && session.mode() != "replay" && session.mode() != "error") {
+    if (before == who.client() && session.mode() != "replay") {
       Command drop;
       drop.type = "drop";
       session.Post(who.client(), drop);
@@ -254,6 +253,8 @@ void Server::Run() {
   impl_->Accept();
   impl_->session.Start([this] { impl_->Wake(); });
   impl_->io.run();
+  beast::error_code ignored;
+  impl_->signals.clear(ignored);
   impl_->session.Stop();
 }
 

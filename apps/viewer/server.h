@@ -31,7 +31,8 @@ class Server {
   bool Listen(std::string& error);
   std::uint16_t port() const;  ///< Bound to.
 
-  /// Serves until Stop, SIGINT, SIGTERM or SIGHUP.
+  /// Serves until Stop or one of SIGINT, SIGTERM and SIGHUP; then has stopped the session. The next
+  /// such signal ends the program.
   void Run();
   void Stop();  ///< From any thread.
 

@@ -10,6 +10,8 @@ namespace {
 constexpr std::size_t kMaxWaiting = 100000;
 /// Answers of up to a megabyte; a page asks for a few at a time.
 constexpr int kMaxSeriesWaiting = 256;
+/// How long commands are done without showing anything.
+constexpr std::chrono::milliseconds kCommandSlice{10};
 
 }  // namespace
 
@@ -30,6 +32,12 @@ void Session::Stop() {
   }
   changed_.notify_all();
   if (thread_.joinable()) thread_.join();
+  wake_ = nullptr;  // whom it wakes may be gone before the session is
+}
+
+bool Session::idle() const {
+  const std::lock_guard lock(mutex_);
+  return commands_.empty();
 }
 
 bool Session::Post(int client, Command command) {
@@ -100,29 +108,28 @@ void Session::SayEvent(double time_s, const std::string& text) {
   Say(0, {{"type", "event"}, {"time_s", time_s}, {"text", text}});
 }
 
+std::optional<std::pair<int, Command>> Session::NextCommand() {
+  const std::lock_guard lock(mutex_);
+  if (commands_.empty()) return std::nullopt;
+  std::pair<int, Command> next = std::move(commands_.front());
+  commands_.pop_front();
+  if (next.second.type == "want_series") --series_waiting_;
+  return next;
+}
+
 void Session::Loop() {
-  std::vector<std::pair<int, Command>> commands;
-  for (;;) {
-    for (const auto& [client, command] : commands) Handle(client, command);
-    commands.clear();
+  while (!stop_) {
+    const Clock::time_point slice_end = Clock::now() + kCommandSlice;
+    while (!stop_ && Clock::now() < slice_end) {
+      const auto next = NextCommand();
+      if (!next) break;
+      Handle(next->first, next->second);
+    }
+    if (stop_) return;
     const Clock::time_point until = Work();
     std::unique_lock lock(mutex_);
     changed_.wait_until(lock, until, [&] { return stop_ || !commands_.empty(); });
-    if (stop_) return;
-    commands.swap(commands_);
-    series_waiting_ = 0;
   }
 }
-
-ErrorSession::ErrorSession(std::string title, std::string notice)
-    : Session("error", std::move(title)) {
-  SetNotice(std::move(notice));
-}
-
-void ErrorSession::Handle(int client, const Command&) {
-  SayError(client, "there is nothing to drive");
-}
-
-Session::Clock::time_point ErrorSession::Work() { return Clock::now() + std::chrono::hours(1); }
 
 }  // namespace taut::viewer

@@ -1,15 +1,19 @@
-/// What is shown, on a thread of its own: a live run, a replay, or a complaint. The server asks for
-/// the newest frame and never makes the session wait; commands are kept until they are done.
+/// What is shown, on a thread of its own: a live run or a replay. The server asks for the newest
+/// frame and never makes the session wait; commands are kept until they are done, or until the
+/// session is told to stop.
 #pragma once
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "command.h"
@@ -33,12 +37,14 @@ class Session {
 
   const std::string& mode() const noexcept { return mode_; }
   const std::string& title() const noexcept { return title_; }
-  const std::string& notice() const noexcept { return notice_; }
 
   /// Starts the thread. `wake` is called from it when there is something to fetch; it must return
   /// at once.
   void Start(std::function<void()> wake);
+  /// Waits for what is being done just now; commands that wait are forgotten.
   void Stop();
+  /// After Stop: completes what the session leaves behind. False if not all of it is there.
+  virtual bool Finish() { return true; }
 
   // --- for the server, from any thread; none of them waits for the session's work ------------
   /// False if so many commands wait that something must be wrong with who sends them.
@@ -55,41 +61,34 @@ class Session {
   /// called again at the latest.
   virtual Clock::time_point Work() = 0;
 
+  /// Whether Stop was called. What takes long looks at it and ends.
+  bool stopping() const noexcept { return stop_; }
+  /// Whether no command waits.
+  bool idle() const;
+
   void Publish(Frame frame);
   void SetScene(const Json& scene, bool tell);
   void Say(int client, const Json& message);
   void SayError(int client, const std::string& text);
   void SayEvent(double time_s, const std::string& text);
-  void SetNotice(std::string notice) { notice_ = std::move(notice); }
 
  private:
   void Loop();
+  std::optional<std::pair<int, Command>> NextCommand();
 
   const std::string mode_, title_;
-  std::string notice_;
   std::thread thread_;
   std::function<void()> wake_;
   std::atomic<int> driver_{0};
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  bool stop_ = false;
-  std::vector<std::pair<int, Command>> commands_;
+  std::atomic<bool> stop_{false};
+  std::deque<std::pair<int, Command>> commands_;
   int series_waiting_ = 0;
   std::shared_ptr<const std::string> frame_;
   std::string scene_;
   std::vector<Outgoing> messages_;
-};
-
-/// Nothing to show but what is wrong.
-class ErrorSession final : public Session {
- public:
-  ErrorSession(std::string title, std::string notice);
-  ~ErrorSession() override { Stop(); }
-
- private:
-  void Handle(int client, const Command& command) override;
-  Clock::time_point Work() override;
 };
 
 }  // namespace taut::viewer

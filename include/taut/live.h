@@ -2,6 +2,7 @@
 /// it runs. Left alone, it goes through the same bits as `RunExperiment`.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,8 +37,10 @@ struct HandSpec {
 /// themselves. Runs do not know of each other.
 class LiveRun {
  public:
-  /// Brings the experiment to its start. Nothing and diagnostics as from `RunExperiment`.
-  static std::unique_ptr<LiveRun> Start(const ExperimentSpec& experiment, Diagnostics& out);
+  /// Brings the experiment to its start. Nothing and diagnostics as from `RunExperiment`, or if
+  /// `go_on`, which is asked again and again, says no before the start is found.
+  static std::unique_ptr<LiveRun> Start(const ExperimentSpec& experiment, Diagnostics& out,
+                                        const std::function<bool()>& go_on = {});
   virtual ~LiveRun() = default;
 
   /// One step of the integrator; the experiment's end is no limit. False, and nothing done, once

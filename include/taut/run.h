@@ -106,7 +106,8 @@ std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment, const 
 
 /// Brings a world to rest: rest lengths fixed, motion taken out whenever the kinetic energy peaks,
 /// until no node gains more than 1e-9 m/s in a step. Time does not pass. False if that takes more
-/// than `max_steps`.
-bool Settle(Batch& batch, int world, double step_s, int max_steps = 200000);
+/// than `max_steps`, or once `go_on`, which is asked before every step, says no.
+bool Settle(Batch& batch, int world, double step_s, const std::function<bool()>& go_on = {},
+            int max_steps = 200000);
 
 }  // namespace taut

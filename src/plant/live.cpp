@@ -183,11 +183,12 @@ class Live final : public LiveRun {
 
 }  // namespace
 
-std::unique_ptr<LiveRun> LiveRun::Start(const ExperimentSpec& experiment, Diagnostics& out) {
+std::unique_ptr<LiveRun> LiveRun::Start(const ExperimentSpec& experiment, Diagnostics& out,
+                                        const std::function<bool()>& go_on) {
   const auto model = Model::Compile(experiment.robot.def, out);
   if (!model) return nullptr;
   Batch batch(model, {});
-  if (!plant::PrepareStart(experiment, batch, out)) return nullptr;
+  if (!plant::PrepareStart(experiment, batch, out, go_on)) return nullptr;
   return std::make_unique<Live>(experiment, std::move(batch));
 }
 

@@ -30,13 +30,15 @@ double GreatestSpeed(const Batch& batch, int world) {
 
 }  // namespace
 
-bool Settle(Batch& batch, int world, double step_s, int max_steps) {
+bool Settle(Batch& batch, int world, double step_s, const std::function<bool()>& go_on,
+            int max_steps) {
   constexpr double kAtRestMPerS = 1e-9;
   const double time_s = batch.Time(world);
   Stop(batch, world);
   double energy_before = 0;
   bool first_after_stop = true, settled = false;
   for (int i = 0; i < max_steps && !settled; ++i) {
+    if (go_on && !go_on()) break;
     batch.Step(step_s);
     if (batch.Status(world).bits & kStatusNonFinite) break;
     const double energy = batch.TotalEnergy(world).kinetic_j;

@@ -9,11 +9,15 @@
 namespace taut::plant {
 namespace {
 
-bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out) {
+bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
+               const std::function<bool()>& go_on) {
   if (experiment.start == StartKind::kAsDescribed) return true;
   const std::string hint = "a mechanism or a slope may have no equilibrium; try as_described";
+  const auto settle = [&](Batch& which) {
+    return Settle(which, kTheWorld, experiment.step_s, go_on);
+  };
   if (experiment.start == StartKind::kSettled) {
-    if (Settle(batch, kTheWorld, experiment.step_s)) return true;
+    if (settle(batch)) return true;
     out.Error({}, "the robot does not settle to an equilibrium on its ground", hint);
     return false;
   }
@@ -25,7 +29,7 @@ bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out)
   if (!model) return false;
   Batch alone(model, {});
   ApplyScales(experiment.scales, alone, kTheWorld);
-  if (!Settle(alone, kTheWorld, experiment.step_s)) {
+  if (!settle(alone)) {
     out.Error({}, "the robot does not settle to an equilibrium of its cables", hint);
     return false;
   }
@@ -104,12 +108,13 @@ void ApplyScales(const std::vector<ScaleSpec>& scales, Batch& batch, int world) 
   }
 }
 
-bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out) {
+bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
+                  const std::function<bool()>& go_on) {
   ApplyScales(experiment.scales, batch, kTheWorld);
   const RobotSpec& robot = experiment.robot;
   const bool terrain = experiment.start != StartKind::kSettledFloating;
   if (!CheckOverlaps(robot, batch, terrain, false, out)) return false;
-  if (!FindStart(experiment, batch, out)) return false;
+  if (!FindStart(experiment, batch, out, go_on)) return false;
   const StartNoise& noise = experiment.start_noise;
   const bool noisy = noise.position_m > 0 || noise.heading_rad > 0;
   if (noisy) Disturb(experiment, batch);

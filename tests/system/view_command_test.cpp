@@ -137,12 +137,6 @@ TEST_F(ViewCommand, AModelStandsStillAsDescribedOrSettled) {
   EXPECT_LT(energies[1], energies[0]);
 }
 
-TEST_F(ViewCommand, ABrokenTraceIsBadInput) {
-  const CommandResult result = Run({"view", Write("broken.h5", "not a trace"), "--port", "0"});
-  EXPECT_EQ(result.status, 3);
-  EXPECT_NE(result.errors.find("broken.h5: error: is not HDF5"), std::string::npos);
-}
-
 TEST_F(ViewCommand, ATraceCutOffInTheMiddleIsReplayed) {
   const pid_t run = Start({"run", kHang, "--duration_s", "1e6", "--out", "cut", "--quiet"});
   for (std::optional<Trace> trace; !trace || trace->time_s.size() < 300;) {

@@ -290,12 +290,6 @@ TEST_F(Replay, ABrokenTraceCannotBeLoaded) {
   Diagnostics empty;
   EXPECT_FALSE(viewer::Recorded::Load((folder_ / "empty.csv").string(), "", empty));
   EXPECT_NE(empty.Format().find("has no rows: there is nothing to show"), std::string::npos);
-
-  const Serving serving(std::make_unique<viewer::ErrorSession>("trace.h5", found.Format()));
-  Client client(serving.port());
-  const Json hello = client.Await("hello");
-  EXPECT_EQ(hello["mode"], "error");
-  EXPECT_EQ(hello["notice"], found.Format());
 }
 
 TEST_F(Replay, PushesHaveTheirArrows) {

@@ -47,9 +47,9 @@ class Serving {
 inline std::unique_ptr<viewer::Session> Live(const std::string& path,
                                              viewer::LiveOptions options = {}) {
   Diagnostics found;
-  const auto experiment = LoadExperiment(path, options.overrides, found);
+  const auto experiment = LoadExperiment(path, options.inputs.overrides, found);
   EXPECT_TRUE(experiment) << found.Format();
-  options.path = path;
+  options.inputs.path = path;
   auto session = viewer::LiveSession::Create("live", *experiment, options, found);
   EXPECT_TRUE(session) << found.Format();
   return session;

@@ -101,7 +101,7 @@ export class App {
           this.failure.value = `This page speaks version ${PROTOCOL_VERSION} of the protocol, the server version ${message.version}. Reload the page; if that does not help, the server is of another version of taut.`;
           return;
         }
-        this.failure.value = message.mode === "error" ? (message.notice ?? "the server does not say why") : null;
+        this.failure.value = null;
         this.driver.value = message.driver;
         this.hello.value = message;
         break;
@@ -145,8 +145,8 @@ export class App {
   }
 }
 
-function looks({ bodies, nodes, cables, terrain, channels, phases, duration_s, reference }: Scene): string {
-  return JSON.stringify([bodies, nodes, cables, terrain, channels, phases, duration_s, reference]);
+function looks({ bodies, nodes, cables, terrain, channels, phases, duration_s, reference, notice }: Scene): string {
+  return JSON.stringify([bodies, nodes, cables, terrain, channels, phases, duration_s, reference, notice]);
 }
 
 function names({ bodies, nodes, cables }: Scene): string {

@@ -205,7 +205,7 @@ export interface Scene {
   /** Of the spring that drag pulls with; 0 unless live. */
   drag_stiffness_n_per_m: number;
   reference?: Reference;
-  /** What is amiss with the file, in a sentence. */
+  /** What is amiss with the file, or with what is recorded, in a sentence. */
   notice?: string;
 }
 
@@ -214,15 +214,12 @@ export interface HelloMessage {
   type: "hello";
   /** Of this definition. */
   version: number;
-  /** error: there is nothing to show but `notice`. */
-  mode: "live" | "replay" | "model" | "error";
+  mode: "live" | "replay" | "model";
   title: string;
   /** Who you are, 1 or more. */
   client: number;
   /** Who drives; 0: nobody. */
   driver: number;
-  /** mode error: what is wrong. */
-  notice?: string;
 }
 
 export interface SceneMessage {
@@ -286,7 +283,7 @@ export interface StepMessage {
   count?: number;
 }
 
-/** Back to the start. */
+/** Back to the start. Of several that wait, one is made. */
 export interface ResetMessage {
   type: "reset";
 }
@@ -326,6 +323,7 @@ export interface PushMessage {
   duration_s: number;
 }
 
+/** One that starts the experiment anew waits for a picture: of several values that come until then, the last one counts. What is refused is answered, and leaves the value before. */
 export interface SetParameterMessage {
   type: "set_parameter";
   name: string;

@@ -220,15 +220,6 @@ test("OneDrivesOthersWatchUntilTheyTakeOver", async () => {
   await second.waitForFunction(() => document.querySelector(".driver").textContent === "you drive");
 });
 
-test("WhatCannotBeShownIsSaidOnAPageOfItsOwn", async () => {
-  await server.stop();
-  server = await new MockServer(PAGE, { mode: "error", notice: "run.h5: is of format 9; this taut reads 1 to 2" }).start();
-  const page = await open({ wait: false });
-  await page.waitForFunction(() => document.querySelector(".failure pre")?.textContent.includes("format 9"));
-  assert.equal(await page.locator(".split").isVisible(), false);
-  await picture(page, "error");
-});
-
 test("AServerOfAnotherVersionIsRefused", async () => {
   await server.stop();
   server = await new MockServer(PAGE, { mode: "live", hello: { version: 99 } }).start();

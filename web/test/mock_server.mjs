@@ -22,12 +22,11 @@ export class MockServer {
   clients = new Map();
   next = 1;
 
-  /** mode: live, replay, error; page: the file to serve at "/". */
-  constructor(page, { mode = "replay", compare = false, notice, hello = {} } = {}) {
+  /** mode: live, replay; page: the file to serve at "/". */
+  constructor(page, { mode = "replay", compare = false, hello = {} } = {}) {
     this.page = page;
     this.mode = mode;
     this.compare = compare;
-    this.notice = notice;
     this.hello = hello;
   }
 
@@ -86,9 +85,8 @@ export class MockServer {
     });
     this.send(socket, {
       type: "hello", version: VERSION, mode: this.mode, title: "turning prism", client, driver: this.driver,
-      ...(this.notice ? { notice: this.notice } : {}), ...this.hello,
+      ...this.hello,
     });
-    if (this.mode === "error") return;
     const shown = this.mode === "live" ? this.liveScene() : { ...scene, ...(this.compare ? { reference } : {}) };
     this.send(socket, { type: "scene", scene: shown });
     socket.on("message", (data) => this.hear(client, socket, JSON.parse(data.toString())));
@@ -149,7 +147,6 @@ export class MockServer {
   }
 
   frame() {
-    if (this.mode === "error") return;
     const shown_s = this.shown_s;
     const pushes = this.pushed.filter(({ until_s }) => until_s > this.time_s)
       .map(({ node, force_n }) => [nodes.findIndex(({ name }) => name === node), ...force_n]);

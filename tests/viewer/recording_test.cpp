@@ -1,0 +1,202 @@
+// What a live session leaves behind: whole files, a limited number of them, and a word where there
+// is none.
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "apps/viewer/recording.h"
+#include "tests/viewer/serving.h"
+
+namespace taut::test {
+namespace {
+
+namespace fs = std::filesystem;
+using viewer::FrameHeader;
+using viewer::Recording;
+
+/// While it lives no file can become larger than this: writes fail as they do on a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+class RecordingFolder : public testing::Test {
+ protected:
+  RecordingFolder() {
+    std::string pattern = (fs::temp_directory_path() / "taut_recording_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+    Diagnostics found;
+    experiment_ = *LoadExperiment(kHang, {}, found);
+    run_ = LiveRun::Start(experiment_, found);
+  }
+  ~RecordingFolder() override { fs::remove_all(folder_); }
+
+  std::unique_ptr<Recording> Start() {
+    Diagnostics found;
+    auto recording = Recording::Start(
+        folder_.string(), *run_, experiment_,
+        [this](const std::string& text) { said_.push_back(text); }, found);
+    complaints_ = found.Format();
+    return recording;
+  }
+  void Restart(Recording& recording) {
+    Diagnostics found;
+    run_ = LiveRun::Start(experiment_, found);
+    recording.Restart(*run_, experiment_);
+  }
+  /// Ten steps: three rows at 200 Hz and 1 ms, the start included.
+  void Step(Recording& recording) {
+    for (int i = 0; i < 10; ++i) {
+      ASSERT_TRUE(run_->Step());
+      recording.Take(*run_);
+    }
+  }
+  std::size_t Rows(const std::string& name) const {
+    Diagnostics found;
+    const auto trace = ReadTrace((folder_ / name).string(), found);
+    return trace ? trace->time_s.size() : 0;
+  }
+  std::size_t FileCount() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
+  }
+  std::string Read(const std::string& name) const {
+    std::ifstream file(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  fs::path folder_;
+  ExperimentSpec experiment_;
+  std::unique_ptr<LiveRun> run_;
+  std::vector<std::string> said_;
+  std::string complaints_;
+};
+
+TEST_F(RecordingFolder, HundredsOfRestartsLeaveNoMorePartsThanTheLimit) {
+  const auto recording = Start();
+  for (int i = 0; i < 100; ++i) Restart(*recording);
+  EXPECT_EQ(FileCount(), 3u) << "where nothing happened there is no part";
+  EXPECT_TRUE(said_.empty());
+  for (int i = 0; i < 40; ++i) {
+    Step(*recording);
+    recording->Event(0, fmt::format("event {}", i));
+    if (i < 39) Restart(*recording);
+  }
+  EXPECT_TRUE(recording->Finish());
+  EXPECT_EQ(FileCount(), 3u * Recording::kMaxParts);
+  EXPECT_EQ(Rows("trace.h5"), 3u);
+  EXPECT_EQ(Read("events.jsonl"), "{\"time_s\":0.0,\"text\":\"event 0\"}\n");
+  const std::string last = fmt::format("trace_{}.h5", Recording::kMaxParts);
+  EXPECT_EQ(Rows(last), 3u);
+  EXPECT_EQ(Read(fmt::format("events_{}.jsonl", Recording::kMaxParts)),
+            "{\"time_s\":0.0,\"text\":\"event 39\"}\n")
+      << "the newest run is the last part";
+  ASSERT_EQ(said_.size(), 1u) << "what is not kept is said, once";
+  EXPECT_EQ(said_[0], fmt::format("{}/{} is the last part that is recorded: every restart replaces "
+                                  "it from now on",
+                                  folder_.string(), last));
+  EXPECT_EQ(recording->failure(), "");
+}
+
+TEST_F(RecordingFolder, HasOneWriter) {
+  auto first = Start();
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(Start());
+  EXPECT_EQ(complaints_, folder_.string() +
+                             ": error: another process records into this folder (give this one "
+                             "another --out)\n");
+  first.reset();
+  EXPECT_TRUE(Start());
+}
+
+TEST_F(RecordingFolder, NothingIsWrittenThroughALink) {
+  for (const char* name :
+       {"inputs.yaml", "events.jsonl", "inputs.yaml.part", "events.jsonl.part"}) {
+    std::ofstream(folder_ / fmt::format("victim_of_{}", name)) << "precious";
+    fs::create_symlink(fmt::format("victim_of_{}", name), folder_ / name);
+  }
+  const auto recording = Start();
+  ASSERT_TRUE(recording) << complaints_;
+  recording->Event(0, "something");
+  for (const char* name :
+       {"inputs.yaml", "events.jsonl", "inputs.yaml.part", "events.jsonl.part"}) {
+    EXPECT_EQ(Read(fmt::format("victim_of_{}", name)), "precious");
+  }
+  EXPECT_EQ(Read("events.jsonl"), "{\"time_s\":0.0,\"text\":\"something\"}\n");
+}
+
+TEST_F(RecordingFolder, AFileThatIsTakenAwayIsMissed) {
+  const auto recording = Start();
+  Step(*recording);
+  fs::remove(folder_ / "trace.h5");
+  EXPECT_FALSE(recording->Finish());
+  ASSERT_EQ(said_.size(), 1u);
+  EXPECT_EQ(said_[0], recording->failure());
+  EXPECT_EQ(said_[0], fmt::format("nothing is recorded any more, since t = 0.01 s of part 1: "
+                                  "{}/trace.h5: is no longer there; to record again, start taut "
+                                  "view anew",
+                                  folder_.string()));
+  Restart(*recording);
+  Step(*recording);
+  EXPECT_FALSE(recording->Finish());
+  EXPECT_EQ(said_.size(), 1u) << "once is enough";
+}
+
+TEST_F(RecordingFolder, APartThatCannotBeginLeavesTheOneThatWasThere) {
+  {
+    const auto recording = Start();
+    Step(*recording);
+    recording->Event(0, "before");
+  }
+  const std::string inputs = Read("inputs.yaml");
+  {
+    const FullDisk full(16 << 10);  // enough for the inputs, not for a trace
+    EXPECT_FALSE(Start());
+  }
+  EXPECT_NE(complaints_.find("trace.h5: cannot be written: File too large"), std::string::npos)
+      << complaints_;
+  EXPECT_EQ(Rows("trace.h5"), 3u);
+  EXPECT_EQ(Read("inputs.yaml"), inputs);
+  EXPECT_EQ(Read("events.jsonl"), "{\"time_s\":0.0,\"text\":\"before\"}\n");
+  EXPECT_EQ(FileCount(), 3u) << "nothing half made stays";
+}
+
+TEST_F(RecordingFolder, EveryClientHearsThatNothingIsRecordedLateOnesToo) {
+  std::vector<std::string> told;
+  viewer::LiveOptions options;
+  options.paused = true;
+  options.record_folder = folder_.string();
+  options.tell = [&](const std::string& text) { told.push_back(text); };
+  std::string notice;
+  {
+    const Serving serving(Live(kHang, options));
+    Client early(serving.port());
+    EXPECT_FALSE(early.Await("scene")["scene"].contains("notice"));
+    fs::remove(folder_ / "trace.h5");
+    early.Send({{"type", "step"}});
+    notice = early.AwaitText([](const Json& message) {
+      return message["type"] == "scene" && message["scene"].contains("notice");
+    })["scene"]["notice"];
+    Client late(serving.port());
+    EXPECT_EQ(late.Await("scene")["scene"]["notice"], notice);
+  }
+  EXPECT_NE(notice.find("trace.h5: is no longer there"), std::string::npos) << notice;
+  EXPECT_EQ(told, std::vector<std::string>{notice});
+}
+
+}  // namespace
+}  // namespace taut::test
