@@ -44,5 +44,6 @@ export default defineConfig({
     cssCodeSplit: false,
     chunkSizeWarningLimit: 2000,
   },
+  // `npm run dev`: open its address with the ?token= that taut view printed.
   server: { proxy: { "/ws": { target: "ws://127.0.0.1:8080", ws: true } } },
 });

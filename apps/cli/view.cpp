@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -113,9 +115,24 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
   return session;
 }
 
-std::string Url(const viewer::ServerOptions& options, std::uint16_t port) {
+/// The token that the environment names, else the random one. One that is easily guessed is none.
+bool TokenOf(const char* variable, std::string& token) {
+  const char* named = std::getenv(variable);
+  if (named == nullptr || *named == '\0') return true;
+  token = named;
+  const bool plain = std::all_of(token.begin(), token.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_';
+  });
+  if (plain && token.size() >= 16 && token.size() <= 128) return true;
+  fmt::print(stderr, "error: {} must be 16 to 128 letters, digits, - or _\n", variable);
+  return false;
+}
+
+std::string Url(const viewer::ServerOptions& options, std::uint16_t port,
+                const std::string& token) {
   std::string host = "localhost";
-  if (!viewer::IsLoopback(options.address)) {
+  if (options.address != "127.0.0.1" && options.address != "::1") {
     host = options.address;
     char name[256] = {};
     if ((host == "0.0.0.0" || host == "::") && gethostname(name, sizeof(name) - 1) == 0) {
@@ -124,8 +141,21 @@ std::string Url(const viewer::ServerOptions& options, std::uint16_t port) {
       host = "[" + host + "]";
     }
   }
-  return fmt::format("http://{}:{}/{}", host, port,
-                     options.token.empty() ? "" : "?token=" + options.token);
+  return fmt::format("http://{}:{}/?token={}", host, port, token);
+}
+
+/// The two addresses, and what is dangerous about them.
+void SayAddresses(const std::string& title, const viewer::ServerOptions& options,
+                  std::uint16_t port) {
+  fmt::print("{}: {}\nOnly to watch: {}\nCtrl-C ends it.\n", title,
+             Url(options, port, options.drive_token), Url(options, port, options.watch_token));
+  std::fflush(stdout);
+  if (viewer::IsLoopback(options.address)) return;
+  Tell(fmt::format(
+      "warning: this listens to other machines, and without encryption: whoever can read the "
+      "network between them and this one can read these addresses, and then drive. Where that "
+      "matters, leave --listen out and connect by ssh -L {0}:localhost:{0} MACHINE",
+      port));
 }
 
 int View(ViewArguments args) {
@@ -145,18 +175,24 @@ int View(ViewArguments args) {
     fmt::print(stderr, "error: --compare goes with a trace only\n");
     return kUsage;
   }
+  if (!TokenOf("TAUT_TOKEN", args.server.drive_token) ||
+      !TokenOf("TAUT_WATCH_TOKEN", args.server.watch_token)) {
+    return kUsage;
+  }
+  if (args.server.drive_token == args.server.watch_token) {
+    fmt::print(stderr, "error: TAUT_TOKEN and TAUT_WATCH_TOKEN must differ\n");
+    return kUsage;
+  }
   int exit = kOk;
   const std::unique_ptr<Session> session =
       IsTrace(args.file) ? MakeReplay(args, exit) : MakeLive(args, exit);
   if (!session) return exit;
-  if (!viewer::IsLoopback(args.server.address)) args.server.token = viewer::RandomToken();
   viewer::Server server(*session, viewer::ReadWebFiles(*web), args.server);
   if (!server.Listen(error)) {
     fmt::print(stderr, "error: {}\n", error);
     return kFailed;
   }
-  fmt::print("{}: {}\nCtrl-C ends it.\n", session->title(), Url(args.server, server.port()));
-  std::fflush(stdout);
+  SayAddresses(session->title(), args.server, server.port());
   server.Run();
   return session->Finish() ? kOk : kFailed;
 }
@@ -183,15 +219,21 @@ void AddView(CLI::App& app, int& exit_code) {
   view->add_option("--out", args->out,
                    "Live: folder to record into (trace, inputs, what was done); default: none");
   view->add_option("--listen", args->server.address,
-                   "Address to listen on (default: 127.0.0.1, this machine only)");
+                   "Address to listen on (default: 127.0.0.1, this machine only)")
+      ->check([](const std::string& address) {
+        if (viewer::IsAddress(address)) return std::string();
+        return fmt::format(
+            "\"{}\" is not an address; 127.0.0.1 is this machine, 0.0.0.0 listens to all", address);
+      });
   view->add_option("--port", args->server.port, "Port (default: 8080; 0: any that is free)");
   view->footer(
       "Examples:\n"
       "  taut view experiments/push_20n.yaml --speed 0.25\n"
       "  taut view runs/push_20n/trace.h5 --compare runs/other/trace.h5\n"
       "  taut view models/tetraspine3.yaml --settled\n"
-      "Open the address that it prints in a browser. With --listen other than this machine, the\n"
-      "address has a secret token; give it only to those who may look and drive.");
+      "It prints two addresses, each with a secret token, to open in a browser: who has the first\n"
+      "may look and drive, who has the second look. The tokens are new every time, unless the\n"
+      "environment names them: TAUT_TOKEN, TAUT_WATCH_TOKEN.");
   view->callback([args, &exit_code] { exit_code = View(*args); });
 }
 

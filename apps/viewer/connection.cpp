@@ -12,8 +12,11 @@ constexpr std::size_t kMaxWaitingBytes = 64 << 20;
 
 }  // namespace
 
-Connection::Connection(tcp::socket socket, int client, Handlers handlers)
-    : stream_(std::move(socket)), client_(client), handlers_(std::move(handlers)) {}
+Connection::Connection(tcp::socket socket, int client, bool may_drive, Handlers handlers)
+    : stream_(std::move(socket)),
+      client_(client),
+      may_drive_(may_drive),
+      handlers_(std::move(handlers)) {}
 
 void Connection::Accept(http::request<http::empty_body> request) {
   beast::get_lowest_layer(stream_).expires_never();

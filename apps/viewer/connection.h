@@ -19,9 +19,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
     std::function<void(Connection&)> closed;
   };
 
-  Connection(tcp::socket socket, int client, Handlers handlers);
+  Connection(tcp::socket socket, int client, bool may_drive, Handlers handlers);
 
   int client() const noexcept { return client_; }
+  bool may_drive() const noexcept { return may_drive_; }
   void Accept(http::request<http::empty_body> request);
   void SendText(std::string text);
   void SendFrame(std::shared_ptr<const std::string> frame);
@@ -34,6 +35,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   beast::websocket::stream<beast::tcp_stream> stream_;
   int client_;
+  bool may_drive_;
   Handlers handlers_;
   beast::flat_buffer received_;
   std::deque<std::string> texts_;

@@ -65,9 +65,18 @@ std::string_view MimeType(std::string_view path) {
   return "application/octet-stream";
 }
 
-}  // namespace
+Access AccessOf(std::string_view token, const ServerOptions& options) {
+  if (SameSecret(token, options.drive_token)) return Access::kDrive;
+  return SameSecret(token, options.watch_token) ? Access::kWatch : Access::kNone;
+}
 
-bool MayEnter(const HttpRequest& request, const ServerOptions& options) {
+/// Browsers send a cookie to every port of a machine, so that each server needs its own.
+std::string CookieName(const ServerOptions& options) {
+  return fmt::format("taut_token_{}", options.port);
+}
+
+/// Whether the request is meant for this server and comes from its own pages.
+bool IsOurs(const HttpRequest& request, const ServerOptions& options) {
   const std::string_view host = View(request[http::field::host]);
   // A name that leads here although it is not ours is how foreign pages reach local servers.
   if (IsLoopback(options.address)) {
@@ -81,51 +90,76 @@ bool MayEnter(const HttpRequest& request, const ServerOptions& options) {
     const std::size_t slashes = origin.find("://");
     if (slashes == origin.npos || origin.substr(slashes + 3) != host) return false;
   }
-  if (options.token.empty()) return true;
-  return SameSecret(ValueOf(Query(request), "token", '&'), options.token) ||
-         SameSecret(ValueOf(View(request[http::field::cookie]), "taut_token", ';'), options.token);
+  return true;
 }
 
-HttpResponse Answer(const HttpRequest& request, const WebFiles& files,
-                    const ServerOptions& options) {
+HttpResponse Begin(const HttpRequest& request) {
   HttpResponse response;
   response.version(request.version());
   response.keep_alive(request.keep_alive());
   response.set(http::field::cache_control, "no-cache");
   response.set("X-Content-Type-Options", "nosniff");
   response.set("Referrer-Policy", "no-referrer");
-  const auto say = [&](http::status status, const std::string& text) {
-    response.result(status);
-    response.set(http::field::content_type, "text/plain; charset=utf-8");
-    response.body() = text + "\n";
-  };
-  std::string path(View(request.target()).substr(0, View(request.target()).find('?')));
-  if (path == "/") path = "/index.html";
-  const auto file = files.find(path);
-  if (!MayEnter(request, options)) {
-    say(http::status::forbidden, "Use the whole address that taut printed, with its token.");
-  } else if (request.method() != http::verb::get && request.method() != http::verb::head) {
-    response.set(http::field::allow, "GET, HEAD");
-    say(http::status::method_not_allowed, "This server has pages to get, and nothing else.");
-  } else if (file == files.end()) {
-    say(http::status::not_found, "There is no such page here.");
-  } else {
-    response.result(http::status::ok);
-    response.set(http::field::content_type, std::string(MimeType(path)));
-    // Nothing is ever fetched from elsewhere. The page holds its own script.
-    response.set("Content-Security-Policy",
-                 "default-src 'self'; script-src 'self' 'unsafe-inline'; img-src 'self' data: "
-                 "blob:; media-src 'self' blob:; "
-                 "style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; base-uri 'none'; "
-                 "form-action 'none'; frame-ancestors 'none'");
-    if (!options.token.empty()) {
-      response.set(http::field::set_cookie,
-                   fmt::format("taut_token={}; HttpOnly; SameSite=Strict; Path=/", options.token));
-    }
-    response.body() = file->second;
-  }
+  return response;
+}
+
+void End(const HttpRequest& request, HttpResponse& response) {
   response.content_length(response.body().size());
   if (request.method() == http::verb::head) response.body().clear();
+}
+
+}  // namespace
+
+Access AccessOf(const HttpRequest& request, const ServerOptions& options) {
+  if (!IsOurs(request, options)) return Access::kNone;
+  const Access by_query = AccessOf(ValueOf(Query(request), "token", '&'), options);
+  if (by_query != Access::kNone) return by_query;
+  return AccessOf(ValueOf(View(request[http::field::cookie]), CookieName(options), ';'), options);
+}
+
+HttpResponse Refusal(const HttpRequest& request, http::status status, const std::string& text) {
+  HttpResponse response = Begin(request);
+  response.result(status);
+  response.set(http::field::content_type, "text/plain; charset=utf-8");
+  response.body() = text + "\n";
+  End(request, response);
+  return response;
+}
+
+HttpResponse Answer(const HttpRequest& request, const WebFiles& files,
+                    const ServerOptions& options) {
+  std::string path(View(request.target()).substr(0, View(request.target()).find('?')));
+  if (path == "/") path = "/index.html";
+  const Access access = AccessOf(request, options);
+  if (access == Access::kNone) {
+    return Refusal(request, http::status::forbidden,
+                   "Use the whole address that taut printed, with its token.");
+  }
+  if (request.method() != http::verb::get && request.method() != http::verb::head) {
+    HttpResponse response = Refusal(request, http::status::method_not_allowed,
+                                    "This server has pages to get, and nothing else.");
+    response.set(http::field::allow, "GET, HEAD");
+    return response;
+  }
+  const auto file = files.find(path);
+  if (file == files.end()) {
+    return Refusal(request, http::status::not_found, "There is no such page here.");
+  }
+  HttpResponse response = Begin(request);
+  response.result(http::status::ok);
+  response.set(http::field::content_type, std::string(MimeType(path)));
+  // Nothing is ever fetched from elsewhere. The page holds its own script.
+  response.set("Content-Security-Policy",
+               "default-src 'self'; script-src 'self' 'unsafe-inline'; img-src 'self' data: "
+               "blob:; media-src 'self' blob:; "
+               "style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; base-uri 'none'; "
+               "form-action 'none'; frame-ancestors 'none'");
+  // So that a reload without the query, and what the page asks for, come in, too.
+  response.set(http::field::set_cookie,
+               fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", CookieName(options),
+                           access == Access::kDrive ? options.drive_token : options.watch_token));
+  response.body() = file->second;
+  End(request, response);
   return response;
 }
 

@@ -15,16 +15,14 @@
 #include "connection.h"
 #include "drivers.h"
 #include "http_page.h"
+#include "http_sockets.h"
 #include "protocol_messages.h"
 
 namespace taut::viewer {
 namespace {
 
-constexpr std::size_t kMaxClients = 64;
-/// Sockets of plain HTTP, which a browser opens six of.
-constexpr std::size_t kMaxHttp = 256;
-constexpr std::chrono::seconds kHttpPatience{30};
-constexpr std::uint32_t kMaxHeaderBytes = 8 * 1024;
+/// Those who may only watch leave room for those who may drive.
+constexpr std::size_t kMaxClients = 64, kMaxWatchers = 48;
 
 }  // namespace
 
@@ -32,65 +30,37 @@ struct Server::Impl {
   Impl(Session& the_session, WebFiles the_files, ServerOptions the_options)
       : session(the_session), files(std::move(the_files)), options(std::move(the_options)) {}
 
-  /// One socket that speaks plain HTTP, until it closes or becomes a WebSocket.
-  struct Http : std::enable_shared_from_this<Http> {
-    Http(tcp::socket socket, Impl& the_server) : stream(std::move(socket)), server(the_server) {
-      ++server.http_count;
+  /// Takes a WebSocket over, answers anything else.
+  std::optional<HttpResponse> Serve(HttpRequest& request, beast::tcp_stream& stream) {
+    const std::string target(request.target().substr(0, request.target().find('?')));
+    const Access access = AccessOf(request, options);
+    if (!websocket::is_upgrade(request) || target != "/ws" || access == Access::kNone) {
+      return Answer(request, files, options);
     }
-    ~Http() { --server.http_count; }
-
-    void Read() {
-      parser.emplace();
-      parser->header_limit(kMaxHeaderBytes);
-      parser->body_limit(0);
-      stream.expires_after(kHttpPatience);
-      http::async_read(stream, buffer, *parser,
-                       [self = shared_from_this()](beast::error_code failed, std::size_t) {
-                         if (!failed) self->Serve(self->parser->release());
-                       });
+    if (clients.size() >= (access == Access::kDrive ? kMaxClients : kMaxWatchers)) {
+      return Refusal(request, http::status::service_unavailable, "Too many look at this already.");
     }
-
-    void Serve(HttpRequest request) {
-      const std::string target(request.target().substr(0, request.target().find('?')));
-      if (websocket::is_upgrade(request) && target == "/ws" && MayEnter(request, server.options) &&
-          server.clients.size() < kMaxClients) {
-        server.Open(stream.release_socket(), std::move(request));
-        return;
-      }
-      response = Answer(request, server.files, server.options);
-      serializer.emplace(*response);
-      http::async_write(stream, *serializer,
-                        [self = shared_from_this()](beast::error_code failed, std::size_t) {
-                          if (failed) return;
-                          if (self->response->keep_alive()) return self->Read();
-                          self->stream.socket().shutdown(tcp::socket::shutdown_send, failed);
-                        });
-    }
-
-    beast::tcp_stream stream;
-    Impl& server;
-    beast::flat_buffer buffer{64 * 1024};
-    std::optional<http::request_parser<http::empty_body>> parser;
-    std::optional<HttpResponse> response;
-    std::optional<http::response_serializer<http::string_body>> serializer;
-  };
+    Open(stream.release_socket(), std::move(request), access);
+    return std::nullopt;
+  }
 
   void Accept() {
     acceptor.async_accept([this](beast::error_code failed, tcp::socket socket) {
       if (!acceptor.is_open()) return;
-      if (!failed && http_count < kMaxHttp) {
+      if (!failed) {
         beast::error_code ignored;
         socket.set_option(tcp::no_delay(true), ignored);
-        std::make_shared<Http>(std::move(socket), *this)->Read();
+        sockets.Add(std::move(socket));
+        return Accept();
       }
-      if (!failed) return Accept();
       // Out of file descriptors, most likely: try again once some are free.
+      sockets.DropOldest();
       pause.expires_after(std::chrono::milliseconds(100));
       pause.async_wait([this](beast::error_code) { Accept(); });
     });
   }
 
-  void Open(tcp::socket socket, HttpRequest request) {
+  void Open(tcp::socket socket, HttpRequest request, Access access) {
     const int client = ++last_client;
     Connection::Handlers handlers;
     handlers.opened = [this](Connection& who) { Opened(who); };
@@ -98,7 +68,8 @@ struct Server::Impl {
       return Received(who, text, reason);
     };
     handlers.closed = [this](Connection& who) { Closed(who); };
-    std::make_shared<Connection>(std::move(socket), client, std::move(handlers))
+    std::make_shared<Connection>(std::move(socket), client, access == Access::kDrive,
+                                 std::move(handlers))
         ->Accept(std::move(request));
   }
 
@@ -107,6 +78,7 @@ struct Server::Impl {
     Json hello = {{"type", "hello"},        {"version", kProtocolVersion},
                   {"mode", session.mode()}, {"title", session.title()},
                   {"client", who.client()}, {"driver", drivers.driver()}};
+    if (!who.may_drive()) hello["watch_only"] = true;
     who.SendText(Dump(hello));
     if (std::string scene = session.scene(); !scene.empty()) who.SendText(std::move(scene));
     if (const auto frame = session.frame()) who.SendFrame(frame);
@@ -115,6 +87,12 @@ struct Server::Impl {
   bool Received(Connection& who, const std::string& text, std::string& reason) {
     std::optional<Command> command = ParseCommand(text, reason);
     if (!command) return false;
+    if (!who.may_drive() && command->type != "want_series") {
+      who.SendText(
+          Dump({{"type", "error"},
+                {"text", "this link is for watching only; taut printed another to drive"}}));
+      return true;
+    }
     const int before = drivers.driver();
     if (!drivers.Allow(who.client(), command->type)) {
       who.SendText(Dump({{"type", "error"},
@@ -177,7 +155,7 @@ struct Server::Impl {
 
   Session& session;
   const WebFiles files;
-  const ServerOptions options;
+  ServerOptions options;
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
   asio::steady_timer pause{io};
@@ -186,7 +164,9 @@ struct Server::Impl {
   Drivers drivers;
   std::atomic<bool> woken{false};
   int last_client = 0;
-  std::size_t http_count = 0;
+  HttpSockets sockets{options, [this](HttpRequest& request, beast::tcp_stream& stream) {
+                        return Serve(request, stream);
+                      }};
 };
 
 Server::Server(Session& session, WebFiles files, const ServerOptions& options)
@@ -214,13 +194,14 @@ bool Server::Listen(std::string& error) {
   beast::error_code failed;
   const auto address = asio::ip::make_address(impl_->options.address, failed);
   if (failed) {
-    error =
-        fmt::format("\"{}\" is not an address; 127.0.0.1 is this machine, 0.0.0.0 listens to all",
-                    impl_->options.address);
+    error = fmt::format("\"{}\" is not an address", impl_->options.address);
     return false;
   }
   const std::uint16_t port = impl_->options.port;
-  if (Bind(impl_->acceptor, {address, port}, failed)) return true;
+  if (Bind(impl_->acceptor, {address, port}, failed)) {
+    impl_->options.port = this->port();
+    return true;
+  }
   if (failed != asio::error::address_in_use) {
     error = fmt::format("cannot listen on {} port {}: {}", impl_->options.address, port,
                         failed.message());
@@ -260,6 +241,12 @@ void Server::Run() {
 
 void Server::Stop() {
   asio::post(impl_->io, [this] { impl_->io.stop(); });
+}
+
+bool IsAddress(const std::string& address) {
+  beast::error_code failed;
+  asio::ip::make_address(address, failed);
+  return !failed;
 }
 
 bool IsLoopback(const std::string& address) {

@@ -2,6 +2,8 @@
 /// thread that calls Run; the session has its own.
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -14,11 +16,21 @@ namespace taut::viewer {
 /// Files by the path that a browser asks for: "/index.html", "/assets/index.js".
 using WebFiles = std::map<std::string, std::string>;
 
+/// 32 hexadecimal digits that nobody can guess.
+std::string RandomToken();
+
 struct ServerOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8080;  ///< 0: any that is free.
-  /// Browsers must show it, in the URL or as the cookie that the URL gave them; empty: no token.
-  std::string token;
+  /// Browsers must show one of them, in the URL or as the cookie that the URL gave them. With the
+  /// first they may drive, with the second look.
+  std::string drive_token = RandomToken(), watch_token = RandomToken();
+
+  /// Sockets of plain HTTP, of which a browser opens six. Where there are as many, a new one takes
+  /// the place of the one whose request is the longest unfinished.
+  std::size_t max_http = 256;
+  /// How long a request, and the next on its socket, may take to come, and an answer to go.
+  std::chrono::milliseconds request_patience{10'000}, answer_patience{60'000};
 };
 
 class Server {
@@ -41,10 +53,10 @@ class Server {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Whether it is the number of one, as 127.0.0.1 or ::1.
+bool IsAddress(const std::string& address);
+
 /// Whether only programs of this machine can reach the address.
 bool IsLoopback(const std::string& address);
-
-/// 32 hexadecimal digits that nobody can guess.
-std::string RandomToken();
 
 }  // namespace taut::viewer

@@ -1,77 +1,21 @@
-// `taut view` and `taut report` as a user meets them.
-#include <chrono>
-#include <regex>
-#include <thread>
+// `taut view` as a user meets it.
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <sstream>
 
 #include "taut/trace.h"
-#include "tests/system/command.h"
-#include "tests/viewer/client.h"
+#include "tests/system/view_command.h"
 
 namespace taut::test {
 namespace {
 
-const std::string kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
-const std::string kNoPages =
-    "error: the viewer's pages are missing; they are built with taut where node and npm are "
-    "(apt-get install nodejs npm, then script/build)\n";
-/// What reports are made of, without what makes it a page.
-const std::string kTemplate =
-    R"(<!doctype html><script type="application/json" id="taut-report"></script><p>end)";
-
-class ViewCommand : public CommandTest {
- protected:
-  ViewCommand() {
-    std::filesystem::create_directory(Path("web"));
-    Write("web/index.html", "<p>the page");
-    Write("web/report.html", kTemplate);
-  }
-  ~ViewCommand() override {
-    if (viewing_ > 0) Stop(viewing_);  // the test threw
-  }
-
-  CommandResult Run(const std::vector<std::string>& arguments, const std::string& web = "web") {
-    return Taut(arguments, [&] { setenv("TAUT_WEB", web.c_str(), 1); });
-  }
-
-  /// Starts `taut view` on a free port and waits for its address.
-  pid_t StartView(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), "view");
-    arguments.insert(arguments.end(), {"--port", "0"});
-    std::filesystem::remove(Path("out.txt"));
-    const pid_t pid = Start(arguments, [] { setenv("TAUT_WEB", "web", 1); });
-    viewing_ = pid;
-    const std::regex address("http://([^:]+):([0-9]+)/([^\n]*)\n");
-    std::smatch found;
-    while (waitpid(pid, nullptr, WNOHANG) == 0) {
-      const std::string said = Read(Path("out.txt"));
-      if (std::regex_search(said, found, address)) {
-        host_ = found[1];
-        port_ = static_cast<std::uint16_t>(std::stoi(found[2]));
-        query_ = found[3];
-        return pid;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    viewing_ = -1;
-    ADD_FAILURE() << "ended without an address: " << Read(Path("out.txt")) << Read(Path("err.txt"));
-    return pid;
-  }
-
-  int Stop(pid_t pid, int number = SIGINT) {
-    kill(pid, number);
-    viewing_ = -1;
-    return End(pid).status;
-  }
-
-  pid_t viewing_ = -1;
-  std::string host_, query_;
-  std::uint16_t port_ = 0;
-};
-
 TEST_F(ViewCommand, ServesALiveRunUntilCtrlC) {
   const pid_t pid = StartView({kHang});
   EXPECT_EQ(host_, "localhost");
-  EXPECT_EQ(query_, "");
+  EXPECT_EQ(query_, "?token=" + kDriveToken);
+  EXPECT_EQ(watch_, fmt::format("http://localhost:{}/?token={}", port_, kWatchToken));
   EXPECT_EQ(Get(port_, "/").body, "<p>the page");
   EXPECT_EQ(Get(port_, "/report.html").status, 404u);  // a template is no page
   {
@@ -80,9 +24,32 @@ TEST_F(ViewCommand, ServesALiveRunUntilCtrlC) {
     client.AwaitFrame([](const auto& f) { return f[viewer::kFrameTimeS] > 0.1; });
   }
   EXPECT_EQ(Stop(pid), 0);
+  EXPECT_EQ(Read(Path("err.txt")), "");
 }
 
-TEST_F(ViewCommand, EndsWithItsTerminal) { EXPECT_EQ(Stop(StartView({kHang}), SIGHUP), 0); }
+/// The queue would take minutes.
+TEST_F(ViewCommand, SignalsEndItWhateverWaits) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const pid_t pid = StartView({kPush, "--paused"});
+    Client client(port_);
+    client.Await("scene");
+    for (int i = 0; i < 20000; ++i) {
+      if (i % 2 == 0) {
+        client.Send({{"type", "step"}, {"count", 1000}});
+      } else {
+        client.Send({{"type", "set_parameter"}, {"name", "push_n"}, {"value", i % 80}});
+      }
+    }
+    EXPECT_EQ(Stop(pid, signal), 0) << signal;
+  }
+}
+
+TEST_F(ViewCommand, AHangupIsNothingToWhatNohupStarted) {
+  const pid_t pid = StartView({kHang, "--paused"}, [] { std::signal(SIGHUP, SIG_IGN); });
+  kill(pid, SIGHUP);
+  EXPECT_EQ(Get(port_, "/").status, 200u);
+  EXPECT_EQ(Stop(pid), 0);
+}
 
 TEST_F(ViewCommand, TheStepIsTheOneAskedForAfterARestartToo) {
   const pid_t pid = StartView({kHang, "--paused", "--step_s", "0.01"});
@@ -97,13 +64,98 @@ TEST_F(ViewCommand, TheStepIsTheOneAskedForAfterARestartToo) {
   EXPECT_EQ(Stop(pid), 0);
 }
 
-TEST_F(ViewCommand, ListeningToOthersNeedsTheTokenOfTheAddress) {
+TEST_F(ViewCommand, TheTokensOfTheAddressesAreRandomUnlessNamed) {
+  std::vector<std::string> seen;
+  for (int i = 0; i < 2; ++i) {
+    const pid_t pid = StartView({kHang, "--paused"}, [] {
+      unsetenv("TAUT_TOKEN");
+      setenv("TAUT_WATCH_TOKEN", "", 1);
+    });
+    const std::string watch = watch_.substr(watch_.find('?'));
+    for (const std::string& query : {query_, watch}) {
+      EXPECT_TRUE(std::regex_match(query, std::regex("\\?token=[0-9a-f]{32}"))) << query;
+      EXPECT_EQ(Get(port_, "/" + query, {{"Cookie", ""}}).status, 200u);
+      seen.push_back(query);
+    }
+    EXPECT_EQ(Get(port_, "/", {{"Cookie", ""}}).status, 403u);
+    EXPECT_FALSE(Client(port_, "/ws").open());
+    EXPECT_TRUE(Client(port_, "/ws" + watch).Await("hello").contains("watch_only"));
+    EXPECT_EQ(Stop(pid), 0);
+  }
+  std::sort(seen.begin(), seen.end());
+  EXPECT_EQ(std::unique(seen.begin(), seen.end()), seen.end());
+  for (const auto& [token, why] :
+       {std::pair("short", "error: TAUT_TOKEN must be 16 to 128 letters, digits, - or _\n"),
+        std::pair("semicolons;make;cookies",
+                  "error: TAUT_TOKEN must be 16 to 128 letters, digits, - or _\n"),
+        std::pair("the-same-for-both", "error: TAUT_TOKEN and TAUT_WATCH_TOKEN must differ\n")}) {
+    const CommandResult result = Taut({"view", kHang}, [token = token] {
+      setenv("TAUT_WEB", "web", 1);
+      setenv("TAUT_TOKEN", token, 1);
+      setenv("TAUT_WATCH_TOKEN", "the-same-for-both", 1);
+    });
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(result.errors, why);
+  }
+}
+
+TEST_F(ViewCommand, ListeningToOthersIsSaidToBeReadable) {
   const pid_t pid = StartView({kHang, "--listen", "0.0.0.0", "--paused"});
-  ASSERT_EQ(query_.rfind("?token=", 0), 0u) << query_;
-  EXPECT_EQ(query_.size(), 7u + 32u);
-  EXPECT_EQ(Get(port_, "/").status, 403u);
-  EXPECT_EQ(Get(port_, "/" + query_).status, 200u);
+  EXPECT_EQ(Get(port_, "/", {{"Cookie", ""}}).status, 403u);
+  EXPECT_EQ(Get(port_, "/" + query_, {{"Cookie", ""}}).status, 200u);
   EXPECT_EQ(Stop(pid), 0);
+  const std::string said = Read(Path("err.txt"));
+  EXPECT_EQ(said.rfind("warning: this listens to other machines, and without encryption: ", 0), 0u);
+  EXPECT_NE(said.find(fmt::format("ssh -L {0}:localhost:{0} MACHINE\n", port_)), said.npos) << said;
+}
+
+/// A limit to the size of files stands for a full disk: writes fail in the same way.
+TEST_F(ViewCommand, AFullDiskIsSaidToAllAndAtTheTerminal) {
+  const auto limit = [] {
+    const rlimit bytes{400'000, 400'000};
+    setrlimit(RLIMIT_FSIZE, &bytes);
+  };
+  for (const bool trace : {true, false}) {
+    const pid_t pid = StartView({kHang, "--out", "recorded", "--max", "--paused"}, limit);
+    Client client(port_);
+    client.Await("hello");
+    if (trace) {
+      client.Send({{"type", "step"}, {"count", 1000}});
+      for (std::size_t rows = 0; rows < 201;) {  // until they are in the file
+        Diagnostics not_yet;
+        const auto written = ReadTrace(Path("recorded/trace.h5"), not_yet);
+        rows = written ? written->time_s.size() : 0;
+      }
+      client.Send({{"type", "resume"}});
+      client.AwaitFrame([](const auto& f) {
+        return f[viewer::kFrameTimeS] >= 5 && f[viewer::kFramePaused] == 1;
+      });
+      client.Send({{"type", "resume"}});  // beyond the experiment's end
+    } else {
+      for (int i = 0; i < 10000; ++i) {
+        client.Send({{"type", "set_parameter"}, {"name", "friction_scale"}, {"value", 1}});
+      }
+    }
+    const std::string notice = client.AwaitText([](const Json& message) {
+      return message["type"] == "scene" && message["scene"].contains("notice");
+    })["scene"]["notice"];
+    const std::string file = trace ? "recorded/trace.h5" : "recorded/events.jsonl";
+    EXPECT_EQ(notice.rfind("nothing is recorded any more, since t = ", 0), 0u) << notice;
+    EXPECT_NE(notice.find(" of part 1: " + file + ": cannot be written: File too large"),
+              notice.npos)
+        << notice;
+    Client late(port_);
+    EXPECT_EQ(late.Await("scene")["scene"]["notice"], notice);
+    EXPECT_EQ(Stop(pid), 1) << "what was to be recorded is not all there";
+    EXPECT_EQ(Read(Path("err.txt")), notice + "\n");
+    Diagnostics found;
+    const auto kept = ReadTrace(Path("recorded/trace.h5"), found);
+    ASSERT_TRUE(kept) << found.Format();
+    EXPECT_GE(kept->time_s.size(), trace ? 201u : 1u);
+    std::istringstream events(Read(Path("recorded/events.jsonl")));
+    for (std::string line; std::getline(events, line);) EXPECT_FALSE(Json::parse(line).is_null());
+    EXPECT_TRUE(trace || Read(Path("recorded/events.jsonl")).ends_with("}\n"));
+  }
 }
 
 TEST_F(ViewCommand, APortInUseIsNamed) {
@@ -168,125 +220,37 @@ TEST_F(ViewCommand, BadInputIsSaidAtOnce) {
   EXPECT_EQ(result.status, 1);
   EXPECT_EQ(result.errors, kNoPages);
   result = Run({"view", kHang, "--listen", "here"});
-  EXPECT_EQ(result.status, 1);
-  EXPECT_EQ(result.errors,
-            "error: \"here\" is not an address; 127.0.0.1 is this machine, 0.0.0.0 listens to "
-            "all\n");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.errors.find("\"here\" is not an address; 127.0.0.1 is this machine, 0.0.0.0 "
+                               "listens to all\n"),
+            std::string::npos)
+      << result.errors;
   EXPECT_EQ(Run({"view", kHang, "--speed", "0"}).status, 2);
   EXPECT_EQ(Run({"view", kHang, "--speed", "2", "--max"}).status, 2);
   EXPECT_EQ(Run({"view", kHang, "--speed", "nan"}).status, 2);
   EXPECT_EQ(Run({"view", kHang, "--step_s", "2"}).status, 2);
   EXPECT_EQ(Run({"view", "absent.yaml"}).status, 3);
+  EXPECT_EQ(Run({"view", "."}).status, 3);
+  EXPECT_EQ(Run({"view", kHang, "--set", "luck=1"}).status, 3);
+  const std::string good = Write("good.csv", "time_s,a/tension_n\n0,1\n1,2\n");
+  for (const auto& [words, why] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"absent.h5"}, "absent.h5: error: cannot be opened: No such file or directory"},
+           {{Write("broken.h5", "not a trace")}, "broken.h5: error: is not HDF5"},
+           {{Write("empty.csv", "time_s,a/tension_n\n")}, "has no rows"},
+           {{good, "--compare", "absent.h5"}, "absent.h5: error: cannot be opened"}}) {
+    std::vector<std::string> all{"view"};
+    all.insert(all.end(), words.begin(), words.end());
+    result = Run(all);
+    EXPECT_EQ(result.status, 3) << why;
+    EXPECT_EQ(result.output, "") << "no address: there is nothing to see";
+    EXPECT_NE(result.errors.find(why), std::string::npos) << result.errors;
+  }
   result = Run({"view", kHang, "--compare", "a.h5"});
   EXPECT_EQ(result.status, 2);
   EXPECT_EQ(result.errors, "error: --compare goes with a trace only\n");
   result = Run({"view", "a.h5", "--out", "folder"});
   EXPECT_EQ(result.status, 2);
   EXPECT_EQ(result.errors, "error: --set, --step_s, --settled and --out do not go with a trace\n");
-}
-
-/// The data of a report.
-Json DataOf(const std::string& page) {
-  const std::string open = R"(<script type="application/json" id="taut-report">)";
-  const std::size_t from = page.find(open) + open.size();
-  return Json::parse(page.substr(from, page.find("</script>", from) - from));
-}
-
-TEST_F(ViewCommand, AReportHoldsTheRunAndTheNumbersOfItsSummary) {
-  const CommandResult run = Run({"run", kHang, "--report", "--out", "run"});
-  EXPECT_EQ(run.status, 0);
-  EXPECT_NE(run.output.find("Report: run/report.html\n"), std::string::npos) << run.output;
-  const std::string page = Read(Path("run/report.html"));
-  EXPECT_EQ(page.substr(page.size() - 6), "<p>end");
-  const Json report = DataOf(page);
-  EXPECT_EQ(report["version"], viewer::kProtocolVersion);
-  EXPECT_EQ(report["title"], "hang");
-  EXPECT_EQ(report["summary"], Json::parse(Read(Path("run/summary.json"))));
-  EXPECT_EQ(report["inputs"], Read(Path("run/inputs.yaml")));
-  EXPECT_EQ(report["metadata"]["experiment"], "hang");
-  EXPECT_EQ(report["scene"]["bodies"].size(), 1u);
-  const std::size_t numbers =
-      report["frame_count"].get<std::size_t>() * report["frame_values"].get<std::size_t>();
-  EXPECT_EQ(report["frames_base64"].get<std::string>().size(), (8 * numbers + 2) / 3 * 4);
-  EXPECT_EQ(report["frame_count"], 151);  // 30 a second, both ends
-  ASSERT_EQ(report["rows"].size(), 1u);
-  EXPECT_EQ(report["rows"][0]["count"], 1001);  // every row: 5 s at 200 Hz
-  EXPECT_EQ(report["rows"][0]["channels"].size(), report["scene"]["channels"].size());
-  EXPECT_EQ(report["comparison"], nullptr);
-}
-
-TEST_F(ViewCommand, AReportComparesTwoTraces) {
-  Run({"run", kHang, "--quiet", "--out", "a"});
-  Run({"run", kHang, "--quiet", "--out", "b", "--set", "mass_kg=0.6"});
-  const CommandResult result =
-      Run({"report", "b/trace.h5", "--compare", "a/trace.h5", "--out", "both.html"});
-  EXPECT_EQ(result.status, 0) << result.errors;
-  EXPECT_EQ(result.output, "Report: both.html\n");
-  const Json report = DataOf(Read(Path("both.html")));
-  EXPECT_EQ(report["scene"]["reference"]["name"], "hang (a/trace.h5)");
-  const CommandResult compare = Run({"compare", "b/trace.h5", "a/trace.h5", "--json"});
-  EXPECT_EQ(report["comparison"]["channels"].size(),
-            Json::parse(compare.output)["channels"].size());
-  EXPECT_EQ(report["comparison"]["channels"][0]["rmse"],
-            Json::parse(compare.output)["channels"][0]["rmse"]);
-  ASSERT_EQ(report["rows"].size(), 2u);
-  EXPECT_EQ(report["rows"][1]["source"], 1);
-  EXPECT_EQ(report["rows"][0]["channels"], report["rows"][1]["channels"]);
-}
-
-TEST_F(ViewCommand, NothingInAReportCanEndTheElementThatHoldsIt) {
-  const std::string text = Read(TAUT_SOURCE_DIR "/experiments/hang.yaml");
-  std::string evil = text;
-  const std::string model = "../models/hanging_mass.yaml";
-  evil.replace(evil.find(model), model.size(), TAUT_SOURCE_DIR "/models/hanging_mass.yaml");
-  const std::string key = "description: ";
-  evil.insert(evil.find(key) + key.size(), "\"</script><script>alert(1)</script>\" #");
-  const CommandResult run = Run({"run", Write("evil.yaml", evil), "--report", "--out", "run"});
-  ASSERT_EQ(run.status, 0) << run.errors;
-  const std::string page = Read(Path("run/report.html"));
-  EXPECT_EQ(page.find("<script>alert"), std::string::npos);
-  EXPECT_NE(DataOf(page)["inputs"].get<std::string>().find("</script><script>alert(1)"),
-            std::string::npos);
-}
-
-TEST_F(ViewCommand, AReportThatCannotBeMadeIsSaid) {
-  Run({"run", kHang, "--quiet", "--out", "run"});
-  CommandResult result = Run({"report", "run/trace.h5"}, "nowhere");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_EQ(result.errors, kNoPages);
-  result = Run({"report", "absent.h5"});
-  EXPECT_EQ(result.status, 3);
-  result = Run({"report", "run/trace.h5", "--out", "no/such/folder.html"});
-  EXPECT_EQ(result.status, 1);
-  EXPECT_EQ(result.errors,
-            "no/such/folder.html: error: cannot be written: No such file or directory\n");
-  Write("web/report.html", "<p>some other page");
-  result = Run({"report", "run/trace.h5"});
-  EXPECT_NE(result.errors.find("is not the page that reports are made of"), std::string::npos);
-  result = Run({"run", kHang, "--quiet", "--report", "--out", "run"}, "nowhere");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_NE(result.errors.find("run/report.html: error: the report cannot be made: the viewer's "
-                               "pages are missing"),
-            std::string::npos)
-      << result.errors;
-}
-
-/// The page that was built: nothing in a report makes a browser ask another host.
-TEST_F(ViewCommand, ARealReportLoadsNothing) {
-  if (!std::filesystem::exists(TAUT_WEB_FOLDER "/report.html")) GTEST_SKIP() << "no pages built";
-  const CommandResult run = Run({"run", kHang, "--report", "--out", "run"}, TAUT_WEB_FOLDER);
-  ASSERT_EQ(run.status, 0) << run.errors;
-  const std::string page = Read(Path("run/report.html"));
-  for (const char* load :
-       {R"((src|href|action|data|poster|srcset)\s*=\s*["']?\s*(https?:)?//)",
-        R"(url\(\s*["']?\s*(https?:)?//)",
-        R"((fetch|import|importScripts|Worker|WebSocket)\(\s*["'`](https?|wss?):)", R"(@import)",
-        R"(<link[^>]*stylesheet)", R"(<script[^>]*\ssrc)"}) {
-    std::smatch found;
-    EXPECT_FALSE(std::regex_search(page, found, std::regex(load, std::regex::icase)))
-        << load << ": " << found[0];
-  }
-  EXPECT_EQ(DataOf(page)["summary"], Json::parse(Read(Path("run/summary.json"))));
 }
 
 }  // namespace

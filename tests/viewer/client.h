@@ -27,12 +27,18 @@ namespace http = beast::http;
 using asio::ip::tcp;
 using Json = nlohmann::json;
 
+/// Those of every server that tests start.
+inline const std::string kDriveToken = "drive-drive-drive", kWatchToken = "watch-watch-watch";
+inline const std::string kToDrive = "/ws?token=" + kDriveToken,
+                         kToWatch = "/ws?token=" + kWatchToken;
+
 struct HttpAnswer {
   unsigned status = 0;
   std::string body;
   http::fields fields;
 };
 
+/// With the cookie of one who may drive, unless `fields` has another.
 inline HttpAnswer Get(std::uint16_t port, const std::string& target,
                       const std::vector<std::pair<std::string, std::string>>& fields = {},
                       http::verb method = http::verb::get) {
@@ -41,6 +47,7 @@ inline HttpAnswer Get(std::uint16_t port, const std::string& target,
   stream.connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), port));
   http::request<http::empty_body> request{method, target, 11};
   request.set(http::field::host, "localhost:" + std::to_string(port));
+  request.set(http::field::cookie, "taut_token_" + std::to_string(port) + "=" + kDriveToken);
   for (const auto& [name, value] : fields) request.set(name, value);
   http::write(stream, request);
   beast::flat_buffer buffer;
@@ -73,7 +80,7 @@ struct ReceivedFrame {
 
 class Client {
  public:
-  explicit Client(std::uint16_t port, const std::string& target = "/ws",
+  explicit Client(std::uint16_t port, const std::string& target = kToDrive,
                   const std::string& origin = "")
       : stream_(io_) {
     beast::get_lowest_layer(stream_).connect(

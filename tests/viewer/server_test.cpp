@@ -31,42 +31,125 @@ TEST(ViewServer, PagesOfOtherSitesStayOutside) {
   const Serving serving(PausedLive(kHang));
   EXPECT_EQ(Get(serving.port(), "/", {{"Host", "elsewhere.example"}}).status, 403u);
   EXPECT_EQ(Get(serving.port(), "/", {{"Origin", "http://elsewhere.example"}}).status, 403u);
-  const Client foreign(serving.port(), "/ws", "http://elsewhere.example");
+  const Client foreign(serving.port(), kToDrive, "http://elsewhere.example");
   EXPECT_FALSE(foreign.open());
-  const Client own(serving.port(), "/ws", "http://localhost:" + std::to_string(serving.port()));
+  const Client own(serving.port(), kToDrive, "http://localhost:" + std::to_string(serving.port()));
   EXPECT_TRUE(own.open());
 }
 
-TEST(ViewServer, WithATokenOnlyThoseWhoHaveItComeIn) {
-  viewer::ServerOptions options;
-  options.token = viewer::RandomToken();
-  EXPECT_EQ(options.token.size(), 32u);
-  EXPECT_NE(options.token, viewer::RandomToken());
-  const Serving serving(PausedLive(kHang), options);
-  std::string wrong = options.token;
-  wrong.back() = wrong.back() == '0' ? '1' : '0';
-  for (const std::string& target : {std::string("/"), "/?token=" + wrong, std::string("/?token="),
-                                    "/?nottoken=" + options.token, "/?token=" + options.token + "0",
-                                    "/?token=" + options.token.substr(1)}) {
-    EXPECT_EQ(Get(serving.port(), target).status, 403u) << target;
+TEST(ViewServer, OnlyThoseWhoHaveATokenComeIn) {
+  EXPECT_EQ(viewer::RandomToken().size(), 32u);
+  EXPECT_NE(viewer::RandomToken(), viewer::RandomToken());
+  const Serving serving(PausedLive(kHang));
+  const std::string cookie = "taut_token_" + std::to_string(serving.port()) + "=";
+  const auto without_cookie = [&](const std::string& target) {
+    return Get(serving.port(), target, {{"Cookie", ""}});
+  };
+  std::string wrong = kDriveToken;
+  wrong.back() = 'x';
+  for (const std::string& target :
+       {std::string("/"), "/?token=" + wrong, std::string("/?token="), "/?nottoken=" + kDriveToken,
+        "/?token=" + kDriveToken + "0", "/?token=" + kDriveToken.substr(1)}) {
+    EXPECT_EQ(without_cookie(target).status, 403u) << target;
   }
-  EXPECT_FALSE(Client(serving.port()).open());
+  EXPECT_FALSE(Client(serving.port(), "/ws").open());
   EXPECT_FALSE(Client(serving.port(), "/ws?token=" + wrong).open());
-  const HttpAnswer page = Get(serving.port(), "/?token=" + options.token);
-  ASSERT_EQ(page.status, 200u);
-  const std::string cookie(page.fields["Set-Cookie"]);
-  EXPECT_NE(cookie.find("HttpOnly"), cookie.npos);
-  const std::string pair = cookie.substr(0, cookie.find(';'));
-  EXPECT_EQ(Get(serving.port(), "/assets/a.js", {{"Cookie", "other=1; " + pair}}).status, 200u);
-  EXPECT_TRUE(Client(serving.port(), "/ws?token=" + options.token).open());
+  EXPECT_FALSE(Client(serving.port(), "/ws?token=").open());
+  // Another server of this machine has cookies of its own.
+  EXPECT_EQ(Get(serving.port(), "/", {{"Cookie", "taut_token_1=" + kDriveToken}}).status, 403u);
+  for (const std::string& token : {kDriveToken, kWatchToken}) {
+    const HttpAnswer page = without_cookie("/?token=" + token);
+    ASSERT_EQ(page.status, 200u);
+    EXPECT_EQ(page.fields["Set-Cookie"], cookie + token + "; HttpOnly; SameSite=Strict; Path=/");
+    const std::string pair = "other=1; " + cookie + token;
+    EXPECT_EQ(Get(serving.port(), "/assets/a.js", {{"Cookie", pair}}).status, 200u);
+    EXPECT_TRUE(Client(serving.port(), "/ws?token=" + token).open());
+  }
 }
 
-TEST(ViewServer, OnlyThisMachinesAddressesNeedNoToken) {
+TEST(ViewServer, ALinkToWatchMayNotDrive) {
+  const Serving serving(PausedLive(kHang));
+  Client watcher(serving.port(), kToWatch), driver(serving.port());
+  EXPECT_EQ(watcher.Await("hello")["watch_only"], true);
+  EXPECT_FALSE(driver.Await("hello").contains("watch_only"));
+  for (const char* type : {"step", "take_control", "reset", "pause"}) {
+    watcher.Send({{"type", type}});
+    EXPECT_EQ(watcher.Await("error")["text"],
+              "this link is for watching only; taut printed another to drive");
+  }
+  driver.Send({{"type", "step"}});  // nobody drove before
+  EXPECT_EQ(watcher.AwaitFrame([](const auto& f) {
+    return f[FrameHeader::kFrameTimeS] > 0;
+  })[FrameHeader::kFrameTimeS],
+            0.001);
+  watcher.Send({{"type", "want_series"},
+                {"id", 1},
+                {"channel", "body/hanging_mass/position_y_m"},
+                {"t0", 0},
+                {"t1", 1},
+                {"points", 9}});
+  EXPECT_EQ(watcher.Await("series")["id"], 1);
+}
+
+TEST(ViewServer, KnowsWhatAnAddressIsAndWhoReachesIt) {
   EXPECT_TRUE(viewer::IsLoopback("127.0.0.1"));
   EXPECT_TRUE(viewer::IsLoopback("::1"));
   EXPECT_FALSE(viewer::IsLoopback("0.0.0.0"));
   EXPECT_FALSE(viewer::IsLoopback("192.168.1.2"));
   EXPECT_FALSE(viewer::IsLoopback("nonsense"));
+  EXPECT_TRUE(viewer::IsAddress("::"));
+  EXPECT_FALSE(viewer::IsAddress("here"));
+}
+
+/// A request that has begun and does not go on.
+class HalfOpen {
+ public:
+  explicit HalfOpen(std::uint16_t port) : port_(port), stream_(io_) {
+    stream_.connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), port));
+    asio::write(stream_, asio::buffer(std::string("GET /?token=" + kDriveToken + " HTTP/1.1\r\n")));
+  }
+  /// The answer to the rest of the request; 0: the server has closed the connection.
+  unsigned End() {
+    const std::string rest = "Host: localhost:" + std::to_string(port_) + "\r\n\r\n";
+    beast::error_code failed;
+    asio::write(stream_, asio::buffer(rest), failed);
+    beast::flat_buffer buffer;
+    http::response<http::string_body> response;
+    http::read(stream_, buffer, response, failed);
+    return failed ? 0 : response.result_int();
+  }
+  /// Waits until the server closes the connection.
+  void AwaitClose() {
+    char byte = 0;
+    beast::error_code failed;
+    stream_.read_some(asio::buffer(&byte, 1), failed);
+    EXPECT_TRUE(failed);
+  }
+
+ private:
+  std::uint16_t port_;
+  asio::io_context io_;
+  beast::tcp_stream stream_;
+};
+
+TEST(ViewServer, RequestsThatDoNotEndAreDroppedForNewOnesTheOldestFirst) {
+  viewer::ServerOptions options;
+  options.max_http = 8;
+  options.request_patience = std::chrono::hours(1);
+  const Serving serving(PausedLive(kHang), options);
+  std::vector<std::unique_ptr<HalfOpen>> slow;
+  for (int i = 0; i < 8; ++i) slow.push_back(std::make_unique<HalfOpen>(serving.port()));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(Get(serving.port(), "/").status, 200u) << i;
+  EXPECT_TRUE(Client(serving.port()).open());
+  EXPECT_EQ(slow.front()->End(), 0u);
+  EXPECT_EQ(slow.back()->End(), 200u) << "who begins late has its time";
+}
+
+TEST(ViewServer, ARequestThatDoesNotEndIsDroppedAtItsDeadline) {
+  viewer::ServerOptions options;
+  options.request_patience = std::chrono::milliseconds(20);
+  const Serving serving(PausedLive(kHang), options);
+  HalfOpen(serving.port()).AwaitClose();
 }
 
 TEST(ViewServer, AUsedPortIsNamedAndTheNextOffered) {
@@ -88,7 +171,7 @@ TEST(ViewServer, AUsedPortIsNamedAndTheNextOffered) {
   options.address = "not an address";
   viewer::Server fourth(*session, {}, options);
   EXPECT_FALSE(fourth.Listen(error));
-  EXPECT_NE(error.find("\"not an address\" is not an address"), error.npos) << error;
+  EXPECT_EQ(error, "\"not an address\" is not an address");
 }
 
 TEST(ViewServer, GreetsWithVersionSceneAndFrame) {

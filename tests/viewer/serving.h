@@ -23,6 +23,8 @@ class Serving {
                    viewer::WebFiles files = {{"/index.html", "<p>the page"}, {"/assets/a.js", "1"}})
       : session_(std::move(session)) {
     if (options.port == 8080) options.port = 0;
+    options.drive_token = kDriveToken;
+    options.watch_token = kWatchToken;
     server_ = std::make_unique<viewer::Server>(*session_, std::move(files), options);
     std::string error;
     EXPECT_TRUE(server_->Listen(error)) << error;

@@ -24,7 +24,7 @@ async function view(...words) {
     let said = "";
     server.stdout.on("data", (data) => {
       said += data;
-      const found = /http:\/\/localhost:(\d+)\//.exec(said);
+      const found = /http:\/\/localhost:\S+/.exec(said);
       if (found) resolve(found[0]);
     });
   });
@@ -34,7 +34,8 @@ async function view(...words) {
 class Client {
   static async open(address) {
     const client = new Client();
-    client.socket = new WebSocket(address.replace("http", "ws") + "ws");
+    const { host, search } = new URL(address);
+    client.socket = new WebSocket(`ws://${host}/ws${search}`);
     client.waiting = [];
     client.socket.on("message", (data, binary) => {
       const message = binary ? new Float64Array(data.buffer.slice(data.byteOffset, data.byteOffset + data.length)) : JSON.parse(data);

@@ -77,8 +77,13 @@ export class App {
     this.seek(Number.MAX_VALUE);
   }
 
+  /** Our link may not drive. */
+  get watches(): boolean {
+    return this.hello.value?.watch_only === true;
+  }
+
   get drives(): boolean {
-    return this.driver.value === 0 || this.driver.value === this.hello.value?.client;
+    return !this.watches && (this.driver.value === 0 || this.driver.value === this.hello.value?.client);
   }
 
   togglePlay(): void {

@@ -30,14 +30,17 @@ export class ServerSource implements Source {
     const socket = new WebSocket(address);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
+    let opened = false;
     socket.onopen = () => {
+      opened = true;
       this.retry_ms = FIRST_RETRY_MS;
       this.listener?.connection("open");
     };
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.receive(event.data);
-    socket.onclose = () => {
-      if (this.socket !== socket) return;
-      this.listener?.connection("lost");
+    socket.onclose = async () => {
+      // Why a WebSocket does not open, browsers do not say; a plain request gets an answer.
+      const state = !opened && (await refused()) ? "refused" : "lost";
+      this.listener?.connection(state);
       setTimeout(() => this.open(), this.retry_ms);
       this.retry_ms = Math.min(2 * this.retry_ms, LAST_RETRY_MS);
     };
@@ -46,5 +49,14 @@ export class ServerSource implements Source {
   private receive(data: string | ArrayBuffer): void {
     if (typeof data === "string") this.listener?.message(JSON.parse(data) as ServerMessage);
     else this.listener?.frame(decodeFrame(new Float64Array(data)));
+  }
+}
+
+/** Does the server not know our token? A new server has new ones. */
+async function refused(): Promise<boolean> {
+  try {
+    return (await fetch(location.href, { method: "HEAD", cache: "no-store" })).status === 403;
+  } catch {
+    return false;
   }
 }

@@ -220,6 +220,8 @@ export interface HelloMessage {
   client: number;
   /** Who drives; 0: nobody. */
   driver: number;
+  /** true: your link may watch; what you ask for but series is refused. */
+  watch_only?: boolean;
 }
 
 export interface SceneMessage {
@@ -344,7 +346,7 @@ export interface SetGainMessage {
   value: number;
 }
 
-/** Anyone may ask. */
+/** Anyone may ask, also who may only watch. */
 export interface WantSeriesMessage {
   type: "want_series";
   /** Comes back with the answer. */

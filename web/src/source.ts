@@ -2,7 +2,7 @@
 import type { Frame } from "./frame";
 import type { ClientMessage, ServerMessage } from "./protocol";
 
-export type Connection = "connecting" | "open" | "lost" | "report";
+export type Connection = "connecting" | "open" | "lost" | "refused" | "report";
 
 export interface Listener {
   connection(state: Connection): void;

@@ -220,6 +220,18 @@ test("OneDrivesOthersWatchUntilTheyTakeOver", async () => {
   await second.waitForFunction(() => document.querySelector(".driver").textContent === "you drive");
 });
 
+test("ALinkToWatchOffersNothingToDriveWith", async () => {
+  await server.stop();
+  server = await new MockServer(PAGE, { mode: "live", hello: { watch_only: true } }).start();
+  const page = await open();
+  await page.waitForFunction(() => document.querySelector(".driver").textContent === "you watch");
+  assert.equal(await page.getByRole("button", { name: /drive from now on/ }).isVisible(), false);
+  assert.equal(await page.getByRole("button", { name: /live controls/ }).isVisible(), false);
+  server.tell({ type: "driver", id: 7 });
+  await page.waitForFunction(() => document.querySelector(".driver").textContent === "viewer 7 drives, you watch");
+  assert.equal(await page.getByRole("button", { name: /drive from now on/ }).isVisible(), false);
+});
+
 test("AServerOfAnotherVersionIsRefused", async () => {
   await server.stop();
   server = await new MockServer(PAGE, { mode: "live", hello: { version: 99 } }).start();

@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { after, afterEach, before, test } from "node:test";
-import { closeBrowser, cursorTo, drawn, listenToNotices, numbersBeside, openPage, PAGE, picture, projection, untilTime } from "./browser.mjs";
+import { closeBrowser, cursorTo, drawn, listenToNotices, numbersBeside, openPage, PAGE, picture, projection, ready, untilTime } from "./browser.mjs";
 
 const TAUT = process.env.TAUT_COMMAND;
 const ROOT = fileURLToPath(new URL("../..", import.meta.url));
@@ -15,9 +15,11 @@ const options = { skip: TAUT ? false : "TAUT_COMMAND is not set" };
 let folder;
 let server = null;
 
-/** Starts `taut view`; answers its address. */
-async function view(...words) {
-  server = spawn(TAUT, ["view", ...words], { cwd: ROOT, env: { ...process.env, TAUT_WEB: dirname(PAGE) } });
+/** Starts `taut view` with random tokens; answers its address. */
+const view = (...words) => viewWithToken("", ...words);
+
+async function viewWithToken(token, ...words) {
+  server = spawn(TAUT, ["view", ...words], { cwd: ROOT, env: { ...process.env, TAUT_WEB: dirname(PAGE), TAUT_TOKEN: token } });
   let said = "";
   return new Promise((resolve, reject) => {
     const hear = (data) => {
@@ -203,21 +205,48 @@ test("ANodeIsDraggedAndTheTensionAnswers", options, async (t) => {
 });
 
 test("APageOutlivesTheRealServer", options, async (t) => {
-  const address = await view("experiments/hang.yaml", "--paused", "--port", "0");
+  const token = "a-token-that-stays-the-same";
+  const address = await viewWithToken(token, "experiments/hang.yaml", "--paused", "--port", "0");
+  const { port } = new URL(address);
   const page = await openPage(address);
   t.after(() => page.context().close());
+  const link = (state) => page.waitForFunction((wanted) => document.querySelector(".link").dataset.state === wanted, state);
   await page.keyboard.press("ArrowRight");
   await page.waitForFunction(() => window.taut.app.frame.value.time_s === 0.001);
   const ended = new Promise((resolve) => server.on("exit", resolve));
   server.kill("SIGKILL");
   await ended;
-  await page.waitForFunction(() => document.querySelector(".link").dataset.state === "lost");
-  await view("experiments/stand_still.yaml", "--paused", "--port", new URL(address).port);
+  await link("lost");
+  await view("experiments/hang.yaml", "--paused", "--port", port);
+  await link("refused");
+  await stop();
+  await viewWithToken(token, "experiments/stand_still.yaml", "--paused", "--port", port);
   await page.waitForFunction(() => document.querySelector(".link").dataset.state === "open" && window.taut.app.scene.value.bodies.length === 3);
   await page.waitForFunction(() => window.taut.app.frame.value.time_s === 0 && window.taut.view.world.scene.bodies.length === 3);
   await page.keyboard.press("ArrowRight");
   await page.waitForFunction(() => window.taut.app.frame.value.time_s === 0.001);
-  assert.deepEqual(page.complaints.filter((text) => !/WebSocket|ERR_CONNECTION/.test(text)), []);
+  assert.deepEqual(page.complaints.filter((text) => !/WebSocket|ERR_CONNECTION|403/.test(text)), []);
+});
+
+test("ThePrintedAddressIsAllThatABrowserNeeds", options, async (t) => {
+  const address = await view("experiments/hang.yaml", "--paused", "--port", "0");
+  const page = await openPage(address);
+  t.after(() => page.context().close());
+  const steps = async (time_s) => {
+    await page.keyboard.press("ArrowRight");
+    await page.waitForFunction((wanted) => window.taut.app.frame.value.time_s === wanted, time_s);
+  };
+  await steps(0.001);
+  await page.reload();
+  await ready(page);
+  await steps(0.002);
+  // the cookie by itself, as when somebody types the address without its token
+  const bare = new URL("/", address).href;
+  await page.goto(bare);
+  await ready(page);
+  await steps(0.003);
+  const { status } = await fetch(bare);
+  assert.equal(status, 403, "without cookie and token nothing is shown");
 });
 
 test("TwoPagesOfTheRealServerDriveOneAtATime", options, async (t) => {

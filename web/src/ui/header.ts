@@ -22,14 +22,14 @@ export function header(app: App, help: () => void, toggles: HTMLElement[]): HTML
     element.dataset["mode"] = mode.textContent;
   });
   app.link.watch((state) => {
-    link.textContent = { connecting: "connecting …", open: "", lost: "connection lost, trying again …", report: "" }[state];
+    link.textContent = { connecting: "connecting …", open: "", lost: "connection lost, trying again …", refused: "the server was started anew: open the address that it printed", report: "" }[state];
     link.dataset["state"] = state;
   });
   const drives = () => {
     const several = !app.report && app.hello.value !== null && app.driver.value !== 0;
-    driver.textContent = several ? (app.drives ? "you drive" : `viewer ${app.driver.value} drives, you watch`) : "";
+    driver.textContent = several ? (app.drives ? "you drive" : `viewer ${app.driver.value} drives, you watch`) : app.watches ? "you watch" : "";
     driver.classList.toggle("other", !app.drives);
-    take.hidden = app.drives;
+    take.hidden = app.drives || app.watches;
   };
   app.driver.watch(drives);
   app.hello.watch(drives);

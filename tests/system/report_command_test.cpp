@@ -1,0 +1,114 @@
+// `taut report` as a user meets it.
+#include "tests/system/view_command.h"
+
+namespace taut::test {
+namespace {
+
+using ReportCommand = ViewCommand;
+
+/// The data of a report.
+Json DataOf(const std::string& page) {
+  const std::string open = R"(<script type="application/json" id="taut-report">)";
+  const std::size_t from = page.find(open) + open.size();
+  return Json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
+TEST_F(ReportCommand, AReportHoldsTheRunAndTheNumbersOfItsSummary) {
+  const CommandResult run = Run({"run", kHang, "--report", "--out", "run"});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_NE(run.output.find("Report: run/report.html\n"), std::string::npos) << run.output;
+  const std::string page = Read(Path("run/report.html"));
+  EXPECT_EQ(page.substr(page.size() - 6), "<p>end");
+  const Json report = DataOf(page);
+  EXPECT_EQ(report["version"], viewer::kProtocolVersion);
+  EXPECT_EQ(report["title"], "hang");
+  EXPECT_EQ(report["summary"], Json::parse(Read(Path("run/summary.json"))));
+  EXPECT_EQ(report["inputs"], Read(Path("run/inputs.yaml")));
+  EXPECT_EQ(report["metadata"]["experiment"], "hang");
+  EXPECT_EQ(report["scene"]["bodies"].size(), 1u);
+  const std::size_t numbers =
+      report["frame_count"].get<std::size_t>() * report["frame_values"].get<std::size_t>();
+  EXPECT_EQ(report["frames_base64"].get<std::string>().size(), (8 * numbers + 2) / 3 * 4);
+  EXPECT_EQ(report["frame_count"], 151);  // 30 a second, both ends
+  ASSERT_EQ(report["rows"].size(), 1u);
+  EXPECT_EQ(report["rows"][0]["count"], 1001);  // every row: 5 s at 200 Hz
+  EXPECT_EQ(report["rows"][0]["channels"].size(), report["scene"]["channels"].size());
+  EXPECT_EQ(report["comparison"], nullptr);
+}
+
+TEST_F(ReportCommand, AReportComparesTwoTraces) {
+  Run({"run", kHang, "--quiet", "--out", "a"});
+  Run({"run", kHang, "--quiet", "--out", "b", "--set", "mass_kg=0.6"});
+  const CommandResult result =
+      Run({"report", "b/trace.h5", "--compare", "a/trace.h5", "--out", "both.html"});
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_EQ(result.output, "Report: both.html\n");
+  const Json report = DataOf(Read(Path("both.html")));
+  EXPECT_EQ(report["scene"]["reference"]["name"], "hang (a/trace.h5)");
+  const CommandResult compare = Run({"compare", "b/trace.h5", "a/trace.h5", "--json"});
+  EXPECT_EQ(report["comparison"]["channels"].size(),
+            Json::parse(compare.output)["channels"].size());
+  EXPECT_EQ(report["comparison"]["channels"][0]["rmse"],
+            Json::parse(compare.output)["channels"][0]["rmse"]);
+  ASSERT_EQ(report["rows"].size(), 2u);
+  EXPECT_EQ(report["rows"][1]["source"], 1);
+  EXPECT_EQ(report["rows"][0]["channels"], report["rows"][1]["channels"]);
+}
+
+TEST_F(ReportCommand, NothingInAReportCanEndTheElementThatHoldsIt) {
+  const std::string text = Read(TAUT_SOURCE_DIR "/experiments/hang.yaml");
+  std::string evil = text;
+  const std::string model = "../models/hanging_mass.yaml";
+  evil.replace(evil.find(model), model.size(), TAUT_SOURCE_DIR "/models/hanging_mass.yaml");
+  const std::string key = "description: ";
+  evil.insert(evil.find(key) + key.size(), "\"</script><script>alert(1)</script>\" #");
+  const CommandResult run = Run({"run", Write("evil.yaml", evil), "--report", "--out", "run"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const std::string page = Read(Path("run/report.html"));
+  EXPECT_EQ(page.find("<script>alert"), std::string::npos);
+  EXPECT_NE(DataOf(page)["inputs"].get<std::string>().find("</script><script>alert(1)"),
+            std::string::npos);
+}
+
+TEST_F(ReportCommand, AReportThatCannotBeMadeIsSaid) {
+  Run({"run", kHang, "--quiet", "--out", "run"});
+  CommandResult result = Run({"report", "run/trace.h5"}, "nowhere");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.errors, kNoPages);
+  result = Run({"report", "absent.h5"});
+  EXPECT_EQ(result.status, 3);
+  result = Run({"report", "run/trace.h5", "--out", "no/such/folder.html"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.errors,
+            "no/such/folder.html: error: cannot be written: No such file or directory\n");
+  Write("web/report.html", "<p>some other page");
+  result = Run({"report", "run/trace.h5"});
+  EXPECT_NE(result.errors.find("is not the page that reports are made of"), std::string::npos);
+  result = Run({"run", kHang, "--quiet", "--report", "--out", "run"}, "nowhere");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.errors.find("run/report.html: error: the report cannot be made: the viewer's "
+                               "pages are missing"),
+            std::string::npos)
+      << result.errors;
+}
+
+/// The page that was built: nothing in a report makes a browser ask another host.
+TEST_F(ReportCommand, ARealReportLoadsNothing) {
+  if (!std::filesystem::exists(TAUT_WEB_FOLDER "/report.html")) GTEST_SKIP() << "no pages built";
+  const CommandResult run = Run({"run", kHang, "--report", "--out", "run"}, TAUT_WEB_FOLDER);
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const std::string page = Read(Path("run/report.html"));
+  for (const char* load :
+       {R"((src|href|action|data|poster|srcset)\s*=\s*["']?\s*(https?:)?//)",
+        R"(url\(\s*["']?\s*(https?:)?//)",
+        R"((fetch|import|importScripts|Worker|WebSocket)\(\s*["'`](https?|wss?):)", R"(@import)",
+        R"(<link[^>]*stylesheet)", R"(<script[^>]*\ssrc)"}) {
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(page, found, std::regex(load, std::regex::icase)))
+        << load << ": " << found[0];
+  }
+  EXPECT_EQ(DataOf(page)["summary"], Json::parse(Read(Path("run/summary.json"))));
+}
+
+}  // namespace
+}  // namespace taut::test
