@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -14,6 +13,7 @@
 
 #include "scene.h"
 #include "taut/run.h"
+#include "taut/run_folder.h"
 
 namespace taut::viewer {
 namespace {
@@ -74,14 +74,11 @@ std::unique_ptr<Recording> Recording::Start(const std::string& folder, LiveRun& 
                                             std::function<void(const std::string&)> say,
                                             Diagnostics& out) {
   std::unique_ptr<Recording> recording(new Recording(folder, std::move(say)));
-  recording->lock_ = File(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (recording->lock_.get() < 0) {
-    out.Error({folder}, fmt::format("cannot be opened: {}", std::strerror(errno)));
-    return nullptr;
-  }
-  if (flock(recording->lock_.get(), LOCK_EX | LOCK_NB) != 0) {
-    out.Error({folder}, "another process records into this folder", "give this one another --out");
-    return nullptr;
+  recording->lock_ = FolderLock::Take(folder, out);
+  if (!recording->lock_) return nullptr;
+  // What `taut run` wrote there would say something of another run.
+  for (const char* name : {"summary.json", "report.html", "trace.csv"}) {
+    unlink((std::filesystem::path(folder) / name).c_str());
   }
   return recording->Begin(run, experiment, out) ? std::move(recording) : nullptr;
 }
@@ -94,19 +91,22 @@ std::string Recording::Path(const char* name, const char* end) const {
 bool Recording::Begin(LiveRun& run, const ExperimentSpec& experiment, Diagnostics& out) {
   const std::string trace = Path("trace", ".h5"), inputs = Path("inputs", ".yaml"),
                     events = Path("events", ".jsonl");
-  // All three are there before the first of them takes its name: where there is no room for a new
-  // part, an old one of that name stays whole.
-  const File whole = CreateAnew(Unfinished(inputs));
-  bool good = whole.get() >= 0 && WriteAll(whole.get(), ResolvedYaml(experiment)) &&
-              events_.Create(Unfinished(events));
-  writer_ = good ? CreateHdf5Trace(trace, run.channels(), RunMetadata(experiment), out) : nullptr;
-  good = writer_ && Complete(inputs) && Complete(events);
+  // The trace takes its name with its first row: where there is no room for a new part, an old one
+  // of that name stays whole.
+  const std::string id = NewRunId();
+  TraceMetadata metadata = RunMetadata(experiment);
+  metadata.emplace_back(kRunIdKey, id);
+  const bool listed = events_.Create(Unfinished(events));
+  writer_ = listed ? CreateHdf5Trace(trace, run.channels(), metadata, out) : nullptr;
+  const bool good = writer_ &&
+                    WriteWholeFile(inputs, InputsOfRun(id, ResolvedYaml(experiment)), out) &&
+                    Complete(events);
   if (!good) {
     if (out.ok()) {
       out.Error({folder_}, fmt::format("cannot be written: {}", std::strerror(errno)),
                 "is the disk full, or the folder not yours?");
     }
-    for (const std::string& path : {inputs, events}) unlink(Unfinished(path).c_str());
+    unlink(Unfinished(events).c_str());
     return false;
   }
   rate_hz_ = experiment.record.rate_hz;

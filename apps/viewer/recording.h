@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "taut/files.h"
 #include "taut/live.h"
 
 namespace taut::viewer {
@@ -78,7 +79,7 @@ class Recording {
 
   std::string folder_;
   std::function<void(const std::string&)> say_;
-  File lock_;
+  std::unique_ptr<FolderLock> lock_;
   int part_ = 1;
   std::unique_ptr<TraceWriter> writer_;
   LineFile events_;

@@ -71,8 +71,9 @@ class RecordingFolder : public testing::Test {
     const auto trace = ReadTrace((folder_ / name).string(), found);
     return trace ? trace->time_s.size() : 0;
   }
+  /// But for that of the lock.
   std::size_t FileCount() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {})) - 1;
   }
   std::string Read(const std::string& name) const {
     std::ifstream file(folder_ / name, std::ios::binary);
@@ -116,9 +117,8 @@ TEST_F(RecordingFolder, HasOneWriter) {
   auto first = Start();
   ASSERT_TRUE(first);
   EXPECT_FALSE(Start());
-  EXPECT_EQ(complaints_, folder_.string() +
-                             ": error: another process records into this folder (give this one "
-                             "another --out)\n");
+  EXPECT_NE(complaints_.find(folder_.string() + ": error: another process"), std::string::npos)
+      << complaints_;
   first.reset();
   EXPECT_TRUE(Start());
 }
