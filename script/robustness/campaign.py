@@ -1,0 +1,119 @@
+"""All the faults of a scenario, one after the other, and a table of what came of them."""
+
+import collections
+import dataclasses
+import random
+import shutil
+import time
+
+from robustness.inject import KILL_KINDS, Fault
+from robustness.scenarios import ALL, View
+from validation.runs import table
+
+MOST_POINTS = 2000   # of one kind and mode, unless all are asked for
+MORE_CALLS = 1.1     # than were counted: where time decides, there may be more
+
+
+@dataclasses.dataclass
+class Tally:
+    """What came of the faults of one scenario, kind and mode. Of `calls` that there were, `points` failed."""
+    calls: int = 0
+    points: int = 0
+    right: int = 0    # the result was right all the same
+    said: int = 0     # the command said what failed, and what was complete is complete
+    killed: int = 0   # the process was killed there, and the same
+    wrong: list = dataclasses.field(default_factory=list)
+
+
+def faults_of(scenario, calls, kinds, every):
+    """Every call of each kind, or of many every n-th."""
+    for kind in scenario.kinds:
+        if kind not in kinds or not calls[kind]:
+            continue
+        count = calls[kind]
+        if isinstance(scenario, View):
+            count = int(MORE_CALLS * count)
+        step = every or max(1, count // MOST_POINTS)
+        modes = ["once", "sticky"] + (["kill"] if scenario.kills and kind in KILL_KINDS else [])
+        for mode in modes:
+            for at in range(1, count + 1, step):
+                yield Fault(kind, at, mode)
+
+
+class Campaign:
+    """`show(text)` is told how far it is. Tallies are right at any moment, also after an interrupt."""
+
+    def __init__(self, program, folder, show=lambda text: None):
+        self.program, self.folder, self.show = program, folder, show
+        self.tallies = collections.defaultdict(Tally)  # by (scenario, kind, mode)
+
+    def prepare(self, name):
+        """The scenario, and how many calls of each kind it makes."""
+        scenario = ALL[name](self.program, self.folder / name)
+        outcome, wrong = self.point(scenario, None)
+        if wrong or outcome.status != 0:
+            raise AssertionError(f"{name} without faults: {wrong or outcome.errors}")
+        return scenario, outcome.calls
+
+    def point(self, scenario, fault):
+        work = self.folder / "work"
+        shutil.rmtree(work, ignore_errors=True)
+        shutil.copytree(scenario.before, work)
+        outcome = scenario.run(work, fault)
+        killed = fault is not None and fault.mode == "kill" and outcome.failed > 0
+        return outcome, scenario.check(outcome, work, killed)
+
+    def run(self, names, kinds, every=None, sample=None, seed=1):
+        """All faults, or `sample` of them in each scenario, drawn from those with many calls as often as from
+        those with few."""
+        for name in names:
+            scenario, calls = self.prepare(name)
+            faults = list(faults_of(scenario, calls, kinds, every))
+            if sample is not None:
+                faults = drawn(faults, sample, random.Random(f"{seed} {name}"))
+            self.run_faults(name, scenario, calls, faults)
+
+    def run_faults(self, name, scenario, calls, faults):
+        began_s = time.monotonic()
+        for done, fault in enumerate(faults):
+            tally = self.tallies[name, fault.kind, fault.mode]
+            tally.calls = calls[fault.kind]
+            outcome, wrong = self.point(scenario, fault)
+            if wrong:
+                tally.wrong.append({"at": fault.at, "first": outcome.first, "what": wrong})
+                self.show(f"\r\033[KWRONG  {name}, {fault} ({outcome.first}): {wrong}\n")
+            if not wrong and not outcome.failed:
+                continue  # there were fewer calls this time
+            tally.points += 1
+            if not wrong:
+                how = "killed" if fault.mode == "kill" else "right" if outcome.status == 0 else "said"
+                setattr(tally, how, getattr(tally, how) + 1)
+            left_s = (time.monotonic() - began_s) / (done + 1) * (len(faults) - done - 1)
+            self.show(f"\r\033[K{name}: {done + 1} of {len(faults)}, {fault.kind} {fault.mode}, {left_s:.0f} s left")
+        self.show("\r\033[K")
+
+
+def drawn(faults, count, rng):
+    groups = collections.defaultdict(list)
+    for fault in faults:
+        groups[fault.kind, fault.mode].append(fault)
+    return [rng.choice(groups[group]) for group in rng.choices(sorted(groups), k=count)]
+
+
+def results(tallies):
+    """For a file."""
+    return [{"scenario": name, "kind": kind, "mode": mode, **dataclasses.asdict(tally)}
+            for (name, kind, mode), tally in tallies.items()]
+
+
+def summary(items):
+    """A table: a line for each scenario and kind, all modes together."""
+    rows = collections.defaultdict(lambda: [0, 0, 0, 0, 0, 0])
+    for item in items:
+        row = rows[item["scenario"], item["kind"]]
+        row[0] = max(row[0], item["calls"])
+        for i, key in enumerate(("points", "right", "said", "killed"), 1):
+            row[i] += item[key]
+        row[5] += len(item["wrong"])
+    return table(["command", "calls that fail", "of", "faults", "result right", "error said", "killed there", "wrong"],
+                 [[name, kind, *map(str, row)] for (name, kind), row in rows.items()])

@@ -1,0 +1,122 @@
+"""Runs a program whose n-th call of some kind fails: tests/faults/faults.cpp, preloaded."""
+
+import dataclasses
+import errno
+import mmap
+import os
+import pathlib
+import signal
+import struct
+import subprocess
+import tempfile
+
+from validation.runs import Problem
+
+KINDS = ("memory", "write", "sync", "name", "open", "truncate", "close", "read")  # as in faults.cpp
+ERRORS = {"memory": errno.ENOMEM, "write": errno.ENOSPC, "sync": errno.EIO, "name": errno.EIO,
+          "open": errno.ENOSPC, "truncate": errno.EIO, "close": errno.EIO, "read": errno.EIO}
+KILL_KINDS = ("write", "sync", "name", "open", "truncate", "close")  # where something may be half done
+MODES = ("once", "sticky", "kill")
+PATIENCE_S = 120  # of one program; what takes longer hangs
+RECORD_BYTES = 8 * (len(KINDS) + 1) + 200
+
+
+@dataclasses.dataclass(frozen=True)
+class Fault:
+    """The n-th call of a kind fails: once, from then on ("sticky"), or it is the last ("kill")."""
+    kind: str
+    at: int
+    mode: str = "once"
+
+    def environment(self):
+        return {"TAUT_FAULT_KIND": self.kind, "TAUT_FAULT_AT": str(self.at),
+                "TAUT_FAULT_STICKY": "yes" if self.mode == "sticky" else "",
+                "TAUT_FAULT_ERROR": "kill" if self.mode == "kill" else str(ERRORS[self.kind])}
+
+    def __str__(self):
+        return f"{self.kind} {self.at} {self.mode}"
+
+
+@dataclasses.dataclass
+class Outcome:
+    """How a program ended. `status` is negative where a signal ended it, as subprocess has it."""
+    status: int
+    output: str
+    errors: str
+    calls: dict    # of each kind
+    failed: int    # of those, how many
+    first: str     # which failed first
+
+    @property
+    def crashed(self):
+        return self.status < 0 and -self.status != signal.SIGKILL
+
+
+class Shared:
+    """What program and driver both see of the calls."""
+
+    def __init__(self, folder):
+        file, self.path = tempfile.mkstemp(dir=folder, prefix="faults_")
+        os.ftruncate(file, RECORD_BYTES)
+        self.memory = mmap.mmap(file, RECORD_BYTES)
+        os.close(file)
+
+    def numbers(self):
+        return struct.unpack_from(f"{len(KINDS) + 1}q", self.memory)
+
+    @property
+    def failed(self):
+        return self.numbers()[-1]
+
+    def outcome(self, status, output, errors):
+        *calls, failed = self.numbers()
+        first = self.memory[8 * (len(KINDS) + 1):].split(b"\0")[0].decode(errors="replace").strip()
+        return Outcome(status, output, errors, dict(zip(KINDS, calls)), failed, first)
+
+    def close(self):
+        self.memory.close()
+        os.unlink(self.path)
+
+
+class Program:
+    """The command taut, in front of which the library stands."""
+
+    def __init__(self, command, library):
+        for path in (command, library):
+            if not pathlib.Path(path).exists():
+                raise Problem(f"there is no {path}; script/build makes it")
+        self.command, self.library = str(pathlib.Path(command).resolve()), str(pathlib.Path(library).resolve())
+
+    def environment(self, shared, fault):
+        return {**os.environ, "LD_PRELOAD": self.library, "TAUT_FAULTS": shared.path,
+                **(fault.environment() if fault else {})}
+
+    def run(self, words, folder, fault=None, during=None):
+        """One run in `folder`, output in files there, as on a disk. `during(process, shared)` is called once it
+        has begun, where it must be told to end."""
+        shared = Shared(folder.parent)
+        try:
+            with tempfile.TemporaryFile("w+", dir=folder.parent, errors="replace") as output, \
+                    tempfile.TemporaryFile("w+", dir=folder.parent, errors="replace") as errors:
+                process = subprocess.Popen([self.command, *map(str, words)], cwd=folder, stdin=subprocess.DEVNULL,
+                                           stdout=output, stderr=errors, env=self.environment(shared, fault))
+                try:
+                    if during:
+                        during(process, shared)
+                    status = process.wait(PATIENCE_S)
+                except subprocess.TimeoutExpired:
+                    status = None
+                finally:
+                    if process.poll() is None:
+                        process.kill()
+                        process.wait()
+                output.seek(0)
+                errors.seek(0)
+                return shared.outcome(status, output.read(), errors.read())
+        finally:
+            shared.close()
+
+    def plain(self, words, folder):
+        """A run without faults and without the library: what a user sees afterwards."""
+        return subprocess.run([self.command, *map(str, words)], cwd=folder, stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True, errors="replace", timeout=PATIENCE_S)

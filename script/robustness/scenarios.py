@@ -1,0 +1,306 @@
+"""What is run while calls fail, and what must be true afterwards.
+
+A scenario has a folder as it was before, which is made once: with a finished run, or half a study. Each fault
+gets a copy of it. `check` says in words what is wrong with the way a command ended and what it left; nothing
+is wrong if the result is right, or if the command says that it failed and what was complete is complete."""
+
+import contextlib
+import hashlib
+import json
+import pathlib
+import shutil
+import signal
+import sqlite3
+import time
+
+from robustness.inject import Fault
+from validation.runs import ROOT, Problem
+
+EXPERIMENT = """\
+taut: 1
+kind: experiment
+base: {root}/experiments/hang.yaml
+name: swing
+duration_s: 0.1
+timeline: {{phases: {{all: [0, 0.05]}}}}
+record: {{rate_hz: 200, channels: ["cable/*", "body/*", "system/*"]}}
+"""
+STUDY_EXPERIMENT = """\
+taut: 1
+kind: experiment
+base: {root}/experiments/sidewinder3_start.yaml
+name: crawl
+duration_s: 0.02
+"""
+STUDY = """\
+taut: 1
+kind: study
+name: crawl
+experiment: crawl.yaml
+vary:
+  - {name: frequency, each: motion.sine.frequency_hz, low: 0.2, high: 2, scale: log}
+objective: {measure: distance}
+worlds: {count: 2, friction: 0.2}
+search:
+  - {method: monte_carlo, evaluations: 6, batch: 2}
+"""
+
+
+def digest(folder, without=()):
+    """Which files are in a folder, and what is in them."""
+    return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(folder.rglob("*")) if path.is_file() and path.name not in without}
+
+
+def said(outcome):
+    """What is wrong with the end itself; None if it is good."""
+    if outcome.status is None:
+        return "hangs"
+    if outcome.status < 0:
+        return f"ended by {signal.Signals(-outcome.status).name}"
+    if outcome.status != 0 and "error: " not in outcome.errors:
+        return f"status {outcome.status} and no error: {outcome.errors!r}"
+    return None
+
+
+class Scenario:
+    """`kinds`: calls that may fail here. Those of `kill`, too, may be the last ones."""
+    kinds = ("memory", "write", "sync", "name", "open", "truncate", "close", "read")
+    kills = False
+
+    def __init__(self, program, folder):
+        self.program, self.before = program, folder / "before"
+        shutil.rmtree(folder, ignore_errors=True)
+        self.before.mkdir(parents=True)
+
+    def made(self, *words, folder=None):
+        """A command that must work."""
+        run = self.program.plain(words, folder or self.before)
+        if run.returncode != 0:
+            raise Problem(f"taut {' '.join(map(str, words))}\n{run.stdout}{run.stderr}")
+        return run.stdout
+
+    def words(self):
+        raise NotImplementedError
+
+    def run(self, folder, fault=None):
+        return self.program.run(self.words(), folder, fault)
+
+    def check(self, outcome, folder, killed):
+        """None, or what is wrong. `killed`: the process was to be killed."""
+        raise NotImplementedError
+
+
+class Run(Scenario):
+    """A run into the folder of another one that is finished."""
+    kills = True
+
+    def __init__(self, program, folder):
+        super().__init__(program, folder)
+        (self.before / "swing.yaml").write_text(EXPERIMENT.format(root=ROOT))
+        self.made("run", "swing.yaml", "--duration_s", "0.05", "--csv", "--quiet", "--out", "run")
+        self.made(*self.words()[:-1], folder / "right")
+        self.old, self.right = self.before / "run", folder / "right"
+
+    def words(self):
+        return ("run", "swing.yaml", "--csv", "--quiet", "--out", "run")
+
+    @staticmethod
+    def end(folder):
+        summary = json.loads((folder / "summary.json").read_text())
+        return summary["state_hash"], summary["simulated_s"]
+
+    def same_trace(self, name, folder, reference):
+        return self.same_rows(folder / "run" / name, reference / "trace.csv")
+
+    def same_rows(self, trace, reference):
+        run = self.program.plain(("compare", trace, reference, "--json", "--max-lag", "0"), trace.parent)
+        if run.returncode != 0:
+            return False
+        compared = json.loads(run.stdout)
+        rows = len(reference.read_text().splitlines()) - 1
+        return rows == compared["a"]["rows"] == compared["b"]["rows"] and all(
+            channel["rows"] == rows and channel["max_error"]["value"] == 0 for channel in compared["channels"])
+
+    def check(self, outcome, folder, killed):
+        wrong = None if killed else said(outcome)
+        return wrong or self.whole(folder, outcome.status == 0)
+
+    def whole(self, folder, good):
+        """Whether summary, inputs and traces are those of one run."""
+        if not (folder / "run/summary.json").exists():
+            return "no summary, status 0" if good else None  # declared to be no finished run
+        try:
+            end = self.end(folder / "run")
+        except (ValueError, KeyError) as error:
+            return f"summary.json is cut off: {error}"
+        if good and end != self.end(self.right):
+            return "status 0, and the summary is of another run"
+        for reference in (self.old, self.right):
+            if end != self.end(reference):
+                continue
+            if not self.same_trace("trace.h5", folder, reference):
+                return f"trace.h5 is not that of the summary ({reference.name})"
+            if good and not self.same_trace("trace.csv", folder, reference):
+                return f"trace.csv is not that of the summary ({reference.name})"
+            return None
+        return f"summary of no run that there was: {end}"
+
+
+class Learn(Scenario):
+    """A study that goes on where it was stopped."""
+    kills = True
+
+    def __init__(self, program, folder):
+        super().__init__(program, folder)
+        (self.before / "crawl.yaml").write_text(STUDY_EXPERIMENT.format(root=ROOT))
+        (self.before / "study.yaml").write_text(STUDY)
+        whole = program.run(("learn", "study.yaml", "--quiet", "--threads", "1", "--out", folder / "right"),
+                            self.before)
+        if whole.status != 0:
+            raise Problem(f"taut learn\n{whole.errors}")
+        self.right = self.rows(folder / "right")
+        half = Fault("write", whole.calls["write"] * 2 // 3, "kill")
+        program.run(self.words(), self.before, half)
+        self.kept = len(self.resumed(folder / "half", shutil.copytree(self.before, folder / "half"))[0])
+        if not 0 < self.kept < len(self.right):
+            raise Problem(f"half a study has {self.kept} of {len(self.right)} evaluations")
+
+    def words(self):
+        return ("learn", "study.yaml", "--threads", "1", "--quiet", "--out", "study")
+
+    @staticmethod
+    def rows(folder):
+        """What was evaluated, with all its numbers."""
+        log = folder / "study.sqlite"
+        with contextlib.closing(sqlite3.connect(log)) as db:
+            evaluations = db.execute("SELECT id, search, score, failed, parameter_values FROM evaluation").fetchall()
+            worlds = db.execute("SELECT evaluation, world, seed, score, state_hash FROM world").fetchall()
+        return {row[0]: (row, sorted(world for world in worlds if world[0] == row[0])) for row in evaluations}
+
+    def resumed(self, _, folder):
+        """The rows that a copy of the folder has, and those after the study has gone on there."""
+        try:
+            rows = self.rows(folder / "study")
+        except sqlite3.DatabaseError:
+            rows = {}
+        run = self.program.plain(self.words(), folder)
+        return rows, run
+
+    def check(self, outcome, folder, killed):
+        wrong = None if killed else said(outcome)
+        if wrong:
+            return wrong
+        rows, again = self.resumed(None, folder)
+        if len(rows) < self.kept:
+            return f"{len(rows)} of {self.kept} evaluations are left"
+        if outcome.status == 0 and rows != self.right:
+            return "status 0, and not all evaluations are there"
+        if any(self.right[number] != row for number, row in rows.items()):
+            return "an evaluation has other numbers"
+        if again.returncode != 0:
+            return f"cannot go on: {again.stderr}"
+        if self.rows(folder / "study") != self.right:
+            return "gone on, it has other evaluations"
+        return None
+
+
+class Reader(Scenario):
+    """A command that reads what is complete, and prints or writes one file."""
+    kinds = ("memory", "write", "open", "close", "read")
+    command, makes = (), ()
+    beside = ("study.sqlite-shm", "study.sqlite-wal")  # what SQLite makes to read
+
+    def __init__(self, program, folder):
+        super().__init__(program, folder)
+        self.prepare()
+        self.whole = digest(self.before, self.makes + self.beside)
+        copy = shutil.copytree(self.before, folder / "right")
+        self.right = self.run(copy)
+        if said(self.right) or self.right.status != 0:
+            raise Problem(f"taut {' '.join(self.words())}: {self.right.errors}")
+        self.made_right = {name: (copy / name).read_bytes() for name in self.makes}
+
+    def prepare(self):
+        (self.before / "swing.yaml").write_text(EXPERIMENT.format(root=ROOT))
+        self.made("run", "swing.yaml", "--csv", "--quiet", "--out", "run")
+
+    def words(self):
+        return self.command
+
+    def check(self, outcome, folder, killed):
+        wrong = said(outcome)
+        if wrong:
+            return wrong
+        if digest(folder, self.makes + self.beside) != self.whole:
+            return "what it reads is not as it was"
+        if outcome.status != 0:
+            return None
+        if outcome.output != self.right.output:
+            return "status 0, and it printed something else"
+        for name, right in self.made_right.items():
+            if (folder / name).read_bytes() != right:
+                return f"status 0, and {name} is something else"
+        return None
+
+
+class Check(Reader):
+    command = ("check", "swing.yaml")
+
+
+class Compare(Reader):
+    command = ("compare", "run/trace.h5", "run/trace.csv", "--json")
+
+
+class Report(Reader):
+    command, makes = ("report", "run/trace.h5", "--out", "report.html"), ("report.html",)
+
+
+class Top(Reader):
+    command = ("learn", "--top", "5", "--json", "study")
+
+    def prepare(self):
+        (self.before / "crawl.yaml").write_text(STUDY_EXPERIMENT.format(root=ROOT))
+        (self.before / "study.yaml").write_text(STUDY)
+        self.made("learn", "study.yaml", "--quiet", "--threads", "1", "--out", "study")
+
+
+class View(Scenario):
+    """A live run that is recorded until SIGTERM. How many calls there are depends on when that comes."""
+
+    RECORDS_S = 0.7   # longer than rows wait before they are written
+    BEGINS_S = 30
+
+    def __init__(self, program, folder):
+        super().__init__(program, folder)
+        (self.before / "swing.yaml").write_text(EXPERIMENT.format(root=ROOT))
+
+    def words(self):
+        return ("view", "swing.yaml", "--out", "live", "--port", "0", "--speed", "1")
+
+    def run(self, folder, fault=None):
+        return self.program.run(self.words(), folder, fault, during=self.end)
+
+    def end(self, process, shared):
+        """Lets it record until the fault has come, or for a while; then SIGTERM."""
+        until = time.monotonic() + self.RECORDS_S
+        while process.poll() is None and time.monotonic() < until and not shared.failed:
+            time.sleep(0.01)
+        time.sleep(0.1)
+        if process.poll() is None:
+            process.send_signal(signal.SIGTERM)
+
+    def check(self, outcome, folder, killed):
+        wrong = said(outcome)
+        if wrong or outcome.status != 0:
+            return wrong
+        if outcome.failed and "error: " in outcome.errors:
+            return None
+        trace = folder / "live/trace.h5"
+        if not trace.exists():
+            return "status 0, no error, and no recording"
+        read = self.program.plain(("compare", trace, trace), folder)
+        return None if read.returncode == 0 else f"status 0, and the recording cannot be read: {read.stderr}"
+
+
+ALL = {"run": Run, "learn": Learn, "view": View, "check": Check, "compare": Compare, "report": Report, "top": Top}

@@ -1,0 +1,65 @@
+"""script/faults finds what is wrong, and only that.
+
+Usage: faults_test.py TAUT LIBRARY TEST. One test of this file, by the name of its function.
+"""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+TAUT, LIBRARY = sys.argv[1:3]
+
+
+def faults(*words, taut=TAUT):
+    return subprocess.run([sys.executable, ROOT / "script/faults", *words, "--quiet", "--taut", taut, "--library", LIBRARY],
+                          capture_output=True, text=True)
+
+
+def instead(folder, lines):
+    """A command in the place of taut: of its arguments "$@" it makes what `lines` say."""
+    path = pathlib.Path(folder, "taut")
+    path.write_text(f"#!/bin/sh\ntaut={TAUT}\n{lines}\n")
+    path.chmod(0o755)
+    return path
+
+
+def AWriteThatFailsIsSaid():
+    run = faults("run", "--at", "write 20 once")
+    assert run.returncode == 0 and "failed: 1," in run.stdout and "status 1" in run.stdout, run
+    assert "error: " in run.stdout and "No space left on device" in run.stdout, run
+
+
+def ACommandThatHidesItsFailureIsFound():
+    with tempfile.TemporaryDirectory() as folder:
+        run = faults("run", "--at", "write 20 once", taut=instead(folder, '"$taut" "$@"\nexit 0'))
+    assert run.returncode == 1 and "WRONG: " in run.stdout, run
+
+
+def ACommandThatCrashesIsFound():
+    with tempfile.TemporaryDirectory() as folder:
+        run = faults("run", "--at", "write 20 once", taut=instead(folder, '"$taut" "$@" || kill -SEGV $$'))
+    assert run.returncode == 1 and "WRONG: ended by SIGSEGV" in run.stdout, run
+
+
+def AKilledRunIsNoFinishedRun():
+    with tempfile.TemporaryDirectory() as folder:
+        keep = 'cp run/summary.json kept 2>/dev/null; "$taut" "$@"; status=$?\n'
+        keep += '[ $status -lt 128 ] || mv kept run/summary.json; rm -f kept; [ $status -lt 128 ] || kill -KILL $$; exit $status'
+        run = faults("run", "--at", "write 20 kill", taut=instead(folder, keep))
+    assert run.returncode == 1 and "WRONG: trace.h5 is not that of the summary" in run.stdout, run
+
+
+def SaysWhatItCannotDo():
+    for words, said in ((("nothing",), "there is no nothing"), (("run", "--kinds", "x"), "there is no x"),
+                        (("run", "--at", "write"), "a kind, a number and a mode"),
+                        (("--at", "write 1 once"), "wants one command")):
+        run = faults(*words)
+        assert run.returncode == 2 and said in run.stderr, run
+    run = faults("run", taut="nothing")
+    assert run.returncode == 2 and "there is no nothing" in run.stderr, run
+
+
+if __name__ == "__main__":
+    globals()[sys.argv[3]]()
