@@ -7,8 +7,8 @@ import shutil
 import time
 
 from robustness.inject import KILL_KINDS, Fault
-from robustness.scenarios import ALL, View
-from validation.runs import table
+from robustness.scenarios import ALL, View, said
+from validation.runs import Problem, table
 
 MOST_POINTS = 2000   # of one kind and mode, unless all are asked for
 MORE_CALLS = 1.1     # than were counted: where time decides, there may be more
@@ -21,7 +21,8 @@ class Tally:
     points: int = 0
     right: int = 0    # the result was right all the same
     said: int = 0     # the command said what failed, and what was complete is complete
-    killed: int = 0   # the process was killed there, and the same
+    killed: int = 0   # the process was killed there, and what was complete is complete
+    in_hdf5: int = 0  # the same; HDF5 itself crashed for want of memory
     wrong: list = dataclasses.field(default_factory=list)
 
 
@@ -50,18 +51,23 @@ class Campaign:
     def prepare(self, name):
         """The scenario, and how many calls of each kind it makes."""
         scenario = ALL[name](self.program, self.folder / name)
-        outcome, wrong = self.point(scenario, None)
+        outcome, _, wrong = self.point(scenario, None)
         if wrong or outcome.status != 0:
-            raise AssertionError(f"{name} without faults: {wrong or outcome.errors}")
+            raise Problem(f"{name} without faults: {wrong or outcome.errors}")
         return scenario, outcome.calls
 
     def point(self, scenario, fault):
+        """How the command ended, what kind of end that is, and what is wrong, if anything."""
         work = self.folder / "work"
         shutil.rmtree(work, ignore_errors=True)
         shutil.copytree(scenario.before, work)
         outcome = scenario.run(work, fault)
-        killed = fault is not None and fault.mode == "kill" and outcome.failed > 0
-        return outcome, scenario.check(outcome, work, killed)
+        bad_end, how = said(outcome), "right" if outcome.status == 0 else "said"
+        if fault and fault.mode == "kill" and outcome.failed:
+            bad_end, how = None, "killed"
+        elif bad_end and fault and fault.kind == "hdf5" and outcome.status is not None:
+            bad_end, how = None, "in_hdf5"
+        return outcome, how, bad_end or scenario.check(outcome, work)
 
     def run(self, names, kinds, every=None, sample=None, seed=1):
         """All faults, or `sample` of them in each scenario, drawn from those with many calls as often as from
@@ -78,7 +84,7 @@ class Campaign:
         for done, fault in enumerate(faults):
             tally = self.tallies[name, fault.kind, fault.mode]
             tally.calls = calls[fault.kind]
-            outcome, wrong = self.point(scenario, fault)
+            outcome, how, wrong = self.point(scenario, fault)
             if wrong:
                 tally.wrong.append({"at": fault.at, "first": outcome.first, "what": wrong})
                 self.show(f"\r\033[KWRONG  {name}, {fault} ({outcome.first}): {wrong}\n")
@@ -86,7 +92,6 @@ class Campaign:
                 continue  # there were fewer calls this time
             tally.points += 1
             if not wrong:
-                how = "killed" if fault.mode == "kill" else "right" if outcome.status == 0 else "said"
                 setattr(tally, how, getattr(tally, how) + 1)
             left_s = (time.monotonic() - began_s) / (done + 1) * (len(faults) - done - 1)
             self.show(f"\r\033[K{name}: {done + 1} of {len(faults)}, {fault.kind} {fault.mode}, {left_s:.0f} s left")
@@ -108,12 +113,12 @@ def results(tallies):
 
 def summary(items):
     """A table: a line for each scenario and kind, all modes together."""
-    rows = collections.defaultdict(lambda: [0, 0, 0, 0, 0, 0])
+    rows = collections.defaultdict(lambda: [0, 0, 0, 0, 0, 0, 0])
     for item in items:
         row = rows[item["scenario"], item["kind"]]
         row[0] = max(row[0], item["calls"])
-        for i, key in enumerate(("points", "right", "said", "killed"), 1):
+        for i, key in enumerate(("points", "right", "said", "killed", "in_hdf5"), 1):
             row[i] += item[key]
-        row[5] += len(item["wrong"])
-    return table(["command", "calls that fail", "of", "faults", "result right", "error said", "killed there", "wrong"],
+        row[6] += len(item["wrong"])
+    return table(["command", "calls that fail", "of", "faults", "result right", "error said", "killed there", "HDF5 crashed", "wrong"],
                  [[name, kind, *map(str, row)] for (name, kind), row in rows.items()])

@@ -12,8 +12,8 @@ import tempfile
 
 from validation.runs import Problem
 
-KINDS = ("memory", "write", "sync", "name", "open", "truncate", "close", "read")  # as in faults.cpp
-ERRORS = {"memory": errno.ENOMEM, "write": errno.ENOSPC, "sync": errno.EIO, "name": errno.EIO,
+KINDS = ("memory", "hdf5", "write", "sync", "name", "open", "truncate", "close", "read")  # as in faults.cpp
+ERRORS = {"memory": errno.ENOMEM, "hdf5": errno.ENOMEM, "write": errno.ENOSPC, "sync": errno.EIO, "name": errno.EIO,
           "open": errno.ENOSPC, "truncate": errno.EIO, "close": errno.EIO, "read": errno.EIO}
 KILL_KINDS = ("write", "sync", "name", "open", "truncate", "close")  # where something may be half done
 MODES = ("once", "sticky", "kill")

@@ -65,7 +65,7 @@ def said(outcome):
 
 class Scenario:
     """`kinds`: calls that may fail here. Those of `kill`, too, may be the last ones."""
-    kinds = ("memory", "write", "sync", "name", "open", "truncate", "close", "read")
+    kinds = ("memory", "hdf5", "write", "sync", "name", "open", "truncate", "close", "read")
     kills = False
 
     def __init__(self, program, folder):
@@ -86,8 +86,8 @@ class Scenario:
     def run(self, folder, fault=None):
         return self.program.run(self.words(), folder, fault)
 
-    def check(self, outcome, folder, killed):
-        """None, or what is wrong. `killed`: the process was to be killed."""
+    def check(self, outcome, folder):
+        """None, or what is wrong with what is left, after an end that was good for itself."""
         raise NotImplementedError
 
 
@@ -122,12 +122,9 @@ class Run(Scenario):
         return rows == compared["a"]["rows"] == compared["b"]["rows"] and all(
             channel["rows"] == rows and channel["max_error"]["value"] == 0 for channel in compared["channels"])
 
-    def check(self, outcome, folder, killed):
-        wrong = None if killed else said(outcome)
-        return wrong or self.whole(folder, outcome.status == 0)
-
-    def whole(self, folder, good):
-        """Whether summary, inputs and traces are those of one run."""
+    def check(self, outcome, folder):
+        """Whether summary and traces are those of one run."""
+        good = outcome.status == 0
         if not (folder / "run/summary.json").exists():
             return "no summary, status 0" if good else None  # declared to be no finished run
         try:
@@ -187,10 +184,7 @@ class Learn(Scenario):
         run = self.program.plain(self.words(), folder)
         return rows, run
 
-    def check(self, outcome, folder, killed):
-        wrong = None if killed else said(outcome)
-        if wrong:
-            return wrong
+    def check(self, outcome, folder):
         rows, again = self.resumed(None, folder)
         if len(rows) < self.kept:
             return f"{len(rows)} of {self.kept} evaluations are left"
@@ -207,9 +201,9 @@ class Learn(Scenario):
 
 class Reader(Scenario):
     """A command that reads what is complete, and prints or writes one file."""
-    kinds = ("memory", "write", "open", "close", "read")
+    kinds = ("memory", "hdf5", "write", "open", "close", "read")
     command, makes = (), ()
-    beside = ("study.sqlite-shm", "study.sqlite-wal")  # what SQLite makes to read
+    beside = ("experiment.yaml", "study.sqlite-shm", "study.sqlite-wal")  # what is made to read a study
 
     def __init__(self, program, folder):
         super().__init__(program, folder)
@@ -228,10 +222,7 @@ class Reader(Scenario):
     def words(self):
         return self.command
 
-    def check(self, outcome, folder, killed):
-        wrong = said(outcome)
-        if wrong:
-            return wrong
+    def check(self, outcome, folder):
         if digest(folder, self.makes + self.beside) != self.whole:
             return "what it reads is not as it was"
         if outcome.status != 0:
@@ -290,10 +281,9 @@ class View(Scenario):
         if process.poll() is None:
             process.send_signal(signal.SIGTERM)
 
-    def check(self, outcome, folder, killed):
-        wrong = said(outcome)
-        if wrong or outcome.status != 0:
-            return wrong
+    def check(self, outcome, folder):
+        if outcome.status != 0:
+            return None
         if outcome.failed and "error: " in outcome.errors:
             return None
         trace = folder / "live/trace.h5"

@@ -1,5 +1,6 @@
 """Parts of docs/robustness.md that commands write, each between two marks."""
 
+import collections
 import json
 
 from robustness import campaign, kills
@@ -37,7 +38,14 @@ def write_faults(folder):
 
 
 def write_fuzz(path):
-    """What script/fuzz has found."""
-    items = read(path)
-    write("fuzz", table(["target", "inputs", "found"],
-                        [[name, f"{item['inputs']:,}".replace(",", " "), item["result"]] for name, item in items.items()]))
+    """What script/fuzz has found, all its runs together."""
+    try:
+        lines = [line.split() for line in path.read_text().splitlines()]
+    except OSError as error:
+        raise Problem(f"{path}: {error}; script/fuzz writes it") from error
+    inputs, wrong = collections.Counter(), collections.Counter()
+    for target, count, result in lines:
+        inputs[target] += int(count)
+        wrong[target] += result == "WRONG"
+    write("fuzz", table(["target", "inputs", "crashes, hangs, failed checks"],
+                        [[name, f"{count:,}".replace(",", " "), str(wrong[name])] for name, count in inputs.items()]))

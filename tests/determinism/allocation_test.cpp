@@ -53,7 +53,7 @@ class Allocation : public testing::Test {
  protected:
   void SetUp() override {
 #ifdef TAUT_SANITIZED
-    GTEST_SKIP() << "sanitizers have allocation functions of their own";
+    GTEST_SKIP() << "this build's sanitizers have allocation functions of their own";
 #endif
   }
 };

@@ -1,11 +1,12 @@
 // Preloaded into a program (LD_PRELOAD), it lets the n-th call of a kind fail, as SQLite does it to
 // itself; script/faults drives it. From the environment:
 //
-//   TAUT_FAULTS       a file of at least sizeof(Record) bytes, shared with who asked: what was counted
-//   TAUT_FAULT_KIND   memory, write, sync, name, open, truncate, close or read
+//   TAUT_FAULTS       a file of at least sizeof(Record) bytes, shared with who asked: what was
+//   counted TAUT_FAULT_KIND   memory, write, sync, name, open, truncate, close or read
 //   TAUT_FAULT_AT     which call of that kind, from 1; 0 or nothing: none, calls are only counted
-//   TAUT_FAULT_STICKY if not empty, all later calls of that kind fail, too, as on a disk that is full
-//   TAUT_FAULT_ERROR  the number for errno, or "kill": the process gets SIGKILL at that call, of a
+//   TAUT_FAULT_STICKY if not empty, all later calls of that kind fail, too, as on a disk that is
+//   full TAUT_FAULT_ERROR  the number for errno, or "kill": the process gets SIGKILL at that call,
+//   of a
 //                     write half of whose bytes have arrived
 //
 // Calls count from main() on. Of files only those on a disk count, and not standard error: the
@@ -13,6 +14,7 @@
 // since the C library does not call its own write() by a name that could be replaced.
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <link.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -29,8 +31,8 @@
 
 namespace {
 
-enum Kind { kMemory, kWrite, kSync, kName, kOpen, kTruncate, kClose, kRead, kKinds };
-constexpr const char* kNames[kKinds] = {"memory", "write",    "sync",  "name",
+enum Kind { kMemory, kHdf5, kWrite, kSync, kName, kOpen, kTruncate, kClose, kRead, kKinds };
+constexpr const char* kNames[kKinds] = {"memory", "hdf5",     "write", "sync", "name",
                                         "open",   "truncate", "close", "read"};
 
 /// What script/faults reads, as it lies in the file.
@@ -47,6 +49,19 @@ std::int64_t at = 0;
 bool sticky = false, by_kill = false;
 int error_number = 0;
 std::atomic<bool> counting{false};
+std::uintptr_t hdf5_begin = 0, hdf5_end = 0;  ///< Where HDF5's code is.
+
+/// Asked about each library: notes where HDF5 is.
+int FindHdf5(dl_phdr_info* library, std::size_t, void*) {
+  if (std::strstr(library->dlpi_name, "libhdf5") == nullptr) return 0;
+  for (int i = 0; i < library->dlpi_phnum; ++i) {
+    const auto& part = library->dlpi_phdr[i];
+    if (part.p_type != PT_LOAD || (part.p_flags & PF_X) == 0) continue;
+    hdf5_begin = library->dlpi_addr + part.p_vaddr;
+    hdf5_end = hdf5_begin + part.p_memsz;
+  }
+  return 1;
+}
 
 void ReadEnvironment() {
   const auto text = [](const char* name) {
@@ -55,8 +70,7 @@ void ReadEnvironment() {
   };
   const int file = open(text("TAUT_FAULTS"), O_RDWR | O_CLOEXEC);
   if (file >= 0) {
-    void* const shared =
-        mmap(nullptr, sizeof(Record), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    void* const shared = mmap(nullptr, sizeof(Record), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     if (shared != MAP_FAILED) record = static_cast<Record*>(shared);
     close(file);
   }
@@ -79,6 +93,12 @@ bool Fails(Kind kind, const char* call, const char* what = "") {
   if (by_kill && kind != kWrite) kill(getpid(), SIGKILL);
   errno = error_number;
   return true;
+}
+
+/// Counts a call for memory, by who asks.
+bool NoMemory(const char* call, const void* caller) {
+  const auto at_code = reinterpret_cast<std::uintptr_t>(caller);
+  return Fails(at_code >= hdf5_begin && at_code < hdf5_end ? kHdf5 : kMemory, call);
 }
 
 /// Counts a call on an open file that is on a disk; those on others do not fail.
@@ -128,6 +148,7 @@ extern "C" {
 int __libc_start_main(int (*main)(int, char**, char**), int argc, char** argv, void (*init)(),
                       void (*fini)(), void (*rtld_fini)(), void* stack_end) {
   ReadEnvironment();
+  dl_iterate_phdr(FindHdf5, nullptr);
   program = main;
   NEXT(__libc_start_main);
   return next(CountedMain, argc, argv, init, fini, rtld_fini, stack_end);
@@ -140,22 +161,24 @@ void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
 
 void* malloc(std::size_t size) {
-  return Fails(kMemory, "malloc") ? nullptr : __libc_malloc(size);
+  return NoMemory("malloc", __builtin_return_address(0)) ? nullptr : __libc_malloc(size);
 }
 void* calloc(std::size_t count, std::size_t size) {
-  return Fails(kMemory, "calloc") ? nullptr : __libc_calloc(count, size);
+  return NoMemory("calloc", __builtin_return_address(0)) ? nullptr : __libc_calloc(count, size);
 }
 void* realloc(void* old, std::size_t size) {
-  return Fails(kMemory, "realloc") ? nullptr : __libc_realloc(old, size);
+  return NoMemory("realloc", __builtin_return_address(0)) ? nullptr : __libc_realloc(old, size);
 }
 void* memalign(std::size_t alignment, std::size_t size) {
-  return Fails(kMemory, "memalign") ? nullptr : __libc_memalign(alignment, size);
+  return NoMemory("memalign", __builtin_return_address(0)) ? nullptr
+                                                           : __libc_memalign(alignment, size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  return Fails(kMemory, "aligned_alloc") ? nullptr : __libc_memalign(alignment, size);
+  return NoMemory("aligned_alloc", __builtin_return_address(0)) ? nullptr
+                                                                : __libc_memalign(alignment, size);
 }
 int posix_memalign(void** to, std::size_t alignment, std::size_t size) {
-  if (Fails(kMemory, "posix_memalign")) return ENOMEM;
+  if (NoMemory("posix_memalign", __builtin_return_address(0))) return ENOMEM;
   *to = __libc_memalign(alignment, size);
   return *to == nullptr ? ENOMEM : 0;
 }

@@ -9,7 +9,7 @@ class StandingForAnHour : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
 #ifndef NDEBUG
-    GTEST_SKIP() << "an hour takes minutes without optimisation";
+    GTEST_SKIP() << "an hour takes minutes in this build, without optimisation";
 #endif
   }
 };

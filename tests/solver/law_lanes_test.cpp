@@ -87,7 +87,7 @@ TEST(LawLanes, TwoLanesGiveTheBitsOfOne) {
 }
 #ifdef TAUT_HAS_AVX2
 TEST(LawLanes, FourLanesGiveTheBitsOfOne) {
-  if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "needs AVX2";
+  if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this machine has no AVX2";
   ExpectContactsSame(4, kAskFourContacts);
   ExpectCablesSame(4, kAskFourCables);
 }
@@ -96,7 +96,7 @@ TEST(LawLanes, FourLanesGiveTheBitsOfOne) {
 TEST(LawLanes, EightLanesGiveTheBitsOfOne) {
   if (!__builtin_cpu_supports("avx512f") || !__builtin_cpu_supports("avx512dq") ||
       !__builtin_cpu_supports("avx512vl")) {
-    GTEST_SKIP() << "needs AVX-512";
+    GTEST_SKIP() << "this machine has no AVX-512";
   }
   ExpectContactsSame(8, kAskEightContacts);
   ExpectCablesSame(8, kAskEightCables);

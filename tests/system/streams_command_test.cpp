@@ -37,7 +37,7 @@ void NobodyReads() {
 class Streams : public CommandTest {
  protected:
   void SetUp() override {
-    if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
+    if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "this machine has no /dev/full";
   }
 
   /// A run that has something to say on both: a table, and a warning that its step is too long.

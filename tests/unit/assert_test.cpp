@@ -12,7 +12,7 @@ TEST(AssertDeathTest, AFailedAssertionSaysWhereAndWhat) {
 #ifdef TAUT_ASSERTS
   EXPECT_DEATH(TAUT_ASSERT(1 + 1 == 3), "assert_test.cpp:[0-9]+: assertion failed: 1 \\+ 1 == 3");
 #else
-  GTEST_SKIP() << "built without TAUT_ASSERTS";
+  GTEST_SKIP() << "this build is without TAUT_ASSERTS";
 #endif
 }
 

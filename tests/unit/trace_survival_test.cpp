@@ -133,7 +133,7 @@ TEST_F(Survival, ATraceInAFolderThatIsNotThereIsAnErrorAndSilent) {
 }
 
 TEST_F(Survival, AFullDiskIsAnErrorInCsv) {
-  if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
+  if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "this machine has no /dev/full";
   Diagnostics out;
   EXPECT_FALSE(Create("/dev/full", out));
   EXPECT_EQ(out.Format(), "error: /dev/full: cannot be written: No space left on device\n");
