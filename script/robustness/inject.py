@@ -92,8 +92,8 @@ class Program:
                 **(fault.environment() if fault else {})}
 
     def run(self, words, folder, fault=None, during=None):
-        """One run in `folder`, output in files there, as on a disk. `during(process, shared)` is called once it
-        has begun, where it must be told to end."""
+        """One run in `folder`, output in files there, as on a disk. `during(process, shared, output)` is called
+        once it has begun, where it must be told to end; output() is what it has printed so far."""
         shared = Shared(folder.parent)
         try:
             with tempfile.TemporaryFile("w+", dir=folder.parent, errors="replace") as output, \
@@ -102,7 +102,7 @@ class Program:
                                            stdout=output, stderr=errors, env=self.environment(shared, fault))
                 try:
                     if during:
-                        during(process, shared)
+                        during(process, shared, lambda: pathlib.Path(f"/proc/self/fd/{output.fileno()}").read_text())
                     status = process.wait(PATIENCE_S)
                 except subprocess.TimeoutExpired:
                     status = None

@@ -272,11 +272,18 @@ class View(Scenario):
     def run(self, folder, fault=None):
         return self.program.run(self.words(), folder, fault, during=self.end)
 
-    def end(self, process, shared):
-        """Lets it record until the fault has come, or for a while; then SIGTERM."""
-        until = time.monotonic() + self.RECORDS_S
-        while process.poll() is None and time.monotonic() < until and not shared.failed:
-            time.sleep(0.01)
+    def end(self, process, shared, output):
+        """Lets it record for a while once it serves, or until the fault has come; then SIGTERM."""
+        limit = time.monotonic() + self.BEGINS_S
+        serves = None
+        while process.poll() is None and time.monotonic() < limit and not shared.failed:
+            if serves is None and "http://" in output():
+                serves = time.monotonic()
+                limit = serves + self.RECORDS_S
+            time.sleep(0.02)
+        # One that fails before it serves ends by itself.
+        while process.poll() is None and "http://" not in output() and time.monotonic() < limit:
+            time.sleep(0.02)
         time.sleep(0.1)
         if process.poll() is None:
             process.send_signal(signal.SIGTERM)

@@ -182,6 +182,13 @@ int posix_memalign(void** to, std::size_t alignment, std::size_t size) {
   *to = __libc_memalign(alignment, size);
   return *to == nullptr ? ENOMEM : 0;
 }
+// Else the C library would be the one who asks.
+char* strdup(const char* text) {
+  if (NoMemory("strdup", __builtin_return_address(0))) return nullptr;
+  const std::size_t size = std::strlen(text) + 1;
+  void* const copy = __libc_malloc(size);
+  return copy == nullptr ? nullptr : static_cast<char*>(std::memcpy(copy, text, size));
+}
 
 // Writing.
 ssize_t write(int file, const void* data, std::size_t size) {
