@@ -101,13 +101,16 @@ bool NoMemory(const char* call, const void* caller) {
   return Fails(at_code >= hdf5_begin && at_code < hdf5_end ? kHdf5 : kMemory, call);
 }
 
-/// Counts a call on an open file that is on a disk; those on others do not fail.
+/// Counts a call on an open file that is on a disk; those on others do not fail. A folder can be
+/// brought to the disk, too.
 bool Fails(Kind kind, const char* call, int file) {
   if (!counting.load(std::memory_order_relaxed) || file == STDERR_FILENO) return false;
   const int before = errno;
   struct stat info {};
-  const bool counts = fstat(file, &info) == 0 && S_ISREG(info.st_mode) &&
-                      (kind == kRead || (fcntl(file, F_GETFL) & O_ACCMODE) != O_RDONLY);
+  const bool known = fstat(file, &info) == 0;
+  const bool writes = (fcntl(file, F_GETFL) & O_ACCMODE) != O_RDONLY;
+  const bool counts = known && (S_ISREG(info.st_mode) ? writes || kind == kRead
+                                                      : S_ISDIR(info.st_mode) && kind == kSync);
   errno = before;
   if (!counts) return false;
   char link[64], path[160] = {};
