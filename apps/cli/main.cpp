@@ -1,10 +1,16 @@
+#include <cxxabi.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <new>
 #include <sstream>
+#include <string_view>
 #include <system_error>
+#include <typeinfo>
 
 #include "commands.h"
 #include "streams.h"
@@ -20,6 +26,16 @@ int Explain(const CLI::App& app, const CLI::ParseError& error) {
   fmt::print("{}", output.str());
   fmt::print(stderr, "{}", errors.str());
   return exit_code == 0 ? kOk : kUsage;
+}
+
+/// Where nothing may be thrown, as while an object goes or in a thread, missing memory ends the
+/// program at once. What it had written is as after a kill: complete or declared unfinished.
+[[noreturn]] void EndAtOnce() {
+  const std::type_info* const thrown = abi::__cxa_current_exception_type();
+  if (thrown == nullptr || *thrown != typeid(std::bad_alloc)) std::abort();
+  constexpr std::string_view kSaid = "error: not enough memory\n";
+  [[maybe_unused]] const auto ignored = write(STDERR_FILENO, kSaid.data(), kSaid.size());
+  _exit(kFailed);
 }
 
 int Run(int argc, char** argv) {
@@ -67,6 +83,7 @@ int Run(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace taut::cli;
   GuardStreams();
+  std::set_terminate(EndAtOnce);
   // A file that reaches a limit of its size is an error of writing, not the end of the program.
   std::signal(SIGXFSZ, SIG_IGN);
   try {

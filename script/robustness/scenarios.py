@@ -7,7 +7,7 @@ is wrong if the result is right, or if the command says that it failed and what 
 import contextlib
 import hashlib
 import json
-import pathlib
+import re
 import shutil
 import signal
 import sqlite3
@@ -58,7 +58,7 @@ def said(outcome):
         return "hangs"
     if outcome.status < 0:
         return f"ended by {signal.Signals(-outcome.status).name}"
-    if outcome.status != 0 and "error: " not in outcome.errors:
+    if outcome.status != 0 and not re.search(r"error: |cannot be ", outcome.errors):
         return f"status {outcome.status} and no error: {outcome.errors!r}"
     return None
 

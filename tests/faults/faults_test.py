@@ -4,6 +4,7 @@ Usage: faults_test.py TAUT LIBRARY TEST. One test of this file, by the name of i
 """
 
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -49,6 +50,14 @@ def AKilledRunIsNoFinishedRun():
         keep += '[ $status -lt 128 ] || mv kept run/summary.json; rm -f kept; [ $status -lt 128 ] || kill -KILL $$; exit $status'
         run = faults("run", "--at", "write 20 kill", taut=instead(folder, keep))
     assert run.returncode == 1 and "WRONG: trace.h5 is not that of the summary" in run.stdout, run
+
+
+def MemoryThatIsMissingWhereNothingMayBeThrownIsSaid():
+    # Of these, some fail while texts of JSON go, which needs memory, too.
+    calls = faults("top", "--at", "memory 1 once").stdout
+    count = int(re.search(r"calls: (\d+) memory", calls)[1])
+    run = faults("top", *(word for back in range(100, 400, 23) for word in ("--at", f"memory {count - back} sticky")))
+    assert run.returncode == 0 and run.stdout.count("good: said") == 14, run
 
 
 def SaysWhatItCannotDo():
