@@ -27,8 +27,9 @@ int Report(const ReportArguments& args) {
                        : args.out;
   OutputIsNews();
   Diagnostics found;
-  if (!viewer::WriteReport(args.trace, args.compare, path, found)) {
-    fmt::print(stderr, "{}", found.Format());
+  const bool written = viewer::WriteReport(args.trace, args.compare, path, found);
+  fmt::print(stderr, "{}", found.Format());
+  if (!written) {
     const bool unwritten = found.items().front().at.file == path;
     return unwritten ? kFailed : kBadInput;
   }

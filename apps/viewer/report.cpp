@@ -175,6 +175,7 @@ bool WriteReport(const std::string& trace, const std::string& compare, const std
   }
   const auto recorded = Recorded::Load(trace, compare, out);
   if (!recorded) return false;
+  if (!recorded->notice().empty()) out.Warning({trace}, recorded->notice());
   const auto page = ReportPage(ReportOf(*recorded), ReadText(*folder + "/report.html"));
   if (!page) {
     out.Error({*folder + "/report.html"}, "is not the page that reports are made of",

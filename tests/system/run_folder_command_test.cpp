@@ -106,7 +106,9 @@ TEST_F(RunCommand, AKilledRunLeavesItsFirstRowAndNothingOfTheRunBefore) {
   EXPECT_GE(trace->time_s.size(), 1u);
   const CommandResult report = Taut({"report", "run/trace.h5"});
   EXPECT_EQ(report.status, 0) << report.errors;
-  EXPECT_NE(NoticeOf("run/report.html").find("the trace is not finished"), std::string::npos);
+  for (const std::string& said : {NoticeOf("run/report.html"), report.errors}) {
+    EXPECT_NE(said.find("the trace is not finished"), std::string::npos) << said;
+  }
   EXPECT_NE(Read(Path("run/report.html")).find(R"("summary":null)"), std::string::npos);
 }
 
