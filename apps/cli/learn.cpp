@@ -33,7 +33,7 @@ struct LearnArguments {
 };
 
 std::string Duration(double s) {
-  const auto whole = static_cast<long long>(std::fmin(std::fmax(s, 0.0), 1e9) + 0.5);
+  const long long whole = std::llround(std::fmin(std::fmax(s, 0.0), 1e9));
   if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }

@@ -77,11 +77,8 @@ int Run(int argc, char** argv) {
   return exit_code;
 }
 
-}  // namespace
-}  // namespace taut::cli
-
-int main(int argc, char** argv) {
-  using namespace taut::cli;
+/// Runs, and says what went wrong where no command could.
+int RunGuarded(int argc, char** argv) {
   GuardStreams();
   std::set_terminate(EndAtOnce);
   // A file that reaches a limit of its size is an error of writing, not the end of the program.
@@ -95,3 +92,8 @@ int main(int argc, char** argv) {
   }
   return kFailed;
 }
+
+}  // namespace
+}  // namespace taut::cli
+
+int main(int argc, char** argv) { return taut::cli::RunGuarded(argc, argv); }

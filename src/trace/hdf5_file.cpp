@@ -134,8 +134,15 @@ herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* co
     walk.error = fmt::format("/{} {}", name, why);
     return -1;
   }
-  column.unit = TextAttribute(object, "unit").value_or("1");
-  column.place = NumberAttribute(object, "column").value_or(INT_MAX);
+  const std::optional<std::string> unit = TextAttribute(object, "unit");
+  const std::optional<int> place = NumberAttribute(object, "column");
+  // What is there and cannot be read is not what is not there.
+  if ((!unit && H5Aexists(object, "unit") != 0) || (!place && H5Aexists(object, "column") != 0)) {
+    walk.error = fmt::format("is damaged: unit or place of /{} cannot be read", name);
+    return -1;
+  }
+  column.unit = unit.value_or("1");
+  column.place = place.value_or(INT_MAX);
   column.dataset = std::move(object);
   if (column.name == "time_s") {
     walk.found.time = std::move(column);
@@ -239,6 +246,12 @@ std::optional<Hdf5File> OpenHdf5Trace(const std::string& path, std::string& erro
   }
   std::stable_sort(trace.channels.begin(), trace.channels.end(),
                    [](const Hdf5Column& a, const Hdf5Column& b) { return a.place < b.place; });
+  for (std::size_t i = 0; i < trace.channels.size(); ++i) {
+    const int place = trace.channels[i].place;
+    if (place == INT_MAX || place == static_cast<int>(i) + 1) continue;
+    error = fmt::format("is damaged: column {} is missing", i + 1);
+    return std::nullopt;
+  }
   trace.rows = trace.time.rows;
   for (const Hdf5Column& channel : trace.channels) trace.rows = std::min(trace.rows, channel.rows);
   struct stat info {};
