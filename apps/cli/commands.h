@@ -21,6 +21,7 @@ void AddCompare(CLI::App& app, int& exit_code);
 void AddGait(CLI::App& app, int& exit_code);
 void AddLearn(CLI::App& app, int& exit_code);
 void AddReport(CLI::App& app, int& exit_code);
+void AddSchema(CLI::App& app, int& exit_code);
 void AddView(CLI::App& app, int& exit_code);
 
 }  // namespace taut::cli

@@ -58,6 +58,7 @@ int Run(int argc, char** argv) {
   AddGait(app, exit_code);
   AddLearn(app, exit_code);
   AddReport(app, exit_code);
+  AddSchema(app, exit_code);
   AddView(app, exit_code);
   try {
     app.parse(argc, argv);
@@ -66,7 +67,7 @@ int Run(int argc, char** argv) {
     if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
       fmt::print(stderr,
                  "error: there is no command \"{}\"; one of: check, run, compare, gait, learn, "
-                 "report, view\n",
+                 "report, schema, view\n",
                  argv[1]);
       return kUsage;
     }

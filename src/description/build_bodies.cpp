@@ -28,18 +28,6 @@ struct Weld {
   bool complete = true;  ///< False: one of its rods was complained about and is not in `solids`.
 };
 
-double MassOf(const MassText& mass, double volume_m3, double length_m) {
-  switch (mass.kind) {
-    case MassText::Kind::kTotal:
-      return mass.value;
-    case MassText::Kind::kDensity:
-      return mass.value * volume_m3;
-    case MassText::Kind::kPerLength:
-      return mass.value * length_m;
-  }
-  return mass.value;
-}
-
 /// Of a beam along the unit vector u of its part: x along it, y level, z up; a beam along z has
 /// its y along the part's y.
 Quat BeamOrientation(const Vec3& u) {
@@ -80,7 +68,7 @@ class BodyBuilder {
 
   bool IsSolid(std::size_t pair) const {
     const BuilderText* builder = PairBuilder(pair);
-    return builder && !std::holds_alternative<CableBuilder>(builder->build);
+    return builder && !builder->cable;
   }
 
   void FindWelds() {
@@ -109,8 +97,7 @@ class BodyBuilder {
       }
       welds_[weld].nodes.push_back(node);
       for (const int b : assignment_.of_node[node]) {
-        const bool anchor = std::holds_alternative<AnchorBuilder>(model_.builders[b].build);
-        (anchor ? welds_[weld].anchored : welds_[weld].has_solid) = true;
+        (model_.builders[b].anchor ? welds_[weld].anchored : welds_[weld].has_solid) = true;
       }
     }
     for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
@@ -142,7 +129,7 @@ class BodyBuilder {
     def.mass_kg = whole.mass_kg;
     def.com_m = whole.mass_kg == 0.0 ? assembly_.nodes[weld.nodes[0]].position_m : whole.com_m;
     def.inertia_kg_m2 = whole.inertia_kg_m2;
-    if (model_.bounding_box_inertia && weld.bounds.low.x < weld.bounds.high.x) {
+    if (model_.inertia == InertiaLaw::kBoundingBox && weld.bounds.low.x < weld.bounds.high.x) {
       def.inertia_kg_m2 = BoundingBoxInertia(weld.bounds, whole.mass_kg);
     }
     def.fixed = weld.anchored;
@@ -182,21 +169,21 @@ class BodyBuilder {
       }
       return;
     }
-    if (const auto* rod = std::get_if<RodBuilder>(&builder.build)) {
-      const double volume = kPi * rod->radius_m * rod->radius_m * length;
-      weld.solids.push_back(
-          SolidCylinder(from, to, rod->radius_m, MassOf(rod->mass, volume, length)));
-      weld.bounds = Union(weld.bounds, BulletCylinderBounds(from, to, rod->radius_m));
-      robot_.def.capsules.push_back(
-          {placed.name, body, from, to, rod->radius_m, rod->material, rod->collides});
-    } else if (const auto* beam = std::get_if<BeamBuilder>(&builder.build)) {
+    if (builder.rod) {
+      const double r = builder.rod->radius_m, volume = kPi * r * r * length;
+      weld.solids.push_back(SolidCylinder(from, to, r, builder.rod->mass.Of(volume, length)));
+      weld.bounds = Union(weld.bounds, BulletCylinderBounds(from, to, r));
+      CapsuleDef& def = Add(robot_.def.capsules, *builder.rod, placed.name, body);
+      def.from_m = from;
+      def.to_m = to;
+    } else if (builder.box) {
+      const BoxText& box = *builder.box;
       const Quat q_WPart =
           placed.instance < 0 ? Quat{} : assembly_.instances[placed.instance].q_WPart;
       const Vec3 u = Rotate(Conjugate(q_WPart), (1.0 / length) * (to - from));
-      AddBox(weld, placed.name, body, 0.5 * (from + to), q_WPart * BeamOrientation(u),
-             {0.5 * length, 0.5 * beam->width_m, 0.5 * beam->height_m},
-             MassOf(beam->mass, length * beam->width_m * beam->height_m, length), beam->material,
-             beam->collides);
+      AddBox(weld, box, placed.name, body, 0.5 * (from + to), q_WPart * BeamOrientation(u),
+             {0.5 * length, 0.5 * box.width_m, 0.5 * box.height_m},
+             box.mass.Of(length * box.width_m * box.height_m, length));
     }
   }
 
@@ -204,31 +191,44 @@ class BodyBuilder {
     const PlacedNode& placed = assembly_.nodes[node];
     for (const int b : assignment_.of_node[node]) {
       const BuilderText& builder = model_.builders[b];
-      if (const auto* sphere = std::get_if<SphereBuilder>(&builder.build)) {
-        const double r = sphere->radius_m;
-        weld.solids.push_back(SolidSphere(placed.position_m, r,
-                                          MassOf(sphere->mass, 4.0 / 3.0 * kPi * r * r * r, 0.0)));
+      if (builder.sphere) {
+        const double r = builder.sphere->radius_m;
+        weld.solids.push_back(SolidSphere(
+            placed.position_m, r, builder.sphere->mass.Of(4.0 / 3.0 * kPi * r * r * r, 0.0)));
         weld.bounds = Union(weld.bounds, SphereBounds(placed.position_m, r));
-        robot_.def.spheres.push_back(
-            {placed.name, body, placed.position_m, r, sphere->material, sphere->collides});
-      } else if (const auto* mass = std::get_if<PointMassBuilder>(&builder.build)) {
+        Add(robot_.def.spheres, *builder.sphere, placed.name, body).center_m = placed.position_m;
+      } else if (builder.point_mass) {
+        const PointMassText& mass = *builder.point_mass;
         const bool lone = weld.nodes.size() == 1 && assignment_.of_node[node].size() == 1;
-        const double r = lone && mass->radius_m == 0.0 ? kPointRadius_m : mass->radius_m;
-        weld.solids.push_back(SolidSphere(placed.position_m, r, mass->mass_kg));
-      } else if (const auto* box = std::get_if<BoxBuilder>(&builder.build)) {
-        const Vec3 size = box->size_m;
-        AddBox(weld, placed.name, body, placed.position_m,
-               assembly_.instances[placed.instance].q_WPart, 0.5 * size,
-               MassOf(box->mass, size.x * size.y * size.z, 0.0), box->material, box->collides);
+        const double r = lone && mass.radius_m == 0.0 ? kPointRadius_m : mass.radius_m;
+        weld.solids.push_back(SolidSphere(placed.position_m, r, mass.mass_kg));
+      } else if (builder.box) {
+        const BoxText& box = *builder.box;
+        const Vec3 size = 2.0 * box.half_extents_m;
+        AddBox(weld, box, placed.name, body, placed.position_m,
+               assembly_.instances[placed.instance].q_WPart, box.half_extents_m,
+               box.mass.Of(size.x * size.y * size.z, 0.0));
       }
     }
   }
 
-  void AddBox(Weld& weld, const std::string& name, int body, const Vec3& center, const Quat& q,
-              const Vec3& half, double mass, const Material& material, bool collides) {
+  /// A shape as its builder has it, on a body.
+  template <class Def, class Text>
+  static Def& Add(std::vector<Def>& shapes, const Text& text, const std::string& name, int body) {
+    Def& def = shapes.emplace_back(text);
+    def.name = name;
+    def.body = body;
+    return def;
+  }
+
+  void AddBox(Weld& weld, const BoxText& text, const std::string& name, int body,
+              const Vec3& center, const Quat& q, const Vec3& half, double mass) {
     weld.solids.push_back(SolidBox(center, q, half, mass));
     weld.bounds = Union(weld.bounds, BoxBounds(center, q, half));
-    robot_.def.boxes.push_back({name, body, center, q, half, material, collides});
+    BoxDef& def = Add(robot_.def.boxes, text, name, body);
+    def.center_m = center;
+    def.orientation = q;
+    def.half_extents_m = half;
   }
 
   void CheckMass(const Weld& weld, const BodyDef& def) {

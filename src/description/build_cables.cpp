@@ -38,20 +38,16 @@ class CableMaker {
     for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
       const int b = assignment_.of_pair[pair];
       if (b < 0) continue;
-      if (const auto* cable = std::get_if<CableBuilder>(&model_.builders[b].build)) {
-        Make(assembly_.pairs[pair], *cable);
-      }
+      const std::optional<CableText>& cable = model_.builders[b].cable;
+      if (cable) Make(assembly_.pairs[pair], *cable);
     }
   }
 
  private:
-  void Make(const PlacedPair& pair, const CableBuilder& builder) {
-    CableDef cable;
+  void Make(const PlacedPair& pair, const CableText& builder) {
+    CableDef cable = builder;
     cable.name = pair.name;
-    cable.stiffness_n_per_m = builder.stiffness_n_per_m;
-    cable.damping_n_s_per_m = builder.damping_n_s_per_m;
-    cable.damping_law = builder.damping_law;
-    cable.actuator = builder.actuator;
+    if (!builder.own_damping_law) cable.damping_law = model_.damping_law;
     for (const int node : pair.nodes) {
       cable.attachments.push_back({body_of_node_[node], assembly_.nodes[node].position_m});
     }
@@ -63,11 +59,9 @@ class CableMaker {
   }
 
   /// The radius of a node's sphere. In the world there is none and the end stays at the node.
-  double SurfaceRadius(int node, const PlacedPair& pair, const CableBuilder& builder) {
+  double SurfaceRadius(int node, const PlacedPair& pair, const CableText& builder) {
     for (const int b : assignment_.of_node[node]) {
-      if (const auto* sphere = std::get_if<SphereBuilder>(&model_.builders[b].build)) {
-        return sphere->radius_m;
-      }
+      if (model_.builders[b].sphere) return model_.builders[b].sphere->radius_m;
     }
     if (body_of_node_[node] != kWorld) {
       Once(builder.ends_at,
@@ -78,7 +72,7 @@ class CableMaker {
     return 0.0;
   }
 
-  void MoveEndsToSurface(const PlacedPair& pair, const CableBuilder& builder, CableDef& cable) {
+  void MoveEndsToSurface(const PlacedPair& pair, const CableText& builder, CableDef& cable) {
     const std::vector<AttachmentDef> nodes = cable.attachments;
     const std::size_t last = nodes.size() - 1;
     const auto move = [&](std::size_t end, std::size_t next) {
@@ -97,7 +91,7 @@ class CableMaker {
   }
 
   /// False if there is no sensible length.
-  bool CheckPath(const PlacedPair& pair, const CableBuilder&, const CableDef& cable) {
+  bool CheckPath(const PlacedPair& pair, const CableText&, const CableDef& cable) {
     bool one_body = true;
     for (std::size_t i = 1; i < cable.attachments.size(); ++i) {
       one_body = one_body && cable.attachments[i].body == cable.attachments[0].body;
@@ -121,26 +115,20 @@ class CableMaker {
     return true;
   }
 
-  void SetRestLength(const PlacedPair& pair, const CableBuilder& builder, CableDef& cable) {
+  void SetRestLength(const PlacedPair& pair, const CableText& builder, CableDef& cable) {
     const double length = CableLength(cable);
-    switch (builder.rest) {
-      case CableBuilder::Rest::kPrestress:
-        cable.rest_length_m = length - builder.rest_value / builder.stiffness_n_per_m;
-        if (cable.rest_length_m <= 0.0) {
-          Once(builder.rest_at,
-               "cable.prestress_n: " + Number(builder.rest_value) +
-                   " N would stretch the cable \"" + pair.name + "\" to more than its length of " +
-                   Number(length) + " m",
-               "at " + Number(builder.stiffness_n_per_m) + " N/m at most " +
-                   Number(builder.stiffness_n_per_m * length) + " N");
-        }
-        break;
-      case CableBuilder::Rest::kLength:
-        cable.rest_length_m = builder.rest_value;
-        break;
-      case CableBuilder::Rest::kRatio:
-        cable.rest_length_m = builder.rest_value * length;
-        break;
+    if (builder.prestress_n) {
+      cable.rest_length_m = length - *builder.prestress_n / builder.stiffness_n_per_m;
+      if (cable.rest_length_m <= 0.0) {
+        Once(builder.rest_at,
+             "cable.prestress_n: " + Number(*builder.prestress_n) +
+                 " N would stretch the cable \"" + pair.name + "\" to more than its length of " +
+                 Number(length) + " m",
+             "at " + Number(builder.stiffness_n_per_m) + " N/m at most " +
+                 Number(builder.stiffness_n_per_m * length) + " N");
+      }
+    } else if (builder.rest_length_ratio) {
+      cable.rest_length_m = *builder.rest_length_ratio * length;
     }
     if (cable.rest_length_m > 0.0 && cable.rest_length_m < cable.actuator.min_rest_length_m) {
       Once(builder.rest_at, "the cable \"" + pair.name + "\" starts with a rest length of " +

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "description/control_keys.h"
 #include "description/experiment_parts.h"
 
 namespace taut::description {
@@ -100,41 +101,11 @@ class PerCable {
   bool complete_ = true;
 };
 
-struct Gains {
-  double position_n_per_m = 0.0, velocity_n_s_per_m = 0.0;
-};
-
-struct SetPoint {
-  double tension_n = 0.0, length_m = 0.0, velocity_m_per_s = 0.0;
-};
-
-void ReadPid(const MapReader& impedance, ImpedanceSpec& out) {
-  const Value* value = impedance.Find("pid");
-  if (out.conversion == TensionConversion::kStiffness) {
-    if (value) {
-      impedance.Error("pid", "impedance.pid has no effect", "write `conversion: pid`, too");
-    }
-    return;
-  }
-  if (!value) {
-    impedance.Error("conversion", "conversion: pid needs the key \"pid\" beside it",
-                    "write `pid: {proportional_m_per_s_n: 0.01}`");
-    return;
-  }
-  const MapReader pid(*value, "impedance.pid",
-                      {"proportional_m_per_s_n", "integral_m_per_s2_n", "derivative_m_per_n"},
-                      impedance.scope());
-  out.pid.proportional_m_per_s_n = pid.Number("proportional_m_per_s_n", Bound::kNonNegative);
-  out.pid.integral_m_per_s2_n = pid.NumberOr("integral_m_per_s2_n", 0.0, Bound::kNonNegative);
-  out.pid.derivative_m_per_n = pid.NumberOr("derivative_m_per_n", 0.0, Bound::kNonNegative);
-}
-
-enum class RateSource { kExact, kDifferenced, kDifferencedFromRestLength };
-
 using Points = std::vector<std::pair<double, double>>;
 
 /// A number (held for ever) or points.
-Points ReadCourse(const Value& value, const std::string& what, Bound bound, const Scope& scope) {
+Points ReadCourse(const Value& value, const std::string& what, const Bound& bound,
+                  const Scope& scope) {
   if (value.kind == Value::Kind::kSequence) return ReadPoints(value, what, bound, scope);
   if (value.kind != Value::Kind::kScalar) {
     WrongType(value, what, "a number or a list of [time_s, value]", scope);
@@ -235,103 +206,69 @@ std::vector<int> SelectCables(const Value& value, std::string_view what, const R
   return cables;
 }
 
-std::vector<std::pair<double, double>> ReadPoints(const Value& value, std::string_view what,
-                                                  Bound bound, const Scope& scope) {
-  Points points;
-  if (value.kind != Value::Kind::kSequence || value.items.empty()) {
-    scope.out.Error(value.at, std::string(what) + " must be a list of [time_s, value]",
-                    "such as [[0, 1], [5, 2]]");
-    return points;
+void Check(const MapReader& map, ImpedanceText& impedance) {
+  if (impedance.conversion == TensionConversion::kStiffness && map.Has("pid")) {
+    map.Error("pid", "impedance.pid has no effect", "write `conversion: pid`, too");
   }
-  bool good = true;
-  double before = -1.0;
-  for (const ValuePtr& item : value.items) {
-    if (item->kind != Value::Kind::kSequence || item->items.size() != 2) {
-      scope.out.Error(item->at, std::string(what) + ": a point must be [time_s, value]");
-      good = false;
-      continue;
-    }
-    const double time_s =
-        ReadNumber(*item->items[0], std::string(what) + ": time_s", Bound::kNonNegative, scope);
-    const double number = ReadNumber(*item->items[1], what, bound, scope);
-    if (time_s <= before) {
-      scope.out.Error(item->items[0]->at, std::string(what) + ": times must rise, but " +
-                                              Shown(time_s) + " s follows " + Shown(before) + " s");
-      good = false;
-    }
-    good = good && !std::isnan(time_s) && !std::isnan(number);
-    if (!std::isnan(time_s)) before = time_s;
-    points.emplace_back(time_s, number);
+  if (impedance.conversion == TensionConversion::kPid && !map.Has("pid")) {
+    map.Error("conversion", "conversion: pid needs the key \"pid\" beside it",
+              "write `pid: {proportional_m_per_s_n: 0.01}`");
   }
-  return good ? points : Points();
+  if (impedance.pid_text) impedance.pid = *impedance.pid_text;
+  impedance.differenced_rate = impedance.rate != RateSource::kExact;
+  impedance.start_from_rest_length = impedance.rate == RateSource::kDifferencedFromRestLength;
+  const auto is_list = [&](std::string_view key) {
+    return map.Has(key) && map.Find(key)->kind == Value::Kind::kSequence;
+  };
+  impedance.gains_complete = is_list("gains");
+  impedance.set_points_complete = is_list("set_points");
 }
 
-ImpedanceSpec ReadImpedance(const Value& value, const RobotSpec* robot, const Scope& scope) {
-  const MapReader map(value, "impedance", {"conversion", "pid", "rate", "gains", "set_points"},
-                      scope);
-  ImpedanceSpec out;
-  out.conversion = map.ChoiceOr<TensionConversion>(
-      "conversion", TensionConversion::kStiffness,
-      {{"stiffness", TensionConversion::kStiffness}, {"pid", TensionConversion::kPid}});
-  ReadPid(map, out);
-  const auto rate = map.ChoiceOr<RateSource>(
-      "rate", RateSource::kExact,
-      {{"exact", RateSource::kExact},
-       {"differenced", RateSource::kDifferenced},
-       {"differenced_from_rest_length", RateSource::kDifferencedFromRestLength}});
-  out.differenced_rate = rate != RateSource::kExact;
-  out.start_from_rest_length = rate == RateSource::kDifferencedFromRestLength;
-
-  PerCable<Gains> gains(robot, "gains", scope);
-  const Value* gains_list = map.Require("gains");
-  if (!gains_list || gains_list->kind != Value::Kind::kSequence) gains.SetIncomplete();
-  for (const ValuePtr& item : Items(gains_list, "impedance.gains", scope)) {
-    const MapReader entry(*item, "gains",
-                          {"cables", "position_gain_n_per_m", "velocity_gain_n_s_per_m"}, scope);
-    const Gains read{entry.Number("position_gain_n_per_m", Bound::kNonNegative),
-                     entry.Number("velocity_gain_n_s_per_m", Bound::kNonNegative)};
-    gains.Add(entry.Require("cables"), entry.Path("cables"), read);
+void Check(const MapReader& map, ControllerText& controller) {
+  controller.name_at = map.KeyAt("name");
+  if (map.Has("velocity_input") && map.Has("position") && !map.Has("impedance")) {
+    map.Error("velocity_input", "velocity_input has no effect with position",
+              "it is the V0 of `impedance`");
   }
-  PerCable<SetPoint> set_points(robot, "set points", scope);
-  const Value* set_points_list = map.Require("set_points");
-  if (!set_points_list || set_points_list->kind != Value::Kind::kSequence)
-    set_points.SetIncomplete();
-  for (const ValuePtr& item : Items(set_points_list, "impedance.set_points", scope)) {
-    const MapReader entry(*item, "set_points",
-                          {"cables", "tension_n", "length_m", "velocity_m_per_s"}, scope);
-    const SetPoint read{entry.Number("tension_n", Bound::kNonNegative),
-                        entry.Number("length_m", Bound::kNonNegative),
-                        entry.NumberOr("velocity_m_per_s", 0.0, Bound::kAny)};
-    set_points.Add(entry.Require("cables"), entry.Path("cables"), read);
+}
+
+ImpedanceSpec ToImpedance(const ImpedanceText& text, const RobotSpec* robot, const Scope& scope) {
+  PerCable<GainsText> gains(robot, "gains", scope);
+  if (!text.gains_complete) gains.SetIncomplete();
+  for (const GainsText& entry : text.gains) gains.Add(entry.cables.value, "gains.cables", entry);
+  PerCable<SetPointText> set_points(robot, "set points", scope);
+  if (!text.set_points_complete) set_points.SetIncomplete();
+  for (const SetPointText& entry : text.set_points) {
+    set_points.Add(entry.cables.value, "set_points.cables", entry);
   }
   set_points.Require(gains, "add a selector to `gains`");
   gains.Require(set_points, "add a selector to `set_points`, or narrow this one");
+  ImpedanceSpec out = text;
   for (const int cable : set_points.cables()) {
-    const Gains* gain = gains.Find(cable);
+    const GainsText* gain = gains.Find(cable);
     if (!gain) continue;
-    const SetPoint& set_point = *set_points.Find(cable);
-    out.cables.push_back({cable, set_point.tension_n, set_point.length_m, gain->position_n_per_m,
-                          gain->velocity_n_s_per_m, set_point.velocity_m_per_s});
+    const SetPointText& set_point = *set_points.Find(cable);
+    out.cables.push_back({cable, set_point.tension_n, set_point.length_m,
+                          gain->position_gain_n_per_m, gain->velocity_gain_n_s_per_m,
+                          set_point.velocity_m_per_s});
   }
   return out;
 }
 
-std::vector<PositionProgram> ReadPosition(const Value& value, const RobotSpec* robot,
-                                          const Scope& scope) {
-  const MapReader map(value, "position", {"programs"}, scope);
+std::vector<PositionProgram> ToPrograms(const PositionText& text, const RobotSpec* robot,
+                                        const Scope& scope) {
   PerCable<Course> courses(robot, "programs", scope);
-  for (const ValuePtr& item : Items(map.Require("programs"), "position.programs", scope)) {
-    const MapReader entry(*item, "programs", {"cables", "rest_length_m", "change_m"}, scope);
-    const std::string key = entry.ExactlyOne({"rest_length_m", "change_m"});
+  for (const ProgramText& entry : text.programs) {
     Course course;
-    if (!key.empty()) {
-      const Value& found = *entry.Find(key);
-      course.relative = key == "change_m";
-      course.at = found.at;
-      course.points = ReadCourse(found, entry.Path(key),
-                                 course.relative ? Bound::kAny : Bound::kPositive, scope);
+    course.relative = entry.change_m.value && !entry.rest_length_m.value;
+    const Value* points = course.relative ? entry.change_m.value : entry.rest_length_m.value;
+    if (points) {
+      course.at = points->at;
+      course.points =
+          ReadCourse(*points, course.relative ? "programs.change_m" : "programs.rest_length_m",
+                     course.relative ? Bound::kAny : Bound::kPositive, scope);
     }
-    courses.Add(entry.Require("cables"), entry.Path("cables"), course);
+    courses.Add(entry.cables.value, "programs.cables", course);
   }
   std::vector<PositionProgram> programs;
   std::set<std::pair<int, int>> reported;
@@ -341,44 +278,39 @@ std::vector<PositionProgram> ReadPosition(const Value& value, const RobotSpec* r
   return programs;
 }
 
-std::vector<ControllerSpec> ReadControllers(const Value* list, const RobotSpec* robot,
-                                            bool actuators_known, const Scope& scope) {
+std::vector<ControllerSpec> ToControllers(std::vector<ControllerText>& texts,
+                                          const RobotSpec* robot, bool actuators_known,
+                                          const Scope& scope) {
   std::vector<ControllerSpec> controllers;
   std::vector<SourceRef> places;
   std::map<std::string, SourceRef> names;
-  for (const ValuePtr& item : Items(list, "controllers", scope)) {
-    const MapReader map(*item, "controller",
-                        {"name", "period_s", "phase_s", "impedance", "position", "velocity_input"},
-                        scope);
-    ControllerSpec controller;
-    controller.name = map.Name("name");
-    controller.clock.period_s =
-        map.NumberOr("period_s", controller.clock.period_s, Bound::kPositive);
-    controller.clock.phase_s = map.NumberOr("phase_s", 0.0, Bound::kNonNegative);
-    const std::string kind = map.ExactlyOne({"impedance", "position"});
-    if (kind == "impedance") {
-      controller.impedance = ReadImpedance(*map.Find(kind), robot, scope);
-    } else if (kind == "position") {
-      controller.position = ReadPosition(*map.Find(kind), robot, scope);
+  for (ControllerText& text : texts) {
+    ControllerSpec& controller = controllers.emplace_back(text);
+    if (text.impedance_text) {
+      controller.impedance = ToImpedance(*text.impedance_text, robot, scope);
+    } else if (text.position_text) {
+      controller.position = ToPrograms(*text.position_text, robot, scope);
     }
-    if (const Value* input = map.Find("velocity_input")) {
-      controller.velocity_input = ReadVelocityInput(*input, scope);
-      if (kind == "position") {
-        map.Error("velocity_input", "velocity_input has no effect with position",
-                  "it is the V0 of `impedance`");
-      } else if (robot && controller.velocity_input && controller.impedance) {
-        CheckGaitDrives(controller, *robot, input->at, scope.out);
+    if (text.velocity_input_text) {
+      VelocityInputText& input = *text.velocity_input_text;
+      const auto path = FindFile(input.gait_file.value, "velocity_input.gait", scope);
+      auto gait = path ? LoadGait(*path, scope.out) : std::nullopt;
+      if (gait) {
+        input.gait = std::move(*gait);
+        controller.velocity_input = input;
+      }
+      if (robot && gait && controller.impedance) {
+        CheckGaitDrives(controller, *robot, input.at, scope.out);
       }
     }
     if (!controller.name.empty()) {
-      const auto [first, fresh] = names.emplace(controller.name, map.KeyAt("name"));
+      const auto [first, fresh] = names.emplace(controller.name, text.name_at);
       if (!fresh) {
-        map.Error("name", "there are two controllers " + controller.name,
-                  "the first is in line " + std::to_string(first->second.line));
+        scope.out.Error(text.name_at, "there are two controllers " + controller.name,
+                        "the first is in line " + std::to_string(first->second.line));
       }
     }
-    controllers.push_back(std::move(controller));
-    places.push_back(map.KeyAt("name"));
+    places.push_back(text.name_at);
   }
   if (robot) CheckDriven(controllers, places, *robot, actuators_known, scope);
   return controllers;

@@ -1,4 +1,5 @@
 // Numbers of others, to show ours beside.
+#include "description/experiment_keys.h"
 #include "description/experiment_parts.h"
 
 namespace taut::description {
@@ -16,43 +17,33 @@ std::optional<int> FindNamed(const Items& items, const std::string& name, const 
   return std::nullopt;
 }
 
-ReferenceSpec ReadOne(const Value& value, const RobotSpec* robot,
-                      const std::vector<PhaseSpec>& phases, const Scope& scope) {
-  const MapReader map(value, "reference", {"source", "quantity", "statistic", "phase", "cables_n"},
-                      scope);
-  ReferenceSpec reference;
-  reference.source = map.Text("source");
-  reference.quantity = map.ChoiceOr("quantity", reference.quantity, kReferenceQuantities);
-  reference.statistic = map.ChoiceOr("statistic", reference.statistic, kReferenceStatistics);
-  if (const Value* phase = map.Find("phase")) {
-    reference.phase = ReadText(*phase, map.Path("phase"), scope);
-    FindNamed(phases, reference.phase, phase->at, "phase", scope.out);
-  } else if (reference.statistic != ReferenceSpec::Statistic::kMax) {
+}  // namespace
+
+void Check(const MapReader& map, ReferenceText& reference) {
+  if (!map.Has("phase") && reference.statistic != ReferenceSpec::Statistic::kMax) {
     map.Error("statistic", "reference.statistic: over the whole run there is only max",
               "name a phase of the timeline: phase: before");
   }
-  const Value* cables = map.Require("cables_n");
-  for (const Entry& entry : Entries(cables, "reference.cables_n", scope)) {
-    const double force_n =
-        ReadNumber(*entry.value, "reference.cables_n." + entry.key, Bound::kAny, scope);
-    if (!robot) continue;
-    const auto cable = FindNamed(robot->def.cables, entry.key, entry.key_at, "cable", scope.out);
-    if (cable) reference.values.push_back({*cable, force_n});
-  }
+  const Value* cables = map.Find("cables_n");
   if (cables && cables->kind == Value::Kind::kMap && cables->entries.empty()) {
-    scope.out.Error(cables->at, "reference.cables_n has no values", "inner_top_1: 34.4");
+    map.scope().out.Error(cables->at, "reference.cables_n has no values", "inner_top_1: 34.4");
   }
-  return reference;
 }
 
-}  // namespace
-
-std::vector<ReferenceSpec> ReadReferences(const Value* list, const RobotSpec* robot,
-                                          const std::vector<PhaseSpec>& phases,
-                                          const Scope& scope) {
+std::vector<ReferenceSpec> ToReferences(const std::vector<ReferenceText>& texts,
+                                        const RobotSpec* robot,
+                                        const std::vector<PhaseSpec>& phases, const Scope& scope) {
   std::vector<ReferenceSpec> references;
-  for (const ValuePtr& item : Items(list, "reference", scope)) {
-    references.push_back(ReadOne(*item, robot, phases, scope));
+  for (const ReferenceText& text : texts) {
+    ReferenceSpec& reference = references.emplace_back(text);
+    reference.phase = text.phase_text.text;
+    if (!text.phase_text.at.file.empty())
+      FindNamed(phases, reference.phase, text.phase_text.at, "phase", scope.out);
+    if (!robot) continue;
+    for (const auto& item : text.cables_n.items) {
+      const auto cable = FindNamed(robot->def.cables, item.name, item.name_at, "cable", scope.out);
+      if (cable) reference.values.push_back({*cable, item.value});
+    }
   }
   return references;
 }

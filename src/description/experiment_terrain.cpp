@@ -2,75 +2,13 @@
 #include <cmath>
 #include <map>
 
+#include "description/experiment_keys.h"
 #include "description/experiment_parts.h"
-#include "description/material.h"
 #include "math/elementary.h"
 #include "math/vec.h"
 
 namespace taut::description {
 namespace {
-
-std::vector<std::string> WithMaterialKeys(std::vector<std::string> keys) {
-  keys.insert(keys.end(), kMaterialKeys.begin(), kMaterialKeys.end());
-  return keys;
-}
-
-/// The surface's normal from its slope and the direction in which it rises.
-Vec3 SlopeNormal(const MapReader& map) {
-  const double slope = map.Number("slope_rad", Bound::kNonNegative);
-  if (slope >= 0.5 * 3.14159265358979323846) {
-    map.scope().out.Error(map.Find("slope_rad")->at,
-                          "plane.slope_rad must be below pi / 2, got " + Shown(slope),
-                          "give a `normal` instead");
-  }
-  const Value* direction = map.Require("slope_direction");
-  if (!direction || !(slope <= math::kMaxAngle)) return {0, 0, 1};
-  const Vec3 up = ReadDirection(*direction, map.Path("slope_direction"), map.scope());
-  if (up.z != 0.0 && !std::isnan(up.z)) {
-    map.scope().out.Error(direction->at, "plane.slope_direction must be horizontal",
-                          "its last number must be 0");
-  }
-  return Vec3{0, 0, math::Cos(slope)} - math::Sin(slope) * up;
-}
-
-PlaneDef ReadPlane(const Value& value, const Scope& scope) {
-  const MapReader map(
-      value, "plane",
-      WithMaterialKeys({"height_m", "point_m", "normal", "slope_rad", "slope_direction"}), scope);
-  PlaneDef plane;
-  const std::string how = map.ExactlyOne({"height_m", "normal", "slope_rad"});
-  if (how == "height_m") {
-    plane.point_m = {0, 0, map.Number("height_m", Bound::kAny)};
-    if (map.Has("point_m")) {
-      map.Error("point_m", "plane has both height_m and point_m", "only one of them may be there");
-    }
-  } else {
-    plane.point_m = map.VectorOr("point_m", {});
-  }
-  if (how == "normal") plane.normal = ReadDirection(*map.Find("normal"), "plane.normal", scope);
-  if (how == "slope_rad") plane.normal = SlopeNormal(map);
-  if (map.Has("slope_direction") && !map.Has("slope_rad")) {
-    map.Error("slope_direction", "plane.slope_direction needs slope_rad");
-  }
-  plane.material = ReadMaterial(map);
-  return plane;
-}
-
-TerrainBoxDef ReadTerrainBox(const Value& value, const Scope& scope) {
-  const MapReader map(value, "box", WithMaterialKeys({"center_m", "size_m", "rotate"}), scope);
-  TerrainBoxDef box;
-  box.center_m = map.Vector("center_m");
-  const Vec3 size = map.Vector("size_m");
-  if (size.x <= 0.0 || size.y <= 0.0 || size.z <= 0.0) {
-    scope.out.Error(map.Find("size_m")->at, "box.size_m must be positive");
-  }
-  box.half_extents_m = 0.5 * size;
-  if (const Value* rotate = map.Find("rotate")) {
-    box.orientation = ReadRotation(*rotate, "box.rotate", scope);
-  }
-  box.material = ReadMaterial(map);
-  return box;
-}
 
 Inertia Rotated(const Quat& q, const Inertia& inertia) {
   // The columns of R I R^T, one axis after the other.
@@ -130,49 +68,80 @@ void AddVelocity(const Vec3& v, const Vec3& w, ModelDef& def) {
 
 }  // namespace
 
-void ReadTerrain(const Value* list, const Scope& scope, RobotSpec& robot) {
+void Check(const MapReader& map, PlaneText& plane) {
+  plane.material = ToMaterial(map, plane.surface);
+  if (plane.height_m) {
+    plane.point_m = {0, 0, *plane.height_m};
+    if (map.Has("point_m")) {
+      map.Error("point_m", "plane has both height_m and point_m", "only one of them may be there");
+    }
+  }
+  if (map.Has("slope_direction") && !map.Has("slope_rad")) {
+    map.Error("slope_direction", "plane.slope_direction needs slope_rad");
+  }
+  if (!plane.slope_rad || !map.Require("slope_direction")) return;
+  const double slope = *plane.slope_rad;
+  const Vec3 up = *plane.slope_direction;
+  if (up.z != 0.0 && !std::isnan(up.z)) {
+    map.scope().out.Error(map.Find("slope_direction")->at,
+                          "plane.slope_direction must be horizontal", "its last number must be 0");
+  }
+  if (std::isnan(slope)) return;
+  plane.normal = Vec3{0, 0, math::Cos(slope)} - math::Sin(slope) * up;
+}
+
+void Check(const MapReader& map, TerrainBoxText& box) {
+  box.half_extents_m = 0.5 * box.size_m;
+  box.material = ToMaterial(map, box.surface);
+}
+
+void Check(const MapReader& map, TerrainText& terrain) {
+  if (map.Has("name")) terrain.name_at = map.Find("name")->at;
+  terrain.name_key_at = map.KeyAt("name");
+}
+
+void Check(const MapReader& map, PlaceText& place) {
+  place.moved = map.Has("at_m") || map.Has("rotate");
+  if (map.Has("velocity_m_per_s")) place.velocity_at = map.KeyAt("velocity_m_per_s");
+  if (map.Has("angular_velocity_rad_per_s"))
+    place.angular_velocity_at = map.KeyAt("angular_velocity_rad_per_s");
+}
+
+void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, RobotSpec& robot) {
   ModelDef& def = robot.def;
   std::map<std::string, SourceRef> names;
-  for (const ValuePtr& item : Items(list, "terrain", scope)) {
-    const MapReader map(*item, "terrain", {"name", "plane", "box"}, scope);
-    const std::string name = map.Name("name");
-    const std::string kind = map.ExactlyOne({"plane", "box"});
-    if (kind == "plane") {
-      def.planes.push_back(ReadPlane(*map.Find(kind), scope));
-      def.planes.back().name = name;
-      robot.plane_sources.push_back(item->at);
-    } else if (kind == "box") {
-      def.terrain_boxes.push_back(ReadTerrainBox(*map.Find(kind), scope));
-      def.terrain_boxes.back().name = name;
-      robot.terrain_box_sources.push_back(item->at);
+  for (const TerrainText& text : texts) {
+    if (text.plane) {
+      def.planes.push_back(*text.plane);
+      def.planes.back().name = text.name;
+      robot.plane_sources.push_back(text.at);
+    } else if (text.box) {
+      def.terrain_boxes.push_back(*text.box);
+      def.terrain_boxes.back().name = text.name;
+      robot.terrain_box_sources.push_back(text.at);
     }
-    if (name.empty()) continue;
-    const auto [first, fresh] = names.emplace(name, map.Find("name")->at);
+    if (text.name.empty()) continue;
+    const auto [first, fresh] = names.emplace(text.name, text.name_at);
     if (!fresh) {
-      map.Error("name", "there are two parts of the terrain called " + name,
-                "the first is in line " + std::to_string(first->second.line));
+      scope.out.Error(text.name_key_at, "there are two parts of the terrain called " + text.name,
+                      "the first is in line " + std::to_string(first->second.line));
     }
   }
 }
 
-void ReadPlace(const Value& value, StartKind start, const Scope& scope, ModelDef& def) {
-  const MapReader map(value, "place",
-                      {"at_m", "rotate", "velocity_m_per_s", "angular_velocity_rad_per_s"}, scope);
-  const Vec3 at_m = map.VectorOr("at_m", {});
-  Quat rotate;
-  const Value* rotate_value = map.Find("rotate");
-  if (rotate_value) rotate = ReadRotation(*rotate_value, "place.rotate", scope);
-  const Vec3 velocity = map.VectorOr("velocity_m_per_s", {});
-  const Vec3 spin = map.VectorOr("angular_velocity_rad_per_s", {});
-  for (const char* key : {"velocity_m_per_s", "angular_velocity_rad_per_s"}) {
-    if (start == StartKind::kAsDescribed || !map.Has(key)) continue;
-    map.Error(key, map.Path(key) + " has no effect: settling ends at rest",
-              "write `start: as_described`");
-  }
+void Place(const PlaceText& place, StartKind start, const Scope& scope, ModelDef& def) {
+  const bool moving = place.velocity_at.line > 0, turning = place.angular_velocity_at.line > 0;
+  const auto check = [&](bool given, const SourceRef& at, const char* key) {
+    if (start == StartKind::kAsDescribed || !given) return;
+    scope.out.Error(at, std::string("place.") + key + " has no effect: settling ends at rest",
+                    "write `start: as_described`");
+  };
+  check(moving, place.velocity_at, "velocity_m_per_s");
+  check(turning, place.angular_velocity_at, "angular_velocity_rad_per_s");
   // Nothing is touched for nothing: a robot that is not placed keeps its numbers bit for bit.
-  if (map.Has("at_m") || rotate_value) Move(at_m, rotate, def);
-  if (map.Has("velocity_m_per_s") || map.Has("angular_velocity_rad_per_s")) {
-    AddVelocity(velocity, spin, def);
+  if (place.moved) Move(place.at_m, place.rotate, def);
+  if (moving || turning) {
+    AddVelocity(place.velocity_m_per_s, place.angular_velocity_rad_per_s, def);
   }
 }
 

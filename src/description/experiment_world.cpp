@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "base/pattern.h"
+#include "description/experiment_keys.h"
 #include "description/experiment_parts.h"
-#include "description/resolved_fields.h"
 
 namespace taut::description {
 namespace {
@@ -30,134 +30,96 @@ std::vector<int> SelectBodies(const Value& value, const std::string& what, const
   return bodies;
 }
 
-/// A delay in whole periods, so that it does not depend on when samples are looked at.
-double ReadDelay(const MapReader& map, double period_s) {
+/// A delay in whole periods, so that it does not depend on when samples are looked at. `what` is
+/// the sensor, a key of `map`.
+void CheckDelay(const MapReader& map, const char* what, double delay_s, double period_s) {
   constexpr double kLongest = 10000;  // samples that have to be kept
-  const double delay_s = map.NumberOr("delay_s", 0.0, Bound::kNonNegative);
+  const Value* sensor = map.Find(what);
   const double periods = delay_s / period_s;
-  if (std::isnan(periods)) return 0.0;
+  if (!sensor || std::isnan(periods)) return;
+  const std::string path = map.Path(what) + ".delay_s";
   if (periods > kLongest) {
-    map.Error("delay_s", map.Path("delay_s") + " must not be longer than 10000 sensor periods",
-              "the period is " + Shown(period_s) + " s");
+    map.scope().out.Error(KeyAt(*sensor, "delay_s"),
+                          path + " must not be longer than 10000 sensor periods",
+                          "the period is " + Shown(period_s) + " s");
   } else if (std::fabs(periods - std::floor(periods + 0.5)) > 1e-6) {
-    map.Error(
-        "delay_s",
-        map.Path("delay_s") + " must be a whole number of sensor periods, got " + Shown(periods),
+    map.scope().out.Error(
+        KeyAt(*sensor, "delay_s"),
+        path + " must be a whole number of sensor periods, got " + Shown(periods),
         "the period is " + Shown(period_s) + " s; give `sensors` another `period_s`");
   }
-  return delay_s;
-}
-
-/// `bits` and a range, or the quantum itself.
-double ReadQuantum(const MapReader& map, const LoadCellSpec& cell, bool has_range) {
-  if (!map.Has("bits")) return map.NumberOr("quantum_n", 0.0, Bound::kNonNegative);
-  if (map.Has("quantum_n")) {
-    map.Error("bits", "sensors.load_cell has bits and quantum_n", "one follows from the other");
-    return 0.0;
-  }
-  const std::optional<int> bits =
-      ReadInteger(*map.Find("bits"), map.Path("bits"), 1, 32, map.scope());
-  if (!has_range) {
-    map.Error("bits", "sensors.load_cell.bits needs the key \"range_n\" beside it",
-              "write `range_n: [0, 100]`");
-  }
-  return bits ? (cell.max_n - cell.min_n) / (std::ldexp(1.0, *bits) - 1.0) : 0.0;
-}
-
-LoadCellSpec ReadLoadCell(const Value& value, double period_s, const Scope& scope) {
-  const MapReader map(value, "sensors.load_cell",
-                      {"noise_n", "bias_n", "range_n", "bits", "quantum_n", "delay_s"}, scope);
-  LoadCellSpec cell;
-  cell.noise_n = map.NumberOr("noise_n", 0.0, Bound::kNonNegative);
-  cell.bias_n = map.NumberOr("bias_n", 0.0, Bound::kNonNegative);
-  const Value* range = map.Find("range_n");
-  if (range) {
-    if (const auto ends = ReadNumbers(*range, map.Path("range_n"), 2, scope)) {
-      cell.min_n = (*ends)[0];
-      cell.max_n = (*ends)[1];
-      if (!(cell.min_n < cell.max_n)) {
-        scope.out.Error(range->at,
-                        "sensors.load_cell.range_n: " + Shown(cell.min_n) + " is not below " +
-                            Shown(cell.max_n),
-                        "write [least, greatest]");
-      }
-    }
-  }
-  cell.quantum_n = ReadQuantum(map, cell, range != nullptr);
-  cell.delay_s = ReadDelay(map, period_s);
-  return cell;
-}
-
-EncoderSpec ReadEncoder(const Value& value, double period_s, const Scope& scope) {
-  const MapReader map(value, "sensors.encoder",
-                      {"quantum_m", "counts_per_turn", "spool_radius_m", "delay_s"}, scope);
-  EncoderSpec encoder;
-  constexpr double kTwoPi = 6.28318530717958647692;
-  if (map.Has("counts_per_turn") || map.Has("spool_radius_m")) {
-    const double counts = map.Number("counts_per_turn", Bound::kPositive);
-    const double radius_m = map.Number("spool_radius_m", Bound::kPositive);
-    encoder.quantum_m = kTwoPi * radius_m / counts;
-    if (map.Has("quantum_m")) {
-      map.Error("quantum_m", "sensors.encoder has quantum_m and counts_per_turn",
-                "one follows from the other");
-    }
-  } else {
-    encoder.quantum_m = map.NumberOr("quantum_m", 0.0, Bound::kNonNegative);
-  }
-  encoder.delay_s = ReadDelay(map, period_s);
-  return encoder;
 }
 
 }  // namespace
 
-std::vector<ScaleSpec> ReadScales(const Value* list, const RobotSpec* robot, const Scope& scope) {
+void Check(const MapReader& map, LoadCellText& cell) {
+  cell.min_n = map.Has("range_n") ? cell.range_n.first : 0.0;
+  cell.max_n = cell.range_n.second;
+  if (cell.min_n >= cell.max_n) {
+    map.scope().out.Error(
+        map.Find("range_n")->at,
+        map.Path("range_n") + ": " + Shown(cell.min_n) + " is not below " + Shown(cell.max_n),
+        "write [least, greatest]");
+  }
+  if (!map.Has("bits")) return;
+  if (map.Has("quantum_n")) {
+    map.Error("bits", map.what() + " has bits and quantum_n", "one follows from the other");
+  }
+  if (!map.Has("range_n")) {
+    map.Error("bits", map.Path("bits") + " needs the key \"range_n\" beside it",
+              "write `range_n: [0, 100]`");
+  }
+  if (cell.bits) cell.quantum_n = (cell.max_n - cell.min_n) / (std::ldexp(1.0, *cell.bits) - 1.0);
+}
+
+void Check(const MapReader& map, EncoderText& encoder) {
+  constexpr double kTwoPi = 6.28318530717958647692;
+  if (!encoder.counts_per_turn && !encoder.spool_radius_m) return;
+  if (map.Has("quantum_m")) {
+    map.Error("quantum_m", map.what() + " has quantum_m and counts_per_turn",
+              "one follows from the other");
+  }
+  if (!map.Require("counts_per_turn") || !map.Require("spool_radius_m")) return;
+  encoder.quantum_m = kTwoPi * *encoder.spool_radius_m / *encoder.counts_per_turn;
+}
+
+void Check(const MapReader& map, SensorText& sensors) {
+  sensors.load_cell = sensors.load_cell_text;
+  sensors.encoder = sensors.encoder_text;
+  if (sensors.load_cell) CheckDelay(map, "load_cell", sensors.load_cell->delay_s, sensors.period_s);
+  if (sensors.encoder) CheckDelay(map, "encoder", sensors.encoder->delay_s, sensors.period_s);
+}
+
+void Check(const MapReader& map, ScaleText& scale) {
+  std::string key;  // one at most: of several none was looked at
+  const std::optional<double> factors[] = {scale.friction, scale.mass, scale.stiffness,
+                                           scale.damping};
+  for (std::size_t i = 0; i < kScaledQuantities.size(); ++i) {
+    if (!factors[i]) continue;
+    key = kScaledQuantities[i].first;
+    scale.quantity = kScaledQuantities[i].second;
+    scale.factor = *factors[i];
+  }
+  if (key.empty()) return;
+  if (map.Has("bodies") && key != "mass") {
+    map.Error("bodies", "scale: " + key + " has no bodies", "only mass has");
+  }
+  if (map.Has("cables") && key != "stiffness" && key != "damping") {
+    map.Error("cables", "scale: " + key + " has no cables", "stiffness and damping have");
+  }
+}
+
+std::vector<ScaleSpec> ToScales(const std::vector<ScaleText>& texts, const RobotSpec* robot,
+                                const Scope& scope) {
   std::vector<ScaleSpec> scales;
-  for (const ValuePtr& item : Items(list, "scale", scope)) {
-    const MapReader map(*item, "scale",
-                        {"friction", "mass", "stiffness", "damping", "bodies", "cables"}, scope);
-    const std::string key = map.ExactlyOne({"friction", "mass", "stiffness", "damping"});
-    ScaleSpec scale;
-    for (const auto& [name, quantity] : kScaledQuantities) {
-      if (name == key) scale.quantity = quantity;
-    }
-    if (!key.empty()) scale.factor = map.Number(key, Bound::kPositive);
-    const bool of_bodies = key == "mass", of_cables = key == "stiffness" || key == "damping";
-    if (const Value* bodies = map.Find("bodies")) {
-      scale.index = SelectBodies(*bodies, map.Path("bodies"), robot, scope);
-      if (!key.empty() && !of_bodies) {
-        map.Error("bodies", "scale: " + key + " has no bodies", "only mass has");
-      }
-    }
-    if (const Value* cables = map.Find("cables")) {
-      scale.index = SelectCables(*cables, map.Path("cables"), robot, scope);
-      if (!key.empty() && !of_cables) {
-        map.Error("cables", "scale: " + key + " has no cables", "stiffness and damping have");
-      }
-    }
-    scales.push_back(std::move(scale));
+  for (const ScaleText& text : texts) {
+    ScaleSpec& scale = scales.emplace_back(ScaleSpec{text.quantity, {}, text.factor});
+    if (text.bodies.value)
+      scale.index = SelectBodies(*text.bodies.value, "scale.bodies", robot, scope);
+    if (text.cables.value)
+      scale.index = SelectCables(*text.cables.value, "scale.cables", robot, scope);
   }
   return scales;
-}
-
-StartNoise ReadStartNoise(const Value& value, const Scope& scope) {
-  const MapReader map(value, "start_noise", {"position_m", "heading_rad"}, scope);
-  return {map.NumberOr("position_m", 0.0, Bound::kNonNegative),
-          map.NumberOr("heading_rad", 0.0, Bound::kNonNegative)};
-}
-
-SensorSpec ReadSensors(const Value& value, const Scope& scope) {
-  const MapReader map(value, "sensors", {"period_s", "load_cell", "encoder", "length"}, scope);
-  SensorSpec sensors;
-  sensors.period_s = map.NumberOr("period_s", sensors.period_s, Bound::kPositive);
-  if (const Value* cell = map.Find("load_cell")) {
-    sensors.load_cell = ReadLoadCell(*cell, sensors.period_s, scope);
-  }
-  if (const Value* encoder = map.Find("encoder")) {
-    sensors.encoder = ReadEncoder(*encoder, sensors.period_s, scope);
-  }
-  sensors.length_from_tension =
-      map.ChoiceOr<bool>("length", false, {{"exact", false}, {"from_tension", true}});
-  return sensors;
 }
 
 }  // namespace taut::description

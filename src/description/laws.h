@@ -27,5 +27,9 @@ enum class InertiaLaw {
 };
 inline const Choices<InertiaLaw> kInertiaLaws{{"exact", InertiaLaw::kExact},
                                               {"bounding_box", InertiaLaw::kBoundingBox}};
+inline const Choices<ActuatorDef::Kind> kActuatorKinds{{"none", ActuatorDef::Kind::kNone},
+                                                       {"ideal", ActuatorDef::Kind::kIdeal},
+                                                       {"limited", ActuatorDef::Kind::kLimited}};
+inline const Choices<bool> kCableEnds{{"node", false}, {"surface", true}};
 
 }  // namespace taut::description

@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "description/build.h"
+#include "description/model_keys.h"
 #include "description/plausible.h"
+#include "description/read_keys.h"
 #include "description/resolved.h"
 
 namespace taut::description {
@@ -29,10 +31,25 @@ void CheckFinite(const RobotSpec& robot, Diagnostics& out) {
   }
 }
 
+/// What an experiment says about laws, over what the model says. It was complained about before.
+void Replace(const Value& value, ModelText& model) {
+  Diagnostics unheard;
+  const NameTable no_names;
+  ModelOptions options{model.inertia, model.damping_law, model.def};
+  ReadMapping(value, "", {no_names, unheard}, options);
+  model.inertia = options.inertia;
+  model.def = options.def;
+  if (!value.Find("damping_law")) return;
+  model.damping_law = options.damping_law;
+  for (BuilderText& builder : model.builders) {
+    if (builder.cable) builder.cable->own_damping_law = false;
+  }
+}
+
 }  // namespace
 
 LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnostics& out,
-                      std::optional<InertiaLaw> inertia) {
+                      const Overlay<ModelOptions>& options) {
   const auto errors = [&out] { return out.items().size(); };
   const std::size_t errors_before = errors();
   LoadedModel result;
@@ -43,18 +60,19 @@ LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnosti
   }
   overrides.Apply(file.parameters);
   const NameTable values = ResolveParameters(file.parameters, out);
-  RobotSpec robot;
   bool numbers_known = true;  // an experiment may have passed on one that it complained about
   for (const auto& [name, value] : values) {
-    robot.parameters[name] = value;
     result.parameter_names.push_back(name);
     numbers_known = numbers_known && !std::isnan(value);
   }
-  robot.files = file.files;
-
   NameSet used;
   ModelText model = ReadModelText(*file.root, {values, out, &used});
-  if (inertia) model.bounding_box_inertia = *inertia == InertiaLaw::kBoundingBox;
+  if (options.value) Replace(*options.value, model);
+  RobotSpec robot;
+  robot.def = model.def;
+  robot.def.name = model.name;
+  robot.parameters.insert(values.begin(), values.end());
+  robot.files = file.files;
   const std::size_t errors_in_text = errors();
   const Assembly assembly = Assemble(model, out);
   const Assignment assignment = AssignBuilders(model, assembly, out);
@@ -75,11 +93,6 @@ LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnosti
     WarnOfOddNumbers(robot, out);
   }
   if (!result.good && !complete) return result;
-  robot.def.name = model.name;
-  robot.def.gravity_m_per_s2 = model.gravity_m_per_s2;
-  robot.def.friction_combine = model.friction_combine;
-  robot.def.restitution_combine = model.restitution_combine;
-  robot.def.friction_law = model.friction_law;
   result.robot = std::move(robot);
   return result;
 }

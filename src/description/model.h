@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "description/laws.h"
+#include "description/model_text.h"
 #include "description/parameters.h"
 #include "taut/spec.h"
 
@@ -22,8 +22,8 @@ struct LoadedModel {
 
 /// As `LoadRobot`, but overrides that the model does not know are left for the caller to report
 /// (`OverrideSet::ReportUnused`). If the file cannot be read at all, the overrides are silenced.
-/// `inertia`, if given, replaces what the file says.
+/// `options`, if given, replace what the file says.
 LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnostics& out,
-                      std::optional<InertiaLaw> inertia = std::nullopt);
+                      const Overlay<ModelOptions>& options = {});
 
 }  // namespace taut::description

@@ -2,8 +2,7 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "description/material.h"
-#include "description/model_text.h"
+#include "description/model_keys.h"
 
 namespace taut::description {
 namespace {
@@ -12,35 +11,10 @@ bool IsFinite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// `tags:`, if there are any.
-Tags ReadTags(const MapReader& map) {
-  Tags tags = map.NamesOr("tags", {});
-  if (tags.size() > static_cast<std::size_t>(kMaxTags)) {
-    map.Error("tags", map.Path("tags") + ": more than " + std::to_string(kMaxTags) + " tags");
-    tags.clear();
-  }
-  return tags;
-}
-
-/// `tip: [x, y, z]` or `tip: {at_m: [x, y, z], tags: [...], fixed_to: other}`.
-NodeText ReadNode(const Entry& entry, const std::string& what, const Scope& scope) {
-  NodeText node;
-  node.name = entry.key;
-  node.at = entry.key_at;
-  if (entry.value->kind == Value::Kind::kSequence) {
-    node.at_m = ReadVec3(*entry.value, what, scope);
-    return node;
-  }
-  if (entry.value->kind != Value::Kind::kMap) {
-    WrongType(*entry.value, what, "[x, y, z] or a map with at_m", scope);
-    node.at_m.x = NAN;
-    return node;
-  }
-  const MapReader map(*entry.value, what, {"at_m", "tags", "fixed_to"}, scope);
-  node.at_m = map.Vector("at_m");
-  node.tags = ReadTags(map);
-  if (map.Has("fixed_to")) node.fixed_to = {map.Name("fixed_to"), map.Find("fixed_to")->at};
-  return node;
+void CheckTags(const MapReader& map, Tags& tags) {
+  if (tags.size() <= static_cast<std::size_t>(kMaxTags)) return;
+  map.Error("tags", map.Path("tags") + ": more than " + std::to_string(kMaxTags) + " tags");
+  tags.clear();
 }
 
 /// `[a, b]`, or more nodes for a cable with via points. Adds `pair` with them to `pairs`.
@@ -64,51 +38,80 @@ void ReadPairNodes(const Value& nodes, const std::string& what, bool placed_name
   pairs.push_back(std::move(pair));
 }
 
-}  // namespace
-
-std::vector<PairText> ReadPairs(const Value* list, const std::string& what, bool placed_names,
-                                const Scope& scope) {
+/// The pairs that entries of a list make. `placed_names`: nodes may be called segment_0.tip.
+std::vector<PairText> ToPairs(const MapReader& map, std::string_view key,
+                              const std::vector<PairsText>& entries, bool placed_names) {
+  const Scope& scope = map.scope();
+  const std::string what = map.Path(key);
   std::vector<PairText> pairs;
-  for (const ValuePtr& item : Items(list, what, scope)) {
-    const MapReader map(*item, what, {"name", "nodes", "each", "tags"}, scope);
-    PairText pair;
-    pair.at = item->at;
-    pair.name = map.NameOr("name", "");
-    pair.tags = ReadTags(map);
-    const std::string key = map.ExactlyOne({"nodes", "each"});
-    if (key == "nodes") {
-      ReadPairNodes(*map.Find(key), map.Path(key), placed_names, scope, pair, pairs);
-    } else if (key == "each") {
-      if (map.Has("name")) {
-        map.Error("name", map.Path("each") + " makes several pairs, which cannot share a name");
-      }
-      for (const ValuePtr& nodes : Items(map.Find(key), map.Path(key), scope)) {
-        pair.at = nodes->at;
-        ReadPairNodes(*nodes, map.Path(key), placed_names, scope, pair, pairs);
-      }
+  for (const PairsText& entry : entries) {
+    PairText pair{entry.name, entry.at, {}, entry.tags};
+    if (entry.nodes.value && entry.each.value) continue;
+    if (entry.nodes.value) {
+      ReadPairNodes(*entry.nodes.value, what + ".nodes", placed_names, scope, pair, pairs);
+    }
+    for (const ValuePtr& nodes : Items(entry.each.value, what + ".each", scope)) {
+      pair.at = nodes->at;
+      ReadPairNodes(*nodes, what + ".each", placed_names, scope, pair, pairs);
     }
   }
   return pairs;
 }
 
-void ReadNodesAndPairs(const MapReader& map, PartText& part, ModelText& model) {
-  const Scope& scope = map.scope();
-  std::vector<std::string> names;
-  const Value* nodes = map.Find("nodes");
-  for (const Entry& entry : Entries(nodes, map.Path("nodes"), scope)) {
-    if (ReadKey(entry, map.Path("nodes"), scope).empty()) {
-      model.nodes_complete = false;
-      continue;
-    }
-    part.nodes.push_back(ReadNode(entry, map.Path("nodes." + entry.key), scope));
-    names.push_back(entry.key);
-    if (!IsFinite(part.nodes.back().at_m)) model.nodes_complete = false;
+/// False if the key is there, but is no list.
+bool IsListOrAbsent(const MapReader& map, std::string_view key) {
+  const Value* value = map.Find(key);
+  return !value || value->kind == Value::Kind::kSequence;
+}
+
+bool AllGood(const std::vector<PairsText>& entries) {
+  return std::all_of(entries.begin(), entries.end(), [](const PairsText& p) { return p.good; });
+}
+
+}  // namespace
+
+void Check(const MapReader& map, NodeText& node) { CheckTags(map, node.tags); }
+
+bool ReadShort(const Value& value, const std::string& path, const Scope& scope, NodeText& out) {
+  if (value.kind == Value::Kind::kMap) return false;
+  if (value.kind == Value::Kind::kSequence) {
+    out.at_m = ReadVec3(value, path, scope);
+  } else {
+    WrongType(value, path, "[x, y, z] or a map with at_m", scope);
+    out.at_m.x = NAN;
   }
+  return true;
+}
+
+void Check(const MapReader& map, PairsText& pairs) {
+  CheckTags(map, pairs.tags);
+  if (map.Has("each") && !map.Has("nodes") && map.Has("name")) {
+    map.Error("name", map.Path("each") + " makes several pairs, which cannot share a name");
+  }
+}
+
+void Check(const MapReader& map, PartText& part) {
+  FinishNodesAndPairs(map, false, part);
+  part.nodes_complete = part.nodes_complete && map.Has("nodes");
+}
+
+void FinishNodesAndPairs(const MapReader& map, bool loose, PartText& part) {
+  const Scope& scope = map.scope();
+  const Value* nodes = map.Find("nodes");
+  std::vector<std::string> names;
+  for (auto& item : part.nodes_text.items) {
+    if (!item.good_name) part.nodes_complete = false;
+    if (!item.good_name) continue;
+    item.value.at = item.name_at;
+    names.push_back(item.name);
+    if (!IsFinite(item.value.at_m)) part.nodes_complete = false;
+    part.nodes.push_back(std::move(item.value));
+  }
+  if (nodes && nodes->kind != Value::Kind::kMap) part.nodes_complete = false;
   if (nodes && nodes->kind == Value::Kind::kMap && nodes->entries.empty()) {
     scope.out.Error(nodes->at, map.Path("nodes") + " is empty");
-    model.nodes_complete = false;
+    part.nodes_complete = false;
   }
-  if (nodes && nodes->kind != Value::Kind::kMap) model.nodes_complete = false;
 
   const std::unordered_set<std::string> known(names.begin(), names.end());
   for (const NodeText& node : part.nodes) {
@@ -122,8 +125,7 @@ void ReadNodesAndPairs(const MapReader& map, PartText& part, ModelText& model) {
     }
   }
   const std::size_t errors_before = scope.out.items().size();
-  const bool loose = &part == &model.loose;  // its pairs may join placed nodes, known later
-  part.pairs = ReadPairs(map.Find("pairs"), map.Path("pairs"), loose, scope);
+  part.pairs = ToPairs(map, "pairs", part.pairs_text, loose);
   for (const PairText& pair : part.pairs) {
     for (std::size_t i = 1; i < pair.nodes.size(); ++i) {
       if (pair.nodes[i].text != pair.nodes[i - 1].text) continue;
@@ -132,69 +134,51 @@ void ReadNodesAndPairs(const MapReader& map, PartText& part, ModelText& model) {
   }
   for (const PairText& pair : part.pairs) {
     for (const Placed& node : pair.nodes) {
-      if (loose || known.count(node.text) > 0 || !model.nodes_complete) continue;
+      // A loose pair may join placed nodes, known later.
+      if (loose || known.count(node.text) > 0 || !part.nodes_complete) continue;
       scope.out.Error(node.at,
                       "there is no node \"" + node.text + "\" in part \"" + part.name + "\"",
                       NameHint(node.text, names));
     }
   }
-  if (scope.out.items().size() != errors_before) model.pairs_complete = false;
+  part.pairs_complete = scope.out.items().size() == errors_before && AllGood(part.pairs_text) &&
+                        IsListOrAbsent(map, "pairs");
 }
 
-std::vector<PlacementText> ReadStructure(const Value* list, ModelText& model, const Scope& scope) {
-  std::vector<PlacementText> structure;
-  if (list && list->kind != Value::Kind::kSequence) model.nodes_complete = false;
+void Check(const MapReader& map, PlacementText& placement) {
+  CheckTags(map, placement.tags);
+  placement.numbered = map.Has("copies");
+  placement.nodes_complete = map.is_map() && map.Has("part") && placement.copies > 0;
+  placement.copies = std::max(placement.copies, 1);
+  if (!map.Has("part")) placement.part.at = map.at();
+  if (!map.Has("name")) placement.name = placement.part.text;
+  const std::size_t errors_before = map.scope().out.items().size();
+  placement.connect = ToPairs(map, "connect", placement.connect_text, false);
+  for (const char* key : {"step_m", "step_rotate", "connect", "ring"}) {
+    if (map.Has(key) && !placement.numbered) {
+      map.Error(key, map.Path(key) + " needs copies", "write `copies: 2`, or as many as you want");
+    }
+  }
+  placement.pairs_complete = map.scope().out.items().size() == errors_before &&
+                             AllGood(placement.connect_text) && IsListOrAbsent(map, "connect");
+}
+
+void FinishStructure(const MapReader& map, ModelText& model) {
+  const Scope& scope = map.scope();
+  if (!IsListOrAbsent(map, "structure")) model.nodes_complete = false;
   std::vector<std::string> part_names;
   for (const PartText& part : model.parts) part_names.push_back(part.name);
 
-  for (const ValuePtr& item : Items(list, "structure", scope)) {
-    const std::string what = "structure";
-    const MapReader map(
-        *item, what,
-        {"part", "name", "copies", "at_m", "rotate", "step_m", "step_rotate", "tags", "connect",
-         "ring", "velocity_m_per_s", "angular_velocity_rad_per_s"},
-        scope);
-    if (!map.is_map()) {
-      model.nodes_complete = false;
-      continue;
-    }
-    PlacementText placement;
-    placement.at = item->at;
-    placement.part = {map.Text("part"), map.Has("part") ? map.Find("part")->at : item->at};
-    placement.name = map.NameOr("name", placement.part.text);
-    if (const Value* copies = map.Find("copies")) {
-      const auto count = ReadInteger(*copies, map.Path("copies"), 1, kMaxCopies, scope);
-      model.nodes_complete = model.nodes_complete && count.has_value();
-      placement.copies = count.value_or(1);
-      placement.numbered = true;
-    }
-    placement.at_m = map.VectorOr("at_m", {});
-    placement.step_m = map.VectorOr("step_m", {});
-    if (const Value* rotate = map.Find("rotate")) {
-      placement.rotate = ReadRotation(*rotate, map.Path("rotate"), scope);
-    }
-    if (const Value* rotate = map.Find("step_rotate")) {
-      placement.step_rotate = ReadRotation(*rotate, map.Path("step_rotate"), scope);
-    }
-    placement.tags = ReadTags(map);
-    placement.velocity_m_per_s = map.VectorOr("velocity_m_per_s", {});
-    placement.angular_velocity_rad_per_s = map.VectorOr("angular_velocity_rad_per_s", {});
-    const std::size_t errors_before = scope.out.items().size();
-    placement.connect = ReadPairs(map.Find("connect"), map.Path("connect"), false, scope);
-    placement.ring = map.BoolOr("ring", false);
-    for (const char* key : {"step_m", "step_rotate", "connect", "ring"}) {
-      if (map.Has(key) && !placement.numbered) {
-        map.Error(key, map.Path(key) + " needs copies",
-                  "write `copies: 2`, or as many as you want");
-      }
-    }
-
+  std::vector<PlacementText> placed;
+  for (PlacementText& placement : model.structure) {
+    model.nodes_complete = model.nodes_complete && placement.nodes_complete;
+    model.pairs_complete = model.pairs_complete && placement.pairs_complete;
     const auto part = std::find_if(model.parts.begin(), model.parts.end(), [&](const PartText& p) {
       return p.name == placement.part.text;
     });
     if (part == model.parts.end()) {
       model.nodes_complete = false;
-      if (!map.Has("part")) continue;
+      if (placement.part.text.empty()) continue;
       scope.out.Error(placement.part.at, "there is no part \"" + placement.part.text + "\"",
                       NameHint(placement.part.text, part_names));
       continue;
@@ -209,12 +193,12 @@ std::vector<PlacementText> ReadStructure(const Value* list, ModelText& model, co
         scope.out.Error(node.at,
                         "there is no node \"" + node.text + "\" in part \"" + part->name + "\"",
                         NameHint(node.text, node_names));
+        model.pairs_complete = false;
       }
     }
-    if (scope.out.items().size() != errors_before) model.pairs_complete = false;
-    structure.push_back(std::move(placement));
+    placed.push_back(std::move(placement));
   }
-  return structure;
+  model.structure = std::move(placed);
 }
 
 }  // namespace taut::description

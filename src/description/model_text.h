@@ -3,14 +3,16 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <string>
-#include <utility>
-#include <variant>
 #include <vector>
 
+#include "description/head_keys.h"
+#include "description/keys.h"
 #include "description/merged_file.h"
 #include "description/parameters.h"
 #include "description/reader.h"
+#include "description/surface_keys.h"
 #include "taut/spec.h"
 
 namespace taut::description {
@@ -21,20 +23,15 @@ inline constexpr int kMaxTags = 32;            ///< Of one node, pair or placeme
 inline constexpr int kMaxCopies = 10'000;
 inline constexpr int kMaxBuilders = 1'000;
 
-/// A text and where it stands.
-struct Placed {
-  std::string text;
-  SourceRef at;
-};
-
 struct NodeText {
   std::string name;
-  SourceRef at;
-  Vec3 at_m;  ///< In the part's frame.
+  SourceRef at;  ///< Of its name.
+  Vec3 at_m;     ///< In the part's frame.
   Tags tags;
   Placed fixed_to;  ///< Another node of the part whose body this one belongs to; may be empty.
 };
 
+/// One pair; an entry of `pairs:` may make several.
 struct PairText {
   std::string name;  ///< Empty: made from the nodes.
   SourceRef at;
@@ -42,15 +39,39 @@ struct PairText {
   Tags tags;
 };
 
+struct NodeListForm {
+  static constexpr const char* kSchema =
+      R"("type": "array", "title": "[node, node]", "items": {"type": "string"}, "minItems": 2)";
+};
+struct NodeListsForm {
+  static constexpr const char* kSchema =
+      R"("type": "array", "items": {"type": "array", "title": "[node, node]", )"
+      R"("items": {"type": "string"}, "minItems": 2})";
+};
+
+/// An entry of `pairs:`.
+struct PairsText {
+  SourceRef at;
+  std::string name;
+  Raw<NodeListForm> nodes;
+  Raw<NodeListsForm> each;
+  Tags tags;
+  bool good = true;  ///< Nothing was wrong with it.
+};
+
+/// Nodes and pairs: those of a part, or those at the top of the file.
 struct PartText {
   std::string name;
+  Named<NodeText> nodes_text;
+  std::vector<PairsText> pairs_text;
   std::vector<NodeText> nodes;
   std::vector<PairText> pairs;
+  bool nodes_complete = true, pairs_complete = true;
 };
 
 /// An entry of `structure:`.
 struct PlacementText {
-  std::string name;
+  std::string name;  ///< The part's, if there is none.
   SourceRef at;
   Placed part;
   int copies = 1;
@@ -62,86 +83,103 @@ struct PlacementText {
   Vec3 velocity_m_per_s;            ///< Of the centre of mass of a copy.
   Vec3 angular_velocity_rad_per_s;  ///< Of a copy as a whole, about that centre.
   Tags tags;
+  std::vector<PairsText> connect_text;
   std::vector<PairText> connect;  ///< Node k of a pair is on copy i + k.
   bool ring = false;              ///< Copy 0 follows the last one.
+  bool nodes_complete = true, pairs_complete = true;
 };
 
-/// A mass as files may give it.
+/// A mass as files may give it: one of these, none after a complaint.
 struct MassText {
-  enum class Kind { kTotal, kDensity, kPerLength };
-  Kind kind = Kind::kTotal;
-  double value = NAN;  ///< [kg], [kg/m^3] or [kg/m]; NaN after a complaint.
+  std::optional<double> mass_kg, density_kg_per_m3, mass_kg_per_m;
+
+  double Of(double volume_m3, double length_m) const {
+    if (mass_kg) return *mass_kg;
+    if (density_kg_per_m3) return *density_kg_per_m3 * volume_m3;
+    return mass_kg_per_m ? *mass_kg_per_m * length_m : NAN;
+  }
 };
 
-struct RodBuilder {
-  double radius_m = 0.0;
+// What builders say. The structs that they build on are what is built but for its place: each copy
+// gets name, body and positions.
+
+struct RodText : CapsuleDef {
   MassText mass;
-  Material material;
-  bool collides = true;
+  SurfaceText surface;
 };
-/// A box along a pair.
-struct BeamBuilder {
-  double width_m = 0.0, height_m = 0.0;
+struct SphereText : SphereDef {
   MassText mass;
-  Material material;
-  bool collides = true;
+  SurfaceText surface;
 };
-struct CableBuilder {
-  enum class Rest { kPrestress, kLength, kRatio };
-  double stiffness_n_per_m = 0.0, damping_n_s_per_m = 0.0;
-  Rest rest = Rest::kLength;
-  double rest_value = NAN;  ///< [N], [m] or 1; NaN after a complaint.
-  SourceRef rest_at;
-  DampingLaw damping_law = DampingLaw::kExact;
-  bool ends_on_surface = false;
-  SourceRef ends_at;
-  ActuatorDef actuator;
-};
-struct SphereBuilder {
-  double radius_m = 0.0;
-  MassText mass;
-  Material material;
-  bool collides = true;
-};
-struct PointMassBuilder {
+struct PointMassText {
   double mass_kg = 0.0;
   double radius_m = 0.0;  ///< Of the solid sphere that gives it its inertia; touches nothing.
 };
-/// A box at a node.
-struct BoxBuilder {
+/// At a node, or along a pair.
+struct BoxText : BoxDef {
   Vec3 size_m;
+  double width_m = NAN, height_m = NAN;  ///< Along a pair.
   MassText mass;
-  Material material;
-  bool collides = true;
+  SurfaceText surface;
+  bool along_pair = false;
 };
-struct AnchorBuilder {};
+struct ActuatorText : ActuatorDef {
+  ActuatorText();  ///< Without limits.
+  bool ideal = false;
+};
+/// Its rest length is one of three, none after a complaint; NaN stands for one that is wrong.
+struct CableText : CableDef {
+  CableText() { rest_length_m = NAN; }
+  std::optional<double> prestress_n, rest_length_ratio;
+  SourceRef rest_at;
+  bool own_damping_law = false;
+  bool ends_on_surface = false;
+  SourceRef ends_at;
+  std::optional<ActuatorText> actuator_text;
+};
+struct AnchorText {};
 
 using Match = std::vector<std::vector<std::string>>;
 
-/// An entry of `builders:`: what becomes of the pairs or nodes that carry the tags.
+/// An entry of `builders:`: what becomes of the pairs or nodes that carry the tags. One of the
+/// kinds is there.
 struct BuilderText {
   SourceRef at;
-  SourceRef match_at;
   Match match;
-  std::string kind;  ///< As written: "rod", "cable" ...
-  std::variant<RodBuilder, BeamBuilder, CableBuilder, SphereBuilder, PointMassBuilder, BoxBuilder,
-               AnchorBuilder>
-      build;
+  SourceRef match_at;
+  std::string kind;  ///< As written: "rod", "cable" ... Empty after a complaint.
+  std::optional<RodText> rod;
+  std::optional<SphereText> sphere;
+  std::optional<PointMassText> point_mass;
+  std::optional<BoxText> box;
+  std::optional<CableText> cable;
+  std::optional<AnchorText> anchor;
 
   /// True for what goes on pairs, false for what goes on nodes.
-  bool on_pairs() const { return build.index() <= 2; }
+  bool on_pairs() const { return rod || cable || (box && box->along_pair); }
+};
+
+/// Laws of the model that an experiment may replace.
+struct ModelOptions {
+  InertiaLaw inertia = InertiaLaw::kExact;
+  DampingLaw damping_law = DampingLaw::kExact;
+  ModelDef def;
+};
+
+struct ModelForm {
+  static constexpr const char* kSchema = R"("const": "model")";
 };
 
 struct ModelText {
+  Head<ModelForm> head;
   std::string name, description;
   SourceRef at;
-  Vec3 gravity_m_per_s2{0.0, 0.0, -9.81};
-  CombineRule friction_combine = CombineRule::kGeometricMean;
-  CombineRule restitution_combine = CombineRule::kMaximum;
-  FrictionLaw friction_law = FrictionLaw::kCone;
-  bool bounding_box_inertia = false;
+  ModelDef def;  ///< What the file says of the model as a whole: its laws.
+  InertiaLaw inertia = InertiaLaw::kExact;
+  DampingLaw damping_law = DampingLaw::kExact;  ///< Of cables that have none of their own.
   bool allow_disconnected = false;
   PartText loose;  ///< The nodes and pairs at the top of the file.
+  Named<PartText> parts_text;
   std::vector<PartText> parts;
   std::vector<PlacementText> structure;
   std::vector<BuilderText> builders;
@@ -153,12 +191,9 @@ struct ModelText {
 /// Reads the top of a model file, bases merged in (`ReadMergedFile(path, "model", out)`).
 ModelText ReadModelText(const Value& root, const Scope& scope);
 
-// The blocks of the file, each in a file of its own.
-void ReadNodesAndPairs(const MapReader& map, PartText& part, ModelText& model);
-std::vector<PairText> ReadPairs(const Value* list, const std::string& what, bool placed_names,
-                                const Scope& scope);
-std::vector<PlacementText> ReadStructure(const Value* list, ModelText& model, const Scope& scope);
-std::vector<BuilderText> ReadBuilders(const Value* list, DampingLaw damping_law, bool& complete,
-                                      const Scope& scope);
+// What is left to do when the keys of a block are read, each in the file of the block.
+void FinishNodesAndPairs(const MapReader& map, bool loose, PartText& part);
+void FinishStructure(const MapReader& map, ModelText& model);
+void FinishBuilders(const MapReader& map, ModelText& model);
 
 }  // namespace taut::description

@@ -1,5 +1,6 @@
-// What may be a name, and reading names.
+// What may be a name, and reading names; lists of names and points.
 #include <algorithm>
+#include <cmath>
 
 #include "description/reader.h"
 
@@ -63,6 +64,14 @@ std::string ReadName(const Value& value, std::string_view what, const Scope& sco
   return ReadNameText(value, what, false, scope);
 }
 
+std::string ReadKey(const Entry& entry, std::string_view what, const Scope& scope) {
+  Value key;
+  key.kind = Value::Kind::kScalar;
+  key.at = entry.key_at;
+  key.text = entry.key;
+  return ReadName(key, what, scope);
+}
+
 std::vector<std::string> ReadNames(const Value& value, std::string_view what, const Scope& scope) {
   return ReadNameTexts(value, what, false, scope);
 }
@@ -100,12 +109,35 @@ bool Matches(const std::vector<std::vector<std::string>>& match,
   });
 }
 
-std::string ReadKey(const Entry& entry, std::string_view what, const Scope& scope) {
-  Value key;
-  key.kind = Value::Kind::kScalar;
-  key.at = entry.key_at;
-  key.text = entry.key;
-  return ReadName(key, what, scope);
+std::vector<std::pair<double, double>> ReadPoints(const Value& value, std::string_view what,
+                                                  const Bound& bound, const Scope& scope) {
+  std::vector<std::pair<double, double>> points;
+  if (value.kind != Value::Kind::kSequence || value.items.empty()) {
+    scope.out.Error(value.at, std::string(what) + " must be a list of [time_s, value]",
+                    "such as [[0, 1], [5, 2]]");
+    return points;
+  }
+  bool good = true;
+  double before = -1.0;
+  for (const ValuePtr& item : value.items) {
+    if (item->kind != Value::Kind::kSequence || item->items.size() != 2) {
+      scope.out.Error(item->at, std::string(what) + ": a point must be [time_s, value]");
+      good = false;
+      continue;
+    }
+    const double time_s =
+        ReadNumber(*item->items[0], std::string(what) + ": time_s", Bound::kNonNegative, scope);
+    const double number = ReadNumber(*item->items[1], what, bound, scope);
+    if (time_s <= before) {
+      scope.out.Error(item->items[0]->at, std::string(what) + ": times must rise, but " +
+                                              Shown(time_s) + " s follows " + Shown(before) + " s");
+      good = false;
+    }
+    good = good && !std::isnan(time_s) && !std::isnan(number);
+    if (!std::isnan(time_s)) before = time_s;
+    points.emplace_back(time_s, number);
+  }
+  return good ? points : std::vector<std::pair<double, double>>();
 }
 
 }  // namespace description

@@ -17,6 +17,24 @@ std::string Joined(const std::vector<std::string>& words, std::string_view betwe
   return out;
 }
 
+/// How a number is out of its range: " must be positive". Empty if it is not, or NaN.
+std::string Beyond(double number, const Bound& bound) {
+  const bool low = number < bound.least || (bound.above_least && number == bound.least);
+  const bool high = number > bound.most || (bound.below_most && number == bound.most);
+  if (!low && !high) return {};
+  const std::string least = bound.least_text ? bound.least_text : Shown(bound.least);
+  const std::string most = bound.most_text ? bound.most_text : Shown(bound.most);
+  const bool positive = bound.least > 0.0 || (bound.least == 0.0 && bound.above_least);
+  if (positive && number <= 0.0) return " must be positive";
+  const bool closed = !bound.above_least && !bound.below_most;
+  if (closed && std::isfinite(bound.least) && std::isfinite(bound.most)) {
+    return " must be within " + least + ".." + most;
+  }
+  if (low && bound.least == 0.0) return " must not be negative";
+  if (low) return (bound.above_least ? " must be above " : " must not be below ") + least;
+  return (bound.below_most ? " must be below " : " must not be above ") + most;
+}
+
 }  // namespace
 
 std::string Shown(double number) {
@@ -47,7 +65,8 @@ std::string NameHint(std::string_view name, const std::vector<std::string>& know
   return known.size() <= 300 && name.size() <= 60 ? DidYouMean(name, known) : std::string();
 }
 
-double ReadNumber(const Value& value, std::string_view what, Bound bound, const Scope& scope) {
+double ReadNumber(const Value& value, std::string_view what, const Bound& bound,
+                  const Scope& scope) {
   if (value.kind != Value::Kind::kScalar) {
     WrongType(value, what, "a number", scope);
     return kNan;
@@ -69,13 +88,11 @@ double ReadNumber(const Value& value, std::string_view what, Bound bound, const 
     return kNan;
   }
   const double number = result.value;
-  const char* wanted = nullptr;  // every comparison is false for a NaN that was complained about
-  if (bound == Bound::kPositive && number <= 0.0) wanted = " must be positive, got ";
-  if (bound == Bound::kNonNegative && number < 0.0) wanted = " must not be negative, got ";
-  if (bound == Bound::kFraction && (number < 0.0 || number > 1.0))
-    wanted = " must be within 0..1, got ";
-  if (!wanted) return number;
-  scope.out.Error(value.at, std::string(what) + wanted + Shown(number));
+  const std::string wrong = Beyond(number, bound);
+  if (wrong.empty()) return number;
+  const bool too_much = number >= bound.most;
+  scope.out.Error(value.at, std::string(what) + wrong + ", got " + Shown(number),
+                  too_much ? bound.hint : "");
   return kNan;
 }
 
@@ -170,6 +187,11 @@ std::string MapReader::Path(std::string_view key) const {
 
 const Value* MapReader::Find(std::string_view key) const { return value_.Find(key); }
 
+bool MapReader::HasAnyBut(std::string_view key) const {
+  return std::any_of(known_.begin(), known_.end(),
+                     [&](const std::string& known) { return known != key && Has(known); });
+}
+
 const Value* MapReader::Require(std::string_view key) const {
   const Value* found = Find(key);
   if (!found && is_map()) {
@@ -179,12 +201,7 @@ const Value* MapReader::Require(std::string_view key) const {
   return found;
 }
 
-SourceRef MapReader::KeyAt(std::string_view key) const {
-  for (const Entry& entry : value_.entries) {
-    if (entry.key == key) return entry.key_at;
-  }
-  return at();
-}
+SourceRef MapReader::KeyAt(std::string_view key) const { return description::KeyAt(value_, key); }
 
 void MapReader::Error(std::string_view key, std::string what, std::string hint) const {
   scope_.out.Error(KeyAt(key), std::move(what), std::move(hint));
@@ -208,61 +225,34 @@ std::string MapReader::ExactlyOne(const std::vector<std::string>& keys) const {
   return {};
 }
 
-double MapReader::Number(std::string_view key, Bound bound) const {
+double MapReader::Number(std::string_view key, const Bound& bound) const {
   const Value* found = Require(key);
   return found ? ReadNumber(*found, Path(key), bound, scope_) : kNan;
 }
 
-double MapReader::NumberOr(std::string_view key, double fallback, Bound bound) const {
+double MapReader::NumberOr(std::string_view key, double fallback, const Bound& bound) const {
   const Value* found = Find(key);
   return found ? ReadNumber(*found, Path(key), bound, scope_) : fallback;
 }
 
-std::optional<double> MapReader::FindNumber(std::string_view key, Bound bound) const {
-  const Value* found = Find(key);
-  if (!found) return std::nullopt;
-  return ReadNumber(*found, Path(key), bound, scope_);
+SourceRef KeyAt(const Value& map, std::string_view key) {
+  for (const Entry& entry : map.entries) {
+    if (entry.key == key) return entry.key_at;
+  }
+  return map.at;
 }
 
-bool MapReader::BoolOr(std::string_view key, bool fallback) const {
-  const Value* found = Find(key);
-  return found ? ReadBool(*found, Path(key), scope_).value_or(fallback) : fallback;
-}
-
-Vec3 MapReader::Vector(std::string_view key) const {
-  const Value* found = Require(key);
-  return found ? ReadVec3(*found, Path(key), scope_) : Vec3{kNan, kNan, kNan};
-}
-
-Vec3 MapReader::VectorOr(std::string_view key, const Vec3& fallback) const {
-  const Value* found = Find(key);
-  return found ? ReadVec3(*found, Path(key), scope_) : fallback;
-}
-
-std::string MapReader::Text(std::string_view key) const {
-  const Value* found = Require(key);
-  return found ? ReadText(*found, Path(key), scope_) : std::string();
-}
-
-std::string MapReader::TextOr(std::string_view key, std::string fallback) const {
-  const Value* found = Find(key);
-  return found ? ReadText(*found, Path(key), scope_) : std::move(fallback);
-}
-
-std::string MapReader::Name(std::string_view key) const {
-  const Value* found = Require(key);
-  return found ? ReadName(*found, Path(key), scope_) : std::string();
-}
-
-std::string MapReader::NameOr(std::string_view key, std::string fallback) const {
-  const Value* found = Find(key);
-  return found ? ReadName(*found, Path(key), scope_) : std::move(fallback);
-}
-
-std::vector<std::string> MapReader::NamesOr(std::string_view key,
-                                            std::vector<std::string> fallback) const {
-  const Value* found = Find(key);
-  return found ? ReadNames(*found, Path(key), scope_) : std::move(fallback);
+std::optional<std::string> FindFile(const Value* value, const std::string& what,
+                                    const Scope& scope) {
+  if (!value) return std::nullopt;
+  const std::string text = ReadText(*value, what, scope);
+  if (value->kind != Value::Kind::kScalar) return std::nullopt;
+  const std::string path = PathBeside(value->at.file, text);
+  std::error_code ignored;
+  if (!text.empty() && std::filesystem::is_regular_file(path, ignored)) return path;
+  scope.out.Error(value->at, what + ": there is no file \"" + path + "\"",
+                  "as seen from the folder of the file that names it");
+  return std::nullopt;
 }
 
 const std::vector<ValuePtr>& Items(const Value* value, std::string_view what, const Scope& scope) {

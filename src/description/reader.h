@@ -5,7 +5,7 @@
 #pragma once
 
 #include <functional>
-#include <initializer_list>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,17 +28,26 @@ struct Scope {
   NameSet* used = nullptr;
 };
 
-/// What a number has to be, besides finite.
-enum class Bound {
-  kAny,
-  kPositive,
-  kNonNegative,
-  kFraction,  ///< 0..1
+/// What a number has to be, besides finite: within least..most.
+struct Bound {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool above_least = false, below_most = false;  ///< An end itself is out.
+  const char* least_text = nullptr;              ///< `least` as people write it.
+  const char* most_text = nullptr;               ///< `most` as people write it.
+  const char* hint = "";                         ///< For who exceeds it.
+
+  static const Bound kAny, kPositive, kNonNegative, kFraction;
 };
+inline constexpr Bound Bound::kAny{};
+inline constexpr Bound Bound::kPositive{.least = 0.0, .above_least = true};
+inline constexpr Bound Bound::kNonNegative{.least = 0.0};
+inline constexpr Bound Bound::kFraction{.least = 0.0, .most = 1.0};
 
 // In all of these, `what` names the value in messages: "rod.radius_m must be positive, got -1".
 
-double ReadNumber(const Value& value, std::string_view what, Bound bound, const Scope& scope);
+double ReadNumber(const Value& value, std::string_view what, const Bound& bound,
+                  const Scope& scope);
 std::optional<int> ReadInteger(const Value& value, std::string_view what, int least, int most,
                                const Scope& scope);
 std::optional<bool> ReadBool(const Value& value, std::string_view what, const Scope& scope);
@@ -49,6 +58,9 @@ Vec3 ReadDirection(const Value& value, std::string_view what, const Scope& scope
 /// `count` numbers, or nothing after a complaint.
 std::optional<std::vector<double>> ReadNumbers(const Value& value, std::string_view what,
                                                std::size_t count, const Scope& scope);
+/// One rotation `{axis: z, angle_rad: pi / 2}` (axis also [x, y, z]), `{quaternion: [w, x, y, z]}`,
+/// or a list of them, applied one after the other about the fixed axes of W.
+Quat ReadRotation(const Value& value, std::string_view what, const Scope& scope);
 std::string ReadText(const Value& value, std::string_view what, const Scope& scope);
 /// A text that `IsName`, and not too long.
 std::string ReadName(const Value& value, std::string_view what, const Scope& scope);
@@ -62,6 +74,9 @@ std::vector<std::string> ReadNames(const Value& value, std::string_view what, co
 /// A full name such as segment_0.tip is a tag, too. Empty after a complaint.
 std::vector<std::vector<std::string>> ReadMatch(const Value& value, std::string_view what,
                                                 const Scope& scope);
+/// [[time_s, value], ...] with rising times. Empty after a complaint.
+std::vector<std::pair<double, double>> ReadPoints(const Value& value, std::string_view what,
+                                                  const Bound& bound, const Scope& scope);
 /// Whether `tags` fulfil what `ReadMatch` read.
 bool Matches(const std::vector<std::vector<std::string>>& match,
              const std::vector<std::string>& tags);
@@ -106,13 +121,14 @@ class MapReader {
             const Scope& scope);
 
   bool is_map() const { return value_.kind == Value::Kind::kMap; }
-  const Value& value() const { return value_; }
+  const std::string& what() const { return what_; }
   const SourceRef& at() const { return value_.at; }
   const Scope& scope() const { return scope_; }
   /// "rod.radius_m", or just the key at the top of a file.
   std::string Path(std::string_view key) const;
 
   bool Has(std::string_view key) const { return Find(key) != nullptr; }
+  bool HasAnyBut(std::string_view key) const;        ///< Of the known ones.
   const Value* Find(std::string_view key) const;     ///< Null if absent.
   const Value* Require(std::string_view key) const;  ///< Null and a complaint if absent.
   SourceRef KeyAt(std::string_view key) const;       ///< The key's place; the map's if absent.
@@ -121,25 +137,8 @@ class MapReader {
   /// The one key of `keys` that is there. Complains (and returns "") if none or several are.
   std::string ExactlyOne(const std::vector<std::string>& keys) const;
 
-  double Number(std::string_view key, Bound bound) const;  ///< Required.
-  double NumberOr(std::string_view key, double fallback, Bound bound) const;
-  std::optional<double> FindNumber(std::string_view key, Bound bound) const;
-  bool BoolOr(std::string_view key, bool fallback) const;
-  Vec3 Vector(std::string_view key) const;  ///< Required.
-  Vec3 VectorOr(std::string_view key, const Vec3& fallback) const;
-  std::string Text(std::string_view key) const;  ///< Required.
-  std::string TextOr(std::string_view key, std::string fallback) const;
-  std::string Name(std::string_view key) const;  ///< Required.
-  std::string NameOr(std::string_view key, std::string fallback) const;
-  std::vector<std::string> NamesOr(std::string_view key, std::vector<std::string> fallback) const;
-
-  template <class E>
-  E ChoiceOr(std::string_view key, E fallback,
-             const std::vector<std::pair<std::string, E>>& choices) const {
-    const Value* found = Find(key);
-    if (!found) return fallback;
-    return ReadChoice<E>(*found, Path(key), choices, scope_).value_or(fallback);
-  }
+  double Number(std::string_view key, const Bound& bound) const;  ///< Required.
+  double NumberOr(std::string_view key, double fallback, const Bound& bound) const;
 
  private:
   const Value& value_;
@@ -147,6 +146,9 @@ class MapReader {
   std::vector<std::string> known_;
   Scope scope_;
 };
+
+/// The place of a key of a map; the map's if it is absent.
+SourceRef KeyAt(const Value& map, std::string_view key);
 
 /// The items of a list; a complaint and no items if it is something else. `value` may be null.
 const std::vector<ValuePtr>& Items(const Value* value, std::string_view what, const Scope& scope);
@@ -156,6 +158,11 @@ const std::vector<Entry>& Entries(const Value* value, std::string_view what, con
 
 /// Checks `taut: 1` and `kind: <kind>`. False if the rest is not worth reading.
 bool CheckHeader(const Value& root, std::string_view kind, Diagnostics& out);
+
+/// The path that a value names, if such a file is there: beside the file that says so, which may be
+/// a base. `value` may be null.
+std::optional<std::string> FindFile(const Value* value, const std::string& what,
+                                    const Scope& scope);
 
 /// `path` as seen from the folder of `file`, unless it is absolute.
 std::string PathBeside(const std::string& file, const std::string& path);

@@ -5,26 +5,12 @@
 #include "description/experiment_parts.h"
 #include "description/parameters.h"
 #include "description/plausible.h"
-#include "description/reader.h"
+#include "description/read_keys.h"
 #include "description/resolved.h"
-#include "description/resolved_fields.h"
+#include "description/resolved_keys.h"
 
 namespace taut::description {
 namespace {
-
-/// The keys of a struct.
-struct KeyList {
-  std::vector<std::string> keys;
-  template <class... Rest>
-  void operator()(const char* key, const Rest&...) {
-    keys.push_back(key);
-  }
-  void Limit(const char* key, double) { keys.push_back(key); }
-  template <class T>
-  void Later(const char* key, const T&) {
-    keys.push_back(key);
-  }
-};
 
 void Read(const Value& value, const std::string& what, const Scope& scope, double& out) {
   out = ReadNumber(value, what, Bound::kAny, scope);
@@ -62,35 +48,39 @@ void Read(const Value& value, const std::string& what, const Scope& scope,
 template <class T>
 void Read(const Value& value, const std::string& what, const Scope& scope, T& out);  // a struct
 template <class T>
+void Read(const Value& value, const std::string& what, const Scope& scope, std::optional<T>& out) {
+  Read(value, what, scope, out.emplace());
+}
+template <class T>
 void Read(const Value& value, const std::string& what, const Scope& scope, std::vector<T>& out) {
   for (const ValuePtr& item : Items(&value, what, scope)) {
     Read(*item, what, scope, out.emplace_back());
   }
 }
 
-class FieldReader {
+/// All keys have to be there, but for what may be absent: what is optional, limits, and what
+/// earlier versions of taut did not write. Ranges are left to `Model::Compile`.
+class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
  public:
-  explicit FieldReader(const MapReader& map) : map_(map) {}
+  explicit ResolvedReader(const MapReader& map) : map_(map) {}
 
   template <class T>
-  void operator()(const char* key, T& out) {
-    if (const Value* value = map_.Require(key)) Read(*value, map_.Path(key), map_.scope(), out);
-  }
-  template <class T>
-  void operator()(const char* key, std::optional<T>& out) {
-    if (map_.Has(key)) (*this)(key, out.emplace());
+  void On(const Key& key, T& out) {
+    if constexpr (std::same_as<T, double>) {
+      if (key.limit) {
+        out = map_.NumberOr(key.name, std::numeric_limits<double>::infinity(), Bound::kNonNegative);
+        return;
+      }
+    }
+    const bool may_lack = kIsOptional<T> || key.later;
+    const Value* value = may_lack ? map_.Find(key.name) : map_.Require(key.name);
+    if (value) Read(*value, map_.Path(key.name), map_.scope(), out);
   }
   template <class E>
-  void operator()(const char* key, E& out, const Choices<E>& choices) {
-    if (map_.Require(key)) out = map_.ChoiceOr(key, out, choices);
-  }
-  /// What earlier versions of taut did not write.
-  template <class T>
-  void Later(const char* key, T& out) {
-    if (map_.Has(key)) (*this)(key, out);
-  }
-  void Limit(const char* key, double& out) {
-    out = map_.NumberOr(key, std::numeric_limits<double>::infinity(), Bound::kNonNegative);
+  void On(const Key& key, E& out, const Choices<E>& choices) {
+    const Value* value = key.later ? map_.Find(key.name) : map_.Require(key.name);
+    if (!value) return;
+    out = ReadChoice<E>(*value, map_.Path(key.name), choices, map_.scope()).value_or(out);
   }
 
  private:
@@ -100,12 +90,12 @@ class FieldReader {
 template <class T>
 void ReadStruct(const Value& value, const std::string& what, std::vector<std::string> more_keys,
                 const Scope& scope, T& out) {
-  KeyList known;
-  Fields(known, out);
-  known.keys.insert(known.keys.end(), more_keys.begin(), more_keys.end());
-  const MapReader map(value, what, known.keys, scope);
-  FieldReader reader(map);
-  Fields(reader, out);
+  KeyNames<true> known;
+  Keys(known, out);
+  known.names.insert(known.names.end(), more_keys.begin(), more_keys.end());
+  const MapReader map(value, what, known.names, scope);
+  ResolvedReader reader(map);
+  Keys(reader, out);
 }
 
 template <class T>

@@ -1,92 +1,59 @@
 #include "taut/study.h"
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <limits>
-#include <map>
-#include <set>
-
-#include "base/pattern.h"
-#include "description/experiment_parts.h"
 #include "description/merged_file.h"
+#include "description/parameters.h"
+#include "description/read_keys.h"
 #include "description/study_parts.h"
 
 namespace taut {
 namespace description {
 namespace {
 
-class StudyReader {
- public:
-  StudyReader(const MergedFile& file, OverrideSet& overrides, const Scope& scope)
-      : scope_(scope),
-        map_(*file.root, "",
-             {"taut", "kind", "base", "name", "description", "experiment", "set", "parameters",
-              "seed", "search", "vary", "objective", "worlds"},
-             scope_),
-        overrides_(overrides) {}
-
-  StudySpec Read() {
-    study_.name = map_.Name("name");
-    study_.description = map_.TextOr("description", "");
-    if (const Value* seed = map_.Find("seed")) {
-      study_.seed = static_cast<std::uint64_t>(
-          ReadInteger(*seed, "seed", 0, 2'147'483'647, scope_).value_or(0));
-    }
-    const bool known = LoadItsExperiment();
-    std::vector<ControllerSpec> controllers = study_.experiment.controllers;
-    std::vector<ScaleSpec> scales = TunableScales(study_.experiment.robot);
-    std::vector<Tunable> tunables;
-    if (known) tunables = FindTunables(controllers, scales, study_.experiment.robot);
-    study_.parameters = ReadVary(map_.Require("vary"), known ? &tunables : nullptr, scope_);
-    if (const Value* objective = map_.Require("objective")) {
-      const double duration_s =
-          known ? study_.experiment.duration_s : std::numeric_limits<double>::infinity();
-      study_.objective = ReadObjective(*objective, duration_s, scope_);
-    }
-    if (const Value* worlds = map_.Find("worlds")) {
-      study_.perturbation = ReadPerturbation(*worlds, scope_);
-    }
-    // After complaints about `vary` nobody knows how many parameters were meant.
-    const std::size_t dimensions = scope_.out.ok() ? study_.parameters.size() : 0;
-    study_.searches = ReadSearches(map_.Require("search"), dimensions, scope_);
-    return std::move(study_);
+/// False if it has errors of its own.
+bool LoadItsExperiment(const StudyFileText& text, const OverrideSet& of_user, const Scope& scope,
+                       StudySpec& study) {
+  Overrides overrides;
+  for (const Entry& entry : Entries(text.set.value, "set", scope)) {
+    const double number = ReadNumber(*entry.value, "set." + entry.key, Bound::kAny, scope);
+    overrides.emplace_back(entry.key, Shown(number));
   }
-
- private:
-  /// False if it has errors of its own.
-  bool LoadItsExperiment() {
-    Overrides overrides;
-    std::vector<SourceRef> places;
-    for (const Entry& entry : Entries(map_.Find("set"), "set", scope_)) {
-      const double number = ReadNumber(*entry.value, "set." + entry.key, Bound::kAny, scope_);
-      overrides.emplace_back(entry.key, Shown(number));
-    }
-    for (const ParameterText& parameter : overrides_.Unused()) {
-      overrides.emplace_back(parameter.name, parameter.expression);
-    }
-    const Value* value = map_.Require("experiment");
-    if (!value) return false;
-    const std::string text = ReadText(*value, "experiment", scope_);
-    const std::string path = PathBeside(value->at.file, text);
-    std::error_code ignored;
-    if (text.empty() || !std::filesystem::is_regular_file(path, ignored)) {
-      scope_.out.Error(value->at, "experiment: there is no file \"" + path + "\"",
-                       "as seen from the folder of the file that names it");
-      return false;
-    }
-    auto experiment = LoadExperiment(path, overrides, scope_.out);
-    if (!experiment) return false;
-    study_.experiment = std::move(*experiment);
-    study_.experiment_file = path;
-    return true;
+  for (const ParameterText& parameter : of_user.Unused()) {
+    overrides.emplace_back(parameter.name, parameter.expression);
   }
+  const auto path = FindFile(text.experiment.value, "experiment", scope);
+  if (!path) return false;
+  auto experiment = LoadExperiment(*path, overrides, scope.out);
+  if (!experiment) return false;
+  study.experiment = std::move(*experiment);
+  study.experiment_file = *path;
+  return true;
+}
 
-  Scope scope_;
-  MapReader map_;
-  OverrideSet& overrides_;
-  StudySpec study_;
-};
+/// Whatever could be read; the caller looks at the diagnostics.
+StudySpec ReadStudy(const Value& root, const OverrideSet& overrides, const Scope& scope) {
+  StudyFileText text;
+  ReadMapping(root, "", scope, text);
+  StudySpec study;
+  study.name = text.name;
+  study.description = text.description;
+  study.seed = text.seed;
+  const bool known = LoadItsExperiment(text, overrides, scope, study);
+  std::vector<ControllerSpec> controllers = study.experiment.controllers;
+  std::vector<ScaleSpec> scales = TunableScales(study.experiment.robot);
+  std::vector<Tunable> tunables;
+  if (known) tunables = FindTunables(controllers, scales, study.experiment.robot);
+  study.parameters = ToParameters(root.Find("vary"), text.vary, known ? &tunables : nullptr, scope);
+  study.objective = text.objective;
+  if (known && study.objective.from_s >= study.experiment.duration_s) {
+    scope.out.Error(text.objective.from_at, "objective.from_s is not before the experiment's end",
+                    "that is at " + Shown(study.experiment.duration_s) + " s");
+  }
+  if (text.worlds) study.perturbation = *text.worlds;
+  // After complaints about `vary` nobody knows how many parameters were meant.
+  const std::size_t dimensions = scope.out.ok() ? study.parameters.size() : 0;
+  study.searches = ToSearches(root.Find("search"), text.search, dimensions, scope);
+  return study;
+}
 
 }  // namespace
 }  // namespace description
@@ -100,7 +67,7 @@ std::optional<StudySpec> LoadStudy(const std::string& path, const Overrides& ove
   set.Apply(file.parameters);
   const description::NameTable names = description::ResolveParameters(file.parameters, out);
   description::NameSet used;
-  StudySpec study = description::StudyReader(file, set, {names, out, &used}).Read();
+  StudySpec study = description::ReadStudy(*file.root, set, {names, out, &used});
   if (out.items().size() != errors_before) return std::nullopt;
   description::WarnOfUnused(file.parameters, std::move(used), file.files, out);
   study.files = std::move(file.files);

@@ -1,18 +1,18 @@
-/// The parts of a study file, each read by one function.
+/// From what a study file says to what is searched.
 #pragma once
 
 #include <vector>
 
-#include "description/reader.h"
+#include "description/study_keys.h"
 #include "taut/study.h"
 
 namespace taut::description {
 
-/// `tunables` is null where the experiment could not be read: then names are not checked.
-std::vector<StudyParameter> ReadVary(const Value* list, const std::vector<Tunable>* tunables,
-                                     const Scope& scope);
-ObjectiveSpec ReadObjective(const Value& value, double duration_s, const Scope& scope);
-PerturbationSpec ReadPerturbation(const Value& value, const Scope& scope);
-std::vector<SearchSpec> ReadSearches(const Value* list, std::size_t dimensions, const Scope& scope);
+/// `list` is where the texts stand. `tunables` is null where the experiment could not be read: then
+/// names are not checked.
+std::vector<StudyParameter> ToParameters(const Value* list, const std::vector<VaryText>& texts,
+                                         const std::vector<Tunable>* tunables, const Scope& scope);
+std::vector<SearchSpec> ToSearches(const Value* list, const std::vector<SearchText>& texts,
+                                   std::size_t dimensions, const Scope& scope);
 
 }  // namespace taut::description

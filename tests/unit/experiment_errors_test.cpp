@@ -130,7 +130,7 @@ TEST_F(ExperimentErrors, ModelOptionsAreChoices) {
          "geometric_mean, minimum, maximum)");
   Expect("duration_s: 10", with("gravity: 1"),
          "8:17: error: unknown key \"gravity\" in model_options (one of: inertia, damping_law, "
-         "friction_law, friction_combine, restitution_combine)");
+         "friction_combine, restitution_combine, friction_law)");
   Expect("duration_s: 10", "gravity_m_per_s2: 9.81\nduration_s: 10",
          "8:19: error: gravity_m_per_s2 must be a list of 3 numbers, got a text");
 }
@@ -174,7 +174,7 @@ TEST_F(ExperimentErrors, TerrainIsPlanesAndBoxes) {
   Expect(ground, ground + "\n  " + ground,
          "8:6: error: there are two parts of the terrain called ground (the first is in line 7)");
   Expect(ground, "- {name: step, box: {center_m: [0, 0, 0], size_m: [1, 0, 1]}}",
-         "7:53: error: box.size_m must be positive");
+         "7:53: error: box.size_m must be three positive numbers");
   Expect(ground, "- {name: step, box: {center_m: [0, 0, 0]}}",
          "7:23: error: box needs the key \"size_m\"");
   Expect(ground, "- {name: step, box: {center_m: 0, size_m: [1, 1, 1]}}",

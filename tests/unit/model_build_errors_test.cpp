@@ -61,7 +61,7 @@ TEST(ModelBuildErrors, BoxesAreAlongPairsOrAtNodes) {
       Errors(TwoRods("rest_length_m: 0.05",
                      "  - {match: a, box: {size_m: [1, -1, 1], mass_kg_per_m: 1}}\n")),
       "robot.yaml:12:21: error: box needs one of mass_kg, density_kg_per_m3\n"
-      "robot.yaml:12:22: error: box.size_m must be three positive numbers\n"
+      "robot.yaml:12:30: error: box.size_m must be three positive numbers\n"
       "robot.yaml:12:42: error: a box at a node has no length (mass_kg or density_kg_per_m3)\n");
   EXPECT_EQ(Errors(TwoRods("rest_length_m: 0.05", "  - {match: a, box: {mass_kg: 1}}\n")),
             "robot.yaml:12:21: error: box needs one of size_m, half_extents_m, width_m\n");

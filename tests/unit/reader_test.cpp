@@ -299,7 +299,7 @@ TEST_F(Reading, MissingKeysAreErrorsAtTheMap) {
   EXPECT_EQ(map.NumberOr("a", 0, Bound::kAny), 1.0);
   EXPECT_EQ(map.NumberOr("b", 7, Bound::kAny), 7.0);
   EXPECT_TRUE(std::isnan(map.Number("b", Bound::kAny)));
-  EXPECT_TRUE(std::isnan(map.Vector("c").x));
+  EXPECT_FALSE(map.Require("c"));
   EXPECT_EQ(Errors(),
             "f.yaml:1:4: error: rod needs the key \"b\"\n"
             "f.yaml:1:4: error: rod needs the key \"c\"\n");
@@ -308,7 +308,7 @@ TEST_F(Reading, MissingKeysAreErrorsAtTheMap) {
 TEST_F(Reading, SomethingElseThanAMapIsOneErrorNotMany) {
   const MapReader map(V("3"), "rod", {"a", "b"}, scope_);
   map.Number("a", Bound::kAny);
-  map.Text("b");
+  map.Require("b");
   map.ExactlyOne({"a", "b"});
   EXPECT_EQ(Errors(), "f.yaml:1:4: error: rod must be a map, got a text\n");
 }

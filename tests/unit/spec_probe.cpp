@@ -1,11 +1,12 @@
 // Loads model, experiment, gait and study files and prints what is wrong with them, for tests in
-// other languages: spec_probe [--set name=value]... [--resolved] FILE... Exit status 1 if anything
-// is wrong.
+// other languages: spec_probe [--set name=value]... [--resolved] [--schema FORMAT] FILE... Exit
+// status 1 if anything is wrong.
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <string>
 
+#include "taut/schema.h"
 #include "taut/spec.h"
 #include "taut/study.h"
 
@@ -32,6 +33,8 @@ int main(int argc, char** argv) {
     const std::string argument = argv[i];
     if (argument == "--resolved") {
       resolved = true;
+    } else if (argument == "--schema" && i + 1 < argc) {
+      std::cout << taut::FormatSchema(argv[++i]).value_or("");
     } else if (argument == "--set" && i + 1 < argc) {
       const std::string pair = argv[++i];
       overrides.emplace_back(pair.substr(0, pair.find('=')), pair.substr(pair.find('=') + 1));

@@ -1,0 +1,321 @@
+/// The keys of a model file, and what of them is in a resolved experiment.
+#pragma once
+
+#include "description/model_text.h"
+#include "description/rotation.h"
+#include "description/surface_keys.h"
+
+namespace taut::description {
+
+/// Of contacts: at `contact`, and at `model_options` of an experiment.
+template <class Io>
+void ContactKeys(Io& io, Like<ModelDef> auto& m) {
+  io("friction_combine", m.friction_combine, kCombineRules,
+     "How the friction coefficients of two touching surfaces become one.");
+  io("restitution_combine", m.restitution_combine, kCombineRules,
+     "How the restitutions of two touching surfaces become one.");
+  io("friction_law", m.friction_law, kFrictionLaws,
+     "In which directions friction acts. `cone`: both tangential directions, the exact Coulomb "
+     "cone. `along_slip`: only along the velocity of sliding, as Bullet does by default; lets a "
+     "robot creep sideways.");
+}
+template <class Io>
+void Keys(Io& io, Like<ModelDef> auto& m) {
+  io.Map("contact", "contact", "Laws of contact.");
+  ContactKeys(io, m);
+}
+inline constexpr const char* kInertiaMeaning =
+    "How a body's inertia follows from its parts. `exact`: the sum of the parts' own. "
+    "`bounding_box`: that of a solid box of the body's mass and of the size of its bounding box at "
+    "the start, as Bullet takes it for compounds.";
+inline constexpr const char* kDampingMeaning =
+    "How the cables' dampers act. `exact`: b dl/dt, with a tension that is never negative. "
+    "`clamped`: b dl/dt limited to the elastic force, as NTRT does.";
+template <class Io>
+void Keys(Io& io, Like<ModelOptions> auto& o) {
+  io.Map("model_options", "model_options",
+         "Laws of the model that this experiment replaces, so that one model can be run under the "
+         "laws of another simulator. What is absent stays as the model says.");
+  io("inertia", o.inertia, kInertiaLaws, kInertiaMeaning);
+  io("damping_law", o.damping_law, kDampingLaws, kDampingMeaning);
+  ContactKeys(io, o.def);
+}
+
+template <class Io>
+void Keys(Io& io, Like<NodeText> auto& n) {
+  io.Map("", "node", "A node in full. `tip: [x, y, z]` is short for `tip: {at_m: [x, y, z]}`.");
+  io("at_m", n.at_m, kNeeded,
+     "Its place, in the part's frame or, outside of parts, in the world frame.");
+  io("tags", n.tags, "Tags for builders and controllers to match, besides the node's name.");
+  io("fixed_to", n.fixed_to, kName,
+     "Another node of the same part, whose body this node belongs to. For points of a body that "
+     "no rod or box reaches.");
+}
+void Check(const MapReader& map, NodeText& node);
+/// `[x, y, z]` alone. False if it is a map; a complaint, too, if it is neither.
+bool ReadShort(const Value& value, const std::string& path, const Scope& scope, NodeText& out);
+
+template <class Io>
+void Keys(Io& io, Like<PairsText> auto& p) {
+  io.Map("", "pair", "Two nodes that something joins; or several such pairs with the same tags.",
+         R"({"nodes": ["right", "left"], "tags": ["rod"]})");
+  io("name", p.name, kName,
+     "Name of what becomes of it, such as the cable; also a tag of it. If absent, the nodes' "
+     "names: right-left.");
+  io.OneOf({"nodes", "each"});
+  io.Rule(R"("not": {"required": ["name", "each"]})");
+  io("nodes", p.nodes,
+     "The nodes. A cable may have more than two: it slides through those in between.");
+  io("each", p.each, "Instead of `nodes`: a list of pairs with the same tags.");
+  io("tags", p.tags, "Tags for builders and controllers to match.");
+}
+void Check(const MapReader& map, PairsText& pairs);
+
+template <class Io>
+void Keys(Io& io, Like<PartText> auto& p) {
+  io.Map("", "parts", "A group of nodes and pairs.");
+  io("nodes", p.nodes_text, kNeeded, kName, "Its nodes by name, in the part's frame.");
+  io("pairs", p.pairs_text, "Its pairs.");
+}
+void Check(const MapReader& map, PartText& part);
+
+template <class Io>
+void Keys(Io& io, Like<PlacementText> auto& p) {
+  io.Map("structure", "structure",
+         "A part in its place, once or repeated. A node of a placed part is called by the "
+         "placement's name and its own: segment_0.tip.");
+  io("part", p.part, kNeeded, "Which part.");
+  io("name", p.name, kName, "Name of the placement; the part's if absent.");
+  io("copies", p.copies, kInherited, Bound{.least = 1, .most = kMaxCopies},
+     "How many copies. With it they are called name_0, name_1 ..., and their nodes and pairs also "
+     "carry the copy's number as a tag and `first`, `middle` or `last` (a single copy is first and "
+     "last).");
+  io("at_m", p.at_m, "Where the part's origin (that of copy 0) goes.");
+  io("rotate", p.rotate, "How the part (copy 0) is turned about its origin.");
+  io("step_m", p.step_m, "From one copy's origin to the next, in the world frame.");
+  io("step_rotate", p.step_rotate,
+     "From one copy's orientation to the next, about axes of the world.");
+  io("velocity_m_per_s", p.velocity_m_per_s,
+     "Velocity of each copy's centre of mass at the start, in the world frame.");
+  io("angular_velocity_rad_per_s", p.angular_velocity_rad_per_s,
+     "Angular velocity of each copy as a whole, about its centre of mass, at the start, in the "
+     "world frame.");
+  io("tags", p.tags, "Tags that all its nodes and pairs carry besides their own.");
+  io("connect", p.connect_text,
+     "Pairs from each copy to the next: the first node on copy i, the second on copy i + 1 (of a "
+     "longer cable, the third on copy i + 2). Named ones are called name_1, name_2 ...; they carry "
+     "their number and `first`, `middle` or `last` as tags.");
+  io("ring", p.ring, "Whether the last copy is connected to the first, too.");
+  io.Rule(R"("dependentRequired": {"step_m": ["copies"], "step_rotate": ["copies"], )"
+          R"("connect": ["copies"], "ring": ["copies"]})");
+}
+void Check(const MapReader& map, PlacementText& placement);
+
+/// Whether what has the mass has a length.
+enum class Along { kNothing, kPair, kEither };
+template <class Io>
+void MassKeys(Io& io, Like<MassText> auto& m, Along along) {
+  if (along != Along::kEither) {
+    std::vector<std::string> keys{"mass_kg", "density_kg_per_m3"};
+    if (along == Along::kPair) keys.push_back("mass_kg_per_m");
+    io.OneOf(keys);
+  }
+  io("mass_kg", m.mass_kg, Bound::kNonNegative, "Its mass.");
+  io("density_kg_per_m3", m.density_kg_per_m3, Bound::kNonNegative,
+     "Instead of `mass_kg`: its density.");
+  if (along == Along::kNothing) return;
+  io("mass_kg_per_m", m.mass_kg_per_m, Bound::kNonNegative,
+     "Along a pair, instead of `mass_kg`: its mass per length.");
+}
+inline constexpr const char* kCollidesMeaning = "Whether it touches other things.";
+
+template <class Io, Either<CapsuleDef, RodText> Rod>
+void Keys(Io& io, Rod& r) {
+  io.Map("rod", "builder.rod",
+         "A solid cylinder along a pair, from node to node. What it touches feels a capsule: round "
+         "ends of the same radius.");
+  io("name", r.name, kResolvedOnly);
+  io("body", r.body, kResolvedOnly);
+  io("from_m", r.from_m, kResolvedOnly);
+  io("to_m", r.to_m, kResolvedOnly);
+  io("radius_m", r.radius_m, kNeeded, Bound::kPositive, "Its radius.");
+  if constexpr (Io::kResolved) {
+    io("material", r.material);
+  } else {
+    MassKeys(io, r.mass, Along::kPair);
+    SurfaceKeys(io, r.surface);
+  }
+  io("collides", r.collides, kCollidesMeaning);
+}
+void Check(const MapReader& map, RodText& rod);
+
+template <class Io, Either<SphereDef, SphereText> Sphere>
+void Keys(Io& io, Sphere& s) {
+  io.Map("sphere", "builder.sphere", "A solid sphere at a node.");
+  io("name", s.name, kResolvedOnly);
+  io("body", s.body, kResolvedOnly);
+  io("center_m", s.center_m, kResolvedOnly);
+  io("radius_m", s.radius_m, kNeeded, Bound::kPositive, "Its radius.");
+  if constexpr (Io::kResolved) {
+    io("material", s.material);
+  } else {
+    MassKeys(io, s.mass, Along::kNothing);
+    SurfaceKeys(io, s.surface);
+  }
+  io("collides", s.collides, kCollidesMeaning);
+}
+void Check(const MapReader& map, SphereText& sphere);
+
+template <class Io>
+void Keys(Io& io, Like<PointMassText> auto& p) {
+  io.Map("point_mass", "builder.point_mass", "A mass at a node that touches nothing.");
+  io("mass_kg", p.mass_kg, kNeeded, Bound::kPositive, "Its mass.");
+  io("radius_m", p.radius_m, Bound::kNonNegative,
+     "Radius of the solid sphere that gives it an inertia.");
+}
+
+template <class Io, Either<BoxDef, BoxText> Box>
+void Keys(Io& io, Box& b) {
+  io.Map("box", "builder.box",
+         "A solid box. With `size_m` or `half_extents_m` at a node, its axes those of the part. "
+         "With `width_m` and `height_m` along a pair: its length from node to node, its width "
+         "level in the part's frame.");
+  io("name", b.name, kResolvedOnly);
+  io("body", b.body, kResolvedOnly);
+  io("center_m", b.center_m, kResolvedOnly);
+  io("orientation", b.orientation, kResolvedOnly);
+  if constexpr (!Io::kResolved) {
+    io.Rule(R"("oneOf": [{"required": ["size_m"]}, {"required": ["half_extents_m"]}, )"
+            R"({"required": ["width_m", "height_m"]}])");
+    io.Rule(R"("anyOf": [{"required": ["mass_kg"]}, {"required": ["density_kg_per_m3"]}, )"
+            R"({"required": ["mass_kg_per_m"]}])");
+    io("size_m", b.size_m, kInherited, Bound::kPositive, "Its edge lengths.");
+  }
+  io("half_extents_m", b.half_extents_m, kInherited, Bound::kPositive, "Half its edge lengths.");
+  if constexpr (Io::kResolved) {
+    io("material", b.material);
+  } else {
+    io("width_m", b.width_m, Bound::kPositive, "Its width along a pair.");
+    io("height_m", b.height_m, Bound::kPositive, "Its height along a pair.");
+    MassKeys(io, b.mass, Along::kEither);
+    SurfaceKeys(io, b.surface);
+  }
+  io("collides", b.collides, kCollidesMeaning);
+}
+void Check(const MapReader& map, BoxText& box);
+
+template <class Io, Either<ActuatorDef, ActuatorText> Actuator>
+void Keys(Io& io, Actuator& a) {
+  io.Map("", "builder.cable.actuator",
+         "A motor that changes the rest length, either ideal or with at least one limit. Without "
+         "an actuator the rest length is fixed.");
+  io("kind", a.kind, kActuatorKinds, kResolvedOnly);
+  if constexpr (!Io::kResolved) {
+    io("ideal", a.ideal, "Whether the rest length is what is commanded, at once, without limits.");
+  }
+  io("max_speed_m_per_s", a.max_speed_m_per_s, kLimit, Bound::kPositive,
+     "Greatest speed of the rest length. No limit if absent.");
+  io("max_acceleration_m_per_s2", a.max_acceleration_m_per_s2, kLimit, Bound::kPositive,
+     "Greatest acceleration of the rest length. No limit if absent.");
+  io("max_force_n", a.max_force_n, kLimit, Bound::kPositive,
+     "The motor never winds past this tension. No limit if absent.");
+  io("min_rest_length_m", a.min_rest_length_m, Bound::kNonNegative, "Least rest length.");
+  io("min_length_m", a.min_length_m, Bound::kNonNegative,
+     "The motor does not wind in while the cable is shorter than this.");
+}
+void Check(const MapReader& map, ActuatorText& actuator);
+
+template <class Io, Either<CableDef, CableText> Cable>
+void Keys(Io& io, Cable& c) {
+  io.Map(
+      "cable", "builder.cable",
+      "A tension-only spring and damper along a pair: T = k (l - L) + b dl/dt while l > L, never "
+      "negative. One of `prestress_n`, `rest_length_m` and `rest_length_ratio` gives the rest "
+      "length L at the start.",
+      R"({"stiffness_n_per_m": 229.16, "damping_n_s_per_m": 20, "prestress_n": 7})");
+  io("name", c.name, kResolvedOnly);
+  io("attachments", c.attachments, kResolvedOnly);
+  io.OneOf({"prestress_n", "rest_length_m", "rest_length_ratio"});
+  io("stiffness_n_per_m", c.stiffness_n_per_m, kNeeded, Bound::kPositive, "k.");
+  io("damping_n_s_per_m", c.damping_n_s_per_m, Bound::kNonNegative, "b.");
+  io("rest_length_m", c.rest_length_m, Bound::kPositive, "Its rest length.");
+  io("damping_law", c.damping_law, kDampingLaws, kInherited,
+     "How the damper acts; what the model's `damping_law` says if absent. `exact`: b dl/dt, with "
+     "a tension that is never negative. `clamped`: b dl/dt limited to the elastic force, as NTRT "
+     "does.");
+  if constexpr (Io::kResolved) {
+    io("actuator", c.actuator);
+  } else {
+    io("prestress_n", c.prestress_n, Bound::kNonNegative, "Its tension as described, at rest.");
+    io("rest_length_ratio", c.rest_length_ratio, Bound::kPositive,
+       "Its rest length over its length as described.");
+    io("ends", c.ends_on_surface, kCableEnds,
+       "Where the cable ends. `node`: at its nodes. `surface`: on the spheres at its end nodes, "
+       "towards the next node, as NTRT attaches cables.");
+    io("actuator", c.actuator_text);
+  }
+}
+void Check(const MapReader& map, CableText& cable);
+
+template <class Io>
+void Keys(Io& io, Like<AnchorText> auto&) {
+  io.Map("anchor", "builder.anchor",
+         "Fixes a node, and the body that it belongs to, in the world. It has no keys: `anchor: "
+         "{}`.");
+}
+
+template <class Io>
+void Keys(Io& io, Like<BuilderText> auto& b) {
+  io.Map("builder", "builders",
+         "What becomes of the nodes or pairs that carry some tags: one of the kinds below. Solids "
+         "that share nodes weld into one rigid body.");
+  io("match", b.match, kNeeded,
+     "Which nodes or pairs. `a`: all that carry the tag a. `[a, b]`: all that carry both tags. "
+     "`[[a, b], [c]]`: all that carry any of these sets. What no number of copies could match is "
+     "an error.");
+  io.OneOf({"rod", "sphere", "point_mass", "box", "cable", "anchor"});
+  io("rod", b.rod);
+  io("sphere", b.sphere);
+  io("point_mass", b.point_mass);
+  io("box", b.box);
+  io("cable", b.cable);
+  io("anchor", b.anchor);
+}
+void Check(const MapReader& map, BuilderText& builder);
+
+template <class Io>
+void Keys(Io& io, Like<ModelText> auto& m) {
+  io.Map("", "Model file",
+         "What a robot is made of: nodes and pairs of nodes with tags, and builders that turn what "
+         "carries their tags into rods, cables, spheres ... Parts can be placed, repeated and "
+         "connected.");
+  HeadKeys(io, m,
+           {"Name of the robot. Needed unless `base` has it.",
+            "What the robot is, in a sentence or two.",
+            "Another model file, seen from this file's folder. This file then holds only what "
+            "differs: each of its keys replaces the base's as a whole, except that `parameters` "
+            "are merged by name.",
+            R"("tetraspine3.yaml")",
+            "Named numbers for expressions in this file. They may refer to each other, in any "
+            "order; an experiment's `set` and `--set name=value` on the command line replace them.",
+            R"({"edge_m": 0.38, "height_m": "sqrt(3) / 2 * edge_m"})"});
+  io("parts", m.parts_text, kName, "Groups of nodes and pairs that `structure` places, by name.");
+  io("nodes", m.loose.nodes_text, kName,
+     "Nodes in the world frame, by name, besides those of the placed parts.");
+  io("pairs", m.loose.pairs_text,
+     "Pairs of nodes; placed nodes are called by their full name, such as segment_0.tip.");
+  io("structure", m.structure, "Where the parts go.");
+  io.Rule(R"("anyOf": [{"required": ["nodes"]}, {"required": ["structure"]}])");
+  io("builders", m.builders,
+     "What becomes of the nodes and pairs. Each pair must be built by exactly one builder; a node "
+     "by none or by several of different kinds.");
+  io("gravity_m_per_s2", m.def.gravity_m_per_s2, "Gravity in the world frame.");
+  io("contact", m.def);
+  io("inertia", m.inertia, kInertiaLaws, kInertiaMeaning);
+  io("damping_law", m.damping_law, kDampingLaws, kDampingMeaning);
+  io("allow_disconnected", m.allow_disconnected,
+     "Whether bodies that no cable joins to the others are meant. An error if false.");
+}
+void Check(const MapReader& map, ModelText& model);
+
+}  // namespace taut::description

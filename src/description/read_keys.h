@@ -1,0 +1,186 @@
+/// Reading what people write by the tables of keys (keys.h).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/assert.h"
+#include "description/keys.h"
+#include "description/reader.h"
+
+namespace taut::description {
+
+/// Fills `out` from a map: complains about unknown and missing keys and wrong values, then about
+/// what does not go together (`Check`). `path` is where it stands; a field whose key is absent
+/// stays as it is, but a number that is needed becomes NaN. Sets `out.at` to the place and
+/// `out.good` to whether nothing was wrong, where there are such fields.
+template <class T>
+void ReadMapping(const Value& value, const std::string& path, const Scope& scope, T& out);
+
+template <class T>
+inline constexpr bool kIsOptional = false;
+template <class T>
+inline constexpr bool kIsOptional<std::optional<T>> = true;
+template <class T>
+inline constexpr bool kIsList = false;
+template <class T>
+inline constexpr bool kIsList<std::vector<T>> = true;
+template <class T>
+inline constexpr bool kIsNamed = false;
+template <class T>
+inline constexpr bool kIsNamed<Named<T>> = true;
+template <class T>
+inline constexpr bool kIsRaw = false;
+template <class Form>
+inline constexpr bool kIsRaw<Raw<Form>> = true;
+template <class T>
+inline constexpr bool kIsOverlay = false;
+template <class T>
+inline constexpr bool kIsOverlay<Overlay<T>> = true;
+
+/// One field, by its type.
+template <class T>
+void ReadField(const Value& value, const std::string& path, const Key& key, const Scope& scope,
+               T& out);
+
+template <class T>
+void ReadNamed(const Value& value, const std::string& path, const Key& key, const Scope& scope,
+               Named<T>& out) {
+  for (const Entry& entry : Entries(&value, path, scope)) {
+    auto& item = out.items.emplace_back();
+    item.good_name = !key.is_name || !ReadKey(entry, path, scope).empty();
+    item.name = entry.key;
+    item.name_at = entry.key_at;
+    item.at = entry.value->at;
+    if constexpr (requires { item.value.name = entry.key; }) item.value.name = entry.key;
+    ReadField(*entry.value, path + "." + entry.key, {key.name}, scope, item.value);
+  }
+}
+
+template <class T>
+void ReadField(const Value& value, const std::string& path, const Key& key, const Scope& scope,
+               T& out) {
+  const auto whole = [&] {
+    TAUT_ASSERT(std::isfinite(key.bound.least) && std::isfinite(key.bound.most));
+    return ReadInteger(value, path, static_cast<int>(key.bound.least),
+                       static_cast<int>(key.bound.most), scope);
+  };
+  const auto text = [&] {
+    return key.is_name ? ReadName(value, path, scope) : ReadText(value, path, scope);
+  };
+  if constexpr (std::same_as<T, double>) {
+    out = ReadNumber(value, path, key.bound, scope);
+  } else if constexpr (std::same_as<T, int> || std::same_as<T, std::uint64_t>) {
+    const auto read = whole();
+    if (read) out = static_cast<T>(*read);
+  } else if constexpr (std::same_as<T, bool>) {
+    out = ReadBool(value, path, scope).value_or(out);
+  } else if constexpr (std::same_as<T, std::string>) {
+    out = text();
+  } else if constexpr (std::same_as<T, Placed>) {
+    out = {text(), value.at};
+  } else if constexpr (std::same_as<T, Vec3>) {
+    out = key.is_direction ? ReadDirection(value, path, scope) : ReadVec3(value, path, scope);
+    if (key.bound.above_least && !(out.x > 0.0 && out.y > 0.0 && out.z > 0.0)) {
+      if (!std::isnan(out.x + out.y + out.z)) {
+        scope.out.Error(value.at, path + " must be three positive numbers");
+      }
+      out = {NAN, NAN, NAN};
+    }
+  } else if constexpr (std::same_as<T, Quat>) {
+    out = ReadRotation(value, path, scope);
+  } else if constexpr (std::same_as<T, std::vector<std::string>>) {
+    out = ReadNames(value, path, scope);
+  } else if constexpr (std::same_as<T, std::vector<std::vector<std::string>>>) {
+    out = ReadMatch(value, path, scope);
+  } else if constexpr (std::same_as<T, std::pair<double, double>>) {
+    const auto ends = ReadNumbers(value, path, 2, scope);
+    out = ends ? std::pair((*ends)[0], (*ends)[1]) : std::pair<double, double>(NAN, NAN);
+  } else if constexpr (std::same_as<T, std::vector<std::pair<double, double>>>) {
+    out = ReadPoints(value, path, key.bound, scope);
+  } else if constexpr (std::same_as<T, std::vector<Placed>>) {
+    for (const ValuePtr& item : Items(&value, path, scope)) {
+      out.push_back({ReadText(*item, path, scope), item->at});
+    }
+  } else if constexpr (std::same_as<T, std::optional<int>>) {
+    out = whole();
+  } else if constexpr (kIsOptional<T>) {
+    ReadField(value, path, key, scope, out.emplace());
+  } else if constexpr (kIsList<T>) {
+    for (const ValuePtr& item : Items(&value, path, scope)) {
+      ReadMapping(*item, path, scope, out.emplace_back());
+    }
+  } else if constexpr (kIsNamed<T>) {
+    ReadNamed(value, path, key, scope, out);
+  } else if constexpr (kIsRaw<T>) {
+    out.value = &value;
+  } else if constexpr (kIsOverlay<T>) {
+    out.value = &value;
+    typename T::Mapping unused{};
+    ReadMapping(value, path, scope, unused);
+  } else {
+    if constexpr (requires { ReadShort(value, path, scope, out); }) {
+      if (ReadShort(value, path, scope, out)) return;
+    }
+    ReadMapping(value, path, scope, out);
+  }
+}
+
+class FileReader : public KeyVisitor<FileReader, false> {
+ public:
+  explicit FileReader(const MapReader& map) : map_(map) {}
+
+  template <class T>
+  void On(const Key& key, T& field) {
+    if (const Value* value = Find(key)) {
+      ReadField(*value, map_.Path(key.name), key, map_.scope(), field);
+    } else if (key.needed) {
+      Spoil(field);
+    }
+  }
+  template <class T, class E>
+  void On(const Key& key, T& field, const Choices<E>& choices) {
+    const Value* value = Find(key);
+    if (!value) return;
+    const auto read = ReadChoice<E>(*value, map_.Path(key.name), choices, map_.scope());
+    if (read) field = *read;
+  }
+  /// Of several nobody knows which was meant: none is looked at.
+  void OneOf(const std::vector<std::string>& keys) {
+    const bool clear = !map_.ExactlyOne(keys).empty();
+    if (!clear) ignored_.insert(ignored_.end(), keys.begin(), keys.end());
+  }
+
+ private:
+  const Value* Find(const Key& key) const {
+    if (std::find(ignored_.begin(), ignored_.end(), key.name) != ignored_.end()) return nullptr;
+    return key.needed ? map_.Require(key.name) : map_.Find(key.name);
+  }
+  template <class T>
+  static void Spoil(T& field) {
+    if constexpr (std::same_as<T, double>) field = NAN;
+    if constexpr (std::same_as<T, Vec3>) field = {NAN, NAN, NAN};
+  }
+
+  const MapReader& map_;
+  std::vector<std::string> ignored_;
+};
+
+template <class T>
+void ReadMapping(const Value& value, const std::string& path, const Scope& scope, T& out) {
+  const std::size_t errors_before = scope.out.items().size();
+  KeyNames<false> known;
+  Keys(known, out);
+  const MapReader map(value, known.what.empty() ? path : known.what, std::move(known.names), scope);
+  FileReader io(map);
+  Keys(io, out);
+  if constexpr (requires { out.at = value.at; }) out.at = value.at;
+  if constexpr (requires { Check(map, out); }) Check(map, out);
+  if constexpr (requires { out.good = true; }) out.good = scope.out.items().size() == errors_before;
+}
+
+}  // namespace taut::description
