@@ -1,16 +1,12 @@
 #include <algorithm>
-#include <limits>
 #include <map>
 
-#include "description/gait_parts.h"
-#include "description/reader.h"
+#include "description/gait_keys.h"
+#include "description/number_list.h"
 
 namespace taut {
 namespace description {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 std::string Written(const CableMatch& match) {
   std::string out;
@@ -170,40 +166,9 @@ std::optional<GaitSpec> NewCpgGait(const RobotSpec& robot, CpgSymmetry symmetry,
 }
 
 std::vector<GaitValue> GaitValues(GaitSpec& gait) {
-  using description::kInf;
-  using description::kPi;
-  std::vector<GaitValue> values;
-  if (gait.sine) {
-    values.push_back({"sine.frequency_hz", "Hz", &gait.sine->frequency_hz, 0.0, kInf});
-    for (SineWave& wave : gait.sine->waves) {
-      const std::string prefix = "sine." + wave.name + ".";
-      values.push_back({prefix + "amplitude_m_per_s", "m/s", &wave.amplitude_m_per_s, -kInf, kInf});
-      values.push_back({prefix + "phase_rad", "rad", &wave.phase_rad, -kPi, kPi});
-      values.push_back({prefix + "offset_m_per_s", "m/s", &wave.offset_m_per_s, -kInf, kInf});
-      values.push_back(
-          {prefix + "phase_per_segment_rad", "rad", &wave.phase_per_segment_rad, -kPi, kPi});
-      if (wave.frequency_hz) {
-        values.push_back({prefix + "frequency_hz", "Hz", &*wave.frequency_hz, 0.0, kInf});
-      }
-    }
-  }
-  if (gait.cpg) {
-    CpgGait& cpg = *gait.cpg;
-    values.push_back({"cpg.frequency_hz", "Hz", &cpg.frequency_hz, -kInf, kInf});
-    values.push_back({"cpg.amplitude_m_per_s", "m/s", &cpg.amplitude_m_per_s, 0.0, kInf});
-    values.push_back({"cpg.convergence_per_s", "1/s", &cpg.convergence_per_s, 0.0, kInf});
-    if (cpg.feedback) {
-      values.push_back({"cpg.feedback.gain_rad_per_n_s", "rad/(N s)",
-                        &cpg.feedback->gain_rad_per_n_s, -kInf, kInf});
-      values.push_back({"cpg.feedback.reference_n", "N", &cpg.feedback->reference_n, -kInf, kInf});
-    }
-    for (CouplingGroup& group : cpg.groups) {
-      const std::string prefix = "cpg." + group.name + ".";
-      values.push_back({prefix + "weight_per_m", "1/m", &group.weight_per_m, -kInf, kInf});
-      values.push_back({prefix + "phase_rad", "rad", &group.phase_rad, -kPi, kPi});
-    }
-  }
-  return values;
+  description::NumberList<GaitValue> list("");
+  Keys(list, gait);
+  return std::move(list.numbers);
 }
 
 }  // namespace taut

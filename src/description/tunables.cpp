@@ -1,5 +1,7 @@
 #include <limits>
 
+#include "description/control_keys.h"
+#include "description/number_list.h"
 #include "taut/study.h"
 
 namespace taut {
@@ -12,13 +14,9 @@ void AddGains(ControllerSpec& controller, const RobotSpec& robot, std::vector<Tu
   for (ImpedanceGains& gains : controller.impedance->cables) {
     const std::string name =
         controller.name + "." + robot.def.cables[static_cast<std::size_t>(gains.cable)].name + ".";
-    out.push_back({name + "tension_offset_n", "N", &gains.tension_offset_n, 0.0, kInf});
-    out.push_back({name + "length_offset_m", "m", &gains.length_offset_m, 0.0, kInf});
-    out.push_back({name + "position_gain_n_per_m", "N/m", &gains.position_gain_n_per_m, 0.0, kInf});
-    out.push_back(
-        {name + "velocity_gain_n_s_per_m", "N s/m", &gains.velocity_gain_n_s_per_m, 0.0, kInf});
-    out.push_back(
-        {name + "velocity_offset_m_per_s", "m/s", &gains.velocity_offset_m_per_s, -kInf, kInf});
+    description::NumberList<Tunable> list(name);
+    Keys(list, gains);
+    out.insert(out.end(), list.numbers.begin(), list.numbers.end());
   }
 }
 

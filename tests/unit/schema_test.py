@@ -77,11 +77,10 @@ def test_EveryKeyHasADescriptionAndItsUnit():
                 if not text.endswith("."):
                     yield f"{kind}: {node['title']}.{key} has no description with a full stop"
                 suffix = next((s for s in UNIT_OF_SUFFIX if key.endswith(s)), None)
-                unit = UNIT_OF_SUFFIX[suffix] if suffix else None
                 full = docs.resolve(schema, value)
                 full = full.get("additionalProperties") or full
-                if full.get("unit") != unit:
-                    yield f"{kind}: {node['title']}.{key} does not have the unit {unit}"
+                if suffix and full.get("unit") != UNIT_OF_SUFFIX[suffix]:
+                    yield f"{kind}: {node['title']}.{key} is not in {UNIT_OF_SUFFIX[suffix]}"
 
 
 def test_ExamplesFitTheirSchemas():

@@ -1,0 +1,59 @@
+/// The numbers of structs by the tables of keys (keys.h), for whoever varies them.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "description/read_keys.h"
+#include "description/units.h"
+
+namespace taut::description {
+
+/// Every number that is there and not `kFixed`, as "prefix.key"; those of lists by the items'
+/// names. `Number` is made of name, unit, place, least and most. An angle without bounds is one of
+/// a turn.
+template <class Number>
+class NumberList : public KeyVisitor<NumberList<Number>, true> {
+ public:
+  explicit NumberList(std::string prefix) : prefix_(std::move(prefix)) {}
+
+  template <class T>
+  void On(const Key& key, T& field) {
+    if constexpr (std::same_as<T, double>) {
+      Add(key, field);
+    } else if constexpr (kIsOptional<T>) {
+      if (field) On(key, *field);
+    } else if constexpr (kIsList<T>) {
+      for (auto& item : field) {
+        if constexpr (requires { item.name; }) Inside(item.name, item);
+      }
+    } else if constexpr (requires { Keys(*this, field); }) {
+      Inside(key.name, field);
+    }
+  }
+  template <class E>
+  void On(const Key&, E&, const Choices<E>&) {}
+
+  std::vector<Number> numbers;
+
+ private:
+  void Add(const Key& key, double& field) {
+    constexpr double kPi = 3.14159265358979323846;
+    if (key.fixed) return;
+    const std::string unit = UnitOf(key.name);
+    double least = key.bound.least, most = key.bound.most;
+    if (unit == "rad" && std::isinf(least) && std::isinf(most)) least = -kPi, most = kPi;
+    numbers.push_back({prefix_ + key.name, unit, &field, least, most});
+  }
+  template <class T>
+  void Inside(const std::string& name, T& field) {
+    NumberList inner(prefix_ + name + ".");
+    Keys(inner, field);
+    numbers.insert(numbers.end(), inner.numbers.begin(), inner.numbers.end());
+  }
+
+  std::string prefix_;
+};
+
+}  // namespace taut::description

@@ -1,0 +1,161 @@
+// What a line of a table of keys is good for, with tables of this file.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "description/number_list.h"
+#include "description/read_keys.h"
+#include "description/units.h"
+#include "description/write_keys.h"
+
+namespace taut::description {
+namespace {
+
+enum class Law { kLinear, kSquare };
+const Choices<Law> kLaws{{"linear", Law::kLinear}, {"square", Law::kSquare}};
+
+struct Damper {
+  std::string name;
+  double damping_n_s_per_m = 2.0;
+  Law law = Law::kLinear;
+};
+template <class Io>
+void Keys(Io& io, Like<Damper> auto& d) {
+  io.Map("", "damper", "It damps.");
+  io("name", d.name, kNeeded, kName, "Its name.");
+  io("damping_n_s_per_m", d.damping_n_s_per_m, Bound{.least = 1, .most = 10}, "b.");
+  io("law", d.law, kLaws, "How.");
+}
+
+struct Spring {
+  SourceRef at;
+  bool good = true;
+  std::string source;
+  double stiffness_n_per_m = 7.0, limit_n = std::numeric_limits<double>::infinity();
+  Vec3 axis{1.0, 0.0, 0.0};
+  std::optional<double> length_m, length_ratio;
+  std::vector<Damper> dampers;
+};
+template <class Io>
+void Keys(Io& io, Like<Spring> auto& s) {
+  io.Map("spring", "spring", "It pulls.");
+  io.OneOf({"length_m", "length_ratio"});
+  io("source", s.source, kResolvedOnly);
+  io("stiffness_n_per_m", s.stiffness_n_per_m, kNeeded, Bound::kPositive, "k.");
+  io("limit_n", s.limit_n, kLimit, Bound::kPositive, "Most.");
+  io("axis", s.axis, kDirection, "Along.");
+  io("length_m", s.length_m, Bound::kPositive, "L.");
+  io("length_ratio", s.length_ratio, kFixed, Bound::kPositive, "L / l.");
+  io("dampers", s.dampers, "Beside it.");
+}
+void Check(const MapReader& map, Spring& spring) {
+  if (spring.length_m > 100.0) map.Error("length_m", "too long for this room");
+}
+
+class Tables : public ::testing::Test {
+ protected:
+  Spring Read(const std::string& text) {
+    Diagnostics out;
+    const ValuePtr root = ParseYaml(text, "f.yaml", out);
+    Spring spring;
+    if (root) ReadMapping(*root, "", {names_, out}, spring);
+    errors_ = out.Format();
+    return spring;
+  }
+  NameTable names_{{"edge_m", 0.5}};
+  std::string errors_;
+};
+
+TEST_F(Tables, ALineIsReadWithRangeAndDefault) {
+  const Spring spring = Read(
+      "{stiffness_n_per_m: 2 * edge_m, length_m: edge_m, axis: [0, 3, 0],\n"
+      " dampers: [{name: a}, {name: b, damping_n_s_per_m: 3, law: square}]}");
+  EXPECT_EQ(errors_, "");
+  EXPECT_TRUE(spring.good);
+  EXPECT_EQ(spring.at.line, 1);
+  EXPECT_EQ(spring.stiffness_n_per_m, 1.0);
+  EXPECT_EQ(spring.length_m, 0.5);
+  EXPECT_FALSE(spring.length_ratio);
+  EXPECT_EQ(spring.axis.y, 1.0);
+  EXPECT_TRUE(std::isinf(spring.limit_n));
+  ASSERT_EQ(spring.dampers.size(), 2u);
+  EXPECT_EQ(spring.dampers[0].damping_n_s_per_m, 2.0);
+  EXPECT_EQ(spring.dampers[1].damping_n_s_per_m, 3.0);
+  EXPECT_EQ(spring.dampers[1].law, Law::kSquare);
+}
+
+TEST_F(Tables, WhatIsWrongIsSaidWithItsPlaceAllAtOnce) {
+  const Spring spring = Read(
+      "{stiffnes_n_per_m: 1,\n source: x,\n limit_n: 0,\n axis: [0, 0, 0],\n length_m: 200,\n"
+      " dampers: [{damping_n_s_per_m: 11, law: cubic}]}");
+  EXPECT_EQ(errors_,
+            "f.yaml:1:1: error: spring needs the key \"stiffness_n_per_m\"\n"
+            "f.yaml:1:2: error: unknown key \"stiffnes_n_per_m\" in spring (did you mean "
+            "\"stiffness_n_per_m\"?)\n"
+            "f.yaml:2:2: error: unknown key \"source\" in spring (one of: stiffness_n_per_m, "
+            "limit_n, axis, length_m, length_ratio, dampers)\n"
+            "f.yaml:3:11: error: spring.limit_n must be positive, got 0\n"
+            "f.yaml:4:8: error: spring.axis must not be zero (it is a direction)\n"
+            "f.yaml:5:2: error: too long for this room\n"
+            "f.yaml:6:12: error: spring.dampers needs the key \"name\"\n"
+            "f.yaml:6:32: error: spring.dampers.damping_n_s_per_m must be within 1..10, got 11\n"
+            "f.yaml:6:41: error: spring.dampers.law cannot be \"cubic\" (one of: linear, "
+            "square)\n");
+  EXPECT_FALSE(spring.good);
+  EXPECT_TRUE(std::isnan(spring.stiffness_n_per_m));  // so that nobody complains about it again
+}
+
+TEST_F(Tables, OfSeveralNoneIsLookedAt) {
+  const Spring spring = Read("{stiffness_n_per_m: 1, length_m: 200, length_ratio: -1}");
+  EXPECT_EQ(errors_,
+            "f.yaml:1:39: error: spring has both length_m and length_ratio (only one of them may "
+            "be there)\n");
+  EXPECT_FALSE(spring.length_m);
+}
+
+TEST_F(Tables, ALineIsWrittenForResolvedExperimentsAndForPeople) {
+  const Spring spring = Read("{stiffness_n_per_m: 1, length_m: 2, dampers: [{name: a_1}]}");
+  FlowWriter<true> resolved;
+  Keys(resolved, spring);
+  EXPECT_EQ(resolved.text(),
+            "source: \"\", stiffness_n_per_m: 1, axis: [1, 0, 0], length_m: 2, "
+            "dampers: [{name: \"a_1\", damping_n_s_per_m: 2, law: linear}]");
+  FlowWriter<false> people;
+  Keys(people, spring);
+  EXPECT_EQ(people.text(),
+            "stiffness_n_per_m: 1, axis: [1, 0, 0], length_m: 2, "
+            "dampers: [{name: a_1, damping_n_s_per_m: 2, law: linear}]");
+  EXPECT_EQ(PlainOrQuoted("No"), "\"No\"");
+  EXPECT_EQ(PlainOrQuoted("a \"b\""), "\"a \\\"b\\\"\"");
+}
+
+TEST_F(Tables, NumbersAreListedByName) {
+  Spring spring = Read("{stiffness_n_per_m: 1, length_ratio: 2, dampers: [{name: a}]}");
+  struct Number {
+    std::string name, unit;
+    double* value;
+    double least, most;
+  };
+  NumberList<Number> list("s.");
+  Keys(list, spring);
+  std::string names;
+  for (const Number& number : list.numbers) names += number.name + " [" + number.unit + "] ";
+  EXPECT_EQ(names, "s.stiffness_n_per_m [N/m] s.limit_n [N] s.a.damping_n_s_per_m [N s/m] ");
+  EXPECT_EQ(list.numbers[2].value, &spring.dampers[0].damping_n_s_per_m);
+  EXPECT_EQ(list.numbers[2].most, 10.0);
+}
+
+TEST(Units, AreThoseOfTheName) {
+  EXPECT_EQ(UnitOf("damping_n_s_per_m"), "N s/m");
+  EXPECT_EQ(UnitOf("proportional_m_per_s_n"), "m/(s N)");
+  EXPECT_EQ(UnitOf("integral_m_per_s2_n"), "m/(s^2 N)");
+  EXPECT_EQ(UnitOf("weight_per_m"), "1/m");
+  EXPECT_EQ(UnitOf("phase_per_segment_rad"), "rad");
+  EXPECT_EQ(UnitOf("counts_per_turn"), "");
+  EXPECT_EQ(UnitOf("rate_hz"), "Hz");
+  EXPECT_EQ(UnitOf("friction"), "");
+  EXPECT_EQ(UnitOf("s"), "");
+}
+
+}  // namespace
+}  // namespace taut::description
