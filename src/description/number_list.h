@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/name_unit.h"
 #include "description/read_keys.h"
-#include "description/units.h"
 
 namespace taut::description {
 
@@ -41,7 +41,7 @@ class NumberList : public KeyVisitor<NumberList<Number>, true> {
   void Add(const Key& key, double& field) {
     constexpr double kPi = 3.14159265358979323846;
     if (key.fixed) return;
-    const std::string unit = UnitOf(key.name);
+    const std::string unit = base::UnitAtEnd(key.name).Text();
     double least = key.bound.least, most = key.bound.most;
     if (unit == "rad" && std::isinf(least) && std::isinf(most)) least = -kPi, most = kPi;
     numbers.push_back({prefix_ + key.name, unit, &field, least, most});

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <map>
 
+#include "base/name_unit.h"
 #include "description/experiment_keys.h"
 #include "description/gait_keys.h"
 #include "description/model_keys.h"
 #include "description/read_keys.h"
 #include "description/study_keys.h"
-#include "description/units.h"
 
 namespace taut {
 namespace description {
@@ -138,7 +138,7 @@ std::string MappingReference(Definitions& definitions, bool replaces = false);
 
 template <class T>
 std::string TypeOf(const Key& key, Definitions& definitions) {
-  const std::string unit = UnitOf(key.name);
+  const std::string unit = base::UnitAtEnd(key.name).Text();
   const std::string of_number =
       Range(key.bound) + (unit.empty() ? "" : ", \"unit\": " + Json(unit));
   if constexpr (std::same_as<T, double>) {

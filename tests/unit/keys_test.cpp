@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "base/name_unit.h"
 #include "description/number_list.h"
 #include "description/read_keys.h"
-#include "description/units.h"
 #include "description/write_keys.h"
 
 namespace taut::description {
@@ -146,15 +146,15 @@ TEST_F(Tables, NumbersAreListedByName) {
 }
 
 TEST(Units, AreThoseOfTheName) {
-  EXPECT_EQ(UnitOf("damping_n_s_per_m"), "N s/m");
-  EXPECT_EQ(UnitOf("proportional_m_per_s_n"), "m/(s N)");
-  EXPECT_EQ(UnitOf("integral_m_per_s2_n"), "m/(s^2 N)");
-  EXPECT_EQ(UnitOf("weight_per_m"), "1/m");
-  EXPECT_EQ(UnitOf("phase_per_segment_rad"), "rad");
-  EXPECT_EQ(UnitOf("counts_per_turn"), "");
-  EXPECT_EQ(UnitOf("rate_hz"), "Hz");
-  EXPECT_EQ(UnitOf("friction"), "");
-  EXPECT_EQ(UnitOf("s"), "");
+  EXPECT_EQ(base::UnitAtEnd("damping_n_s_per_m").Text(), "N s/m");
+  EXPECT_EQ(base::UnitAtEnd("proportional_m_per_s_n").Text(), "m/(s N)");
+  EXPECT_EQ(base::UnitAtEnd("integral_m_per_s2_n").Text(), "m/(s^2 N)");
+  EXPECT_EQ(base::UnitAtEnd("weight_per_m").Text(), "1/m");
+  EXPECT_EQ(base::UnitAtEnd("phase_per_segment_rad").Text(), "rad");
+  EXPECT_EQ(base::UnitAtEnd("counts_per_turn").Text(), "");
+  EXPECT_EQ(base::UnitAtEnd("rate_hz").Text(), "Hz");
+  EXPECT_EQ(base::UnitAtEnd("friction").Text(), "");
+  EXPECT_EQ(base::UnitAtEnd("s").Text(), "");
 }
 
 }  // namespace
