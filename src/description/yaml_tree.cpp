@@ -248,7 +248,7 @@ ValuePtr ParseYaml(const std::string& text, const std::string& file, Diagnostics
     out.Error({file, error.mark.line + 1, error.mark.column + 1}, "not valid YAML: " + error.msg);
     return nullptr;
   } catch (const std::bad_alloc&) {
-    throw;  // says nothing of the file
+    throw;                                 // says nothing of the file
   } catch (const std::exception& error) {  // a slip of yaml-cpp
     out.Error({file, 0, 0}, std::string("cannot be read as YAML: ") + error.what());
     return nullptr;
