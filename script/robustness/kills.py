@@ -19,7 +19,7 @@ from robustness.scenarios import STUDY, STUDY_EXPERIMENT, Learn
 from validation.runs import ROOT, Problem, table
 
 STEP_S, ROW_S, SIMULATED_S = "1e-5", 0.005, 12
-EVALUATIONS = 600
+EVALUATIONS = 3000
 
 
 class OnTerminal:
@@ -80,11 +80,13 @@ def killed_runs(program, folder, count, rng, show):
     longest_s = time.monotonic() - began_s
     if right.returncode != 0:
         raise Problem(right.stderr)
-    for i in range(count):
+    killed = 0
+    while killed < count:
         run = OnTerminal(program.command, (*words, "--out", "killed"), folder, r"t = ([\d.]+) of")
-        lives = run.read_until(longest_s * rng.random() ** 2)  # more of the early ones
+        lives = run.read_until(0.9 * longest_s * rng.random() ** 2)  # more of the early ones
         killed_s = run.kill()
-        show(f"\r\033[Krun: {i + 1} of {count} killed")
+        killed += lives
+        show(f"\r\033[Krun: {killed} of {count} killed")
         if lives:
             yield (killed_s, *look_at_run(program, folder, run, killed_s))
         shutil.rmtree(folder / "killed", ignore_errors=True)
@@ -119,11 +121,13 @@ def killed_searches(program, folder, count, rng, show):
     if right.returncode != 0:
         raise Problem(right.stderr)
     wanted = Learn.rows(folder / "right")
-    for i in range(count):
+    killed = 0
+    while killed < count:
         search = OnTerminal(program.command, (*words, "--out", "killed"), folder, rf"(\d+) of {EVALUATIONS}")
-        lives = search.read_until(longest_s * rng.random() ** 2)
+        lives = search.read_until(0.9 * longest_s * rng.random() ** 2)
         killed_s = search.kill()
-        show(f"\r\033[Klearn: {i + 1} of {count} killed")
+        killed += lives
+        show(f"\r\033[Klearn: {killed} of {count} killed")
         if lives:
             yield (killed_s, *look_at_search(program, folder, (*words, "--quiet", "--out", "killed"), search,
                                              killed_s, wanted))

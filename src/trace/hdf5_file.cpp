@@ -211,7 +211,10 @@ bool IsComplete(double file_bytes, const Hdf5File& trace, std::string& error) {
 std::optional<Hdf5File> OpenHdf5Trace(const std::string& path, std::string& error) {
   QuietHdf5 quiet;
   Hdf5File trace;
-  trace.file = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  // Twice: a read that fails once makes no trace an unfinished one.
+  for (int attempt = 0; attempt < 2 && !trace.file; ++attempt) {
+    trace.file = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  }
   if (!trace.file) {  // as a reader beside the writer, which need not live any more
     const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_metadata_read_attempts(access, kReadAttempts);
