@@ -17,7 +17,9 @@ namespace {
 
 /// Whether the name is of something that can only be written to, not replaced.
 bool IsDevice(const std::string& path) {
-  if (path.starts_with("/dev/")) return true;  // /dev/stdout is a link, to a file perhaps
+  for (const char* open_already : {"/dev/stdout", "/dev/stderr", "/dev/fd/", "/proc/"}) {
+    if (path.starts_with(open_already)) return true;  // a link, to a file perhaps
+  }
   struct stat info {};
   return lstat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISLNK(info.st_mode) &&
          !S_ISDIR(info.st_mode);

@@ -120,6 +120,7 @@ template <class Num, class M>
                                               M lanes) noexcept {
   constexpr double kTiny = 1e-9, kNearlyClosed = 10 * kDisagreementMPerS;
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
+  const int rows = contacts[0].one_direction ? 2 : 3;
   auto several = M::Splat(false);
   for (int i = 1; i < count; ++i) {
     const Num cosine = Dot(contacts[i].links[0].lin[0], contacts[0].links[0].lin[0]);
@@ -147,7 +148,7 @@ template <class Num, class M>
   };
   Num row[6];
   for (int i = 0; i < count; ++i) {
-    for (int r = 0; r < (contacts[i].one_direction ? 2 : 3); ++r) {
+    for (int r = 0; r < rows; ++r) {
       row_of(contacts[i], r, row);
       for (int j = 0; j < 6; ++j) {
         const Num f = contacts[i].patch * row[j];
@@ -165,12 +166,10 @@ template <class Num, class M>
   };
   Num most = zero;
   for (int i = 0; i < count; ++i) {
-    const int rows = contacts[i].one_direction ? 2 : 3;
     for (int r = 0; r < rows; ++r) most = Max(Abs(missed(contacts[i], r)), most);
   }
   const Num give_in = Select(most < Num::Splat(kDisagreementMPerS), one, zero);
   for (int i = 0; i < count; ++i) {
-    const int rows = contacts[i].one_direction ? 2 : 3;
     for (int r = 0; r < rows; ++r) contacts[i].bias[r] -= give_in * missed(contacts[i], r);
   }
 }

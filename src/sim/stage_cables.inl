@@ -248,8 +248,8 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
   const W dl = MeanRate<kTwo>(work, row);
   row.stretch = stretch;
   const W way = h * (dl - rate);
+  step.room = Min(step.room, stretch * stretch - way * way);
   if (!damped) {
-    step.room = Min(step.room, stretch * stretch - way * way);
     row.damped = MaskOf<W>::Splat(false);
     return;
   }
@@ -262,7 +262,6 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
   if (any_stiff) row.share = Select(stiff, zero, row.share);
   row.upper = W::Splat(1e300);
   if (cable.clamped_damping) row.upper = Select(stiff, row.upper, row.spring + row.spring);
-  step.room = Min(step.room, stretch * stretch - way * way);
   RelaxCable<kTwo>(work, row, dl, step.push);
 }
 

@@ -66,8 +66,8 @@ void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
 /// Not where bodies touch others that move: biases that agree on a body contradict each other
 /// around a loop of bodies, and heaps are left unsolved by it.
 template <class W, class M>
-void FollowWorldArcs(const View& m, const Rows<W>& s, Scratch<W>& work, M tied,
-                     double step_s) noexcept {
+void FinishWorldBiases(const View& m, const Rows<W>& s, Scratch<W>& work, M tied,
+                       double step_s) noexcept {
   const W zero = W::Splat(0.0);
   const bool in_several_directions = m.plane_count > 1 || m.world_pair_count > 0;
   for (int b = 0; b < m.body_count; ++b) {
@@ -286,7 +286,7 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
   const auto dual = work.dual.capacity > 0 ? cabled & (touches == zero) : MaskOf<W>::Splat(false);
   MarkUnsolved(m, work, cabled & !dual);
   FitWorldBiases(m, work, cabled);
-  FollowWorldArcs(m, s, work, cabled, step_s);
+  FinishWorldBiases(m, s, work, cabled, step_s);
   SolveBodies(m, work, target, busy & !cabled, result);
   if (Any(dual)) {
     const auto failed =

@@ -103,6 +103,23 @@ TEST_F(Files, WhatIsNoFileIsWrittenTo) {
             "/dev/full: error: cannot be written: No space left on device\n");
 }
 
+TEST_F(Files, AStreamThatIsAFileIsWrittenTo) {
+  const int stream = open(Path("stream").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  Diagnostics out;
+  for (const char* folder : {"/dev/fd/", "/proc/self/fd/"}) {
+    EXPECT_TRUE(WriteWholeFile(folder + std::to_string(stream), "a", out)) << out.Format();
+  }
+  close(stream);
+  EXPECT_EQ(ReadFile(Path("stream")), "aa");
+}
+
+TEST_F(Files, AFolderInMemoryIsOneAsAnyOther) {
+  std::string folder = "/dev/shm/taut_files_XXXXXX";
+  if (mkdtemp(folder.data()) == nullptr) GTEST_SKIP() << "this machine has no /dev/shm";
+  ExpectWritten(folder + "/a", "new");
+  fs::remove_all(folder);
+}
+
 TEST_F(Files, AFolderHasOneWriter) {
   Diagnostics out;
   auto first = FolderLock::Take(Path("a/b"), out);

@@ -29,6 +29,11 @@ struct Target {
   double goal() const noexcept { return kGoal * tolerance; }
 };
 
+/// Whether a residual has hardly moved from one step to the next.
+inline bool Stays(double now, double before, double bound) noexcept {
+  return now - before < bound && before - now < bound;
+}
+
 /// A body of an island, or something smaller. All have room for six velocities (v, w); of those
 /// beyond its size, and of links to them, an unknown has zeros.
 ///

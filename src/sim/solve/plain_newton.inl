@@ -92,8 +92,8 @@ bool NewtonStep(Island<Num, P>& island, SolverWork& work) noexcept {
 }
 
 /// Leaves the best impulses that it came by, made admissible, in m.l; m.v and m.u belong to it
-/// before and after. `give_in`: what laws may give in by
-/// [m/s]; then it goes on from m.start (deadlock.inl). Returns the residual [m/s].
+/// before and after. `give_in`: what laws may give in by [m/s]; then it goes on from m.start
+/// (deadlock.inl). Returns the residual [m/s].
 template <class Num, class P>
 double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work,
                    double give_in = 0) noexcept {
@@ -114,8 +114,7 @@ double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work,
     residual = island.Residual(m.u, m.l)[0];
     if (residual <= target.tolerance && residual > Target::kPays * before) break;
     if (!(residual - residual == 0)) break;
-    const double change = residual - before;
-    stayed = change < kStays * before && -change < kStays * before ? stayed + 1 : 0;
+    stayed = Stays(residual, before, kStays * before) ? stayed + 1 : 0;
     if (stayed > 1 && residual < kDisagreementMPerS && deadlocks < kMaxDeadlocks) {
       const Deadlock found = DeadlockBreaker<Num, P>(island).Break(give_in);
       if (found != Deadlock::kNone) {

@@ -38,8 +38,7 @@ class Proximal {
       const double before = residual;
       residual = island_.Judge();
       // Biases that contradict each other: deadlock.inl
-      const double change = Abs(Num::Splat(residual - before))[0];
-      stayed = ended_well && change < kStays * residual ? stayed + 1 : 0;
+      stayed = ended_well && Stays(residual, before, kStays * residual) ? stayed + 1 : 0;
       if (stayed == kMaxStays && best < kDisagreementMPerS) break;
       KeepIfBest(residual, best);
       carried = ended_well && residual - residual == 0;
