@@ -90,10 +90,17 @@ struct TableGait {
   SourceRef at;
 };
 
+/// What a gait's signals are, and with that the unit of its amplitudes, offsets and tables.
+enum class GaitDrives {
+  kVelocity,    ///< V0 of impedance control [m/s].
+  kRestLength,  ///< What is added to rest lengths [m].
+};
+
 /// A gait. Exactly one of the three is present.
 struct GaitSpec {
   std::string name;
   std::string description;
+  GaitDrives drives = GaitDrives::kVelocity;
   std::optional<SineGait> sine;
   std::optional<CpgGait> cpg;
   std::optional<TableGait> table;

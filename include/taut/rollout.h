@@ -18,20 +18,6 @@
 
 namespace taut {
 
-/// What may differ between worlds of one experiment: numbers of its controllers (not their clocks,
-/// nor which cables they drive), factors on the model, the start, the seed.
-struct RolloutWorld {
-  std::vector<ControllerSpec> controllers;
-  std::vector<ScaleSpec> scales;
-  StartNoise start_noise;
-  std::uint64_t seed = 0;
-};
-
-/// Threads: any number may call these two at once.
-RolloutWorld WorldOf(const ExperimentSpec& experiment);
-/// The experiment that runs this world alone.
-ExperimentSpec ExperimentOf(const ExperimentSpec& base, const RolloutWorld& world);
-
 struct RolloutResult {
   bool done = false;   ///< False if the evaluation was stopped before its end.
   double score = 0;    ///< Measure less penalties; NaN if the world failed.

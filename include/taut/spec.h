@@ -99,20 +99,32 @@ struct PositionProgram {
   std::vector<std::pair<double, double>> rest_length_m;  ///< (time_s, rest_length_m), times rising.
 };
 
-/// A gait as the velocity input V0 of impedance control, on a clock of its own: V0 holds from tick
-/// to tick.
-struct VelocityInputSpec {
+/// From a time on another gait plays.
+struct GaitChange {
+  double at_s = 0.0;
+  int gait = 0;  ///< 0: `gait`; i: `others[i - 1]`.
+};
+
+/// A gait as a controller's input, on a clock of its own: what it says holds from tick to tick.
+struct GaitInputSpec {
   ClockSpec clock{0.01, 0.0};
-  GaitSpec gait;
+  GaitSpec gait;                    ///< The one that plays first.
+  std::vector<GaitSpec> others;     ///< That may follow: for the same cables, the same quantity.
+  std::vector<GaitChange> changes;  ///< Times rising.
+  /// How long a change takes where the gaits have no oscillators in common that lead from one to
+  /// the other: in that time the old gait's share falls smoothly from 1 to 0.
+  double blend_s = 0.5;
 };
 
 struct ControllerSpec {
   std::string name;
   ClockSpec clock;
-  std::optional<ImpedanceSpec> impedance;  ///< Exactly one of these is present.
+  std::optional<ImpedanceSpec> impedance;  ///< This, or what drives rest lengths.
   std::vector<PositionProgram> position;
   /// With `impedance` only: added to each cable's velocity offset.
-  std::optional<VelocityInputSpec> velocity_input;
+  std::optional<GaitInputSpec> velocity_input;
+  /// Added to the cables' programs; to a cable's rest length at the start where it has none.
+  std::optional<GaitInputSpec> rest_length_input;
 };
 
 /// A force on a node against time, piecewise linear, zero before the first and after the last
@@ -235,6 +247,21 @@ struct ExperimentSpec {
   std::vector<std::string> files;            ///< Every file that was read, the experiment first.
   std::uint64_t input_hash = 0;  ///< FNV-1a of the bytes of `files` and of the overrides.
 };
+
+/// What may differ between worlds of one experiment: numbers of its controllers (not their clocks,
+/// nor which cables they drive), factors on the model, the start, the seed.
+struct RolloutWorld {
+  std::vector<ControllerSpec> controllers;
+  std::vector<ScaleSpec> scales;
+  StartNoise start_noise;
+  std::uint64_t seed = 0;
+  /// For controllers that a program brings (taut/plant.h): what they make of it is theirs.
+  std::vector<double> numbers;
+};
+
+RolloutWorld WorldOf(const ExperimentSpec& experiment);
+/// The experiment that runs this world alone.
+ExperimentSpec ExperimentOf(const ExperimentSpec& base, const RolloutWorld& world);
 
 /// Reads an experiment file and the model it names, or what `ResolvedYaml` wrote. Returns nothing
 /// if there was any error.

@@ -113,7 +113,7 @@ void Keys(Io& io, Like<PositionText> auto& p) {
   io("programs", p.programs, kNeeded, "Which cables do what. No cable may be matched twice.");
 }
 
-template <class Io, Either<VelocityInputSpec, VelocityInputText> Input>
+template <class Io, Either<GaitInputSpec, GaitInputText> Input>
 void Keys(Io& io, Input& v) {
   io.Map("velocity_input", "controller.velocity_input",
          "A gait that is added to the V0 of `impedance`, on a clock of its own: slower oscillators "

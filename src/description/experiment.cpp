@@ -115,4 +115,17 @@ std::optional<ExperimentSpec> LoadExperiment(const std::string& path, const Over
   return experiment;
 }
 
+RolloutWorld WorldOf(const ExperimentSpec& experiment) {
+  return {experiment.controllers, experiment.scales, experiment.start_noise, experiment.seed, {}};
+}
+
+ExperimentSpec ExperimentOf(const ExperimentSpec& base, const RolloutWorld& world) {
+  ExperimentSpec experiment = base;
+  experiment.controllers = world.controllers;
+  experiment.scales = world.scales;
+  experiment.start_noise = world.start_noise;
+  experiment.seed = world.seed;
+  return experiment;
+}
+
 }  // namespace taut

@@ -292,7 +292,7 @@ std::vector<ControllerSpec> ToControllers(std::vector<ControllerText>& texts,
       controller.position = ToPrograms(*text.position_text, robot, scope);
     }
     if (text.velocity_input_text) {
-      VelocityInputText& input = *text.velocity_input_text;
+      GaitInputText& input = *text.velocity_input_text;
       const auto path = FindFile(input.gait_file.value, "velocity_input.gait", scope);
       auto gait = path ? LoadGait(*path, scope.out) : std::nullopt;
       if (gait) {

@@ -84,14 +84,14 @@ struct ProgramText {
 struct PositionText {
   std::vector<ProgramText> programs;
 };
-struct VelocityInputText : VelocityInputSpec {
+struct GaitInputText : GaitInputSpec {
   Raw<FileForm> gait_file;
   SourceRef at;
 };
 struct ControllerText : ControllerSpec {
   std::optional<ImpedanceText> impedance_text;
   std::optional<PositionText> position_text;
-  std::optional<VelocityInputText> velocity_input_text;
+  std::optional<GaitInputText> velocity_input_text;
   SourceRef name_at;  ///< Of its key.
 };
 

@@ -106,7 +106,7 @@ void Read(const Value& value, const std::string& what, const Scope& scope, T& ou
 /// Its cables must be there, and its numbers what a gait file's would have to be.
 void CheckGait(const ControllerSpec& controller, const RobotSpec& robot, const SourceRef& at,
                Diagnostics& out) {
-  const VelocityInputSpec& input = *controller.velocity_input;
+  const GaitInputSpec& input = *controller.velocity_input;
   if (!(input.clock.period_s > 0.0)) out.Error(at, "velocity_input.period_s must be positive");
   const GaitSpec& gait = input.gait;
   if (gait.sine.has_value() + gait.cpg.has_value() + gait.table.has_value() != 1) {

@@ -34,7 +34,7 @@ LaneController::LaneController(const std::vector<const ControllerSpec*>& lanes,
     memory->resize(tension_offset_n_.size());
   }
   if (lanes[0]->velocity_input) {
-    std::vector<const VelocityInputSpec*> inputs;
+    std::vector<const GaitInputSpec*> inputs;
     for (const ControllerSpec* lane : lanes) inputs.push_back(&*lane->velocity_input);
     gait_.emplace(inputs, robot);
     for (const int cable : gait_->cables()) {

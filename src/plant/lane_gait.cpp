@@ -6,12 +6,12 @@
 
 namespace taut::plant {
 
-LaneGait::LaneGait(const std::vector<const VelocityInputSpec*>& lanes, const RobotSpec& robot)
+LaneGait::LaneGait(const std::vector<const GaitInputSpec*>& lanes, const RobotSpec& robot)
     : kernel_(LaneKernelOf(static_cast<int>(lanes.size()))),
       clock_{lanes[0]->clock.period_s, lanes[0]->clock.phase_s} {
   Diagnostics heard_before;
   std::vector<ResolvedGait> resolved;
-  for (const VelocityInputSpec* lane : lanes) {
+  for (const GaitInputSpec* lane : lanes) {
     resolved.push_back(ResolveGait(lane->gait, robot, heard_before).value_or(ResolvedGait{}));
   }
   cables_ = resolved[0].cables;
@@ -34,14 +34,14 @@ void LaneGait::AddSine(const std::vector<ResolvedGait>& lanes) {
   }
 }
 
-void LaneGait::AddCpg(const std::vector<const VelocityInputSpec*>& specs,
+void LaneGait::AddCpg(const std::vector<const GaitInputSpec*>& specs,
                       const std::vector<ResolvedGait>& lanes) {
   const std::vector<CouplingGraph::Coupling>& links = lanes[0].graph.couplings;
   std::vector<double> frequency, amplitude, convergence, weight, phase;
   std::vector<unsigned short> to, from;
   for (std::size_t i = 0; i < cables_.size(); ++i) {
     sign_.push_back(lanes[0].sign[i]);
-    for (const VelocityInputSpec* spec : specs) {
+    for (const GaitInputSpec* spec : specs) {
       const CpgGait& cpg = *spec->gait.cpg;
       frequency.push_back(cpg.frequency_hz);
       amplitude.push_back(cpg.amplitude_m_per_s);
@@ -56,7 +56,7 @@ void LaneGait::AddCpg(const std::vector<const VelocityInputSpec*>& specs,
   for (const CouplingGraph::Coupling& link : links) {
     to.push_back(static_cast<unsigned short>(link.to));
     from.push_back(static_cast<unsigned short>(link.from));
-    for (const VelocityInputSpec* spec : specs) {
+    for (const GaitInputSpec* spec : specs) {
       const CouplingGroup& group = spec->gait.cpg->groups[static_cast<std::size_t>(link.group)];
       weight.push_back(group.weight_per_m);
       phase.push_back(control::WrapTurns(group.phase_rad * control::kTurnsPerRad));

@@ -18,7 +18,7 @@ namespace taut::plant {
 class LaneGait {
  public:
   /// One velocity input a lane. The robot is where the gait's cables are.
-  LaneGait(const std::vector<const VelocityInputSpec*>& lanes, const RobotSpec& robot);
+  LaneGait(const std::vector<const GaitInputSpec*>& lanes, const RobotSpec& robot);
 
   const std::vector<int>& cables() const noexcept { return cables_; }  ///< Per output.
   double next_tick_s() const noexcept { return control::TickTime(clock_, tick_); }
@@ -34,7 +34,7 @@ class LaneGait {
     void operator()(void* p) const noexcept { std::free(p); }
   };
   void AddSine(const std::vector<ResolvedGait>& lanes);
-  void AddCpg(const std::vector<const VelocityInputSpec*>& specs,
+  void AddCpg(const std::vector<const GaitInputSpec*>& specs,
               const std::vector<ResolvedGait>& lanes);
 
   const LaneKernel& kernel_;

@@ -131,19 +131,6 @@ class LaneRollouts final : public Rollouts {
 
 }  // namespace
 
-RolloutWorld WorldOf(const ExperimentSpec& experiment) {
-  return {experiment.controllers, experiment.scales, experiment.start_noise, experiment.seed};
-}
-
-ExperimentSpec ExperimentOf(const ExperimentSpec& base, const RolloutWorld& world) {
-  ExperimentSpec experiment = base;
-  experiment.controllers = world.controllers;
-  experiment.scales = world.scales;
-  experiment.start_noise = world.start_noise;
-  experiment.seed = world.seed;
-  return experiment;
-}
-
 std::unique_ptr<Rollouts> Rollouts::Create(const ExperimentSpec& experiment,
                                            const ObjectiveSpec& objective,
                                            const RolloutOptions& options, Diagnostics& out) {

@@ -324,7 +324,7 @@ TEST_F(VelocityInput, TheResolvedExperimentHoldsTheGaitItself) {
     std::filesystem::remove(Path("g.yaml"));
     const ExperimentSpec back = Load("resolved.yaml");
     ASSERT_TRUE(back.controllers.at(0).velocity_input);
-    const VelocityInputSpec& input = *back.controllers[0].velocity_input;
+    const GaitInputSpec& input = *back.controllers[0].velocity_input;
     EXPECT_EQ(input.clock.period_s, 0.02);
     EXPECT_EQ(input.clock.phase_s, 1.0);
     EXPECT_EQ(GaitYaml(input.gait), GaitYaml(experiment.controllers[0].velocity_input->gait));

@@ -192,7 +192,7 @@ TEST(GaitPlayer, TheGaitActsBeforeTheLawThatItFeeds) {
   spec.name = "c";
   spec.impedance.emplace();
   spec.impedance->cables.push_back({cable, 10.0, 0.2, 0.0, 100.0, 0.01});
-  spec.velocity_input = VelocityInputSpec{{0.25, 0.0}, OneTable(false)};
+  spec.velocity_input = GaitInputSpec{{0.25, 0.0}, OneTable(false), {}, {}};
   plant::Controller controller(spec, robot);
   const std::size_t count = robot.def.cables.size();
   std::vector<CableState> readings(count);

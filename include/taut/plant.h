@@ -1,0 +1,172 @@
+/// The wall between what controls and what is controlled: an observation in, a command out, a
+/// clock. Who controls, records, learns or shows sees a plant and cannot tell whether a simulated
+/// world, the worlds that share a register, a log or a robot is behind it. A plant may be several
+/// robots alike, side by side: its lanes. One robot is one lane.
+///
+/// Rows hold cable c of lane j at [c * lanes + j].
+///
+/// Threads: whoever moves a plant on has it, its controllers and its sensors for himself. Plants do
+/// not know of each other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "taut/batch.h"
+#include "taut/cable_readings.h"
+#include "taut/spec.h"
+
+namespace taut {
+
+/// Some lanes: lane j is bit j.
+using Lanes = std::uint32_t;
+
+constexpr bool Has(Lanes lanes, int lane) noexcept { return (lanes >> lane & 1u) != 0; }
+constexpr Lanes AllLanes(int count) noexcept { return static_cast<Lanes>((1ull << count) - 1); }
+
+// --- what is seen -------------------------------------------------------------------------------
+
+/// What is wrong with a cable's sensors or its actuator. Bits; 0 is good.
+enum FaultBits : std::uint32_t {
+  kFaultNone = 0,
+  kFaultNoReading = 1u << 0,  ///< No reading came: the last one stands there.
+  kFaultSensor = 1u << 1,     ///< A reading that cannot be true.
+  kFaultActuator = 1u << 2,   ///< The actuator does not do what it was told.
+};
+
+/// Where bodies are, for those who know: a simulation, a log that has them; hardly a robot.
+class Bodies {
+ public:
+  virtual ~Bodies() = default;
+  virtual BodyState Body(int lane, int body) const = 0;
+  virtual Vec3 NodePosition(int lane, int node) const = 0;  ///< [m], in W.
+  virtual Vec3 NodeVelocity(int lane, int node) const = 0;  ///< [m/s], in W.
+};
+
+/// What is known of a plant at a moment. Points into the plant.
+struct Observation {
+  int lanes = 1;
+  const double* time_s = nullptr;  ///< Of each lane's clock.
+  ReadingRows cables;
+  const std::uint32_t* faults = nullptr;  ///< `FaultBits`, a row; null: nobody looks for any.
+  const Bodies* bodies = nullptr;         ///< Null: nobody knows.
+
+  CableState Cable(int cable, int lane = 0) const {
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(cable) * lanes + lane;
+    return MapReadings([at](const double* row) { return row[at]; }, cables);
+  }
+};
+
+// --- what is commanded --------------------------------------------------------------------------
+
+/// What a cable's actuator is to do.
+enum class CommandMode : unsigned char {
+  kRestLength,  ///< Go to `rest_length_m`.
+  kTension,     ///< Bring the tension to `set_point_n`, if it has a law of its own for that, as a
+                ///< board has; else go to `rest_length_m`.
+  kHold,        ///< Stay where it is.
+  kOff,         ///< No power. An actuator that nothing can turn from outside stays where it is.
+};
+
+/// What controllers say to the plant and to each other. Held until changed. Rows of the plant.
+struct Commands {
+  int lanes = 1;
+  double* rest_length_m = nullptr;           ///< Set points of the rest lengths.
+  double* set_point_n = nullptr;             ///< Of the tension, where a law has one; else 0.
+  double* velocity_input_m_per_s = nullptr;  ///< V0 of that law, a gait's part included.
+  double* signal = nullptr;     ///< What a gait says: a velocity [m/s] or a length [m]; else 0.
+  CommandMode* mode = nullptr;  ///< At first `kRestLength`.
+  /// Per lane: which of their gaits controllers play (`GaitInputSpec`); -1: as the experiment has
+  /// it.
+  int* gait = nullptr;
+};
+
+// --- what is controlled -------------------------------------------------------------------------
+
+/// A simulation, and what nobody else knows or can do.
+class World : public Bodies {
+ public:
+  virtual void SetNodeForce(int lane, int node, const Vec3& force_n) = 0;  ///< As `Batch` has it.
+  virtual double BodyMass(int lane, int body) const = 0;                   ///< [kg]
+  virtual Energy TotalEnergy(int lane) const = 0;
+  virtual std::vector<ContactState> Contacts(int lane) const = 0;
+  virtual WorldStatus Status(int lane) const = 0;
+  virtual std::uint64_t Hash(int lane) const = 0;
+};
+
+class Plant {
+ public:
+  virtual ~Plant() = default;
+
+  /// As it is now; valid until `Advance`.
+  virtual const Observation& Observe() = 0;
+  virtual Commands& commands() = 0;
+
+  /// Moves every lane's clock on by `step_s[lane]`, to `to_s[lane]` (which is more exact than a
+  /// sum), under the commands as they are. A simulation computes, a robot waits, a log turns pages.
+  /// A lane whose step is 0 stands still.
+  virtual void Advance(const double* step_s, const double* to_s) = 0;
+
+  /// False: this lane goes on no more. Its state is not finite, its log is over, nobody answers.
+  virtual bool Goes(int lane) const = 0;
+
+  /// Null where the plant is no simulation.
+  virtual World* world() noexcept { return nullptr; }
+};
+
+/// A simulated plant: the lanes of a batch of one group, whose clocks all start at 0. The batch
+/// outlives it.
+std::unique_ptr<Plant> PlantOf(Batch& batch);
+
+// --- what a program may bring -------------------------------------------------------------------
+
+/// Who acts in which lanes now.
+struct Tick {
+  Lanes due = 0;
+  /// Per lane, how many ticks it had before since its start. 0: the first, what it remembers of
+  /// the lane is of somebody else.
+  const std::int64_t* number = nullptr;
+};
+
+/// What controllers and sensors are made for.
+struct ControlSetup {
+  const ExperimentSpec& experiment;
+  std::span<const RolloutWorld* const> lanes;  ///< One variant of the experiment a lane.
+};
+
+/// A control law. It acts at the ticks of its own clock, which the physics step does not change,
+/// and sees all lanes at once; what it writes for lanes that are not due is not kept from the
+/// plant, so it writes to `tick.due` only.
+class Controller {
+ public:
+  virtual ~Controller() = default;
+  virtual ClockSpec clock() const = 0;
+  virtual void Act(const Tick& tick, const Observation& seen, Commands& commands) = 0;
+  /// A lane begins anew, as this variant. Its next tick is its first.
+  virtual void Restart(int lane, const RolloutWorld& world) { (void)lane, (void)world; }
+};
+
+/// What stands between a plant and its controllers. Samples at the ticks of its clock.
+class SensorModel {
+ public:
+  virtual ~SensorModel() = default;
+  virtual ClockSpec clock() const = 0;
+  virtual void Sample(const Tick& tick, const Observation& exact) = 0;
+  /// What the controllers see; valid until the next sample.
+  virtual const Observation& seen() const = 0;
+  virtual void Restart(int lane, const RolloutWorld& world) { (void)lane, (void)world; }
+};
+
+/// Controllers that act after the experiment's own, in this order, and may overrule them; sensors
+/// that see what the experiment's sensors show. Makers are called once for every plant, from the
+/// thread that runs it.
+struct Brought {
+  std::vector<std::function<std::unique_ptr<Controller>(const ControlSetup&)>> controllers;
+  std::function<std::unique_ptr<SensorModel>(const ControlSetup&)> sensors;
+};
+
+}  // namespace taut
