@@ -22,8 +22,8 @@ double Since(Clock::time_point start) {
 }
 
 /// What each cable was commanded in each step.
-std::vector<std::vector<double>> Commands(const ExperimentSpec& experiment, int steps,
-                                          Diagnostics& out) {
+std::vector<std::vector<double>> CommandsOf(const ExperimentSpec& experiment, int steps,
+                                            Diagnostics& out) {
   std::vector<std::vector<double>> commands;
   const auto live = LiveRun::Start(experiment, out);
   if (!live) return commands;
@@ -70,7 +70,7 @@ int Main(int argc, char** argv) {
   experiment->duration_s = argc > 2 ? std::atof(argv[2]) : 20.0;
   const double step_s = experiment->step_s;
   const auto steps = static_cast<int>(experiment->duration_s / step_s + 0.5);
-  const auto commands = Commands(*experiment, steps, out);
+  const auto commands = CommandsOf(*experiment, steps, out);
   const auto rollouts = Rollouts::Create(*experiment, {}, {}, out);
   const int worlds = rollouts->lanes();
   const std::vector<RolloutWorld> same(static_cast<std::size_t>(worlds), WorldOf(*experiment));

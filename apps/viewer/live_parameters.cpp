@@ -18,7 +18,7 @@ std::vector<LiveParameter> Parameters(const LiveRun& run, const ExperimentSpec& 
   std::vector<LiveParameter> all;
   const auto now = [&](std::string name, const char* unit, Parameter kind, int index, double min,
                        double max) {
-    const double value = run.batch().GetParameter(0, kind, index);
+    const double value = run.GetParameter(kind, index);
     all.push_back({std::move(name), unit, value, min, max, false, kind, index});
   };
   const ModelDef& def = experiment.robot.def;

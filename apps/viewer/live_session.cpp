@@ -315,28 +315,30 @@ void LiveSession::LookAt(std::int64_t row) {
 }
 
 void LiveSession::Fill(Frame& frame) const {
-  const Batch& batch = run_->batch();
+  const World& world = *run_->world();
+  const Observation& now = run_->Observe();
   const ModelDef& def = experiment_.robot.def;
   frame.time_s = frame.now_s = run_->time_s();
   frame.real_time_factor = paused_ ? 0 : real_time_factor_;
   frame.speed = speed_;
   frame.paused = paused_;
   frame.run = run_number_;
-  frame.energy = batch.TotalEnergy(0);
+  frame.energy = world.TotalEnergy(0);
   frame.bodies.clear();
   for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) {
-    const BodyState body = batch.Body(0, b);
+    const BodyState body = world.Body(0, b);
     frame.bodies.push_back({body.position_m, body.orientation});
   }
   frame.cables.clear();
   for (int c = 0; c < static_cast<int>(def.cables.size()); ++c) {
-    const CableState cable = batch.Cable(0, c);
+    const CableState cable = now.Cable(c);
     const auto place = static_cast<std::size_t>(c);
-    frame.cables.push_back({cable.tension_n, cable.length_m, cable.rest_length_m,
-                            has_set_point_[place] ? run_->set_point_n()[place] : Frame::kUnknown});
+    frame.cables.push_back(
+        {cable.tension_n, cable.length_m, cable.rest_length_m,
+         has_set_point_[place] ? run_->commands().set_point_n[place] : Frame::kUnknown});
   }
   frame.contacts.clear();
-  for (const ContactState& contact : batch.Contacts(0)) {
+  for (const ContactState& contact : world.Contacts(0)) {
     frame.contacts.push_back({contact.point_m, contact.force_n});
   }
   frame.contact_count = static_cast<double>(frame.contacts.size());

@@ -151,6 +151,10 @@ class Batch {
   /// `SetRestLengthTarget` for each would keep the other threads waiting.
   void Step(double step_s, int count, std::span<const double> rest_length_targets_m) noexcept;
 
+  /// One step of the worlds that go (`goes[world]` is not 0); the others stand still, to the bit.
+  /// Costs what a step of all costs, and allocates.
+  void StepSome(double step_s, std::span<const std::uint8_t> goes);
+
   /// Simulated time of a world [s].
   double Time(int world) const noexcept;
 

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "taut/batch.h"
-#include "taut/spec.h"
+#include "taut/plant.h"
 #include "taut/trace.h"
 
 namespace taut {
@@ -39,8 +38,10 @@ class LiveRun {
  public:
   /// Brings the experiment to its start. Nothing and diagnostics as from `RunExperiment`, or if
   /// `go_on`, which is asked again and again, says no before the start is found.
+  /// `brought`: controllers and sensors that act beside the experiment's.
   static std::unique_ptr<LiveRun> Start(const ExperimentSpec& experiment, Diagnostics& out,
-                                        const std::function<bool()>& go_on = {});
+                                        const std::function<bool()>& go_on = {},
+                                        const Brought& brought = {});
   virtual ~LiveRun() = default;
 
   /// One step of the integrator; the experiment's end is no limit. False, and nothing done, once
@@ -49,8 +50,11 @@ class LiveRun {
 
   virtual double time_s() const = 0;
   virtual const ExperimentSpec& experiment() const = 0;
-  virtual const Batch& batch() const = 0;                      ///< Has one world, 0.
-  virtual const std::vector<double>& set_point_n() const = 0;  ///< Per cable.
+  /// Of one lane, 0. Valid until the next step.
+  virtual const Observation& Observe() const = 0;
+  virtual const Commands& commands() const = 0;
+  /// Null where no simulation is behind it.
+  virtual const World* world() const = 0;
   /// What pushed and dragged in the last step: the experiment's events and hands. Zeros left out.
   virtual std::vector<OutsideForce> OutsideForces() const = 0;
 
@@ -63,6 +67,7 @@ class LiveRun {
   /// A constant force from now on, for `duration_s`.
   virtual void Push(const OutsideForce& push, double duration_s) = 0;
   virtual void SetParameter(Parameter parameter, int index, double value) = 0;
+  virtual double GetParameter(Parameter parameter, int index) const = 0;
   /// Cables with an actuator.
   virtual std::vector<LiveControl> Controls() const = 0;
   /// Takes the control's gains, or its rest length if it has none. False if the cable has no such

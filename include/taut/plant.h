@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -111,6 +112,10 @@ class Plant {
   /// A lane whose step is 0 stands still.
   virtual void Advance(const double* step_s, const double* to_s) = 0;
 
+  /// The lane's clock is at 0 again, its commands are those of a start. (Its state is who knows
+  /// where: whoever calls has put it there.)
+  virtual void Restart(int lane) = 0;
+
   /// False: this lane goes on no more. Its state is not finite, its log is over, nobody answers.
   virtual bool Goes(int lane) const = 0;
 
@@ -148,6 +153,15 @@ class Controller {
   virtual void Act(const Tick& tick, const Observation& seen, Commands& commands) = 0;
   /// A lane begins anew, as this variant. Its next tick is its first.
   virtual void Restart(int lane, const RolloutWorld& world) { (void)lane, (void)world; }
+
+  // --- what a person may change while it runs, in lane 0; a law that has none of it leaves it ---
+  /// The gains of a cable, if it has such.
+  virtual std::optional<ImpedanceGains> Gains(int cable) const { return (void)cable, std::nullopt; }
+  virtual bool SetGains(const ImpedanceGains& gains) { return (void)gains, false; }
+  /// Holds a cable at a rest length from the next tick on, whatever its program said.
+  virtual bool Hold(int cable, double rest_length_m) {
+    return (void)cable, (void)rest_length_m, false;
+  }
 };
 
 /// What stands between a plant and its controllers. Samples at the ticks of its clock.

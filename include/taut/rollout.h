@@ -12,9 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "taut/batch.h"
 #include "taut/objective.h"
-#include "taut/spec.h"
+#include "taut/plant.h"
 
 namespace taut {
 
@@ -31,10 +30,28 @@ struct RolloutResult {
   std::uint64_t state_hash = 0;  ///< Of the world at the end.
 };
 
+/// A measure of one's own for all lanes of a plant.
+///
+/// Threads: a score belongs to one thread; several scores are at work at once.
+class Score {
+ public:
+  virtual ~Score() = default;
+  /// At the start, where steps are 0, and after every step, of `step_s[lane]`.
+  virtual void Take(const Observation& now, const Commands& commands, const World& world,
+                    const double* step_s) = 0;
+  /// What a lane came to: more is better. Not finite: it failed.
+  virtual double Result(int lane) const = 0;
+};
+
 struct RolloutOptions {
   int threads = 1;  ///< 0: one a core.
   std::optional<Simd> simd;
   const std::atomic<bool>* stop = nullptr;  ///< Once true, unfinished worlds are given up.
+  /// Controllers and sensors that act beside the experiment's. Makers are called from any thread,
+  /// several at once.
+  Brought brought;
+  /// In place of the objective's measure; penalties stay. Called from any thread, several at once.
+  std::function<std::unique_ptr<Score>(const ControlSetup&)> score;
 };
 
 /// Threads: it has its own. Callers' threads: one at a time in `Run`, which calls `Done` from its

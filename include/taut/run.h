@@ -11,8 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "taut/batch.h"
-#include "taut/spec.h"
+#include "taut/plant.h"
 #include "taut/trace.h"
 
 namespace taut {
@@ -81,6 +80,8 @@ struct RunOptions {
   std::function<bool(Diagnostics&)> begin;
   /// Get every recorded row; made by the caller, finished by the run.
   std::vector<TraceWriter*> traces;
+  /// Controllers and sensors that act beside the experiment's.
+  Brought brought;
 };
 
 /// The channels that a run of this experiment records, in order.

@@ -4,7 +4,8 @@
 
 #include <stddef.h>
 
-#include "plant/impedance_step.h"
+#include "taut/cable_readings.h"
+#include "taut/control/impedance_tick.h"
 
 namespace taut::plant {
 
@@ -14,8 +15,14 @@ struct ImpedanceRows {
   const int* cable = nullptr;  ///< Per driven cable: its index.
   const double *tension_offset_n = nullptr, *length_offset_m = nullptr,
                *position_gain_n_per_m = nullptr, *velocity_gain_n_s_per_m = nullptr,
-               *velocity_input_m_per_s = nullptr;
+               *velocity_offset_m_per_s = nullptr;
   double *error_before = nullptr, *integral = nullptr, *length_before_m = nullptr;  ///< Memory.
+};
+
+/// What a tick of them reads and writes of the plant's commands, per cable.
+struct ImpedanceOut {
+  const double* signal = nullptr;  ///< What a gait adds to the velocity offset.
+  double *velocity_input_m_per_s = nullptr, *rest_length_m = nullptr, *set_point_n = nullptr;
 };
 
 /// What is measured along the way, a number a lane.
@@ -45,17 +52,19 @@ struct CpgRows {
 
 struct LaneKernel {
   int lanes;
-  /// A tick of impedance control: writes target_m and set_point_n (per cable).
-  void (*impedance)(const ImpedanceLaw&, const ImpedanceRows&, const ReadingRows&, double* target_m,
-                    double* set_point_n);
-  /// After a step of `step_s`. `motor[c]`: 1 if the cable has one. `driven`: cables with set
+  /// A tick of impedance control.
+  void (*impedance)(const control::ImpedanceLaw&, const ImpedanceRows&, const ReadingRows&,
+                    const ImpedanceOut&);
+  /// After a step, of `step_s[lane]`. `motor[c]`: 1 if the cable has one. `driven`: cables with set
   /// points.
   void (*measure)(const ReadingRows&, int cables, const double* motor, const double* set_point_n,
-                  const int* driven, int driven_count, double step_s, const MeasureRows&);
-  void (*sine)(const SineRows&, double time_s, double* velocity_m_per_s);
+                  const int* driven, int driven_count, const double* step_s, const MeasureRows&);
+  void (*sine)(const SineRows&, const double* time_s, double* velocity_m_per_s);
   /// Memory for a network [bytes], aligned to 64.
   size_t (*cpg_bytes)(int count, int coupling_count);
   void (*cpg_start)(const CpgRows&, void* memory);
+  /// Where the oscillators' states are: three rows each.
+  double* (*cpg_states)(int count, int coupling_count, void* memory);
   /// `steps` of `step_s`, then the velocities times `sign` (per oscillator, all lanes). `feedback`
   /// (rad/s) may be null.
   void (*cpg_tick)(int count, int coupling_count, void* memory, const double* feedback,

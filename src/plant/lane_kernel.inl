@@ -21,8 +21,8 @@ TAUT_INLINE void Store(double* row, int i, W x) noexcept {
 
 /// What does not differ between cables is known to the compiler: `by_pid`, `differenced`.
 template <class W, bool kByPid, bool kDifferenced>
-void ActCables(ImpedanceLaw law, const ImpedanceRows rows, const ReadingRows sensed,
-               double* target_m, double* set_point_n) noexcept {
+void ActCables(control::ImpedanceLaw law, const ImpedanceRows rows, const ReadingRows sensed,
+               const ImpedanceOut out) noexcept {
   law.by_pid = kByPid;
   law.differenced_rate = kDifferenced;
   for (int i = 0; i < rows.count; ++i) {
@@ -31,38 +31,40 @@ void ActCables(ImpedanceLaw law, const ImpedanceRows rows, const ReadingRows sen
         Load<W>(rows.tension_offset_n, i), Load<W>(rows.length_offset_m, i),
         Load<W>(rows.position_gain_n_per_m, i), Load<W>(rows.velocity_gain_n_s_per_m, i)};
     const auto s = MapReadings([c](const double* row) { return Load<W>(row, c); }, sensed);
-    ImpedanceMemory<W> memory;
+    const W velocity_input = Load<W>(rows.velocity_offset_m_per_s, i) + Load<W>(out.signal, c);
+    control::ImpedanceMemory<W> memory;
     if (kByPid) memory.pid = {Load<W>(rows.error_before, i), Load<W>(rows.integral, i)};
     if (kDifferenced) memory.difference = {Load<W>(rows.length_before_m, i)};
-    const ImpedanceCommand<W> command =
-        StepImpedance(law, gains, Load<W>(rows.velocity_input_m_per_s, i), s, memory);
+    const control::ImpedanceCommand<W> command =
+        control::StepImpedance(law, gains, velocity_input, s, memory);
     if (kByPid) {
       Store(rows.error_before, i, memory.pid.error_before);
       Store(rows.integral, i, memory.pid.integral);
     }
     if (kDifferenced) Store(rows.length_before_m, i, memory.difference.length_before_m);
-    Store(target_m, c, command.target_m);
-    Store(set_point_n, c, command.set_point_n);
+    Store(out.velocity_input_m_per_s, c, velocity_input);
+    Store(out.rest_length_m, c, command.target_m);
+    Store(out.set_point_n, c, command.set_point_n);
   }
 }
 
 template <class W>
-void ActImpedance(const ImpedanceLaw& law, const ImpedanceRows& rows, const ReadingRows& sensed,
-                  double* target_m, double* set_point_n) {
+void ActImpedance(const control::ImpedanceLaw& law, const ImpedanceRows& rows,
+                  const ReadingRows& sensed, const ImpedanceOut& out) {
   if (law.by_pid && law.differenced_rate) {
-    ActCables<W, true, true>(law, rows, sensed, target_m, set_point_n);
+    ActCables<W, true, true>(law, rows, sensed, out);
   } else if (law.by_pid) {
-    ActCables<W, true, false>(law, rows, sensed, target_m, set_point_n);
+    ActCables<W, true, false>(law, rows, sensed, out);
   } else if (law.differenced_rate) {
-    ActCables<W, false, true>(law, rows, sensed, target_m, set_point_n);
+    ActCables<W, false, true>(law, rows, sensed, out);
   } else {
-    ActCables<W, false, false>(law, rows, sensed, target_m, set_point_n);
+    ActCables<W, false, false>(law, rows, sensed, out);
   }
 }
 
 template <class W>
 void Measure(const ReadingRows& now, int cables, const double* motor, const double* set_point_n,
-             const int* driven, int driven_count, double step_s, const MeasureRows& out) {
+             const int* driven, int driven_count, const double* step_s, const MeasureRows& out) {
   const W zero = W::Splat(0.0);
   W work = zero, most = Load<W>(out.max_tension_n, 0);
   for (int c = 0; c < cables; ++c) {
@@ -79,14 +81,13 @@ void Measure(const ReadingRows& now, int cables, const double* motor, const doub
     const W error = Load<W>(now.tension_n, driven[i]) - Load<W>(set_point_n, driven[i]);
     squares += error * error;
   }
-  Store(
-      out.error_n2_s, 0,
-      Load<W>(out.error_n2_s, 0) + W::Splat(step_s / static_cast<double>(driven_count)) * squares);
+  const W share_s = Load<W>(step_s, 0) / W::Splat(static_cast<double>(driven_count));
+  Store(out.error_n2_s, 0, Load<W>(out.error_n2_s, 0) + share_s * squares);
 }
 
 template <class W>
-void TickSine(const SineRows& rows, double time_s, double* velocity_m_per_s) {
-  const W t = W::Splat(time_s);
+void TickSine(const SineRows& rows, const double* time_s, double* velocity_m_per_s) {
+  const W t = Load<W>(time_s, 0);
   for (int i = 0; i < rows.count; ++i) {
     const control::Sine<W> wave{Load<W>(rows.amplitude_m_per_s, i), Load<W>(rows.phase_turns, i),
                                 Load<W>(rows.offset_m_per_s, i)};
@@ -143,6 +144,12 @@ void StartCpg(const CpgRows& rows, void* memory) {
 }
 
 template <class W>
+double* CpgStates(int count, int coupling_count, void* memory) {
+  static_assert(sizeof(control::CpgState<W>) == 3 * sizeof(W));
+  return reinterpret_cast<double*>(LaneCpg<W>(count, coupling_count, memory).states);
+}
+
+template <class W>
 void TickCpg(int count, int coupling_count, void* memory, const double* feedback, double step_s,
              int steps, const double* sign, double* velocity_m_per_s) {
   const LaneCpg<W> cpg(count, coupling_count, memory);
@@ -162,8 +169,8 @@ void TickCpg(int count, int coupling_count, void* memory, const double* feedback
 
 template <class W>
 constexpr LaneKernel MakeLaneKernel() {
-  return {W::kLanes,   ActImpedance<W>, Measure<W>, TickSine<W>,
-          CpgBytes<W>, StartCpg<W>,     TickCpg<W>};
+  return {W::kLanes,   ActImpedance<W>, Measure<W>,   TickSine<W>,
+          CpgBytes<W>, StartCpg<W>,     CpgStates<W>, TickCpg<W>};
 }
 
 }  // namespace taut::plant

@@ -1,13 +1,14 @@
 #include "taut/live.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "math/vec.h"
+#include "plant/loop.h"
 #include "plant/recorder.h"
 #include "plant/start.h"
-#include "plant/stepper.h"
 
 namespace taut {
 namespace {
@@ -22,10 +23,13 @@ ExperimentSpec RecordingAll(ExperimentSpec experiment) {
 
 class Live final : public LiveRun {
  public:
-  Live(const ExperimentSpec& experiment, Batch batch)
+  Live(const ExperimentSpec& experiment, Batch batch, const Brought& brought)
       : experiment_(RecordingAll(experiment)),
         batch_(std::move(batch)),
-        stepper_(experiment_, batch_),
+        plant_(PlantOf(batch_)),
+        variant_(WorldOf(experiment_)),
+        loop_(experiment_, std::array{static_cast<const RolloutWorld*>(&variant_)}, *plant_,
+              brought),
         recorder_(experiment_),
         channels_(recorder_.channels()) {
     for (const char* hand : {"hand/drag/", "hand/push/"}) {
@@ -38,27 +42,28 @@ class Live final : public LiveRun {
     for (const BodyDef& body : experiment_.robot.def.bodies) {
       if (!body.fixed) mass_kg_ += body.mass_kg;
     }
-    stepper_.Prepare();
+    loop_.Prepare();
   }
 
   bool Step() override {
-    if (!stepper_.finite()) return false;
-    std::erase_if(pushes_, [&](const auto& p) { return p.until_s <= stepper_.time_s() + 1e-12; });
+    if (!loop_.Goes()) return false;
+    std::erase_if(pushes_, [&](const auto& p) { return p.until_s <= loop_.time_s() + 1e-12; });
     std::vector<NodeForce> forces;
     for (const TimedPush& push : pushes_) forces.push_back(push.force);
     if (hand_) {
       drag_n_ = HandForce();
       forces.push_back({hand_->node, drag_n_});
     }
-    stepper_.timeline().SetHandForces(std::move(forces));
-    stepper_.Step();
+    loop_.timeline().SetHandForces(std::move(forces));
+    loop_.Step();
     return true;
   }
 
-  double time_s() const override { return stepper_.time_s(); }
+  double time_s() const override { return loop_.time_s(); }
   const ExperimentSpec& experiment() const override { return experiment_; }
-  const Batch& batch() const override { return batch_; }
-  const std::vector<double>& set_point_n() const override { return stepper_.set_point_n(); }
+  const Observation& Observe() const override { return loop_.exact(); }
+  const Commands& commands() const override { return loop_.commands(); }
+  const World* world() const override { return plant_->world(); }
 
   std::vector<OutsideForce> OutsideForces() const override {
     std::vector<OutsideForce> forces;
@@ -67,13 +72,13 @@ class Live final : public LiveRun {
     };
     for (std::size_t i = 0; i < experiment_.pushes.size(); ++i) {
       const PushSpec& push = experiment_.pushes[i];
-      add(push.node, stepper_.timeline().push_n()[i] * push.direction);
+      add(push.node, loop_.timeline().push_n()[i] * push.direction);
     }
     for (std::size_t i = 0; i < experiment_.drags.size(); ++i) {
       const DragSpec& drag = experiment_.drags[i];
       const double speed = std::sqrt(Dot(drag.velocity_m_per_s, drag.velocity_m_per_s));
       if (speed > 0) {
-        add(drag.node, (stepper_.timeline().drag_n()[i] / speed) * drag.velocity_m_per_s);
+        add(drag.node, (loop_.timeline().drag_n()[i] / speed) * drag.velocity_m_per_s);
       }
     }
     for (const TimedPush& push : pushes_) add(push.force.node, push.force.force_n);
@@ -89,11 +94,14 @@ class Live final : public LiveRun {
   double DragStiffness() const override { return 200.0 * mass_kg_; }
 
   void Push(const OutsideForce& push, double duration_s) override {
-    pushes_.push_back({{push.node, push.force_n}, stepper_.time_s() + duration_s});
+    pushes_.push_back({{push.node, push.force_n}, loop_.time_s() + duration_s});
   }
 
   void SetParameter(Parameter parameter, int index, double value) override {
     batch_.SetParameter(kTheWorld, parameter, index, value);
+  }
+  double GetParameter(Parameter parameter, int index) const override {
+    return batch_.GetParameter(kTheWorld, parameter, index);
   }
 
   std::vector<LiveControl> Controls() const override {
@@ -102,12 +110,8 @@ class Live final : public LiveRun {
       if (experiment_.robot.def.cables[c].actuator.kind == ActuatorDef::Kind::kNone) continue;
       LiveControl control;
       control.cable = static_cast<int>(c);
-      control.rest_length_m = stepper_.commands().target_m[c];
-      for (const plant::Controller& controller : stepper_.controllers()) {
-        if (const ImpedanceGains* gains = controller.FindGains(control.cable)) {
-          control.impedance = *gains;
-        }
-      }
+      control.rest_length_m = loop_.commands().rest_length_m[c];
+      control.impedance = loop_.Gains(control.cable);
       controls.push_back(control);
     }
     return controls;
@@ -119,24 +123,17 @@ class Live final : public LiveRun {
         cables[static_cast<std::size_t>(control.cable)].actuator.kind == ActuatorDef::Kind::kNone) {
       return false;
     }
-    for (plant::Controller& controller : stepper_.controllers()) {
-      if (ImpedanceGains* gains = controller.FindGains(control.cable)) {
-        if (control.impedance) *gains = *control.impedance;
-        return control.impedance.has_value();
-      }
-      if (controller.Hold(control.cable, control.rest_length_m)) return !control.impedance;
-    }
-    if (control.impedance) return false;
-    stepper_.SetTarget(control.cable, control.rest_length_m);
+    if (control.impedance.has_value() != loop_.Gains(control.cable).has_value()) return false;
+    if (control.impedance) return loop_.SetGains(*control.impedance);
+    loop_.SetRestLength(control.cable, control.rest_length_m);
     return true;
   }
 
   const std::vector<ChannelInfo>& channels() const override { return channels_; }
 
   const std::vector<double>& Row() override {
-    const std::vector<double>& recorded =
-        recorder_.Row({&batch_, kTheWorld, &stepper_.readings(), &stepper_.sensed(),
-                       &stepper_.commands(), &stepper_.timeline()});
+    const std::vector<double>& recorded = recorder_.Row(
+        {&loop_.exact(), &loop_.seen(), &loop_.commands(), plant_->world(), &loop_.timeline()});
     double* out = std::copy(recorded.begin(), recorded.end(), row_.data());
     NodeForce push{-1, {}};
     for (const TimedPush& one : pushes_) {
@@ -171,7 +168,9 @@ class Live final : public LiveRun {
 
   ExperimentSpec experiment_;
   Batch batch_;
-  plant::Stepper stepper_;
+  std::unique_ptr<Plant> plant_;
+  RolloutWorld variant_;
+  plant::Loop loop_;
   plant::Recorder recorder_;
   std::vector<ChannelInfo> channels_;
   std::vector<double> row_;
@@ -184,12 +183,13 @@ class Live final : public LiveRun {
 }  // namespace
 
 std::unique_ptr<LiveRun> LiveRun::Start(const ExperimentSpec& experiment, Diagnostics& out,
-                                        const std::function<bool()>& go_on) {
+                                        const std::function<bool()>& go_on,
+                                        const Brought& brought) {
   const auto model = Model::Compile(experiment.robot.def, out);
   if (!model) return nullptr;
   Batch batch(model, {});
   if (!plant::PrepareStart(experiment, batch, out, go_on)) return nullptr;
-  return std::make_unique<Live>(experiment, std::move(batch));
+  return std::make_unique<Live>(experiment, std::move(batch), brought);
 }
 
 }  // namespace taut

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "plant/gait_player.h"
+#include "plant/gait_kinds.h"
 
 namespace taut {
 
@@ -16,14 +16,14 @@ std::optional<TableGait> PlayGait(const GaitSpec& gait, const RobotSpec& robot, 
   }
   GaitSpec deaf = gait;
   if (deaf.cpg) deaf.cpg->feedback.reset();
-  const ClockSpec clock{1.0 / rate_hz, 0.0};
-  plant::GaitPlayer player(deaf, std::move(*resolved), clock);
+  const double period_s = 1.0 / rate_hz;
+  const auto player = plant::PlayerOf({{&deaf}, {std::move(*resolved)}, period_s});
   const auto rows = static_cast<std::int64_t>(std::floor(duration_s * rate_hz + 1e-9)) + 1;
   for (std::int64_t row = 0; row < rows; ++row) {
-    const double time_s = player.next_tick_s();
-    player.Act(time_s, [](int) { return 0.0; });
+    const double time_s = static_cast<double>(row) * period_s;
+    player->Tick(AllLanes(1), &row, &time_s, {});
     table.time_s.push_back(time_s);
-    table.rows.push_back(player.velocity_m_per_s());
+    table.rows.push_back(player->signal());
   }
   return table;
 }

@@ -16,8 +16,8 @@ void Put(const Vec3& v, double* out) {
   out[2] = v.z;
 }
 
-void FillBody(const Batch& batch, int world, int body, double* out) {
-  const BodyState b = batch.Body(world, body);
+void FillBody(const Bodies& bodies, int body, double* out) {
+  const BodyState b = bodies.Body(0, body);
   Put(b.position_m, out);
   out[3] = b.orientation.w;
   out[4] = b.orientation.x;
@@ -27,25 +27,25 @@ void FillBody(const Batch& batch, int world, int body, double* out) {
   Put(b.angular_velocity_rad_per_s, out + 10);
 }
 
-Vec3 CenterOfMass(const Batch& batch, int world) {
+Vec3 CenterOfMass(const World& world, int body_count) {
   Vec3 sum;
   double mass = 0;
-  for (std::size_t b = 0; b < batch.model().def().bodies.size(); ++b) {
-    const double m = batch.GetParameter(world, Parameter::kBodyMass, static_cast<int>(b));
-    sum = sum + m * batch.Body(world, static_cast<int>(b)).position_m;
+  for (int b = 0; b < body_count; ++b) {
+    const double m = world.BodyMass(0, b);
+    sum = sum + m * world.Body(0, b).position_m;
     mass += m;
   }
   return (mass > 0 ? 1 / mass : 0) * sum;
 }
 
-void FillSystem(const Batch& batch, int world, double* out) {
-  const Energy e = batch.TotalEnergy(world);
+void FillSystem(const World& world, int body_count, double* out) {
+  const Energy e = world.TotalEnergy(0);
   out[0] = e.kinetic_j;
   out[1] = e.gravity_j;
   out[2] = e.elastic_j;
-  out[3] = static_cast<double>(batch.Contacts(world).size());
-  out[4] = batch.Status(world).residual_m_per_s;
-  Put(CenterOfMass(batch, world), out + 5);
+  out[3] = static_cast<double>(world.Contacts(0).size());
+  out[4] = world.Status(0).residual_m_per_s;
+  Put(CenterOfMass(world, body_count), out + 5);
 }
 
 /// Whether the impedance law drives a cable; without it there is no set point to record.
@@ -73,15 +73,16 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
     }
     Add("cable/" + def.cables[c].name + "/", names,
         [c, count = names.size()](const RecordSource& s, double* out) {
-          const CableState& r = (*s.readings)[c];
+          const CableState r = s.exact->Cable(static_cast<int>(c));
+          const std::size_t at = c * static_cast<std::size_t>(s.commands->lanes);
           const double values[] = {r.tension_n,
                                    r.elastic_n,
                                    r.length_m,
                                    r.rate_m_per_s,
                                    r.rest_length_m,
-                                   s.commands->target_m[c],
-                                   s.commands->set_point_n[c],
-                                   s.commands->velocity_input_m_per_s[c]};
+                                   s.commands->rest_length_m[at],
+                                   s.commands->set_point_n[at],
+                                   s.commands->velocity_input_m_per_s[at]};
           std::copy_n(values, count, out);
         });
   }
@@ -89,7 +90,7 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
     Add("sensor/" + def.cables[c].name + "/",
         {{"tension_n", "N"}, {"length_m", "m"}, {"rate_m_per_s", "m/s"}, {"rest_length_m", "m"}},
         [c](const RecordSource& s, double* out) {
-          const CableState& r = (*s.sensed)[c];
+          const CableState r = s.seen->Cable(static_cast<int>(c));
           const double values[] = {r.tension_n, r.length_m, r.rate_m_per_s, r.rest_length_m};
           std::copy(std::begin(values), std::end(values), out);
         });
@@ -110,7 +111,7 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
          {"angular_velocity_y_rad_per_s", "rad/s"},
          {"angular_velocity_z_rad_per_s", "rad/s"}},
         [b](const RecordSource& s, double* out) {
-          FillBody(*s.batch, s.world, static_cast<int>(b), out);
+          FillBody(*s.exact->bodies, static_cast<int>(b), out);
         });
   }
   for (std::size_t i = 0; i < experiment.pushes.size(); ++i) {
@@ -130,7 +131,9 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
        {"com_x_m", "m"},
        {"com_y_m", "m"},
        {"com_z_m", "m"}},
-      [](const RecordSource& s, double* out) { FillSystem(*s.batch, s.world, out); });
+      [count = static_cast<int>(def.bodies.size())](const RecordSource& s, double* out) {
+        FillSystem(*s.world, count, out);
+      });
   row_.resize(channels_.size());
 }
 

@@ -4,21 +4,18 @@
 #include <functional>
 #include <vector>
 
-#include "plant/controllers.h"
 #include "plant/timeline.h"
-#include "taut/batch.h"
-#include "taut/spec.h"
+#include "taut/plant.h"
 #include "taut/trace.h"
 
 namespace taut::plant {
 
-/// What a row is filled from.
+/// What a row is filled from: lane 0 of a plant.
 struct RecordSource {
-  const Batch* batch = nullptr;
-  int world = 0;
-  const std::vector<CableState>* readings = nullptr;
-  const std::vector<CableState>* sensed = nullptr;  ///< By the controllers.
-  const CableCommands* commands = nullptr;
+  const Observation* exact = nullptr;
+  const Observation* seen = nullptr;  ///< By the controllers.
+  const Commands* commands = nullptr;
+  const World* world = nullptr;
   const Timeline* timeline = nullptr;
 };
 

@@ -1,18 +1,18 @@
 #include "taut/run.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
+#include "plant/loop.h"
 #include "plant/recorder.h"
 #include "plant/start.h"
 #include "plant/statistics.h"
-#include "plant/stepper.h"
 
 namespace taut {
 namespace {
 
-using plant::kTheWorld;
 using Clock = std::chrono::steady_clock;
 
 std::string DescribeStatus(const ModelDef& def, const WorldStatus& status) {
@@ -33,11 +33,12 @@ std::string DescribeStatus(const ModelDef& def, const WorldStatus& status) {
 /// One experiment while it runs.
 class Runner {
  public:
-  Runner(const ExperimentSpec& experiment, const RunOptions& options, Batch& batch)
+  Runner(const ExperimentSpec& experiment, const RunOptions& options, Plant& plant)
       : experiment_(experiment),
         options_(options),
-        batch_(batch),
-        stepper_(experiment, batch),
+        variant_(WorldOf(experiment)),
+        loop_(experiment, std::array{static_cast<const RolloutWorld*>(&variant_)}, plant,
+              options.brought),
         recorder_(experiment),
         statistics_(experiment) {}
 
@@ -46,19 +47,18 @@ class Runner {
     auto last_progress = start;
     RunSummary summary;
     summary.experiment = experiment_.name;
-    statistics_.Take(0.0, 0.0, stepper_.readings(), stepper_.timeline().drag_n());
+    statistics_.Take(0.0, 0.0, loop_.exact(), loop_.timeline().drag_n());
     std::int64_t rows = 0;
     bool good = true;
-    while (good && stepper_.time_s() < experiment_.duration_s && !summary.interrupted) {
-      stepper_.Prepare();
+    while (good && loop_.time_s() < experiment_.duration_s && !summary.interrupted) {
+      loop_.Prepare();
       if (rows == 0) {
         if (!Record(rows, out)) break;
         start = Clock::now();  // how long a disk takes to make files is not what a run takes
       }
-      stepper_.Step();
-      const double time_s = stepper_.time_s();
-      statistics_.Take(time_s, stepper_.step_s(), stepper_.readings(),
-                       stepper_.timeline().drag_n());
+      loop_.Step();
+      const double time_s = loop_.time_s();
+      statistics_.Take(time_s, loop_.step_s()[0], loop_.exact(), loop_.timeline().drag_n());
       if (good && RowIsDue(time_s, rows)) good = Record(rows, out);
       if ((++steps_done_ & 63) == 0) {
         const auto now = Clock::now();
@@ -72,21 +72,23 @@ class Runner {
                                   std::chrono::duration<double>(now - start).count()});
         }
       }
-      if (!stepper_.finite()) good = false;
+      if (!loop_.Goes()) good = false;
     }
     if (rows == 0) {
-      stepper_.Prepare();
+      loop_.Prepare();
       Record(rows, out);
     }
     summary.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
     for (TraceWriter* trace : options_.traces) {
       if (!trace->Finish() && out.ok()) out.Error({}, trace->error());
     }
-    summary.simulated_s = stepper_.time_s();
+    summary.simulated_s = loop_.time_s();
     statistics_.Fill(summary);
-    summary.status = batch_.Status(kTheWorld);
-    summary.status_text = DescribeStatus(experiment_.robot.def, summary.status);
-    summary.state_hash = batch_.Hash(kTheWorld);
+    if (const World* const world = loop_.plant().world()) {
+      summary.status = world->Status(0);
+      summary.status_text = DescribeStatus(experiment_.robot.def, summary.status);
+      summary.state_hash = world->Hash(0);
+    }
     return summary;
   }
 
@@ -100,11 +102,11 @@ class Runner {
 
   bool Record(std::int64_t& rows, Diagnostics& out) {
     const std::vector<double>& row =
-        recorder_.Row({&batch_, kTheWorld, &stepper_.readings(), &stepper_.sensed(),
-                       &stepper_.commands(), &stepper_.timeline()});
+        recorder_.Row({&loop_.exact(), &loop_.seen(), &loop_.commands(), loop_.plant().world(),
+                       &loop_.timeline()});
     ++rows;
     for (TraceWriter* trace : options_.traces) {
-      if (!Wrote(trace->Append(stepper_.time_s(), row.data()), *trace, out)) return false;
+      if (!Wrote(trace->Append(loop_.time_s(), row.data()), *trace, out)) return false;
     }
     return true;
   }
@@ -116,8 +118,8 @@ class Runner {
 
   const ExperimentSpec& experiment_;
   const RunOptions& options_;
-  Batch& batch_;
-  plant::Stepper stepper_;
+  RolloutWorld variant_;
+  plant::Loop loop_;
   plant::Recorder recorder_;
   plant::Statistics statistics_;
   std::uint64_t steps_done_ = 0;
@@ -135,7 +137,8 @@ std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment, const 
   Batch batch(model, batch_options);
   if (!plant::PrepareStart(experiment, batch, out)) return std::nullopt;
   if (options.begin && !options.begin(out)) return std::nullopt;
-  return Runner(experiment, options, batch).Run(out);
+  const auto plant = PlantOf(batch);
+  return Runner(experiment, options, *plant).Run(out);
 }
 
 }  // namespace taut

@@ -49,11 +49,11 @@ void Statistics::Take(Quantity& quantity, double time_s, double force_n) const {
   }
 }
 
-void Statistics::Take(double time_s, double step_s, const std::vector<CableState>& readings,
+void Statistics::Take(double time_s, double step_s, const Observation& now,
                       const std::vector<double>& drag_n) {
   for (std::size_t c = 0; c < cables_.size(); ++c) {
     Cable& cable = cables_[c];
-    const CableState& r = readings[c];
+    const CableState r = now.Cable(static_cast<int>(c));
     Take(cable.tension, time_s, r.tension_n);
     Take(cable.elastic, time_s, r.elastic_n);
     if (experiment_.robot.def.cables[c].actuator.kind != ActuatorDef::Kind::kNone) {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "plant/controllers.h"
+#include "taut/plant.h"
 #include "taut/run.h"
 
 namespace taut::plant {
@@ -13,7 +13,7 @@ class Statistics {
   explicit Statistics(const ExperimentSpec& experiment);
 
   /// Takes a moment in. `step_s` is the length of the step that led here; 0 at the start.
-  void Take(double time_s, double step_s, const std::vector<CableState>& readings,
+  void Take(double time_s, double step_s, const Observation& now,
             const std::vector<double>& drag_n);
 
   /// Cables, drags and maxima; the rest of the summary is the runner's.

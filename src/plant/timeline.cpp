@@ -42,24 +42,24 @@ double Timeline::NextCorner(double time_s) const {
   return next == corners_.end() ? std::numeric_limits<double>::infinity() : *next;
 }
 
-Vec3 Timeline::DragForce(const Batch& batch, int world, std::size_t drag, double time_s) {
+Vec3 Timeline::DragForce(const Bodies& bodies, int lane, std::size_t drag, double time_s) {
   const DragSpec& spec = experiment_.drags[drag];
   drag_n_[drag] = 0;
   if (time_s < spec.from_s || time_s > spec.to_s) return {};
-  const Vec3 node = batch.NodePosition(world, spec.node);
+  const Vec3 node = bodies.NodePosition(lane, spec.node);
   if (!dragging_[drag]) {
     dragging_[drag] = true;
     drag_start_m_[drag] = node;
   }
   const Vec3 hand = drag_start_m_[drag] + (time_s - spec.from_s) * spec.velocity_m_per_s;
-  const Vec3 slip = spec.velocity_m_per_s - batch.NodeVelocity(world, spec.node);
+  const Vec3 slip = spec.velocity_m_per_s - bodies.NodeVelocity(lane, spec.node);
   const Vec3 force = spec.stiffness_n_per_m * (hand - node) + spec.damping_n_s_per_m * slip;
   const double speed = std::sqrt(Dot(spec.velocity_m_per_s, spec.velocity_m_per_s));
   drag_n_[drag] = speed > 0 ? Dot(force, spec.velocity_m_per_s) / speed : 0;
   return force;
 }
 
-void Timeline::Apply(Batch& batch, int world, double time_s, double step_s) {
+void Timeline::Apply(World& world, int lane, double time_s, double step_s) {
   for (int node : nodes_) {
     Vec3 force;
     for (std::size_t i = 0; i < experiment_.pushes.size(); ++i) {
@@ -70,13 +70,20 @@ void Timeline::Apply(Batch& batch, int world, double time_s, double step_s) {
     }
     for (std::size_t i = 0; i < experiment_.drags.size(); ++i) {
       if (experiment_.drags[i].node != node) continue;
-      force = force + DragForce(batch, world, i, time_s);
+      force = force + DragForce(world, lane, i, time_s);
     }
     for (const NodeForce& hand : hand_) {
       if (hand.node == node) force = force + hand.force_n;
     }
-    batch.SetNodeForce(world, node, force);
+    world.SetNodeForce(lane, node, force);
   }
+}
+
+void Timeline::Restart() {
+  std::fill(push_n_.begin(), push_n_.end(), 0.0);
+  std::fill(drag_n_.begin(), drag_n_.end(), 0.0);
+  dragging_.assign(dragging_.size(), false);
+  hand_.clear();
 }
 
 void Timeline::SetHandForces(std::vector<NodeForce> forces) {

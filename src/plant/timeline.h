@@ -3,8 +3,7 @@
 
 #include <vector>
 
-#include "taut/batch.h"
-#include "taut/spec.h"
+#include "taut/plant.h"
 
 namespace taut::plant {
 
@@ -27,7 +26,10 @@ class Timeline {
 
   /// Sets the node forces for the step from `time_s` to `time_s + step_s`: their values in its
   /// middle.
-  void Apply(Batch& batch, int world, double time_s, double step_s);
+  void Apply(World& world, int lane, double time_s, double step_s);
+
+  /// From the beginning; no hand holds anything.
+  void Restart();
 
   /// Forces that the experiment does not know of, until changed: a person's hand. They add to its
   /// pushes and drags.
@@ -38,7 +40,7 @@ class Timeline {
   const std::vector<double>& drag_n() const noexcept { return drag_n_; }
 
  private:
-  Vec3 DragForce(const Batch& batch, int world, std::size_t drag, double time_s);
+  Vec3 DragForce(const Bodies& bodies, int lane, std::size_t drag, double time_s);
 
   const ExperimentSpec& experiment_;
   std::vector<double> corners_;

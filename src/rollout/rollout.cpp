@@ -5,8 +5,8 @@
 #include <mutex>
 
 #include "base/thread_pool.h"
+#include "plant/loop.h"
 #include "plant/start.h"
-#include "rollout/lane_stepper.h"
 #include "rollout/scorer.h"
 
 namespace taut {
@@ -97,14 +97,16 @@ class LaneRollouts final : public Rollouts {
         no_start[static_cast<std::size_t>(j)] = failed;
       }
     }
-    rollout::LaneStepper stepper(experiment_, lanes, batch);
-    rollout::Scorer scorer(experiment_, objective_, batch, stepper);
-    for (std::int64_t steps = 0; stepper.time_s() < experiment_.duration_s; ++steps) {
+    const auto plant = PlantOf(batch);
+    plant::Loop loop(experiment_, lanes, *plant, options_.brought);
+    rollout::Scorer scorer(experiment_, objective_, loop,
+                           options_.score ? options_.score({experiment_, lanes}) : nullptr);
+    for (std::int64_t steps = 0; loop.time_s() < experiment_.duration_s; ++steps) {
       if ((steps & 1023) == 1023 && (Stopped() || !scorer.AnyAlive(count))) {
         if (Stopped()) return;
         break;
       }
-      stepper.Step();
+      loop.Step();
       scorer.Take();
     }
     for (int j = 0; j < count; ++j) {

@@ -20,46 +20,54 @@ std::string Seconds(double time_s) {
 
 }  // namespace
 
-Scorer::Scorer(const ExperimentSpec& experiment, const ObjectiveSpec& objective, Batch& batch,
-               const LaneStepper& stepper)
-    : objective_(objective),
-      batch_(batch),
-      stepper_(stepper),
-      kernel_(plant::LaneKernelOf(batch.lanes())),
+Scorer::Scorer(const ExperimentSpec& experiment, const ObjectiveSpec& objective,
+               const plant::Loop& loop, std::unique_ptr<Score> own)
+    : experiment_(experiment),
+      objective_(objective),
+      loop_(loop),
+      world_(*loop.plant().world()),
+      own_(std::move(own)),
+      kernel_(plant::LaneKernelOf(loop.lanes())),
       cos_max_tilt_(objective.fall ? math::Cos(objective.fall->max_tilt_rad) : -1.0) {
-  const auto lanes = static_cast<std::size_t>(batch.lanes());
+  const auto lanes = static_cast<std::size_t>(loop.lanes());
   const ModelDef& def = experiment.robot.def;
   for (const CableDef& cable : def.cables) {
     motor_.push_back(cable.actuator.kind == ActuatorDef::Kind::kNone ? 0.0 : 1.0);
   }
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
-    for (int j = 0; j < batch.lanes(); ++j) {
-      mass_kg_.push_back(batch.GetParameter(j, Parameter::kBodyMass, static_cast<int>(b)));
+    for (int j = 0; j < loop.lanes(); ++j) {
+      mass_kg_.push_back(world_.BodyMass(j, static_cast<int>(b)));
     }
   }
+  for (const ControllerSpec& controller : experiment.controllers) {
+    if (!controller.impedance) continue;
+    for (const ImpedanceGains& gains : controller.impedance->cables) driven_.push_back(gains.cable);
+  }
+  std::sort(driven_.begin(), driven_.end());
   wound_j_.resize(lanes);
   max_tension_n_.resize(lanes);
   error_n2_s_.resize(lanes);
   start_m_.resize(lanes);
   fell_s_.resize(lanes);
   failed_.resize(lanes);
-  const double* rest = stepper.readings().rest_length_m;
+  const double* rest = loop.exact().cables.rest_length_m;
   rest_before_m_.assign(rest, rest + def.cables.size() * lanes);
   if (objective_.from_s <= 0) {
     for (std::size_t j = 0; j < lanes; ++j) start_m_[j] = CenterOfMass(static_cast<int>(j));
   }
+  if (own_) own_->Take(loop.exact(), loop.commands(), world_, loop.step_s());
 }
 
 void Scorer::Take() {
-  const std::vector<int>& driven = stepper_.driven();
   kernel_.measure(
-      stepper_.readings(), static_cast<int>(motor_.size()), motor_.data(),
-      stepper_.set_point_n().data(), driven.data(), static_cast<int>(driven.size()),
-      stepper_.step_s(),
+      loop_.exact().cables, static_cast<int>(motor_.size()), motor_.data(),
+      loop_.commands().set_point_n, driven_.data(), static_cast<int>(driven_.size()),
+      loop_.step_s(),
       {rest_before_m_.data(), wound_j_.data(), max_tension_n_.data(), error_n2_s_.data()});
-  const double time_s = stepper_.time_s();
+  if (own_) own_->Take(loop_.exact(), loop_.commands(), world_, loop_.step_s());
+  const double time_s = loop_.time_s();
   if (!start_m_[0] && time_s >= objective_.from_s - kTimeToleranceS) {
-    for (int j = 0; j < batch_.lanes(); ++j) {
+    for (int j = 0; j < loop_.lanes(); ++j) {
       start_m_[static_cast<std::size_t>(j)] = CenterOfMass(j);
     }
   }
@@ -70,11 +78,11 @@ void Scorer::Take() {
 }
 
 void Scorer::LookAround() {
-  const auto& bodies = batch_.model().def().bodies;
-  for (int j = 0; j < batch_.lanes(); ++j) {
+  const auto& bodies = experiment_.robot.def.bodies;
+  for (int j = 0; j < loop_.lanes(); ++j) {
     const auto lane = static_cast<std::size_t>(j);
     if (!failed_[lane].empty()) continue;
-    const WorldStatus status = batch_.Status(j);
+    const WorldStatus status = world_.Status(j);
     if (status.bits & kStatusNonFinite) {
       failed_[lane] =
           "the state is no longer finite, first at t = " + Seconds(status.first_time_s) + " s";
@@ -85,12 +93,12 @@ void Scorer::LookAround() {
     }
     bool tilted = false;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const BodyState body = batch_.Body(j, static_cast<int>(b));
+      const BodyState body = world_.Body(j, static_cast<int>(b));
       const double speed = std::sqrt(Dot(body.velocity_m_per_s, body.velocity_m_per_s));
       if (!(speed <= objective_.max_speed_m_per_s)) {
         failed_[lane] = "body " + bodies[b].name + " is faster than " +
                         std::to_string(static_cast<int>(objective_.max_speed_m_per_s)) +
-                        " m/s at t = " + Seconds(stepper_.time_s()) + " s";
+                        " m/s at t = " + Seconds(loop_.time_s()) + " s";
       }
       const Quat& q = body.orientation;
       tilted = tilted || 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < cos_max_tilt_;
@@ -100,7 +108,7 @@ void Scorer::LookAround() {
     const double height = fall.min_height_m || fall.max_height_m ? CenterOfMass(j).z : 0.0;
     const bool low = fall.min_height_m && height < *fall.min_height_m;
     const bool high = fall.max_height_m && height > *fall.max_height_m;
-    if (tilted || low || high) fell_s_[lane] = stepper_.time_s();
+    if (tilted || low || high) fell_s_[lane] = loop_.time_s();
   }
 }
 
@@ -114,10 +122,10 @@ bool Scorer::AnyAlive(int count) const {
 Vec3 Scorer::CenterOfMass(int lane) const {
   Vec3 sum;
   double mass = 0;
-  const int lanes = batch_.lanes();
+  const int lanes = loop_.lanes();
   for (int b = 0; b * lanes < static_cast<int>(mass_kg_.size()); ++b) {
     const double m = mass_kg_[static_cast<std::size_t>(b * lanes + lane)];
-    sum = sum + m * batch_.Body(lane, b).position_m;
+    sum = sum + m * world_.Body(lane, b).position_m;
     mass += m;
   }
   return (mass > 0 ? 1 / mass : 0) * sum;
@@ -132,11 +140,11 @@ RolloutResult Scorer::Result(int j) const {
     out.score = std::numeric_limits<double>::quiet_NaN();
     return out;
   }
-  out.state_hash = batch_.Hash(j);
+  out.state_hash = world_.Hash(j);
   out.energy_j = wound_j_[lane];
   out.max_tension_n = max_tension_n_[lane];
   out.fell_s = fell_s_[lane];
-  const double time_s = stepper_.time_s();
+  const double time_s = loop_.time_s();
   out.tracking_n = time_s > 0 ? std::sqrt(error_n2_s_[lane] / time_s) : 0.0;
   const Vec3 way = start_m_[lane] ? CenterOfMass(j) - *start_m_[lane] : Vec3{};
   out.distance_m = std::sqrt(way.x * way.x + way.y * way.y);
@@ -155,6 +163,7 @@ RolloutResult Scorer::Result(int j) const {
       out.score = -out.tracking_n;
       break;
   }
+  if (own_) out.score = own_->Result(j);
   if (objective_.tension_limit) {
     const TensionLimit& limit = *objective_.tension_limit;
     out.score -= limit.penalty_per_n * std::max(out.max_tension_n - limit.limit_n, 0.0);
@@ -162,7 +171,7 @@ RolloutResult Scorer::Result(int j) const {
   if (objective_.fall && out.fell_s) out.score -= objective_.fall->penalty;
   if (!std::isfinite(out.score)) {
     out.failed = "the objective is not a finite number";
-    if (objective_.measure == Measure::kDistancePerEnergy && out.energy_j == 0) {
+    if (!own_ && objective_.measure == Measure::kDistancePerEnergy && out.energy_j == 0) {
       out.failed += ": the motors did no work";
     }
     out.score = std::numeric_limits<double>::quiet_NaN();

@@ -1,10 +1,12 @@
 /// What is measured of the worlds of a group while they run, and the scores that follow.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "rollout/lane_stepper.h"
+#include "plant/lane_kernel.h"
+#include "plant/loop.h"
 #include "taut/objective.h"
 #include "taut/rollout.h"
 
@@ -12,8 +14,9 @@ namespace taut::rollout {
 
 class Scorer {
  public:
-  Scorer(const ExperimentSpec& experiment, const ObjectiveSpec& objective, Batch& batch,
-         const LaneStepper& stepper);
+  /// `loop` is at its start. `own`: in place of the objective's measure; may be null.
+  Scorer(const ExperimentSpec& experiment, const ObjectiveSpec& objective, const plant::Loop& loop,
+         std::unique_ptr<Score> own);
 
   /// After every step.
   void Take();
@@ -26,12 +29,15 @@ class Scorer {
   void LookAround();
   Vec3 CenterOfMass(int lane) const;
 
+  const ExperimentSpec& experiment_;
   const ObjectiveSpec& objective_;
-  Batch& batch_;
-  const LaneStepper& stepper_;
+  const plant::Loop& loop_;
+  const World& world_;
+  std::unique_ptr<Score> own_;
   const plant::LaneKernel& kernel_;
   double cos_max_tilt_;
   std::vector<double> motor_;  ///< Per cable: 1 if it has one.
+  std::vector<int> driven_;    ///< Cables that have set points, ascending.
   std::vector<double> rest_before_m_, wound_j_, max_tension_n_, error_n2_s_;
   std::vector<std::optional<Vec3>> start_m_;  ///< Centre of mass at `from_s`.
   std::vector<double> mass_kg_;               ///< Body b of lane j at [b * lanes + j].

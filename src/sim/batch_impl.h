@@ -108,6 +108,7 @@ struct Batch::Impl {
   }
   /// Steps all worlds; first the targets of all cables of all worlds, unless null.
   void Step(double step_s, int count, const double* targets_m) noexcept;
+  void StepSome(double step_s, const std::uint8_t* goes);
   void SetTargets(int group_number, const double* targets_m) const noexcept;
   void SetMass(int world, int body, double mass_kg) noexcept;
   void StartWorld(int world) noexcept;

@@ -3,6 +3,7 @@
 #include "taut/control/clock.h"
 #include "taut/control/cpg.h"
 #include "taut/control/impedance.h"
+#include "taut/control/impedance_tick.h"
 #include "taut/control/pid.h"
 #include "taut/control/position.h"
 #include "taut/control/rate.h"
@@ -21,6 +22,20 @@ extern "C" float RestLengthFromImpedance(float rest_length_m, float tension_n, f
   const float set_point_n = control::ImpedanceTension(law, length_m, rate, 0.0f);
   return control::TensionToRestLengthByStiffness(rest_length_m, tension_n, set_point_n,
                                                  stiffness_n_per_m, 0.001f);
+}
+
+// A board's whole tick: what its load cell and its encoder say, the law, the PID that winds.
+struct BoardSenses {
+  float rest_length_m, length_m, rate_m_per_s, tension_n, elastic_n, stiffness_n_per_m;
+};
+extern "C" float RestLengthFromTick(const BoardSenses* senses,
+                                    control::ImpedanceMemory<float>* memory, bool first_tick) {
+  control::ImpedanceLaw law;
+  law.by_pid = law.differenced_rate = true;
+  law.first_tick = first_tick;
+  law.proportional = 0.05;
+  const control::Impedance<float> gains{28.0f, 0.19f, 500.0f, 150.0f};
+  return control::StepImpedance(law, gains, 0.0f, *senses, *memory).target_m;
 }
 
 extern "C" float SpeedFromTension(control::PidState<float>* state, float tension_n, float set_n) {

@@ -6,8 +6,10 @@
 #include <fstream>
 #include <numbers>
 
-#include "plant/controllers.h"
-#include "plant/gait_player.h"
+#include "fake_plant.h"
+#include "plant/gait_kinds.h"
+#include "plant/lane_clock.h"
+#include "plant/loop.h"
 #include "taut/play.h"
 #include "taut/run.h"
 
@@ -24,14 +26,35 @@ RobotSpec Spine() {
   return robot.value_or(RobotSpec{});
 }
 
-plant::GaitPlayer Player(const GaitSpec& gait, const ClockSpec& clock) {
-  Diagnostics out;
-  const auto resolved = ResolveGait(gait, Spine(), out);
-  EXPECT_TRUE(resolved) << out.Format();
-  return {gait, resolved.value_or(ResolvedGait{}), clock};
-}
+/// A gait alone, on a clock, in one lane.
+struct Player {
+  Player(const GaitSpec& gait, const ClockSpec& on) : spec(on), clock(on, 1) {
+    Diagnostics out;
+    const auto resolved = ResolveGait(gait, Spine(), out);
+    EXPECT_TRUE(resolved) << out.Format();
+    player = plant::PlayerOf({{&gait}, {resolved.value_or(ResolvedGait{})}, on.period_s});
+  }
 
-const auto kNoTension = [](int) { return 0.0; };
+  const std::vector<int>& cables() const { return player->cables(); }
+  const std::vector<double>& signal() const { return player->signal(); }
+  double next_tick_s() const { return clock.NextS(0); }
+
+  /// If a tick is due. `tension_n`: of every cable of the robot; may be empty.
+  void Act(double time_s, const std::vector<double>& tension_n = {}) {
+    const Tick tick = clock.Due(&time_s, AllLanes(1));
+    if (tick.due == 0) return;
+    const double since_s =
+        control::TickTime(control::Clock<double>{spec.period_s, spec.phase_s}, *tick.number);
+    ReadingRows seen;
+    seen.tension_n = tension_n.data();
+    player->Tick(tick.due, tick.number, &since_s, seen);
+    clock.Advance(tick.due);
+  }
+
+  ClockSpec spec;
+  plant::LaneClock clock;
+  std::unique_ptr<plant::GaitPlayer> player;
+};
 
 GaitSpec OneWave(double frequency_hz) {
   SineWave wave;
@@ -59,49 +82,49 @@ GaitSpec OneTable(bool linear) {
 }
 
 TEST(GaitPlayer, AWaveTravelsAndHoldsBetweenTicks) {
-  plant::GaitPlayer player = Player(OneWave(0.5), {0.25, 0.5});
+  Player player(OneWave(0.5), {0.25, 0.5});
   ASSERT_EQ(player.cables().size(), 2u);
   EXPECT_EQ(player.next_tick_s(), 0.5);
-  player.Act(0.25, kNoTension);  // not yet
-  EXPECT_EQ(player.velocity_m_per_s()[0], 0.0);
-  player.Act(0.5, kNoTension);
-  EXPECT_NEAR(player.velocity_m_per_s()[0], 0.02, 1e-15);        // cos 90 degrees
-  EXPECT_NEAR(player.velocity_m_per_s()[1], 0.02 - 0.1, 1e-15);  // a quarter further on
+  player.Act(0.25);  // not yet
+  EXPECT_EQ(player.signal()[0], 0.0);
+  player.Act(0.5);
+  EXPECT_NEAR(player.signal()[0], 0.02, 1e-15);        // cos 90 degrees
+  EXPECT_NEAR(player.signal()[1], 0.02 - 0.1, 1e-15);  // a quarter further on
   EXPECT_EQ(player.next_tick_s(), 0.75);
-  player.Act(0.6, kNoTension);
-  EXPECT_NEAR(player.velocity_m_per_s()[0], 0.02, 1e-15);
-  player.Act(0.75, kNoTension);
-  EXPECT_NEAR(player.velocity_m_per_s()[0], 0.02 + 0.1 * std::cos(kTwoPi * 0.375), 1e-15);
+  player.Act(0.6);
+  EXPECT_NEAR(player.signal()[0], 0.02, 1e-15);
+  player.Act(0.75);
+  EXPECT_NEAR(player.signal()[0], 0.02 + 0.1 * std::cos(kTwoPi * 0.375), 1e-15);
 }
 
 TEST(GaitPlayer, ATableHoldsOrGoesStraight) {
-  plant::GaitPlayer held = Player(OneTable(false), {0.25, 0.0});
-  plant::GaitPlayer straight = Player(OneTable(true), {0.25, 0.0});
+  Player held(OneTable(false), {0.25, 0.0});
+  Player straight(OneTable(true), {0.25, 0.0});
   const double of_held[] = {0.1, 0.1, 0.2, 0.2, 0.4, 0.4};
   const double of_straight[] = {0.1, 0.15, 0.2, 0.3, 0.4, 0.4};
   for (int tick = 0; tick < 6; ++tick) {
-    held.Act(0.25 * tick, kNoTension);
-    straight.Act(0.25 * tick, kNoTension);
-    EXPECT_EQ(held.velocity_m_per_s()[0], of_held[tick]) << tick;
-    EXPECT_NEAR(straight.velocity_m_per_s()[0], of_straight[tick], 1e-15) << tick;
+    held.Act(0.25 * tick);
+    straight.Act(0.25 * tick);
+    EXPECT_EQ(held.signal()[0], of_held[tick]) << tick;
+    EXPECT_NEAR(straight.signal()[0], of_straight[tick], 1e-15) << tick;
   }
 }
 
 TEST(GaitPlayer, ATableRepeats) {
   GaitSpec gait = OneTable(false);
   gait.table->repeat_from_s = 0.5;  // then the row at 1 s never shows
-  plant::GaitPlayer player = Player(gait, {0.25, 0.0});
+  Player player(gait, {0.25, 0.0});
   const double expected[] = {0.1, 0.1, 0.2, 0.2, 0.2, 0.2, 0.2};
   for (int tick = 0; tick < 7; ++tick) {
-    player.Act(0.25 * tick, kNoTension);
-    EXPECT_EQ(player.velocity_m_per_s()[0], expected[tick]) << tick;
+    player.Act(0.25 * tick);
+    EXPECT_EQ(player.signal()[0], expected[tick]) << tick;
   }
   gait.table->repeat_from_s = 0.0;
-  plant::GaitPlayer from_start = Player(gait, {0.25, 0.0});
+  Player from_start(gait, {0.25, 0.0});
   const double round[] = {0.1, 0.1, 0.2, 0.2, 0.1, 0.1, 0.2};
   for (int tick = 0; tick < 7; ++tick) {
-    from_start.Act(0.25 * tick, kNoTension);
-    EXPECT_EQ(from_start.velocity_m_per_s()[0], round[tick]) << tick;
+    from_start.Act(0.25 * tick);
+    EXPECT_EQ(from_start.signal()[0], round[tick]) << tick;
   }
 }
 
@@ -116,15 +139,15 @@ GaitSpec BlankCpg() {
 }
 
 TEST(GaitPlayer, OscillatorsStartAtTheFirstTickAndSomeAreInverted) {
-  plant::GaitPlayer player = Player(BlankCpg(), {0.01, 0.0});
-  player.Act(0.0, kNoTension);
-  for (const double v : player.velocity_m_per_s()) EXPECT_EQ(v, 0.0);  // amplitudes grow from 0
-  for (int tick = 1; tick <= 200; ++tick) player.Act(0.01 * tick, kNoTension);
+  Player player(BlankCpg(), {0.01, 0.0});
+  player.Act(0.0);
+  for (const double v : player.signal()) EXPECT_EQ(v, 0.0);  // amplitudes grow from 0
+  for (int tick = 1; tick <= 200; ++tick) player.Act(0.01 * tick);
   const RobotSpec robot = Spine();
   for (std::size_t i = 0; i < player.cables().size(); ++i) {
     const std::string& name = robot.def.cables[static_cast<std::size_t>(player.cables()[i])].name;
     // two turns after the start; (1 + 20) exp(-20) of the amplitude is missing
-    EXPECT_NEAR(player.velocity_m_per_s()[i], name == "inner_top_1" ? -0.1 : 0.1, 1e-8) << name;
+    EXPECT_NEAR(player.signal()[i], name == "inner_top_1" ? -0.1 : 0.1, 1e-8) << name;
   }
 }
 
@@ -151,13 +174,14 @@ TEST(GaitPlayer, TensionActsOnTheOscillatorOfItsCable) {
   GaitSpec gait = BlankCpg();
   gait.cpg->inverted.clear();
   gait.cpg->feedback = CpgFeedback{5.0, 10.0};
-  plant::GaitPlayer player = Player(gait, {0.001, 0.0});
-  const int pulled = player.cables()[3];
+  Player player(gait, {0.001, 0.0});
+  std::vector<double> tension_n(Spine().def.cables.size(), 10.0);
+  tension_n[static_cast<std::size_t>(player.cables()[3])] = 12.0;
   for (int tick = 0; tick <= 5000; ++tick) {
-    player.Act(0.001 * tick, [&](int cable) { return cable == pulled ? 12.0 : 10.0; });
+    player.Act(0.001 * tick, tension_n);
   }
   for (std::size_t i = 0; i < player.cables().size(); ++i) {
-    EXPECT_NEAR(player.velocity_m_per_s()[i], i == 3 ? -0.1 * kTwoPi / 10.0 : 0.1, 1e-4) << i;
+    EXPECT_NEAR(player.signal()[i], i == 3 ? -0.1 * kTwoPi / 10.0 : 0.1, 1e-4) << i;
   }
 }
 
@@ -174,12 +198,12 @@ TEST(GaitPlayer, ATableOfAGaitPlaysAsTheGaitItself) {
   const auto replayed = LoadGait((folder / "t.yaml").string(), out);
   std::filesystem::remove_all(folder);
   ASSERT_TRUE(replayed) << out.Format();
-  plant::GaitPlayer original = Player(*gait, {0.01, 0.0}), replay = Player(*replayed, {0.01, 0.0});
+  Player original(*gait, {0.01, 0.0}), replay = Player(*replayed, {0.01, 0.0});
   EXPECT_EQ(original.cables(), replay.cables());
   for (int tick = 0; tick <= 300; ++tick) {
-    original.Act(0.01 * tick, kNoTension);
-    replay.Act(0.01 * tick, kNoTension);
-    ASSERT_EQ(original.velocity_m_per_s(), replay.velocity_m_per_s()) << tick;
+    original.Act(0.01 * tick);
+    replay.Act(0.01 * tick);
+    ASSERT_EQ(original.signal(), replay.signal()) << tick;
   }
 }
 
@@ -193,20 +217,22 @@ TEST(GaitPlayer, TheGaitActsBeforeTheLawThatItFeeds) {
   spec.impedance.emplace();
   spec.impedance->cables.push_back({cable, 10.0, 0.2, 0.0, 100.0, 0.01});
   spec.velocity_input = GaitInputSpec{{0.25, 0.0}, OneTable(false), {}, {}};
-  plant::Controller controller(spec, robot);
-  const std::size_t count = robot.def.cables.size();
-  std::vector<CableState> readings(count);
-  for (auto& reading : readings) reading = {0.15, 0.2, 0.0, 10.0, 10.0, 229.16};
-  plant::CableCommands commands{std::vector<double>(count), std::vector<double>(count),
-                                std::vector<double>(count)};
-  const auto c = static_cast<std::size_t>(cable);
-  controller.Act(0.0, readings, commands);
+  ExperimentSpec experiment;
+  experiment.robot = robot;
+  experiment.controllers = {spec};
+  experiment.duration_s = 1.0;
+  FakePlant plant(robot.def.cables.size());
+  plant.Show({0.15, 0.2, 0.0, 10.0, 10.0, 229.16});
+  const RolloutWorld world = WorldOf(experiment);
+  const RolloutWorld* const lanes[] = {&world};
+  plant::Loop loop(experiment, lanes, plant, {});
+  loop.Step();
   // the cable's own offset and the gait's, in the first tick already: T0 + B (0 - V0)
-  EXPECT_EQ(commands.velocity_input_m_per_s[c], 0.01 + 0.1);
-  EXPECT_NEAR(commands.set_point_n[c], 0.0, 0.0);  // 10 - 11: a cable cannot push
-  EXPECT_EQ(controller.next_tick_s(), 0.001);
-  for (int ms = 1; ms <= 500; ++ms) controller.Act(ms * 0.001, readings, commands);
-  EXPECT_EQ(commands.velocity_input_m_per_s[c], 0.01 + 0.2);
+  EXPECT_EQ(plant.commands().velocity_input_m_per_s[cable], 0.01 + 0.1);
+  EXPECT_NEAR(plant.commands().set_point_n[cable], 0.0, 0.0);  // 10 - 11: a cable cannot push
+  EXPECT_EQ(loop.time_s(), 0.001);
+  while (loop.time_s() < 0.5005) loop.Step();
+  EXPECT_EQ(plant.commands().velocity_input_m_per_s[cable], 0.01 + 0.2);
 }
 
 // A law that is slower than its gait takes the gait's latest value, and steps land on both clocks.

@@ -5,7 +5,8 @@
 
 #include <cmath>
 
-#include "plant/stepper.h"
+#include "plant/lane_clock.h"
+#include "plant/loop.h"
 
 namespace taut::plant {
 namespace {
@@ -29,16 +30,35 @@ SensorSpec WithCell(const LoadCellSpec& cell) {
   return spec;
 }
 
+/// Sensors of one cable in one world, on their clock.
+struct Sampler {
+  explicit Sampler(const SensorSpec& spec, std::uint64_t seed = 1)
+      : sensors(spec, 1, {seed}), clock(sensors.clock(), 1) {}
+
+  void Sample(double time_s, const One& exact) {
+    const Tick tick = clock.Due(&time_s, AllLanes(1));
+    Observation observation;
+    observation.cables = exact.rows();
+    if (tick.due != 0) sensors.Sample(tick, observation);
+    clock.Advance(tick.due);
+  }
+  void SampleNext(const One& exact) { Sample(clock.NextS(0), exact); }
+  CableState seen() const { return sensors.seen().Cable(0); }
+
+  Sensors sensors;
+  LaneClock clock;
+};
+
 /// Tensions that a cell says of a constant one.
 std::vector<double> Samples(const LoadCellSpec& cell, double tension_n, int count,
                             std::uint64_t seed = 1) {
-  Sensors sensors(WithCell(cell), 1, {seed});
+  Sampler sensors(WithCell(cell), seed);
   One exact;
   exact.cable.tension_n = tension_n;
   std::vector<double> out;
   for (int i = 0; i < count; ++i) {
-    sensors.Sample(sensors.next_tick_s(), exact.rows());
-    out.push_back(sensors.rows().tension_n[0]);
+    sensors.SampleNext(exact);
+    out.push_back(sensors.seen().tension_n);
   }
   return out;
 }
@@ -55,15 +75,15 @@ Moments MomentsOf(const std::vector<double>& x) {
 }
 
 TEST(Sensors, WithoutAnythingAreExact) {
-  Sensors sensors(SensorSpec{}, 1, {1});
+  Sampler sensors(SensorSpec{});
   One exact;
-  sensors.Sample(0.0, exact.rows());
-  const ReadingRows seen = sensors.rows();
-  EXPECT_EQ(*seen.rest_length_m, exact.cable.rest_length_m);
-  EXPECT_EQ(*seen.length_m, exact.cable.length_m);
-  EXPECT_EQ(*seen.tension_n, exact.cable.tension_n);
-  EXPECT_EQ(*seen.elastic_n, exact.cable.elastic_n);
-  EXPECT_EQ(*seen.stiffness_n_per_m, exact.cable.stiffness_n_per_m);
+  sensors.Sample(0.0, exact);
+  const CableState seen = sensors.seen();
+  EXPECT_EQ(seen.rest_length_m, exact.cable.rest_length_m);
+  EXPECT_EQ(seen.length_m, exact.cable.length_m);
+  EXPECT_EQ(seen.tension_n, exact.cable.tension_n);
+  EXPECT_EQ(seen.elastic_n, exact.cable.elastic_n);
+  EXPECT_EQ(seen.stiffness_n_per_m, exact.cable.stiffness_n_per_m);
 }
 
 // n = 100000 samples: the mean is good to s / sqrt(n), the variance to s^2 sqrt(2 / n); times five.
@@ -127,27 +147,27 @@ TEST(Sensors, ADelayIsWholeSamples) {
   cell.delay_s = 0.003;
   SensorSpec spec = WithCell(cell);
   spec.encoder = EncoderSpec{0.0, 0.001};
-  Sensors sensors(spec, 1, {1});
+  Sampler sensors(spec);
   One exact;
   for (int i = 0; i < 10; ++i) {
     exact.cable.tension_n = 10.0 + i;
     exact.cable.rest_length_m = 1.0 - 0.25 * i;
-    sensors.Sample(sensors.next_tick_s(), exact.rows());
-    EXPECT_EQ(*sensors.rows().tension_n, 10.0 + std::max(0, i - 3));
-    EXPECT_EQ(*sensors.rows().elastic_n, *sensors.rows().tension_n);  // all that a cell can tell
-    EXPECT_EQ(*sensors.rows().rest_length_m, 1.0 - 0.25 * std::max(0, i - 1));
+    sensors.SampleNext(exact);
+    EXPECT_EQ(sensors.seen().tension_n, 10.0 + std::max(0, i - 3));
+    EXPECT_EQ(sensors.seen().elastic_n, sensors.seen().tension_n);  // all that a cell can tell
+    EXPECT_EQ(sensors.seen().rest_length_m, 1.0 - 0.25 * std::max(0, i - 1));
   }
 }
 
 TEST(Sensors, AnEncoderCounts) {
   SensorSpec spec;
   spec.encoder = EncoderSpec{0.25, 0.0};
-  Sensors sensors(spec, 1, {1});
+  Sampler sensors(spec);
   One exact;
   for (const auto& [rest, seen] : {std::pair{1.1, 1.0}, {1.13, 1.25}, {0.1, 0.0}}) {
     exact.cable.rest_length_m = rest;
-    sensors.Sample(sensors.next_tick_s(), exact.rows());
-    EXPECT_EQ(*sensors.rows().rest_length_m, seen);
+    sensors.SampleNext(exact);
+    EXPECT_EQ(sensors.seen().rest_length_m, seen);
   }
 }
 
@@ -155,25 +175,25 @@ TEST(Sensors, AnEncoderCounts) {
 TEST(Sensors, LengthFollowsFromTensionAndRestLength) {
   SensorSpec spec;
   spec.length_from_tension = true;
-  Sensors sensors(spec, 1, {1});
+  Sampler sensors(spec);
   One exact;
-  sensors.Sample(0.0, exact.rows());
-  EXPECT_DOUBLE_EQ(*sensors.rows().length_m, 1.0 + 10.0 / 100.0);
-  EXPECT_EQ(*sensors.rows().rate_m_per_s, 0.0);
+  sensors.Sample(0.0, exact);
+  EXPECT_DOUBLE_EQ(sensors.seen().length_m, 1.0 + 10.0 / 100.0);
+  EXPECT_EQ(sensors.seen().rate_m_per_s, 0.0);
   exact.cable.tension_n = 10.5;
-  sensors.Sample(0.001, exact.rows());
-  EXPECT_NEAR(*sensors.rows().rate_m_per_s, 0.005 / 0.001, 1e-9);
+  sensors.Sample(0.001, exact);
+  EXPECT_NEAR(sensors.seen().rate_m_per_s, 0.005 / 0.001, 1e-9);
 }
 
 TEST(Sensors, SampleOnTheirOwnClock) {
   SensorSpec spec;
   spec.period_s = 0.01;
-  Sensors sensors(spec, 1, {1});
+  Sampler sensors(spec);
   One exact;
   for (int ms = 0; ms < 30; ++ms) {
     exact.cable.tension_n = ms;
-    sensors.Sample(0.001 * ms, exact.rows());
-    EXPECT_EQ(*sensors.rows().tension_n, ms / 10 * 10);
+    sensors.Sample(0.001 * ms, exact);
+    EXPECT_EQ(sensors.seen().tension_n, ms / 10 * 10);
   }
 }
 
@@ -189,11 +209,14 @@ TEST(Sensors, NoiseDoesNotDependOnTheStep) {
   const auto noise_at_end = [&](double step_s) {
     experiment->step_s = step_s;
     Batch batch(Model::Compile(experiment->robot.def, out), {});
-    Stepper stepper(*experiment, batch);
-    while (stepper.time_s() < 0.1 - 1e-9) stepper.Step();
-    const std::vector<CableState> exact = stepper.readings();
-    stepper.Prepare();
-    return stepper.sensed()[3].tension_n - exact[3].tension_n;
+    const auto plant = PlantOf(batch);
+    const RolloutWorld world = WorldOf(*experiment);
+    const RolloutWorld* const lanes[] = {&world};
+    Loop loop(*experiment, lanes, *plant, {});
+    while (loop.time_s() < 0.1 - 1e-9) loop.Step();
+    const double exact_n = loop.exact().Cable(3).tension_n;
+    loop.Prepare();
+    return loop.seen().Cable(3).tension_n - exact_n;
   };
   const double noise = noise_at_end(0.001);
   EXPECT_GT(std::fabs(noise), 1e-3);

@@ -51,7 +51,7 @@ TEST(LiveRun, LeftAloneItGivesTheBitsOfARun) {
     const auto run = StartRun(experiment);
     while (run->time_s() < experiment.duration_s) ASSERT_TRUE(run->Step());
     EXPECT_EQ(run->time_s(), experiment.duration_s);
-    EXPECT_EQ(run->batch().Hash(0), summary->state_hash) << path;
+    EXPECT_EQ(run->world()->Hash(0), summary->state_hash) << path;
     for (int i = 0; i < 100; ++i) ASSERT_TRUE(run->Step());  // the end is no limit
     EXPECT_GT(run->time_s(), experiment.duration_s + 0.05);
   }
@@ -62,19 +62,19 @@ TEST(LiveRun, AHandHoldsANodeUpAgainstItsWeight) {
   const auto run = StartRun(experiment);
   const int mass = Node(experiment, "mass");
   const double weight_n = 0.5 * 9.81;
-  const Vec3 start = run->batch().NodePosition(0, mass);
+  const Vec3 start = run->world()->NodePosition(0, mass);
   // Above the point where the cable goes slack: the hand carries all of the weight.
   run->SetHand(HandSpec{mass, {start.x, start.y, start.z + 0.2}});
   while (run->time_s() < 10) ASSERT_TRUE(run->Step());
-  EXPECT_EQ(run->batch().Cable(0, 0).tension_n, 0);
+  EXPECT_EQ(run->Observe().Cable(0).tension_n, 0);
   ASSERT_EQ(run->OutsideForces().size(), 1u);
   EXPECT_NEAR(run->OutsideForces()[0].force_n.z, weight_n, 1e-6);
-  EXPECT_NEAR(run->batch().NodePosition(0, mass).z, start.z + 0.2 - weight_n / run->DragStiffness(),
-              1e-6);
+  EXPECT_NEAR(run->world()->NodePosition(0, mass).z,
+              start.z + 0.2 - weight_n / run->DragStiffness(), 1e-6);
   run->SetHand({});
   ASSERT_TRUE(run->Step());
   EXPECT_TRUE(run->OutsideForces().empty());
-  EXPECT_NEAR(run->batch().Body(0, 0).velocity_m_per_s.z, -9.81e-3, 1e-6);  // it falls
+  EXPECT_NEAR(run->world()->Body(0, 0).velocity_m_per_s.z, -9.81e-3, 1e-6);  // it falls
 }
 
 TEST(LiveRun, APushGivesItsImpulse) {
@@ -86,7 +86,10 @@ TEST(LiveRun, APushGivesItsImpulse) {
     ASSERT_TRUE(alone->Step());
   }
   // 2 N for 50 ms; the cable's pull to the side grows with the way of at most 5 mm.
-  EXPECT_NEAR(pushed->batch().Momentum(0).x - alone->batch().Momentum(0).x, 0.1, 0.002);
+  const auto momentum_x = [](const LiveRun& run) {
+    return run.world()->BodyMass(0, 0) * run.world()->Body(0, 0).velocity_m_per_s.x;
+  };
+  EXPECT_NEAR(momentum_x(*pushed) - momentum_x(*alone), 0.1, 0.002);
   ASSERT_TRUE(pushed->Step());
   EXPECT_TRUE(pushed->OutsideForces().empty());
 }
@@ -108,12 +111,12 @@ TEST(LiveRun, SetPointsAndGainsTakeEffect) {
   ASSERT_TRUE(run->Step());
   ASSERT_TRUE(alone->Step());
   // Both controllers saw the same state.
-  EXPECT_NEAR(run->set_point_n()[cable], alone->set_point_n()[cable] + 4, 1e-12);
+  EXPECT_NEAR(run->commands().set_point_n[cable], alone->commands().set_point_n[cable] + 4, 1e-12);
   controls[2].impedance->position_gain_n_per_m = 0;
   controls[2].impedance->velocity_gain_n_s_per_m = 0;
   EXPECT_TRUE(run->SetControl(controls[2]));
   ASSERT_TRUE(run->Step());
-  EXPECT_EQ(run->set_point_n()[cable], 19);  // T0 alone
+  EXPECT_EQ(run->commands().set_point_n[cable], 19);  // T0 alone
   controls[2].impedance.reset();
   EXPECT_FALSE(run->SetControl(controls[2]));  // a controller drives it
   controls[2].cable = 99;

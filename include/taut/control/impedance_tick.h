@@ -1,0 +1,71 @@
+/// One tick of impedance control of one cable: sensing, the impedance law and, where a PID winds
+/// the cable, that. The same text runs in a simulation (Real = double, or a wide number with a
+/// world a lane) and on a board (float).
+#pragma once
+
+#include "taut/control/impedance.h"
+#include "taut/control/pid.h"
+#include "taut/control/rate.h"
+#include "taut/control/real.h"
+
+namespace taut {
+namespace control {
+
+/// What all cables of a controller have in common; numbers only, so that no function of the
+/// standard library is compiled for an instruction set that a machine may lack.
+struct ImpedanceLaw {
+  bool by_pid = false;  ///< Else by the cable's stiffness.
+  bool differenced_rate = false, start_from_rest_length = false;
+  bool first_tick = true;
+  double proportional = 0, integral = 0, derivative = 0;  ///< Of the PID.
+  double period_s = 0.001;
+};
+
+template <class Real>
+struct ImpedanceMemory {
+  PidState<Real> pid;
+  DifferenceState<Real> difference;
+};
+
+template <class Real>
+struct ImpedanceCommand {
+  Real target_m, set_point_n;
+};
+
+/// `sensed` has the fields of `CableReadings` that the law asks for: rest_length_m, length_m,
+/// tension_n, elastic_n, stiffness_n_per_m, rate_m_per_s.
+template <class Real, class Readings>
+[[gnu::always_inline]] inline ImpedanceCommand<Real> StepImpedance(
+    const ImpedanceLaw& law, const Impedance<Real>& gains, Real velocity_offset_m_per_s,
+    const Readings& sensed, ImpedanceMemory<Real>& memory) noexcept {
+  Real rate_m_per_s = sensed.rate_m_per_s;
+  const Real period_s = FromScalar<Real>(law.period_s);
+  if (law.differenced_rate) {
+    if (law.first_tick) {
+      memory.difference = law.start_from_rest_length
+                              ? StartDifferenceAtRestLength(sensed.rest_length_m)
+                              : StartDifference(sensed.length_m);
+    }
+    rate_m_per_s = StepDifference(memory.difference, sensed.length_m, period_s);
+  }
+  const Real floor_m = Literal<Real>(0.0f);
+  ImpedanceCommand<Real> command;
+  command.set_point_n =
+      ImpedanceTension(gains, sensed.length_m, rate_m_per_s, velocity_offset_m_per_s);
+  if (!law.by_pid) {
+    command.target_m =
+        TensionToRestLengthByStiffness(sensed.rest_length_m, sensed.elastic_n, command.set_point_n,
+                                       sensed.stiffness_n_per_m, floor_m);
+    return command;
+  }
+  const Pid<Real> pid{FromScalar<Real>(law.proportional), FromScalar<Real>(law.integral),
+                      FromScalar<Real>(law.derivative)};
+  if (law.first_tick) memory.pid = StartPidAt(command.set_point_n - sensed.tension_n);
+  const Real winding =
+      TensionByPid(pid, memory.pid, sensed.tension_n, command.set_point_n, period_s);
+  command.target_m = RestLengthAfter(sensed.rest_length_m, winding, period_s, floor_m);
+  return command;
+}
+
+}  // namespace control
+}  // namespace taut

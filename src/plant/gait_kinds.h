@@ -1,0 +1,78 @@
+/// A gait at work in all lanes of a plant. One kind a file, gait_*.cpp, and a line here.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "base/assert.h"
+#include "taut/gait.h"
+#include "taut/plant.h"
+
+namespace taut::plant {
+
+/// The lanes' gaits, which differ in numbers only; `resolved[j]` is what `ResolveGait` made of
+/// `gaits[j]`.
+struct GaitSetup {
+  std::vector<const GaitSpec*> gaits;
+  std::vector<ResolvedGait> resolved;
+  double period_s = 0.01;
+};
+
+class GaitPlayer {
+ public:
+  explicit GaitPlayer(const GaitSetup& setup)
+      : lanes_(static_cast<int>(setup.gaits.size())),
+        cables_(setup.resolved[0].cables),
+        signal_(cables_.size() * setup.gaits.size()) {}
+  virtual ~GaitPlayer() = default;
+
+  /// Per output, the robot's cable.
+  const std::vector<int>& cables() const noexcept { return cables_; }
+  /// Of output i in lane j, at [i * lanes + j]: what it says since the last tick; 0 before.
+  const std::vector<double>& signal() const noexcept { return signal_; }
+
+  /// To the next tick, in the lanes that are due. Per lane: how many ticks and how much time there
+  /// were since it began to play.
+  virtual void Tick(Lanes due, const std::int64_t* number, const double* time_s,
+                    const ReadingRows& seen) = 0;
+  /// A lane gets other numbers, and plays from the beginning.
+  virtual void Restart(int lane, const GaitSpec& gait, const ResolvedGait& resolved) = 0;
+  /// Goes on in a lane from where another gait is, without a jump. False if there is no such way.
+  virtual bool GoOnFrom(const GaitPlayer& before, int lane) {
+    return (void)before, (void)lane, false;
+  }
+
+ protected:
+  int lanes() const noexcept { return lanes_; }
+  std::size_t At(std::size_t i, int lane) const noexcept {
+    return i * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane);
+  }
+
+ private:
+  int lanes_;
+  std::vector<int> cables_;
+
+ protected:
+  std::vector<double> signal_;
+};
+
+/// Each makes a player if the gaits are of its kind.
+using MakeGaitPlayer = std::unique_ptr<GaitPlayer> (*)(const GaitSetup&);
+
+std::unique_ptr<GaitPlayer> MakeSine(const GaitSetup&);
+std::unique_ptr<GaitPlayer> MakeCpg(const GaitSetup&);
+std::unique_ptr<GaitPlayer> MakeTable(const GaitSetup&);
+
+inline constexpr MakeGaitPlayer kGaitKinds[] = {MakeSine, MakeCpg, MakeTable};
+
+inline std::unique_ptr<GaitPlayer> PlayerOf(const GaitSetup& setup) {
+  for (const MakeGaitPlayer make : kGaitKinds) {
+    if (auto player = make(setup)) return player;
+  }
+  TAUT_ASSERT(false && "a gait of no kind");
+  return nullptr;
+}
+
+}  // namespace taut::plant

@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <cmath>
+
+#include "plant/gait_kinds.h"
+
+namespace taut::plant {
+namespace {
+
+/// The row that holds at `time_s`, which is not before the first.
+std::size_t RowAt(const std::vector<double>& times_s, double time_s) {
+  // A tick and a row that are one rounding apart are at one time.
+  const double tolerance_s = 1e-9;
+  const auto after = std::upper_bound(times_s.begin(), times_s.end(), time_s + tolerance_s);
+  return static_cast<std::size_t>(after - times_s.begin()) - 1;
+}
+
+/// Rows of a table, held or joined by straight lines.
+class TablePlayer final : public GaitPlayer {
+ public:
+  explicit TablePlayer(const GaitSetup& setup) : GaitPlayer(setup) {
+    for (const GaitSpec* gait : setup.gaits) tables_.push_back(*gait->table);
+  }
+
+  void Tick(Lanes due, const std::int64_t*, const double* time_s, const ReadingRows&) override {
+    for (int j = 0; j < lanes(); ++j) {
+      if (!Has(due, j)) continue;
+      const TableGait& table = tables_[static_cast<std::size_t>(j)];
+      const double t = TimeIn(table, time_s[j]);
+      const std::size_t row = RowAt(table.time_s, t);
+      const bool straight = table.linear && row + 1 < table.rows.size();
+      const double part =
+          straight
+              ? std::max(0.0, (t - table.time_s[row]) / (table.time_s[row + 1] - table.time_s[row]))
+              : 0.0;
+      for (std::size_t i = 0; i < cables().size(); ++i) {
+        double& out = signal_[At(i, j)];
+        out = table.rows[row][i];
+        if (straight) out += part * (table.rows[row + 1][i] - out);
+      }
+    }
+  }
+
+  void Restart(int lane, const GaitSpec& gait, const ResolvedGait&) override {
+    tables_[static_cast<std::size_t>(lane)] = *gait.table;
+  }
+
+ private:
+  static double TimeIn(const TableGait& table, double time_s) {
+    const double end_s = table.time_s.back();
+    if (!table.repeat_from_s || time_s < end_s) return time_s;
+    // fmod is exact, so it has the same bits everywhere
+    const double from_s = *table.repeat_from_s;
+    return from_s + std::fmod(time_s - from_s, end_s - from_s);
+  }
+
+  std::vector<TableGait> tables_;  ///< One a lane.
+};
+
+}  // namespace
+
+std::unique_ptr<GaitPlayer> MakeTable(const GaitSetup& setup) {
+  if (!setup.gaits[0]->table) return nullptr;
+  return std::make_unique<TablePlayer>(setup);
+}
+
+}  // namespace taut::plant

@@ -1,0 +1,139 @@
+#include "plant/loop.h"
+
+#include <algorithm>
+
+#include "base/assert.h"
+#include "plant/controller_kinds.h"
+#include "plant/sensors.h"
+
+namespace taut::plant {
+
+Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const> lanes,
+           Plant& plant, const Brought& brought)
+    : experiment_(experiment),
+      plant_(plant),
+      count_(static_cast<int>(lanes.size())),
+      plant_lanes_(plant.Observe().lanes),
+      schedules_(1, Schedule(experiment.step_s, experiment.duration_s)),
+      step_s_(static_cast<std::size_t>(plant_lanes_)),
+      to_s_(step_s_.size()) {
+  TAUT_ASSERT(0 < count_ && count_ <= plant_lanes_);
+  std::vector<const RolloutWorld*> all(lanes.begin(), lanes.end());
+  all.resize(step_s_.size(), lanes[0]);
+  const ControlSetup setup{experiment, all};
+  for (int j = 0; j < count_; ++j) timelines_.emplace_back(experiment);
+  const auto add = [&](std::unique_ptr<SensorModel> model) {
+    const LaneClock clock(model->clock(), plant_lanes_);
+    sensors_.push_back({std::move(model), clock});
+  };
+  if (experiment.sensors) {
+    std::vector<std::uint64_t> seeds;
+    for (const RolloutWorld* lane : all) seeds.push_back(lane->seed);
+    add(std::make_unique<Sensors>(*experiment.sensors, experiment.robot.def.cables.size(),
+                                  std::move(seeds)));
+  }
+  if (brought.sensors) add(brought.sensors(setup));
+  for (auto& controller : MakeControllers(setup, brought)) {
+    const LaneClock clock(controller->clock(), plant_lanes_);
+    laws_.push_back({std::move(controller), clock});
+  }
+}
+
+void Loop::Prepare() {
+  Lanes at_boundary = 0;
+  if (schedules_.size() == 1) {
+    if (!schedules_[0].AtBoundary()) return;
+    at_boundary = AllLanes(plant_lanes_);
+  } else {
+    for (int j = 0; j < plant_lanes_; ++j) {
+      if (ScheduleOf(j).AtBoundary()) at_boundary |= Lanes{1} << j;
+    }
+    if (at_boundary == 0) return;
+  }
+  const Observation* seen = &plant_.Observe();
+  const double* const time_s = seen->time_s;
+  for (Sensor& sensor : sensors_) {
+    const Tick tick = sensor.clock.Due(time_s, at_boundary);
+    if (tick.due != 0) {
+      sensor.model->Sample(tick, *seen);
+      sensor.clock.Advance(tick.due);
+    }
+    seen = &sensor.model->seen();
+  }
+  for (Law& law : laws_) {
+    const Tick tick = law.clock.Due(time_s, at_boundary);
+    if (tick.due == 0) continue;
+    law.controller->Act(tick, *seen, plant_.commands());
+    law.clock.Advance(tick.due);
+  }
+  for (std::size_t j = 0; j < schedules_.size(); ++j) {
+    if (Has(at_boundary, static_cast<int>(j))) {
+      schedules_[j].Aim(NextBoundary(static_cast<int>(j)));
+    }
+  }
+}
+
+void Loop::Step() {
+  Prepare();
+  if (World* const world = plant_.world()) {
+    for (int j = 0; j < count_; ++j) {
+      const Schedule& schedule = ScheduleOf(j);
+      timelines_[static_cast<std::size_t>(j)].Apply(*world, j, schedule.time_s(),
+                                                    schedule.step_s());
+    }
+  }
+  for (Schedule& schedule : schedules_) schedule.Advance();
+  for (int j = 0; j < plant_lanes_; ++j) {
+    const auto lane = static_cast<std::size_t>(j);
+    step_s_[lane] = ScheduleOf(j).step_s();
+    to_s_[lane] = ScheduleOf(j).time_s();
+  }
+  plant_.Advance(step_s_.data(), to_s_.data());
+}
+
+void Loop::Restart(int lane, const RolloutWorld& world) {
+  const auto j = static_cast<std::size_t>(lane);
+  if (plant_lanes_ > 1) schedules_.resize(step_s_.size(), schedules_[0]);
+  schedules_[schedules_.size() == 1 ? 0 : j] = Schedule(experiment_.step_s, experiment_.duration_s);
+  timelines_[j].Restart();
+  for (Sensor& sensor : sensors_) {
+    sensor.model->Restart(lane, world);
+    sensor.clock.Restart(lane);
+  }
+  for (Law& law : laws_) {
+    law.controller->Restart(lane, world);
+    law.clock.Restart(lane);
+  }
+  plant_.Restart(lane);
+}
+
+/// The next tick or corner.
+double Loop::NextBoundary(int lane) const {
+  const auto timeline = static_cast<std::size_t>(lane < count_ ? lane : 0);
+  double next = timelines_[timeline].NextCorner(time_s(lane));
+  for (const Sensor& sensor : sensors_) next = std::min(next, sensor.clock.NextS(lane));
+  for (const Law& law : laws_) next = std::min(next, law.clock.NextS(lane));
+  return next;
+}
+
+std::optional<ImpedanceGains> Loop::Gains(int cable) const {
+  for (const Law& law : laws_) {
+    if (auto gains = law.controller->Gains(cable)) return gains;
+  }
+  return std::nullopt;
+}
+
+bool Loop::SetGains(const ImpedanceGains& gains) {
+  return std::any_of(laws_.begin(), laws_.end(),
+                     [&](Law& law) { return law.controller->SetGains(gains); });
+}
+
+void Loop::SetRestLength(int cable, double rest_length_m) {
+  for (Law& law : laws_) {
+    if (law.controller->Hold(cable, rest_length_m)) return;
+  }
+  plant_.commands().rest_length_m[static_cast<std::ptrdiff_t>(cable) * plant_lanes_] =
+      rest_length_m;
+}
+
+}  // namespace taut::plant

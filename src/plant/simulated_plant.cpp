@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <vector>
+
+#include "base/assert.h"
+#include "taut/plant.h"
+
+namespace taut {
+namespace {
+
+class SimulatedPlant final : public Plant, public World {
+ public:
+  explicit SimulatedPlant(Batch& batch)
+      : batch_(batch),
+        lanes_(static_cast<std::size_t>(batch.lanes())),
+        cables_(batch.model().def().cables.size()),
+        time_s_(lanes_),
+        set_point_n_(cables_ * lanes_),
+        velocity_input_m_per_s_(cables_ * lanes_),
+        signal_(cables_ * lanes_),
+        mode_(cables_ * lanes_, CommandMode::kRestLength),
+        gait_(lanes_, -1),
+        goes_(static_cast<std::size_t>(batch.worlds())) {
+    TAUT_ASSERT(batch.groups() == 1);
+    seen_.lanes = commands_.lanes = batch.lanes();
+    seen_.time_s = time_s_.data();
+    seen_.bodies = this;
+    seen_.cables = batch.Cables(0);
+    commands_.rest_length_m = batch.Cables(0).rest_length_target_m;
+    commands_.set_point_n = set_point_n_.data();
+    commands_.velocity_input_m_per_s = velocity_input_m_per_s_.data();
+    commands_.signal = signal_.data();
+    commands_.mode = mode_.data();
+    commands_.gait = gait_.data();
+  }
+
+  const Observation& Observe() override {
+    (void)batch_.Cables(0);  // senses, if nobody has since the last step; its rows stay in place
+    return seen_;
+  }
+  Commands& commands() override { return commands_; }
+
+  void Advance(const double* step_s, const double* to_s) override {
+    Hold();
+    if (std::all_of(step_s, step_s + lanes_, [&](double h) { return h == step_s[0]; })) {
+      if (step_s[0] > 0) batch_.Step(step_s[0]);
+    } else {
+      StepByLength(step_s);
+    }
+    std::copy_n(to_s, lanes_, time_s_.begin());
+  }
+
+  void Restart(int lane) override {
+    const auto j = static_cast<std::size_t>(lane);
+    time_s_[j] = 0;
+    gait_[j] = -1;
+    for (std::size_t i = j; i < signal_.size(); i += lanes_) {
+      set_point_n_[i] = velocity_input_m_per_s_[i] = signal_[i] = 0;
+      mode_[i] = CommandMode::kRestLength;
+    }
+  }
+
+  bool Goes(int lane) const override { return (batch_.Status(lane).bits & kStatusNonFinite) == 0; }
+  World* world() noexcept override { return this; }
+
+  BodyState Body(int lane, int body) const override { return batch_.Body(lane, body); }
+  Vec3 NodePosition(int lane, int node) const override { return batch_.NodePosition(lane, node); }
+  Vec3 NodeVelocity(int lane, int node) const override { return batch_.NodeVelocity(lane, node); }
+  void SetNodeForce(int lane, int node, const Vec3& force_n) override {
+    batch_.SetNodeForce(lane, node, force_n);
+  }
+  double BodyMass(int lane, int body) const override {
+    return batch_.GetParameter(lane, Parameter::kBodyMass, body);
+  }
+  Energy TotalEnergy(int lane) const override { return batch_.TotalEnergy(lane); }
+  std::vector<ContactState> Contacts(int lane) const override { return batch_.Contacts(lane); }
+  WorldStatus Status(int lane) const override { return batch_.Status(lane); }
+  std::uint64_t Hash(int lane) const override { return batch_.Hash(lane); }
+
+ private:
+  /// Actuators that are to stay where they are: their target is where they are.
+  void Hold() {
+    for (std::size_t i = 0; i < mode_.size(); ++i) {
+      if (mode_[i] < CommandMode::kHold) continue;
+      commands_.rest_length_m[i] = seen_.cables.rest_length_m[i];
+    }
+  }
+
+  /// Lanes whose steps differ in length step one length after the other.
+  void StepByLength(const double* step_s) {
+    std::vector<double> lengths(step_s, step_s + goes_.size());
+    std::sort(lengths.begin(), lengths.end());
+    lengths.erase(std::unique(lengths.begin(), lengths.end()), lengths.end());
+    for (const double length : lengths) {
+      if (!(length > 0)) continue;
+      for (std::size_t j = 0; j < goes_.size(); ++j) goes_[j] = step_s[j] == length;
+      batch_.StepSome(length, goes_);
+    }
+  }
+
+  Batch& batch_;
+  std::size_t lanes_, cables_;
+  std::vector<double> time_s_, set_point_n_, velocity_input_m_per_s_, signal_;
+  std::vector<CommandMode> mode_;
+  std::vector<int> gait_;
+  std::vector<std::uint8_t> goes_;
+  Observation seen_;
+  Commands commands_;
+};
+
+}  // namespace
+
+std::unique_ptr<Plant> PlantOf(Batch& batch) { return std::make_unique<SimulatedPlant>(batch); }
+
+}  // namespace taut

@@ -1,0 +1,42 @@
+/// A plant that is none: what it observes is set by hand. One lane.
+#pragma once
+
+#include "taut/plant.h"
+
+namespace taut::test {
+
+class FakePlant final : public Plant {
+ public:
+  explicit FakePlant(std::size_t cables) : cables_(cables), rows_(10 * cables), mode_(cables) {
+    const auto row = [&](int i) { return rows_.data() + static_cast<std::ptrdiff_t>(cables) * i; };
+    seen_.time_s = &time_s;
+    seen_.cables = {row(0), row(1), row(2), row(3), row(4), row(5)};
+    commands_ = {1, row(6), row(7), row(8), row(9), mode_.data(), &gait_};
+  }
+  /// Every cable reads this from now on.
+  void Show(const CableState& state) {
+    const double values[] = {state.rest_length_m, state.length_m,  state.rate_m_per_s,
+                             state.tension_n,     state.elastic_n, state.stiffness_n_per_m};
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (std::size_t c = 0; c < cables_; ++c) rows_[i * cables_ + c] = values[i];
+    }
+  }
+
+  const Observation& Observe() override { return seen_; }
+  Commands& commands() override { return commands_; }
+  void Advance(const double*, const double* to_s) override { time_s = *to_s; }
+  void Restart(int) override { time_s = 0; }
+  bool Goes(int) const override { return true; }
+
+  double time_s = 0;
+
+ private:
+  std::size_t cables_;
+  std::vector<double> rows_;
+  std::vector<CommandMode> mode_;
+  int gait_ = -1;
+  Observation seen_;
+  Commands commands_;
+};
+
+}  // namespace taut::test
