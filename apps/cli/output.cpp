@@ -32,7 +32,7 @@ int WriteNamed(const std::string& path, const std::string& text) {
 
 std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& experiment,
                                   RunOptions options, bool csv, Diagnostics& out) {
-  const std::vector<ChannelInfo> channels = RunChannels(experiment);
+  const std::vector<ChannelInfo> channels = RunChannels(experiment, options.plant);
   TraceMetadata metadata = RunMetadata(experiment);
   metadata.emplace_back(kRunIdKey, folder.id());
   std::vector<std::unique_ptr<TraceWriter>> writers;

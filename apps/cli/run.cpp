@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -14,6 +15,7 @@
 #include "streams.h"
 #include "taut/batch.h"
 #include "taut/compare.h"
+#include "taut/plant.h"
 #include "taut/run.h"
 #include "taut/spec.h"
 #include "taut/summary.h"
@@ -26,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunArguments {
-  std::string experiment, out;
+  std::string experiment, out, replay;
   std::vector<std::string> set;
   double step_s = 0, duration_s = -1;
   std::uint64_t seed = 0;
@@ -68,6 +70,12 @@ void CompareWith(const std::string& reference, const std::string& result, bool q
   fmt::print("\n{}", ComparisonTable(Compare(*a, *b, {}), result, reference));
 }
 
+/// Of a replay: the log's, unless somebody wants less.
+double DurationOf(const ExperimentSpec& experiment, const Trace& log, bool asked) {
+  const double of_log_s = log.time_s.back() - log.time_s.front();
+  return asked ? std::min(experiment.duration_s, of_log_s) : of_log_s;
+}
+
 int Run(const RunArguments& args) {
   Diagnostics found;
   const std::optional<Overrides> overrides = ParseOverrides(args.set);
@@ -79,10 +87,17 @@ int Run(const RunArguments& args) {
   if (args.has_seed) experiment->seed = args.seed;
 
   // Before anything is written over an earlier run.
-  if (!CheckStart(experiment->robot, experiment->start, found) ||
-      !CheckRecord(*experiment, found) || !Pass(found, args.strict)) {
-    return Fail(found, kBadInput);
+  std::optional<Trace> log;
+  std::unique_ptr<Plant> plant;
+  if (!args.replay.empty()) {
+    log = ReadTraceOfRun(args.replay, found);
+    if (log) plant = ReplayOf(*log, experiment->robot, found);
+    if (plant) experiment->duration_s = DurationOf(*experiment, *log, args.duration_s >= 0);
+  } else {
+    CheckStart(experiment->robot, experiment->start, found);
   }
+  CheckRecord(*experiment, found);
+  if (!Pass(found, args.strict)) return Fail(found, kBadInput);
 
   const std::string path =
       args.out.empty() ? (fs::path("runs") / experiment->name).string() : args.out;
@@ -92,6 +107,7 @@ int Run(const RunArguments& args) {
   ProgressLine line(args.quiet);
   RunOptions options;
   options.threads = args.threads;
+  options.plant = plant.get();
   options.progress = [&](const RunProgress& p) { return line.Show(p); };
   CatchInterrupts();
   const std::optional<RunSummary> summary = RunInto(*folder, *experiment, options, args.csv, found);
@@ -137,6 +153,9 @@ void AddRun(CLI::App& app, int& exit_code) {
   run->add_option("--seed", args->seed, "Seed of all that is random")
       ->each([args](const std::string&) { args->has_seed = true; });
   run->add_option("--out", args->out, "Folder to write into (default: runs/<experiment>)");
+  run->add_option("--replay", args->replay,
+                  "Let the controllers act on this recording (trace.h5, .csv) instead of a "
+                  "simulation: what they would have commanded");
   run->add_option("--threads", args->threads, "Threads, 0: one a core")->check(CLI::Range(0, 1024));
   run->add_flag("--csv", args->csv, "Write trace.csv as well");
   run->add_flag("--report", args->report,
@@ -148,6 +167,7 @@ void AddRun(CLI::App& app, int& exit_code) {
       "  taut run experiments/push_20n.yaml\n"
       "  taut run experiments/push_20n.yaml --set push_n=15 --step_s 0.0005 --out runs/push_15n\n"
       "  taut run experiments/push_20n.yaml --csv --quiet\n"
+      "  taut run experiments/push_20n.yaml --replay measured.csv --out runs/would_have\n"
       "Ctrl-C ends a run early; its trace is complete up to there (exit status 130).\n"
       "A folder holds one run: a new one replaces it, and two at once are refused.");
   run->callback([args, &exit_code] { exit_code = Run(*args); });

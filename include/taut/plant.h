@@ -20,6 +20,7 @@
 #include "taut/batch.h"
 #include "taut/cable_readings.h"
 #include "taut/spec.h"
+#include "taut/trace.h"
 
 namespace taut {
 
@@ -126,6 +127,13 @@ class Plant {
 /// A simulated plant: the lanes of a batch of one group, whose clocks all start at 0. The batch
 /// outlives it.
 std::unique_ptr<Plant> PlantOf(Batch& batch);
+
+/// A log as a plant of one lane: it shows what was recorded of the robot's cables
+/// (`cable/NAME/...`) and, where all of them were, bodies; commands go nowhere. So a controller
+/// says what it would have done. A quantity that a row lacks, or that is not finite there, stays
+/// what it was, with `kFaultNoReading`. Times count from the first row. Trace and robot outlive it.
+/// Null and a complaint if the log has no row, or nothing of these cables.
+std::unique_ptr<Plant> ReplayOf(const Trace& trace, const RobotSpec& robot, Diagnostics& out);
 
 // --- what a program may bring -------------------------------------------------------------------
 

@@ -82,10 +82,14 @@ struct RunOptions {
   std::vector<TraceWriter*> traces;
   /// Controllers and sensors that act beside the experiment's.
   Brought brought;
+  /// At its start, of one lane: the experiment's controllers act on it. Null: a simulation is made
+  /// and brought to the experiment's start. The run ends at the latest when the plant goes no more.
+  Plant* plant = nullptr;
 };
 
-/// The channels that a run of this experiment records, in order.
-std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment);
+/// The channels that a run of this experiment records, in order. `plant`: as in `RunOptions`; what
+/// is not known of it has no channel.
+std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment, Plant* plant = nullptr);
 
 /// False, and a complaint each, if the experiment asks for channels that no run of it has.
 bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out);

@@ -61,8 +61,11 @@ bool UnderImpedance(const ExperimentSpec& experiment, int cable) {
 
 }  // namespace
 
-Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.record.channels) {
+Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
+    : patterns_(experiment.record.channels) {
   const ModelDef& def = experiment.robot.def;
+  const bool has_bodies = plant == nullptr || plant->Observe().bodies != nullptr;
+  const bool is_world = plant == nullptr || plant->world() != nullptr;
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
     std::vector<ChannelInfo> names = {{"tension_n", "N"},     {"elastic_n", "N"},
                                       {"length_m", "m"},      {"rate_m_per_s", "m/s"},
@@ -95,7 +98,7 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
           std::copy(std::begin(values), std::end(values), out);
         });
   }
-  for (std::size_t b = 0; b < def.bodies.size(); ++b) {
+  for (std::size_t b = 0; has_bodies && b < def.bodies.size(); ++b) {
     Add("body/" + def.bodies[b].name + "/",
         {{"position_x_m", "m"},
          {"position_y_m", "m"},
@@ -114,14 +117,19 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
           FillBody(*s.exact->bodies, static_cast<int>(b), out);
         });
   }
-  for (std::size_t i = 0; i < experiment.pushes.size(); ++i) {
+  for (std::size_t i = 0; is_world && i < experiment.pushes.size(); ++i) {
     Add("push/" + experiment.pushes[i].name + "/", {{"force_n", "N"}},
         [i](const RecordSource& s, double* out) { *out = s.timeline->push_n()[i]; });
   }
-  for (std::size_t i = 0; i < experiment.drags.size(); ++i) {
+  for (std::size_t i = 0; is_world && i < experiment.drags.size(); ++i) {
     Add("drag/" + experiment.drags[i].name + "/", {{"force_n", "N"}},
         [i](const RecordSource& s, double* out) { *out = s.timeline->drag_n()[i]; });
   }
+  if (is_world) AddSystem(def);
+  row_.resize(channels_.size());
+}
+
+void Recorder::AddSystem(const ModelDef& def) {
   Add("system/",
       {{"kinetic_j", "J"},
        {"gravity_j", "J"},
@@ -134,7 +142,6 @@ Recorder::Recorder(const ExperimentSpec& experiment) : patterns_(experiment.reco
       [count = static_cast<int>(def.bodies.size())](const RecordSource& s, double* out) {
         FillSystem(*s.world, count, out);
       });
-  row_.resize(channels_.size());
 }
 
 void Recorder::Add(const std::string& prefix, const std::vector<ChannelInfo>& names, Fill fill) {
@@ -165,8 +172,8 @@ const std::vector<double>& Recorder::Row(const RecordSource& source) {
 
 namespace taut {
 
-std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment) {
-  return plant::Recorder(experiment).channels();
+std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment, Plant* plant) {
+  return plant::Recorder(experiment, plant).channels();
 }
 
 bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out) {

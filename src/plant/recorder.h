@@ -21,7 +21,8 @@ struct RecordSource {
 
 class Recorder {
  public:
-  explicit Recorder(const ExperimentSpec& experiment);
+  /// `plant`: whose rows it will take; null: a simulation's.
+  explicit Recorder(const ExperimentSpec& experiment, Plant* plant = nullptr);
 
   const std::vector<ChannelInfo>& channels() const noexcept { return channels_; }
 
@@ -29,6 +30,7 @@ class Recorder {
   const std::vector<double>& Row(const RecordSource& source);
 
  private:
+  void AddSystem(const ModelDef& def);
   using Fill = std::function<void(const RecordSource&, double*)>;
   /// Adds channels `prefix + names[i]` that `fill` computes together; those not asked for are
   /// dropped.

@@ -39,7 +39,7 @@ class Runner {
         variant_(WorldOf(experiment)),
         loop_(experiment, std::array{static_cast<const RolloutWorld*>(&variant_)}, plant,
               options.brought),
-        recorder_(experiment),
+        recorder_(experiment, &plant),
         statistics_(experiment) {}
 
   RunSummary Run(Diagnostics& out) {
@@ -129,8 +129,13 @@ class Runner {
 
 std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment, const RunOptions& options,
                                         Diagnostics& out) {
+  if (!CheckRecord(experiment, out)) return std::nullopt;
+  if (options.plant != nullptr) {
+    if (options.begin && !options.begin(out)) return std::nullopt;
+    return Runner(experiment, options, *options.plant).Run(out);
+  }
   const auto model = Model::Compile(experiment.robot.def, out);
-  if (!model || !CheckRecord(experiment, out)) return std::nullopt;
+  if (!model) return std::nullopt;
   BatchOptions batch_options;
   batch_options.threads = options.threads;
   batch_options.simd = options.simd;

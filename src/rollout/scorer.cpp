@@ -170,7 +170,7 @@ RolloutResult Scorer::Result(int j) const {
   }
   if (objective_.fall && out.fell_s) out.score -= objective_.fall->penalty;
   if (!std::isfinite(out.score)) {
-    out.failed = "the objective is not a finite number";
+    out.failed = own_ ? "the score is not a finite number" : "the objective is not a finite number";
     if (!own_ && objective_.measure == Measure::kDistancePerEnergy && out.energy_j == 0) {
       out.failed += ": the motors did no work";
     }

@@ -64,14 +64,15 @@ void Batch::Impl::StepSome(double step_s, const std::uint8_t* goes) {
     const int touches = g.touches_used;
     step();
     held.PutBack();
-    // The lists are as long as the longest lane's, and what the step left behind its own is old.
+    // The lists are as long as the longest lane's: what is behind a lane's own end is old.
     const auto keep = [&](int& used, int before, int first_slot) {
-      for (int i = first_slot + used; i < first_slot + before; ++i) {
-        for (int lane = 0; lane < n; ++lane) {
-          if (!held.Has(lane)) at(first + lane, layout.contact_key + i) = sim::kNoKey;
+      const int longer = std::max(used, before);
+      for (int lane = 0; lane < n; ++lane) {
+        for (int i = held.Has(lane) ? before : used; i < longer; ++i) {
+          at(first + lane, layout.contact_key + first_slot + i) = sim::kNoKey;
         }
       }
-      used = std::max(used, before);
+      used = longer;
     };
     for (int b = 0; b < view.body_count; ++b) {
       keep(g.slots_used[b], slots[static_cast<std::size_t>(b)], view.first_slot[b]);
