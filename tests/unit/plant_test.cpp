@@ -58,10 +58,18 @@ class Company {
     EXPECT_TRUE(plant::PrepareStart(ExperimentOf(experiment_, world), alone, out_));
     EXPECT_TRUE(batch_.Restore(lane, alone.Save(0)));
   }
+  /// As another variant than before.
   void Restart(int lane) {
+    RolloutWorld& world = worlds_[static_cast<std::size_t>(lane)];
+    world.seed += 1000;
+    world.scales.push_back({ScaleSpec::Quantity::kMass, {}, 1.03});
+    for (ControllerSpec& controller : world.controllers) {
+      if (controller.impedance) controller.impedance->cables[0].tension_offset_n += 0.5;
+    }
     BringToStart(lane);
-    loop_->Restart(lane, worlds_[static_cast<std::size_t>(lane)]);
+    loop_->Restart(lane, world);
   }
+  const std::vector<RolloutWorld>& worlds() const { return worlds_; }
 
   plant::Loop& loop() { return *loop_; }
   std::uint64_t Hash(int lane) const { return batch_.Hash(lane); }
@@ -87,14 +95,14 @@ std::uint64_t HashAlone(const ExperimentSpec& experiment, const RolloutWorld& wo
 void ExpectOwnBits(ExperimentSpec experiment, double duration_s) {
   experiment.duration_s = duration_s;
   const int lanes = static_cast<int>(BestSimd());
-  const std::vector<RolloutWorld> worlds = Variants(experiment, lanes);
-  Company company(experiment, worlds, BestSimd());
+  Company company(experiment, Variants(experiment, lanes), BestSimd());
+  const std::vector<RolloutWorld>& worlds = company.worlds();
   plant::Loop& loop = company.loop();
   const std::pair<double, int> restarts[] = {
       {0.2, 1 % lanes}, {0.3217, 2 % lanes}, {0.55, 1 % lanes}};
   std::size_t done = 0;
   int hashed = 0;
-  std::vector<std::uint64_t> hash(worlds.size());
+  std::vector<std::uint64_t> hash(static_cast<std::size_t>(lanes));
   for (double passed_s = 0; hashed < lanes; passed_s += loop.step_s()[0]) {
     ASSERT_LT(passed_s, 3 * duration_s);
     if (done < std::size(restarts) && passed_s >= restarts[done].first) {
@@ -119,6 +127,10 @@ TEST(Lanes, BeginAnewWhileTheirNeighboursRunOn) {
   ExperimentSpec push = Load("push_20n");
   for (auto& [time_s, force_n] : push.pushes[0].force_n) time_s = 0.05 * time_s + 0.0003;
   ExpectOwnBits(push, 0.7);
+  ExperimentSpec drag = Load("drag");
+  drag.drags[0].from_s = 0.1003;
+  drag.drags[0].to_s = 0.9;
+  ExpectOwnBits(drag, 0.7);
 }
 
 TEST(Lanes, BeginAnewWithSensorsAndUnevenClocks) {
