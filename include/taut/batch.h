@@ -171,6 +171,8 @@ class Batch {
   /// for controllers that run over lanes. Group g holds the worlds from g * lanes() on; lanes
   /// behind the last world are there, too.
   CableRows Cables(int group) noexcept;
+  /// Brings the readings that `Cables` has pointed to up to date, after steps.
+  void Sense(int group) const noexcept;
   int groups() const noexcept;
   BodyState Body(int world, int body) const noexcept;
   Vec3 NodePosition(int world, int node) const noexcept;  ///< [m], in W.

@@ -38,6 +38,7 @@ class ThreadPool {
   /// takes what others have not begun.
   template <class Work>
   void ForEach(std::size_t count, Work& work) {
+    if (count == 1) return work(0, 0);  // nobody needs to wake for that
     const std::size_t threads = shares_.size();
     for (std::size_t t = 0; t < threads; ++t) {
       shares_[t].next.store(count * t / threads, std::memory_order_relaxed);
@@ -53,11 +54,7 @@ class ThreadPool {
         }
       }
     };
-    if (count > 1) {
-      Run(take);
-    } else {
-      take(0);  // nobody needs to wake for that
-    }
+    Run(take);
   }
 
  private:

@@ -65,6 +65,7 @@ class GaitController final : public Controller {
       if (Has(tick.due, static_cast<int>(j))) Choose(j, tick.number[j], commands.gait[j]);
     }
     for (std::size_t g = 0; g < players_.size(); ++g) Play(static_cast<int>(g), tick, seen);
+    if (InUnison(tick.due)) return SayInUnison(commands);
     for (std::size_t j = 0; j < lanes_.size(); ++j) {
       if (Has(tick.due, static_cast<int>(j))) Say(j, tick.number[j], commands);
     }
@@ -131,6 +132,23 @@ class GaitController final : public Controller {
     if (playing == 0) return;
     players_[static_cast<std::size_t>(gait)]->Tick(playing, number_.data(), time_s_.data(),
                                                    seen.cables);
+  }
+
+  /// Whether all lanes play the same one gait.
+  bool InUnison(Lanes due) const {
+    bool same = due == AllLanes(static_cast<int>(lanes_.size()));
+    for (const Lane& lane : lanes_) {
+      same = same && lane.before.gait < 0 && lane.now.gait == lanes_[0].now.gait;
+    }
+    return same;
+  }
+  void SayInUnison(Commands& commands) const {
+    const GaitPlayer& player = *players_[static_cast<std::size_t>(lanes_[0].now.gait)];
+    const double* said = player.signal().data();
+    for (const int cable : player.cables()) {
+      double* const out = commands.signal + static_cast<std::size_t>(cable) * lanes_.size();
+      for (std::size_t j = 0; j < lanes_.size(); ++j) out[j] = *said++;
+    }
   }
 
   void Say(std::size_t j, std::int64_t tick, Commands& commands) const {

@@ -47,9 +47,8 @@ class ImpedanceController final : public Controller {
 
   void Act(const Tick& tick, const Observation& seen, Commands& commands) override {
     Lanes first = 0;
-    for (int j = 0; j < lanes_; ++j) {
-      if (Has(tick.due, j) && tick.number[j] == 0) first |= Lanes{1} << j;
-    }
+    for (int j = 0; j < lanes_; ++j) first |= Lanes{tick.number[j] == 0} << j;
+    first &= tick.due;
     if (first != 0) Act(first, true, seen, commands);
     if (tick.due != first) Act(tick.due & ~first, false, seen, commands);
   }
@@ -89,15 +88,7 @@ class ImpedanceController final : public Controller {
 
   void Act(Lanes due, bool first, const Observation& seen, Commands& commands) {
     OtherLanes others(due, lanes_);
-    for (std::vector<double>* memory : {&error_before_, &integral_, &length_before_m_}) {
-      others.Keep(memory->data(), cables_.size());
-    }
-    for (const int cable : cables_) {
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(cable) * lanes_;
-      others.Keep(commands.rest_length_m + at, 1);
-      others.Keep(commands.set_point_n + at, 1);
-      others.Keep(commands.velocity_input_m_per_s + at, 1);
-    }
+    if (!others.none()) KeepAll(others, commands);
     law_.first_tick = first;
     const ImpedanceRows rows{
         static_cast<int>(cables_.size()), cables_.data(),        tension_offset_n_.data(),
@@ -108,6 +99,19 @@ class ImpedanceController final : public Controller {
                       {commands.signal, commands.velocity_input_m_per_s, commands.rest_length_m,
                        commands.set_point_n});
     others.PutBack();
+  }
+
+  /// All that a tick writes.
+  void KeepAll(OtherLanes& others, const Commands& commands) {
+    for (std::vector<double>* memory : {&error_before_, &integral_, &length_before_m_}) {
+      others.Keep(memory->data(), cables_.size());
+    }
+    for (const int cable : cables_) {
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(cable) * lanes_;
+      others.Keep(commands.rest_length_m + at, 1);
+      others.Keep(commands.set_point_n + at, 1);
+      others.Keep(commands.velocity_input_m_per_s + at, 1);
+    }
   }
 
   std::size_t index_;

@@ -75,20 +75,26 @@ void Loop::Prepare() {
 
 void Loop::Step() {
   Prepare();
-  if (World* const world = plant_.world()) {
-    for (int j = 0; j < count_; ++j) {
-      const Schedule& schedule = ScheduleOf(j);
-      timelines_[static_cast<std::size_t>(j)].Apply(*world, j, schedule.time_s(),
-                                                    schedule.step_s());
+  if (!timelines_[0].idle()) Push();  // all lanes have the same events, and hands are in the first
+  for (Schedule& schedule : schedules_) schedule.Advance();
+  if (schedules_.size() == 1) {
+    const double step_s = schedules_[0].step_s(), to_s = schedules_[0].time_s();
+    for (std::size_t j = 0; j < step_s_.size(); ++j) step_s_[j] = step_s, to_s_[j] = to_s;
+  } else {
+    for (std::size_t j = 0; j < schedules_.size(); ++j) {
+      step_s_[j] = schedules_[j].step_s();
+      to_s_[j] = schedules_[j].time_s();
     }
   }
-  for (Schedule& schedule : schedules_) schedule.Advance();
-  for (int j = 0; j < plant_lanes_; ++j) {
-    const auto lane = static_cast<std::size_t>(j);
-    step_s_[lane] = ScheduleOf(j).step_s();
-    to_s_[lane] = ScheduleOf(j).time_s();
-  }
   plant_.Advance(step_s_.data(), to_s_.data());
+}
+
+void Loop::Push() {
+  World* const world = plant_.world();
+  for (int j = 0; world != nullptr && j < count_; ++j) {
+    const Schedule& schedule = ScheduleOf(j);
+    timelines_[static_cast<std::size_t>(j)].Apply(*world, j, schedule.time_s(), schedule.step_s());
+  }
 }
 
 void Loop::Restart(int lane, const RolloutWorld& world) {

@@ -69,6 +69,7 @@ class Loop {
   const Schedule& ScheduleOf(int lane) const noexcept {
     return schedules_[schedules_.size() == 1 ? 0 : static_cast<std::size_t>(lane)];
   }
+  void Push();
   double NextBoundary(int lane) const;
 
   const ExperimentSpec& experiment_;

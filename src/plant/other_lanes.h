@@ -13,6 +13,9 @@ class OtherLanes {
   /// Nothing is kept while all lanes are due.
   OtherLanes(Lanes due, int lanes) : due_(due), lanes_(lanes), all_(due == AllLanes(lanes)) {}
 
+  /// Whether there is nothing to keep.
+  bool none() const noexcept { return all_; }
+
   /// Keeps `count` elements of a row.
   void Keep(double* row, std::size_t count) {
     if (all_) return;

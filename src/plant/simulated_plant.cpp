@@ -34,19 +34,20 @@ class SimulatedPlant final : public Plant, public World {
   }
 
   const Observation& Observe() override {
-    (void)batch_.Cables(0);  // senses, if nobody has since the last step; its rows stay in place
+    batch_.Sense(0);  // the rows stay in place
     return seen_;
   }
   Commands& commands() override { return commands_; }
 
   void Advance(const double* step_s, const double* to_s) override {
     Hold();
-    if (std::all_of(step_s, step_s + lanes_, [&](double h) { return h == step_s[0]; })) {
-      if (step_s[0] > 0) batch_.Step(step_s[0]);
-    } else {
-      StepByLength(step_s);
+    bool alike = true;
+    for (std::size_t j = 0; j < lanes_; ++j) {
+      alike = alike && step_s[j] == step_s[0];
+      time_s_[j] = to_s[j];
     }
-    std::copy_n(to_s, lanes_, time_s_.begin());
+    if (!alike) return StepByLength(step_s);
+    if (step_s[0] > 0) batch_.Step(step_s[0]);
   }
 
   void Restart(int lane) override {
@@ -79,6 +80,9 @@ class SimulatedPlant final : public Plant, public World {
  private:
   /// Actuators that are to stay where they are: their target is where they are.
   void Hold() {
+    CommandMode most = CommandMode::kRestLength;
+    for (const CommandMode mode : mode_) most = mode > most ? mode : most;
+    if (most < CommandMode::kHold) return;
     for (std::size_t i = 0; i < mode_.size(); ++i) {
       if (mode_[i] < CommandMode::kHold) continue;
       commands_.rest_length_m[i] = seen_.cables.rest_length_m[i];

@@ -8,6 +8,13 @@
 
 namespace taut::plant {
 
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr Vec3 kNothingYet{kNan, kNan, kNan};
+
+}  // namespace
+
 double ProfileAt(const std::vector<std::pair<double, double>>& points, double time_s) {
   if (points.empty() || time_s < points.front().first || time_s > points.back().first) return 0;
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -35,6 +42,7 @@ Timeline::Timeline(const ExperimentSpec& experiment)
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
   std::sort(corners_.begin(), corners_.end());
+  set_n_.assign(nodes_.size(), kNothingYet);
 }
 
 double Timeline::NextCorner(double time_s) const {
@@ -60,7 +68,8 @@ Vec3 Timeline::DragForce(const Bodies& bodies, int lane, std::size_t drag, doubl
 }
 
 void Timeline::Apply(World& world, int lane, double time_s, double step_s) {
-  for (int node : nodes_) {
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const int node = nodes_[n];
     Vec3 force;
     for (std::size_t i = 0; i < experiment_.pushes.size(); ++i) {
       const PushSpec& push = experiment_.pushes[i];
@@ -75,6 +84,9 @@ void Timeline::Apply(World& world, int lane, double time_s, double step_s) {
     for (const NodeForce& hand : hand_) {
       if (hand.node == node) force = force + hand.force_n;
     }
+    Vec3& set = set_n_[n];
+    if (force.x == set.x && force.y == set.y && force.z == set.z) continue;
+    set = force;
     world.SetNodeForce(lane, node, force);
   }
 }
@@ -84,6 +96,7 @@ void Timeline::Restart() {
   std::fill(drag_n_.begin(), drag_n_.end(), 0.0);
   dragging_.assign(dragging_.size(), false);
   hand_.clear();
+  set_n_.assign(nodes_.size(), kNothingYet);
 }
 
 void Timeline::SetHandForces(std::vector<NodeForce> forces) {
@@ -91,7 +104,9 @@ void Timeline::SetHandForces(std::vector<NodeForce> forces) {
   for (const NodeForce& hand : hand_) {
     const auto at = std::lower_bound(nodes_.begin(), nodes_.end(), hand.node);
     // A node stays here for good: once it is let go, its force is set to zero.
-    if (at == nodes_.end() || *at != hand.node) nodes_.insert(at, hand.node);
+    if (at != nodes_.end() && *at == hand.node) continue;
+    set_n_.insert(set_n_.begin() + (at - nodes_.begin()), kNothingYet);
+    nodes_.insert(at, hand.node);
   }
 }
 

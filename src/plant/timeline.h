@@ -21,6 +21,9 @@ class Timeline {
  public:
   explicit Timeline(const ExperimentSpec& experiment);
 
+  /// Whether nothing ever pushes or drags.
+  bool idle() const noexcept { return nodes_.empty(); }
+
   /// The next time after `time_s` at which a profile has a corner; infinity if there is none.
   double NextCorner(double time_s) const;
 
@@ -44,7 +47,8 @@ class Timeline {
 
   const ExperimentSpec& experiment_;
   std::vector<double> corners_;
-  std::vector<int> nodes_;  ///< All that are ever pushed or dragged.
+  std::vector<int> nodes_;   ///< All that are ever pushed or dragged, rising.
+  std::vector<Vec3> set_n_;  ///< What the world was told of them last; NaN: nothing yet.
   std::vector<double> push_n_, drag_n_;
   std::vector<NodeForce> hand_;
   std::vector<Vec3> drag_start_m_;

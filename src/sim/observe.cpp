@@ -41,6 +41,11 @@ CableRows Batch::Cables(int group) noexcept {
           d.lanes(), first_world, first(d.layout.target)};
 }
 
+void Batch::Sense(int group) const noexcept {
+  sim::CheckIndex(__func__, "group", group, groups());
+  impl_->Sense(group * impl_->lanes());
+}
+
 BodyState Batch::Body(int world, int body) const noexcept {
   const Impl& d = *impl_;
   d.CheckBody(__func__, world, body);
