@@ -44,13 +44,15 @@ void Check(const MapReader& map, CpgGait& cpg) { CheckTwice(cpg.groups, "groups"
 
 void Check(const MapReader& map, TableText& table) {
   const std::size_t errors_before = map.scope().out.items().size();
+  const auto drives =
+      map.scope().spelling.index > 0 ? GaitDrives::kRestLength : GaitDrives::kVelocity;
   const std::string key = map.ExactlyOne({"file", "rows"});
   if (key == "file") {
     if (map.Has("cables")) {
       map.Error("cables", "table.cables has no effect", "the file's columns name the cables");
     }
     const auto path = FindFile(table.file.value, "table.file", map.scope());
-    if (auto read = path ? ReadGaitTable(*path, map.scope().out) : std::nullopt) {
+    if (auto read = path ? ReadGaitTable(*path, drives, map.scope().out) : std::nullopt) {
       table.cables = std::move(read->cables);
       table.time_s = std::move(read->time_s);
       table.rows = std::move(read->rows);

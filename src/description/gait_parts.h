@@ -15,6 +15,8 @@ namespace taut::description {
 inline const Choices<CpgSymmetry> kSymmetries{{"segments", CpgSymmetry::kSegments},
                                               {"index", CpgSymmetry::kIndex},
                                               {"none", CpgSymmetry::kNone}};
+inline const Choices<GaitDrives> kDrives{{"velocity", GaitDrives::kVelocity},
+                                         {"rest_length", GaitDrives::kRestLength}};
 inline const Choices<bool> kInterpolations{{"hold", false}, {"linear", true}};
 
 /// What a cable of a chain is: "outer_top_2" is an outer_top, the second from the front.
@@ -29,9 +31,15 @@ std::optional<CablePlace> PlaceInChain(const std::string& cable_name);
 /// False if the text is not a finite number and nothing else. The last digit is right everywhere.
 bool ToNumber(const std::string& text, double& number);
 
+/// "_m_per_s" or "_m": what names of the gait's signals end with.
+const char* UnitOfName(GaitDrives drives);
+/// "a gait that drives rest lengths".
+const char* WhoDrives(GaitDrives drives);
+
 /// A table as a file has it: "time_s,outer_top_1_m_per_s,...", then rows. Lines with a # in front
 /// say something to people. Nothing after a complaint.
-std::optional<TableGait> ReadGaitTable(const std::string& path, Diagnostics& out);
+std::optional<TableGait> ReadGaitTable(const std::string& path, GaitDrives drives,
+                                       Diagnostics& out);
 
 /// What holds for every table, wherever it comes from.
 void CheckTable(const TableGait& table, const SourceRef& at, Diagnostics& out);

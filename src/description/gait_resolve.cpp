@@ -61,7 +61,7 @@ void Resolve(const SineGait& sine, const RobotSpec& robot, ResolvedGait& resolve
       const auto [other, fresh] =
           by_cable.insert({cable,
                            {{cable, wave.frequency_hz.value_or(sine.frequency_hz), phase_rad,
-                             wave.amplitude_m_per_s, wave.offset_m_per_s},
+                             wave.amplitude, wave.offset},
                             &wave}});
       if (!fresh && twice.empty()) {
         twice = name + " has a wave already, " + other->second.second->name;
@@ -152,15 +152,18 @@ std::optional<ResolvedGait> ResolveGait(const GaitSpec& gait, const RobotSpec& r
   return resolved;
 }
 
-std::optional<GaitSpec> NewCpgGait(const RobotSpec& robot, CpgSymmetry symmetry, Diagnostics& out) {
+std::optional<GaitSpec> NewCpgGait(const RobotSpec& robot, CpgSymmetry symmetry, Diagnostics& out,
+                                   GaitDrives drives) {
   CpgGait cpg;
   cpg.symmetry = symmetry;
+  if (drives == GaitDrives::kRestLength) cpg.amplitude = 0.01;  // 5 cm would be much of a cable
   const auto graph = FindCouplings(robot, symmetry, {}, {}, out);
   if (!graph) return std::nullopt;
   for (const std::string& name : graph->groups) cpg.groups.push_back({name, 0.0, 0.0, {}});
   GaitSpec gait;
   gait.name = robot.def.name + "_cpg";
   gait.description = "Couplings of " + robot.def.name + ", not learned yet.";
+  gait.drives = drives;
   gait.cpg = std::move(cpg);
   return gait;
 }

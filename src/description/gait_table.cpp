@@ -8,7 +8,6 @@
 namespace taut::description {
 namespace {
 
-constexpr const char* kUnit = "_m_per_s";
 constexpr std::size_t kMaxErrors = 20;
 
 std::vector<std::string> Cells(const std::string& line) {
@@ -23,19 +22,32 @@ std::vector<std::string> Cells(const std::string& line) {
   return cells;
 }
 
-bool ReadHeader(const std::vector<std::string>& cells, const SourceRef& at, TableGait& table,
-                Diagnostics& out) {
+/// "outer_top_1" of "outer_top_1_m". Empty if the name has not the unit of the quantity.
+std::string CableOf(const std::string& cell, GaitDrives drives) {
+  const std::string unit = UnitOfName(drives);
+  const bool good = cell.size() > unit.size() && cell.ends_with(unit);
+  return good ? cell.substr(0, cell.size() - unit.size()) : std::string();
+}
+
+bool ReadHeader(const std::vector<std::string>& cells, GaitDrives drives, const SourceRef& at,
+                TableGait& table, Diagnostics& out) {
   bool good = cells.front() == "time_s";
   if (!good) out.Error(at, "the first column must be time_s, got \"" + cells.front() + "\"");
   for (std::size_t i = 1; i < cells.size(); ++i) {
     const std::string& cell = cells[i];
-    if (cell.size() > 8 && cell.ends_with(kUnit)) {
-      table.cables.push_back(cell.substr(0, cell.size() - 8));
-    } else {
-      out.Error(at, "column " + std::to_string(i + 1) + " is \"" + cell + "\"",
-                "a cable's name with its unit, such as outer_top_1_m_per_s");
-      good = false;
+    const std::string cable = CableOf(cell, drives);
+    if (!cable.empty()) {
+      table.cables.push_back(cable);
+      continue;
     }
+    const bool velocity = drives == GaitDrives::kVelocity;
+    const std::string of_other =
+        CableOf(cell, velocity ? GaitDrives::kRestLength : GaitDrives::kVelocity);
+    out.Error(at, "column " + std::to_string(i + 1) + " is \"" + cell + "\"",
+              of_other.empty() ? std::string("a cable's name with its unit, such as outer_top_1") +
+                                     UnitOfName(drives)
+                               : WhoDrives(drives) + (" has " + of_other) + UnitOfName(drives));
+    good = false;
   }
   return good;
 }
@@ -67,7 +79,17 @@ bool ToNumber(const std::string& text, double& number) {
   return status == std::errc() && stop == end && number - number == 0.0;  // finite
 }
 
-std::optional<TableGait> ReadGaitTable(const std::string& path, Diagnostics& out) {
+const char* UnitOfName(GaitDrives drives) {
+  return drives == GaitDrives::kVelocity ? "_m_per_s" : "_m";
+}
+
+const char* WhoDrives(GaitDrives drives) {
+  return drives == GaitDrives::kVelocity ? "a gait that drives velocities"
+                                         : "a gait that drives rest lengths";
+}
+
+std::optional<TableGait> ReadGaitTable(const std::string& path, GaitDrives drives,
+                                       Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
   const auto text = base::ReadInputFile(path, kMaxFileBytes, "", out);
   if (!text) return std::nullopt;
@@ -80,13 +102,16 @@ std::optional<TableGait> ReadGaitTable(const std::string& path, Diagnostics& out
     if (line.empty() || line == "\r" || line.front() == '#') continue;
     const std::vector<std::string> cells = Cells(line);
     if (!header) {
-      good = ReadHeader(cells, at, table, out);
+      good = ReadHeader(cells, drives, at, table, out);
       header = true;
     } else if (!ReadRow(cells, at, table, out)) {
       good = out.items().size() < errors_before + kMaxErrors;
     }
   }
-  if (!header) out.Error({path, 1, 1}, "has no header line", "such as time_s,outer_top_1_m_per_s");
+  if (!header) {
+    out.Error({path, 1, 1}, "has no header line",
+              std::string("such as time_s,outer_top_1") + UnitOfName(drives));
+  }
   if (out.items().size() != errors_before) return std::nullopt;
   CheckTable(table, {path, 1, 1}, out);
   return table;

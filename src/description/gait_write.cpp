@@ -29,9 +29,11 @@ std::string GaitYaml(const GaitSpec& gait) {
          (gait.table ? description::Rows(*gait.table) : "");
 }
 
-std::string GaitTableText(const TableGait& table) {
+std::string GaitTableText(const TableGait& table, GaitDrives drives) {
   std::string out = "time_s";
-  for (const std::string& cable : table.cables) out += "," + cable + "_m_per_s";
+  for (const std::string& cable : table.cables) {
+    out += "," + cable + description::UnitOfName(drives);
+  }
   out += '\n';
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     out += description::Shown(table.time_s[i]);

@@ -21,6 +21,7 @@
 /// which is a `CableDef` with what only files say; `Io::kResolved` tells which of the two is meant.
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <initializer_list>
 #include <optional>
@@ -65,6 +66,14 @@ inline constexpr note::IsDirection kDirection;  ///< A vector of any length but 
 inline constexpr note::Inherited kInherited;    ///< If absent, something else says what it is.
 inline constexpr note::Limit kLimit;            ///< If absent, infinite.
 inline constexpr note::Fixed kFixed;            ///< Not a number that studies vary.
+
+/// The names of one key where another key of the file chooses which of them it has: the amplitude
+/// of a gait is amplitude_m_per_s or amplitude_m. `when` says where, to readers of the reference.
+struct Spellings {
+  static constexpr int kCount = 2;
+  const char* names[kCount];
+  const char* when[kCount];
+};
 
 /// A line of a table, without the field.
 struct Key {
@@ -116,6 +125,22 @@ class KeyVisitor {
     }
   }
 
+  /// A key with several names: those that `Derived::Spell` asks for.
+  template <class T, class... Notes>
+  void operator()(const Spellings& spellings, T& field, const Notes&... notes) {
+    static_cast<Derived&>(*this).Spell(spellings,
+                                       [&](const char* name) { (*this)(name, field, notes...); });
+  }
+  template <class OfName>
+  void Spell(const Spellings& spellings, const OfName& of_name) {
+    of_name(spellings.names[std::max(0, spelling.index)]);
+  }
+  /// From here on, and in all that is below, keys with several names have those of `now`, as `key`
+  /// says.
+  void SpeltBy(const char* /*key*/, const Spelling& now) { spelling = now; }
+
+  Spelling spelling;
+
   // What else a table may say. `what` is the mapping's name in messages, that of its place in the
   // file if empty; `title` its heading in the reference.
   void Map(const char* /*what*/, const char* /*title*/, const char* /*meaning*/,
@@ -138,11 +163,22 @@ class KeyNames : public KeyVisitor<KeyNames<kOfResolved>, kOfResolved> {
   void On(const Key& key, const T&, const Choices&...) {
     names.push_back(key.name);
   }
+  template <class OfName>
+  void Spell(const Spellings& spellings, const OfName& of_name) {
+    for (int i = 0; i < Spellings::kCount; ++i) {
+      const int wanted = this->spelling.index;
+      if (i == wanted || wanted < 0) {
+        of_name(spellings.names[i]);
+      } else {
+        other_spellings.push_back(spellings.names[i]);
+      }
+    }
+  }
   void Map(const char* called, const char* heading, const char*, const char* = nullptr) {
     what = called;
     title = heading;
   }
-  std::vector<std::string> names;
+  std::vector<std::string> names, other_spellings;
   std::string what, title;
 };
 

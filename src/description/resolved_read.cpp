@@ -62,7 +62,7 @@ void Read(const Value& value, const std::string& what, const Scope& scope, std::
 /// earlier versions of taut did not write. Ranges are left to `Model::Compile`.
 class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
  public:
-  explicit ResolvedReader(const MapReader& map) : map_(map) {}
+  explicit ResolvedReader(const MapReader& map) : map_(map) { spelling = map.scope().spelling; }
 
   template <class T>
   void On(const Key& key, T& out) {
@@ -74,7 +74,10 @@ class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
     }
     const bool may_lack = kIsOptional<T> || key.later;
     const Value* value = may_lack ? map_.Find(key.name) : map_.Require(key.name);
-    if (value) Read(*value, map_.Path(key.name), map_.scope(), out);
+    if (!value) return;
+    Scope scope = map_.scope();
+    scope.spelling = spelling;
+    Read(*value, map_.Path(key.name), scope, out);
   }
   template <class E>
   void On(const Key& key, E& out, const Choices<E>& choices) {
@@ -91,6 +94,7 @@ template <class T>
 void ReadStruct(const Value& value, const std::string& what, std::vector<std::string> more_keys,
                 const Scope& scope, T& out) {
   KeyNames<true> known;
+  known.spelling = scope.spelling;
   Keys(known, out);
   known.names.insert(known.names.end(), more_keys.begin(), more_keys.end());
   const MapReader map(value, what, known.names, scope);

@@ -22,9 +22,8 @@ GaitPlayer::GaitPlayer(const GaitSpec& gait, ResolvedGait resolved, const ClockS
       clock_{clock.period_s, clock.phase_s},
       velocity_m_per_s_(resolved_.cables.size()) {
   for (const ResolvedGait::Wave& wave : resolved_.waves) {
-    waves_.push_back({wave.amplitude_m_per_s,
-                      control::WrapTurns(wave.phase_rad * control::kTurnsPerRad),
-                      wave.offset_m_per_s});
+    waves_.push_back(
+        {wave.amplitude, control::WrapTurns(wave.phase_rad * control::kTurnsPerRad), wave.offset});
   }
   if (gait.cpg) StartCpg(*gait.cpg);
   if (gait.table) table_ = *gait.table;
@@ -32,7 +31,7 @@ GaitPlayer::GaitPlayer(const GaitSpec& gait, ResolvedGait resolved, const ClockS
 
 void GaitPlayer::StartCpg(const CpgGait& cpg) {
   const std::size_t count = resolved_.cables.size();
-  laws_.assign(count, {cpg.frequency_hz, cpg.amplitude_m_per_s, cpg.convergence_per_s});
+  laws_.assign(count, {cpg.frequency_hz, cpg.amplitude, cpg.convergence_per_s});
   states_.assign(count, control::StartCpg<double>());
   work_.resize(count);
   feedback_ = cpg.feedback.value_or(CpgFeedback{});
@@ -40,8 +39,8 @@ void GaitPlayer::StartCpg(const CpgGait& cpg) {
   for (const CouplingGraph::Coupling& link : resolved_.graph.couplings) {
     const CouplingGroup& group = cpg.groups[static_cast<std::size_t>(link.group)];
     couplings_.push_back(control::MakeCoupling(
-        static_cast<std::uint16_t>(link.to), static_cast<std::uint16_t>(link.from),
-        group.weight_per_m, control::WrapTurns(group.phase_rad * control::kTurnsPerRad)));
+        static_cast<std::uint16_t>(link.to), static_cast<std::uint16_t>(link.from), group.weight,
+        control::WrapTurns(group.phase_rad * control::kTurnsPerRad)));
   }
   steps_a_tick_ =
       std::max(1, static_cast<int>(std::ceil(clock_.period_s / cpg.integrator_step_s - 1e-6)));

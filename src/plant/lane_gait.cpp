@@ -27,9 +27,9 @@ void LaneGait::AddSine(const std::vector<ResolvedGait>& lanes) {
     for (const ResolvedGait& lane : lanes) {
       const ResolvedGait::Wave& wave = lane.waves[i];
       frequency_hz_.push_back(wave.frequency_hz);
-      amplitude_m_per_s_.push_back(wave.amplitude_m_per_s);
+      amplitude_m_per_s_.push_back(wave.amplitude);
       phase_turns_.push_back(control::WrapTurns(wave.phase_rad * control::kTurnsPerRad));
-      offset_m_per_s_.push_back(wave.offset_m_per_s);
+      offset_m_per_s_.push_back(wave.offset);
     }
   }
 }
@@ -44,7 +44,7 @@ void LaneGait::AddCpg(const std::vector<const GaitInputSpec*>& specs,
     for (const GaitInputSpec* spec : specs) {
       const CpgGait& cpg = *spec->gait.cpg;
       frequency.push_back(cpg.frequency_hz);
-      amplitude.push_back(cpg.amplitude_m_per_s);
+      amplitude.push_back(cpg.amplitude);
       convergence.push_back(cpg.convergence_per_s);
       const CpgFeedback feedback = cpg.feedback.value_or(CpgFeedback{});
       gain_rad_per_n_s_.push_back(feedback.gain_rad_per_n_s);
@@ -58,7 +58,7 @@ void LaneGait::AddCpg(const std::vector<const GaitInputSpec*>& specs,
     from.push_back(static_cast<unsigned short>(link.from));
     for (const GaitInputSpec* spec : specs) {
       const CouplingGroup& group = spec->gait.cpg->groups[static_cast<std::size_t>(link.group)];
-      weight.push_back(group.weight_per_m);
+      weight.push_back(group.weight);
       phase.push_back(control::WrapTurns(group.phase_rad * control::kTurnsPerRad));
     }
   }

@@ -39,6 +39,19 @@ table:
   rows: [[0, 0.1, -0.1], [0.5, 0.2, -0.2]]
 )";
 
+/// The gait with the numbers as they are, in the units of one that drives rest lengths.
+std::string WithLengths(std::string text) {
+  for (const auto& [velocity, length] :
+       {std::pair("amplitude_m_per_s", "amplitude_m"), std::pair("offset_m_per_s", "offset_m"),
+        std::pair("weight_per_m:", "weight_per_m_s:")}) {
+    const std::string from = velocity, to = length;
+    for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size()) {
+      text.replace(at, from.size(), to);
+    }
+  }
+  return text.replace(text.find("kind: gait\n"), 11, "kind: gait\ndrives: rest_length\n");
+}
+
 class Gait : public ExperimentFolder {
  protected:
   std::string GaitComplaints(const std::string& text) {
@@ -73,9 +86,9 @@ TEST_F(Gait, ASineIsReadWithItsExpressionsAndDefaults) {
   ASSERT_TRUE(gait.sine);
   EXPECT_EQ(gait.sine->frequency_hz, 0.5);
   ASSERT_EQ(gait.sine->waves.size(), 2u);
-  EXPECT_EQ(gait.sine->waves[0].amplitude_m_per_s, -0.08);
+  EXPECT_EQ(gait.sine->waves[0].amplitude, -0.08);
   EXPECT_EQ(gait.sine->waves[0].phase_rad, std::acos(0.0));
-  EXPECT_EQ(gait.sine->waves[0].offset_m_per_s, 0.01);
+  EXPECT_EQ(gait.sine->waves[0].offset, 0.01);
   EXPECT_FALSE(gait.sine->waves[0].frequency_hz);
   EXPECT_EQ(gait.sine->waves[1].frequency_hz, 1.0);
   EXPECT_EQ(gait.sine->waves[1].cables, (CableMatch{{"driven", "back"}}));
@@ -84,6 +97,7 @@ TEST_F(Gait, ASineIsReadWithItsExpressionsAndDefaults) {
 /// Every number by its bits, and the texts.
 std::string Everything(GaitSpec gait) {
   std::string out = gait.name + "|" + gait.description + "|";
+  out += gait.drives == GaitDrives::kRestLength ? "lengths|" : "velocities|";
   for (const GaitValue& value : GaitValues(gait)) {
     out += value.name + " " + value.unit + " " +
            std::to_string(std::bit_cast<std::uint64_t>(*value.value)) + "\n";
@@ -125,10 +139,12 @@ TEST_F(Gait, WhatIsWrittenReadsBackToTheSameBits) {
   std::string table = kTable;
   table.replace(table.find("  cables"), 0, "  interpolation: linear\n  repeat_from_s: 0.1\n");
   table.replace(table.find("0.2, -0.2"), 3, "1 / 3");
+  const std::string lengths = WithLengths(kSine), length_cpg = WithLengths(cpg),
+                    length_table = WithLengths(table);
   std::string sine = kSine;
   sine.replace(sine.find("name: waves"), 11, "name: waves\ndescription: 'a \"b\" \\ c'");
   sine.replace(sine.find("offset_m_per_s"), 0, "phase_per_segment_rad: 1 / 3, ");
-  for (const std::string& text : {sine, cpg, table}) {
+  for (const std::string& text : {sine, cpg, table, lengths, length_cpg, length_table}) {
     GaitSpec gait = LoadText(text);
     Diagnostics out;
     ASSERT_TRUE(SaveGait(gait, Path("saved.yaml"), out));
@@ -157,7 +173,7 @@ TEST_F(Gait, ValuesAreNamedAndPointIntoTheGait) {
             "cpg.left.right.weight_per_m [1/m]\ncpg.left.right.phase_rad [rad]\n"
             "cpg.right.left.weight_per_m [1/m]\ncpg.right.left.phase_rad [rad]\n");
   EXPECT_EQ(gait.cpg->frequency_hz, 1.75);
-  EXPECT_EQ(gait.cpg->groups[1].weight_per_m, 11.0);
+  EXPECT_EQ(gait.cpg->groups[1].weight, 11.0);
 
   GaitSpec sine = LoadText(kSine);
   names.clear();
@@ -168,6 +184,45 @@ TEST_F(Gait, ValuesAreNamedAndPointIntoTheGait) {
             "sine.b.offset_m_per_s sine.b.phase_per_segment_rad sine.b.frequency_hz ");
   GaitSpec table = LoadText(kTable);
   EXPECT_TRUE(GaitValues(table).empty());
+}
+
+TEST_F(Gait, ValuesHaveTheNamesAndUnitsOfWhatIsDriven) {
+  std::string names;
+  for (const char* text : {kSine, kCpg}) {
+    GaitSpec gait = LoadText(WithLengths(text));
+    EXPECT_EQ(gait.drives, GaitDrives::kRestLength);
+    for (const GaitValue& value : GaitValues(gait)) {
+      if (value.unit.find('m') != value.unit.npos) names += value.name + " [" + value.unit + "]\n";
+    }
+  }
+  EXPECT_EQ(names,
+            "sine.a.amplitude_m [m]\nsine.a.offset_m [m]\nsine.b.amplitude_m [m]\n"
+            "sine.b.offset_m [m]\ncpg.amplitude_m [m]\ncpg.left.right.weight_per_m_s [1/(m s)]\n"
+            "cpg.right.left.weight_per_m_s [1/(m s)]\n");
+  EXPECT_EQ(LoadText(WithLengths(kSine)).sine->waves[0].amplitude, -0.08);
+  EXPECT_EQ(LoadText(WithLengths(kCpg)).cpg->groups[0].weight, 20.0);
+  EXPECT_EQ(LoadText(kSine).drives, GaitDrives::kVelocity);
+}
+
+TEST_F(Gait, AKeyOfTheOtherQuantityIsAnsweredWithTheRightOne) {
+  Expect(WithLengths(kSine), "amplitude_m: -0.08", "amplitude_m_per_s: -0.08",
+         "9:31: error: waves.amplitude_m_per_s is of another quantity (a gait that drives rest "
+         "lengths has amplitude_m)");
+  Expect(kSine, "offset_m_per_s: 0.01", "offset_m: 0.01",
+         "8:76: error: waves.offset_m is of another quantity (a gait that drives velocities has "
+         "offset_m_per_s)");
+  Expect(WithLengths(kCpg), "amplitude_m: 0.1", "amplitude_m_per_s: 0.1\n  amplitude_m: 0.1",
+         "7:3: error: cpg.amplitude_m_per_s is of another quantity (a gait that drives rest "
+         "lengths has amplitude_m)");
+  Expect(kCpg, "weight_per_m: 20", "weight_per_m_s: 20",
+         "9:26: error: groups.weight_per_m_s is of another quantity (a gait that drives velocities "
+         "has weight_per_m)");
+  Expect(WithLengths(kSine), "amplitude_m: -0.08", "amplitude: -0.08",
+         "9:7: error: waves needs the key \"amplitude_m\"\n"
+         "9:31: error: unknown key \"amplitude\" in waves (did you mean \"amplitude_m\"?)");
+  // where nobody knows what is driven, no name is a wrong one
+  Expect(WithLengths(kSine), "drives: rest_length", "drives: rest_lenght",
+         "3:9: error: drives cannot be \"rest_lenght\" (did you mean \"rest_length\"?)");
 }
 
 TEST_F(Gait, WrongKeysAndValuesAreErrors) {
@@ -221,6 +276,12 @@ TEST_F(Gait, ATableInPlainTextIsReadOrItsErrorsAreSaid) {
             "t.csv:1:1: error: column 2 is \"left\" (a cable's name with its unit, such as "
             "outer_top_1_m_per_s)\n"
             "t.csv:1:1: error: the first column must be time_s, got \"t\"\n");
+  Write("t.csv", "time_s,left_m,_m_per_s\n");
+  EXPECT_EQ(GaitComplaints(gait),
+            "t.csv:1:1: error: column 2 is \"left_m\" (a gait that drives velocities has "
+            "left_m_per_s)\n"
+            "t.csv:1:1: error: column 3 is \"_m_per_s\" (a cable's name with its unit, such as "
+            "outer_top_1_m_per_s)\n");
   Write("t.csv", "time_s,left_m_per_s\n0,0.1,3\n1,nan\n2,\n3,4\n");
   EXPECT_EQ(GaitComplaints(gait),
             "t.csv:2:1: error: a row of 3 cells under a header of 2\n"
@@ -229,6 +290,25 @@ TEST_F(Gait, ATableInPlainTextIsReadOrItsErrorsAreSaid) {
   Write("t.csv", "");
   EXPECT_EQ(GaitComplaints(gait),
             "t.csv:1:1: error: has no header line (such as time_s,outer_top_1_m_per_s)\n");
+}
+
+TEST_F(Gait, ATableOfRestLengthsHasColumnsInMetres) {
+  const std::string gait =
+      "taut: 1\nkind: gait\nname: t\ndrives: rest_length\ntable: {file: t.csv}\n";
+  Write("t.csv", "time_s,left_m,right_m\n0,0.1,-0.25\n");
+  const GaitSpec good = LoadText(gait);
+  ASSERT_TRUE(good.table);
+  EXPECT_EQ(good.table->cables, (std::vector<std::string>{"left", "right"}));
+  EXPECT_EQ(GaitTableText(*good.table, good.drives), "time_s,left_m,right_m\n0,0.1,-0.25\n");
+  Write("t.csv", "time_s,left_m_per_s,right\n0,0.1,-0.25\n");
+  EXPECT_EQ(GaitComplaints(gait),
+            "t.csv:1:1: error: column 2 is \"left_m_per_s\" (a gait that drives rest lengths has "
+            "left_m)\n"
+            "t.csv:1:1: error: column 3 is \"right\" (a cable's name with its unit, such as "
+            "outer_top_1_m)\n");
+  Write("t.csv", "");
+  EXPECT_EQ(GaitComplaints(gait),
+            "t.csv:1:1: error: has no header line (such as time_s,outer_top_1_m)\n");
 }
 
 TEST_F(Gait, AGaitMustFitTheRobotThatPlaysIt) {
