@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <concepts>
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -53,6 +54,10 @@ struct Inherited {};
 struct Limit {};
 struct Fixed {};
 }  // namespace note
+/// Earlier versions of taut did not write it and meant this number.
+struct LaterThan {
+  double value;
+};
 /// An example, as JSON.
 struct Example {
   const char* json;
@@ -83,12 +88,15 @@ struct Key {
   bool needed = false, later = false, is_name = false, is_direction = false, inherited = false;
   bool limit = false, fixed = false;
   const char* example = nullptr;
+  double before =
+      std::numeric_limits<double>::quiet_NaN();  ///< Not written: what `LaterThan` says.
 
   void Note(const char* text) { meaning = text; }
   void Note(const Bound& note) { bound = note; }
   void Note(note::Needed) { needed = true; }
   void Note(note::ResolvedOnly) {}
   void Note(note::Later) { later = true; }
+  void Note(LaterThan note) { later = true, before = note.value; }
   void Note(note::IsName) { is_name = true; }
   void Note(note::IsDirection) { is_direction = true; }
   void Note(note::Inherited) { inherited = true; }
@@ -146,6 +154,9 @@ class KeyVisitor {
   void Map(const char* /*what*/, const char* /*title*/, const char* /*meaning*/,
            const char* /*example*/ = nullptr) {}
   void OneOf(const std::vector<std::string>& /*keys*/) {}  ///< Exactly one of these.
+  /// Keys of the one side or of the other, one at least.
+  void EitherSide(const std::vector<std::string>& /*one*/,
+                  const std::vector<std::string>& /*other*/) {}
   void Rule(const char* /*json*/) {}  ///< For the schema: what `Check` has a better message for.
 
  private:

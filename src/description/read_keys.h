@@ -182,6 +182,20 @@ class FileReader : public KeyVisitor<FileReader, false> {
     const bool clear = !map_.ExactlyOne(keys).empty();
     if (!clear) ignored_.insert(ignored_.end(), keys.begin(), keys.end());
   }
+  void EitherSide(const std::vector<std::string>& one, const std::vector<std::string>& other) {
+    const auto first = [&](const std::vector<std::string>& keys) {
+      return std::find_if(keys.begin(), keys.end(),
+                          [&](const std::string& key) { return map_.Has(key); });
+    };
+    const auto here = first(one), there = first(other);
+    if (here != one.end() && there != other.end()) {
+      OneOf({*here, *there});
+    } else if (here == one.end() && there == other.end()) {
+      std::vector<std::string> all = one;
+      all.insert(all.end(), other.begin(), other.end());
+      OneOf(all);
+    }
+  }
 
  private:
   const Value* Find(const Key& key) const {

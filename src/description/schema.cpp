@@ -218,6 +218,12 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
   void OneOf(const std::vector<std::string>& keys) {
     rules_.push_back(R"("oneOf": [)" + OneOfThese(keys) + "]");
   }
+  void EitherSide(const std::vector<std::string>& one, const std::vector<std::string>& other) {
+    const auto any = [](const std::vector<std::string>& keys) {
+      return R"({"anyOf": [)" + OneOfThese(keys) + "]}";
+    };
+    rules_.push_back(R"("oneOf": [)" + any(one) + ", " + any(other) + "]");
+  }
   void Rule(const char* json) { rules_.push_back(json); }
   /// All names; which of them it must be is left to the reader.
   template <class OfName>

@@ -63,9 +63,10 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
   void On(const Key& key, const T& value) {
     if constexpr (std::same_as<T, double>) {
       if (key.limit && std::isinf(value)) return;
+      if (value == key.before) return;
     }
-    if constexpr (!kOfResolved && requires { value.empty(); }) {
-      if (value.empty()) return;
+    if constexpr (requires { value.empty(); }) {
+      if ((!kOfResolved || key.later) && value.empty()) return;
     }
     if constexpr (kIsOptional<T>) {
       if (value) Put(key.name, Text(*value, this->spelling));

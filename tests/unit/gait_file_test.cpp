@@ -4,53 +4,10 @@
 
 #include "taut/gait.h"
 #include "unit/experiment_fixture.h"
+#include "unit/gait_texts.h"
 
 namespace taut::test {
 namespace {
-
-constexpr const char* kSine = R"(taut: 1
-kind: gait
-name: waves
-parameters: {slow_hz: 0.5}
-sine:
-  frequency_hz: slow_hz
-  waves:
-    - {name: a, cables: left, amplitude_m_per_s: -0.08, phase_rad: pi / 2, offset_m_per_s: 0.01}
-    - {name: b, cables: [driven, back], amplitude_m_per_s: 0.1, frequency_hz: 2 * slow_hz}
-)";
-
-constexpr const char* kCpg = R"(taut: 1
-kind: gait
-name: pair
-cpg:
-  frequency_hz: 0.75
-  amplitude_m_per_s: 0.1
-  symmetry: none
-  groups:
-    - {name: left.right, weight_per_m: 20, phase_rad: 0.1}
-    - {name: right.left, weight_per_m: 10, phase_rad: -0.1}
-)";
-
-constexpr const char* kTable = R"(taut: 1
-kind: gait
-name: table
-table:
-  cables: [left, right]
-  rows: [[0, 0.1, -0.1], [0.5, 0.2, -0.2]]
-)";
-
-/// The gait with the numbers as they are, in the units of one that drives rest lengths.
-std::string WithLengths(std::string text) {
-  for (const auto& [velocity, length] :
-       {std::pair("amplitude_m_per_s", "amplitude_m"), std::pair("offset_m_per_s", "offset_m"),
-        std::pair("weight_per_m:", "weight_per_m_s:")}) {
-    const std::string from = velocity, to = length;
-    for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size()) {
-      text.replace(at, from.size(), to);
-    }
-  }
-  return text.replace(text.find("kind: gait\n"), 11, "kind: gait\ndrives: rest_length\n");
-}
 
 class Gait : public ExperimentFolder {
  protected:
@@ -366,57 +323,6 @@ TEST_F(Gait, AGaitMustFitTheRobotThatPlaysIt) {
             "g.yaml:5:3: error: pair has no cable \"rihgt\" (did you mean \"right\"?)\n");
   text.replace(text.find("[left, rihgt]"), 13, "[left, left]");
   EXPECT_EQ(PlayedComplaints(text), "g.yaml:5:3: error: the table has left twice\n");
-}
-
-class VelocityInput : public ExperimentErrors {};
-
-TEST_F(VelocityInput, GoesWithImpedanceAndNamesAGait) {
-  Write("g.yaml", kSine);
-  const std::string hold = "  - name: hold\n";
-  Expect(hold, hold + "    velocity_input: {gait: h.yaml}\n",
-         "11:28: error: velocity_input.gait: there is no file \"h.yaml\" (as seen from the folder "
-         "of the file that names it)");
-  Expect(hold, hold + "    velocity_input: {gait: g.yaml, period_s: 0}\n",
-         "11:46: error: velocity_input.period_s must be positive, got 0");
-  Expect(hold, hold + "    velocity_input: {period: 1}\n",
-         "11:21: error: velocity_input needs the key \"gait\"\n"
-         "11:22: error: unknown key \"period\" in velocity_input (did you mean \"period_s\"?)");
-  Change(hold, hold + "    velocity_input: {gait: model.yaml}\n");
-  EXPECT_EQ(
-      Complaints(),
-      "model.yaml:2:7: error: kind must be gait, got model (a file is a model, an experiment or "
-      "a gait)\n");
-  Change("controllers:\n",
-         "controllers:\n  - {name: p, velocity_input: {gait: g.yaml}, position: {programs: []}}\n");
-  EXPECT_EQ(Without("trial.yaml:", Complaints()),
-            "10:15: error: velocity_input has no effect with position (it is the V0 of "
-            "`impedance`)\n");
-}
-
-TEST_F(VelocityInput, TheResolvedExperimentHoldsTheGaitItself) {
-  for (const char* text : {kSine, kCpg, kTable}) {
-    Write("g.yaml", text);
-    Change("  - name: hold\n",
-           "  - name: hold\n    velocity_input: {gait: g.yaml, period_s: 0.02, phase_s: 1}\n");
-    const ExperimentSpec experiment = Load();
-    ASSERT_EQ(experiment.files.size(), 3u);
-    Write("resolved.yaml", ResolvedYaml(experiment));
-    std::filesystem::remove(Path("g.yaml"));
-    const ExperimentSpec back = Load("resolved.yaml");
-    ASSERT_TRUE(back.controllers.at(0).velocity_input);
-    const GaitInputSpec& input = *back.controllers[0].velocity_input;
-    EXPECT_EQ(input.clock.period_s, 0.02);
-    EXPECT_EQ(input.clock.phase_s, 1.0);
-    EXPECT_EQ(GaitYaml(input.gait), GaitYaml(experiment.controllers[0].velocity_input->gait));
-  }
-}
-
-TEST_F(VelocityInput, TheGaitIsPartOfTheHash) {
-  Write("g.yaml", kSine);
-  Change("  - name: hold\n", "  - name: hold\n    velocity_input: {gait: g.yaml}\n");
-  const auto before = Load().input_hash;
-  Write("g.yaml", std::string(kSine) + "# faster\n");
-  EXPECT_NE(Load().input_hash, before);
 }
 
 }  // namespace
