@@ -109,25 +109,13 @@ void Read(const Value& value, const std::string& what, const Scope& scope, T& ou
 
 /// Its numbers must be what a gait file's would have to be.
 void CheckGait(const GaitSpec& gait, const SourceRef& at, Diagnostics& out) {
-  if (gait.sine.has_value() + gait.cpg.has_value() + gait.table.has_value() != 1) {
+  if (CountKinds(gait) != 1) {
     out.Error(at, "a gait is one of sine, cpg and table");
     return;
   }
-  if (gait.cpg && !(gait.cpg->convergence_per_s > 0.0 && gait.cpg->integrator_step_s > 0.0)) {
-    out.Error(at, "cpg.convergence_per_s and cpg.integrator_step_s must be positive");
-  }
-  if (gait.table) {
-    const std::size_t errors_before = out.items().size();
-    if (gait.table->rows.size() != gait.table->time_s.size()) {
-      out.Error(at, "a table needs a time for each row");
-    }
-    for (const std::vector<double>& row : gait.table->rows) {
-      if (row.size() == gait.table->cables.size()) continue;
-      out.Error(at, "a table's row needs a signal for each cable");
-      break;
-    }
-    if (out.items().size() == errors_before) CheckTable(*gait.table, at, out);
-  }
+  ForEachGaitKind([&](const auto& kind, auto) {
+    if (gait.*kind.gait) CheckNumbers(*(gait.*kind.gait), at, out);
+  });
 }
 
 /// Returns the cables that the gaits move.
