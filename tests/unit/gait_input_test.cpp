@@ -283,6 +283,15 @@ TEST_F(GaitChanges, ResolvedOnesAreChecked) {
   expect("changes: [", "blend_s: -1, changes: [", "rest_length_input.blend_s must not be negative");
   expect("drives: rest_length", "drives: velocity",
          "rest_length_input: gait a drives velocities (it is for `velocity_input`)");
+  expect("0.2, -0.2]", "0.2]", "a table's row needs a signal for each cable");
+
+  Write("a.yaml", kSine);
+  Change("  - name: hold\n", "  - name: hold\n    velocity_input: {gait: a.yaml}\n");
+  const std::string of_impedance = ResolvedYaml(Load());
+  ChangeFile("resolved.yaml", of_impedance, "velocity_input:", "rest_length_input:");
+  EXPECT_EQ(Without("resolved.yaml:3:1: error: ", Complaints("resolved.yaml")),
+            "rest_length_input does not go with impedance\n"
+            "rest_length_input: gait waves drives velocities (it is for `velocity_input`)\n");
 }
 
 }  // namespace
