@@ -36,9 +36,10 @@ int Couplings(const CheckArguments& args, const RobotSpec& robot,
   std::vector<std::string> order;
   for (const ControllerSpec& controller :
        experiment ? experiment->controllers : std::vector<ControllerSpec>()) {
-    if (!controller.velocity_input || !controller.velocity_input->gait.cpg) continue;
-    symmetry = controller.velocity_input->gait.cpg->symmetry;
-    order = controller.velocity_input->gait.cpg->order;
+    const GaitInputSpec* input = GaitInputOf(controller);
+    if (!input || !input->gait.cpg) continue;
+    symmetry = input->gait.cpg->symmetry;
+    order = input->gait.cpg->order;
   }
   Diagnostics found;
   const auto graph = FindCouplings(robot, symmetry, order, {args.path, 0, 0}, found);

@@ -20,12 +20,16 @@ struct GaitArguments {
   std::vector<std::string> set;
   double rate_hz = 100.0, duration_s = 60.0;
   CpgSymmetry symmetry = CpgSymmetry::kSegments;
+  GaitDrives drives = GaitDrives::kVelocity;
   NtrtCableOrder order = NtrtCableOrder::kPaper2015;
   bool json = false;
 };
 
 const std::map<std::string, NtrtCableOrder> kOrders{{"paper2015", NtrtCableOrder::kPaper2015},
                                                     {"since2016", NtrtCableOrder::kSince2016}};
+
+const std::map<std::string, GaitDrives> kDrives{{"velocity", GaitDrives::kVelocity},
+                                                {"rest_length", GaitDrives::kRestLength}};
 
 /// To the file that was asked for, or to standard output.
 int Write(const std::string& text, const std::string& path) {
@@ -59,7 +63,7 @@ int Export(const GaitArguments& args) {
   if (gait->cpg && gait->cpg->feedback) {
     fmt::print(stderr, "warning: the gait has feedback; a table has none\n");
   }
-  return Write(GaitTableText(*table), args.out);
+  return Write(GaitTableText(*table, gait->drives), args.out);
 }
 
 int Import(const GaitArguments& args) {
@@ -76,7 +80,7 @@ int Create(const GaitArguments& args) {
   Diagnostics found;
   const auto robot = LoadAnyRobot(args.robot, *overrides, found);
   if (!robot || !Pass(found, false)) return Fail(found, kBadInput);
-  auto gait = NewCpgGait(*robot, args.symmetry, found);
+  auto gait = NewCpgGait(*robot, args.symmetry, found, args.drives);
   if (!gait) return Fail(found, kBadInput);
   if (!args.name.empty()) gait->name = args.name;
   return Write(GaitYaml(*gait), args.out);
@@ -103,7 +107,7 @@ void AddGait(CLI::App& app, int& exit_code) {
   };
 
   CLI::App* export_ = gait->add_subcommand(
-      "export", "The velocities that a gait commands, as a table in plain text (CSV).");
+      "export", "What a gait says to the cables, as a table in plain text (CSV).");
   export_->add_option("gait", args->input, "Gait file (YAML)")->required();
   export_->add_option("robot", args->robot, "Model or experiment file (YAML)")->required();
   export_->add_option("--rate_hz", args->rate_hz, "Rows a second; also the gait's own rate")
@@ -143,6 +147,10 @@ void AddGait(CLI::App& app, int& exit_code) {
       ->add_option("--symmetry", args->symmetry,
                    "Which couplings are alike: segments (default), index or none")
       ->transform(CLI::CheckedTransformer(kSymmetries));
+  create
+      ->add_option("--drives", args->drives,
+                   "What its signals are: velocity (default) or rest_length")
+      ->transform(CLI::CheckedTransformer(kDrives));
   create->add_option("--name", args->name, "Name of the gait")->check(CheckName);
   create->add_option("--out", args->out, "File to write (default: print)");
   add_set(create);

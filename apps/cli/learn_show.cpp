@@ -62,23 +62,28 @@ int ReplayBest(const std::string& folder, bool skip_damaged, bool quiet) {
     return kFailed;
   }
   const ExperimentSpec experiment = study->ExperimentWith(best->values);
-  const auto gait_name = [](const ControllerSpec& c) { return c.name + ".gait.yaml"; };
   std::vector<std::string> gaits;
+  std::vector<GaitSpec> learned;
   for (const ControllerSpec& controller : experiment.controllers) {
-    if (controller.velocity_input) gaits.push_back(gait_name(controller));
+    const GaitInputSpec* input = GaitInputOf(controller);
+    if (!input) continue;
+    gaits.push_back(controller.name + ".gait.yaml");
+    learned.push_back(input->gait);
+    learned.back().name = study->name;
+    for (const GaitSpec& other : input->others) {
+      gaits.push_back(controller.name + "." + other.name + ".gait.yaml");
+      learned.push_back(other);
+    }
   }
   const auto out = RunFolder::Open((fs::path(folder) / "best").string(), gaits, found);
   if (!out) return Fail(found, kFailed);
   OutputIsNews();
   const auto summary = RunInto(*out, experiment, {}, false, found);
   if (!summary || !found.ok()) return Fail(found, kFailed);
-  for (const ControllerSpec& controller : experiment.controllers) {
-    if (!controller.velocity_input) continue;
-    GaitSpec learned = controller.velocity_input->gait;
-    learned.name = study->name;
-    learned.description = fmt::format("Learned: evaluation {} of the study {}, score {:.6g}.",
-                                      best->id, study->name, best->score);
-    SaveGait(learned, out->Path(gait_name(controller)), found);
+  for (std::size_t i = 0; i < gaits.size(); ++i) {
+    learned[i].description = fmt::format("Learned: evaluation {} of the study {}, score {:.6g}.",
+                                         best->id, study->name, best->score);
+    SaveGait(learned[i], out->Path(gaits[i]), found);
   }
   viewer::WriteReport(out->Path("trace.h5"), "", out->Path("report.html"), found);
   if (!quiet) {

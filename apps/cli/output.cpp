@@ -31,10 +31,12 @@ int WriteNamed(const std::string& path, const std::string& text) {
 }
 
 std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& experiment,
-                                  RunOptions options, bool csv, Diagnostics& out) {
+                                  RunOptions options, bool csv, Diagnostics& out,
+                                  const TraceMetadata& more) {
   const std::vector<ChannelInfo> channels = RunChannels(experiment, options.plant);
   TraceMetadata metadata = RunMetadata(experiment);
   metadata.emplace_back(kRunIdKey, folder.id());
+  metadata.insert(metadata.end(), more.begin(), more.end());
   std::vector<std::unique_ptr<TraceWriter>> writers;
   writers.push_back(CreateHdf5Trace(folder.Path("trace.h5"), channels, metadata, out));
   if (csv) writers.push_back(CreateCsvTrace(folder.Path("trace.csv"), channels, out));

@@ -27,9 +27,11 @@ int WriteNamed(const std::string& path, const std::string& text);
 
 /// Runs an experiment into a folder: traces, inputs.yaml, summary.json. `options` come without
 /// traces. Nothing, and a complaint, if it did not run; a file that could not be written is a
-/// complaint, too, and then there is no summary.json.
+/// complaint, too, and then there is no summary.json. `more`: what else the trace is to say of
+/// itself.
 std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& experiment,
-                                  RunOptions options, bool csv, Diagnostics& out);
+                                  RunOptions options, bool csv, Diagnostics& out,
+                                  const TraceMetadata& more = {});
 
 /// Words of `--symmetry`.
 inline const std::map<std::string, CpgSymmetry> kSymmetries{{"segments", CpgSymmetry::kSegments},

@@ -110,7 +110,10 @@ int Run(const RunArguments& args) {
   options.plant = plant.get();
   options.progress = [&](const RunProgress& p) { return line.Show(p); };
   CatchInterrupts();
-  const std::optional<RunSummary> summary = RunInto(*folder, *experiment, options, args.csv, found);
+  TraceMetadata more;
+  if (plant) more.emplace_back("replay_of", args.replay);
+  const std::optional<RunSummary> summary =
+      RunInto(*folder, *experiment, options, args.csv, found, more);
   line.Clear();
   if (!summary) return Fail(found, kFailed);
 

@@ -1,6 +1,6 @@
-/// Gaits: what makes the velocity input V0 of impedance control (paper eq. 3) for many cables at
-/// once. A gait is a file of its own (docs/formats/gait.md); the experiment says which controller
-/// plays it and how often.
+/// Gaits: what makes, for many cables at once, the velocity input V0 of impedance control (paper
+/// eq. 3) or a part of their rest lengths. A gait is a file of its own (docs/formats/gait.md); the
+/// experiment says which controller plays it and how often.
 ///
 /// All numbers of a gait are plain doubles, and `GaitValues` lists them by name for whoever changes
 /// them. A gait names cables; `ResolveGait` finds them in a robot, so that one gait plays on a
@@ -23,13 +23,19 @@ struct RobotSpec;
 /// name is one of its tags.
 using CableMatch = std::vector<std::vector<std::string>>;
 
-/// V0 = offset + amplitude cos(2 pi f t + phase) for some cables (docs/theory/gaits.md, eq. G.1).
+/// What a gait's signals are, and with that the unit of its amplitudes, offsets and tables.
+enum class GaitDrives {
+  kVelocity,    ///< V0 of impedance control [m/s].
+  kRestLength,  ///< What is added to rest lengths [m].
+};
+
+/// offset + amplitude cos(2 pi f t + phase) for some cables (docs/theory/gaits.md, eq. G.1).
 struct SineWave {
   std::string name;
   CableMatch cables;
-  double amplitude_m_per_s = 0.0;  ///< May be negative.
+  double amplitude = 0.0;  ///< [m/s], or [m] where rest lengths are driven. May be negative.
   double phase_rad = 0.0;
-  double offset_m_per_s = 0.0;
+  double offset = 0.0;  ///< [m/s], or [m].
   /// Added to the phase once for every segment further back: a travelling wave. The cables between
   /// segments i - 1 and i, whose names end in _i, get (i - 1) times this.
   double phase_per_segment_rad = 0.0;
@@ -54,9 +60,11 @@ enum class CpgSymmetry {
 
 /// Weight and phase of all couplings of one group.
 struct CouplingGroup {
-  std::string name;           ///< As `FindCouplings` names it: "behind.outer_top.inner_left".
-  double weight_per_m = 0.0;  ///< w; times the neighbour's amplitude in m/s it is a rate in rad/s.
-  double phase_rad = 0.0;     ///< phi: theta_j - theta_i that the coupling pulls towards.
+  std::string name;  ///< As `FindCouplings` names it: "behind.outer_top.inner_left".
+  /// w [1/m], or [1/(m s)] where rest lengths are driven: times the neighbour's amplitude it is a
+  /// rate in rad/s.
+  double weight = 0.0;
+  double phase_rad = 0.0;  ///< phi: theta_j - theta_i that the coupling pulls towards.
   SourceRef at;
 };
 
@@ -69,31 +77,25 @@ struct CpgFeedback {
 /// Phase oscillators with amplitude dynamics, one a cable (paper eq. 4-6).
 struct CpgGait {
   double frequency_hz = 1.0;         ///< v of all oscillators.
-  double amplitude_m_per_s = 0.05;   ///< R of all oscillators, >= 0.
+  double amplitude = 0.05;           ///< R of all oscillators [m/s], or [m]; >= 0.
   double convergence_per_s = 20.0;   ///< a of all oscillators, > 0.
   double integrator_step_s = 0.001;  ///< Longest step of the fourth-order integrator, > 0.
   CpgSymmetry symmetry = CpgSymmetry::kSegments;
   std::vector<std::string> order;  ///< Cables by name; empty: all with an actuator, in order.
-  CableMatch inverted;             ///< Cables whose V0 is the negative of their oscillator's.
+  CableMatch inverted;             ///< Cables whose signal is the negative of their oscillator's.
   std::optional<CpgFeedback> feedback;
   std::vector<CouplingGroup> groups;  ///< All groups of the robot, in their order.
   SourceRef at;
 };
 
-/// Velocities from a table.
+/// Velocities, or what is added to rest lengths, from a table.
 struct TableGait {
   std::vector<std::string> cables;        ///< By name; a column each.
   std::vector<double> time_s;             ///< Rising, the first 0.
-  std::vector<std::vector<double>> rows;  ///< Per time: m/s for each cable.
+  std::vector<std::vector<double>> rows;  ///< Per time, for each cable: [m/s], or [m].
   bool linear = false;                    ///< Straight between rows; else each row holds.
   std::optional<double> repeat_from_s;    ///< After the last row go on here; else it holds.
   SourceRef at;
-};
-
-/// What a gait's signals are, and with that the unit of its amplitudes, offsets and tables.
-enum class GaitDrives {
-  kVelocity,    ///< V0 of impedance control [m/s].
-  kRestLength,  ///< What is added to rest lengths [m].
 };
 
 /// A gait. Exactly one of the three is present.
@@ -130,17 +132,19 @@ std::optional<GaitSpec> ImportNtrtGait(const std::string& path, NtrtCableOrder o
 
 /// A CPG for a robot: every group of couplings there, all weights and phases 0. Nothing if there
 /// was any error.
-std::optional<GaitSpec> NewCpgGait(const RobotSpec& robot, CpgSymmetry symmetry, Diagnostics& out);
+std::optional<GaitSpec> NewCpgGait(const RobotSpec& robot, CpgSymmetry symmetry, Diagnostics& out,
+                                   GaitDrives drives = GaitDrives::kVelocity);
 
-/// A table as plain text: "time_s,outer_top_1_m_per_s,...", a row a line. A gait file's
-/// `table: {file: ...}` reads it back to the same bits.
-std::string GaitTableText(const TableGait& table);
+/// A table as plain text: "time_s,outer_top_1_m_per_s,...", a row a line; "outer_top_1_m" where
+/// rest lengths are driven. A gait file's `table: {file: ...}` reads it back to the same bits.
+std::string GaitTableText(const TableGait& table, GaitDrives drives = GaitDrives::kVelocity);
 
 /// One number of a gait: "sine.<wave>.amplitude_m_per_s", "cpg.frequency_hz",
-/// "cpg.<group>.weight_per_m", "cpg.<group>.phase_rad".
+/// "cpg.<group>.weight_per_m", "cpg.<group>.phase_rad"; "sine.<wave>.amplitude_m",
+/// "cpg.<group>.weight_per_m_s" where rest lengths are driven.
 struct GaitValue {
   std::string name;
-  std::string unit;  ///< "m/s", "rad", "Hz", "1/m", "1/s", "N", "rad/(N s)".
+  std::string unit;  ///< "m/s", "m", "rad", "Hz", "1/m", "1/(m s)", "1/s", "N", "rad/(N s)".
   double* value;     ///< Into the gait, as long as that is neither moved nor resized.
   double min, max;   ///< Beyond these the gait makes no sense or repeats itself; may be infinite.
 };
@@ -170,7 +174,8 @@ std::optional<CouplingGraph> FindCouplings(const RobotSpec& robot, CpgSymmetry s
 struct ResolvedGait {
   struct Wave {
     int cable = 0;
-    double frequency_hz = 0.0, phase_rad = 0.0, amplitude_m_per_s = 0.0, offset_m_per_s = 0.0;
+    double frequency_hz = 0.0, phase_rad = 0.0;
+    double amplitude = 0.0, offset = 0.0;  ///< [m/s], or [m].
   };
   std::vector<int> cables;   ///< That it drives, by index.
   std::vector<Wave> waves;   ///< Of a sine: in the order of `cables`.

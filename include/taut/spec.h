@@ -127,6 +127,16 @@ struct ControllerSpec {
   std::optional<GaitInputSpec> rest_length_input;
 };
 
+/// The gait input that a controller has; a controller has one at most. Null: none.
+inline GaitInputSpec* GaitInputOf(ControllerSpec& controller) noexcept {
+  if (controller.velocity_input) return &*controller.velocity_input;
+  return controller.rest_length_input ? &*controller.rest_length_input : nullptr;
+}
+inline const GaitInputSpec* GaitInputOf(const ControllerSpec& controller) noexcept {
+  if (controller.velocity_input) return &*controller.velocity_input;
+  return controller.rest_length_input ? &*controller.rest_length_input : nullptr;
+}
+
 /// A force on a node against time, piecewise linear, zero before the first and after the last
 /// point.
 struct PushSpec {

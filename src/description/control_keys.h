@@ -113,41 +113,88 @@ void Keys(Io& io, Like<PositionText> auto& p) {
   io("programs", p.programs, kNeeded, "Which cables do what. No cable may be matched twice.");
 }
 
-template <class Io, Either<GaitInputSpec, GaitInputText> Input>
-void Keys(Io& io, Input& v) {
+template <class Io, Either<GaitChange, GaitChangeText> Change>
+void Keys(Io& io, Change& c) {
+  io.Map("changes", "controller.gait_changes", "From a time on another gait plays.",
+         R"({"at_s": 20, "gait": "../gaits/cpg_learned.yaml"})");
+  io("at_s", c.at_s, kNeeded, Bound::kNonNegative,
+     "When: at the first tick of the gait's clock from then on.");
+  if constexpr (Io::kResolved) {
+    io("gait", c.gait);
+  } else {
+    io("gait", c.gait_file, kNeeded,
+       "A gait file, seen from this file's folder. It may be one that has played before.");
+  }
+}
+
+/// What both kinds of inputs have.
+template <class Io, class Input>
+void GaitInputKeys(Io& io, Input& v, const char* example = nullptr) {
+  io("period_s", v.clock.period_s, Bound::kPositive,
+     "Time between two ticks of the gait; its signals hold in between.");
+  io("phase_s", v.clock.phase_s, Bound::kNonNegative, "Time of its first tick.");
+  if constexpr (Io::kResolved) {
+    io("gait", v.gait);
+    io("others", v.others, kLater);
+    io("changes", v.changes, kLater);
+  } else {
+    io("gait", v.gait_file, kNeeded, "A gait file, seen from this file's folder.",
+       Example{example});
+    io("changes", v.change_texts,
+       "Gaits that follow at given times. They move the same cables in the same quantity.");
+    io("more_gaits", v.more_gaits,
+       "More gait files, for a program's own controller to choose from while the experiment runs.");
+  }
+  io("blend_s", v.blend_s, LaterThan{0.5}, Bound::kNonNegative,
+     "How long a change of gait takes: the new one's share grows smoothly from 0 to 1. Between two "
+     "networks of the same oscillators it has no effect: the network goes on with its phases and "
+     "amplitudes under the new gait's numbers.");
+}
+
+template <class Io>
+void Keys(Io& io, Like<GaitInputSpec> auto& v) {
+  GaitInputKeys(io, v);
+}
+template <class Io>
+void Keys(Io& io, Like<VelocityInputText> auto& v) {
   io.Map("velocity_input", "controller.velocity_input",
          "A gait that is added to the V0 of `impedance`, on a clock of its own: slower oscillators "
          "above a faster law. With `impedance` only, which must drive all cables that the gait "
          "moves.",
          R"({"gait": "../gaits/cpg_learned.yaml", "period_s": 0.01})");
-  io("period_s", v.clock.period_s, Bound::kPositive,
-     "Time between two ticks of the gait; V0 holds in between.");
-  io("phase_s", v.clock.phase_s, Bound::kNonNegative, "Time of its first tick.");
-  if constexpr (Io::kResolved) {
-    io("gait", v.gait);
-  } else {
-    io("gait", v.gait_file, kNeeded, "A gait file, seen from this file's folder.",
-       Example{R"("../gaits/cpg_learned.yaml")"});
-  }
+  GaitInputKeys(io, v, R"("../gaits/cpg_learned.yaml")");
 }
+template <class Io>
+void Keys(Io& io, Like<RestLengthInputText> auto& v) {
+  io.Map("rest_length_input", "controller.rest_length_input",
+         "A gait with `drives: rest_length`, on a clock of its own: its signals are added to the "
+         "programs of `position`, and to the rest length at the start of each cable that has no "
+         "program. Needs no `position`, and does not go with `impedance`.",
+         R"({"gait": "../gaits/rest_length_sine.yaml", "period_s": 0.01})");
+  GaitInputKeys(io, v, R"("../gaits/rest_length_sine.yaml")");
+}
+void Check(const MapReader& map, GaitInputText& input);
 
 template <class Io, Either<ControllerSpec, ControllerText> Controller>
 void Keys(Io& io, Controller& c) {
   io.Map("controller", "controller",
-         "One controller: its clock, and either `impedance` or `position`.");
+         "One controller: its clock, and either `impedance` or what drives rest lengths: "
+         "`position`, `rest_length_input` or both.");
   io("name", c.name, kNeeded, kName, "Name of the controller.");
   io("period_s", c.clock.period_s, Bound::kPositive,
      "Time between two ticks. The physics step does not change it.");
   io("phase_s", c.clock.phase_s, Bound::kNonNegative, "Time of the first tick.");
-  io.OneOf({"impedance", "position"});
+  io.EitherSide({"impedance"}, {"position", "rest_length_input"});
   if constexpr (Io::kResolved) {
     io("impedance", c.impedance);
     io("position", c.position);
     io("velocity_input", c.velocity_input);
+    io("rest_length_input", c.rest_length_input);
   } else {
     io("impedance", c.impedance_text);
     io("position", c.position_text);
     io("velocity_input", c.velocity_input_text);
+    io("rest_length_input", c.rest_length_input_text);
   }
 }
 void Check(const MapReader& map, ControllerText& controller);

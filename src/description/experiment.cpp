@@ -105,9 +105,13 @@ std::optional<ExperimentSpec> LoadExperiment(const std::string& path, const Over
   }
   if (!experiment || out.items().size() != errors_before) return std::nullopt;
   for (const ControllerSpec& controller : experiment->controllers) {
-    if (!controller.velocity_input) continue;
-    const std::vector<std::string>& of_gait = controller.velocity_input->gait.files;
-    experiment->files.insert(experiment->files.end(), of_gait.begin(), of_gait.end());
+    const GaitInputSpec* input = GaitInputOf(controller);
+    if (!input) continue;
+    const auto add = [&](const GaitSpec& gait) {
+      experiment->files.insert(experiment->files.end(), gait.files.begin(), gait.files.end());
+    };
+    add(input->gait);
+    for (const GaitSpec& gait : input->others) add(gait);
   }
   const std::vector<std::string>& model_files = experiment->robot.files;
   experiment->files.insert(experiment->files.end(), model_files.begin(), model_files.end());

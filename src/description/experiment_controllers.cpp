@@ -140,25 +140,25 @@ PositionProgram ProgramFor(const RobotSpec& robot, int cable, const Course& cour
   return program;
 }
 
-/// Which cables a controller drives.
-std::vector<int> DrivenCables(const ControllerSpec& controller) {
-  std::vector<int> cables;
+/// Which cables a controller drives, ascending: those of its law and those that its gait moves.
+std::set<int> DrivenCables(const ControllerSpec& controller, const std::vector<int>& of_gait) {
+  std::set<int> cables(of_gait.begin(), of_gait.end());
   if (controller.impedance) {
-    for (const ImpedanceGains& gains : controller.impedance->cables) cables.push_back(gains.cable);
+    for (const ImpedanceGains& gains : controller.impedance->cables) cables.insert(gains.cable);
   }
-  for (const PositionProgram& program : controller.position) cables.push_back(program.cable);
+  for (const PositionProgram& program : controller.position) cables.insert(program.cable);
   return cables;
 }
 
 /// One line for all cables that a controller cannot drive, for the same reason.
 void CheckDriven(const std::vector<ControllerSpec>& controllers,
-                 const std::vector<SourceRef>& places, const RobotSpec& robot, bool actuators_known,
-                 const Scope& scope) {
+                 const std::vector<std::set<int>>& driven, const std::vector<SourceRef>& places,
+                 const RobotSpec& robot, bool actuators_known, const Scope& scope) {
   std::map<int, std::size_t> driver;
   for (std::size_t i = 0; i < controllers.size(); ++i) {
     std::vector<int> no_actuator;
     std::map<std::size_t, std::vector<int>> taken;
-    for (const int cable : DrivenCables(controllers[i])) {
+    for (const int cable : driven[i]) {
       const CableDef& def = robot.def.cables[static_cast<std::size_t>(cable)];
       if (def.actuator.kind == ActuatorDef::Kind::kNone) no_actuator.push_back(cable);
       const auto [place, fresh] = driver.emplace(cable, i);
@@ -226,9 +226,13 @@ void Check(const MapReader& map, ImpedanceText& impedance) {
 
 void Check(const MapReader& map, ControllerText& controller) {
   controller.name_at = map.KeyAt("name");
-  if (map.Has("velocity_input") && map.Has("position") && !map.Has("impedance")) {
-    map.Error("velocity_input", "velocity_input has no effect with position",
-              "it is the V0 of `impedance`");
+  if (map.Has("velocity_input") && !map.Has("impedance")) {
+    for (const char* key : {"position", "rest_length_input"}) {
+      if (!map.Has(key)) continue;
+      map.Error("velocity_input", std::string("velocity_input has no effect with ") + key,
+                "it is the V0 of `impedance`");
+      break;
+    }
   }
 }
 
@@ -282,27 +286,28 @@ std::vector<ControllerSpec> ToControllers(std::vector<ControllerText>& texts,
                                           const RobotSpec* robot, bool actuators_known,
                                           const Scope& scope) {
   std::vector<ControllerSpec> controllers;
+  std::vector<std::set<int>> driven;
   std::vector<SourceRef> places;
   std::map<std::string, SourceRef> names;
   for (ControllerText& text : texts) {
     ControllerSpec& controller = controllers.emplace_back(text);
     if (text.impedance_text) {
       controller.impedance = ToImpedance(*text.impedance_text, robot, scope);
-    } else if (text.position_text) {
-      controller.position = ToPrograms(*text.position_text, robot, scope);
     }
+    if (text.position_text) controller.position = ToPrograms(*text.position_text, robot, scope);
+    std::vector<int> moved, of_gait;
     if (text.velocity_input_text) {
-      GaitInputText& input = *text.velocity_input_text;
-      const auto path = FindFile(input.gait_file.value, "velocity_input.gait", scope);
-      auto gait = path ? LoadGait(*path, scope.out) : std::nullopt;
-      if (gait) {
-        input.gait = std::move(*gait);
-        controller.velocity_input = input;
-      }
-      if (robot && gait && controller.impedance) {
-        CheckGaitDrives(controller, *robot, input.at, scope.out);
+      controller.velocity_input =
+          ToGaitInput(*text.velocity_input_text, kVelocityInput, robot, scope, moved);
+      if (robot && controller.velocity_input && controller.impedance) {
+        CheckGaitDrives(controller, moved, *robot, text.velocity_input_text->at, scope.out);
       }
     }
+    if (text.rest_length_input_text) {
+      controller.rest_length_input =
+          ToGaitInput(*text.rest_length_input_text, kRestLengthInput, robot, scope, of_gait);
+    }
+    driven.push_back(DrivenCables(controller, of_gait));
     if (!controller.name.empty()) {
       const auto [first, fresh] = names.emplace(controller.name, text.name_at);
       if (!fresh) {
@@ -312,7 +317,7 @@ std::vector<ControllerSpec> ToControllers(std::vector<ControllerText>& texts,
     }
     places.push_back(text.name_at);
   }
-  if (robot) CheckDriven(controllers, places, *robot, actuators_known, scope);
+  if (robot) CheckDriven(controllers, driven, places, *robot, actuators_known, scope);
   return controllers;
 }
 

@@ -27,9 +27,29 @@ ImpedanceSpec ToImpedance(const ImpedanceText& text, const RobotSpec* robot, con
 std::vector<PositionProgram> ToPrograms(const PositionText& text, const RobotSpec* robot,
                                         const Scope& scope);
 
-/// Complains unless the gait's cables are in the robot and driven by the controller's impedance.
-void CheckGaitDrives(const ControllerSpec& controller, const RobotSpec& robot, const SourceRef& at,
-                     Diagnostics& out);
+/// What a gait may be the input of.
+struct GaitInputKind {
+  const char* key;
+  GaitDrives drives;
+};
+inline constexpr GaitInputKind kVelocityInput{"velocity_input", GaitDrives::kVelocity};
+inline constexpr GaitInputKind kRestLengthInput{"rest_length_input", GaitDrives::kRestLength};
+
+/// Reads the gaits' files, each once, and checks them as `CheckGaits`. Nothing if there was any
+/// error. `cables`: that the gaits move, if that is known.
+std::optional<GaitInputSpec> ToGaitInput(const GaitInputText& text, const GaitInputKind& kind,
+                                         const RobotSpec* robot, const Scope& scope,
+                                         std::vector<int>& cables);
+
+/// Complains unless the gaits of an input drive what they are to drive, all of them the same cables
+/// of the robot, which are returned. `places`: of the first gait and of the others.
+std::vector<int> CheckGaits(const GaitInputSpec& input, const GaitInputKind& kind,
+                            const std::vector<SourceRef>& places, const RobotSpec* robot,
+                            Diagnostics& out);
+
+/// Complains about cables that a gait moves and the controller's impedance does not.
+void CheckGaitDrives(const ControllerSpec& controller, const std::vector<int>& cables,
+                     const RobotSpec& robot, const SourceRef& at, Diagnostics& out);
 
 /// Phases and events, into `out`, which has its duration already (NaN if that is unknown).
 void AddTimeline(const TimelineText& text, const RobotSpec* robot, const Scope& scope,

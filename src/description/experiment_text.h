@@ -84,14 +84,27 @@ struct ProgramText {
 struct PositionText {
   std::vector<ProgramText> programs;
 };
-struct GaitInputText : GaitInputSpec {
+struct FilesForm {
+  static constexpr const char* kSchema = R"("type": "array", "items": {"type": "string"})";
+};
+struct GaitChangeText {
+  double at_s = 0.0;
   Raw<FileForm> gait_file;
   SourceRef at;
 };
+struct GaitInputText : GaitInputSpec {
+  Raw<FileForm> gait_file;
+  Raw<FilesForm> more_gaits;
+  std::vector<GaitChangeText> change_texts;
+  SourceRef at;
+};
+struct VelocityInputText : GaitInputText {};
+struct RestLengthInputText : GaitInputText {};
 struct ControllerText : ControllerSpec {
   std::optional<ImpedanceText> impedance_text;
   std::optional<PositionText> position_text;
-  std::optional<GaitInputText> velocity_input_text;
+  std::optional<VelocityInputText> velocity_input_text;
+  std::optional<RestLengthInputText> rest_length_input_text;
   SourceRef name_at;  ///< Of its key.
 };
 

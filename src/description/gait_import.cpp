@@ -101,7 +101,7 @@ std::optional<GaitSpec> ImportLearned(const std::string& folder, NtrtCableOrder 
   const auto [frequency, amplitude] = ReadNnw(fs::path(folder) / (*set + "_node-0.nnw"), out);
   CpgGait cpg;
   cpg.frequency_hz = kCommandFactor * (kHighestHz * frequency);
-  cpg.amplitude_m_per_s = kMetre * kCommandFactor * (kHighestAmplitude * amplitude);
+  cpg.amplitude = kMetre * kCommandFactor * (kHighestAmplitude * amplitude);
   cpg.convergence_per_s = kConvergencePerS;
   cpg.integrator_step_s = kIntegratorStepS;
   cpg.symmetry = CpgSymmetry::kIndex;
@@ -153,9 +153,9 @@ std::optional<GaitSpec> ImportHandTuned(const std::string& path, Diagnostics& ou
         wave.name = "seg" + std::to_string(segment) + "_" + side + (top ? "_top" : "_bottom");
         wave.cables = top ? CableMatch{{side + "_top" + end}}
                           : CableMatch{{side + "_left" + end}, {side + "_right" + end}};
-        wave.amplitude_m_per_s = A;
+        wave.amplitude = A;
         wave.phase_rad = phase_rad;
-        wave.offset_m_per_s = -A;
+        wave.offset = -A;
         sine.waves.push_back(std::move(wave));
       }
     }

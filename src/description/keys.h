@@ -21,8 +21,10 @@
 /// which is a `CableDef` with what only files say; `Io::kResolved` tells which of the two is meant.
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -52,6 +54,10 @@ struct Inherited {};
 struct Limit {};
 struct Fixed {};
 }  // namespace note
+/// Earlier versions of taut did not write it and meant this number.
+struct LaterThan {
+  double value;
+};
 /// An example, as JSON.
 struct Example {
   const char* json;
@@ -66,6 +72,14 @@ inline constexpr note::Inherited kInherited;    ///< If absent, something else s
 inline constexpr note::Limit kLimit;            ///< If absent, infinite.
 inline constexpr note::Fixed kFixed;            ///< Not a number that studies vary.
 
+/// The names of one key where another key of the file chooses which of them it has: the amplitude
+/// of a gait is amplitude_m_per_s or amplitude_m. `when` says where, to readers of the reference.
+struct Spellings {
+  static constexpr int kCount = 2;
+  const char* names[kCount];
+  const char* when[kCount];
+};
+
 /// A line of a table, without the field.
 struct Key {
   const char* name;
@@ -74,12 +88,15 @@ struct Key {
   bool needed = false, later = false, is_name = false, is_direction = false, inherited = false;
   bool limit = false, fixed = false;
   const char* example = nullptr;
+  double before =
+      std::numeric_limits<double>::quiet_NaN();  ///< Not written: what `LaterThan` says.
 
   void Note(const char* text) { meaning = text; }
   void Note(const Bound& note) { bound = note; }
   void Note(note::Needed) { needed = true; }
   void Note(note::ResolvedOnly) {}
   void Note(note::Later) { later = true; }
+  void Note(LaterThan note) { later = true, before = note.value; }
   void Note(note::IsName) { is_name = true; }
   void Note(note::IsDirection) { is_direction = true; }
   void Note(note::Inherited) { inherited = true; }
@@ -116,11 +133,30 @@ class KeyVisitor {
     }
   }
 
+  /// A key with several names: those that `Derived::Spell` asks for.
+  template <class T, class... Notes>
+  void operator()(const Spellings& spellings, T& field, const Notes&... notes) {
+    static_cast<Derived&>(*this).Spell(spellings,
+                                       [&](const char* name) { (*this)(name, field, notes...); });
+  }
+  template <class OfName>
+  void Spell(const Spellings& spellings, const OfName& of_name) {
+    of_name(spellings.names[std::max(0, spelling.index)]);
+  }
+  /// From here on, and in all that is below, keys with several names have those of `now`, as `key`
+  /// says.
+  void SpeltBy(const char* /*key*/, const Spelling& now) { spelling = now; }
+
+  Spelling spelling;
+
   // What else a table may say. `what` is the mapping's name in messages, that of its place in the
   // file if empty; `title` its heading in the reference.
   void Map(const char* /*what*/, const char* /*title*/, const char* /*meaning*/,
            const char* /*example*/ = nullptr) {}
   void OneOf(const std::vector<std::string>& /*keys*/) {}  ///< Exactly one of these.
+  /// Keys of the one side or of the other, one at least.
+  void EitherSide(const std::vector<std::string>& /*one*/,
+                  const std::vector<std::string>& /*other*/) {}
   void Rule(const char* /*json*/) {}  ///< For the schema: what `Check` has a better message for.
 
  private:
@@ -138,11 +174,22 @@ class KeyNames : public KeyVisitor<KeyNames<kOfResolved>, kOfResolved> {
   void On(const Key& key, const T&, const Choices&...) {
     names.push_back(key.name);
   }
+  template <class OfName>
+  void Spell(const Spellings& spellings, const OfName& of_name) {
+    for (int i = 0; i < Spellings::kCount; ++i) {
+      const int wanted = this->spelling.index;
+      if (i == wanted || wanted < 0) {
+        of_name(spellings.names[i]);
+      } else {
+        other_spellings.push_back(spellings.names[i]);
+      }
+    }
+  }
   void Map(const char* called, const char* heading, const char*, const char* = nullptr) {
     what = called;
     title = heading;
   }
-  std::vector<std::string> names;
+  std::vector<std::string> names, other_spellings;
   std::string what, title;
 };
 

@@ -49,6 +49,7 @@ class NumberList : public KeyVisitor<NumberList<Number>, true> {
   template <class T>
   void Inside(const std::string& name, T& field) {
     NumberList inner(prefix_ + name + ".");
+    inner.spelling = this->spelling;
     Keys(inner, field);
     numbers.insert(numbers.end(), inner.numbers.begin(), inner.numbers.end());
   }

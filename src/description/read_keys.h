@@ -132,12 +132,14 @@ void ReadField(const Value& value, const std::string& path, const Key& key, cons
 
 class FileReader : public KeyVisitor<FileReader, false> {
  public:
-  explicit FileReader(const MapReader& map) : map_(map) {}
+  explicit FileReader(const MapReader& map) : map_(map) { spelling = map.scope().spelling; }
 
   template <class T>
   void On(const Key& key, T& field) {
     if (const Value* value = Find(key)) {
-      ReadField(*value, map_.Path(key.name), key, map_.scope(), field);
+      Scope scope = map_.scope();
+      scope.spelling = spelling;
+      ReadField(*value, map_.Path(key.name), key, scope, field);
     } else if (key.needed) {
       Spoil(field);
     }
@@ -147,12 +149,52 @@ class FileReader : public KeyVisitor<FileReader, false> {
     const Value* value = Find(key);
     if (!value) return;
     const auto read = ReadChoice<E>(*value, map_.Path(key.name), choices, map_.scope());
-    if (read) field = *read;
+    if (read) {
+      field = *read;
+    } else {
+      not_chosen_.emplace_back(key.name);
+    }
+  }
+  /// A wrong name is answered with the right one.
+  template <class OfName>
+  void Spell(const Spellings& spellings, const OfName& of_name) {
+    const char* right = spellings.names[std::max(0, spelling.index)];
+    bool wrong = false;
+    for (const char* name : spellings.names) {
+      if (name == right || !map_.Has(name)) continue;
+      if (spelling.index < 0) {
+        right = name;
+      } else {
+        map_.Error(name, map_.Path(name) + " is of another quantity",
+                   std::string(spelling.who) + " has " + right);
+        wrong = true;
+      }
+    }
+    if (!wrong || map_.Has(right)) of_name(right);
+  }
+  void SpeltBy(const char* key, const Spelling& now) {
+    spelling = now;
+    const bool chosen = std::find(not_chosen_.begin(), not_chosen_.end(), key) == not_chosen_.end();
+    if (!chosen) spelling.index = -1;
   }
   /// Of several nobody knows which was meant: none is looked at.
   void OneOf(const std::vector<std::string>& keys) {
     const bool clear = !map_.ExactlyOne(keys).empty();
     if (!clear) ignored_.insert(ignored_.end(), keys.begin(), keys.end());
+  }
+  void EitherSide(const std::vector<std::string>& one, const std::vector<std::string>& other) {
+    const auto first = [&](const std::vector<std::string>& keys) {
+      return std::find_if(keys.begin(), keys.end(),
+                          [&](const std::string& key) { return map_.Has(key); });
+    };
+    const auto here = first(one), there = first(other);
+    if (here != one.end() && there != other.end()) {
+      OneOf({*here, *there});
+    } else if (here == one.end() && there == other.end()) {
+      std::vector<std::string> all = one;
+      all.insert(all.end(), other.begin(), other.end());
+      OneOf(all);
+    }
   }
 
  private:
@@ -167,14 +209,18 @@ class FileReader : public KeyVisitor<FileReader, false> {
   }
 
   const MapReader& map_;
-  std::vector<std::string> ignored_;
+  std::vector<std::string> ignored_, not_chosen_;
 };
 
 template <class T>
 void ReadMapping(const Value& value, const std::string& path, const Scope& scope, T& out) {
   const std::size_t errors_before = scope.out.items().size();
   KeyNames<false> known;
+  known.spelling = scope.spelling;
   Keys(known, out);
+  for (std::string& name : known.other_spellings) {  // `FileReader` has more to say about these
+    if (value.Find(name)) known.names.push_back(std::move(name));
+  }
   const MapReader map(value, known.what.empty() ? path : known.what, std::move(known.names), scope);
   FileReader io(map);
   Keys(io, out);

@@ -20,12 +20,19 @@
 
 namespace taut::description {
 
+/// Which of their names keys have that have several (`Spellings` in keys.h).
+struct Spelling {
+  int index = 0;         ///< -1: what says so is wrong; any name will do.
+  const char* who = "";  ///< "a gait that drives rest lengths": who has these.
+};
+
 /// What every reading function needs: the parameters that expressions may use, where to complain,
-/// and, if somebody asks, which parameters were used.
+/// and, if somebody asks, which parameters were used; how keys are spelt.
 struct Scope {
   const NameTable& names;
   Diagnostics& out;
   NameSet* used = nullptr;
+  Spelling spelling{};
 };
 
 /// What a number has to be, besides finite: within least..most.

@@ -62,7 +62,7 @@ void Read(const Value& value, const std::string& what, const Scope& scope, std::
 /// earlier versions of taut did not write. Ranges are left to `Model::Compile`.
 class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
  public:
-  explicit ResolvedReader(const MapReader& map) : map_(map) {}
+  explicit ResolvedReader(const MapReader& map) : map_(map) { spelling = map.scope().spelling; }
 
   template <class T>
   void On(const Key& key, T& out) {
@@ -74,7 +74,10 @@ class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
     }
     const bool may_lack = kIsOptional<T> || key.later;
     const Value* value = may_lack ? map_.Find(key.name) : map_.Require(key.name);
-    if (value) Read(*value, map_.Path(key.name), map_.scope(), out);
+    if (!value) return;
+    Scope scope = map_.scope();
+    scope.spelling = spelling;
+    Read(*value, map_.Path(key.name), scope, out);
   }
   template <class E>
   void On(const Key& key, E& out, const Choices<E>& choices) {
@@ -91,6 +94,7 @@ template <class T>
 void ReadStruct(const Value& value, const std::string& what, std::vector<std::string> more_keys,
                 const Scope& scope, T& out) {
   KeyNames<true> known;
+  known.spelling = scope.spelling;
   Keys(known, out);
   known.names.insert(known.names.end(), more_keys.begin(), more_keys.end());
   const MapReader map(value, what, known.names, scope);
@@ -103,33 +107,37 @@ void Read(const Value& value, const std::string& what, const Scope& scope, T& ou
   ReadStruct(value, what, {}, scope, out);
 }
 
-/// Its cables must be there, and its numbers what a gait file's would have to be.
-void CheckGait(const ControllerSpec& controller, const RobotSpec& robot, const SourceRef& at,
-               Diagnostics& out) {
-  const GaitInputSpec& input = *controller.velocity_input;
-  if (!(input.clock.period_s > 0.0)) out.Error(at, "velocity_input.period_s must be positive");
-  const GaitSpec& gait = input.gait;
-  if (gait.sine.has_value() + gait.cpg.has_value() + gait.table.has_value() != 1) {
+/// Its numbers must be what a gait file's would have to be.
+void CheckGait(const GaitSpec& gait, const SourceRef& at, Diagnostics& out) {
+  if (CountKinds(gait) != 1) {
     out.Error(at, "a gait is one of sine, cpg and table");
     return;
   }
-  if (gait.cpg && !(gait.cpg->convergence_per_s > 0.0 && gait.cpg->integrator_step_s > 0.0)) {
-    out.Error(at, "cpg.convergence_per_s and cpg.integrator_step_s must be positive");
+  ForEachGaitKind([&](const auto& kind, auto) {
+    if (gait.*kind.gait) CheckNumbers(*(gait.*kind.gait), at, out);
+  });
+}
+
+/// Returns the cables that the gaits move.
+std::vector<int> CheckInput(const GaitInputSpec& input, const GaitInputKind& kind,
+                            const RobotSpec& robot, const SourceRef& at, Diagnostics& out) {
+  const std::size_t errors_before = out.items().size();
+  const auto check = [&](bool good, const char* what) {
+    if (!good) out.Error(at, std::string(kind.key) + what);
+  };
+  check(input.clock.period_s > 0.0, ".period_s must be positive");
+  check(input.blend_s >= 0.0, ".blend_s must not be negative");
+  double before_s = -1.0;
+  for (const GaitChange& change : input.changes) {
+    check(change.at_s >= 0.0 && change.at_s > before_s, ".changes: times must rise");
+    check(change.gait >= 0 && static_cast<std::size_t>(change.gait) <= input.others.size(),
+          ".changes: there is no such gait");
+    before_s = change.at_s;
   }
-  if (gait.table) {
-    const std::size_t errors_before = out.items().size();
-    if (gait.table->rows.size() != gait.table->time_s.size()) {
-      out.Error(at, "a table needs a time for each row");
-    }
-    for (const std::vector<double>& row : gait.table->rows) {
-      if (row.size() == gait.table->cables.size()) continue;
-      out.Error(at, "a table's row needs a velocity for each cable");
-      break;
-    }
-    if (out.items().size() != errors_before) return;
-    CheckTable(*gait.table, at, out);
-  }
-  CheckGaitDrives(controller, robot, at, out);
+  CheckGait(input.gait, at, out);
+  for (const GaitSpec& gait : input.others) CheckGait(gait, at, out);
+  if (out.items().size() != errors_before) return {};
+  return CheckGaits(input, kind, std::vector<SourceRef>(input.others.size() + 1, at), &robot, out);
 }
 
 /// The rules of names that the files had which were resolved.
@@ -161,11 +169,20 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
     for (const PositionProgram& program : controller.position) {
       check(program.cable, robot.def.cables.size(), "cable");
     }
+    if (controller.rest_length_input) {
+      if (controller.impedance) out.Error(at, "rest_length_input does not go with impedance");
+      CheckInput(*controller.rest_length_input, kRestLengthInput, robot, at, out);
+    }
     if (!controller.impedance) {
       if (controller.velocity_input) out.Error(at, "velocity_input goes with impedance");
       continue;
     }
-    if (controller.velocity_input) CheckGait(controller, robot, at, out);
+    if (controller.velocity_input) {
+      const std::size_t errors_before = out.items().size();
+      const std::vector<int> moved =
+          CheckInput(*controller.velocity_input, kVelocityInput, robot, at, out);
+      if (out.items().size() == errors_before) CheckGaitDrives(controller, moved, robot, at, out);
+    }
     for (const ImpedanceGains& gains : controller.impedance->cables) {
       check(gains.cable, robot.def.cables.size(), "cable");
     }

@@ -218,7 +218,23 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
   void OneOf(const std::vector<std::string>& keys) {
     rules_.push_back(R"("oneOf": [)" + OneOfThese(keys) + "]");
   }
+  void EitherSide(const std::vector<std::string>& one, const std::vector<std::string>& other) {
+    const auto any = [](const std::vector<std::string>& keys) {
+      return R"({"anyOf": [)" + OneOfThese(keys) + "]}";
+    };
+    rules_.push_back(R"("oneOf": [)" + any(one) + ", " + any(other) + "]");
+  }
   void Rule(const char* json) { rules_.push_back(json); }
+  /// All names; which of them it must be is left to the reader.
+  template <class OfName>
+  void Spell(const Spellings& spellings, const OfName& of_name) {
+    spellings_ = &spellings;
+    for (spelt_ = 0; spelt_ < Spellings::kCount; ++spelt_) of_name(spellings.names[spelt_]);
+    const std::vector<std::string> names(std::begin(spellings.names), std::end(spellings.names));
+    rules_.push_back(spelt_needed_ ? R"("oneOf": [)" + OneOfThese(names) + "]"
+                                   : R"("not": )" + Needs(names));
+    spellings_ = nullptr;
+  }
 
   /// The mapping, each line after `indent`. Of a whole file, `base` may have what is needed.
   std::string Text(const std::string& indent, bool whole_file) const {
@@ -247,14 +263,24 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
   void Add(const Key& key, std::string type, const std::string& fallback) {
     if (!fallback.empty() && !key.needed && !key.inherited && !replaces_)
       type += ", \"default\": " + fallback;
-    if (*key.meaning) type += ", \"description\": " + Json(key.meaning);
+    if (*key.meaning) type += ", \"description\": " + Json(Meaning(key));
     if (key.example) type += std::string(", \"examples\": [") + key.example + "]";
     properties_.push_back(Json(key.name) + ": {" + type + "}");
-    if (key.needed) needed_.push_back(key.name);
+    spelt_needed_ = key.needed;
+    if (key.needed && !spellings_) needed_.push_back(key.name);
+  }
+  std::string Meaning(const Key& key) const {
+    if (!spellings_) return key.meaning;
+    const std::string in = spellings_->when[spelt_] + std::string(".");
+    if (spelt_ == 0) return key.meaning + ((key.needed ? " Needed in " : " In ") + in);
+    return (key.needed ? "The same, needed in " : "The same in ") + in;
   }
 
   Definitions& definitions_;
   bool replaces_;
+  const Spellings* spellings_ = nullptr;  ///< Of the key that has several names, now.
+  int spelt_ = 0;
+  bool spelt_needed_ = false;
   std::string about_;
   std::vector<std::string> needed_, rules_, properties_;
 };

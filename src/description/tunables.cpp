@@ -20,6 +20,12 @@ void AddGains(ControllerSpec& controller, const RobotSpec& robot, std::vector<Tu
   }
 }
 
+void AddGait(const std::string& prefix, GaitSpec& gait, std::vector<Tunable>& out) {
+  for (const GaitValue& value : GaitValues(gait)) {
+    out.push_back({prefix + value.name, value.unit, value.value, value.min, value.max});
+  }
+}
+
 std::string ScaleName(const ScaleSpec& scale, const RobotSpec& robot) {
   switch (scale.quantity) {
     case ScaleSpec::Quantity::kFriction:
@@ -61,10 +67,11 @@ std::vector<Tunable> FindTunables(std::vector<ControllerSpec>& controllers,
   std::vector<Tunable> out;
   for (ControllerSpec& controller : controllers) {
     AddGains(controller, robot, out);
-    if (!controller.velocity_input) continue;
-    for (const GaitValue& value : GaitValues(controller.velocity_input->gait)) {
-      out.push_back(
-          {controller.name + "." + value.name, value.unit, value.value, value.min, value.max});
+    GaitInputSpec* input = GaitInputOf(controller);
+    if (!input) continue;
+    AddGait(controller.name + ".", input->gait, out);
+    for (GaitSpec& gait : input->others) {
+      AddGait(controller.name + "." + gait.name + ".", gait, out);
     }
   }
   for (ScaleSpec& scale : scales) {

@@ -22,8 +22,10 @@ std::string PlainOrQuoted(const std::string& text);
 template <bool kOfResolved>
 class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
  public:
+  explicit FlowWriter(const Spelling& spelt = {}) { this->spelling = spelt; }
+
   template <class T>
-  static std::string Text(const T& value) {
+  static std::string Text(const T& value, const Spelling& spelt = {}) {
     if constexpr (std::same_as<T, bool>) {
       return value ? "true" : "false";
     } else if constexpr (std::integral<T>) {
@@ -41,17 +43,17 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
     } else if constexpr (std::same_as<T, std::pair<double, double>>) {
       return Text(std::vector{value.first, value.second});
     } else {
-      FlowWriter writer;
+      FlowWriter writer(spelt);
       Keys(writer, value);
       return "{" + writer.text_ + "}";
     }
   }
   template <class T>
-  static std::string Text(const std::vector<T>& items) {
+  static std::string Text(const std::vector<T>& items, const Spelling& spelt = {}) {
     std::string out;
     for (const T& item : items) {
       if (!out.empty()) out += ", ";
-      out += Text(item);
+      out += Text(item, spelt);
     }
     return "[" + out + "]";
   }
@@ -61,18 +63,21 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
   void On(const Key& key, const T& value) {
     if constexpr (std::same_as<T, double>) {
       if (key.limit && std::isinf(value)) return;
+      if (value == key.before) return;
     }
-    if constexpr (!kOfResolved && requires { value.empty(); }) {
-      if (value.empty()) return;
+    if constexpr (requires { value.empty(); }) {
+      if ((!kOfResolved || key.later) && value.empty()) return;
     }
     if constexpr (kIsOptional<T>) {
-      if (value) Put(key.name, Text(*value));
+      if (value) Put(key.name, Text(*value, this->spelling));
     } else if constexpr (!kIsRaw<T>) {
-      Put(key.name, Text(value));
+      Put(key.name, Text(value, this->spelling));
     }
   }
+  /// What is chosen if a key that came later is absent is as good as absent.
   template <class E>
   void On(const Key& key, E value, const Choices<E>& choices) {
+    if (key.later && choices.front().second == value) return;
     for (const auto& [name, choice] : choices) {
       if (choice == value) Put(key.name, name);
     }
@@ -101,7 +106,10 @@ inline constexpr bool kIsBlock<true, T> = std::same_as<T, RobotSpec>;
 template <bool kOfResolved>
 class BlockWriter : public KeyVisitor<BlockWriter<kOfResolved>, kOfResolved> {
  public:
-  explicit BlockWriter(std::string indent) : indent_(std::move(indent)) {}
+  explicit BlockWriter(std::string indent, const Spelling& spelt = {})
+      : indent_(std::move(indent)) {
+    this->spelling = spelt;
+  }
 
   template <class T, class... Choices>
   void On(const Key& key, const T& value, const Choices&... choices) {
@@ -110,11 +118,11 @@ class BlockWriter : public KeyVisitor<BlockWriter<kOfResolved>, kOfResolved> {
     } else if constexpr (!kOfResolved && kIsOptional<T>) {
       if (value) On(key, *value, choices...);
     } else if constexpr (kIsBlock<kOfResolved, T>) {
-      BlockWriter inner(indent_ + "  ");
+      BlockWriter inner(indent_ + "  ", this->spelling);
       Keys(inner, value);
       text_ += indent_ + key.name + ":\n" + inner.text_;
     } else {
-      FlowWriter<kOfResolved> line;
+      FlowWriter<kOfResolved> line(this->spelling);
       line.On(key, value, choices...);
       if (!line.text().empty()) text_ += indent_ + line.text() + "\n";
     }
@@ -122,7 +130,7 @@ class BlockWriter : public KeyVisitor<BlockWriter<kOfResolved>, kOfResolved> {
   template <class T>
   void On(const Key& key, const std::vector<T>& items) {
     if constexpr (!kOfResolved && !kIsBlock<kOfResolved, T>) {
-      FlowWriter<kOfResolved> line;
+      FlowWriter<kOfResolved> line(this->spelling);
       line.On(key, items);
       if (!line.text().empty()) text_ += indent_ + line.text() + "\n";
       return;
@@ -130,7 +138,7 @@ class BlockWriter : public KeyVisitor<BlockWriter<kOfResolved>, kOfResolved> {
     if ((!kOfResolved || key.later) && items.empty()) return;
     text_ += indent_ + key.name + ":" + (items.empty() ? " []" : "") + "\n";
     for (const T& item : items) {
-      text_ += indent_ + "  - " + FlowWriter<kOfResolved>::Text(item) + "\n";
+      text_ += indent_ + "  - " + FlowWriter<kOfResolved>::Text(item, this->spelling) + "\n";
     }
   }
   const std::string& text() const { return text_; }

@@ -119,6 +119,7 @@ class GaitController final : public Controller {
     Lanes playing = 0;
     number_.resize(lanes_.size());
     time_s_.resize(lanes_.size());
+    since_s_.resize(lanes_.size());
     for (std::size_t j = 0; j < lanes_.size(); ++j) {
       const Lane& lane = lanes_[j];
       const Part* part = lane.now.gait == gait ? &lane.now : nullptr;
@@ -126,12 +127,13 @@ class GaitController final : public Controller {
       if (part == nullptr || !Has(tick.due, static_cast<int>(j))) continue;
       playing |= Lanes{1} << j;
       number_[j] = tick.number[j] - part->from_tick;
-      time_s_[j] = part->from_tick == 0 ? TimeOf(tick.number[j])
-                                        : static_cast<double>(number_[j]) * clock_.period_s;
+      time_s_[j] = TimeOf(tick.number[j]);
+      since_s_[j] =
+          part->from_tick == 0 ? time_s_[j] : static_cast<double>(number_[j]) * clock_.period_s;
     }
     if (playing == 0) return;
-    players_[static_cast<std::size_t>(gait)]->Tick(playing, number_.data(), time_s_.data(),
-                                                   seen.cables);
+    players_[static_cast<std::size_t>(gait)]->Tick(
+        {playing, number_.data(), time_s_.data(), since_s_.data()}, seen.cables);
   }
 
   /// Whether all lanes play the same one gait.
@@ -178,7 +180,7 @@ class GaitController final : public Controller {
   std::vector<std::unique_ptr<GaitPlayer>> players_;  ///< Per gait of the input.
   std::vector<Lane> lanes_;
   std::vector<std::int64_t> number_;
-  std::vector<double> time_s_;
+  std::vector<double> time_s_, since_s_;
 };
 
 }  // namespace

@@ -53,11 +53,11 @@ class CpgPlayer final : public GaitPlayer {
 
   /// The oscillators start at the first tick, and go from tick to tick under the signal that they
   /// had at the tick before.
-  void Tick(Lanes due, const std::int64_t* number, const double*,
-            const ReadingRows& seen) override {
+  void Tick(const GaitTick& tick, const ReadingRows& seen) override {
+    const Lanes due = tick.due;
     Lanes first = 0;
     for (int j = 0; j < lanes(); ++j) {
-      if (Has(due, j) && number[j] == 0) first |= Lanes{1} << j;
+      if (Has(due, j) && tick.number[j] == 0) first |= Lanes{1} << j;
     }
     if (first != 0) Go(first, 0);
     if (first != due) Go(due & ~first, steps_a_tick_);
@@ -113,7 +113,7 @@ class CpgPlayer final : public GaitPlayer {
     for (std::size_t i = 0; i < cables().size(); ++i) {
       const std::size_t at = At(i, lane);
       frequency_hz_[at] = cpg.frequency_hz;
-      amplitude_[at] = cpg.amplitude_m_per_s;
+      amplitude_[at] = cpg.amplitude;
       convergence_per_s_[at] = cpg.convergence_per_s;
       gain_[at] = feedback.gain_rad_per_n_s;
       reference_n_[at] = feedback.reference_n;
@@ -122,7 +122,7 @@ class CpgPlayer final : public GaitPlayer {
     for (std::size_t k = 0; k < to_.size(); ++k) {
       const CouplingGroup& group =
           cpg.groups[static_cast<std::size_t>(resolved.graph.couplings[k].group)];
-      weight_[At(k, lane)] = group.weight_per_m;
+      weight_[At(k, lane)] = group.weight;
       phase_turns_[At(k, lane)] = control::WrapTurns(group.phase_rad * control::kTurnsPerRad);
     }
   }

@@ -20,6 +20,14 @@ struct GaitSetup {
   double period_s = 0.01;
 };
 
+/// Who plays on now. Per lane: the time of the run, and how much time and how many ticks have
+/// passed since this gait began there.
+struct GaitTick {
+  Lanes due = 0;
+  const std::int64_t* number = nullptr;
+  const double *time_s = nullptr, *since_s = nullptr;
+};
+
 class GaitPlayer {
  public:
   explicit GaitPlayer(const GaitSetup& setup)
@@ -33,10 +41,8 @@ class GaitPlayer {
   /// Of output i in lane j, at [i * lanes + j]: what it says since the last tick; 0 before.
   const std::vector<double>& signal() const noexcept { return signal_; }
 
-  /// To the next tick, in the lanes that are due. Per lane: how many ticks and how much time there
-  /// were since it began to play.
-  virtual void Tick(Lanes due, const std::int64_t* number, const double* time_s,
-                    const ReadingRows& seen) = 0;
+  /// To the next tick, in the lanes that are due.
+  virtual void Tick(const GaitTick& tick, const ReadingRows& seen) = 0;
   /// A lane gets other numbers, and plays from the beginning.
   virtual void Restart(int lane, const GaitSpec& gait, const ResolvedGait& resolved) = 0;
   /// Goes on in a lane from where another gait is, without a jump. False if there is no such way.

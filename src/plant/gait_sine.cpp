@@ -19,12 +19,12 @@ class SinePlayer final : public GaitPlayer {
     }
   }
 
-  void Tick(Lanes due, const std::int64_t*, const double* time_s, const ReadingRows&) override {
-    OtherLanes others(due, lanes());
+  void Tick(const GaitTick& tick, const ReadingRows&) override {
+    OtherLanes others(tick.due, lanes());
     others.Keep(signal_.data(), cables().size());
     kernel_.sine({static_cast<int>(cables().size()), frequency_hz_.data(), amplitude_.data(),
                   phase_turns_.data(), offset_.data()},
-                 time_s, signal_.data());
+                 tick.time_s, signal_.data());
     others.PutBack();
   }
 
@@ -33,9 +33,9 @@ class SinePlayer final : public GaitPlayer {
       const ResolvedGait::Wave& wave = resolved.waves[i];
       const std::size_t at = At(i, lane);
       frequency_hz_[at] = wave.frequency_hz;
-      amplitude_[at] = wave.amplitude_m_per_s;
+      amplitude_[at] = wave.amplitude;
       phase_turns_[at] = control::WrapTurns(wave.phase_rad * control::kTurnsPerRad);
-      offset_[at] = wave.offset_m_per_s;
+      offset_[at] = wave.offset;
     }
   }
 

@@ -21,11 +21,11 @@ class TablePlayer final : public GaitPlayer {
     for (const GaitSpec* gait : setup.gaits) tables_.push_back(*gait->table);
   }
 
-  void Tick(Lanes due, const std::int64_t*, const double* time_s, const ReadingRows&) override {
+  void Tick(const GaitTick& tick, const ReadingRows&) override {
     for (int j = 0; j < lanes(); ++j) {
-      if (!Has(due, j)) continue;
+      if (!Has(tick.due, j)) continue;
       const TableGait& table = tables_[static_cast<std::size_t>(j)];
-      const double t = TimeIn(table, time_s[j]);
+      const double t = TimeIn(table, tick.since_s[j]);
       const std::size_t row = RowAt(table.time_s, t);
       const bool straight = table.linear && row + 1 < table.rows.size();
       const double part =

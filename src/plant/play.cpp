@@ -21,7 +21,7 @@ std::optional<TableGait> PlayGait(const GaitSpec& gait, const RobotSpec& robot, 
   const auto rows = static_cast<std::int64_t>(std::floor(duration_s * rate_hz + 1e-9)) + 1;
   for (std::int64_t row = 0; row < rows; ++row) {
     const double time_s = static_cast<double>(row) * period_s;
-    player->Tick(AllLanes(1), &row, &time_s, {});
+    player->Tick({AllLanes(1), &row, &time_s, &time_s}, {});
     table.time_s.push_back(time_s);
     table.rows.push_back(player->signal());
   }

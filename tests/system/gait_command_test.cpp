@@ -65,6 +65,20 @@ TEST_F(GaitCommand, ACreatedGaitIsGoodAndHasEveryNumber) {
   EXPECT_EQ(json["values"][3]["unit"], "1/m");
 }
 
+TEST_F(GaitCommand, ACreatedGaitMayDriveRestLengths) {
+  const std::string spine = kRoot + "models/tetraspine3.yaml";
+  ASSERT_EQ(Taut({"gait", "create", spine, "--drives", "rest_length", "--out", "g.yaml"}).status,
+            0);
+  EXPECT_NE(Read(Path("g.yaml")).find("drives: rest_length\n"), std::string::npos);
+  const auto json = nlohmann::json::parse(Taut({"gait", "values", "g.yaml", "--json"}).output);
+  EXPECT_EQ(json["values"][1]["name"], "cpg.amplitude_m");
+  EXPECT_EQ(json["values"][3]["unit"], "1/(m s)");
+  const CommandResult table =
+      Taut({"gait", "export", "g.yaml", spine, "--rate_hz", "10", "--duration_s", "0.2"});
+  EXPECT_EQ(table.status, 0) << table.errors;
+  EXPECT_EQ(table.output.find("time_s,outer_right_1_m,"), 0u) << table.output;
+}
+
 TEST_F(GaitCommand, AnExportedTableIsOneLineARow) {
   const CommandResult table =
       Taut({"gait", "export", kRoot + "gaits/hand_tuned_sine.yaml",
@@ -102,6 +116,7 @@ TEST_F(GaitCommand, WrongUseIsSaid) {
   EXPECT_EQ(Taut({"gait", "export", "g.yaml", "m.yaml", "--rate_hz", "0"}).status, 2);
   EXPECT_EQ(Taut({"gait", "import", "x", "--order", "2017"}).status, 2);
   EXPECT_EQ(Taut({"check", "m.yaml", "--couplings", "--symmetry", "all"}).status, 2);
+  EXPECT_EQ(Taut({"gait", "create", "m.yaml", "--drives", "tension"}).status, 2);
 }
 
 }  // namespace

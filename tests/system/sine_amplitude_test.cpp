@@ -46,7 +46,7 @@ Watch Walk(double factor, const std::string& ground_friction) {
   EXPECT_TRUE(experiment) << out.Format();
   if (!experiment) return watch;
   for (SineWave& wave : experiment->controllers[0].velocity_input->gait.sine->waves) {
-    wave.amplitude_m_per_s *= factor, wave.offset_m_per_s *= factor;
+    wave.amplitude *= factor, wave.offset *= factor;
   }
   experiment->duration_s = 15;
   experiment->phases.clear();

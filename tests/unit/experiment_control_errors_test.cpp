@@ -97,10 +97,11 @@ TEST_F(ExperimentErrors, ACableObeysOneController) {
          "10:5: error: controller needs the key \"name\"");
   Expect("name: hold", "name: hold\n    position: {programs: []}",
          "11:5: error: controller has both impedance and position (only one of them may be there)");
-  Expect("    impedance:", "    cpg:",
-         "10:5: error: controller needs one of impedance, position\n11:5: error: unknown key "
-         "\"cpg\" in controller (one of: name, period_s, phase_s, impedance, position, "
-         "velocity_input)");
+  Expect(
+      "    impedance:", "    cpg:",
+      "10:5: error: controller needs one of impedance, position, rest_length_input\n11:5: error: "
+      "unknown key \"cpg\" in controller (one of: name, period_s, phase_s, impedance, position, "
+      "velocity_input, rest_length_input)");
   const std::string second =
       "  - {name: second, position: {programs: [{cables: back, rest_length_m: 0.1}]}}\n";
   Expect("timeline:", second + "timeline:",

@@ -189,11 +189,11 @@ TEST(Couplings, TheLearnedGaitHasNtrtsNetwork) {
     ASSERT_NE(found, expected.end());
     const CouplingGroup& group = gait.cpg->groups[static_cast<std::size_t>(link.group)];
     // the table has six and nine digits
-    EXPECT_NEAR(group.weight_per_m, found->second.weight_per_m, 1e-9);
+    EXPECT_NEAR(group.weight, found->second.weight_per_m, 1e-9);
     EXPECT_NEAR(group.phase_rad, found->second.phase_rad, 5e-9 * std::numbers::pi);
   }
   EXPECT_NEAR(gait.cpg->frequency_hz, 5.948289, 1e-9);
-  EXPECT_NEAR(gait.cpg->amplitude_m_per_s, 0.5154273, 1e-9);
+  EXPECT_NEAR(gait.cpg->amplitude, 0.5154273, 1e-9);
 }
 
 /// Largest difference of the gait's output from NTRT's trace up to a time [m/s].
@@ -298,14 +298,14 @@ TEST_F(NtrtFolder, LearnedParametersAreScaledAndPlaced) {
   Diagnostics out;
   const auto gait = ImportNtrtGait(folder_.string(), NtrtCableOrder::kSince2016, out);
   ASSERT_TRUE(gait) << out.Format();
-  EXPECT_NEAR(gait->cpg->frequency_hz, 9.0, 1e-12);        // 3 times 0.1 of 30 Hz
-  EXPECT_NEAR(gait->cpg->amplitude_m_per_s, 0.18, 1e-12);  // 3 times 0.2 of 30 cm/s
+  EXPECT_NEAR(gait->cpg->frequency_hz, 9.0, 1e-12);  // 3 times 0.1 of 30 Hz
+  EXPECT_NEAR(gait->cpg->amplitude, 0.18, 1e-12);    // 3 times 0.2 of 30 cm/s
   EXPECT_EQ(gait->cpg->order[0], "outer_right_1");
   // file 56 is entry (0, 0, 0), file 0 is (2, 5, 5); a weight of 1 is 1/cm
   EXPECT_EQ(gait->cpg->groups.front().name, "rp0.0.0");
-  EXPECT_NEAR(gait->cpg->groups.front().weight_per_m, 56.0, 1e-12);
+  EXPECT_NEAR(gait->cpg->groups.front().weight, 56.0, 1e-12);
   EXPECT_EQ(gait->cpg->groups.back().name, "rp2.5.5");
-  EXPECT_EQ(gait->cpg->groups.back().weight_per_m, 0.0);
+  EXPECT_EQ(gait->cpg->groups.back().weight, 0.0);
   EXPECT_NEAR(gait->cpg->groups[30].phase_rad, std::numbers::pi / 2, 1e-12);
 }
 

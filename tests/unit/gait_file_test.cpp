@@ -4,40 +4,10 @@
 
 #include "taut/gait.h"
 #include "unit/experiment_fixture.h"
+#include "unit/gait_texts.h"
 
 namespace taut::test {
 namespace {
-
-constexpr const char* kSine = R"(taut: 1
-kind: gait
-name: waves
-parameters: {slow_hz: 0.5}
-sine:
-  frequency_hz: slow_hz
-  waves:
-    - {name: a, cables: left, amplitude_m_per_s: -0.08, phase_rad: pi / 2, offset_m_per_s: 0.01}
-    - {name: b, cables: [driven, back], amplitude_m_per_s: 0.1, frequency_hz: 2 * slow_hz}
-)";
-
-constexpr const char* kCpg = R"(taut: 1
-kind: gait
-name: pair
-cpg:
-  frequency_hz: 0.75
-  amplitude_m_per_s: 0.1
-  symmetry: none
-  groups:
-    - {name: left.right, weight_per_m: 20, phase_rad: 0.1}
-    - {name: right.left, weight_per_m: 10, phase_rad: -0.1}
-)";
-
-constexpr const char* kTable = R"(taut: 1
-kind: gait
-name: table
-table:
-  cables: [left, right]
-  rows: [[0, 0.1, -0.1], [0.5, 0.2, -0.2]]
-)";
 
 class Gait : public ExperimentFolder {
  protected:
@@ -73,9 +43,9 @@ TEST_F(Gait, ASineIsReadWithItsExpressionsAndDefaults) {
   ASSERT_TRUE(gait.sine);
   EXPECT_EQ(gait.sine->frequency_hz, 0.5);
   ASSERT_EQ(gait.sine->waves.size(), 2u);
-  EXPECT_EQ(gait.sine->waves[0].amplitude_m_per_s, -0.08);
+  EXPECT_EQ(gait.sine->waves[0].amplitude, -0.08);
   EXPECT_EQ(gait.sine->waves[0].phase_rad, std::acos(0.0));
-  EXPECT_EQ(gait.sine->waves[0].offset_m_per_s, 0.01);
+  EXPECT_EQ(gait.sine->waves[0].offset, 0.01);
   EXPECT_FALSE(gait.sine->waves[0].frequency_hz);
   EXPECT_EQ(gait.sine->waves[1].frequency_hz, 1.0);
   EXPECT_EQ(gait.sine->waves[1].cables, (CableMatch{{"driven", "back"}}));
@@ -84,6 +54,7 @@ TEST_F(Gait, ASineIsReadWithItsExpressionsAndDefaults) {
 /// Every number by its bits, and the texts.
 std::string Everything(GaitSpec gait) {
   std::string out = gait.name + "|" + gait.description + "|";
+  out += gait.drives == GaitDrives::kRestLength ? "lengths|" : "velocities|";
   for (const GaitValue& value : GaitValues(gait)) {
     out += value.name + " " + value.unit + " " +
            std::to_string(std::bit_cast<std::uint64_t>(*value.value)) + "\n";
@@ -125,10 +96,12 @@ TEST_F(Gait, WhatIsWrittenReadsBackToTheSameBits) {
   std::string table = kTable;
   table.replace(table.find("  cables"), 0, "  interpolation: linear\n  repeat_from_s: 0.1\n");
   table.replace(table.find("0.2, -0.2"), 3, "1 / 3");
+  const std::string lengths = WithLengths(kSine), length_cpg = WithLengths(cpg),
+                    length_table = WithLengths(table);
   std::string sine = kSine;
   sine.replace(sine.find("name: waves"), 11, "name: waves\ndescription: 'a \"b\" \\ c'");
   sine.replace(sine.find("offset_m_per_s"), 0, "phase_per_segment_rad: 1 / 3, ");
-  for (const std::string& text : {sine, cpg, table}) {
+  for (const std::string& text : {sine, cpg, table, lengths, length_cpg, length_table}) {
     GaitSpec gait = LoadText(text);
     Diagnostics out;
     ASSERT_TRUE(SaveGait(gait, Path("saved.yaml"), out));
@@ -157,7 +130,7 @@ TEST_F(Gait, ValuesAreNamedAndPointIntoTheGait) {
             "cpg.left.right.weight_per_m [1/m]\ncpg.left.right.phase_rad [rad]\n"
             "cpg.right.left.weight_per_m [1/m]\ncpg.right.left.phase_rad [rad]\n");
   EXPECT_EQ(gait.cpg->frequency_hz, 1.75);
-  EXPECT_EQ(gait.cpg->groups[1].weight_per_m, 11.0);
+  EXPECT_EQ(gait.cpg->groups[1].weight, 11.0);
 
   GaitSpec sine = LoadText(kSine);
   names.clear();
@@ -168,6 +141,45 @@ TEST_F(Gait, ValuesAreNamedAndPointIntoTheGait) {
             "sine.b.offset_m_per_s sine.b.phase_per_segment_rad sine.b.frequency_hz ");
   GaitSpec table = LoadText(kTable);
   EXPECT_TRUE(GaitValues(table).empty());
+}
+
+TEST_F(Gait, ValuesHaveTheNamesAndUnitsOfWhatIsDriven) {
+  std::string names;
+  for (const char* text : {kSine, kCpg}) {
+    GaitSpec gait = LoadText(WithLengths(text));
+    EXPECT_EQ(gait.drives, GaitDrives::kRestLength);
+    for (const GaitValue& value : GaitValues(gait)) {
+      if (value.unit.find('m') != value.unit.npos) names += value.name + " [" + value.unit + "]\n";
+    }
+  }
+  EXPECT_EQ(names,
+            "sine.a.amplitude_m [m]\nsine.a.offset_m [m]\nsine.b.amplitude_m [m]\n"
+            "sine.b.offset_m [m]\ncpg.amplitude_m [m]\ncpg.left.right.weight_per_m_s [1/(m s)]\n"
+            "cpg.right.left.weight_per_m_s [1/(m s)]\n");
+  EXPECT_EQ(LoadText(WithLengths(kSine)).sine->waves[0].amplitude, -0.08);
+  EXPECT_EQ(LoadText(WithLengths(kCpg)).cpg->groups[0].weight, 20.0);
+  EXPECT_EQ(LoadText(kSine).drives, GaitDrives::kVelocity);
+}
+
+TEST_F(Gait, AKeyOfTheOtherQuantityIsAnsweredWithTheRightOne) {
+  Expect(WithLengths(kSine), "amplitude_m: -0.08", "amplitude_m_per_s: -0.08",
+         "9:31: error: waves.amplitude_m_per_s is of another quantity (a gait that drives rest "
+         "lengths has amplitude_m)");
+  Expect(kSine, "offset_m_per_s: 0.01", "offset_m: 0.01",
+         "8:76: error: waves.offset_m is of another quantity (a gait that drives velocities has "
+         "offset_m_per_s)");
+  Expect(WithLengths(kCpg), "amplitude_m: 0.1", "amplitude_m_per_s: 0.1\n  amplitude_m: 0.1",
+         "7:3: error: cpg.amplitude_m_per_s is of another quantity (a gait that drives rest "
+         "lengths has amplitude_m)");
+  Expect(kCpg, "weight_per_m: 20", "weight_per_m_s: 20",
+         "9:26: error: groups.weight_per_m_s is of another quantity (a gait that drives velocities "
+         "has weight_per_m)");
+  Expect(WithLengths(kSine), "amplitude_m: -0.08", "amplitude: -0.08",
+         "9:7: error: waves needs the key \"amplitude_m\"\n"
+         "9:31: error: unknown key \"amplitude\" in waves (did you mean \"amplitude_m\"?)");
+  // where nobody knows what is driven, no name is a wrong one
+  Expect(WithLengths(kSine), "drives: rest_length", "drives: rest_lenght",
+         "3:9: error: drives cannot be \"rest_lenght\" (did you mean \"rest_length\"?)");
 }
 
 TEST_F(Gait, WrongKeysAndValuesAreErrors) {
@@ -221,6 +233,12 @@ TEST_F(Gait, ATableInPlainTextIsReadOrItsErrorsAreSaid) {
             "t.csv:1:1: error: column 2 is \"left\" (a cable's name with its unit, such as "
             "outer_top_1_m_per_s)\n"
             "t.csv:1:1: error: the first column must be time_s, got \"t\"\n");
+  Write("t.csv", "time_s,left_m,_m_per_s\n");
+  EXPECT_EQ(GaitComplaints(gait),
+            "t.csv:1:1: error: column 2 is \"left_m\" (a gait that drives velocities has "
+            "left_m_per_s)\n"
+            "t.csv:1:1: error: column 3 is \"_m_per_s\" (a cable's name with its unit, such as "
+            "outer_top_1_m_per_s)\n");
   Write("t.csv", "time_s,left_m_per_s\n0,0.1,3\n1,nan\n2,\n3,4\n");
   EXPECT_EQ(GaitComplaints(gait),
             "t.csv:2:1: error: a row of 3 cells under a header of 2\n"
@@ -229,6 +247,25 @@ TEST_F(Gait, ATableInPlainTextIsReadOrItsErrorsAreSaid) {
   Write("t.csv", "");
   EXPECT_EQ(GaitComplaints(gait),
             "t.csv:1:1: error: has no header line (such as time_s,outer_top_1_m_per_s)\n");
+}
+
+TEST_F(Gait, ATableOfRestLengthsHasColumnsInMetres) {
+  const std::string gait =
+      "taut: 1\nkind: gait\nname: t\ndrives: rest_length\ntable: {file: t.csv}\n";
+  Write("t.csv", "time_s,left_m,right_m\n0,0.1,-0.25\n");
+  const GaitSpec good = LoadText(gait);
+  ASSERT_TRUE(good.table);
+  EXPECT_EQ(good.table->cables, (std::vector<std::string>{"left", "right"}));
+  EXPECT_EQ(GaitTableText(*good.table, good.drives), "time_s,left_m,right_m\n0,0.1,-0.25\n");
+  Write("t.csv", "time_s,left_m_per_s,right\n0,0.1,-0.25\n");
+  EXPECT_EQ(GaitComplaints(gait),
+            "t.csv:1:1: error: column 2 is \"left_m_per_s\" (a gait that drives rest lengths has "
+            "left_m)\n"
+            "t.csv:1:1: error: column 3 is \"right\" (a cable's name with its unit, such as "
+            "outer_top_1_m)\n");
+  Write("t.csv", "");
+  EXPECT_EQ(GaitComplaints(gait),
+            "t.csv:1:1: error: has no header line (such as time_s,outer_top_1_m)\n");
 }
 
 TEST_F(Gait, AGaitMustFitTheRobotThatPlaysIt) {
@@ -286,57 +323,6 @@ TEST_F(Gait, AGaitMustFitTheRobotThatPlaysIt) {
             "g.yaml:5:3: error: pair has no cable \"rihgt\" (did you mean \"right\"?)\n");
   text.replace(text.find("[left, rihgt]"), 13, "[left, left]");
   EXPECT_EQ(PlayedComplaints(text), "g.yaml:5:3: error: the table has left twice\n");
-}
-
-class VelocityInput : public ExperimentErrors {};
-
-TEST_F(VelocityInput, GoesWithImpedanceAndNamesAGait) {
-  Write("g.yaml", kSine);
-  const std::string hold = "  - name: hold\n";
-  Expect(hold, hold + "    velocity_input: {gait: h.yaml}\n",
-         "11:28: error: velocity_input.gait: there is no file \"h.yaml\" (as seen from the folder "
-         "of the file that names it)");
-  Expect(hold, hold + "    velocity_input: {gait: g.yaml, period_s: 0}\n",
-         "11:46: error: velocity_input.period_s must be positive, got 0");
-  Expect(hold, hold + "    velocity_input: {period: 1}\n",
-         "11:21: error: velocity_input needs the key \"gait\"\n"
-         "11:22: error: unknown key \"period\" in velocity_input (did you mean \"period_s\"?)");
-  Change(hold, hold + "    velocity_input: {gait: model.yaml}\n");
-  EXPECT_EQ(
-      Complaints(),
-      "model.yaml:2:7: error: kind must be gait, got model (a file is a model, an experiment or "
-      "a gait)\n");
-  Change("controllers:\n",
-         "controllers:\n  - {name: p, velocity_input: {gait: g.yaml}, position: {programs: []}}\n");
-  EXPECT_EQ(Without("trial.yaml:", Complaints()),
-            "10:15: error: velocity_input has no effect with position (it is the V0 of "
-            "`impedance`)\n");
-}
-
-TEST_F(VelocityInput, TheResolvedExperimentHoldsTheGaitItself) {
-  for (const char* text : {kSine, kCpg, kTable}) {
-    Write("g.yaml", text);
-    Change("  - name: hold\n",
-           "  - name: hold\n    velocity_input: {gait: g.yaml, period_s: 0.02, phase_s: 1}\n");
-    const ExperimentSpec experiment = Load();
-    ASSERT_EQ(experiment.files.size(), 3u);
-    Write("resolved.yaml", ResolvedYaml(experiment));
-    std::filesystem::remove(Path("g.yaml"));
-    const ExperimentSpec back = Load("resolved.yaml");
-    ASSERT_TRUE(back.controllers.at(0).velocity_input);
-    const GaitInputSpec& input = *back.controllers[0].velocity_input;
-    EXPECT_EQ(input.clock.period_s, 0.02);
-    EXPECT_EQ(input.clock.phase_s, 1.0);
-    EXPECT_EQ(GaitYaml(input.gait), GaitYaml(experiment.controllers[0].velocity_input->gait));
-  }
-}
-
-TEST_F(VelocityInput, TheGaitIsPartOfTheHash) {
-  Write("g.yaml", kSine);
-  Change("  - name: hold\n", "  - name: hold\n    velocity_input: {gait: g.yaml}\n");
-  const auto before = Load().input_hash;
-  Write("g.yaml", std::string(kSine) + "# faster\n");
-  EXPECT_NE(Load().input_hash, before);
 }
 
 }  // namespace

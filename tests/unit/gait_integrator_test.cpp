@@ -69,7 +69,7 @@ TEST(GaitIntegratorInTime, TheErrorGrowsWithTimeAndNoFaster) {
 
 // Of 0.515 m/s, at the step of the gait as it is shipped; as fine as NTRT's it is 4000 times less.
 TEST_F(GaitIntegrator, AtTheShippedStepItIsATenthOfAPercent) {
-  const double amplitude = Load("cpg_learned").cpg->amplitude_m_per_s;
+  const double amplitude = Load("cpg_learned").cpg->amplitude;
   EXPECT_LT(Error(Load("cpg_learned").cpg->integrator_step_s), 0.00125 * amplitude);
   EXPECT_LT(Error(Load("cpg_learned_ntrt").cpg->integrator_step_s), 1e-6 * amplitude);
   EXPECT_GT(Error(0.005), 0.04 * amplitude) << "so far the step can be too long";

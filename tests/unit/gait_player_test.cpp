@@ -47,7 +47,7 @@ struct Player {
         control::TickTime(control::Clock<double>{spec.period_s, spec.phase_s}, *tick.number);
     ReadingRows seen;
     seen.tension_n = tension_n.data();
-    player->Tick(tick.due, tick.number, &since_s, seen);
+    player->Tick({tick.due, tick.number, &since_s, &since_s}, seen);
     clock.Advance(tick.due);
   }
 
@@ -60,8 +60,8 @@ GaitSpec OneWave(double frequency_hz) {
   SineWave wave;
   wave.name = "w";
   wave.cables = {{"outer", "top"}};
-  wave.amplitude_m_per_s = 0.1;
-  wave.offset_m_per_s = 0.02;
+  wave.amplitude = 0.1;
+  wave.offset = 0.02;
   wave.phase_per_segment_rad = kTwoPi / 4;
   GaitSpec gait;
   gait.name = "g";
@@ -133,7 +133,7 @@ GaitSpec BlankCpg() {
   auto gait = NewCpgGait(Spine(), CpgSymmetry::kSegments, out);
   EXPECT_TRUE(gait);
   gait->cpg->frequency_hz = 1.0;
-  gait->cpg->amplitude_m_per_s = 0.1;
+  gait->cpg->amplitude = 0.1;
   gait->cpg->inverted = {{"inner_top_1"}};
   return *gait;
 }

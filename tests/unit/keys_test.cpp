@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "base/name_unit.h"
 #include "description/number_list.h"
@@ -52,15 +53,50 @@ void Check(const MapReader& map, Spring& spring) {
   if (spring.length_m > 100.0) map.Error("length_m", "too long for this room");
 }
 
+constexpr Spellings kReach{{"reach_m", "reach_rad"}, {"a line", "a turn"}};
+
+struct Stroke {
+  std::string name;
+  double reach = 1.0;
+};
+template <class Io>
+void Keys(Io& io, Like<Stroke> auto& s) {
+  io.Map("strokes", "strokes", "There and back.");
+  io("name", s.name, kNeeded, "Its name.");
+  io(kReach, s.reach, kNeeded, Bound::kPositive, "How far.");
+}
+
+/// Moves by a spring's pull, or by a crank, a rope or both.
+struct Drive {
+  bool turns = false;
+  double pull_n = 0.0, slack_m = 0.5;
+  std::optional<double> crank_m, rope_m;
+  std::vector<Stroke> strokes;
+};
+const Choices<bool> kTurns{{"line", false}, {"turn", true}};
+template <class Io>
+void Keys(Io& io, Like<Drive> auto& d) {
+  io.Map("drive", "drive", "It moves.");
+  io("moves", d.turns, kTurns, kLater, "How.");
+  io.SpeltBy("moves", {d.turns ? 1 : 0, d.turns ? "what turns" : "what goes straight"});
+  io.EitherSide({"pull_n"}, {"crank_m", "rope_m"});
+  io("pull_n", d.pull_n, "Pull.");
+  io("crank_m", d.crank_m, "Crank.");
+  io("rope_m", d.rope_m, "Rope.");
+  io("slack_m", d.slack_m, LaterThan{0.5}, "Slack.");
+  io("strokes", d.strokes, kLater, "Strokes.");
+}
+
 class Tables : public ::testing::Test {
  protected:
-  Spring Read(const std::string& text) {
+  template <class T = Spring>
+  T Read(const std::string& text) {
     Diagnostics out;
     const ValuePtr root = ParseYaml(text, "f.yaml", out);
-    Spring spring;
-    if (root) ReadMapping(*root, "", {names_, out}, spring);
+    T read;
+    if (root) ReadMapping(*root, "", {names_, out}, read);
     errors_ = out.Format();
-    return spring;
+    return read;
   }
   NameTable names_{{"edge_m", 0.5}};
   std::string errors_;
@@ -145,8 +181,64 @@ TEST_F(Tables, NumbersAreListedByName) {
   EXPECT_EQ(list.numbers[2].most, 10.0);
 }
 
+TEST_F(Tables, AKeyIsSpeltAsAnotherSays) {
+  Drive drive = Read<Drive>("{moves: turn, pull_n: 1, strokes: [{name: a, reach_rad: 2}]}");
+  EXPECT_EQ(errors_, "");
+  ASSERT_EQ(drive.strokes.size(), 1u);
+  EXPECT_EQ(drive.strokes[0].reach, 2.0);
+  FlowWriter<true> resolved;
+  Keys(resolved, std::as_const(drive));
+  EXPECT_EQ(resolved.text(), "moves: turn, pull_n: 1, strokes: [{name: \"a\", reach_rad: 2}]");
+  struct Number {
+    std::string name, unit;
+    double* value;
+    double least, most;
+  };
+  NumberList<Number> list("");
+  Keys(list, drive);
+  EXPECT_EQ(list.numbers.back().name, "a.reach_rad");
+  EXPECT_EQ(list.numbers.back().unit, "rad");
+
+  Read<Drive>("{moves: turn, pull_n: 1, strokes: [{name: a, reach_m: 2}, {name: b, reach: 1}]}");
+  EXPECT_EQ(errors_,
+            "f.yaml:1:46: error: strokes.reach_m is of another quantity (what turns has "
+            "reach_rad)\n"
+            "f.yaml:1:59: error: strokes needs the key \"reach_rad\"\n"
+            "f.yaml:1:69: error: unknown key \"reach\" in strokes (did you mean "
+            "\"reach_rad\"?)\n");
+  // who does not know what moves has nothing against either
+  Read<Drive>(
+      "{moves: trun, pull_n: 1, strokes: [{name: a, reach_m: 2}, {name: b, reach_rad: 1}]}");
+  EXPECT_EQ(errors_,
+            "f.yaml:1:9: error: drive.moves cannot be \"trun\" (did you mean \"turn\"?)\n");
+}
+
+TEST_F(Tables, WhatCameLaterIsWrittenIfItSaysSomething) {
+  const Drive old_drive = Read<Drive>("{pull_n: 1}");
+  FlowWriter<true> as_before;
+  Keys(as_before, old_drive);
+  EXPECT_EQ(as_before.text(), "pull_n: 1");
+  const Drive new_drive = Read<Drive>("{pull_n: 1, slack_m: 0.25}");
+  FlowWriter<true> later;
+  Keys(later, new_drive);
+  EXPECT_EQ(later.text(), "pull_n: 1, slack_m: 0.25");
+}
+
+TEST_F(Tables, OneSideOrTheOther) {
+  const Drive both = Read<Drive>("{crank_m: 1, rope_m: 2}");
+  EXPECT_EQ(errors_, "");
+  EXPECT_EQ(both.rope_m, 2.0);
+  Read<Drive>("{rope_m: 2, pull_n: 1}");
+  EXPECT_EQ(errors_,
+            "f.yaml:1:2: error: drive has both pull_n and rope_m (only one of them may be "
+            "there)\n");
+  Read<Drive>("{slack_m: 1}");
+  EXPECT_EQ(errors_, "f.yaml:1:1: error: drive needs one of pull_n, crank_m, rope_m\n");
+}
+
 TEST(Units, AreThoseOfTheName) {
   EXPECT_EQ(base::UnitAtEnd("damping_n_s_per_m").Text(), "N s/m");
+  EXPECT_EQ(base::UnitAtEnd("weight_per_m_s").Text(), "1/(m s)");
   EXPECT_EQ(base::UnitAtEnd("proportional_m_per_s_n").Text(), "m/(s N)");
   EXPECT_EQ(base::UnitAtEnd("integral_m_per_s2_n").Text(), "m/(s^2 N)");
   EXPECT_EQ(base::UnitAtEnd("weight_per_m").Text(), "1/m");

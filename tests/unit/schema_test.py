@@ -49,7 +49,8 @@ def probe(path, *options):
 
 UNIT_OF_SUFFIX = {
     "_rad_per_n_s": "rad/(N s)", "convergence_per_s": "1/s", "weight_per_m": "1/m",
-    "_n_s_per_m": "N s/m", "_n_per_m": "N/m", "_kg_per_m3": "kg/m^3", "_kg_per_m": "kg/m",
+    "weight_per_m_s": "1/(m s)", "_n_s_per_m": "N s/m", "_n_per_m": "N/m",
+    "_kg_per_m3": "kg/m^3", "_kg_per_m": "kg/m",
     "_rad_per_s": "rad/s", "_m_per_s2_n": "m/(s^2 N)", "_m_per_s_n": "m/(s N)",
     "_m_per_s2": "m/s^2", "_m_per_s": "m/s", "_m_per_n": "m/N", "_per_n": "1/N", "_kg": "kg",
     "_rad": "rad", "_hz": "Hz", "_n": "N", "_s": "s", "_m": "m",
@@ -214,7 +215,7 @@ def least_map(schema, node, folder, with_key=None):
         rules.append(whole)
     for rule in rules:
         for choice in ("oneOf", "anyOf"):
-            alternatives = [a["required"] for a in rule.get(choice, [])]
+            alternatives = [b["required"] for a in rule.get(choice, []) for b in a.get("anyOf", [a])]
             if ["base"] in alternatives:
                 continue
             fitting = [a for a in alternatives if with_key in a] or alternatives[:1]
