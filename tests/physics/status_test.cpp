@@ -97,8 +97,10 @@ TEST(Status, ASolveThatIsCutShortSaysSoAndNamesABodyInContact) {
   ModelDef def;
   const Material material{0.5, 0.5, 0};
   scenes::AddGround(def, material);
-  for (int i = 0; i < 4; ++i) {  // one sweep does not carry a weight through four contacts
-    scenes::AddBall(def, "ball", 0.1, 0.1, {0, 0, 0.1 + 0.2 * i}, material);
+  // One sweep does not carry a weight through four contacts. The gap: nothing is to be pushed out.
+  const double gap_m = 1e-9;
+  for (int i = 0; i < 4; ++i) {
+    scenes::AddBall(def, "ball", 0.1, 0.1, {0, 0, 0.1 + gap_m + (0.2 + gap_m) * i}, material);
   }
   Batch hasty = MakeBatch(def, options);
   hasty.Step(1e-3);
@@ -115,6 +117,21 @@ TEST(Status, ASolveThatIsCutShortSaysSoAndNamesABodyInContact) {
   thorough.Step(1e-3, 100);
   EXPECT_EQ(thorough.Status(0).bits, kStatusOk);
   EXPECT_LE(thorough.Status(0).residual_m_per_s, options.tolerance_m_per_s);
+}
+
+TEST(Status, PushingOutCountsAsWorkOfItsOwn) {
+  // The same column, 1 mm in each other: one linear system for velocities, one for displacements.
+  BatchOptions options;
+  options.max_linear_solves = 1;
+  ModelDef def;
+  const Material material{0.5, 0.5, 0};
+  scenes::AddGround(def, material);
+  for (int i = 0; i < 4; ++i) {
+    scenes::AddBall(def, "ball", 0.1, 0.1, {0, 0, 0.099 + 0.199 * i}, material);
+  }
+  Batch hasty = MakeBatch(def, options);
+  hasty.Step(1e-3);
+  EXPECT_EQ(hasty.Status(0).linear_solves, 2);
 }
 
 TEST(Status, MoreContactsThanRoomAreSaidAndTheOthersStillHold) {
