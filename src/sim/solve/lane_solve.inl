@@ -72,7 +72,7 @@ class LaneSolve {
     return result;
   }
 
-  /// Takes what is deep out of each other (push_out.inl). Returns how many linear systems that took.
+  /// Takes what is deep out of each other (push_out.inl). Returns how many linear systems it took.
   int PushOut() noexcept;
 
  private:
