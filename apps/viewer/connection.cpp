@@ -18,7 +18,7 @@ Connection::Connection(tcp::socket socket, int client, bool may_drive, Handlers 
       may_drive_(may_drive),
       handlers_(std::move(handlers)) {}
 
-void Connection::Accept(http::request<http::empty_body> request) {
+void Connection::Accept(const http::request<http::empty_body>& request) {
   beast::get_lowest_layer(stream_).expires_never();
   stream_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
   stream_.read_message_max(kMaxMessageBytes);

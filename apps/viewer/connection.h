@@ -23,7 +23,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   int client() const noexcept { return client_; }
   bool may_drive() const noexcept { return may_drive_; }
-  void Accept(http::request<http::empty_body> request);
+  void Accept(const http::request<http::empty_body>& request);
   void SendText(std::string text);
   void SendFrame(std::shared_ptr<const std::string> frame);
   void Close(const std::string& reason);

@@ -39,7 +39,7 @@ class HttpSockets::Socket : public std::enable_shared_from_this<Socket> {
   }
 
  private:
-  void Answer(HttpRequest request) {
+  void Answer(const HttpRequest& request) {
     if (list_ == nullptr) return;  // dropped while the request was on its way to here
     MoveTo(all_.answered_);
     response_ = all_.serve_(request, stream_);

@@ -15,7 +15,7 @@ namespace taut::viewer {
 class HttpSockets {
  public:
   /// Answers a request, or takes its socket over: then there is no answer.
-  using Serve = std::function<std::optional<HttpResponse>(HttpRequest&, beast::tcp_stream&)>;
+  using Serve = std::function<std::optional<HttpResponse>(const HttpRequest&, beast::tcp_stream&)>;
 
   HttpSockets(const ServerOptions& options, Serve serve)
       : options_(options), serve_(std::move(serve)) {}

@@ -42,7 +42,7 @@ std::string Said(const Trace& trace, std::string_view key) {
 
 /// What to call another trace. Every run's is a trace.h5, so its folder belongs to the name.
 std::string NameOf(const Trace& trace, const fs::path& path) {
-  const std::string place = (path.parent_path().filename() / path.filename()).generic_string();
+  std::string place = (path.parent_path().filename() / path.filename()).generic_string();
   for (const char* key : {"measured", "experiment"}) {
     const std::string name = Said(trace, key);
     if (!name.empty()) return fmt::format("{} ({})", name, place);

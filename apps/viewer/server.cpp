@@ -31,7 +31,7 @@ struct Server::Impl {
       : session(the_session), files(std::move(the_files)), options(std::move(the_options)) {}
 
   /// Takes a WebSocket over, answers anything else.
-  std::optional<HttpResponse> Serve(HttpRequest& request, beast::tcp_stream& stream) {
+  std::optional<HttpResponse> Serve(const HttpRequest& request, beast::tcp_stream& stream) {
     const std::string target(request.target().substr(0, request.target().find('?')));
     const Access access = AccessOf(request, options);
     if (!websocket::is_upgrade(request) || target != "/ws" || access == Access::kNone) {
@@ -40,7 +40,7 @@ struct Server::Impl {
     if (clients.size() >= (access == Access::kDrive ? kMaxClients : kMaxWatchers)) {
       return Refusal(request, http::status::service_unavailable, "Too many look at this already.");
     }
-    Open(stream.release_socket(), std::move(request), access);
+    Open(stream.release_socket(), request, access);
     return std::nullopt;
   }
 
@@ -60,7 +60,7 @@ struct Server::Impl {
     });
   }
 
-  void Open(tcp::socket socket, HttpRequest request, Access access) {
+  void Open(tcp::socket socket, const HttpRequest& request, Access access) {
     const int client = ++last_client;
     Connection::Handlers handlers;
     handlers.opened = [this](Connection& who) { Opened(who); };
@@ -70,7 +70,7 @@ struct Server::Impl {
     handlers.closed = [this](Connection& who) { Closed(who); };
     std::make_shared<Connection>(std::move(socket), client, access == Access::kDrive,
                                  std::move(handlers))
-        ->Accept(std::move(request));
+        ->Accept(request);
   }
 
   void Opened(Connection& who) {
@@ -164,7 +164,7 @@ struct Server::Impl {
   Drivers drivers;
   std::atomic<bool> woken{false};
   int last_client = 0;
-  HttpSockets sockets{options, [this](HttpRequest& request, beast::tcp_stream& stream) {
+  HttpSockets sockets{options, [this](const HttpRequest& request, beast::tcp_stream& stream) {
                         return Serve(request, stream);
                       }};
 };

@@ -67,7 +67,7 @@ struct WorldStatus {
   int body = kWorld;            ///< Concerned body, or kWorld.
   int cable = -1;               ///< Concerned cable, or -1.
   double residual_m_per_s = 0;  ///< Of the last solve.
-  int linear_solves = 0;        ///< Of the last solve: in lanes, and of all islands.
+  int linear_solves = 0;        ///< Of the last step: in lanes, of all islands, and of pushing out.
 };
 
 /// A cable at the current time.

@@ -15,8 +15,6 @@
 namespace taut {
 namespace {
 
-using sim::Layout;
-
 /// The kernel of this width; null if the build or the machine has none.
 const sim::Kernel* KernelOf(Simd simd) {
   switch (simd) {

@@ -36,10 +36,14 @@ struct AxisTurn {
   }
 };
 
+/// Returns the square of its length. Where that is infinite, which happens while all of `q` is
+/// finite, what is left is no rotation.
 template <class W>
-TAUT_INLINE void NormalizeQuat(Q4<W>& q) noexcept {
-  const W scale = W::Splat(1.0) / Sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+TAUT_INLINE W NormalizeQuat(Q4<W>& q) noexcept {
+  const W square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  const W scale = W::Splat(1.0) / Sqrt(square);
   q = {q.w * scale, q.x * scale, q.y * scale, q.z * scale};
+  return square;
 }
 
 /// q <- q (1, t e_axis), not normalised.
@@ -60,10 +64,11 @@ TAUT_INLINE void TurnAbout(Q4<W>& q, const V3<W>& u) noexcept {
 }
 
 /// Half a drift of a body that is free, and its mirror image. `R`: the rotation that `q` is.
+/// Returns what NormalizeQuat does.
 enum class Half { kFirst, kSecond };
 template <Half kHalf, class W>
-TAUT_INLINE void DriftTurn(Q4<W>& q, const M3<W>& R, const V3<W>& L, const V3<W>& inv_inertia,
-                           W half_h) noexcept {
+TAUT_INLINE W DriftTurn(Q4<W>& q, const M3<W>& R, const V3<W>& L, const V3<W>& inv_inertia,
+                        W half_h) noexcept {
   const W zero = W::Splat(0.0);
   const W y = inv_inertia.y - inv_inertia.x, z = inv_inertia.z - inv_inertia.x;
   V3<W> l = TransposeTimes(R, L);
@@ -81,7 +86,7 @@ TAUT_INLINE void DriftTurn(Q4<W>& q, const M3<W>& R, const V3<W>& L, const V3<W>
   // A turn about L leaves l as it is: its place in the order does not matter.
   const W theta = half_h * inv_inertia.x;
   TurnAbout(q, HalfAngle(theta, theta * theta * Dot(L, L)) * L);
-  NormalizeQuat(q);
+  return NormalizeQuat(q);
 }
 
 /// Stage: first half of the drift.
@@ -102,8 +107,10 @@ void StageDriftSecond(const View& m, const Rows<W>& s, const Scratch<W>& work, W
   const W zero = W::Splat(0.0);  // x + 0 turns -0 into 0: lanes must not differ in the sign of zero
   for (int b = 0; b < m.body_count; ++b) {
     Q4<W> q = s.quat[b];
-    DriftTurn<Half::kSecond>(q, work.bodies[b].R, s.mom[b], s.inv_inertia[b], half_h);
-    s.quat[b] = {q.w + zero, q.x + zero, q.y + zero, q.z + zero};
+    const W square =
+        DriftTurn<Half::kSecond>(q, work.bodies[b].R, s.mom[b], s.inv_inertia[b], half_h);
+    // + 0, or NaN where the turn was lost: Judge looks at w.
+    s.quat[b] = {q.w + zero * square, q.x + zero, q.y + zero, q.z + zero};
     s.pos[b] += half_h * s.vel[b];
     s.pos[b] += V3<W>{zero, zero, zero};
   }

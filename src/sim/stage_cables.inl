@@ -316,7 +316,7 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
   const W zero = W::Splat(0.0);
   work.stiff_count = work.link_count = 0;
   work.start_known = false;
-  auto damps = zero > zero;
+  auto damps = MaskOf<W>::Splat(false);
   for (int c = 0; c < m.cable_count && Any(!damps); ++c) damps = damps | (s.damping[c] > zero);
   const bool damped = Any(damps);
   CableStep<W> step{W::Splat(step_s),

@@ -255,7 +255,10 @@ void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
       result.body[lane] = lane_result.body;
     }
     FinishTouches(m, s, work, lane, step_s);
-    if (AnyDeep(work, lane, deepest[lane])) solver.PushOut();
+    if (AnyDeep(work, lane, deepest[lane])) {
+      const int linear_solves = solver.PushOut();
+      result.linear_solves.Set(lane, result.linear_solves[lane] + linear_solves);
+    }
   }
   // Every lane must know where its list ends.
   if (g.touches_used == 0 && touches == 0) return;

@@ -66,7 +66,7 @@ inline constexpr int kWidthNumber = 1, kWidthV3 = 3, kWidthQ4 = 4;
   ROW(contact_gap,    Number, kContact,  kDerived,   kStays,    Zero)             /* [m] */ \
   ROW(clearance,      Number, kBodyPair, kDerived,   kStays,    Zero)             /* at least this far apart [m] */ \
   ROW(residual,       Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last solve [m/s] */ \
-  ROW(linear_solves,  Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last solve */ \
+  ROW(linear_solves,  Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last step */ \
   ROW(sense_length,   Number, kCable,    kSensed,    kStays,    Zero)             /* [m] */ \
   ROW(sense_rate,     Number, kCable,    kSensed,    kStays,    Zero)             /* [m/s] */ \
   ROW(sense_tension,  Number, kCable,    kSensed,    kStays,    Zero)             /* [N] */ \

@@ -1,11 +1,11 @@
 // A random model of bodies, cables and terrain, stepped 1000 times with random commands: no step
 // takes more work than what it was allowed, and a number that is not finite is never seen without a
 // status that says so.
-#include <fuzzer/FuzzedDataProvider.h>
-
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "fuzz/fuzz_folder.h"
@@ -23,18 +23,28 @@ constexpr int kSteps = 1000, kStepsPerStretch = 50;
 constexpr int kMaxLinearSolves = 50;
 /// What solvers in lanes may take besides, a body: 10 iterations at most, and 4 rounds of impacts.
 constexpr int kMaxInLanes = 10 * 5;
+/// The most of a step, a body. Each is an island of its own: solved in lanes in vain, then by
+/// itself, then pushed out. Two systems, and so one more than allowed, are for one direction at
+/// times.
+constexpr int kMaxOfABody = kMaxInLanes + 2 * (kMaxLinearSolves + 1);
 /// Linear systems after which an input has been seen enough of.
 constexpr long kEnough = 10'000;
 
-/// Draws what a model is made of. Sizes are those of robots; stiffnesses, masses, speeds and steps
-/// span what a user may ask for.
+/// Draws what a model is made of, from the last byte to the first, as libFuzzer's
+/// FuzzedDataProvider does, but with every compiler. Sizes are those of robots; stiffnesses,
+/// masses, speeds and steps span what a user may ask for.
 class Draw {
  public:
-  explicit Draw(FuzzedDataProvider& from) : from_(from) {}
+  explicit Draw(std::vector<std::uint8_t> from) : from_(std::move(from)) {}
 
-  int Int(int low, int high) { return from_.ConsumeIntegralInRange(low, high); }
-  bool Coin() { return from_.ConsumeBool(); }
-  double Between(double low, double high) { return from_.ConsumeFloatingPointInRange(low, high); }
+  int Int(int low, int high) {
+    return low + static_cast<int>(Below(static_cast<std::uint64_t>(high - low)));
+  }
+  bool Coin() { return Below(1) != 0; }
+  double Between(double low, double high) {
+    constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();
+    return low + (high - low) * (static_cast<double>(Below(kMost)) / static_cast<double>(kMost));
+  }
   /// Between two positive numbers, all orders of magnitude alike.
   double Scale(double low, double high) { return std::exp(Between(std::log(low), std::log(high))); }
   Vec3 Point(double size) {
@@ -46,7 +56,10 @@ class Draw {
     const double length = std::sqrt(Dot(v, v));
     return length > 1e-3 ? (1 / length) * v : Vec3{0, 0, 1};
   }
-  Quat Turn() { return scenes::Turn(Direction(), Between(-4, 4)); }
+  Quat Turn() {
+    const Vec3 axis = Direction();  // in an order that does not depend on the compiler
+    return scenes::Turn(axis, Between(-4, 4));
+  }
   Material Surface() {
     Material m;
     m.kinetic_friction = Between(0, 1.5);
@@ -57,7 +70,17 @@ class Draw {
   int Body(const ModelDef& def) { return Int(kWorld, static_cast<int>(def.bodies.size()) - 1); }
 
  private:
-  FuzzedDataProvider& from_;
+  /// 0 to `most`; 0 when all bytes are used up.
+  std::uint64_t Below(std::uint64_t most) {
+    std::uint64_t number = 0;
+    for (int bits = 0; bits < 64 && most >> bits > 0 && !from_.empty(); bits += 8) {
+      number = number << 8 | from_.back();
+      from_.pop_back();
+    }
+    return most == std::numeric_limits<std::uint64_t>::max() ? number : number % (most + 1);
+  }
+
+  std::vector<std::uint8_t> from_;
 };
 
 void AddBody(ModelDef& def, Draw& draw) {
@@ -173,7 +196,8 @@ void Disturb(Batch& batch, int world, Draw& draw) {
   }
   if (!def.nodes.empty() && draw.Coin()) {
     const int node = draw.Int(0, static_cast<int>(def.nodes.size()) - 1);
-    batch.SetNodeForce(world, node, Command(draw) * draw.Direction());
+    const double size_n = Command(draw);
+    batch.SetNodeForce(world, node, size_n * draw.Direction());
   }
 }
 
@@ -181,26 +205,27 @@ bool Finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// Whether all that can be seen of a world is finite.
-bool LooksFinite(const Batch& batch, int world) {
+/// What can be seen of a world and is not finite; empty if all is.
+std::string NotFinite(const Batch& batch, int world) {
   const ModelDef& def = batch.model().def();
-  bool good = true;
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     const BodyState s = batch.Body(world, static_cast<int>(b));
-    good = good && Finite(s.position_m) && Finite(s.velocity_m_per_s) &&
-           Finite(s.angular_velocity_rad_per_s) &&
-           std::isfinite(s.orientation.w + s.orientation.x + s.orientation.y + s.orientation.z);
+    const double turned = s.orientation.w + s.orientation.x + s.orientation.y + s.orientation.z;
+    const bool good = Finite(s.position_m) && Finite(s.velocity_m_per_s) &&
+                      Finite(s.angular_velocity_rad_per_s) && std::isfinite(turned);
+    if (!good) return def.bodies[b].name;
   }
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
     const CableState s = batch.Cable(world, static_cast<int>(c));
-    good = good && std::isfinite(s.length_m) && std::isfinite(s.rate_m_per_s) &&
-           std::isfinite(s.rest_length_m) && std::isfinite(s.tension_n) &&
-           std::isfinite(s.elastic_n);
+    const bool good = std::isfinite(s.length_m) && std::isfinite(s.rate_m_per_s) &&
+                      std::isfinite(s.rest_length_m) && std::isfinite(s.tension_n) &&
+                      std::isfinite(s.elastic_n);
+    if (!good) return def.cables[c].name;
   }
   for (const ContactState& c : batch.Contacts(world)) {
-    good = good && Finite(c.point_m) && Finite(c.normal) && Finite(c.force_n);
+    if (!Finite(c.point_m) || !Finite(c.normal) || !Finite(c.force_n)) return "a contact";
   }
-  return good;
+  return {};
 }
 
 /// The input, which is drawn from its end, and before it numbers that it determines: a short input
@@ -208,16 +233,15 @@ bool LooksFinite(const Batch& batch, int world) {
 std::vector<std::uint8_t> Extended(const std::uint8_t* data, std::size_t size) {
   std::seed_seq seed(data, data + size);
   std::mt19937 random(seed);
-  std::vector<std::uint8_t> bytes(1 << 14);
-  for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
-  bytes.insert(bytes.end(), data, data + size);
+  constexpr std::size_t kFollowing = 1 << 14;
+  std::vector<std::uint8_t> bytes(kFollowing + size);
+  for (std::size_t i = 0; i < kFollowing; ++i) bytes[i] = static_cast<std::uint8_t>(random());
+  std::copy(data, data + size, bytes.begin() + kFollowing);
   return bytes;
 }
 
 void Run(const std::uint8_t* data, std::size_t size) {
-  const std::vector<std::uint8_t> extended = Extended(data, size);
-  FuzzedDataProvider bytes(extended.data(), extended.size());
-  Draw draw(bytes);
+  Draw draw(Extended(data, size));
   const double step_s = draw.Coin() ? 1e-3 : draw.Scale(1e-9, 1);
   BatchOptions options;
   options.worlds = draw.Int(1, 3);
@@ -227,8 +251,7 @@ void Run(const std::uint8_t* data, std::size_t size) {
   const auto model = Model::Compile(RandomModel(draw), refused);
   Must((model != nullptr) == refused.ok(), "compiled or refused");
   if (!model) return;
-  // Each body an island of its own, solved in lanes in vain, then by itself.
-  const int most = static_cast<int>(model->def().bodies.size()) * (kMaxLinearSolves + kMaxInLanes);
+  const int most = static_cast<int>(model->def().bodies.size()) * kMaxOfABody;
   Batch batch(model, options);
   long work = 0;
   for (int step = 0; step < kSteps && work < kEnough; ++step) {
@@ -239,9 +262,12 @@ void Run(const std::uint8_t* data, std::size_t size) {
     for (int world = 0; world < options.worlds; ++world) {
       const WorldStatus status = batch.Status(world);
       work += status.linear_solves;
-      Must(status.linear_solves <= most, "a step's work is bounded");
-      const bool reported = (status.bits & kStatusNonFinite) != 0;
-      Must(reported || LooksFinite(batch, world), "what is not finite is in the status");
+      const auto in_step = [&] { return " in step " + std::to_string(step); };
+      Must(status.linear_solves <= most,
+           std::to_string(status.linear_solves) + " linear systems" + in_step());
+      if ((status.bits & kStatusNonFinite) != 0) continue;
+      const std::string lost = NotFinite(batch, world);
+      Must(lost.empty(), lost + " is not finite and the status does not say so" + in_step());
     }
   }
 }

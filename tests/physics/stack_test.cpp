@@ -251,7 +251,9 @@ TEST(Stack, ASolverThatIsStoppedEarlySaysSoInTheSameStep) {
     ASSERT_EQ(says, status.residual_m_per_s > options.tolerance_m_per_s) << n;
     if (!says) continue;
     ++stopped;
-    ASSERT_EQ(status.linear_solves, options.max_linear_solves) << n;
+    // All that it may for velocities, and at most as many to push out.
+    ASSERT_GE(status.linear_solves, options.max_linear_solves) << n;
+    ASSERT_LE(status.linear_solves, 2 * options.max_linear_solves) << n;
   }
   EXPECT_GT(stopped, 0);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -97,8 +98,10 @@ TEST(Status, ASolveThatIsCutShortSaysSoAndNamesABodyInContact) {
   ModelDef def;
   const Material material{0.5, 0.5, 0};
   scenes::AddGround(def, material);
-  for (int i = 0; i < 4; ++i) {  // one sweep does not carry a weight through four contacts
-    scenes::AddBall(def, "ball", 0.1, 0.1, {0, 0, 0.1 + 0.2 * i}, material);
+  // One sweep does not carry a weight through four contacts. The gap: nothing is to be pushed out.
+  const double gap_m = 1e-9;
+  for (int i = 0; i < 4; ++i) {
+    scenes::AddBall(def, "ball", 0.1, 0.1, {0, 0, 0.1 + gap_m + (0.2 + gap_m) * i}, material);
   }
   Batch hasty = MakeBatch(def, options);
   hasty.Step(1e-3);
@@ -115,6 +118,40 @@ TEST(Status, ASolveThatIsCutShortSaysSoAndNamesABodyInContact) {
   thorough.Step(1e-3, 100);
   EXPECT_EQ(thorough.Status(0).bits, kStatusOk);
   EXPECT_LE(thorough.Status(0).residual_m_per_s, options.tolerance_m_per_s);
+}
+
+TEST(Status, ATurnTooFastForItsQuaternionHaltsTheWorldInTheSameStep) {
+  // The square of the turn's quaternion overflows before any number of the state does.
+  ModelDef def;
+  scenes::AddBall(def, "ball", 0.1, 0.1, {0, 0, 1}, {});
+  def.bodies[0].inertia_kg_m2 = scenes::BoxInertia(0.1, {0.1, 0.2, 0.25});
+  def.nodes.push_back({"node", 0, {0.1, 0.05, 1.02}});
+  int halted = 0;
+  for (int i = 0; i < 400; ++i) {
+    Batch world = MakeBatch(def);
+    world.SetNodeForce(0, 1, std::pow(10, 15 + 0.1 * i) * Vec3{0.1, 0.5, 1});
+    world.Step(1e-3);
+    const Quat q = world.Body(0, 0).orientation;
+    EXPECT_NEAR(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z, 1, 1e-12) << i;
+    halted += world.Status(0).bits == kStatusNonFinite;
+  }
+  EXPECT_GT(halted, 0);
+  EXPECT_LT(halted, 400);
+}
+
+TEST(Status, PushingOutCountsAsWorkOfItsOwn) {
+  // The same column, 1 mm in each other: one linear system for velocities, one for displacements.
+  BatchOptions options;
+  options.max_linear_solves = 1;
+  ModelDef def;
+  const Material material{0.5, 0.5, 0};
+  scenes::AddGround(def, material);
+  for (int i = 0; i < 4; ++i) {
+    scenes::AddBall(def, "ball", 0.1, 0.1, {0, 0, 0.099 + 0.199 * i}, material);
+  }
+  Batch hasty = MakeBatch(def, options);
+  hasty.Step(1e-3);
+  EXPECT_EQ(hasty.Status(0).linear_solves, 2);
 }
 
 TEST(Status, MoreContactsThanRoomAreSaidAndTheOthersStillHold) {

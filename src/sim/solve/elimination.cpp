@@ -1,5 +1,7 @@
 #include "sim/solve/elimination.h"
 
+#include "base/assert.h"
+
 namespace taut::sim {
 namespace {
 
@@ -43,6 +45,7 @@ bool Eliminate(BodyGraph& graph, int block_capacity, int* order, int* place,
       const int degree = BitsIn(graph.Row(i), words);
       if (degree < least) best = i, least = degree;
     }
+    TAUT_ASSERT(best >= 0);  // a degree is below n
     order[k] = best;
     place[best] = k;
     lower += least;

@@ -72,8 +72,8 @@ class LaneSolve {
     return result;
   }
 
-  /// Takes what is deep out of each other (push_out.inl).
-  void PushOut() noexcept;
+  /// Takes what is deep out of each other (push_out.inl). Returns how many linear systems it took.
+  int PushOut() noexcept;
 
  private:
   bool IsDeep(int body) const noexcept;

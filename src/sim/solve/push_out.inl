@@ -6,19 +6,22 @@
 namespace taut::sim {
 
 template <class W>
-void LaneSolve<W>::PushOut() noexcept {
+int LaneSolve<W>::PushOut() noexcept {
   displaces_ = true;
+  int linear_solves = 0;
   FindIslands([&](int body) { return IsDeep(body); });
   for (int body = 0; body < m_.body_count; ++body) {
     if (mem_.root[body] != body || !Gather(body)) continue;
     SolverWork work{0, settings_.max_linear_solves};
     mem_.island.Judge();
     SolveInStages(mem_.island, Target{settings_.tolerance_m_per_s}, work);
+    linear_solves += work.linear_solves;
     V3<L> gained{L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};
     for (int b = 0; b < count_; ++b) gained += Displace(b);
     if (IsAlone()) KeepMomentum(gained);
   }
   LookAgain(m_, s_, lane_);
+  return linear_solves;
 }
 
 template <class W>

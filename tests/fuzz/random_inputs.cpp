@@ -1,0 +1,153 @@
+#include "fuzz/random_inputs.h"
+
+#include <fcntl.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+#include "fuzz/fuzz_folder.h"
+#include "math/random.h"
+
+namespace taut::fuzz {
+namespace {
+
+/// What the handler of a failure needs, made ready before the target runs: it may not allocate.
+struct Current {
+  const std::uint8_t* data = nullptr;
+  std::size_t size = 0;
+  std::array<char, 4096> path{};     ///< Where to keep the input; empty: nowhere.
+  std::array<char, 8192> message{};  ///< What to say.
+  std::array<char, 128> count{};     ///< What to say on standard output.
+};
+Current current;
+volatile std::sig_atomic_t interrupted = 0;
+
+void Say(int stream, const char* text) {
+  std::size_t left = std::strlen(text);
+  while (left > 0) {
+    const ssize_t written = write(stream, text, left);
+    if (written <= 0) return;
+    text += written, left -= static_cast<std::size_t>(written);
+  }
+}
+
+void Keep() {
+  if (current.path[0] == 0) return;
+  const int file = open(current.path.data(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  const bool kept =
+      file >= 0 && write(file, current.data, current.size) == static_cast<ssize_t>(current.size);
+  if (!kept) Say(STDERR_FILENO, "it could not be kept\n");
+}
+
+extern "C" void FailedInput(int signal) {
+  Say(STDERR_FILENO, signal == SIGPROF ? "\nhangs: " : "\nfails: ");
+  Say(STDERR_FILENO, current.message.data());
+  Keep();
+  Say(STDOUT_FILENO, current.count.data());
+  _exit(1);
+}
+extern "C" void Interrupt(int) { interrupted = 1; }
+
+/// Failures end in FailedInput, on a stack of its own: the target's may be full.
+void CatchFailures() {
+  static std::array<char, 1 << 16> stack;
+  stack_t other{};
+  other.ss_sp = stack.data();
+  other.ss_size = stack.size();
+  Must(sigaltstack(&other, nullptr) == 0, "a stack for signals");
+  struct sigaction action {};
+  action.sa_handler = FailedInput;
+  action.sa_flags = SA_ONSTACK;
+  for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGPROF}) {
+    Must(sigaction(signal, &action, nullptr) == 0, "signals can be handled");
+  }
+}
+
+template <std::size_t N, class... Values>
+void Print(std::array<char, N>& to, const char* form, Values... values) {
+  std::snprintf(to.data(), to.size(), form, values...);
+}
+
+/// So much processor time from now on: a machine that is busy with other things makes no input
+/// hang. 0: any.
+void Allow(unsigned seconds) {
+  itimerval timer{};
+  timer.it_value.tv_sec = seconds;
+  setitimer(ITIMER_PROF, &timer, nullptr);
+}
+
+/// An exception ends the program, as an abort does.
+void TryOne(const std::vector<std::uint8_t>& input, unsigned timeout_s, Target target) noexcept {
+  current.data = input.data();
+  current.size = input.size();
+  Allow(timeout_s);
+  target(input.data(), input.size());
+  Allow(0);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> RandomInput(std::uint64_t seed, std::uint64_t index) {
+  math::Random random(seed, 0, index);
+  std::vector<std::uint8_t> input(1 + random.Bits() % 256);
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < input.size(); ++i, bits >>= 8) {
+    if (i % 8 == 0) bits = random.Bits();
+    input[i] = static_cast<std::uint8_t>(bits);
+  }
+  return input;
+}
+
+int TryRandomInputs(const Campaign& campaign, Target target) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const auto elapsed_s = [&] {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const auto seed = static_cast<unsigned long long>(campaign.seed);
+  CatchFailures();
+  interrupted = 0;
+  std::signal(SIGINT, Interrupt);
+  std::signal(SIGTERM, Interrupt);
+  const double every_s = isatty(STDERR_FILENO) == 1 ? 1 : 60;
+  double shown_s = 0;
+  long tried = 0;
+  while (tried < campaign.count && interrupted == 0) {
+    const double now_s = elapsed_s();
+    if (campaign.seconds > 0 && now_s >= campaign.seconds) break;
+    if (campaign.shows_progress && now_s - shown_s >= every_s) {
+      shown_s = now_s;
+      std::fprintf(stderr, every_s < 60 ? "\r%ld inputs in %.0f s" : "%ld inputs in %.0f s\n",
+                   tried, now_s);
+    }
+    const long index = campaign.first + tried++;
+    if (!campaign.found_prefix.empty()) {
+      Print(current.path, "%s%llu-%ld", campaign.found_prefix.c_str(), seed, index);
+    }
+    Print(current.message,
+          "input %ld of seed %llu; again: --seed %llu --first %ld --inputs 1%s%s\n", index, seed,
+          seed, index, current.path[0] != 0 ? "; kept as " : "", current.path.data());
+    Print(current.count, "stat::number_of_executed_units: %ld\n", tried);  // as libFuzzer says it
+    TryOne(RandomInput(campaign.seed, static_cast<std::uint64_t>(index)), campaign.timeout_s,
+           target);
+  }
+  if (shown_s > 0 && every_s < 60) std::fprintf(stderr, "\n");
+  std::printf("stat::number_of_executed_units: %ld\n", tried);
+  std::fflush(stdout);
+  return interrupted != 0 ? 130 : 0;
+}
+
+void TryFile(const std::string& path, unsigned timeout_s, Target target) {
+  CatchFailures();
+  const std::string text = ReadAll(path);
+  const std::vector<std::uint8_t> input(text.begin(), text.end());
+  Print(current.message, "%s\n", path.c_str());
+  TryOne(input, timeout_s, target);
+}
+
+}  // namespace taut::fuzz
