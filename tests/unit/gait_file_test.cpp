@@ -39,6 +39,10 @@ table:
   rows: [[0, 0.1, -0.1], [0.5, 0.2, -0.2]]
 )";
 
+std::string Replaced(std::string text, const std::string& old_text, const std::string& new_text) {
+  return text.replace(text.find(old_text), old_text.size(), new_text);
+}
+
 class Gait : public ExperimentFolder {
  protected:
   std::string GaitComplaints(const std::string& text) {
@@ -67,6 +71,15 @@ class Gait : public ExperimentFolder {
     return Complaints();
   }
 };
+
+TEST_F(Gait, AParameterThatNothingReadsIsAWarning) {
+  Write("g.yaml", Replaced(kSine, "{slow_hz: 0.5}", "{slow_hz: 0.5, idle: 2 * slow_hz}"));
+  Diagnostics out;
+  EXPECT_TRUE(LoadGait(Path("g.yaml"), out));
+  EXPECT_EQ(Without(Path(""), out.Format()),
+            "g.yaml:4:34: warning: nothing reads the parameter \"idle\" (its value changes "
+            "nothing)\n");
+}
 
 TEST_F(Gait, ASineIsReadWithItsExpressionsAndDefaults) {
   const GaitSpec gait = LoadText(kSine);
