@@ -124,9 +124,10 @@ int Search(const LearnArguments& args, const Overrides& overrides) {
   const auto study = LoadStudy(args.path, overrides, found);
   // The processes of a cluster have a core each, unless told otherwise.
   const int threads = args.threads < 0 ? (cluster->size() > 1 ? 1 : 0) : args.threads;
-  const bool good = study && CheckStart(study->experiment.robot, study->experiment.start, found) &&
-                    !(args.strict && !found.warnings().empty());
-  const auto local = good ? MakeEvaluator(*study, threads, &interrupt_asked, found) : nullptr;
+  const bool good = study && CheckStart(study->experiment.robot, study->experiment.start, found);
+  const bool passed = cluster->rank() == 0 ? Pass(found, args.strict) : Passes(found, args.strict);
+  const auto local =
+      good && passed ? MakeEvaluator(*study, threads, &interrupt_asked, found) : nullptr;
   CatchInterrupts();
   const bool agree = cluster->Agree(local ? Agreed(*study) : "");
   if (cluster->rank() > 0) {
@@ -134,7 +135,7 @@ int Search(const LearnArguments& args, const Overrides& overrides) {
     cluster->Serve(*local);
     return kOk;
   }
-  if (!Pass(found, args.strict) || !local) return Fail(found, kBadInput);
+  if (!local) return Fail(found, kBadInput);
   if (!agree) {
     found.Error({args.path}, "the processes of the cluster have read different studies",
                 "does every machine see the same files, and the same taut?");

@@ -8,6 +8,7 @@
 #include <exception>
 #include <new>
 #include <sstream>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <typeinfo>
@@ -26,6 +27,15 @@ int Explain(const CLI::App& app, const CLI::ParseError& error) {
   fmt::print("{}", output.str());
   fmt::print(stderr, "{}", errors.str());
   return exit_code == 0 ? kOk : kUsage;
+}
+
+/// Of all commands, for a line of text.
+std::string NamesOfCommands(CLI::App& app) {
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  return names;
 }
 
 /// Where nothing may be thrown, as while an object goes or in a thread, missing memory ends the
@@ -65,10 +75,8 @@ int Run(int argc, char** argv) {
   } catch (const CLI::RequiredError& error) {
     // CLI11 does not say which word it did not know.
     if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
-      fmt::print(stderr,
-                 "error: there is no command \"{}\"; one of: check, run, compare, gait, learn, "
-                 "report, schema, view\n",
-                 argv[1]);
+      fmt::print(stderr, "error: there is no command \"{}\"; one of: {}\n", argv[1],
+                 NamesOfCommands(app));
       return kUsage;
     }
     return Explain(app, error);

@@ -17,9 +17,13 @@ int Fail(const Diagnostics& found, Exit exit) {
   return exit;
 }
 
-bool Pass(Diagnostics& found, bool strict) {
+bool Passes(Diagnostics& found, bool strict) {
   if (strict) found.WarningsToErrors();
-  if (!found.ok()) return false;
+  return found.ok();
+}
+
+bool Pass(Diagnostics& found, bool strict) {
+  if (!Passes(found, strict)) return false;
   fmt::print(stderr, "{}", found.Format());
   found = {};
   return true;

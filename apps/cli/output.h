@@ -18,6 +18,8 @@ int Fail(const Diagnostics& found, Exit exit);
 /// Whether a command goes on with what it has read: prints warnings on stderr and forgets them.
 /// `strict` makes errors of them; those, like all others, are left for `Fail`.
 bool Pass(Diagnostics& found, bool strict);
+/// The same without a word, for processes of which another one speaks.
+bool Passes(Diagnostics& found, bool strict);
 
 /// What `--strict` does, for help texts.
 inline constexpr const char* kStrictHelp = "Warnings about files are errors";

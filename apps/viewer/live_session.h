@@ -21,7 +21,8 @@ struct LiveOptions {
   bool paused = false;
   /// Where to record traces, events and inputs; empty: nowhere. An existing folder.
   std::string record_folder;
-  /// Lines for the terminal: what is not recorded. Called on the session's thread and by Finish.
+  /// Lines for the terminal: what is not recorded, and what is again. Called on the session's
+  /// thread and by Finish.
   std::function<void(const std::string&)> tell = [](const std::string&) {};
 };
 

@@ -18,10 +18,6 @@
 
 namespace taut {
 
-namespace base {
-class NewFile;
-}
-
 /// The key under which a trace's metadata and a summary have the run's id.
 inline constexpr char kRunIdKey[] = "run";
 
@@ -30,6 +26,16 @@ std::string NewRunId();
 
 /// `inputs.yaml` of a run: the experiment's text after a first line with the id.
 std::string InputsOfRun(const std::string& id, const std::string& experiment);
+
+/// Removes from a folder whose writer the caller is what a killed writer left before its file had
+/// its name.
+void RemoveLeftovers(const std::string& folder);
+
+/// Removes from a folder whose writer the caller is the pieces of the run before, the summary
+/// first, but for those in `kept`: the caller replaces these, each at once. False and a complaint
+/// if one cannot be removed.
+bool RemoveRunBefore(const std::string& folder, const std::vector<std::string>& kept,
+                     Diagnostics& out);
 
 class RunFolder {
  public:
@@ -59,9 +65,9 @@ class RunFolder {
             std::unique_ptr<FolderLock> lock);
 
   std::string folder_, id_;
-  std::vector<std::string> removed_;  ///< At the beginning, in this order.
+  std::vector<std::string> more_;  ///< Removed at the beginning, too.
   std::unique_ptr<FolderLock> lock_;
-  std::unique_ptr<base::NewFile> inputs_;
+  std::unique_ptr<NewFile> inputs_;
 };
 
 /// The path of what a run wrote beside its trace: of `trace.h5`, "summary" and ".json" it is

@@ -1,9 +1,11 @@
-"""All the faults of a scenario, one after the other, and a table of what came of them."""
+"""All the faults of a scenario, one after the other or some at once, and a table of what came of them."""
 
 import collections
+import concurrent.futures
 import dataclasses
 import random
 import shutil
+import threading
 import time
 
 from robustness.inject import KILL_KINDS, Fault
@@ -42,10 +44,11 @@ def faults_of(scenario, calls, kinds, every):
 
 
 class Campaign:
-    """`show(text)` is told how far it is. Tallies are right at any moment, also after an interrupt."""
+    """`show(text)` is told how far it is. `jobs`: so many at once. Tallies are right at any moment, also after an
+    interrupt."""
 
-    def __init__(self, program, folder, show=lambda text: None):
-        self.program, self.folder, self.show = program, folder, show
+    def __init__(self, program, folder, show=lambda text: None, jobs=1):
+        self.program, self.folder, self.show, self.jobs = program, folder, show, jobs
         self.tallies = collections.defaultdict(Tally)  # by (scenario, kind, mode)
 
     def prepare(self, name):
@@ -58,7 +61,7 @@ class Campaign:
 
     def point(self, scenario, fault):
         """How the command ended, what kind of end that is, and what is wrong, if anything."""
-        work = self.folder / "work"
+        work = self.folder / f"work_{threading.get_native_id()}"
         shutil.rmtree(work, ignore_errors=True)
         shutil.copytree(scenario.before, work)
         outcome = scenario.run(work, fault)
@@ -68,6 +71,14 @@ class Campaign:
         elif bad_end and fault and fault.kind == "hdf5" and outcome.status is not None:
             bad_end, how = None, "in_hdf5"
         return outcome, how, bad_end or scenario.check(outcome, work)
+
+    def points(self, scenario, faults):
+        """All of them, in their order."""
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            try:
+                yield from zip(faults, pool.map(lambda fault: self.point(scenario, fault), faults))
+            finally:
+                pool.shutdown(cancel_futures=True)
 
     def run(self, names, kinds, every=None, sample=None, seed=1):
         """All faults, or `sample` of them in each scenario, drawn from those with many calls as often as from
@@ -81,10 +92,9 @@ class Campaign:
 
     def run_faults(self, name, scenario, calls, faults):
         began_s = time.monotonic()
-        for done, fault in enumerate(faults):
+        for done, (fault, (outcome, how, wrong)) in enumerate(self.points(scenario, faults)):
             tally = self.tallies[name, fault.kind, fault.mode]
             tally.calls = calls[fault.kind]
-            outcome, how, wrong = self.point(scenario, fault)
             if wrong:
                 tally.wrong.append({"at": fault.at, "first": outcome.first, "what": wrong})
                 self.show(f"\r\033[KWRONG  {name}, {fault} ({outcome.first}): {wrong}\n")

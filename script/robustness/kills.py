@@ -15,7 +15,7 @@ import subprocess
 import time
 
 from robustness.inject import PATIENCE_S
-from robustness.scenarios import STUDY, STUDY_EXPERIMENT, Learn
+from robustness.scenarios import CRAWL, STUDY, Learn
 from validation.runs import ROOT, Problem, table
 
 STEP_S, ROW_S, SIMULATED_S = "1e-5", 0.005, 12
@@ -112,7 +112,7 @@ def look_at_run(program, folder, run, killed_s):
 
 
 def killed_searches(program, folder, count, rng, show):
-    (folder / "crawl.yaml").write_text(STUDY_EXPERIMENT.format(root=ROOT))
+    (folder / "crawl.yaml").write_text(CRAWL)
     (folder / "study.yaml").write_text(STUDY.replace("evaluations: 6", f"evaluations: {EVALUATIONS}"))
     words = ("learn", "study.yaml", "--threads", "1")
     began_s = time.monotonic()

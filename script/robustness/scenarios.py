@@ -19,19 +19,15 @@ from validation.runs import ROOT, Problem
 EXPERIMENT = """\
 taut: 1
 kind: experiment
-base: {root}/experiments/hang.yaml
-name: swing
-duration_s: 0.1
-timeline: {{phases: {{all: [0, 0.05]}}}}
-record: {{rate_hz: 200, channels: ["cable/*", "body/*", "system/*"]}}
+base: {root}/experiments/{base}.yaml
+name: {name}
+duration_s: {duration_s}
 """
-STUDY_EXPERIMENT = """\
-taut: 1
-kind: experiment
-base: {root}/experiments/sidewinder3_start.yaml
-name: crawl
-duration_s: 0.02
+SWING = EXPERIMENT.format(root=ROOT, base="hang", name="swing", duration_s=0.1) + """\
+timeline: {phases: {all: [0, 0.05]}}
+record: {rate_hz: 200, channels: ["cable/*", "body/*", "system/*"]}
 """
+CRAWL = EXPERIMENT.format(root=ROOT, base="sidewinder3_start", name="crawl", duration_s=0.02)
 STUDY = """\
 taut: 1
 kind: study
@@ -97,7 +93,7 @@ class Run(Scenario):
 
     def __init__(self, program, folder):
         super().__init__(program, folder)
-        (self.before / "swing.yaml").write_text(EXPERIMENT.format(root=ROOT))
+        (self.before / "swing.yaml").write_text(SWING)
         self.made("run", "swing.yaml", "--duration_s", "0.05", "--csv", "--quiet", "--out", "run")
         self.made(*self.words()[:-1], folder / "right")
         self.old, self.right = self.before / "run", folder / "right"
@@ -150,7 +146,7 @@ class Learn(Scenario):
 
     def __init__(self, program, folder):
         super().__init__(program, folder)
-        (self.before / "crawl.yaml").write_text(STUDY_EXPERIMENT.format(root=ROOT))
+        (self.before / "crawl.yaml").write_text(CRAWL)
         (self.before / "study.yaml").write_text(STUDY)
         whole = program.run(("learn", "study.yaml", "--quiet", "--threads", "1", "--out", folder / "right"),
                             self.before)
@@ -217,7 +213,7 @@ class Reader(Scenario):
         self.made_right = {name: (copy / name).read_bytes() for name in self.makes}
 
     def prepare(self):
-        (self.before / "swing.yaml").write_text(EXPERIMENT.format(root=ROOT))
+        (self.before / "swing.yaml").write_text(SWING)
         self.made("run", "swing.yaml", "--csv", "--quiet", "--out", "run")
 
     def words(self):
@@ -252,7 +248,7 @@ class Top(Reader):
     command = ("learn", "--top", "5", "--json", "study")
 
     def prepare(self):
-        (self.before / "crawl.yaml").write_text(STUDY_EXPERIMENT.format(root=ROOT))
+        (self.before / "crawl.yaml").write_text(CRAWL)
         (self.before / "study.yaml").write_text(STUDY)
         self.made("learn", "study.yaml", "--quiet", "--threads", "1", "--out", "study")
 
@@ -265,7 +261,7 @@ class View(Scenario):
 
     def __init__(self, program, folder):
         super().__init__(program, folder)
-        (self.before / "swing.yaml").write_text(EXPERIMENT.format(root=ROOT))
+        (self.before / "swing.yaml").write_text(SWING)
 
     def words(self):
         return ("view", "swing.yaml", "--out", "live", "--port", "0", "--speed", "1")

@@ -1,5 +1,3 @@
-#include "base/new_file.h"
-
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -12,7 +10,6 @@
 #include "taut/files.h"
 
 namespace taut {
-namespace base {
 namespace {
 
 /// Whether the name is of something that can only be written to, not replaced.
@@ -83,6 +80,15 @@ bool NewFile::Write(std::string_view bytes) {
   return true;
 }
 
+bool NewFile::WriteAllOrNone(std::string_view bytes) {
+  struct stat before {};
+  if (fstat(descriptor_, &before) != 0) return Fail();
+  if (Write(bytes)) return true;
+  // Cut off behind what was there, and write where it ends. What cannot be cut off is no file.
+  if (ftruncate(descriptor_, before.st_size) == 0) lseek(descriptor_, before.st_size, SEEK_SET);
+  return false;
+}
+
 bool NewFile::Publish() {
   if (published_) return true;
   if (!Sync()) return false;
@@ -93,10 +99,8 @@ bool NewFile::Publish() {
 
 bool NewFile::Sync() { return SyncDescriptor(descriptor_) || Fail(); }
 
-}  // namespace base
-
 bool WriteWholeFile(const std::string& path, std::string_view text, Diagnostics& out) {
-  base::NewFile file(path);
+  NewFile file(path);
   if (file.Create() && file.Write(text) && file.Publish()) return true;
   out.Error({path}, "cannot be written: " + file.why());
   return false;

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <utility>
 
-#include "base/new_file.h"
+#include "taut/files.h"
 #include "taut/trace.h"
 #include "trace/channel_names.h"
 #include "trace/flush_clock.h"
@@ -82,7 +82,7 @@ class CsvWriter final : public TraceWriter {
 
   std::string path_, error_;
   std::size_t channel_count_;
-  base::NewFile file_;
+  NewFile file_;
   bool finished_ = false;
   std::string text_;  ///< Whole lines, not yet written.
   FlushClock clock_;

@@ -13,13 +13,13 @@ herr_t TakeInnermost(unsigned depth, const H5E_error2_t* error, void* out) {
 
 /// HDF5 calls this when a call has failed, before anything can overwrite the reason.
 herr_t Remember(hid_t stack, void* out) {
-  std::string& why = *static_cast<std::string*>(out);
-  if (!why.empty()) return 0;
-  H5Ewalk2(stack, H5E_WALK_UPWARD, TakeInnermost, &why);
+  Hdf5Failure& first = *static_cast<Hdf5Failure*>(out);
+  if (!first.why.empty()) return 0;
+  H5Ewalk2(stack, H5E_WALK_UPWARD, TakeInnermost, &first.why);
   constexpr std::string_view kQuote = "error message = '";
-  if (const std::size_t at = why.find(kQuote); at != why.npos) {
+  if (const std::size_t at = first.why.find(kQuote); at != first.why.npos) {
     const std::size_t from = at + kQuote.size();
-    why = why.substr(from, why.find('\'', from) - from);
+    first = {first.why.substr(from, first.why.find('\'', from) - from), true};
   }
   return 0;
 }
@@ -32,7 +32,7 @@ QuietHdf5::QuietHdf5() {
   static const herr_t once = H5dont_atexit();
   static_cast<void>(once);
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-  H5Eset_auto2(H5E_DEFAULT, Remember, &why_);
+  H5Eset_auto2(H5E_DEFAULT, Remember, &first_);
 }
 
 QuietHdf5::~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }

@@ -42,6 +42,11 @@ class Hdf5Id {
   Close close_ = nullptr;
 };
 
+struct Hdf5Failure {
+  std::string why;         ///< In the system's words if it was the system.
+  bool of_system = false;  ///< A call to the system failed ("No space left on device").
+};
+
 /// Keeps HDF5 from printing its errors while it lives, and remembers the first. Puts the setting of
 /// the program around us back afterwards.
 class QuietHdf5 {
@@ -51,16 +56,16 @@ class QuietHdf5 {
   QuietHdf5(const QuietHdf5&) = delete;
   QuietHdf5& operator=(const QuietHdf5&) = delete;
 
-  /// Why the first call failed, in the system's words if it was the system
-  /// ("No space left on device").
-  std::string why() const { return why_.empty() ? "unknown HDF5 error" : why_; }
+  /// Why the first call failed.
+  Hdf5Failure first() const { return {why(), first_.of_system}; }
+  std::string why() const { return first_.why.empty() ? "unknown HDF5 error" : first_.why; }
   /// Forgets an error that was expected.
-  void Forget() { why_.clear(); }
+  void Forget() { first_ = {}; }
 
  private:
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
-  std::string why_;
+  Hdf5Failure first_;
 };
 
 /// A fixed-length string type for `size` characters.

@@ -3,12 +3,14 @@
 // All groups, datasets and attributes exist before the first row; from then on the file is in
 // HDF5's single-writer mode, in which the library orders its writes such that a reader, or the
 // next program after a kill -9, never sees a broken structure.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "base/new_file.h"
+#include "taut/files.h"
 #include "taut/trace.h"
 #include "trace/channel_names.h"
 #include "trace/flush_clock.h"
@@ -92,9 +94,9 @@ class Hdf5Writer final : public TraceWriter {
     if (!WriteRows()) return false;
     const QuietHdf5 quiet;
     for (Hdf5Id& column : columns_) {
-      if (!column.Reset()) return Fail(quiet.why());
+      if (!column.Reset()) return Fail(quiet.first());
     }
-    if (!file_.Reset()) return Fail(quiet.why());
+    if (!file_.Reset()) return Fail(quiet.first());
     return (new_.Publish() && new_.Sync()) || Fail(new_.why());
   }
 
@@ -104,7 +106,7 @@ class Hdf5Writer final : public TraceWriter {
   bool Flush() {
     if (!WriteRows()) return false;
     const QuietHdf5 quiet;
-    if (H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0) return Fail(quiet.why());
+    if (H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0) return Fail(quiet.first());
     clock_.Flushed();
     return new_.Publish() || Fail(new_.why());
   }
@@ -114,7 +116,7 @@ class Hdf5Writer final : public TraceWriter {
     if (row_count_ == 0) return true;
     const QuietHdf5 quiet;
     for (std::size_t i = 1; i <= width_; ++i) {
-      if (!WriteColumn(i % width_)) return Fail(quiet.why());
+      if (!WriteColumn(i % width_)) return Fail(quiet.first());
     }
     written_ += row_count_;
     row_count_ = 0;
@@ -134,17 +136,39 @@ class Hdf5Writer final : public TraceWriter {
            H5Dwrite(columns_[column], H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, block_) >= 0;
   }
 
-  /// The library cannot close what it cannot write, so the file stays as it is: readable up to
-  /// the last flush that went well.
-  bool Fail(std::string why) {
-    if (error_.empty()) error_ = fmt::format("{}: cannot be written: {}", path_, why);
-    for (Hdf5Id& column : columns_) column.Abandon();
-    file_.Abandon();
+  bool Fail(std::string why) { return Fail(Hdf5Failure{std::move(why), true}); }
+
+  /// The library cannot close what it cannot write: the file stays as it is, readable up to the
+  /// last flush that went well. Where the system refused to write, the rest goes nowhere instead,
+  /// so that neither memory nor, once somebody removes the file, its room on the disk is held. A
+  /// library that failed by itself is left alone.
+  bool Fail(const Hdf5Failure& failure) {
+    if (error_.empty()) error_ = fmt::format("{}: cannot be written: {}", path_, failure.why);
+    const bool nowhere = failure.of_system && WriteNowhere();
+    if (!nowhere) {
+      for (Hdf5Id& column : columns_) column.Abandon();
+      file_.Abandon();
+    }
+    const QuietHdf5 quiet;
+    columns_.clear();
+    file_.Reset();
     return false;
   }
 
+  /// What the library still writes is forgotten.
+  bool WriteNowhere() {
+    const QuietHdf5 quiet;
+    void* handle = nullptr;
+    if (!file_ || H5Fget_vfd_handle(file_, H5P_DEFAULT, &handle) < 0) return false;
+    const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
+    if (nothing < 0) return false;
+    const bool good = dup3(nothing, *static_cast<int*>(handle), O_CLOEXEC) >= 0;
+    close(nothing);
+    return good;
+  }
+
   std::string path_, error_;
-  base::NewFile new_;
+  NewFile new_;
   std::size_t width_;  ///< Numbers of a row: time and channels.
   Hdf5Id file_;
   std::vector<Hdf5Id> columns_;  ///< Time, then the channels.
@@ -168,7 +192,7 @@ bool Hdf5Writer::Start(const std::vector<ChannelInfo>& channels, const TraceMeta
   // The file is ours already, made anew: HDF5 opens it and begins.
   if (!new_.Create()) return Fail(new_.why());
   file_ = Hdf5Id(H5Fcreate(new_.made_at().c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
-  if (!file_) return Fail(quiet.why());
+  if (!file_) return Fail(quiet.first());
   bool good = WriteText(file_, "format", kFormatName) &&
               WriteNumber(file_, "format_version", kFormatVersion);
   for (std::size_t i = 0; good && i < metadata.size(); ++i) {
@@ -180,7 +204,7 @@ bool Hdf5Writer::Start(const std::vector<ChannelInfo>& channels, const TraceMeta
                                              channels[i - 1].unit, static_cast<int>(i)));
     good = static_cast<bool>(columns_.back());
   }
-  return (good && H5Fstart_swmr_write(file_) >= 0) || Fail(quiet.why());
+  return (good && H5Fstart_swmr_write(file_) >= 0) || Fail(quiet.first());
 }
 
 bool CheckMetadata(const std::string& path, const TraceMetadata& metadata, Diagnostics& out) {

@@ -13,8 +13,6 @@
 #include <random>
 #include <vector>
 
-#include "base/new_file.h"
-
 namespace taut {
 namespace {
 
@@ -22,23 +20,34 @@ namespace fs = std::filesystem;
 
 constexpr const char* kInputs = "inputs.yaml";
 constexpr const char* kSummary = "summary.json";
-/// In the order in which they go when a new run begins. The inputs do not: they are replaced.
-constexpr const char* kPieces[] = {kSummary, "report.html", "trace.csv", "trace.h5", kInputs};
+/// In the order in which they go when a new run begins.
+constexpr const char* kPieces[] = {kSummary,    "report.html", "events.jsonl",
+                                   "trace.csv", "trace.h5",    kInputs};
 constexpr std::string_view kIdLine = "# run ";
 
-bool IsLeftover(const std::string& name) {
-  const auto of = [&](const std::string& piece) { return name.starts_with(piece + "."); };
-  return name.ends_with(".part") && std::any_of(std::begin(kPieces), std::end(kPieces), of);
+/// The rest of `text` after this beginning; nothing if it begins otherwise.
+std::optional<std::string_view> After(std::string_view text, std::string_view beginning) {
+  if (!text.starts_with(beginning)) return std::nullopt;
+  return text.substr(beginning.size());
 }
 
-/// What writers left that were killed before their file had its name.
-void RemoveLeftovers(const fs::path& folder) {
-  std::vector<fs::path> found;
-  std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    if (IsLeftover(entry.path().filename().string())) found.push_back(entry.path());
-  }
-  for (const fs::path& path : found) unlink(path.c_str());
+/// Such as `trace.h5.77.part`, or `trace_2.h5.77.part` of a live run that was reset.
+bool IsLeftover(std::string_view name) {
+  if (!name.ends_with(".part")) return false;
+  return std::any_of(std::begin(kPieces), std::end(kPieces), [&](std::string_view piece) {
+    const std::size_t dot = piece.find('.');
+    auto rest = After(name, piece.substr(0, dot));
+    if (rest && rest->starts_with('_')) {
+      rest->remove_prefix(std::min(rest->find_first_not_of("0123456789", 1), rest->size()));
+    }
+    return rest && (rest = After(*rest, piece.substr(dot))) && rest->starts_with('.');
+  });
+}
+
+bool RemoveOld(const std::string& path, Diagnostics& out) {
+  if (unlink(path.c_str()) == 0 || errno == ENOENT) return true;
+  out.Error({path}, fmt::format("of the run before cannot be removed: {}", std::strerror(errno)));
+  return false;
 }
 
 std::optional<std::string> ReadText(const std::string& path) {
@@ -89,14 +98,27 @@ std::vector<Piece> PiecesOfRun(const std::string& path, const Trace& trace) {
 
 }  // namespace
 
+void RemoveLeftovers(const std::string& folder) {
+  std::vector<fs::path> found;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    if (IsLeftover(entry.path().filename().string())) found.push_back(entry.path());
+  }
+  for (const fs::path& path : found) unlink(path.c_str());
+}
+
+bool RemoveRunBefore(const std::string& folder, const std::vector<std::string>& kept,
+                     Diagnostics& out) {
+  for (const std::string piece : kPieces) {
+    if (std::find(kept.begin(), kept.end(), piece) != kept.end()) continue;
+    if (!RemoveOld((fs::path(folder) / piece).string(), out)) return false;
+  }
+  return true;
+}
+
 RunFolder::RunFolder(std::string folder, const std::vector<std::string>& more,
                      std::unique_ptr<FolderLock> lock)
-    : folder_(std::move(folder)),
-      id_(NewRunId()),
-      removed_(std::begin(kPieces), std::end(kPieces) - 1),
-      lock_(std::move(lock)) {
-  removed_.insert(removed_.end(), more.begin(), more.end());
-}
+    : folder_(std::move(folder)), id_(NewRunId()), more_(more), lock_(std::move(lock)) {}
 
 RunFolder::~RunFolder() = default;
 
@@ -113,7 +135,7 @@ std::string RunFolder::Path(const std::string& name) const {
 }
 
 bool RunFolder::Prepare(const std::string& experiment, Diagnostics& out) {
-  inputs_ = std::make_unique<base::NewFile>(Path(kInputs));
+  inputs_ = std::make_unique<NewFile>(Path(kInputs));
   if (inputs_->Create() && inputs_->Write(InputsOfRun(id_, experiment)) && inputs_->Sync()) {
     return true;
   }
@@ -122,11 +144,9 @@ bool RunFolder::Prepare(const std::string& experiment, Diagnostics& out) {
 }
 
 bool RunFolder::Begin(Diagnostics& out) {
-  for (const std::string& name : removed_) {
-    if (unlink(Path(name).c_str()) == 0 || errno == ENOENT) continue;
-    out.Error({Path(name)},
-              fmt::format("of the run before cannot be removed: {}", std::strerror(errno)));
-    return false;
+  if (!RemoveRunBefore(folder_, {kInputs}, out)) return false;
+  for (const std::string& name : more_) {
+    if (!RemoveOld(Path(name), out)) return false;
   }
   if (inputs_->Publish()) return true;
   out.Error({Path(kInputs)}, "cannot be written: " + inputs_->why());

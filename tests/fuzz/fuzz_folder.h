@@ -1,5 +1,5 @@
-/// What the fuzz targets share: a folder in memory for the files to read, and a check that ends
-/// the program.
+/// What the fuzz targets share: a folder in memory for the files to read, a check that ends the
+/// program, and damage to good files.
 #pragma once
 
 #include <unistd.h>
@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace taut::fuzz {
 
@@ -58,6 +59,19 @@ class Folder {
 inline std::string ReadAll(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The file that an input stands for. Its first byte chooses a base, patches of four bytes follow:
+/// place (3), value (1). Where there is no such base the rest of the input is the file.
+inline std::string Damaged(const std::vector<std::string>& bases, const std::uint8_t* data,
+                           std::size_t size) {
+  if (data[0] >= bases.size()) return {data + 1, data + size};
+  std::string file = bases[data[0]];
+  for (std::size_t i = 1; i + 3 < size; i += 4) {
+    const std::size_t place = data[i] | data[i + 1] << 8 | data[i + 2] << 16;
+    file[place % file.size()] = static_cast<char>(data[i + 3]);
+  }
+  return file;
 }
 
 }  // namespace taut::fuzz

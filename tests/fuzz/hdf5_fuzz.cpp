@@ -1,8 +1,7 @@
 // Good HDF5 traces with damage, or any bytes. HDF5 itself may crash on them: the caller must not.
 //
-// Input: a byte that chooses a base, then patches of four bytes: place (3), value (1). Bases: a
-// finished trace, one whose writer was cut off, one in HDF5's old layout, which has no checksums;
-// else the input itself is the file.
+// Input: as `Damaged` takes it. Bases: a finished trace, one whose writer was cut off, one in
+// HDF5's old layout, which has no checksums.
 #include "fuzz/fuzz_folder.h"
 #include "tests/unit/hdf5_old_layout.h"
 
@@ -44,14 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const Folder folder;
   static const std::vector<std::string> bases = Bases(folder);
   if (size == 0) return 0;
-  std::string file(data + 1, data + size);
-  if (data[0] < bases.size()) {
-    file = bases[data[0]];
-    for (std::size_t i = 1; i + 3 < size; i += 4) {
-      const std::size_t place = data[i] | data[i + 1] << 8 | data[i + 2] << 16;
-      file[place % file.size()] = static_cast<char>(data[i + 3]);
-    }
-  }
+  const std::string file = taut::fuzz::Damaged(bases, data, size);
   taut::Diagnostics out;
   const auto trace = taut::ReadTrace(folder.Write("t.h5", file.data(), file.size()), out);
   Must(trace.has_value() == out.ok(), "a trace or complaints");

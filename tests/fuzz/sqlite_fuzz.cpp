@@ -1,7 +1,7 @@
 // Logs of studies with damage, or any bytes.
 //
-// Input: a byte that chooses a base, then patches of four bytes: place (3), value (1). Bases: a log
-// of this version, and of version 1, which has no checksums; else the input itself is the file.
+// Input: as `Damaged` takes it. Bases: a log of this version, and of version 1, which has no
+// checksums.
 #include "fuzz/fuzz_folder.h"
 #include "tests/unit/study_log_files.h"
 
@@ -22,14 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const Folder folder;
   static const std::vector<std::string> bases = Bases(folder);
   if (size == 0) return 0;
-  std::string file(data + 1, data + size);
-  if (data[0] < bases.size()) {
-    file = bases[data[0]];
-    for (std::size_t i = 1; i + 3 < size; i += 4) {
-      const std::size_t place = data[i] | data[i + 1] << 8 | data[i + 2] << 16;
-      file[place % file.size()] = static_cast<char>(data[i + 3]);
-    }
-  }
+  const std::string file = taut::fuzz::Damaged(bases, data, size);
   taut::Diagnostics out;
   const auto log = taut::test::ReadLog(folder.Path("study.sqlite"), file, out);
   Must(log.has_value() == out.ok(), "contents or complaints");

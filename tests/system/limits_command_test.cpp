@@ -104,9 +104,17 @@ TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
     EXPECT_EQ(result.status, 3) << result.errors;
     EXPECT_EQ(result.errors, std::string(folder) + ": error: is not a regular file\n");
   }
+  ExpectRefused({"compare", "a.csv", "a.csv", "--map", "folder.csv"}, 3,
+                "folder.csv: error: is a directory, not a file\n");
   ExpectRefused({"compare", "none.h5", "none.csv"}, 3,
                 "none.csv: error: cannot be opened: No such file or directory\n"
                 "none.h5: error: cannot be opened: No such file or directory\n");
+}
+
+TEST_F(Limits, AnUnknownCommandIsAnsweredByThoseThatThereAre) {
+  ExpectRefused({"rnu", "a.yaml"}, 2,
+                "error: there is no command \"rnu\"; one of: check, run, compare, gait, learn, "
+                "report, schema, view\n");
 }
 
 TEST_F(Limits, StrictRunsAndSearchesRefuseWarnings) {

@@ -7,7 +7,6 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include "base/new_file.h"
 #include "trace_fixture.h"
 
 namespace taut::test {
@@ -43,17 +42,36 @@ TEST_F(Files, AreReplacedWhole) {
 TEST_F(Files, AreOldUntilTheyAreNew) {
   WriteFile("a", "old");
   {
-    base::NewFile file(Path("a"));
+    NewFile file(Path("a"));
     ASSERT_TRUE(file.Create() && file.Write("ne"));
     EXPECT_EQ(ReadFile(Path("a")), "old");
     EXPECT_EQ(Names().size(), 2u);
   }
   EXPECT_EQ(Names(), std::vector<std::string>{"a"}) << "given up";
-  base::NewFile file(Path("a"));
+  NewFile file(Path("a"));
   ASSERT_TRUE(file.Create() && file.Write("ne"));
   ASSERT_TRUE(file.Publish() && file.Publish());
   ASSERT_TRUE(file.Write("w") && file.Sync());
   EXPECT_EQ(ReadFile(Path("a")), "new");
+}
+
+TEST_F(Files, GrowByAllOrNone) {
+  const pid_t pid = fork();
+  if (pid == 0) {
+    NewFile file(Path("a"));
+    const rlimit size{10, 1000}, more{1000, 1000};
+    setrlimit(RLIMIT_FSIZE, &size);
+    signal(SIGXFSZ, SIG_IGN);
+    const bool full = file.Create() && file.Publish() && file.WriteAllOrNone("1234567\n") &&
+                      !file.WriteAllOrNone("abcdefg\n") && file.why() == "File too large" &&
+                      ReadFile(Path("a")) == "1234567\n";
+    setrlimit(RLIMIT_FSIZE, &more);
+    _exit(full && file.WriteAllOrNone("89\n") ? 0 : 1);
+  }
+  int status = -1;
+  waitpid(pid, &status, 0);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(ReadFile(Path("a")), "1234567\n89\n");
 }
 
 TEST_F(Files, ThatCannotBeWrittenSayWhyAndStayAsTheyWere) {

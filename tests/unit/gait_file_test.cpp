@@ -38,6 +38,15 @@ class Gait : public ExperimentFolder {
   }
 };
 
+TEST_F(Gait, AParameterThatNothingReadsIsAWarning) {
+  Write("g.yaml", Replaced(kSine, "{slow_hz: 0.5}", "{slow_hz: 0.5, idle: 2 * slow_hz}"));
+  Diagnostics out;
+  EXPECT_TRUE(LoadGait(Path("g.yaml"), out));
+  EXPECT_EQ(Without(Path(""), out.Format()),
+            "g.yaml:4:34: warning: nothing reads the parameter \"idle\" (its value changes "
+            "nothing)\n");
+}
+
 TEST_F(Gait, ASineIsReadWithItsExpressionsAndDefaults) {
   const GaitSpec gait = LoadText(kSine);
   ASSERT_TRUE(gait.sine);

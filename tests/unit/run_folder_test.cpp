@@ -97,20 +97,22 @@ TEST_F(Run, ARunThatWasResetHasPiecesOfItsOwn) {
 TEST_F(Run, TheRunBeforeIsThereUntilTheNewOneBegins) {
   for (const char* const name :
        {"trace.h5", "trace.csv", "inputs.yaml", "summary.json", "report.html", "c.gait.yaml",
-        "notes.txt", "report.html.77.part", "trace_2.h5", "a.part"}) {
+        "notes.txt", "report.html.77.part", "trace_2.h5", "a.part", "events.jsonl",
+        "events.jsonl.77.part", "trace_2.h5.77.part", "trace_b.h5.77.part"}) {
     WriteFile(name, "old");
   }
   Diagnostics out;
   const auto folder = RunFolder::Open(Path(""), {"c.gait.yaml"}, out);
   ASSERT_TRUE(folder && folder->Prepare("taut: 1\n", out)) << out.Format();
   const std::string part = "inputs.yaml." + std::to_string(getpid()) + ".part";
-  EXPECT_EQ(Names(), (std::vector<std::string>{".lock", "a.part", "c.gait.yaml", "inputs.yaml",
-                                               part, "notes.txt", "report.html", "summary.json",
-                                               "trace.csv", "trace.h5", "trace_2.h5"}));
+  EXPECT_EQ(Names(), (std::vector<std::string>{".lock", "a.part", "c.gait.yaml", "events.jsonl",
+                                               "inputs.yaml", part, "notes.txt", "report.html",
+                                               "summary.json", "trace.csv", "trace.h5",
+                                               "trace_2.h5", "trace_b.h5.77.part"}));
   EXPECT_EQ(ReadFile(Path("inputs.yaml")), "old");
   ASSERT_TRUE(folder->Begin(out)) << out.Format();
   EXPECT_EQ(Names(), (std::vector<std::string>{".lock", "a.part", "inputs.yaml", "notes.txt",
-                                               "trace_2.h5"}));
+                                               "trace_2.h5", "trace_b.h5.77.part"}));
   EXPECT_EQ(ReadFile(Path("inputs.yaml")), "# run " + folder->id() + "\ntaut: 1\n");
   ASSERT_TRUE(folder->Finish("{}", out)) << out.Format();
   EXPECT_EQ(ReadFile(Path("summary.json")), "{}");

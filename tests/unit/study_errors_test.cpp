@@ -64,6 +64,16 @@ TEST_F(StudyFile, IsRead) {
   EXPECT_EQ(std::get<NloptSpec>(study->searches[1].method).algorithm, "bobyqa");
 }
 
+TEST_F(StudyFile, AParameterThatNothingReadsIsAWarning) {
+  std::string text = kGood;
+  text.replace(text.find("low: 1,"), 7, "low: least_n,");
+  text += "parameters: {least_n: 1, idle: least_n}\n";
+  ASSERT_TRUE(Load(text)) << out_.Format();
+  ASSERT_EQ(out_.warnings().size(), 1u) << out_.Format();
+  EXPECT_EQ(out_.warnings()[0].what, "nothing reads the parameter \"idle\"");
+  EXPECT_EQ(out_.warnings()[0].at.line, 14);
+}
+
 TEST_F(StudyFile, UnknownNamesAreSaidWithTheLikelyOne) {
   EXPECT_EQ(
       Wrong("all: model.friction", "all: model.fricton"),

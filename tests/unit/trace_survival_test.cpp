@@ -188,6 +188,37 @@ TEST_F(Survival, AFullDiskIsAnErrorAndWhatWasFlushedStaysReadable) {
   EXPECT_GT(complaints_at_start, 1u);
 }
 
+TEST_F(Survival, AWriterThatFailedHoldsNoFile) {
+  const auto open_files = [] {
+    const std::filesystem::directory_iterator files("/proc/self/fd");
+    return std::distance(begin(files), end(files));
+  };
+  const int status = InChild([&] {
+    signal(SIGXFSZ, SIG_IGN);
+    const auto before = open_files();
+    for (rlim_t limit = 200; limit < 300'000; limit += limit / 2) {
+      const std::string path = Path("t" + std::to_string(limit) + ".h5");
+      const rlimit size{limit, RLIM_INFINITY}, none{RLIM_INFINITY, RLIM_INFINITY};
+      setrlimit(RLIMIT_FSIZE, &size);
+      Diagnostics out;
+      auto writer = Create(path, out);
+      for (std::size_t row = 0; writer && writer->error().empty(); ++row) {
+        AppendRow(*writer, row, kChannelCount, static_cast<double>(row));
+      }
+      setrlimit(RLIMIT_FSIZE, &none);
+      writer.reset();
+      if (open_files() != before) return 1;
+      // Its name, and perhaps its number in the file system, are free for another.
+      std::filesystem::remove(path);
+      const auto next = Create(path, out);
+      if (!next || !AppendRow(*next, 0, kChannelCount, 0.0) || !next->Finish()) return 2;
+    }
+    return open_files() == before ? 10 : 3;
+  });
+  ASSERT_TRUE(WIFEXITED(status)) << strsignal(WTERMSIG(status));
+  EXPECT_EQ(WEXITSTATUS(status), 10);
+}
+
 TEST_F(Survival, AFullDiskFoundOnlyAtTheEndIsAnError) {
   for (const std::string name : {"t.h5", "t.csv"}) {
     const int status = InChild([&] {

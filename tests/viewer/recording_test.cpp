@@ -4,9 +4,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "apps/viewer/recording.h"
 #include "tests/viewer/serving.h"
@@ -146,14 +148,72 @@ TEST_F(RecordingFolder, AFileThatIsTakenAwayIsMissed) {
   EXPECT_FALSE(recording->Finish());
   ASSERT_EQ(said_.size(), 1u);
   EXPECT_EQ(said_[0], recording->failure());
-  EXPECT_EQ(said_[0], fmt::format("nothing is recorded any more, since t = 0.01 s of part 1: "
-                                  "{}/trace.h5: is no longer there; to record again, start taut "
-                                  "view anew",
-                                  folder_.string()));
-  Restart(*recording);
+  EXPECT_EQ(said_[0],
+            fmt::format("nothing is recorded any more, since t = 0.01 s of part 1: "
+                        "{}/trace.h5: is no longer there; once that is mended, a reset goes "
+                        "on recording",
+                        folder_.string()));
   Step(*recording);
   EXPECT_FALSE(recording->Finish());
   EXPECT_EQ(said_.size(), 1u) << "once is enough";
+}
+
+TEST_F(RecordingFolder, GoesOnWithTheFirstResetForWhichThereIsRoom) {
+  const auto recording = Start();
+  Step(*recording);
+  {
+    const FullDisk full(8 << 10);
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));  // rows become due
+    recording->FlushOld();
+    ASSERT_EQ(said_.size(), 1u);
+    EXPECT_EQ(said_[0],
+              fmt::format("nothing is recorded any more, since t = 0.01 s of part 1: {}/trace.h5: "
+                          "cannot be written: File too large; once that is mended, a reset goes on "
+                          "recording",
+                          folder_.string()));
+    for (int i = 0; i < 20; ++i) {
+      Restart(*recording);
+      Step(*recording);
+      recording->Event(0, "nobody writes this down");
+    }
+    EXPECT_EQ(said_.size(), 1u) << "once is enough";
+    EXPECT_EQ(recording->notice(), said_[0]);
+  }
+  EXPECT_EQ(FileCount(), 3u) << "nothing half made stays";
+  Restart(*recording);
+  ASSERT_EQ(said_.size(), 2u);
+  EXPECT_EQ(said_[1],
+            "recorded again, from the start of part 2 on; after t = 0.01 s of part 1 something is "
+            "missing");
+  EXPECT_EQ(recording->failure(), "");
+  EXPECT_EQ(recording->notice(), said_[1]);
+  Step(*recording);
+  recording->Event(0.01, "seen");
+  Restart(*recording);
+  EXPECT_EQ(recording->notice(), "") << "of this part all is there";
+  EXPECT_FALSE(recording->Finish()) << "but not of all";
+  EXPECT_EQ(said_.size(), 2u);
+  EXPECT_GE(Rows("trace.h5"), 1u) << "what was recorded stays";
+  EXPECT_EQ(Rows("trace_2.h5"), 3u);
+  EXPECT_EQ(
+      Read("events_2.jsonl"),
+      fmt::format("{{\"time_s\":0.0,\"text\":\"{}\"}}\n{{\"time_s\":0.01,\"text\":\"seen\"}}\n",
+                  said_[1]));
+  EXPECT_EQ(FileCount(), 9u);
+}
+
+TEST_F(RecordingFolder, AFolderThatWasMovedAwayIsMadeAnewByAReset) {
+  const auto recording = Start();
+  Step(*recording);
+  const fs::path moved = folder_.string() + "_moved";
+  fs::rename(folder_, moved);
+  recording->FlushOld();
+  ASSERT_EQ(said_.size(), 1u);
+  Restart(*recording);
+  EXPECT_EQ(recording->failure(), "");
+  EXPECT_EQ(FileCount(), 3u);
+  EXPECT_FALSE(Start()) << "the new one has its writer";
+  fs::remove_all(moved);
 }
 
 TEST_F(RecordingFolder, APartThatCannotBeginLeavesTheOneThatWasThere) {
@@ -163,6 +223,7 @@ TEST_F(RecordingFolder, APartThatCannotBeginLeavesTheOneThatWasThere) {
     recording->Event(0, "before");
   }
   const std::string inputs = Read("inputs.yaml");
+  std::ofstream(folder_ / "summary.json") << "{}";
   {
     const FullDisk full(16 << 10);  // enough for the inputs, not for a trace
     EXPECT_FALSE(Start());
@@ -172,16 +233,26 @@ TEST_F(RecordingFolder, APartThatCannotBeginLeavesTheOneThatWasThere) {
   EXPECT_EQ(Rows("trace.h5"), 3u);
   EXPECT_EQ(Read("inputs.yaml"), inputs);
   EXPECT_EQ(Read("events.jsonl"), "{\"time_s\":0.0,\"text\":\"before\"}\n");
-  EXPECT_EQ(FileCount(), 3u) << "nothing half made stays";
+  EXPECT_EQ(FileCount(), 4u) << "nothing half made stays, and nothing goes";
 }
 
-TEST_F(RecordingFolder, EveryClientHearsThatNothingIsRecordedLateOnesToo) {
+TEST_F(RecordingFolder, WhatARunLeftGoesAndWhatAKilledWriterLeft) {
+  for (const char* name : {"summary.json", "report.html", "trace.csv", "trace_3.h5.77.part",
+                           "events.jsonl.77.part", "notes.txt"}) {
+    std::ofstream(folder_ / name) << "old";
+  }
+  ASSERT_TRUE(Start()) << complaints_;
+  EXPECT_EQ(FileCount(), 4u);
+  EXPECT_EQ(Read("notes.txt"), "old");
+}
+
+TEST_F(RecordingFolder, EveryClientHearsWhatIsNotRecordedAndWhatIsAgainLateOnesToo) {
   std::vector<std::string> told;
   viewer::LiveOptions options;
   options.paused = true;
   options.record_folder = folder_.string();
   options.tell = [&](const std::string& text) { told.push_back(text); };
-  std::string notice;
+  std::string notice, again;
   {
     const Serving serving(Live(kHang, options));
     Client early(serving.port());
@@ -193,9 +264,20 @@ TEST_F(RecordingFolder, EveryClientHearsThatNothingIsRecordedLateOnesToo) {
     })["scene"]["notice"];
     Client late(serving.port());
     EXPECT_EQ(late.Await("scene")["scene"]["notice"], notice);
+    early.Send({{"type", "reset"}});
+    again = early.AwaitText([&](const Json& message) {
+      return message["type"] == "scene" && message["scene"].value("notice", notice) != notice;
+    })["scene"]["notice"];
+    Client later(serving.port());
+    EXPECT_EQ(later.Await("scene")["scene"]["notice"], again);
+    early.Send({{"type", "reset"}});
+    early.AwaitText([&](const Json& message) {
+      return message["type"] == "scene" && !message["scene"].contains("notice");
+    });
   }
   EXPECT_NE(notice.find("trace.h5: is no longer there"), std::string::npos) << notice;
-  EXPECT_EQ(told, std::vector<std::string>{notice});
+  EXPECT_NE(again.find("recorded again, from the start of part "), std::string::npos) << again;
+  EXPECT_EQ(told, (std::vector<std::string>{notice, again}));
 }
 
 }  // namespace

@@ -141,6 +141,7 @@ export class App {
     }
     this.tuning.value = scene;
     if (scene.notice !== undefined) this.notice.value = scene.notice;
+    else if (before?.notice !== undefined && this.notice.value === before.notice) this.notice.value = null; // mended
   }
 
   /** A frame of the scene before it may still be on its way when the scene has changed. */

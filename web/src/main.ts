@@ -41,7 +41,8 @@ function start(root: HTMLElement): void {
   help.fill(keys);
   listenToKeys(keys);
 
-  view.element.append(legend(app, view), inspector(app));
+  if (view.draws) view.element.append(legend(app, view));
+  view.element.append(inspector(app));
   plots.element.prepend(drawer);
   const top = header(app, () => help.toggle(), [controlsButton, recorder(app, view), gifMaker(app, store, view)]);
   const overlays = [help.element, notices(app), failurePage(app)];

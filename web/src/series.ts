@@ -11,6 +11,7 @@ const LIVE_CAPACITY = 36_000; // ten minutes of 60 frames a second
 const ASK_AT_ONCE = 8; // questions on their way at the same time
 const GAP_S = 0.05; // between the frames of a live run: what lies between them is asked for
 const LATE = 0.02; // of what is shown: by how much an answer about a live run may be older
+const RANGES = 6; // of a channel: its plots, each with a range of its own, and those that they had before
 
 type Receiver = (points: Points) => void;
 
@@ -27,13 +28,16 @@ interface Question {
 interface Past {
   t0: number;
   t1: number;
+  /** As many as were asked for. */
+  asked: number;
   coarse: boolean;
   points: Points;
 }
 
 export class SeriesStore {
   private readonly history = new Map<string, Points>();
-  private readonly past = new Map<string, Past>();
+  /** By channel, the one that was used last first. */
+  private readonly past = new Map<string, Past[]>();
   private readonly rows = new RowReader((...question) => this.ask(...question));
   private present: { frame: Frame; values: Map<string, number> } | null = null;
   private run = -1;
@@ -121,18 +125,26 @@ export class SeriesStore {
 
   /** What the server has kept of a live run, as far as it has answered. */
   private kept(channel: string, t0: number, t1: number, points: number): Points {
-    const past = this.past.get(channel);
-    const covers = past !== undefined && past.t0 <= t0 && past.t1 >= t1 - LATE * (t1 - t0);
-    if (!covers || (past.coarse && past.t1 - past.t0 > 3 * (t1 - t0))) {
-      // the answer before is shown until this one is there, so that the plot does not blink; not asked for twice
-      const asked: Past = { t0, t1, coarse: false, points: past?.points ?? NOTHING };
-      this.past.set(channel, asked);
-      this.ask(channel, 0, t0, t1, points, (received) => {
-        asked.points = received;
-        asked.coarse = received.t.length > points / 3;
-      });
-    }
-    return between(this.past.get(channel)!.points, t0, t1);
+    const ranges = this.past.get(channel) ?? [];
+    const span_s = t1 - t0;
+    const fits = (past: Past) =>
+      past.t0 <= t0 && past.t1 >= t1 - LATE * span_s &&
+      !(past.coarse && (past.t1 - past.t0 > 3 * span_s || past.asked < points));
+    const overlap_s = (past: Past) => Math.min(past.t1, t1) - Math.max(past.t0, t0);
+    const past = ranges.find(fits) ??
+      // what is known is shown until the answer is there, so that the plot does not blink; not asked for twice
+      this.askPast(channel, t0, t1, points, [...ranges].sort((a, b) => overlap_s(b) - overlap_s(a))[0]?.points ?? NOTHING);
+    this.past.set(channel, [past, ...ranges.filter((other) => other !== past)].slice(0, RANGES));
+    return between(past.points, t0, t1);
+  }
+
+  private askPast(channel: string, t0: number, t1: number, points: number, meanwhile: Points): Past {
+    const asked: Past = { t0, t1, asked: points, coarse: false, points: meanwhile };
+    this.ask(channel, 0, t0, t1, points, (received) => {
+      asked.points = received;
+      asked.coarse = received.t.length > points / 3;
+    });
+    return asked;
   }
 
   private sendWaiting(): void {

@@ -13,25 +13,28 @@ export const PAGE = process.env.TAUT_PAGE ?? fileURLToPath(new URL("../dist/inde
 const CHROMIUM = process.env.TAUT_CHROMIUM ?? "/usr/bin/chromium";
 export const PICTURES = process.env.TAUT_PICTURES ?? join(tmpdir(), "taut-pictures");
 
-let browser = null;
+const GRAPHICS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const NO_GRAPHICS = ["--disable-gpu", "--disable-3d-apis"];
+const browsers = new Map();
 
-export async function openBrowser() {
+async function openBrowser(graphics) {
   if (!existsSync(PAGE)) throw new Error(`${PAGE} is not there: build it first (npm run build)`);
-  browser ??= await chromium.launch({
-    executablePath: CHROMIUM, timeout: 0,
-    args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox", "--force-color-profile=srgb"],
-  });
-  return browser;
+  if (!browsers.has(graphics)) {
+    browsers.set(graphics, await chromium.launch({
+      executablePath: CHROMIUM, timeout: 0, args: [...graphics, "--no-sandbox", "--force-color-profile=srgb"],
+    }));
+  }
+  return browsers.get(graphics);
 }
 
 export async function closeBrowser() {
-  await browser?.close();
-  browser = null;
+  for (const browser of browsers.values()) await browser.close();
+  browsers.clear();
 }
 
 /** A page that notes its complaints and every address that it asks for. */
-export async function openPage(url, { width = 1000, height = 560, theme = "light", wait = true, scale = 1 } = {}) {
-  const context = await (await openBrowser()).newContext({
+export async function openPage(url, { width = 1000, height = 560, theme = "light", wait = true, scale = 1, webgl = true } = {}) {
+  const context = await (await openBrowser(webgl ? GRAPHICS : NO_GRAPHICS)).newContext({
     viewport: { width, height }, colorScheme: theme, acceptDownloads: true, deviceScaleFactor: scale,
   });
   context.setDefaultTimeout(0);
@@ -43,7 +46,7 @@ export async function openPage(url, { width = 1000, height = 560, theme = "light
   page.on("request", (request) => page.requests.push(request.url()));
   page.on("websocket", (socket) => page.requests.push(socket.url()));
   await page.goto(url);
-  if (wait) await ready(page);
+  if (wait && webgl) await ready(page);
   return page;
 }
 

@@ -101,28 +101,61 @@ test("KeysPauseStepAndReset", async () => {
   await until(() => server.of("reset").length === 1, "a reset");
 });
 
+test("WhatIsAmissStandsThereUntilItIsMended", async () => {
+  const page = await open();
+  const notice = () => page.locator(".notice:visible").allInnerTexts();
+  const tell = (more) => server.tell({ type: "scene", scene: { ...server.liveScene(), ...more } });
+  const shows = (text) => page.waitForFunction((wanted) => window.taut.app.scene.value.notice === wanted, text);
+  tell({ notice: "nothing is recorded any more" });
+  await shows("nothing is recorded any more");
+  assert.match((await notice()).join(), /nothing is recorded any more/);
+  tell({ notice: "recorded again" });
+  await shows("recorded again");
+  assert.match((await notice()).join(), /recorded again/);
+  tell({});
+  await shows(undefined);
+  assert.deepEqual(await notice(), []);
+});
+
+test("WithoutWebGlARunIsPlottedAndDriven", async () => {
+  const page = await open({ width: 1280, height: 760, webgl: false });
+  await page.waitForFunction(() => document.querySelector(".view .instead")?.textContent.includes("this browser has no WebGL"));
+  await page.locator("body").press(" ");
+  await until(() => server.of("resume").length === 1 && server.time_s > 0.1, "it runs");
+  await page.waitForFunction(() => Number(document.querySelector(".timeline").dataset.time) > 0.1);
+  await page.waitForSelector('[data-figure="contacts"] .uplot', { state: "attached" });
+  await page.keyboard.press("f");
+  await page.keyboard.press("n");
+  await page.waitForFunction(() => document.querySelector(".inspector .name").textContent === "cable bottom_0");
+  assert.deepEqual(page.complaints.filter((text) => !/WebGL/.test(text)), []);
+  await picture(page, "live-flat");
+});
+
 test("APageThatComesLateShowsWhatWentBefore", async () => {
   server.time_s = 8;
   const page = await open({ width: 1280, height: 760 });
-  const shown = () => page.evaluate(() => new Promise((resolve) => window.taut.store.want("cable/top_1/tension_n", 0, 0, 8, 4000, (points) => resolve(points))));
-  await page.waitForFunction(() => new Promise((resolve) => window.taut.store.want("cable/top_1/tension_n", 0, 0, 8, 4000, ({ t }) => resolve(t.length > 100))));
-  const { t, first } = await shown();
-  assert.equal(t[0], 0);
-  assert.equal(t.at(-1), 8);
-  t.forEach((time_s, i) => {
-    assert.ok(i === 0 || time_s > t[i - 1], "times rise where the two parts meet");
-    assert.ok(Math.abs(first[i] - tension_n(4, time_s)) < 1e-9);
-  });
-  // The page's own plots may ask meanwhile, for fewer points; so many hold every row, and no plot needs finer ones.
-  const questions = () => server.of("want_series").filter(({ points }) => points === 4000).length;
-  const asked = questions();
+  const shown = (...range) => page.evaluate((asked) => new Promise((resolve) => window.taut.store.want("cable/top_1/tension_n", 0, ...asked, (points) => resolve(points))), range);
+  // Two who look at the same channel, beside the page's own plots: of all, and of a part of it more finely.
+  const ranges = [[0, 8, 777], [2, 3, 333]];
+  for (const range of ranges) {
+    await until(async () => (await shown(...range)).t.length > 100, "the time before");
+    const { t, first } = await shown(...range);
+    assert.ok(t[0] <= range[0] && t.at(-1) >= range[1], "up to what lies around it");
+    t.forEach((time_s, i) => {
+      assert.ok(i === 0 || time_s > t[i - 1], "times rise where the two parts meet");
+      assert.ok(Math.abs(first[i] - tension_n(4, time_s)) < 1e-9);
+    });
+  }
+  const questions = () => server.of("want_series").filter(({ points }) => [777, 333].includes(points)).length;
+  assert.equal(questions(), 2);
   await page.evaluate(() => {
     window.shown = 0;
     window.taut.app.frame.watch(() => ++window.shown);
   });
-  for (let i = 0; i < 5; ++i) await shown();
+  for (let i = 0; i < 5; ++i) for (const range of ranges) await shown(...range);
   await page.waitForFunction(() => window.shown > 5);
-  assert.equal(questions(), asked, "what has been answered is not asked for again");
+  for (const range of ranges) await shown(...range);
+  assert.equal(questions(), 2, "what has been answered is not asked for again");
 });
 
 test("ALiveRunIsLookedBackAt", async () => {

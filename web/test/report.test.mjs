@@ -46,6 +46,26 @@ test("EveryPlotIsThereBeforeItIsScrolledTo", async () => {
   await small.context().close();
 });
 
+test("WithoutWebGlAllIsThereButThePicture", async () => {
+  const flat = await openPage(writeReport(report(), folder), { webgl: false });
+  await flat.waitForFunction(() => {
+    const charts = [...document.querySelectorAll("figure.chart")];
+    return charts.length === 11 && charts.every((chart) => !chart.querySelector(".values").textContent.startsWith("–"));
+  });
+  assert.match(await flat.locator(".view").innerText(), /There is no 3-D picture: this browser has no WebGL/);
+  assert.ok((await flat.locator("main.report").innerText()).includes("a book"), "tables are there");
+  assert.deepEqual(await flat.locator("button.film:visible").allInnerTexts(), [], "there is nothing to film");
+  assert.equal(await flat.locator(".failure:visible").count(), 0);
+  await flat.evaluate(() => window.taut.app.seek(6));
+  await flat.waitForFunction(() => document.querySelector(".timeline").dataset.time === "6");
+  await cursorTo(flat, 5);
+  const [contacts] = await numbersBeside(flat, ["contacts"]);
+  assert.equal(contacts.text, String(contactCount(5)));
+  assert.deepEqual(flat.complaints.filter((text) => !/WebGL/.test(text)), []);
+  await picture(flat, "report-flat", { fullPage: true });
+  await flat.context().close();
+});
+
 test("ItReplaysWithoutAServer", async () => {
   await page.evaluate(() => window.taut.app.seek(6));
   await untilTime(page, 6);

@@ -15,10 +15,13 @@ import { World } from "./world";
 const FILLED = 0.76; // of half the view that the robot takes up, at most
 const FREE = 0.3; // how far the robot moves before the camera follows, in sizes of the robot
 const CLICK_PX = 4; // a press that moves less is a click
+const NO_PICTURE = "There is no 3-D picture: this browser has no WebGL, or it is switched off. All else is shown.";
 
 export class View {
   readonly element = el("div.view");
-  readonly renderer: WebGLRenderer;
+  /** null: this browser cannot draw it. All else is as if it did. */
+  readonly renderer: WebGLRenderer | null;
+  readonly canvas: HTMLCanvasElement;
   readonly camera = new PerspectiveCamera(40, 1, 0.01, 500);
   world: World | null = null;
   follow = true;
@@ -35,14 +38,13 @@ export class View {
   private pressed: { x: number; y: number } | null = null;
 
   constructor(private readonly app: App) {
-    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: false });
-    this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = PCFSoftShadowMap;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    const canvas = this.renderer.domElement;
+    this.renderer = makeRenderer();
+    this.canvas = this.renderer?.domElement ?? document.createElement("canvas");
+    const { canvas } = this;
     canvas.tabIndex = 0;
     canvas.setAttribute("aria-label", "3-D view of the robot");
-    this.element.append(canvas, this.tip);
+    if (this.renderer) this.element.append(canvas, this.tip);
+    else this.element.append(el("p.instead", { role: "note" }, NO_PICTURE));
     this.camera.up.set(0, 0, 1);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
@@ -56,8 +58,9 @@ export class View {
     requestAnimationFrame(() => this.loop());
   }
 
-  get canvas(): HTMLCanvasElement {
-    return this.renderer.domElement;
+  /** Is there a picture? */
+  get draws(): boolean {
+    return this.renderer !== null;
   }
 
   get viewport(): Viewport {
@@ -156,7 +159,7 @@ export class View {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.element;
     if (width === 0 || height === 0) return;
-    this.renderer.setSize(width, height);
+    this.renderer?.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.world?.cables.resize(width, height);
@@ -188,6 +191,7 @@ export class View {
   /** Draws at once; the canvas can be copied until the caller gives way to the browser. */
   draw(): void {
     this.dirty = false;
+    if (!this.renderer) return;
     this.aimSun();
     this.renderer.render(this.stage, this.camera);
     ++this.frames.drawn;
@@ -265,6 +269,19 @@ export class View {
     const node = this.world?.scene.nodes[index];
     const frame = this.app.frame.value;
     return node && frame ? worldPoint(frame, node.body, node.position_m, new Vector3()) : null;
+  }
+}
+
+/** null: there is no WebGL, which three.js tells the console, too. */
+function makeRenderer(): WebGLRenderer | null {
+  try {
+    const renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: false });
+    renderer.shadowMap.enabled = true;
+    renderer.shadowMap.type = PCFSoftShadowMap;
+    renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    return renderer;
+  } catch {
+    return null;
   }
 }
 

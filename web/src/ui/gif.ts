@@ -16,7 +16,7 @@ export function gifMaker(app: App, store: SeriesStore, view: View): HTMLElement 
     if (running) running = false;
     else void make();
   }, "button.film");
-  app.hello.watch(() => (made.hidden = !app.replay));
+  app.hello.watch(() => (made.hidden = !app.replay || !view.draws));
 
   const make = async () => {
     const scene = app.scene.value;

@@ -27,6 +27,6 @@ export function recorder(app: App, view: View): HTMLElement {
     view.invalidate();
   };
   const made = button("record", "record the 3-D view as a video (WebM)", toggle, "button.film");
-  made.hidden = typeof MediaRecorder === "undefined" || !MediaRecorder.isTypeSupported("video/webm");
+  made.hidden = !view.draws || typeof MediaRecorder === "undefined" || !MediaRecorder.isTypeSupported("video/webm");
   return made;
 }

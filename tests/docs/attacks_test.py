@@ -1,0 +1,37 @@
+"""Every test that docs/robustness.md names as holding an attack is there, by its name in ctest."""
+
+import re
+
+from page import ROOT, Page
+
+TESTS = ROOT / "tests"
+
+
+def names():
+    """Suite.Name of all tests."""
+    found = set()
+    for path in TESTS.rglob("*.cpp"):
+        found |= {f"{suite}.{name}" for suite, name in re.findall(r"^TEST(?:_[FP])?\((\w+), (\w+)\)", path.read_text(), re.M)}
+    for path in TESTS.rglob("CMakeLists.txt"):
+        found |= set(re.findall(r"add_test\(NAME ([\w.]+)", path.read_text()))
+        found |= {f"Fuzz.{name}" for name in re.findall(r"^taut_fuzz\((\w+) ", path.read_text(), re.M)}
+    found |= {f"Faults.{name}" for name in re.findall(r"^def ([A-Z]\w+)", (TESTS / "faults/faults_test.py").read_text(), re.M)}
+    found |= {f"Web.{path.name.removesuffix('.test.mjs')}" for path in (ROOT / "web/test").glob("*.test.mjs")}
+    return found
+
+
+def main():
+    lines = [line for _, line in Page(ROOT / "docs/robustness.md").prose]
+    begin = lines.index("## Attacks tried")
+    rows = [line for line in lines[begin:] if line.startswith("| ")]
+    there, wrong = names(), []
+    for row in rows:
+        held = [text for text in re.findall(r"`([^`]+)`", row.rstrip(" |").split(" | ")[-1]) if re.fullmatch(r"[A-Z]\w+\.\w+", text)]
+        wrong += [f"docs/robustness.md: there is no test {name}" for name in held if name not in there]
+    assert len(rows) > 30, f"{len(rows)} rows"
+    if wrong:
+        raise SystemExit("\n".join(wrong))
+
+
+if __name__ == "__main__":
+    main()
