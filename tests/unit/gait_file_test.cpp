@@ -9,6 +9,10 @@
 namespace taut::test {
 namespace {
 
+std::string Replaced(std::string text, const std::string& old_text, const std::string& new_text) {
+  return text.replace(text.find(old_text), old_text.size(), new_text);
+}
+
 class Gait : public ExperimentFolder {
  protected:
   std::string GaitComplaints(const std::string& text) {
