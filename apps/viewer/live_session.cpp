@@ -315,7 +315,8 @@ void LiveSession::LookAt(std::int64_t row) {
 }
 
 void LiveSession::Fill(Frame& frame) const {
-  const World& world = *run_->world();
+  const World* const world =
+      run_->world();  // null: no simulation; energies and contacts are unknown
   const Observation& now = run_->Observe();
   const ModelDef& def = experiment_.robot.def;
   frame.time_s = frame.now_s = run_->time_s();
@@ -323,10 +324,10 @@ void LiveSession::Fill(Frame& frame) const {
   frame.speed = speed_;
   frame.paused = paused_;
   frame.run = run_number_;
-  frame.energy = world.TotalEnergy(0);
+  if (world != nullptr) frame.energy = world->TotalEnergy(0);
   frame.bodies.clear();
-  for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) {
-    const BodyState body = world.Body(0, b);
+  for (int b = 0; now.bodies != nullptr && b < static_cast<int>(def.bodies.size()); ++b) {
+    const BodyState body = now.bodies->Body(0, b);
     frame.bodies.push_back({body.position_m, body.orientation});
   }
   frame.cables.clear();
@@ -338,8 +339,10 @@ void LiveSession::Fill(Frame& frame) const {
          has_set_point_[place] ? run_->commands().set_point_n[place] : Frame::kUnknown});
   }
   frame.contacts.clear();
-  for (const ContactState& contact : world.Contacts(0)) {
-    frame.contacts.push_back({contact.point_m, contact.force_n});
+  if (world != nullptr) {
+    for (const ContactState& contact : world->Contacts(0)) {
+      frame.contacts.push_back({contact.point_m, contact.force_n});
+    }
   }
   frame.contact_count = static_cast<double>(frame.contacts.size());
   frame.pushes = run_->OutsideForces();
