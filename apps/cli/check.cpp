@@ -102,16 +102,15 @@ void AddCheck(CLI::App& app, int& exit_code) {
   CLI::App* check = app.add_subcommand(
       "check", "Check a model, experiment or gait file; show what it describes.");
   check->add_option("file", args->path, "Model, experiment or gait file (YAML)")->required();
-  check->add_option("--set", args->set, "Parameter of the file: name=value")
-      ->type_name("NAME=VALUE")
+  check->add_option("--set", args->set, "Parameter of the file")
+      ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   check->add_flag("--couplings", args->couplings,
                   "Show the network of oscillators that a gait of the robot has");
-  check
-      ->add_option("--symmetry", args->symmetry,
-                   "With --couplings: which are alike: segments (default), index or none")
-      ->transform(CLI::CheckedTransformer(kSymmetries));
-  check->add_option("--svg", args->svg, "With --couplings: draw them into this file");
+  AddChoice(*check, "--symmetry", args->symmetry, kSymmetries,
+            "With --couplings: which are alike (default: segments)");
+  check->add_option("--svg", args->svg, "With --couplings: draw them into this file")
+      ->option_text("FILE");
   check->add_flag("--json", args->json, "JSON instead of tables");
   check->add_flag("--quiet", args->quiet, "Say nothing about a good file");
   check->add_flag("--strict", args->strict, kStrictHelp);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "output.h"
+#include "overrides.h"
 #include "taut/compare.h"
 #include "taut/run_folder.h"
 
@@ -69,49 +70,58 @@ int RunCompare(const CompareArguments& given) {
 }  // namespace
 
 void AddCompare(CLI::App& app, int& exit_code) {
-  auto* command = app.add_subcommand("compare", "Say how far two traces are apart");
+  auto* command = app.add_subcommand("compare", "Say how far two traces are apart.");
   const auto given = std::make_shared<CompareArguments>();
   command->add_option("A", given->path_a, "Trace (.h5, .csv, .csv.gz): what is judged")->required();
   command->add_option("B", given->path_b, "Trace: the reference")->required();
-  command->add_option("--map", given->map_b, "Mapping file that gives B the names of taut");
-  command->add_option("--map-a", given->map_a, "The same for A");
+  command->add_option("--map", given->map_b, "Mapping file that gives B the names of taut")
+      ->option_text("FILE");
+  command->add_option("--map_a", given->map_a, "The same for A")->option_text("FILE");
   command
       ->add_option("--channels", given->options.channels,
-                   "Only channels that fit a pattern such as 'cable/*/tension_n' (may be repeated)")
+                   "Only channels that fit a pattern such as 'cable/*/tension_n'")
+      ->option_text("PATTERN")
       ->allow_extra_args(false);
-  command->add_option("--from", given->options.from_s, "Begin here [s]");
-  command->add_option("--to", given->options.to_s, "End here [s]");
-  command
-      ->add_option(
-          "--phase", given->phases,
-          "NAME=FROM:TO [s]: also compare mean, min and max in this window (may be repeated)")
+  command->add_option("--from_s", given->options.from_s, "Begin here [s]")
+      ->option_text("S")
+      ->check(NumberWithin(-1e9, 1e9));
+  command->add_option("--to_s", given->options.to_s, "End here [s]")
+      ->option_text("S")
+      ->check(NumberWithin(-1e9, 1e9));
+  command->add_option("--phase", given->phases, "Also compare mean, min and max in this window [s]")
+      ->option_text("NAME=FROM:TO")
       ->allow_extra_args(false)
       ->check([](const std::string& text) {
         return ParsePhase(text) ? std::string() : "\"" + text + "\" is not like before=25:30";
       });
   command
       ->add_option("--system", given->options.system,
-                   "Pattern of the channels whose largest value is the system's (may be repeated)")
+                   "Channels whose largest value is the system's")
+      ->option_text("PATTERN")
       ->allow_extra_args(false)
       ->default_str("cable/*/tension_n cable/*/elastic_n");
   command
-      ->add_option("--max-lag", given->options.max_lag_s, "Look for delays up to this [s]; 0: none")
-      ->check(CLI::NonNegativeNumber)
+      ->add_option("--max_lag_s", given->options.max_lag_s,
+                   "Look for delays up to this [s]; 0: none")
+      ->option_text("S")
+      ->check(NumberWithin(0, 1e9))
       ->capture_default_str();
   command
-      ->add_option("--max-error-percent", given->limits.max_error_percent,
+      ->add_option("--max_error_percent", given->limits.max_error_percent,
                    "Fail if the system's largest value is further off")
-      ->check(CLI::NonNegativeNumber);
+      ->option_text("X")
+      ->check(NumberWithin(0, 1e9));
   command
-      ->add_option("--max-rmse", given->limits.max_rmse,
+      ->add_option("--max_rmse", given->limits.max_rmse,
                    "Fail if the RMSE of a compared channel is larger, in its unit")
-      ->check(CLI::NonNegativeNumber);
+      ->option_text("X")
+      ->check(NumberWithin(0, 1e300));
   command->add_flag("--json", given->json, "Print JSON instead of tables");
   command->footer(
       "Examples:\n"
-      "  taut compare runs/push/trace.h5 measured.csv --max-error-percent 6.1\n"
+      "  taut compare runs/push/trace.h5 measured.csv --max_error_percent 6.1\n"
       "  taut compare runs/push/trace.h5 push_1000hz.csv.gz --map mappings/ntrt.json \\\n"
-      "    --channels 'cable/*/elastic_n' --from 5 --phase before=25:30 --phase during=35:40\n"
+      "    --channels 'cable/*/elastic_n' --from_s 5 --phase before=25:30 --phase during=35:40\n"
       "Exit status: 0 within the limits (or none given), 1 not, 2 bad usage, 3 bad input.");
   command->callback([given, &exit_code] {
     for (const std::string& phase : given->phases) {

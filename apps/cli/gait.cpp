@@ -98,11 +98,12 @@ int Values(const GaitArguments& args) {
 
 void AddGait(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<GaitArguments>();
-  CLI::App* gait = app.add_subcommand("gait", "Gaits as files: export, import, create, list.");
+  CLI::App* gait =
+      app.add_subcommand("gait", "Gaits as files: export, import, create, list their values.");
   gait->require_subcommand(1);
   const auto add_set = [&](CLI::App* command) {
-    command->add_option("--set", args->set, "Parameter of the model: name=value")
-        ->type_name("NAME=VALUE")
+    command->add_option("--set", args->set, "Parameter of the model")
+        ->option_text("NAME=VALUE")
         ->allow_extra_args(false);
   };
 
@@ -111,12 +112,14 @@ void AddGait(CLI::App& app, int& exit_code) {
   export_->add_option("gait", args->input, "Gait file (YAML)")->required();
   export_->add_option("robot", args->robot, "Model or experiment file (YAML)")->required();
   export_->add_option("--rate_hz", args->rate_hz, "Rows a second; also the gait's own rate")
+      ->option_text("X")
       ->check(NumberWithin(1e-3, 1e6))
       ->capture_default_str();
   export_->add_option("--duration_s", args->duration_s, "Up to here [s]")
+      ->option_text("S")
       ->check(NumberWithin(0.0, 1e6))
       ->capture_default_str();
-  export_->add_option("--out", args->out, "File to write (default: print)");
+  export_->add_option("--out", args->out, "File to write (default: print)")->option_text("FILE");
   add_set(export_);
   export_->footer(
       "Example:\n  taut gait export gaits/cpg_learned.yaml models/tetraspine3.yaml --out "
@@ -129,12 +132,12 @@ void AddGait(CLI::App& app, int& exit_code) {
       ->add_option("path", args->input,
                    "Folder with bestParameters-*.nnw, or the hand-tuned controlVars.json")
       ->required();
-  import_
-      ->add_option("--order", args->order,
-                   "Order of NTRT's cables when it learned: paper2015 (default) or since2016")
-      ->transform(CLI::CheckedTransformer(kOrders));
-  import_->add_option("--name", args->name, "Name of the gait")->check(CheckName);
-  import_->add_option("--out", args->out, "File to write (default: print)");
+  AddChoice(*import_, "--order", args->order, kOrders,
+            "Order of NTRT's cables when it learned (default: paper2015)");
+  import_->add_option("--name", args->name, "Name of the gait")
+      ->option_text("NAME")
+      ->check(CheckName);
+  import_->add_option("--out", args->out, "File to write (default: print)")->option_text("FILE");
   import_->footer(
       "Example:\n  taut gait import ntrt/hardwareLearning/logs --name sidewinder --out "
       "sidewinder.yaml");
@@ -143,16 +146,13 @@ void AddGait(CLI::App& app, int& exit_code) {
   CLI::App* create = gait->add_subcommand(
       "create", "A CPG with all couplings of a robot, weights and phases 0: a start for learning.");
   create->add_option("robot", args->robot, "Model or experiment file (YAML)")->required();
-  create
-      ->add_option("--symmetry", args->symmetry,
-                   "Which couplings are alike: segments (default), index or none")
-      ->transform(CLI::CheckedTransformer(kSymmetries));
-  create
-      ->add_option("--drives", args->drives,
-                   "What its signals are: velocity (default) or rest_length")
-      ->transform(CLI::CheckedTransformer(kDrives));
-  create->add_option("--name", args->name, "Name of the gait")->check(CheckName);
-  create->add_option("--out", args->out, "File to write (default: print)");
+  AddChoice(*create, "--symmetry", args->symmetry, kSymmetries,
+            "Which couplings are alike (default: segments)");
+  AddChoice(*create, "--drives", args->drives, kDrives, "What its signals are (default: velocity)");
+  create->add_option("--name", args->name, "Name of the gait")
+      ->option_text("NAME")
+      ->check(CheckName);
+  create->add_option("--out", args->out, "File to write (default: print)")->option_text("FILE");
   add_set(create);
   create->footer("Example:\n  taut gait create models/tetraspine12.yaml --out blank.yaml");
   create->callback([args, &exit_code] { exit_code = Create(*args); });

@@ -164,22 +164,24 @@ void AddLearn(CLI::App& app, int& exit_code) {
                    "Study file (YAML); for --best and --top a study's folder, for --parameters an "
                    "experiment")
       ->required();
-  learn->add_option("--set", args->set, "Parameter of the study, experiment or model: name=value")
-      ->type_name("NAME=VALUE")
+  learn->add_option("--set", args->set, "Parameter of the study, experiment or model")
+      ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
-  learn->add_option("--out", args->out, "Folder to write into (default: runs/<study>)");
+  learn->add_option("--out", args->out, "Folder to write into (default: runs/<study>)")
+      ->option_text("FOLDER");
   learn->add_option("--threads", args->threads, "Threads, 0: one a core (default; 1 under mpirun)")
-      ->check(CLI::Range(0, 1024));
+      ->option_text("N")
+      ->check(WholeNumberWithin(0, 1024));
   auto* best = learn->add_flag("--best", args->best,
                                "Replay the best of a folder: trace, summary, report in best/");
   auto* top = learn->add_option("--top", args->top, "List the best N of a folder")
-                  ->type_name("N")
-                  ->check(CLI::Range(1, 1'000'000));
+                  ->option_text("N")
+                  ->check(WholeNumberWithin(1, 1'000'000));
   auto* parameters = learn->add_flag("--parameters", args->parameters,
                                      "List all that a study of an experiment can vary");
   learn->add_flag("--json", args->json, "With --top: JSON instead of a table")->needs(top);
   learn
-      ->add_flag("--skip-damaged", args->skip_damaged,
+      ->add_flag("--skip_damaged", args->skip_damaged,
                  "Where records of the folder are damaged: use the others; a search does these "
                  "again")
       ->excludes(parameters);

@@ -7,35 +7,32 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <typeinfo>
 
+#include "command_text.h"
 #include "commands.h"
 #include "streams.h"
 #include "taut/version.h"
+#include "usage.h"
 
 namespace taut::cli {
 namespace {
 
-/// Help that was asked for, or what is wrong with the command line.
-int Explain(const CLI::App& app, const CLI::ParseError& error) {
-  std::ostringstream output, errors;
-  const int exit_code = app.exit(error, output, errors);
-  fmt::print("{}", output.str());
-  fmt::print(stderr, "{}", errors.str());
-  return exit_code == 0 ? kOk : kUsage;
-}
+const std::string kVersionText = std::string("taut ") + kVersion;
 
-/// Of all commands, for a line of text.
-std::string NamesOfCommands(CLI::App& app) {
-  std::string names;
-  for (const CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
-    names += (names.empty() ? "" : ", ") + command->get_name();
+/// What all commands and theirs have in common: the version may be asked for anywhere (help texts
+/// name that once), and a flag that takes no value is not given one (CLI11 reads `--csv=3` as yes).
+void SetUpCommands(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    command->set_version_flag("-V,--version", kVersionText)->group("");
+    for (CLI::Option* option : command->get_options()) {
+      if (option->get_expected_max() == 0) option->disable_flag_override();
+    }
+    SetUpCommands(*command);
   }
-  return names;
 }
 
 /// Where nothing may be thrown, as while an object goes or in a thread, missing memory ends the
@@ -49,17 +46,19 @@ std::string NamesOfCommands(CLI::App& app) {
 }
 
 int Run(int argc, char** argv) {
-  CLI::App app{"Tensegrity robots: describe, simulate, control, compare with measurements.",
-               "taut"};
-  app.set_version_flag("--version", std::string("taut ") + taut::kVersion);
-  app.require_subcommand(1);
+  CLI::App app{
+      "taut simulates tensegrity robots: describe, simulate, control, learn, compare with "
+      "measurements.",
+      "taut"};
+  app.set_help_flag("-h,--help", "Print this and end");
+  app.set_version_flag("-V,--version", kVersionText, "Print the version and end");
   app.footer(
       "Examples:\n"
       "  taut check models/tetraspine3.yaml\n"
       "  taut run experiments/push_20n.yaml --csv\n"
       "  taut compare simulated.h5 measured.csv\n"
       "  taut view experiments/push_20n.yaml\n"
-      "`taut COMMAND --help` tells more.\n"
+      "`taut help COMMAND` tells more.\n"
       "Exit status: 0 good, 1 failed, 2 bad usage, 3 bad input, 130 interrupted.");
   int exit_code = kOk;
   AddCheck(app, exit_code);
@@ -67,21 +66,26 @@ int Run(int argc, char** argv) {
   AddCompare(app, exit_code);
   AddGait(app, exit_code);
   AddLearn(app, exit_code);
+  AddList(app, exit_code);
+  AddNew(app, exit_code);
   AddReport(app, exit_code);
   AddSchema(app, exit_code);
   AddView(app, exit_code);
+  AddHelp(app, exit_code);
+  SetUpCommands(app);
+  if (argc <= 1) {
+    fmt::print("{}", OverviewText(Describe(app)));
+    return kOk;
+  }
+  app.require_subcommand(1);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::RequiredError& error) {
-    // CLI11 does not say which word it did not know.
-    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
-      fmt::print(stderr, "error: there is no command \"{}\"; one of: {}\n", argv[1],
-                 NamesOfCommands(app));
-      return kUsage;
-    }
-    return Explain(app, error);
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", HelpText(Describe(NamedCommand(app))));
+  } catch (const CLI::CallForVersion&) {
+    fmt::print("{}\n", kVersionText);
   } catch (const CLI::ParseError& error) {
-    return Explain(app, error);
+    return ExplainUsage(app, error);
   }
   return exit_code;
 }

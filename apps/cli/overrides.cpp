@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
+#include <utility>
 
 namespace taut::cli {
 
@@ -29,6 +30,30 @@ std::function<std::string(const std::string&)> NumberWithin(double least, double
     }
     return fmt::format("\"{}\" is not a number from {:g} to {:g}", text, least, most);
   };
+}
+
+std::function<std::string(const std::string&)> WholeNumberWithin(std::uint64_t least,
+                                                                 std::uint64_t most) {
+  return [least, most](const std::string& text) {
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error == std::errc() && end == text.data() + text.size() && number >= least &&
+        number <= most) {
+      return std::string();
+    }
+    return fmt::format("\"{}\" is not a whole number from {} to {}", text, least, most);
+  };
+}
+
+std::function<std::string(const std::string&)> OneOf(std::vector<std::string> words) {
+  return [words = std::move(words)](const std::string& text) {
+    if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
+    return fmt::format("\"{}\" is unknown ({})", text, DidYouMean(text, words));
+  };
+}
+
+std::string Alternatives(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, "|"));
 }
 
 std::string CheckName(const std::string& text) {

@@ -44,10 +44,13 @@ void AddReport(CLI::App& app, int& exit_code) {
   CLI::App* report =
       app.add_subcommand("report", "Write a run as one HTML file that opens anywhere.");
   report->add_option("trace", args->trace, "Trace of the run (.h5, .csv, .csv.gz)")->required();
-  report->add_option("--out", args->out, "File to write (default: report.html beside the trace)");
-  report->add_option("--compare", args->compare,
-                     "Another trace, drawn and tabulated beside this one (default: what the "
-                     "experiment names)");
+  report->add_option("--out", args->out, "File to write (default: report.html beside the trace)")
+      ->option_text("FILE");
+  report
+      ->add_option("--compare", args->compare,
+                   "Another trace, drawn and tabulated beside this one (default: what the "
+                   "experiment names)")
+      ->option_text("FILE");
   report->footer(
       "Examples:\n"
       "  taut report runs/push_20n/trace.h5\n"

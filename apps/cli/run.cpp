@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 
 #include "apps/viewer/report.h"
@@ -34,6 +35,7 @@ struct RunArguments {
   std::uint64_t seed = 0;
   int threads = 1;
   bool csv = false, report = false, quiet = false, has_seed = false, strict = false;
+  bool json = false;
 };
 
 /// One line that is rewritten on a terminal, a line every ten seconds elsewhere.
@@ -103,7 +105,7 @@ int Run(const RunArguments& args) {
       args.out.empty() ? (fs::path("runs") / experiment->name).string() : args.out;
   const auto folder = RunFolder::Open(path, {}, found);
   if (!folder) return Fail(found, kFailed);
-  OutputIsNews();
+  if (!args.json) OutputIsNews();
   ProgressLine line(args.quiet);
   RunOptions options;
   options.threads = args.threads;
@@ -117,18 +119,20 @@ int Run(const RunArguments& args) {
   line.Clear();
   if (!summary) return Fail(found, kFailed);
 
-  if (!args.quiet) {
+  const bool tables = !args.quiet && !args.json;
+  if (args.json) fmt::print("{}", SummaryJson(*summary));
+  if (tables) {
     fmt::print("{}\n", SummaryTable(*summary));
     if (found.ok()) fmt::print("Trace, inputs and summary: {}\n", path);
   }
   if (args.report && found.ok()) {
     const std::string report = folder->Path("report.html");
-    if (viewer::WriteReport(folder->Path("trace.h5"), "", report, found) && !args.quiet) {
+    if (viewer::WriteReport(folder->Path("trace.h5"), "", report, found) && tables) {
       fmt::print("Report: {}\n", report);
     }
   }
   if (experiment->compare_with && found.ok()) {
-    CompareWith(*experiment->compare_with, folder->Path("trace.h5"), args.quiet, found);
+    CompareWith(*experiment->compare_with, folder->Path("trace.h5"), !tables, found);
   }
   if (!summary->status_text.empty()) fmt::print(stderr, "warning: {}\n", summary->status_text);
   if (!found.ok()) return Fail(found, kFailed);
@@ -146,23 +150,32 @@ void AddRun(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<RunArguments>();
   CLI::App* run = app.add_subcommand("run", "Run an experiment: trace, summary and table.");
   run->add_option("experiment", args->experiment, "Experiment file (YAML)")->required();
-  run->add_option("--set", args->set, "Parameter of the experiment or model: name=value")
-      ->type_name("NAME=VALUE")
+  run->add_option("--set", args->set, "Parameter of the experiment or model")
+      ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   run->add_option("--step_s", args->step_s, "Step instead of the file's [s]")
+      ->option_text("S")
       ->check(NumberWithin(1e-9, 1.0));
   run->add_option("--duration_s", args->duration_s, "Duration instead of the file's [s]")
+      ->option_text("S")
       ->check(NumberWithin(0.0, 1e9));
   run->add_option("--seed", args->seed, "Seed of all that is random")
+      ->option_text("N")
+      ->check(WholeNumberWithin(0, std::numeric_limits<std::uint64_t>::max()))
       ->each([args](const std::string&) { args->has_seed = true; });
-  run->add_option("--out", args->out, "Folder to write into (default: runs/<experiment>)");
+  run->add_option("--out", args->out, "Folder to write into (default: runs/<experiment>)")
+      ->option_text("FOLDER");
   run->add_option("--replay", args->replay,
                   "Let the controllers act on this recording (trace.h5, .csv) instead of a "
-                  "simulation: what they would have commanded");
-  run->add_option("--threads", args->threads, "Threads, 0: one a core")->check(CLI::Range(0, 1024));
+                  "simulation: what they would have commanded")
+      ->option_text("FILE");
+  run->add_option("--threads", args->threads, "Threads, 0: one a core")
+      ->option_text("N")
+      ->check(WholeNumberWithin(0, 1024));
   run->add_flag("--csv", args->csv, "Write trace.csv as well");
   run->add_flag("--report", args->report,
                 "Write report.html as well: one file that opens anywhere");
+  run->add_flag("--json", args->json, "The summary as JSON instead of the table");
   run->add_flag("--quiet", args->quiet, "No progress and no table");
   run->add_flag("--strict", args->strict, kStrictHelp);
   run->footer(

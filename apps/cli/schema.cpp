@@ -6,6 +6,7 @@
 #include <string>
 
 #include "commands.h"
+#include "overrides.h"
 
 namespace taut::cli {
 
@@ -15,7 +16,8 @@ void AddSchema(CLI::App& app, int& exit_code) {
       app.add_subcommand("schema", "Print what a kind of file may hold, for editors.");
   schema->add_option("format", *format, "model, experiment, gait or study")
       ->required()
-      ->check(CLI::IsMember(FormatNames()));
+      ->option_text(Alternatives(FormatNames()))
+      ->check(OneOf(FormatNames()));
   schema->footer(
       "Example:\n"
       "  taut schema model > model.schema.json\n"

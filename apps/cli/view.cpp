@@ -205,27 +205,34 @@ void AddView(CLI::App& app, int& exit_code) {
       app.add_subcommand("view", "Watch an experiment live, replay a trace, look at a model.");
   view->add_option("file", args->file, "Experiment or model (YAML), or trace (.h5, .csv, .csv.gz)")
       ->required();
-  view->add_option("--set", args->set, "Parameter of the experiment or model: name=value")
-      ->type_name("NAME=VALUE")
+  view->add_option("--set", args->set, "Parameter of the experiment or model")
+      ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   view->add_option("--step_s", args->step_s, "Step instead of the file's [s]")
+      ->option_text("S")
       ->check(NumberWithin(1e-9, 1.0));
   auto* speed = view->add_option("--speed", args->speed, "Simulated seconds a second (default: 1)")
+                    ->option_text("X")
                     ->check(NumberWithin(0.001, 1000.0));
   view->add_flag("--max", args->max, "As fast as it can")->excludes(speed);
   view->add_flag("--paused", args->paused, "Begin paused");
   view->add_flag("--settled", args->settled, "Begin at rest, where the robot settles");
-  view->add_option("--compare", args->compare, "Replay: another trace, drawn beside this one");
+  view->add_option("--compare", args->compare, "Replay: another trace, drawn beside this one")
+      ->option_text("FILE");
   view->add_option("--out", args->out,
-                   "Live: folder to record into (trace, inputs, what was done); default: none");
+                   "Live: folder to record into (trace, inputs, what was done); default: none")
+      ->option_text("FOLDER");
   view->add_option("--listen", args->server.address,
                    "Address to listen on (default: 127.0.0.1, this machine only)")
+      ->option_text("ADDRESS")
       ->check([](const std::string& address) {
         if (viewer::IsAddress(address)) return std::string();
         return fmt::format(
             "\"{}\" is not an address; 127.0.0.1 is this machine, 0.0.0.0 listens to all", address);
       });
-  view->add_option("--port", args->server.port, "Port (default: 8080; 0: any that is free)");
+  view->add_option("--port", args->server.port, "Port (default: 8080; 0: any that is free)")
+      ->option_text("N")
+      ->check(WholeNumberWithin(0, 65535));
   view->footer(
       "Examples:\n"
       "  taut view experiments/push_20n.yaml --speed 0.25\n"

@@ -52,6 +52,14 @@ std::optional<RobotSpec> LoadRobot(const std::string& path, const Overrides& ove
 /// none of these.
 std::optional<std::string> FileKind(const std::string& path, Diagnostics& out);
 
+/// What a file says of itself, without whether the rest of it is right.
+struct FileHead {
+  std::string kind, name, description;  ///< Empty: it does not say.
+};
+
+/// The top of a file of any kind. Nothing, and a complaint, if it cannot be read as YAML.
+std::optional<FileHead> ReadFileHead(const std::string& path, Diagnostics& out);
+
 /// When a controller runs: at phase_s, phase_s + period_s, ... [s]. Owned by the controller, not
 /// by the step.
 struct ClockSpec {

@@ -96,7 +96,7 @@ def look_at_run(program, folder, run, killed_s):
     """Rows, seconds lost, what is wrong."""
     if not (folder / "killed/trace.h5").exists():
         return 0, run.loss_s(0, killed_s), None
-    read = program.plain(("compare", "killed/trace.h5", "right/trace.csv", "--json", "--max-lag", "0"), folder)
+    read = program.plain(("compare", "killed/trace.h5", "right/trace.csv", "--json", "--max_lag_s", "0"), folder)
     if read.returncode != 0:
         if "no row" in read.stderr or "no time in common" in read.stderr:
             return 0, run.loss_s(0, killed_s), None

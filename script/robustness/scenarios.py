@@ -110,7 +110,7 @@ class Run(Scenario):
         return self.same_rows(folder / "run" / name, reference / "trace.csv")
 
     def same_rows(self, trace, reference):
-        run = self.program.plain(("compare", trace, reference, "--json", "--max-lag", "0"), trace.parent)
+        run = self.program.plain(("compare", trace, reference, "--json", "--max_lag_s", "0"), trace.parent)
         if run.returncode != 0:
             return False
         compared = json.loads(run.stdout)

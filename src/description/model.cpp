@@ -123,4 +123,14 @@ std::optional<std::string> FileKind(const std::string& path, Diagnostics& out) {
   return std::nullopt;
 }
 
+std::optional<FileHead> ReadFileHead(const std::string& path, Diagnostics& out) {
+  const description::ValuePtr root = description::ReadYaml(path, out);
+  if (!root) return std::nullopt;
+  const auto text = [&](const char* key) {
+    const description::Value* value = root->Find(key);
+    return value ? value->text : std::string();
+  };
+  return FileHead{text("kind"), text("name"), text("description")};
+}
+
 }  // namespace taut

@@ -72,7 +72,7 @@ bool Accept(const LogContents& contents, const std::string& path, bool skip_dama
   }
   out.Error({path},
             "is damaged; " + std::to_string(contents.evaluations.size()) + " evaluations are good",
-            "`--skip-damaged` uses these; a search does the others once more");
+            "`--skip_damaged` uses these; a search does the others once more");
   return false;
 }
 

@@ -25,15 +25,15 @@ def part(text, title):
 
 
 def flags_of_help(text):
-    return set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", part(text, "Options"), re.MULTILINE)) - {"--help"}
+    return set(re.findall(r"^  (?:-\w, )?(--[\w-]+)", part(text, "Flags"), re.MULTILINE)) - {"--help"}
 
 
 def arguments_of_help(text):
-    return re.findall(r"^  (\w+)", part(text, "Positionals"), re.MULTILINE)
+    return re.findall(r"^  (\w+)", part(text, "Arguments"), re.MULTILINE)
 
 
 def subcommands_of_help(text):
-    return re.findall(r"^  (\w+)", part(text, "Subcommands"), re.MULTILINE)
+    return re.findall(r"^  (\w+)", part(text, "Commands"), re.MULTILINE)
 
 
 def sections_of_page():
@@ -45,7 +45,7 @@ def sections_of_page():
             current = sections.setdefault(heading[1], set())
         elif line.startswith("## "):
             current = None
-        cell = re.match(r"\| `([^`]+)`", line)
+        cell = re.match(r"\| (?:`-\w`, )?`([^`]+)`", line)
         if cell and current is not None:
             current.add(cell[1])
     return sections

@@ -45,12 +45,12 @@ class CompareCommand : public TraceFolder {
 
 TEST_F(CompareCommand, PassesWithinTheLimitAndFailsBeyondIt) {
   // largest of a: 30 N; largest of b: 11 lbf, here 44 N; so -31.82 %
-  Outcome outcome = Run("a.h5 b.csv --map map.json --max-error-percent 32");
+  Outcome outcome = Run("a.h5 b.csv --map map.json --max_error_percent 32");
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_NE(outcome.output.find("largest cable/*/tension_n: error -31.82 %"), std::string::npos)
       << outcome.output;
   EXPECT_NE(outcome.output.find("\nPASS: within the limits\n"), std::string::npos);
-  outcome = Run("a.h5 b.csv --map map.json --max-error-percent 31");
+  outcome = Run("a.h5 b.csv --map map.json --max_error_percent 31");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.output.find("\nFAIL: the largest cable/*/tension_n is -31.82 % off"),
             std::string::npos)
@@ -59,15 +59,15 @@ TEST_F(CompareCommand, PassesWithinTheLimitAndFailsBeyondIt) {
   EXPECT_EQ(outcome.status, 0) << "no limit, no verdict";
   EXPECT_EQ(outcome.output.find("PASS"), std::string::npos);
   // b's 6 lbf are 24 N: the RMSE of cable b is exactly 6 N
-  EXPECT_EQ(Run("a.h5 b.csv --map map.json --channels 'cable/b/*' --max-rmse 6.01").status, 0);
-  EXPECT_EQ(Run("a.h5 b.csv --map map.json --channels 'cable/b/*' --max-rmse 5.99").status, 1);
-  EXPECT_EQ(Run("b.csv a.h5 --map-a map.json --max-error-percent 46.7").status, 0);
+  EXPECT_EQ(Run("a.h5 b.csv --map map.json --channels 'cable/b/*' --max_rmse 6.01").status, 0);
+  EXPECT_EQ(Run("a.h5 b.csv --map map.json --channels 'cable/b/*' --max_rmse 5.99").status, 1);
+  EXPECT_EQ(Run("b.csv a.h5 --map_a map.json --max_error_percent 46.7").status, 0);
 }
 
 TEST_F(CompareCommand, JsonAloneIsOnStandardOutput) {
   const Outcome outcome = Run(
       "--json --phase early=0:1 --phase late=9:10 --channels 'cable/a/*' --channels 'cable/b/*' "
-      "a.h5 b.csv --map map.json --from 0.5 --max-error-percent 1");
+      "a.h5 b.csv --map map.json --from_s 0.5 --max_error_percent 1");
   EXPECT_EQ(outcome.status, 1);
   const auto json = nlohmann::ordered_json::parse(outcome.output);
   EXPECT_EQ(json["channels"].size(), 2u);
@@ -89,7 +89,7 @@ TEST_F(CompareCommand, BadInputEndsWithThreeAndSaysWhatIsWrong) {
   EXPECT_EQ(outcome.errors,
             "error: the traces have no channel in common (--map translates names)\n");
   EXPECT_NE(outcome.output.find("only in b (2): a_lbf b_lbf\n"), std::string::npos);
-  outcome = Run("a.h5 b.csv --map map.json --from 20");
+  outcome = Run("a.h5 b.csv --map map.json --from_s 20");
   EXPECT_EQ(outcome.status, 3);
   EXPECT_EQ(outcome.errors, "error: the traces have no time in common\n");
 }
@@ -102,7 +102,7 @@ TEST_F(CompareCommand, BadUsageEndsWithTwo) {
         << outcome.errors;
   }
   EXPECT_EQ(Run("a.h5").status, 2);
-  EXPECT_EQ(Run("a.h5 b.csv --max-lag -1").status, 2);
+  EXPECT_EQ(Run("a.h5 b.csv --max_lag_s -1").status, 2);
   EXPECT_EQ(Run("a.h5 b.csv --no-such-option").status, 2);
 }
 

@@ -12,7 +12,7 @@ const std::string kThree =
     "run/study.sqlite: error: evaluation 17: 0 values where the study has 7 parameters\n"
     "run/study.sqlite: error: evaluation 40: its checksum says that it was changed\n"
     "run/study.sqlite: error: evaluation 83: score is not a number\n"
-    "run/study.sqlite: error: is damaged; 81 evaluations are good (`--skip-damaged` uses these; a "
+    "run/study.sqlite: error: is damaged; 81 evaluations are good (`--skip_damaged` uses these; a "
     "search does the others once more)\n";
 
 class DamagedLearn : public Learn {
@@ -42,7 +42,7 @@ TEST_F(DamagedLearn, IsRefusedByAllThatReadItWithEveryRecordNamed) {
 
 TEST_F(DamagedLearn, TheRestIsUsedIfToldSo) {
   MakeThree();
-  CommandResult result = Taut({"learn", "--top", "100", "--json", "--skip-damaged", "run"});
+  CommandResult result = Taut({"learn", "--top", "100", "--json", "--skip_damaged", "run"});
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(nlohmann::json::parse(result.output).size(), 81u);
   EXPECT_EQ(result.errors,
@@ -50,13 +50,13 @@ TEST_F(DamagedLearn, TheRestIsUsedIfToldSo) {
             "warning: run: skipped: evaluation 40: its checksum says that it was changed\n"
             "warning: run: skipped: evaluation 83: score is not a number\n"
             "warning: run: skipped: 84 evaluations were written, 81 of them are good\n");
-  EXPECT_EQ(Taut({"learn", "--best", "--quiet", "--skip-damaged", "run"}).status, 0);
+  EXPECT_EQ(Taut({"learn", "--best", "--quiet", "--skip_damaged", "run"}).status, 0);
 }
 
 TEST_F(DamagedLearn, ASearchDoesTheDamagedOnesOnceMoreToTheSameEnd) {
   MakeThree();
   ASSERT_EQ(Search("whole").status, 0);
-  CommandResult result = Search("run", {"--skip-damaged"});
+  CommandResult result = Search("run", {"--skip_damaged"});
   ASSERT_EQ(result.status, 0) << result.errors;
   EXPECT_NE(result.output.find("84 evaluations, 0 failed, 81 of them from before"),
             std::string::npos)
@@ -73,7 +73,7 @@ TEST_F(DamagedLearn, ASearchDoesTheDamagedOnesOnceMoreToTheSameEnd) {
 TEST_F(DamagedLearn, ALogWithoutItsStudyIsNotUsedAtAll) {
   ASSERT_EQ(Search("run").status, 0);
   Sql("run", "UPDATE parameter SET high = 5 WHERE position = 0");
-  for (const char* flag : {"--quiet", "--skip-damaged"}) {
+  for (const char* flag : {"--quiet", "--skip_damaged"}) {
     const CommandResult result = Search("run", {flag});
     EXPECT_EQ(result.status, 3);
     EXPECT_EQ(result.errors,

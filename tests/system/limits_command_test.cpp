@@ -74,16 +74,14 @@ TEST_F(Limits, StepsOfASecondAndOfANanosecondAreTaken) {
 
 TEST_F(Limits, NumbersOutOfRangeAreBadUsage) {
   for (const std::string text : {"0", "-1", "nan", "inf", "1e-10", "2", "fast"}) {
-    ExpectRefused(
-        {"run", kHang, "--step_s", text}, 2,
-        "--step_s: \"" + text +
-            "\" is not a number from 1e-09 to 1\nRun with --help for more information.\n");
+    ExpectRefused({"run", kHang, "--step_s", text}, 2,
+                  "error: --step_s: \"" + text +
+                      "\" is not a number from 1e-09 to 1\n`taut run --help` tells more.\n");
   }
   for (const std::string text : {"-1", "nan", "inf", "2e9"}) {
-    ExpectRefused(
-        {"run", kHang, "--duration_s", text}, 2,
-        "--duration_s: \"" + text +
-            "\" is not a number from 0 to 1e+09\nRun with --help for more information.\n");
+    ExpectRefused({"run", kHang, "--duration_s", text}, 2,
+                  "error: --duration_s: \"" + text +
+                      "\" is not a number from 0 to 1e+09\n`taut run --help` tells more.\n");
   }
 }
 
@@ -112,9 +110,9 @@ TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
 }
 
 TEST_F(Limits, AnUnknownCommandIsAnsweredByThoseThatThereAre) {
-  ExpectRefused({"rnu", "a.yaml"}, 2,
-                "error: there is no command \"rnu\"; one of: check, run, compare, gait, learn, "
-                "report, schema, view\n");
+  ExpectRefused({"simulate", "a.yaml"}, 2,
+                "error: there is no command \"simulate\" (one of: check, run, compare, gait, "
+                "learn, list, new, report, schema, view, help)\n`taut --help` tells more.\n");
 }
 
 TEST_F(Limits, StrictRunsAndSearchesRefuseWarnings) {

@@ -258,8 +258,8 @@ TEST(ModelErrors, BasesAreModelsThatExist) {
   EXPECT_EQ(Errors("base: " TAUT_SOURCE_DIR
                    "/models/rod.yaml\nparameters: {length_m: 2, more: 3}\nnodes: {a: [0, 0, 0]}\n"),
             TAUT_SOURCE_DIR
-            "/models/rod.yaml:15:14: error: there is no node \"back\" (one of: a)\n" TAUT_SOURCE_DIR
-            "/models/rod.yaml:15:20: error: there is no node \"front\" (one of: a)\n");
+            "/models/rod.yaml:16:14: error: there is no node \"back\" (one of: a)\n" TAUT_SOURCE_DIR
+            "/models/rod.yaml:16:20: error: there is no node \"front\" (one of: a)\n");
 }
 
 TEST(FileKind, IsWhatTheFileSays) {

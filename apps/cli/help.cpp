@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command_text.h"
+#include "commands.h"
+#include "overrides.h"
+#include "usage.h"
+
+namespace taut::cli {
+namespace {
+
+struct HelpArguments {
+  std::vector<std::string> words;
+};
+
+int Help(const CLI::App& app, const HelpArguments& args) {
+  const CLI::App* command = &app;
+  for (const std::string& word : args.words) {
+    const auto named =
+        command->get_subcommands([&](const CLI::App* one) { return one->get_name() == word; });
+    if (named.empty()) return NoSuchCommand(*command, word);
+    command = named.front();
+  }
+  fmt::print("{}", HelpText(Describe(*command)));
+  return kOk;
+}
+
+}  // namespace
+
+void AddHelp(CLI::App& app, int& exit_code) {
+  auto args = std::make_shared<HelpArguments>();
+  CLI::App* help = app.add_subcommand("help", "Tell about taut or about one of its commands.");
+  std::vector<std::string> commands;
+  for (const CommandText& one : Describe(app).commands) commands.push_back(one.Word());
+  help->add_option("command", args->words, "Command to tell about (default: taut itself)")
+      ->option_text(Alternatives(commands));
+  help->footer(
+      "Examples:\n"
+      "  taut help run\n"
+      "  taut help gait export");
+  help->callback([&app, args, &exit_code] { exit_code = Help(app, *args); });
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "output.h"
+#include "overrides.h"
+#include "shipped.h"
+
+namespace taut::cli {
+namespace {
+
+struct ListArguments {
+  std::string kind;
+  bool json = false;
+};
+
+void PrintLines(const std::vector<ShippedFile>& files) {
+  std::size_t width = 0;
+  for (const ShippedFile& file : files) width = std::max(width, file.head.name.size());
+  std::string kind;
+  for (const ShippedFile& file : files) {
+    if (file.kind != kind) {
+      fmt::print("{}{}, in {}\n", kind.empty() ? "" : "\n", file.kind, *ShippedFolder(file.kind));
+    }
+    kind = file.kind;
+    fmt::print("  {:<{}}  {}\n", file.head.name, width, file.head.description);
+  }
+}
+
+int List(const ListArguments& args) {
+  Diagnostics found;
+  std::vector<ShippedFile> files;
+  for (const std::string& kind : ShippedKinds()) {
+    if (!args.kind.empty() && kind != args.kind) continue;
+    for (ShippedFile& file : ShippedFiles(kind, found)) files.push_back(std::move(file));
+  }
+  if (!found.ok()) return Fail(found, kBadInput);
+  if (files.empty()) {
+    fmt::print(stderr,
+               "error: the files that come with taut are not there (cmake --install puts them "
+               "into share/taut beside the command's folder)\n");
+    return kFailed;
+  }
+  if (!args.json) {
+    PrintLines(files);
+    return kOk;
+  }
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const ShippedFile& file : files) {
+    list.push_back({{"kind", file.head.kind},
+                    {"name", file.head.name},
+                    {"description", file.head.description},
+                    {"path", file.path}});
+  }
+  fmt::print("{}\n", list.dump(2));
+  return kOk;
+}
+
+}  // namespace
+
+void AddList(CLI::App& app, int& exit_code) {
+  auto args = std::make_shared<ListArguments>();
+  CLI::App* list = app.add_subcommand(
+      "list", "List the models, experiments, gaits and studies that come along.");
+  list->add_option("kind", args->kind, "models, experiments, gaits or studies (default: all)")
+      ->option_text(Alternatives(ShippedKinds()))
+      ->check(OneOf(ShippedKinds()));
+  list->add_flag("--json", args->json, "JSON instead of lines");
+  list->footer(
+      "Examples:\n"
+      "  taut list\n"
+      "  taut list experiments --json\n"
+      "`taut new` writes a file of your own to start from.");
+  list->callback([args, &exit_code] { exit_code = List(*args); });
+}
+
+}  // namespace taut::cli

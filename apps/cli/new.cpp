@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "output.h"
+#include "overrides.h"
+#include "shipped.h"
+#include "streams.h"
+#include "templates.h"
+
+namespace taut::cli {
+namespace {
+
+const std::vector<std::string> kKinds{"model", "experiment", "study"};
+
+struct NewArguments {
+  std::string kind, name, model;
+};
+
+/// A file that comes with taut; what is missing shows when the new file is read.
+std::string Shipped(const std::string& folder, const std::string& file) {
+  return ShippedFolder(folder).value_or(folder) + "/" + file;
+}
+
+std::string Schema(const std::string& kind) {
+  const auto folder = ShippedFolder("schema");
+  return folder ? *folder + "/" + kind + ".schema.json" : "";
+}
+
+/// The text of the new file, and what to do with it.
+std::string Text(const NewArguments& args, std::string& next) {
+  const std::string schema = Schema(args.kind);
+  if (args.kind == "model") {
+    next = "check";
+    return NewModel(args.name, schema);
+  }
+  if (args.kind == "experiment") {
+    next = "run";
+    return NewExperiment(args.name, schema,
+                         args.model.empty() ? Shipped("models", "prism3.yaml") : args.model);
+  }
+  next = "learn";
+  return NewStudy(args.name, schema, Shipped("experiments", "sidewinder3_start.yaml"));
+}
+
+int New(const NewArguments& args) {
+  if (!args.model.empty() && args.kind != "experiment") {
+    fmt::print(stderr, "error: --model goes with an experiment only\n");
+    return kUsage;
+  }
+  OutputIsNews();
+  const std::string path = args.name + ".yaml";
+  std::error_code failed;
+  if (std::filesystem::exists(std::filesystem::symlink_status(path, failed))) {
+    fmt::print(stderr, "{}: error: is there already (nothing is overwritten)\n", path);
+    return kFailed;
+  }
+  std::string next;
+  const int exit = WriteNamed(path, Text(args, next));
+  if (exit == kOk) fmt::print("{0}; next: taut {1} {0}\n", path, next);
+  return exit;
+}
+
+}  // namespace
+
+void AddNew(CLI::App& app, int& exit_code) {
+  auto args = std::make_shared<NewArguments>();
+  CLI::App* create =
+      app.add_subcommand("new", "Write a model, an experiment or a study to start from.");
+  create->add_option("kind", args->kind, "model, experiment or study")
+      ->required()
+      ->option_text(Alternatives(kKinds))
+      ->check(OneOf(kKinds));
+  create->add_option("name", args->name, "Its name; the file is NAME.yaml in this folder")
+      ->required()
+      ->option_text("NAME")
+      ->check(CheckName);
+  create->add_option("--model", args->model, "Of an experiment: the robot's model file")
+      ->option_text("FILE");
+  create->footer(
+      "Examples:\n"
+      "  taut new model my_robot\n"
+      "  taut new experiment my_test --model my_robot.yaml\n"
+      "  taut new study my_search\n"
+      "The files have comments and run as they are. `taut gait create` makes gaits.");
+  create->callback([args, &exit_code] { exit_code = New(*args); });
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,15 @@
+/// Files to start from, which run as they are.
+#pragma once
+
+#include <string>
+
+namespace taut::cli {
+
+/// `schema`: the format's JSON schema, for editors; empty: none. `from`: the model of an
+/// experiment, the experiment of a study.
+std::string NewModel(const std::string& name, const std::string& schema);
+std::string NewExperiment(const std::string& name, const std::string& schema,
+                          const std::string& from);
+std::string NewStudy(const std::string& name, const std::string& schema, const std::string& from);
+
+}  // namespace taut::cli

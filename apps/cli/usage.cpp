@@ -1,0 +1,137 @@
+#include "usage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "command_text.h"
+#include "commands.h"
+#include "taut/diagnostics.h"
+
+namespace taut::cli {
+namespace {
+
+std::string Joined(const std::vector<std::string>& words, const char* last) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    out += (i == 0 ? "" : i + 1 == words.size() ? last : ", ") + words[i];
+  }
+  return out;
+}
+
+std::vector<std::string> CommandWords(const CommandText& command) {
+  std::vector<std::string> words;
+  for (const CommandText& one : command.commands) words.push_back(one.Word());
+  return words;
+}
+
+/// Flags that begin like the word, else the one that looks like it. Empty: none does.
+std::string MeantFlags(const CommandText& command, std::string word) {
+  std::vector<std::string> all, longer;
+  for (const WordText& flag : command.flags) all.push_back(flag.name);
+  if (word.rfind("--", 0) != 0) word = "-" + word;  // "-o" for "--out"
+  std::replace(word.begin() + 2, word.end(), '-', '_');
+  for (const std::string& flag : all) {
+    if (word.size() > 2 && flag.rfind(word, 0) == 0) longer.push_back("\"" + flag + "\"");
+  }
+  if (!longer.empty() && longer.size() <= 3) return Joined(longer, " or ");
+  const std::string_view closest = ClosestMatch(word, all);
+  return closest.empty() ? "" : "\"" + std::string(closest) + "\"";
+}
+
+bool IsFlag(const std::string& word) {
+  double number = 0;
+  return word.size() > 1 && word[0] == '-' && word != "--" &&
+         !CLI::detail::lexical_cast(word, number);
+}
+
+/// What a command did not know: a flag, a command of its own, an argument too many. False: nothing.
+bool ExplainUnknown(const CLI::App& app, const CommandText& command) {
+  const std::vector<std::string> unknown = app.remaining();
+  const auto flag = std::find_if(unknown.begin(), unknown.end(), IsFlag);
+  if (flag != unknown.end()) {
+    const std::string word = flag->substr(0, flag->find('='));
+    const std::string meant = MeantFlags(command, word);
+    fmt::print(stderr, "error: {} has no flag \"{}\"{}\n", command.name, word,
+               meant.empty() ? "" : fmt::format(" (did you mean {}?)", meant));
+    return true;
+  }
+  if (unknown.empty()) return false;
+  if (!command.commands.empty()) {
+    NoSuchCommand(app, unknown.front());
+  } else {
+    fmt::print(stderr, "error: \"{}\" is too much; usage: {}\n", unknown.front(),
+               UsageLine(command));
+  }
+  return true;
+}
+
+/// An argument that has to be there and is not. False: none.
+bool ExplainMissing(const CLI::App& app, const CommandText& command) {
+  if (!command.commands.empty()) {
+    fmt::print(stderr, "error: {} needs a command: {}\n", command.name,
+               Joined(CommandWords(command), " or "));
+    return true;
+  }
+  for (const CLI::Option* option : app.get_options()) {
+    if (!option->get_required() || option->count() > 0) continue;
+    const std::vector<WordText>& words =
+        option->get_positional() ? command.arguments : command.flags;
+    const auto word = std::find_if(words.begin(), words.end(), [&](const WordText& one) {
+      return one.help.rfind(option->get_description(), 0) == 0;
+    });
+    if (word == words.end()) return false;
+    fmt::print(stderr, "error: {} is missing ({}); usage: {}\n", word->name, word->help,
+               UsageLine(command));
+    return true;
+  }
+  return false;
+}
+
+/// A flag without its value, with one too many, or given twice. `said` is CLI11's message, which
+/// begins with the flag, now and then without its hyphens.
+std::string Mismatch(const CommandText& command, const std::string& said) {
+  const std::string name = said.substr(0, said.find_first_of(": ="));
+  for (const WordText& flag : command.flags) {
+    if (flag.name != name && flag.letter != name && flag.name != "--" + name) continue;
+    if (flag.value.empty()) return flag.name + " takes no value";
+    if (said.find("At Most") != said.npos) return flag.name + " was given more than once";
+    return fmt::format("{0} needs a value: {0} {1}", flag.name, flag.value);
+  }
+  return said;
+}
+
+}  // namespace
+
+const CLI::App& NamedCommand(const CLI::App& app) {
+  const CLI::App* command = &app;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().back();
+  return *command;
+}
+
+int NoSuchCommand(const CLI::App& command, const std::string& word) {
+  const CommandText text = Describe(command);
+  const std::string before = text.name == "taut" ? "" : text.name.substr(5) + " ";
+  fmt::print(stderr, "error: there is no command \"{}{}\" ({})\n", before, word,
+             DidYouMean(word, CommandWords(text)));
+  return kUsage;
+}
+
+int ExplainUsage(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App& named = NamedCommand(app);
+  const CommandText command = Describe(named);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    fmt::print(stderr, "error: {}\n", Mismatch(command, error.what()));
+  } else if (!ExplainUnknown(named, command) &&
+             (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr ||
+              !ExplainMissing(named, command))) {
+    fmt::print(stderr, "error: {}\n", error.what());
+  }
+  fmt::print(stderr, "`{} --help` tells more.\n", command.name);
+  return kUsage;
+}
+
+}  // namespace taut::cli
