@@ -1,5 +1,5 @@
 # `cmake --install build/install --prefix ~/.local`: the command, the library for find_package(taut),
-# and the files of share/taut.
+# the files of share/taut, documents, the page of the manual and completions.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -24,6 +24,13 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/taut DESTINATION ${CMAKE_INSTALL
   FILES_MATCHING PATTERN "*.h")
 if(TARGET taut)
   install(TARGETS taut RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  if(TARGET taut_words)
+    set(words ${PROJECT_BINARY_DIR}/apps/cli/words)
+    install(FILES ${words}/taut.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+    install(FILES ${words}/taut DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+    install(FILES ${words}/_taut DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+    install(FILES ${words}/taut.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+  endif()
   install(DIRECTORY ${PROJECT_BINARY_DIR}/web DESTINATION ${CMAKE_INSTALL_DATADIR}/taut OPTIONAL)
 endif()
 foreach(folder IN ITEMS models experiments gaits studies schema mappings)
@@ -31,6 +38,10 @@ foreach(folder IN ITEMS models experiments gaits studies schema mappings)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/taut)
   endif()
 endforeach()
+
+# What is to be read, with the licence that goes with every copy.
+install(FILES LICENSE NOTICE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/tautConfig.cmake.in
   ${PROJECT_BINARY_DIR}/tautConfig.cmake INSTALL_DESTINATION ${config_dir}

@@ -7,6 +7,7 @@
 
 #include "command_text.h"
 #include "commands.h"
+#include "manual.h"
 #include "overrides.h"
 #include "usage.h"
 
@@ -15,9 +16,16 @@ namespace {
 
 struct HelpArguments {
   std::vector<std::string> words;
+  bool man = false;
+  std::string shell;
 };
 
 int Help(const CLI::App& app, const HelpArguments& args) {
+  if (args.man || !args.shell.empty()) {
+    const CommandText taut = Describe(app);
+    fmt::print("{}", args.man ? ManPage(taut) : *Completion(taut, args.shell));
+    return kOk;
+  }
   const CLI::App* command = &app;
   for (const std::string& word : args.words) {
     const auto named =
@@ -38,10 +46,17 @@ void AddHelp(CLI::App& app, int& exit_code) {
   for (const CommandText& one : Describe(app).commands) commands.push_back(one.Word());
   help->add_option("command", args->words, "Command to tell about (default: taut itself)")
       ->option_text(Alternatives(commands));
+  auto* man = help->add_flag("--man", args->man, "All of it as a page for man");
+  help->add_option("--completion", args->shell, "What makes a shell complete taut's words")
+      ->option_text(Alternatives(Shells()))
+      ->check(OneOf(Shells()))
+      ->excludes(man);
   help->footer(
       "Examples:\n"
       "  taut help run\n"
-      "  taut help gait export");
+      "  taut help gait export\n"
+      "  taut help --man | man -l -\n"
+      "  source <(taut help --completion bash)");
   help->callback([&app, args, &exit_code] { exit_code = Help(app, *args); });
 }
 

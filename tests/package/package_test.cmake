@@ -29,8 +29,27 @@ if(KIND STREQUAL find_package)
     message(FATAL_ERROR "the installed command says it is \"${output}\", not taut ${VERSION}")
   endif()
   run(${prefix}/bin/taut check ${prefix}/share/taut/experiments/push_20n.yaml)
+  # what a shell, man and a reader look for
+  foreach(file IN ITEMS share/man/man1/taut.1 share/bash-completion/completions/taut
+      share/zsh/site-functions/_taut share/fish/vendor_completions.d/taut.fish
+      share/doc/taut/LICENSE share/doc/taut/NOTICE share/doc/taut/docs/cli.md
+      share/doc/taut/examples/tip_over.cpp)
+    if(NOT EXISTS ${prefix}/${file})
+      message(FATAL_ERROR "${file} is not installed")
+    endif()
+    file(SIZE ${prefix}/${file} size)
+    if(size EQUAL 0)
+      message(FATAL_ERROR "${file} is empty")
+    endif()
+  endforeach()
+  run(${prefix}/bin/taut list models)
+  string(FIND "${output}" "models, in ${prefix}/share/taut/models" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "the installed command lists \"${output}\"")
+  endif()
   # nothing installed points back into the build or the sources
-  file(GLOB_RECURSE texts ${prefix}/*.cmake ${prefix}/*.h ${prefix}/*.yaml)
+  file(GLOB_RECURSE texts ${prefix}/*.cmake ${prefix}/*.h ${prefix}/*.yaml ${prefix}/share/man/*
+    ${prefix}/share/bash-completion/* ${prefix}/share/zsh/* ${prefix}/share/fish/*)
   foreach(file IN LISTS texts)
     file(READ ${file} text)
     foreach(folder IN ITEMS ${BINARY_DIR} ${SOURCE_DIR})

@@ -1,5 +1,5 @@
-// The command line as somebody meets it who does not know it: overview, help,
-// what is said of a word that is misspelt, and files to start from.
+// The command line as somebody meets it who does not know it: overview, help, what is said of a
+// word that is misspelt, and files to start from.
 #include <nlohmann/json.hpp>
 
 #include "system/command.h"
@@ -8,12 +8,12 @@
 namespace taut {
 namespace {
 
-const char *const kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
+const char* const kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
 
 class CliCommand : public test::CommandTest {
-protected:
+ protected:
   /// The first line of what is said to a wrong command line.
-  std::string Refusal(const std::vector<std::string> &arguments) {
+  std::string Refusal(const std::vector<std::string>& arguments) {
     const test::CommandResult result = Taut(arguments);
     EXPECT_EQ(result.status, 2) << result.errors;
     EXPECT_EQ(result.output, "");
@@ -42,16 +42,12 @@ TEST_F(CliCommand, AloneItSaysWhatThereIs) {
   const test::CommandResult alone = Taut({});
   EXPECT_EQ(alone.status, 0);
   EXPECT_EQ(alone.errors, "");
-  EXPECT_EQ(alone.output.rfind("taut simulates tensegrity robots", 0), 0u)
-      << alone.output;
-  for (const auto &command : Commands()) {
-    if (command.size() > 1)
-      continue;
-    EXPECT_NE(alone.output.find("\n  " + command[0] + " "), std::string::npos)
-        << command[0];
+  EXPECT_EQ(alone.output.rfind("taut simulates tensegrity robots", 0), 0u) << alone.output;
+  for (const auto& command : Commands()) {
+    if (command.size() > 1) continue;
+    EXPECT_NE(alone.output.find("\n  " + command[0] + " "), std::string::npos) << command[0];
   }
-  EXPECT_LT(std::count(alone.output.begin(), alone.output.end(), '\n'),
-            24); // of a terminal
+  EXPECT_LT(std::count(alone.output.begin(), alone.output.end(), '\n'), 24);  // of a terminal
 }
 
 TEST_F(CliCommand, HelpOfACommandIsItsHelpFlag) {
@@ -73,15 +69,12 @@ TEST_F(CliCommand, HelpShowsNothingOfTheParser) {
   for (std::vector<std::string> command : Commands()) {
     command.push_back("--help");
     const std::string text = Taut(command).output;
-    for (const char *const inside :
-         {"ENUM", "TEXT", "FLOAT", "INT", "->", "REQUIRED", " VALUE",
-          "Excludes", "Needs", "POSITIONAL"}) {
-      EXPECT_EQ(text.find(inside), std::string::npos) << inside << " in\n"
-                                                      << text;
+    for (const char* const inside : {"ENUM", "TEXT", "FLOAT", "INT", "->", "REQUIRED", " VALUE",
+                                     "Excludes", "Needs", "POSITIONAL"}) {
+      EXPECT_EQ(text.find(inside), std::string::npos) << inside << " in\n" << text;
     }
     std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);)
-      EXPECT_LE(line.size(), 100u) << line;
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
   }
 }
 
@@ -91,112 +84,88 @@ TEST_F(CliCommand, TheVersionIsToldEverywhere) {
     command.push_back("--version");
     EXPECT_EQ(Taut(command).output, version);
   }
-  for (const char *const flag : {"-V", "--version"})
-    EXPECT_EQ(Taut({flag}).output, version);
+  for (const char* const flag : {"-V", "--version"}) EXPECT_EQ(Taut({flag}).output, version);
   EXPECT_EQ(Taut({"gait", "export", "-V"}).output, version);
 }
 
 TEST_F(CliCommand, AMisspeltWordIsAnsweredByTheRightOne) {
   EXPECT_EQ(Refusal({"chek", "a.yaml"}),
             "error: there is no command \"chek\" (did you mean \"check\"?)");
-  EXPECT_EQ(
-      Refusal({"gait", "exprot"}),
-      "error: there is no command \"gait exprot\" (did you mean \"export\"?)");
-  EXPECT_EQ(
-      Refusal({"gait"}),
-      "error: taut gait needs a command: export, import, create or values");
+  EXPECT_EQ(Refusal({"gait", "exprot"}),
+            "error: there is no command \"gait exprot\" (did you mean \"export\"?)");
+  EXPECT_EQ(Refusal({"gait"}),
+            "error: taut gait needs a command: export, import, create or values");
   EXPECT_EQ(Refusal({"run", kHang, "--duration", "1"}),
-            "error: taut run has no flag \"--duration\" (did you mean "
-            "\"--duration_s\"?)");
+            "error: taut run has no flag \"--duration\" (did you mean \"--duration_s\"?)");
   EXPECT_EQ(Refusal({"run", "--duration=1", kHang}),
-            "error: taut run has no flag \"--duration\" (did you mean "
-            "\"--duration_s\"?)");
-  EXPECT_EQ(
-      Refusal({"run", "--sep_s", "0.1", kHang}),
-      "error: taut run has no flag \"--sep_s\" (did you mean \"--step_s\"?)");
+            "error: taut run has no flag \"--duration\" (did you mean \"--duration_s\"?)");
+  EXPECT_EQ(Refusal({"run", "--sep_s", "0.1", kHang}),
+            "error: taut run has no flag \"--sep_s\" (did you mean \"--step_s\"?)");
   EXPECT_EQ(Refusal({"run", kHang, "--re"}),
-            "error: taut run has no flag \"--re\" (did you mean \"--replay\" "
-            "or \"--report\"?)");
+            "error: taut run has no flag \"--re\" (did you mean \"--replay\" or \"--report\"?)");
   EXPECT_EQ(Refusal({"run", kHang, "-q"}),
             "error: taut run has no flag \"-q\" (did you mean \"--quiet\"?)");
-  EXPECT_EQ(
-      Refusal({"check", "--quite"}),
-      "error: taut check has no flag \"--quite\" (did you mean \"--quiet\"?)");
+  EXPECT_EQ(Refusal({"check", "--quite"}),
+            "error: taut check has no flag \"--quite\" (did you mean \"--quiet\"?)");
   EXPECT_EQ(Refusal({"compare", "a.h5", "b.h5", "--max-rmse", "1"}),
-            "error: taut compare has no flag \"--max-rmse\" (did you mean "
-            "\"--max_rmse\"?)");
-  EXPECT_EQ(Refusal({"run", kHang, "--xyzzy"}),
-            "error: taut run has no flag \"--xyzzy\"");
+            "error: taut compare has no flag \"--max-rmse\" (did you mean \"--max_rmse\"?)");
+  EXPECT_EQ(Refusal({"run", kHang, "--xyzzy"}), "error: taut run has no flag \"--xyzzy\"");
   EXPECT_EQ(Refusal({"schema", "modl"}),
             "error: format: \"modl\" is unknown (did you mean \"model\"?)");
-  EXPECT_EQ(
-      Refusal({"gait", "create", "a.yaml", "--symmetry", "segment"}),
-      "error: --symmetry: \"segment\" is unknown (did you mean \"segments\"?)");
+  EXPECT_EQ(Refusal({"gait", "create", "a.yaml", "--symmetry", "segment"}),
+            "error: --symmetry: \"segment\" is unknown (did you mean \"segments\"?)");
 }
 
 TEST_F(CliCommand, WhatIsMissingOrTooMuchIsNamed) {
-  EXPECT_EQ(Refusal({"check"}), "error: FILE is missing (Model, experiment or "
-                                "gait file (YAML)); usage: taut check "
-                                "[FLAGS] FILE");
+  EXPECT_EQ(Refusal({"check"}),
+            "error: FILE is missing (Model, experiment or gait file (YAML)); usage: taut check "
+            "[FLAGS] FILE");
   EXPECT_EQ(Refusal({"compare", "a.h5"}),
-            "error: B is missing (Trace: the reference); usage: taut compare "
-            "[FLAGS] A B");
+            "error: B is missing (Trace: the reference); usage: taut compare [FLAGS] A B");
   EXPECT_EQ(Refusal({"check", "a.yaml", "b.yaml"}),
             "error: \"b.yaml\" is too much; usage: taut check [FLAGS] FILE");
-  EXPECT_EQ(Refusal({"run", kHang, "--out"}),
-            "error: --out needs a value: --out FOLDER");
+  EXPECT_EQ(Refusal({"run", kHang, "--out"}), "error: --out needs a value: --out FOLDER");
   EXPECT_EQ(Refusal({"run", kHang, "--csv=3"}), "error: --csv takes no value");
   EXPECT_EQ(Refusal({"run", kHang, "--out", "a", "--out", "b"}),
             "error: --out was given more than once");
   EXPECT_EQ(Refusal({"run", kHang, "--seed", "-1"}),
-            "error: --seed: \"-1\" is not a whole number from 0 to "
-            "18446744073709551615");
+            "error: --seed: \"-1\" is not a whole number from 0 to 18446744073709551615");
 }
 
 TEST_F(CliCommand, ListNamesWhatComesAlong) {
   const test::CommandResult all = Taut({"list"});
   EXPECT_EQ(all.status, 0) << all.errors;
-  for (const char *const part :
-       {"models, in " TAUT_SOURCE_DIR "/models\n", "\n  tetraspine3 ",
-        "\n  push_20n ", "A mass on a cable is tapped",
-        "studies, in " TAUT_SOURCE_DIR "/studies\n"}) {
-    EXPECT_NE(all.output.find(part), std::string::npos)
-        << part << " is not in\n"
-        << all.output;
+  for (const char* const part :
+       {"models, in " TAUT_SOURCE_DIR "/models\n", "\n  tetraspine3 ", "\n  push_20n ",
+        "A mass on a cable is tapped", "studies, in " TAUT_SOURCE_DIR "/studies\n"}) {
+    EXPECT_NE(all.output.find(part), std::string::npos) << part << " is not in\n" << all.output;
   }
   std::size_t count = 0;
-  for (const char *const kind : {"models", "experiments", "gaits", "studies"}) {
-    const auto json =
-        nlohmann::json::parse(Taut({"list", kind, "--json"}).output);
-    for (const auto &file : json) {
+  for (const char* const kind : {"models", "experiments", "gaits", "studies"}) {
+    const auto json = nlohmann::json::parse(Taut({"list", kind, "--json"}).output);
+    for (const auto& file : json) {
       EXPECT_EQ(file["kind"].get<std::string>()[0], kind[0]);
-      EXPECT_NE(file["description"], "")
-          << file; // every file that is shipped says what it is
-      EXPECT_TRUE(std::filesystem::exists(file["path"].get<std::string>()))
-          << file;
+      EXPECT_NE(file["description"], "") << file;  // every file that is shipped says what it is
+      EXPECT_TRUE(std::filesystem::exists(file["path"].get<std::string>())) << file;
     }
     EXPECT_GE(json.size(), 2u);
     count += json.size();
   }
-  EXPECT_EQ(nlohmann::json::parse(Taut({"list", "--json"}).output).size(),
-            count);
+  EXPECT_EQ(nlohmann::json::parse(Taut({"list", "--json"}).output).size(), count);
 }
 
 TEST_F(CliCommand, ANewModelIsGood) {
-  EXPECT_EQ(Taut({"new", "model", "mine"}).output,
-            "mine.yaml; next: taut check mine.yaml\n");
+  EXPECT_EQ(Taut({"new", "model", "mine"}).output, "mine.yaml; next: taut check mine.yaml\n");
   const test::CommandResult checked = Taut({"check", "mine.yaml", "--strict"});
   EXPECT_EQ(checked.status, 0) << checked.errors;
-  EXPECT_NE(checked.output.find("Model mine: 3 bodies, 9 cables"),
-            std::string::npos);
+  EXPECT_NE(checked.output.find("Model mine: 3 bodies, 9 cables"), std::string::npos);
 }
 
 TEST_F(CliCommand, ANewExperimentRuns) {
   EXPECT_EQ(Taut({"new", "experiment", "alone"}).status, 0);
   EXPECT_EQ(Taut({"new", "model", "it's", "--model", "x"}).status, 2);
   EXPECT_EQ(Taut({"new", "model", "mine"}).status, 0);
-  EXPECT_EQ(Taut({"new", "experiment", "trial", "--model", "mine.yaml"}).status,
-            0);
+  EXPECT_EQ(Taut({"new", "experiment", "trial", "--model", "mine.yaml"}).status, 0);
   for (const std::string name : {"alone", "trial"}) {
     const test::CommandResult run = Taut({"run", name + ".yaml", "--strict"});
     EXPECT_EQ(run.status, 0) << run.errors;
@@ -208,16 +177,14 @@ TEST_F(CliCommand, ANewStudyIsSearched) {
   EXPECT_EQ(Taut({"new", "study", "search"}).status, 0);
   const test::CommandResult run = Taut({"learn", "search.yaml", "--strict"});
   EXPECT_EQ(run.status, 0) << run.errors;
-  EXPECT_EQ(run.output.rfind("search: 64 evaluations, 0 failed", 0), 0u)
-      << run.output;
+  EXPECT_EQ(run.output.rfind("search: 64 evaluations, 0 failed", 0), 0u) << run.output;
 }
 
 TEST_F(CliCommand, NewOverwritesNothing) {
   Write("mine.yaml", "what I wrote");
   const test::CommandResult again = Taut({"new", "model", "mine"});
   EXPECT_EQ(again.status, 1);
-  EXPECT_EQ(again.errors,
-            "mine.yaml: error: is there already (nothing is overwritten)\n");
+  EXPECT_EQ(again.errors, "mine.yaml: error: is there already (nothing is overwritten)\n");
   EXPECT_EQ(Read(Path("mine.yaml")), "what I wrote");
   EXPECT_EQ(Refusal({"new", "model", "a/b"}),
             "error: name: \"a/b\" cannot be a name: letters, digits, _ and -");
@@ -226,15 +193,59 @@ TEST_F(CliCommand, NewOverwritesNothing) {
 }
 
 TEST_F(CliCommand, RunPrintsItsSummaryAsJson) {
-  const test::CommandResult run =
-      Taut({"run", kHang, "--json", "--report_never"});
+  const test::CommandResult run = Taut({"run", kHang, "--json", "--report_never"});
   EXPECT_EQ(run.status, 2);
-  const test::CommandResult good =
-      Taut({"run", kHang, "--json", "--out", "here"});
+  const test::CommandResult good = Taut({"run", kHang, "--json", "--out", "here"});
   EXPECT_EQ(good.status, 0) << good.errors;
   EXPECT_EQ(good.output, Read(Path("here/summary.json")));
   EXPECT_EQ(nlohmann::json::parse(good.output)["experiment"], "hang");
 }
 
-} // namespace
-} // namespace taut
+/// What bash offers for the last of these words.
+class Completion : public CliCommand {
+ protected:
+  std::string Offered(const std::string& words) {
+    Write("taut.bash", Taut({"help", "--completion", "bash"}).output +
+                           "COMP_WORDS=(\"$@\") COMP_CWORD=$(($# - 1))\n_taut\n"
+                           "echo \"${COMPREPLY[*]}\"\n");
+    const std::string command =
+        "cd '" + folder_.string() + "' && bash taut.bash " + words + " >offered 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return Read(Path("offered"));
+  }
+};
+
+TEST_F(Completion, BashKnowsCommandsFlagsChoicesAndFiles) {
+  Write("robot.yaml", "");
+  std::filesystem::create_directory(Path("robots"));
+  EXPECT_EQ(Offered("taut re"), "report\n");
+  EXPECT_EQ(Offered("taut gait ''"), "export import create values\n");
+  EXPECT_EQ(Offered("taut run --st"), "--step_s --strict\n");
+  EXPECT_EQ(Offered("taut gait create a.yaml --symmetry s"), "segments\n");
+  EXPECT_EQ(Offered("taut schema m"), "model\n");
+  EXPECT_EQ(Offered("taut check robot."), "robot.yaml\n");
+  EXPECT_EQ(Offered("taut run a.yaml --out rob"), "robots\n");
+  EXPECT_EQ(Offered("taut run a.yaml --step_s ''"), "\n");  // a number is nobody's guess
+}
+
+TEST_F(Completion, EveryShellAndTheManualKnowEveryFlag) {
+  std::vector<std::string> texts{Taut({"help", "--man"}).output};
+  for (const char* const shell : {"bash", "zsh", "fish"}) {
+    texts.push_back(Taut({"help", "--completion", shell}).output);
+  }
+  for (std::vector<std::string> command : Commands()) {
+    command.push_back("--help");
+    std::istringstream lines(Taut(command).output);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.rfind("  --", 0) != 0) continue;
+      const std::string flag = line.substr(4, line.find(' ', 4) - 4);
+      for (const std::string& text : texts) {
+        EXPECT_NE(text.find(flag), std::string::npos) << flag << " is not in\n" << text;
+      }
+    }
+  }
+  EXPECT_EQ(texts[0].rfind(".\\\" Made by `taut help --man`.\n.TH TAUT 1 ", 0), 0u);
+}
+
+}  // namespace
+}  // namespace taut
