@@ -4,7 +4,8 @@
 namespace taut::test {
 
 /// A prism of three struts, turned to where prestress alone holds it: 150 degrees. `turn_rad` takes
-/// it away from there; then it turns back, and its side cables, shortest at 150 degrees, are too long.
+/// it away from there; then it turns back, and its side cables, shortest at 150 degrees, are too
+/// long.
 inline constexpr const char* kPrism = R"(taut: 1
 kind: model
 name: prism
