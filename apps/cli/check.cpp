@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "check_report.h"
@@ -8,8 +9,12 @@
 #include "gait_report.h"
 #include "output.h"
 #include "overrides.h"
+#include "streams.h"
 #include "taut/run.h"
 #include "taut/spec.h"
+#include "taut/start.h"
+#include "taut/summary.h"
+#include "taut/version.h"
 
 namespace taut::cli {
 namespace {
@@ -17,9 +22,9 @@ namespace {
 struct CheckArguments {
   std::string path;
   std::vector<std::string> set;
-  bool json = false, quiet = false, couplings = false, strict = false;
+  bool json = false, quiet = false, couplings = false, strict = false, settled = false;
   CpgSymmetry symmetry = CpgSymmetry::kSegments;
-  std::string svg;
+  std::string svg, out;
 };
 
 /// All that was found, on stderr as text and, if asked for, on stdout as JSON.
@@ -61,6 +66,37 @@ int CheckGait(const CheckArguments& args, Diagnostics& found) {
   return kOk;
 }
 
+/// What is to settle: an experiment's robot as that says, or on its ground if it says nothing; a
+/// model alone without weight.
+ExperimentSpec ToSettle(const RobotSpec& robot, const ExperimentSpec* experiment) {
+  ExperimentSpec to_settle;
+  if (experiment) {
+    to_settle = *experiment;
+    if (to_settle.start == StartKind::kAsDescribed) to_settle.start = StartKind::kSettled;
+  } else {
+    to_settle.robot = robot;
+    to_settle.start = StartKind::kSettledFloating;
+  }
+  return to_settle;
+}
+
+/// The settled robot as a model file.
+int WriteModel(const CheckArguments& args, const RobotSpec& robot) {
+  Diagnostics found;
+  const std::optional<std::string> text =
+      ModelYaml(robot,
+                fmt::format("Made by taut {} from {}: where its robot settles, at rest. With "
+                            "`start: as_described` it stays\nthere; an experiment's `place` would "
+                            "move it once more.",
+                            kVersion, std::filesystem::path(args.path).filename().string()),
+                found);
+  if (!text) return Fail(found, kFailed);
+  OutputIsNews();
+  const int exit = WriteNamed(args.out, *text);
+  if (exit == kOk && !args.quiet && !args.json) fmt::print("Model: {}\n\n", args.out);
+  return exit;
+}
+
 int Check(const CheckArguments& args) {
   const std::optional<Overrides> overrides = ParseOverrides(args.set);
   if (!overrides) return kUsage;
@@ -68,6 +104,10 @@ int Check(const CheckArguments& args) {
   const std::optional<std::string> kind = FileKind(args.path, found);
   if (!kind) return Bad(args, found);
 
+  if (*kind == "gait" && args.settled) {
+    fmt::print(stderr, "error: --settled goes with an experiment or a model\n");
+    return kUsage;
+  }
   if (*kind == "gait") return CheckGait(args, found);
   std::optional<ExperimentSpec> experiment;
   std::optional<RobotSpec> robot;
@@ -78,18 +118,30 @@ int Check(const CheckArguments& args) {
     robot = LoadRobot(args.path, *overrides, found);
   }
   // What the simulator refuses is wrong, too.
-  const StartKind start = experiment ? experiment->start : StartKind::kAsDescribed;
-  if (!robot || !CheckStart(*robot, start, found)) return Bad(args, found);
+  if (!robot) return Bad(args, found);
+  const ExperimentSpec* const of = experiment ? &*experiment : nullptr;
+  const StartKind described = of ? of->start : StartKind::kAsDescribed;
+  const bool settles = (args.settled || described != StartKind::kAsDescribed) && !args.couplings;
+  const ExperimentSpec to_settle = settles ? ToSettle(*robot, of) : ExperimentSpec{};
+  if (!CheckStart(*robot, settles ? to_settle.start : described, found)) return Bad(args, found);
   if (experiment) CheckRecord(*experiment, found);
+  std::optional<SettledStart> settled;
+  if (settles && found.ok()) settled = FindSettledStart(to_settle, found);
   const Diagnostics all = found;
   if (!Pass(found, args.strict)) return Bad(args, found);
 
-  if (args.couplings) return Couplings(args, *robot, experiment ? &*experiment : nullptr);
+  if (args.couplings) return Couplings(args, *robot, of);
+  if (args.settled) robot = RobotAt(*robot, settled->pose);
+  if (!args.out.empty()) {
+    const int written = WriteModel(args, *robot);
+    if (written != kOk) return written;
+  }
   if (args.json) {
-    fmt::print("{}\n", CheckJson(*robot, experiment ? &*experiment : nullptr, all));
+    fmt::print("{}\n", CheckJson(*robot, of, all, settled ? &settled->change : nullptr));
   } else if (!args.quiet) {
     fmt::print("{}: good\n", args.path);
     if (experiment) fmt::print("\n{}", ExperimentTables(*experiment));
+    if (settled) fmt::print("\n{}", StartLine(settled->change));
     fmt::print("\n{}", RobotTables(*robot));
   }
   return kOk;
@@ -105,12 +157,18 @@ void AddCheck(CLI::App& app, int& exit_code) {
   check->add_option("--set", args->set, "Parameter of the file")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
-  check->add_flag("--couplings", args->couplings,
-                  "Show the network of oscillators that a gait of the robot has");
+  auto* couplings = check->add_flag("--couplings", args->couplings,
+                                    "Show the network of oscillators that a gait of the robot has");
   AddChoice(*check, "--symmetry", args->symmetry, kSymmetries,
             "With --couplings: which are alike (default: segments)");
   check->add_option("--svg", args->svg, "With --couplings: draw them into this file")
       ->option_text("FILE");
+  auto* settled = check->add_flag("--settled", args->settled,
+                                  "Show the robot at rest, where it settles, not as described");
+  settled->excludes(couplings);
+  check->add_option("--out", args->out, "With --settled: write that as a model file")
+      ->option_text("FILE")
+      ->needs(settled);
   check->add_flag("--json", args->json, "JSON instead of tables");
   check->add_flag("--quiet", args->quiet, "Say nothing about a good file");
   check->add_flag("--strict", args->strict, kStrictHelp);
@@ -120,6 +178,7 @@ void AddCheck(CLI::App& app, int& exit_code) {
       "  taut check models/tetraspine3.yaml --set segments=12 --set edge_m=0.4\n"
       "  taut check experiments/push_20n.yaml --json\n"
       "  taut check models/tetraspine3.yaml --couplings --svg couplings.svg\n"
+      "  taut check experiments/drop_six_strut.yaml --settled --out settled.yaml\n"
       "Every error of a file comes with its place: file:line:column: error: ... (hint)\n"
       "Exit status: 0 the file is good, 2 bad usage, 3 the file has errors.");
   check->callback([args, &exit_code] { exit_code = Check(*args); });

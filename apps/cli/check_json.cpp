@@ -81,7 +81,7 @@ std::string Dump(const Json& json) {
 }  // namespace
 
 std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment,
-                      const Diagnostics& found) {
+                      const Diagnostics& found, const StartChange* settled) {
   Json nodes = Json::array();
   for (std::size_t i = 0; i < robot.def.nodes.size(); ++i) {
     const NodeDef& node = robot.def.nodes[i];
@@ -96,6 +96,14 @@ std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment,
     json["experiment"] = {{"name", experiment->name},
                           {"duration_s", experiment->duration_s},
                           {"step_s", experiment->step_s}};
+  }
+  if (settled) {
+    json["settled"] = {{"slack_cables", settled->slack_cables},
+                       {"max_tension_n", settled->max_tension_n},
+                       {"described_max_tension_n", settled->described_max_tension_n},
+                       {"largest_displacement_m", settled->largest_displacement_m},
+                       {"displaced_node", settled->displaced_node},
+                       {"size_m", settled->size_m}};
   }
   json["files"] = experiment ? experiment->files : robot.files;
   json["parameters"] = robot.parameters;

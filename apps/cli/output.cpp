@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "taut/files.h"
@@ -47,7 +48,9 @@ std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& exper
   folder.Prepare(ResolvedYaml(experiment), out);
   if (!out.ok()) return std::nullopt;
   for (const auto& writer : writers) options.traces.push_back(writer.get());
-  options.begin = [&](Diagnostics& found) { return folder.Begin(found); };
+  options.begin = [&folder, refuses = std::move(options.begin)](Diagnostics& found) {
+    return (!refuses || refuses(found)) && Pass(found, false) && folder.Begin(found);
+  };
   auto summary = RunExperiment(experiment, options, out);
   if (!summary) return std::nullopt;
   summary->run = folder.id();

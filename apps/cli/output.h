@@ -29,7 +29,8 @@ int WriteNamed(const std::string& path, const std::string& text);
 
 /// Runs an experiment into a folder: traces, inputs.yaml, summary.json. `options` come without
 /// traces. Nothing, and a complaint, if it did not run; a file that could not be written is a
-/// complaint, too, and then there is no summary.json. `more`: what else the trace is to say of
+/// complaint, too, and then there is no summary.json. Warnings about the start are printed when it
+/// is prepared; `options.begin` may refuse them before. `more`: what else the trace is to say of
 /// itself.
 std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& experiment,
                                   RunOptions options, bool csv, Diagnostics& out,

@@ -16,9 +16,11 @@
 #include "streams.h"
 #include "taut/batch.h"
 #include "taut/compare.h"
+#include "taut/files.h"
 #include "taut/plant.h"
 #include "taut/run.h"
 #include "taut/spec.h"
+#include "taut/start.h"
 #include "taut/summary.h"
 #include "taut/trace.h"
 #include "taut/version.h"
@@ -29,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunArguments {
-  std::string experiment, out, replay;
+  std::string experiment, out, replay, final_pose;
   std::vector<std::string> set;
   double step_s = 0, duration_s = -1;
   std::uint64_t seed = 0;
@@ -78,7 +80,38 @@ double DurationOf(const ExperimentSpec& experiment, const Trace& log, bool asked
   return asked ? std::min(experiment.duration_s, of_log_s) : of_log_s;
 }
 
+/// What would keep the robot's last pose from being written, before it takes a run to find out.
+void CheckFinalPose(const RunArguments& args, const RobotSpec& robot, Diagnostics& out) {
+  if (args.final_pose.empty()) return;
+  ModelYaml(robot, "", out);
+  const fs::path folder = fs::absolute(args.final_pose).parent_path();
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    out.Error({args.final_pose, 0, 0}, "cannot write: there is no folder " + folder.string());
+  }
+}
+
+/// The robot as it is at the end, as a model file. False if there was an error.
+bool WriteFinalPose(const RunArguments& args, const ExperimentSpec& experiment,
+                    const RunSummary& summary, Diagnostics& out) {
+  if (summary.status.bits & kStatusNonFinite) {
+    out.Error({}, "the state is no longer finite: no pose was written to " + args.final_pose);
+    return false;
+  }
+  const std::string heading = fmt::format(
+      "Made by taut {}: the robot of the experiment {} as it was at t = {:g} s, at rest. Its\n"
+      "velocities are left out; rest lengths are as they were commanded then. An experiment's "
+      "`place`\nwould move it once more.",
+      kVersion, experiment.name, summary.simulated_s);
+  const auto text = ModelYaml(RobotAt(experiment.robot, *summary.end), heading, out);
+  return text && WriteWholeFile(args.final_pose, *text, out);
+}
+
 int Run(const RunArguments& args) {
+  if (!args.replay.empty() && !args.final_pose.empty()) {
+    fmt::print(stderr, "error: --final_pose does not go with --replay: nothing moves then\n");
+    return kUsage;
+  }
   Diagnostics found;
   const std::optional<Overrides> overrides = ParseOverrides(args.set);
   if (!overrides) return kUsage;
@@ -99,7 +132,13 @@ int Run(const RunArguments& args) {
     CheckStart(experiment->robot, experiment->start, found);
   }
   CheckRecord(*experiment, found);
+  CheckFinalPose(args, experiment->robot, found);
   if (!Pass(found, args.strict)) return Fail(found, kBadInput);
+  if (args.strict && !plant && experiment->start != StartKind::kAsDescribed) {
+    // The run will find it again; by then its folder would have been touched.
+    if (!FindSettledStart(*experiment, found)) return Fail(found, kFailed);
+    if (!Pass(found, true)) return Fail(found, kBadInput);
+  }
 
   const std::string path =
       args.out.empty() ? (fs::path("runs") / experiment->name).string() : args.out;
@@ -124,6 +163,9 @@ int Run(const RunArguments& args) {
   if (tables) {
     fmt::print("{}\n", SummaryTable(*summary));
     if (found.ok()) fmt::print("Trace, inputs and summary: {}\n", path);
+  }
+  if (!args.final_pose.empty() && WriteFinalPose(args, *experiment, *summary, found) && tables) {
+    fmt::print("Robot at the end, without its velocities: {}\n", args.final_pose);
   }
   if (args.report && found.ok()) {
     const std::string report = folder->Path("report.html");
@@ -168,6 +210,9 @@ void AddRun(CLI::App& app, int& exit_code) {
   run->add_option("--replay", args->replay,
                   "Let the controllers act on this recording (trace.h5, .csv) instead of a "
                   "simulation: what they would have commanded")
+      ->option_text("FILE");
+  run->add_option("--final_pose", args->final_pose,
+                  "Write the robot as it is at the end as a model file, without velocities")
       ->option_text("FILE");
   run->add_option("--threads", args->threads, "Threads, 0: one a core")
       ->option_text("N")

@@ -111,7 +111,7 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
   options.record_folder = args.out;
   options.tell = Tell;
   auto session = viewer::LiveSession::Create(model ? "model" : "live", *experiment, options, found);
-  if (!session) fmt::print(stderr, "{}", found.Format());
+  fmt::print(stderr, "{}", found.Format());  // a start that settles far off is a warning
   return session;
 }
 

@@ -39,7 +39,7 @@ void Restarts::Try(Group group, const ExperimentSpec& present, const std::functi
   }
   auto run = experiment ? LiveRun::Start(*experiment, wrong, go_on) : nullptr;
   if (run) {
-    found_ = Start{std::move(run), std::move(*experiment)};
+    found_ = Start{std::move(run), std::move(*experiment), Sorted(wrong.warnings())};
     inputs_.overrides = std::move(overrides);
   } else if (group.size() == 1) {
     refused_.push_back({group.front().client, wrong.Format()});

@@ -33,6 +33,7 @@ class Restarts {
   struct Start {
     std::unique_ptr<LiveRun> run;
     ExperimentSpec experiment;
+    std::vector<Diagnostic> warnings;
   };
 
   explicit Restarts(Inputs inputs) : inputs_(std::move(inputs)) {}

@@ -48,6 +48,9 @@ std::unique_ptr<LiveSession> LiveSession::Create(const std::string& mode,
     if (!session->recording_) return nullptr;
   }
   session->StartHistory();
+  for (const Diagnostic& warning : Sorted(out.warnings())) {
+    session->SayEvent(0, "warning: " + warning.what);
+  }
   session->SetScene(session->MakeScene(), false);
   return session;
 }
@@ -229,6 +232,7 @@ void LiveSession::Restart(Clock::time_point deadline) {
   Anchor();
   changed_ = scene_changed_ = true;
   SayEvent(0, "from the start");
+  for (const Diagnostic& warning : start->warnings) SayEvent(0, "warning: " + warning.what);
 }
 
 void LiveSession::Log(const std::string& text) {

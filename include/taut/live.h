@@ -36,9 +36,9 @@ struct HandSpec {
 /// themselves. Runs do not know of each other.
 class LiveRun {
  public:
-  /// Brings the experiment to its start. Nothing and diagnostics as from `RunExperiment`, or if
-  /// `go_on`, which is asked again and again, says no before the start is found.
-  /// `brought`: controllers and sensors that act beside the experiment's.
+  /// Brings the experiment to its start. Diagnostics as from `RunExperiment`; nothing as from it,
+  /// or if `go_on`, which is asked again and again, says no before the start is found. `brought`:
+  /// controllers and sensors that act beside the experiment's.
   static std::unique_ptr<LiveRun> Start(const ExperimentSpec& experiment, Diagnostics& out,
                                         const std::function<bool()>& go_on = {},
                                         const Brought& brought = {});

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "taut/plant.h"
+#include "taut/start.h"
 #include "taut/trace.h"
 
 namespace taut {
@@ -50,6 +51,7 @@ struct RunSummary {
   double simulated_s = 0;
   double wall_s = 0;
   bool interrupted = false;
+  std::optional<StartChange> start;  ///< What settling did, if the experiment begins with it.
   std::vector<PhaseSpec> phases;
   std::vector<CableSummary> cables;
   std::vector<DragSummary> drags;
@@ -61,6 +63,7 @@ struct RunSummary {
   WorldStatus status;
   std::string status_text;       ///< Empty when good; names the body or cable.
   std::uint64_t state_hash = 0;  ///< Of the world at the end.
+  std::optional<Pose> end;       ///< Of the robot then; nothing where no simulation is behind it.
 };
 
 /// Where a run stands, for progress lines.
@@ -94,25 +97,14 @@ std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment, Plant* pl
 /// False, and a complaint each, if the experiment asks for channels that no run of it has.
 bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out);
 
-/// All that a start can be refused for before it is prepared: that the model compiles, and that
-/// nothing is deeper in the terrain or in another body than half its thickness (`Overlap`), as
-/// described. What is in each other less gets a warning, if it starts so: it is pushed out without
-/// speed, and a robot that settles first has none of it. False if there was an error.
-bool CheckStart(const RobotSpec& robot, StartKind start, Diagnostics& out);
-
 /// What a trace says about how it came to be: version, machine, seed, step, hash of the inputs.
 TraceMetadata RunMetadata(const ExperimentSpec& experiment);
 
 /// Runs an experiment from start to end. Nothing and diagnostics if it cannot start (a model that
-/// does not compile, a start that does not settle or has bodies deep in each other); what happens
-/// later is in the summary. A trace that cannot be written ends the run with a diagnostic.
+/// does not compile, a start that does not settle or has bodies deep in each other); a start that
+/// settles far from what is described gets warnings (`WarnOfStart`); what happens later is in the
+/// summary. A trace that cannot be written ends the run with a diagnostic.
 std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment, const RunOptions& options,
                                         Diagnostics& out);
-
-/// Brings a world to rest: rest lengths fixed, motion taken out whenever the kinetic energy peaks,
-/// until no node gains more than 1e-9 m/s in a step. Time does not pass. False if that takes more
-/// than `max_steps`, or once `go_on`, which is asked before every step, says no.
-bool Settle(Batch& batch, int world, double step_s, const std::function<bool()>& go_on = {},
-            int max_steps = 200000);
 
 }  // namespace taut

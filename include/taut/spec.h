@@ -31,6 +31,24 @@ using Overrides = std::vector<std::pair<std::string, std::string>>;
 /// Tags that a file gave to a part of the model, for controllers and events to match.
 using Tags = std::vector<std::string>;
 
+/// What a rod, sphere or box weighs, as its builder says.
+struct SolidMass {
+  enum class Per { kWhole, kVolume, kLength };  ///< [kg], [kg/m^3], [kg/m]
+  Per per = Per::kWhole;
+  double value = 0.0;
+};
+
+/// What bodies are welded from. A `ModelDef` has only what follows from it for the whole body.
+struct SolidsSpec {
+  struct PointMass {
+    int node = 0;
+    double mass_kg = 0.0, radius_m = 0.0;
+  };
+  std::vector<SolidMass> spheres, capsules, boxes;  ///< Per shape of `def`.
+  std::vector<PointMass> point_masses;
+  bool bounding_box_inertia = false;  ///< `inertia: bounding_box`.
+};
+
 /// A model file, resolved: numbers in `def`, plus what only files know (tags, places).
 struct RobotSpec {
   ModelDef def;
@@ -40,8 +58,9 @@ struct RobotSpec {
   std::vector<SourceRef> body_sources;   ///< Per body.
   std::vector<SourceRef> node_sources;   ///< Per node.
   std::vector<SourceRef> plane_sources, terrain_box_sources;  ///< Per part of the terrain.
-  std::map<std::string, double> parameters;                   ///< As resolved, overrides applied.
-  std::vector<std::string> files;  ///< Every file that was read, the model first.
+  std::optional<SolidsSpec> solids;          ///< Not known of a resolved experiment.
+  std::map<std::string, double> parameters;  ///< As resolved, overrides applied.
+  std::vector<std::string> files;            ///< Every file that was read, the model first.
 };
 
 /// Reads a model file. Returns nothing if there was any error.
@@ -289,5 +308,12 @@ std::optional<ExperimentSpec> LoadExperiment(const std::string& path, const Over
 /// The experiment and its robot in numbers, without parameters, models or bases, as one YAML text.
 /// `LoadExperiment` reads it back to the same bits, so it reproduces the run on its own.
 std::string ResolvedYaml(const ExperimentSpec& experiment);
+
+/// The robot as a model file in numbers, for people to go on with: nodes where `robot.def` has
+/// them, pairs, builders. Velocities and terrain are left out. `LoadRobot` reads it back to the
+/// same robot, up to rounding; what a model file cannot say is a complaint, and then there is
+/// nothing. `heading`: a comment at its top, a line or several.
+std::optional<std::string> ModelYaml(const RobotSpec& robot, const std::string& heading,
+                                     Diagnostics& out);
 
 }  // namespace taut

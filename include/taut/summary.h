@@ -16,4 +16,7 @@ std::string SummaryJson(const RunSummary& summary);
 /// that the experiment names.
 std::string SummaryTable(const RunSummary& summary);
 
+/// The line of the table about settling: how far it went, all cables that went slack.
+std::string StartLine(const StartChange& start);
+
 }  // namespace taut

@@ -31,13 +31,16 @@ struct Weld {
 /// Of a beam along the unit vector u of its part: x along it, y level, z up; a beam along z has
 /// its y along the part's y.
 Quat BeamOrientation(const Vec3& u) {
-  // Turn x to u's direction in the level plane (about z), then up to u (about the new y).
+  // Turn x to u's direction in the level plane (about z), then up to u (about the new y). Of the
+  // half angle's sine and cosine the larger is a root, the other a quotient: a root of a difference
+  // would lose half of the digits of a small angle, or be one of a negative number.
   const double level = std::sqrt(u.x * u.x + u.y * u.y);
   const double c = level > 1e-12 ? u.x / level : 1.0, s = level > 1e-12 ? u.y / level : 0.0;
-  const double half_c = std::sqrt(0.5 * (1.0 + c)),
-               half_s = std::copysign(std::sqrt(0.5 * (1.0 - c)), s);
-  const double pitch_c = std::sqrt(0.5 * (1.0 + level));
-  const double pitch_s = std::copysign(std::sqrt(0.5 * (1.0 - level)), -u.z);
+  const double larger = std::sqrt(0.5 * (1.0 + std::fabs(c))),
+               smaller = std::fabs(s) / (2 * larger);
+  const double half_c = c >= 0.0 ? larger : smaller;
+  const double half_s = std::copysign(c >= 0.0 ? smaller : larger, s);
+  const double pitch_c = std::sqrt(0.5 * (1.0 + level)), pitch_s = -u.z / (2 * pitch_c);
   return Quat{half_c, 0.0, 0.0, half_s} * Quat{pitch_c, 0.0, pitch_s, 0.0};
 }
 
@@ -173,6 +176,7 @@ class BodyBuilder {
       const double r = builder.rod->radius_m, volume = kPi * r * r * length;
       weld.solids.push_back(SolidCylinder(from, to, r, builder.rod->mass.Of(volume, length)));
       weld.bounds = Union(weld.bounds, BulletCylinderBounds(from, to, r));
+      robot_.solids->capsules.push_back(builder.rod->mass.AsWritten());
       CapsuleDef& def = Add(robot_.def.capsules, *builder.rod, placed.name, body);
       def.from_m = from;
       def.to_m = to;
@@ -196,12 +200,14 @@ class BodyBuilder {
         weld.solids.push_back(SolidSphere(
             placed.position_m, r, builder.sphere->mass.Of(4.0 / 3.0 * kPi * r * r * r, 0.0)));
         weld.bounds = Union(weld.bounds, SphereBounds(placed.position_m, r));
+        robot_.solids->spheres.push_back(builder.sphere->mass.AsWritten());
         Add(robot_.def.spheres, *builder.sphere, placed.name, body).center_m = placed.position_m;
       } else if (builder.point_mass) {
         const PointMassText& mass = *builder.point_mass;
         const bool lone = weld.nodes.size() == 1 && assignment_.of_node[node].size() == 1;
         const double r = lone && mass.radius_m == 0.0 ? kPointRadius_m : mass.radius_m;
         weld.solids.push_back(SolidSphere(placed.position_m, r, mass.mass_kg));
+        robot_.solids->point_masses.push_back({node, mass.mass_kg, mass.radius_m});
       } else if (builder.box) {
         const BoxText& box = *builder.box;
         const Vec3 size = 2.0 * box.half_extents_m;
@@ -225,6 +231,7 @@ class BodyBuilder {
               const Vec3& center, const Quat& q, const Vec3& half, double mass) {
     weld.solids.push_back(SolidBox(center, q, half, mass));
     weld.bounds = Union(weld.bounds, BoxBounds(center, q, half));
+    robot_.solids->boxes.push_back(text.mass.AsWritten());
     BoxDef& def = Add(robot_.def.boxes, text, name, body);
     def.center_m = center;
     def.orientation = q;

@@ -46,19 +46,11 @@ void Replace(const Value& value, ModelText& model) {
   }
 }
 
-}  // namespace
-
-LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnostics& out,
-                      const Overlay<ModelOptions>& options) {
+/// `errors_before`: how many there were before the file was read.
+LoadedModel BuildModel(const MergedFile& file, std::size_t errors_before, Diagnostics& out,
+                       const Overlay<ModelOptions>& options) {
   const auto errors = [&out] { return out.items().size(); };
-  const std::size_t errors_before = errors();
   LoadedModel result;
-  MergedFile file = ReadMergedFile(path, "model", out);
-  if (!file.root) {
-    overrides.Silence();
-    return result;
-  }
-  overrides.Apply(file.parameters);
   const NameTable values = ResolveParameters(file.parameters, out);
   bool numbers_known = true;  // an experiment may have passed on one that it complained about
   for (const auto& [name, value] : values) {
@@ -73,6 +65,7 @@ LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnosti
   robot.def.name = model.name;
   robot.parameters.insert(values.begin(), values.end());
   robot.files = file.files;
+  robot.solids.emplace().bounding_box_inertia = model.inertia == InertiaLaw::kBoundingBox;
   const std::size_t errors_in_text = errors();
   const Assembly assembly = Assemble(model, out);
   const Assignment assignment = AssignBuilders(model, assembly, out);
@@ -95,6 +88,29 @@ LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnosti
   if (!result.good && !complete) return result;
   result.robot = std::move(robot);
   return result;
+}
+
+}  // namespace
+
+LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnostics& out,
+                      const Overlay<ModelOptions>& options) {
+  const std::size_t errors_before = out.items().size();
+  MergedFile file = ReadMergedFile(path, "model", out);
+  if (!file.root) {
+    overrides.Silence();
+    return {};
+  }
+  overrides.Apply(file.parameters);
+  return BuildModel(file, errors_before, out, options);
+}
+
+std::optional<RobotSpec> ModelOfText(const std::string& text, Diagnostics& out) {
+  const std::size_t errors_before = out.items().size();
+  MergedFile file;
+  file.root = ParseYaml(text, "", out);
+  if (!file.root) return std::nullopt;
+  LoadedModel model = BuildModel(file, errors_before, out, {});
+  return model.good ? std::move(model.robot) : std::nullopt;
 }
 
 }  // namespace taut::description

@@ -26,4 +26,8 @@ struct LoadedModel {
 LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnostics& out,
                       const Overlay<ModelOptions>& options = {});
 
+/// The robot of a model file that is a text, without bases and parameters. Nothing if there was any
+/// error.
+std::optional<RobotSpec> ModelOfText(const std::string& text, Diagnostics& out);
+
 }  // namespace taut::description

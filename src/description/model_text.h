@@ -98,6 +98,11 @@ struct MassText {
     if (density_kg_per_m3) return *density_kg_per_m3 * volume_m3;
     return mass_kg_per_m ? *mass_kg_per_m * length_m : NAN;
   }
+  SolidMass AsWritten() const {
+    if (mass_kg) return {SolidMass::Per::kWhole, *mass_kg};
+    if (density_kg_per_m3) return {SolidMass::Per::kVolume, *density_kg_per_m3};
+    return {SolidMass::Per::kLength, mass_kg_per_m.value_or(NAN)};
+  }
 };
 
 // What builders say. The structs that they build on are what is built but for its place: each copy

@@ -188,7 +188,9 @@ std::unique_ptr<LiveRun> LiveRun::Start(const ExperimentSpec& experiment, Diagno
   const auto model = Model::Compile(experiment.robot.def, out);
   if (!model) return nullptr;
   Batch batch(model, {});
-  if (!plant::PrepareStart(experiment, batch, out, go_on)) return nullptr;
+  std::optional<SettledStart> settled;
+  if (!plant::PrepareStart(experiment, batch, out, go_on, &settled)) return nullptr;
+  if (settled) WarnOfStart(settled->change, out);
   return std::make_unique<Live>(experiment, std::move(batch), brought);
 }
 

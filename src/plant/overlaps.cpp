@@ -3,7 +3,7 @@
 
 #include "base/brief.h"
 #include "plant/start.h"
-#include "taut/run.h"
+#include "taut/start.h"
 
 namespace taut {
 namespace plant {

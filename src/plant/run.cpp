@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "plant/loop.h"
 #include "plant/recorder.h"
@@ -140,10 +141,15 @@ std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment, const 
   batch_options.threads = options.threads;
   batch_options.simd = options.simd;
   Batch batch(model, batch_options);
-  if (!plant::PrepareStart(experiment, batch, out)) return std::nullopt;
+  std::optional<SettledStart> settled;
+  if (!plant::PrepareStart(experiment, batch, out, {}, &settled)) return std::nullopt;
+  if (settled) WarnOfStart(settled->change, out);
   if (options.begin && !options.begin(out)) return std::nullopt;
   const auto plant = PlantOf(batch);
-  return Runner(experiment, options, *plant).Run(out);
+  RunSummary summary = Runner(experiment, options, *plant).Run(out);
+  if (settled) summary.start = std::move(settled->change);
+  summary.end = plant::PoseOf(batch);
+  return summary;
 }
 
 }  // namespace taut

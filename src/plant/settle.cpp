@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "math/vec.h"
-#include "taut/run.h"
+#include "taut/start.h"
 
 namespace taut {
 namespace {

@@ -4,17 +4,21 @@
 #include "math/random.h"
 #include "math/vec.h"
 #include "plant/streams.h"
-#include "taut/run.h"
+#include "taut/start.h"
 
 namespace taut::plant {
 namespace {
 
 bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
-               const std::function<bool()>& go_on) {
+               const std::function<bool()>& go_on, std::optional<SettledStart>* settled) {
   if (experiment.start == StartKind::kAsDescribed) return true;
   const std::string hint = "a mechanism or a slope may have no equilibrium; try as_described";
   const auto settle = [&](Batch& which) {
-    return Settle(which, kTheWorld, experiment.step_s, go_on);
+    Unsettled before;
+    if (settled) before = NoteUnsettled(which, experiment.step_s);
+    if (!Settle(which, kTheWorld, experiment.step_s, go_on)) return false;
+    if (settled) *settled = SettledStart{PoseOf(which), ChangeOf(before, which)};
+    return true;
   };
   if (experiment.start == StartKind::kSettled) {
     if (settle(batch)) return true;
@@ -109,12 +113,12 @@ void ApplyScales(const std::vector<ScaleSpec>& scales, Batch& batch, int world) 
 }
 
 bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
-                  const std::function<bool()>& go_on) {
+                  const std::function<bool()>& go_on, std::optional<SettledStart>* settled) {
   ApplyScales(experiment.scales, batch, kTheWorld);
   const RobotSpec& robot = experiment.robot;
   const bool terrain = experiment.start != StartKind::kSettledFloating;
   if (!CheckOverlaps(robot, batch, terrain, false, out)) return false;
-  if (!FindStart(experiment, batch, out, go_on)) return false;
+  if (!FindStart(experiment, batch, out, go_on, settled)) return false;
   const StartNoise& noise = experiment.start_noise;
   const bool noisy = noise.position_m > 0 || noise.heading_rad > 0;
   if (noisy) Disturb(experiment, batch);
@@ -123,3 +127,18 @@ bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& o
 }
 
 }  // namespace taut::plant
+
+namespace taut {
+
+std::optional<SettledStart> FindSettledStart(const ExperimentSpec& experiment, Diagnostics& out,
+                                             const std::function<bool()>& go_on) {
+  const auto model = Model::Compile(experiment.robot.def, out);
+  if (!model) return std::nullopt;
+  Batch batch(model, {});
+  std::optional<SettledStart> settled;
+  if (!plant::PrepareStart(experiment, batch, out, go_on, &settled)) return std::nullopt;
+  if (settled) WarnOfStart(settled->change, out);
+  return settled;
+}
+
+}  // namespace taut

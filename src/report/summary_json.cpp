@@ -55,6 +55,19 @@ Json ToJson(const ReferenceSpec& reference, const RunSummary& run) {
           {"cables", cables}};
 }
 
+Json ToJson(const StartChange& start) {
+  Json contacts = Json::array();
+  for (const auto& [a, b] : start.new_contacts) contacts.push_back(Json::array({a, b}));
+  return {{"slack_cables", start.slack_cables},
+          {"described_taut_cables", start.taut_cables},
+          {"max_tension_n", start.max_tension_n},
+          {"described_max_tension_n", start.described_max_tension_n},
+          {"largest_displacement_m", start.largest_displacement_m},
+          {"displaced_node", start.displaced_node},
+          {"size_m", start.size_m},
+          {"new_contacts", contacts}};
+}
+
 }  // namespace
 
 std::string SummaryJson(const RunSummary& summary) {
@@ -70,6 +83,7 @@ std::string SummaryJson(const RunSummary& summary) {
   json["status"] = report::StatusText(summary);
   json["status_bits"] = summary.status.bits;
   json["state_hash"] = fmt::format("{:016x}", summary.state_hash);  // too long for a JSON number
+  json["start"] = summary.start ? ToJson(*summary.start) : Json();
   json["system_max_tension_n"] = summary.system_max_tension_n;
   json["system_max_tension_cable"] = summary.system_max_tension_cable;
   json["system_max_elastic_n"] = summary.system_max_elastic_n;

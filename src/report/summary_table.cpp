@@ -42,6 +42,7 @@ std::string Head(const RunSummary& run) {
                   run.simulated_s, run.wall_s, report::RealTimeFactor(run));
   if (run.interrupted) out += ", interrupted";
   out += "\n";
+  if (run.start) out += StartLine(*run.start);
   if (run.status.bits != kStatusOk) {
     out += fmt::format("WARNING: {} (first at {:.4g} s)\n", report::StatusText(run),
                        run.status.first_time_s);
@@ -117,6 +118,15 @@ std::string ActuatorTable(const RunSummary& run) {
 }
 
 }  // namespace
+
+std::string StartLine(const StartChange& start) {
+  std::string slack;
+  for (const std::string& name : start.slack_cables) slack += (slack.empty() ? "" : ", ") + name;
+  return fmt::format(
+      "settled at the start: largest displacement {:.4g} m{}{}, of a size of {:.4g} m; slack: {}\n",
+      start.largest_displacement_m, start.displaced_node.empty() ? "" : " of ",
+      start.displaced_node, start.size_m, slack.empty() ? "none" : slack);
+}
 
 std::string SummaryTable(const RunSummary& summary) {
   std::string out = Head(summary);

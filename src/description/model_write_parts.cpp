@@ -1,0 +1,300 @@
+// A robot taken apart into nodes, pairs and builders.
+#include <algorithm>
+#include <cmath>
+
+#include "description/model_write.h"
+#include "description/reader.h"
+#include "description/union_find.h"
+#include "math/vec.h"
+
+namespace taut::description {
+namespace {
+
+std::string MassText(const SolidMass& mass) {
+  switch (mass.per) {
+    case SolidMass::Per::kVolume:
+      return "density_kg_per_m3: " + Shown(mass.value);
+    case SolidMass::Per::kLength:
+      return "mass_kg_per_m: " + Shown(mass.value);
+    case SolidMass::Per::kWhole:
+      break;
+  }
+  return "mass_kg: " + Shown(mass.value);
+}
+
+std::string SurfaceText(const Material& m, bool collides) {
+  std::string text = m.static_friction == m.kinetic_friction
+                         ? ", friction: " + Shown(m.static_friction)
+                         : ", static_friction: " + Shown(m.static_friction) +
+                               ", kinetic_friction: " + Shown(m.kinetic_friction);
+  if (m.restitution != 0) text += ", restitution: " + Shown(m.restitution);
+  return collides ? text : text + ", collides: false";
+}
+
+class Taker {
+ public:
+  Taker(const RobotSpec& robot, Diagnostics& out) : robot_(robot), def_(robot.def), out_(out) {}
+
+  WrittenModel Run() {
+    for (std::size_t n = 0; n < def_.nodes.size(); ++n) {
+      const NodeDef& node = def_.nodes[n];
+      m_.nodes.push_back({node.name, node.body, node.position_m, robot_.node_tags[n], -1});
+      if (node.body == kWorld) Build(m_.on_nodes, "anchor: {}", static_cast<int>(n));
+    }
+    Rods(), Boxes(), Spheres(), PointMasses(), Anchors();
+    m_.solid_pairs = m_.pairs.size();
+    Cables();
+    FixNodes();
+    return std::move(m_);
+  }
+
+ private:
+  void Refuse(const std::string& what, const std::string& hint = {}) {
+    RefuseModel(out_, what, hint);
+  }
+
+  static void Build(std::vector<WrittenBuilder>& list, const std::string& text, int on) {
+    const auto same = std::find_if(list.begin(), list.end(),
+                                   [&](const WrittenBuilder& b) { return b.text == text; });
+    if (same == list.end()) {
+      list.push_back({text, {on}});
+    } else {
+      same->on.push_back(on);
+    }
+  }
+
+  /// A node of the body, or of the world, that is exactly there; -1: none.
+  int NodeAt(int body, const Vec3& p) const {
+    for (std::size_t n = 0; n < m_.nodes.size(); ++n) {
+      const Vec3& at = m_.nodes[n].position_m;
+      if (m_.nodes[n].body == body && at.x == p.x && at.y == p.y && at.z == p.z) {
+        return static_cast<int>(n);
+      }
+    }
+    return -1;
+  }
+  int NodeCalled(const std::string& name) const {
+    for (std::size_t n = 0; n < m_.nodes.size(); ++n) {
+      if (m_.nodes[n].name == name) return static_cast<int>(n);
+    }
+    return -1;
+  }
+  std::string BodyName(int body) const { return def_.bodies[static_cast<std::size_t>(body)].name; }
+
+  /// What a shape weighs: as its builder said; else all that its body does, if there is nothing
+  /// else in it.
+  SolidMass MassOf(const std::vector<SolidMass> SolidsSpec::*list, std::size_t index, int body) {
+    if (robot_.solids) return ((*robot_.solids).*list)[index];
+    int shapes = 0;
+    const auto count = [&](const auto& all) {
+      for (const auto& shape : all) shapes += shape.body == body;
+    };
+    count(def_.spheres), count(def_.capsules), count(def_.boxes);
+    if (shapes > 1) {
+      Refuse("it is not known what the parts of the body \"" + BodyName(body) + "\" weigh",
+             "inputs.yaml has bodies only as a whole; take the experiment that it was made from");
+    }
+    return {SolidMass::Per::kWhole, def_.bodies[static_cast<std::size_t>(body)].mass_kg};
+  }
+
+  /// The tags of a pair that becomes a solid are not kept when it is built.
+  int AddSolidPair(const std::string& name, int a, int b) {
+    m_.pairs.push_back({name, {}, {a, b}, {}, {}});
+    return static_cast<int>(m_.pairs.size()) - 1;
+  }
+
+  void Rods() {
+    for (std::size_t i = 0; i < def_.capsules.size(); ++i) {
+      const CapsuleDef& rod = def_.capsules[i];
+      const int from = NodeAt(rod.body, rod.from_m), to = NodeAt(rod.body, rod.to_m);
+      if (from < 0 || to < 0) {
+        Refuse("the rod \"" + rod.name + "\" does not end at nodes");
+        continue;
+      }
+      Build(m_.on_pairs,
+            "rod: {radius_m: " + Shown(rod.radius_m) + ", " +
+                MassText(MassOf(&SolidsSpec::capsules, i, rod.body)) +
+                SurfaceText(rod.material, rod.collides) + "}",
+            AddSolidPair(rod.name, from, to));
+    }
+  }
+
+  void Boxes() {
+    for (std::size_t i = 0; i < def_.boxes.size(); ++i) {
+      const BoxDef& box = def_.boxes[i];
+      const SolidMass mass = MassOf(&SolidsSpec::boxes, i, box.body);
+      const std::string more = MassText(mass) + SurfaceText(box.material, box.collides) + "}";
+      const Vec3 h = box.half_extents_m;
+      const Vec3 arm = Rotate(box.orientation, {h.x, 0, 0});
+      const int node = NodeCalled(box.name);
+      std::string placement;
+      if (node >= 0) {
+        placement = PlacementOf(box.name);
+        Build(m_.on_nodes,
+              "box: {half_extents_m: [" + Shown(h.x) + ", " + Shown(h.y) + ", " + Shown(h.z) +
+                  "], " + more,
+              node);
+      } else {
+        const int from = NodeNear(box.body, box.center_m - arm),
+                  to = NodeNear(box.body, box.center_m + arm);
+        if (from < 0 || to < 0) {
+          Refuse("the box \"" + box.name + "\" is neither at a node nor along a pair");
+          continue;
+        }
+        placement = PlacementOf(m_.nodes[static_cast<std::size_t>(from)].name);
+        Build(m_.on_pairs,
+              "box: {width_m: " + Shown(2 * h.y) + ", height_m: " + Shown(2 * h.z) + ", " + more,
+              AddSolidPair(box.name, from, to));
+      }
+      // Its axes are those of its part, which a placement may turn.
+      const auto [turn, fresh] = m_.turns.emplace(placement, box.orientation);
+      if (!fresh && !Alike(turn->second, box.orientation)) {
+        Refuse("the boxes of one part are turned differently, as \"" + box.name + "\" is");
+      }
+    }
+    const auto loose = m_.turns.find("");
+    if (loose != m_.turns.end() && !Alike(loose->second, {})) {
+      Refuse("a box outside of placed parts is turned", "put its nodes into a part");
+    }
+    m_.turns.erase("");
+  }
+
+  int NodeNear(int body, const Vec3& p) const {
+    for (std::size_t n = 0; n < m_.nodes.size(); ++n) {
+      const Vec3 off = m_.nodes[n].position_m - p;
+      if (m_.nodes[n].body == body && Dot(off, off) < 1e-18) return static_cast<int>(n);
+    }
+    return -1;
+  }
+  static bool Alike(const Quat& a, const Quat& b) {
+    return std::fabs(a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z) > 1 - 1e-14;
+  }
+
+  void Spheres() {
+    for (std::size_t i = 0; i < def_.spheres.size(); ++i) {
+      const SphereDef& sphere = def_.spheres[i];
+      const int node = NodeCalled(sphere.name);
+      if (node < 0) {
+        Refuse("the sphere \"" + sphere.name + "\" is not at a node");
+        continue;
+      }
+      Build(m_.on_nodes,
+            "sphere: {radius_m: " + Shown(sphere.radius_m) + ", " +
+                MassText(MassOf(&SolidsSpec::spheres, i, sphere.body)) +
+                SurfaceText(sphere.material, sphere.collides) + "}",
+            node);
+    }
+  }
+
+  void PointMasses() {
+    const auto add = [&](int node, double mass_kg, double radius_m) {
+      std::string text = "point_mass: {mass_kg: " + Shown(mass_kg);
+      if (radius_m > 0) text += ", radius_m: " + Shown(radius_m);
+      Build(m_.on_nodes, text + "}", node);
+    };
+    if (robot_.solids) {
+      for (const SolidsSpec::PointMass& p : robot_.solids->point_masses) {
+        add(p.node, p.mass_kg, p.radius_m);
+      }
+      return;
+    }
+    for (std::size_t b = 0; b < def_.bodies.size(); ++b) {
+      const auto of_body = [&](const auto& shape) { return shape.body == static_cast<int>(b); };
+      if (std::any_of(def_.spheres.begin(), def_.spheres.end(), of_body) ||
+          std::any_of(def_.capsules.begin(), def_.capsules.end(), of_body) ||
+          std::any_of(def_.boxes.begin(), def_.boxes.end(), of_body)) {
+        continue;
+      }
+      const BodyDef& body = def_.bodies[b];
+      const int node = NodeAt(static_cast<int>(b), body.com_m);
+      if (node < 0) {
+        Refuse("no node is at the centre of the body \"" + body.name + "\", which has no shape");
+        continue;
+      }
+      add(node, body.mass_kg, std::sqrt(2.5 * body.inertia_kg_m2.xx / body.mass_kg));
+    }
+  }
+
+  void Anchors() {
+    for (std::size_t b = 0; b < def_.bodies.size(); ++b) {
+      if (!def_.bodies[b].fixed) continue;
+      for (std::size_t n = 0; n < m_.nodes.size(); ++n) {
+        if (m_.nodes[n].body != static_cast<int>(b)) continue;
+        Build(m_.on_nodes, "anchor: {}", static_cast<int>(n));
+        break;
+      }
+    }
+  }
+
+  void Cables() {
+    for (std::size_t c = 0; c < def_.cables.size(); ++c) {
+      const CableDef& cable = def_.cables[c];
+      WrittenPair pair{cable.name, robot_.cable_tags[c], {}, {}, {}};
+      for (std::size_t i = 0; i < cable.attachments.size(); ++i) {
+        pair.nodes.push_back(EndNode(cable, i));
+      }
+      if (std::find(pair.nodes.begin(), pair.nodes.end(), -1) != pair.nodes.end()) continue;
+      m_.pairs.push_back(std::move(pair));
+      m_.cables.push_back(static_cast<int>(c));
+    }
+  }
+
+  /// The node where a cable is attached. On the surface of a sphere there is none yet: the cable
+  /// stays at that point of the sphere however the robot moves, so it becomes one.
+  int EndNode(const CableDef& cable, std::size_t i) {
+    const AttachmentDef& at = cable.attachments[i];
+    const int there = NodeAt(at.body, at.position_m);
+    if (there >= 0) return there;
+    const auto host = std::find_if(m_.nodes.begin(), m_.nodes.end(),
+                                   [&](const WrittenNode& n) { return n.body == at.body; });
+    if (at.body == kWorld || host == m_.nodes.end()) {
+      Refuse("the cable \"" + cable.name + "\" ends where there is no node");
+      return -1;
+    }
+    const std::string placement = PlacementOf(host->name);
+    std::string name =
+        ShortName(cable.name) + (i == 0                              ? "_from"
+                                 : i + 1 == cable.attachments.size() ? "_to"
+                                                                     : "_" + std::to_string(i));
+    if (!placement.empty()) name = placement + "." + name;
+    if (NodeCalled(name) >= 0) {
+      Refuse("the cable \"" + cable.name + "\" ends on a surface, and \"" + name +
+             "\", which would be the node there, is another one");
+      return -1;
+    }
+    WrittenNode node{name, at.body, at.position_m, {}, static_cast<int>(host - m_.nodes.begin())};
+    m_.nodes.push_back(std::move(node));
+    return static_cast<int>(m_.nodes.size()) - 1;
+  }
+
+  /// What no rod or box welds to the rest of its body is fixed to it.
+  void FixNodes() {
+    UnionFind welds(m_.nodes.size());
+    for (std::size_t p = 0; p < m_.solid_pairs; ++p)
+      welds.Join(m_.pairs[p].nodes[0], m_.pairs[p].nodes[1]);
+    std::map<std::pair<int, std::string>, int> first;
+    for (int n = 0; n < static_cast<int>(m_.nodes.size()); ++n) {
+      WrittenNode& node = m_.nodes[static_cast<std::size_t>(n)];
+      if (node.body == kWorld) continue;
+      const int host = first.emplace(std::pair(node.body, PlacementOf(node.name)), n).first->second;
+      if (welds.Root(n) == welds.Root(host)) continue;
+      node.fixed_to = host;
+      welds.Join(n, host);
+    }
+  }
+
+  const RobotSpec& robot_;
+  const ModelDef& def_;
+  Diagnostics& out_;
+  WrittenModel m_;
+};
+
+}  // namespace
+
+void RefuseModel(Diagnostics& out, const std::string& what, const std::string& hint) {
+  out.Error({}, "a model file cannot say all of this robot: " + what, hint);
+}
+
+WrittenModel TakeApart(const RobotSpec& robot, Diagnostics& out) { return Taker(robot, out).Run(); }
+
+}  // namespace taut::description
