@@ -212,8 +212,10 @@ struct SensorSpec {
 
 struct RecordSpec {
   double rate_hz = 100.0;                  ///< Rows a second; 0: every step.
-  std::vector<std::string> channels;       ///< Name patterns with `*`; empty: all.
+  std::vector<std::string> channels;       ///< Name patterns with `*`; empty: all that are not
+                                           ///< recorded on request only.
   std::vector<SourceRef> channel_sources;  ///< Where a file has them; may be empty.
+  int contacts = 0;                        ///< Slots for touching points in a row.
 };
 
 /// Numbers of somebody else (a robot's, another simulator's) to show ours beside.

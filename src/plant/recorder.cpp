@@ -4,17 +4,12 @@
 
 #include "base/pattern.h"
 #include "math/vec.h"
+#include "plant/channels.h"
 #include "taut/run.h"
 
 namespace taut::plant {
 
 namespace {
-
-void Put(const Vec3& v, double* out) {
-  out[0] = v.x;
-  out[1] = v.y;
-  out[2] = v.z;
-}
 
 void FillBody(const Bodies& bodies, int body, double* out) {
   const BodyState b = bodies.Body(0, body);
@@ -126,6 +121,9 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
         [i](const RecordSource& s, double* out) { *out = s.timeline->drag_n()[i]; });
   }
   if (is_world) AddSystem(def);
+  const bool on_request = !patterns_.empty();
+  if (on_request && has_bodies) AddNodeChannels(experiment, *this);
+  if (is_world) AddContactChannels(experiment, *this);
   row_.resize(channels_.size());
 }
 
@@ -145,11 +143,34 @@ void Recorder::AddSystem(const ModelDef& def) {
 }
 
 void Recorder::Add(const std::string& prefix, const std::vector<ChannelInfo>& names, Fill fill) {
+  AddThose(prefix, names, std::move(fill),
+           [&](const std::string& name) { return base::FitsAny(patterns_, name); });
+}
+
+void Recorder::AddAsked(const std::string& prefix, const std::vector<ChannelInfo>& names,
+                        Fill fill) {
+  const bool some = std::any_of(names.begin(), names.end(), [&](const ChannelInfo& channel) {
+    return base::FitsAny(patterns_, prefix + channel.name);
+  });
+  AddThose(prefix, names, std::move(fill),
+           [&](const std::string& name) { return !some || base::FitsAny(patterns_, name); });
+}
+
+void Recorder::CountContacts(std::size_t count, std::size_t room) {
+  left_out_.most_touching = std::max(left_out_.most_touching, static_cast<std::int64_t>(count));
+  if (count <= room) return;
+  ++left_out_.rows;
+  left_out_.contacts += static_cast<std::int64_t>(count - room);
+}
+
+template <class Keeps>
+void Recorder::AddThose(const std::string& prefix, const std::vector<ChannelInfo>& names, Fill fill,
+                        const Keeps& keeps) {
   Block block;
   block.size = names.size();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string name = prefix + names[i].name;
-    if (!base::FitsAny(patterns_, name)) continue;
+    if (!keeps(name)) continue;
     block.kept.push_back(i);
     channels_.push_back({name, names[i].unit});
   }
@@ -180,7 +201,7 @@ bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out) {
   const RecordSpec& record = experiment.record;
   if (record.channels.empty()) return true;
   ExperimentSpec all = experiment;
-  all.record.channels.clear();
+  all.record.channels = {"*"};
   std::vector<std::string> names, known;
   for (const ChannelInfo& channel : RunChannels(all)) {
     names.push_back(channel.name);
@@ -196,8 +217,11 @@ bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out) {
     const auto fits = [&](const std::string& name) { return base::Fits(pattern, name); };
     if (std::any_of(names.begin(), names.end(), fits)) continue;
     good = false;
+    const bool contact = record.contacts == 0 && pattern.starts_with("contact/");
     out.Error(i < record.channel_sources.size() ? record.channel_sources[i] : SourceRef{},
-              "record.channels: no channel fits \"" + pattern + "\"", DidYouMean(pattern, known));
+              "record.channels: no channel fits \"" + pattern + "\"",
+              contact ? "record.contacts says how many contacts have channels, and is 0"
+                      : DidYouMean(pattern, known));
   }
   return good;
 }

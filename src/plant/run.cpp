@@ -84,6 +84,7 @@ class Runner {
     }
     summary.simulated_s = loop_.time_s();
     statistics_.Fill(summary);
+    summary.left_out = recorder_.left_out();
     if (const World* const world = loop_.plant().world()) {
       summary.status = world->Status(0);
       summary.status_text = DescribeStatus(experiment_.robot.def, summary.status);
