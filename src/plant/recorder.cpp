@@ -123,6 +123,7 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
   if (is_world) AddSystem(def);
   const bool on_request = !patterns_.empty();
   if (on_request && has_bodies) AddNodeChannels(experiment, *this);
+  if (on_request && is_world) AddLoadChannels(experiment, *this);
   if (is_world) AddContactChannels(experiment, *this);
   row_.resize(channels_.size());
 }

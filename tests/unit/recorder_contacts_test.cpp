@@ -143,7 +143,7 @@ TEST_F(RecordedChannels, OnRequestMeansNotByDefault) {
   EXPECT_EQ(Groups(RunChannels(experiment)), (Names{"cable", "body", "push", "system"}));
   experiment.record.channels = {"*"};
   EXPECT_EQ(Groups(RunChannels(experiment)),
-            (Names{"cable", "body", "push", "system", "node"}));
+            (Names{"cable", "body", "push", "system", "node", "strut"}));
   experiment.record.channels = {"node/a0/position_*"};
   EXPECT_EQ(RunChannels(experiment).size(), 3u);
 }
@@ -171,6 +171,7 @@ TEST_F(RecordedChannels, HintsKnowThoseOnRequest) {
     return out.Format();
   };
   EXPECT_EQ(complaint("node/*/velocity_x_m_per_s"), "");
+  EXPECT_EQ(complaint("strut/a/axial_n"), "");
   EXPECT_EQ(complaint("contact/0/gap_m", 1), "");
   EXPECT_NE(complaint("node/*/positon_x_m").find("(did you mean \"node/*/position_x_m\"?)"),
             std::string::npos);
