@@ -55,6 +55,7 @@ class SimulatedPlant final : public Plant, public World {
     const auto j = static_cast<std::size_t>(lane);
     time_s_[j] = 0;
     gait_[j] = -1;
+    for (std::size_t i = j; i < node_force_n_.size(); i += lanes_) node_force_n_[i] = {};
     for (std::size_t i = j; i < signal_.size(); i += lanes_) {
       set_point_n_[i] = velocity_input_m_per_s_[i] = signal_[i] = 0;
       mode_[i] = CommandMode::kRestLength;
