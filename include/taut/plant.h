@@ -93,8 +93,8 @@ struct Commands {
 class World : public Bodies {
  public:
   virtual void SetNodeForce(int lane, int node, const Vec3& force_n) = 0;  ///< As `Batch` has it.
-  virtual Vec3 NodeForce(int lane, int node) const = 0;                    ///< As set here.
-  virtual double BodyMass(int lane, int body) const = 0;                   ///< [kg]
+  virtual Vec3 NodeForce(int lane, int node) const = 0;
+  virtual double BodyMass(int lane, int body) const = 0;  ///< [kg]
   virtual Energy TotalEnergy(int lane) const = 0;
   virtual std::vector<ContactState> Contacts(int lane) const = 0;
   virtual WorldStatus Status(int lane) const = 0;

@@ -19,8 +19,7 @@ class SimulatedPlant final : public Plant, public World {
         signal_(cables_ * lanes_),
         mode_(cables_ * lanes_, CommandMode::kRestLength),
         gait_(lanes_, -1),
-        goes_(static_cast<std::size_t>(batch.worlds())),
-        node_force_n_(batch.model().def().nodes.size() * lanes_) {
+        goes_(static_cast<std::size_t>(batch.worlds())) {
     TAUT_ASSERT(batch.groups() == 1);
     seen_.lanes = commands_.lanes = batch.lanes();
     seen_.time_s = time_s_.data();
@@ -55,7 +54,6 @@ class SimulatedPlant final : public Plant, public World {
     const auto j = static_cast<std::size_t>(lane);
     time_s_[j] = 0;
     gait_[j] = -1;
-    for (std::size_t i = j; i < node_force_n_.size(); i += lanes_) node_force_n_[i] = {};
     for (std::size_t i = j; i < signal_.size(); i += lanes_) {
       set_point_n_[i] = velocity_input_m_per_s_[i] = signal_[i] = 0;
       mode_[i] = CommandMode::kRestLength;
@@ -70,9 +68,8 @@ class SimulatedPlant final : public Plant, public World {
   Vec3 NodeVelocity(int lane, int node) const override { return batch_.NodeVelocity(lane, node); }
   void SetNodeForce(int lane, int node, const Vec3& force_n) override {
     batch_.SetNodeForce(lane, node, force_n);
-    node_force_n_[At(lane, node)] = force_n;
   }
-  Vec3 NodeForce(int lane, int node) const override { return node_force_n_[At(lane, node)]; }
+  Vec3 NodeForce(int lane, int node) const override { return batch_.NodeForce(lane, node); }
   double BodyMass(int lane, int body) const override {
     return batch_.GetParameter(lane, Parameter::kBodyMass, body);
   }
@@ -82,12 +79,6 @@ class SimulatedPlant final : public Plant, public World {
   std::uint64_t Hash(int lane) const override { return batch_.Hash(lane); }
 
  private:
-  std::size_t At(int lane, int node) const {
-    const std::size_t at = static_cast<std::size_t>(node) * lanes_ + static_cast<std::size_t>(lane);
-    TAUT_ASSERT(at < node_force_n_.size());
-    return at;
-  }
-
   /// Actuators that are to stay where they are: their target is where they are.
   void Hold() {
     CommandMode most = CommandMode::kRestLength;
@@ -117,7 +108,6 @@ class SimulatedPlant final : public Plant, public World {
   std::vector<CommandMode> mode_;
   std::vector<int> gait_;
   std::vector<std::uint8_t> goes_;
-  std::vector<Vec3> node_force_n_;  ///< As set here, node n of lane j at [n * lanes + j].
   Observation seen_;
   Commands commands_;
 };
