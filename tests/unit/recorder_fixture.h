@@ -30,12 +30,14 @@ inline ExperimentSpec ExperimentWith(const ModelDef& def, double duration_s,
 /// What a run records.
 class Recording final : public TraceWriter {
  public:
-  explicit Recording(const ExperimentSpec& experiment) {
-    trace.channels = RunChannels(experiment);
+  /// `plant`: in place of a simulation.
+  explicit Recording(const ExperimentSpec& experiment, Plant* plant = nullptr) {
+    trace.channels = RunChannels(experiment, plant);
     trace.values.resize(trace.channels.size());
     Diagnostics out;
     RunOptions options;
     options.traces = {this};
+    options.plant = plant;
     const auto run = RunExperiment(experiment, options, out);
     EXPECT_TRUE(run) << out.Format();
     if (run) summary = *run;
