@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "taut/live.h"
@@ -21,7 +20,8 @@
 namespace {
 
 constexpr int kStates = 6, kInputs = 4;  // place and velocity; rest lengths
-constexpr double kPeriodS = 0.01, kStepS = 0.001;
+constexpr int kStepsAPeriod = 10;
+constexpr double kStepS = 0.001, kPeriodS = kStepsAPeriod * kStepS;
 
 template <int Rows, int Columns>
 struct Matrix {
@@ -127,7 +127,7 @@ Plan Regulator(const taut::ExperimentSpec& experiment) {
     if (state >= 0) *numbers[state] += change;
     batch.SetBodyState(0, 0, body);
     if (input >= 0) batch.SetRestLengthTarget(0, input, found.rest_length_m[input] + change);
-    batch.Step(kStepS, static_cast<int>(kPeriodS / kStepS + 0.5));
+    batch.Step(kStepS, kStepsAPeriod);
     return StateOf(batch.Body(0, 0), found.rest_m);
   };
   constexpr double kChange = 1e-4;
@@ -166,7 +166,7 @@ Plan Regulator(const taut::ExperimentSpec& experiment) {
 /// on the gain.
 class Lqr final : public taut::Controller {
  public:
-  Lqr(Plan plan, const taut::ControlSetup& setup) : plan_(std::move(plan)) {
+  Lqr(const Plan& plan, const taut::ControlSetup& setup) : plan_(plan) {
     for (const taut::RolloutWorld* world : setup.lanes) {
       factor_.push_back(world->numbers.empty() ? 1.0 : world->numbers[0]);
     }

@@ -164,6 +164,7 @@ class Batch {
   double RestLengthTarget(int world, int cable) const noexcept;
   /// A force on a node [N], in W, for all following steps.
   void SetNodeForce(int world, int node, const Vec3& force_n) noexcept;
+  Vec3 NodeForce(int world, int node) const noexcept;
 
   // --- observation -------------------------------------------------------------------------
   CableState Cable(int world, int cable) const noexcept;

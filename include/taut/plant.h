@@ -93,7 +93,8 @@ struct Commands {
 class World : public Bodies {
  public:
   virtual void SetNodeForce(int lane, int node, const Vec3& force_n) = 0;  ///< As `Batch` has it.
-  virtual double BodyMass(int lane, int body) const = 0;                   ///< [kg]
+  virtual Vec3 NodeForce(int lane, int node) const = 0;
+  virtual double BodyMass(int lane, int body) const = 0;  ///< [kg]
   virtual Energy TotalEnergy(int lane) const = 0;
   virtual std::vector<ContactState> Contacts(int lane) const = 0;
   virtual WorldStatus Status(int lane) const = 0;
@@ -145,7 +146,7 @@ struct Tick {
   const std::int64_t* number = nullptr;
 };
 
-/// What controllers and sensors are made for.
+/// What controllers and sensors are made for. The lanes' variants are there while they are made.
 struct ControlSetup {
   const ExperimentSpec& experiment;
   std::span<const RolloutWorld* const> lanes;  ///< One variant of the experiment a lane.

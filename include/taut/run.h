@@ -5,6 +5,7 @@
 /// thread.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -45,6 +46,13 @@ struct DragSummary {
   Range force_n;  ///< Along the drag's direction, over its second half.
 };
 
+/// What a recording with slots for contacts (`RecordSpec::contacts`) does not hold.
+struct LeftOutContacts {
+  std::int64_t rows = 0;           ///< In which more touched than there are slots.
+  std::int64_t contacts = 0;       ///< Without a slot, over all rows.
+  std::int64_t most_touching = 0;  ///< In a row: so many slots would hold all.
+};
+
 struct RunSummary {
   std::string experiment;
   std::string run;  ///< Its id in its folder (taut/run_folder.h); empty outside of one.
@@ -64,6 +72,7 @@ struct RunSummary {
   std::string status_text;       ///< Empty when good; names the body or cable.
   std::uint64_t state_hash = 0;  ///< Of the world at the end.
   std::optional<Pose> end;       ///< Of the robot then; nothing where no simulation is behind it.
+  LeftOutContacts left_out;
 };
 
 /// Where a run stands, for progress lines.
@@ -90,8 +99,9 @@ struct RunOptions {
   Plant* plant = nullptr;
 };
 
-/// The channels that a run of this experiment records, in order. `plant`: as in `RunOptions`; what
-/// is not known of it has no channel.
+/// The channels that a run of this experiment records, in order. Those of the groups that are
+/// recorded on request only (docs/formats/trace.md) if `record.channels` asks for them. `plant`: as
+/// in `RunOptions`; what is not known of it has no channel.
 std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment, Plant* plant = nullptr);
 
 /// False, and a complaint each, if the experiment asks for channels that no run of it has.

@@ -143,6 +143,11 @@ struct GaitInputSpec {
   double blend_s = 0.5;
 };
 
+/// A gait of an input, as `GaitChange::gait` counts them.
+inline const GaitSpec& GaitOf(const GaitInputSpec& input, std::size_t number) {
+  return number == 0 ? input.gait : input.others[number - 1];
+}
+
 struct ControllerSpec {
   std::string name;
   ClockSpec clock;
@@ -239,8 +244,10 @@ struct SensorSpec {
 
 struct RecordSpec {
   double rate_hz = 100.0;                  ///< Rows a second; 0: every step.
-  std::vector<std::string> channels;       ///< Name patterns with `*`; empty: all.
+  std::vector<std::string> channels;       ///< Name patterns with `*`; empty: all that are not
+                                           ///< recorded on request only.
   std::vector<SourceRef> channel_sources;  ///< Where a file has them; may be empty.
+  int contacts = 0;                        ///< Slots for touching points in a row.
 };
 
 /// Numbers of somebody else (a robot's, another simulator's) to show ours beside.

@@ -297,9 +297,13 @@ void Keys(Io& io, Record& r) {
   } else {
     io("channels", r.channel_texts,
        "Names of the channels to record; `*` stands for any text. Each must fit a channel of the "
-       "run. All if absent.",
-       Example{R"(["cable/*/tension_n", "system/*"])"});
+       "run. All if absent, but for those that are recorded on request only: `node/*`, `strut/*` "
+       "and `anchor/*` (docs/formats/trace.md).",
+       Example{R"(["cable/*/tension_n", "strut/*", "system/*"])"});
   }
+  io("contacts", r.contacts, kLater, Bound{.least = 0, .most = 1000},
+     "For how many touching points a row has channels, `contact/*`. Where more touch, those with "
+     "the largest forces are recorded, and the summary says so.");
 }
 void Check(const MapReader& map, RecordText& record);
 

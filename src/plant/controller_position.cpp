@@ -9,7 +9,7 @@ namespace {
 /// Rest lengths against time: a program, a gait's signal, or the one upon the other.
 class PositionController final : public Controller {
  public:
-  PositionController(const ControlSetup& setup, std::size_t index, std::vector<int> of_gait)
+  PositionController(const ControlSetup& setup, std::size_t index, const std::vector<int>& of_gait)
       : index_(index), clock_(setup.lanes[0]->controllers[index].clock) {
     for (const PositionProgram& program : setup.lanes[0]->controllers[index].position) {
       cables_.push_back(program.cable);
@@ -96,7 +96,7 @@ std::unique_ptr<Controller> MakePosition(const ControlSetup& setup, std::size_t 
     auto gait = ResolveGait(spec.rest_length_input->gait, setup.experiment.robot, heard_before);
     if (gait) of_gait = std::move(gait->cables);
   }
-  return std::make_unique<PositionController>(setup, index, std::move(of_gait));
+  return std::make_unique<PositionController>(setup, index, of_gait);
 }
 
 }  // namespace taut::plant

@@ -4,59 +4,24 @@
 
 #include "base/pattern.h"
 #include "math/vec.h"
+#include "plant/body_channels.h"
+#include "plant/center_of_mass.h"
+#include "plant/channels.h"
+#include "plant/set_points.h"
 #include "taut/run.h"
 
 namespace taut::plant {
 
 namespace {
 
-void Put(const Vec3& v, double* out) {
-  out[0] = v.x;
-  out[1] = v.y;
-  out[2] = v.z;
-}
-
-void FillBody(const Bodies& bodies, int body, double* out) {
-  const BodyState b = bodies.Body(0, body);
-  Put(b.position_m, out);
-  out[3] = b.orientation.w;
-  out[4] = b.orientation.x;
-  out[5] = b.orientation.y;
-  out[6] = b.orientation.z;
-  Put(b.velocity_m_per_s, out + 7);
-  Put(b.angular_velocity_rad_per_s, out + 10);
-}
-
-Vec3 CenterOfMass(const World& world, int body_count) {
-  Vec3 sum;
-  double mass = 0;
-  for (int b = 0; b < body_count; ++b) {
-    const double m = world.BodyMass(0, b);
-    sum = sum + m * world.Body(0, b).position_m;
-    mass += m;
-  }
-  return (mass > 0 ? 1 / mass : 0) * sum;
-}
-
-void FillSystem(const World& world, int body_count, double* out) {
+void FillSystem(const World& world, std::size_t body_count, double* out) {
   const Energy e = world.TotalEnergy(0);
   out[0] = e.kinetic_j;
   out[1] = e.gravity_j;
   out[2] = e.elastic_j;
   out[3] = static_cast<double>(world.Contacts(0).size());
   out[4] = world.Status(0).residual_m_per_s;
-  Put(CenterOfMass(world, body_count), out + 5);
-}
-
-/// Whether the impedance law drives a cable; without it there is no set point to record.
-bool UnderImpedance(const ExperimentSpec& experiment, int cable) {
-  return std::any_of(
-      experiment.controllers.begin(), experiment.controllers.end(), [&](const auto& controller) {
-        if (!controller.impedance) return false;
-        const auto& gains = controller.impedance->cables;
-        return std::any_of(gains.begin(), gains.end(),
-                           [&](const ImpedanceGains& each) { return each.cable == cable; });
-      });
+  Put(CenterOfMass(world, 0, body_count), out + 5);
 }
 
 }  // namespace
@@ -66,11 +31,12 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
   const ModelDef& def = experiment.robot.def;
   const bool has_bodies = plant == nullptr || plant->Observe().bodies != nullptr;
   const bool is_world = plant == nullptr || plant->world() != nullptr;
+  const std::vector<int> with_set_point = CablesWithSetPoints(experiment.controllers);
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
     std::vector<ChannelInfo> names = {{"tension_n", "N"},     {"elastic_n", "N"},
                                       {"length_m", "m"},      {"rate_m_per_s", "m/s"},
                                       {"rest_length_m", "m"}, {"target_rest_length_m", "m"}};
-    if (UnderImpedance(experiment, static_cast<int>(c))) {
+    if (std::binary_search(with_set_point.begin(), with_set_point.end(), static_cast<int>(c))) {
       names.push_back({"setpoint_n", "N"});
       names.push_back({"velocity_input_m_per_s", "m/s"});
     }
@@ -99,23 +65,9 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
         });
   }
   for (std::size_t b = 0; has_bodies && b < def.bodies.size(); ++b) {
-    Add("body/" + def.bodies[b].name + "/",
-        {{"position_x_m", "m"},
-         {"position_y_m", "m"},
-         {"position_z_m", "m"},
-         {"orientation_w", "1"},
-         {"orientation_x", "1"},
-         {"orientation_y", "1"},
-         {"orientation_z", "1"},
-         {"velocity_x_m_per_s", "m/s"},
-         {"velocity_y_m_per_s", "m/s"},
-         {"velocity_z_m_per_s", "m/s"},
-         {"angular_velocity_x_rad_per_s", "rad/s"},
-         {"angular_velocity_y_rad_per_s", "rad/s"},
-         {"angular_velocity_z_rad_per_s", "rad/s"}},
-        [b](const RecordSource& s, double* out) {
-          FillBody(*s.exact->bodies, static_cast<int>(b), out);
-        });
+    Add("body/" + def.bodies[b].name + "/", kBodyChannels, [b](const RecordSource& s, double* out) {
+      PutBody(s.exact->bodies->Body(0, static_cast<int>(b)), out);
+    });
   }
   for (std::size_t i = 0; is_world && i < experiment.pushes.size(); ++i) {
     Add("push/" + experiment.pushes[i].name + "/", {{"force_n", "N"}},
@@ -126,6 +78,10 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
         [i](const RecordSource& s, double* out) { *out = s.timeline->drag_n()[i]; });
   }
   if (is_world) AddSystem(def);
+  const bool on_request = !patterns_.empty();
+  if (on_request && has_bodies) AddNodeChannels(experiment, *this);
+  if (on_request && is_world) AddLoadChannels(experiment, *this);
+  if (is_world) AddContactChannels(experiment, *this);
   row_.resize(channels_.size());
 }
 
@@ -139,17 +95,40 @@ void Recorder::AddSystem(const ModelDef& def) {
        {"com_x_m", "m"},
        {"com_y_m", "m"},
        {"com_z_m", "m"}},
-      [count = static_cast<int>(def.bodies.size())](const RecordSource& s, double* out) {
+      [count = def.bodies.size()](const RecordSource& s, double* out) {
         FillSystem(*s.world, count, out);
       });
 }
 
 void Recorder::Add(const std::string& prefix, const std::vector<ChannelInfo>& names, Fill fill) {
+  AddThose(prefix, names, std::move(fill),
+           [&](const std::string& name) { return base::FitsAny(patterns_, name); });
+}
+
+void Recorder::AddAsked(const std::string& prefix, const std::vector<ChannelInfo>& names,
+                        Fill fill) {
+  const bool some = std::any_of(names.begin(), names.end(), [&](const ChannelInfo& channel) {
+    return base::FitsAny(patterns_, prefix + channel.name);
+  });
+  AddThose(prefix, names, std::move(fill),
+           [&](const std::string& name) { return !some || base::FitsAny(patterns_, name); });
+}
+
+void Recorder::CountContacts(std::size_t count, std::size_t room) {
+  left_out_.most_touching = std::max(left_out_.most_touching, static_cast<std::int64_t>(count));
+  if (count <= room) return;
+  ++left_out_.rows;
+  left_out_.contacts += static_cast<std::int64_t>(count - room);
+}
+
+template <class Keeps>
+void Recorder::AddThose(const std::string& prefix, const std::vector<ChannelInfo>& names, Fill fill,
+                        const Keeps& keeps) {
   Block block;
   block.size = names.size();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string name = prefix + names[i].name;
-    if (!base::FitsAny(patterns_, name)) continue;
+    if (!keeps(name)) continue;
     block.kept.push_back(i);
     channels_.push_back({name, names[i].unit});
   }
@@ -180,7 +159,7 @@ bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out) {
   const RecordSpec& record = experiment.record;
   if (record.channels.empty()) return true;
   ExperimentSpec all = experiment;
-  all.record.channels.clear();
+  all.record.channels = {"*"};
   std::vector<std::string> names, known;
   for (const ChannelInfo& channel : RunChannels(all)) {
     names.push_back(channel.name);
@@ -196,8 +175,11 @@ bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out) {
     const auto fits = [&](const std::string& name) { return base::Fits(pattern, name); };
     if (std::any_of(names.begin(), names.end(), fits)) continue;
     good = false;
+    const bool contact = record.contacts == 0 && pattern.starts_with("contact/");
     out.Error(i < record.channel_sources.size() ? record.channel_sources[i] : SourceRef{},
-              "record.channels: no channel fits \"" + pattern + "\"", DidYouMean(pattern, known));
+              "record.channels: no channel fits \"" + pattern + "\"",
+              contact ? "record.contacts says how many contacts have channels, and is 0"
+                      : DidYouMean(pattern, known));
   }
   return good;
 }

@@ -1,7 +1,6 @@
 #include "taut/run.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -37,9 +36,7 @@ class Runner {
   Runner(const ExperimentSpec& experiment, const RunOptions& options, Plant& plant)
       : experiment_(experiment),
         options_(options),
-        variant_(WorldOf(experiment)),
-        loop_(experiment, std::array{static_cast<const RolloutWorld*>(&variant_)}, plant,
-              options.brought),
+        loop_(experiment, plant, options.brought),
         recorder_(experiment, &plant),
         statistics_(experiment) {}
 
@@ -85,6 +82,7 @@ class Runner {
     }
     summary.simulated_s = loop_.time_s();
     statistics_.Fill(summary);
+    summary.left_out = recorder_.left_out();
     if (const World* const world = loop_.plant().world()) {
       summary.status = world->Status(0);
       summary.status_text = DescribeStatus(experiment_.robot.def, summary.status);
@@ -119,7 +117,6 @@ class Runner {
 
   const ExperimentSpec& experiment_;
   const RunOptions& options_;
-  RolloutWorld variant_;
   plant::Loop loop_;
   plant::Recorder recorder_;
   plant::Statistics statistics_;

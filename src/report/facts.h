@@ -25,4 +25,13 @@ inline std::string StatusText(const RunSummary& summary) {
                                      : summary.status_text;
 }
 
+/// What its trace lacks; empty if nothing.
+inline std::string LeftOutText(const RunSummary& summary) {
+  const LeftOutContacts& left = summary.left_out;
+  if (left.contacts == 0) return {};
+  return std::to_string(left.contacts) + " contacts in " + std::to_string(left.rows) +
+         " rows had no channels; record.contacts: " + std::to_string(left.most_touching) +
+         " has room for all";
+}
+
 }  // namespace taut::report

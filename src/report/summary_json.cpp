@@ -84,6 +84,7 @@ std::string SummaryJson(const RunSummary& summary) {
   json["status_bits"] = summary.status.bits;
   json["state_hash"] = fmt::format("{:016x}", summary.state_hash);  // too long for a JSON number
   json["start"] = summary.start ? ToJson(*summary.start) : Json();
+  json["contacts_left_out"] = summary.left_out.contacts;
   json["system_max_tension_n"] = summary.system_max_tension_n;
   json["system_max_tension_cable"] = summary.system_max_tension_cable;
   json["system_max_elastic_n"] = summary.system_max_elastic_n;

@@ -47,6 +47,7 @@ std::string Head(const RunSummary& run) {
     out += fmt::format("WARNING: {} (first at {:.4g} s)\n", report::StatusText(run),
                        run.status.first_time_s);
   }
+  if (run.left_out.contacts > 0) out += fmt::format("WARNING: {}\n", report::LeftOutText(run));
   return out;
 }
 

@@ -258,6 +258,10 @@ double Batch::RestLengthTarget(int world, int cable) const noexcept {
   impl_->CheckCable(__func__, world, cable);
   return impl_->at(world, impl_->layout.target + cable);
 }
+Vec3 Batch::NodeForce(int world, int node) const noexcept {
+  impl_->CheckNode(__func__, world, node);
+  return impl_->vec(world, impl_->layout.node_force + 3 * node);
+}
 void Batch::SetNodeForce(int world, int node, const Vec3& force_n) noexcept {
   impl_->CheckNode(__func__, world, node);
   impl_->ForceNode(world, node);

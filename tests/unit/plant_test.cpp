@@ -6,6 +6,7 @@
 #include "fake_plant.h"
 #include "plant/loop.h"
 #include "plant/start.h"
+#include "recorder_fixture.h"
 #include "taut/live.h"
 #include "taut/rollout.h"
 #include "taut/run.h"
@@ -300,45 +301,19 @@ TEST(Commands, AnActuatorHoldsWhereItIs) {
   EXPECT_GT(std::fabs(rest_m(2) - driven_m), 1e-5);
 }
 
-/// Keeps every row.
-struct Memory final : TraceWriter {
-  bool Append(double time_s, const double* row) override {
-    trace.time_s.push_back(time_s);
-    for (std::size_t i = 0; i < trace.values.size(); ++i) trace.values[i].push_back(row[i]);
-    return true;
-  }
-  bool FlushOld() override { return true; }
-  bool Finish() override { return true; }
-  const std::string& error() const override { return none; }
-  Trace trace;
-  std::string none;
-};
-
-Trace Recorded(const ExperimentSpec& experiment, Plant* plant) {
-  Memory memory;
-  memory.trace.channels = RunChannels(experiment, plant);
-  memory.trace.values.resize(memory.trace.channels.size());
-  RunOptions options;
-  options.traces = {&memory};
-  options.plant = plant;
-  Diagnostics out;
-  EXPECT_TRUE(RunExperiment(experiment, options, out)) << out.Format();
-  return memory.trace;
-}
-
 TEST(Replay, ControllersSayToALogWhatTheySaidToTheRobot) {
   ExperimentSpec experiment = Load("cpg_learned");
   experiment.duration_s = 1.5;
   experiment.record.rate_hz = 0;  // every step
   experiment.record.channels.clear();
-  const Trace log = Recorded(experiment, nullptr);
+  const Trace log = Recording(experiment).trace;
   Diagnostics out;
   const auto plant = ReplayOf(log, experiment.robot, out);
   ASSERT_TRUE(plant) << out.Format();
   EXPECT_EQ(plant->world(), nullptr);
   EXPECT_NE(plant->Observe().bodies, nullptr);
   experiment.duration_s = 10.0;  // the log ends before
-  const Trace said = Recorded(experiment, plant.get());
+  const Trace said = Recording(experiment, plant.get()).trace;
   EXPECT_EQ(said.time_s, log.time_s);
   std::size_t compared = 0;
   for (std::size_t i = 0; i < said.channels.size(); ++i) {

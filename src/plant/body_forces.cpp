@@ -1,0 +1,56 @@
+#include "plant/body_forces.h"
+
+namespace taut::plant {
+
+BodyForces::BodyForces(const ModelDef& def) : body_count_(def.bodies.size()) {
+  for (const CableDef& cable : def.cables) {
+    std::vector<BodyPoint>& points = cables_.emplace_back();
+    for (const AttachmentDef& at : cable.attachments) {
+      const Vec3 origin =
+          at.body == kWorld ? Vec3{} : def.bodies[static_cast<std::size_t>(at.body)].com_m;
+      points.push_back({at.body, at.position_m - origin});
+    }
+  }
+  for (const NodeDef& node : def.nodes) bodies_of_nodes_.push_back(node.body);
+}
+
+const std::vector<BodyForce>& BodyForces::Gather(const Observation& exact, const World& world) {
+  forces_.clear();
+  states_.clear();
+  for (std::size_t b = 0; b < body_count_; ++b) {
+    states_.push_back(world.Body(0, static_cast<int>(b)));
+  }
+  const auto add = [&](int body, const Vec3& point_m, const Vec3& force_n) {
+    if (body != kWorld) forces_.push_back({body, point_m, force_n});
+  };
+  for (std::size_t c = 0; c < cables_.size(); ++c) {
+    const double tension_n = exact.Cable(static_cast<int>(c)).tension_n;
+    if (tension_n == 0) continue;
+    path_.clear();
+    for (const BodyPoint& point : cables_[c]) {
+      const Vec3 place = point.body == kWorld
+                             ? point.arm_m
+                             : PlaceOf(point, states_[static_cast<std::size_t>(point.body)]);
+      path_.push_back({place, {}, {}, {}});
+    }
+    const int count = static_cast<int>(path_.size());
+    MeasurePath(count, path_.data());
+    for (int i = 0; i < count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      add(cables_[c][at].body, path_[at].p, tension_n * PullAt(count, path_.data(), i));
+    }
+  }
+  for (std::size_t n = 0; n < bodies_of_nodes_.size(); ++n) {
+    if (bodies_of_nodes_[n] == kWorld) continue;
+    const Vec3 force_n = world.NodeForce(0, static_cast<int>(n));
+    if (Dot(force_n, force_n) == 0) continue;
+    add(bodies_of_nodes_[n], world.NodePosition(0, static_cast<int>(n)), force_n);
+  }
+  for (const ContactState& contact : world.Contacts(0)) {
+    add(contact.body_a, contact.point_m, contact.force_n);
+    add(contact.body_b, contact.point_m, -1.0 * contact.force_n);
+  }
+  return forces_;
+}
+
+}  // namespace taut::plant

@@ -1,0 +1,45 @@
+/// What acts on the bodies of a simulated plant besides their weights, point by point.
+#pragma once
+
+#include <vector>
+
+#include "math/cable_path.h"
+#include "math/vec.h"
+#include "taut/plant.h"
+
+namespace taut::plant {
+
+/// A force on a body at a point, both in W.
+struct BodyForce {
+  int body = 0;
+  Vec3 point_m, force_n;
+};
+
+/// A point of a body, by its arm from the centre of mass at t = 0 (in W), or of the world.
+struct BodyPoint {
+  int body = kWorld;
+  Vec3 arm_m;
+};
+inline Vec3 PlaceOf(const BodyPoint& point, const BodyState& state) {
+  return state.position_m + Rotate(state.orientation, point.arm_m);
+}
+
+/// Gathers the forces of lane 0: of cables with the tensions that are read (docs/theory/loads.md,
+/// eq. 1), of contacts and at nodes as means over the last step.
+class BodyForces {
+ public:
+  explicit BodyForces(const ModelDef& def);
+
+  /// In a fixed order; valid until the next call.
+  const std::vector<BodyForce>& Gather(const Observation& exact, const World& world);
+
+ private:
+  std::vector<std::vector<BodyPoint>> cables_;
+  std::vector<int> bodies_of_nodes_;
+  std::size_t body_count_;
+  std::vector<BodyState> states_;
+  std::vector<PathPoint<Vec3>> path_;
+  std::vector<BodyForce> forces_;
+};
+
+}  // namespace taut::plant

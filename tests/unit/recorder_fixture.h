@@ -1,0 +1,96 @@
+/// Runs of small models whose rows stay in memory, for tests of what is recorded.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+#include "taut/run.h"
+#include "taut/spec.h"
+#include "taut/trace.h"
+
+namespace taut::test {
+
+/// An experiment that records every step.
+inline ExperimentSpec ExperimentWith(const ModelDef& def, double duration_s,
+                                     std::vector<std::string> channels, int contacts = 0) {
+  ExperimentSpec experiment;
+  experiment.name = "recorded";
+  experiment.robot.def = def;
+  experiment.duration_s = duration_s;
+  experiment.record.rate_hz = 0;
+  experiment.record.channels = std::move(channels);
+  experiment.record.contacts = contacts;
+  return experiment;
+}
+
+/// What a run records.
+class Recording final : public TraceWriter {
+ public:
+  /// `plant`: in place of a simulation.
+  explicit Recording(const ExperimentSpec& experiment, Plant* plant = nullptr) {
+    trace.channels = RunChannels(experiment, plant);
+    trace.values.resize(trace.channels.size());
+    Diagnostics out;
+    RunOptions options;
+    options.traces = {this};
+    options.plant = plant;
+    const auto run = RunExperiment(experiment, options, out);
+    EXPECT_TRUE(run) << out.Format();
+    if (run) summary = *run;
+  }
+
+  bool Append(double time_s, const double* values) override {
+    trace.time_s.push_back(time_s);
+    for (std::size_t i = 0; i < trace.values.size(); ++i) trace.values[i].push_back(values[i]);
+    return true;
+  }
+  bool FlushOld() override { return true; }
+  bool Finish() override { return true; }
+  const std::string& error() const override { return none_; }
+
+  std::size_t rows() const { return trace.time_s.size(); }
+  bool Has(const std::string& channel) const { return trace.Find(channel).has_value(); }
+  double At(const std::string& channel, std::size_t row) const {
+    const auto found = trace.Find(channel);
+    EXPECT_TRUE(found) << channel;
+    return found ? trace.values[*found].at(row) : std::numeric_limits<double>::quiet_NaN();
+  }
+  double Last(const std::string& channel) const { return At(channel, rows() - 1); }
+  /// `prefix` with x, y, z and `suffix` behind it.
+  Vec3 VectorAt(const std::string& prefix, const std::string& suffix, std::size_t row) const {
+    return {At(prefix + "x" + suffix, row), At(prefix + "y" + suffix, row),
+            At(prefix + "z" + suffix, row)};
+  }
+  Quat OrientationAt(const std::string& body, std::size_t row) const {
+    const std::string q = "body/" + body + "/orientation_";
+    return {At(q + "w", row), At(q + "x", row), At(q + "y", row), At(q + "z", row)};
+  }
+
+  Trace trace;
+  RunSummary summary;
+
+ private:
+  std::string none_;
+};
+
+inline void ExpectNear(const Vec3& a, const Vec3& b, double tolerance, const std::string& what) {
+  EXPECT_NEAR(a.x, b.x, tolerance) << what;
+  EXPECT_NEAR(a.y, b.y, tolerance) << what;
+  EXPECT_NEAR(a.z, b.z, tolerance) << what;
+}
+
+inline CableDef SoftCable(const std::string& name, std::vector<AttachmentDef> attachments,
+                          double stiffness_n_per_m, double rest_length_m) {
+  CableDef cable;
+  cable.name = name;
+  cable.attachments = std::move(attachments);
+  cable.stiffness_n_per_m = stiffness_n_per_m;
+  cable.rest_length_m = rest_length_m;
+  return cable;
+}
+
+}  // namespace taut::test
