@@ -33,7 +33,7 @@ class Rules:
             elif kind == "headers":
                 self.layer_of_header.update({word: name for word in words})
             elif kind == "folder":
-                self.folders[name] = set(words)
+                self.folders[name] = {name, *words}
             elif kind == "only":
                 self.only += [(pattern, name) for pattern in words]
             else:
@@ -102,7 +102,8 @@ def check(root):
         if layer is None:
             errors.append(f"include/taut/{name}:1: error: in no layer of layers.txt")
         else:
-            check_file(rules, root, path, layer, rules.uses[layer], False, errors)
+            allowed = rules.uses.get(layer) or rules.folders[layer]
+            check_file(rules, root, path, layer, allowed, False, errors)
 
     for folder in sorted(p for p in (root / "src").iterdir() if p.is_dir() and sources(p)):
         layer = folder.name

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -129,26 +128,12 @@ bool TokenOf(const char* variable, std::string& token) {
   return false;
 }
 
-std::string Url(const viewer::ServerOptions& options, std::uint16_t port,
-                const std::string& token) {
-  std::string host = "localhost";
-  if (options.address != "127.0.0.1" && options.address != "::1") {
-    host = options.address;
-    char name[256] = {};
-    if ((host == "0.0.0.0" || host == "::") && gethostname(name, sizeof(name) - 1) == 0) {
-      host = name;
-    } else if (host.find(':') != host.npos) {
-      host = "[" + host + "]";
-    }
-  }
-  return fmt::format("http://{}:{}/?token={}", host, port, token);
-}
-
 /// The two addresses, and what is dangerous about them.
 void SayAddresses(const std::string& title, const viewer::ServerOptions& options,
                   std::uint16_t port) {
   fmt::print("{}: {}\nOnly to watch: {}\nCtrl-C ends it.\n", title,
-             Url(options, port, options.drive_token), Url(options, port, options.watch_token));
+             viewer::Url(options, port, options.drive_token),
+             viewer::Url(options, port, options.watch_token));
   std::fflush(stdout);
   if (viewer::IsLoopback(options.address)) return;
   Tell(fmt::format(

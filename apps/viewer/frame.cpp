@@ -26,10 +26,11 @@ std::vector<double> FrameNumbers(const Frame& frame) {
   out[kFrameContactCount] = frame.contact_count;
   out[kFrameContactRows] = static_cast<double>(frame.contacts.size());
   out[kFramePushCount] = static_cast<double>(frame.pushes.size());
+  out[kFrameValueCount] = static_cast<double>(frame.values.size());
   out.reserve(out.size() + frame.bodies.size() * kFrameBodiesValues +
               frame.cables.size() * kFrameCablesValues +
               frame.contacts.size() * kFrameContactsValues +
-              frame.pushes.size() * kFramePushesValues);
+              frame.pushes.size() * kFramePushesValues + frame.values.size());
   const auto put = [&](const Vec3& v) { out.insert(out.end(), {v.x, v.y, v.z}); };
   for (const Frame::Body& body : frame.bodies) {
     put(body.position_m);
@@ -47,6 +48,7 @@ std::vector<double> FrameNumbers(const Frame& frame) {
     out.push_back(push.node);
     put(push.force_n);
   }
+  out.insert(out.end(), frame.values.begin(), frame.values.end());
   return out;
 }
 

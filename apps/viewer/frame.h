@@ -38,6 +38,7 @@ struct Frame {
   std::vector<Cable> cables;
   std::vector<Contact> contacts;
   std::vector<OutsideForce> pushes;
+  std::vector<double> values;  ///< Of channels of a program's own (taut/page.h).
 };
 
 /// Every number of the frame in the order of the definition.

@@ -40,9 +40,10 @@ void History::Lists<T>::Thin() {
 }
 
 History::History(const ModelDef& def, const std::vector<bool>& has_set_point, double period_s,
-                 std::size_t max_bytes)
+                 std::size_t max_bytes, const std::vector<ChannelInfo>& values)
     : bodies_(def.bodies.size()),
       cables_(def.cables.size()),
+      values_(values.size()),
       max_bytes_(max_bytes),
       first_period_s_(period_s),
       period_s_(period_s) {
@@ -66,6 +67,7 @@ History::History(const ModelDef& def, const std::vector<bool>& has_set_point, do
     AddColumn(prefix + "rest_length_m", "m");
     AddColumn(prefix + "setpoint_n", "N", has_set_point[c]);
   }
+  for (const ChannelInfo& value : values) AddColumn(value.name, value.unit);
 }
 
 void History::AddColumn(std::string name, std::string unit, bool is_channel) {
@@ -105,6 +107,7 @@ void History::Take(const Frame& frame) {
       put(value);
     }
   }
+  for (const double value : frame.values) put(value);
   contacts_.Add(frame.contacts);
   pushes_.Add(frame.pushes);
   const std::size_t row_bytes = (1 + columns_.size()) * sizeof(double);
@@ -126,6 +129,25 @@ std::size_t History::RowAt(double time_s) const {
   return after == time_s_.begin() ? 0 : static_cast<std::size_t>(after - time_s_.begin()) - 1;
 }
 
+std::size_t History::PresentRow(double now_s) const {
+  const std::size_t last = size() - 1;
+  return time_s_[last] < now_s ? last + 1 : last;
+}
+
+std::optional<std::size_t> History::PastRow(double time_s, double now_s) const {
+  if (!(time_s < now_s)) return std::nullopt;
+  const std::size_t row = RowAt(time_s);
+  return row < PresentRow(now_s) ? std::optional(row) : std::nullopt;
+}
+
+std::optional<std::size_t> History::Step(std::optional<std::size_t> row, int count,
+                                         double now_s) const {
+  const std::size_t present = PresentRow(now_s);
+  const auto next = static_cast<std::int64_t>(row.value_or(present)) + count;
+  if (next >= static_cast<std::int64_t>(present)) return std::nullopt;
+  return static_cast<std::size_t>(std::max<std::int64_t>(next, 0));
+}
+
 void History::Show(std::size_t row, Frame& frame) const {
   frame.time_s = time_s_[row];
   const auto value = [&](std::size_t column) { return columns_[column][row]; };
@@ -141,6 +163,8 @@ void History::Show(std::size_t row, Frame& frame) const {
   for (std::size_t c = 0; c < cables_; ++c, at += kCableValues) {
     frame.cables.push_back({value(at), value(at + 1), value(at + 2), value(at + 3)});
   }
+  frame.values.clear();
+  for (std::size_t v = 0; v < values_; ++v, ++at) frame.values.push_back(value(at));
   frame.contacts = contacts_.Get(row);
   frame.pushes = pushes_.Get(row);
 }

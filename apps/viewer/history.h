@@ -1,6 +1,7 @@
 /// What a live run has shown so far, for plots of the time before a page came and for a look back.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -14,9 +15,12 @@ namespace taut::viewer {
 /// the distance doubles: the whole run stays, more coarsely the longer it lasts.
 class History {
  public:
-  /// `period_s`: simulated time between rows, for a start. `has_set_point`: by cable.
+  static constexpr std::size_t kMaxBytes = 128u << 20;
+
+  /// `period_s`: simulated time between rows, for a start. `has_set_point`: by cable. `values`: the
+  /// channels of the frames' `values`.
   History(const ModelDef& def, const std::vector<bool>& has_set_point, double period_s,
-          std::size_t max_bytes = 128u << 20);
+          std::size_t max_bytes = kMaxBytes, const std::vector<ChannelInfo>& values = {});
 
   /// Of the run that begins now.
   void Clear();
@@ -29,6 +33,10 @@ class History {
   double time_s(std::size_t row) const { return time_s_[row]; }
   /// The last row at or before a time; 0 before the first.
   std::size_t RowAt(double time_s) const;
+  /// The row to look at for a time that is past: nothing where `now_s`, the present, is meant.
+  std::optional<std::size_t> PastRow(double time_s, double now_s) const;
+  /// So many rows on from a row, or from the present (nothing); nothing: that is the present.
+  std::optional<std::size_t> Step(std::optional<std::size_t> row, int count, double now_s) const;
   /// Of `frame` stays what is no history: speed, pause, driver.
   void Show(std::size_t row, Frame& frame) const;
 
@@ -48,12 +56,14 @@ class History {
     std::size_t bytes() const { return items.size() * sizeof(T) + ends.size() * sizeof(ends[0]); }
   };
 
+  /// The row that the present is, or would be.
+  std::size_t PresentRow(double now_s) const;
   void AddColumn(std::string name, std::string unit, bool is_channel = true);
   void Thin();
 
   std::vector<ChannelInfo> channels_;
   std::unordered_map<std::string, std::size_t> places_;
-  std::size_t bodies_, cables_, max_bytes_;
+  std::size_t bodies_, cables_, values_, max_bytes_;
   double first_period_s_, period_s_, due_s_ = 0;
   std::vector<double> time_s_;
   std::vector<std::vector<double>> columns_;  ///< All that a frame holds, channel or not.

@@ -11,21 +11,16 @@
 namespace taut::viewer {
 namespace {
 
-using std::chrono::duration;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
 constexpr microseconds kFramePeriod{16667};
 /// How long steps are made without a look at the commands.
 constexpr milliseconds kSlice{5};
-/// A run that is further behind than this goes on from where it is: it is slower than asked for.
-constexpr double kMaxBehindS = 0.1;
 constexpr milliseconds kIdlePeriod{250};
 /// Simulated time between the moments that are kept. At full speed fewer, so that keeping them
 /// takes no time worth mentioning.
 constexpr double kHistoryPeriodS = 0.01, kFastHistoryPeriodS = 0.02;
-
-double Seconds(Session::Clock::duration span) { return duration<double>(span).count(); }
 
 }  // namespace
 
@@ -60,8 +55,7 @@ LiveSession::LiveSession(const std::string& mode, std::unique_ptr<LiveRun> run, 
       options_(std::move(options)),
       restarts_(options_.inputs),
       run_(std::move(run)),
-      paused_(options_.paused),
-      speed_(options_.speed) {
+      pace_(options_.speed, options_.paused) {
   Anchor();
 }
 
@@ -78,7 +72,7 @@ void LiveSession::StartHistory() {
     has_set_point_[static_cast<std::size_t>(control.cable)] = control.impedance.has_value();
   }
   history_.emplace(experiment_.robot.def, has_set_point_,
-                   speed_ == 0 ? kFastHistoryPeriodS : kHistoryPeriodS);
+                   pace_.speed() == 0 ? kFastHistoryPeriodS : kHistoryPeriodS);
   past_row_.reset();
   Fill(moment_);
   history_->Take(moment_);
@@ -108,26 +102,24 @@ bool LiveSession::Drive(int client, const Command& command, std::string& error) 
   }
   Restart();
   if (type == "pause" || type == "resume") {
-    paused_ = type == "pause";
-    Anchor();
-    if (!paused_) past_row_.reset();
+    if (type == "pause") {
+      Pause();
+    } else {
+      pace_.Resume(run_->time_s());
+      past_row_.reset();
+    }
   } else if (type == "step") {
-    paused_ = true;
+    Pause();
     if (past_row_ || command.count < 0) {
-      LookAt(static_cast<std::int64_t>(past_row_.value_or(PresentRow())) + command.count);
+      past_row_ = history_->Step(past_row_, command.count, run_->time_s());
     } else {
       for (int i = 0; i < command.count && !stopping(); ++i) StepOnce();
     }
-    Anchor();
   } else if (type == "seek") {
-    paused_ = true;
-    past_row_.reset();
-    if (command.value < run_->time_s())
-      LookAt(static_cast<std::int64_t>(history_->RowAt(command.value)));
-    Anchor();
+    past_row_ = history_->PastRow(command.value, run_->time_s());
+    Pause();
   } else if (type == "speed") {
-    speed_ = command.value;
-    Anchor();
+    pace_.SetSpeed(command.value, run_->time_s());
   } else if (type == "drop") {
     if (dragging_) Log("let go");
     dragging_ = false;
@@ -243,7 +235,7 @@ void LiveSession::Log(const std::string& text) {
 bool LiveSession::StepOnce() {
   if (!run_->Step()) {
     if (!std::exchange(broken_told_, true)) Log("the state is no longer finite");
-    paused_ = true;
+    Pause();
     return false;
   }
   if (history_->IsDue(run_->time_s())) {
@@ -254,7 +246,7 @@ bool LiveSession::StepOnce() {
   if (!end_told_ && run_->time_s() >= experiment_.duration_s && mode() == "live") {
     end_told_ = true;
     Log("the experiment's end; resume goes on");
-    paused_ = true;
+    Pause();
     return false;
   }
   return true;
@@ -267,34 +259,17 @@ void LiveSession::StepUntil(double time_s, Clock::time_point deadline) {
   }
 }
 
-void LiveSession::Anchor() {
-  anchor_wall_ = measured_wall_ = Clock::now();
-  anchor_s_ = measured_s_ = run_->time_s();
-  real_time_factor_ = 0;
-}
-
 Session::Clock::time_point LiveSession::Work() {
   const Clock::time_point start = Clock::now();
   // One restart a picture is enough, however many are asked for.
   if (idle() && start - shown_wall_ >= kFramePeriod) Restart(start + kFramePeriod);
   if (std::exchange(scene_changed_, false)) SetScene(MakeScene(), true);
-  const bool full_speed = speed_ == 0;
-  if (!paused_) {
-    const double wanted =
-        full_speed ? HUGE_VAL : anchor_s_ + speed_ * Seconds(start - anchor_wall_);
-    StepUntil(wanted, std::min(start + kSlice, shown_wall_ + kFramePeriod));
-    if (!full_speed && wanted - run_->time_s() > kMaxBehindS * std::max(speed_, 1.0)) {
-      anchor_wall_ = Clock::now();
-      anchor_s_ = run_->time_s();
-    }
+  if (!pace_.paused()) {
+    StepUntil(pace_.WantedAt(start), std::min(start + kSlice, shown_wall_ + kFramePeriod));
     changed_ = true;
   }
   const Clock::time_point now = Clock::now();
-  if (now - measured_wall_ > milliseconds(500)) {
-    real_time_factor_ = (run_->time_s() - measured_s_) / Seconds(now - measured_wall_);
-    measured_wall_ = now;
-    measured_s_ = run_->time_s();
-  }
+  pace_.At(run_->time_s(), now);
   if (now - shown_wall_ >= (changed_ ? Clock::duration(kFramePeriod) : kIdlePeriod)) {
     if (recording_) recording_->FlushOld();
     Show();
@@ -302,20 +277,8 @@ Session::Clock::time_point LiveSession::Work() {
     changed_ = false;
   }
   if (restarts_.pending()) changed_ = true;
-  if (paused_) return shown_wall_ + (changed_ ? Clock::duration(kFramePeriod) : kIdlePeriod);
-  return full_speed ? now : std::min(shown_wall_ + kFramePeriod, now + microseconds(4000));
-}
-
-std::size_t LiveSession::PresentRow() const {
-  const std::size_t last = history_->size() - 1;
-  return history_->time_s(last) < run_->time_s() ? last + 1 : last;
-}
-
-void LiveSession::LookAt(std::int64_t row) {
-  past_row_.reset();
-  if (row < static_cast<std::int64_t>(PresentRow())) {
-    past_row_ = static_cast<std::size_t>(std::max<std::int64_t>(row, 0));
-  }
+  if (pace_.paused()) return shown_wall_ + (changed_ ? Clock::duration(kFramePeriod) : kIdlePeriod);
+  return pace_.speed() == 0 ? now : std::min(shown_wall_ + kFramePeriod, now + microseconds(4000));
 }
 
 void LiveSession::Fill(Frame& frame) const {
@@ -324,9 +287,9 @@ void LiveSession::Fill(Frame& frame) const {
   const Observation& now = run_->Observe();
   const ModelDef& def = experiment_.robot.def;
   frame.time_s = frame.now_s = run_->time_s();
-  frame.real_time_factor = paused_ ? 0 : real_time_factor_;
-  frame.speed = speed_;
-  frame.paused = paused_;
+  frame.real_time_factor = pace_.real_time_factor();
+  frame.speed = pace_.speed();
+  frame.paused = pace_.paused();
   frame.run = run_number_;
   if (world != nullptr) frame.energy = world->TotalEnergy(0);
   frame.bodies.clear();

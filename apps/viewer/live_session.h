@@ -9,6 +9,7 @@
 
 #include "history.h"
 #include "live_restarts.h"
+#include "pace.h"
 #include "recording.h"
 #include "session.h"
 #include "taut/live.h"
@@ -50,11 +51,8 @@ class LiveSession final : public Session {
   void Log(const std::string& text);
   bool StepOnce();
   void StepUntil(double time_s, Clock::time_point deadline);
-  void Anchor();
-  /// The row of the history that the present is, or would be.
-  std::size_t PresentRow() const;
-  /// Looks at the past from that row on; at the present if there is no such row.
-  void LookAt(std::int64_t row);
+  void Anchor() { pace_.Anchor(run_->time_s()); }
+  void Pause() { pace_.Pause(run_->time_s()); }
   void Fill(Frame& frame) const;
   void Show();
   Json MakeScene() const;
@@ -72,14 +70,8 @@ class LiveSession final : public Session {
   std::optional<std::size_t> past_row_;  ///< What is shown; nothing: the present.
   Frame moment_;                         ///< Kept, so that taking a moment allocates little.
   int run_number_ = 1;
-  bool paused_ = false, end_told_ = false, broken_told_ = false, dragging_ = false;
-  double speed_ = 1;
-  // Simulated time keeps up with wall-clock time since this pair.
-  Clock::time_point anchor_wall_;
-  double anchor_s_ = 0;
-  // What the real-time factor is measured from.
-  Clock::time_point measured_wall_;
-  double measured_s_ = 0, real_time_factor_ = 0;
+  bool end_told_ = false, broken_told_ = false, dragging_ = false;
+  Pace pace_;
   Clock::time_point shown_wall_;
   bool changed_ = true, scene_changed_ = false;
 };

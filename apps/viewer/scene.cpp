@@ -86,8 +86,8 @@ Json Terrain(const ModelDef& def) {
 
 Json Empty() {
   Json scene;
-  for (const char* key :
-       {"bodies", "nodes", "cables", "terrain", "parameters", "controls", "channels", "phases"}) {
+  for (const char* key : {"bodies", "nodes", "cables", "terrain", "parameters", "controls",
+                          "channels", "phases", "values"}) {
     scene[key] = Json::array();
   }
   scene["first_s"] = 0;

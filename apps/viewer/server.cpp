@@ -1,6 +1,7 @@
 #include "server.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <boost/asio/io_context.hpp>
@@ -132,6 +133,8 @@ struct Server::Impl {
   /// A copy: sending may close a connection, which takes it out of `clients`.
   std::map<int, std::shared_ptr<Connection>> Clients() const { return clients; }
 
+  void EndOnSignals();
+
   /// Runs on the session's thread.
   void Wake() {
     if (woken.exchange(true)) return;
@@ -222,15 +225,19 @@ std::uint16_t Server::port() const {
   return impl_->acceptor.local_endpoint(ignored).port();
 }
 
-void Server::Run() {
-  impl_->signals.add(SIGINT);
-  impl_->signals.add(SIGTERM);
+void Server::Impl::EndOnSignals() {
+  signals.add(SIGINT);
+  signals.add(SIGTERM);
   struct sigaction hangup {};
   sigaction(SIGHUP, nullptr, &hangup);
-  if (hangup.sa_handler != SIG_IGN) impl_->signals.add(SIGHUP);  // nohup stays nohup
-  impl_->signals.async_wait([this](beast::error_code failed, int) {
-    if (!failed) impl_->io.stop();
+  if (hangup.sa_handler != SIG_IGN) signals.add(SIGHUP);  // nohup stays nohup
+  signals.async_wait([this](beast::error_code failed, int) {
+    if (!failed) io.stop();
   });
+}
+
+void Server::Run(Signals signals) {
+  if (signals == Signals::kEnd) impl_->EndOnSignals();
   impl_->Accept();
   impl_->session.Start([this] { impl_->Wake(); });
   impl_->io.run();
@@ -241,6 +248,20 @@ void Server::Run() {
 
 void Server::Stop() {
   asio::post(impl_->io, [this] { impl_->io.stop(); });
+}
+
+std::string Url(const ServerOptions& options, std::uint16_t port, const std::string& token) {
+  std::string host = "localhost";
+  if (options.address != "127.0.0.1" && options.address != "::1") {
+    host = options.address;
+    char name[256] = {};
+    if ((host == "0.0.0.0" || host == "::") && gethostname(name, sizeof(name) - 1) == 0) {
+      host = name;
+    } else if (host.find(':') != host.npos) {
+      host = "[" + host + "]";
+    }
+  }
+  return fmt::format("http://{}:{}/?token={}", host, port, token);
 }
 
 bool IsAddress(const std::string& address) {

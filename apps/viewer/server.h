@@ -43,15 +43,20 @@ class Server {
   bool Listen(std::string& error);
   std::uint16_t port() const;  ///< Bound to.
 
-  /// Serves until Stop or one of SIGINT, SIGTERM and SIGHUP; then has stopped the session. The next
-  /// such signal ends the program.
-  void Run();
+  enum class Signals { kEnd, kLeave };
+
+  /// Serves until Stop or, with `kEnd`, one of SIGINT, SIGTERM and SIGHUP; then has stopped the
+  /// session. The next such signal ends the program. With `kLeave` signals are somebody else's.
+  void Run(Signals signals = Signals::kEnd);
   void Stop();  ///< From any thread.
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// What to open in a browser for what a token allows.
+std::string Url(const ServerOptions& options, std::uint16_t port, const std::string& token);
 
 /// Whether it is the number of one, as 127.0.0.1 or ::1.
 bool IsAddress(const std::string& address);

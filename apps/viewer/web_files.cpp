@@ -10,7 +10,7 @@ namespace taut::viewer {
 
 namespace fs = std::filesystem;
 
-std::optional<std::string> FindWebFolder(std::string& error) {
+std::optional<std::string> FindWebFolder(std::string& error, const std::string& otherwise) {
   std::vector<fs::path> folders;
   std::error_code failed;
   if (const char* named = std::getenv("TAUT_WEB"); named != nullptr && *named != '\0') {
@@ -18,7 +18,7 @@ std::optional<std::string> FindWebFolder(std::string& error) {
   } else {
     const fs::path command = fs::read_symlink("/proc/self/exe", failed);
     folders = {command.parent_path() / "web",
-               command.parent_path().parent_path() / "share/taut/web"};
+               command.parent_path().parent_path() / "share/taut/web", otherwise};
   }
   for (const fs::path& folder : folders) {
     if (fs::exists(folder / "index.html", failed)) return folder.string();

@@ -8,9 +8,9 @@
 
 namespace taut::viewer {
 
-/// The folder of the pages: $TAUT_WEB, or web beside the command, or share/taut/web of an installed
-/// one. Nothing if none of them has an index.html; `error` says what to do.
-std::optional<std::string> FindWebFolder(std::string& error);
+/// The folder of the pages: $TAUT_WEB, or web beside the program, or share/taut/web of an installed
+/// one, or `otherwise`. Nothing if none of them has an index.html; `error` says what to do.
+std::optional<std::string> FindWebFolder(std::string& error, const std::string& otherwise = "");
 
 /// Every file of the folder, by the path that a browser asks for.
 WebFiles ReadWebFiles(const std::string& folder);

@@ -73,8 +73,11 @@ struct ReceivedFrame {
   std::size_t pushes() const {
     return contacts() + Count(viewer::kFrameContactRows) * viewer::kFrameContactsValues;
   }
-  std::size_t end() const {
+  std::size_t values() const {
     return pushes() + Count(viewer::kFramePushCount) * viewer::kFramePushesValues;
+  }
+  std::size_t end() const {
+    return values() + Count(viewer::kFrameValueCount);
   }
 };
 

@@ -52,8 +52,13 @@ export class App {
     return sent;
   }
 
-  /** An experiment, or a model by itself, that is simulated now. */
+  /** An experiment, or a model by itself, that is simulated now, or what somebody's own program shows. */
   get live(): boolean {
+    return this.movable || this.hello.value?.mode === "program";
+  }
+
+  /** Robots that hands, sliders and a reset act on. */
+  get movable(): boolean {
     return ["live", "model"].includes(this.hello.value?.mode ?? "");
   }
 
@@ -92,6 +97,12 @@ export class App {
 
   seek(time_s: number): void {
     if (this.seekable) this.send({ type: "seek", time_s });
+  }
+
+  /** Back to the start. What a program shows cannot be run again, only looked at. */
+  goToStart(): void {
+    if (this.hello.value?.mode === "program") this.seek(-Number.MAX_VALUE);
+    else this.send({ type: "reset" });
   }
 
   toggleTheme(): void {
@@ -147,7 +158,8 @@ export class App {
   /** A frame of the scene before it may still be on its way when the scene has changed. */
   private fits(frame: Frame): boolean {
     const scene = this.scene.value;
-    return scene !== null && frame.body_count === scene.bodies.length && frame.cable_count === scene.cables.length;
+    return scene !== null && frame.body_count === scene.bodies.length && frame.cable_count === scene.cables.length &&
+      frame.value_count === scene.values.length;
   }
 }
 

@@ -35,10 +35,12 @@ export function frameOfScene(scene: Scene): Frame {
   frame.kinetic_j = frame.gravity_j = frame.elastic_j = NaN;
   frame.body_count = scene.bodies.length;
   frame.cable_count = scene.cables.length;
+  frame.value_count = scene.values.length;
   frame.bodies = new Float64Array(scene.bodies.flatMap((body) => [...body.position_m, ...body.orientation]));
   frame.cables = new Float64Array(scene.cables.length * VALUES.cables).fill(NaN);
   frame.contacts = new Float64Array(0);
   frame.pushes = new Float64Array(0);
+  frame.values = new Float64Array(scene.values.length).fill(NaN);
   return frame;
 }
 

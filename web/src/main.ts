@@ -33,10 +33,10 @@ function start(root: HTMLElement): void {
   const drawer = controls(app);
   drawer.hidden = true;
   const toggleControls = () => {
-    if (app.live && !app.watches) drawer.hidden = !drawer.hidden;
+    if (app.movable && !app.watches) drawer.hidden = !drawer.hidden;
   };
   const controlsButton = button("controls", "live controls (C)", toggleControls);
-  app.hello.watch(() => (controlsButton.hidden = !app.live || app.watches));
+  app.hello.watch(() => (controlsButton.hidden = !app.movable || app.watches));
   const keys = keysOf(app, view, () => help.toggle(), toggleControls);
   help.fill(keys);
   listenToKeys(keys);

@@ -2,7 +2,7 @@
 //
 // What the viewer's server and its pages say to each other. JSON texts, except frames, which are binary. script/protocol makes web/src/protocol.ts, web/src/layout.ts and apps/viewer/protocol_messages.h of this file. SI units; W is the world frame, z up; quaternions are unit, order w, x, y, z. A field whose name ends with ? may be absent.
 
-export const PROTOCOL_VERSION = 3;
+export const PROTOCOL_VERSION = 4;
 
 export type Vec3 = [number, number, number];
 /** w, x, y, z */
@@ -198,6 +198,8 @@ export interface Scene {
   /** What want_series may ask for; live, of what the run has shown so far. */
   channels: Channel[];
   phases: Phase[];
+  /** Channels that frames hold in `values`, in their order. */
+  values: string[];
   /** Time of the first row of a trace; 0 when live. */
   first_s: number;
   /** Time of the last. */
@@ -214,7 +216,8 @@ export interface HelloMessage {
   type: "hello";
   /** Of this definition. */
   version: number;
-  mode: "live" | "replay" | "model";
+  /** program: what somebody's own program shows (taut/page.h); nothing in it can be moved. */
+  mode: "live" | "replay" | "model" | "program";
   title: string;
   /** Who you are, 1 or more. */
   client: number;

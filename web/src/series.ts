@@ -212,6 +212,7 @@ export function* frameValues(scene: Scene, frame: Frame): Generator<[string, num
     yield [`body/${name}/position_y_m`, frame.bodies[at + 1]!];
     yield [`body/${name}/position_z_m`, frame.bodies[at + 2]!];
   }
+  for (const [place, name] of scene.values.entries()) yield [name, frame.values[place]!];
   yield ["system/kinetic_j", frame.kinetic_j];
   yield ["system/gravity_j", frame.gravity_j];
   yield ["system/elastic_j", frame.elastic_j];

@@ -74,7 +74,7 @@ export const scene = {
     { kind: "plane", name: "ground", normal: [0, 0, 1], point_m: [0, 0, 0] },
     { kind: "box", name: "step", center_m: [0.9, 0, 0.05], half_extents_m: [0.2, 0.4, 0.05], orientation: [1, 0, 0, 0] },
   ],
-  parameters: [], controls: [], channels,
+  parameters: [], controls: [], values: [], channels,
   phases: [{ name: "before", from_s: 1, to_s: 3 }, { name: "after", from_s: 6, to_s: 9 }],
   first_s: 0, duration_s: DURATION_S, drag_stiffness_n_per_m: 0,
 };
@@ -117,7 +117,7 @@ export function frameValues(time_s, more = {}) {
   const pushes = more.pushes ?? [];
   const header = {
     time_s, now_s: time_s, real_time_factor: 1, speed: 1, paused: 0, driver: 1, kinetic_j: 0.1 * time_s, gravity_j: 2, elastic_j: 3,
-    run: 0, body_count: 3, cable_count: CABLE_COUNT, contact_count: contactCount(time_s), contact_rows: contacts.length, push_count: pushes.length,
+    run: 0, body_count: 3, cable_count: CABLE_COUNT, contact_count: contactCount(time_s), contact_rows: contacts.length, push_count: pushes.length, value_count: 0,
     ...more.header,
   };
   return [

@@ -229,7 +229,7 @@ export class View {
       const { x, y } = this.at(event);
       this.pressed = { x, y };
       const under = event.button === 0 ? this.pickAt(x, y) : null;
-      if (under?.kind === "node" && this.app.live) this.grip.take(under.index, event);
+      if (under?.kind === "node" && this.app.movable) this.grip.take(under.index, event);
     }, { capture: true });
     canvas.addEventListener("pointermove", (event) => {
       const { x, y } = this.at(event);
@@ -255,7 +255,7 @@ export class View {
     const before = this.app.hover.value;
     if (under?.kind !== before?.kind || under?.index !== before?.index) this.app.hover.value = under;
     this.tip.hidden = under === null;
-    this.canvas.style.cursor = under ? (under.kind === "node" && this.app.live ? "grab" : "pointer") : "";
+    this.canvas.style.cursor = under ? (under.kind === "node" && this.app.movable ? "grab" : "pointer") : "";
     if (!under || !this.world) return;
     const scene = this.world.scene;
     const list = { cable: scene.cables, body: scene.bodies, node: scene.nodes }[under.kind];

@@ -32,7 +32,7 @@ export function keysOf(app: App, view: View, toggleHelp: () => void, toggleContr
     { keys: ["ArrowLeft"], shown: "←", does: "one step back (with shift: one second); live: through what was, nothing is undone", act: step(-1) },
     { keys: ["Home"], shown: "home", does: "to the start", act: () => app.seek(scene()?.first_s ?? 0) },
     { keys: ["End"], shown: "end", does: "to the end; live: back to now", act: () => (app.live ? app.goToNow() : app.seek(scene()?.duration_s ?? 0)) },
-    { keys: ["r", "R"], shown: "R", does: "reset: back to the start", act: () => app.send({ type: "reset" }) },
+    { keys: ["r", "R"], shown: "R", does: "reset: back to the start", act: () => app.goToStart() },
     { keys: ["["], shown: "[", does: "slower", act: speed(false) },
     { keys: ["]"], shown: "]", does: "faster", act: speed(true) },
     { keys: ["f", "F"], shown: "F", does: "fit the robot into the view", act: () => view.fit() },

@@ -7,7 +7,7 @@ const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10, 0];
 
 export function timeline(app: App): HTMLElement {
   const play = button(icon("play"), "play or pause (space)", () => app.togglePlay(), "button.play");
-  const back = button(icon("start"), "back to the start (R)", () => app.send({ type: "reset" }));
+  const back = button(icon("start"), "back to the start (R)", () => app.goToStart());
   const stepBack = button(icon("back"), "one step back (left arrow)", () => app.send({ type: "step", count: -1 }));
   const step = button(icon("step"), "one step (right arrow)", () => app.send({ type: "step", count: 1 }));
   const speed = el<HTMLSelectElement>("select", {

@@ -1,0 +1,163 @@
+#include "joined_robots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace taut::viewer {
+namespace {
+
+Vec3 Plus(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+double Dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+bool Same(const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+bool Same(const Quat& a, const Quat& b) {
+  return a.w == b.w && a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/// Two half spaces with one surface.
+bool Same(const PlaneDef& a, const PlaneDef& b) {
+  return Same(a.normal, b.normal) &&
+         std::abs(Dot(a.normal, a.point_m) - Dot(b.normal, b.point_m)) < 1e-12;
+}
+
+bool Same(const TerrainBoxDef& a, const TerrainBoxDef& b) {
+  return Same(a.center_m, b.center_m) && Same(a.orientation, b.orientation) &&
+         Same(a.half_extents_m, b.half_extents_m);
+}
+
+template <class T>
+void AddUnlessThere(std::vector<T>& list, T part) {
+  const auto is_same = [&](const T& other) { return Same(other, part); };
+  if (std::none_of(list.begin(), list.end(), is_same)) list.push_back(std::move(part));
+}
+
+[[noreturn]] void Wrong(const std::string& what) {
+  std::fputs(("taut::Page: " + what + "\n").c_str(), stderr);
+  std::abort();
+}
+
+/// A list may be left out; else it has one entry each.
+template <class T>
+void CheckLength(const std::vector<T>& list, std::size_t wanted, const char* name, int robot) {
+  if (list.empty() || list.size() == wanted) return;
+  Wrong(
+      fmt::format("{} of robot {} has {} entries, the robot {}", name, robot, list.size(), wanted));
+}
+
+double At(const std::vector<double>& list, std::size_t place) {
+  return list.empty() ? Frame::kUnknown : list[place];
+}
+
+}  // namespace
+
+int JoinedRobots::Add(const ModelDef& robot, const std::string& name, const Vec3& at_m) {
+  const std::string prefix = name.empty() ? "" : name + "/";
+  const int first_body = static_cast<int>(joined_.bodies.size());
+  robots_.push_back({at_m, robot, static_cast<int>(joined_.nodes.size()), {}});
+  const auto moved = [&](int body) { return body == kWorld ? kWorld : body + first_body; };
+  for (BodyDef body : robot.bodies) {
+    body.name = prefix + body.name;
+    body.com_m = Plus(body.com_m, at_m);
+    joined_.bodies.push_back(std::move(body));
+  }
+  const auto add = [&](auto part, auto& list, auto... places) {
+    part.name = prefix + part.name;
+    part.body = moved(part.body);
+    ((part.*places = Plus(part.*places, at_m)), ...);
+    list.push_back(std::move(part));
+  };
+  for (const SphereDef& part : robot.spheres) add(part, joined_.spheres, &SphereDef::center_m);
+  for (const CapsuleDef& part : robot.capsules) {
+    add(part, joined_.capsules, &CapsuleDef::from_m, &CapsuleDef::to_m);
+  }
+  for (const BoxDef& part : robot.boxes) add(part, joined_.boxes, &BoxDef::center_m);
+  for (const NodeDef& part : robot.nodes) add(part, joined_.nodes, &NodeDef::position_m);
+  for (CableDef cable : robot.cables) {
+    cable.name = prefix + cable.name;
+    for (AttachmentDef& at : cable.attachments) {
+      at = {moved(at.body), Plus(at.position_m, at_m)};
+    }
+    joined_.cables.push_back(std::move(cable));
+  }
+  AddTerrain(robot, prefix, at_m);
+  return static_cast<int>(robots_.size()) - 1;
+}
+
+void JoinedRobots::AddTerrain(const ModelDef& robot, const std::string& prefix, const Vec3& at_m) {
+  for (PlaneDef plane : robot.planes) {
+    plane.name = prefix + plane.name;
+    plane.point_m = Plus(plane.point_m, at_m);
+    AddUnlessThere(joined_.planes, std::move(plane));
+  }
+  for (TerrainBoxDef box : robot.terrain_boxes) {
+    box.name = prefix + box.name;
+    box.center_m = Plus(box.center_m, at_m);
+    AddUnlessThere(joined_.terrain_boxes, std::move(box));
+  }
+}
+
+void JoinedRobots::Set(int robot, const RobotMoment& moment) {
+  if (robot < 0 || robot >= static_cast<int>(robots_.size())) {
+    Wrong(fmt::format("there is no robot {}, there are {}", robot, robots_.size()));
+  }
+  Robot& own = robots_[static_cast<std::size_t>(robot)];
+  const std::size_t cables = own.def.cables.size();
+  CheckLength(moment.bodies, own.def.bodies.size(), "bodies", robot);
+  CheckLength(moment.tension_n, cables, "tension_n", robot);
+  CheckLength(moment.length_m, cables, "length_m", robot);
+  CheckLength(moment.rest_length_m, cables, "rest_length_m", robot);
+  CheckLength(moment.set_point_n, cables, "set_point_n", robot);
+  CheckLength(moment.node_force_n, own.def.nodes.size(), "node_force_n", robot);
+  own.moment = moment;
+}
+
+std::vector<bool> JoinedRobots::HasSetPoint() const {
+  std::vector<bool> has;
+  for (const Robot& robot : robots_) {
+    has.resize(has.size() + robot.def.cables.size(), !robot.moment.set_point_n.empty());
+  }
+  return has;
+}
+
+void JoinedRobots::FillCables(const Robot& robot, Frame& frame) const {
+  const RobotMoment& now = robot.moment;
+  for (std::size_t c = 0; c < robot.def.cables.size(); ++c) {
+    frame.cables.push_back({At(now.tension_n, c), At(now.length_m, c), At(now.rest_length_m, c),
+                            At(now.set_point_n, c)});
+  }
+}
+
+void JoinedRobots::Fill(Frame& frame) const {
+  frame.bodies.clear();
+  frame.cables.clear();
+  frame.contacts.clear();
+  frame.pushes.clear();
+  frame.energy = {};
+  for (const Robot& robot : robots_) {
+    const RobotMoment& now = robot.moment;
+    for (std::size_t b = 0; b < robot.def.bodies.size(); ++b) {
+      const Vec3& described_m = robot.def.bodies[b].com_m;
+      frame.bodies.push_back(
+          {Plus(now.bodies.empty() ? described_m : now.bodies[b].position_m, robot.at_m),
+           now.bodies.empty() ? Quat{} : now.bodies[b].orientation});
+    }
+    FillCables(robot, frame);
+    frame.energy.kinetic_j += now.energy.kinetic_j;
+    frame.energy.gravity_j += now.energy.gravity_j;
+    frame.energy.elastic_j += now.energy.elastic_j;
+    for (const ContactState& contact : now.contacts) {
+      frame.contacts.push_back({Plus(contact.point_m, robot.at_m), contact.force_n});
+    }
+    for (std::size_t n = 0; n < now.node_force_n.size(); ++n) {
+      const Vec3& force_n = now.node_force_n[n];
+      if (!Same(force_n, {}))
+        frame.pushes.push_back({robot.first_node + static_cast<int>(n), force_n});
+    }
+  }
+  frame.contact_count = static_cast<double>(frame.contacts.size());
+}
+
+}  // namespace taut::viewer

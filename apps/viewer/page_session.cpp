@@ -1,0 +1,143 @@
+#include "page_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace taut::viewer {
+namespace {
+
+constexpr std::chrono::microseconds kFramePeriod{16667};
+/// A page that hears nothing for longer may think that nobody is there.
+constexpr std::chrono::milliseconds kIdlePeriod{250};
+
+}  // namespace
+
+PageSession::PageSession(const std::string& title, double speed, double history_period_s)
+    : Session("program", title), history_period_s_(history_period_s), pace_(speed, false) {}
+
+void PageSession::Begin(const JoinedRobots& robots, const std::vector<ChannelInfo>& values) {
+  ExperimentSpec experiment;
+  experiment.robot.def = robots.def();
+  const std::lock_guard lock(own_mutex_);
+  history_.emplace(robots.def(), robots.HasSetPoint(), history_period_s_, History::kMaxBytes,
+                   values);
+  now_.reset();
+  past_row_.reset();
+  ++run_;
+  Json scene = SceneOf(experiment);
+  for (const ChannelInfo& value : values) scene["values"].push_back(value.name);
+  scene["channels"] = ToJson(history_->channels());
+  new_scene_ = std::move(scene);
+}
+
+void PageSession::Wait(std::unique_lock<std::mutex>& lock, double time_s) {
+  while (!stopping()) {
+    if (pace_.paused()) {
+      if (steps_left_ > 0) {
+        --steps_left_;
+        return;
+      }
+      goes_on_.wait_for(lock, kIdlePeriod);
+    } else {
+      const Clock::time_point due = pace_.DueAt(time_s);
+      if (due <= Clock::now()) return;
+      goes_on_.wait_until(lock, std::min(due, Clock::now() + kIdlePeriod));
+    }
+  }
+}
+
+void PageSession::Show(Frame frame) {
+  std::unique_lock lock(own_mutex_);
+  if (!now_ || frame.time_s < now_->time_s) {
+    if (now_) ++run_;
+    history_->Clear();
+    past_row_.reset();
+    pace_.Anchor(frame.time_s);
+  }
+  Wait(lock, frame.time_s);
+  pace_.At(frame.time_s, Clock::now());
+  frame.now_s = frame.time_s;
+  frame.real_time_factor = pace_.real_time_factor();
+  frame.run = run_;
+  if (history_->IsDue(frame.time_s)) history_->Take(frame);
+  now_ = std::move(frame);
+  changed_ = true;
+}
+
+void PageSession::Handle(int client, const Command& command) {
+  if (command.type == "want_series") {
+    Json series;
+    {
+      const std::lock_guard lock(own_mutex_);
+      if (history_ && history_->size() > 0 && command.source == 0) {
+        series = history_->SeriesOf(command.name, command.t0, command.t1,
+                                    static_cast<std::size_t>(command.points));
+      }
+    }
+    if (series.is_null()) {
+      return SayError(client, fmt::format("there is no channel \"{}\"", command.name));
+    }
+    return Say(client, {{"type", "series"}, {"id", command.id}, {"series", std::move(series)}});
+  }
+  if (Drive(command)) {
+    goes_on_.notify_all();
+  } else {
+    SayError(client, fmt::format("{} does not go with what a program shows", command.type));
+  }
+}
+
+bool PageSession::Drive(const Command& command) {
+  const std::string& type = command.type;
+  if (type == "drop") return true;  // a hand that has gone; it held nothing
+  const std::lock_guard lock(own_mutex_);
+  changed_ = true;
+  const double now_s = now_ ? now_->time_s : 0;
+  if (type == "pause") {
+    pace_.Pause(now_s);
+  } else if (type == "resume") {
+    pace_.Resume(now_s);
+    past_row_.reset();
+    steps_left_ = 0;
+  } else if (type == "speed") {
+    pace_.SetSpeed(command.value, now_s);
+  } else if (type == "step") {
+    pace_.Pause(now_s);
+    if (past_row_ || command.count < 0) {
+      if (now_) past_row_ = history_->Step(past_row_, command.count, now_s);
+    } else {
+      steps_left_ += command.count;
+    }
+  } else if (type == "seek") {
+    pace_.Pause(now_s);
+    if (now_) past_row_ = history_->PastRow(command.value, now_s);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+Session::Clock::time_point PageSession::Work() {
+  const Clock::time_point now = Clock::now();
+  std::optional<Json> scene;
+  std::optional<Frame> frame;
+  {
+    const std::lock_guard lock(own_mutex_);
+    scene = std::exchange(new_scene_, std::nullopt);
+    if (now_ && (changed_ || now - shown_wall_ >= kIdlePeriod)) {
+      frame = now_;
+      frame->speed = pace_.speed();
+      frame->paused = pace_.paused();
+      frame->real_time_factor = pace_.real_time_factor();
+      if (past_row_) history_->Show(*past_row_, *frame);
+      changed_ = false;
+      shown_wall_ = now;
+    }
+  }
+  if (scene) SetScene(*scene, true);
+  if (frame) Publish(std::move(*frame));
+  return now + kFramePeriod;
+}
+
+}  // namespace taut::viewer
