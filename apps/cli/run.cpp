@@ -123,7 +123,7 @@ int Run(const RunArguments& args) {
   }
   if (args.report && found.ok()) {
     const std::string report = folder->Path("report.html");
-    if (viewer::WriteReport(folder->Path("trace.h5"), "", report, found) && !args.quiet) {
+    if (viewer::WriteReport(folder->Path("trace.h5"), {}, report, found) && !args.quiet) {
       fmt::print("Report: {}\n", report);
     }
   }

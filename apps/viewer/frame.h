@@ -38,6 +38,7 @@ struct Frame {
   std::vector<Cable> cables;
   std::vector<Contact> contacts;
   std::vector<OutsideForce> pushes;
+  std::vector<Body> ghosts;  ///< Of compared runs; NaN while a run has no row.
 };
 
 /// Every number of the frame in the order of the definition.

@@ -3,7 +3,7 @@
 
 namespace taut::viewer {
 
-inline constexpr int kProtocolVersion = 3;
+inline constexpr int kProtocolVersion = 4;
 
 /// How a field of a message is written in JSON.
 enum class FieldKind { kString, kNumber, kInteger, kBoolean, kVec3, kChoice };
@@ -65,11 +65,13 @@ enum FrameHeader {
   kFrameContactCount,
   kFrameContactRows,
   kFramePushCount,
+  kFrameGhostCount,
   kFrameHeaderSize,
 };
 inline constexpr int kFrameBodiesValues = 7;
 inline constexpr int kFrameCablesValues = 4;
 inline constexpr int kFrameContactsValues = 6;
 inline constexpr int kFramePushesValues = 4;
+inline constexpr int kFrameGhostsValues = 7;
 
 }  // namespace taut::viewer

@@ -18,7 +18,6 @@ using plant::NodeForce;
 
 ExperimentSpec RecordingAll(ExperimentSpec experiment) {
   experiment.record.channels.clear();
-  experiment.record.contacts = 0;
   return experiment;
 }
 

@@ -39,6 +39,8 @@ export function frameOfScene(scene: Scene): Frame {
   frame.cables = new Float64Array(scene.cables.length * VALUES.cables).fill(NaN);
   frame.contacts = new Float64Array(0);
   frame.pushes = new Float64Array(0);
+  frame.ghost_count = scene.compared.reduce((sum, { bodies }) => sum + bodies.length, 0);
+  frame.ghosts = new Float64Array(frame.ghost_count * VALUES.ghosts).fill(NaN);
   return frame;
 }
 

@@ -18,14 +18,16 @@ export const FRAME = {
     "contact_count", // NaN forces where only the count is known: then `contacts` is empty.
     "contact_rows", // Entries of the section `contacts`.
     "push_count", // Pushes and drags that act.
+    "ghost_count", // Bodies of all ghosts: the same in every frame of a scene.
   ],
   sections: [
     { name: "bodies", count: "body_count", fields: ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"] },
     { name: "cables", count: "cable_count", fields: ["tension_n", "length_m", "rest_length_m", "setpoint_n"] },
     { name: "contacts", count: "contact_rows", fields: ["x_m", "y_m", "z_m", "force_x_n", "force_y_n", "force_z_n"] },
     { name: "pushes", count: "push_count", fields: ["node", "force_x_n", "force_y_n", "force_z_n"] },
+    { name: "ghosts", count: "ghost_count", fields: ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"] },
   ],
 } as const;
 
 /** Numbers of one entry of a section. */
-export const VALUES = { bodies: 7, cables: 4, contacts: 6, pushes: 4 } as const;
+export const VALUES = { bodies: 7, cables: 4, contacts: 6, pushes: 4, ghosts: 7 } as const;

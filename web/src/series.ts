@@ -62,10 +62,10 @@ export class SeriesStore {
     app.link.watch((link) => link === "lost" && this.forget());
   }
 
-  /** The unit of a channel of the run (source 0) or of what it is compared with (1); undefined: there is no such channel. */
+  /** The unit of a channel of the run (source 0) or of the k-th that it is compared with; undefined: there is no such channel. */
   unit(channel: string, source: number): string | undefined {
     const scene = this.app.scene.value;
-    const channels = source === 1 ? scene?.reference?.channels : scene?.channels;
+    const channels = source > 0 ? scene?.compared[source - 1]?.channels : scene?.channels;
     return channels?.find(({ name }) => name === channel)?.unit;
   }
 

@@ -12,7 +12,7 @@ let page;
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), "taut-report-"));
-  page = await openPage(writeReport(report({ scene: { ...scene, reference } }), folder), { width: 1200, height: 800 });
+  page = await openPage(writeReport(report({ scene: { ...scene, compared: [reference] } }), folder), { width: 1200, height: 800 });
 });
 after(async () => {
   await closeBrowser();
@@ -115,7 +115,7 @@ test("WhatIsDrawnCoarserThanTheRowsSaysSo", async () => {
 });
 
 test("AReportWithoutEveryRowSaysWhichRowANumberIsOf", async () => {
-  const long = await openPage(writeReport(report({ scene: { ...scene, reference } }, 8), folder));
+  const long = await openPage(writeReport(report({ scene: { ...scene, compared: [reference] } }, 8), folder));
   await cursorTo(long, 5.033);
   const at_s = 5; // blocks of 8 rows begin every 0.04 s: 5.00, 5.04
   const [contacts, tension] = await numbersBeside(long, ["contacts", "tension:top_1"]);
@@ -132,7 +132,7 @@ test("LinesAreCalledWhatTheyAre", async () => {
   const free = scene.channels.filter(({ name }) => !name.endsWith("/setpoint_n"));
   const robot = { ...reference, name: "a robot (lab/trial_3.h5)", measured: true,
     channels: reference.channels.map((each) => (each.name === "cable/top_0/tension_n" ? { ...each, unit: "lbf" } : each)) };
-  const data = report({ scene: { ...scene, channels: free, reference: robot }, rows: [rowsOf(free.map(({ name }) => name), 0, 1), rowsOf(robot.channels.map(({ name }) => name), 1, 1)] });
+  const data = report({ scene: { ...scene, channels: free, compared: [robot] }, rows: [rowsOf(free.map(({ name }) => name), 0, 1), rowsOf(robot.channels.map(({ name }) => name), 1, 1)] });
   const other = await openPage(writeReport(data, folder));
   assert.deepEqual(await other.locator(".key span").allInnerTexts(), ["measured: a robot (lab/trial_3.h5)", "this run"]);
   const [both, one] = await numbersBeside(other, ["tension:top_1", "tension:top_0"]);
@@ -160,7 +160,7 @@ test("PlotsAreSavedAsSvgPngAndCsv", async () => {
   const row = csv.find((line) => line.startsWith("5,")).split(",").map(Number);
   assert.equal(row[names.indexOf("cable/top_1/tension_n")], tension_n(4, 5));
   assert.ok(names.some((name) => /tension_n:min of [0-9]+ rows/.test(name)), csv[0]);
-  assert.ok(names.includes("reference:cable/top_1/tension_n") && names.includes("cable/top_1/setpoint_n"));
+  assert.ok(names.includes("another prism (runs/trace.h5):cable/top_1/tension_n") && names.includes("cable/top_1/setpoint_n"));
   await picture(page, "report", { fullPage: true });
 });
 
@@ -188,7 +188,7 @@ test("AxesFitWhatTheyShow", async () => {
 });
 
 for (const [what, data, says] of [
-  ["OfAnotherVersion", { ...report(), version: 7 }, /version 7, this page reads version 3/],
+  ["OfAnotherVersion", { ...report(), version: 7 }, /version 7, this page reads version 4/],
   ["CutOff", { ...report(), frame_count: 3 }, /holds \d+ numbers of frames, not 3 times/],
   ["WithTooFewRows", { ...report(), rows: [{ ...report().rows[0], count: 3 }] }, /holds \d+ numbers of rows, not \d+/],
 ]) {
