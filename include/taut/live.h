@@ -76,8 +76,7 @@ class LiveRun {
 
   // --- recording ---------------------------------------------------------------------------
   /// The channels that an experiment records which asks for none, then hand/drag/... and
-  /// hand/push/...: which node
-  /// (-1: none) and the force on it.
+  /// hand/push/...: which node (-1: none) and the force on it.
   virtual const std::vector<ChannelInfo>& channels() const = 0;
   /// The present row; valid until the next call.
   virtual const std::vector<double>& Row() = 0;

@@ -146,7 +146,7 @@ struct Tick {
   const std::int64_t* number = nullptr;
 };
 
-/// What controllers and sensors are made for.
+/// What controllers and sensors are made for. The lanes' variants are there while they are made.
 struct ControlSetup {
   const ExperimentSpec& experiment;
   std::span<const RolloutWorld* const> lanes;  ///< One variant of the experiment a lane.

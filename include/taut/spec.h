@@ -116,6 +116,11 @@ struct GaitInputSpec {
   double blend_s = 0.5;
 };
 
+/// A gait of an input, as `GaitChange::gait` counts them.
+inline const GaitSpec& GaitOf(const GaitInputSpec& input, std::size_t number) {
+  return number == 0 ? input.gait : input.others[number - 1];
+}
+
 struct ControllerSpec {
   std::string name;
   ClockSpec clock;

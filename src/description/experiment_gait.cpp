@@ -58,10 +58,6 @@ class GaitFiles {
   std::vector<Known> known_;
 };
 
-const GaitSpec& GaitOf(const GaitInputSpec& input, std::size_t number) {
-  return number == 0 ? input.gait : input.others[number - 1];
-}
-
 void CheckQuantity(const GaitSpec& gait, const GaitInputKind& kind, const SourceRef& at,
                    Diagnostics& out) {
   if (gait.drives == kind.drives) return;

@@ -2,21 +2,11 @@
 
 #include "plant/controller_kinds.h"
 #include "plant/gait_kinds.h"
+#include "plant/schedule.h"
 #include "taut/control/clock.h"
 
 namespace taut::plant {
 namespace {
-
-constexpr double kTimeToleranceS = 1e-9;
-
-const GaitInputSpec* InputOf(const ControllerSpec& spec) {
-  if (spec.impedance && spec.velocity_input) return &*spec.velocity_input;
-  return spec.impedance || !spec.rest_length_input ? nullptr : &*spec.rest_length_input;
-}
-
-const GaitSpec& GaitOf(const GaitInputSpec& input, std::size_t number) {
-  return number == 0 ? input.gait : input.others[number - 1];
-}
 
 /// How much of a new gait is there at a part of the blend, 0 to 1: with its first two derivatives
 /// continuous (docs/theory/gaits.md).
@@ -30,27 +20,27 @@ class GaitController final : public Controller {
  public:
   GaitController(const ControlSetup& setup, std::size_t index)
       : index_(index), robot_(setup.experiment.robot), lanes_(setup.lanes.size()) {
-    const GaitInputSpec& input = *InputOf(setup.lanes[0]->controllers[index]);
+    const GaitInputSpec& input = *GaitInputOf(setup.lanes[0]->controllers[index]);
     clock_ = input.clock;
     blend_s_ = input.blend_s;
     for (std::size_t g = 0; g <= input.others.size(); ++g) {
       GaitSetup gaits;
       gaits.period_s = clock_.period_s;
       for (const RolloutWorld* lane : setup.lanes) {
-        gaits.gaits.push_back(&GaitOf(*InputOf(lane->controllers[index]), g));
+        gaits.gaits.push_back(&GaitOf(*GaitInputOf(lane->controllers[index]), g));
         gaits.resolved.push_back(Resolved(*gaits.gaits.back()));
       }
       players_.push_back(PlayerOf(gaits));
     }
     for (std::size_t j = 0; j < lanes_.size(); ++j) {
-      lanes_[j].changes = InputOf(setup.lanes[j]->controllers[index])->changes;
+      lanes_[j].changes = GaitInputOf(setup.lanes[j]->controllers[index])->changes;
     }
   }
 
   ClockSpec clock() const override { return clock_; }
 
   void Restart(int lane, const RolloutWorld& world) override {
-    const GaitInputSpec& input = *InputOf(world.controllers[index_]);
+    const GaitInputSpec& input = *GaitInputOf(world.controllers[index_]);
     for (std::size_t g = 0; g < players_.size(); ++g) {
       const GaitSpec& gait = GaitOf(input, g);
       players_[g]->Restart(lane, gait, Resolved(gait));
@@ -186,7 +176,7 @@ class GaitController final : public Controller {
 }  // namespace
 
 std::unique_ptr<Controller> MakeGait(const ControlSetup& setup, std::size_t index) {
-  if (InputOf(setup.lanes[0]->controllers[index]) == nullptr) return nullptr;
+  if (GaitInputOf(setup.lanes[0]->controllers[index]) == nullptr) return nullptr;
   return std::make_unique<GaitController>(setup, index);
 }
 

@@ -2,15 +2,14 @@
 #include <cmath>
 
 #include "plant/gait_kinds.h"
+#include "plant/schedule.h"
 
 namespace taut::plant {
 namespace {
 
 /// The row that holds at `time_s`, which is not before the first.
 std::size_t RowAt(const std::vector<double>& times_s, double time_s) {
-  // A tick and a row that are one rounding apart are at one time.
-  const double tolerance_s = 1e-9;
-  const auto after = std::upper_bound(times_s.begin(), times_s.end(), time_s + tolerance_s);
+  const auto after = std::upper_bound(times_s.begin(), times_s.end(), time_s + kTimeToleranceS);
   return static_cast<std::size_t>(after - times_s.begin()) - 1;
 }
 

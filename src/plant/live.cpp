@@ -1,7 +1,6 @@
 #include "taut/live.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -27,9 +26,7 @@ class Live final : public LiveRun {
       : experiment_(RecordingAll(experiment)),
         batch_(std::move(batch)),
         plant_(PlantOf(batch_)),
-        variant_(WorldOf(experiment_)),
-        loop_(experiment_, std::array{static_cast<const RolloutWorld*>(&variant_)}, *plant_,
-              brought),
+        loop_(experiment_, *plant_, brought),
         recorder_(experiment_),
         channels_(recorder_.channels()) {
     for (const char* hand : {"hand/drag/", "hand/push/"}) {
@@ -169,7 +166,6 @@ class Live final : public LiveRun {
   ExperimentSpec experiment_;
   Batch batch_;
   std::unique_ptr<Plant> plant_;
-  RolloutWorld variant_;
   plant::Loop loop_;
   plant::Recorder recorder_;
   std::vector<ChannelInfo> channels_;

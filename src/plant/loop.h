@@ -2,6 +2,7 @@
 /// step. Each lane has clocks of its own. Who calls decides when to record, to show and to stop.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -20,6 +21,9 @@ class Loop {
   /// the loop.
   Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const> lanes, Plant& plant,
        const Brought& brought);
+  /// One lane, under the experiment as it is.
+  Loop(const ExperimentSpec& experiment, Plant& plant, const Brought& brought = {})
+      : Loop(experiment, plant, brought, WorldOf(experiment)) {}
 
   /// Lets sensors and controllers act where they are due. The next Step does so, too; a row that is
   /// recorded at the start wants their first commands.
@@ -57,6 +61,10 @@ class Loop {
   void SetRestLength(int cable, double rest_length_m);
 
  private:
+  Loop(const ExperimentSpec& experiment, Plant& plant, const Brought& brought,
+       const RolloutWorld& world)
+      : Loop(experiment, std::array{&world}, plant, brought) {}
+
   struct Sensor {
     std::unique_ptr<SensorModel> model;
     LaneClock clock;

@@ -4,54 +4,24 @@
 
 #include "base/pattern.h"
 #include "math/vec.h"
+#include "plant/body_channels.h"
+#include "plant/center_of_mass.h"
 #include "plant/channels.h"
+#include "plant/set_points.h"
 #include "taut/run.h"
 
 namespace taut::plant {
 
 namespace {
 
-void FillBody(const Bodies& bodies, int body, double* out) {
-  const BodyState b = bodies.Body(0, body);
-  Put(b.position_m, out);
-  out[3] = b.orientation.w;
-  out[4] = b.orientation.x;
-  out[5] = b.orientation.y;
-  out[6] = b.orientation.z;
-  Put(b.velocity_m_per_s, out + 7);
-  Put(b.angular_velocity_rad_per_s, out + 10);
-}
-
-Vec3 CenterOfMass(const World& world, int body_count) {
-  Vec3 sum;
-  double mass = 0;
-  for (int b = 0; b < body_count; ++b) {
-    const double m = world.BodyMass(0, b);
-    sum = sum + m * world.Body(0, b).position_m;
-    mass += m;
-  }
-  return (mass > 0 ? 1 / mass : 0) * sum;
-}
-
-void FillSystem(const World& world, int body_count, double* out) {
+void FillSystem(const World& world, std::size_t body_count, double* out) {
   const Energy e = world.TotalEnergy(0);
   out[0] = e.kinetic_j;
   out[1] = e.gravity_j;
   out[2] = e.elastic_j;
   out[3] = static_cast<double>(world.Contacts(0).size());
   out[4] = world.Status(0).residual_m_per_s;
-  Put(CenterOfMass(world, body_count), out + 5);
-}
-
-/// Whether the impedance law drives a cable; without it there is no set point to record.
-bool UnderImpedance(const ExperimentSpec& experiment, int cable) {
-  return std::any_of(
-      experiment.controllers.begin(), experiment.controllers.end(), [&](const auto& controller) {
-        if (!controller.impedance) return false;
-        const auto& gains = controller.impedance->cables;
-        return std::any_of(gains.begin(), gains.end(),
-                           [&](const ImpedanceGains& each) { return each.cable == cable; });
-      });
+  Put(CenterOfMass(world, 0, body_count), out + 5);
 }
 
 }  // namespace
@@ -61,11 +31,12 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
   const ModelDef& def = experiment.robot.def;
   const bool has_bodies = plant == nullptr || plant->Observe().bodies != nullptr;
   const bool is_world = plant == nullptr || plant->world() != nullptr;
+  const std::vector<int> with_set_point = CablesWithSetPoints(experiment.controllers);
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
     std::vector<ChannelInfo> names = {{"tension_n", "N"},     {"elastic_n", "N"},
                                       {"length_m", "m"},      {"rate_m_per_s", "m/s"},
                                       {"rest_length_m", "m"}, {"target_rest_length_m", "m"}};
-    if (UnderImpedance(experiment, static_cast<int>(c))) {
+    if (std::binary_search(with_set_point.begin(), with_set_point.end(), static_cast<int>(c))) {
       names.push_back({"setpoint_n", "N"});
       names.push_back({"velocity_input_m_per_s", "m/s"});
     }
@@ -94,23 +65,9 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
         });
   }
   for (std::size_t b = 0; has_bodies && b < def.bodies.size(); ++b) {
-    Add("body/" + def.bodies[b].name + "/",
-        {{"position_x_m", "m"},
-         {"position_y_m", "m"},
-         {"position_z_m", "m"},
-         {"orientation_w", "1"},
-         {"orientation_x", "1"},
-         {"orientation_y", "1"},
-         {"orientation_z", "1"},
-         {"velocity_x_m_per_s", "m/s"},
-         {"velocity_y_m_per_s", "m/s"},
-         {"velocity_z_m_per_s", "m/s"},
-         {"angular_velocity_x_rad_per_s", "rad/s"},
-         {"angular_velocity_y_rad_per_s", "rad/s"},
-         {"angular_velocity_z_rad_per_s", "rad/s"}},
-        [b](const RecordSource& s, double* out) {
-          FillBody(*s.exact->bodies, static_cast<int>(b), out);
-        });
+    Add("body/" + def.bodies[b].name + "/", kBodyChannels, [b](const RecordSource& s, double* out) {
+      PutBody(s.exact->bodies->Body(0, static_cast<int>(b)), out);
+    });
   }
   for (std::size_t i = 0; is_world && i < experiment.pushes.size(); ++i) {
     Add("push/" + experiment.pushes[i].name + "/", {{"force_n", "N"}},
@@ -138,7 +95,7 @@ void Recorder::AddSystem(const ModelDef& def) {
        {"com_x_m", "m"},
        {"com_y_m", "m"},
        {"com_z_m", "m"}},
-      [count = static_cast<int>(def.bodies.size())](const RecordSource& s, double* out) {
+      [count = def.bodies.size()](const RecordSource& s, double* out) {
         FillSystem(*s.world, count, out);
       });
 }

@@ -3,28 +3,19 @@
 #include <limits>
 
 #include "math/vec.h"
+#include "plant/body_channels.h"
+#include "plant/command_rows.h"
+#include "plant/schedule.h"
 #include "taut/plant.h"
 
 namespace taut {
 namespace {
 
-constexpr double kTimeToleranceS = 1e-9;  // times are sums of steps
+using plant::kTimeToleranceS;
+
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-const char* const kBodyChannels[] = {"position_x_m",
-                                     "position_y_m",
-                                     "position_z_m",
-                                     "orientation_w",
-                                     "orientation_x",
-                                     "orientation_y",
-                                     "orientation_z",
-                                     "velocity_x_m_per_s",
-                                     "velocity_y_m_per_s",
-                                     "velocity_z_m_per_s",
-                                     "angular_velocity_x_rad_per_s",
-                                     "angular_velocity_y_rad_per_s",
-                                     "angular_velocity_z_rad_per_s"};
-constexpr std::size_t kBodyChannelCount = std::size(kBodyChannels);
+const std::size_t kBodyNumbers = plant::kBodyChannels.size();
 
 /// A log as a plant: what was read is read again; what is commanded goes nowhere.
 class ReplayPlant final : public Plant, public Bodies {
@@ -33,18 +24,17 @@ class ReplayPlant final : public Plant, public Bodies {
       : trace_(trace),
         robot_(robot),
         cables_(robot.def.cables.size()),
-        rows_(10 * cables_),
+        rows_(7 * cables_),
         columns_(5 * cables_, kNone),
         faults_(cables_),
-        mode_(cables_) {
+        command_rows_(cables_, 1),
+        commands_(command_rows_.With(Row(6))) {
     seen_.time_s = &time_s_;
     seen_.cables = {Row(0), Row(1), Row(2), Row(3), Row(4), Row(5)};
     seen_.faults = faults_.data();
-    commands_ = {1, Row(6), Row(7), Row(8), Row(9), mode_.data(), &gait_};
     for (std::size_t c = 0; c < cables_; ++c) {
       const CableDef& cable = robot.def.cables[c];
       Row(5)[c] = cable.stiffness_n_per_m;
-      Row(6)[c] = cable.rest_length_m;
       std::size_t i = 0;
       for (const char* name :
            {"rest_length_m", "length_m", "rate_m_per_s", "tension_n", "elastic_n"}) {
@@ -53,8 +43,8 @@ class ReplayPlant final : public Plant, public Bodies {
     }
     bool known = !robot.def.bodies.empty();
     for (const BodyDef& body : robot.def.bodies) {
-      for (const char* name : kBodyChannels) {
-        body_columns_.push_back(ColumnOf("body/" + body.name + "/" + name));
+      for (const ChannelInfo& channel : plant::kBodyChannels) {
+        body_columns_.push_back(ColumnOf("body/" + body.name + "/" + channel.name));
         known = known && body_columns_.back() != kNone;
       }
     }
@@ -79,6 +69,8 @@ class ReplayPlant final : public Plant, public Bodies {
   void Restart(int) override {
     time_s_ = 0;
     row_ = 0;
+    command_rows_.Restart(0);
+    for (std::size_t c = 0; c < cables_; ++c) Row(6)[c] = robot_.def.cables[c].rest_length_m;
     Read();
   }
 
@@ -87,24 +79,24 @@ class ReplayPlant final : public Plant, public Bodies {
   }
 
   BodyState Body(int, int body) const override {
-    double x[kBodyChannelCount];
-    for (std::size_t i = 0; i < kBodyChannelCount; ++i) {
-      const std::size_t at = static_cast<std::size_t>(body) * kBodyChannelCount + i;
-      x[i] = trace_.values[body_columns_[at]][row_];
+    plant::BodyNumbers x;
+    const std::size_t first = static_cast<std::size_t>(body) * kBodyNumbers;
+    for (std::size_t i = 0; i < kBodyNumbers; ++i) {
+      x[i] = trace_.values[body_columns_[first + i]][row_];
     }
-    return {
-        {x[0], x[1], x[2]}, {x[3], x[4], x[5], x[6]}, {x[7], x[8], x[9]}, {x[10], x[11], x[12]}};
+    return plant::BodyFrom(x);
   }
   Vec3 NodePosition(int, int node) const override {
     const NodeDef& def = robot_.def.nodes[static_cast<std::size_t>(node)];
     if (def.body == kWorld) return def.position_m;
-    return Body(0, def.body).position_m + ArmOf(def);
+    const BodyState body = Body(0, def.body);
+    return body.position_m + ArmOf(def, body);
   }
   Vec3 NodeVelocity(int, int node) const override {
     const NodeDef& def = robot_.def.nodes[static_cast<std::size_t>(node)];
     if (def.body == kWorld) return {};
     const BodyState body = Body(0, def.body);
-    return body.velocity_m_per_s + Cross(body.angular_velocity_rad_per_s, ArmOf(def));
+    return body.velocity_m_per_s + Cross(body.angular_velocity_rad_per_s, ArmOf(def, body));
   }
 
  private:
@@ -112,9 +104,9 @@ class ReplayPlant final : public Plant, public Bodies {
   double TimeOf(std::size_t row) const { return trace_.time_s[row] - trace_.time_s[0]; }
   std::size_t ColumnOf(const std::string& name) const { return trace_.Find(name).value_or(kNone); }
 
-  Vec3 ArmOf(const NodeDef& node) const {
-    const BodyDef& body = robot_.def.bodies[static_cast<std::size_t>(node.body)];
-    return Rotate(Body(0, node.body).orientation, node.position_m - body.com_m);
+  Vec3 ArmOf(const NodeDef& node, const BodyState& body) const {
+    const BodyDef& def = robot_.def.bodies[static_cast<std::size_t>(node.body)];
+    return Rotate(body.orientation, node.position_m - def.com_m);
   }
 
   /// What a row lacks stays as it was, with a fault.
@@ -137,15 +129,14 @@ class ReplayPlant final : public Plant, public Bodies {
   const Trace& trace_;
   const RobotSpec& robot_;
   std::size_t cables_;
-  std::vector<double> rows_;  ///< Six readings, four commands.
+  std::vector<double> rows_;  ///< Six readings, and the rest lengths that are commanded.
   std::vector<std::size_t> columns_, body_columns_;
   std::vector<std::uint32_t> faults_;
-  std::vector<CommandMode> mode_;
-  int gait_ = -1;
+  plant::CommandRows command_rows_;
+  Commands commands_;
   double time_s_ = 0;
   std::size_t row_ = 0;
   Observation seen_;
-  Commands commands_;
 };
 
 }  // namespace

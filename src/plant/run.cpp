@@ -1,7 +1,6 @@
 #include "taut/run.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -36,9 +35,7 @@ class Runner {
   Runner(const ExperimentSpec& experiment, const RunOptions& options, Plant& plant)
       : experiment_(experiment),
         options_(options),
-        variant_(WorldOf(experiment)),
-        loop_(experiment, std::array{static_cast<const RolloutWorld*>(&variant_)}, plant,
-              options.brought),
+        loop_(experiment, plant, options.brought),
         recorder_(experiment, &plant),
         statistics_(experiment) {}
 
@@ -119,7 +116,6 @@ class Runner {
 
   const ExperimentSpec& experiment_;
   const RunOptions& options_;
-  RolloutWorld variant_;
   plant::Loop loop_;
   plant::Recorder recorder_;
   plant::Statistics statistics_;

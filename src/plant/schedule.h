@@ -9,6 +9,9 @@
 
 namespace taut::plant {
 
+/// Times are sums of steps: two that are no further apart are one.
+inline constexpr double kTimeToleranceS = 1e-9;
+
 class Schedule {
  public:
   Schedule(double step_s, double duration_s) : wanted_s_(step_s), duration_s_(duration_s) {}

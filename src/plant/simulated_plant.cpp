@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "base/assert.h"
+#include "plant/command_rows.h"
 #include "taut/plant.h"
 
 namespace taut {
@@ -12,25 +13,15 @@ class SimulatedPlant final : public Plant, public World {
   explicit SimulatedPlant(Batch& batch)
       : batch_(batch),
         lanes_(static_cast<std::size_t>(batch.lanes())),
-        cables_(batch.model().def().cables.size()),
         time_s_(lanes_),
-        set_point_n_(cables_ * lanes_),
-        velocity_input_m_per_s_(cables_ * lanes_),
-        signal_(cables_ * lanes_),
-        mode_(cables_ * lanes_, CommandMode::kRestLength),
-        gait_(lanes_, -1),
-        goes_(static_cast<std::size_t>(batch.worlds())) {
+        goes_(static_cast<std::size_t>(batch.worlds())),
+        rows_(batch.model().def().cables.size(), lanes_),
+        commands_(rows_.With(batch.Cables(0).rest_length_target_m)) {
     TAUT_ASSERT(batch.groups() == 1);
-    seen_.lanes = commands_.lanes = batch.lanes();
+    seen_.lanes = batch.lanes();
     seen_.time_s = time_s_.data();
     seen_.bodies = this;
     seen_.cables = batch.Cables(0);
-    commands_.rest_length_m = batch.Cables(0).rest_length_target_m;
-    commands_.set_point_n = set_point_n_.data();
-    commands_.velocity_input_m_per_s = velocity_input_m_per_s_.data();
-    commands_.signal = signal_.data();
-    commands_.mode = mode_.data();
-    commands_.gait = gait_.data();
   }
 
   const Observation& Observe() override {
@@ -51,13 +42,8 @@ class SimulatedPlant final : public Plant, public World {
   }
 
   void Restart(int lane) override {
-    const auto j = static_cast<std::size_t>(lane);
-    time_s_[j] = 0;
-    gait_[j] = -1;
-    for (std::size_t i = j; i < signal_.size(); i += lanes_) {
-      set_point_n_[i] = velocity_input_m_per_s_[i] = signal_[i] = 0;
-      mode_[i] = CommandMode::kRestLength;
-    }
+    time_s_[static_cast<std::size_t>(lane)] = 0;
+    rows_.Restart(lane);
   }
 
   bool Goes(int lane) const override { return (batch_.Status(lane).bits & kStatusNonFinite) == 0; }
@@ -81,11 +67,12 @@ class SimulatedPlant final : public Plant, public World {
  private:
   /// Actuators that are to stay where they are: their target is where they are.
   void Hold() {
+    const std::vector<CommandMode>& modes = rows_.mode();
     CommandMode most = CommandMode::kRestLength;
-    for (const CommandMode mode : mode_) most = mode > most ? mode : most;
+    for (const CommandMode mode : modes) most = mode > most ? mode : most;
     if (most < CommandMode::kHold) return;
-    for (std::size_t i = 0; i < mode_.size(); ++i) {
-      if (mode_[i] < CommandMode::kHold) continue;
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      if (modes[i] < CommandMode::kHold) continue;
       commands_.rest_length_m[i] = seen_.cables.rest_length_m[i];
     }
   }
@@ -103,13 +90,12 @@ class SimulatedPlant final : public Plant, public World {
   }
 
   Batch& batch_;
-  std::size_t lanes_, cables_;
-  std::vector<double> time_s_, set_point_n_, velocity_input_m_per_s_, signal_;
-  std::vector<CommandMode> mode_;
-  std::vector<int> gait_;
+  std::size_t lanes_;
+  std::vector<double> time_s_;
   std::vector<std::uint8_t> goes_;
-  Observation seen_;
+  plant::CommandRows rows_;
   Commands commands_;
+  Observation seen_;
 };
 
 }  // namespace

@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plant/schedule.h"
+
 namespace taut::plant {
 namespace {
 
 /// The start-up transient is over by then: NTRT's own figures make the same cut.
 constexpr double kStartIsOverS = 5.0;
-/// Times are sums of steps; a phase that ends at 30 s includes the step that ends there.
-constexpr double kTimeToleranceS = 1e-9;
 
+/// A phase that ends at 30 s includes the step that ends there.
 bool Within(double time_s, double from_s, double to_s) {
   return time_s >= from_s - kTimeToleranceS && time_s <= to_s + kTimeToleranceS;
 }

@@ -6,11 +6,14 @@
 
 #include "math/elementary.h"
 #include "math/vec.h"
+#include "plant/center_of_mass.h"
+#include "plant/set_points.h"
 
 namespace taut::rollout {
 namespace {
 
-constexpr double kTimeToleranceS = 1e-9;  // times are sums of steps
+using plant::kTimeToleranceS;
+
 constexpr double kLookPeriodS = 0.1;
 
 std::string Seconds(double time_s) {
@@ -34,16 +37,7 @@ Scorer::Scorer(const ExperimentSpec& experiment, const ObjectiveSpec& objective,
   for (const CableDef& cable : def.cables) {
     motor_.push_back(cable.actuator.kind == ActuatorDef::Kind::kNone ? 0.0 : 1.0);
   }
-  for (std::size_t b = 0; b < def.bodies.size(); ++b) {
-    for (int j = 0; j < loop.lanes(); ++j) {
-      mass_kg_.push_back(world_.BodyMass(j, static_cast<int>(b)));
-    }
-  }
-  for (const ControllerSpec& controller : experiment.controllers) {
-    if (!controller.impedance) continue;
-    for (const ImpedanceGains& gains : controller.impedance->cables) driven_.push_back(gains.cable);
-  }
-  std::sort(driven_.begin(), driven_.end());
+  driven_ = plant::CablesWithSetPoints(experiment.controllers);
   wound_j_.resize(lanes);
   max_tension_n_.resize(lanes);
   error_n2_s_.resize(lanes);
@@ -120,15 +114,7 @@ bool Scorer::AnyAlive(int count) const {
 }
 
 Vec3 Scorer::CenterOfMass(int lane) const {
-  Vec3 sum;
-  double mass = 0;
-  const int lanes = loop_.lanes();
-  for (int b = 0; b * lanes < static_cast<int>(mass_kg_.size()); ++b) {
-    const double m = mass_kg_[static_cast<std::size_t>(b * lanes + lane)];
-    sum = sum + m * world_.Body(lane, b).position_m;
-    mass += m;
-  }
-  return (mass > 0 ? 1 / mass : 0) * sum;
+  return plant::CenterOfMass(world_, lane, experiment_.robot.def.bodies.size());
 }
 
 RolloutResult Scorer::Result(int j) const {

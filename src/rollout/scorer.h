@@ -40,7 +40,6 @@ class Scorer {
   std::vector<int> driven_;    ///< Cables that have set points, ascending.
   std::vector<double> rest_before_m_, wound_j_, max_tension_n_, error_n2_s_;
   std::vector<std::optional<Vec3>> start_m_;  ///< Centre of mass at `from_s`.
-  std::vector<double> mass_kg_;               ///< Body b of lane j at [b * lanes + j].
   std::vector<std::optional<double>> fell_s_;
   std::vector<std::string> failed_;
   std::int64_t looks_ = 0;

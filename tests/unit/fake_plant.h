@@ -1,17 +1,21 @@
 /// A plant that is none: what it observes is set by hand. One lane.
 #pragma once
 
+#include "plant/command_rows.h"
 #include "taut/plant.h"
 
 namespace taut::test {
 
 class FakePlant final : public Plant {
  public:
-  explicit FakePlant(std::size_t cables) : cables_(cables), rows_(10 * cables), mode_(cables) {
+  explicit FakePlant(std::size_t cables)
+      : cables_(cables),
+        rows_(7 * cables),
+        command_rows_(cables, 1),
+        commands_(command_rows_.With(rows_.data() + 6 * cables)) {
     const auto row = [&](int i) { return rows_.data() + static_cast<std::ptrdiff_t>(cables) * i; };
     seen_.time_s = &time_s;
     seen_.cables = {row(0), row(1), row(2), row(3), row(4), row(5)};
-    commands_ = {1, row(6), row(7), row(8), row(9), mode_.data(), &gait_};
   }
   /// Every cable reads this from now on.
   void Show(const CableState& state) {
@@ -33,10 +37,9 @@ class FakePlant final : public Plant {
  private:
   std::size_t cables_;
   std::vector<double> rows_;
-  std::vector<CommandMode> mode_;
-  int gait_ = -1;
-  Observation seen_;
+  plant::CommandRows command_rows_;
   Commands commands_;
+  Observation seen_;
 };
 
 }  // namespace taut::test

@@ -63,9 +63,7 @@ struct Played {
     experiment.controllers = {controller};
     FakePlant plant(experiment.robot.def.cables.size());
     plant.Show({0.15, 0.2, 0.0, 10.0, 10.0, 229.16});
-    const RolloutWorld world = WorldOf(experiment);
-    const RolloutWorld* const lanes[] = {&world};
-    plant::Loop loop(experiment, lanes, plant, brought);
+    plant::Loop loop(experiment, plant, brought);
     while (loop.time_s() < duration_s - 1e-9) {
       time_s.push_back(loop.time_s());
       loop.Step();
@@ -210,9 +208,7 @@ TEST(RestLengthGait, IsAddedToTheProgramOrToTheStart) {
   for (std::size_t c = 0; c < experiment.robot.def.cables.size(); ++c) {
     plant.commands().rest_length_m[c] = 0.15;
   }
-  const RolloutWorld world = WorldOf(experiment);
-  const RolloutWorld* const lanes[] = {&world};
-  plant::Loop loop(experiment, lanes, plant, {});
+  plant::Loop loop(experiment, plant);
   while (loop.time_s() < 0.7505) loop.Step();
   const double wave_m = 0.01 * std::cos(kTwoPi * 0.5 * 0.75);
   EXPECT_NEAR(plant.commands().rest_length_m[cables[0]], 0.15 + wave_m, 1e-12);

@@ -223,9 +223,7 @@ TEST(GaitPlayer, TheGaitActsBeforeTheLawThatItFeeds) {
   experiment.duration_s = 1.0;
   FakePlant plant(robot.def.cables.size());
   plant.Show({0.15, 0.2, 0.0, 10.0, 10.0, 229.16});
-  const RolloutWorld world = WorldOf(experiment);
-  const RolloutWorld* const lanes[] = {&world};
-  plant::Loop loop(experiment, lanes, plant, {});
+  plant::Loop loop(experiment, plant);
   loop.Step();
   // the cable's own offset and the gait's, in the first tick already: T0 + B (0 - V0)
   EXPECT_EQ(plant.commands().velocity_input_m_per_s[cable], 0.01 + 0.1);

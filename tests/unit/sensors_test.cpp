@@ -210,9 +210,7 @@ TEST(Sensors, NoiseDoesNotDependOnTheStep) {
     experiment->step_s = step_s;
     Batch batch(Model::Compile(experiment->robot.def, out), {});
     const auto plant = PlantOf(batch);
-    const RolloutWorld world = WorldOf(*experiment);
-    const RolloutWorld* const lanes[] = {&world};
-    Loop loop(*experiment, lanes, *plant, {});
+    Loop loop(*experiment, *plant);
     while (loop.time_s() < 0.1 - 1e-9) loop.Step();
     const double exact_n = loop.exact().Cable(3).tension_n;
     loop.Prepare();

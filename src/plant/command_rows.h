@@ -1,0 +1,51 @@
+/// What commands point to, for plants that have no place of their own for it.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "taut/plant.h"
+
+namespace taut::plant {
+
+class CommandRows {
+ public:
+  CommandRows(std::size_t cables, std::size_t lanes)
+      : lanes_(lanes),
+        set_point_n_(cables * lanes),
+        velocity_input_m_per_s_(cables * lanes),
+        signal_(cables * lanes),
+        mode_(cables * lanes, CommandMode::kRestLength),
+        gait_(lanes, -1) {}
+
+  /// `rest_length_m`: the plant's own row. Valid while this neither moves nor goes.
+  Commands With(double* rest_length_m) {
+    return {static_cast<int>(lanes_),
+            rest_length_m,
+            set_point_n_.data(),
+            velocity_input_m_per_s_.data(),
+            signal_.data(),
+            mode_.data(),
+            gait_.data()};
+  }
+
+  /// All but the rest lengths of a lane are those of a start.
+  void Restart(int lane) {
+    const auto j = static_cast<std::size_t>(lane);
+    gait_[j] = -1;
+    for (std::size_t i = j; i < mode_.size(); i += lanes_) {
+      set_point_n_[i] = velocity_input_m_per_s_[i] = signal_[i] = 0;
+      mode_[i] = CommandMode::kRestLength;
+    }
+  }
+
+  const std::vector<CommandMode>& mode() const noexcept { return mode_; }
+
+ private:
+  std::size_t lanes_;
+  std::vector<double> set_point_n_, velocity_input_m_per_s_, signal_;
+  std::vector<CommandMode> mode_;
+  std::vector<int> gait_;
+};
+
+}  // namespace taut::plant
