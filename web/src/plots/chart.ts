@@ -70,7 +70,7 @@ export class Chart {
     const texts = this.figure.lines.map((line, i) => {
       const row = rows[i]!;
       if (row && row.every > 1) away_s = row.time_s;
-      const title = row ? `${line.label}: ${row.value} ${unit} in the row at ${row.time_s} s` : line.label;
+      const title = row && Number.isNaN(row.time_s) ? `${line.label}: no row at this time` : row ? `${line.label}: ${row.value} ${unit} in the row at ${row.time_s} s` : line.label;
       const shown = el("span", { title }, row ? number(row.value, DIGITS) : "…");
       shown.style.color = ink(colours, line.ink);
       return shown;

@@ -25,7 +25,7 @@ export class Differences {
       const [a, b] = [rows[of], rows[own]];
       const shown = el("span", {}, a && b ? signed(number(a.value - b.value, DIGITS)) : "…");
       shown.style.color = ink(palette(theme), this.lines[of]!.ink);
-      if (a && b) shown.title = `${this.lines[of]!.label} minus this run: ${a.value - b.value} ${this.figure.unit}; rows at ${a.time_s} s and ${b.time_s} s`;
+      if (a && b && !Number.isNaN(a.time_s)) shown.title = `${this.lines[of]!.label} minus this run: ${a.value - b.value} ${this.figure.unit}; rows at ${a.time_s} s and ${b.time_s} s`;
       return shown;
     });
     this.element.replaceChildren("less this run: ", ...texts.flatMap((text) => [text, " "]), this.figure.unit);

@@ -67,6 +67,7 @@ function farthest({ channels }: Comparison, names: RegExp): Channel | undefined 
 function where(channel: Channel | undefined, names: RegExp, unit: string): string {
   if (!channel) return "–";
   const { value, time_s } = channel.max_error;
+  if (value === 0) return `0 ${unit}`;
   const of = names === TENSION ? names.exec(channel.name)![1]! : channel.name.split("/").slice(1).join(" ").replace(/_m$/, "").replace(/ position_/, " ");
   return `${signed(number(value ?? NaN, DIGITS))} ${unit}, ${of}, at ${number(time_s ?? NaN, DIGITS)} s`;
 }
@@ -75,14 +76,19 @@ function where(channel: Channel | undefined, names: RegExp, unit: string): strin
 function tensionTable(report: Report, title: string, pick: (channel: Channel) => [number | null, number | null]): HTMLElement[] {
   const comparisons = report.comparisons as Comparison[];
   const cables = [...new Set(comparisons.flatMap(({ channels }) => channels.flatMap(({ name }) => TENSION.exec(name)?.[1] ?? [])))];
-  if (cables.length === 0) return [];
+  const picked = comparisons.map(({ channels }) => new Map(cables.map((cable) => {
+    const found = channels.find(({ name }) => name === `cable/${cable}/tension_n`);
+    return [cable, found ? pick(found) : ([null, null] as const)];
+  })));
+  // a phase that none of them came to
+  if (!picked.some((of) => [...of.values()].some(([a, b]) => a !== null || b !== null))) return [];
   const names = report.scene.compared.map(runName);
   const head = el("thead", {},
     el("tr", {}, el("th", { scope: "col", rowspan: 2 }, "cable"), el("th", { scope: "col", rowspan: 2 }, swatch(0), thisRunName(report.scene)),
       ...names.map((name, k) => el("th.wide", { scope: "colgroup", colspan: 2 }, swatch(k + 1), name))),
     el("tr", {}, ...names.flatMap(() => [el("th", { scope: "col" }, "N"), el("th", { scope: "col" }, "difference")])));
   const rows = cables.map((cable) => {
-    const pairs = comparisons.map(({ channels }) => channels.find(({ name }) => name === `cable/${cable}/tension_n`)).map((found) => (found ? pick(found) : [null, null] as const));
+    const pairs = picked.map((of) => of.get(cable)!);
     const own_n = pairs.find(([, b]) => b !== null)?.[1] ?? NaN;
     return el("tr", {}, el("th", { scope: "row" }, cable), el("td", {}, number(own_n, DIGITS)),
       ...pairs.flatMap(([a, b]) => [number(a ?? NaN, DIGITS), a === null || b === null ? "–" : signed(number(a - b, DIGITS))].map((text) => el("td", {}, text))));

@@ -41,7 +41,7 @@ export function facts(rows: readonly (readonly [string, string])[]): HTMLElement
 function whatWasRun(report: Report): HTMLElement {
   const lead = report.description === "" ? [] : [el("p.lead", {}, report.description)];
   const known = Object.entries(report.facts);
-  const what = known.length > 0 ? facts(known) : el("p", {}, "There were no inputs beside the trace: it does not say what was run.");
+  const what = known.length > 0 ? facts([["experiment", report.title], ...known]) : el("p", {}, "There were no inputs beside the trace: it does not say what was run.");
   return section("What was run", ...lead, what, ...verdict(report));
 }
 
