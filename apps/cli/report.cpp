@@ -51,7 +51,7 @@ void AddReport(CLI::App& app, int& exit_code) {
       ->add_option("--compare", args->compare,
                    "Traces of other runs, 7 at most, drawn and tabulated beside this one (default: "
                    "what the experiment names)")
-      ->type_name("TRACE...");
+      ->type_name("TRACE");
   report->footer(
       "Examples:\n"
       "  taut report runs/push_20n/trace.h5\n"

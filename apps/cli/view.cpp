@@ -218,7 +218,7 @@ void AddView(CLI::App& app, int& exit_code) {
   view->add_option("--compare", args->compare,
                    "Replay: traces of other runs, 7 at most, drawn beside this one, each with a "
                    "ghost of its robot")
-      ->type_name("TRACE...");
+      ->type_name("TRACE");
   view->add_option("--out", args->out,
                    "Live: folder to record into (trace, inputs, what was done); default: none");
   view->add_option("--listen", args->server.address,

@@ -32,6 +32,12 @@ class ComparedRuns : public ReplayFolder {
   }
 };
 
+/// The last row at or before a time, which may differ by a rounding from a row's.
+std::size_t RowUntil(const Trace& file, double time_s) {
+  const auto after = std::upper_bound(file.time_s.begin(), file.time_s.end(), time_s + 1e-9);
+  return static_cast<std::size_t>(after - file.time_s.begin()) - 1;
+}
+
 void ExpectPose(const viewer::Frame::Body& shown, const Trace& file, const std::string& body,
                 std::size_t row) {
   const auto value = [&](const char* name) {
@@ -48,6 +54,7 @@ TEST_F(ComparedRuns, GhostsHaveThePosesOfTheirOwnRows) {
   const std::string a = RecordIn("a", Other());
   ExperimentSpec hang = *LoadExperiment(kHang, {}, found);
   hang.duration_s = 1;
+  hang.record.channels.clear();
   const std::string b = RecordIn("b", hang);  // another robot, another clock
   const auto recorded = Load(trace(), {a, b});
   const Trace file_a = *ReadTrace(a, found), file_b = *ReadTrace(b, found);
@@ -61,13 +68,11 @@ TEST_F(ComparedRuns, GhostsHaveThePosesOfTheirOwnRows) {
     const viewer::Frame frame = recorded->FrameOf(row);
     ASSERT_EQ(frame.ghosts.size(), 4u);
     for (std::size_t body = 0; body < 3; ++body) {
-      // rows of 0.02 s: the last at or before
-      ExpectPose(frame.ghosts[body], file_a, experiment_.robot.def.bodies[body].name, row / 2);
+      ExpectPose(frame.ghosts[body], file_a, experiment_.robot.def.bodies[body].name,
+                 RowUntil(file_a, frame.time_s));
     }
-    const auto at =
-        std::upper_bound(file_b.time_s.begin(), file_b.time_s.end(), frame.time_s + 1e-9);
     ExpectPose(frame.ghosts[3], file_b, hang.robot.def.bodies[0].name,
-               static_cast<std::size_t>(at - file_b.time_s.begin()) - 1);
+               RowUntil(file_b, frame.time_s));
   }
   const viewer::Frame late = recorded->FrameOf(28);  // 0.28 s: run a has ended at 0.25 s
   EXPECT_TRUE(std::isnan(late.ghosts[0].position_m.x) && std::isnan(late.ghosts[2].orientation.w));
@@ -186,6 +191,33 @@ TEST_F(ComparedRuns, ContactForcesOfATraceAreThoseThatWereRecorded) {
   EXPECT_EQ(report["frame_count"], 16);
   for (const viewer::Json& name : report["rows"][0]["channels"]) {
     EXPECT_FALSE(name.get<std::string>().starts_with("contact/"));
+  }
+}
+
+TEST_F(ComparedRuns, ALiveRunRecordsContactsWhereItsExperimentAsksForThem) {
+  Diagnostics found;
+  const auto places = [](const LiveRun& run) {
+    return std::count_if(run.channels().begin(), run.channels().end(),
+                         [](const ChannelInfo& c) { return c.name.starts_with("contact/"); });
+  };
+  EXPECT_EQ(places(*LiveRun::Start(experiment_, found)), 0);
+  experiment_.record.contacts = 12;
+  const auto run = LiveRun::Start(experiment_, found);
+  ASSERT_EQ(places(*run), 12 * 9);
+  for (int i = 0; i < 200; ++i) ASSERT_TRUE(run->Step());
+  const std::vector<ContactState> contacts = run->world()->Contacts(0);
+  ASSERT_FALSE(contacts.empty());
+  const std::vector<double>& row = run->Row();
+  for (std::size_t slot = 0; slot < 12; ++slot) {
+    const std::string name = "contact/" + std::to_string(slot) + "/force_z_n";
+    const auto at = std::find_if(run->channels().begin(), run->channels().end(),
+                                 [&](const ChannelInfo& channel) { return channel.name == name; });
+    const double value = row[static_cast<std::size_t>(at - run->channels().begin())];
+    if (slot < contacts.size()) {
+      EXPECT_EQ(value, contacts[slot].force_n.z);
+    } else {
+      EXPECT_TRUE(std::isnan(value));
+    }
   }
 }
 

@@ -279,7 +279,7 @@ test("AServerOfAnotherVersionIsRefused", async () => {
   await server.stop();
   server = await new MockServer(PAGE, { mode: "live", hello: { version: 99 } }).start();
   const page = await open({ wait: false });
-  await page.waitForFunction(() => /version 3 of the protocol, the server version 99/.test(document.querySelector(".failure pre")?.textContent ?? ""));
+  await page.waitForFunction(() => /version 4 of the protocol, the server version 99/.test(document.querySelector(".failure pre")?.textContent ?? ""));
 });
 
 test("HelpNamesEveryKeyAndThemesChange", async () => {

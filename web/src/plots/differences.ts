@@ -28,7 +28,7 @@ export class Differences {
       if (a && b && !Number.isNaN(a.time_s)) shown.title = `${this.lines[of]!.label} minus this run: ${a.value - b.value} ${this.figure.unit}; rows at ${a.time_s} s and ${b.time_s} s`;
       return shown;
     });
-    this.element.replaceChildren("less this run: ", ...texts.flatMap((text) => [text, " "]), this.figure.unit);
+    this.element.replaceChildren("Δ ", ...texts.flatMap((text) => [text, " "]), this.figure.unit);
   }
 
   /** Places of a compared run's line and of this run's of the same channel. */
