@@ -141,7 +141,7 @@ for (const theme of ["light", "dark"]) {
     const { page } = await sceneAt(t, theme, 4);
     await page.evaluate(() => {
       const { camera, target } = window.taut.view;
-      camera.position.copy(target).add(camera.position.clone().set(0.6, 0.28, -0.9));
+      camera.position.copy(target).add(camera.position.clone().set(-1.065, 0.746, -0.4));
     });
     await drawn(page);
     const [project, image] = [await projection(page), await viewPixels(page)];
