@@ -85,7 +85,7 @@ int ReplayBest(const std::string& folder, bool skip_damaged, bool quiet) {
                                          best->id, study->name, best->score);
     SaveGait(learned[i], out->Path(gaits[i]), found);
   }
-  viewer::WriteReport(out->Path("trace.h5"), "", out->Path("report.html"), found);
+  viewer::WriteReport(out->Path("trace.h5"), {}, out->Path("report.html"), found);
   if (!quiet) {
     fmt::print("{}: evaluation {} of {}, score {:.8g}\n", study->name, best->id,
                study->evaluations.size(), best->score);

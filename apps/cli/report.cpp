@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "apps/viewer/report.h"
 #include "apps/viewer/web_files.h"
@@ -13,7 +14,8 @@ namespace taut::cli {
 namespace {
 
 struct ReportArguments {
-  std::string trace, compare, out;
+  std::string trace, out;
+  std::vector<std::string> compare;
 };
 
 int Report(const ReportArguments& args) {
@@ -48,13 +50,14 @@ void AddReport(CLI::App& app, int& exit_code) {
       ->option_text("FILE");
   report
       ->add_option("--compare", args->compare,
-                   "Another trace, drawn and tabulated beside this one (default: what the "
-                   "experiment names)")
-      ->option_text("FILE");
+                   "Traces of other runs, 7 at most, drawn and tabulated beside this one (default: "
+                   "what the experiment names)")
+      ->option_text("TRACE");
   report->footer(
       "Examples:\n"
       "  taut report runs/push_20n/trace.h5\n"
-      "  taut report runs/push_20n/trace.h5 --compare runs/other/trace.h5 --out both.html\n"
+      "  taut report runs/push_20n/trace.h5 --compare runs/a/trace.h5 runs/b/trace.h5 --out "
+      "all.html\n"
       "The inputs and the summary are taken from the trace's folder. The file needs no network.");
   report->callback([args, &exit_code] { exit_code = Report(*args); });
 }

@@ -169,7 +169,7 @@ int Run(const RunArguments& args) {
   }
   if (args.report && found.ok()) {
     const std::string report = folder->Path("report.html");
-    if (viewer::WriteReport(folder->Path("trace.h5"), "", report, found) && tables) {
+    if (viewer::WriteReport(folder->Path("trace.h5"), {}, report, found) && tables) {
       fmt::print("Report: {}\n", report);
     }
   }

@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 using viewer::Session;
 
 struct ViewArguments {
-  std::string file, compare, out;
-  std::vector<std::string> set;
+  std::string file, out;
+  std::vector<std::string> compare, set;
   double speed = 1, step_s = 0;
   bool max = false, settled = false, paused = false;
   viewer::ServerOptions server;
@@ -202,8 +202,10 @@ void AddView(CLI::App& app, int& exit_code) {
   view->add_flag("--max", args->max, "As fast as it can")->excludes(speed);
   view->add_flag("--paused", args->paused, "Begin paused");
   view->add_flag("--settled", args->settled, "Begin at rest, where the robot settles");
-  view->add_option("--compare", args->compare, "Replay: another trace, drawn beside this one")
-      ->option_text("FILE");
+  view->add_option("--compare", args->compare,
+                   "Replay: traces of other runs, 7 at most, drawn beside this one, each with a "
+                   "ghost of its robot")
+      ->option_text("TRACE");
   view->add_option("--out", args->out,
                    "Live: folder to record into (trace, inputs, what was done); default: none")
       ->option_text("FOLDER");
@@ -221,7 +223,7 @@ void AddView(CLI::App& app, int& exit_code) {
   view->footer(
       "Examples:\n"
       "  taut view experiments/push_20n.yaml --speed 0.25\n"
-      "  taut view runs/push_20n/trace.h5 --compare runs/other/trace.h5\n"
+      "  taut view runs/push_20n/trace.h5 --compare runs/a/trace.h5 runs/b/trace.h5\n"
       "  taut view models/tetraspine3.yaml --settled\n"
       "It prints two addresses, each with a secret token, to open in a browser: who has the first\n"
       "may look and drive, who has the second look. The tokens are new every time, unless the\n"

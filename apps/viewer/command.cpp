@@ -95,7 +95,8 @@ bool CheckRanges(const Command& command, std::string& error) {
   if (command.type == "push") return within("duration_s", command.value, 0.001, 1000);
   if (command.type == "step") return within("count", command.count, -1000, 1000);
   if (command.type == "want_series") {
-    return within("points", command.points, 2, 10000) && within("source", command.source, 0, 1);
+    return within("points", command.points, 2, 10000) &&
+           within("source", command.source, 0, kMaxComparedRuns);
   }
   return true;
 }

@@ -12,6 +12,9 @@ namespace taut::viewer {
 /// Longest message that a client may send.
 inline constexpr std::size_t kMaxMessageBytes = 64 * 1024;
 
+/// Runs that one is compared with at most: as many as have a colour of their own.
+inline constexpr int kMaxComparedRuns = 7;
+
 /// One message of a client. Which fields count follows from `type`.
 struct Command {
   std::string type;  ///< A key of "client" in messages.json.

@@ -27,16 +27,21 @@ std::vector<double> FrameNumbers(const Frame& frame) {
   out[kFrameContactRows] = static_cast<double>(frame.contacts.size());
   out[kFramePushCount] = static_cast<double>(frame.pushes.size());
   out[kFrameValueCount] = static_cast<double>(frame.values.size());
+  out[kFrameGhostCount] = static_cast<double>(frame.ghosts.size());
   out.reserve(out.size() + frame.bodies.size() * kFrameBodiesValues +
               frame.cables.size() * kFrameCablesValues +
               frame.contacts.size() * kFrameContactsValues +
-              frame.pushes.size() * kFramePushesValues + frame.values.size());
+              frame.pushes.size() * kFramePushesValues + frame.values.size() +
+              frame.ghosts.size() * kFrameGhostsValues);
   const auto put = [&](const Vec3& v) { out.insert(out.end(), {v.x, v.y, v.z}); };
-  for (const Frame::Body& body : frame.bodies) {
-    put(body.position_m);
-    const Quat& q = body.orientation;
-    out.insert(out.end(), {q.w, q.x, q.y, q.z});
-  }
+  const auto put_bodies = [&](const std::vector<Frame::Body>& bodies) {
+    for (const Frame::Body& body : bodies) {
+      put(body.position_m);
+      const Quat& q = body.orientation;
+      out.insert(out.end(), {q.w, q.x, q.y, q.z});
+    }
+  };
+  put_bodies(frame.bodies);
   for (const Frame::Cable& cable : frame.cables) {
     out.insert(out.end(), {cable.tension_n, cable.length_m, cable.rest_length_m, cable.setpoint_n});
   }
@@ -49,6 +54,7 @@ std::vector<double> FrameNumbers(const Frame& frame) {
     put(push.force_n);
   }
   out.insert(out.end(), frame.values.begin(), frame.values.end());
+  put_bodies(frame.ghosts);
   return out;
 }
 

@@ -39,6 +39,7 @@ struct Frame {
   std::vector<Contact> contacts;
   std::vector<OutsideForce> pushes;
   std::vector<double> values;  ///< Of channels of a program's own (taut/page.h).
+  std::vector<Body> ghosts;    ///< Of compared runs; NaN while a run has no row.
 };
 
 /// Every number of the frame in the order of the definition.

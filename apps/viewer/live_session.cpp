@@ -328,6 +328,7 @@ Json LiveSession::MakeScene() const {
   scene["controls"] = ControlsJson(*run_);
   scene["channels"] = ToJson(history_->channels());
   scene["drag_stiffness_n_per_m"] = run_->DragStiffness();
+  scene["contact_forces"] = run_->world() != nullptr;
   if (recording_ && !recording_->notice().empty()) scene["notice"] = recording_->notice();
   return scene;
 }

@@ -66,6 +66,7 @@ enum FrameHeader {
   kFrameContactRows,
   kFramePushCount,
   kFrameValueCount,
+  kFrameGhostCount,
   kFrameHeaderSize,
 };
 inline constexpr int kFrameBodiesValues = 7;
@@ -73,5 +74,6 @@ inline constexpr int kFrameCablesValues = 4;
 inline constexpr int kFrameContactsValues = 6;
 inline constexpr int kFramePushesValues = 4;
 inline constexpr int kFrameValuesValues = 1;
+inline constexpr int kFrameGhostsValues = 7;
 
 }  // namespace taut::viewer

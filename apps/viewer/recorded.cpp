@@ -8,6 +8,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "command.h"
+#include "run_names.h"
 #include "taut/run_folder.h"
 
 namespace taut::viewer {
@@ -33,31 +35,13 @@ bool Belongs(const Trace& trace, const ExperimentSpec& experiment) {
   });
 }
 
-/// What a trace's metadata say under a key; empty if nothing.
-std::string Said(const Trace& trace, std::string_view key) {
-  const auto found = std::find_if(trace.metadata.begin(), trace.metadata.end(),
-                                  [&](const auto& pair) { return pair.first == key; });
-  return found == trace.metadata.end() ? "" : found->second;
-}
-
-/// What to call another trace. Every run's is a trace.h5, so its folder belongs to the name.
-std::string NameOf(const Trace& trace, const fs::path& path) {
-  std::string place = (path.parent_path().filename() / path.filename()).generic_string();
-  for (const char* key : {"measured", "experiment"}) {
-    const std::string name = Said(trace, key);
-    if (!name.empty()) return fmt::format("{} ({})", name, place);
-  }
-  return place;
-}
-
 double ValueAt(const std::vector<double>* column, std::size_t row) {
   return column == nullptr ? Frame::kUnknown : (*column)[row];
 }
 
 }  // namespace
 
-std::unique_ptr<Recorded> Recorded::Load(const std::string& path, const std::string& compare,
-                                         Diagnostics& out) {
+std::unique_ptr<Recorded> Recorded::LoadAlone(const std::string& path, Diagnostics& out) {
   auto trace = ReadTraceOfRun(path, out);
   if (!trace) return nullptr;
   if (trace->time_s.empty()) {
@@ -74,15 +58,40 @@ std::unique_ptr<Recorded> Recorded::Load(const std::string& path, const std::str
                           notice.empty() ? "" : "; ");
   }
   recorded->FindColumns();
-  std::string other = compare;
-  if (other.empty() && recorded->experiment_ && recorded->experiment_->compare_with &&
+  recorded->FindForces();
+  return recorded;
+}
+
+std::unique_ptr<Recorded> Recorded::Load(const std::string& path,
+                                         const std::vector<std::string>& compare,
+                                         Diagnostics& out) {
+  auto recorded = LoadAlone(path, out);
+  std::vector<std::string> others = compare;
+  if (others.empty() && recorded && recorded->experiment_ && recorded->experiment_->compare_with &&
       fs::exists(*recorded->experiment_->compare_with)) {
-    other = *recorded->experiment_->compare_with;
+    others = {*recorded->experiment_->compare_with};
   }
-  if (other.empty()) return recorded;
-  recorded->reference_ = ReadTraceOfRun(other, out);
-  if (!recorded->reference_) return nullptr;
-  recorded->reference_name_ = NameOf(*recorded->reference_, other);
+  bool good = recorded != nullptr;
+  if (others.size() > kMaxComparedRuns) {
+    out.Error({path}, fmt::format("is compared with {} runs, the most are {}", others.size(),
+                                  kMaxComparedRuns));
+    good = false;
+  }
+  std::vector<std::unique_ptr<Recorded>> compared;
+  for (const std::string& other : others) {
+    compared.push_back(LoadAlone(other, out));
+    good = good && compared.back() != nullptr;
+  }
+  if (!good) return nullptr;
+  recorded->compared_ = std::move(compared);
+  if (recorded->compared_.empty()) return recorded;
+  std::vector<NamedTrace> traces = {{&recorded->trace_, path}};
+  for (const auto& run : recorded->compared_) traces.push_back({&run->trace_, run->path_});
+  const std::vector<std::string> names = RunNames(traces);
+  recorded->run_name_ = names[0];
+  for (std::size_t k = 0; k < recorded->compared_.size(); ++k) {
+    recorded->compared_[k]->run_name_ = names[k + 1];
+  }
   return recorded;
 }
 
@@ -140,6 +149,16 @@ void Recorded::FindColumns() {
     }
     cables_.push_back(columns);
   }
+  energy_[0] = Column("system/kinetic_j");
+  energy_[1] = Column("system/gravity_j");
+  energy_[2] = Column("system/elastic_j");
+  contact_count_ = Column("system/contact_count");
+}
+
+void Recorded::FindForces() {
+  static const char* const kContact[] = {"point_x_m", "point_y_m", "point_z_m",
+                                         "force_x_n", "force_y_n", "force_z_n"};
+  static const char* const kHand[] = {"node", "force_x_n", "force_y_n", "force_z_n"};
   if (experiment_) {
     for (const PushSpec& push : experiment_->pushes) {
       const auto* value = Column("push/" + push.name + "/force_n");
@@ -154,18 +173,28 @@ void Recorded::FindColumns() {
     }
     for (const char* hand : {"hand/drag/", "hand/push/"}) {
       HandColumns columns;
-      int found = 0;
-      for (const char* name : {"node", "force_x_n", "force_y_n", "force_z_n"}) {
-        columns.values[found] = Column(std::string(hand) + name);
-        if (columns.values[found] != nullptr) ++found;
-      }
-      if (found == 4) hands_.push_back(columns);
+      if (FindAll(hand, kHand, columns.values)) hands_.push_back(columns);
     }
   }
-  energy_[0] = Column("system/kinetic_j");
-  energy_[1] = Column("system/gravity_j");
-  energy_[2] = Column("system/elastic_j");
-  contact_count_ = Column("system/contact_count");
+  ContactColumns contact;
+  for (int slot = 0; FindAll(fmt::format("contact/{}/", slot), kContact, contact.values); ++slot) {
+    contacts_.push_back(contact);
+  }
+}
+
+template <std::size_t count>
+bool Recorded::FindAll(const std::string& prefix, const char* const (&names)[count],
+                       const std::vector<double>* (&columns)[count]) const {
+  for (std::size_t i = 0; i < count; ++i) {
+    columns[i] = Column(prefix + names[i]);
+    if (columns[i] == nullptr) return false;
+  }
+  return true;
+}
+
+bool Recorded::has_poses() const {
+  return std::any_of(bodies_.begin(), bodies_.end(),
+                     [](const BodyColumns& body) { return body.values[0] != nullptr; });
 }
 
 std::string Recorded::title() const {
@@ -177,20 +206,49 @@ Json Recorded::scene() const {
   scene["channels"] = ToJson(trace_.channels);
   scene["first_s"] = trace_.time_s.front();
   scene["duration_s"] = trace_.time_s.back();
-  if (reference_) {
-    scene["reference"] = {{"name", reference_name_},
-                          {"measured", !Said(*reference_, "measured").empty()},
-                          {"channels", ToJson(reference_->channels)}};
-  }
+  scene["contact_forces"] = !contacts_.empty();
+  if (!compared_.empty()) scene["run_name"] = run_name_;
+  for (const auto& run : compared_) scene["compared"].push_back(run->ComparedRun());
   if (!notice_.empty()) scene["notice"] = notice_;
   return scene;
 }
 
-Frame Recorded::FrameOf(std::size_t row) const {
-  Frame frame;
-  frame.time_s = trace_.time_s[row];
-  frame.energy = {ValueAt(energy_[0], row), ValueAt(energy_[1], row), ValueAt(energy_[2], row)};
-  frame.contact_count = ValueAt(contact_count_, row);
+Json Recorded::ComparedRun() const {
+  Json run = {{"name", run_name_},
+              {"measured", !Said(trace_, "measured").empty()},
+              {"channels", ToJson(trace_.channels)},
+              {"first_s", trace_.time_s.front()},
+              {"last_s", trace_.time_s.back()},
+              {"bodies", Json::array()},
+              {"cables", Json::array()}};
+  if (!has_poses()) {
+    run["notice"] = "no ghost: there are no poses of bodies in this trace";
+    return run;
+  }
+  const Json scene = experiment_ ? SceneOf(*experiment_) : SceneOf(trace_);
+  run["bodies"] = scene["bodies"];
+  run["cables"] = scene["cables"];
+  if (!notice_.empty()) run["notice"] = notice_;
+  return run;
+}
+
+void Recorded::AddGhost(double time_s, std::vector<Frame::Body>& ghosts) const {
+  if (!has_poses()) return;
+  const std::vector<double>& times = trace_.time_s;
+  // A row holds until the next would come; a row that is one of both runs may differ by a rounding.
+  constexpr double kRoundingS = 1e-9;
+  const double row_s =
+      times.size() < 2 ? 0 : (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  std::vector<Frame::Body> poses = PosesOf(RowAt(time_s + kRoundingS));
+  if (time_s < times.front() - kRoundingS || time_s > times.back() + row_s + kRoundingS) {
+    constexpr double kNo = Frame::kUnknown;
+    std::fill(poses.begin(), poses.end(), Frame::Body{{kNo, kNo, kNo}, {kNo, kNo, kNo, kNo}});
+  }
+  ghosts.insert(ghosts.end(), poses.begin(), poses.end());
+}
+
+std::vector<Frame::Body> Recorded::PosesOf(std::size_t row) const {
+  std::vector<Frame::Body> poses;
   for (const BodyColumns& body : bodies_) {
     Frame::Body pose = body.start;
     double* const to[] = {&pose.position_m.x,  &pose.position_m.y,  &pose.position_m.z,
@@ -199,8 +257,18 @@ Frame Recorded::FrameOf(std::size_t row) const {
     for (int i = 0; i < 7; ++i) {
       if (body.values[i] != nullptr) *to[i] = (*body.values[i])[row];
     }
-    frame.bodies.push_back(pose);
+    poses.push_back(pose);
   }
+  return poses;
+}
+
+Frame Recorded::FrameOf(std::size_t row) const {
+  Frame frame;
+  frame.time_s = trace_.time_s[row];
+  frame.energy = {ValueAt(energy_[0], row), ValueAt(energy_[1], row), ValueAt(energy_[2], row)};
+  frame.contact_count = ValueAt(contact_count_, row);
+  frame.bodies = PosesOf(row);
+  for (const auto& run : compared_) run->AddGhost(frame.time_s, frame.ghosts);
   for (const CableColumns& cable : cables_) {
     frame.cables.push_back({ValueAt(cable.values[0], row), ValueAt(cable.values[1], row),
                             ValueAt(cable.values[2], row), ValueAt(cable.values[3], row)});
@@ -218,6 +286,13 @@ Frame Recorded::FrameOf(std::size_t row) const {
         {static_cast<int>(node),
          {(*hand.values[1])[row], (*hand.values[2])[row], (*hand.values[3])[row]}});
   }
+  for (const ContactColumns& contact : contacts_) {
+    double v[6];
+    for (int i = 0; i < 6; ++i) v[i] = (*contact.values[i])[row];
+    // an empty slot
+    if (std::any_of(std::begin(v), std::end(v), [](double x) { return std::isnan(x); })) continue;
+    frame.contacts.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
+  }
   return frame;
 }
 
@@ -230,13 +305,15 @@ std::size_t Recorded::RowAt(double time_s) const {
 
 std::optional<Series> Recorded::SeriesOf(const std::string& channel, int source, double t0,
                                          double t1, std::size_t points) const {
-  if (source == 1 && !reference_) return std::nullopt;
-  const Trace& trace = source == 1 ? *reference_ : trace_;
-  const auto at = trace.Find(channel);
+  if (source > 0) {
+    const auto k = static_cast<std::size_t>(source) - 1;
+    return k < compared_.size() ? compared_[k]->SeriesOf(channel, 0, t0, t1, points) : std::nullopt;
+  }
+  const auto at = trace_.Find(channel);
   if (!at) return std::nullopt;
-  const std::vector<double>& column = trace.values[*at];
-  const auto pyramid = pyramids_.try_emplace({source, *at}, column).first;
-  return pyramid->second.Get(trace.time_s, column, t0, t1, points);
+  const std::vector<double>& column = trace_.values[*at];
+  const auto pyramid = pyramids_.try_emplace(*at, column).first;
+  return pyramid->second.Get(trace_.time_s, column, t0, t1, points);
 }
 
 }  // namespace taut::viewer

@@ -1,5 +1,5 @@
-/// A trace and what is known about it: the experiment beside it, the summary, another trace to
-/// compare with. Replays and reports are made of this.
+/// A trace and what is known about it: the experiment beside it, the summary, other runs to compare
+/// with. Replays and reports are made of this.
 #pragma once
 
 #include <map>
@@ -19,17 +19,19 @@ namespace taut::viewer {
 class Recorded {
  public:
   /// Reads the trace at `path` and, from its folder, inputs.yaml and summary.json where they are
-  /// there and fit. `compare`: another trace, empty for none; else what the experiment names.
-  /// Nothing and diagnostics if a trace cannot be read.
-  static std::unique_ptr<Recorded> Load(const std::string& path, const std::string& compare,
-                                        Diagnostics& out);
+  /// there and fit. `compare`: traces of other runs; if empty, what the experiment names. Nothing
+  /// and diagnostics, about all of them, if one cannot be read.
+  static std::unique_ptr<Recorded> Load(const std::string& path,
+                                        const std::vector<std::string>& compare, Diagnostics& out);
 
   const std::string& path() const { return path_; }
   /// The experiment's name; the file's where that is not known.
   std::string title() const;
   const Trace& trace() const { return trace_; }
-  const std::optional<Trace>& reference() const { return reference_; }
-  const std::string& reference_name() const { return reference_name_; }  ///< What to call it.
+  /// The runs that it is compared with: series of the k-th have source k, from 1.
+  const std::vector<std::unique_ptr<Recorded>>& compared() const { return compared_; }
+  /// What to call it beside those; empty if there are none.
+  const std::string& run_name() const { return run_name_; }
   const std::optional<ExperimentSpec>& experiment() const { return experiment_; }
   const std::string& inputs() const { return inputs_; }  ///< The text of inputs.yaml, or empty.
   const Json& summary() const { return summary_; }       ///< Or null.
@@ -40,13 +42,25 @@ class Recorded {
   Frame FrameOf(std::size_t row) const;
   /// The last row at or before a time; 0 before the first.
   std::size_t RowAt(double time_s) const;
-  /// A channel of the trace (source 0) or of the other (1); nothing if there is none.
+  /// A channel of the trace (source 0) or of a compared one; nothing if there is none.
   std::optional<Series> SeriesOf(const std::string& channel, int source, double t0, double t1,
                                  std::size_t points) const;
 
  private:
+  /// Compared with nothing.
+  static std::unique_ptr<Recorded> LoadAlone(const std::string& path, Diagnostics& out);
   void FindInputs();
   void FindColumns();
+  void FindForces();
+  /// All columns of these names after a prefix; false if one is missing.
+  template <std::size_t count>
+  bool FindAll(const std::string& prefix, const char* const (&names)[count],
+               const std::vector<double>* (&columns)[count]) const;
+  bool has_poses() const;
+  std::vector<Frame::Body> PosesOf(std::size_t row) const;
+  /// Those of its ghost at a time of another run: NaN where it has no row.
+  void AddGhost(double time_s, std::vector<Frame::Body>& ghosts) const;
+  Json ComparedRun() const;
   /// The column of a channel, or null.
   const std::vector<double>* Column(const std::string& name) const;
 
@@ -65,19 +79,23 @@ class Recorded {
   struct HandColumns {
     const std::vector<double>* values[4];
   };
+  struct ContactColumns {
+    const std::vector<double>* values[6];
+  };
 
-  std::string path_, inputs_, notice_, reference_name_;
+  std::string path_, inputs_, notice_, run_name_;
   Trace trace_;
-  std::optional<Trace> reference_;
+  std::vector<std::unique_ptr<Recorded>> compared_;
   std::optional<ExperimentSpec> experiment_;
   Json summary_;
   std::vector<BodyColumns> bodies_;
   std::vector<CableColumns> cables_;
   std::vector<ForceColumn> forces_;
   std::vector<HandColumns> hands_;
+  std::vector<ContactColumns> contacts_;
   const std::vector<double>* energy_[3] = {};
   const std::vector<double>* contact_count_ = nullptr;
-  mutable std::map<std::pair<int, std::size_t>, Pyramid> pyramids_;  ///< Made when asked for.
+  mutable std::map<std::size_t, Pyramid> pyramids_;  ///< By channel; made when asked for.
 };
 
 }  // namespace taut::viewer

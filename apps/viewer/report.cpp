@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "protocol_messages.h"
+#include "report_facts.h"
 #include "taut/compare.h"
 #include "taut/files.h"
 #include "web_files.h"
@@ -35,8 +36,10 @@ std::string Base64(const std::string& bytes) {
   return text;
 }
 
-/// What a report plots. How bodies turn is in its frames; velocities would only make it larger.
+/// What a report plots. How bodies turn and the contacts are in its frames; velocities would only
+/// make it larger.
 bool IsPlotted(const ChannelInfo& channel) {
+  if (channel.name.starts_with("contact/")) return false;
   return !channel.name.starts_with("body/") || channel.name.find("/position_") != std::string::npos;
 }
 
@@ -87,17 +90,20 @@ void AddFrames(const Recorded& recorded, Json& report) {
       std::clamp<std::size_t>(static_cast<std::size_t>(std::min(span_s * kFramesPerS, 1e9)) + 1, 1,
                               std::min(kMaxFrames, times.size()));
   std::vector<Frame> all;
-  std::size_t pushes = 0;
+  std::size_t pushes = 0, contacts = 0;
   for (std::size_t i = 0; i < frames; ++i) {
     const double share = frames == 1 ? 0 : static_cast<double>(i) / static_cast<double>(frames - 1);
     // Times near a row may lie a rounding before it.
     all.push_back(recorded.FrameOf(recorded.RowAt(times.front() + share * span_s + 1e-9)));
     pushes = std::max(pushes, all.back().pushes.size());
+    contacts = std::max(contacts, all.back().contacts.size());
   }
   std::string bytes;
   std::size_t values = 0;
   for (Frame& frame : all) {
-    frame.pushes.resize(pushes);  // all frames have one size; what was added has no force
+    // all frames have one size; what was added has no force
+    frame.pushes.resize(pushes);
+    frame.contacts.resize(contacts);
     frame.run = 1;
     frame.now_s = frame.time_s;
     const std::vector<double> numbers = FrameNumbers(frame);
@@ -122,27 +128,31 @@ Json ReportOf(const Recorded& recorded, std::size_t max_numbers) {
   report["title"] = recorded.title();
   report["scene"] = recorded.scene();
   report["scene"]["channels"] = ToJson(Plotted(recorded.trace().channels));
+  const auto& experiment = recorded.experiment();
+  report["description"] = experiment ? experiment->description : "";
+  report["facts"] = experiment ? FactsOf(*experiment) : Json::object();
   report["metadata"] = Json::object();
   for (const auto& [key, text] : recorded.trace().metadata) report["metadata"][key] = text;
   report["inputs"] = recorded.inputs();
   report["summary"] = recorded.summary();
-  report["comparison"] = nullptr;
-  report["rows"] = Json::array({RowsOf(recorded, recorded.trace(), 0, max_numbers)});
-  if (const auto& reference = recorded.reference()) {
-    report["scene"]["reference"]["channels"] = ToJson(Plotted(reference->channels));
-    if (!reference->time_s.empty())
-      report["rows"].push_back(RowsOf(recorded, *reference, 1, max_numbers));
-    CompareOptions options;
-    if (recorded.experiment()) {
-      for (const PhaseSpec& phase : recorded.experiment()->phases) {
-        options.phases.push_back({phase.name, phase.from_s, phase.to_s});
-      }
+  report["comparisons"] = Json::array();
+  const std::size_t share = max_numbers / (1 + recorded.compared().size());
+  report["rows"] = Json::array({RowsOf(recorded, recorded.trace(), 0, share)});
+  CompareOptions options;
+  if (experiment) {
+    for (const PhaseSpec& phase : experiment->phases) {
+      options.phases.push_back({phase.name, phase.from_s, phase.to_s});
     }
-    report["comparison"] =
-        Json::parse(ComparisonJson(Compare(recorded.trace(), *reference, options),
-                                   std::filesystem::path(recorded.path()).filename().string(),
-                                   recorded.reference_name()),
-                    nullptr, false);
+  }
+  for (std::size_t k = 0; k < recorded.compared().size(); ++k) {
+    const Recorded& run = *recorded.compared()[k];
+    report["scene"]["compared"][k]["channels"] = ToJson(Plotted(run.trace().channels));
+    report["rows"].push_back(RowsOf(recorded, run.trace(), static_cast<int>(k + 1), share));
+    // that run minus this one, which all runs are seen from
+    report["comparisons"].push_back(
+        Json::parse(ComparisonJson(Compare(run.trace(), recorded.trace(), options), run.run_name(),
+                                   recorded.run_name()),
+                    nullptr, false));
   }
   AddFrames(recorded, report);
   return report;
@@ -165,8 +175,8 @@ std::optional<std::string> ReportPage(const Json& report, const std::string& pag
   return page.substr(0, end) + data + page.substr(end);
 }
 
-bool WriteReport(const std::string& trace, const std::string& compare, const std::string& path,
-                 Diagnostics& out) {
+bool WriteReport(const std::string& trace, const std::vector<std::string>& compare,
+                 const std::string& path, Diagnostics& out) {
   std::string error;
   const std::optional<std::string> folder = FindWebFolder(error);
   if (!folder) {

@@ -87,12 +87,13 @@ Json Terrain(const ModelDef& def) {
 Json Empty() {
   Json scene;
   for (const char* key : {"bodies", "nodes", "cables", "terrain", "parameters", "controls",
-                          "channels", "phases", "values"}) {
+                          "channels", "phases", "values", "compared"}) {
     scene[key] = Json::array();
   }
   scene["first_s"] = 0;
   scene["duration_s"] = 0;
   scene["drag_stiffness_n_per_m"] = 0;
+  scene["contact_forces"] = false;
   return scene;
 }
 

@@ -75,8 +75,8 @@ class LiveRun {
   virtual bool SetControl(const LiveControl& control) = 0;
 
   // --- recording ---------------------------------------------------------------------------
-  /// The channels that an experiment records which asks for none, then hand/drag/... and
-  /// hand/push/...: which node (-1: none) and the force on it.
+  /// The channels that an experiment records which asks for none, those of contacts if it asks for
+  /// them, then hand/drag/... and hand/push/...: which node (-1: none) and the force on it.
   virtual const std::vector<ChannelInfo>& channels() const = 0;
   /// The present row; valid until the next call.
   virtual const std::vector<double>& Row() = 0;

@@ -80,9 +80,9 @@ class Page {
   int Add(const ModelDef& robot, const std::string& name = "", const Vec3& at_m = {});
 
   /// What the next `Show` shows. Set points count from the first `Show` after an `Add` or not at
-  /// all, as to whether there are any. A robot that is never set stands as described. A number that is
-  /// no robot's, a world that the batch does not have, or lists of other lengths than the robot's:
-  /// a line on stderr, and the program ends by abort().
+  /// all, as to whether there are any. A robot that is never set stands as described. A number that
+  /// is no robot's, a world that the batch does not have, or lists of other lengths than the
+  /// robot's: a line on stderr, and the program ends by abort().
   void Set(int robot, const Batch& batch, int world = 0);
   void Set(int robot, const RobotMoment& moment);
 

@@ -17,7 +17,6 @@ using plant::NodeForce;
 
 ExperimentSpec RecordingAll(ExperimentSpec experiment) {
   experiment.record.channels.clear();
-  experiment.record.contacts = 0;
   return experiment;
 }
 

@@ -33,7 +33,8 @@ TEST_F(ReportCommand, AReportHoldsTheRunAndTheNumbersOfItsSummary) {
   ASSERT_EQ(report["rows"].size(), 1u);
   EXPECT_EQ(report["rows"][0]["count"], 1001);  // every row: 5 s at 200 Hz
   EXPECT_EQ(report["rows"][0]["channels"].size(), report["scene"]["channels"].size());
-  EXPECT_EQ(report["comparison"], nullptr);
+  EXPECT_EQ(report["comparisons"], Json::array());
+  EXPECT_EQ(report["facts"]["time"], "5 s in steps of 0.001 s");
 }
 
 TEST_F(ReportCommand, AReportComparesTwoTraces) {
@@ -44,15 +45,40 @@ TEST_F(ReportCommand, AReportComparesTwoTraces) {
   EXPECT_EQ(result.status, 0) << result.errors;
   EXPECT_EQ(result.output, "Report: both.html\n");
   const Json report = DataOf(Read(Path("both.html")));
-  EXPECT_EQ(report["scene"]["reference"]["name"], "hang (a/trace.h5)");
-  const CommandResult compare = Run({"compare", "b/trace.h5", "a/trace.h5", "--json"});
-  EXPECT_EQ(report["comparison"]["channels"].size(),
-            Json::parse(compare.output)["channels"].size());
-  EXPECT_EQ(report["comparison"]["channels"][0]["rmse"],
-            Json::parse(compare.output)["channels"][0]["rmse"]);
+  EXPECT_EQ(report["scene"]["compared"][0]["name"], "hang (a/trace.h5)");
+  EXPECT_EQ(report["scene"]["run_name"], "hang (b/trace.h5)");
+  // that run minus this one
+  const CommandResult compare = Run({"compare", "a/trace.h5", "b/trace.h5", "--json"});
+  EXPECT_EQ(report["comparisons"][0]["channels"], Json::parse(compare.output)["channels"]);
   ASSERT_EQ(report["rows"].size(), 2u);
   EXPECT_EQ(report["rows"][1]["source"], 1);
   EXPECT_EQ(report["rows"][0]["channels"], report["rows"][1]["channels"]);
+}
+
+TEST_F(ReportCommand, SeveralRunsAreNamedTogetherOrOneByOne) {
+  for (const char* name : {"a", "b", "c", "d"}) Run({"run", kHang, "--quiet", "--out", name});
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"a/trace.h5", "--compare", "b/trace.h5", "c/trace.h5", "d/trace.h5"},
+           {"--compare", "b/trace.h5", "--compare", "c/trace.h5", "--compare", "d/trace.h5",
+            "a/trace.h5"}}) {
+    std::vector<std::string> all{"report", "--out", "all.html"};
+    all.insert(all.end(), words.begin(), words.end());
+    ASSERT_EQ(Run(all).status, 0);
+    const Json report = DataOf(Read(Path("all.html")));
+    EXPECT_EQ(report["scene"]["run_name"], "hang (a/trace.h5)");
+    ASSERT_EQ(report["scene"]["compared"].size(), 3u);
+    EXPECT_EQ(report["scene"]["compared"][2]["name"], "hang (d/trace.h5)");
+  }
+}
+
+TEST_F(ReportCommand, EveryRunThatCannotBeReadIsNamed) {
+  Run({"run", kHang, "--quiet", "--out", "a"});
+  const CommandResult result =
+      Run({"report", "a/trace.h5", "--compare", "none.h5", Write("broken.h5", "no trace")});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.errors.find("none.h5: error: cannot be opened"), std::string::npos);
+  EXPECT_NE(result.errors.find("broken.h5: error: is not HDF5"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(Path("a/report.html")));
 }
 
 TEST_F(ReportCommand, NothingInAReportCanEndTheElementThatHoldsIt) {

@@ -76,9 +76,7 @@ struct ReceivedFrame {
   std::size_t values() const {
     return pushes() + Count(viewer::kFramePushCount) * viewer::kFramePushesValues;
   }
-  std::size_t end() const {
-    return values() + Count(viewer::kFrameValueCount);
-  }
+  std::size_t end() const { return values() + Count(viewer::kFrameValueCount); }
 };
 
 class Client {

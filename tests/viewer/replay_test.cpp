@@ -2,14 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 
-#include "apps/viewer/replay_session.h"
 #include "apps/viewer/report.h"
-#include "taut/run.h"
-#include "tests/viewer/serving.h"
+#include "tests/viewer/replay_folder.h"
 
 namespace taut::test {
 namespace {
@@ -17,41 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using viewer::FrameHeader;
 
-/// A folder with a recorded run of half a second of the push test.
-class Replay : public testing::Test {
- protected:
-  Replay() {
-    std::string pattern = (fs::temp_directory_path() / "taut_replay_XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    Diagnostics found;
-    experiment_ = *LoadExperiment(kPush, {}, found);
-    experiment_.duration_s = 0.5;
-    const auto writer = CreateHdf5Trace(trace(), RunChannels(experiment_), {}, found);
-    RunOptions options;
-    options.traces = {writer.get()};
-    EXPECT_TRUE(RunExperiment(experiment_, options, found)) << found.Format();
-    WriteInputs();
-  }
-  ~Replay() override { fs::remove_all(folder_); }
-
-  std::string trace() const { return (folder_ / "trace.h5").string(); }
-  void WriteInputs() const { Write("inputs.yaml", ResolvedYaml(experiment_)); }
-  void Write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
-  static std::unique_ptr<viewer::Recorded> Load(const std::string& path) {
-    Diagnostics found;
-    auto recorded = viewer::Recorded::Load(path, "", found);
-    EXPECT_TRUE(recorded) << found.Format();
-    return recorded;
-  }
-  std::unique_ptr<viewer::Session> Session() const {
-    return std::make_unique<viewer::ReplaySession>(Load(trace()), 1);
-  }
-
-  fs::path folder_;
-  ExperimentSpec experiment_;
-};
+using Replay = ReplayFolder;
 
 TEST_F(Replay, ShowsThePosesAndTensionsOfTheFile) {
   Diagnostics found;
@@ -221,9 +183,9 @@ TEST_F(Replay, AReportOfALongTraceHoldsBlocksOfItsRows) {
 TEST_F(Replay, AnotherTraceIsCalledWhatItSaysOfItself) {
   Diagnostics found;
   const auto reference = [&](const std::string& name) {
-    auto recorded = viewer::Recorded::Load(trace(), (folder_ / name).string(), found);
+    auto recorded = viewer::Recorded::Load(trace(), {(folder_ / name).string()}, found);
     EXPECT_TRUE(recorded) << found.Format();
-    return recorded->scene()["reference"];
+    return recorded->scene()["compared"][0];
   };
   const auto write = [&](const std::string& name, const TraceMetadata& metadata) {
     const auto writer = CreateHdf5Trace((folder_ / name).string(), {{"a_n", "N"}}, metadata, found);
@@ -284,11 +246,11 @@ TEST_F(Replay, ATraceThatEndsEarlyShowsWhatIsThere) {
 TEST_F(Replay, ABrokenTraceCannotBeLoaded) {
   Write("trace.h5", "no trace at all");
   Diagnostics found;
-  EXPECT_FALSE(viewer::Recorded::Load(trace(), "", found));
+  EXPECT_FALSE(viewer::Recorded::Load(trace(), {}, found));
   EXPECT_NE(found.Format().find("is not HDF5 or is damaged"), std::string::npos);
   Write("empty.csv", "time_s,a\n");
   Diagnostics empty;
-  EXPECT_FALSE(viewer::Recorded::Load((folder_ / "empty.csv").string(), "", empty));
+  EXPECT_FALSE(viewer::Recorded::Load((folder_ / "empty.csv").string(), {}, empty));
   EXPECT_NE(empty.Format().find("has no rows: there is nothing to show"), std::string::npos);
 }
 

@@ -158,13 +158,15 @@ export class App {
   /** A frame of the scene before it may still be on its way when the scene has changed. */
   private fits(frame: Frame): boolean {
     const scene = this.scene.value;
-    return scene !== null && frame.body_count === scene.bodies.length && frame.cable_count === scene.cables.length &&
-      frame.value_count === scene.values.length;
+    if (scene === null) return false;
+    const ghosts = scene.compared.reduce((sum, { bodies }) => sum + bodies.length, 0);
+    return frame.body_count === scene.bodies.length && frame.cable_count === scene.cables.length &&
+      frame.value_count === scene.values.length && frame.ghost_count === ghosts;
   }
 }
 
-function looks({ bodies, nodes, cables, terrain, channels, phases, duration_s, reference, notice }: Scene): string {
-  return JSON.stringify([bodies, nodes, cables, terrain, channels, phases, duration_s, reference, notice]);
+function looks({ bodies, nodes, cables, terrain, channels, phases, duration_s, compared, contact_forces, notice }: Scene): string {
+  return JSON.stringify([bodies, nodes, cables, terrain, channels, phases, duration_s, compared, contact_forces, notice]);
 }
 
 function names({ bodies, nodes, cables }: Scene): string {

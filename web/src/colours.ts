@@ -17,10 +17,11 @@ export interface Palette {
   push: string;
   path: string;
   selected: string;
-  /** plots: set point, what a run is compared with, the run */
+  /** plots: set point, the run */
   setpoint: string;
-  reference: string;
   own: string;
+  /** the runs that it is compared with, also as ghosts */
+  runs: readonly string[];
   grid: string;
   further: readonly string[];
 }
@@ -29,7 +30,8 @@ const LIGHT: Palette = {
   background: "#dfe7ee", horizon: "#eef2f5", ground: "#e9ecee", gridMinor: "#cfd5da", gridMajor: "#9aa5ae",
   text: "#1c232b", rod: "#39414b", sphere: "#5c6773", box: "#8b97a3", slack: "#6d7781",
   contact: "#009e73", push: "#d55e00", path: "#0072b2", selected: "#e69f00",
-  setpoint: "#0072b2", reference: "#d43a00", own: "#000000", grid: "#00000018",
+  setpoint: "#0072b2", own: "#000000", grid: "#00000018",
+  runs: ["#d43a00", "#008a63", "#9a3fb5", "#a87200", "#d6337c", "#66741f", "#7d4b2c"],
   further: ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"],
 };
 
@@ -37,7 +39,8 @@ const DARK: Palette = {
   background: "#10151b", horizon: "#1a222b", ground: "#1d252e", gridMinor: "#2b3641", gridMajor: "#51606f",
   text: "#e3e8ed", rod: "#b4bfca", sphere: "#8fa0b0", box: "#64748b", slack: "#8c98a4",
   contact: "#2bd4a4", push: "#ff8c42", path: "#56b4e9", selected: "#f0c541",
-  setpoint: "#56b4e9", reference: "#ff7a45", own: "#f2f4f6", grid: "#ffffff1c",
+  setpoint: "#56b4e9", own: "#f2f4f6", grid: "#ffffff1c",
+  runs: ["#ff7a45", "#2bd4a4", "#c58cff", "#f0c541", "#ff8fc0", "#b5cc5a", "#d0a37c"],
   further: ["#56b4e9", "#ff8c42", "#2bd4a4", "#e39cc4", "#f0c541", "#8fb8ff"],
 };
 

@@ -19,6 +19,7 @@ export const FRAME = {
     "contact_rows", // Entries of the section `contacts`.
     "push_count", // Pushes and drags that act.
     "value_count", // Channels of a program's own: Scene.values.
+    "ghost_count", // Bodies of all ghosts: the same in every frame of a scene.
   ],
   sections: [
     { name: "bodies", count: "body_count", fields: ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"] },
@@ -26,8 +27,9 @@ export const FRAME = {
     { name: "contacts", count: "contact_rows", fields: ["x_m", "y_m", "z_m", "force_x_n", "force_y_n", "force_z_n"] },
     { name: "pushes", count: "push_count", fields: ["node", "force_x_n", "force_y_n", "force_z_n"] },
     { name: "values", count: "value_count", fields: ["value"] },
+    { name: "ghosts", count: "ghost_count", fields: ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"] },
   ],
 } as const;
 
 /** Numbers of one entry of a section. */
-export const VALUES = { bodies: 7, cables: 4, contacts: 6, pushes: 4, values: 1 } as const;
+export const VALUES = { bodies: 7, cables: 4, contacts: 6, pushes: 4, values: 1, ghosts: 7 } as const;

@@ -1,6 +1,7 @@
 // The page: as a live view, as a replay, or as a report, by what it finds inside itself.
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
+import "./runs.css";
 import { App } from "./app";
 import { ReportSource } from "./embedded";
 import { ServerSource } from "./live";
@@ -9,7 +10,9 @@ import { type Report, PROTOCOL_VERSION } from "./protocol";
 import { reportPage } from "./report/page";
 import { legend } from "./scene/legend";
 import { foresee } from "./scene/foresee";
+import { runsList } from "./scene/runs_list";
 import { View } from "./scene/view";
+import { giveRunColours } from "./runs";
 import { SeriesStore } from "./series";
 import { controls } from "./ui/controls";
 import { gifMaker } from "./ui/gif";
@@ -24,6 +27,7 @@ import { button, el } from "./util";
 function start(root: HTMLElement): void {
   const report = embeddedReport();
   const app = new App(report ? new ReportSource(report) : new ServerSource(), report);
+  app.theme.watch(giveRunColours);
   const store = new SeriesStore(app);
   const view = new View(app);
   const plots = new PlotPanel(app, store);
@@ -42,6 +46,7 @@ function start(root: HTMLElement): void {
   listenToKeys(keys);
 
   if (view.draws) view.element.append(legend(app, view));
+  view.element.append(runsList(app, view));
   view.element.append(inspector(app));
   plots.element.prepend(drawer);
   const top = header(app, () => help.toggle(), [controlsButton, recorder(app, view), gifMaker(app, store, view)]);

@@ -122,20 +122,30 @@ export interface Phase {
   to_s: number;
 }
 
-/** What a run is compared with. */
-export interface Reference {
-  /** What to call it: what it says of itself, and its folder and file. */
+/** A run that the run is compared with. */
+export interface ComparedRun {
+  /** What to call it: what it says of itself, its folder and file, and as much more of its path as tells it from the others. */
   name: string;
   /** It says of itself that it was measured: metadata "measured" (docs/formats/trace.md). */
   measured: boolean;
-  /** Its channels; series of them are asked for with source 1. */
+  /** Its channels. */
   channels: Channel[];
+  /** Time of its first row. */
+  first_s: number;
+  /** Time of its last. */
+  last_s: number;
+  /** Of its ghost, whose poses are in the section `ghosts` of frames. Empty: it has none. */
+  bodies: Body[];
+  /** Of its ghost; bodies are places in `bodies`. */
+  cables: Cable[];
+  /** What is amiss with it, or why it has no ghost, in a sentence. */
+  notice?: string;
 }
 
 /** A channel over a span of time, at the resolution asked for. Points are blocks of `level` rows; at level 1, first, min and max are the value. A span with no more rows, one beyond each end included, than points were asked for comes at level 1; out of a report, at that of its Rows. */
 export interface SeriesData {
   channel: string;
-  /** 0: the run; 1: what it is compared with. */
+  /** 0: the run; k: the k-th that it is compared with. */
   source: number;
   /** Rows a point. */
   level: number;
@@ -151,7 +161,7 @@ export interface SeriesData {
 
 /** The plotted channels of a trace from its start to its end. */
 export interface Rows {
-  /** 0: the run; 1: what it is compared with. */
+  /** 0: the run; k: the k-th that it is compared with. */
   source: number;
   /** 1: every row is here. More: blocks of so many rows, as in SeriesData. */
   level: number;
@@ -168,20 +178,24 @@ export interface Report {
   version: number;
   title: string;
   scene: Scene;
+  /** The experiment's, or empty. */
+  description: string;
+  /** What was run, in words, by what they are about; empty if unknown. */
+  facts: Record<string, string>;
   /** Text by key: versions, seed, machine, hash of the inputs. */
   metadata: Record<string, string>;
   /** The experiment and its model as resolved (YAML); empty if unknown. */
   inputs: string;
   /** The content of summary.json, or null. */
   summary: unknown;
-  /** The content of `taut compare --json`, or null. */
-  comparison: unknown;
-  /** Of the run and of what it is compared with. */
+  /** For each run that it is compared with the content of `taut compare --json` of that one (a) and the run (b). */
+  comparisons: unknown[];
+  /** Of the run and of those that it is compared with. */
   rows: Rows[];
   frame_count: number;
   /** Numbers a frame. */
   frame_values: number;
-  /** Float64, little endian: frames as defined below, one after the other, contacts left out. Each has as many pushes as the one with the most; what does not act has no force. */
+  /** Float64, little endian: frames as defined below, one after the other. Each has as many contacts and pushes as the one with the most; what does not act has no force. */
   frames_base64: string;
 }
 
@@ -206,7 +220,12 @@ export interface Scene {
   duration_s: number;
   /** Of the spring that drag pulls with; 0 unless live. */
   drag_stiffness_n_per_m: number;
-  reference?: Reference;
+  /** What to call the run beside those that it is compared with. */
+  run_name?: string;
+  /** Source k of series is the k-th of them, from 1. Empty unless a replay or report. */
+  compared: ComparedRun[];
+  /** Frames hold the forces of contacts, and not their number alone. */
+  contact_forces: boolean;
   /** What is amiss with the file, or with what is recorded, in a sentence. */
   notice?: string;
 }
@@ -355,7 +374,7 @@ export interface WantSeriesMessage {
   /** Comes back with the answer. */
   id: number;
   channel: string;
-  /** 0 if absent. */
+  /** 0, the run, if absent; k: the k-th that it is compared with. */
   source?: number;
   /** [s] */
   t0: number;

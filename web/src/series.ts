@@ -11,6 +11,8 @@ const LIVE_CAPACITY = 36_000; // ten minutes of 60 frames a second
 const ASK_AT_ONCE = 8; // questions on their way at the same time
 const GAP_S = 0.05; // between the frames of a live run: what lies between them is asked for
 const LATE = 0.02; // of what is shown: by how much an answer about a live run may be older
+const ROUNDING_S = 1e-9; // by which times of one row differ between runs
+const NO_ROW: Row = { time_s: NaN, value: NaN, every: 1 };
 const RANGES = 6; // of a channel: its plots, each with a range of its own, and those that they had before
 
 type Receiver = (points: Points) => void;
@@ -62,10 +64,10 @@ export class SeriesStore {
     app.link.watch((link) => link === "lost" && this.forget());
   }
 
-  /** The unit of a channel of the run (source 0) or of what it is compared with (1); undefined: there is no such channel. */
+  /** The unit of a channel of the run (source 0) or of the k-th that it is compared with; undefined: there is no such channel. */
   unit(channel: string, source: number): string | undefined {
     const scene = this.app.scene.value;
-    const channels = source === 1 ? scene?.reference?.channels : scene?.channels;
+    const channels = source > 0 ? scene?.compared[source - 1]?.channels : scene?.channels;
     return channels?.find(({ name }) => name === channel)?.unit;
   }
 
@@ -75,11 +77,13 @@ export class SeriesStore {
 
   /**
    * The row at a time, or the last before it; null: it has been asked for, and `rowsCame` says when it is
-   * there. `drawn`: what a plot has of the channel around that time.
+   * there; NaN: a compared run has ended before. `drawn`: what a plot has of the channel around that time.
    */
   row(channel: string, source: number, time_s: number, drawn: Points): Row | null {
     const now = source === 0 ? this.inFrame(channel, time_s) : undefined;
     if (now !== undefined) return { time_s, value: now, every: 1 };
+    const compared = this.app.scene.value?.compared[source - 1];
+    if (compared && time_s > compared.last_s + ROUNDING_S) return NO_ROW; // its last row is not of now
     if (!this.app.live || source !== 0) return this.rows.at(channel, source, time_s, drawn);
     // of what the page was shown and what the server keeps, the later
     const own = rowAt(this.history.get(channel) ?? NOTHING, time_s);

@@ -9,7 +9,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import WebSocket from "ws";
 import { decodePng, PAGE, PICTURES, until, writeReport } from "./browser.mjs";
-import { pose, report, tension_n } from "./fixture.mjs";
+import { pose, reference, report, tension_n } from "./fixture.mjs";
 import { MockServer } from "./mock_server.mjs";
 
 const FIREFOX = process.env.TAUT_FIREFOX ?? "/usr/bin/firefox-esr";
@@ -120,7 +120,7 @@ async function showsRods(name) {
 }
 
 test("FirefoxReplays", options, async () => {
-  const server = await new MockServer(PAGE, { mode: "replay", compare: true }).start();
+  const server = await new MockServer(PAGE, { mode: "replay", compared: [reference] }).start();
   await firefox.open(server.url);
   await firefox.untilSo(DRAWN);
   await firefox.run("window.taut.app.seek(6)");

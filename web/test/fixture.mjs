@@ -76,7 +76,7 @@ export const scene = {
   ],
   parameters: [], controls: [], values: [], channels,
   phases: [{ name: "before", from_s: 1, to_s: 3 }, { name: "after", from_s: 6, to_s: 9 }],
-  first_s: 0, duration_s: DURATION_S, drag_stiffness_n_per_m: 0,
+  first_s: 0, duration_s: DURATION_S, drag_stiffness_n_per_m: 0, compared: [], contact_forces: true,
 };
 
 export const liveScene = {
@@ -115,16 +115,18 @@ export const VERSION = protocol.version;
 export function frameValues(time_s, more = {}) {
   const contacts = more.contacts ?? [];
   const pushes = more.pushes ?? [];
+  const ghosts = more.ghosts ?? [];
   const header = {
     time_s, now_s: time_s, real_time_factor: 1, speed: 1, paused: 0, driver: 1, kinetic_j: 0.1 * time_s, gravity_j: 2, elastic_j: 3,
-    run: 0, body_count: 3, cable_count: CABLE_COUNT, contact_count: contactCount(time_s), contact_rows: contacts.length, push_count: pushes.length, value_count: 0,
+    run: 0, body_count: 3, cable_count: CABLE_COUNT, contact_count: contactCount(time_s), contact_rows: contacts.length, push_count: pushes.length,
+    value_count: 0, ghost_count: ghosts.length,
     ...more.header,
   };
   return [
     ...protocol.frame.header.map(([name]) => header[name]),
     ...[0, 1, 2].flatMap((i) => Object.values(pose(i, time_s)).flat()),
     ...cables.flatMap((_, i) => [more.tension_n?.[i] ?? tension_n(i, time_s), 0.3 + 0.01 * i, 0.25, setpoint_n(i)]),
-    ...contacts.flat(), ...pushes.flat(),
+    ...contacts.flat(), ...pushes.flat(), ...ghosts.flat(),
   ];
 }
 
@@ -155,7 +157,7 @@ export function seriesOf(channel, source, t0, t1, points) {
   let level = 1;
   while ((last - first + 1) / level > points) level *= 2;
   const series = { channel, source, level, time_s: [], first: [], min: [], max: [] };
-  const offset = source === 1 ? 1.5 : 0; // what was measured lies above
+  const offset = 1.5 * source; // what this run is compared with lies above
   for (let row = first; row <= last; row += level) {
     const values = [];
     for (let k = row; k < Math.min(row + level, last + 1); ++k) values.push(channelValue(channel, k / RATE_HZ) + offset);
@@ -167,11 +169,33 @@ export function seriesOf(channel, source, t0, t1, points) {
   return series;
 }
 
+const tensions = channels.filter(({ name }) => name.endsWith("/tension_n"));
+
+/** A run without poses. */
 export const reference = {
-  name: "another prism (runs/trace.h5)",
-  measured: false,
-  channels: channels.filter(({ name }) => name.endsWith("/tension_n")),
+  name: "another prism (runs/trace.h5)", measured: false, channels: tensions,
+  first_s: 0, last_s: DURATION_S, bodies: [], cables: [], notice: "no ghost: there are no poses of bodies in this trace",
 };
+
+/** A prism beside this run's, by so much for each source; the third ends early, the fourth is one rod alone. */
+export const GHOST_OFFSET_M = [0, 0.05, 0.02];
+export const EARLY_END_S = 4;
+const ghost = (name, more = {}) => ({ ...reference, name, bodies: scene.bodies, cables, notice: undefined, ...more });
+export const comparedRuns = [
+  ghost("prism (a/trace.h5)"),
+  reference,
+  ghost("prism (b/trace.h5)", { last_s: EARLY_END_S }),
+  ghost("a rod (c/trace.h5)", { bodies: [scene.bodies[0]], cables: [], notice: "the trace is not finished: its run goes on, or was killed" }),
+];
+
+/** Poses of the ghosts of compared runs; `runs`: as in a scene. */
+export function ghostsAt(runs, time_s) {
+  return runs.flatMap(({ bodies, last_s }, k) => bodies.map((_, body) => {
+    const { position_m, orientation } = pose(body, time_s);
+    if (time_s > last_s + 0.5 / RATE_HZ) return new Array(7).fill(NaN);
+    return [...position_m.map((value, axis) => value + (k + 1) * GHOST_OFFSET_M[axis]), ...orientation];
+  }));
+}
 
 const base64 = (numbers) => Buffer.from(new Float64Array(numbers).buffer).toString("base64");
 
@@ -186,10 +210,15 @@ export function rowsOf(channels, source, level, value = seriesOf) {
 /** What a report holds; every eighth row has its frame. `level`: rows a block. */
 export function report(changes = {}, level = 1) {
   const frames = [];
-  for (let k = 0; k <= (DURATION_S * RATE_HZ) / 8; ++k) frames.push(frameValues((8 * k) / RATE_HZ));
-  const others = (changes.scene?.reference?.channels ?? []).map(({ name }) => name);
+  const compared = changes.scene?.compared ?? [];
+  for (let k = 0; k <= (DURATION_S * RATE_HZ) / 8; ++k) {
+    const time_s = (8 * k) / RATE_HZ;
+    frames.push(frameValues(time_s, { contacts: contactsAt(time_s), ghosts: ghostsAt(compared, time_s) }));
+  }
+  const others = compared.map(({ channels: list }, k) => rowsOf(list.map(({ name }) => name), k + 1, level));
   return {
     version: VERSION, title: "turning prism", scene,
+    description: "A prism turns about the vertical.", facts: { robot: "prism: 3 bodies, 9 cables, 1.5 kg", time: "10 s in steps of 0.001 s" },
     metadata: { taut_version: "1.2.3", seed: "42", machine: "a machine" },
     inputs: "taut: 1\nname: <b>prism</b>\n",
     summary: {
@@ -200,8 +229,8 @@ export function report(changes = {}, level = 1) {
       ],
       cables: cables.map(({ name }, i) => ({ name, tension: { max_n: 4.8 * (i + 1), phases: { before: { mean_n: i, min_n: 0, max_n: 9 } } } })),
     },
-    comparison: null,
-    rows: [rowsOf(channels.map(({ name }) => name), 0, level), ...(others.length > 0 ? [rowsOf(others, 1, level)] : [])],
+    comparisons: [],
+    rows: [rowsOf(channels.map(({ name }) => name), 0, level), ...others],
     frame_count: frames.length, frame_values: frames[0].length,
     frames_base64: base64(frames.flat()),
     ...changes,

@@ -15,7 +15,7 @@ let folder;
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), "taut-layout-"));
   servers.live = await new MockServer(PAGE, { mode: "live" }).start();
-  servers.replay = await new MockServer(PAGE, { mode: "replay", compare: true }).start();
+  servers.replay = await new MockServer(PAGE, { mode: "replay", compared: [reference] }).start();
   for (const server of Object.values(servers)) server.time_s = 5;
 });
 after(async () => {
@@ -25,7 +25,7 @@ after(async () => {
 });
 
 const address = (use) =>
-  use === "report" ? writeReport(report({ scene: { ...scene, reference } }), folder) : servers[use].url;
+  use === "report" ? writeReport(report({ scene: { ...scene, compared: [reference] } }), folder) : servers[use].url;
 
 /** What is wrong with the layout, in sentences. */
 function faults() {

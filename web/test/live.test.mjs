@@ -52,9 +52,17 @@ test("DraggingANodePullsItAndTheTensionAnswers", async () => {
   assert.ok(Math.abs(from.project(target.target_m).depth - from.depth) < 1e-3, "the target stays as far away as the node");
   await page.waitForFunction(() => window.taut.view.world.forces.pushes.object.children[0].count === 1);
   await page.waitForFunction(() => window.taut.app.frame.value.cables[0] > 6);
+  // how hard, in newtons, beside the mouse: the force of the frame that is shown
+  const at = worldPoint(nodes[1].body, nodes[1].position_m, server.time_s);
+  const force_n = 200 * Math.hypot(...server.of("drag").at(-1).target_m.map((value, k) => value - at[k]));
+  await page.waitForFunction((wanted) => Math.abs(parseFloat(document.querySelector(".grip").textContent) - wanted) < 0.01 * wanted, force_n);
+  assert.match(await page.locator(".grip").innerText(), /^\d+(\.\d+)? N$/);
+  const label = await page.locator(".grip").boundingBox();
+  assert.ok(Math.hypot(label.x - from.x - 60, label.y - from.y + 40) < 40, "it is beside the mouse");
   await drawn(page);
   await picture(page, "drag");
   await page.mouse.up();
+  assert.equal(await page.locator(".grip").isVisible(), false);
   await until(() => server.of("drop").length === 1, "the drop");
   await page.waitForFunction(() => window.taut.view.world.forces.pushes.object.children[0].count === 0);
   await page.waitForFunction(() => document.querySelectorAll(".events i").length === 1);
@@ -271,7 +279,7 @@ test("AServerOfAnotherVersionIsRefused", async () => {
   await server.stop();
   server = await new MockServer(PAGE, { mode: "live", hello: { version: 99 } }).start();
   const page = await open({ wait: false });
-  await page.waitForFunction(() => /version 3 of the protocol, the server version 99/.test(document.querySelector(".failure pre")?.textContent ?? ""));
+  await page.waitForFunction(() => /version 4 of the protocol, the server version 99/.test(document.querySelector(".failure pre")?.textContent ?? ""));
 });
 
 test("HelpNamesEveryKeyAndThemesChange", async () => {

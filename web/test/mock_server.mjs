@@ -3,7 +3,7 @@
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { WebSocketServer } from "ws";
-import { contactsAt, DURATION_S, frameValues, liveScene, nodes, RATE_HZ, reference, rowTime, scene, seriesOf, VERSION, worldPoint } from "./fixture.mjs";
+import { contactsAt, DURATION_S, frameValues, ghostsAt, liveScene, nodes, RATE_HZ, rowTime, scene, seriesOf, VERSION, worldPoint } from "./fixture.mjs";
 
 const FRAME_MS = 20;
 const IDLE_TICKS = 12;
@@ -22,11 +22,12 @@ export class MockServer {
   clients = new Map();
   next = 1;
 
-  /** mode: live, replay; page: the file to serve at "/". */
-  constructor(page, { mode = "replay", compare = false, hello = {} } = {}) {
+  /** mode: live, replay; page: the file to serve at "/"; compared, more: of the scene of a replay. */
+  constructor(page, { mode = "replay", compared = [], more = {}, hello = {} } = {}) {
     this.page = page;
     this.mode = mode;
-    this.compare = compare;
+    this.compared = compared;
+    this.more = more;
     this.hello = hello;
   }
 
@@ -87,7 +88,7 @@ export class MockServer {
       type: "hello", version: VERSION, mode: this.mode, title: "turning prism", client, driver: this.driver,
       ...this.hello,
     });
-    const shown = this.mode === "live" ? this.liveScene() : { ...scene, ...(this.compare ? { reference } : {}) };
+    const shown = this.mode === "live" ? this.liveScene() : { ...scene, compared: this.compared, ...this.more };
     this.send(socket, { type: "scene", scene: shown });
     socket.on("message", (data) => this.hear(client, socket, JSON.parse(data.toString())));
     this.frame();
@@ -161,7 +162,7 @@ export class MockServer {
     const values = frameValues(shown_s, {
       header: {
         now_s: this.mode === "live" ? this.time_s : shown_s, paused: this.paused ? 1 : 0, speed: this.speed, driver: this.driver, run: this.run },
-      contacts: contactsAt(shown_s), pushes, tension_n: tensions,
+      contacts: contactsAt(shown_s), pushes, tension_n: tensions, ghosts: ghostsAt(this.mode === "live" ? [] : this.compared, shown_s),
     });
     const bytes = new Float64Array(values);
     for (const socket of this.clients.values()) if (socket.bufferedAmount < 1e6) socket.send(bytes);

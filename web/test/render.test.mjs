@@ -136,6 +136,52 @@ test("ContactForcesAreArrowsToScale", async (t) => {
   for (const length of arrows.lengths) assert.ok(Math.abs(length - 4.905 * arrows.m_per_n) < 1e-6);
 });
 
+for (const theme of ["light", "dark"]) {
+  test(`FromBelowTheRobotIsSeenThroughTheFloor (${theme})`, async (t) => {
+    const { page } = await sceneAt(t, theme, 4);
+    await page.evaluate(() => {
+      const { camera, target } = window.taut.view;
+      camera.position.copy(target).add(camera.position.clone().set(-1.065, 0.746, -0.4));
+    });
+    await drawn(page);
+    const [project, image] = [await projection(page), await viewPixels(page)];
+    const ground = image.colour(...Object.values(project([0.05 * 4 - 0.25, 0.4, 0])).slice(0, 2));
+    for (let i = 0; i < 3; ++i) {
+      const share = along(project, image, rodEnds(i, 4), othersThan("rod", i, 4), (colour) => Math.abs(brightness(colour) - brightness(ground)) > 25);
+      assert.ok(share > 0.9, `rod ${i}: ${share} of its axis is seen`);
+    }
+    await picture(page, `below-${theme}`);
+  });
+}
+
+test("FromAboveTheFloorHidesWhatIsBelow", async (t) => {
+  const { page } = await sceneAt(t, "light", 0);
+  const floor = () => page.evaluate(() => {
+    const { transparent, opacity } = window.taut.view.world.ground.object.children[0].material;
+    return { transparent, opacity };
+  });
+  assert.deepEqual(await floor(), { transparent: false, opacity: 1 });
+  await page.evaluate(() => (window.taut.view.camera.position.z = -1));
+  await drawn(page);
+  assert.equal((await floor()).transparent, true);
+  await page.evaluate(() => (window.taut.view.camera.position.z = 1));
+  await drawn(page);
+  assert.deepEqual(await floor(), { transparent: false, opacity: 1 });
+});
+
+test("WhereATraceHasNoContactForcesTheLegendSaysHowToRecordThem", async (t) => {
+  const page = await openPage(server.url);
+  t.after(() => page.context().close());
+  assert.equal(await page.locator(".legend .unrecorded").isVisible(), false);
+  assert.match(await page.locator(".legend").innerText(), /➔\s*contact/);
+  const without = await new MockServer(PAGE, { mode: "replay", more: { contact_forces: false } }).start();
+  t.after(() => without.stop());
+  const other = await openPage(without.url);
+  assert.match(await other.locator(".legend .unrecorded").innerText(), /this trace has none.*record: \{contacts: 20\}/);
+  assert.doesNotMatch(await other.locator(".legend").innerText(), /➔\s*contact/);
+  await other.context().close();
+});
+
 test("PicturesOfTheScene", async (t) => {
   for (const theme of ["light", "dark"]) {
     const { page } = await sceneAt(t, theme, 4);

@@ -10,7 +10,7 @@ let server;
 let page;
 
 before(async () => {
-  server = await new MockServer(PAGE, { mode: "replay", compare: true }).start();
+  server = await new MockServer(PAGE, { mode: "replay", compared: [reference] }).start();
   page = await openPage(server.url);
 });
 after(async () => {

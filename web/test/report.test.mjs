@@ -5,14 +5,14 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { closeBrowser, cursorTo, numbersBeside, openPage, picture, untilTime, writeReport } from "./browser.mjs";
-import { contactCount, pose, RATE_HZ, reference, report, rowsOf, rowTime, scene, seriesOf, setpoint_n, tension_n } from "./fixture.mjs";
+import { comparedRuns, contactCount, pose, RATE_HZ, reference, report, rowsOf, rowTime, scene, seriesOf, setpoint_n, tension_n } from "./fixture.mjs";
 
 let folder;
 let page;
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), "taut-report-"));
-  page = await openPage(writeReport(report({ scene: { ...scene, reference } }), folder), { width: 1200, height: 800 });
+  page = await openPage(writeReport(report({ scene: { ...scene, compared: [reference] } }), folder), { width: 1200, height: 800 });
 });
 after(async () => {
   await closeBrowser();
@@ -35,6 +35,48 @@ test("ItSaysWhatWasRunAndWhatCameOut", async () => {
   assert.deepEqual(await cells(1), ["top_1", "20", "–", "–", "2", "4", "+100.0 %"]);
   await page.getByText("Inputs as resolved").click();
   assert.match(await page.locator(".inputs").innerText(), /<b>prism<\/b>/, "inputs are text, never markup");
+});
+
+test("ItBeginsWithWhatWasRunAndEndsWithWhatIsForTheRecord", async () => {
+  const titles = await page.locator("main.report h2").allInnerTexts();
+  assert.deepEqual(titles, ["What was run", "Replay", "What came out", "Beside the references", "Plots", "For the record"]);
+  const first = await page.locator("main.report section").first().innerText();
+  for (const part of ["A prism turns about the vertical.", "prism: 3 bodies, 9 cables, 1.5 kg", "It ran to its end, 10 s, and nothing went wrong."]) assert.ok(first.includes(part), first);
+  assert.ok(!/1\.2\.3|a machine/.test(first), "versions and machines come last");
+  assert.ok((await page.locator("main.report section").last().innerText()).includes("a machine"));
+  assert.ok(!/format.version|status.bits/.test(await page.locator("main.report").innerText()));
+});
+
+test("ARunThatWentWrongSaysSoAtOnce", async () => {
+  const bad = { ...report().summary, status: "not finite: rod_1 at 3 s", interrupted: true, simulated_s: 3.5, contacts_left_out: 12 };
+  const other = await openPage(writeReport(report({ summary: bad }), folder));
+  const first = await other.locator("main.report section").first().innerText();
+  assert.match(first, /It was simulated for 3\.5000 s and then interrupted: not finite: rod_1 at 3 s\. 12 contacts had no room in the trace\./);
+  await other.context().close();
+});
+
+test("OtherRunsAreTablesOfWhatTheyDifferBy", async () => {
+  const channel = (name, a, b, error) => ({ name, unit: "N", rows: 2001, rmse: 0.5, bias: 0, max_error: error, lag_s: 0, lag_at_limit: false, correlation: 1,
+    max_a: { value: a, time_s: 1 }, max_b: { value: b, time_s: 1 }, max_error_percent: 0,
+    phases: { before: { a: { mean: a / 2 }, b: { mean: b / 2 } }, after: { a: { mean: null }, b: { mean: null } } } });
+  const of = (channels) => ({ format_version: 1, rows: channels.length > 0 ? 2001 : 0, from_s: 0, to_s: 10, resampled: false, unit_conflicts: [], only_here: [],
+    phases: [{ name: "before", from_s: 1, to_s: 3 }, { name: "after", from_s: 6, to_s: 9 }], channels });
+  const comparisons = [
+    of([channel("cable/top_0/tension_n", 24, 20, { value: 4, time_s: 2 }), channel("cable/top_1/tension_n", 18, 20, { value: -2, time_s: 2 }),
+      channel("cable/top_1/length_m", 99, 98, { value: 1, time_s: 2 }), channel("body/rod_1/position_z_m", 0.4, 0.3, { value: -0.0125, time_s: 7 })]),
+    of([]),
+  ];
+  const other = await openPage(writeReport(report({ scene: { ...scene, run_name: "prism (this/trace.h5)", compared: comparedRuns.slice(0, 2) }, comparisons }), folder));
+  const beside = other.locator("section", { hasText: "Beside other runs" });
+  const cells = (table, row) => beside.locator("table").nth(table).locator("tbody tr").nth(row).locator("th, td").allInnerTexts();
+  assert.deepEqual(await beside.locator("h3").allInnerTexts(), ["Largest tension, whole run", "Mean tension, before (1–3 s)"], "a phase without numbers has no table");
+  assert.deepEqual(await cells(0, 0), ["prism (a/trace.h5)", "0–10 s, 2001 rows", "+4 N, top_0, at 2 s", "0.5000 N", "−0.01250 m, rod_1 z, at 7 s"]);
+  assert.match((await cells(0, 1))[1], /^nothing in common/);
+  assert.deepEqual(await cells(1, 0), ["top_0", "20", "24", "+4", "–", "–"]);
+  assert.deepEqual(await cells(1, 1), ["top_1", "20", "18", "−2", "–", "–"]);
+  assert.deepEqual(await cells(2, 0), ["top_0", "10", "12", "+2", "–", "–"]);
+  assert.ok(!/correlation|lag|format/.test(await beside.innerText()), "no rows of raw numbers");
+  await other.context().close();
 });
 
 test("EveryPlotIsThereBeforeItIsScrolledTo", async () => {
@@ -115,7 +157,7 @@ test("WhatIsDrawnCoarserThanTheRowsSaysSo", async () => {
 });
 
 test("AReportWithoutEveryRowSaysWhichRowANumberIsOf", async () => {
-  const long = await openPage(writeReport(report({ scene: { ...scene, reference } }, 8), folder));
+  const long = await openPage(writeReport(report({ scene: { ...scene, compared: [reference] } }, 8), folder));
   await cursorTo(long, 5.033);
   const at_s = 5; // blocks of 8 rows begin every 0.04 s: 5.00, 5.04
   const [contacts, tension] = await numbersBeside(long, ["contacts", "tension:top_1"]);
@@ -132,7 +174,7 @@ test("LinesAreCalledWhatTheyAre", async () => {
   const free = scene.channels.filter(({ name }) => !name.endsWith("/setpoint_n"));
   const robot = { ...reference, name: "a robot (lab/trial_3.h5)", measured: true,
     channels: reference.channels.map((each) => (each.name === "cable/top_0/tension_n" ? { ...each, unit: "lbf" } : each)) };
-  const data = report({ scene: { ...scene, channels: free, reference: robot }, rows: [rowsOf(free.map(({ name }) => name), 0, 1), rowsOf(robot.channels.map(({ name }) => name), 1, 1)] });
+  const data = report({ scene: { ...scene, channels: free, compared: [robot] }, rows: [rowsOf(free.map(({ name }) => name), 0, 1), rowsOf(robot.channels.map(({ name }) => name), 1, 1)] });
   const other = await openPage(writeReport(data, folder));
   assert.deepEqual(await other.locator(".key span").allInnerTexts(), ["measured: a robot (lab/trial_3.h5)", "this run"]);
   const [both, one] = await numbersBeside(other, ["tension:top_1", "tension:top_0"]);
@@ -160,7 +202,7 @@ test("PlotsAreSavedAsSvgPngAndCsv", async () => {
   const row = csv.find((line) => line.startsWith("5,")).split(",").map(Number);
   assert.equal(row[names.indexOf("cable/top_1/tension_n")], tension_n(4, 5));
   assert.ok(names.some((name) => /tension_n:min of [0-9]+ rows/.test(name)), csv[0]);
-  assert.ok(names.includes("reference:cable/top_1/tension_n") && names.includes("cable/top_1/setpoint_n"));
+  assert.ok(names.includes("another prism (runs/trace.h5):cable/top_1/tension_n") && names.includes("cable/top_1/setpoint_n"));
   await picture(page, "report", { fullPage: true });
 });
 
@@ -188,7 +230,7 @@ test("AxesFitWhatTheyShow", async () => {
 });
 
 for (const [what, data, says] of [
-  ["OfAnotherVersion", { ...report(), version: 7 }, /version 7, this page reads version 3/],
+  ["OfAnotherVersion", { ...report(), version: 7 }, /version 7, this page reads version 4/],
   ["CutOff", { ...report(), frame_count: 3 }, /holds \d+ numbers of frames, not 3 times/],
   ["WithTooFewRows", { ...report(), rows: [{ ...report().rows[0], count: 3 }] }, /holds \d+ numbers of rows, not \d+/],
 ]) {

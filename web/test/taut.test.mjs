@@ -2,9 +2,9 @@
 // TAUT_COMMAND names the command; without it there is nothing to test here.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname, join } from "node:path";
+import { basename, dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { after, afterEach, before, test } from "node:test";
 import { closeBrowser, cursorTo, drawn, listenToNotices, numbersBeside, openPage, PAGE, picture, projection, ready, untilTime } from "./browser.mjs";
@@ -57,7 +57,7 @@ async function compareNumbers(page, runs, time_s) {
   for (const [i, { numbers }] of (await numbersBeside(page, figures)).entries()) {
     const figure = figures[i];
     const tension = `cable/${figure.replace("tension:", "")}/tension_n`;
-    const wanted = figure === "contacts" ? [runs[0].value("system/contact_count", time_s)]
+    const wanted = figure === "contacts" ? [...runs.slice(1), runs[0]].map((run) => run.value("system/contact_count", time_s))
       : [...(runs[0].has(tension.replace("tension_n", "setpoint_n")) ? [runs[0].value(tension.replace("tension_n", "setpoint_n"), time_s)] : []),
           ...runs.slice(1).map((run) => run.value(tension, time_s)), runs[0].value(tension, time_s)];
     assert.deepEqual(numbers, wanted.map(asShown), `${figure} at ${time_s} s`);
@@ -88,7 +88,7 @@ test("TheNumbersOfReplayAndReportAreTheRowsOfTheFile", options, async (t) => {
   execFileSync(TAUT, ["run", "experiments/push_20n.yaml", "--set", "push_n=30", "--duration_s", "20", "--csv", "--quiet", "--out", other], { cwd: ROOT });
   const times_s = [0.013, 0.02, 12.345, 19.999];
   const compare = ["--compare", join(other, "trace.h5")];
-  const replay = await openPage(await view(join(folder, "trace.h5"), ...compare, "--port", "0"), { width: 1280, height: 800 });
+  const replay = await openPage(await view(join(folder, "trace.h5"), ...compare, "--port", "0"), { width: 1280, height: 1100 });
   const file = join(other, "both.html");
   execFileSync(TAUT, ["report", join(folder, "trace.h5"), ...compare, "--out", file], { cwd: ROOT, env: { ...process.env, TAUT_WEB: dirname(PAGE) } });
   const report = await openPage(`file://${file}`, { width: 1200, height: 800 });
@@ -96,7 +96,7 @@ test("TheNumbersOfReplayAndReportAreTheRowsOfTheFile", options, async (t) => {
   for (const page of [replay, report]) {
     await page.waitForFunction(() => document.querySelectorAll('[data-figure^="tension:"] .uplot').length === 12);
     assert.deepEqual(await page.locator(".key span").allInnerTexts(), ["set point", "push_20n (other/trace.h5)", "this run"]);
-    assert.equal(await compareNumbers(page, [run, csvOf(other)], 0), 12 * 3 + 1, "without a cursor");
+    assert.equal(await compareNumbers(page, [run, csvOf(other)], 0), 12 * 3 + 2, "without a cursor");
     for (const time_s of times_s) {
       await cursorTo(page, time_s);
       await compareNumbers(page, [run, csvOf(other)], time_s);
@@ -168,6 +168,55 @@ test("ATraceIsReplayedToThePosesOfTheFile", options, async (t) => {
   assert.deepEqual(page.complaints, []);
 });
 
+// Four runs, of which one is another robot, one ends early at another rate, and one was measured: no poses.
+test("GhostsAndContactForcesAreTheRowsOfTheirFiles", options, async (t) => {
+  const experiment = (name, more) => {
+    const file = join(folder, `${name}.yaml`);
+    writeFileSync(file, `taut: 1\nkind: experiment\nbase: ${join(ROOT, more.base)}\nname: ${name}\nrecord: {rate_hz: ${more.rate_hz}, channels: [\"*\"], contacts: 20}\n`);
+    execFileSync(TAUT, ["run", file, "--duration_s", String(more.duration_s), "--csv", "--quiet", "--out", join(folder, name)], { cwd: ROOT });
+    return csvOf(join(folder, name));
+  };
+  const own = experiment("own", { base: "experiments/push_20n.yaml", rate_hz: 100, duration_s: 2 });
+  const early = experiment("early", { base: "experiments/push_20n_table1.yaml", rate_hz: 40, duration_s: 1 });
+  const hang = experiment("hanging", { base: "experiments/hang.yaml", rate_hz: 200, duration_s: 2 });
+  writeFileSync(join(folder, "measured.csv"), "time_s,cable/outer_top_1/tension_n\n0,5\n1,6\n2,7\n");
+  const compare = ["--compare", join(folder, "early/trace.h5"), join(folder, "hanging/trace.h5"), "--compare", join(folder, "measured.csv")];
+  const file = join(folder, "four.html");
+  execFileSync(TAUT, ["report", join(folder, "own/trace.h5"), ...compare, "--out", file], { cwd: ROOT, env: { ...process.env, TAUT_WEB: dirname(PAGE) } });
+  const pages = [await openPage(await view(join(folder, "own/trace.h5"), ...compare, "--port", "0"), { width: 1280, height: 800 }), await openPage(`file://${file}`, { width: 1200, height: 800 })];
+  t.after(() => Promise.all(pages.map((page) => page.context().close())));
+  for (const page of pages) {
+    assert.deepEqual(await page.locator(".runs .name").allInnerTexts(), ["this run: own (own/trace.h5)", "early (early/trace.h5)", "hanging (hanging/trace.h5)", `${basename(folder)}/measured.csv`]);
+    assert.match(await page.locator(".runs li").last().innerText(), /no ghost/);
+    for (const time_s of [0, 0.5, 1.5]) {
+      await page.evaluate((wanted) => window.taut.app.seek(wanted), time_s);
+      await untilTime(page, time_s, 0.05);
+      const { shown_s, ghosts, arrows } = await page.evaluate(() => {
+        const { world } = window.taut.view;
+        const shafts = world.forces.contacts.object.children;
+        const length = (mesh, i) => Math.hypot(...mesh.instanceMatrix.array.slice(16 * i + 4, 16 * i + 7));
+        return {
+          shown_s: window.taut.app.frame.value.time_s,
+          ghosts: world.ghosts.ghosts.map(({ object, bodies, groups }) => ({ drawn: object.visible, bodies: bodies.map(({ name }, i) => ({ name, p: groups[i].position.toArray() })) })),
+          arrows: Array.from({ length: shafts[0].count }, (_, i) => ((length(shafts[0], i) + length(shafts[1], i)) * world.forces.reference_n) / world.forces.reference_m),
+        };
+      });
+      assert.deepEqual(ghosts.map(({ drawn: seen }) => seen), [time_s < 1.01, true, false]);
+      for (const [k, run] of [[0, early], [1, hang]]) {
+        if (!ghosts[k].drawn) continue;
+        assert.ok(ghosts[k].bodies.length > 0);
+        for (const { name, p } of ghosts[k].bodies) {
+          ["x", "y", "z"].forEach((axis, i) => assert.equal(p[i], run.value(`body/${name}/position_${axis}_m`, shown_s + 1e-9), `${name} at ${shown_s} s`));
+        }
+      }
+      const forces_n = Array.from({ length: 20 }, (_, slot) => Math.hypot(...["x", "y", "z"].map((axis) => own.value(`contact/${slot}/force_${axis}_n`, shown_s + 1e-9)))).filter((force_n) => force_n > 0);
+      assert.equal(arrows.length, forces_n.length, `contacts at ${shown_s} s`);
+      arrows.forEach((force_n, i) => assert.ok(Math.abs(force_n - forces_n[i]) < 1e-5 * Math.max(...forces_n)));
+      if (time_s > 0) assert.ok(arrows.length >= 3, "it stands on something");
+    }
+  }
+});
+
 test("ANodeIsDraggedAndTheTensionAnswers", options, async (t) => {
   const page = await openPage(await view("models/tetraspine3.yaml", "--settled", "--port", "0"), { wait: true });
   t.after(() => page.context().close());
@@ -197,6 +246,11 @@ test("ANodeIsDraggedAndTheTensionAnswers", options, async (t) => {
   await live.mouse.move(box.x + x + 50, box.y + y - 60, { steps: 5 });
   await live.evaluate(() => window.taut.app.togglePlay());
   await live.waitForFunction(() => window.taut.app.frame.value.pushes.length > 0);
+  const { said, force_n } = await live.evaluate(() => ({
+    said: document.querySelector(".grip").textContent, force_n: Math.hypot(...window.taut.app.frame.value.pushes.slice(-3)),
+  }));
+  assert.match(said, / N$/);
+  assert.ok(Math.abs(parseFloat(said) - force_n) <= 0.005 * force_n, `${said}, not ${force_n} N`);
   await live.waitForFunction((old) => Array.from(window.taut.app.frame.value.cables)
     .filter((_, k) => k % 4 === 0).some((tension, i) => Math.abs(tension - old[i]) > 0.5), before);
   await live.mouse.up();
@@ -279,7 +333,7 @@ test("AReportOpensFromDiskAndAsksNobody", options, async (t) => {
   await untilTime(page, 37, 0.05);
   assert.equal(await page.evaluate(() => window.taut.view.world.forces.pushes.object.children[0].count), 3, "the three pushes act");
   const text = await page.locator("main.report").innerText();
-  for (const part of ["push_20n", "inner_top_1", "ok"]) assert.ok(text.includes(part), part);
+  for (const part of ["push_20n", "inner_top_1", "It ran to its end, 60 s, and nothing went wrong."]) assert.ok(text.includes(part), part);
   assert.deepEqual(page.requests.filter((url) => !/^(file|data|blob):/.test(url)), []);
   await drawn(page);
   await picture(page, "push-report", { fullPage: true });

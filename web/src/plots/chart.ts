@@ -5,6 +5,7 @@ import { palette } from "../colours";
 import { NOTHING, type Points } from "../points";
 import type { SeriesStore } from "../series";
 import { el, number, tickText } from "../util";
+import { Differences } from "./differences";
 import { coarseness, type Figure, type Filled, ink, valueRange } from "./figure";
 
 const SYNC = "taut";
@@ -16,6 +17,7 @@ export class Chart {
   private plot: uPlot | null = null;
   private readonly place = el("div.canvas");
   private readonly values = el("span.values");
+  private readonly differences: Differences;
   private readonly now = el("div.now");
   private readonly coarse = el("div.coarse");
   private shared: [number, number] | null = null;
@@ -28,8 +30,9 @@ export class Chart {
     tools: HTMLElement,
   ) {
     this.filled = { figure, data: figure.lines.map(() => NOTHING) };
+    this.differences = new Differences(figure);
     this.element = el("figure.chart", { "data-figure": figure.id },
-      el("figcaption", {}, el("span.name", {}, figure.title), this.values, tools), this.place);
+      el("figcaption", {}, el("span.name", {}, figure.title), this.values, tools), this.differences.element, this.place);
     new ResizeObserver(() => this.resize()).observe(this.place);
   }
 
@@ -62,10 +65,12 @@ export class Chart {
     const colours = palette(this.app.theme.value);
     const { unit } = this.figure;
     let away_s = NaN;
+    const rows = this.figure.lines.map((line, i) => this.store.row(line.channel, line.source, time_s, this.filled.data[i]!));
+    this.differences.show(rows, this.app.theme.value);
     const texts = this.figure.lines.map((line, i) => {
-      const row = this.store.row(line.channel, line.source, time_s, this.filled.data[i]!);
+      const row = rows[i]!;
       if (row && row.every > 1) away_s = row.time_s;
-      const title = row ? `${line.label}: ${row.value} ${unit} in the row at ${row.time_s} s` : line.label;
+      const title = row && Number.isNaN(row.time_s) ? `${line.label}: no row at this time` : row ? `${line.label}: ${row.value} ${unit} in the row at ${row.time_s} s` : line.label;
       const shown = el("span", { title }, row ? number(row.value, DIGITS) : "…");
       shown.style.color = ink(colours, line.ink);
       return shown;

@@ -41,7 +41,7 @@ export function csv(filled: readonly Filled[]): string {
   for (const { figure, data } of filled) {
     figure.lines.forEach((line, i) => {
       const points = data[i]!;
-      const label = line.source === 1 ? `reference:${line.channel}` : line.channel;
+      const label = line.source > 0 ? `${columnName(line.label)}:${line.channel}` : line.channel;
       add(label, points.t, points.first);
       if (points.rows > 1) {
         add(`${label}:min of ${points.rows} rows`, points.t, points.min);
@@ -52,6 +52,11 @@ export function csv(filled: readonly Filled[]): string {
   const times = [...new Set([...columns.values()].flatMap((column) => [...column.keys()]))].sort((a, b) => a - b);
   const rows = times.map((time_s) => [time_s, ...[...columns.values()].map((column) => column.get(time_s) ?? "")].join(","));
   return [["time_s", ...columns.keys()].join(","), ...rows, ""].join("\n");
+}
+
+/** A header line has no commas and quotes but those between its columns. */
+function columnName(label: string): string {
+  return label.replace(/[",\r\n]/g, " ");
 }
 
 export function svg(filled: readonly Filled[], span: readonly [number, number]): string {

@@ -3,9 +3,11 @@ import type { Palette } from "../colours";
 import { NOTHING, type Points } from "../points";
 import type { Scene } from "../protocol";
 import type { SeriesStore } from "../series";
+import { runColour, runName, THIS_RUN } from "../runs";
 import { nameAndUnit, unitText } from "../util";
 
-export type Ink = "own" | "setpoint" | "reference" | number;
+/** `run k`: the colour of a compared run. */
+export type Ink = "own" | "setpoint" | `run ${number}` | number;
 
 export interface Line {
   label: string;
@@ -30,13 +32,17 @@ export interface Filled {
 
 export function ink(palette: Palette, which: Ink): string {
   if (typeof which === "number") return palette.further[which % palette.further.length]!;
-  return palette[which];
+  return which === "own" || which === "setpoint" ? palette[which] : runColour(palette, Number(which.slice("run ".length)));
 }
 
-/** In the manner of the paper's Figs. 3-5: set point blue, what it is compared with red, this run black. */
+/** A channel of every run: the compared ones, then this one, which is drawn over them. */
+function linesOfRuns(scene: Scene, channel: string): Line[] {
+  const others = scene.compared.map((run, k): Line => ({ label: runName(run), channel, source: k + 1, ink: `run ${k + 1}` }));
+  return [...others, { label: THIS_RUN, channel, source: 0, ink: "own" }];
+}
+
+/** In the manner of the paper's Figs. 3-5: set point blue, what it is compared with red and on, this run black. */
 export function standardFigures(scene: Scene, store: SeriesStore): Figure[] {
-  const { reference } = scene;
-  const other = reference?.measured ? `measured: ${reference.name}` : (reference?.name ?? "");
   const figures: Figure[] = scene.cables.map(({ name }) => ({
     id: `tension:${name}`,
     title: name,
@@ -44,8 +50,7 @@ export function standardFigures(scene: Scene, store: SeriesStore): Figure[] {
     group: "tension",
     lines: [
       { label: "set point", channel: `cable/${name}/setpoint_n`, source: 0, ink: "setpoint" },
-      { label: other, channel: `cable/${name}/tension_n`, source: 1, ink: "reference" },
-      { label: "this run", channel: `cable/${name}/tension_n`, source: 0, ink: "own" },
+      ...linesOfRuns(scene, `cable/${name}/tension_n`),
     ],
   }));
   const system = (id: string, title: string, unit: string, parts: [string, string][]): Figure => ({
@@ -54,14 +59,16 @@ export function standardFigures(scene: Scene, store: SeriesStore): Figure[] {
   });
   figures.push(
     system("energy", "energy", "J", [["kinetic", "system/kinetic_j"], ["gravity", "system/gravity_j"], ["elastic", "system/elastic_j"]]),
-    system("contacts", "contacts", "", [["contacts", "system/contact_count"]]),
+    scene.compared.length > 0
+      ? { id: "contacts", title: "contacts", unit: "", group: "system", lines: linesOfRuns(scene, "system/contact_count") }
+      : system("contacts", "contacts", "", [["contacts", "system/contact_count"]]),
     system("rtf", "real-time factor", "", [["real-time factor", "real_time_factor"]]),
   );
   return figures.map((figure) => known(figure, store)).filter((figure) => figure.lines.length > 0);
 }
 
 /** What there is to plot of a cable or body, a figure for each unit. */
-export function ownFigures(store: SeriesStore, kind: "cable" | "body", name: string): Figure[] {
+export function ownFigures(scene: Scene, store: SeriesStore, kind: "cable" | "body", name: string): Figure[] {
   const figure = (id: string, unit: string, title: string, keys: string[]): Figure => ({
     id: `own:${kind}:${name}:${id}`, title: `${name} ${title}`, unit, group: "own",
     lines: keys.map((key, i) => ({ label: nameAndUnit(key)[0], channel: `${kind}/${name}/${key}`, source: 0, ink: i })),
@@ -77,7 +84,15 @@ export function ownFigures(store: SeriesStore, kind: "cable" | "body", name: str
         figure("velocity", "m/s", "velocity", ["velocity_x_m_per_s", "velocity_y_m_per_s", "velocity_z_m_per_s"]),
         figure("spin", "rad/s", "angular velocity", ["angular_velocity_x_rad_per_s", "angular_velocity_y_rad_per_s", "angular_velocity_z_rad_per_s"]),
       ];
-  return figures.map((each) => known(each, store)).filter((each) => each.lines.length > 0);
+  const split = scene.compared.length > 0 ? figures.flatMap((each) => ofEachChannel(scene, each)) : figures;
+  return split.map((each) => known(each, store)).filter((each) => each.lines.length > 0);
+}
+
+/** Where runs are compared, colours tell runs: a figure for each channel. */
+function ofEachChannel(scene: Scene, figure: Figure): Figure[] {
+  return figure.lines.map(({ label, channel }) => ({
+    ...figure, id: `${figure.id}:${label}`, title: figure.lines.length > 1 ? `${figure.title}: ${label}` : figure.title, lines: linesOfRuns(scene, channel),
+  }));
 }
 
 /** Without the lines of channels that are not there, or there in another unit. */

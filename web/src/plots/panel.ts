@@ -74,7 +74,8 @@ export class PlotPanel {
     if (this.own?.kind === kind && this.own.name === name) return;
     this.own = { kind, name };
     this.drop((chart) => chart.figure.group === "own");
-    for (const figure of ownFigures(this.store, kind, name)) this.add(figure);
+    const scene = this.app.scene.value;
+    if (scene) for (const figure of ownFigures(scene, this.store, kind, name)) this.add(figure);
     if (this.app.report) this.refresh();
   }
 

@@ -1,10 +1,12 @@
-// The report of a run: what was run, what came out, the plots and a replay, in one page that scrolls.
+// The report of a run: what was run, the picture, what came out, what is beside it, the plots; and last
+// what only matters to who runs it again. One page that scrolls.
 import type { PlotPanel } from "../plots/panel";
 import type { Report } from "../protocol";
 import type { View } from "../scene/view";
 import { el, nameAndUnit } from "../util";
-import { comparisonSection, referenceSection } from "./comparison";
-import { summarySection } from "./summary";
+import { referenceSection } from "./references";
+import { otherRunsSection } from "./other_runs";
+import { outcomeSection, remarksOf, verdict } from "./summary";
 
 interface Parts {
   top: HTMLElement;
@@ -17,12 +19,13 @@ interface Parts {
 export function reportPage(root: HTMLElement, report: Report, { top, view, plots, timeline, overlays }: Parts): void {
   document.body.classList.add("report");
   root.append(top, el("main.report", {},
+    whatWasRun(report),
     section("Replay", el("div.replay", {}, view.element, timeline)),
-    ...summarySection(report),
+    ...outcomeSection(report),
     ...referenceSection(report),
-    ...comparisonSection(report),
+    ...otherRunsSection(report),
     section("Plots", plots.element),
-    section("What was run", facts(Object.entries(report.metadata).map(([name, value]) => [nameAndUnit(name)[0], `${value} ${nameAndUnit(name)[1]}`] as const)), inputs(report.inputs)),
+    forTheRecord(report),
   ), ...overlays);
 }
 
@@ -33,6 +36,18 @@ export function section(title: string, ...content: HTMLElement[]): HTMLElement {
 /** Names and values, in two columns where there is room. */
 export function facts(rows: readonly (readonly [string, string])[]): HTMLElement {
   return el("dl.facts", {}, ...rows.map(([name, value]) => el("div", {}, el("dt", {}, name), el("dd", {}, value))));
+}
+
+function whatWasRun(report: Report): HTMLElement {
+  const lead = report.description === "" ? [] : [el("p.lead", {}, report.description)];
+  const known = Object.entries(report.facts);
+  const what = known.length > 0 ? facts([["experiment", report.title], ...known]) : el("p", {}, "There were no inputs beside the trace: it does not say what was run.");
+  return section("What was run", ...lead, what, ...verdict(report));
+}
+
+function forTheRecord(report: Report): HTMLElement {
+  const metadata = Object.entries(report.metadata).map(([name, value]) => [nameAndUnit(name)[0], `${value} ${nameAndUnit(name)[1]}`] as const);
+  return section("For the record", facts([...metadata, ...remarksOf(report)]), inputs(report.inputs));
 }
 
 function inputs(text: string): HTMLElement {

@@ -1,4 +1,4 @@
-// summary.json as a table: the run as a whole, then the tension of each cable in each phase.
+// summary.json in words and as a table: how the run ended, then the tension of each cable in each phase.
 import type { Report } from "../protocol";
 import { el, nameAndUnit, number } from "../util";
 import { facts, section } from "./page";
@@ -6,19 +6,46 @@ import { facts, section } from "./page";
 interface Span { mean_n: number; min_n: number; max_n: number }
 interface Force { max_n: number; max_after_start_n?: number; phases?: Record<string, Span> }
 interface CableSummary { name: string; tension?: Force; actuator?: { max_power_w?: number; energy_j?: number; net_energy_j?: number; max_speed_m_per_s?: number } }
-/** What says nothing that the rest does not say in words. */
-const FOR_PROGRAMS = new Set(["format_version", "status_bits"]);
 interface Summary extends Record<string, unknown> { cables?: CableSummary[]; phases?: { name: string; from_s: number; to_s: number }[] }
+/** What the sentences and the table say, what the trace's metadata say, and what is for programs. */
+const SAID = new Set(["format_version", "status_bits", "status", "interrupted", "simulated_s", "system_max_tension_n",
+  "system_max_tension_cable", "contacts_left_out", "taut_version", "experiment", "run"]);
 
-export function summarySection(report: Report): HTMLElement[] {
+function summaryOf(report: Report): Summary | null {
   const summary = report.summary as Summary | null;
-  if (!summary || typeof summary !== "object") return [];
-  const whole = Object.entries(summary).filter(([name, value]) => !FOR_PROGRAMS.has(name) && ["string", "number", "boolean"].includes(typeof value));
-  const rows = whole.map(([name, value]) => {
-    const [label, unit] = nameAndUnit(name);
-    return [label, typeof value === "number" ? `${number(value, 5)} ${unit}` : String(value)] as const;
-  });
-  return [section("Summary", facts(rows), ...cableTable(summary))];
+  return summary && typeof summary === "object" ? summary : null;
+}
+
+/** How it ended, in a sentence; nothing where that is not known. */
+export function verdict(report: Report): HTMLElement[] {
+  const summary = summaryOf(report);
+  if (!summary) return [el("p.verdict", {}, report.scene.notice ?? "There is no summary beside the trace.")];
+  const { status, interrupted, simulated_s, contacts_left_out } = summary;
+  const bad = status !== "ok" || interrupted === true;
+  const time = typeof simulated_s === "number" ? ` ${number(simulated_s, 5)} s` : "";
+  const sentences = [bad
+    ? `It was simulated for${time}${interrupted === true ? " and then interrupted" : ""}${status === "ok" ? "" : `: ${String(status)}`}.`
+    : `It ran to its end,${time}, and nothing went wrong.`];
+  if (typeof contacts_left_out === "number" && contacts_left_out > 0) sentences.push(`${number(contacts_left_out)} contacts had no room in the trace.`);
+  return [el(bad ? "p.verdict.bad" : "p.verdict", {}, sentences.join(" "))];
+}
+
+export function outcomeSection(report: Report): HTMLElement[] {
+  const summary = summaryOf(report);
+  if (!summary) return [];
+  const { system_max_tension_n: most_n, system_max_tension_cable: cable } = summary;
+  const largest = typeof most_n === "number" ? [facts([["largest tension", `${number(most_n, 5)} N${typeof cable === "string" ? ` in ${cable}` : ""}`]])] : [];
+  return [section("What came out", ...largest, ...cableTable(summary))];
+}
+
+/** What else the summary says of the run as a whole. */
+export function remarksOf(report: Report): [string, string][] {
+  return Object.entries(summaryOf(report) ?? {})
+    .filter(([name, value]) => !SAID.has(name) && ["string", "number", "boolean"].includes(typeof value))
+    .map(([name, value]) => {
+      const [label, unit] = nameAndUnit(name);
+      return [label, typeof value === "number" ? `${number(value, 5)} ${unit}`.trim() : String(value)];
+    });
 }
 
 function cableTable({ cables = [], phases = [] }: Summary): HTMLElement[] {

@@ -1,6 +1,6 @@
 // Rigid bodies: rods, spheres and boxes, each body a group that takes the pose of its frame.
 import {
-  AxesHelper, BoxGeometry, CapsuleGeometry, Group, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
+  AxesHelper, BoxGeometry, CapsuleGeometry, Group, type Material, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
 } from "three";
 import type { Theme } from "../app";
 import { palette } from "../colours";
@@ -65,25 +65,31 @@ export class Bodies implements Part {
 
   private mesh(shape: Shape, body: number): Mesh {
     const material = new MeshStandardMaterial({ roughness: 0.55, metalness: 0.1 });
-    const mesh = new Mesh(geometryOf(shape), material);
-    if (shape.kind === "rod") {
-      const from = new Vector3(...shape.from_m!);
-      const along = new Vector3(...shape.to_m!).sub(from);
-      mesh.position.copy(from).addScaledVector(along, 0.5);
-      if (along.length() > 0) mesh.quaternion.setFromUnitVectors(AXIS_Y, along.normalize());
-    } else {
-      mesh.position.set(...shape.center_m!);
-      if (shape.orientation) {
-        const [w, x, y, z] = shape.orientation;
-        mesh.quaternion.copy(new Quaternion(x, y, z, w));
-      }
-    }
+    const mesh = shapeMesh(shape, material);
     mesh.castShadow = true;
     mesh.receiveShadow = true;
     mesh.userData = { body, kind: shape.kind };
     this.meshes.push(mesh);
     return mesh;
   }
+}
+
+/** A shape in its body's frame. */
+export function shapeMesh(shape: Shape, material: Material): Mesh {
+  const mesh = new Mesh(geometryOf(shape), material);
+  if (shape.kind === "rod") {
+    const from = new Vector3(...shape.from_m!);
+    const along = new Vector3(...shape.to_m!).sub(from);
+    mesh.position.copy(from).addScaledVector(along, 0.5);
+    if (along.length() > 0) mesh.quaternion.setFromUnitVectors(AXIS_Y, along.normalize());
+  } else {
+    mesh.position.set(...shape.center_m!);
+    if (shape.orientation) {
+      const [w, x, y, z] = shape.orientation;
+      mesh.quaternion.copy(new Quaternion(x, y, z, w));
+    }
+  }
+  return mesh;
 }
 
 function geometryOf(shape: Shape): BoxGeometry | CapsuleGeometry | SphereGeometry {

@@ -1,14 +1,18 @@
 // Dragging a node with the mouse: the target moves in the plane through the node that faces the
-// camera; the server pulls the node there with a spring.
+// camera; the server pulls the node there with a spring. Beside the mouse stands how hard.
 import { BufferAttribute, BufferGeometry, Group, Line, LineDashedMaterial, Mesh, MeshBasicMaterial, Plane, Raycaster, SphereGeometry, Vector2, Vector3 } from "three";
 import type { App, Theme } from "../app";
 import { palette } from "../colours";
-import type { Frame } from "../frame";
+import { VALUES } from "../layout";
 import type { Vec3 } from "../protocol";
+import { el, number } from "../util";
 import type { View } from "./view";
+
+const BESIDE_PX = 16; // of the label, from the mouse
 
 export class Grip {
   readonly object = new Group();
+  readonly label = el("output.grip", { hidden: true, "aria-label": "force of the hand" });
   private node = -1;
   private readonly plane = new Plane();
   private readonly target = new Vector3();
@@ -67,14 +71,36 @@ export class Grip {
     const moved = this.object.visible;
     this.node = -1;
     this.object.visible = false;
+    this.label.hidden = true;
     this.view.enableOrbit(true);
     this.view.invalidate();
     if (moved) this.app.send({ type: "drop" });
     return moved;
   }
 
-  update(_frame: Frame): void {
+  update(): void {
     if (this.object.visible) this.draw();
+  }
+
+  /** How hard the hand pulls in the frame that is shown [N]; NaN while it does not: a paused run has not felt it yet. */
+  private force(): number {
+    const frame = this.app.frame.value;
+    if (!frame) return NaN;
+    // events of the experiment may push the same node; the hand is the last
+    const [node, ...force_n] = frame.pushes.slice(-VALUES.pushes);
+    return node === this.node ? Math.hypot(...force_n) : NaN;
+  }
+
+  private say(): void {
+    const force_n = this.force();
+    const { paused } = this.app.frame.value ?? { paused: 1 };
+    this.label.hidden = false;
+    this.label.textContent = Number.isNaN(force_n) ? (paused ? "pulls once it runs" : "0 N") : `${number(force_n, 3)} N`;
+    const { x, y } = this.view.toScreen(this.target);
+    const { width_px, height_px } = this.view.viewport;
+    const left = Math.min(Math.max(x + BESIDE_PX, 4), width_px - this.label.offsetWidth - 4);
+    const top = Math.min(Math.max(y + BESIDE_PX, 4), height_px - this.label.offsetHeight - 4);
+    this.label.style.transform = `translate(${left}px, ${top}px)`;
   }
 
   paint(theme: Theme): void {
@@ -91,6 +117,7 @@ export class Grip {
     positions.needsUpdate = true;
     this.line.computeLineDistances();
     this.ball.position.copy(this.target);
+    this.say();
     this.view.invalidate();
   }
 }

@@ -6,15 +6,17 @@ import { THICKEST_PX, THINNEST_PX } from "./cables";
 import type { View } from "./view";
 
 const WIDTH_PX = 168;
+const UNRECORDED = "no contact forces: this trace has none; “record: {contacts: 20}” in the experiment records them";
 
 export function legend(app: App, view: View): HTMLElement {
   const scale = el<HTMLCanvasElement>("canvas", { width: 2 * WIDTH_PX, height: 20, "aria-hidden": "true" });
   const marks = el("div.marks");
   const arrows = el("div.row");
   const grid = el("div.row");
+  const unrecorded = el("div.unrecorded", {}, UNRECORDED);
   const element = el("div.legend", { role: "note", "aria-label": "legend" },
     el("div.title", {}, "cable tension"), scale, marks,
-    el("div.row", {}, el("span.dash"), "slack"), arrows, grid);
+    el("div.row", {}, el("span.dash"), "slack"), arrows, unrecorded, grid);
 
   let shown = "";
   const draw = () => {
@@ -23,7 +25,7 @@ export function legend(app: App, view: View): HTMLElement {
     const theme = app.theme.value;
     const max_n = world.cables.scale_n;
     const { reference_n, reference_m } = world.forces;
-    const key = `${theme} ${max_n} ${reference_n} ${world.size_m}`;
+    const key = `${theme} ${max_n} ${reference_n} ${world.size_m} ${world.scene.contact_forces}`;
     if (key === shown) return;
     shown = key;
     const context = scale.getContext("2d")!;
@@ -36,8 +38,10 @@ export function legend(app: App, view: View): HTMLElement {
     }
     marks.replaceChildren(...[0, 0.5, 1].map((share) => el("span", {}, `${number(share * max_n, 2)} N`)));
     const colours = palette(theme);
+    const { contact_forces } = world.scene;
+    unrecorded.hidden = contact_forces || app.live;
     arrows.replaceChildren(
-      arrow(colours.contact), "contact", arrow(colours.push), "push",
+      ...(contact_forces ? [arrow(colours.contact), "contact"] : []), arrow(colours.push), "push",
       el("span.note", {}, `${number(reference_m, 2)} m = ${number(reference_n, 2)} N`));
     grid.textContent = `grid ${number(world.ground.spacing_m, 1)} m, bold ${number(10 * world.ground.spacing_m, 1)} m`;
     grid.hidden = !world.scene.terrain.some((terrain) => terrain.kind === "plane");

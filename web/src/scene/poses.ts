@@ -2,10 +2,13 @@
 import type { Vector3 } from "three";
 import type { Frame } from "../frame";
 import { VALUES } from "../layout";
-import type { Scene, Vec3 } from "../protocol";
+import type { Body, Vec3 } from "../protocol";
+
+/** Of the run's bodies, or of those of a ghost. */
+export type Poses = Pick<Frame, "bodies">;
 
 /** p_WP of a point P that is fixed in a body; the world is body -1. */
-export function worldPoint(frame: Frame, body: number, p: Vec3, out: Vector3): Vector3 {
+export function worldPoint(frame: Poses, body: number, p: Vec3, out: Vector3): Vector3 {
   if (body < 0) return out.set(p[0], p[1], p[2]);
   const b = frame.bodies;
   const at = body * VALUES.bodies;
@@ -22,7 +25,7 @@ export function worldPoint(frame: Frame, body: number, p: Vec3, out: Vector3): V
 }
 
 /** Centre of mass of all bodies whose mass is known and that can move; false if there is none. */
-export function centreOfMass(scene: Scene, frame: Frame, out: Vector3): boolean {
+export function centreOfMass(scene: { bodies: readonly Body[] }, frame: Poses, out: Vector3): boolean {
   let mass_kg = 0;
   out.set(0, 0, 0);
   scene.bodies.forEach((body, i) => {

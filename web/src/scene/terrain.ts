@@ -1,7 +1,7 @@
 // The ground: planes with a grid of metres drawn on them, boxes, and the axes of the world.
 import {
   BoxGeometry, CanvasTexture, Color, DoubleSide, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh,
-  MeshStandardMaterial, PlaneGeometry, Quaternion, Sprite, SpriteMaterial, Vector3,
+  MeshStandardMaterial, Plane, PlaneGeometry, Quaternion, Sprite, SpriteMaterial, Vector3,
 } from "three";
 import type { Theme } from "../app";
 import { palette } from "../colours";
@@ -11,12 +11,13 @@ import { type Part, release } from "./part";
 
 const EXTENT_M = 60; // of a plane, each way
 const LABELS = 3; // numbers along either axis, each way
+const SEEN_THROUGH = 0.35; // opacity of a floor that hides the robot: its lines still say where it is
 
 export class Ground implements Part {
   readonly object = new Group();
   /** Distance of the fine lines; every tenth is bold. */
   readonly spacing_m: number;
-  private readonly planes: { material: MeshStandardMaterial; uniforms: GridUniforms }[] = [];
+  private readonly planes: { material: MeshStandardMaterial; uniforms: GridUniforms; surface: Plane }[] = [];
   private readonly boxes: MeshStandardMaterial[] = [];
   private readonly edges: LineBasicMaterial[] = [];
   private readonly labels = new Group();
@@ -31,6 +32,18 @@ export class Ground implements Part {
   }
 
   update(_frame: Frame): void {}
+
+  /** Who looks from below sees the robot through the floor. */
+  seenFrom(eye: Vector3): void {
+    for (const { material, surface } of this.planes) {
+      const below = surface.distanceToPoint(eye) < 0;
+      if (material.transparent === below) continue;
+      material.transparent = below;
+      material.opacity = below ? SEEN_THROUGH : 1;
+      material.depthWrite = !below;
+      material.needsUpdate = true;
+    }
+  }
 
   paint(theme: Theme): void {
     const colours = palette(theme);
@@ -56,7 +69,7 @@ export class Ground implements Part {
     mesh.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), normal);
     mesh.position.copy(point);
     mesh.receiveShadow = true;
-    this.planes.push({ material, uniforms });
+    this.planes.push({ material, uniforms, surface: new Plane().setFromNormalAndCoplanarPoint(normal, point) });
     this.object.add(mesh);
   }
 

@@ -53,6 +53,7 @@ export class View {
     this.controls.addEventListener("change", () => this.invalidate());
     this.grip = new Grip(app, this);
     this.stage.add(this.grip.object);
+    this.element.append(this.grip.label);
     this.listen(canvas);
     this.watch();
     requestAnimationFrame(() => this.loop());
@@ -134,7 +135,7 @@ export class View {
     this.app.frame.watch((frame) => {
       if (!frame || !this.world) return;
       this.world.update(frame);
-      this.grip.update(frame);
+      this.grip.update();
       this.followCentre();
       this.invalidate();
     });
@@ -193,6 +194,7 @@ export class View {
     this.dirty = false;
     if (!this.renderer) return;
     this.aimSun();
+    this.world?.ground.seenFrom(this.camera.position);
     this.renderer.render(this.stage, this.camera);
     ++this.frames.drawn;
     this.element.dataset["drawn"] = String(this.frames.drawn);

@@ -7,6 +7,7 @@ import { niceAbove } from "../util";
 import { Bodies } from "./bodies";
 import { Cables } from "./cables";
 import { Forces } from "./forces";
+import { Ghosts } from "./ghosts";
 import type { Part } from "./part";
 import { Path } from "./path";
 import { Ground } from "./terrain";
@@ -16,6 +17,7 @@ export class World {
   readonly bodies: Bodies;
   readonly cables: Cables;
   readonly forces: Forces;
+  readonly ghosts: Ghosts;
   readonly path: Path;
   readonly ground: Ground;
   /** Of the bodies at the start. */
@@ -29,9 +31,10 @@ export class World {
     this.bodies = new Bodies(scene, this.size_m);
     this.cables = new Cables(scene, this.size_m);
     this.forces = new Forces(scene, this.size_m);
+    this.ghosts = new Ghosts(scene);
     this.path = new Path(scene, this.size_m);
     this.ground = new Ground(scene, this.size_m);
-    this.parts = [this.ground, this.bodies, this.cables, this.forces, this.path];
+    this.parts = [this.ground, this.bodies, this.cables, this.forces, this.path, this.ghosts];
     this.object.add(...this.parts.map((part) => part.object));
   }
 

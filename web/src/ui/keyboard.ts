@@ -1,5 +1,6 @@
 // The keys, in one table that the help shows, too.
 import type { App } from "../app";
+import { toggleGhosts } from "../scene/runs_list";
 import type { View } from "../scene/view";
 import { nextSpeed } from "./timeline";
 
@@ -42,6 +43,7 @@ export function keysOf(app: App, view: View, toggleHelp: () => void, toggleContr
     } },
     { keys: ["a", "A"], shown: "A", does: "arrows of forces on or off", act: show("forces") },
     { keys: ["p", "P"], shown: "P", does: "path of the centre of mass on or off", act: show("path") },
+    { keys: ["g", "G"], shown: "G", does: "ghosts of compared runs on or off", act: () => toggleGhosts(view) },
     { keys: ["n", "N"], shown: "N", does: "next cable (with shift: next body): its numbers and plots", act: (event) => {
       const kind = event.shiftKey ? "body" : "cable";
       const list = event.shiftKey ? scene()?.bodies : scene()?.cables;

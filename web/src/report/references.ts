@@ -1,7 +1,7 @@
-// Our numbers beside others: the references that an experiment names, and `taut compare`.
+// Our numbers beside those of others that the experiment names.
 import type { Report } from "../protocol";
-import { el, nameAndUnit, number } from "../util";
-import { facts, section } from "./page";
+import { el, number } from "../util";
+import { section } from "./page";
 
 interface Reference {
   source: string;
@@ -37,28 +37,4 @@ function sourceTable(references: Reference[]): HTMLElement {
     return [number(theirs_n, 4), number(ours_n, 4), off].map((text) => el("td", {}, text));
   })));
   return el("table.numbers", {}, head, el("tbody", {}, ...rows));
-}
-
-/** Whatever numbers the comparison holds, as tables: lists of records become rows. */
-export function comparisonSection(report: Report): HTMLElement[] {
-  const comparison = report.comparison;
-  if (!comparison || typeof comparison !== "object") return [];
-  const parts: HTMLElement[] = [];
-  const plain = Object.entries(comparison).filter(([, value]) => value === null || typeof value !== "object");
-  if (plain.length > 0) {
-    parts.push(facts(plain.map(([name, value]) => [nameAndUnit(name)[0], text(value, nameAndUnit(name)[1])] as const)));
-  }
-  for (const [name, value] of Object.entries(comparison)) {
-    if (!Array.isArray(value) || value.length === 0 || typeof value[0] !== "object") continue;
-    const columns = Object.keys(value[0] as object).filter((key) => typeof (value[0] as Record<string, unknown>)[key] !== "object");
-    const head = el("tr", {}, ...columns.map((key) => el("th", { scope: "col" }, [nameAndUnit(key)[0], nameAndUnit(key)[1] && `[${nameAndUnit(key)[1]}]`].join(" "))));
-    const rows = (value as Record<string, unknown>[]).map((row) => el("tr", {}, ...columns.map((key) => el("td", {}, text(row[key], "")))));
-    parts.push(el("h3", {}, name.replace(/_/g, " ")), el("div.scroll", {}, el("table.numbers", {}, el("thead", {}, head), el("tbody", {}, ...rows))));
-  }
-  return parts.length > 0 ? [section(`This run (a) and ${report.scene.reference?.name ?? "another"} (b)`, ...parts)] : [];
-}
-
-function text(value: unknown, unit: string): string {
-  if (typeof value === "number") return `${number(value, 4)} ${unit}`.trim();
-  return value === null || value === undefined ? "–" : String(value);
 }

@@ -1,0 +1,122 @@
+// The robots of the runs that are compared: translucent, each in the colour of its run, where it is in
+// its own run at the time that is shown.
+import {
+  BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, MeshLambertMaterial, Vector3,
+} from "three";
+import type { Theme } from "../app";
+import type { Frame } from "../frame";
+import { VALUES } from "../layout";
+import type { Body, Cable, ComparedRun, Scene } from "../protocol";
+import { runColourIn } from "../runs";
+import { shapeMesh } from "./bodies";
+import { type Part, release } from "./part";
+import { type Poses, worldPoint } from "./poses";
+
+const BODY_OPACITY = 0.4;
+const CABLE_OPACITY = 0.7;
+
+export class Ghosts implements Part {
+  readonly object = new Group();
+  /** By run, from 0; a run without poses has an empty one. */
+  readonly ghosts: readonly Ghost[];
+
+  constructor(scene: Scene) {
+    let from = 0;
+    this.ghosts = scene.compared.map((run, k) => {
+      const ghost = new Ghost(run, k + 1, from);
+      from += run.bodies.length;
+      this.object.add(ghost.object);
+      return ghost;
+    });
+  }
+
+  update(frame: Frame): void {
+    for (const ghost of this.ghosts) ghost.update(frame);
+  }
+
+  paint(theme: Theme): void {
+    for (const ghost of this.ghosts) ghost.paint(theme);
+  }
+
+  dispose(): void {
+    release(this.object);
+  }
+}
+
+export class Ghost {
+  readonly object = new Group();
+  readonly bodies: readonly Body[];
+  /** Has its run a row at the time that is shown? */
+  present = false;
+  poses: Poses = { bodies: new Float64Array(0) };
+  private wanted = true;
+  private readonly groups: readonly Group[];
+  private readonly skin = new MeshLambertMaterial({ transparent: true, opacity: BODY_OPACITY, depthWrite: false });
+  private readonly thread = new LineBasicMaterial({ transparent: true, opacity: CABLE_OPACITY });
+  private readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
+  private readonly cables: readonly Cable[];
+
+  constructor(run: ComparedRun, private readonly number: number, private readonly from: number) {
+    this.bodies = run.bodies;
+    this.cables = run.cables;
+    this.groups = run.bodies.map((body) => {
+      const group = new Group();
+      for (const shape of body.shapes) group.add(shapeMesh(shape, this.skin));
+      this.object.add(group);
+      return group;
+    });
+    const parts = run.cables.reduce((sum, { attachments }) => sum + Math.max(attachments.length - 1, 0), 0);
+    const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(6 * parts), 3));
+    this.lines = new LineSegments(geometry, this.thread);
+    this.lines.frustumCulled = false; // its bounds are those of the start
+    this.object.add(this.lines);
+  }
+
+  get shown(): boolean {
+    return this.wanted;
+  }
+
+  set shown(wanted: boolean) {
+    this.wanted = wanted;
+    this.object.visible = this.wanted && this.present;
+  }
+
+  update(frame: Frame): void {
+    const size = VALUES.ghosts;
+    const bodies = frame.ghosts.subarray(this.from * size, (this.from + this.groups.length) * size);
+    this.poses = { bodies };
+    this.present = bodies.length > 0 && !Number.isNaN(bodies[0]!);
+    this.shown = this.wanted;
+    if (!this.present) return;
+    this.groups.forEach((group, i) => {
+      const b = bodies.subarray(i * size, (i + 1) * size);
+      group.position.set(b[0]!, b[1]!, b[2]!);
+      group.quaternion.set(b[4]!, b[5]!, b[6]!, b[3]!);
+    });
+    this.moveCables();
+  }
+
+  paint(theme: Theme): void {
+    this.skin.color.set(runColourIn(theme, this.number));
+    this.thread.color.set(runColourIn(theme, this.number));
+  }
+
+  private moveCables(): void {
+    const positions = this.lines.geometry.getAttribute("position") as BufferAttribute;
+    const point = new Vector3();
+    let at = 0;
+    for (const { attachments } of this.cables) {
+      attachments.forEach(({ body, position_m }, k) => {
+        worldPoint(this.poses, body, position_m, point);
+        if (k > 0) at = write(point, positions, at);
+        if (k + 1 < attachments.length) at = write(point, positions, at);
+      });
+    }
+    positions.needsUpdate = true;
+  }
+}
+
+function write(point: Vector3, positions: BufferAttribute, at: number): number {
+  positions.setXYZ(at, point.x, point.y, point.z);
+  return at + 1;
+}
