@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "taut/statics.h"
-
 namespace taut::viewer {
 namespace {
 
@@ -14,9 +12,11 @@ std::string Counted(std::size_t count, const char* what, const char* many) {
 }
 
 std::string Robot(const ModelDef& def) {
+  double mass_kg = 0;
+  for (const BodyDef& body : def.bodies) mass_kg += body.mass_kg;
   return fmt::format("{}: {}, {}, {:.4g} kg", def.name,
                      Counted(def.bodies.size(), "body", "bodies"),
-                     Counted(def.cables.size(), "cable", "cables"), TotalMass(def));
+                     Counted(def.cables.size(), "cable", "cables"), mass_kg);
 }
 
 const char* Start(StartKind start) {

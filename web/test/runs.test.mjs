@@ -114,10 +114,10 @@ test("ARunThatHasEndedHasNoGhostAndTheListSaysHowFarTheOthersAre", async () => {
   assert.deepEqual((await ghosts()).map((each) => each.drawn), [true, false, false, true]);
   const away = await page.locator(".runs .away").allInnerTexts();
   const offset_mm = 1000 * Math.hypot(...GHOST_OFFSET_M);
-  assert.equal(away[0], `${offset_mm.toFixed(1)} mm`);
+  assert.equal(away[0], `${offset_mm.toFixed(1)} mm away`);
   assert.equal(away[2], `ended at ${EARLY_END_S} s`);
   await goTo(1);
-  assert.equal((await page.locator(".runs .away").allInnerTexts())[2], `${(3 * offset_mm).toFixed(0)} mm`);
+  assert.equal((await page.locator(".runs .away").allInnerTexts())[2], `${(3 * offset_mm).toFixed(0)} mm away`);
 });
 
 test("DifferencesAreEachRunLessThisRunAtTheCursor", async (t) => {

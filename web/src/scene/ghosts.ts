@@ -51,7 +51,10 @@ export class Ghost {
   poses: Poses = { bodies: new Float64Array(0) };
   private wanted = true;
   private readonly groups: readonly Group[];
-  private readonly skin = new MeshLambertMaterial({ transparent: true, opacity: BODY_OPACITY, depthWrite: false });
+  private readonly skin = new MeshLambertMaterial({
+    transparent: true, opacity: BODY_OPACITY, depthWrite: false,
+    polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 4, // where both are one, this run's robot is in front
+  });
   private readonly thread = new LineBasicMaterial({ transparent: true, opacity: CABLE_OPACITY });
   private readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
   private readonly cables: readonly Cable[];

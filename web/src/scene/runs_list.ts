@@ -76,7 +76,7 @@ class RunRow {
     if (!ghost.present) {
       this.away.textContent = frame.time_s < run.first_s ? `begins at ${number(run.first_s, 4)} s` : `ended at ${number(run.last_s, 4)} s`;
     } else if (centreOfMass(scene, frame, own) && centreOfMass(ghost, ghost.poses, other)) {
-      this.away.textContent = `${number(1000 * own.distanceTo(other), 3)} mm`;
+      this.away.textContent = `${number(1000 * own.distanceTo(other), 3)} mm away`;
       this.away.title = `its centre of mass is ${own.distanceTo(other)} m from this run's`;
     } else {
       this.away.textContent = "";
