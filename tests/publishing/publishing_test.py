@@ -247,6 +247,27 @@ def IsCompiledInstalledAndRuns():
         assert len(list(pathlib.Path(place, "packages").glob("*.deb"))) == 2
 
 
+# What GitHub reads.
+
+
+def WhatGitHubReadsCanBeRead():
+    try:
+        import yaml
+    except ImportError:
+        raise Skipped("there is no python3-yaml") from None
+    files = [*sorted((ROOT / ".github").rglob("*.yml")), ROOT / "CITATION.cff"]
+    read = {str(path.relative_to(ROOT)): yaml.safe_load(path.read_text()) for path in files}
+    job = read[".github/workflows/ci.yml"]["jobs"]["debian12"]
+    assert job["container"] == "debian:12" and {"run": ".ci/run"} in job["steps"], job
+    for name, form in read.items():
+        if "ISSUE_TEMPLATE" in name and not name.endswith("config.yml"):
+            assert {"name", "description", "body"} <= form.keys(), name
+            assert all(part["type"] in ("textarea", "input", "markdown") for part in form["body"]), name
+    citation = read["CITATION.cff"]
+    assert {"cff-version", "message", "title", "authors"} <= citation.keys(), citation
+    assert "version" not in citation, "it stands in one place"
+
+
 if __name__ == "__main__":
     try:
         globals()[sys.argv[1].split(".")[1]]()
