@@ -11,11 +11,13 @@ the last one's descriptions:
 import gzip
 import json
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
+import urllib.request
 
 HERE = pathlib.Path(__file__).resolve().parent
 TAUT = pathlib.Path(sys.argv[1]).resolve()
@@ -85,13 +87,14 @@ def ViewShowsTheTrace(folder):
         raise Skipped("the viewer's pages are not built")
     view = subprocess.Popen([TAUT, "view", "run/trace.h5", "--port", "0"], cwd=folder, text=True,
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
-    said = view.stdout.readline()
-    while said and "http://" not in said.splitlines()[-1]:
-        line = view.stdout.readline()
-        said = said + line if line else ""
+    said = ""
+    while "Ctrl-C" not in said and (line := view.stdout.readline()):
+        said += line
+    with urllib.request.urlopen(re.search(r"http://\S+", said)[0]) as page:  # it serves
+        assert page.status == 200
     view.send_signal(signal.SIGINT)
     rest = view.communicate()[0]
-    assert said and view.returncode == 0, f"{view.returncode}: {said}{rest}"
+    assert view.returncode == 0, f"{view.returncode}: {said}{rest}"
 
 
 def StudyIsListedAndGoesOn(folder):
