@@ -1,4 +1,4 @@
-/// The version of taut, as CMake knows it.
+/// The version of taut. It stands here and nowhere else: CMake and script/release read it.
 #pragma once
 
 namespace taut {

@@ -232,18 +232,35 @@ class StudyRun {
   Clock::time_point started_;
 };
 
-/// Whether the log is of this study; an empty one becomes it.
-bool Claim(const StudySpec& study, const std::string& path, LogContents& log, Diagnostics& out) {
+/// The experiment of a log, which is text; the reader of experiments reads files.
+std::optional<ExperimentSpec> LoggedExperiment(const std::string& folder, const std::string& text,
+                                               Diagnostics& out) {
+  const fs::path file = fs::path(folder) / "experiment.yaml";
+  if (!WriteWholeFile(file.string(), text, out)) return std::nullopt;
+  return LoadExperiment(file.string(), {}, out);
+}
+
+/// Whether two texts are the same experiment. One of an earlier version lacks the keys that came
+/// later: read, and written anew, it has them.
+bool SameExperiment(const std::string& folder, const std::string& logged, const std::string& text) {
+  Diagnostics unread;
+  const auto experiment = LoggedExperiment(folder, logged, unread);
+  return experiment && ExperimentText(*experiment) == text;
+}
+
+/// Whether the log is of this study; an empty one becomes it. The version that began it may be
+/// another: `SameNumbers` finds out whether its numbers are.
+bool Claim(const StudySpec& study, const std::string& folder, LogContents& log, Diagnostics& out) {
   log.facts.emplace("name", study.name);
+  if (log.facts.emplace("taut_version", kVersion).second) log.version = 0;
   const std::pair<const char*, std::string> facts[] = {
-      {"taut_version", kVersion},
-      {"study", StudyText(study)},
-      {"experiment", ExperimentText(study.experiment)}};
+      {"study", StudyText(study)}, {"experiment", ExperimentText(study.experiment)}};
   for (const auto& [name, text] : facts) {
     const auto [fact, is_new] = log.facts.emplace(name, text);
     if (is_new) log.version = 0;  // empty, or whoever began it was killed at once
     if (is_new || fact->second == text) continue;
-    out.Error({path},
+    if (fact->first == "experiment" && SameExperiment(folder, fact->second, text)) continue;
+    out.Error({LogPath(folder)},
               std::string("this folder holds another study: its ") + name + " differs\n" +
                   learn::Difference(fact->second, text),
               "give `--out` another folder, or undo the change; only the last search's evaluations "
@@ -266,7 +283,7 @@ LearnSummary RunStudy(const StudySpec& study, Evaluator& evaluator, const LearnO
   if (!log) return none;
   auto contents = log->Read(out);
   if (!contents || !Accept(*contents, path, options.skip_damaged, out) ||
-      !Claim(study, path, *contents, out)) {
+      !Claim(study, options.folder, *contents, out)) {
     none.end = LearnEnd::kRefused;
     return none;
   }
@@ -292,10 +309,7 @@ std::optional<StudyResult> ReadStudyFolder(const std::string& folder, Diagnostic
   result.parameters = std::move(contents->parameters);
   result.evaluations = std::move(contents->evaluations);
   result.skipped = std::move(contents->damage);
-  // The reader of experiments reads files.
-  const fs::path file = fs::path(folder) / "experiment.yaml";
-  if (!WriteWholeFile(file.string(), contents->facts["experiment"], out)) return std::nullopt;
-  auto experiment = LoadExperiment(file.string(), {}, out);
+  auto experiment = LoggedExperiment(folder, contents->facts["experiment"], out);
   if (!experiment) return std::nullopt;
   result.experiment = std::move(*experiment);
   return result;

@@ -113,6 +113,24 @@ TEST_F(Learn, AnotherBuildThatGivesOtherNumbersIsRefused) {
             "another state (another build of taut made it; give `--out` another folder)\n");
 }
 
+TEST_F(Learn, AFolderOfAnotherVersionGoesOnIfItsNumbersAreTheSame) {
+  ASSERT_EQ(Search("run").status, 0);
+  // As a version before had written it, which did not know noise of the start.
+  Change("run", [](learn::LogContents& log) {
+    log.facts["taut_version"] = "0.0.1";
+    std::string& text = log.facts["experiment"];
+    const std::size_t from = text.find("\nstart_noise: "), to = text.find('\n', from + 1);
+    ASSERT_NE(from, text.npos);
+    text.erase(from, to - from);
+    log.evaluations.resize(50);
+  });
+  const CommandResult result = Search("run");
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_NE(result.output.find("small: 84 evaluations, 0 failed, 50 of them from before"),
+            std::string::npos)
+      << result.output;
+}
+
 TEST_F(Learn, AFullDiskStopsItAndLosesNothing) {
   const CommandResult full = Search("full", {}, [] {
     const rlimit limit{150'000, 150'000};  // of any file, as on a disk that fills up

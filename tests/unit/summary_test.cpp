@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "taut/version.h"
+
 namespace taut {
 namespace {
 
@@ -51,7 +53,7 @@ TEST(SummaryJson, HoldsEverythingUnderItsName) {
   const auto json = nlohmann::ordered_json::parse(text);
   EXPECT_EQ(json["experiment"], "push_20n");
   EXPECT_EQ(json["run"], "00112233445566ff");
-  EXPECT_EQ(json["taut_version"], "0.1.0");
+  EXPECT_EQ(json["taut_version"], kVersion);
   EXPECT_EQ(json["format_version"], 1);
   EXPECT_EQ(json["simulated_s"], 60);
   EXPECT_EQ(json["wall_s"], 0.125);

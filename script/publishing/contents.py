@@ -1,0 +1,38 @@
+"""What stands where on the website: parts of its sidebar, and the pages of each in their order."""
+
+PARTS = {
+    "Begin": ["docs/tutorial.md", "docs/gallery.md", "report.md"],
+    "Use": ["docs/cli.md", "docs/viewer.md", "docs/learning.md", "docs/cluster.md", "docs/compare.md",
+            "docs/python.md", "docs/glossary.md"],
+    "Files": ["docs/formats/model.md", "docs/formats/experiment.md", "docs/formats/gait.md", "docs/formats/study.md",
+              "docs/formats/"],
+    "In C++": ["api/index.rst", "docs/plant.md"],
+    "Theory": ["docs/theory/integrator.md", "docs/theory/cables.md", "docs/theory/contact.md", "docs/theory/"],
+    "How good it is": ["docs/validation/README.md", "docs/validation/", "docs/performance.md", "docs/determinism.md",
+                       "docs/robustness.md"],
+    "The project": ["docs/README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md"],
+}
+REST = "More"  # pages that no part names: whoever writes one need not know this file
+
+
+def parts(pages):
+    """[(part, [page, ...]), ...] of the pages that there are."""
+    left, found = sorted(pages), []
+    for part, names in PARTS.items():
+        chosen = []
+        for name in names:
+            chosen += [page for page in left if page not in chosen and
+                       (page == name or (name.endswith("/") and page.startswith(name)
+                                         and not any(page in other for other in PARTS.values())))]
+        found.append((part, chosen))
+        left = [page for page in left if page not in chosen]
+    return found + ([(REST, left)] if left else [])
+
+
+def toctrees(pages):
+    """The sidebar, as hidden lists at the end of the first page."""
+    lines = []
+    for part, chosen in parts(pages):
+        lines += ["", "```{toctree}", ":hidden:", f":caption: {part}", ""]
+        lines += [page.rsplit(".", 1)[0] for page in chosen] + ["```"]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,61 @@
+"""The texts of a release: its version and its changes, and where they stand."""
+
+import pathlib
+import re
+
+from .stage import Problem
+
+HEADER = "include/taut/version.h"
+CHANGELOG = "CHANGELOG.md"
+UNRELEASED = re.compile(r"^## (.*) \(not yet released\)$", re.MULTILINE)
+SHOWN_IN = ["docs/cli.md", "docs/python.md"]  # outputs of commands that tell their version
+
+
+def numbers(version):
+    if not re.fullmatch(r"(0|[1-9]\d*)(\.(0|[1-9]\d*)){2}", version):
+        raise Problem(f"\"{version}\" is no version: three numbers, such as 0.2.0")
+    return tuple(map(int, version.split(".")))
+
+
+def current(root):
+    return re.search(r'kVersion = "(.*)"', (pathlib.Path(root) / HEADER).read_text())[1]
+
+
+def section(text, heading):
+    """What stands below a heading of the second level."""
+    after = text.split(heading + "\n", 1)[1]
+    return re.split(r"^## ", after, maxsplit=1, flags=re.MULTILINE)[0].strip()
+
+
+def unreleased(root):
+    """The heading of what is not yet released and what stands below it."""
+    text = (pathlib.Path(root) / CHANGELOG).read_text()
+    found = list(UNRELEASED.finditer(text))
+    first = re.search(r"^## .*$", text, re.MULTILINE)
+    if len(found) != 1 or first[0] != found[0][0]:
+        raise Problem(f"{CHANGELOG} has no section at its top, and there only, that says \"(not yet released)\"")
+    changes = section(text, found[0][0])
+    if not changes:
+        raise Problem(f"{CHANGELOG} says nothing of what changes")
+    return found[0][0], changes
+
+
+def check(root, version):
+    """A Problem, if `version` cannot be the next."""
+    now = current(root)
+    if numbers(version) <= numbers(now):
+        raise Problem(f"{version} does not come after {now}")
+    unreleased(root)
+
+
+def write(root, version, date):
+    """Puts the version where it stands, and the date to its changes; returns these."""
+    root, now = pathlib.Path(root), current(root)
+    heading, changes = unreleased(root)
+    for name, old, new in [(HEADER, f'"{now}"', f'"{version}"'), (CHANGELOG, heading, f"## {version} ({date})"),
+                           *((page, f"taut {now}", f"taut {version}") for page in SHOWN_IN)]:
+        text = (root / name).read_text()
+        if old not in text:
+            raise Problem(f"{name} does not say {old}")
+        (root / name).write_text(text.replace(old, new))
+    return changes

@@ -1,0 +1,275 @@
+"""The website and a release are made by command, and what cannot be made is answered.
+
+Usage: publishing_test.py AREA.TEST [TAUT BUILD_FOLDER]. One test of this file, by the name of its function.
+"""
+
+import html.parser
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import urllib.parse
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "script"))
+sys.dont_write_bytecode = True
+from publishing import contents, deb, release, stage  # noqa: E402
+
+
+class Skipped(Exception):
+    """Why a test is left out."""
+
+
+def problem(function, *arguments):
+    """What a Problem says; an assertion if there is none."""
+    try:
+        function(*arguments)
+    except stage.Problem as found:
+        return str(found)
+    raise AssertionError("no Problem")
+
+
+def run(*command, cwd=None, env=None, status=0):
+    done = subprocess.run(command, cwd=cwd, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    assert done.returncode == status, f"{command}: {done.returncode}\n{done.stdout}"
+    return done.stdout
+
+
+def write(root, files):
+    for name, text in files.items():
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(text)
+
+
+def copied(place):
+    """The working tree in a git of its own, and the environment to use it in."""
+    root = pathlib.Path(place) / "tree"
+    listed = run("git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", cwd=ROOT)
+    for name in filter(None, listed.split("\0")):
+        if (ROOT / name).is_file():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, root / name)
+    (pathlib.Path(place) / "gitconfig").write_text("[user]\n\tname = somebody\n\temail = somebody@example.org\n")
+    env = dict(os.environ, GIT_CONFIG_GLOBAL=f"{place}/gitconfig")
+    for words in (["init", "--quiet", "--initial-branch", "main"], ["add", "--all"],
+                  ["commit", "--quiet", "--message", "A tree"]):
+        run("git", *words, cwd=root, env=env)
+    return root, env
+
+
+def next_version(root):
+    first, second, _ = release.numbers(release.current(root))
+    return f"{first}.{second + 1}.0"
+
+
+# The website.
+
+
+def ALinkToCodeLeadsToAPageOfIt():
+    with tempfile.TemporaryDirectory() as place:
+        root, to = pathlib.Path(place) / "root", pathlib.Path(place) / "to"
+        write(root, {"docs/a.md": "# A\n[code](../src/x.cpp), [b](b.md#b), `[no](link)`, [web](https://example.org)\n"
+                                  "```\n[no](link)\n```\n", "docs/b.md": "# B\n[start](../README.md), [all](../src/)\n",
+                     "src/x.cpp": "int x;\n", "README.md": "# R\n"})
+        pages = stage.Stage(root, to).pages(["docs/a.md"])
+        assert {"docs/a.md", "docs/b.md", "README.md"} <= pages, pages
+        a, b = (to / "docs/a.md").read_text(), (to / "docs/b.md").read_text()
+        assert "[code](../src/x.cpp.md), [b](b.md#b), `[no](link)`, [web](https://example.org)" in a, a
+        assert "```\n[no](link)\n```" in a, a
+        assert "[start](../index.md), [all](../src/index.md)" in b, b
+        assert ":language: cpp" in (to / "src/x.cpp.md").read_text() and (to / "src/x.cpp").exists()
+        assert "[x.cpp](x.cpp.md)" in (to / "src/index.md").read_text()
+
+
+def ALinkThatLeadsNowhereIsAnError():
+    with tempfile.TemporaryDirectory() as place:
+        root = pathlib.Path(place) / "root"
+        write(root, {"a.md": "# A\n[x](x.md)\n", "b.md": "# B\n[x](../x.md)\n"})
+        assert problem(stage.Stage(root, place).pages, ["a.md"]) == "a.md: there is no x.md"
+        assert "leads out of the project" in problem(stage.Stage(root, place).pages, ["b.md"])
+
+
+def EveryPageHasItsPlace():
+    pages = {str(path.relative_to(ROOT)) for path in (ROOT / "docs").rglob("*.md")} | {"docs/new.md"}
+    placed = [page for _, some in contents.parts(pages) for page in some]
+    assert sorted(placed) == sorted(pages), set(placed) ^ pages
+    assert contents.parts(pages)[-1] == (contents.REST, ["docs/new.md"]), contents.parts(pages)[-1]
+
+
+def TheGalleryHasEveryModel():
+    run(ROOT / "script/gallery", "--check")
+
+
+class Links(html.parser.HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.found = []
+
+    def handle_starttag(self, tag, attrs):
+        self.found += [value for name, value in attrs if name in ("href", "src") and value]
+
+
+def IsBuiltWithoutAWarning():
+    with tempfile.TemporaryDirectory() as place:
+        site = pathlib.Path(place) / "site"
+        done = subprocess.run([ROOT / "script/website", "--taut", sys.argv[2], "--out", site], capture_output=True,
+                              text=True)
+        if done.returncode == 2:
+            raise Skipped(re.sub(".*this machine has", "there is", done.stderr.strip()))
+        assert done.returncode == 0, done.stdout + done.stderr
+        count = 0
+        for page in site.rglob("*.html"):
+            if page.name == "report.html" and page.parent.name == "_static":
+                continue
+            links = Links()
+            links.feed(page.read_text())
+            for target in links.found:
+                parts = urllib.parse.urlsplit(target)
+                if parts.scheme or parts.netloc:
+                    assert parts.scheme != "http", f"{page.name}: {target}"
+                elif parts.path:
+                    count += 1
+                    assert (page.parent / urllib.parse.unquote(parts.path)).exists(), f"{page}: {target}"
+        assert count > 1000, count
+        for name in ("index.html", "docs/gallery.html", "api/batch.html", "searchindex.js", "_static/report.html"):
+            assert (site / name).is_file(), name
+        assert "BatchOptions" in (site / "api/batch.html").read_text()
+
+
+# Releases.
+
+
+def AVersionComesAfterTheLast():
+    now = release.current(ROOT)
+    assert problem(release.check, ROOT, now) == f"{now} does not come after {now}"
+    for wrong in ("1", "0.2", "v0.2.0", "0.02.0", "0.2.0-rc1", ""):
+        assert "is no version" in problem(release.check, ROOT, wrong)
+    assert release.numbers("0.10.0") > release.numbers("0.9.9")
+
+
+def ThereMustBeChanges():
+    with tempfile.TemporaryDirectory() as place:
+        root = pathlib.Path(place)
+        begin = "# Changes\n\n"
+        write(root, {"CHANGELOG.md": begin + "## 0.3.0 (2026-01-01)\n\n- Old.\n"})
+        assert "no section at its top" in problem(release.unreleased, root)
+        write(root, {"CHANGELOG.md": begin + "## Next (not yet released)\n\n## 0.3.0 (2026-01-01)\n\n- Old.\n"})
+        assert "says nothing" in problem(release.unreleased, root)
+        write(root, {"CHANGELOG.md": begin + "## Next (not yet released)\n\n- New.\n\n## 0.3.0 (x)\n\n- Old.\n"})
+        assert release.unreleased(root) == ("## Next (not yet released)", "- New.")
+
+
+def TheVersionGoesWhereItStands():
+    with tempfile.TemporaryDirectory() as place:
+        root, env = copied(place)
+        if "(not yet released)" not in (root / "CHANGELOG.md").read_text():
+            text = (root / "CHANGELOG.md").read_text()
+            write(root, {"CHANGELOG.md": text.replace("\n## ", "\n## Next (not yet released)\n\n- New.\n\n## ", 1)})
+        now, version = release.current(root), next_version(root)
+        changes = release.write(root, version, "2030-01-02")
+        assert release.current(root) == version and changes
+        changed = set(run("git", "diff", "--name-only", cwd=root, env=env).split())
+        assert changed == {release.HEADER, release.CHANGELOG, *release.SHOWN_IN}, changed
+        log = (root / "CHANGELOG.md").read_text()
+        assert f"\n## {version} (2030-01-02)\n\n{changes[:20]}" in log and "not yet released" not in log
+        for page in release.SHOWN_IN:
+            assert f"taut {version}" in (root / page).read_text() and f"taut {now}" not in (root / page).read_text()
+
+
+def TheVersionStandsInOnePlace():
+    now = release.current(ROOT)
+    listed = run("git", "ls-files", "--cached", "--others", "--exclude-standard", cwd=ROOT).split("\n")
+    places = re.compile(r"(README\.md|CITATION\.cff|(.*/)?CMakeLists\.txt|(.*/)?package\.json|cmake/.*|debian/.*"
+                        r"|script/.*|\.github/.*)")
+    files = [name for name in listed if places.fullmatch(name) and not name.startswith("tests/")]
+    assert len(files) > 30, files
+    found = [name for name in files if re.search(rf"\b{re.escape(now)}\b", (ROOT / name).read_text())]
+    assert not found, found
+
+
+def WhatIsNotCommittedIsNotReleased():
+    if lacking := deb.missing():
+        raise Skipped(f"there is no {', '.join(lacking)}")
+    with tempfile.TemporaryDirectory() as place:
+        root, env = copied(place)
+        (root / "models/new.yaml").write_text("taut: 1\n")
+        said = run(root / "script/release", next_version(root), "--dry_run", env=env, status=1)
+        assert "changes that are not committed" in said, said
+
+
+def ATagIsNotMovedEver():
+    if lacking := deb.missing():
+        raise Skipped(f"there is no {', '.join(lacking)}")
+    with tempfile.TemporaryDirectory() as place:
+        root, env = copied(place)
+        version = next_version(root)
+        run("git", "tag", f"v{version}", cwd=root, env=env)
+        assert "there is a tag" in run(root / "script/release", version, env=env, status=1)
+
+
+def ADryRunLeavesNothingButFiles():
+    """The packaging of what is built already, as if this version came after one before it."""
+    if lacking := deb.missing():
+        raise Skipped(f"there is no {', '.join(lacking)}")
+    taut, built = pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+    if not (taut.parent / "web/index.html").exists():
+        raise Skipped("the viewer's pages are not built")
+    with tempfile.TemporaryDirectory() as place:
+        root, env = copied(place)
+        version = release.current(root)
+        for name in (release.HEADER, *release.SHOWN_IN):
+            text = (root / name).read_text()
+            write(root, {name: text.replace(f'"{version}"', '"0.0.1"').replace(f"taut {version}", "taut 0.0.1")})
+        log = re.sub(r"\n## .*\n", "\n## Next (not yet released)\n", (root / "CHANGELOG.md").read_text(), count=1)
+        write(root, {"CHANGELOG.md": log})
+        run("git", "commit", "--quiet", "--all", "--message", "Before", cwd=root, env=env)
+        before = run("git", "rev-parse", "HEAD", cwd=root, env=env)
+        said = run(root / "script/release", version, "--dry_run", "--tested", "--built", built, env=env)
+        assert before == run("git", "rev-parse", "HEAD", cwd=root, env=env), "the branch has moved"
+        assert not run("git", "tag", "--list", cwd=root, env=env), "there is a tag"
+        assert not run("git", "status", "--porcelain", cwd=root, env=env), "the tree has changed"
+        folder = root / "build" / f"release_{version}"
+        names = sorted(path.name.split("_")[0] for path in folder.iterdir())
+        assert names == ["SHA256SUMS", "changes.md", "libtaut-dev", "taut", f"taut-{version}.tar.gz"], (names, said)
+        run("sha256sum", "--check", "--quiet", "SHA256SUMS", cwd=folder)
+        held = run("tar", "-tzf", folder / f"taut-{version}.tar.gz").split()
+        assert f"taut-{version}/CMakeLists.txt" in held and not [name for name in held if "node_modules" in name]
+
+
+def IsCompiledInstalledAndRuns():
+    if lacking := deb.missing():
+        raise Skipped(f"there is no {', '.join(lacking)}")
+    with tempfile.TemporaryDirectory() as place:
+        run(ROOT / "script/deb", "--out", f"{place}/packages")
+        assert len(list(pathlib.Path(place, "packages").glob("*.deb"))) == 2
+
+
+# What GitHub reads.
+
+
+def WhatGitHubReadsCanBeRead():
+    try:
+        import yaml
+    except ImportError:
+        raise Skipped("there is no python3-yaml") from None
+    files = [*sorted((ROOT / ".github").rglob("*.yml")), ROOT / "CITATION.cff"]
+    read = {str(path.relative_to(ROOT)): yaml.safe_load(path.read_text()) for path in files}
+    job = read[".github/workflows/ci.yml"]["jobs"]["debian12"]
+    assert job["container"] == "debian:12" and {"run": ".ci/run"} in job["steps"], job
+    for name, form in read.items():
+        if "ISSUE_TEMPLATE" in name and not name.endswith("config.yml"):
+            assert {"name", "description", "body"} <= form.keys(), name
+            assert all(part["type"] in ("textarea", "input", "markdown") for part in form["body"]), name
+    citation = read["CITATION.cff"]
+    assert {"cff-version", "message", "title", "authors"} <= citation.keys(), citation
+    assert "version" not in citation, "it stands in one place"
+
+
+if __name__ == "__main__":
+    try:
+        globals()[sys.argv[1].split(".")[1]]()
+    except Skipped as why:
+        print(f"skipped: {why}")
