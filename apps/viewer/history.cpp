@@ -40,12 +40,13 @@ void History::Lists<T>::Thin() {
 }
 
 History::History(const ModelDef& def, const std::vector<bool>& has_set_point, double period_s,
-                 std::size_t max_bytes)
+                 const std::vector<ChannelInfo>& recorded, std::size_t max_bytes)
     : bodies_(def.bodies.size()),
       cables_(def.cables.size()),
       max_bytes_(max_bytes),
       first_period_s_(period_s),
-      period_s_(period_s) {
+      period_s_(period_s),
+      nodes_(def) {
   for (const char* energy : {"kinetic", "gravity", "elastic"}) {
     AddColumn(std::string("system/") + energy + "_j", "J");
   }
@@ -66,6 +67,14 @@ History::History(const ModelDef& def, const std::vector<bool>& has_set_point, do
     AddColumn(prefix + "rest_length_m", "m");
     AddColumn(prefix + "setpoint_n", "N", has_set_point[c]);
   }
+  for (std::size_t i = 0; i < recorded.size(); ++i) {
+    if (places_.contains(recorded[i].name)) continue;
+    AddColumn(recorded[i].name, recorded[i].unit);
+    recorded_.push_back(i);
+  }
+  for (const ChannelInfo& node : nodes_.channels()) {
+    if (!places_.contains(node.name)) channels_.push_back(node);
+  }
 }
 
 void History::AddColumn(std::string name, std::string unit, bool is_channel) {
@@ -85,7 +94,7 @@ void History::Clear() {
   pushes_ = {};
 }
 
-void History::Take(const Frame& frame) {
+void History::Take(const Frame& frame, const std::vector<double>& row) {
   due_s_ = frame.time_s + period_s_ * (1 - 1e-9);  // times are sums of steps
   time_s_.push_back(frame.time_s);
   std::size_t at = 0;
@@ -105,6 +114,7 @@ void History::Take(const Frame& frame) {
       put(value);
     }
   }
+  for (const std::size_t place : recorded_) put(row[place]);
   contacts_.Add(frame.contacts);
   pushes_.Add(frame.pushes);
   const std::size_t row_bytes = (1 + columns_.size()) * sizeof(double);
@@ -146,11 +156,20 @@ void History::Show(std::size_t row, Frame& frame) const {
 }
 
 Json History::SeriesOf(const std::string& channel, double t0, double t1, std::size_t points) const {
-  const auto place = places_.find(channel);
-  if (place == places_.end()) return nullptr;
   // A pyramid would have to grow with every row; so few rows are looked through as fast.
   static const Pyramid no_levels{{}};
-  return SeriesJson(channel, 0, no_levels.Get(time_s_, columns_[place->second], t0, t1, points));
+  const auto series = [&](const std::vector<double>& column) {
+    return SeriesJson(channel, 0, no_levels.Get(time_s_, column, t0, t1, points));
+  };
+  const auto place = places_.find(channel);
+  if (place != places_.end()) return series(columns_[place->second]);
+  const auto node = nodes_.Find(channel);
+  if (!node) return nullptr;
+  NodeChannels::Poses poses;
+  for (std::size_t i = 0; i < kBodyValues; ++i) {
+    poses[i] = &columns_[kSystemValues + kBodyValues * static_cast<std::size_t>(node->body) + i];
+  }
+  return series(NodeChannels::Column(*node, poses));
 }
 
 }  // namespace taut::viewer

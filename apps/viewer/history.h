@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "frame.h"
+#include "node_channels.h"
 #include "scene.h"
 
 namespace taut::viewer {
@@ -14,16 +15,17 @@ namespace taut::viewer {
 /// the distance doubles: the whole run stays, more coarsely the longer it lasts.
 class History {
  public:
-  /// `period_s`: simulated time between rows, for a start. `has_set_point`: by cable.
+  /// `period_s`: simulated time between rows, for a start. `has_set_point`: by cable. `recorded`:
+  /// the channels of the rows that `Take` gets; kept are those that frames do not have.
   History(const ModelDef& def, const std::vector<bool>& has_set_point, double period_s,
-          std::size_t max_bytes = 128u << 20);
+          const std::vector<ChannelInfo>& recorded = {}, std::size_t max_bytes = 128u << 20);
 
   /// Of the run that begins now.
   void Clear();
   /// Whether the moment is far enough from the last one taken.
   bool IsDue(double time_s) const { return time_s >= due_s_; }
-  /// Times rise.
-  void Take(const Frame& frame);
+  /// Times rise. `row`: of the recorded channels at that time.
+  void Take(const Frame& frame, const std::vector<double>& row = {});
 
   std::size_t size() const { return time_s_.size(); }
   double time_s(std::size_t row) const { return time_s_[row]; }
@@ -56,7 +58,10 @@ class History {
   std::size_t bodies_, cables_, max_bytes_;
   double first_period_s_, period_s_, due_s_ = 0;
   std::vector<double> time_s_;
-  std::vector<std::vector<double>> columns_;  ///< All that a frame holds, channel or not.
+  /// All that a frame holds, channel or not; then the recorded channels at `recorded_` of a row.
+  std::vector<std::vector<double>> columns_;
+  std::vector<std::size_t> recorded_;
+  NodeChannels nodes_;
   Lists<Frame::Contact> contacts_;
   Lists<OutsideForce> pushes_;
 };
