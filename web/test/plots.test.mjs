@@ -128,6 +128,8 @@ test("AChannelIsDraggedIntoAPlotOfItsUnitOnly", async () => {
   const drag = async (channel, target) => {
     await page.evaluate(() => (document.querySelector(".plots").scrollTop = 0));
     await page.locator(`[data-channel="${channel}"]`).dragTo(page.locator(target));
+    await page.mouse.move(5, 5); // in no plot, whose numbers would be those under the mouse
+    await page.waitForFunction(() => window.taut.app.cursor_s.value === null);
   };
   await search("top_0 tension");
   await drag("cable/top_0/tension_n", '[data-figure="tension:bottom_0"]');

@@ -96,6 +96,7 @@ export class Chart {
   }
 
   dispose(): void {
+    if (this.plot?.over.matches(":hover")) this.app.cursor_s.value = null; // no mouse leaves what is gone
     this.plot?.destroy();
     this.plot = null;
     this.element.remove();
