@@ -40,13 +40,13 @@ void History::Lists<T>::Thin() {
 }
 
 History::History(const ModelDef& def, const std::vector<bool>& has_set_point, double period_s,
-                 std::size_t max_bytes, const std::vector<ChannelInfo>& values)
+                 const std::vector<ChannelInfo>& recorded, std::size_t max_bytes)
     : bodies_(def.bodies.size()),
       cables_(def.cables.size()),
-      values_(values.size()),
       max_bytes_(max_bytes),
       first_period_s_(period_s),
-      period_s_(period_s) {
+      period_s_(period_s),
+      nodes_(def) {
   for (const char* energy : {"kinetic", "gravity", "elastic"}) {
     AddColumn(std::string("system/") + energy + "_j", "J");
   }
@@ -67,7 +67,16 @@ History::History(const ModelDef& def, const std::vector<bool>& has_set_point, do
     AddColumn(prefix + "rest_length_m", "m");
     AddColumn(prefix + "setpoint_n", "N", has_set_point[c]);
   }
-  for (const ChannelInfo& value : values) AddColumn(value.name, value.unit);
+  for (std::size_t i = 0; i < recorded.size(); ++i) {
+    if (!places_.contains(recorded[i].name)) {
+      AddColumn(recorded[i].name, recorded[i].unit);
+      recorded_.push_back(i);
+    }
+    columns_of_row_.push_back(places_.at(recorded[i].name));
+  }
+  for (const ChannelInfo& node : nodes_.channels()) {
+    if (!places_.contains(node.name)) channels_.push_back(node);
+  }
 }
 
 void History::AddColumn(std::string name, std::string unit, bool is_channel) {
@@ -87,7 +96,7 @@ void History::Clear() {
   pushes_ = {};
 }
 
-void History::Take(const Frame& frame) {
+void History::Take(const Frame& frame, const std::vector<double>& row) {
   due_s_ = frame.time_s + period_s_ * (1 - 1e-9);  // times are sums of steps
   time_s_.push_back(frame.time_s);
   std::size_t at = 0;
@@ -107,7 +116,7 @@ void History::Take(const Frame& frame) {
       put(value);
     }
   }
-  for (const double value : frame.values) put(value);
+  for (const std::size_t place : recorded_) put(row[place]);
   contacts_.Add(frame.contacts);
   pushes_.Add(frame.pushes);
   const std::size_t row_bytes = (1 + columns_.size()) * sizeof(double);
@@ -163,18 +172,31 @@ void History::Show(std::size_t row, Frame& frame) const {
   for (std::size_t c = 0; c < cables_; ++c, at += kCableValues) {
     frame.cables.push_back({value(at), value(at + 1), value(at + 2), value(at + 3)});
   }
-  frame.values.clear();
-  for (std::size_t v = 0; v < values_; ++v, ++at) frame.values.push_back(value(at));
   frame.contacts = contacts_.Get(row);
   frame.pushes = pushes_.Get(row);
 }
 
+std::vector<double> History::Row(std::size_t row) const {
+  std::vector<double> values;
+  for (const std::size_t column : columns_of_row_) values.push_back(columns_[column][row]);
+  return values;
+}
+
 Json History::SeriesOf(const std::string& channel, double t0, double t1, std::size_t points) const {
-  const auto place = places_.find(channel);
-  if (place == places_.end()) return nullptr;
   // A pyramid would have to grow with every row; so few rows are looked through as fast.
   static const Pyramid no_levels{{}};
-  return SeriesJson(channel, 0, no_levels.Get(time_s_, columns_[place->second], t0, t1, points));
+  const auto series = [&](const std::vector<double>& column) {
+    return SeriesJson(channel, 0, no_levels.Get(time_s_, column, t0, t1, points));
+  };
+  const auto place = places_.find(channel);
+  if (place != places_.end()) return series(columns_[place->second]);
+  const auto node = nodes_.Find(channel);
+  if (!node) return nullptr;
+  NodeChannels::Poses poses;
+  for (std::size_t i = 0; i < kBodyValues; ++i) {
+    poses[i] = &columns_[kSystemValues + kBodyValues * static_cast<std::size_t>(node->body) + i];
+  }
+  return series(NodeChannels::Column(*node, poses));
 }
 
 }  // namespace taut::viewer

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "frame.h"
+#include "node_channels.h"
 #include "scene.h"
 
 namespace taut::viewer {
@@ -17,17 +18,17 @@ class History {
  public:
   static constexpr std::size_t kMaxBytes = 128u << 20;
 
-  /// `period_s`: simulated time between rows, for a start. `has_set_point`: by cable. `values`: the
-  /// channels of the frames' `values`.
+  /// `period_s`: simulated time between rows, for a start. `has_set_point`: by cable. `recorded`:
+  /// the channels of the rows that `Take` gets; kept are those that frames do not have.
   History(const ModelDef& def, const std::vector<bool>& has_set_point, double period_s,
-          std::size_t max_bytes = kMaxBytes, const std::vector<ChannelInfo>& values = {});
+          const std::vector<ChannelInfo>& recorded = {}, std::size_t max_bytes = kMaxBytes);
 
   /// Of the run that begins now.
   void Clear();
   /// Whether the moment is far enough from the last one taken.
   bool IsDue(double time_s) const { return time_s >= due_s_; }
-  /// Times rise.
-  void Take(const Frame& frame);
+  /// Times rise. `row`: of the recorded channels at that time.
+  void Take(const Frame& frame, const std::vector<double>& row = {});
 
   std::size_t size() const { return time_s_.size(); }
   double time_s(std::size_t row) const { return time_s_[row]; }
@@ -39,6 +40,8 @@ class History {
   std::optional<std::size_t> Step(std::optional<std::size_t> row, int count, double now_s) const;
   /// Of `frame` stays what is no history: speed, pause, driver.
   void Show(std::size_t row, Frame& frame) const;
+  /// Of the recorded channels, as `Take` got it.
+  std::vector<double> Row(std::size_t row) const;
 
   const std::vector<ChannelInfo>& channels() const { return channels_; }
   /// SeriesData of a channel; null if there is none.
@@ -63,10 +66,13 @@ class History {
 
   std::vector<ChannelInfo> channels_;
   std::unordered_map<std::string, std::size_t> places_;
-  std::size_t bodies_, cables_, values_, max_bytes_;
+  std::size_t bodies_, cables_, max_bytes_;
   double first_period_s_, period_s_, due_s_ = 0;
   std::vector<double> time_s_;
-  std::vector<std::vector<double>> columns_;  ///< All that a frame holds, channel or not.
+  /// All that a frame holds, channel or not; then the recorded channels at `recorded_` of a row.
+  std::vector<std::vector<double>> columns_;
+  std::vector<std::size_t> recorded_, columns_of_row_;
+  NodeChannels nodes_;
   Lists<Frame::Contact> contacts_;
   Lists<OutsideForce> pushes_;
 };

@@ -72,10 +72,10 @@ void LiveSession::StartHistory() {
     has_set_point_[static_cast<std::size_t>(control.cable)] = control.impedance.has_value();
   }
   history_.emplace(experiment_.robot.def, has_set_point_,
-                   pace_.speed() == 0 ? kFastHistoryPeriodS : kHistoryPeriodS);
+                   pace_.speed() == 0 ? kFastHistoryPeriodS : kHistoryPeriodS, run_->channels());
   past_row_.reset();
   Fill(moment_);
-  history_->Take(moment_);
+  history_->Take(moment_, run_->Row());
 }
 
 void LiveSession::Handle(int client, const Command& command) {
@@ -240,7 +240,7 @@ bool LiveSession::StepOnce() {
   }
   if (history_->IsDue(run_->time_s())) {
     Fill(moment_);
-    history_->Take(moment_);
+    history_->Take(moment_, run_->Row());
   }
   if (recording_) recording_->Take(*run_);
   if (!end_told_ && run_->time_s() >= experiment_.duration_s && mode() == "live") {

@@ -76,6 +76,7 @@ std::unique_ptr<Page> Page::Open(const PageOptions& options, Diagnostics& out) {
   viewer::ServerOptions where;
   where.address = options.address;
   where.port = options.port;
+  where.ends_on_signals = false;
   auto impl = std::make_unique<Impl>(options, where, viewer::ReadWebFiles(*web));
   if (!impl->server.Listen(error)) {
     out.Error({}, error);
@@ -83,8 +84,7 @@ std::unique_ptr<Page> Page::Open(const PageOptions& options, Diagnostics& out) {
   }
   impl->url = viewer::Url(where, impl->server.port(), where.drive_token);
   impl->watch_url = viewer::Url(where, impl->server.port(), where.watch_token);
-  impl->thread =
-      std::thread([server = &impl->server] { server->Run(viewer::Server::Signals::kLeave); });
+  impl->thread = std::thread([server = &impl->server] { server->Run(); });
   return std::unique_ptr<Page>(new Page(std::move(impl)));
 }
 

@@ -21,14 +21,14 @@ void PageSession::Begin(const JoinedRobots& robots, const std::vector<ChannelInf
   ExperimentSpec experiment;
   experiment.robot.def = robots.def();
   const std::lock_guard lock(own_mutex_);
-  history_.emplace(robots.def(), robots.HasSetPoint(), history_period_s_, History::kMaxBytes,
-                   values);
+  history_.emplace(robots.def(), robots.HasSetPoint(), history_period_s_, values);
   now_.reset();
   past_row_.reset();
   ++run_;
   Json scene = SceneOf(experiment);
   for (const ChannelInfo& value : values) scene["values"].push_back(value.name);
   scene["channels"] = ToJson(history_->channels());
+  scene["contact_forces"] = true;
   new_scene_ = std::move(scene);
 }
 
@@ -61,7 +61,7 @@ void PageSession::Show(Frame frame) {
   frame.now_s = frame.time_s;
   frame.real_time_factor = pace_.real_time_factor();
   frame.run = run_;
-  if (history_->IsDue(frame.time_s)) history_->Take(frame);
+  if (history_->IsDue(frame.time_s)) history_->Take(frame, frame.values);
   now_ = std::move(frame);
   changed_ = true;
 }
@@ -130,7 +130,10 @@ Session::Clock::time_point PageSession::Work() {
       frame->speed = pace_.speed();
       frame->paused = pace_.paused();
       frame->real_time_factor = pace_.real_time_factor();
-      if (past_row_) history_->Show(*past_row_, *frame);
+      if (past_row_) {
+        history_->Show(*past_row_, *frame);
+        frame->values = history_->Row(*past_row_);
+      }
       changed_ = false;
       shown_wall_ = now;
     }

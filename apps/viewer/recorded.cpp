@@ -112,6 +112,7 @@ void Recorded::FindInputs() {
     return;
   }
   inputs_ = ReadText(inputs);
+  nodes_ = NodeChannels(experiment_->robot.def);
   const double end_s = trace_.time_s.back();
   // Of a live run that was reset (inputs_2.yaml) nobody knows how long it was meant to be.
   const bool planned = inputs.filename() == "inputs.yaml";
@@ -203,7 +204,11 @@ std::string Recorded::title() const {
 
 Json Recorded::scene() const {
   Json scene = experiment_ ? SceneOf(*experiment_) : SceneOf(trace_);
-  scene["channels"] = ToJson(trace_.channels);
+  std::vector<ChannelInfo> channels = trace_.channels;
+  for (const ChannelInfo& node : nodes_.channels()) {
+    if (!trace_.Find(node.name) && PosesOf(*nodes_.Find(node.name))) channels.push_back(node);
+  }
+  scene["channels"] = ToJson(channels);
   scene["first_s"] = trace_.time_s.front();
   scene["duration_s"] = trace_.time_s.back();
   scene["contact_forces"] = !contacts_.empty();
@@ -303,6 +308,28 @@ std::size_t Recorded::RowAt(double time_s) const {
              : static_cast<std::size_t>(after - trace_.time_s.begin()) - 1;
 }
 
+std::optional<NodeChannels::Poses> Recorded::PosesOf(const NodeChannels::Place& node) const {
+  NodeChannels::Poses poses;
+  const BodyColumns& body = bodies_[static_cast<std::size_t>(node.body)];
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    poses[i] = body.values[i];
+    if (poses[i] == nullptr) return std::nullopt;
+  }
+  return poses;
+}
+
+const Recorded::NodeColumn* Recorded::Node(const std::string& name) const {
+  const auto known = node_columns_.find(name);
+  if (known != node_columns_.end()) return &known->second;
+  const auto place = nodes_.Find(name);
+  const auto poses = place ? PosesOf(*place) : std::nullopt;
+  if (!poses) return nullptr;
+  std::vector<double> values = NodeChannels::Column(*place, *poses);
+  Pyramid pyramid(values);
+  return &node_columns_.try_emplace(name, NodeColumn{std::move(values), std::move(pyramid)})
+              .first->second;
+}
+
 std::optional<Series> Recorded::SeriesOf(const std::string& channel, int source, double t0,
                                          double t1, std::size_t points) const {
   if (source > 0) {
@@ -310,7 +337,11 @@ std::optional<Series> Recorded::SeriesOf(const std::string& channel, int source,
     return k < compared_.size() ? compared_[k]->SeriesOf(channel, 0, t0, t1, points) : std::nullopt;
   }
   const auto at = trace_.Find(channel);
-  if (!at) return std::nullopt;
+  if (!at) {
+    const NodeColumn* const node = Node(channel);
+    if (node == nullptr) return std::nullopt;
+    return node->pyramid.Get(trace_.time_s, node->values, t0, t1, points);
+  }
   const std::vector<double>& column = trace_.values[*at];
   const auto pyramid = pyramids_.try_emplace(*at, column).first;
   return pyramid->second.Get(trace_.time_s, column, t0, t1, points);

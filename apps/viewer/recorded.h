@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frame.h"
+#include "node_channels.h"
 #include "pyramid.h"
 #include "scene.h"
 #include "taut/spec.h"
@@ -42,7 +43,8 @@ class Recorded {
   Frame FrameOf(std::size_t row) const;
   /// The last row at or before a time; 0 before the first.
   std::size_t RowAt(double time_s) const;
-  /// A channel of the trace (source 0) or of a compared one; nothing if there is none.
+  /// A channel of the trace or a place of a node (source 0), or the same of a compared run; nothing
+  /// if there is none.
   std::optional<Series> SeriesOf(const std::string& channel, int source, double t0, double t1,
                                  std::size_t points) const;
 
@@ -63,6 +65,15 @@ class Recorded {
   Json ComparedRun() const;
   /// The column of a channel, or null.
   const std::vector<double>* Column(const std::string& name) const;
+
+  struct NodeColumn {
+    std::vector<double> values;
+    Pyramid pyramid;
+  };
+  /// Nothing if the trace does not have the whole pose of the node's body.
+  std::optional<NodeChannels::Poses> PosesOf(const NodeChannels::Place& node) const;
+  /// Null if that is not the place of a node, or the body's pose is not in the trace.
+  const NodeColumn* Node(const std::string& name) const;
 
   struct BodyColumns {
     const std::vector<double>* values[7];  ///< Null: as at the start.
@@ -87,6 +98,7 @@ class Recorded {
   Trace trace_;
   std::vector<std::unique_ptr<Recorded>> compared_;
   std::optional<ExperimentSpec> experiment_;
+  NodeChannels nodes_;
   Json summary_;
   std::vector<BodyColumns> bodies_;
   std::vector<CableColumns> cables_;
@@ -95,7 +107,8 @@ class Recorded {
   std::vector<ContactColumns> contacts_;
   const std::vector<double>* energy_[3] = {};
   const std::vector<double>* contact_count_ = nullptr;
-  mutable std::map<std::size_t, Pyramid> pyramids_;  ///< By channel; made when asked for.
+  mutable std::map<std::size_t, Pyramid> pyramids_;         ///< By channel; made when asked for.
+  mutable std::map<std::string, NodeColumn> node_columns_;  ///< The same.
 };
 
 }  // namespace taut::viewer

@@ -203,6 +203,7 @@ bool Server::Listen(std::string& error) {
   const std::uint16_t port = impl_->options.port;
   if (Bind(impl_->acceptor, {address, port}, failed)) {
     impl_->options.port = this->port();
+    if (impl_->options.ends_on_signals) impl_->EndOnSignals();
     return true;
   }
   if (failed != asio::error::address_in_use) {
@@ -236,8 +237,7 @@ void Server::Impl::EndOnSignals() {
   });
 }
 
-void Server::Run(Signals signals) {
-  if (signals == Signals::kEnd) impl_->EndOnSignals();
+void Server::Run() {
   impl_->Accept();
   impl_->session.Start([this] { impl_->Wake(); });
   impl_->io.run();

@@ -26,6 +26,9 @@ struct ServerOptions {
   /// first they may drive, with the second look.
   std::string drive_token = RandomToken(), watch_token = RandomToken();
 
+  /// Whether SIGINT, SIGTERM and SIGHUP end it; else they are somebody else's.
+  bool ends_on_signals = true;
+
   /// Sockets of plain HTTP, of which a browser opens six. Where there are as many, a new one takes
   /// the place of the one whose request is the longest unfinished.
   std::size_t max_http = 256;
@@ -38,16 +41,14 @@ class Server {
   Server(Session& session, WebFiles files, const ServerOptions& options);
   ~Server();
 
-  /// Binds the port. False: `error` says which port is in use and which is free, or what else is
-  /// wrong.
+  /// Binds the port; from here on signals end `Run`, also one that comes before it. False: `error`
+  /// says which port is in use and which is free, or what else is wrong.
   bool Listen(std::string& error);
   std::uint16_t port() const;  ///< Bound to.
 
-  enum class Signals { kEnd, kLeave };
-
-  /// Serves until Stop or, with `kEnd`, one of SIGINT, SIGTERM and SIGHUP; then has stopped the
-  /// session. The next such signal ends the program. With `kLeave` signals are somebody else's.
-  void Run(Signals signals = Signals::kEnd);
+  /// Serves until Stop or a signal; then has stopped the session. The next such signal ends the
+  /// program.
+  void Run();
   void Stop();  ///< From any thread.
 
  private:

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace taut::test {
 namespace {
 
@@ -20,7 +22,7 @@ ModelDef OneOfEach() {
 }
 
 History HistoryOfOneOfEach(std::size_t max_bytes = 128u << 20) {
-  return {OneOfEach(), {true}, 0.01, max_bytes};
+  return {OneOfEach(), {true}, 0.01, {}, max_bytes};
 }
 
 /// A frame whose numbers all follow from its place; every third has a push, every fourth contacts.
@@ -119,6 +121,49 @@ TEST(History, KeepsTheWholeRunMoreCoarselyTheLongerItLasts) {
   history.Clear();
   EXPECT_EQ(history.size(), 0u);
   EXPECT_TRUE(history.IsDue(0));
+}
+
+TEST(History, KeepsWhatIsRecordedBesideFrames) {
+  const std::vector<ChannelInfo> recorded = {{"cable/string/tension_n", "N"},
+                                             {"cable/string/rate_m_per_s", "m/s"},
+                                             {"push/a/force_n", "N"}};
+  History history(OneOfEach(), {true}, 0.01, recorded, 40000);
+  for (int i = 0; i < 1000; ++i) {
+    if (history.IsDue(0.01 * i)) history.Take(Moment(i), {-1, 0.5 * i, 20});
+  }
+  EXPECT_EQ(history.channels().size(), 5u + 7u + 4u + 2u);
+  EXPECT_EQ(history.channels().back().unit, "N");
+  const Json rate = history.SeriesOf("cable/string/rate_m_per_s", 0, 10, 1000);
+  ASSERT_EQ(rate["first"].size(), history.size());
+  for (std::size_t row = 0; row < history.size(); ++row) {
+    EXPECT_NEAR(rate["first"][row], 50 * history.time_s(row), 1e-9);
+  }
+  EXPECT_EQ(history.SeriesOf("push/a/force_n", 0, 10, 1000)["min"][3], 20);
+  EXPECT_EQ(history.SeriesOf("cable/string/tension_n", 0, 0, 4)["first"][0], 5) << "the frame's";
+}
+
+// Half a turn about x + z takes (x, y, z) to (z, -y, x).
+TEST(History, NodesAreWhereTheirBodiesTakeThem) {
+  ModelDef def = OneOfEach();
+  def.bodies[0].com_m = {1, 2, 3};
+  def.nodes.resize(2);
+  def.nodes[0].name = "rod.top";
+  def.nodes[0].body = 0;
+  def.nodes[0].position_m = {1.5, 2.25, 2};
+  def.nodes[1].name = "hook";
+  def.nodes[1].body = kWorld;
+  History history(def, {true}, 0.01);
+  Frame frame = Moment(4);
+  const double half = std::sqrt(0.5);
+  frame.bodies = {{{10, 20, 30}, {0, half, 0, half}}};
+  history.Take(frame);
+  const double wanted[] = {10 - 1, 20 - 0.25, 30 + 0.5};
+  for (int k = 0; k < 3; ++k) {
+    const std::string name = std::string("node/rod.top/position_") + "xyz"[k] + "_m";
+    EXPECT_NEAR(history.SeriesOf(name, 0, 1, 9)["first"][0], wanted[k], 1e-14) << name;
+  }
+  EXPECT_TRUE(history.SeriesOf("node/hook/position_x_m", 0, 1, 9).is_null());
+  EXPECT_EQ(history.channels().size(), 5u + 7u + 4u + 3u);
 }
 
 }  // namespace

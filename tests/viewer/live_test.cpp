@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include "taut/live.h"
 #include "taut/run.h"
+#include "tests/unit/recorder_fixture.h"
 #include "tests/viewer/serving.h"
 
 namespace taut::test {
@@ -275,6 +277,38 @@ TEST(LiveView, ItsPastIsLookedAtAndPlotted) {
                {"t1", 1},
                {"points", 100}});
   EXPECT_EQ(client.Await("error")["text"], "there is no channel \"body/absent/position_y_m\"");
+}
+
+TEST(LiveView, EveryChannelOfARunIsPlotted) {
+  ExperimentSpec experiment = LoadSpec(kPush);
+  experiment.duration_s = 0.2;
+  const Trace run = Recording(experiment).trace;
+  const Serving serving(PausedLive(kPush));
+  Client client(serving.port());
+  std::set<std::string> offered;
+  const Json scene = client.Await("scene")["scene"];
+  for (const Json& channel : scene["channels"]) {
+    offered.insert(channel["name"]);
+  }
+  client.Send({{"type", "step"}, {"count", 200}});
+  client.AwaitFrame([](const auto& f) { return f[FrameHeader::kFrameTimeS] > 0.1999; });
+  for (std::size_t i = 0; i < run.channels.size(); ++i) {
+    const std::string& name = run.channels[i].name;
+    ASSERT_TRUE(offered.contains(name)) << name;
+    client.Send({{"type", "want_series"},
+                 {"id", 1},
+                 {"channel", name},
+                 {"t0", 0},
+                 {"t1", 1},
+                 {"points", 100}});
+    const Json series = client.Await("series")["series"];
+    ASSERT_EQ(series["first"].size(), 21u) << name;
+    for (std::size_t row = 0; row <= 20; ++row) {
+      ASSERT_EQ(series["first"][row], run.values[i][row]) << name << " in row " << row;
+    }
+  }
+  EXPECT_TRUE(offered.contains("node/" + experiment.robot.def.nodes[0].name + "/position_x_m"));
+  EXPECT_TRUE(offered.contains("hand/drag/force_x_n"));
 }
 
 TEST(LiveView, UnitsAndSetPointsAreWhatTheyAre) {

@@ -24,7 +24,7 @@ TEST_F(Replay, ShowsThePosesAndTensionsOfTheFile) {
   EXPECT_EQ(hello["mode"], "replay");
   EXPECT_EQ(hello["title"], "push_20n");
   const Json scene = client.Await("scene")["scene"];
-  EXPECT_EQ(scene["channels"].size(), file.channels.size());
+  EXPECT_EQ(scene["channels"].size(), file.channels.size() + 3 * scene["nodes"].size());
   EXPECT_EQ(scene["first_s"], 0);
   EXPECT_EQ(scene["duration_s"], 0.5);
   for (const std::size_t row : {0u, 1u, 17u, 50u}) {
@@ -110,6 +110,34 @@ TEST_F(Replay, AnyoneMayAskForSeries) {
   EXPECT_EQ(coarse["first"][6], column[48]);
   ask("cable/nobody/tension_n", 8);
   EXPECT_EQ(client.Await("error")["text"], "there is no channel \"cable/nobody/tension_n\"");
+}
+
+// The same run with its nodes recorded is the oracle.
+TEST_F(Replay, NodesThatWereNotRecordedFollowFromBodies) {
+  Diagnostics found;
+  ExperimentSpec all = experiment_;
+  all.record.channels = {"*"};
+  const auto writer = CreateHdf5Trace((folder_ / "all.h5").string(), RunChannels(all), {}, found);
+  RunOptions options;
+  options.traces = {writer.get()};
+  ASSERT_TRUE(RunExperiment(all, options, found)) << found.Format();
+  const Trace file = *ReadTrace((folder_ / "all.h5").string(), found);
+  const auto recorded = Load(trace());
+  std::size_t compared = 0;
+  for (const NodeDef& node : experiment_.robot.def.nodes) {
+    for (const char* axis : {"x", "y", "z"}) {
+      const std::string name = "node/" + node.name + "/position_" + axis + "_m";
+      const auto series = recorded->SeriesOf(name, 0, 0, 1, 1000);
+      ASSERT_TRUE(series) << name;
+      const std::vector<double>& column = file.values[*file.Find(name)];
+      ASSERT_EQ(series->first.size(), column.size());
+      for (std::size_t row = 0; row < column.size(); ++row, ++compared) {
+        ASSERT_NEAR(series->first[row], column[row], 1e-13) << name << " in row " << row;
+      }
+    }
+  }
+  EXPECT_GT(compared, 1000u);
+  EXPECT_FALSE(recorded->SeriesOf("node/nobody/position_x_m", 0, 0, 1, 9));
 }
 
 /// The numbers of a report's Rows: count times, then those of its channels.

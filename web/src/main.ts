@@ -14,6 +14,7 @@ import { runsList } from "./scene/runs_list";
 import { View } from "./scene/view";
 import { giveRunColours } from "./runs";
 import { SeriesStore } from "./series";
+import { belowView } from "./ui/below_view";
 import { controls } from "./ui/controls";
 import { gifMaker } from "./ui/gif";
 import { failurePage, header, notices } from "./ui/header";
@@ -41,18 +42,18 @@ function start(root: HTMLElement): void {
   };
   const controlsButton = button("controls", "live controls (C)", toggleControls);
   app.hello.watch(() => (controlsButton.hidden = !app.movable || app.watches));
-  const keys = keysOf(app, view, () => help.toggle(), toggleControls);
+  const keys = keysOf(app, view, { help: () => help.toggle(), controls: toggleControls, editor: () => plots.toggleEditor() });
   help.fill(keys);
   listenToKeys(keys);
 
-  if (view.draws) view.element.append(legend(app, view));
   view.element.append(runsList(app, view));
-  view.element.append(inspector(app));
+  const below = belowView(view.element, [...(view.draws ? [legend(app, view)] : []), inspector(app)]);
   plots.element.prepend(drawer);
   const top = header(app, () => help.toggle(), [controlsButton, recorder(app, view), gifMaker(app, store, view)]);
   const overlays = [help.element, notices(app), failurePage(app)];
   if (report) reportPage(root, report, { top, view, plots, timeline: timeline(app), overlays });
   else root.append(top, el("main.split", {}, view.element, plots.element), timeline(app), ...overlays);
+  view.element.after(below);
   Object.assign(window, { taut: { app, view, store } });
   app.start();
 }

@@ -209,7 +209,7 @@ export interface Scene {
   parameters: Parameter[];
   /** Empty unless live. */
   controls: Control[];
-  /** What want_series may ask for; live, of what the run has shown so far. */
+  /** What want_series may ask for, places of nodes that nobody recorded among them; live, of the run so far. */
   channels: Channel[];
   phases: Phase[];
   /** Channels that frames hold in `values`, in their order. */

@@ -1,6 +1,6 @@
 // The channels over time: what frames have shown so far, when live; what the trace holds, when not.
 import type { App } from "./app";
-import { cableState, type Frame } from "./frame";
+import { cableState, type Frame, frameOfScene } from "./frame";
 import { VALUES } from "./layout";
 import { between, joined, NOTHING, type Points, pointsOf, rowsOf, thinned } from "./points";
 import type { Scene } from "./protocol";
@@ -42,6 +42,7 @@ export class SeriesStore {
   private readonly past = new Map<string, Past[]>();
   private readonly rows = new RowReader((...question) => this.ask(...question));
   private present: { frame: Frame; values: Map<string, number> } | null = null;
+  private framesHave: { scene: Scene; names: ReadonlySet<string> } | null = null;
   private run = -1;
   private last_s = -Infinity;
   /** Since then frames have come without gaps. */
@@ -85,11 +86,27 @@ export class SeriesStore {
     const compared = this.app.scene.value?.compared[source - 1];
     if (compared && time_s > compared.last_s + ROUNDING_S) return NO_ROW; // its last row is not of now
     if (!this.app.live || source !== 0) return this.rows.at(channel, source, time_s, drawn);
+    if (!this.isInFrames(channel)) return this.keptRow(channel, time_s, drawn);
     // of what the page was shown and what the server keeps, the later
     const own = rowAt(this.history.get(channel) ?? NOTHING, time_s);
     if (time_s >= this.last_s) return own;
     const kept = this.rows.at(channel, source, time_s, NOTHING);
     return kept === null || kept.time_s > own.time_s || Number.isNaN(own.time_s) ? kept : own;
+  }
+
+  /** Of what frames of a live run do not have. While it runs, the plot's last row is new enough. */
+  private keptRow(channel: string, time_s: number, drawn: Points): Row | null {
+    const frame = this.app.frame.value;
+    const runs = frame !== null && frame.paused === 0 && frame.time_s === time_s;
+    return runs && drawn.rows === 1 ? rowAt(drawn, time_s) : this.rows.at(channel, 0, time_s, NOTHING);
+  }
+
+  /** Do frames of a live run have the channel? What they do not have, the server keeps. */
+  private isInFrames(channel: string): boolean {
+    const { value: scene } = this.app.scene;
+    if (!scene) return false;
+    if (this.framesHave?.scene !== scene) this.framesHave = { scene, names: new Set([...frameValues(scene, frameOfScene(scene))].map(([name]) => name)) };
+    return this.framesHave.names.has(channel);
   }
 
   /** The time of the run's row at a time, or of the last before it; NaN where that is not known. */
@@ -114,9 +131,18 @@ export class SeriesStore {
   }
 
   want(channel: string, source: number, t0: number, t1: number, points: number, receive: Receiver): void {
+    if (this.app.live && source === 0 && !this.isInFrames(channel)) {
+      const frame = this.app.frame.value;
+      const until_s = Math.min(t1, frame?.now_s ?? t1); // what is still to come is not there to be asked for
+      const late_s = frame?.paused === 0 ? LATE * (t1 - t0) : 0;
+      receive(thinned(this.kept(channel, t0, until_s, points, late_s), t0, t1, Infinity));
+      return;
+    }
     if (this.app.live && source === 0) {
       const own = thinned(this.history.get(channel) ?? NOTHING, t0, t1, points);
-      receive(t0 < this.dense_s ? joined(this.kept(channel, t0, Math.min(t1, this.dense_s), points), own) : own);
+      const until_s = Math.min(t1, this.dense_s);
+      const past = () => between(this.kept(channel, t0, until_s, points, LATE * (until_s - t0)), t0, until_s);
+      receive(t0 < this.dense_s ? joined(past(), own) : own);
       return;
     }
     this.ask(channel, source, t0, t1, points, receive);
@@ -127,19 +153,19 @@ export class SeriesStore {
     this.sendWaiting();
   }
 
-  /** What the server has kept of a live run, as far as it has answered. */
-  private kept(channel: string, t0: number, t1: number, points: number): Points {
+  /** What the server has kept of a live run around a span, as far as it has answered. `late_s`: how much of its end may be missing. */
+  private kept(channel: string, t0: number, t1: number, points: number, late_s: number): Points {
     const ranges = this.past.get(channel) ?? [];
     const span_s = t1 - t0;
     const fits = (past: Past) =>
-      past.t0 <= t0 && past.t1 >= t1 - LATE * span_s &&
+      past.t0 <= t0 && past.t1 >= t1 - late_s &&
       !(past.coarse && (past.t1 - past.t0 > 3 * span_s || past.asked < points));
     const overlap_s = (past: Past) => Math.min(past.t1, t1) - Math.max(past.t0, t0);
     const past = ranges.find(fits) ??
       // what is known is shown until the answer is there, so that the plot does not blink; not asked for twice
       this.askPast(channel, t0, t1, points, [...ranges].sort((a, b) => overlap_s(b) - overlap_s(a))[0]?.points ?? NOTHING);
     this.past.set(channel, [past, ...ranges.filter((other) => other !== past)].slice(0, RANGES));
-    return between(past.points, t0, t1);
+    return past.points;
   }
 
   private askPast(channel: string, t0: number, t1: number, points: number, meanwhile: Points): Past {

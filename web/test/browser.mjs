@@ -33,9 +33,9 @@ export async function closeBrowser() {
 }
 
 /** A page that notes its complaints and every address that it asks for. */
-export async function openPage(url, { width = 1000, height = 560, theme = "light", wait = true, scale = 1, webgl = true } = {}) {
+export async function openPage(url, { width = 1000, height = 560, theme = "light", wait = true, scale = 1, webgl = true, touch = false } = {}) {
   const context = await (await openBrowser(webgl ? GRAPHICS : NO_GRAPHICS)).newContext({
-    viewport: { width, height }, colorScheme: theme, acceptDownloads: true, deviceScaleFactor: scale,
+    viewport: { width, height }, colorScheme: theme, acceptDownloads: true, deviceScaleFactor: scale, hasTouch: touch,
   });
   context.setDefaultTimeout(0);
   const page = await context.newPage();

@@ -78,6 +78,98 @@ for (const use of ["live", "replay", "report"]) {
   }
 }
 
+const PHONE = { width: 390, height: 844, touch: true };
+const TABLET = { width: 820, height: 1180, touch: true };
+
+/** Where corners of the robot are that something lies over, with what that is. */
+function covered() {
+  const { view } = window.taut;
+  const frame = view.canvas.getBoundingClientRect();
+  const found = [];
+  for (const node of view.world.scene.nodes) {
+    const group = view.world.bodies.object.children[node.body];
+    const at = view.toScreen(view.target.clone().fromArray(node.position_m).applyQuaternion(group.quaternion).add(group.position));
+    const [x, y] = [frame.left + at.x, frame.top + at.y];
+    // clicks go through a legend, and it covers all the same
+    for (const part of document.querySelectorAll(".legend, .inspector, .notice, header.top, footer.timeline, .plots, .below")) {
+      const box = part.getBoundingClientRect();
+      if (part.checkVisibility() && x >= box.left && x <= box.right && y >= box.top && y <= box.bottom) found.push(`${part.className} over ${node.name}`);
+    }
+  }
+  return found;
+}
+
+for (const use of ["live", "replay", "report"]) {
+  for (const [what, size] of Object.entries({ Phone: PHONE, Tablet: TABLET })) {
+    test(`OnA${what}_${use}_IsScrubbedByAFingerAndNothingCoversTheRobot`, async () => {
+      const page = await openPage(address(use), { ...size, theme: what === "Phone" ? "dark" : "light" });
+      await drawn(page);
+      await picture(page, `layout-${use}-${what}`);
+      assert.deepEqual(await page.evaluate(faults), []);
+      assert.deepEqual(await page.evaluate(covered), []);
+      assert.equal(await page.locator(".top h1").evaluate((title) => title.scrollWidth <= title.clientWidth && title.textContent), "turning prism");
+      // a finger on the line of time goes where it points, also while it moves
+      await page.locator(".track").scrollIntoViewIfNeeded();
+      const track = await page.locator(".track input").boundingBox();
+      assert.ok(track.width > 0.9 * (size.width - (use === "report" ? 44 : 24)) || what === "Tablet", `the line of time is ${track.width} px wide`);
+      assert.ok(track.width > 300 && track.height >= (what === "Phone" ? 44 : 30), `${track.width} x ${track.height}`);
+      const { first_s, last_s } = await page.evaluate(() => {
+        const input = document.querySelector(".track input");
+        return { first_s: Number(input.min), last_s: Number(input.max) };
+      });
+      const y = track.y + track.height / 2;
+      const session = await page.context().newCDPSession(page);
+      const touch = (type, share) => session.send("Input.dispatchTouchEvent", {
+        type, touchPoints: type === "touchEnd" ? [] : [{ x: track.x + share * track.width, y }],
+      });
+      const until = (share) => page.waitForFunction(([wanted, within]) =>
+        Math.abs(Number(document.querySelector(".timeline").dataset.time) - wanted) <= within, [first_s + share * (last_s - first_s), (3 * (last_s - first_s)) / track.width]);
+      await touch("touchStart", 0.5);
+      await touch("touchMove", 0.3);
+      await until(0.3);
+      await touch("touchMove", 0.62);
+      await until(0.62);
+      await touch("touchEnd");
+      // what is selected has its numbers beside the robot, not over it
+      await page.evaluate(() => (window.taut.app.selection.value = { kind: "cable", index: 1 }));
+      await drawn(page);
+      assert.deepEqual(await page.evaluate(covered), []);
+      const small = await page.evaluate(() => [...document.querySelectorAll("header.top button, footer.timeline button, footer.timeline select, .toolbar button:not(.small)")]
+        .filter((element) => element.checkVisibility()).map((element) => ({ name: element.ariaLabel, box: element.getBoundingClientRect() }))
+        .filter(({ box }) => box.width < 44 || box.height < 44).map(({ name, box }) => `${name}: ${box.width} x ${box.height}`));
+      if (what === "Phone") assert.deepEqual(small, []);
+      await page.context().close();
+    });
+  }
+}
+
+// What a screen reader says is what the browser tells it: its tree of roles and names.
+for (const use of ["live", "replay", "report"]) {
+  test(`EveryControlOf_${use}_HasANameAndItsOwn`, async () => {
+    const page = await openPage(address(use), { width: 1440, height: 900 });
+    if (use === "live") await page.keyboard.press("c");
+    await page.keyboard.press("b");
+    await page.locator(".channels summary").first().click();
+    await page.locator(".channels .group summary").first().click();
+    await page.evaluate(() => (window.taut.app.selection.value = { kind: "body", index: 0 }));
+    await page.waitForSelector('[data-figure="own:body:rod_0:position"]');
+    const session = await page.context().newCDPSession(page);
+    await session.send("Accessibility.enable");
+    const { nodes } = await session.send("Accessibility.getFullAXTree");
+    const roles = ["button", "slider", "spinbutton", "textbox", "searchbox", "combobox", "checkbox", "DisclosureTriangle", "link", "image", "figure", "Canvas"];
+    const controls = nodes.filter(({ ignored, role }) => !ignored && roles.includes(role?.value));
+    const said = controls.map(({ role, name }) => `${role.value} ${name?.value ?? ""}`.trim());
+    assert.ok(controls.length > 60, `${controls.length} controls`);
+    assert.deepEqual(said.filter((text) => !text.includes(" ")), [], "without a name");
+    // two that are called the same do the same
+    const twice = [...new Set(said.filter((text, i) => said.indexOf(text) !== i))];
+    assert.deepEqual(twice, []);
+    // a sign is no name
+    assert.deepEqual(said.filter((text) => !/ .*[a-z]{2}/i.test(text)), []);
+    await page.context().close();
+  });
+}
+
 test("TheTabKeyReachesEverythingAndTheFocusIsSeen", async () => {
   const page = await openPage(servers.live.url, { width: 1280, height: 760 });
   await page.keyboard.press("c");

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, afterEach, beforeEach, test } from "node:test";
 import { closeBrowser, drawn, listenToNotices, openPage, PAGE, picture, projection, ready, until } from "./browser.mjs";
-import { nodes, pose, tension_n, worldPoint } from "./fixture.mjs";
+import { liveScene, nodes, pose, tension_n, worldPoint } from "./fixture.mjs";
 import { MockServer } from "./mock_server.mjs";
 
 let server;
@@ -218,6 +218,21 @@ test("LiveControlsSendWhatTheyShow", async () => {
   assert.equal(server.of("push").length, 1, "a force below zero is not sent");
   await drawn(page);
   await picture(page, "controls");
+});
+
+test("ASliderShowsItsWholeNameAndItsRange", async () => {
+  const page = await open();
+  await page.keyboard.press("c");
+  const shown = await page.locator(".controls .slider").evaluateAll((sliders) => sliders.map((each) => {
+    const name = each.querySelector(".name");
+    const { min, max } = each.querySelector("input[type=range]");
+    return { name: name.textContent, cut: name.scrollWidth > name.clientWidth, ends: [...each.querySelectorAll(".end")].map(({ textContent }) => Number(textContent.replace("−", "-"))), min: Number(min), max: Number(max) };
+  }));
+  for (const { name, min, max } of liveScene.parameters) {
+    const found = shown.find((each) => each.name === name);
+    assert.deepEqual(found, { name, cut: false, ends: [min, max], min, max });
+  }
+  assert.ok(shown.length >= 6 && shown.every(({ cut }) => !cut));
 });
 
 test("AChangedParameterLeavesViewSelectionAndSlidersAlone", async () => {

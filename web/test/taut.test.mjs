@@ -46,7 +46,7 @@ function csvOf(run) {
   const [head, ...lines] = readFileSync(join(run, "trace.csv"), "utf8").trim().split("\n").map((line) => line.split(","));
   const rows = lines.map((line) => line.map(Number));
   const value = (name, time_s) => rows[rows.findLastIndex((row) => row[0] <= time_s)][head.indexOf(name)];
-  return { rows, value, has: (name) => head.includes(name) };
+  return { rows, value, column: (name) => head.indexOf(name), has: (name) => head.includes(name) };
 }
 
 /** Every number that stands beside a plot of tensions, and the contacts', at a time against the rows; how many. */
@@ -141,6 +141,105 @@ test("TheNumbersOfALiveRunAreThoseOfTheRun", options, async (t) => {
   }
   assert.deepEqual(await late.locator(".key span").allInnerTexts(), ["this run"], "nobody sets a tension here");
   assert.equal(await late.evaluate(() => window.taut.store.has("cable/cable/setpoint_n", 0)), false);
+});
+
+/** The same run with all that can be recorded, places of nodes, too: a second of it. */
+function runWithEverything() {
+  const out = join(folder, "everything");
+  const text = readFileSync(join(ROOT, "experiments/push_20n.yaml"), "utf8")
+    .replace(/^record: .*$/m, 'record: {rate_hz: 100, channels: ["*"]}').replace(/\.\.\/models\//g, join(ROOT, "models/"));
+  const file = join(folder, "everything.yaml");
+  writeFileSync(file, text);
+  execFileSync(TAUT, ["run", file, "--duration_s", "1", "--csv", "--quiet", "--out", out], { cwd: ROOT });
+  return csvOf(out);
+}
+
+/** Puts a channel into a plot of its own; answers that figure. */
+async function plotOf(page, channel) {
+  if (await page.locator(".editor").isHidden()) await page.keyboard.press("b");
+  await page.getByRole("searchbox").fill(channel);
+  await page.locator(`[data-channel="${channel}"] input`).check();
+  await page.getByRole("button", { name: "put the chosen channels into a new plot" }).click();
+  return page.locator("figure.chart").last().evaluate(({ dataset }) => dataset.figure);
+}
+
+async function numberBeside(page, figure) {
+  await page.locator(`[data-figure="${figure}"]`).scrollIntoViewIfNeeded();
+  return (await numbersBeside(page, [figure]))[0].numbers;
+}
+
+test("NodesAndAnyOtherChannelOfAReplayArePlotted", options, async (t) => {
+  const page = await openPage(await view(join(folder, "trace.h5"), "--port", "0"), { width: 1280, height: 1000 });
+  t.after(() => page.context().close());
+  const run = runWithEverything();
+  const time_s = 0.37;
+  await page.evaluate((wanted) => window.taut.app.seek(wanted), time_s);
+  await untilTime(page, time_s, 1e-9);
+  for (const channel of ["node/segment_1.tip/position_z_m", "cable/outer_top_1/elastic_n", "body/segment_2/angular_velocity_y_rad_per_s", "system/com_x_m"]) {
+    assert.ok(run.has(channel), channel);
+    assert.deepEqual(await numberBeside(page, await plotOf(page, channel)), [asShown(run.value(channel, time_s))], channel);
+  }
+  // a node that is selected is plotted like a cable or a body
+  const node = await page.evaluate(() => {
+    const { app } = window.taut;
+    app.selection.value = { kind: "node", index: 4 };
+    return app.scene.value.nodes[4].name;
+  });
+  assert.deepEqual(await numberBeside(page, `own:node:${node}:position`), ["x", "y", "z"].map((axis) => asShown(run.value(`node/${node}/position_${axis}_m`, time_s))));
+});
+
+test("AnyChannelOfALiveRunIsPlottedFromItsStart", options, async (t) => {
+  const page = await openPage(await view("experiments/push_20n.yaml", "--paused", "--port", "0"), { width: 1280, height: 1000, webgl: false });
+  t.after(() => page.context().close());
+  await page.waitForSelector("figure.chart");
+  const run = runWithEverything();
+  const step = async (count, time_s) => {
+    await page.evaluate((many) => window.taut.app.send({ type: "step", count: many }), count);
+    await page.waitForFunction((wanted) => Math.abs(window.taut.app.frame.value.time_s - wanted) < 1e-9, time_s);
+  };
+  await step(300, 0.3);
+  const channels = ["cable/outer_top_1/elastic_n", "node/segment_1.tip/position_z_m", "body/segment_0/velocity_z_m_per_s"];
+  const figures = [];
+  for (const channel of channels) figures.push(await plotOf(page, channel));
+  const compare = async (time_s) => {
+    for (const [i, channel] of channels.entries()) {
+      await page.locator(`[data-figure="${figures[i]}"]`).scrollIntoViewIfNeeded();
+      const wanted = asShown(run.value(channel, time_s + 1e-9));
+      await page.waitForFunction(([id, number]) => Number(document.querySelector(`[data-figure="${id}"] .values span`)?.textContent.replace("−", "-")) === number, [figures[i], wanted]);
+    }
+  };
+  await compare(0.3);
+  await step(400, 0.7);
+  await compare(0.7);
+  await cursorTo(page, 0.123);
+  await compare(0.12);
+  await cursorTo(page, null);
+  // what is drawn is every row of the run
+  const drawn = await page.evaluate(([channel]) => new Promise((resolve) => {
+    const ask = () => window.taut.store.want(channel, 0, 0, 0.7, 500, ({ t, first }) => (t.length >= 71 ? resolve({ t, first }) : requestAnimationFrame(ask)));
+    ask();
+  }), channels);
+  drawn.t.forEach((time_s, i) => assert.equal(drawn.first[i], run.value(channels[0], time_s + 1e-9), `row at ${time_s} s`));
+});
+
+test("OfManyCablesThoseWithTheLargestTensionsArePlotted", options, async (t) => {
+  const long = join(folder, "long");
+  execFileSync(TAUT, ["run", "experiments/sidewinder12.yaml", "--duration_s", "2", "--csv", "--quiet", "--out", long], { cwd: ROOT });
+  const run = csvOf(long);
+  const page = await openPage(await view(join(long, "trace.h5"), "--port", "0"), { width: 1280, height: 1300, webgl: false });
+  t.after(() => page.context().close());
+  await page.waitForSelector("figure.chart");
+  const names = await page.evaluate(() => window.taut.app.scene.value.cables.map(({ name }) => name));
+  assert.equal(names.length, 66);
+  const most = new Map(names.map((name) => [name, Math.max(...run.rows.map((row) => row[run.column(`cable/${name}/tension_n`)]))]));
+  const largest = [...names].sort((a, b) => most.get(b) - most.get(a)).slice(0, 12);
+  const wanted = names.filter((name) => largest.includes(name)).map((name) => `tension:${name}`);
+  await page.waitForFunction(() => document.querySelectorAll('[data-figure^="tension:"] .uplot').length === 12);
+  assert.deepEqual(await page.locator('[data-figure^="tension:"]').evaluateAll((charts) => charts.map(({ dataset }) => dataset.figure)), wanted);
+  assert.equal(await page.locator(".remark").innerText(), '12 of 66 cables, those with the largest tensions of the run; "edit plots" has all channels');
+  await cursorTo(page, 1.234);
+  await compareNumbers(page, [run], 1.234);
+  await picture(page, "many-cables");
 });
 
 test("ATraceIsReplayedToThePosesOfTheFile", options, async (t) => {

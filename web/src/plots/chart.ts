@@ -6,16 +6,20 @@ import { NOTHING, type Points } from "../points";
 import type { SeriesStore } from "../series";
 import { el, number, tickText } from "../util";
 import { Differences } from "./differences";
-import { coarseness, type Figure, type Filled, ink, valueRange } from "./figure";
+import { coarseness, type Figure, type Filled, ink, isDashed, valueRange } from "./figure";
 
 const SYNC = "taut";
 const DIGITS = 4; // of a number beside a plot
+const AWAY = 0.01; // of the window: a row that lies farther from the time that is looked at says its time
 
 export class Chart {
   readonly element: HTMLElement;
   filled: Filled;
   private plot: uPlot | null = null;
-  private readonly place = el("div.canvas");
+  /** Before, its span says nothing. */
+  private isFilled = false;
+  private readonly place: HTMLElement;
+  private readonly key = el("div.lines");
   private readonly values = el("span.values");
   private readonly differences: Differences;
   private readonly now = el("div.now");
@@ -31,8 +35,11 @@ export class Chart {
   ) {
     this.filled = { figure, data: figure.lines.map(() => NOTHING) };
     this.differences = new Differences(figure);
-    this.element = el("figure.chart", { "data-figure": figure.id },
-      el("figcaption", {}, el("span.name", {}, figure.title), this.values, tools), this.differences.element, this.place);
+    this.place = el("div.canvas", { role: "img", "aria-label": `${figure.title} over time` });
+    this.key.hidden = figure.group === "tension" || figure.lines.length < 2;
+    this.element = el("figure.chart", { "data-figure": figure.id, "aria-label": figure.title },
+      el("figcaption", {}, el("span.name", { title: figure.title }, figure.title), this.values, tools), this.differences.element, this.key, this.place);
+    this.showKey();
     new ResizeObserver(() => this.resize()).observe(this.place);
   }
 
@@ -42,6 +49,11 @@ export class Chart {
 
   /** Shows points between two times; `shared`: the range of values, where plots have one together. */
   show(filled: Filled, span: readonly [number, number], shared: [number, number] | null): void {
+    this.isFilled = true;
+    this.draw(filled, span, shared);
+  }
+
+  private draw(filled: Filled, span: readonly [number, number], shared: [number, number] | null): void {
     this.filled = filled;
     this.shared = shared;
     this.span = span;
@@ -64,12 +76,13 @@ export class Chart {
     const time_s = this.app.cursor_s.value ?? frame.time_s;
     const colours = palette(this.app.theme.value);
     const { unit } = this.figure;
-    let away_s = NaN;
+    // a window that does not hold the time, and a row that lies well before it, are told apart from what is drawn there
+    let away_s = inside || !this.isFilled || this.app.cursor_s.value !== null ? NaN : time_s;
     const rows = this.figure.lines.map((line, i) => this.store.row(line.channel, line.source, time_s, this.filled.data[i]!));
     this.differences.show(rows, this.app.theme.value);
     const texts = this.figure.lines.map((line, i) => {
       const row = rows[i]!;
-      if (row && row.every > 1) away_s = row.time_s;
+      if (row && this.isFilled && (row.every > 1 || time_s - row.time_s > AWAY * (this.span[1] - this.span[0]))) away_s = row.time_s;
       const title = row && Number.isNaN(row.time_s) ? `${line.label}: no row at this time` : row ? `${line.label}: ${row.value} ${unit} in the row at ${row.time_s} s` : line.label;
       const shown = el("span", { title }, row ? number(row.value, DIGITS) : "…");
       shown.style.color = ink(colours, line.ink);
@@ -83,20 +96,31 @@ export class Chart {
   repaint(): void {
     this.plot?.destroy();
     this.plot = null;
-    this.show(this.filled, this.span, this.shared);
+    this.showKey();
+    this.draw(this.filled, this.span, this.shared);
   }
 
   dispose(): void {
+    if (this.plot?.over.matches(":hover")) this.app.cursor_s.value = null; // no mouse leaves what is gone
     this.plot?.destroy();
     this.plot = null;
     this.element.remove();
+  }
+
+  /** Which line is what; of tensions the bar above says it for all. */
+  private showKey(): void {
+    this.key.replaceChildren(...this.figure.lines.map((line) => {
+      const dash = el(isDashed(line.ink) ? "i.dashed" : "i");
+      dash.style.color = ink(palette(this.app.theme.value), line.ink);
+      return el("span", {}, dash, line.label);
+    }));
   }
 
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.place;
     if (width === 0 || height === 0) return;
     if (this.plot) this.plot.setSize({ width, height });
-    else this.show(this.filled, this.span, this.shared);
+    else this.draw(this.filled, this.span, this.shared);
     this.mark();
   }
 
@@ -112,7 +136,7 @@ export class Chart {
       const stroke = ink(colours, line.ink);
       const at = series.length;
       // least and greatest; where points are single rows, both are the one line
-      for (let k = 0; k < 2; ++k) series.push({ label: line.label, stroke, width: 1.4, points: { show: false } });
+      for (let k = 0; k < 2; ++k) series.push({ label: line.label, stroke, width: 1.4, points: { show: false }, ...(isDashed(line.ink) ? { dash: [5, 4] } : {}) });
       bands.push({ series: [at + 1, at], fill: `${stroke}60` });
     }
     const options: uPlot.Options = {
@@ -140,6 +164,7 @@ export class Chart {
     };
     const plot = new uPlot(options, data, this.place);
     plot.over.append(this.now, this.coarse);
+    plot.ctx.canvas.setAttribute("aria-hidden", "true"); // what is around it has the name
     plot.over.addEventListener("click", () => {
       const left = plot.cursor.left ?? -1;
       if (left >= 0 && plot.select.width === 0) this.app.seek(plot.posToVal(left, "x"));

@@ -2,7 +2,7 @@
 import { palette } from "../colours";
 import type { Points } from "../points";
 import { download, tickText } from "../util";
-import { coarseness, type Filled, ink, valueRange } from "./figure";
+import { coarseness, type Filled, ink, isDashed, valueRange } from "./figure";
 import { linesOf } from "./key";
 
 const CELL = { width: 300, height: 170, left: 42, right: 10, top: 22, bottom: 24 };
@@ -97,7 +97,7 @@ function cell({ figure, data }: Filled, [t0, t1]: readonly [number, number], [y0
   figure.lines.forEach((line, i) => {
     const colour = ink(palette("light"), line.ink);
     const points = data[i]!;
-    const draw = (values: Points["min"]) => parts.push(`<path d="${path(points.t, values, x, y)}" fill="none" stroke="${colour}" stroke-width="1.2"/>`);
+    const draw = (values: Points["min"]) => parts.push(`<path d="${path(points.t, values, x, y)}" fill="none" stroke="${colour}" stroke-width="1.2"${isDashed(line.ink) ? ' stroke-dasharray="5 4"' : ""}/>`);
     draw(points.min);
     if (points.rows === 1) return;
     parts.push(`<path d="${band(points, x, y)}" fill="${colour}" fill-opacity="0.38"/>`);

@@ -5,6 +5,8 @@ import type { Scene } from "../protocol";
 import type { SeriesStore } from "../series";
 import { runColour, runName, THIS_RUN } from "../runs";
 import { nameAndUnit, unitText } from "../util";
+import { labelsOf } from "./channels";
+import type { PlotSpec } from "./layouts";
 
 /** `run k`: the colour of a compared run. */
 export type Ink = "own" | "setpoint" | `run ${number}` | number;
@@ -21,7 +23,7 @@ export interface Figure {
   title: string;
   unit: string;
   lines: Line[];
-  group: "tension" | "system" | "own";
+  group: "tension" | "own" | "further";
 }
 
 /** A figure with the points of its lines, in their order. */
@@ -41,49 +43,74 @@ function linesOfRuns(scene: Scene, channel: string): Line[] {
   return [...others, { label: THIS_RUN, channel, source: 0, ink: "own" }];
 }
 
-/** In the manner of the paper's Figs. 3-5: set point blue, what it is compared with red and on, this run black. */
-export function standardFigures(scene: Scene, store: SeriesStore): Figure[] {
-  const figures: Figure[] = scene.cables.map(({ name }) => ({
-    id: `tension:${name}`,
-    title: name,
-    unit: "N",
-    group: "tension",
-    lines: [
-      { label: "set point", channel: `cable/${name}/setpoint_n`, source: 0, ink: "setpoint" },
-      ...linesOfRuns(scene, `cable/${name}/tension_n`),
-    ],
-  }));
-  const system = (id: string, title: string, unit: string, parts: [string, string][]): Figure => ({
-    id, title, unit, group: "system",
-    lines: parts.map(([label, channel], i) => ({ label, channel, source: 0, ink: i })),
-  });
-  figures.push(
-    system("energy", "energy", "J", [["kinetic", "system/kinetic_j"], ["gravity", "system/gravity_j"], ["elastic", "system/elastic_j"]]),
-    scene.compared.length > 0
-      ? { id: "contacts", title: "contacts", unit: "", group: "system", lines: linesOfRuns(scene, "system/contact_count") }
-      : system("contacts", "contacts", "", [["contacts", "system/contact_count"]]),
-    system("rtf", "real-time factor", "", [["real-time factor", "real_time_factor"]]),
-  );
-  return figures.map((figure) => known(figure, store)).filter((figure) => figure.lines.length > 0);
+/** Inks come again after so many lines; those lines are dashed. */
+const INKS = 6;
+
+export function isDashed(which: Ink): boolean {
+  return typeof which === "number" && which >= INKS;
 }
 
-/** What there is to plot of a cable or body, a figure for each unit. */
-export function ownFigures(scene: Scene, store: SeriesStore, kind: "cable" | "body", name: string): Figure[] {
+/** The figures of plots of which the run has anything, and the places of those plots. */
+export function figuresOf(plots: readonly PlotSpec[], scene: Scene, store: SeriesStore): { figure: Figure; place: number }[] {
+  const taken = new Set<string>();
+  return plots.flatMap((plot, place) => {
+    const made = figureOf(plot, scene, store);
+    if (made.lines.length === 0) return [];
+    let id = made.id;
+    for (let i = 2; taken.has(id); ++i) id = `${made.id}:${i}`;
+    taken.add(id);
+    return [{ figure: { ...made, id }, place }];
+  });
+}
+
+/** The cable whose tension, or tension and set point, are all that is in the plot. */
+function cableOf({ channels }: PlotSpec): string | null {
+  const cable = /^cable\/(.*)\/tension_n$/.exec(channels.find((name) => name.endsWith("/tension_n")) ?? "")?.[1];
+  const own = [`cable/${cable}/tension_n`, `cable/${cable}/setpoint_n`];
+  return cable !== undefined && channels.every((name) => own.includes(name)) ? cable : null;
+}
+
+/**
+ * Tensions are drawn in the manner of the paper's Figs. 3-5: set point blue, what it is compared with red and on,
+ * this run black. Any other channel that is alone in its plot has the runs that it is compared with beside it, too.
+ */
+function figureOf(plot: PlotSpec, scene: Scene, store: SeriesStore): Figure {
+  const cable = cableOf(plot);
+  const first = plot.channels.find((channel) => store.has(channel, 0)) ?? plot.channels[0]!;
+  const unit = unitText(store.unit(first, 0) ?? "1");
+  if (cable !== null) {
+    const setpoint: Line = { label: "set point", channel: `cable/${cable}/setpoint_n`, source: 0, ink: "setpoint" };
+    const lines = linesOfRuns(scene, `cable/${cable}/tension_n`);
+    const wanted = plot.channels.includes(setpoint.channel) ? [setpoint, ...lines] : lines;
+    return known({ id: `tension:${cable}`, title: plot.title, unit: "N", group: "tension", lines: wanted }, store);
+  }
+  const id = plot.title.toLowerCase().replace(/[^\p{L}\p{N}_]+/gu, "-");
+  const labels = labelsOf(plot.channels);
+  const isShared = plot.channels.length === 1 && scene.compared.some((_, k) => store.has(first, k + 1));
+  const lines = isShared ? linesOfRuns(scene, first) : plot.channels.map((channel, i): Line => ({ label: labels[i]!, channel, source: 0, ink: i }));
+  return known({ id, title: plot.title, unit, group: "further", lines }, store);
+}
+
+/** What there is to plot of a cable, body or node, a figure for each unit. */
+export function ownFigures(scene: Scene, store: SeriesStore, kind: "cable" | "body" | "node", name: string): Figure[] {
   const figure = (id: string, unit: string, title: string, keys: string[]): Figure => ({
     id: `own:${kind}:${name}:${id}`, title: `${name} ${title}`, unit, group: "own",
     lines: keys.map((key, i) => ({ label: nameAndUnit(key)[0], channel: `${kind}/${name}/${key}`, source: 0, ink: i })),
   });
-  const figures = kind === "cable"
-    ? [
-        figure("tension", "N", "tension", ["setpoint_n", "tension_n", "elastic_n"]),
-        figure("length", "m", "length", ["length_m", "rest_length_m", "target_rest_length_m"]),
-        figure("rate", "m/s", "rate", ["rate_m_per_s"]),
-      ]
-    : [
-        figure("position", "m", "position", ["position_x_m", "position_y_m", "position_z_m"]),
-        figure("velocity", "m/s", "velocity", ["velocity_x_m_per_s", "velocity_y_m_per_s", "velocity_z_m_per_s"]),
-        figure("spin", "rad/s", "angular velocity", ["angular_velocity_x_rad_per_s", "angular_velocity_y_rad_per_s", "angular_velocity_z_rad_per_s"]),
-      ];
+  const position = figure("position", "m", "position", ["position_x_m", "position_y_m", "position_z_m"]);
+  const figures = {
+    cable: [
+      figure("tension", "N", "tension", ["setpoint_n", "tension_n", "elastic_n"]),
+      figure("length", "m", "length", ["length_m", "rest_length_m", "target_rest_length_m"]),
+      figure("rate", "m/s", "rate", ["rate_m_per_s"]),
+    ],
+    body: [
+      position,
+      figure("velocity", "m/s", "velocity", ["velocity_x_m_per_s", "velocity_y_m_per_s", "velocity_z_m_per_s"]),
+      figure("spin", "rad/s", "angular velocity", ["angular_velocity_x_rad_per_s", "angular_velocity_y_rad_per_s", "angular_velocity_z_rad_per_s"]),
+    ],
+    node: [position],
+  }[kind];
   const split = scene.compared.length > 0 ? figures.flatMap((each) => ofEachChannel(scene, each)) : figures;
   return split.map((each) => known(each, store)).filter((each) => each.lines.length > 0);
 }

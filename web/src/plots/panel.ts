@@ -4,8 +4,15 @@ import { button, el } from "../util";
 import type { SeriesStore } from "../series";
 import { Chart } from "./chart";
 import { exportCsv, exportPng, exportSvg } from "./export";
-import { type Figure, fill, type Filled, ownFigures, standardFigures, valueRange } from "./figure";
+import { type Plots, withChannels, withNewPlot, withoutPlot } from "./arrangement";
+import { ChannelBrowser, dropTarget } from "./browser";
+import { titleOf } from "./channels";
+import { DefaultPlots } from "./default_plots";
+import { type Figure, figuresOf, fill, type Filled, ownFigures, valueRange } from "./figure";
 import { Key } from "./key";
+import { layoutBar } from "./layout_bar";
+import { Layouts } from "./layouts";
+import { PlotDialog } from "./plot_dialog";
 
 const LIVE_SPAN_S = 20;
 const LIVE_EVERY_MS = 100;
@@ -13,21 +20,41 @@ const POINTS = 600; // a plot; about two for each pixel of its width
 
 export class PlotPanel {
   readonly element = el("section.plots", { "aria-label": "plots" });
-  private readonly grids = { tension: el("div.grid"), own: el("div.grid.wide"), system: el("div.grid.wide") };
+  private readonly grids = { tension: el("div.grid"), own: el("div.grid.wide"), further: el("div.grid.wide") };
+  private readonly layouts: Layouts;
+  private readonly defaults: DefaultPlots;
+  private readonly browser: ChannelBrowser;
+  private readonly dialog = new PlotDialog(() => this.plots, (plots) => this.layouts.change(plots));
+  private readonly editor: HTMLElement;
+  private readonly remark = el("p.remark", { role: "note", hidden: true });
+  /** What is plotted, besides what is selected in the view. */
+  private plots: Plots = [];
   private readonly key = new Key();
   private charts: Chart[] = [];
+  /** Of charts in the layout. */
+  private places = new Map<Chart, number>();
+  private readonly editButton = button("edit plots", "choose what is plotted: channels and layouts (B)", () => this.toggleEditor());
   private readonly visible = new Set<Chart>();
   private readonly seen: IntersectionObserver;
   private sameScale = true;
   private wholeRun = false;
   private due = 0;
-  private own: { kind: "cable" | "body"; name: string } | null = null;
+  private own: { kind: "cable" | "body" | "node"; name: string } | null = null;
 
   constructor(
     private readonly app: App,
     private readonly store: SeriesStore,
   ) {
-    this.element.append(this.toolbar(), this.grids.tension, this.grids.own, this.grids.system);
+    this.layouts = new Layouts(app);
+    this.defaults = new DefaultPlots(app, store);
+    this.browser = new ChannelBrowser(app, {
+      toNewPlot: (channels) => this.layouts.change(withNewPlot(this.plots, channels, store)),
+      toPlotsOfTheirOwn: (channels) => this.layouts.change([...this.plots, ...channels.map((name) => ({ title: titleOf([name]), channels: [name] }))]),
+      toPlot: (place, channels) => this.addTo(place, channels),
+      plots: () => this.plots.map(({ title }, place) => ({ place, title })),
+    });
+    this.editor = this.makeEditor();
+    this.element.append(this.toolbar(), this.editor, this.remark, this.grids.tension, this.grids.own, this.grids.further, this.dialog.element);
     this.seen = new IntersectionObserver((entries) => {
       for (const entry of entries) {
         const chart = this.charts.find((each) => each.element === entry.target);
@@ -39,6 +66,7 @@ export class PlotPanel {
       this.refresh();
     }, { rootMargin: "1500px 0px" });
     app.scene.watch(() => this.rebuild());
+    this.layouts.plots.watch(() => this.arrange());
     app.range_s.watch(() => this.refresh());
     app.theme.watch(() => {
       this.showKey();
@@ -46,8 +74,8 @@ export class PlotPanel {
     });
     app.selection.watch((selection) => {
       const scene = app.scene.value;
-      if (!scene || !selection || selection.kind === "node") return;
-      const list = selection.kind === "cable" ? scene.cables : scene.bodies;
+      if (!scene || !selection) return;
+      const list = { cable: scene.cables, body: scene.bodies, node: scene.nodes }[selection.kind];
       this.plotOwn(selection.kind, list[selection.index]!.name);
     });
     app.cursor_s.watch(() => this.mark());
@@ -70,22 +98,86 @@ export class PlotPanel {
     return [Math.max(0, end_s - LIVE_SPAN_S), Math.max(end_s, LIVE_SPAN_S)];
   }
 
-  private plotOwn(kind: "cable" | "body", name: string): void {
+  private plotOwn(kind: "cable" | "body" | "node", name: string): void {
     if (this.own?.kind === kind && this.own.name === name) return;
     this.own = { kind, name };
     this.drop((chart) => chart.figure.group === "own");
     const scene = this.app.scene.value;
-    if (scene) for (const figure of ownFigures(scene, this.store, kind, name)) this.add(figure);
+    if (scene) for (const figure of ownFigures(scene, this.store, kind, name)) this.add(figure, null);
     if (this.app.report) this.refresh();
   }
 
   private rebuild(): void {
     this.own = null;
     this.drop(() => true);
-    const scene = this.app.scene.value;
-    if (scene) for (const figure of standardFigures(scene, this.store)) this.add(figure);
+    this.arrange();
+  }
+
+  /** What the layout says, or the default, which may have to ask for the largest tensions first. */
+  private arrange(): void {
+    const { value: scene } = this.app.scene;
+    if (!scene) return;
+    const { value: arranged } = this.layouts.plots;
+    if (arranged) this.showPlots(arranged);
+    this.defaults.find(scene, (plots) => {
+      if (this.layouts.plots.value === null && this.app.scene.value === scene) this.showPlots(plots);
+    });
+  }
+
+  /** Plots that are there already stay as they are, so that only what is new is asked for. */
+  private showPlots(plots: Plots): void {
+    const scene = this.app.scene.value!;
+    this.plots = plots;
+    const before = this.charts.filter(({ figure }) => figure.group !== "own");
+    const places = new Map<Chart, number>();
+    for (const { figure, place } of figuresOf(plots, scene, this.store)) {
+      const text = JSON.stringify(figure);
+      const known = before.find((chart) => !places.has(chart) && JSON.stringify(chart.figure) === text);
+      if (known) this.grids[figure.group].append(known.element);
+      places.set(known ?? this.add(figure, place), place);
+    }
+    this.drop((chart) => chart.figure.group !== "own" && !places.has(chart));
+    this.places = places;
+    // in the order of the layout, which files of all plots have, too
+    this.charts.sort((a, b) => (places.get(a) ?? Infinity) - (places.get(b) ?? Infinity));
+    this.showRemark();
+    this.browser.showPlots();
     this.showKey();
-    if (this.app.report) this.refresh();
+    this.refresh();
+  }
+
+  private showRemark(): void {
+    const cables = this.app.scene.value?.cables.length ?? 0;
+    const shown = this.charts.filter(({ figure }) => figure.group === "tension").length;
+    const absent = [...new Set(this.plots.flatMap(({ channels }) => channels))].filter((name) => !this.store.has(name, 0) && !this.store.has(name, 1));
+    const isDefault = this.layouts.plots.value === null;
+    const when = this.app.live ? "when the page came" : "of the run";
+    this.remark.textContent = absent.length > 0 ? `not in this run: ${absent.slice(0, 4).join(", ")}${absent.length > 4 ? ` and ${absent.length - 4} more channels of the layout` : ""}`
+      : isDefault && shown < cables ? `${shown} of ${cables} cables, those with the largest tensions ${when}; "edit plots" has all channels`
+      : "";
+    this.remark.hidden = this.remark.textContent === "";
+  }
+
+  private addTo(place: number, channels: readonly string[]): void {
+    const plots = withChannels(this.plots, place, channels, this.store);
+    if (typeof plots === "string") this.app.notice.value = `not added: ${plots}`;
+    else this.layouts.change(plots);
+  }
+
+  /** Shows or hides all channels and the layouts. */
+  toggleEditor(): void {
+    this.editor.hidden = !this.editor.hidden;
+    this.element.classList.toggle("editing", !this.editor.hidden);
+    this.editButton.setAttribute("aria-expanded", String(!this.editor.hidden));
+    if (this.editor.hidden) return;
+    this.editor.scrollIntoView({ block: "nearest" });
+    this.browser.focus();
+  }
+
+  private makeEditor(): HTMLElement {
+    const target = el("div.newplot", {}, "drop channels here for a new plot, or into a plot");
+    dropTarget(target, (channels) => this.layouts.change(withNewPlot(this.plots, channels, this.store)));
+    return el("section.editor", { "aria-label": "channels and layouts", hidden: true }, layoutBar(this.app, this.layouts, () => this.plots), this.browser.element, target);
   }
 
   private showKey(): void {
@@ -101,16 +193,25 @@ export class PlotPanel {
     this.charts = this.charts.filter((chart) => !which(chart));
   }
 
-  private add(figure: Figure): void {
+  /** `place`: of the plot in the layout; null: it is in none. */
+  private add(figure: Figure, place: number | null): Chart {
     const save = (name: string, write: (filled: Filled[], name: string) => void) =>
       button(name, `save ${figure.title} as ${name}`, () => write([chart.filled], figure.title), "button.small");
-    const tools = el("span.tools", {}, save("PNG", (f, n) => void exportPng(f, this.span, n)), save("SVG", (f, n) => exportSvg(f, this.span, n)), save("CSV", exportCsv));
+    const tools = el("span.tools", {}, save("PNG", (f, n) => void exportPng(f, this.span, n)), save("SVG", (f, n) => exportSvg(f, this.span, n)), save("CSV", exportCsv),
+      ...(place === null
+        ? [button("keep", `keep ${figure.title} in the layout`, () => this.layouts.change([...this.plots, { title: figure.title, channels: figure.lines.map(({ channel }) => channel) }]), "button.small")]
+        : [
+            button("edit", `edit the plot ${figure.title}`, () => this.dialog.open(this.places.get(chart)!), "button.small"),
+            button("×", `remove the plot ${figure.title}`, () => this.layouts.change(withoutPlot(this.plots, this.places.get(chart)!)), "button.small"),
+          ]));
     const chart: Chart = new Chart(this.app, this.store, figure, tools);
     this.charts.push(chart);
     this.grids[figure.group].append(chart.element);
     // a report may be printed, so all of it is there; else what is far away is not asked for
     if (this.app.report) this.visible.add(chart);
     else this.seen.observe(chart.element);
+    if (place !== null) dropTarget(chart.element, (channels) => this.addTo(this.places.get(chart)!, channels));
+    return chart;
   }
 
   private mark(): void {
@@ -165,6 +266,7 @@ export class PlotPanel {
       el("label", { title: "one scale for all tensions, so that heights compare" }, scale, " same scale"),
       wholeLabel, zoomOut,
       el("span.spring"),
+      this.editButton,
       el("span.save", {}, "save all:",
       button("PNG", "save all tensions as PNG", () => void exportPng(all("tension"), this.span, "tensions"), "button.small"),
       button("SVG", "save all tensions as SVG", () => exportSvg(all("tension"), this.span, "tensions"), "button.small"),

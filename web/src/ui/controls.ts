@@ -68,7 +68,9 @@ function slider(label: string, unit: string, value: number, min: number, max: nu
     range.value = exact.value;
     set(Number(exact.value));
   });
-  return el("label.slider", { title: label }, el("span", {}, label), range, exact, el("span.unit", {}, unit));
+  // the text is no name: it would hold both ends, too, and both inputs have names of their own
+  return el("div.slider", { title: label }, el("span.name", { "aria-hidden": "true" }, label), el("span.end", {}, number(min)), range, el("span.end", {}, number(max)),
+    exact, el("span.unit", {}, unit));
 }
 
 function parameter(app: App, known: Parameter, label: string): HTMLElement {

@@ -16,7 +16,7 @@ export function header(app: App, help: () => void, toggles: HTMLElement[]): HTML
     el("span.spring"), ...toggles, theme, button("?", "help (?)", help));
 
   app.hello.watch((hello) => {
-    title.textContent = hello?.title ?? "";
+    title.textContent = title.title = hello?.title ?? "";
     document.title = hello?.title ? `${hello.title} – taut` : "taut";
     mode.textContent = app.report ? "report" : (hello?.mode ?? "");
     element.dataset["mode"] = mode.textContent;

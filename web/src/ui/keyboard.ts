@@ -11,7 +11,14 @@ export interface Key {
   act(event: KeyboardEvent): void;
 }
 
-export function keysOf(app: App, view: View, toggleHelp: () => void, toggleControls: () => void): Key[] {
+/** What keys show and hide. */
+export interface Toggles {
+  help(): void;
+  controls(): void;
+  editor(): void;
+}
+
+export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
   const jump = (seconds: number) => app.seek((app.frame.value?.time_s ?? 0) + seconds);
   const step = (count: number) => (event: KeyboardEvent) => {
     if (event.shiftKey) jump(count);
@@ -52,9 +59,10 @@ export function keysOf(app: App, view: View, toggleHelp: () => void, toggleContr
       app.selection.value = { kind, index: now?.kind === kind ? (now.index + 1) % list.length : 0 };
     } },
     { keys: ["Escape"], shown: "esc", does: "nothing selected; closes this help", act: () => (app.selection.value = null) },
-    { keys: ["c", "C"], shown: "C", does: "live controls", act: toggleControls },
+    { keys: ["c", "C"], shown: "C", does: "live controls", act: () => toggles.controls() },
+    { keys: ["b", "B"], shown: "B", does: "edit plots: all channels, layouts", act: () => toggles.editor() },
     { keys: ["t", "T"], shown: "T", does: "dark or light", act: () => app.toggleTheme() },
-    { keys: ["?", "h", "H"], shown: "?", does: "this help", act: toggleHelp },
+    { keys: ["?", "h", "H"], shown: "?", does: "this help", act: () => toggles.help() },
   ];
 }
 

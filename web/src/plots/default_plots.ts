@@ -1,0 +1,86 @@
+// What is plotted until somebody arranges it: the tensions of all cables, or, where those are too many
+// for one look, of the cables with the largest; what a program plots; and what the system as a whole does.
+import type { App } from "../app";
+import { cableState } from "../frame";
+import type { Scene } from "../protocol";
+import type { SeriesStore } from "../series";
+import type { PlotSpec } from "./layouts";
+
+/** So many cables are plotted all; of more, the ones with the largest tensions. */
+const FEW_CABLES = 24;
+const LARGEST = 12;
+
+const SYSTEM: readonly PlotSpec[] = [
+  { title: "energy", channels: ["system/kinetic_j", "system/gravity_j", "system/elastic_j"] },
+  { title: "contacts", channels: ["system/contact_count"] },
+  { title: "real-time factor", channels: ["real_time_factor"] },
+];
+
+export function tensionPlot(cable: string): PlotSpec {
+  return { title: cable, channels: [`cable/${cable}/setpoint_n`, `cable/${cable}/tension_n`] };
+}
+
+/** What a program plots itself. */
+function alone(channel: string): PlotSpec {
+  return { title: channel, channels: [channel] };
+}
+
+/** `done` comes at once, or when the largest tensions are known; not if another scene was asked about since. */
+export class DefaultPlots {
+  private wanted = 0;
+
+  constructor(
+    private readonly app: App,
+    private readonly store: SeriesStore,
+  ) {}
+
+  find(scene: Scene, done: (plots: PlotSpec[]) => void): void {
+    const asked = ++this.wanted;
+    const all = scene.cables.map(({ name }) => name);
+    // a layout that is made of these shall not name what the run does not have
+    const known = ({ title, channels }: PlotSpec) => ({ title, channels: channels.filter((name) => this.store.has(name, 0) || this.store.has(name, 1)) });
+    const answer = (cables: readonly string[]) => {
+      if (asked !== this.wanted) return;
+      done([...cables.map(tensionPlot), ...scene.values.map(alone), ...SYSTEM].map(known).filter(({ channels }) => channels.length > 0));
+    };
+    if (all.length <= FEW_CABLES) answer(all);
+    else if (this.app.live) this.ofTheMoment(scene, answer);
+    else this.ofTheWholeTime(scene, answer);
+  }
+
+  /** A live run has no whole time yet: the tensions as they are when the page comes. */
+  private ofTheMoment(scene: Scene, answer: (cables: readonly string[]) => void): void {
+    let stop = () => {};
+    let found = false;
+    stop = this.app.frame.watch((frame) => {
+      if (found || !frame || frame.run < 0 || frame.cable_count !== scene.cables.length) return;
+      found = true;
+      queueMicrotask(() => stop());
+      answer(largest(scene, (_, i) => cableState(frame, i).tension_n));
+    });
+  }
+
+  private ofTheWholeTime(scene: Scene, answer: (cables: readonly string[]) => void): void {
+    const most = new Map<string, number>();
+    for (const { name } of scene.cables) {
+      const channel = `cable/${name}/tension_n`;
+      if (!this.store.has(channel, 0)) {
+        most.set(name, -Infinity);
+        continue;
+      }
+      this.store.want(channel, 0, scene.first_s, scene.duration_s, 2, ({ max }) => {
+        most.set(name, Math.max(...max.map((value) => value ?? -Infinity)));
+        if (most.size === scene.cables.length) answer(largest(scene, (cable) => most.get(cable)!));
+      });
+    }
+  }
+}
+
+/** In the order of the model; of equal ones the first. */
+function largest(scene: Scene, tension_n: (cable: string, i: number) => number): string[] {
+  const order = scene.cables.map(({ name }, i) => ({ i, n: tension_n(name, i) }));
+  // what is not known counts as nothing, so that the order is one
+  const known = (n: number) => (Number.isNaN(n) ? -Infinity : n);
+  order.sort((a, b) => (known(b.n) > known(a.n) ? 1 : known(b.n) < known(a.n) ? -1 : a.i - b.i));
+  return order.slice(0, LARGEST).map(({ i }) => i).sort((a, b) => a - b).map((i) => scene.cables[i]!.name);
+}
