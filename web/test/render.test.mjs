@@ -177,6 +177,7 @@ test("WhereATraceHasNoContactForcesTheLegendSaysHowToRecordThem", async (t) => {
   const without = await new MockServer(PAGE, { mode: "replay", more: { contact_forces: false } }).start();
   t.after(() => without.stop());
   const other = await openPage(without.url);
+  assert.equal(await other.locator(".legend .unrecorded").isVisible(), true);
   assert.match(await other.locator(".legend .unrecorded").innerText(), /this trace has none.*record: \{contacts: 20\}/);
   assert.doesNotMatch(await other.locator(".legend").innerText(), /➔\s*contact/);
   await other.context().close();
