@@ -111,6 +111,7 @@ export class View {
       this.camera.updateMatrixWorld();
       const reach = corners.map((corner) => corner.clone().project(this.camera));
       distance_m *= Math.max(...reach.map(({ x, y }) => Math.max(Math.abs(x), Math.abs(y)))) / FILLED;
+      distance_m = Math.max(distance_m, world.size_m); // all that moves may be a point
     }
     this.controls.minDistance = 0.05 * world.size_m;
     this.controls.maxDistance = 60 * world.size_m;
