@@ -63,8 +63,11 @@ bool ExplainUnknown(const CLI::App& app, const CommandText& command) {
   if (!command.commands.empty()) {
     NoSuchCommand(app, unknown.front());
   } else {
-    fmt::print(stderr, "error: \"{}\" is too much; usage: {}\n", unknown.front(),
-               UsageLine(command));
+    const bool compares = std::any_of(command.flags.begin(), command.flags.end(),
+                                      [](const WordText& f) { return f.name == "--compare"; });
+    fmt::print(stderr, "error: \"{}\" is too much; usage: {}{}\n", unknown.front(),
+               UsageLine(command),
+               compares ? fmt::format(" (beside another: --compare {})", unknown.front()) : "");
   }
   return true;
 }

@@ -2,26 +2,9 @@
 //
 //   node web/pictures/models.mjs FOLDER MODEL...     writes FOLDER/NAME.png of each NAME.yaml
 // Environment: TAUT_COMMAND, and what test/browser.mjs says.
-import { spawn } from "node:child_process";
-import { basename, dirname, join } from "node:path";
-import { closeBrowser, drawn, openPage, PAGE } from "../test/browser.mjs";
-
-/** Starts `taut view` on any port; answers its address and what ends it. */
-async function view(model) {
-  const server = spawn(process.env.TAUT_COMMAND, ["view", model, "--port", "0"], {
-    env: { ...process.env, TAUT_WEB: dirname(PAGE) }, stdio: ["ignore", "pipe", "inherit"],
-  });
-  const ended = new Promise((resolve) => server.on("exit", resolve));
-  const address = await new Promise((resolve, reject) => {
-    let said = "";
-    server.stdout.on("data", (data) => {
-      const found = /http:\/\/\S+/.exec((said += data));
-      if (found) resolve(found[0]);
-    });
-    server.on("exit", () => reject(new Error(`taut view ${model} ended`)));
-  });
-  return { address, stop: () => (server.kill("SIGINT"), ended) };
-}
+import { basename, join } from "node:path";
+import { closeBrowser, drawn, openPage } from "../test/browser.mjs";
+import { view } from "./view.mjs";
 
 const [folder, ...models] = process.argv.slice(2);
 for (const model of models) {

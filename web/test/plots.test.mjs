@@ -17,7 +17,7 @@ let folder;
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), "taut-plots-"));
-  server = await new MockServer(PAGE, { mode: "replay", compare: true }).start();
+  server = await new MockServer(PAGE, { mode: "replay", compared: [reference] }).start();
 });
 after(async () => {
   await closeBrowser();
