@@ -152,7 +152,7 @@ for (const use of ["live", "replay", "report"]) {
     await page.locator(".channels summary").first().click();
     await page.locator(".channels .group summary").first().click();
     await page.evaluate(() => (window.taut.app.selection.value = { kind: "body", index: 0 }));
-    await page.waitForSelector('[data-figure="own:body:rod_0:position"]');
+    await page.waitForSelector('[data-figure^="own:body:rod_0:position"]');
     const session = await page.context().newCDPSession(page);
     await session.send("Accessibility.enable");
     const { nodes } = await session.send("Accessibility.getFullAXTree");
