@@ -1,53 +1,14 @@
 // The page with the real server: what is seen is what taut simulates and what its traces hold.
 // TAUT_COMMAND names the command; without it there is nothing to test here.
 import assert from "node:assert/strict";
-import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { basename, dirname, join } from "node:path";
-import { fileURLToPath } from "node:url";
+import { basename, join } from "node:path";
 import { after, afterEach, before, test } from "node:test";
-import { closeBrowser, cursorTo, drawn, listenToNotices, numbersBeside, openPage, PAGE, picture, projection, ready, untilTime } from "./browser.mjs";
+import { closeBrowser, cursorTo, drawn, listenToNotices, numbersBeside, openPage, picture, projection, ready, untilTime } from "./browser.mjs";
+import { csvOf, endOf, kill, options, ROOT, stop, TAUT, taut, view, viewWithToken } from "./real_server.mjs";
 
-const TAUT = process.env.TAUT_COMMAND;
-const ROOT = fileURLToPath(new URL("../..", import.meta.url));
-const options = { skip: TAUT ? false : "TAUT_COMMAND is not set" };
 let folder;
-let server = null;
-
-/** Starts `taut view` with random tokens; answers its address. */
-const view = (...words) => viewWithToken("", ...words);
-
-async function viewWithToken(token, ...words) {
-  server = spawn(TAUT, ["view", ...words], { cwd: ROOT, env: { ...process.env, TAUT_WEB: dirname(PAGE), TAUT_TOKEN: token } });
-  let said = "";
-  return new Promise((resolve, reject) => {
-    const hear = (data) => {
-      said += data;
-      const address = /http:\/\/\S+/.exec(said)?.[0];
-      if (address) resolve(address);
-    };
-    server.stdout.on("data", hear);
-    server.stderr.on("data", hear);
-    server.on("exit", () => reject(new Error(`taut view ended: ${said}`)));
-  });
-}
-
-async function stop() {
-  if (!server) return;
-  const ended = new Promise((resolve) => server.on("exit", resolve));
-  server.kill("SIGINT");
-  await ended;
-  server = null;
-}
-
-/** The rows of a run's trace.csv: value(name, time_s) at a time or the last before it. */
-function csvOf(run) {
-  const [head, ...lines] = readFileSync(join(run, "trace.csv"), "utf8").trim().split("\n").map((line) => line.split(","));
-  const rows = lines.map((line) => line.map(Number));
-  const value = (name, time_s) => rows[rows.findLastIndex((row) => row[0] <= time_s)][head.indexOf(name)];
-  return { rows, value, column: (name) => head.indexOf(name), has: (name) => head.includes(name) };
-}
 
 /** Every number that stands beside a plot of tensions, and the contacts', at a time against the rows; how many. */
 async function compareNumbers(page, runs, time_s) {
@@ -72,7 +33,7 @@ const asShown = (value) => Number(Math.abs(value) < 1e-3 || Math.abs(value) >= 1
 before(() => {
   folder = mkdtempSync(join(tmpdir(), "taut-view-"));
   if (!TAUT) return;
-  execFileSync(TAUT, ["run", "experiments/push_20n.yaml", "--csv", "--quiet", "--out", folder], { cwd: ROOT });
+  taut("run", "experiments/push_20n.yaml", "--csv", "--quiet", "--out", folder);
 });
 afterEach(stop);
 after(async () => {
@@ -85,12 +46,12 @@ after(async () => {
 test("TheNumbersOfReplayAndReportAreTheRowsOfTheFile", options, async (t) => {
   const run = csvOf(folder);
   const other = join(folder, "other");
-  execFileSync(TAUT, ["run", "experiments/push_20n.yaml", "--set", "push_n=30", "--duration_s", "20", "--csv", "--quiet", "--out", other], { cwd: ROOT });
+  taut("run", "experiments/push_20n.yaml", "--set", "push_n=30", "--duration_s", "20", "--csv", "--quiet", "--out", other);
   const times_s = [0.013, 0.02, 12.345, 19.999];
   const compare = ["--compare", join(other, "trace.h5")];
   const replay = await openPage(await view(join(folder, "trace.h5"), ...compare, "--port", "0"), { width: 1280, height: 1100 });
   const file = join(other, "both.html");
-  execFileSync(TAUT, ["report", join(folder, "trace.h5"), ...compare, "--out", file], { cwd: ROOT, env: { ...process.env, TAUT_WEB: dirname(PAGE) } });
+  taut("report", join(folder, "trace.h5"), ...compare, "--out", file);
   const report = await openPage(`file://${file}`, { width: 1200, height: 800 });
   t.after(() => Promise.all([replay, report].map((page) => page.context().close())));
   for (const page of [replay, report]) {
@@ -108,7 +69,7 @@ test("TheNumbersOfReplayAndReportAreTheRowsOfTheFile", options, async (t) => {
 
 test("TheNumbersOfALiveRunAreThoseOfTheRun", options, async (t) => {
   const hang = join(folder, "hang");
-  execFileSync(TAUT, ["run", "experiments/hang.yaml", "--csv", "--quiet", "--out", hang], { cwd: ROOT });
+  taut("run", "experiments/hang.yaml", "--csv", "--quiet", "--out", hang);
   const run = csvOf(hang); // 200 rows a second
   const address = await view("experiments/hang.yaml", "--paused", "--port", "0");
   const page = await openPage(address, { width: 1280, height: 900 });
@@ -150,7 +111,7 @@ function runWithEverything() {
     .replace(/^record: .*$/m, 'record: {rate_hz: 100, channels: ["*"]}').replace(/\.\.\/models\//g, join(ROOT, "models/"));
   const file = join(folder, "everything.yaml");
   writeFileSync(file, text);
-  execFileSync(TAUT, ["run", file, "--duration_s", "1", "--csv", "--quiet", "--out", out], { cwd: ROOT });
+  taut("run", file, "--duration_s", "1", "--csv", "--quiet", "--out", out);
   return csvOf(out);
 }
 
@@ -224,7 +185,7 @@ test("AnyChannelOfALiveRunIsPlottedFromItsStart", options, async (t) => {
 
 test("OfManyCablesThoseWithTheLargestTensionsArePlotted", options, async (t) => {
   const long = join(folder, "long");
-  execFileSync(TAUT, ["run", "experiments/sidewinder12.yaml", "--duration_s", "2", "--csv", "--quiet", "--out", long], { cwd: ROOT });
+  taut("run", "experiments/sidewinder12.yaml", "--duration_s", "2", "--csv", "--quiet", "--out", long);
   const run = csvOf(long);
   const page = await openPage(await view(join(long, "trace.h5"), "--port", "0"), { width: 1280, height: 1300, webgl: false });
   t.after(() => page.context().close());
@@ -272,7 +233,7 @@ test("GhostsAndContactForcesAreTheRowsOfTheirFiles", options, async (t) => {
   const experiment = (name, more) => {
     const file = join(folder, `${name}.yaml`);
     writeFileSync(file, `taut: 1\nkind: experiment\nbase: ${join(ROOT, more.base)}\nname: ${name}\nrecord: {rate_hz: ${more.rate_hz}, channels: [\"*\"], contacts: 20}\n`);
-    execFileSync(TAUT, ["run", file, "--duration_s", String(more.duration_s), "--csv", "--quiet", "--out", join(folder, name)], { cwd: ROOT });
+    taut("run", file, "--duration_s", String(more.duration_s), "--csv", "--quiet", "--out", join(folder, name));
     return csvOf(join(folder, name));
   };
   const own = experiment("own", { base: "experiments/push_20n.yaml", rate_hz: 100, duration_s: 2 });
@@ -281,7 +242,7 @@ test("GhostsAndContactForcesAreTheRowsOfTheirFiles", options, async (t) => {
   writeFileSync(join(folder, "measured.csv"), "time_s,cable/outer_top_1/tension_n\n0,5\n1,6\n2,7\n");
   const compare = ["--compare", join(folder, "early/trace.h5"), join(folder, "hanging/trace.h5"), "--compare", join(folder, "measured.csv")];
   const file = join(folder, "four.html");
-  execFileSync(TAUT, ["report", join(folder, "own/trace.h5"), ...compare, "--out", file], { cwd: ROOT, env: { ...process.env, TAUT_WEB: dirname(PAGE) } });
+  taut("report", join(folder, "own/trace.h5"), ...compare, "--out", file);
   const pages = [await openPage(await view(join(folder, "own/trace.h5"), ...compare, "--port", "0"), { width: 1280, height: 800 }), await openPage(`file://${file}`, { width: 1200, height: 800 })];
   t.after(() => Promise.all(pages.map((page) => page.context().close())));
   for (const page of pages) {
@@ -366,8 +327,8 @@ test("APageOutlivesTheRealServer", options, async (t) => {
   const link = (state) => page.waitForFunction((wanted) => document.querySelector(".link").dataset.state === wanted, state);
   await page.keyboard.press("ArrowRight");
   await page.waitForFunction(() => window.taut.app.frame.value.time_s === 0.001);
-  const ended = new Promise((resolve) => server.on("exit", resolve));
-  server.kill("SIGKILL");
+  const ended = endOf();
+  kill();
   await ended;
   await link("lost");
   await view("experiments/hang.yaml", "--paused", "--port", port);
@@ -425,7 +386,7 @@ test("TwoPagesOfTheRealServerDriveOneAtATime", options, async (t) => {
 
 test("AReportOpensFromDiskAndAsksNobody", options, async (t) => {
   const file = join(folder, "report.html");
-  execFileSync(TAUT, ["report", join(folder, "trace.h5"), "--out", file], { cwd: ROOT, env: { ...process.env, TAUT_WEB: dirname(PAGE) } });
+  taut("report", join(folder, "trace.h5"), "--out", file);
   const page = await openPage(`file://${file}`, { width: 1200, height: 800 });
   t.after(() => page.context().close());
   await page.evaluate(() => window.taut.app.seek(37));

@@ -1,0 +1,59 @@
+// `taut view` as a user starts it, one at a time. TAUT_COMMAND names the command.
+import { execFileSync, spawn } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { PAGE } from "./browser.mjs";
+
+export const TAUT = process.env.TAUT_COMMAND;
+export const ROOT = fileURLToPath(new URL("../..", import.meta.url));
+export const options = { skip: TAUT ? false : "TAUT_COMMAND is not set" };
+const ENV = { ...process.env, TAUT_WEB: dirname(PAGE) };
+let server = null;
+
+/** Runs another command of it to its end. */
+export const taut = (...words) => execFileSync(TAUT, words, { cwd: ROOT, env: ENV });
+
+/** Starts `taut view` with random tokens; answers its address. */
+export const view = (...words) => viewWithToken("", ...words);
+
+export async function viewWithToken(token, ...words) {
+  server = spawn(TAUT, ["view", ...words], { cwd: ROOT, env: { ...ENV, TAUT_TOKEN: token } });
+  let said = "";
+  return new Promise((resolve, reject) => {
+    const hear = (data) => {
+      said += data;
+      const address = /http:\/\/\S+/.exec(said)?.[0];
+      if (address) resolve(address);
+    };
+    server.stdout.on("data", hear);
+    server.stderr.on("data", hear);
+    server.on("exit", () => reject(new Error(`taut view ended: ${said}`)));
+  });
+}
+
+export async function stop() {
+  if (!server) return;
+  const ended = endOf();
+  server.kill("SIGINT");
+  await ended;
+  server = null;
+}
+
+/** When the server has ended. */
+export function endOf() {
+  return new Promise((resolve) => server.on("exit", resolve));
+}
+
+/** As by a power cut. */
+export function kill() {
+  server.kill("SIGKILL");
+}
+
+/** The rows of a run's trace.csv: value(name, time_s) at a time or the last before it. */
+export function csvOf(run) {
+  const [head, ...lines] = readFileSync(join(run, "trace.csv"), "utf8").trim().split("\n").map((line) => line.split(","));
+  const rows = lines.map((line) => line.map(Number));
+  const value = (name, time_s) => rows[rows.findLastIndex((row) => row[0] <= time_s)][head.indexOf(name)];
+  return { rows, value, column: (name) => head.indexOf(name), has: (name) => head.includes(name) };
+}
