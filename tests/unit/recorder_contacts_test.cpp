@@ -148,11 +148,13 @@ TEST_F(RecordedChannels, OnRequestMeansNotByDefault) {
   EXPECT_EQ(RunChannels(experiment).size(), 3u);
 }
 
-TEST_F(RecordedChannels, ALiveRunHasTheUsualOnes) {
+TEST_F(RecordedChannels, ALiveRunHasTheUsualOnesAndContacts) {
   ExperimentSpec experiment = Load();
-  const std::size_t usual = RunChannels(experiment).size();
-  experiment.record.channels = {"*"};
+  const std::size_t without = RunChannels(experiment).size();
   experiment.record.contacts = 4;
+  const std::size_t usual = RunChannels(experiment).size();
+  ASSERT_EQ(usual, without + 4 * kOfAContact.size());
+  experiment.record.channels = {"*"};
   Diagnostics out;
   const auto live = LiveRun::Start(experiment, out);
   ASSERT_TRUE(live) << out.Format();
