@@ -22,7 +22,7 @@ std::string Tail(const std::string& path, std::size_t parts) {
 }
 
 std::string NameOf(const NamedTrace& named, std::size_t parts) {
-  const std::string place = Tail(named.path, parts);
+  std::string place = Tail(named.path, parts);
   for (const char* key : {"measured", "experiment"}) {
     const std::string name = Said(*named.trace, key);
     if (!name.empty()) return fmt::format("{} ({})", name, place);

@@ -7,20 +7,23 @@
 
 namespace taut::plant {
 
-inline const std::vector<ChannelInfo> kBodyChannels{{"position_x_m", "m"},
-                                                    {"position_y_m", "m"},
-                                                    {"position_z_m", "m"},
-                                                    {"orientation_w", "1"},
-                                                    {"orientation_x", "1"},
-                                                    {"orientation_y", "1"},
-                                                    {"orientation_z", "1"},
-                                                    {"velocity_x_m_per_s", "m/s"},
-                                                    {"velocity_y_m_per_s", "m/s"},
-                                                    {"velocity_z_m_per_s", "m/s"},
-                                                    {"angular_velocity_x_rad_per_s", "rad/s"},
-                                                    {"angular_velocity_y_rad_per_s", "rad/s"},
-                                                    {"angular_velocity_z_rad_per_s", "rad/s"}};
-using BodyNumbers = std::array<double, 13>;  ///< In the order of `kBodyChannels`.
+inline const std::vector<ChannelInfo>& BodyChannels() {
+  static const std::vector<ChannelInfo> channels{{"position_x_m", "m"},
+                                                 {"position_y_m", "m"},
+                                                 {"position_z_m", "m"},
+                                                 {"orientation_w", "1"},
+                                                 {"orientation_x", "1"},
+                                                 {"orientation_y", "1"},
+                                                 {"orientation_z", "1"},
+                                                 {"velocity_x_m_per_s", "m/s"},
+                                                 {"velocity_y_m_per_s", "m/s"},
+                                                 {"velocity_z_m_per_s", "m/s"},
+                                                 {"angular_velocity_x_rad_per_s", "rad/s"},
+                                                 {"angular_velocity_y_rad_per_s", "rad/s"},
+                                                 {"angular_velocity_z_rad_per_s", "rad/s"}};
+  return channels;
+}
+using BodyNumbers = std::array<double, 13>;  ///< In the order of `BodyChannels`.
 
 inline void PutBody(const BodyState& body, double* out) {
   Put(body.position_m, out);

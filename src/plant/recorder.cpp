@@ -65,9 +65,10 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
         });
   }
   for (std::size_t b = 0; has_bodies && b < def.bodies.size(); ++b) {
-    Add("body/" + def.bodies[b].name + "/", kBodyChannels, [b](const RecordSource& s, double* out) {
-      PutBody(s.exact->bodies->Body(0, static_cast<int>(b)), out);
-    });
+    Add("body/" + def.bodies[b].name + "/", BodyChannels(),
+        [b](const RecordSource& s, double* out) {
+          PutBody(s.exact->bodies->Body(0, static_cast<int>(b)), out);
+        });
   }
   for (std::size_t i = 0; is_world && i < experiment.pushes.size(); ++i) {
     Add("push/" + experiment.pushes[i].name + "/", {{"force_n", "N"}},

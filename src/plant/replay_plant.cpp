@@ -15,7 +15,7 @@ using plant::kTimeToleranceS;
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-const std::size_t kBodyNumbers = plant::kBodyChannels.size();
+constexpr std::size_t kBodyNumbers = std::tuple_size_v<plant::BodyNumbers>;
 
 /// A log as a plant: what was read is read again; what is commanded goes nowhere.
 class ReplayPlant final : public Plant, public Bodies {
@@ -43,7 +43,7 @@ class ReplayPlant final : public Plant, public Bodies {
     }
     bool known = !robot.def.bodies.empty();
     for (const BodyDef& body : robot.def.bodies) {
-      for (const ChannelInfo& channel : plant::kBodyChannels) {
+      for (const ChannelInfo& channel : plant::BodyChannels()) {
         body_columns_.push_back(ColumnOf("body/" + body.name + "/" + channel.name));
         known = known && body_columns_.back() != kNone;
       }
