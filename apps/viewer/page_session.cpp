@@ -50,11 +50,15 @@ void PageSession::Wait(std::unique_lock<std::mutex>& lock, double time_s) {
 
 void PageSession::Show(Frame frame) {
   std::unique_lock lock(own_mutex_);
-  if (!now_ || frame.time_s < now_->time_s) {
-    if (now_) ++run_;
+  if (now_ && frame.time_s < now_->time_s) {
+    ++run_;
+    now_.reset();  // of a run that is over; nobody looks back in it while this one waits
+  }
+  asked_s_ = frame.time_s;
+  if (!now_) {
     history_->Clear();
     past_row_.reset();
-    pace_.Anchor(frame.time_s);
+    pace_.Anchor(asked_s_);
   }
   Wait(lock, frame.time_s);
   pace_.At(frame.time_s, Clock::now());
@@ -93,25 +97,24 @@ bool PageSession::Drive(const Command& command) {
   if (type == "drop") return true;  // a hand that has gone; it held nothing
   const std::lock_guard lock(own_mutex_);
   changed_ = true;
-  const double now_s = now_ ? now_->time_s : 0;
   if (type == "pause") {
-    pace_.Pause(now_s);
+    pace_.Pause(asked_s_);
   } else if (type == "resume") {
-    pace_.Resume(now_s);
+    pace_.Resume(asked_s_);
     past_row_.reset();
     steps_left_ = 0;
   } else if (type == "speed") {
-    pace_.SetSpeed(command.value, now_s);
+    pace_.SetSpeed(command.value, asked_s_);
   } else if (type == "step") {
-    pace_.Pause(now_s);
+    pace_.Pause(asked_s_);
     if (past_row_ || command.count < 0) {
-      if (now_) past_row_ = history_->Step(past_row_, command.count, now_s);
+      if (now_) past_row_ = history_->Step(past_row_, command.count, now_->time_s);
     } else {
       steps_left_ += command.count;
     }
   } else if (type == "seek") {
-    pace_.Pause(now_s);
-    if (now_) past_row_ = history_->PastRow(command.value, now_s);
+    pace_.Pause(asked_s_);
+    if (now_) past_row_ = history_->PastRow(command.value, now_->time_s);
   } else {
     return false;
   }

@@ -40,6 +40,7 @@ class PageSession final : public Session {
   std::optional<Json> new_scene_;
   std::optional<History> history_;
   std::optional<Frame> now_;  ///< Of the last `Show`.
+  double asked_s_ = 0;        ///< Of the last call of `Show`, which may wait still.
   std::optional<std::size_t> past_row_;
   int steps_left_ = 0;  ///< So many calls pass while paused.
   int run_ = 0;

@@ -266,6 +266,33 @@ TEST_F(PageTest, ATimeThatGoesBackIsAnotherRun) {
   EXPECT_EQ(browser.Await("series")["series"]["time_s"], Json({0.5}));
 }
 
+/// The next run waits for the page to resume: there is nothing to look back to, and no time to
+/// catch up.
+TEST_F(PageTest, ARunThatWaitsHasNoPast) {
+  options_.speed = 1;
+  const auto page = Open();
+  page->Add(Prism());
+  page->Show(1000.5);
+  Client browser = Browser(*page, page->url());
+  const double run =
+      browser.AwaitFrame([](const auto& f) { return HasTime(f, 1000.5); })[FrameHeader::kFrameRun];
+  browser.Send({{"type", "pause"}});
+  browser.AwaitFrame([](const auto& f) { return f[FrameHeader::kFramePaused] == 1; });
+  std::thread program([&] { page->Show(1000); });
+  for (int i = 0; i < 3; ++i) {
+    browser.Send({{"type", "seek"}, {"time_s", 0}});
+    browser.Send({{"type", "step"}, {"count", -1}});
+    browser.Send({{"type", "reset"}});  // its answer comes after those are done
+    browser.Await("error");
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  browser.Send({{"type", "resume"}});
+  EXPECT_EQ(
+      browser.AwaitFrame([](const auto& f) { return HasTime(f, 1000); })[FrameHeader::kFrameRun],
+      run + 1);
+  program.join();
+}
+
 TEST_F(PageTest, AllThatIsWrongWithOptionsIsNamedAtOnce) {
   options_.speed = -1;
   options_.history_period_s = 0;
