@@ -104,60 +104,55 @@ class Comparison {
     }
   }
 
-  template <class Shape, class F>
-  void Shapes(const char* kind, const std::vector<Shape>& a, const std::vector<Shape>& b, F same) {
-    if (!SameCount(kind, a, b)) return;
-    std::map<std::string, const Shape*> read;
-    for (const Shape& shape : b) read[shape.name] = &shape;
-    for (const Shape& x : a) {
-      const auto y = read.find(x.name);
-      if (y == read.end()) {
-        Differs(kind, x.name, "name");
-      } else if (NameOf(a_, x.body) != NameOf(b_, y->second->body)) {
-        Differs(kind, x.name, "body");
-      } else if (!same(x, *y->second)) {
-        Differs(kind, x.name, "place");
-      } else if (!Same(x.material, y->second->material) || x.collides != y->second->collides) {
-        Differs(kind, x.name, "surface");
+  /// Calls `compare` with the places of every part and of the one read back that has its name.
+  template <class Part, class F>
+  void ByName(const char* kind, const std::vector<Part>& a, const std::vector<Part>& b, F compare) {
+    std::map<std::string, std::size_t> read;
+    for (std::size_t k = 0; k < b.size(); ++k) read[b[k].name] = k;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const auto found = read.find(a[i].name);
+      if (found == read.end()) {
+        Differs(kind, a[i].name, "name");
+      } else {
+        compare(i, found->second);
       }
     }
   }
 
-  void Nodes() {
-    std::map<std::string, std::size_t> read;
-    for (std::size_t i = 0; i < b_.nodes.size(); ++i) read[b_.nodes[i].name] = i;
-    for (std::size_t i = 0; i < a_.nodes.size(); ++i) {
-      const NodeDef& x = a_.nodes[i];
-      const auto found = read.find(x.name);
-      if (found == read.end()) {
-        Differs("node", x.name, "name");
-        continue;
+  template <class Shape, class F>
+  void Shapes(const char* kind, const std::vector<Shape>& a, const std::vector<Shape>& b, F same) {
+    if (!SameCount(kind, a, b)) return;
+    ByName(kind, a, b, [&](std::size_t i, std::size_t k) {
+      const Shape &x = a[i], &y = b[k];
+      if (NameOf(a_, x.body) != NameOf(b_, y.body)) {
+        Differs(kind, x.name, "body");
+      } else if (!same(x, y)) {
+        Differs(kind, x.name, "place");
+      } else if (!Same(x.material, y.material) || x.collides != y.collides) {
+        Differs(kind, x.name, "surface");
       }
-      const NodeDef& y = b_.nodes[found->second];
+    });
+  }
+
+  void Nodes() {
+    ByName("node", a_.nodes, b_.nodes, [&](std::size_t i, std::size_t k) {
+      const NodeDef &x = a_.nodes[i], &y = b_.nodes[k];
       if (NameOf(a_, x.body) != NameOf(b_, y.body)) Differs("node", x.name, "body");
       if (!Near(x.position_m, y.position_m)) Differs("node", x.name, "place");
-      if (!Same(robot_.node_tags[i], read_.node_tags[found->second])) {
+      if (!Same(robot_.node_tags[i], read_.node_tags[k])) {
         Differs("node", x.name, "list of tags");
       }
-    }
+    });
   }
 
   void Cables() {
     if (!SameCount("cable", a_.cables, b_.cables)) return;
-    std::map<std::string, std::size_t> read;
-    for (std::size_t i = 0; i < b_.cables.size(); ++i) read[b_.cables[i].name] = i;
-    for (std::size_t i = 0; i < a_.cables.size(); ++i) {
-      const CableDef& x = a_.cables[i];
-      const auto found = read.find(x.name);
-      if (found == read.end()) {
-        Differs("cable", x.name, "name");
-        continue;
-      }
-      const CableDef& y = b_.cables[found->second];
+    ByName("cable", a_.cables, b_.cables, [&](std::size_t i, std::size_t k) {
+      const CableDef &x = a_.cables[i], &y = b_.cables[k];
       bool same_path = x.attachments.size() == y.attachments.size();
-      for (std::size_t k = 0; same_path && k < x.attachments.size(); ++k) {
-        same_path = Near(x.attachments[k].position_m, y.attachments[k].position_m) &&
-                    NameOf(a_, x.attachments[k].body) == NameOf(b_, y.attachments[k].body);
+      for (std::size_t j = 0; same_path && j < x.attachments.size(); ++j) {
+        same_path = Near(x.attachments[j].position_m, y.attachments[j].position_m) &&
+                    NameOf(a_, x.attachments[j].body) == NameOf(b_, y.attachments[j].body);
       }
       if (!same_path) Differs("cable", x.name, "path");
       if (!Near(x.rest_length_m, y.rest_length_m, 0)) Differs("cable", x.name, "rest length");
@@ -166,10 +161,10 @@ class Comparison {
         Differs("cable", x.name, "stiffness or damper");
       }
       if (!Same(x.actuator, y.actuator)) Differs("cable", x.name, "actuator");
-      if (!Same(robot_.cable_tags[i], read_.cable_tags[found->second])) {
+      if (!Same(robot_.cable_tags[i], read_.cable_tags[k])) {
         Differs("cable", x.name, "list of tags");
       }
-    }
+    });
   }
 
   const RobotSpec& robot_;

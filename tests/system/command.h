@@ -37,6 +37,16 @@ class CommandTest : public testing::Test {
     return Path(name);
   }
 
+  /// never.yaml, an experiment that finds no rest to start from: a ball falls for ever.
+  void WriteNeverSettles() const {
+    Write("falls.yaml",
+          "taut: 1\nkind: model\nname: falls\nnodes:\n  ball: [0, 0, 1]\nbuilders:\n"
+          "  - {match: ball, point_mass: {mass_kg: 1}}\n");
+    Write("never.yaml",
+          "taut: 1\nkind: experiment\nname: never\nmodel: falls.yaml\nduration_s: 1\n"
+          "start: settled\n");
+  }
+
   static std::string Read(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};

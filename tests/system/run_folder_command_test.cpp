@@ -143,12 +143,7 @@ TEST_F(RunCommand, ARunThatCannotBeginLeavesTheRunBefore) {
   });
   EXPECT_EQ(full.status, 1) << full.errors;
   // no equilibrium to start from: a ball falls for ever
-  Write("falls.yaml",
-        "taut: 1\nkind: model\nname: falls\nnodes:\n  ball: [0, 0, 1]\nbuilders:\n"
-        "  - {match: ball, point_mass: {mass_kg: 1}}\n");
-  Write("never.yaml",
-        "taut: 1\nkind: experiment\nname: never\nmodel: falls.yaml\nduration_s: 1\n"
-        "start: settled\n");
+  WriteNeverSettles();
   const CommandResult never = Taut({"run", "never.yaml", "--out", "run", "--quiet"});
   EXPECT_EQ(never.status, 1) << never.errors;
   EXPECT_NE(never.errors.find("does not settle"), std::string::npos) << never.errors;

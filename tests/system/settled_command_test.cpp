@@ -14,12 +14,7 @@ class SettledCommand : public CommandTest {
   SettledCommand() {
     Write("prism.yaml", kPrism);
     Write("stands.yaml", kSettledPrism);
-    Write("falls.yaml",
-          "taut: 1\nkind: model\nname: falls\nnodes:\n  ball: [0, 0, 1]\nbuilders:\n"
-          "  - {match: ball, point_mass: {mass_kg: 1}}\n");
-    Write("never.yaml",
-          "taut: 1\nkind: experiment\nname: never\nmodel: falls.yaml\nduration_s: 1\n"
-          "start: settled\n");
+    WriteNeverSettles();
   }
   CommandResult With(std::vector<std::string> arguments, const std::vector<std::string>& more) {
     arguments.insert(arguments.end(), more.begin(), more.end());
