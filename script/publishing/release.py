@@ -13,7 +13,7 @@ SHOWN_IN = ["docs/cli.md", "docs/python.md"]  # outputs of commands that tell th
 
 def numbers(version):
     if not re.fullmatch(r"(0|[1-9]\d*)(\.(0|[1-9]\d*)){2}", version):
-        raise Problem(f"\"{version}\" is no version: three numbers, such as 0.2.0")
+        raise Problem(f"\"{version}\" is no version: three numbers, such as 1.2.0")
     return tuple(map(int, version.split(".")))
 
 

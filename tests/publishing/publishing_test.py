@@ -45,13 +45,16 @@ def write(root, files):
 
 
 def copied(place):
-    """The working tree in a git of its own, and the environment to use it in."""
+    """The working tree in a git of its own, with changes to be released, and the environment to use it in."""
     root = pathlib.Path(place) / "tree"
     listed = run("git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", cwd=ROOT)
     for name in filter(None, listed.split("\0")):
         if (ROOT / name).is_file():
             (root / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, root / name)
+    text = (root / "CHANGELOG.md").read_text()
+    if "(not yet released)" not in text:  # a release has just been made
+        write(root, {"CHANGELOG.md": text.replace("\n## ", "\n## Next (not yet released)\n\n- New.\n\n## ", 1)})
     (pathlib.Path(place) / "gitconfig").write_text("[user]\n\tname = somebody\n\temail = somebody@example.org\n")
     env = dict(os.environ, GIT_CONFIG_GLOBAL=f"{place}/gitconfig")
     for words in (["init", "--quiet", "--initial-branch", "main"], ["add", "--all"],
@@ -165,9 +168,6 @@ def ThereMustBeChanges():
 def TheVersionGoesWhereItStands():
     with tempfile.TemporaryDirectory() as place:
         root, env = copied(place)
-        if "(not yet released)" not in (root / "CHANGELOG.md").read_text():
-            text = (root / "CHANGELOG.md").read_text()
-            write(root, {"CHANGELOG.md": text.replace("\n## ", "\n## Next (not yet released)\n\n- New.\n\n## ", 1)})
         now, version = release.current(root), next_version(root)
         changes = release.write(root, version, "2030-01-02")
         assert release.current(root) == version and changes
