@@ -175,7 +175,7 @@ void StageMotors(const View& m, const Rows<W>& s, const Scratch<W>& work, double
     const auto went_on = !(turn.direction * motor.speed < zero);
     const W mean_speed = Select((turn.direction * mean < zero) & went_on, zero, mean);
     const W before = s.rest[c], start = WoundTo(s, c, motor);
-    const W wound = Max(start - h * way * mean_speed, Min(start, W::Splat(t.min_rest_m)));
+    const W wound = Max(Min(start, W::Splat(t.min_rest_m)), start - h * way * mean_speed);
     const W rest = RestOnSpool(t, wound, before, turn.length);
     motor.speed = Select(turn.direction * end < zero, zero, end);
     motor.gap = wound - rest;
