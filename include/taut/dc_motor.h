@@ -46,6 +46,8 @@ struct DcMotorDef {
   // --- the servo that follows a rest length: duty = gain (L - target) + damping dL/dt ---
   double servo_gain_per_m = 4000.0;      ///< [?] Duty per length, >= 0.
   double servo_damping_s_per_m = 30.0;   ///< [?] Duty per speed, >= 0.
+
+  bool operator==(const DcMotorDef&) const = default;
 };
 
 /// What moves a motor.

@@ -14,6 +14,10 @@ void Check(const MapReader& map, ModelText& model) {
   model.pairs_complete = model.pairs_complete && model.loose.pairs_complete;
   FinishStructure(map, model);
   FinishBuilders(map, model);
+  for (BuilderText& builder : model.builders) {
+    if (!model.actuator_text || !builder.cable || !builder.cable->actuator_text) continue;
+    builder.cable->actuator = *model.actuator_text;
+  }
   if (!map.Has("nodes") && !map.Has("structure")) {
     map.scope().out.Error(map.at(), "the model places nothing",
                           map.Has("parts")

@@ -55,6 +55,10 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
           std::copy_n(values, count, out);
         });
   }
+  for (std::size_t c = 0; is_world && c < def.cables.size(); ++c) {
+    if (def.cables[c].actuator.kind != ActuatorDef::Kind::kDcMotor) continue;
+    AddMotor("cable/" + def.cables[c].name + "/", static_cast<int>(c));
+  }
   for (std::size_t c = 0; experiment.sensors && c < def.cables.size(); ++c) {
     Add("sensor/" + def.cables[c].name + "/",
         {{"tension_n", "N"}, {"length_m", "m"}, {"rate_m_per_s", "m/s"}, {"rest_length_m", "m"}},
@@ -84,6 +88,30 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
   if (on_request && is_world) AddLoadChannels(experiment, *this);
   if (is_world) AddContactChannels(experiment, *this);
   row_.resize(channels_.size());
+}
+
+void Recorder::AddMotor(const std::string& prefix, int cable) {
+  Add(prefix,
+      {{"duty", "1"},
+       {"current_a", "A"},
+       {"supply_voltage_v", "V"},
+       {"rotor_angle_rad", "rad"},
+       {"rotor_speed_rad_per_s", "rad/s"},
+       {"winding_temperature_c", "degC"},
+       {"energy_from_supply_j", "J"},
+       {"energy_to_cable_j", "J"}},
+      [cable](const RecordSource& s, double* out) {
+        const MotorState m = s.world->Motor(0, cable);
+        const double values[] = {m.duty,
+                                 m.current_a,
+                                 m.supply_voltage_v,
+                                 m.rotor_angle_rad,
+                                 m.rotor_speed_rad_per_s,
+                                 m.winding_temperature_c,
+                                 m.energy_from_supply_j,
+                                 m.energy_to_cable_j};
+        std::copy(std::begin(values), std::end(values), out);
+      });
 }
 
 void Recorder::AddSystem(const ModelDef& def) {
