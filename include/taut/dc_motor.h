@@ -35,17 +35,17 @@ struct DcMotorDef {
   double supply_resistance_ohm = 0.0;  ///< [?] Of source and leads, >= 0.
 
   // --- heat ---
-  double rated_temperature_c = 22.0;    ///< At which `resistance_ohm` holds.
-  double ambient_temperature_c = 22.0;  ///< Where winding and housing start, too.
-  double resistance_rise_per_k = 3.93e-3;               ///< Copper's, >= 0.
-  double winding_thermal_resistance_k_per_w = 10.0;     ///< To the housing, > 0.
-  double housing_thermal_resistance_k_per_w = 29.0;     ///< To the air, > 0.
-  double winding_thermal_time_s = 5.6;                  ///< > 0.
-  double housing_thermal_time_s = 220.0;                ///< > 0.
+  double rated_temperature_c = 22.0;                 ///< At which `resistance_ohm` holds.
+  double ambient_temperature_c = 22.0;               ///< Where winding and housing start, too.
+  double resistance_rise_per_k = 3.93e-3;            ///< Copper's, >= 0.
+  double winding_thermal_resistance_k_per_w = 10.0;  ///< To the housing, > 0.
+  double housing_thermal_resistance_k_per_w = 29.0;  ///< To the air, > 0.
+  double winding_thermal_time_s = 5.6;               ///< > 0.
+  double housing_thermal_time_s = 220.0;             ///< > 0.
 
   // --- the servo that follows a rest length: duty = gain (L - target) + damping dL/dt ---
-  double servo_gain_per_m = 4000.0;      ///< [?] Duty per length, >= 0.
-  double servo_damping_s_per_m = 30.0;   ///< [?] Duty per speed, >= 0.
+  double servo_gain_per_m = 4000.0;     ///< [?] Duty per length, >= 0.
+  double servo_damping_s_per_m = 30.0;  ///< [?] Duty per speed, >= 0.
 
   bool operator==(const DcMotorDef&) const = default;
 };
@@ -60,18 +60,18 @@ enum class MotorMode : unsigned char {
 /// A motor at the current time. Currents, voltages and duty are means over the last step.
 struct MotorState {
   MotorMode mode = MotorMode::kServo;
-  double duty = 0.0;                     ///< -1..1; positive winds in.
-  double voltage_v = 0.0;                ///< duty times the supply's.
-  double current_a = 0.0;                ///< In the winding; positive winds in.
-  double rotor_angle_rad = 0.0;          ///< Not wrapped; 0 at the model's rest length; rises winding in.
-  double rotor_speed_rad_per_s = 0.0;    ///< Positive winds in.
-  double winding_temperature_c = 0.0;    ///<
-  double housing_temperature_c = 0.0;    ///<
-  double supply_voltage_v = 0.0;         ///< With the load of all its motors.
-  double backlash_m = 0.0;               ///< How far the spool lags behind the gear, as rest length.
-  double energy_from_supply_j = 0.0;     ///< Since the start; falls while it feeds others.
-  double energy_to_cable_j = 0.0;        ///< Since the start; falls while the cable drives it.
-  double energy_in_winding_j = 0.0;      ///< Heat, since the start.
+  double duty = 0.0;             ///< -1..1; positive winds in.
+  double voltage_v = 0.0;        ///< duty times the supply's.
+  double current_a = 0.0;        ///< In the winding; positive winds in.
+  double rotor_angle_rad = 0.0;  ///< Not wrapped; 0 at the model's rest length; rises winding in.
+  double rotor_speed_rad_per_s = 0.0;  ///< Positive winds in.
+  double winding_temperature_c = 0.0;  ///<
+  double housing_temperature_c = 0.0;  ///<
+  double supply_voltage_v = 0.0;       ///< With the load of all its motors.
+  double backlash_m = 0.0;             ///< How far the spool lags behind the gear, as rest length.
+  double energy_from_supply_j = 0.0;   ///< Since the start; falls while it feeds others.
+  double energy_to_cable_j = 0.0;      ///< Since the start; falls while the cable drives it.
+  double energy_in_winding_j = 0.0;    ///< Heat, since the start.
 };
 
 }  // namespace taut

@@ -54,6 +54,9 @@ struct Observation {
   int lanes = 1;
   const double* time_s = nullptr;  ///< Of each lane's clock.
   ReadingRows cables;
+  /// A row: what the shafts of motors say of the rest lengths, which differs from them where gears
+  /// have backlash; null: nothing else.
+  const double* shaft_m = nullptr;
   const std::uint32_t* faults = nullptr;  ///< `FaultBits`, a row; null: nobody looks for any.
   const Bodies* bodies = nullptr;         ///< Null: nobody knows.
 

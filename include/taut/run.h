@@ -43,11 +43,11 @@ struct CableSummary {
   Quantity tension;  ///< Spring and damper: what a load cell feels.
   Quantity elastic;  ///< k (l - L) alone: what NTRT logs.
   /// Of the cable's actuator, for sizing motors (zero without one).
-  double max_force_n = 0;        ///< Largest tension while it had to hold or move.
-  double max_speed_m_per_s = 0;  ///< Largest rate of the rest length.
-  double max_power_w = 0;        ///< Largest tension times winding-in rate.
-  double energy_j = 0;           ///< Work done while winding in.
-  double net_energy_j = 0;       ///< The same less what paying out gave back.
+  double max_force_n = 0;             ///< Largest tension while it had to hold or move.
+  double max_speed_m_per_s = 0;       ///< Largest rate of the rest length.
+  double max_power_w = 0;             ///< Largest tension times winding-in rate.
+  double energy_j = 0;                ///< Work done while winding in.
+  double net_energy_j = 0;            ///< The same less what paying out gave back.
   std::optional<MotorSummary> motor;  ///< If it is a `dc_motor` of a simulation.
 };
 

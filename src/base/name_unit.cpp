@@ -12,9 +12,9 @@ namespace {
 /// "s^2" of "s2". Empty if a word is no unit.
 std::string UnitOfWord(std::string_view word) {
   constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
-      {"m", "m"}, {"s", "s"},   {"kg", "kg"},   {"n", "N"},
-      {"j", "J"}, {"hz", "Hz"}, {"rad", "rad"}, {"pa", "Pa"}, {"ohm", "ohm"},
-      {"a", "A"}, {"v", "V"},   {"w", "W"},     {"k", "K"},   {"c", "degC"},
+      {"m", "m"},   {"s", "s"},     {"kg", "kg"}, {"n", "N"},     {"j", "J"},
+      {"hz", "Hz"}, {"rad", "rad"}, {"pa", "Pa"}, {"ohm", "ohm"}, {"a", "A"},
+      {"v", "V"},   {"w", "W"},     {"k", "K"},   {"c", "degC"},
   };
   std::string power;
   if (word.size() > 1 && word.back() >= '2' && word.back() <= '9') {
@@ -33,8 +33,7 @@ bool IsOnlyLetter(std::string_view word, std::string_view before) {
   constexpr std::string_view kLetters[] = {"a", "v", "w", "k", "c"};
   constexpr std::string_view kQuantities[] = {"current", "voltage", "power", "temperature"};
   return std::find(std::begin(kLetters), std::end(kLetters), word) != std::end(kLetters) &&
-         std::find(std::begin(kQuantities), std::end(kQuantities), before) ==
-             std::end(kQuantities);
+         std::find(std::begin(kQuantities), std::end(kQuantities), before) == std::end(kQuantities);
 }
 
 }  // namespace

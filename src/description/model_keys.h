@@ -311,12 +311,12 @@ void Keys(Io& io, Like<ModelText> auto& m) {
   io("builders", m.builders,
      "What becomes of the nodes and pairs. Each pair must be built by exactly one builder; a node "
      "by none or by several of different kinds.");
-  io("actuator", m.actuator_text,
-     "In place of the `actuator` of every cable whose builder has one: for files with a `base`.");
   io("gravity_m_per_s2", m.def.gravity_m_per_s2, "Gravity in the world frame.");
   io("contact", m.def);
   io("inertia", m.inertia, kInertiaLaws, kInertiaMeaning);
   io("damping_law", m.damping_law, kDampingLaws, kDampingMeaning);
+  io("actuator", m.actuator_text,
+     "In place of the `actuator` of every cable whose builder has one: for files with a `base`.");
   io("allow_disconnected", m.allow_disconnected,
      "Whether bodies that no cable joins to the others are meant. An error if false.");
 }

@@ -23,7 +23,8 @@ void MotorFigureKeys(Io& io, Like<DcMotorDef> auto& m) {
      "Speed of the rotor at which half of what friction at rest has more is gone. Assumed.");
   io("viscous_friction_n_m_s_per_rad", m.viscous_friction_n_m_s_per_rad, Bound::kNonNegative,
      "Friction per speed of the rotor, besides.");
-  io("gear_ratio", m.gear_ratio, Bound::kPositive, "Turns of the rotor a turn of the spool. Assumed.");
+  io("gear_ratio", m.gear_ratio, Bound::kPositive,
+     "Turns of the rotor a turn of the spool. Assumed.");
   io("gear_efficiency", m.gear_efficiency, kEfficiency,
      "Share of the motor's power that reaches the cable when it winds in. When the cable drives "
      "the motor, the gear takes as much friction: a share of 2 - 1 / efficiency arrives, and at "

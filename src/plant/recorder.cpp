@@ -1,6 +1,7 @@
 #include "plant/recorder.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/pattern.h"
 #include "math/vec.h"
@@ -60,13 +61,7 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
     AddMotor("cable/" + def.cables[c].name + "/", static_cast<int>(c));
   }
   for (std::size_t c = 0; experiment.sensors && c < def.cables.size(); ++c) {
-    Add("sensor/" + def.cables[c].name + "/",
-        {{"tension_n", "N"}, {"length_m", "m"}, {"rate_m_per_s", "m/s"}, {"rest_length_m", "m"}},
-        [c](const RecordSource& s, double* out) {
-          const CableState r = s.seen->Cable(static_cast<int>(c));
-          const double values[] = {r.tension_n, r.length_m, r.rate_m_per_s, r.rest_length_m};
-          std::copy(std::begin(values), std::end(values), out);
-        });
+    AddSensor(*experiment.sensors, "sensor/" + def.cables[c].name + "/", static_cast<int>(c));
   }
   for (std::size_t b = 0; has_bodies && b < def.bodies.size(); ++b) {
     Add("body/" + def.bodies[b].name + "/", BodyChannels(),
@@ -88,6 +83,31 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
   if (on_request && is_world) AddLoadChannels(experiment, *this);
   if (is_world) AddContactChannels(experiment, *this);
   row_.resize(channels_.size());
+}
+
+void Recorder::AddSensor(const SensorSpec& sensors, const std::string& prefix, int cable) {
+  Add(prefix,
+      {{"tension_n", "N"}, {"length_m", "m"}, {"rate_m_per_s", "m/s"}, {"rest_length_m", "m"}},
+      [cable](const RecordSource& s, double* out) {
+        const CableState r = s.seen->Cable(cable);
+        const double values[] = {r.tension_n, r.length_m, r.rate_m_per_s, r.rest_length_m};
+        std::copy(std::begin(values), std::end(values), out);
+      });
+  // What was made of counts has whole counts in it.
+  if (sensors.load_cell && sensors.load_cell->counts) {
+    const LoadCellCounts& counts = *sensors.load_cell->counts;
+    Add(prefix, {{"tension_count", "1"}},
+        [cable, gain = counts.gain_n_per_count, offset = counts.offset_n](const RecordSource& s,
+                                                                          double* out) {
+          *out = std::round((s.seen->Cable(cable).tension_n - offset) / gain);
+        });
+  }
+  if (sensors.encoder && sensors.encoder->quantum_m > 0) {
+    Add(prefix, {{"encoder_count", "1"}},
+        [cable, quantum = sensors.encoder->quantum_m](const RecordSource& s, double* out) {
+          *out = std::round(s.seen->Cable(cable).rest_length_m / quantum);
+        });
+  }
 }
 
 void Recorder::AddMotor(const std::string& prefix, int cable) {

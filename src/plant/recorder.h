@@ -50,6 +50,7 @@ class Recorder {
 
  private:
   void AddMotor(const std::string& prefix, int cable);
+  void AddSensor(const SensorSpec& sensors, const std::string& prefix, int cable);
   void AddSystem(const ModelDef& def);
   /// Of a block's channels those for which `keeps(name)`.
   template <class Keeps>

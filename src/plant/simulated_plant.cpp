@@ -19,11 +19,14 @@ class SimulatedPlant final : public Plant, public World {
         commands_(rows_.With(batch.Cables(0).rest_length_target_m)) {
     TAUT_ASSERT(batch.groups() == 1);
     const std::vector<CableDef>& cables = batch.model().def().cables;
+    bool has_backlash = false;
     for (std::size_t c = 0; c < cables.size(); ++c) {
       if (cables[c].actuator.kind == ActuatorDef::Kind::kDcMotor) {
         motors_.push_back(static_cast<int>(c));
+        has_backlash = has_backlash || cables[c].actuator.dc_motor->backlash_rad > 0;
       }
     }
+    if (has_backlash) shaft_m_.resize(cables.size() * lanes_);
     off_.resize(cables.size() * lanes_);
     seen_.lanes = batch.lanes();
     seen_.time_s = time_s_.data();
@@ -33,6 +36,7 @@ class SimulatedPlant final : public Plant, public World {
 
   const Observation& Observe() override {
     batch_.Sense(0);  // the rows stay in place
+    if (!shaft_m_.empty()) ReadShafts();
     return seen_;
   }
   Commands& commands() override { return commands_; }
@@ -74,6 +78,17 @@ class SimulatedPlant final : public Plant, public World {
   std::uint64_t Hash(int lane) const override { return batch_.Hash(lane); }
 
  private:
+  void ReadShafts() {
+    std::copy_n(seen_.cables.rest_length_m, shaft_m_.size(), shaft_m_.begin());
+    for (const int c : motors_) {
+      for (std::size_t j = 0; j < goes_.size(); ++j) {
+        shaft_m_[static_cast<std::size_t>(c) * lanes_ + j] +=
+            batch_.Motor(static_cast<int>(j), c).backlash_m;
+      }
+    }
+    seen_.shaft_m = shaft_m_.data();
+  }
+
   /// Motors go off and on again where commands change to that; who else switches them is not
   /// overruled.
   void Switch() {
@@ -120,7 +135,8 @@ class SimulatedPlant final : public Plant, public World {
   Commands commands_;
   Observation seen_;
   std::vector<int> motors_;        ///< Their cables.
-  std::vector<std::uint8_t> off_;  ///< Rows: those that commands have switched off.
+  std::vector<std::uint8_t> off_;  ///< A row: those that commands have switched off.
+  std::vector<double> shaft_m_;    ///< A row; empty where no gear has backlash.
 };
 
 }  // namespace

@@ -76,8 +76,7 @@ void LoadSupplies(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexce
       const DutyLaw<W> law =
           DutyOf(t, orders, motor, WoundTo(s, t.cable, motor), s.target[t.cable], h);
       const W duty = law.duty - law.falls * motor.speed;
-      const W conducts =
-          orders.on * duty / (WindingOhm(t, motor.winding) + W::Splat(t.driver_ohm));
+      const W conducts = orders.on * duty / (WindingOhm(t, motor.winding) + W::Splat(t.driver_ohm));
       per_volt += conducts * duty;
       back += conducts * W::Splat(t.constant) * motor.speed;
     }
@@ -128,8 +127,7 @@ TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int 
   const W pull = inv_J * way;
   const W slip = speed / (h * decay.half) + drive - pull * tension;
   const W slowness = W::Splat(t.inv_stribeck2) * speed * speed;
-  const W friction =
-      inv_J * (W::Splat(t.friction) + W::Splat(t.static_more) / (one + slowness));
+  const W friction = inv_J * (W::Splat(t.friction) + W::Splat(t.static_more) / (one + slowness));
   const W loss = W::Splat(t.gear_loss);
   const W holds = friction + pull * loss * tension;
   const auto held = (Abs(slip) < holds) | (Abs(slip) == holds);  // what is no number goes on
@@ -193,8 +191,7 @@ void StageMotors(const View& m, const Rows<W>& s, const Scratch<W>& work, double
     motor.to_cable += tension * (before - rest);
     motor.in_winding += h * heat;
     const W outwards = W::Splat(t.winding_w_per_k) * (motor.winding - motor.housing);
-    const W away =
-        W::Splat(t.housing_w_per_k) * (motor.housing - W::Splat(t.ambient_c));
+    const W away = W::Splat(t.housing_w_per_k) * (motor.housing - W::Splat(t.ambient_c));
     motor.winding += h * W::Splat(t.winding_k_per_j) * (heat - outwards);
     motor.housing += h * W::Splat(t.housing_k_per_j) * (outwards - away);
   }

@@ -129,12 +129,8 @@ class Compiler {
       table.attachment_count = static_cast<int>(c.attachments.size());
       table.clamped_damping = c.damping_law == DampingLaw::kClamped;
       const ActuatorDef& limit = c.actuator;
-      table.actuator = {limit.kind,
-                        limit.max_speed_m_per_s,
-                        limit.max_acceleration_m_per_s2,
-                        limit.max_force_n,
-                        limit.min_rest_length_m,
-                        limit.min_length_m};
+      table.actuator = {limit.kind,        limit.max_speed_m_per_s, limit.max_acceleration_m_per_s2,
+                        limit.max_force_n, limit.min_rest_length_m, limit.min_length_m};
       table.inv_max_speed = 1.0 / c.actuator.max_speed_m_per_s;
       for (const AttachmentDef& a : c.attachments) {
         t_.attachments.push_back(Attach(a.body, a.position_m));

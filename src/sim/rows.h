@@ -113,17 +113,18 @@ struct StiffCable : CableRow<W> {
   W across;  ///< Share of the largest stable tension, per tension [1/N] (cables.md, eq. 12).
 };
 
-/// A motor while its cable's tension T is found: its mean speed over the step is `mean` - `slows` T.
+/// A motor while its cable's tension T is found: its mean speed over the step is `mean` - `slows`
+/// T.
 template <class W>
 struct MotorWork {
-  W direction;            ///< 1 winding in, -1 out, 0: friction holds it.
-  W mean, slows;          ///< [rad/s], [rad/(s N)]
-  W end, end_slows;       ///< The same of its speed at the end of the step.
-  W share;                ///< Of the cable's stiffness and damping that acts within this step.
-  W duty, duty_falls;     ///< The duty is `duty` - `duty_falls` times the mean speed. [1], [s/rad]
-  W resistance;           ///< Of winding and driver [ohm].
-  W conducts;             ///< 1, or 0 where the driver is off.
-  W length;               ///< Of its cable at the middle of the step [m].
+  W direction;         ///< 1 winding in, -1 out, 0: friction holds it.
+  W mean, slows;       ///< [rad/s], [rad/(s N)]
+  W end, end_slows;    ///< The same of its speed at the end of the step.
+  W share;             ///< Of the cable's stiffness and damping that acts within this step.
+  W duty, duty_falls;  ///< The duty is `duty` - `duty_falls` times the mean speed. [1], [s/rad]
+  W resistance;        ///< Of winding and driver [ohm].
+  W conducts;          ///< 1, or 0 where the driver is off.
+  W length;            ///< Of its cable at the middle of the step [m].
 };
 
 template <class W>
@@ -142,7 +143,7 @@ struct Scratch {
   Link<W, 1>* links;  ///< Of all cables.
   MotorWork<W>* motors;
   W* supplies;  ///< Voltage under load, per supply [V].
-  W* unsolved;        ///< Per body: 1 in lanes in which it is left to the lane's own solve.
+  W* unsolved;  ///< Per body: 1 in lanes in which it is left to the lane's own solve.
   LaneMemory<simd::Lane<W>> lane;
   DualMemory<W> dual;
   int stiff_count = 0, link_count = 0;

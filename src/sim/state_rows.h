@@ -28,9 +28,9 @@ enum class Halted {
 /// What a motor keeps from step to step (dc_motor.inl).
 template <class Num>
 struct MotorNumbers {
-  Num speed;                  ///< Of the rotor, positive winding in [rad/s].
-  Num gap;                    ///< By this the rest length is shorter than the gear's angle says [m].
-  Num winding, housing;       ///< Temperatures [C].
+  Num speed;             ///< Of the rotor, positive winding in [rad/s].
+  Num gap;               ///< By this the rest length is shorter than the gear's angle says [m].
+  Num winding, housing;  ///< Temperatures [C].
   Num duty, current, supply;  ///< Of the last step: mean duty [1], current [A], voltage [V].
   Num from_supply, to_cable, in_winding;  ///< Energies [J].
 };

@@ -34,9 +34,9 @@ struct CableTable {
 /// A `DcMotorDef` in what its law is written in (dc_motor.inl).
 struct MotorTable {
   int cable = 0, supply = 0;
-  double way_m = 0;           ///< Of the rest length, per angle of the rotor [m/rad].
-  double inv_inertia = 0;     ///< Of the rotor [1/(kg m^2)].
-  double constant = 0;        ///< Torque per current, back EMF per speed [V s/rad].
+  double way_m = 0;        ///< Of the rest length, per angle of the rotor [m/rad].
+  double inv_inertia = 0;  ///< Of the rotor [1/(kg m^2)].
+  double constant = 0;     ///< Torque per current, back EMF per speed [V s/rad].
   double winding_ohm = 0, driver_ohm = 0;
   double rise_per_k = 0, rated_c = 0, ambient_c = 0;
   double friction = 0, static_more = 0;  ///< Coulomb's, and what is above it at rest [N m].
@@ -189,7 +189,7 @@ class Tables final : public Model {
   std::vector<double> inertia;  ///< 3 per body: principal moments [kg m^2].
   std::vector<double> bound_m;  ///< Per body and the world: reach of its shapes from its origin.
   std::vector<CableTable> cables;
-  std::vector<MotorTable> motors;      ///< In the order of their cables.
+  std::vector<MotorTable> motors;  ///< In the order of their cables.
   std::vector<SupplyTable> supplies;
   std::vector<AttachmentTable> attachments;
   std::vector<AttachmentTable> spots;  ///< The distinct points of bodies among them.

@@ -16,8 +16,8 @@ double RotorEnergy(const Batch& world, const DcMotorDef& motor) {
   return 0.5 * motor.rotor_inertia_kg_m2 * w * w;
 }
 
-// Without friction, what comes from the supply is in the winding, in the driver, in the rotor and in
-// the cable, whatever happens; the scheme's own loss is of the step's square.
+// Without friction, what comes from the supply is in the winding, in the driver, in the rotor and
+// in the cable, whatever happens; the scheme's own loss is of the step's square.
 TEST(MotorEnergy, IsAllAccountedFor) {
   DcMotorDef motor = PlainMotor();
   motor.driver_resistance_ohm = 0.45;
@@ -34,8 +34,8 @@ TEST(MotorEnergy, IsAllAccountedFor) {
       const double lost = m.energy_in_winding_j *
                           (motor.resistance_ohm + motor.driver_resistance_ohm) /
                           motor.resistance_ohm;
-      const double missing = m.energy_from_supply_j - lost - m.energy_to_cable_j -
-                             RotorEnergy(world, motor);
+      const double missing =
+          m.energy_from_supply_j - lost - m.energy_to_cable_j - RotorEnergy(world, motor);
       most = std::max(most, std::fabs(missing));
     }
     const double scale = world.Motor(0, 0).energy_from_supply_j;
@@ -63,14 +63,14 @@ TEST(MotorEnergy, ToTheCableIsWhatItStoresAndLifts) {
   }
 }
 
-// At a steady speed: from the supply V i, to the cable T v, and the difference is heat and friction.
+// At a steady speed: from the supply V i, to the cable T v, and the difference is heat and
+// friction.
 TEST(MotorEnergy, OfASteadyLiftIsThatOfTheLaw) {
   DcMotorDef motor;
   motor.resistance_rise_per_k = 0;
   const double k = motor.torque_constant_n_m_per_a, way = Way(motor), load = 20;
   const double ohm = motor.resistance_ohm + motor.driver_resistance_ohm;
-  const double current =
-      (way * load / motor.gear_efficiency + motor.friction_torque_n_m) / k;
+  const double current = (way * load / motor.gear_efficiency + motor.friction_torque_n_m) / k;
   const double speed = (12 - ohm * current) / k;
   Batch world = MakeBatch(MotorWithWeight(motor, Weight(load / 9.81, 1e4, 200)));
   world.SetDuty(0, 0, 1);
@@ -148,8 +148,7 @@ TEST(MotorHeat, FollowsTheTwoBodiesOfTheDataSheet) {
   world.Step(1e-3, 5600);
   const double power = 36 / 19.8;  // from the start: it stalls within milliseconds
   const MotorState m = world.Motor(0, 0);
-  EXPECT_NEAR(m.winding_temperature_c - 22, 10 * power * (1 - std::exp(-1.0)),
-              0.005 * 10 * power);
+  EXPECT_NEAR(m.winding_temperature_c - 22, 10 * power * (1 - std::exp(-1.0)), 0.005 * 10 * power);
   EXPECT_NEAR(m.energy_in_winding_j, power * 5.6, 0.01 * power * 5.6);
 
   motor.winding_thermal_time_s = 0.56;  // sooner over
@@ -224,7 +223,8 @@ TEST(MotorServo, IsTheLinearLawOfItsGains) {
   const double decay = (1 + v * motor.servo_damping_s_per_m) / (2 * tau);
   const double omega = std::sqrt(v * motor.servo_gain_per_m / tau - decay * decay);
   const auto error = [&](double t) {
-    return 1e-4 * std::exp(-decay * t) * (std::cos(omega * t) + decay / omega * std::sin(omega * t));
+    return 1e-4 * std::exp(-decay * t) *
+           (std::cos(omega * t) + decay / omega * std::sin(omega * t));
   };
   double before = 0;
   for (const double h : {1.0 / 500, 1.0 / 1000, 1.0 / 2000, 1.0 / 4000}) {
@@ -335,8 +335,8 @@ std::vector<double> EndOfARun(double h, double stiffness, double damping, double
           m.energy_from_supply_j};
 }
 
-// What a step leaves out shrinks with it, at least in proportion: stops and starts within a step, and
-// the servo's saturation, are of first order, all else of second.
+// What a step leaves out shrinks with it, at least in proportion: stops and starts within a step,
+// and the servo's saturation, are of first order, all else of second.
 TEST(MotorStep, ConvergesWithTheStep) {
   for (const double stiffness : {227.0, 1e4, 1e5}) {
     const double damping = 0.4 * std::sqrt(stiffness * 0.8);

@@ -127,8 +127,8 @@ TEST(Motor, StallsAtTheTensionThatItsTorqueHolds) {
   motor.friction_torque_n_m = motor.static_friction_torque_n_m = 8e-5;
   motor.gear_efficiency = 0.66;
   for (const double duty : {1.0, 0.4}) {
-    const double torque = motor.torque_constant_n_m_per_a * duty * motor.supply_voltage_v /
-                          motor.resistance_ohm;
+    const double torque =
+        motor.torque_constant_n_m_per_a * duty * motor.supply_voltage_v / motor.resistance_ohm;
     const double tension =
         motor.gear_efficiency * (torque - motor.friction_torque_n_m) / Way(motor);
     for (const double h : kThreeStepsS) {
@@ -236,8 +236,8 @@ TEST(Motor, BreaksAwayAtTheFrictionOfRest) {
   motor.friction_torque_n_m = 8e-5;
   motor.static_friction_torque_n_m = 3e-4;
   motor.stribeck_speed_rad_per_s = 1;
-  const double per_duty = motor.torque_constant_n_m_per_a * motor.supply_voltage_v /
-                          motor.resistance_ohm;
+  const double per_duty =
+      motor.torque_constant_n_m_per_a * motor.supply_voltage_v / motor.resistance_ohm;
   Batch world = MakeBatch(MotorAlone(motor));
   world.SetDuty(0, 0, 0.99 * 3e-4 / per_duty);
   world.Step(1e-3, 1000);
