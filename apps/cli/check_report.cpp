@@ -61,6 +61,11 @@ std::string Fixed(double x, int digits) {
 std::string ActuatorText(const ActuatorDef& actuator) {
   if (actuator.kind == ActuatorDef::Kind::kNone) return "-";
   if (actuator.kind == ActuatorDef::Kind::kIdeal) return "ideal";
+  if (actuator.kind == ActuatorDef::Kind::kDcMotor) {
+    const DcMotorDef& motor = *actuator.dc_motor;
+    return fmt::format("dc_motor {:g} V {:g}:1 {:g} mm", motor.supply_voltage_v, motor.gear_ratio,
+                       1e3 * motor.spool_radius_m);
+  }
   std::string text;
   if (std::isfinite(actuator.max_speed_m_per_s))
     text += fmt::format("{:g} m/s ", actuator.max_speed_m_per_s);

@@ -162,6 +162,16 @@ class Batch {
   /// The actuator's target for a cable's rest length [m].
   void SetRestLengthTarget(int world, int cable, double rest_length_m) noexcept;
   double RestLengthTarget(int world, int cable) const noexcept;
+  /// The share of its supply's voltage that a cable's motor gets, -1..1; positive winds in. What is
+  /// beyond counts as the end; what is not a number halts the world. From here on the motor follows
+  /// no target, until `SetRestLengthTarget` says one: its servo takes over again. (Targets that are
+  /// set for many cables at once change no motor's mode.) For this and the next two, a cable
+  /// without a `dc_motor` is an index out of range.
+  void SetDuty(int world, int cable, double duty) noexcept;
+  /// Whether the motor's driver is on. Off: no current flows, whatever the duty or the target; the
+  /// motor runs down by its friction. At first it is on.
+  void SetMotorEnabled(int world, int cable, bool enabled) noexcept;
+  MotorState Motor(int world, int cable) const noexcept;
   /// A force on a node [N], in W, for all following steps.
   void SetNodeForce(int world, int node, const Vec3& force_n) noexcept;
   Vec3 NodeForce(int world, int node) const noexcept;

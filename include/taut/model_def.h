@@ -6,9 +6,11 @@
 /// the moment t = 0, as described (before any settling).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "taut/dc_motor.h"
 #include "taut/types.h"
 
 namespace taut {
@@ -79,6 +81,7 @@ struct ActuatorDef {
     kNone,     ///< Rest length fixed; commands are ignored.
     kIdeal,    ///< The rest length is what was commanded, at once.
     kLimited,  ///< Follows the command within the limits below.
+    kDcMotor,  ///< Is a motor: `dc_motor`. Of the limits, only `min_rest_length_m` is one of it.
   };
   Kind kind = Kind::kNone;
   double max_speed_m_per_s = 0.0;          ///< Of the rest length, > 0; infinity: no limit.
@@ -86,6 +89,7 @@ struct ActuatorDef {
   double max_force_n = 0.0;                ///< Never winds past this tension, > 0; may be infinity.
   double min_rest_length_m = 0.0;          ///< >= 0.
   double min_length_m = 0.0;               ///< Does not wind in while the cable is shorter, >= 0.
+  std::optional<DcMotorDef> dc_motor;      ///< There if and only if it is one.
 };
 
 /// Where a cable is fixed to, or slides through, a body.

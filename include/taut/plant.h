@@ -54,6 +54,9 @@ struct Observation {
   int lanes = 1;
   const double* time_s = nullptr;  ///< Of each lane's clock.
   ReadingRows cables;
+  /// A row: what the shafts of motors say of the rest lengths, which differs from them where gears
+  /// have backlash; null: nothing else.
+  const double* shaft_m = nullptr;
   const std::uint32_t* faults = nullptr;  ///< `FaultBits`, a row; null: nobody looks for any.
   const Bodies* bodies = nullptr;         ///< Null: nobody knows.
 
@@ -71,7 +74,8 @@ enum class CommandMode : unsigned char {
   kTension,     ///< Bring the tension to `set_point_n`, if it has a law of its own for that, as a
                 ///< board has; else go to `rest_length_m`.
   kHold,        ///< Stay where it is.
-  kOff,         ///< No power. An actuator that nothing can turn from outside stays where it is.
+  kOff,         ///< No power: a `dc_motor` runs down, or its cable drives it back. What nothing can
+                ///< turn from outside stays where it is.
 };
 
 /// What controllers say to the plant and to each other. Held until changed. Rows of the plant.
@@ -96,6 +100,7 @@ class World : public Bodies {
   virtual Vec3 NodeForce(int lane, int node) const = 0;
   virtual double BodyMass(int lane, int body) const = 0;  ///< [kg]
   virtual Energy TotalEnergy(int lane) const = 0;
+  virtual MotorState Motor(int lane, int cable) const = 0;  ///< Of a cable with a `dc_motor`.
   virtual std::vector<ContactState> Contacts(int lane) const = 0;
   virtual WorldStatus Status(int lane) const = 0;
   virtual std::uint64_t Hash(int lane) const = 0;

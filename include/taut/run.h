@@ -24,6 +24,15 @@ struct Range {
 };
 
 /// What a run has to say about one cable. All values over every step, not only recorded rows.
+/// What a `dc_motor` took and gave, for sizing supplies and for its heat.
+struct MotorSummary {
+  double energy_from_supply_j = 0;
+  double energy_to_cable_j = 0;
+  double energy_in_winding_j = 0;  ///< Heat.
+  double max_current_a = 0;        ///< Largest either way.
+  double max_winding_temperature_c = 0;
+};
+
 struct CableSummary {
   std::string name;
   struct Quantity {
@@ -34,11 +43,12 @@ struct CableSummary {
   Quantity tension;  ///< Spring and damper: what a load cell feels.
   Quantity elastic;  ///< k (l - L) alone: what NTRT logs.
   /// Of the cable's actuator, for sizing motors (zero without one).
-  double max_force_n = 0;        ///< Largest tension while it had to hold or move.
-  double max_speed_m_per_s = 0;  ///< Largest rate of the rest length.
-  double max_power_w = 0;        ///< Largest tension times winding-in rate.
-  double energy_j = 0;           ///< Work done while winding in.
-  double net_energy_j = 0;       ///< The same less what paying out gave back.
+  double max_force_n = 0;             ///< Largest tension while it had to hold or move.
+  double max_speed_m_per_s = 0;       ///< Largest rate of the rest length.
+  double max_power_w = 0;             ///< Largest tension times winding-in rate.
+  double energy_j = 0;                ///< Work done while winding in.
+  double net_energy_j = 0;            ///< The same less what paying out gave back.
+  std::optional<MotorSummary> motor;  ///< If it is a `dc_motor` of a simulation.
 };
 
 struct DragSummary {

@@ -216,7 +216,18 @@ struct StartNoise {
   double heading_rad = 0.0;  ///< The whole robot about the vertical, by up to this either way.
 };
 
-/// A tension through a load cell: T' = T + bias + noise, limited to a range, in quanta, late.
+/// What a board makes of a load cell: whole counts, from 0 on, cut off where the amplifier or the
+/// converter ends; force = gain count + offset. The defaults are Tetraspine3's (paper eq. 7).
+struct LoadCellCounts {
+  double gain_n_per_count = 0.1567;  ///< > 0.
+  double offset_n = -4.9363;         ///< The force of count 0.
+  int bits = 10;                     ///< Of the converter, 1..32.
+  int saturation_count = 741;        ///< Where the amplifier ends, >= 1.
+  double noise_counts = 0.0;         ///< Standard deviation of each sample before it is counted.
+};
+
+/// A tension through a load cell: T' = (1 + gain) T + bias + drift t + noise, limited to a range,
+/// in quanta or counts, late.
 struct LoadCellSpec {
   double noise_n = 0.0;  ///< Standard deviation of each sample, white.
   double bias_n = 0.0;   ///< Standard deviation of each cell's error for the whole run.
@@ -224,12 +235,20 @@ struct LoadCellSpec {
   double max_n = std::numeric_limits<double>::infinity();
   double quantum_n = 0.0;  ///< Step of the converter, from min_n on; 0: none.
   double delay_s = 0.0;    ///< Whole sensor periods.
+  // Standard deviations over the cells, each drawn once a run: what a calibration got wrong.
+  double gain_error = 0.0;               ///< Of the gain, relative. [1]
+  double drift_n_per_s = 0.0;            ///< Of the rate at which the zero moves.
+  std::optional<LoadCellCounts> counts;  ///< In place of range and quantum.
 };
 
 /// A rest length through counts of a motor's encoder.
 struct EncoderSpec {
   double quantum_m = 0.0;  ///< Rest length of a count; 0: exact.
   double delay_s = 0.0;    ///< Whole sensor periods.
+  // Standard deviations over the cables, each drawn once a run.
+  double zero_error_m = 0.0;  ///< Of the rest length that counts begin with.
+  double gain_error = 0.0;    ///< Of the rest length per count, relative. [1]
+  double index_m = 0.0;  ///< Between two marks that tell what is wrong by less than that; 0: none.
 };
 
 /// What stands between the robot and its controllers. Without it they see exact values.

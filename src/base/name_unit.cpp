@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -11,8 +12,9 @@ namespace {
 /// "s^2" of "s2". Empty if a word is no unit.
 std::string UnitOfWord(std::string_view word) {
   constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
-      {"m", "m"}, {"s", "s"},   {"kg", "kg"},   {"n", "N"},
-      {"j", "J"}, {"hz", "Hz"}, {"rad", "rad"}, {"pa", "Pa"},
+      {"m", "m"},   {"s", "s"},     {"kg", "kg"}, {"n", "N"},     {"j", "J"},
+      {"hz", "Hz"}, {"rad", "rad"}, {"pa", "Pa"}, {"ohm", "ohm"}, {"a", "A"},
+      {"v", "V"},   {"w", "W"},     {"k", "K"},   {"c", "degC"},
   };
   std::string power;
   if (word.size() > 1 && word.back() >= '2' && word.back() <= '9') {
@@ -23,6 +25,15 @@ std::string UnitOfWord(std::string_view word) {
     if (word == written) return std::string(unit) + power;
   }
   return {};
+}
+
+/// Many names end in a letter that counts or is a component: body_a, orientation_w. It is a unit
+/// where the word before says of what.
+bool IsOnlyLetter(std::string_view word, std::string_view before) {
+  constexpr std::string_view kLetters[] = {"a", "v", "w", "k", "c"};
+  constexpr std::string_view kQuantities[] = {"current", "voltage", "power", "temperature"};
+  return std::find(std::begin(kLetters), std::end(kLetters), word) != std::end(kLetters) &&
+         std::find(std::begin(kQuantities), std::end(kQuantities), before) == std::end(kQuantities);
 }
 
 }  // namespace
@@ -41,6 +52,7 @@ NameUnit UnitAtEnd(std::string_view name) {
   words.push_back(name);
   std::size_t from = words.size();
   while (from > 1 && (words[from - 1] == "per" || !UnitOfWord(words[from - 1]).empty())) --from;
+  if (from + 1 == words.size() && IsOnlyLetter(words[from], words[from - 1])) return {};
   const auto begin = words.begin() + static_cast<std::ptrdiff_t>(from);
   const auto per = std::find(begin, words.end(), "per");
   const auto join = [](auto first, auto last) {

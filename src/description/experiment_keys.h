@@ -4,6 +4,7 @@
 #include "description/control_keys.h"
 #include "description/experiment_text.h"
 #include "description/model_keys.h"
+#include "description/sensor_keys.h"
 
 namespace taut::description {
 
@@ -15,7 +16,6 @@ inline const Choices<ScaleSpec::Quantity> kScaledQuantities{
     {"mass", ScaleSpec::Quantity::kMass},
     {"stiffness", ScaleSpec::Quantity::kStiffness},
     {"damping", ScaleSpec::Quantity::kDamping}};
-inline const Choices<bool> kLengthSources{{"exact", false}, {"from_tension", true}};
 inline const Choices<ReferenceSpec::Quantity> kReferenceQuantities{
     {"tension", ReferenceSpec::Quantity::kTension}, {"elastic", ReferenceSpec::Quantity::kElastic}};
 inline const Choices<ReferenceSpec::Statistic> kReferenceStatistics{
@@ -169,69 +169,6 @@ void Keys(Io& io, Like<TimelineText> auto& t) {
      Example{R"({"before": [25, 30], "during": [35, 40]})"});
   io("events", t.events, "What is done to the robot. Names are unique.");
 }
-
-template <class Io, Either<LoadCellSpec, LoadCellText> Cell>
-void Keys(Io& io, Cell& c) {
-  io.Map("", "load_cell",
-         "Tensions are read with bias and noise, limited to a range, rounded to a quantum, and "
-         "late. A cell cannot tell the spring from the damper: controllers that use the spring's "
-         "part get the whole.");
-  io("noise_n", c.noise_n, Bound::kNonNegative, "Standard deviation of each sample.");
-  io("bias_n", c.bias_n, Bound::kNonNegative,
-     "Standard deviation of each cell's constant error, drawn once a run.");
-  if constexpr (Io::kResolved) {
-    io("min_n", c.min_n);
-    io("max_n", c.max_n, kLimit);
-  } else {
-    io("range_n", c.range_n, "What the cell can tell, [least, greatest].", Example{"[0, 100]"});
-    io("bits", c.bits, Bound{.least = 1, .most = 32},
-       "Of the converter: the range in 2^bits - 1 quanta. Wants `range_n`.");
-    io.Rule(R"("dependentRequired": {"bits": ["range_n"]})");
-  }
-  io("quantum_n", c.quantum_n, Bound::kNonNegative,
-     "The converter's step itself, instead of `bits`; 0: none.");
-  io("delay_s", c.delay_s, Bound::kNonNegative,
-     "How late readings are, a whole number of sensor periods.");
-}
-void Check(const MapReader& map, LoadCellText& cell);
-
-template <class Io, Either<EncoderSpec, EncoderText> Encoder>
-void Keys(Io& io, Encoder& e) {
-  io.Map("", "encoder", "Rest lengths are read in counts of the motor's encoder.");
-  io("quantum_m", e.quantum_m, Bound::kNonNegative, "Rest length of a count; 0: exact.");
-  if constexpr (!Io::kResolved) {
-    io("counts_per_turn", e.counts_per_turn, Bound::kPositive,
-       "Counts of a turn of the spool, instead of `quantum_m`; with `spool_radius_m`.");
-    io("spool_radius_m", e.spool_radius_m, Bound::kPositive,
-       "Radius of the spool to the cable's middle.");
-    io.Rule(R"("dependentRequired": {"counts_per_turn": ["spool_radius_m"], )"
-            R"("spool_radius_m": ["counts_per_turn"]})");
-  }
-  io("delay_s", e.delay_s, Bound::kNonNegative,
-     "How late readings are, a whole number of sensor periods.");
-}
-void Check(const MapReader& map, EncoderText& encoder);
-
-template <class Io, Either<SensorSpec, SensorText> Sensors>
-void Keys(Io& io, Sensors& s) {
-  io.Map("sensors", "sensors",
-         "What controllers see of the robot, docs/theory/sensors.md. Without this key they see "
-         "exact values.");
-  io("period_s", s.period_s, Bound::kPositive,
-     "Time between samples; the first is at t = 0. Controllers see the last sample.");
-  if constexpr (Io::kResolved) {
-    io("load_cell", s.load_cell);
-    io("encoder", s.encoder);
-    io("length_from_tension", s.length_from_tension);
-  } else {
-    io("load_cell", s.load_cell_text);
-    io("encoder", s.encoder_text);
-    io("length", s.length_from_tension, kLengthSources,
-       "A cable's length as it is, or worked out from rest length and tension, L + T / k, with its "
-       "rate from successive samples, as a board must do it.");
-  }
-}
-void Check(const MapReader& map, SensorText& sensors);
 
 template <class Io>
 void Keys(Io& io, Like<ScaleSpec> auto& s) {

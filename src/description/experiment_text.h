@@ -134,6 +134,10 @@ struct LoadCellText : LoadCellSpec {
 };
 struct EncoderText : EncoderSpec {
   std::optional<double> counts_per_turn, spool_radius_m;
+  std::optional<int> lines;
+  int decoding = 4;
+  double gear_ratio = 1.0;
+  bool index = false;
 };
 struct SensorText : SensorSpec {
   std::optional<LoadCellText> load_cell_text;

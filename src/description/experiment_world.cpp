@@ -30,65 +30,7 @@ std::vector<int> SelectBodies(const Value& value, const std::string& what, const
   return bodies;
 }
 
-/// A delay in whole periods, so that it does not depend on when samples are looked at. `what` is
-/// the sensor, a key of `map`.
-void CheckDelay(const MapReader& map, const char* what, double delay_s, double period_s) {
-  constexpr double kLongest = 10000;  // samples that have to be kept
-  const Value* sensor = map.Find(what);
-  const double periods = delay_s / period_s;
-  if (!sensor || std::isnan(periods)) return;
-  const std::string path = map.Path(what) + ".delay_s";
-  if (periods > kLongest) {
-    map.scope().out.Error(KeyAt(*sensor, "delay_s"),
-                          path + " must not be longer than 10000 sensor periods",
-                          "the period is " + Shown(period_s) + " s");
-  } else if (std::fabs(periods - std::floor(periods + 0.5)) > 1e-6) {
-    map.scope().out.Error(
-        KeyAt(*sensor, "delay_s"),
-        path + " must be a whole number of sensor periods, got " + Shown(periods),
-        "the period is " + Shown(period_s) + " s; give `sensors` another `period_s`");
-  }
-}
-
 }  // namespace
-
-void Check(const MapReader& map, LoadCellText& cell) {
-  cell.min_n = map.Has("range_n") ? cell.range_n.first : 0.0;
-  cell.max_n = cell.range_n.second;
-  if (cell.min_n >= cell.max_n) {
-    map.scope().out.Error(
-        map.Find("range_n")->at,
-        map.Path("range_n") + ": " + Shown(cell.min_n) + " is not below " + Shown(cell.max_n),
-        "write [least, greatest]");
-  }
-  if (!map.Has("bits")) return;
-  if (map.Has("quantum_n")) {
-    map.Error("bits", map.what() + " has bits and quantum_n", "one follows from the other");
-  }
-  if (!map.Has("range_n")) {
-    map.Error("bits", map.Path("bits") + " needs the key \"range_n\" beside it",
-              "write `range_n: [0, 100]`");
-  }
-  if (cell.bits) cell.quantum_n = (cell.max_n - cell.min_n) / (std::ldexp(1.0, *cell.bits) - 1.0);
-}
-
-void Check(const MapReader& map, EncoderText& encoder) {
-  constexpr double kTwoPi = 6.28318530717958647692;
-  if (!encoder.counts_per_turn && !encoder.spool_radius_m) return;
-  if (map.Has("quantum_m")) {
-    map.Error("quantum_m", map.what() + " has quantum_m and counts_per_turn",
-              "one follows from the other");
-  }
-  if (!map.Require("counts_per_turn") || !map.Require("spool_radius_m")) return;
-  encoder.quantum_m = kTwoPi * *encoder.spool_radius_m / *encoder.counts_per_turn;
-}
-
-void Check(const MapReader& map, SensorText& sensors) {
-  sensors.load_cell = sensors.load_cell_text;
-  sensors.encoder = sensors.encoder_text;
-  if (sensors.load_cell) CheckDelay(map, "load_cell", sensors.load_cell->delay_s, sensors.period_s);
-  if (sensors.encoder) CheckDelay(map, "encoder", sensors.encoder->delay_s, sensors.period_s);
-}
 
 void Check(const MapReader& map, ScaleText& scale) {
   std::string key;  // one at most: of several none was looked at

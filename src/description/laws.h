@@ -29,7 +29,8 @@ inline const Choices<InertiaLaw> kInertiaLaws{{"exact", InertiaLaw::kExact},
                                               {"bounding_box", InertiaLaw::kBoundingBox}};
 inline const Choices<ActuatorDef::Kind> kActuatorKinds{{"none", ActuatorDef::Kind::kNone},
                                                        {"ideal", ActuatorDef::Kind::kIdeal},
-                                                       {"limited", ActuatorDef::Kind::kLimited}};
+                                                       {"limited", ActuatorDef::Kind::kLimited},
+                                                       {"dc_motor", ActuatorDef::Kind::kDcMotor}};
 inline const Choices<bool> kCableEnds{{"node", false}, {"surface", true}};
 
 }  // namespace taut::description

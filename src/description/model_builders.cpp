@@ -39,12 +39,35 @@ void Check(const MapReader& map, BoxText& box) {
   }
 }
 
+void Check(const MapReader& map, DcMotorDef& motor) {
+  if (!(motor.static_friction_torque_n_m < motor.friction_torque_n_m)) return;
+  const char* const key =
+      map.Has("static_friction_torque_n_m") ? "static_friction_torque_n_m" : "friction_torque_n_m";
+  map.Error(key,
+            map.Path("static_friction_torque_n_m") + " is " +
+                Shown(motor.static_friction_torque_n_m) + ", below friction_torque_n_m of " +
+                Shown(motor.friction_torque_n_m),
+            "friction at rest is not less than that of sliding");
+}
+
+/// A motor's limits are its figures.
+void CheckMotor(const MapReader& map, ActuatorText& actuator) {
+  actuator.kind = ActuatorDef::Kind::kDcMotor;
+  for (const char* other :
+       {"ideal", "max_speed_m_per_s", "max_acceleration_m_per_s2", "max_force_n", "min_length_m"}) {
+    if (!map.Has(other)) continue;
+    map.Error(other, map.what() + " has both dc_motor and " + std::string(other),
+              "beside a dc_motor there is min_rest_length_m only");
+  }
+}
+
 void Check(const MapReader& map, ActuatorText& actuator) {
   const bool limited = map.HasAnyBut("ideal");
+  if (actuator.dc_motor) return CheckMotor(map, actuator);
   if (actuator.ideal && limited) {
     map.Error("ideal", "an ideal actuator has no limits", "leave out `ideal`, or the limits");
   } else if (!actuator.ideal && !limited && map.is_map()) {
-    map.scope().out.Error(map.at(), map.what() + " needs limits, or `ideal: true`",
+    map.scope().out.Error(map.at(), map.what() + " needs limits, a `dc_motor`, or `ideal: true`",
                           "without an actuator the rest length is fixed");
   }
   actuator.kind = actuator.ideal ? ActuatorDef::Kind::kIdeal : ActuatorDef::Kind::kLimited;

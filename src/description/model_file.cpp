@@ -1,7 +1,40 @@
+#include <cmath>
+#include <map>
+#include <string>
+
 #include "description/model_keys.h"
 #include "description/read_keys.h"
 
 namespace taut::description {
+namespace {
+
+/// Motors of different builders may share a supply, which has one voltage and one resistance.
+void CheckSupplies(const ModelText& model, Diagnostics& out) {
+  std::map<std::string, const BuilderText*> first;
+  for (const BuilderText& builder : model.builders) {
+    if (!builder.cable || !builder.cable->actuator.dc_motor) continue;
+    const DcMotorDef& motor = *builder.cable->actuator.dc_motor;
+    const BuilderText& other = *first.emplace(motor.supply, &builder).first->second;
+    const DcMotorDef& there = *other.cable->actuator.dc_motor;
+    const auto figures = [](const DcMotorDef& m) {
+      return Shown(m.supply_voltage_v) + " V and " + Shown(m.supply_resistance_ohm) + " ohm";
+    };
+    if (figures(motor) == figures(there)) continue;
+    if (std::isnan(motor.supply_voltage_v + motor.supply_resistance_ohm + there.supply_voltage_v +
+                   there.supply_resistance_ohm)) {
+      continue;  // complained about already
+    }
+    out.Error(builder.at,
+              "a dc_motor's supply \"" + motor.supply +
+                  "\" has other figures than in the builder of "
+                  "line " +
+                  std::to_string(other.at.line) + ": " + figures(motor) + ", there " +
+                  figures(there),
+              "give one of them another `supply`");
+  }
+}
+
+}  // namespace
 
 void Check(const MapReader& map, ModelText& model) {
   for (auto& item : model.parts_text.items) {
@@ -14,6 +47,11 @@ void Check(const MapReader& map, ModelText& model) {
   model.pairs_complete = model.pairs_complete && model.loose.pairs_complete;
   FinishStructure(map, model);
   FinishBuilders(map, model);
+  for (BuilderText& builder : model.builders) {
+    if (!model.actuator_text || !builder.cable || !builder.cable->actuator_text) continue;
+    builder.cable->actuator = *model.actuator_text;
+  }
+  CheckSupplies(model, map.scope().out);
   if (!map.Has("nodes") && !map.Has("structure")) {
     map.scope().out.Error(map.at(), "the model places nothing",
                           map.Has("parts")

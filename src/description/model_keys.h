@@ -2,6 +2,7 @@
 #pragma once
 
 #include "description/model_text.h"
+#include "description/motor_keys.h"
 #include "description/rotation.h"
 #include "description/surface_keys.h"
 
@@ -207,7 +208,7 @@ void Check(const MapReader& map, BoxText& box);
 template <class Io, Either<ActuatorDef, ActuatorText> Actuator>
 void Keys(Io& io, Actuator& a) {
   io.Map("", "builder.cable.actuator",
-         "A motor that changes the rest length, either ideal or with at least one limit. Without "
+         "What changes the rest length: ideal, with at least one limit, or a `dc_motor`. Without "
          "an actuator the rest length is fixed.");
   io("kind", a.kind, kActuatorKinds, kResolvedOnly);
   if constexpr (!Io::kResolved) {
@@ -222,6 +223,7 @@ void Keys(Io& io, Actuator& a) {
   io("min_rest_length_m", a.min_rest_length_m, Bound::kNonNegative, "Least rest length.");
   io("min_length_m", a.min_length_m, Bound::kNonNegative,
      "The motor does not wind in while the cable is shorter than this.");
+  io("dc_motor", a.dc_motor);
 }
 void Check(const MapReader& map, ActuatorText& actuator);
 
@@ -313,6 +315,8 @@ void Keys(Io& io, Like<ModelText> auto& m) {
   io("contact", m.def);
   io("inertia", m.inertia, kInertiaLaws, kInertiaMeaning);
   io("damping_law", m.damping_law, kDampingLaws, kDampingMeaning);
+  io("actuator", m.actuator_text,
+     "In place of the `actuator` of every cable whose builder has one: for files with a `base`.");
   io("allow_disconnected", m.allow_disconnected,
      "Whether bodies that no cable joins to the others are meant. An error if false.");
 }

@@ -182,6 +182,7 @@ struct ModelText {
   ModelDef def;  ///< What the file says of the model as a whole: its laws.
   InertiaLaw inertia = InertiaLaw::kExact;
   DampingLaw damping_law = DampingLaw::kExact;  ///< Of cables that have none of their own.
+  std::optional<ActuatorText> actuator_text;    ///< In place of that of every cable that has one.
   bool allow_disconnected = false;
   PartText loose;  ///< The nodes and pairs at the top of the file.
   Named<PartText> parts_text;

@@ -27,6 +27,10 @@ std::string TagsText(const Tags& tags, const Tags& implied) {
 
 std::string ActuatorText(const ActuatorDef& a) {
   if (a.kind == ActuatorDef::Kind::kIdeal) return "{ideal: true}";
+  if (a.kind == ActuatorDef::Kind::kDcMotor) {
+    return "{min_rest_length_m: " + Shown(a.min_rest_length_m) +
+           ", dc_motor: " + FlowWriter<false>::Text(*a.dc_motor) + "}";
+  }
   std::string text;
   const auto add = [&](const char* key, double value) {
     text += (text.empty() ? "" : ", ") + std::string(key) + ": " + Shown(value);

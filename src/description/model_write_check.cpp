@@ -38,6 +38,9 @@ bool Same(const Material& a, const Material& b) {
 bool Same(const ActuatorDef& a, const ActuatorDef& b) {
   if (a.kind != b.kind || a.kind == ActuatorDef::Kind::kNone) return a.kind == b.kind;
   if (a.kind == ActuatorDef::Kind::kIdeal) return true;
+  if (a.kind == ActuatorDef::Kind::kDcMotor) {
+    return a.min_rest_length_m == b.min_rest_length_m && a.dc_motor == b.dc_motor;
+  }
   return a.max_speed_m_per_s == b.max_speed_m_per_s &&
          a.max_acceleration_m_per_s2 == b.max_acceleration_m_per_s2 &&
          a.max_force_n == b.max_force_n && a.min_rest_length_m == b.min_rest_length_m &&

@@ -72,11 +72,12 @@ Pose PoseOf(const Batch& batch) {
     pose.bodies.push_back(batch.Body(kTheWorld, static_cast<int>(b)));
   }
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
-    // Without an actuator nothing obeys a command, and none goes below its least rest length.
+    // Without an actuator nothing obeys a command, and none goes below its least rest length. A
+    // motor's servo may be short of its target, which friction holds.
     const ActuatorDef& actuator = def.cables[c].actuator;
     const int cable = static_cast<int>(c);
     pose.rest_lengths_m.push_back(
-        actuator.kind == ActuatorDef::Kind::kNone
+        actuator.kind == ActuatorDef::Kind::kNone || actuator.kind == ActuatorDef::Kind::kDcMotor
             ? batch.Cable(kTheWorld, cable).rest_length_m
             : std::max(batch.RestLengthTarget(kTheWorld, cable), actuator.min_rest_length_m));
   }

@@ -1,6 +1,7 @@
 #include "plant/recorder.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/pattern.h"
 #include "math/vec.h"
@@ -55,14 +56,12 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
           std::copy_n(values, count, out);
         });
   }
+  for (std::size_t c = 0; is_world && c < def.cables.size(); ++c) {
+    if (def.cables[c].actuator.kind != ActuatorDef::Kind::kDcMotor) continue;
+    AddMotor("cable/" + def.cables[c].name + "/", static_cast<int>(c));
+  }
   for (std::size_t c = 0; experiment.sensors && c < def.cables.size(); ++c) {
-    Add("sensor/" + def.cables[c].name + "/",
-        {{"tension_n", "N"}, {"length_m", "m"}, {"rate_m_per_s", "m/s"}, {"rest_length_m", "m"}},
-        [c](const RecordSource& s, double* out) {
-          const CableState r = s.seen->Cable(static_cast<int>(c));
-          const double values[] = {r.tension_n, r.length_m, r.rate_m_per_s, r.rest_length_m};
-          std::copy(std::begin(values), std::end(values), out);
-        });
+    AddSensor(*experiment.sensors, "sensor/" + def.cables[c].name + "/", static_cast<int>(c));
   }
   for (std::size_t b = 0; has_bodies && b < def.bodies.size(); ++b) {
     Add("body/" + def.bodies[b].name + "/", BodyChannels(),
@@ -84,6 +83,55 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
   if (on_request && is_world) AddLoadChannels(experiment, *this);
   if (is_world) AddContactChannels(experiment, *this);
   row_.resize(channels_.size());
+}
+
+void Recorder::AddSensor(const SensorSpec& sensors, const std::string& prefix, int cable) {
+  Add(prefix,
+      {{"tension_n", "N"}, {"length_m", "m"}, {"rate_m_per_s", "m/s"}, {"rest_length_m", "m"}},
+      [cable](const RecordSource& s, double* out) {
+        const CableState r = s.seen->Cable(cable);
+        const double values[] = {r.tension_n, r.length_m, r.rate_m_per_s, r.rest_length_m};
+        std::copy(std::begin(values), std::end(values), out);
+      });
+  // What was made of counts has whole counts in it.
+  if (sensors.load_cell && sensors.load_cell->counts) {
+    const LoadCellCounts& counts = *sensors.load_cell->counts;
+    Add(prefix, {{"tension_count", "1"}},
+        [cable, gain = counts.gain_n_per_count, offset = counts.offset_n](const RecordSource& s,
+                                                                          double* out) {
+          *out = std::round((s.seen->Cable(cable).tension_n - offset) / gain);
+        });
+  }
+  if (sensors.encoder && sensors.encoder->quantum_m > 0) {
+    Add(prefix, {{"encoder_count", "1"}},
+        [cable, quantum = sensors.encoder->quantum_m](const RecordSource& s, double* out) {
+          *out = std::round(s.seen->Cable(cable).rest_length_m / quantum);
+        });
+  }
+}
+
+void Recorder::AddMotor(const std::string& prefix, int cable) {
+  Add(prefix,
+      {{"duty", "1"},
+       {"current_a", "A"},
+       {"supply_voltage_v", "V"},
+       {"rotor_angle_rad", "rad"},
+       {"rotor_speed_rad_per_s", "rad/s"},
+       {"winding_temperature_c", "degC"},
+       {"energy_from_supply_j", "J"},
+       {"energy_to_cable_j", "J"}},
+      [cable](const RecordSource& s, double* out) {
+        const MotorState m = s.world->Motor(0, cable);
+        const double values[] = {m.duty,
+                                 m.current_a,
+                                 m.supply_voltage_v,
+                                 m.rotor_angle_rad,
+                                 m.rotor_speed_rad_per_s,
+                                 m.winding_temperature_c,
+                                 m.energy_from_supply_j,
+                                 m.energy_to_cable_j};
+        std::copy(std::begin(values), std::end(values), out);
+      });
 }
 
 void Recorder::AddSystem(const ModelDef& def) {

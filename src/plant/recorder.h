@@ -49,6 +49,8 @@ class Recorder {
   void CountContacts(std::size_t count, std::size_t room);
 
  private:
+  void AddMotor(const std::string& prefix, int cable);
+  void AddSensor(const SensorSpec& sensors, const std::string& prefix, int cable);
   void AddSystem(const ModelDef& def);
   /// Of a block's channels those for which `keeps(name)`.
   template <class Keeps>

@@ -45,7 +45,7 @@ class Runner {
     auto last_progress = start;
     RunSummary summary;
     summary.experiment = experiment_.name;
-    statistics_.Take(0.0, 0.0, loop_.exact(), loop_.timeline().drag_n());
+    TakeStatistics(0.0, 0.0);
     std::int64_t rows = 0;
     bool good = true;
     while (good && loop_.time_s() < experiment_.duration_s && !summary.interrupted) {
@@ -56,7 +56,7 @@ class Runner {
       }
       loop_.Step();
       const double time_s = loop_.time_s();
-      statistics_.Take(time_s, loop_.step_s()[0], loop_.exact(), loop_.timeline().drag_n());
+      TakeStatistics(time_s, loop_.step_s()[0]);
       if (good && RowIsDue(time_s, rows)) good = Record(rows, out);
       if ((++steps_done_ & 63) == 0) {
         const auto now = Clock::now();
@@ -92,6 +92,11 @@ class Runner {
   }
 
  private:
+  void TakeStatistics(double time_s, double step_s) {
+    statistics_.Take(time_s, step_s, loop_.exact(), loop_.timeline().drag_n(),
+                     loop_.plant().world());
+  }
+
   /// Recording takes steps as they come; it must not change them.
   bool RowIsDue(double time_s, std::int64_t rows) const {
     const double rate_hz = experiment_.record.rate_hz;

@@ -23,24 +23,35 @@ Sensors::Sensors(const SensorSpec& spec, std::size_t cable_count, std::vector<st
                      seeds_.size()),
       rest_delay_(spec.encoder ? spec.encoder->delay_s : 0.0, spec.period_s, cable_count,
                   seeds_.size()),
-      bias_n_(cable_count * seeds_.size()) {
-  EachReading([this](std::vector<double>& row) { row.resize(bias_n_.size()); }, seen_);
+      errors_(cable_count * seeds_.size()) {
+  EachReading([this](std::vector<double>& row) { row.resize(errors_.size()); }, seen_);
   shown_.cables = MapReadings([](const std::vector<double>& row) { return row.data(); }, seen_);
-  for (std::size_t j = 0; j < seeds_.size(); ++j) DrawBias(j);
+  for (std::size_t j = 0; j < seeds_.size(); ++j) DrawErrors(j);
 }
 
-void Sensors::DrawBias(std::size_t lane) {
-  if (!spec_.load_cell || spec_.load_cell->bias_n == 0) return;
+void Sensors::DrawErrors(std::size_t lane) {
   for (std::size_t c = 0; c < cable_count_; ++c) {
-    math::Random random(seeds_[lane], kLoadCellBias, c);
-    bias_n_[c * seeds_.size() + lane] = spec_.load_cell->bias_n * random.Normal();
+    Errors& of = errors_[c * seeds_.size() + lane];
+    of = {};
+    const auto draw = [&](double deviation, std::uint32_t stream) {
+      return deviation == 0 ? 0.0 : deviation * math::Random(seeds_[lane], stream, c).Normal();
+    };
+    if (spec_.load_cell) {
+      of.bias_n = draw(spec_.load_cell->bias_n, kLoadCellBias);
+      of.gain = 1 + draw(spec_.load_cell->gain_error, kLoadCellGain);
+      of.drift_n_per_s = draw(spec_.load_cell->drift_n_per_s, kLoadCellDrift);
+    }
+    if (spec_.encoder) {
+      of.zero_m = draw(spec_.encoder->zero_error_m, kEncoderZero);
+      of.encoder_gain = 1 + draw(spec_.encoder->gain_error, kEncoderGain);
+    }
   }
 }
 
 void Sensors::Restart(int lane, const RolloutWorld& world) {
   const auto j = static_cast<std::size_t>(lane);
   seeds_[j] = world.seed;
-  DrawBias(j);
+  DrawErrors(j);
 }
 
 void Sensors::Sample(const Tick& tick, const Observation& exact) {
@@ -49,12 +60,13 @@ void Sensors::Sample(const Tick& tick, const Observation& exact) {
   shown_.faults = exact.faults;
   shown_.bodies = exact.bodies;
   const std::size_t lanes = seeds_.size();
-  for (std::size_t i = 0; i < bias_n_.size(); ++i) {
+  for (std::size_t i = 0; i < errors_.size(); ++i) {
     const std::size_t lane = i % lanes;
     if (!Has(tick.due, static_cast<int>(lane))) continue;
     const std::int64_t number = tick.number[lane];
     seen_.tension_n[i] = Tension(i, number, exact.cables.tension_n[i]);
-    seen_.rest_length_m[i] = RestLength(i, number, exact.cables.rest_length_m[i]);
+    const double* const rest_m = exact.shaft_m ? exact.shaft_m : exact.cables.rest_length_m;
+    seen_.rest_length_m[i] = RestLength(i, number, rest_m[i]);
     seen_.stiffness_n_per_m[i] = exact.cables.stiffness_n_per_m[i];
     if (spec_.length_from_tension) {
       EstimateLength(i, number, exact.cables.stiffness_n_per_m[i]);
@@ -67,28 +79,63 @@ void Sensors::Sample(const Tick& tick, const Observation& exact) {
   }
 }
 
+double Sensors::Normal(std::size_t i, std::int64_t tick, std::uint32_t stream) const {
+  const std::size_t lanes = seeds_.size();
+  const std::uint64_t sample =
+      static_cast<std::uint64_t>(tick) * cable_count_ + static_cast<std::uint64_t>(i / lanes);
+  return math::Random(seeds_[i % lanes], stream, sample).Normal();
+}
+
+/// sensors.md, S.1 to S.3.
 double Sensors::Tension(std::size_t i, std::int64_t tick, double exact) {
   if (!spec_.load_cell) return exact;
   const LoadCellSpec& cell = *spec_.load_cell;
-  const std::size_t lanes = seeds_.size();
-  double x = exact + bias_n_[i];
-  if (cell.noise_n > 0) {
-    const std::uint64_t sample =
-        static_cast<std::uint64_t>(tick) * cable_count_ + static_cast<std::uint64_t>(i / lanes);
-    x += cell.noise_n * math::Random(seeds_[i % lanes], kLoadCellNoise, sample).Normal();
+  const Errors& wrong = errors_[i];
+  double x = wrong.gain * exact + wrong.bias_n;
+  if (wrong.drift_n_per_s != 0) {
+    x += wrong.drift_n_per_s * (static_cast<double>(tick) * spec_.period_s);
   }
-  x = std::max(cell.min_n, std::min(cell.max_n, x));
-  if (cell.quantum_n > 0) {
-    x = cell.min_n + cell.quantum_n * std::floor((x - cell.min_n) / cell.quantum_n + 0.5);
+  if (cell.noise_n > 0) x += cell.noise_n * Normal(i, tick, kLoadCellNoise);
+  if (cell.counts) {
+    x = Counted(*cell.counts, i, tick, x);
+  } else {
+    x = std::max(cell.min_n, std::min(cell.max_n, x));
+    if (cell.quantum_n > 0) {
+      x = cell.min_n + cell.quantum_n * std::floor((x - cell.min_n) / cell.quantum_n + 0.5);
+    }
   }
   tension_delay_.Newest(i, tick) = x;
   return tension_delay_.Oldest(i, tick);
 }
 
+/// sensors.md, S.4: the force that the board takes a count for.
+double Sensors::Counted(const LoadCellCounts& counts, std::size_t i, std::int64_t tick,
+                        double x) const {
+  double u = (x - counts.offset_n) / counts.gain_n_per_count;
+  if (counts.noise_counts > 0) u += counts.noise_counts * Normal(i, tick, kLoadCellCount);
+  const double last =
+      std::min(std::ldexp(1.0, counts.bits) - 1.0, static_cast<double>(counts.saturation_count));
+  const double count = std::max(0.0, std::min(last, std::floor(u)));
+  return counts.gain_n_per_count * count + counts.offset_n;
+}
+
+/// sensors.md, S.5 and S.6.
 double Sensors::RestLength(std::size_t i, std::int64_t tick, double exact) {
   if (!spec_.encoder) return exact;
-  const double quantum = spec_.encoder->quantum_m;
-  rest_delay_.Newest(i, tick) = quantum > 0 ? quantum * std::floor(exact / quantum + 0.5) : exact;
+  const EncoderSpec& encoder = *spec_.encoder;
+  Errors& wrong = errors_[i];
+  if (tick == 0) wrong.start_m = exact;
+  const double mark = encoder.index_m;
+  if (mark > 0 && !wrong.index_passed &&
+      std::floor(exact / mark) != std::floor(wrong.start_m / mark)) {
+    wrong.index_passed = true;
+    wrong.zero_m = mark * std::floor(wrong.zero_m / mark + 0.5);
+  }
+  double x = exact;
+  if (wrong.encoder_gain != 1) x = wrong.start_m + wrong.encoder_gain * (exact - wrong.start_m);
+  x += wrong.zero_m;
+  const double quantum = encoder.quantum_m;
+  rest_delay_.Newest(i, tick) = quantum > 0 ? quantum * std::floor(x / quantum + 0.5) : x;
   return rest_delay_.Oldest(i, tick);
 }
 

@@ -39,9 +39,19 @@ class Sensors final : public SensorModel {
     std::vector<double> ring_;
   };
 
-  void DrawBias(std::size_t lane);
-  /// Of cable i / lanes in lane i % lanes, at the lane's tick.
+  /// What is wrong with one cable's cell and encoder, for a whole run.
+  struct Errors {
+    double bias_n = 0, gain = 1, drift_n_per_s = 0;
+    double zero_m = 0, encoder_gain = 1;
+    double start_m = 0;         ///< The rest length at the first sample.
+    bool index_passed = false;  ///< A mark was seen: what is left of `zero_m` is whole turns.
+  };
+
+  void DrawErrors(std::size_t lane);
+  // Of cable i / lanes in lane i % lanes, at the lane's tick.
   double Tension(std::size_t i, std::int64_t tick, double exact);
+  double Counted(const LoadCellCounts& counts, std::size_t i, std::int64_t tick, double x) const;
+  double Normal(std::size_t i, std::int64_t tick, std::uint32_t stream) const;
   double RestLength(std::size_t i, std::int64_t tick, double exact);
   void EstimateLength(std::size_t i, std::int64_t tick, double stiffness);
 
@@ -49,7 +59,7 @@ class Sensors final : public SensorModel {
   std::size_t cable_count_;
   std::vector<std::uint64_t> seeds_;
   Delay tension_delay_, rest_delay_;
-  std::vector<double> bias_n_;
+  std::vector<Errors> errors_;
   CableReadings<std::vector<double>> seen_;
   Observation shown_;
 };

@@ -18,6 +18,16 @@ class SimulatedPlant final : public Plant, public World {
         rows_(batch.model().def().cables.size(), lanes_),
         commands_(rows_.With(batch.Cables(0).rest_length_target_m)) {
     TAUT_ASSERT(batch.groups() == 1);
+    const std::vector<CableDef>& cables = batch.model().def().cables;
+    bool has_backlash = false;
+    for (std::size_t c = 0; c < cables.size(); ++c) {
+      if (cables[c].actuator.kind == ActuatorDef::Kind::kDcMotor) {
+        motors_.push_back(static_cast<int>(c));
+        has_backlash = has_backlash || cables[c].actuator.dc_motor->backlash_rad > 0;
+      }
+    }
+    if (has_backlash) shaft_m_.resize(cables.size() * lanes_);
+    off_.resize(cables.size() * lanes_);
     seen_.lanes = batch.lanes();
     seen_.time_s = time_s_.data();
     seen_.bodies = this;
@@ -26,11 +36,13 @@ class SimulatedPlant final : public Plant, public World {
 
   const Observation& Observe() override {
     batch_.Sense(0);  // the rows stay in place
+    if (!shaft_m_.empty()) ReadShafts();
     return seen_;
   }
   Commands& commands() override { return commands_; }
 
   void Advance(const double* step_s, const double* to_s) override {
+    Switch();
     Hold();
     bool alike = true;
     for (std::size_t j = 0; j < lanes_; ++j) {
@@ -60,11 +72,37 @@ class SimulatedPlant final : public Plant, public World {
     return batch_.GetParameter(lane, Parameter::kBodyMass, body);
   }
   Energy TotalEnergy(int lane) const override { return batch_.TotalEnergy(lane); }
+  MotorState Motor(int lane, int cable) const override { return batch_.Motor(lane, cable); }
   std::vector<ContactState> Contacts(int lane) const override { return batch_.Contacts(lane); }
   WorldStatus Status(int lane) const override { return batch_.Status(lane); }
   std::uint64_t Hash(int lane) const override { return batch_.Hash(lane); }
 
  private:
+  void ReadShafts() {
+    std::copy_n(seen_.cables.rest_length_m, shaft_m_.size(), shaft_m_.begin());
+    for (const int c : motors_) {
+      for (std::size_t j = 0; j < goes_.size(); ++j) {
+        shaft_m_[static_cast<std::size_t>(c) * lanes_ + j] +=
+            batch_.Motor(static_cast<int>(j), c).backlash_m;
+      }
+    }
+    seen_.shaft_m = shaft_m_.data();
+  }
+
+  /// Motors go off and on again where commands change to that; who else switches them is not
+  /// overruled.
+  void Switch() {
+    for (const int c : motors_) {
+      for (std::size_t j = 0; j < goes_.size(); ++j) {
+        const std::size_t i = static_cast<std::size_t>(c) * lanes_ + j;
+        const bool off = rows_.mode()[i] == CommandMode::kOff;
+        if (off == (off_[i] != 0)) continue;
+        off_[i] = off ? 1 : 0;
+        batch_.SetMotorEnabled(static_cast<int>(j), c, !off);
+      }
+    }
+  }
+
   /// Actuators that are to stay where they are: their target is where they are.
   void Hold() {
     const std::vector<CommandMode>& modes = rows_.mode();
@@ -96,6 +134,9 @@ class SimulatedPlant final : public Plant, public World {
   plant::CommandRows rows_;
   Commands commands_;
   Observation seen_;
+  std::vector<int> motors_;        ///< Their cables.
+  std::vector<std::uint8_t> off_;  ///< A row: those that commands have switched off.
+  std::vector<double> shaft_m_;    ///< A row; empty where no gear has backlash.
 };
 
 }  // namespace

@@ -50,14 +50,28 @@ void Statistics::Take(Quantity& quantity, double time_s, double force_n) const {
   }
 }
 
+void Statistics::Take(std::optional<MotorSummary>& sum, const MotorState& motor) {
+  if (!sum) sum.emplace();
+  sum->energy_from_supply_j = motor.energy_from_supply_j;
+  sum->energy_to_cable_j = motor.energy_to_cable_j;
+  sum->energy_in_winding_j = motor.energy_in_winding_j;
+  sum->max_current_a = std::max(sum->max_current_a, std::fabs(motor.current_a));
+  sum->max_winding_temperature_c =
+      std::max(sum->max_winding_temperature_c, motor.winding_temperature_c);
+}
+
 void Statistics::Take(double time_s, double step_s, const Observation& now,
-                      const std::vector<double>& drag_n) {
+                      const std::vector<double>& drag_n, const World* world) {
   for (std::size_t c = 0; c < cables_.size(); ++c) {
     Cable& cable = cables_[c];
     const CableState r = now.Cable(static_cast<int>(c));
     Take(cable.tension, time_s, r.tension_n);
     Take(cable.elastic, time_s, r.elastic_n);
-    if (experiment_.robot.def.cables[c].actuator.kind != ActuatorDef::Kind::kNone) {
+    const ActuatorDef::Kind kind = experiment_.robot.def.cables[c].actuator.kind;
+    if (kind == ActuatorDef::Kind::kDcMotor && world != nullptr) {
+      Take(cable.motor, world->Motor(0, static_cast<int>(c)));
+    }
+    if (kind != ActuatorDef::Kind::kNone) {
       cable.max_force_n = std::max(cable.max_force_n, r.tension_n);
       if (step_s > 0) {
         const double wound_m = cable.rest_length_m - r.rest_length_m;
@@ -94,6 +108,7 @@ void Statistics::Fill(RunSummary& summary) const {
     out.max_power_w = cable.max_power_w;
     out.energy_j = cable.energy_j;
     out.net_energy_j = cable.net_energy_j;
+    out.motor = cable.motor;
     if (out.tension.max_n > summary.system_max_tension_n) {
       summary.system_max_tension_n = out.tension.max_n;
       summary.system_max_tension_cable = out.name;

@@ -1,6 +1,7 @@
 /// What a run has to say at its end, gathered at every step.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "taut/plant.h"
@@ -12,9 +13,10 @@ class Statistics {
  public:
   explicit Statistics(const ExperimentSpec& experiment);
 
-  /// Takes a moment in. `step_s` is the length of the step that led here; 0 at the start.
-  void Take(double time_s, double step_s, const Observation& now,
-            const std::vector<double>& drag_n);
+  /// Takes a moment in. `step_s` is the length of the step that led here; 0 at the start. `world`:
+  /// whose motors to look at; null where there is no simulation.
+  void Take(double time_s, double step_s, const Observation& now, const std::vector<double>& drag_n,
+            const World* world);
 
   /// Cables, drags and maxima; the rest of the summary is the runner's.
   void Fill(RunSummary& summary) const;
@@ -34,8 +36,10 @@ class Statistics {
     Quantity tension, elastic;
     double rest_length_m = 0, max_force_n = 0, max_speed = 0, max_power_w = 0, energy_j = 0,
            net_energy_j = 0;
+    std::optional<MotorSummary> motor;
   };
   void Take(Quantity& quantity, double time_s, double force_n) const;
+  static void Take(std::optional<MotorSummary>& sum, const MotorState& motor);
 
   const ExperimentSpec& experiment_;
   std::vector<Cable> cables_;

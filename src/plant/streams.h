@@ -10,6 +10,11 @@ enum Stream : std::uint32_t {
   kLoadCellBias = 2,   ///< Index: cable.
   kStartPosition = 3,  ///< Index: body.
   kStartHeading = 4,   ///< Index: 0.
+  kLoadCellGain = 5,   ///< Index: cable.
+  kLoadCellDrift = 6,  ///< Index: cable.
+  kLoadCellCount = 7,  ///< Index: sample * cables + cable.
+  kEncoderZero = 8,    ///< Index: cable.
+  kEncoderGain = 9,    ///< Index: cable.
 };
 
 }  // namespace taut::plant

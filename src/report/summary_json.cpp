@@ -30,15 +30,23 @@ Json ToJson(const CableSummary::Quantity& quantity, const RunSummary& run) {
 }
 
 Json ToJson(const CableSummary& cable, const RunSummary& run) {
-  return {{"name", cable.name},
-          {"tension", ToJson(cable.tension, run)},
-          {"elastic", ToJson(cable.elastic, run)},
-          {"actuator",
-           {{"max_force_n", cable.max_force_n},
-            {"max_speed_m_per_s", cable.max_speed_m_per_s},
-            {"max_power_w", cable.max_power_w},
-            {"energy_j", cable.energy_j},
-            {"net_energy_j", cable.net_energy_j}}}};
+  Json json = {{"name", cable.name},
+               {"tension", ToJson(cable.tension, run)},
+               {"elastic", ToJson(cable.elastic, run)},
+               {"actuator",
+                {{"max_force_n", cable.max_force_n},
+                 {"max_speed_m_per_s", cable.max_speed_m_per_s},
+                 {"max_power_w", cable.max_power_w},
+                 {"energy_j", cable.energy_j},
+                 {"net_energy_j", cable.net_energy_j}}}};
+  if (cable.motor) {
+    json["motor"] = {{"energy_from_supply_j", cable.motor->energy_from_supply_j},
+                     {"energy_to_cable_j", cable.motor->energy_to_cable_j},
+                     {"energy_in_winding_j", cable.motor->energy_in_winding_j},
+                     {"max_current_a", cable.motor->max_current_a},
+                     {"max_winding_temperature_c", cable.motor->max_winding_temperature_c}};
+  }
+  return json;
 }
 
 Json ToJson(const ReferenceSpec& reference, const RunSummary& run) {

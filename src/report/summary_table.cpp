@@ -118,6 +118,29 @@ std::string ActuatorTable(const RunSummary& run) {
          rows;
 }
 
+/// What motors took and gave.
+std::string MotorTable(const RunSummary& run) {
+  std::string rows;
+  const std::size_t name_width = NameWidth(run.cables);
+  double supply_j = 0, cable_j = 0, winding_j = 0;
+  for (const CableSummary& cable : run.cables) {
+    if (!cable.motor) continue;
+    const MotorSummary& m = *cable.motor;
+    supply_j += m.energy_from_supply_j;
+    cable_j += m.energy_to_cable_j;
+    winding_j += m.energy_in_winding_j;
+    rows += fmt::format("{:<{}} {:>12.3f}{:>12.3f}{:>12.3f}{:>16.3f}{:>14.1f}\n", cable.name,
+                        name_width, m.energy_from_supply_j, m.energy_to_cable_j,
+                        m.energy_in_winding_j, m.max_current_a, m.max_winding_temperature_c);
+  }
+  if (rows.empty()) return {};
+  return fmt::format("\n{:<{}} {:>12}{:>12}{:>12}{:>16}{:>14}\n", "motor", name_width, "supply J",
+                     "cable J", "winding J", "max current A", "winding degC") +
+         rows +
+         fmt::format("{:<{}} {:>12.3f}{:>12.3f}{:>12.3f}\n", "all", name_width, supply_j, cable_j,
+                     winding_j);
+}
+
 }  // namespace
 
 std::string StartLine(const StartChange& start) {
@@ -137,7 +160,8 @@ std::string SummaryTable(const RunSummary& summary) {
     }
     out += SystemLines(summary);
   }
-  return out + DragTable(summary) + ActuatorTable(summary) + report::ReferenceLines(summary);
+  return out + DragTable(summary) + ActuatorTable(summary) + MotorTable(summary) +
+         report::ReferenceLines(summary);
 }
 
 }  // namespace taut

@@ -253,6 +253,8 @@ double Batch::Time(int world) const noexcept {
 void Batch::SetRestLengthTarget(int world, int cable, double rest_length_m) noexcept {
   impl_->CheckCable(__func__, world, cable);
   impl_->at(world, impl_->layout.target + cable) = rest_length_m;
+  const int motor = impl_->view.cables[cable].motor;
+  if (motor >= 0) impl_->Order(world, motor, &sim::MotorOrders<double>::by_duty, 0.0);
 }
 double Batch::RestLengthTarget(int world, int cable) const noexcept {
   impl_->CheckCable(__func__, world, cable);
@@ -298,6 +300,7 @@ void Batch::SetRestLength(int world, int cable, double rest_length_m) noexcept {
   d.at(world, d.layout.rest + cable) = rest_length_m;
   d.at(world, d.layout.target + cable) = rest_length_m;
   d.at(world, d.layout.rest_rate + cable) = 0.0;
+  d.StopMotor(world, cable);
   d.group(world).sensed = false;
 }
 

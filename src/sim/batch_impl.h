@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -60,6 +61,15 @@ struct Batch::Impl {
     CheckWorld(function, world);
     sim::CheckIndex(function, "cable", cable, view.cable_count);
   }
+  /// The number of a cable's motor.
+  int CheckMotor(const char* function, int world, int cable) const noexcept {
+    CheckCable(function, world, cable);
+    const int motor = view.cables[cable].motor;
+    if (motor < 0) [[unlikely]] {
+      sim::NoMotor(function, cable);
+    }
+    return motor;
+  }
   void CheckNode(const char* function, int world, int node) const noexcept {
     CheckWorld(function, world);
     sim::CheckIndex(function, "node", node, view.node_count);
@@ -77,6 +87,12 @@ struct Batch::Impl {
     TAUT_ASSERT(0 <= row && row < layout.rows);
     return group(world).rows[row * lanes() + world % lanes()];
   }
+  sim::MotorNumbers<double> motor(int world, int number) const noexcept {
+    return Struct<sim::MotorNumbers<double>>(world, layout.motor, number);
+  }
+  sim::MotorOrders<double> orders(int world, int number) const noexcept {
+    return Struct<sim::MotorOrders<double>>(world, layout.orders, number);
+  }
   Vec3 vec(int world, int row) const noexcept {
     return {at(world, row), at(world, row + 1), at(world, row + 2)};
   }
@@ -89,6 +105,29 @@ struct Batch::Impl {
     at(world, row) = x.x;
     at(world, row + 1) = x.y;
     at(world, row + 2) = x.z;
+  }
+  /// Of a row whose elements are structs of numbers: the one with this number.
+  template <class T>
+  T Struct(int world, int row, int number) const noexcept {
+    constexpr int kWidth = sizeof(T) / sizeof(double);
+    double x[kWidth];
+    for (int i = 0; i < kWidth; ++i) x[i] = at(world, row + kWidth * number + i);
+    T out;
+    std::memcpy(&out, x, sizeof(T));
+    return out;
+  }
+  template <class T>
+  void SetStruct(int world, int row, const T& value) const noexcept {
+    constexpr int kWidth = sizeof(T) / sizeof(double);
+    double x[kWidth];
+    std::memcpy(x, &value, sizeof(T));
+    for (int i = 0; i < kWidth; ++i) at(world, row + i) = x[i];
+  }
+  void set(int world, int row, const sim::MotorNumbers<double>& x) const noexcept {
+    SetStruct(world, row, x);
+  }
+  void set(int world, int row, const sim::MotorOrders<double>& x) const noexcept {
+    SetStruct(world, row, x);
   }
   Quat quat(int world, int body) const noexcept {
     const int row = layout.quat + 4 * body;
@@ -129,6 +168,11 @@ struct Batch::Impl {
   /// Makes the kSensed rows of the world's group belong to the current state.
   void Sense(int world) const noexcept;
   void ForceNode(int world, int node) noexcept;
+  /// Changes one of the orders of a motor.
+  void Order(int world, int motor, double sim::MotorOrders<double>::*order,
+             double value) const noexcept;
+  /// A cable's motor, if it has one, stands still, with the flanks of its gear together.
+  void StopMotor(int world, int cable) const noexcept;
 };
 
 }  // namespace taut

@@ -16,6 +16,11 @@ void WrongIndex(const char* function, const char* what, int index, int count) no
   std::abort();
 }
 
+void NoMotor(const char* function, int cable) noexcept {
+  std::fprintf(stderr, "taut: Batch::%s: cable %d has no dc_motor\n", function, cable);
+  std::abort();
+}
+
 void WrongCount(const char* function, const char* what, std::size_t given,
                 std::size_t needed) noexcept {
   std::fprintf(stderr, "taut: Batch::%s: needs one %s, which is %zu, and got %zu\n", function, what,

@@ -15,6 +15,9 @@ inline void CheckIndex(const char* function, const char* what, int index, int co
   }
 }
 
+/// A cable that no motor winds.
+[[noreturn]] void NoMotor(const char* function, int cable) noexcept;
+
 [[noreturn]] void WrongCount(const char* function, const char* what, std::size_t given,
                              std::size_t needed) noexcept;
 

@@ -13,6 +13,7 @@
 #include "sim/passing.h"
 #include "sim/stage_bodies.inl"
 #include "sim/stiff_cables.inl"
+#include "sim/dc_motor.inl"
 #include "sim/stage_cables.inl"
 #include "sim/shape_pairs.inl"
 #include "sim/rod_distance.inl"
@@ -225,13 +226,18 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   StageKinematics(m, s, g, work, ahead);
   StageSpots(m, s, work);
   watch.Mark(Stage::kKinematics);
-  StageCables(m, s, work, step_s);
+  if (m.motor_count == 0) {
+    StageCables<false>(m, s, work, step_s);
+  } else {
+    StageCables<true>(m, s, work, step_s);
+  }
   watch.Mark(Stage::kCables);
   StageKick(m, s, work, h);
   watch.Mark(Stage::kKick);
   const uint32_t overflow = StageCollide(m, s, g, work, step_s, Max(h, last));
   watch.Mark(Stage::kCollide);
   const SolveResult<W> solve = StageSolve(m, s, g, work, settings, step_s);
+  if (m.motor_count > 0) StageMotors(m, s, work, step_s);
   watch.Mark(Stage::kSolve);
   StoreResults(m, s, g, work, step_s);
   StageDriftSecond(m, s, work, half_h);

@@ -54,6 +54,7 @@ class Compiler {
     Shapes();
     Points();
     Pairs();
+    sim::LayOutMotors(t_);
     sim::CoupleCables(t_);
     Check();
   }
@@ -127,7 +128,9 @@ class Compiler {
       table.first_attachment = static_cast<int>(t_.attachments.size());
       table.attachment_count = static_cast<int>(c.attachments.size());
       table.clamped_damping = c.damping_law == DampingLaw::kClamped;
-      table.actuator = c.actuator;
+      const ActuatorDef& limit = c.actuator;
+      table.actuator = {limit.kind,        limit.max_speed_m_per_s, limit.max_acceleration_m_per_s2,
+                        limit.max_force_n, limit.min_rest_length_m, limit.min_length_m};
       table.inv_max_speed = 1.0 / c.actuator.max_speed_m_per_s;
       for (const AttachmentDef& a : c.attachments) {
         t_.attachments.push_back(Attach(a.body, a.position_m));

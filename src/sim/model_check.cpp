@@ -1,6 +1,7 @@
 #include "sim/model_check.h"
 
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -100,6 +101,50 @@ void CheckShapes(const ModelDef& def, Checker& check) {
   }
 }
 
+void CheckMotor(const std::string& name, const DcMotorDef& m, Checker& check) {
+  check.Positive(m.resistance_ohm, name + "resistance");
+  check.Positive(m.torque_constant_n_m_per_a, name + "torque constant");
+  check.Positive(m.rotor_inertia_kg_m2, name + "inertia of the rotor");
+  check.NonNegative(m.friction_torque_n_m, name + "friction");
+  check.NonNegative(m.static_friction_torque_n_m, name + "friction at rest");
+  check.Require(!(m.static_friction_torque_n_m < m.friction_torque_n_m),
+                name + "friction at rest must not be below that of sliding");
+  check.Positive(m.stribeck_speed_rad_per_s, name + "Stribeck's speed");
+  check.NonNegative(m.viscous_friction_n_m_s_per_rad, name + "viscous friction");
+  check.Positive(m.gear_ratio, name + "gear ratio");
+  check.Require(m.gear_efficiency > 0 && m.gear_efficiency <= 1,
+                name + "the gear's efficiency must be above 0 and at most 1");
+  check.NonNegative(m.backlash_rad, name + "backlash");
+  check.Positive(m.spool_radius_m, name + "radius of the spool");
+  check.NonNegative(m.driver_resistance_ohm, name + "resistance of the driver");
+  check.Positive(m.supply_voltage_v, name + "voltage of the supply");
+  check.NonNegative(m.supply_resistance_ohm, name + "resistance of the supply");
+  check.Require(std::isfinite(m.rated_temperature_c) && std::isfinite(m.ambient_temperature_c),
+                name + "temperatures must be finite");
+  check.NonNegative(m.resistance_rise_per_k, name + "rise of the resistance");
+  check.Positive(m.winding_thermal_resistance_k_per_w, name + "thermal resistance of the winding");
+  check.Positive(m.housing_thermal_resistance_k_per_w, name + "thermal resistance of the housing");
+  check.Positive(m.winding_thermal_time_s, name + "thermal time constant of the winding");
+  check.Positive(m.housing_thermal_time_s, name + "thermal time constant of the housing");
+  check.NonNegative(m.servo_gain_per_m, name + "gain of the servo");
+  check.NonNegative(m.servo_damping_s_per_m, name + "damping of the servo");
+}
+
+/// Motors that name the same supply say the same of it.
+void CheckSupplies(const ModelDef& def, Checker& check) {
+  std::map<std::string, const CableDef*> first;
+  for (const CableDef& c : def.cables) {
+    if (c.actuator.kind != ActuatorDef::Kind::kDcMotor || !c.actuator.dc_motor) continue;
+    const DcMotorDef& motor = *c.actuator.dc_motor;
+    const CableDef& other = *first.emplace(motor.supply, &c).first->second;
+    const DcMotorDef& same = *other.actuator.dc_motor;
+    check.Require(motor.supply_voltage_v == same.supply_voltage_v &&
+                      motor.supply_resistance_ohm == same.supply_resistance_ohm,
+                  "cable " + c.name + ": its motor's supply \"" + motor.supply +
+                      "\" has other figures than at cable " + other.name);
+  }
+}
+
 void CheckCables(const ModelDef& def, Checker& check) {
   for (const NodeDef& n : def.nodes) {
     check.Body(n.body, def, "node " + n.name);
@@ -115,6 +160,11 @@ void CheckCables(const ModelDef& def, Checker& check) {
     check.Positive(c.stiffness_n_per_m, name + ": stiffness");
     check.NonNegative(c.damping_n_s_per_m, name + ": damping");
     check.Positive(c.rest_length_m, name + ": rest length");
+    if (c.actuator.kind == ActuatorDef::Kind::kDcMotor) {
+      check.NonNegative(c.actuator.min_rest_length_m, name + ": least rest length");
+      check.Require(c.actuator.dc_motor.has_value(), name + ": its motor has no figures");
+      if (c.actuator.dc_motor) CheckMotor(name + ": dc_motor: ", *c.actuator.dc_motor, check);
+    }
     if (c.actuator.kind != ActuatorDef::Kind::kLimited) continue;
     check.Require(c.actuator.max_speed_m_per_s > 0, name + ": largest speed must be positive");
     check.Require(c.actuator.max_acceleration_m_per_s2 > 0,
@@ -169,6 +219,7 @@ bool CheckModel(const ModelDef& def, Diagnostics& out) {
   CheckBodies(def, check);
   CheckShapes(def, check);
   CheckCables(def, check);
+  CheckSupplies(def, check);
   if (out.items().size() == before) CheckSizes(def, check);
   return out.items().size() == before;
 }

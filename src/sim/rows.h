@@ -48,6 +48,8 @@ struct Rows {
   using Number = W;
   using V3 = simd::V3<W>;
   using Q4 = simd::Q4<W>;
+  using Motor = MotorNumbers<W>;
+  using Orders = MotorOrders<W>;
 
 #define TAUT_ROW(name, type, ...) Row<type> name;
   TAUT_STATE_ROWS(TAUT_ROW)
@@ -111,6 +113,20 @@ struct StiffCable : CableRow<W> {
   W across;  ///< Share of the largest stable tension, per tension [1/N] (cables.md, eq. 12).
 };
 
+/// A motor while its cable's tension T is found: its mean speed over the step is `mean` - `slows`
+/// T.
+template <class W>
+struct MotorWork {
+  W direction;         ///< 1 winding in, -1 out, 0: friction holds it.
+  W mean, slows;       ///< [rad/s], [rad/(s N)]
+  W end, end_slows;    ///< The same of its speed at the end of the step.
+  W share;             ///< Of the cable's stiffness and damping that acts within this step.
+  W duty, duty_falls;  ///< The duty is `duty` - `duty_falls` times the mean speed. [1], [s/rad]
+  W resistance;        ///< Of winding and driver [ohm].
+  W conducts;          ///< 1, or 0 where the driver is off.
+  W length;            ///< Of its cable at the middle of the step [m].
+};
+
 template <class W>
 struct Scratch {
   BodyWork<W>* bodies;
@@ -125,7 +141,9 @@ struct Scratch {
   CableWork<W>* cables;
   StiffCable<W>* stiff;
   Link<W, 1>* links;  ///< Of all cables.
-  W* unsolved;        ///< Per body: 1 in lanes in which it is left to the lane's own solve.
+  MotorWork<W>* motors;
+  W* supplies;  ///< Voltage under load, per supply [V].
+  W* unsolved;  ///< Per body: 1 in lanes in which it is left to the lane's own solve.
   LaneMemory<simd::Lane<W>> lane;
   DualMemory<W> dual;
   int stiff_count = 0, link_count = 0;
@@ -153,6 +171,8 @@ struct Scratch {
     cables = room_.Take<CableWork<W>>(m.cable_count);
     stiff = room_.Take<StiffCable<W>>(m.cable_count);
     links = room_.Take<Link<W, 1>>(m.attachment_count);
+    motors = room_.Take<MotorWork<W>>(m.motor_count);
+    supplies = room_.Take<W>(m.supply_count);
     unsolved = room_.Take<W>(bodies_count);
     lane.Take(m, room_);
     dual.Take(m, room_);

@@ -55,7 +55,7 @@ TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const CableTable& cabl
 template <class W>
 TAUT_INLINE W Actuate(const CableTable& cable, W k, W l, W target, W h, W inv_h, W& rest,
                       W& rate) noexcept {
-  const ActuatorDef& limit = cable.actuator;
+  const LimitTable& limit = cable.actuator;
   const W zero = W::Splat(0.0), before = rest;
   if (limit.kind == ActuatorDef::Kind::kNone) return rest;
   if (limit.kind == ActuatorDef::Kind::kIdeal) {
@@ -215,8 +215,9 @@ struct CableStep {
   W room;             ///< Below zero if a cable may go slack or get taut [m^2].
 };
 
-/// A cable's length, actuator and spring. `damped`: some lane's cables are.
-template <bool kTwo, class W>
+/// A cable's length, actuator and spring. `damped`: some lane's cables are. `kMotors`, here and
+/// below: some actuators of the model are motors; others need not look.
+template <bool kTwo, bool kMotors, class W>
 TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, bool damped,
                            CableStep<W>& step) noexcept {
   const W zero = W::Splat(0.0), h = step.h;
@@ -231,18 +232,28 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
     l = MeasureCable(m, cable, cable.attachment_count, work, work.attachments).l;
     LinkCable<false>(m, s, work, cable, work.attachments, row);
   }
-  W rest = s.rest[c], rate = s.rest_rate[c];
-  const W mean = Actuate(cable, s.stiffness[c], l, s.target[c], h, step.inv_h, rest, rate);
-  s.rest[c] = rest;
-  s.rest_rate[c] = rate;
+  W k = s.stiffness[c], b = s.damping[c], mean, rate;
+  if (kMotors && cable.motor >= 0) {
+    mean = DriveMotor(m, s, work, c, k, b, l, MeanRate<kTwo>(work, row), h);
+    rate = s.rest_rate[c];
+    const W share = work.motors[cable.motor].share;
+    k = k * share;
+    b = b * share;
+  } else {
+    W rest = s.rest[c];
+    rate = s.rest_rate[c];
+    mean = Actuate(cable, k, l, s.target[c], h, step.inv_h, rest, rate);
+    s.rest[c] = rest;
+    s.rest_rate[c] = rate;
+  }
   const W stretch = l - mean;
   const auto stiff = s.stiff_k[c] > step.soft_limit;
   row.soft = !stiff;
-  row.spring = Max(s.stiffness[c] * stretch, zero);
+  row.spring = Max(k * stretch, zero);
   const bool any_stiff = Any(stiff);
   if (damped || any_stiff) FinishLinks<kTwo>(work, row);
   if (any_stiff) {
-    AddStiffCable(m, s, work, c, row, l, stretch, h, stiff);
+    AddStiffCable(m, s, work, c, row, k, b, l, stretch, h, stiff);
     if (!Any(row.soft)) return;
   }
   const W dl = MeanRate<kTwo>(work, row);
@@ -255,7 +266,7 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
   }
   // Before the first step, that at rest: then nothing moves what is in balance.
   row.tension = Select(step.goes_on, s.tension[c], row.spring);
-  row.damping = s.damping[c];
+  row.damping = b;
   // With nothing to damp, or slack, the spring alone: to the bit. Stiff ones stay as they are.
   row.damped = stiff | ((row.damping > zero) & (row.spring > zero));
   row.share = W::Splat(1.0) / (W::Splat(1.0) + step.push * row.damping * row.A);
@@ -269,7 +280,7 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
 /// their spring's mean over the step, implicit in the end's length (docs/theory/cables.md, eq. 11).
 /// Between them explicit steps keep v^2 + w^2 x^2 / (1 - w^2 h^2 / 4), so that is what the spring
 /// must store, or energy would come and go with every catch.
-template <class W>
+template <bool kMotors, class W>
 [[gnu::noinline, gnu::cold]] void SettleKinks(const View& m, const Rows<W>& s, Scratch<W>& work,
                                               CableStep<W> step) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
@@ -287,11 +298,17 @@ template <class W>
     AttachmentWork<W>* const ends = work.attachments;
     const W length = MeasureCable(m, m.cables[c], m.cables[c].attachment_count, work, ends).l;
     const W before = RateBefore(work, row.links, row.link_count);
-    const W spring = W::Splat(0.25) * step.h * step.h * s.stiffness[c];
+    W k = s.stiffness[c], b = s.damping[c];
+    if (kMotors && m.cables[c].motor >= 0) {
+      const W share = work.motors[m.cables[c].motor].share;
+      k = k * share;
+      b = b * share;
+    }
+    const W spring = W::Splat(0.25) * step.h * step.h * k;
     CableRow<W> law;
     law.A = row.A;
     SetCableLaw(m, s, work, c, length, row.stretch, before, step.h, spring / (one - spring * law.A),
-                law);
+                b, law);
     // The mean rate has the tension in it that was found so far; without dampers, the last step's.
     const W last = Select(step.goes_on, s.tension[c], zero);
     const W u = before - (dl + dl), now = step.h * Select(step.push > zero, row.tension, last);
@@ -311,7 +328,7 @@ template <class W>
 /// mean velocities start as expected from the step before, which had these cables' tensions in
 /// them; two passes over the cables put the new ones in. Lanes in which a spring would not be
 /// stable leave the cable to the solver (stiff_cables.inl).
-template <class W>
+template <bool kMotors, class W>
 void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0);
   work.stiff_count = work.link_count = 0;
@@ -325,14 +342,15 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
                     s.last_step[0] > zero,
                     Select(damps, W::Splat(0.5 * step_s), zero),
                     W::Splat(1e300)};
+  if constexpr (kMotors) LoadSupplies(m, s, work, step.h);
   for (int c = 0; c < m.cable_count; ++c) {
     if (m.cables[c].joins_two) {
-      MeetCable<true>(m, s, work, c, damped, step);
+      MeetCable<true, kMotors>(m, s, work, c, damped, step);
     } else {
-      MeetCable<false>(m, s, work, c, damped, step);
+      MeetCable<false, kMotors>(m, s, work, c, damped, step);
     }
   }
-  if (Any(step.room < zero)) SettleKinks(m, s, work, step);
+  if (Any(step.room < zero)) SettleKinks<kMotors>(m, s, work, step);
   if (!damped) {
     for (int c = 0; c < m.cable_count; ++c) {
       work.cables[c].tension = work.cables[c].spring;

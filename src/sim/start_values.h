@@ -14,6 +14,8 @@ namespace taut::sim::start_of {
 using Number = double;
 using V3 = Vec3;
 using Q4 = Quat;
+using Motor = MotorNumbers<double>;
+using Orders = MotorOrders<double>;
 
 /// Zero, whatever the row's type.
 struct Nothing {
@@ -91,6 +93,14 @@ inline double Tension(const Tables& t, int i) noexcept {
       }).l;
   return std::max(cable.stiffness_n_per_m * (length - cable.rest_length_m), 0.0);
 }
+inline Motor MotorAtRest(const Tables& t, int i) noexcept {
+  const MotorTable& table = t.motors[static_cast<std::size_t>(i)];
+  Motor motor{};
+  motor.winding = motor.housing = table.ambient_c;
+  motor.supply = t.supplies[static_cast<std::size_t>(table.supply)].voltage_v;
+  return motor;
+}
+inline Orders FollowTarget(const Tables&, int) noexcept { return {0.0, 0.0, 1.0}; }
 inline Vec3 Gravity(const Tables& t, int) noexcept { return t.def().gravity_m_per_s2; }
 
 }  // namespace taut::sim::start_of

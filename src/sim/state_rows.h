@@ -6,7 +6,7 @@
 namespace taut::sim {
 
 /// How many of a row there are.
-enum class Per { kWorld, kBody, kCable, kNode, kBodyPair, kContact };
+enum class Per { kWorld, kBody, kCable, kMotor, kNode, kBodyPair, kContact };
 
 /// What it is for, in the order in which the rows lie.
 enum class Role {
@@ -25,8 +25,27 @@ enum class Halted {
   kForgets,  ///< Becomes kNoKey: a contact that is remembered no more.
 };
 
+/// What a motor keeps from step to step (dc_motor.inl).
+template <class Num>
+struct MotorNumbers {
+  Num speed;             ///< Of the rotor, positive winding in [rad/s].
+  Num gap;               ///< By this the rest length is shorter than the gear's angle says [m].
+  Num winding, housing;  ///< Temperatures [C].
+  Num duty, current, supply;  ///< Of the last step: mean duty [1], current [A], voltage [V].
+  Num from_supply, to_cable, in_winding;  ///< Energies [J].
+};
+/// What it is told.
+template <class Num>
+struct MotorOrders {
+  Num duty;     ///< [1]
+  Num by_duty;  ///< 1: that duty; 0: follow the cable's target.
+  Num on;       ///< 0: the driver is off.
+};
+
 /// Numbers that one element has.
 inline constexpr int kWidthNumber = 1, kWidthV3 = 3, kWidthQ4 = 4;
+inline constexpr int kWidthMotor = sizeof(MotorNumbers<double>) / sizeof(double);
+inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double);
 
 }  // namespace taut::sim
 
@@ -45,6 +64,8 @@ inline constexpr int kWidthNumber = 1, kWidthV3 = 3, kWidthQ4 = 4;
   ROW(held_torque,    V3,     kBody,     kState,     kZero,    Zero)             /* of contacts and stiff cables in the last step [N m]; 0 after a landing */ \
   ROW(rest,           Number, kCable,    kState,     kGoesBack, RestLength)       /* [m] */ \
   ROW(rest_rate,      Number, kCable,    kState,     kGoesBack, Zero)             /* [m/s] */ \
+  ROW(motor,          Motor,  kMotor,    kState,     kGoesBack, MotorAtRest) \
+  ROW(orders,         Orders, kMotor,    kState,     kStays,    FollowTarget) \
   ROW(target,         Number, kCable,    kState,     kStays,    RestLength)       /* [m] */ \
   ROW(tension,        Number, kCable,    kState,     kZero,     Tension)          /* [N] */ \
   ROW(node_force,     V3,     kNode,     kState,     kStays,    Zero)             /* in W [N] */ \

@@ -56,23 +56,26 @@ TAUT_INLINE W RateBefore(const Scratch<W>& work, const Link<W, 1>* links, int co
 /// start says how far the middle's directions are wrong; they are so at the end by as much.
 template <class W>
 TAUT_INLINE void SetCableLaw(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W length,
-                             W stretch, W rate, W h, W spring, CableRow<W>& row) noexcept {
+                             W stretch, W rate, W h, W spring, W damping,
+                             CableRow<W>& row) noexcept {
   const CableTable& cable = m.cables[c];
   const W half_h = W::Splat(0.5) * h, inv_half = W::Splat(1.0) / half_h;
   const W wound = s.rest_rate[c];
   const W mid = stretch + (StartLength(m, work, cable) - (length - half_h * rate));
   const W z = inv_half * mid;
-  row.SetLaw(z - (rate - wound), z - wound, spring, half_h * s.damping[c], wound + wound);
+  row.SetLaw(z - (rate - wound), z - wound, spring, half_h * damping, wound + wound);
   row.upper = W::Splat(1e300);
   if (!cable.clamped_damping) return;
   // Twice the spring's, as far as it is known before the step.
   const W twice = row.SpringImpulse(row.start + W::Splat(2.0) * (rate - wound));
-  row.upper = Select(s.damping[c] > W::Splat(0.0), twice + twice, row.upper);
+  row.upper = Select(damping > W::Splat(0.0), twice + twice, row.upper);
 }
 
+/// `k`, `b`: of its stiffness and damping what acts within a step.
 template <class W>
 void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
-                   const CableWork<W>& linked, W length, W stretch, W h, MaskOf<W> on) noexcept {
+                   const CableWork<W>& linked, W k, W b, W length, W stretch, W h,
+                   MaskOf<W> on) noexcept {
   const W zero = W::Splat(0.0);
   StiffCable<W>& row = work.stiff[work.stiff_count++];
   row.cable = c;
@@ -80,8 +83,8 @@ void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
   row.links = linked.links;
   row.link_count = linked.link_count;
   const W rate = RateBefore(work, row.links, row.link_count);
-  const W spring = W::Splat(0.25) * h * h * s.stiffness[c];
-  SetCableLaw(m, s, work, c, length, stretch, rate, h, spring, row);
+  const W spring = W::Splat(0.25) * h * h * k;
+  SetCableLaw(m, s, work, c, length, stretch, rate, h, spring, b, row);
   row.FinishMasses();
   row.across = W::Splat(0.25) * h * h * s.stiff_k[c] / (s.stiffness[c] * length);
   row.l[0] = Select(on, Min(h * s.tension[c], row.upper), zero);

@@ -28,7 +28,11 @@ View Tables::View() const noexcept {
           max_attachments,
           static_cast<int>(attachments.size()),
           static_cast<int>(spots.size()),
-          along_slip};
+          along_slip,
+          static_cast<int>(motors.size()),
+          static_cast<int>(supplies.size()),
+          motors.data(),
+          supplies.data()};
 }
 
 Layout Tables::MakeLayout() const {

@@ -15,12 +15,42 @@
 
 namespace taut::sim {
 
+/// What an actuator obeys in a step, but a motor.
+struct LimitTable {
+  ActuatorDef::Kind kind = ActuatorDef::Kind::kNone;
+  double max_speed_m_per_s = 0, max_acceleration_m_per_s2 = 0, max_force_n = 0;
+  double min_rest_length_m = 0, min_length_m = 0;
+};
+
 struct CableTable {
   int first_attachment = 0, attachment_count = 0;
   bool clamped_damping = false;
   bool joins_two = false;  ///< Two bodies that are not the world, and no more.
-  ActuatorDef actuator;
+  int motor = -1;          ///< Which one winds it; -1: none.
+  LimitTable actuator;
   double inv_max_speed = 0;  ///< 1 / actuator.max_speed_m_per_s [s/m].
+};
+
+/// A `DcMotorDef` in what its law is written in (dc_motor.inl).
+struct MotorTable {
+  int cable = 0, supply = 0;
+  double way_m = 0;        ///< Of the rest length, per angle of the rotor [m/rad].
+  double inv_inertia = 0;  ///< Of the rotor [1/(kg m^2)].
+  double constant = 0;     ///< Torque per current, back EMF per speed [V s/rad].
+  double winding_ohm = 0, driver_ohm = 0;
+  double rise_per_k = 0, rated_c = 0, ambient_c = 0;
+  double friction = 0, static_more = 0;  ///< Coulomb's, and what is above it at rest [N m].
+  double inv_stribeck2 = 0;              ///< 1 / speed^2 [s^2/rad^2].
+  double viscous = 0;                    ///< [N m s/rad]
+  double gear_loss = 0;                  ///< Friction of the gear per torque of the cable [1].
+  double backlash_m = 0, min_rest_m = 0;
+  double winding_w_per_k = 0, housing_w_per_k = 0;  ///< To the housing, to the air.
+  double winding_k_per_j = 0, housing_k_per_j = 0;  ///< 1 / heat capacity.
+  double servo_gain = 0, servo_damping = 0;         ///< [1/m], [s/m]
+};
+
+struct SupplyTable {
+  double voltage_v = 0, resistance_ohm = 0;
 };
 
 struct AttachmentTable {
@@ -122,6 +152,9 @@ struct View {
   std::uint32_t first_pair_id;
   int pair_capacity, max_attachments, attachment_count, spot_count;
   bool along_slip;
+  int motor_count, supply_count;
+  const MotorTable* motors;
+  const SupplyTable* supplies;
 
   // Always inline: of a function that several instruction sets emit the linker keeps any one.
   /// Contacts that one world may have at once.
@@ -133,6 +166,8 @@ struct View {
         return body_count;
       case Per::kCable:
         return cable_count;
+      case Per::kMotor:
+        return motor_count;
       case Per::kNode:
         return node_count;
       case Per::kBodyPair:
@@ -154,6 +189,8 @@ class Tables final : public Model {
   std::vector<double> inertia;  ///< 3 per body: principal moments [kg m^2].
   std::vector<double> bound_m;  ///< Per body and the world: reach of its shapes from its origin.
   std::vector<CableTable> cables;
+  std::vector<MotorTable> motors;  ///< In the order of their cables.
+  std::vector<SupplyTable> supplies;
   std::vector<AttachmentTable> attachments;
   std::vector<AttachmentTable> spots;  ///< The distinct points of bodies among them.
   int max_attachments = 0;             ///< Of one cable.
@@ -179,6 +216,9 @@ class Tables final : public Model {
   struct View View() const noexcept;
   Layout MakeLayout() const;
 };
+
+/// Fills motors and supplies, and which cable has which motor.
+void LayOutMotors(Tables& tables);
 
 /// Fills coupling and largest_coupling.
 void CoupleCables(Tables& tables);

@@ -70,6 +70,7 @@ std::vector<Golden> Goldens() {
       {"tetraspine3_ntrt_laws", ntrt, 1e-3, 3000, wind},
       {"tetraspine3_4khz", scenes::Tetraspine().Def(), 2.5e-4, 4000, wind},
       {"tetraspine12", scenes::Tetraspine{.segments = 12}.Def(), 1e-3, 500, wind},
+      {"tetraspine3_motors", MotorizedSpine(), 1e-3, 2000, wind},
       {"jumble", scenes::Jumble().Def(), 1e-3, 2000, wind},
   };
 }

@@ -6,6 +6,7 @@
 #include "scenes/heap.h"
 #include "scenes/jumble.h"
 #include "taut/batch.h"
+#include "tests/determinism/variety.h"
 
 namespace taut::test {
 namespace {
@@ -59,6 +60,8 @@ TEST(StepSome, WorldsOfAHeapComeAndGo) {
   ExpectWorldsOfTheirOwn(scenes::RodHeap{.rods = 6, .first_m = 0.1}.Def(), 600);
 }
 TEST(StepSome, WorldsOfAJumbleComeAndGo) { ExpectWorldsOfTheirOwn(scenes::Jumble().Def(), 900); }
+
+TEST(StepSome, WorldsWithMotorsComeAndGo) { ExpectWorldsOfTheirOwn(MotorizedSpine(), 400); }
 
 TEST(StepSome, NeitherNobodyNorEverybodyIsSpecial) {
   Diagnostics out;

@@ -34,6 +34,25 @@ class Dice {
   std::uint64_t state_;
 };
 
+/// A spine whose cables are wound by motors, no two of them alike, on two supplies.
+inline ModelDef MotorizedSpine() {
+  ModelDef def = scenes::Tetraspine().Def();
+  def.name = "tetraspine3_motors";
+  int number = 0;
+  for (CableDef& cable : def.cables) {
+    DcMotorDef motor;
+    motor.gear_ratio = number % 3 == 0 ? 43 : 76;
+    motor.gear_efficiency = 0.4 + 0.05 * number;
+    motor.backlash_rad = number % 4 == 1 ? 0.03 : 0;
+    motor.supply = number % 2 == 0 ? "left" : "right";
+    motor.supply_resistance_ohm = number % 2 == 0 ? 0.3 : 2;
+    cable.actuator.kind = ActuatorDef::Kind::kDcMotor;
+    cable.actuator.dc_motor = motor;
+    ++number;
+  }
+  return def;
+}
+
 inline std::vector<ModelDef> VariedModels() {
   scenes::Prism3 prism;
   prism.clearance_m = 0.02;
@@ -53,7 +72,7 @@ inline std::vector<ModelDef> VariedModels() {
   wedge_along_slip.name = "block_in_wedge_along_slip";
   wedge_along_slip.friction_law = FrictionLaw::kAlongSlip;
   return {wedge,       wedge_along_slip, scenes::Tetraspine().Def(), along_slip,
-          prism.Def(), block.Def(),      scenes::Jumble().Def()};
+          prism.Def(), block.Def(),      scenes::Jumble().Def(),     MotorizedSpine()};
 }
 
 /// Starts world `world` in a way that belongs to `seed`: other places, speeds, parameters.
@@ -107,6 +126,11 @@ inline void Disturb(Batch& batch, int world, int seed, int when) {
       batch.SetRestLengthTarget(
           world, c, def.cables[static_cast<std::size_t>(c)].rest_length_m * (1 + dice.Roll(0.2)));
     }
+  }
+  for (int c = 0; c < static_cast<int>(def.cables.size()); ++c) {
+    if (!def.cables[static_cast<std::size_t>(c)].actuator.dc_motor) continue;
+    if ((seed + when + c) % 3 == 0) batch.SetDuty(world, c, dice.Roll(1));
+    batch.SetMotorEnabled(world, c, (seed + when + c) % 5 != 0);
   }
   if ((seed + when) % 3 == 0 && !def.nodes.empty()) {
     const int node = static_cast<int>((seed + 5 * when) % static_cast<int>(def.nodes.size()));

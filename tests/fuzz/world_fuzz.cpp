@@ -124,6 +124,25 @@ void AddBody(ModelDef& def, Draw& draw) {
   }
 }
 
+DcMotorDef RandomMotor(Draw& draw) {
+  DcMotorDef motor;
+  motor.resistance_ohm = draw.Scale(1e-2, 1e3);
+  motor.torque_constant_n_m_per_a = draw.Scale(1e-4, 1);
+  motor.rotor_inertia_kg_m2 = draw.Scale(1e-9, 1e-2);
+  motor.friction_torque_n_m = draw.Coin() ? 0 : draw.Scale(1e-6, 1e-2);
+  motor.static_friction_torque_n_m = motor.friction_torque_n_m * draw.Between(1, 3);
+  motor.viscous_friction_n_m_s_per_rad = draw.Coin() ? 0 : draw.Scale(1e-9, 1e-3);
+  motor.gear_ratio = draw.Scale(1, 1e3);
+  motor.gear_efficiency = draw.Between(0.2, 1);
+  motor.backlash_rad = draw.Coin() ? 0 : draw.Between(0, 0.2);
+  motor.spool_radius_m = draw.Scale(1e-3, 1e-1);
+  motor.supply = draw.Coin() ? "one" : "other";
+  motor.supply_resistance_ohm = 0.5;
+  motor.servo_gain_per_m = draw.Scale(1, 1e5);
+  motor.servo_damping_s_per_m = draw.Coin() ? 0 : draw.Scale(1e-3, 1e3);
+  return motor;
+}
+
 void AddCable(ModelDef& def, Draw& draw) {
   CableDef cable;
   cable.name = "cable_" + std::to_string(def.cables.size());
@@ -141,7 +160,8 @@ void AddCable(ModelDef& def, Draw& draw) {
   cable.rest_length_m = draw.Scale(1e-6, 3);
   cable.damping_law = draw.Coin() ? DampingLaw::kExact : DampingLaw::kClamped;
   ActuatorDef& motor = cable.actuator;
-  motor.kind = static_cast<ActuatorDef::Kind>(draw.Int(0, 2));
+  motor.kind = static_cast<ActuatorDef::Kind>(draw.Int(0, 3));
+  if (motor.kind == ActuatorDef::Kind::kDcMotor) motor.dc_motor = RandomMotor(draw);
   motor.max_speed_m_per_s = draw.Coin() ? kInfinity : draw.Scale(1e-3, 1e3);
   motor.max_acceleration_m_per_s2 = draw.Coin() ? kInfinity : draw.Scale(1e-3, 1e5);
   motor.max_force_n = draw.Coin() ? kInfinity : draw.Scale(1e-3, 1e5);
@@ -193,6 +213,9 @@ void Disturb(Batch& batch, int world, Draw& draw) {
   const ModelDef& def = batch.model().def();
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
     if (draw.Coin()) batch.SetRestLengthTarget(world, static_cast<int>(c), Command(draw));
+    if (!def.cables[c].actuator.dc_motor) continue;
+    if (draw.Coin()) batch.SetDuty(world, static_cast<int>(c), draw.Between(-1.1, 1.1));
+    if (draw.Coin()) batch.SetMotorEnabled(world, static_cast<int>(c), draw.Coin());
   }
   if (!def.nodes.empty() && draw.Coin()) {
     const int node = draw.Int(0, static_cast<int>(def.nodes.size()) - 1);

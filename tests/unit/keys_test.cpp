@@ -245,6 +245,13 @@ TEST(Units, AreThoseOfTheName) {
   EXPECT_EQ(base::UnitAtEnd("phase_per_segment_rad").Text(), "rad");
   EXPECT_EQ(base::UnitAtEnd("counts_per_turn").Text(), "");
   EXPECT_EQ(base::UnitAtEnd("rate_hz").Text(), "Hz");
+  EXPECT_EQ(base::UnitAtEnd("torque_constant_n_m_per_a").Text(), "N m/A");
+  EXPECT_EQ(base::UnitAtEnd("housing_thermal_resistance_k_per_w").Text(), "K/W");
+  EXPECT_EQ(base::UnitAtEnd("resistance_ohm").Text(), "ohm");
+  EXPECT_EQ(base::UnitAtEnd("winding_temperature_c").Text(), "degC");
+  EXPECT_EQ(base::UnitAtEnd("supply_voltage_v").Text(), "V");
+  EXPECT_EQ(base::UnitAtEnd("orientation_w").Text(), "");  // a component
+  EXPECT_EQ(base::UnitAtEnd("body_a").Text(), "");         // a label
   EXPECT_EQ(base::UnitAtEnd("friction").Text(), "");
   EXPECT_EQ(base::UnitAtEnd("s").Text(), "");
 }

@@ -93,15 +93,15 @@ TEST(ModelErrors, RestLengthIsGivenOnceAndPossible) {
 
 TEST(ModelErrors, ActuatorsSayWhatTheyAre) {
   EXPECT_EQ(Errors(TwoRods("prestress_n: 1, actuator: {}")),
-            "robot.yaml:11:78: error: cable.actuator needs limits, or `ideal: true` (without an "
-            "actuator the rest "
+            "robot.yaml:11:78: error: cable.actuator needs limits, a `dc_motor`, or `ideal: true` "
+            "(without an actuator the rest "
             "length is fixed)\n");
   EXPECT_EQ(Errors(TwoRods("prestress_n: 1, actuator: {ideal: true, max_force_n: 3}")),
             "robot.yaml:11:79: error: an ideal actuator has no limits (leave out `ideal`, or the "
             "limits)\n");
   EXPECT_EQ(Errors(TwoRods("prestress_n: 1, actuator: {max_speed: 3}")),
-            "robot.yaml:11:78: error: cable.actuator needs limits, or `ideal: true` (without an "
-            "actuator the rest "
+            "robot.yaml:11:78: error: cable.actuator needs limits, a `dc_motor`, or `ideal: true` "
+            "(without an actuator the rest "
             "length is fixed)\n"
             "robot.yaml:11:79: error: unknown key \"max_speed\" in cable.actuator (did you mean "
             "\"max_speed_m_per_s\"?)\n");

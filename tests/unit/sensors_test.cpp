@@ -197,6 +197,106 @@ TEST(Sensors, SampleOnTheirOwnClock) {
   }
 }
 
+// The paper's eq. 7, turned round and rounded down: count = floor((T + 4.9363) / 0.1567).
+TEST(Sensors, CountsAreThoseOfThePaper) {
+  LoadCellSpec cell;
+  cell.counts.emplace();
+  for (const auto& [tension_n, count] :
+       {std::pair{0.0, 31}, {-4.9363, 0}, {-6.0, 0}, {20.0, 159}, {50.0, 350}, {110.0, 733}}) {
+    EXPECT_EQ(std::floor((tension_n + 4.9363) / 0.1567), tension_n == -6.0 ? -7 : count);
+    EXPECT_EQ(Samples(cell, tension_n, 1)[0], 0.1567 * count - 4.9363) << tension_n;
+  }
+  // 25 lb, 111.21 N, is where the amplifier ends; a converter of 9 bits ends before.
+  EXPECT_NEAR(Samples(cell, 150.0, 1)[0], 111.21, 0.1567);
+  cell.counts->bits = 9;
+  EXPECT_EQ(Samples(cell, 150.0, 1)[0], 0.1567 * 511 - 4.9363);
+}
+
+// Noise of s counts, rounded down: the mean is half a count low, the variance s^2 + 1 / 12.
+TEST(Sensors, NoiseInCountsSmoothesTheRounding) {
+  LoadCellSpec cell;
+  cell.counts.emplace();
+  cell.counts->noise_counts = 1.5;
+  const int n = 100'000;
+  const Moments m = MomentsOf(Samples(cell, 20.0, n));
+  const double g = 0.1567, variance = g * g * (1.5 * 1.5 + 1.0 / 12);
+  EXPECT_NEAR(m.mean, 20.0 - 0.5 * g, 5 * std::sqrt(variance / n));
+  EXPECT_NEAR(m.variance, variance, 5 * variance * std::sqrt(2.0 / n));
+}
+
+// Each cell has its own gain and its own drift, for a whole run.
+TEST(Sensors, GainsAndDriftsAreDrawnOnceARun) {
+  LoadCellSpec cell;
+  cell.gain_error = 0.02;
+  cell.drift_n_per_s = 0.1;
+  std::vector<double> gains, drifts;
+  for (std::uint64_t seed = 0; seed < 20'000; ++seed) {
+    const auto at_10 = Samples(cell, 10.0, 3, seed), at_30 = Samples(cell, 30.0, 1, seed);
+    gains.push_back((at_30[0] - at_10[0]) / 20 - 1);
+    ASSERT_NEAR(at_30[0] - 30, 30 * gains.back(), 1e-12);
+    drifts.push_back((at_10[2] - at_10[0]) / 0.002);
+    ASSERT_NEAR(at_10[1] - at_10[0], 0.001 * drifts.back(), 1e-12);
+  }
+  EXPECT_NEAR(MomentsOf(gains).variance, 4e-4, 5 * 4e-4 * std::sqrt(2.0 / 20'000));
+  EXPECT_NEAR(MomentsOf(drifts).variance, 0.01, 5 * 0.01 * std::sqrt(2.0 / 20'000));
+}
+
+// A zero that is off stays off until a mark comes by; then it is off by whole turns.
+TEST(Sensors, AnIndexLeavesWholeTurnsOfAWrongZero) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SensorSpec spec;
+    spec.encoder = EncoderSpec{.zero_error_m = 0.3, .index_m = 0.25};
+    Sampler sensors(spec, seed);
+    One exact;
+    exact.cable.rest_length_m = 1.1;
+    sensors.SampleNext(exact);
+    const double zero = sensors.seen().rest_length_m - 1.1;
+    exact.cable.rest_length_m = 1.01;  // no mark: they are at 1.0 and 1.25
+    sensors.SampleNext(exact);
+    ASSERT_NEAR(sensors.seen().rest_length_m - 1.01, zero, 1e-12);
+    for (const double rest : {0.99, 1.2}) {
+      exact.cable.rest_length_m = rest;
+      sensors.SampleNext(exact);
+      const double turns = (sensors.seen().rest_length_m - rest) / 0.25;
+      ASSERT_NEAR(turns, std::round(turns), 1e-9);
+      ASSERT_NEAR(turns, zero / 0.25, 0.5 + 1e-9);
+    }
+  }
+}
+
+// Counts that are taken for too much way: the way from the start is wrong, the start is not.
+TEST(Sensors, AnEncodersGainIsOfTheWayFromTheStart) {
+  std::vector<double> gains;
+  for (std::uint64_t seed = 0; seed < 20'000; ++seed) {
+    SensorSpec spec;
+    spec.encoder = EncoderSpec{.gain_error = 0.05};
+    Sampler sensors(spec, seed);
+    One exact;
+    sensors.SampleNext(exact);
+    ASSERT_EQ(sensors.seen().rest_length_m, 1.0);
+    exact.cable.rest_length_m = 0.8;
+    sensors.SampleNext(exact);
+    gains.push_back((1.0 - sensors.seen().rest_length_m) / 0.2 - 1);
+  }
+  EXPECT_NEAR(MomentsOf(gains).variance, 0.0025, 5 * 0.0025 * std::sqrt(2.0 / 20'000));
+}
+
+// Where a gear has backlash, an encoder tells the shaft's way and not the cable's.
+TEST(Sensors, AnEncoderIsOnTheMotorsShaft) {
+  SensorSpec spec;
+  spec.encoder = EncoderSpec{0.25, 0.0};
+  Sampler sensors(spec);
+  One exact;
+  const double shaft_m = 1.6;
+  Observation observation;
+  observation.cables = exact.rows();
+  observation.shaft_m = &shaft_m;
+  const double time_s = 0;
+  const Tick tick = sensors.clock.Due(&time_s, AllLanes(1));
+  sensors.sensors.Sample(tick, observation);
+  EXPECT_EQ(sensors.seen().rest_length_m, 1.5);
+}
+
 // The same noise whatever the step: samples are numbered, not steps.
 TEST(Sensors, NoiseDoesNotDependOnTheStep) {
   Diagnostics out;

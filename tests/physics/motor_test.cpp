@@ -1,0 +1,259 @@
+/// Motors against closed forms (docs/theory/motor.md): running up and down, stall, back-driving,
+/// holding.
+
+#include <gtest/gtest.h>
+
+#include "tests/physics/motor_fixture.h"
+
+namespace taut::test {
+namespace {
+
+double Speed(const Batch& world) { return world.Motor(0, 0).rotor_speed_rad_per_s; }
+double Rest(const Batch& world) { return world.Cable(0, 0).rest_length_m; }
+
+// The data sheet of the Faulhaber 1524T012SR: 9800 rpm and 7 mA without load, 6.92 mN m at stall,
+// a mechanical time constant of 8.3 ms. Its numbers fit each other to some 1 %.
+TEST(Motor, DoesWhatItsDataSheetSays) {
+  DcMotorDef motor;
+  motor.driver_resistance_ohm = 0;
+  motor.resistance_rise_per_k = 0;
+  Batch free = MakeBatch(MotorAlone(motor));
+  free.SetDuty(0, 0, 1);
+  free.Step(1e-3, 8);
+  const double after_8_ms = Speed(free);
+  free.Step(1e-3, 500);
+  EXPECT_NEAR(Speed(free) * 60 / 6.283185307, 9800, 0.01 * 9800);
+  EXPECT_NEAR(free.Motor(0, 0).current_a, 0.007, 0.01 * 0.007);
+  EXPECT_NEAR(after_8_ms / Speed(free), 1 - std::exp(-8 / 8.3), 0.02);
+
+  Batch stalled = MakeBatch(MotorAlone(motor, 1, 1e5));
+  stalled.SetDuty(0, 0, 1);
+  stalled.Step(1e-3, 2000);
+  EXPECT_EQ(Speed(stalled), 0);
+  const double torque = motor.torque_constant_n_m_per_a * stalled.Motor(0, 0).current_a;
+  EXPECT_NEAR(torque - motor.friction_torque_n_m, 6.92e-3, 0.01 * 6.92e-3);
+}
+
+// w_n = w_inf (1 - p^-n), p = 1 + z + z^2 / 2, z = h / tau, is our scheme's exp(-t / tau)
+// (motor.md, M.8), whose error in time is z^2 / 6.
+TEST(Motor, RunsUpExponentially) {
+  const DcMotorDef motor = PlainMotor();
+  const double k = motor.torque_constant_n_m_per_a;
+  const double tau = motor.resistance_ohm * motor.rotor_inertia_kg_m2 / (k * k);
+  for (const double duty : {1.0, -0.3}) {
+    const double final_speed = duty * motor.supply_voltage_v / k;
+    for (const double h : kThreeStepsS) {
+      Batch world = MakeBatch(MotorAlone(motor));
+      world.SetDuty(0, 0, duty);
+      const int steps = StepsIn(0.016, h);
+      world.Step(h, steps);
+      const double z = h / tau, p = 1 + z + z * z / 2;
+      const double expected = final_speed * (1 - std::pow(p, -steps));
+      EXPECT_NEAR(Speed(world), expected, RoundOff(steps, std::fabs(final_speed)));
+      EXPECT_NEAR(Speed(world), final_speed * (1 - std::exp(-0.016 / tau)),
+                  std::fabs(final_speed) * z * z * 0.1);
+      // The way is what the speeds add up to: J dw = k i dt, V = R i + k dtheta/dt.
+      const double angle = (final_speed * 0.016 - Speed(world) * tau);
+      EXPECT_NEAR(world.Motor(0, 0).rotor_angle_rad, angle, RoundOff(steps, 1e5));
+      EXPECT_NEAR(Rest(world), 100 - Way(motor) * angle, RoundOff(steps, 200));
+    }
+  }
+}
+
+// Without a driver only friction is left: the speed falls in a line and is exactly 0 in the end.
+TEST(Motor, SwitchedOffItRunsDownInALineAndStands) {
+  DcMotorDef motor = PlainMotor();
+  motor.friction_torque_n_m = motor.static_friction_torque_n_m = 8e-5;
+  const double falls = motor.friction_torque_n_m / motor.rotor_inertia_kg_m2;
+  for (const double h : kThreeStepsS) {
+    Batch world = MakeBatch(MotorAlone(motor));
+    world.SetDuty(0, 0, 1);
+    world.Step(h, StepsIn(0.2, h));
+    const double start = Speed(world), angle = world.Motor(0, 0).rotor_angle_rad;
+    world.SetMotorEnabled(0, 0, false);
+    EXPECT_EQ(world.Motor(0, 0).mode, MotorMode::kOff);
+    world.Step(h, StepsIn(0.4, h));
+    EXPECT_NEAR(Speed(world), start - 0.4 * falls, RoundOff(1600, start));
+    EXPECT_EQ(world.Motor(0, 0).current_a, 0);
+    world.Step(h, StepsIn(start / falls - 0.4 + h, h) + 1);
+    EXPECT_EQ(Speed(world), 0);
+    // The last step stops within itself; it takes half of it for that.
+    EXPECT_NEAR(world.Motor(0, 0).rotor_angle_rad - angle, start * start / (2 * falls),
+                0.5 * falls * h * h + RoundOff(4000, 1e6));
+    const double rest = Rest(world);
+    world.Step(h, 1000);
+    EXPECT_EQ(Rest(world), rest);
+  }
+}
+
+// The same with viscous friction: w = (w0 + c) exp(-t / tau) - c, c = friction / viscous.
+TEST(Motor, ViscousFrictionSlowsItDown) {
+  DcMotorDef motor = PlainMotor();
+  motor.friction_torque_n_m = motor.static_friction_torque_n_m = 2e-5;
+  motor.viscous_friction_n_m_s_per_rad = 2e-7;
+  const double c = motor.friction_torque_n_m / motor.viscous_friction_n_m_s_per_rad;
+  const double tau = motor.rotor_inertia_kg_m2 / motor.viscous_friction_n_m_s_per_rad;
+  for (const double h : kThreeStepsS) {
+    Batch world = MakeBatch(MotorAlone(motor));
+    world.SetDuty(0, 0, -1);
+    world.Step(h, StepsIn(0.2, h));
+    const double start = -Speed(world);
+    world.SetMotorEnabled(0, 0, false);
+    world.Step(h, StepsIn(0.2, h));
+    EXPECT_NEAR(-Speed(world), (start + c) * std::exp(-0.2 / tau) - c,
+                start * h * h / (tau * tau) / 6);
+  }
+}
+
+// Duty 0 shorts the winding: back EMF brakes with the time constant of the motor.
+TEST(Motor, DutyZeroBrakes) {
+  const DcMotorDef motor = PlainMotor();
+  const double k = motor.torque_constant_n_m_per_a;
+  const double tau = motor.resistance_ohm * motor.rotor_inertia_kg_m2 / (k * k);
+  Batch world = MakeBatch(MotorAlone(motor));
+  world.SetDuty(0, 0, 1);
+  world.Step(1e-4, 2000);
+  const double start = Speed(world);
+  world.SetDuty(0, 0, 0);
+  EXPECT_EQ(world.Motor(0, 0).mode, MotorMode::kDuty);
+  world.Step(1e-4, 100);
+  EXPECT_NEAR(Speed(world), start * std::exp(-0.01 / tau), start * 1e-4);
+  EXPECT_LT(world.Motor(0, 0).current_a, 0);
+}
+
+// Wound up to where the drive's torque is that of friction and of the cable through the gear.
+TEST(Motor, StallsAtTheTensionThatItsTorqueHolds) {
+  DcMotorDef motor = PlainMotor();
+  motor.friction_torque_n_m = motor.static_friction_torque_n_m = 8e-5;
+  motor.gear_efficiency = 0.66;
+  for (const double duty : {1.0, 0.4}) {
+    const double torque =
+        motor.torque_constant_n_m_per_a * duty * motor.supply_voltage_v / motor.resistance_ohm;
+    const double tension =
+        motor.gear_efficiency * (torque - motor.friction_torque_n_m) / Way(motor);
+    for (const double h : kThreeStepsS) {
+      Batch world = MakeBatch(MotorAlone(motor, 1, 2e4));
+      world.SetDuty(0, 0, duty);
+      world.Step(h, StepsIn(2.0, h));
+      EXPECT_NEAR(Speed(world), 0, 1e-8);  // exponentially, where friction is the same at any speed
+      // It comes to rest from below; the mass of the rotor carries it no more than this beyond.
+      EXPECT_NEAR(world.Cable(0, 0).tension_n, tension, 1e-3 * tension);
+      // What holds it between winding in and being pulled out is the friction on both sides.
+      const double rest = Rest(world);
+      world.SetDuty(0, 0, 0.8 * duty);
+      world.Step(h, 500);
+      EXPECT_EQ(Rest(world), rest);
+    }
+  }
+}
+
+/// What the cable's torque, less the gear's friction, must not exceed for the motor to hold.
+double LargestHeldN(const DcMotorDef& motor) {
+  const double share = 2 - 1 / motor.gear_efficiency;  // arrives at the rotor
+  return share > 0 ? motor.static_friction_torque_n_m / (Way(motor) * share) : INFINITY;
+}
+
+// A weight that friction can hold stays where it is, to the bit, for as long as one looks; one that
+// is 1 % heavier goes down.
+TEST(Motor, SwitchedOffItHoldsWhatItsFrictionCan) {
+  DcMotorDef motor;
+  for (const double efficiency : {1.0, 0.66, 0.5, 0.3}) {
+    motor.gear_efficiency = efficiency;
+    const double held_n = std::min(LargestHeldN(motor), 1e3);
+    for (const double h : {2.5e-4, 1e-3, 2e-3}) {
+      Batch world = MakeBatch(MotorWithWeight(motor, Weight(0.99 * held_n / 9.81, 1e4)));
+      world.SetMotorEnabled(0, 0, false);
+      world.Step(h, 20'000);
+      EXPECT_EQ(Rest(world), 1.0) << efficiency;
+      EXPECT_EQ(Speed(world), 0) << efficiency;
+      if (held_n == 1e3) continue;
+      Batch heavier = MakeBatch(MotorWithWeight(motor, Weight(1.01 * held_n / 9.81, 1e4)));
+      heavier.SetMotorEnabled(0, 0, false);
+      heavier.Step(h, StepsIn(2.0, h));
+      EXPECT_GT(Rest(heavier), 1.001) << efficiency;
+    }
+  }
+}
+
+// While its cable rings, too, without any creep.
+TEST(Motor, HoldsARingingCableWithoutCreep) {
+  DcMotorDef motor;
+  for (const double stiffness : {227.0, 1e4, 1e6}) {
+    scenes::HangingMass weight = Weight(0.6 * LargestHeldN(motor) / 9.81, stiffness);
+    weight.length_m += 0.2 * weight.sag_m();
+    Batch world = MakeBatch(MotorWithWeight(motor, weight));
+    world.SetMotorEnabled(0, 0, false);
+    double least = 1e9, most = 0;
+    for (int i = 0; i < 20'000; ++i) {
+      world.Step(1e-3);
+      least = std::min(least, world.Cable(0, 0).tension_n);
+      most = std::max(most, world.Cable(0, 0).tension_n);
+    }
+    EXPECT_EQ(Rest(world), 1.0) << stiffness;
+    EXPECT_GT(most - least, 0.2 * weight.mass_kg * 9.81) << stiffness;
+  }
+}
+
+// A weight drives a motor that is off: m a = m g - T, J a / way = way T share - friction.
+TEST(Motor, AWeightDrivesItBack) {
+  DcMotorDef motor;
+  motor.static_friction_torque_n_m = motor.friction_torque_n_m;
+  const double way = Way(motor), share = 2 - 1 / motor.gear_efficiency, m = 3.0;
+  const double a = (m * 9.81 * way * way * share - motor.friction_torque_n_m * way) /
+                   (motor.rotor_inertia_kg_m2 + m * way * way * share);
+  for (const double stiffness : {1e4, 1e6}) {
+    for (const double h : kThreeStepsS) {
+      Batch world = MakeBatch(MotorWithWeight(motor, Weight(m, stiffness, 200)));
+      world.SetMotorEnabled(0, 0, false);
+      const int steps = StepsIn(0.5, h);
+      world.Step(h, steps);
+      EXPECT_NEAR(Rest(world) - 1, a * 0.125, 0.01 * a * 0.125) << stiffness << " " << h;
+      EXPECT_NEAR(-Speed(world) * way, a * 0.5, 0.01 * a * 0.5) << stiffness << " " << h;
+    }
+  }
+}
+
+// Braked, it sinks at the speed at which the short circuit's torque is what is left of the load's.
+TEST(Motor, SinksEvenlyWhenBraked) {
+  DcMotorDef motor;
+  motor.resistance_rise_per_k = 0;
+  const double k = motor.torque_constant_n_m_per_a, share = 2 - 1 / motor.gear_efficiency;
+  const double ohm = motor.resistance_ohm + motor.driver_resistance_ohm;
+  const double torque = 30 * Way(motor) * share - motor.friction_torque_n_m;
+  for (const double h : kThreeStepsS) {
+    Batch world = MakeBatch(MotorWithWeight(motor, Weight(30 / 9.81, 1e4, 100)));
+    world.SetDuty(0, 0, 0);
+    world.Step(h, StepsIn(2.0, h));
+    const double expected = -torque * ohm / (k * k);
+    // Above Stribeck's speed a share of (10 / 150)^2 of the friction at rest is left.
+    EXPECT_NEAR(Speed(world), expected, 0.003 * std::fabs(expected));
+  }
+}
+
+// What breaks away at the friction of rest goes on at that of sliding, and runs away.
+TEST(Motor, BreaksAwayAtTheFrictionOfRest) {
+  DcMotorDef motor = PlainMotor();
+  motor.friction_torque_n_m = 8e-5;
+  motor.static_friction_torque_n_m = 3e-4;
+  motor.stribeck_speed_rad_per_s = 1;
+  const double per_duty =
+      motor.torque_constant_n_m_per_a * motor.supply_voltage_v / motor.resistance_ohm;
+  Batch world = MakeBatch(MotorAlone(motor));
+  world.SetDuty(0, 0, 0.99 * 3e-4 / per_duty);
+  world.Step(1e-3, 1000);
+  EXPECT_EQ(Rest(world), 100);
+  world.SetDuty(0, 0, 1.05 * 3e-4 / per_duty);
+  world.Step(1e-3, 1000);
+  // (torque - friction) R / k^2, with what Stribeck's law leaves at that speed.
+  const double k = motor.torque_constant_n_m_per_a;
+  const double expected = (1.05 * 3e-4 - 8e-5) * motor.resistance_ohm / (k * k);
+  const double more = 2.2e-4 / (1 + expected * expected) * motor.resistance_ohm / (k * k);
+  EXPECT_NEAR(Speed(world), expected - more, 0.2 * more);
+  // It stays in motion below that torque, down to the friction of sliding.
+  world.SetDuty(0, 0, 2e-4 / per_duty);
+  world.Step(1e-3, 1000);
+  EXPECT_GT(Speed(world), 10);
+}
+
+}  // namespace
+}  // namespace taut::test
