@@ -63,6 +63,12 @@ void AvrCore::RunUntil(std::uint64_t cycle) {
       Hang();
     }
   }
+  if (avr_->state != cpu_Sleeping) return;
+  // A core that sleeps has jumped to this cycle; what happens in it, simavr would look at first
+  // thing in the next run, which is after whoever asked for this one has looked.
+  asleep_ = true;
+  avr_cycle_timer_process(avr_);
+  if (avr_->interrupt_state) avr_service_interrupts(avr_);
 }
 
 void AvrCore::Reset(std::uint8_t cause, bool power_on) {
@@ -155,6 +161,11 @@ double AvrCore::PwmDuty(int channel) const {
 std::uint8_t AvrCore::Memory(std::uint16_t address) const {
   TAUT_ASSERT(address < AvrProgram::kMemoryEnd);
   return avr_->data[address];
+}
+
+void AvrCore::SetMemory(std::uint16_t address, std::uint8_t value) {
+  TAUT_ASSERT(address >= AvrProgram::kMemoryStart && address < AvrProgram::kMemoryEnd);
+  avr_->data[address] = value;
 }
 
 void AvrCore::LoadEeprom(std::uint32_t offset, const std::vector<std::uint8_t>& bytes) {

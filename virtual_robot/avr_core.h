@@ -51,6 +51,7 @@ class AvrCore {
   /// The part of the time for which the output of Timer 1 is high, channel 0 (A) or 1 (B).
   double PwmDuty(int channel) const;
   std::uint8_t Memory(std::uint16_t address) const;
+  void SetMemory(std::uint16_t address, std::uint8_t value);
   void LoadEeprom(std::uint32_t offset, const std::vector<std::uint8_t>& bytes);
   std::vector<std::uint8_t> Eeprom() const;
   int DeepestStack() const;

@@ -34,9 +34,8 @@ const char* Name(ResetCause cause) {
 Board::Board(std::shared_ptr<const AvrProgram> program, const BoardOptions& options)
     : id_(options.id), program_(std::move(program)), drift_ppm_(options.drift_ppm) {
   core_ = std::make_unique<AvrCore>(*program_);
-  std::vector<std::uint8_t> eeprom{static_cast<std::uint8_t>(options.id)};
-  eeprom.insert(eeprom.end(), options.eeprom.begin(), options.eeprom.end());
-  core_->LoadEeprom(0, eeprom);
+  core_->LoadEeprom(0, {static_cast<std::uint8_t>(options.id)});
+  core_->LoadEeprom(1, options.eeprom);
   core_->adc_code = [this](int channel) { return adc_code ? adc_code(channel, now()) : 0; };
   core_->on_marker = [this](std::uint8_t value) {
     marker_ = value;
@@ -138,6 +137,9 @@ void Board::Hang() {
 }
 
 std::uint8_t Board::Memory(std::uint16_t address) const { return core_->Memory(address); }
+void Board::SetMemory(std::uint16_t address, std::uint8_t value) {
+  core_->SetMemory(address, value);
+}
 std::uint8_t Board::stack_probe() const { return core_->Memory(kGpior1); }
 int Board::DeepestStack() const { return core_->DeepestStack(); }
 int Board::StaticMemory() const {

@@ -30,7 +30,7 @@ const char* Name(ResetCause cause);
 
 struct BoardOptions {
   int id = 0;                        ///< 0..5; byte 0 of the EEPROM.
-  std::vector<std::uint8_t> eeprom;  ///< What follows it; the rest is 0xFF.
+  std::vector<std::uint8_t> eeprom{};  ///< What follows it; the rest is 0xFF.
   double drift_ppm = 0;              ///< How fast the crystal is.
 };
 
@@ -85,6 +85,7 @@ class Board {
   std::uint64_t cycle() const;
   Time now() const;
   std::uint8_t Memory(std::uint16_t address) const;  ///< Of the data space, 0x000..0x8FF.
+  void SetMemory(std::uint16_t address, std::uint8_t value);  ///< 0x100..0x8FF.
   std::uint8_t last_marker() const { return marker_; }
   std::uint8_t stack_probe() const;  ///< GPIOR1.
   /// The most bytes that the stack ever held since power came: memory is painted before.

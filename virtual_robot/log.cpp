@@ -10,7 +10,9 @@ std::string LogLine(Time at, std::string_view who, std::string_view what) {
 
 std::string Hex(const unsigned char* bytes, std::size_t count) {
   std::string text;
-  for (std::size_t i = 0; i < count; ++i) text += fmt::format(i == 0 ? "{:02x}" : " {:02x}", bytes[i]);
+  for (std::size_t i = 0; i < count; ++i) {
+    text += fmt::format("{}{:02x}", i == 0 ? "" : " ", bytes[i]);
+  }
   return text;
 }
 

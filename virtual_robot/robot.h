@@ -24,15 +24,15 @@ namespace taut::virtual_robot {
 struct RobotOptions {
   std::shared_ptr<const AvrProgram> program;  ///< Of all boards.
   std::uint64_t seed = 1;                     ///< Of all noise.
-  std::vector<double> drift_ppm;              ///< A board each; 0 for those beyond the end.
-  std::vector<std::uint8_t> eeprom;           ///< Of all boards, behind their identity.
-  LoadCellOptions load_cell;
-  EncoderOptions encoder;
-  UsbIssOptions usb;
+  std::vector<double> drift_ppm{};              ///< A board each; 0 for those beyond the end.
+  std::vector<std::uint8_t> eeprom{};           ///< Of all boards, behind their identity.
+  LoadCellOptions load_cell{};
+  EncoderOptions encoder{};
+  UsbIssOptions usb{};
   /// How often the plant moves on and boards see it: 20 to 100 us.
   Time plant_period = 20 * kMicrosecond;
-  std::vector<FaultSpec> faults;
-  LogSink log;              ///< May be empty.
+  std::vector<FaultSpec> faults{};
+  LogSink log{};              ///< May be empty.
   bool log_frames = false;  ///< What goes over USB, too.
 };
 

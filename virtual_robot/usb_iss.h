@@ -19,7 +19,7 @@ struct UsbIssOptions {
   /// Of the adapter's own program. Before 8, a byte that nobody acknowledged left the bus without a
   /// stop in I2C_DIRECT.
   int firmware_version = 8;
-  std::string serial_number = "00000001";  ///< Eight characters.
+  std::string serial_number{"00000001"};  ///< Eight characters.
   // From the host's write to the adapter's program, and back [?]: nobody has published numbers.
   Time request_latency = 250 * kMicrosecond;
   Time reply_latency = 250 * kMicrosecond;
