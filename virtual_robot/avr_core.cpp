@@ -35,7 +35,8 @@ AvrCore::AvrCore(const AvrProgram& program)
   avr_loadcode(avr_, flash.data(), static_cast<std::uint32_t>(flash.size()), 0);
   avr_->codeend = AvrProgram::kFlashBytes;
   LoadEeprom(0, program.eeprom);
-  avr_->sleep = [](avr_t*, avr_cycle_count_t) {};  // that of the library sleeps for real
+  // That of the library sleeps for real; behind it, simavr wakes a cycle after what is due.
+  avr_->sleep = [](avr_t* avr, avr_cycle_count_t) { --avr->cycle; };
   avr_->reset = [](avr_t* avr) { Hooks::Self(avr).reset_seen_ = true; };
   port_b_ = Hooks::FindPort(*avr_, 'B');
   port_d_ = Hooks::FindPort(*avr_, 'D');
@@ -132,6 +133,11 @@ void AvrCore::SchedulePins(const std::vector<PinLevel>& levels) {
     levels_.insert(std::upper_bound(levels_.begin(), levels_.end(), level, later), level);
   }
   if (!levels.empty()) StartPinTimer();
+}
+
+void AvrCore::SettlePins() {
+  for (const PinLevel& level : levels_) SetPin(level.port, level.bit, level.high);
+  levels_.clear();
 }
 
 void AvrCore::StartPinTimer() {

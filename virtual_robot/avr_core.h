@@ -46,6 +46,8 @@ class AvrCore {
   void SetPin(char port, int bit, bool high);
   /// In order of cycles, after all that came before; those in the past happen at once.
   void SchedulePins(const std::vector<PinLevel>& levels);
+  /// What was scheduled happens now, all at once: nobody looks.
+  void SettlePins();
   /// What a pin drives; false if it is an input.
   bool Drives(char port, int bit) const;
   /// The part of the time for which the output of Timer 1 is high, channel 0 (A) or 1 (B).

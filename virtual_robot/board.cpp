@@ -121,6 +121,7 @@ void Board::Reset(Time now, ResetCause cause) {
 void Board::SetPower(Time now, bool on) {
   if (on == powered_) return;
   powered_ = on;
+  core_->SettlePins();
   twi_->SetPowered(on && !brown_out_);
   if (on && !brown_out_) Reset(now, ResetCause::kPowerOn);
 }
@@ -128,6 +129,7 @@ void Board::SetPower(Time now, bool on) {
 void Board::SetBrownOut(Time now, bool low) {
   if (low == brown_out_) return;
   brown_out_ = low;
+  core_->SettlePins();
   twi_->SetPowered(powered_ && !low);
   if (!low && powered_) Reset(now, ResetCause::kBrownOut);
 }

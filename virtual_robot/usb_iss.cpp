@@ -108,7 +108,7 @@ void UsbIss::Step(Time now) {
   } else if (phase_ == Phase::kOnBus && !bus_.Busy()) {
     const Bytes answer = Answer(command_, bus_.result());
     reply_.insert(reply_.end(), answer.begin(), answer.end());
-    NextCommand(now);
+    NextCommand(bus_.result().ended);  // which may have been some microseconds ago
   }
 }
 

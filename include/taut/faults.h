@@ -40,7 +40,7 @@ struct FaultSpec {
   double drift_ppm = 0;
   double flips_per_bit = 0;
   BusLine line = BusLine::kData;
-  std::optional<double> force_n;  ///< Of a stuck load cell; what it showed last if there is none.
+  std::optional<double> force_n{};  ///< Of a stuck load cell; what it showed last if there is none.
 };
 
 struct FaultScript {

@@ -34,6 +34,11 @@ void SetMotors(uint16_t a, uint16_t b, uint8_t winds_in, uint8_t enable) {
   }
 }
 
+uint16_t Width(int8_t duty) {
+  const uint16_t size = static_cast<uint16_t>(duty < 0 ? -duty : duty);
+  return static_cast<uint16_t>(size * kTop / 127);
+}
+
 /// A broadcast: 0xC1, then a duty a motor of the robot, -127..127, then whether to switch on.
 void TakeMessage() {
   const uint8_t count = Byte(kBoxReceivedCount);
@@ -42,8 +47,7 @@ void TakeMessage() {
   const uint8_t first = static_cast<uint8_t>(1 + 2 * Byte(kBoxId));
   const int8_t a = static_cast<int8_t>(Byte(kBoxReceived + first));
   const int8_t b = static_cast<int8_t>(Byte(kBoxReceived + first + 1));
-  SetMotors(static_cast<uint16_t>((a < 0 ? -a : a) * (kTop / 127.0f)),
-            static_cast<uint16_t>((b < 0 ? -b : b) * (kTop / 127.0f)),
+  SetMotors(Width(a), Width(b),
             static_cast<uint8_t>((a > 0 ? 1 : 0) | (b > 0 ? 2 : 0)), Byte(kBoxReceived + 13));
 }
 
