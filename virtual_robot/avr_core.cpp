@@ -35,8 +35,14 @@ AvrCore::AvrCore(const AvrProgram& program)
   avr_loadcode(avr_, flash.data(), static_cast<std::uint32_t>(flash.size()), 0);
   avr_->codeend = AvrProgram::kFlashBytes;
   LoadEeprom(0, program.eeprom);
-  // That of the library sleeps for real; behind it, simavr wakes a cycle after what is due.
-  avr_->sleep = [](avr_t* avr, avr_cycle_count_t) { --avr->cycle; };
+  // That of the library sleeps for real; behind it, simavr wakes a cycle after what is due. A core
+  // that falls asleep with the instruction that ends a run finds the stop behind it already, and
+  // would jump to what is next.
+  avr_->sleep = [](avr_t* avr, avr_cycle_count_t most) {
+    const std::uint64_t stop = std::max(avr->cycle, Hooks::Self(avr).stop_cycle_);
+    if (avr->cycle + most > stop) avr->cycle = stop - most;
+    --avr->cycle;
+  };
   avr_->reset = [](avr_t* avr) { Hooks::Self(avr).reset_seen_ = true; };
   port_b_ = Hooks::FindPort(*avr_, 'B');
   port_d_ = Hooks::FindPort(*avr_, 'D');

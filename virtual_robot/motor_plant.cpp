@@ -3,19 +3,16 @@
 #include <utility>
 
 #include "base/assert.h"
-#include "taut/start.h"
 
 namespace taut::virtual_robot {
 namespace {
 
-constexpr double kSettlingStep_s = 1e-3;
 /// What is left of a cable that was cut, as a stiffness: forces below rounding.
 constexpr double kNoStiffness_n_per_m = 1e-12;
 
 }  // namespace
 
-std::unique_ptr<MotorPlant> MotorPlant::Make(const RobotSpec& robot, bool settle,
-                                             Diagnostics& out) {
+std::unique_ptr<MotorPlant> MotorPlant::Make(const RobotSpec& robot, Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
   std::vector<int> cables;
   std::vector<std::string> names;
@@ -42,10 +39,7 @@ std::unique_ptr<MotorPlant> MotorPlant::Make(const RobotSpec& robot, bool settle
   if (!model) return nullptr;
   std::unique_ptr<MotorPlant> plant(
       new MotorPlant(std::move(model), std::move(cables), std::move(names)));
-  if (settle && !Settle(plant->batch_, 0, kSettlingStep_s)) {
-    out.Error(file, "does not come to rest", "start it as described");
-    return nullptr;
-  }
+  for (const int cable : plant->cables_) plant->batch_.SetMotorEnabled(0, cable, false);
   return plant;
 }
 
@@ -54,9 +48,7 @@ MotorPlant::MotorPlant(std::shared_ptr<const Model> model, std::vector<int> cabl
     : batch_(std::move(model), BatchOptions{}),
       cables_(std::move(cables)),
       names_(std::move(names)),
-      cut_(cables_.size(), false) {
-  for (const int cable : cables_) batch_.SetMotorEnabled(0, cable, false);
-}
+      cut_(cables_.size(), false) {}
 
 void MotorPlant::Advance(double duration_s, std::span<const MotorDrive> drives) {
   TAUT_ASSERT(drives.size() == cables_.size());

@@ -15,9 +15,9 @@ class MotorPlant : public Plant {
  public:
   static constexpr int kMostMotors = 12;  ///< Two a board, and six addresses.
 
-  /// The robot as its model describes it, or, with `settle`, at rest. Nothing and complaints if the
-  /// model does not compile, has no motor or too many, or an actuator that is none.
-  static std::unique_ptr<MotorPlant> Make(const RobotSpec& robot, bool settle, Diagnostics& out);
+  /// The robot as its model describes it, with its motors off. Nothing and complaints if the model
+  /// does not compile, has no motor or too many, or an actuator that is none.
+  static std::unique_ptr<MotorPlant> Make(const RobotSpec& robot, Diagnostics& out);
 
   int motor_count() const override { return static_cast<int>(cables_.size()); }
   void Advance(double duration_s, std::span<const MotorDrive> drives) override;

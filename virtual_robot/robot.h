@@ -29,8 +29,9 @@ struct RobotOptions {
   LoadCellOptions load_cell{};
   EncoderOptions encoder{};
   UsbIssOptions usb{};
-  /// How often the plant moves on and boards see it: 20 to 100 us.
-  Time plant_period = 20 * kMicrosecond;
+  /// How often the plant moves on and boards see it: 20 to 100 us. What turned in a period, the
+  /// encoders show in the next.
+  Time plant_period = 100 * kMicrosecond;
   std::vector<FaultSpec> faults{};
   LogSink log{};              ///< May be empty.
   bool log_frames = false;  ///< What goes over USB, too.

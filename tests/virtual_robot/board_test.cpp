@@ -53,6 +53,22 @@ TEST(Board, TicksOnceAMillisecondToTheCycle) {
   EXPECT_EQ(Long(board, kBoxTicks), begins.size());
 }
 
+TEST(Board, NeverRunsFarBeyondWhereItWasSentWhateverItSleeps) {
+  // Whether it is asleep at the end of a run, falls asleep with its last instruction, or is awake:
+  // the longest instruction takes 5 cycles, an interrupt 8 more.
+  for (const Time slice : {137 * kNanosecond, 1009 * kNanosecond, 20 * kMicrosecond}) {
+    Board board(ProbeProgram(), {});
+    std::uint64_t most = 0;
+    for (Time until = slice; until < 20 * kMillisecond; until += slice) {
+      board.RunUntil(until);
+      const auto wanted = static_cast<std::uint64_t>(until * 16 / kMicrosecond);
+      ASSERT_GE(board.cycle(), wanted);
+      most = std::max(most, board.cycle() - wanted);
+    }
+    EXPECT_LE(most, 13U);
+  }
+}
+
 TEST(Board, AClockThatIsFastByAThousandthTicksAThousandthMore) {
   Board right(ProbeProgram(), {}), fast(ProbeProgram(), {.drift_ppm = 1000}),
       slow(ProbeProgram(), {.drift_ppm = -5000});
