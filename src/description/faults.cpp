@@ -94,8 +94,8 @@ void Check(const MapReader& map, FaultText& fault) {
   TAUT_ASSERT(keys != std::end(kKindKeys));
   for (const char* key : keys->needed) {
     if (!map.Has(key)) {
-      map.scope().out.Error(map.at(), map.Path(key) + " is missing",
-                            std::string("kind: ") + FaultName(keys->kind) + " needs it");
+      map.scope().out.Error(map.at(), map.what() + " needs the key \"" + key + "\"",
+                            std::string("of kind: ") + FaultName(keys->kind));
     }
   }
   for (const char* key : {"board", "cable", "drift_ppm", "flips_per_bit", "line", "force_n"}) {
