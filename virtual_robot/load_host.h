@@ -1,5 +1,5 @@
-/// A host that does what a robot's host does to bus and boards, and looks at no answer: for
-/// measuring.
+/// A host that keeps bus and boards as busy as that of a walking robot does, and looks at no
+/// answer: for measuring how fast the emulation is.
 #pragma once
 
 #include "virtual_robot/robot.h"
@@ -10,15 +10,17 @@ class LoadHost {
  public:
   explicit LoadHost(Robot& robot) : robot_(robot) {}
 
-  /// Sets the adapter's mode. False: no answer.
+  /// Sets the adapter's mode and arms the boards into impedance control. False: no answer.
   bool Start();
-  /// Every 10 ms: a broadcast of 29 bytes, then 16 bytes of each board.
+  /// 10 ms: a broadcast, then a frame of each board in as few requests as the adapter takes.
   void Cycle();
 
   double mean_cycle_s() const { return cycles_ > 0 ? sum_s_ / cycles_ : 0.0; }
   double longest_cycle_s() const { return longest_s_; }
 
  private:
+  void Exchange();
+
   Robot& robot_;
   std::uint8_t sequence_ = 0;
   int cycles_ = 0;

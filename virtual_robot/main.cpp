@@ -102,8 +102,8 @@ int Measure(Robot& robot, double seconds) {
              robot.board_count(), took_s);
   fmt::print("{:.2f} x by the processor's time, {:.0f} million cycles/s\n", done_s / processor_s,
              16.0 * robot.board_count() * done_s / processor_s);
-  fmt::print("bus: a cycle of a broadcast and {} reads took {:.2f} ms, at most {:.2f} ms; the clock "
-             "was held for {:.1f} us a byte, at most {:.1f} us\n",
+  fmt::print("a broadcast and {} reads took {:.2f} ms with USB, at most {:.2f} ms; boards held the "
+             "clock for {:.1f} us a byte, at most {:.1f} us\n",
              robot.board_count(), host.mean_cycle_s() * 1e3, host.longest_cycle_s() * 1e3,
              1e6 * ToSeconds(robot.bus().stretch().sum) /
                  static_cast<double>(robot.bus().stretch().bytes),

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <thread>
+#include <utility>
 
 #include "virtual_robot/pty.h"
 
@@ -13,7 +15,13 @@ using Clock = std::chrono::steady_clock;
 
 // Replies leave between two slices of time, so that they are late by a slice at most.
 constexpr Time kSlice = 250 * kMicrosecond;
-constexpr double kLongestWait_s = 0.001, kGiveUp_s = 1.0;
+constexpr double kLongestWait_s = 0.001;
+constexpr Time kGiveUp = kSecond;
+
+Time Since(Clock::time_point start) {
+  const auto passed = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start);
+  return passed.count() * kNanosecond;
+}
 
 }  // namespace
 
@@ -30,22 +38,23 @@ bool RunPaced(Robot& robot, const PacedOptions& options, const std::atomic<bool>
   if (!open()) return false;
   Clock::time_point start = Clock::now();
   const Time begun = robot.now();
-  const auto due_s = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-  double warned_at_s = -1.0;
+  const auto due = [&] { return begun + Since(start); };
+  Time warned_at = -kSecond;
   while (!stop) {
     // A frame comes at the time at which it is read, and the robot catches up to it first.
-    const double now_s = due_s();
-    while (!stop && ToSeconds(robot.now() - begun) < now_s) {
-      const Time end = begun + FromSeconds(now_s);
+    const Time end = due();
+    while (!stop && robot.now() < end) {
       robot.AdvanceTo(std::min(end, robot.now() + kSlice));
       if (const auto reply = robot.HostReads(); reply && pty) pty->Write(*reply);
-      const double late_s = due_s() - ToSeconds(robot.now() - begun);
-      if (late_s > options.late_s && due_s() > warned_at_s + 1.0) {
-        warned_at_s = due_s();
-        if (options.on_late) options.on_late(late_s);
+      const Time late = due() - robot.now();
+      if (late > FromSeconds(options.late_s) && due() > warned_at + kSecond) {
+        warned_at = due();
+        if (options.on_late) options.on_late(ToSeconds(late));
       }
-      if (late_s > kGiveUp_s) start += std::chrono::duration_cast<Clock::duration>(
-                                  std::chrono::duration<double>(late_s));
+      if (late > kGiveUp) {
+        start += std::chrono::nanoseconds(late / kNanosecond);
+        break;
+      }
     }
     // An adapter that was pulled out takes its device with it.
     if (!robot.usb_connected()) {
@@ -54,11 +63,10 @@ bool RunPaced(Robot& robot, const PacedOptions& options, const std::atomic<bool>
       return false;
     }
     if (!pty) {
-      struct timespec rest{0, static_cast<long>(kLongestWait_s * 1e9)};
-      nanosleep(&rest, nullptr);
+      std::this_thread::sleep_for(std::chrono::duration<double>(kLongestWait_s));
     } else if (pty->Wait(kLongestWait_s)) {
       const Bytes burst = pty->Read();
-      robot.AdvanceTo(std::max(robot.now(), begun + FromSeconds(due_s())));
+      robot.AdvanceTo(std::max(robot.now(), due()));
       if (const auto reply = robot.HostReads()) pty->Write(*reply);
       robot.HostWrites(burst);
     }
