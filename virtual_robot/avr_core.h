@@ -1,5 +1,5 @@
 /// An ATmega328P by libsimavr 1.6, with what that gets wrong made good. What each correction is for
-/// stands in docs/virtual_robot.md.
+/// stands in docs/hardware/virtual_robot.md.
 #pragma once
 
 #include <array>
@@ -63,8 +63,8 @@ class AvrCore {
   /// After a reset, before the first instruction. The causes are those of MCUSR.
   std::function<void(std::uint8_t cause)> on_reset;
   std::function<void(const std::string& text)> on_message;  ///< simavr's warnings and errors.
-  /// The program left its memory, or sleeps with interrupts off. Simavr would stop for good; here as
-  /// on hardware the watchdog may end it.
+  /// The program left its memory, or sleeps with interrupts off. Simavr would stop for good; here
+  /// as on hardware the watchdog may end it.
   std::function<void()> on_crash;
 
  private:
@@ -82,10 +82,10 @@ class AvrCore {
   bool reset_seen_ = false, asleep_ = false;
   std::uint8_t causes_ = 0;  ///< MCUSR, which only its reader and loss of power clear.
   std::uint8_t wanted_cause_ = 0;
-  std::uint8_t temp_ = 0;                         ///< The high byte that all of Timer 1 shares.
-  std::uint16_t compare_[2] = {0, 0}, top_ = 0;   ///< As the timer has them.
-  int converting_ = 0, converted_ = 0;            ///< Of the ADC: under way, and the last.
-  bool result_locked_ = false;                    ///< From reading ADCL until ADCH.
+  std::uint8_t temp_ = 0;                        ///< The high byte that all of Timer 1 shares.
+  std::uint16_t compare_[2] = {0, 0}, top_ = 0;  ///< As the timer has them.
+  int converting_ = 0, converted_ = 0;           ///< Of the ADC: under way, and the last.
+  bool result_locked_ = false;                   ///< From reading ADCL until ADCH.
 };
 
 }  // namespace taut::virtual_robot

@@ -25,7 +25,8 @@ class Image {
     std::uint32_t value = 0;
     for (int i = 0; i < size; ++i) {
       const std::size_t at = offset + static_cast<std::size_t>(i);
-      if (at < bytes_.size()) value |= std::uint32_t{static_cast<unsigned char>(bytes_[at])} << 8 * i;
+      if (at < bytes_.size())
+        value |= std::uint32_t{static_cast<unsigned char>(bytes_[at])} << 8 * i;
     }
     return value;
   }
@@ -66,7 +67,8 @@ std::optional<std::uint32_t> FindSymbol(const Image& image, std::string_view nam
     const std::uint32_t text_offset = image.At(texts + 16, 4);
     if (!image.Has(offset, size)) continue;
     for (std::size_t at = offset; at + 16 <= std::size_t{offset} + size; at += 16) {
-      if (image.Text(std::size_t{text_offset} + image.At(at, 4)) == name) return image.At(at + 4, 4);
+      if (image.Text(std::size_t{text_offset} + image.At(at, 4)) == name)
+        return image.At(at + 4, 4);
     }
   }
   return std::nullopt;
@@ -75,8 +77,8 @@ std::optional<std::uint32_t> FindSymbol(const Image& image, std::string_view nam
 }  // namespace
 
 std::shared_ptr<const AvrProgram> ReadAvrProgram(const std::string& path, Diagnostics& out) {
-  const auto bytes = base::ReadInputFile(path, kMostBytes, "a program for an ATmega328P is smaller",
-                                         out);
+  const auto bytes =
+      base::ReadInputFile(path, kMostBytes, "a program for an ATmega328P is smaller", out);
   if (!bytes) return nullptr;
   const auto refuse = [&](std::string what, std::string hint) {
     out.Error({path}, std::move(what), std::move(hint));

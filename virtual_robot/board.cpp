@@ -86,12 +86,12 @@ void Board::SetEncoderEdges(int motor, const std::vector<EncoderEdge>& edges) {
   EncoderEdge& last = encoder_[static_cast<std::size_t>(motor)];
   for (const EncoderEdge& edge : edges) {
     if (edge.a != last.a) {
-      levels.push_back({clock_.CycleAt(edge.at), kEncoderA[motor].port, kEncoderA[motor].bit,
-                        edge.a});
+      levels.push_back(
+          {clock_.CycleAt(edge.at), kEncoderA[motor].port, kEncoderA[motor].bit, edge.a});
     }
     if (edge.b != last.b) {
-      levels.push_back({clock_.CycleAt(edge.at), kEncoderB[motor].port, kEncoderB[motor].bit,
-                        edge.b});
+      levels.push_back(
+          {clock_.CycleAt(edge.at), kEncoderB[motor].port, kEncoderB[motor].bit, edge.b});
     }
     last = edge;
   }

@@ -1,5 +1,5 @@
-/// One board of the robot: an ATmega328P at 16 MHz as an Arduino Nano has it, run by libsimavr, with
-/// what that library lacks or gets wrong made good (docs/virtual_robot.md lists it).
+/// One board of the robot: an ATmega328P at 16 MHz as an Arduino Nano has it, run by libsimavr,
+/// with what that library lacks or gets wrong made good (docs/hardware/virtual_robot.md lists it).
 ///
 /// Pins, all seen from outside:
 ///
@@ -29,9 +29,9 @@ enum class ResetCause : std::uint8_t { kPowerOn = 1, kExternal = 2, kBrownOut = 
 const char* Name(ResetCause cause);
 
 struct BoardOptions {
-  int id = 0;                        ///< 0..5; byte 0 of the EEPROM.
+  int id = 0;                          ///< 0..5; byte 0 of the EEPROM.
   std::vector<std::uint8_t> eeprom{};  ///< What follows it; the rest is 0xFF.
-  double drift_ppm = 0;              ///< How fast the crystal is.
+  double drift_ppm = 0;                ///< How fast the crystal is.
 };
 
 /// A change of the two lines of an encoder.
@@ -84,7 +84,7 @@ class Board {
   // What a debugger would see.
   std::uint64_t cycle() const;
   Time now() const;
-  std::uint8_t Memory(std::uint16_t address) const;  ///< Of the data space, 0x000..0x8FF.
+  std::uint8_t Memory(std::uint16_t address) const;           ///< Of the data space, 0x000..0x8FF.
   void SetMemory(std::uint16_t address, std::uint8_t value);  ///< 0x100..0x8FF.
   std::uint8_t last_marker() const { return marker_; }
   std::uint8_t stack_probe() const;  ///< GPIOR1.

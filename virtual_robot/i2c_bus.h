@@ -24,9 +24,9 @@ struct BusEvent {
   };
   Kind kind = Kind::kStart;
   Time at = 0;
-  std::uint8_t byte = 0;       ///< As it was on the wires.
-  bool master_reads = false;   ///< The master listens to this byte ...
-  bool master_acked = false;   ///< ... and asks for another one.
+  std::uint8_t byte = 0;      ///< As it was on the wires.
+  bool master_reads = false;  ///< The master listens to this byte ...
+  bool master_acked = false;  ///< ... and asks for another one.
 };
 
 /// Somebody on the bus. Called by the bus's thread.
@@ -117,10 +117,10 @@ class I2cBus {
  private:
   enum class Phase { kIdle, kReady, kScheduled };
 
-  void Put(Time at);        ///< Puts the next step on the wires, to happen from `at` on.
-  void Look();              ///< At the answers to what has happened.
+  void Put(Time at);  ///< Puts the next step on the wires, to happen from `at` on.
+  void Look();        ///< At the answers to what has happened.
   void Finish(BusOutcome outcome, Time at);
-  bool Flip();              ///< Whether noise turns this bit over.
+  bool Flip();  ///< Whether noise turns this bit over.
   std::uint8_t Noisy(std::uint8_t byte);
   Time Duration(const BusStep& step) const;
 

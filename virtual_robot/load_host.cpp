@@ -14,7 +14,7 @@ constexpr int kArmingCycles = 6;
 }  // namespace
 
 bool LoadHost::Start() {
-  robot_.AdvanceTo(100 * kMillisecond);  // the boards begin
+  robot_.AdvanceTo(100 * kMillisecond);      // the boards begin
   const Bytes mode{0x5A, 0x02, 0x70, 0x04};  // 400 kHz
   if (robot_.Transfer(mode) != Bytes{0xFF, 0x00}) return false;
   for (int i = 0; i < 2 * kArmingCycles; ++i) Cycle();

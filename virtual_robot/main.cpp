@@ -96,18 +96,17 @@ int Measure(Robot& robot, double seconds) {
   const double took_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double done_s = ToSeconds(robot.now() - begun);
-  const double processor_s =
-      static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
+  const double processor_s = static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
   fmt::print("{:.2f} x real time: {:.2f} s of {} boards in {:.2f} s\n", done_s / took_s, done_s,
              robot.board_count(), took_s);
   fmt::print("{:.2f} x by the processor's time, {:.0f} million cycles/s\n", done_s / processor_s,
              16.0 * robot.board_count() * done_s / processor_s);
-  fmt::print("a broadcast and {} reads took {:.2f} ms with USB, at most {:.2f} ms; boards held the "
-             "clock for {:.1f} us a byte, at most {:.1f} us\n",
-             robot.board_count(), host.mean_cycle_s() * 1e3, host.longest_cycle_s() * 1e3,
-             1e6 * ToSeconds(robot.bus().stretch().sum) /
-                 static_cast<double>(robot.bus().stretch().bytes),
-             1e6 * ToSeconds(robot.bus().stretch().longest));
+  fmt::print(
+      "a broadcast and {} reads took {:.2f} ms with USB, at most {:.2f} ms; boards held the "
+      "clock for {:.1f} us a byte, at most {:.1f} us\n",
+      robot.board_count(), host.mean_cycle_s() * 1e3, host.longest_cycle_s() * 1e3,
+      1e6 * ToSeconds(robot.bus().stretch().sum) / static_cast<double>(robot.bus().stretch().bytes),
+      1e6 * ToSeconds(robot.bus().stretch().longest));
   return kOk;
 }
 
@@ -177,7 +176,8 @@ int Main(int argc, char** argv) {
       "taut_virtual_robot"};
   Arguments arguments;
   app.set_help_flag("-h,--help", "Print this and end");
-  app.set_version_flag("-V,--version", std::string("taut ") + kVersion, "Print the version and end");
+  app.set_version_flag("-V,--version", std::string("taut ") + kVersion,
+                       "Print the version and end");
   CLI::Option* model =
       app.add_option("--model", arguments.model,
                      "The robot: a model whose actuators are motors, on a floor of friction 0.5")

@@ -11,7 +11,7 @@
 namespace taut::virtual_robot {
 
 struct PacedOptions {
-  std::string link;                                 ///< Symbolic link to the terminal; may be empty.
+  std::string link;  ///< Symbolic link to the terminal; may be empty.
   std::function<void(const std::string&)> on_path;  ///< Whenever the terminal is another one.
   /// Told when the emulation is late by more than `late_s`, at most once a second.
   std::function<void(double late_s)> on_late;

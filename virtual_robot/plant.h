@@ -21,7 +21,8 @@ class Plant {
   virtual ~Plant() = default;
 
   virtual int motor_count() const = 0;
-  /// Moves on by `duration_s`, 20 to 100 us, in which the drives stay as they are. One drive a motor.
+  /// Moves on by `duration_s`, 20 to 100 us, in which the drives stay as they are. One drive a
+  /// motor.
   virtual void Advance(double duration_s, std::span<const MotorDrive> drives) = 0;
   /// What the load cell at the cable's end feels; tension is positive [N].
   virtual double LoadCellForce(int motor) const = 0;

@@ -16,7 +16,7 @@ namespace {
 
 /// Makes `link` lead to `target`; at every moment it leads somewhere.
 std::string MakeLink(const std::string& target, const std::string& link) {
-  struct stat there{};
+  struct stat there {};
   if (lstat(link.c_str(), &there) == 0 && !S_ISLNK(there.st_mode)) {
     return "is there already and no symbolic link";
   }
@@ -43,8 +43,7 @@ Pty::~Pty() {
   if (master_ < 0) return;
   char target[256] = {};
   // Somebody else may have made it lead elsewhere since.
-  if (!link_.empty() && readlink(link_.c_str(), target, sizeof target - 1) > 0 &&
-      path_ == target) {
+  if (!link_.empty() && readlink(link_.c_str(), target, sizeof target - 1) > 0 && path_ == target) {
     unlink(link_.c_str());
   }
   close(slave_);

@@ -14,8 +14,9 @@ namespace taut::virtual_robot {
 /// One thread calls it.
 class Pty {
  public:
-  /// Opens one and, if `link` is not empty, makes a symbolic link to it: a name that stays the same.
-  /// A link that is there is replaced, anything else is not. Nothing and a complaint if that fails.
+  /// Opens one and, if `link` is not empty, makes a symbolic link to it: a name that stays the
+  /// same. A link that is there is replaced, anything else is not. Nothing and a complaint if that
+  /// fails.
   static std::optional<Pty> Open(const std::string& link, Diagnostics& out);
   ~Pty();
   Pty(Pty&& other) noexcept;

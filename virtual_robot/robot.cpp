@@ -31,8 +31,8 @@ Robot::Robot(Plant& plant, const RobotOptions& options)
   for (int i = 0; i < (motors + 1) / 2; ++i) {
     const auto index = static_cast<std::size_t>(i);
     const double drift = index < options_.drift_ppm.size() ? options_.drift_ppm[index] : 0.0;
-    boards_.push_back(std::make_unique<Board>(options_.program,
-                                              BoardOptions{i, options_.eeprom, drift}));
+    boards_.push_back(
+        std::make_unique<Board>(options_.program, BoardOptions{i, options_.eeprom, drift}));
     Board& board = *boards_.back();
     bus_.Attach(board.bus_side());
     board.adc_code = [this, i](int channel, Time) {
@@ -88,13 +88,13 @@ MotorDrive Robot::Drive(int motor) const {
 void Robot::StepPlant() {
   next_plant_step_ += options_.plant_period;
   const auto motors = static_cast<int>(drives_.size());
-  for (int motor = 0; motor < motors; ++motor) drives_[static_cast<std::size_t>(motor)] = Drive(motor);
+  for (int motor = 0; motor < motors; ++motor)
+    drives_[static_cast<std::size_t>(motor)] = Drive(motor);
   plant_.Advance(ToSeconds(options_.plant_period), drives_);
   for (int motor = 0; motor < motors; ++motor) {
     const auto index = static_cast<std::size_t>(motor);
     // What turned in the past period, the boards see in the next one.
-    const auto edges =
-        encoders_[index].Turn(plant_.RotorAngle(motor), options_.plant_period, now_);
+    const auto edges = encoders_[index].Turn(plant_.RotorAngle(motor), options_.plant_period, now_);
     if (edges.empty() || state_.motors[index].stuck_encoder) continue;
     boards_[index / 2]->SetEncoderEdges(motor % 2, edges);
   }

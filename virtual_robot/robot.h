@@ -24,8 +24,8 @@ namespace taut::virtual_robot {
 struct RobotOptions {
   std::shared_ptr<const AvrProgram> program;  ///< Of all boards.
   std::uint64_t seed = 1;                     ///< Of all noise.
-  std::vector<double> drift_ppm{};              ///< A board each; 0 for those beyond the end.
-  std::vector<std::uint8_t> eeprom{};           ///< Of all boards, behind their identity.
+  std::vector<double> drift_ppm{};            ///< A board each; 0 for those beyond the end.
+  std::vector<std::uint8_t> eeprom{};         ///< Of all boards, behind their identity.
   LoadCellOptions load_cell{};
   EncoderOptions encoder{};
   UsbIssOptions usb{};
@@ -33,7 +33,7 @@ struct RobotOptions {
   /// encoders show in the next.
   Time plant_period = 100 * kMicrosecond;
   std::vector<FaultSpec> faults{};
-  LogSink log{};              ///< May be empty.
+  LogSink log{};            ///< May be empty.
   bool log_frames = false;  ///< What goes over USB, too.
 };
 

@@ -165,8 +165,8 @@ void TwiSlave::WriteControl(avr_t* avr, std::uint16_t address, std::uint8_t valu
 }
 
 void TwiSlave::WriteStatus(avr_t* avr, std::uint16_t address, std::uint8_t value, void* /*self*/) {
-  avr->data[address] = static_cast<std::uint8_t>((avr->data[address] & ~kPrescaler) |
-                                                 (value & kPrescaler));
+  avr->data[address] =
+      static_cast<std::uint8_t>((avr->data[address] & ~kPrescaler) | (value & kPrescaler));
 }
 
 void TwiSlave::WriteData(avr_t* avr, std::uint16_t address, std::uint8_t value, void* /*self*/) {

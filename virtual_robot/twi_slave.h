@@ -15,17 +15,17 @@ namespace taut::virtual_robot {
 /// Status codes, TWSR without the prescaler.
 enum TwiStatus : std::uint8_t {
   kTwiBusError = 0x00,
-  kTwiAddressed = 0x60,       ///< To be written to; acknowledged.
-  kTwiCalled = 0x70,          ///< By a general call; acknowledged.
-  kTwiData = 0x80,            ///< A byte came and was acknowledged ...
-  kTwiDataNoAck = 0x88,       ///< ... or not.
+  kTwiAddressed = 0x60,  ///< To be written to; acknowledged.
+  kTwiCalled = 0x70,     ///< By a general call; acknowledged.
+  kTwiData = 0x80,       ///< A byte came and was acknowledged ...
+  kTwiDataNoAck = 0x88,  ///< ... or not.
   kTwiCallData = 0x90,
   kTwiCallDataNoAck = 0x98,
-  kTwiStop = 0xA0,            ///< A stop or a repeated start ended it.
+  kTwiStop = 0xA0,  ///< A stop or a repeated start ended it.
   kTwiAddressedToSend = 0xA8,
-  kTwiSent = 0xB8,            ///< A byte went and was acknowledged ...
-  kTwiSentNoAck = 0xC0,       ///< ... or not: the master has enough.
-  kTwiLastSent = 0xC8,        ///< Acknowledged although TWEA had said that it was the last.
+  kTwiSent = 0xB8,       ///< A byte went and was acknowledged ...
+  kTwiSentNoAck = 0xC0,  ///< ... or not: the master has enough.
+  kTwiLastSent = 0xC8,   ///< Acknowledged although TWEA had said that it was the last.
   kTwiIdle = 0xF8
 };
 

@@ -1,6 +1,6 @@
 /// The USB-ISS of Devantech, a converter from a serial port to a two-wire bus, as its documents
-/// describe it (docs/virtual_robot.md has the table, and what of it is assumed). Bytes in, bytes
-/// out; what it does on the bus takes the time that it takes there.
+/// describe it (docs/hardware/virtual_robot.md has the table, and what of it is assumed). Bytes in,
+/// bytes out; what it does on the bus takes the time that it takes there.
 #pragma once
 
 #include <cstdint>
@@ -54,8 +54,8 @@ class UsbIss {
   struct Command {
     enum class Answer { kFixed, kStatus, kBytes, kDirect };
     Answer answer = Answer::kFixed;
-    Bytes fixed;                ///< The answer; of `kDirect` an error, if not empty.
-    std::size_t bytes = 0;      ///< To read: as many are answered.
+    Bytes fixed;            ///< The answer; of `kDirect` an error, if not empty.
+    std::size_t bytes = 0;  ///< To read: as many are answered.
     std::vector<BusStep> steps;
     bool stop_after_nack = true;
   };
@@ -64,7 +64,8 @@ class UsbIss {
   /// The command at the front of `rest_`, which gets shorter. Nothing: not complete, or unknown.
   std::optional<Command> Parse();
   std::optional<Command> ParseIss(std::span<const std::uint8_t> frame, std::size_t* used);
-  std::optional<Command> ParseTransfer(std::span<const std::uint8_t> frame, std::size_t* used) const;
+  std::optional<Command> ParseTransfer(std::span<const std::uint8_t> frame,
+                                       std::size_t* used) const;
   Command ParseDirect(std::span<const std::uint8_t> frame) const;
   Bytes Answer(const Command& command, const BusResult& result) const;
   void NextCommand(Time now);

@@ -1,4 +1,5 @@
-/// Fault scripts: what goes wrong with a robot's electronics, and when (docs/virtual_robot.md).
+/// Fault scripts: what goes wrong with a robot's electronics, and when
+/// (docs/hardware/virtual_robot.md).
 ///
 /// Threads: any number may read scripts at once.
 #pragma once
@@ -35,7 +36,7 @@ struct FaultSpec {
   FaultKind kind = FaultKind::kClockDrift;
   double at_s = 0;
   double for_s = std::numeric_limits<double>::infinity();  ///< Then all is as it was.
-  int board = -1;  ///< Of those that concern one board.
+  int board = -1;                                          ///< Of those that concern one board.
   int cable = -1;  ///< Index in the actuated cables, in the model's order.
   double drift_ppm = 0;
   double flips_per_bit = 0;
@@ -52,8 +53,8 @@ struct FaultScript {
 /// Names of the kinds, as files spell them.
 const char* FaultName(FaultKind kind);
 
-/// Reads a fault script for a robot with these actuated cables, two of them a board. Returns nothing
-/// if there was any error.
+/// Reads a fault script for a robot with these actuated cables, two of them a board. Returns
+/// nothing if there was any error.
 std::optional<FaultScript> LoadFaults(const std::string& path,
                                       const std::vector<std::string>& cables, Diagnostics& out);
 

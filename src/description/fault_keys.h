@@ -75,16 +75,16 @@ struct FaultFileText {
 template <class Io>
 void Keys(Io& io, Like<FaultFileText> auto& s) {
   io.Map("", "Fault script", "What goes wrong with a robot's electronics, and when.");
-  HeadKeys(io, s,
-           {"Name of the script. Needed unless `base` has it.",
-            "What it is for, in a sentence or two.",
-            "Another fault script, seen from this file's folder. This file then holds only what "
-            "differs: each of its keys replaces the base's as a whole, except that `parameters` "
-            "are merged by name.",
-            R"("noisy_bus.yaml")",
-            "Named numbers for expressions in this file. They may refer to each other, in any "
-            "order.",
-            R"({"begin_s": "0.5"})"});
+  HeadKeys(
+      io, s,
+      {"Name of the script. Needed unless `base` has it.", "What it is for, in a sentence or two.",
+       "Another fault script, seen from this file's folder. This file then holds only what "
+       "differs: each of its keys replaces the base's as a whole, except that `parameters` "
+       "are merged by name.",
+       R"("noisy_bus.yaml")",
+       "Named numbers for expressions in this file. They may refer to each other, in any "
+       "order.",
+       R"({"begin_s": "0.5"})"});
   io("faults", s.faults, kNeeded, "What happens, in any order. Several may last at once.");
 }
 

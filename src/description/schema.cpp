@@ -314,8 +314,7 @@ std::string Schema() {
 }  // namespace description
 
 const std::vector<std::string>& FormatNames() {
-  static const std::vector<std::string> names{"model", "experiment", "gait", "study",
-                                              "faults"};
+  static const std::vector<std::string> names{"model", "experiment", "gait", "study", "faults"};
   return names;
 }
 

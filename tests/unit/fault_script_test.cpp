@@ -1,4 +1,5 @@
-// Fault scripts: what they say, and that what is wrong with one is said all at once, with its place.
+// Fault scripts: what they say, and that what is wrong with one is said all at once, with its
+// place.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -63,9 +64,10 @@ TEST_F(FaultFile, IsRead) {
 }
 
 TEST_F(FaultFile, EveryKindHasAName) {
-  for (const char* name : {"clock_drift", "board_loss", "brown_out", "firmware_hang", "bus_noise",
-                           "bus_error", "bus_stuck", "cut_cable", "stuck_load_cell", "stuck_encoder",
-                           "driver_fault", "motor_supply_loss", "usb_loss", "host_killed"}) {
+  for (const char* name :
+       {"clock_drift", "board_loss", "brown_out", "firmware_hang", "bus_noise", "bus_error",
+        "bus_stuck", "cut_cable", "stuck_load_cell", "stuck_encoder", "driver_fault",
+        "motor_supply_loss", "usb_loss", "host_killed"}) {
     const auto script =
         Load(std::string("  - {kind: ") + name + ", at_s: 1, board: 0, cable: front, line: data, " +
              "drift_ppm: 1, flips_per_bit: 0.5}\n");
@@ -87,9 +89,10 @@ TEST_F(FaultFile, WhatIsMissingIsNamed) {
 }
 
 TEST_F(FaultFile, WhatHasNoEffectIsRefused) {
-  EXPECT_EQ(Wrong("{kind: usb_loss, at_s: 1, board: 0}"),
-            "fault.board has no effect here (it belongs to kind: clock_drift, board_loss, brown_out, "
-            "firmware_hang, driver_fault)\n");
+  EXPECT_EQ(
+      Wrong("{kind: usb_loss, at_s: 1, board: 0}"),
+      "fault.board has no effect here (it belongs to kind: clock_drift, board_loss, brown_out, "
+      "firmware_hang, driver_fault)\n");
   EXPECT_EQ(Wrong("{kind: stuck_encoder, at_s: 1, cable: front, force_n: 2}"),
             "fault.force_n has no effect here (it belongs to kind: stuck_load_cell)\n");
   EXPECT_EQ(Wrong("{kind: cut_cable, at_s: 1, cable: front, for_s: 2}"),

@@ -1,6 +1,6 @@
-// Loads model, experiment, gait, study and fault files and prints what is wrong with them, for tests in
-// other languages: spec_probe [--set name=value]... [--resolved] [--schema FORMAT] FILE... Exit
-// status 1 if anything is wrong.
+// Loads model, experiment, gait, study and fault files and prints what is wrong with them, for
+// tests in other languages: spec_probe [--set name=value]... [--resolved] [--schema FORMAT] FILE...
+// Exit status 1 if anything is wrong.
 #include <cstdio>
 #include <fstream>
 #include <iostream>

@@ -24,8 +24,8 @@ std::vector<EncoderEdge> Edges(int count, Time from, Time to) {
   std::vector<EncoderEdge> edges;
   for (int i = 1; i <= std::abs(count); ++i) {
     const unsigned phase = static_cast<unsigned>(count > 0 ? i : -i) & 3U;
-    edges.push_back({from + (to - from) * i / std::abs(count), phase == 1 || phase == 2,
-                     phase >= 2});
+    edges.push_back(
+        {from + (to - from) * i / std::abs(count), phase == 1 || phase == 2, phase >= 2});
   }
   return edges;
 }
@@ -151,7 +151,8 @@ TEST(Board, QuadratureAtTenThousandStatesASecondLosesNothing) {
   std::vector<EncoderEdge> all = Edges(kStates, from, from + 800 * kMillisecond);
   while (sent < kStates) {
     std::vector<EncoderEdge> forth, back;
-    for (; sent < kStates && all[static_cast<std::size_t>(sent)].at < board.now() + 20 * kMicrosecond;
+    for (;
+         sent < kStates && all[static_cast<std::size_t>(sent)].at < board.now() + 20 * kMicrosecond;
          ++sent) {
       forth.push_back(all[static_cast<std::size_t>(sent)]);
       back.push_back(Edges(-(sent + 1), 0, 1).back());  // the same number of states the other way

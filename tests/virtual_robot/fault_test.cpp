@@ -48,7 +48,10 @@ class FaultyRobot {
 constexpr double kForEver = FaultSpec{}.for_s;
 
 TEST(Fault, ClockDriftMakesABoardTickFaster) {
-  FaultyRobot faulty({{.kind = FaultKind::kClockDrift, .at_s = 0.1, .for_s = 0.5, .board = 2,
+  FaultyRobot faulty({{.kind = FaultKind::kClockDrift,
+                       .at_s = 0.1,
+                       .for_s = 0.5,
+                       .board = 2,
                        .drift_ppm = 20'000}});
   faulty.RunTo(kSecond);
   const auto ticks = [&](int board) { return Long(faulty.robot->board(board), kBoxTicks); };
@@ -109,8 +112,8 @@ TEST(Fault, AProgramThatHangsDrivesOnUntilTheWatchdogBites) {
 }
 
 TEST(Fault, NoiseSpoilsMessagesWhileItLasts) {
-  FaultyRobot faulty({{.kind = FaultKind::kBusNoise, .at_s = 0.1, .for_s = 0.3,
-                       .flips_per_bit = 0.02}});
+  FaultyRobot faulty(
+      {{.kind = FaultKind::kBusNoise, .at_s = 0.1, .for_s = 0.3, .flips_per_bit = 0.02}});
   faulty.RunTo(100 * kMillisecond);
   EXPECT_EQ(faulty.robot->bus().flipped_bits(), 0U);
   faulty.RunTo(400 * kMillisecond);
@@ -155,7 +158,10 @@ TEST(Fault, ACutCableFeelsNothing) {
 
 TEST(Fault, AStuckLoadCellShowsOneForce) {
   FaultyRobot faulty({{.kind = FaultKind::kStuckLoadCell, .at_s = 0.1, .for_s = 0.2, .cable = 2},
-                      {.kind = FaultKind::kStuckLoadCell, .at_s = 0.1, .for_s = 0.2, .cable = 3,
+                      {.kind = FaultKind::kStuckLoadCell,
+                       .at_s = 0.1,
+                       .for_s = 0.2,
+                       .cable = 3,
                        .force_n = 33.0}});
   faulty.RunTo(100 * kMillisecond);
   const int then = LoadCellCode({}, faulty.plant.LoadCellForce(2), 0.0);
@@ -219,8 +225,8 @@ TEST(Fault, WithoutUsbTheMotorsAreReleasedAndTheAdapterForgetsItsMode) {
 
 TEST(Fault, UsbLostWithinAMessageLeavesBoardsThatRecover) {
   for (int microseconds = 0; microseconds < 1200; microseconds += 37) {
-    FaultyRobot faulty({{.kind = FaultKind::kUsbLoss,
-                         .at_s = 0.1 + microseconds * 1e-6, .for_s = 0.01}});
+    FaultyRobot faulty(
+        {{.kind = FaultKind::kUsbLoss, .at_s = 0.1 + microseconds * 1e-6, .for_s = 0.01}});
     faulty.RunTo(100 * kMillisecond);
     faulty.robot->HostWrites(Bytes{0x54, 0x00, 0x03, 0xC1, 1, 2});
     faulty.robot->AdvanceTo(200 * kMillisecond);
@@ -244,11 +250,12 @@ TEST(Fault, WithAHostThatIsGoneTheMotorsAreReleased) {
 }
 
 TEST(Fault, OfTwoThatOverlapTheEndOfOneLeavesTheOther) {
-  FaultSchedule schedule({{.kind = FaultKind::kBusNoise, .at_s = 1, .for_s = 3, .flips_per_bit = 0.1},
-                          {.kind = FaultKind::kBusNoise, .at_s = 2, .for_s = 1, .flips_per_bit = 0.2},
-                          {.kind = FaultKind::kBoardLoss, .at_s = 2, .for_s = 4, .board = 1},
-                          {.kind = FaultKind::kBoardLoss, .at_s = 3, .for_s = 1, .board = 1}},
-                         6, 12);
+  FaultSchedule schedule(
+      {{.kind = FaultKind::kBusNoise, .at_s = 1, .for_s = 3, .flips_per_bit = 0.1},
+       {.kind = FaultKind::kBusNoise, .at_s = 2, .for_s = 1, .flips_per_bit = 0.2},
+       {.kind = FaultKind::kBoardLoss, .at_s = 2, .for_s = 4, .board = 1},
+       {.kind = FaultKind::kBoardLoss, .at_s = 3, .for_s = 1, .board = 1}},
+      6, 12);
   const auto at = [&](double time_s) {
     EXPECT_LE(schedule.NextAt(), FromSeconds(time_s));
     schedule.TakeUntil(FromSeconds(time_s));

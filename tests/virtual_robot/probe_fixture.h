@@ -10,8 +10,8 @@
 
 #include "virtual_robot/board.h"
 #include "virtual_robot/plant.h"
-#include "virtual_robot/robot.h"
 #include "virtual_robot/probes/mailbox.h"
+#include "virtual_robot/robot.h"
 
 namespace taut::virtual_robot {
 
@@ -46,10 +46,10 @@ inline std::vector<std::uint8_t> Bytes8(const Board& board, std::uint16_t addres
 /// once, and the spring feels what was wound. Whatever the board does can be told from a formula.
 class SpringPlant : public Plant {
  public:
-  static constexpr double kSpeed = 1000.0;            ///< Of the shaft at full duty [rad/s].
+  static constexpr double kSpeed = 1000.0;  ///< Of the shaft at full duty [rad/s].
   static constexpr double kNewtonsPerRadian = 0.05;
-  explicit SpringPlant(int motors = 12) : angles_(static_cast<std::size_t>(motors)),
-      cut_(static_cast<std::size_t>(motors)) {}
+  explicit SpringPlant(int motors = 12)
+      : angles_(static_cast<std::size_t>(motors)), cut_(static_cast<std::size_t>(motors)) {}
 
   int motor_count() const override { return static_cast<int>(angles_.size()); }
   void Advance(double duration_s, std::span<const MotorDrive> drives) override {

@@ -25,8 +25,9 @@ std::string Story(std::uint64_t seed, double noise, Time slice = kSecond) {
   options.log = [&](Time at, std::string_view who, std::string_view what) {
     story += LogLine(at, who, what);
   };
-  options.faults = {{.kind = FaultKind::kBusNoise, .at_s = 0.1, .for_s = 0.1, .flips_per_bit = noise},
-                    {.kind = FaultKind::kBrownOut, .at_s = 0.15, .for_s = 0.01, .board = 3}};
+  options.faults = {
+      {.kind = FaultKind::kBusNoise, .at_s = 0.1, .for_s = 0.1, .flips_per_bit = noise},
+      {.kind = FaultKind::kBrownOut, .at_s = 0.15, .for_s = 0.01, .board = 3}};
   Robot robot(plant, options);
   const auto advance = [&](Time until) {
     while (robot.now() < until) robot.AdvanceTo(std::min(until, robot.now() + slice));
@@ -60,7 +61,8 @@ TEST(Robot, HowTimeIsCutIntoPiecesDoesNotMatter) {
   const std::string pieces = Story(7, 0.002, 7 * kMicrosecond + 130 * kNanosecond);
   const auto differ = std::mismatch(whole.begin(), whole.end(), pieces.begin(), pieces.end());
   EXPECT_TRUE(whole == pieces) << whole.substr(
-      static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, differ.first - whole.begin() - 100)), 200);
+      static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, differ.first - whole.begin() - 100)),
+      200);
 }
 
 TEST(Robot, ABroadcastMovesAllMotors) {

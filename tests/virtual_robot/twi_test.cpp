@@ -162,17 +162,21 @@ TEST(Twi, ASlaveThatHasNoMoreSendsOnes) {
 TEST(Twi, ARepeatedStartEndsAMessageAndBeginsTheNext) {
   Wires wires(1);
   wires.board(0).SetMemory(kBoxSend, 0x5A);
-  const BusResult result =
-      wires.Transfer({{Kind::kStart}, {Kind::kWrite, To(0)}, {Kind::kWrite, 0xD2}, {Kind::kStart},
-                      {Kind::kWrite, From(0)}, {Kind::kRead, 0, false}, {Kind::kStop}});
+  const BusResult result = wires.Transfer({{Kind::kStart},
+                                           {Kind::kWrite, To(0)},
+                                           {Kind::kWrite, 0xD2},
+                                           {Kind::kStart},
+                                           {Kind::kWrite, From(0)},
+                                           {Kind::kRead, 0, false},
+                                           {Kind::kStop}});
   EXPECT_EQ(result.outcome, BusOutcome::kDone);
   EXPECT_EQ(result.read, Bytes{0x5A});
   EXPECT_EQ(wires.Codes(0), "60 80 a0 a8 c0");
 }
 
 TEST(Twi, TheClockIsHeldForAsLongAsTheInterruptTakes) {
-  // What a byte costs is 9 bits and, behind each, the wait for the slowest interrupt. The difference
-  // between two lengths of the interrupt is known to the cycle: a loop of the probe.
+  // What a byte costs is 9 bits and, behind each, the wait for the slowest interrupt. The
+  // difference between two lengths of the interrupt is known to the cycle: a loop of the probe.
   constexpr int kBytes = 6;
   Time took[3] = {};
   for (const int extra : {0, 1, 4}) {

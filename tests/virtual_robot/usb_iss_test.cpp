@@ -15,7 +15,8 @@ namespace {
 /// An adapter with a slave at address 0x10.
 class Desk {
  public:
-  explicit Desk(UsbIssOptions options = {}) : bus(1), adapter(bus, std::move(options)), slave(0x10) {
+  explicit Desk(UsbIssOptions options = {})
+      : bus(1), adapter(bus, std::move(options)), slave(0x10) {
     bus.Attach(slave);
     slave.general_call = true;
   }
@@ -41,8 +42,8 @@ class Desk {
   Bytes Wires() {
     Bytes bytes;
     for (const BusEvent& event : slave.events) {
-      const bool is_byte = event.kind == BusEvent::Kind::kAddress ||
-                           event.kind == BusEvent::Kind::kByte;
+      const bool is_byte =
+          event.kind == BusEvent::Kind::kAddress || event.kind == BusEvent::Kind::kByte;
       if (is_byte) bytes.push_back(event.byte);
     }
     slave.events.clear();
@@ -80,8 +81,13 @@ TEST(UsbIss, KnowsItsModesAndRefusesOthers) {
 }
 
 TEST(UsbIss, SpeedFollowsTheMode) {
-  for (const auto& [mode, hertz] : {std::pair{0x20, 20e3}, {0x30, 50e3}, {0x40, 100e3},
-                                    {0x50, 400e3}, {0x60, 100e3}, {0x70, 400e3}, {0x80, 1e6}}) {
+  for (const auto& [mode, hertz] : {std::pair{0x20, 20e3},
+                                    {0x30, 50e3},
+                                    {0x40, 100e3},
+                                    {0x50, 400e3},
+                                    {0x60, 100e3},
+                                    {0x70, 400e3},
+                                    {0x80, 1e6}}) {
     Desk desk;
     desk.Ask({0x5A, 0x02, static_cast<std::uint8_t>(mode), 0x04});
     ASSERT_EQ(desk.Ask({0x53, 0x20, 0x01}), Bytes{0xFF});
@@ -180,10 +186,10 @@ TEST(UsbIss, BeforeVersionEightARefusalLeftTheBusOpen) {
 TEST(UsbIss, AFrameThatIsNotCompleteIsIgnored) {
   Desk desk;
   desk.Ask(Fast());
-  for (const Bytes& frame : {Bytes{0x5A}, Bytes{0x5A, 0x02}, Bytes{0x5A, 0x02, 0x70}, Bytes{0x53},
-                             Bytes{0x53, 0x20}, Bytes{0x54, 0x20, 0x03, 1, 2}, Bytes{0x55, 0x20},
-                             Bytes{0x56, 0x21, 1}, Bytes{0x58}, Bytes{0x00}, Bytes{0x59, 1, 2},
-                             Bytes{0xFF, 0xFF}, Bytes{0x54, 0x20, 0x00}}) {
+  for (const Bytes& frame :
+       {Bytes{0x5A}, Bytes{0x5A, 0x02}, Bytes{0x5A, 0x02, 0x70}, Bytes{0x53}, Bytes{0x53, 0x20},
+        Bytes{0x54, 0x20, 0x03, 1, 2}, Bytes{0x55, 0x20}, Bytes{0x56, 0x21, 1}, Bytes{0x58},
+        Bytes{0x00}, Bytes{0x59, 1, 2}, Bytes{0xFF, 0xFF}, Bytes{0x54, 0x20, 0x00}}) {
     const std::uint64_t before = desk.adapter.ignored();
     EXPECT_EQ(desk.Ask(frame), Bytes{});
     EXPECT_EQ(desk.adapter.ignored(), before + 1);
@@ -201,7 +207,8 @@ TEST(UsbIss, AFrameThatIsNotCompleteIsIgnored) {
 TEST(UsbIss, SeveralCommandsInABurstAreAnsweredTogether) {
   Desk desk;
   desk.Ask(Fast());
-  EXPECT_EQ(desk.Ask({0x5A, 0x01, 0x53, 0x20, 0x07, 0x53, 0x21}), (Bytes{0x07, 8, 0x70, 0xFF, 0x40}));
+  EXPECT_EQ(desk.Ask({0x5A, 0x01, 0x53, 0x20, 0x07, 0x53, 0x21}),
+            (Bytes{0x07, 8, 0x70, 0xFF, 0x40}));
 }
 
 TEST(UsbIss, AFrameBeforeTheReplyIsLost) {

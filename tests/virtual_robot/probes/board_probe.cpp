@@ -1,5 +1,5 @@
-// A program for a board that uses all that a board has, and tells tests what it saw. Not a firmware:
-// it does as it is told, except that without a message for 100 ms it lets the motors go.
+// A program for a board that uses all that a board has, and tells tests what it saw. Not a
+// firmware: it does as it is told, except that without a message for 100 ms it lets the motors go.
 #include <avr/eeprom.h>
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -47,8 +47,8 @@ void TakeMessage() {
   const uint8_t first = static_cast<uint8_t>(1 + 2 * Byte(kBoxId));
   const int8_t a = static_cast<int8_t>(Byte(kBoxReceived + first));
   const int8_t b = static_cast<int8_t>(Byte(kBoxReceived + first + 1));
-  SetMotors(Width(a), Width(b),
-            static_cast<uint8_t>((a > 0 ? 1 : 0) | (b > 0 ? 2 : 0)), Byte(kBoxReceived + 13));
+  SetMotors(Width(a), Width(b), static_cast<uint8_t>((a > 0 ? 1 : 0) | (b > 0 ? 2 : 0)),
+            Byte(kBoxReceived + 13));
 }
 
 void Obey() {
