@@ -1,6 +1,7 @@
 /// Time of the emulation, and the clock of a board against it.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "base/assert.h"
@@ -18,10 +19,7 @@ inline constexpr Time kSecond = 1'000'000'000'000;
 inline constexpr Time kNever = INT64_MAX;
 
 /// The nearest whole picosecond. `seconds` is finite and below 100 days.
-inline Time FromSeconds(double seconds) noexcept {
-  const double picoseconds = seconds * 1e12;
-  return static_cast<Time>(picoseconds < 0 ? picoseconds - 0.5 : picoseconds + 0.5);
-}
+inline Time FromSeconds(double seconds) noexcept { return std::llround(seconds * 1e12); }
 inline double ToSeconds(Time time) noexcept { return static_cast<double>(time) * 1e-12; }
 
 /// Which cycle of a board's crystal begins when. Integers throughout: no run drifts from another.
@@ -34,7 +32,7 @@ class BoardClock {
   void Set(Time now, std::uint64_t cycle, double drift_ppm) noexcept {
     const double exact = static_cast<double>(kNominalHz) * (1.0 + drift_ppm * 1e-6) * 1e3;
     TAUT_ASSERT(exact > 0.0);
-    millihertz_ = static_cast<std::uint64_t>(exact + 0.5);
+    millihertz_ = static_cast<std::uint64_t>(std::llround(exact));
     start_ = now;
     start_cycle_ = cycle;
   }

@@ -55,7 +55,14 @@ void TwiSlave::Schedule(const BusEvent& event) {
   if (!powered_) return;
   event_ = event;
   const std::uint64_t at = clock_.CycleAt(event.at);
-  avr_cycle_timer_register(&avr_, at > avr_.cycle ? at - avr_.cycle : 0, Fire, this);
+  if (at > avr_.cycle) {
+    avr_cycle_timer_register(&avr_, at - avr_.cycle, Fire, this);
+  } else {
+    // Within the cycle or the instruction that the core has ended: it may not run again before
+    // the bus looks.
+    pending_ = false;
+    Handle(event);
+  }
 }
 
 std::uint64_t TwiSlave::Fire(avr_t* /*avr*/, std::uint64_t /*when*/, void* self) {

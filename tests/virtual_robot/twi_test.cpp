@@ -246,6 +246,19 @@ TEST(Twi, AnIllegalStartIsSeenAsABusErrorAndRecoveredFrom) {
   EXPECT_EQ(wires.Codes(1), "60 80 a0");
 }
 
+TEST(Twi, WhatIsDueInTheCycleThatACoreHasEndedHappensAtOnce) {
+  // The core has reached that time and does not run again before the bus asks it.
+  for (int extra = 0; extra < 40; ++extra) {
+    Board board(ProbeProgram(), {});
+    const Time time = 5 * kMillisecond + extra * 31 * kNanosecond;
+    board.RunUntil(time);
+    I2cSlave& slave = board.bus_side();
+    slave.Schedule({.kind = BusEvent::Kind::kAddress, .at = time, .byte = 0x20});
+    board.RunUntil(time);
+    EXPECT_TRUE(slave.Acked() && slave.HoldsClock()) << extra;
+  }
+}
+
 TEST(Twi, TheNextMessageWaitsForTheInterruptOfTheLast) {
   Wires wires(1);
   wires.board(0).SetMemory(kBoxStretch, 9);
