@@ -37,9 +37,9 @@ class VirtualRobot : public testing::Test {
     std::ifstream in(path);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  Done Run(const std::string& arguments) const {
+  Done Ask(const std::string& arguments) const {
     const std::string command =
-        "cd " + folder_.string() + " && " TAUT_VIRTUAL_ROBOT " " + arguments + " 2>&1";
+        "cd " + folder_.string() + "; " TAUT_VIRTUAL_ROBOT " " + arguments + " 2>&1";
     std::FILE* pipe = popen(command.c_str(), "r");
     Done done;
     char buffer[4096];
@@ -56,7 +56,7 @@ class VirtualRobot : public testing::Test {
 };
 
 TEST_F(VirtualRobot, HelpsAndSaysItsLicence) {
-  const Done done = Run("--help");
+  const Done done = Ask("--help");
   EXPECT_EQ(done.status, 0);
   for (const char* text : {"--model", "--faults", "--link", "--log", "--seed",
                            "Examples:", "GNU General Public License"}) {
@@ -65,11 +65,11 @@ TEST_F(VirtualRobot, HelpsAndSaysItsLicence) {
 }
 
 TEST_F(VirtualRobot, WrongUsageIsStatusTwo) {
-  EXPECT_EQ(Run("").status, 2);
-  EXPECT_EQ(Run("--model").status, 2);
-  EXPECT_EQ(Run("--model robot.yaml --speed 3").status, 2);
-  EXPECT_EQ(Run("--model robot.yaml --experiment e.yaml").status, 2);
-  EXPECT_EQ(Run("--model robot.yaml --set nothing --measure 1").status, 2);
+  EXPECT_EQ(Ask("").status, 2);
+  EXPECT_EQ(Ask("--model").status, 2);
+  EXPECT_EQ(Ask("--model robot.yaml --speed 3").status, 2);
+  EXPECT_EQ(Ask("--model robot.yaml --experiment e.yaml").status, 2);
+  EXPECT_EQ(Ask("--model robot.yaml --set nothing --measure 1").status, 2);
 }
 
 TEST_F(VirtualRobot, AllMistakesOfAllFilesAreSaidAtOnce) {
@@ -77,12 +77,12 @@ TEST_F(VirtualRobot, AllMistakesOfAllFilesAreSaidAtOnce) {
                                             "  - {kind: cut_cable, at_s: 1, cable: outer_top_9}\n"
                                             "  - {kind: brown_out, at_s: -1, board: 6}\n";
   const Done done =
-      Run("--model robot.yaml --firmware robot.yaml --faults faults.yaml --measure 1");
+      Ask("--model robot.yaml --firmware robot.yaml --faults faults.yaml --measure 1");
   EXPECT_EQ(done.status, 3);
   EXPECT_TRUE(Says(done, "robot.yaml: error: is not an ELF file")) << done.said;
   EXPECT_TRUE(Says(done, "faults.yaml:5:")) << done.said;
   EXPECT_TRUE(Says(done, "faults.yaml:6:")) << done.said;
-  const Done model = Run("--model " TAUT_SOURCE_DIR "/models/tetraspine3.yaml --measure 1");
+  const Done model = Ask("--model " TAUT_SOURCE_DIR "/models/tetraspine3.yaml --measure 1");
   EXPECT_EQ(model.status, 3);
   EXPECT_TRUE(Says(model, "is no motor")) << model.said;
 }
@@ -92,21 +92,21 @@ TEST_F(VirtualRobot, MeasuresItsSpeedAndLogsWhatHappens) {
       << "taut: 1\nkind: faults\nname: f\nfaults:\n"
          "  - {kind: brown_out, at_s: 0.3, for_s: 0.01, board: 2}\n";
   const std::string arguments = "--model robot.yaml --faults faults.yaml --measure 0.2 --frames ";
-  const Done done = Run(arguments + "--log first.log");
+  const Done done = Ask(arguments + "--log first.log");
   EXPECT_EQ(done.status, 0) << done.said;
   EXPECT_TRUE(Says(done, "x real time")) << done.said;
   const std::string log = Text(folder_ / "first.log");
   EXPECT_NE(log.find("0.300000000 fault: brown_out of board 2 begins\n"), std::string::npos);
   EXPECT_NE(log.find("0.310000000 board 2: reset: brown-out\n"), std::string::npos);
-  EXPECT_EQ(Run(arguments + "--log second.log").status, 0);
+  EXPECT_EQ(Ask(arguments + "--log second.log").status, 0);
   EXPECT_TRUE(log == Text(folder_ / "second.log")) << "two runs, the same bytes";
-  EXPECT_EQ(Run(arguments + "--log third.log --seed 2").status, 0);
+  EXPECT_EQ(Ask(arguments + "--log third.log --seed 2").status, 0);
   EXPECT_FALSE(log == Text(folder_ / "third.log"));
 }
 
 TEST_F(VirtualRobot, EndsCleanlyOnAnInterrupt) {
   const Done done =
-      Run("--model robot.yaml --link robot > path & pid=$!; "
+      Ask("--model robot.yaml --link robot > path & pid=$!; "
           "for i in $(seq 200); do [ -L robot ] && break; sleep 0.1; done; "
           "[ -c robot ] || echo no device; kill -INT $pid; wait $pid; echo status $?; "
           "[ -L robot ] && echo left behind; cat path");

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,7 @@ std::unique_ptr<MotorPlant> Make(const RobotSpec& robot) {
   return plant;
 }
 
-void Run(MotorPlant& plant, double seconds, const std::vector<MotorDrive>& drives) {
+void Turn(MotorPlant& plant, double seconds, const std::vector<MotorDrive>& drives) {
   for (int i = 0; i < seconds / 1e-4; ++i) plant.Advance(1e-4, drives);
 }
 
@@ -56,9 +57,9 @@ TEST(MotorPlant, AMotorWithoutLoadRunsAsItsDataSheetSays) {
   std::vector<MotorDrive> drives(12);
   for (const double duty : {0.8, -0.4}) {
     drives[3] = {duty, true};
-    Run(*plant, 0.3, drives);
+    Turn(*plant, 0.3, drives);
     const double before = plant->RotorAngle(3);
-    Run(*plant, 0.1, drives);
+    Turn(*plant, 0.1, drives);
     // U = k w + R i at the current that friction takes; the spool's spring is cut.
     const DcMotorDef motor;
     const double k = motor.torque_constant_n_m_per_a;
@@ -70,14 +71,21 @@ TEST(MotorPlant, AMotorWithoutLoadRunsAsItsDataSheetSays) {
   }
 }
 
-TEST(MotorPlant, WindingInTightensTheCable) {
-  const auto plant = Make(MotorSpine());
-  const double before = plant->LoadCellForce(0);
-  std::vector<MotorDrive> drives(12, MotorDrive{0.0, true});  // brakes
-  drives[0].duty = 0.5;
-  Run(*plant, 0.05, drives);
-  EXPECT_GT(plant->RotorAngle(0), 5.0);
-  EXPECT_GT(plant->LoadCellForce(0), before + 0.5);
+TEST(MotorPlant, WindingInShortensAndTightensTheCable) {
+  const auto force = [](double duty) {
+    const auto plant = Make(MotorSpine());
+    const double before_m = plant->batch().Cable(0, 0).rest_length_m;
+    std::vector<MotorDrive> drives(12, MotorDrive{0.0, true});  // brakes
+    drives[0].duty = duty;
+    Turn(*plant, 0.05, drives);
+    EXPECT_EQ(plant->RotorAngle(0) > 0, duty > 0);
+    const DcMotorDef motor;
+    const double wound_m = motor.spool_radius_m / motor.gear_ratio * plant->RotorAngle(0);
+    EXPECT_NEAR(plant->batch().Cable(0, 0).rest_length_m, before_m - wound_m, 1e-12);
+    EXPECT_GT(std::abs(wound_m), 1e-3);
+    return plant->LoadCellForce(0);
+  };
+  EXPECT_GT(force(0.8), force(-0.8) + 0.1);
 }
 
 TEST(MotorPlant, RefusesWhatBoardsCannotDrive) {
