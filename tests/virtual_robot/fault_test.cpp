@@ -237,6 +237,15 @@ TEST(Fault, UsbLostWithinAMessageLeavesBoardsThatRecover) {
   }
 }
 
+TEST(Fault, AMessageThatUsbLeftInTheMiddleIsNotTaken) {
+  // Within the bytes of a message: 0.25 ms on USB, then 23 us a byte.
+  FaultyRobot faulty({{.kind = FaultKind::kUsbLoss, .at_s = 0.10035, .for_s = 0.01}});
+  faulty.RunTo(100 * kMillisecond);
+  faulty.robot->HostWrites(Bytes{0x54, 0x00, 0x07, 0xC1, 1, 2, 3, 4, 5, 6});
+  faulty.robot->AdvanceTo(150 * kMillisecond);
+  EXPECT_EQ(faulty.robot->board(0).Memory(kBoxReceivedCount), 14) << "that of the last one";
+}
+
 TEST(Fault, WithAHostThatIsGoneTheMotorsAreReleased) {
   FaultyRobot faulty({{.kind = FaultKind::kHostKilled, .at_s = 0.1, .for_s = kForEver}});
   faulty.RunTo(100 * kMillisecond);
@@ -246,7 +255,22 @@ TEST(Fault, WithAHostThatIsGoneTheMotorsAreReleased) {
   faulty.robot->AdvanceTo(195 * kMillisecond);
   for (int motor = 0; motor < 12; ++motor) EXPECT_FALSE(faulty.robot->Drive(motor).enabled);
   EXPECT_FALSE(faulty.robot->host_alive());
+  Bytes message{0x54, 0x00, 14, 0xC1};
+  message.resize(17, 0x10);
+  faulty.robot->HostWrites(message);
+  faulty.robot->AdvanceTo(220 * kMillisecond);
+  EXPECT_FALSE(faulty.robot->Drive(1).enabled) << "what a dead program writes";
   EXPECT_EQ(faulty.host->Ask({0x5A, 0x01}), Bytes{});
+}
+
+TEST(Fault, WhatEndsDoesSoBeforeWhatBeginsThen) {
+  FaultSchedule schedule({{.kind = FaultKind::kUsbLoss, .at_s = 2, .for_s = 1},
+                          {.kind = FaultKind::kHostKilled, .at_s = 1, .for_s = 1}},
+                         6, 12);
+  const auto changes = schedule.TakeUntil(2 * kSecond);
+  ASSERT_EQ(changes.size(), 3U);
+  EXPECT_TRUE(changes[0].begins && !changes[1].begins && changes[2].begins);
+  EXPECT_EQ(changes[1].fault->kind, FaultKind::kHostKilled);
 }
 
 TEST(Fault, OfTwoThatOverlapTheEndOfOneLeavesTheOther) {

@@ -126,6 +126,22 @@ TEST(Robot, NoiseOfALoadCellHasItsDeviation) {
   EXPECT_NEAR(deviation, std::sqrt(9.0 + 1.0 / 12), 0.15) << "and what rounding adds";
 }
 
+TEST(Robot, NoiseOfALoadCellFollowsFromTheSeed) {
+  const auto codes = [](std::uint64_t seed) {
+    SpringPlant plant;
+    Robot robot(plant, {.program = ProbeProgram(), .seed = seed, .load_cell = {.noise_counts = 3}});
+    plant.Set(0, 400.0);
+    std::vector<std::uint16_t> all;
+    for (int i = 0; i < 20; ++i) {
+      robot.AdvanceTo(robot.now() + kMillisecond);
+      all.push_back(Word(robot.board(0), kBoxAdc));
+    }
+    return all;
+  };
+  EXPECT_EQ(codes(5), codes(5));
+  EXPECT_NE(codes(5), codes(6));
+}
+
 TEST(Robot, AReplyTakesTheTimeOfTheBusAndOfUsb) {
   SpringPlant plant;
   Robot robot(plant, {.program = ProbeProgram()});
@@ -138,6 +154,7 @@ TEST(Robot, AReplyTakesTheTimeOfTheBusAndOfUsb) {
   const double took = ToSeconds(robot.now() - begun);
   EXPECT_GT(took, 0.5e-3 + bus);
   EXPECT_LT(took, 0.5e-3 + bus + 17 * 10e-6) << "the interrupts of the probe";
+  EXPECT_EQ(robot.now(), robot.bus().result().ended + 250 * kMicrosecond);
 }
 
 TEST(Robot, AHostThatAsksNobodyWaitsInVain) {

@@ -168,6 +168,7 @@ int main() {
   wdt_enable(WDTO_60MS);
 
   DDRB = _BV(PB0) | _BV(PB1) | _BV(PB2);
+  PORTB = _BV(PB4);  // open drain
   DDRD = _BV(PD6) | _BV(PD7);
   TCCR1A = _BV(COM1A1) | _BV(COM1B1);
   TCCR1B = _BV(WGM13) | _BV(CS10);  // mode 8
