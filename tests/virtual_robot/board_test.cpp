@@ -123,6 +123,8 @@ TEST(Board, EveryCodeOfTheConverterIsRead) {
     ASSERT_EQ(Word(board, kBoxAdc + 2), 1023 - value);
   }
   EXPECT_EQ(board.Memory(kBoxBandgap), 225) << "1.1 V of 5 V";
+  EXPECT_EQ(Word(board, kBoxEarly), 225)
+      << "until a conversion ends, the result is that of the last";
 }
 
 TEST(Board, AConversionShowsWhatWasThereWhenItBegan) {

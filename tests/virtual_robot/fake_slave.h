@@ -14,6 +14,7 @@ class FakeSlave : public I2cSlave {
 
   void Schedule(const BusEvent& event) override {
     events.push_back(event);
+    if (now && event.at < *now) late = true;
     acked_ = false;
     released_ = event.at;
     switch (event.kind) {
@@ -45,6 +46,8 @@ class FakeSlave : public I2cSlave {
   }
 
   bool general_call = false;
+  const Time* now = nullptr;     ///< How far slaves have run.
+  bool late = false;             ///< Something came that had happened before then.
   std::size_t takes = SIZE_MAX;  ///< Bytes that it acknowledges.
   Time hold = 0;
   std::uint8_t send_from = 0x40;

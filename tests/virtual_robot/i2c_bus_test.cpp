@@ -68,6 +68,28 @@ TEST(I2cBus, AGapAndAHeldClockAreAddedToEachByte) {
   EXPECT_EQ(bus.stretch().sum, 3 * 7 * kMicrosecond) << "the last one delays the stop";
 }
 
+TEST(I2cBus, NothingHappensBeforeSlavesHaveHeardOfIt) {
+  for (const Time hold : {Time{0}, 100 * kNanosecond, 7 * kMicrosecond, 39 * kMicrosecond}) {
+    for (const std::size_t takes : {std::size_t{0}, std::size_t{2}, SIZE_MAX}) {
+      I2cBus bus(1);
+      FakeSlave slave(0x10);
+      slave.hold = hold;
+      slave.takes = takes;
+      bus.Attach(slave);
+      Time now = 0;
+      slave.now = &now;
+      for (const auto& steps : {Write(0x20, {1, 2, 3, 4}), Read(0x21, 3), Write(0x30, {1})}) {
+        bus.Begin(now, steps, {});
+        while (bus.Busy()) {
+          now = bus.SafeUntil(now);
+          bus.Step(now);
+        }
+      }
+      EXPECT_FALSE(slave.late);
+    }
+  }
+}
+
 TEST(I2cBus, WhatTwoSendIsTheAndOfIt) {
   I2cBus bus(1);
   FakeSlave one(0x10), other(0x10);

@@ -110,6 +110,7 @@ ISR(TIMER2_COMPA_vect) {
     SetMotors(Word(kBoxDuty), Word(kBoxDuty + 2), Byte(kBoxWindsIn), Byte(kBoxEnable));
   }
   ADCSRA |= _BV(ADSC);
+  Word(kBoxEarly) = ADC;  // of the conversion before
   wdt_reset();
   GPIOR0 = 0;
 }
@@ -181,7 +182,6 @@ int main() {
   ADMUX = _BV(REFS0);
   ADCSRA = _BV(ADEN) | _BV(ADIE) | _BV(ADPS2) | _BV(ADPS1) | _BV(ADPS0);
   EICRA = _BV(ISC00) | _BV(ISC10);
-  EIFR = _BV(INTF0) | _BV(INTF1);
   EIMSK = _BV(INT0) | _BV(INT1);
   TWAR = static_cast<uint8_t>((kFirstAddress + Byte(kBoxId)) << 1 | _BV(TWGCE));
   TWCR = _BV(TWEA) | _BV(TWEN) | _BV(TWIE);

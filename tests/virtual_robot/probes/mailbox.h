@@ -16,6 +16,7 @@ enum {
   kBoxReceivedCount = 0x117,
   kBoxMissed = 0x118,  // milliseconds since the last broadcast, up to 255
   kBoxBandgap = 0x119,
+  kBoxEarly = 0x11A,  // 2 bytes: what was read of a conversion that had just begun
   // Orders of tests.
   kBoxStretch = 0x120,   // tens of microseconds that each interrupt of the bus takes longer
   kBoxNackFrom = 0x121,  // refuse this byte and those behind it; 0: take all
