@@ -42,9 +42,9 @@ class Rules:
 
 def check_outside(rules, where, layer, header, errors):
     """An include of something that is not ours."""
-    for pattern, owner in rules.only:
-        if fnmatch.fnmatch(header, pattern) and layer not in (owner, "tests"):
-            errors.append(f"{where}: error: <{header}> belongs in {owner} only")
+    owners = [owner for pattern, owner in rules.only if fnmatch.fnmatch(header, pattern)]
+    if owners and layer not in (*owners, "tests"):
+        errors.append(f"{where}: error: <{header}> belongs in {' and '.join(owners)} only")
     allowed = rules.system.get(layer)
     if allowed is not None and header not in allowed:
         errors.append(f"{where}: error: {layer} may include only {', '.join(allowed)}, not <{header}>")

@@ -10,7 +10,7 @@
 
 namespace taut {
 
-/// "model", "experiment", "gait" and "study".
+/// "model", "experiment", "gait", "study" and "faults".
 const std::vector<std::string>& FormatNames();
 
 /// The JSON schema (2020-12) of a format: all of its keys with their types, ranges, defaults and

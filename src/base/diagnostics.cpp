@@ -102,11 +102,12 @@ std::string DidYouMean(std::string_view word, const std::vector<std::string>& ca
   const std::string_view best = ClosestMatch(word, candidates);
   if (!best.empty()) return "did you mean \"" + std::string(best) + "\"?";
   if (candidates.empty()) return {};
+  // Two more are no reason to leave out three.
+  constexpr std::size_t kMostNamed = 12, kMost = 14;
+  const std::size_t named = candidates.size() <= kMost ? candidates.size() : kMostNamed;
   std::string out = "one of:";
-  for (std::size_t i = 0; i < candidates.size() && i < 12; ++i) {
-    out += (i == 0 ? " " : ", ") + candidates[i];
-  }
-  if (candidates.size() > 12) out += ", ...";
+  for (std::size_t i = 0; i < named; ++i) out += (i == 0 ? " " : ", ") + candidates[i];
+  if (named < candidates.size()) out += ", ...";
   return out;
 }
 

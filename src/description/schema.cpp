@@ -7,6 +7,7 @@
 
 #include "base/name_unit.h"
 #include "description/experiment_keys.h"
+#include "description/fault_keys.h"
 #include "description/gait_keys.h"
 #include "description/model_keys.h"
 #include "description/read_keys.h"
@@ -313,7 +314,7 @@ std::string Schema() {
 }  // namespace description
 
 const std::vector<std::string>& FormatNames() {
-  static const std::vector<std::string> names{"model", "experiment", "gait", "study"};
+  static const std::vector<std::string> names{"model", "experiment", "gait", "study", "faults"};
   return names;
 }
 
@@ -322,6 +323,7 @@ std::optional<std::string> FormatSchema(std::string_view format) {
   if (format == "experiment") return description::Schema<description::ExperimentText>();
   if (format == "gait") return description::Schema<description::GaitText>();
   if (format == "study") return description::Schema<description::StudyFileText>();
+  if (format == "faults") return description::Schema<description::FaultFileText>();
   return std::nullopt;
 }
 

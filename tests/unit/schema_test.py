@@ -26,7 +26,8 @@ docs = importlib.util.module_from_spec(importlib.util.spec_from_loader("docs", l
 sys.dont_write_bytecode = True
 loader.exec_module(docs)
 
-KINDS = {"model": "models", "experiment": "experiments", "gait": "gaits", "study": "studies"}
+KINDS = {"model": "models", "experiment": "experiments", "gait": "gaits", "study": "studies",
+         "faults": "faults"}
 PROBE = ""
 
 
@@ -129,6 +130,7 @@ def test_SchemasRefuseWhatTheReaderRefuses():
     study = (ROOT / "studies" / "sidewinder3.yaml").read_text()
     study = study.replace("../experiments/", str(ROOT / "experiments") + "/")
     learned = (ROOT / "gaits" / "cpg_learned.yaml").read_text()
+    noise = (ROOT / "faults" / "noisy_bus.yaml").read_text()
     waves = (ROOT / "gaits" / "hand_tuned_sine.yaml").read_text()
     changes = [
         ("gait", learned, "symmetry: index", "symmetry: indices"),
@@ -152,6 +154,9 @@ def test_SchemasRefuseWhatTheReaderRefuses():
         ("study", study, "method: monte_carlo", "method: magic"),
         ("study", study, "evaluations: 256, ", ""),
         ("study", study, "experiment: ", "# experiment: "),
+        ("faults", noise, "at_s: 2.5", "at: 2.5"),
+        ("faults", noise, "line: data", "line: sda"),
+        ("faults", noise, "kind: bus_error, ", ""),
         ("model", spine, "radius_m: rod_radius_m", "radius: rod_radius_m"),
         ("model", spine, "prestress_n: 7", "prestress_n: 7\n      rest_length_m: 0.1"),
         ("model", spine, "ends: surface", "ends: anywhere"),

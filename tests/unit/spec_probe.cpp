@@ -1,11 +1,13 @@
-// Loads model, experiment, gait and study files and prints what is wrong with them, for tests in
-// other languages: spec_probe [--set name=value]... [--resolved] [--schema FORMAT] FILE... Exit
-// status 1 if anything is wrong.
+// Loads model, experiment, gait, study and fault files and prints what is wrong with them, for
+// tests in other languages: spec_probe [--set name=value]... [--resolved] [--schema FORMAT] FILE...
+// Exit status 1 if anything is wrong.
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <string>
+#include <vector>
 
+#include "taut/faults.h"
 #include "taut/schema.h"
 #include "taut/spec.h"
 #include "taut/study.h"
@@ -21,6 +23,18 @@ bool IsOfKind(const std::string& kind, const std::string& path) {
     }
   }
   return false;
+}
+
+/// Of which shipped scripts speak, and one that the schema's tests make up.
+std::vector<std::string> CablesOfTetraspine3() {
+  std::vector<std::string> names{"a"};
+  for (const char* joint : {"1", "2"}) {
+    for (const char* name : {"outer_right_", "outer_left_", "outer_top_", "inner_right_",
+                             "inner_left_", "inner_top_"}) {
+      names.push_back(std::string(name) + joint);
+    }
+  }
+  return names;
 }
 
 }  // namespace
@@ -44,6 +58,8 @@ int main(int argc, char** argv) {
       taut::LoadGait(argument, out);
     } else if (IsOfKind("study", argument)) {
       taut::LoadStudy(argument, overrides, out);
+    } else if (IsOfKind("faults", argument)) {
+      taut::LoadFaults(argument, CablesOfTetraspine3(), out);
     } else if (const auto experiment = taut::LoadExperiment(argument, overrides, out)) {
       if (resolved) std::cout << taut::ResolvedYaml(*experiment);
     }

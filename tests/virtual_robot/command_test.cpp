@@ -1,0 +1,119 @@
+// The command taut_virtual_robot: what it says, and its exit status.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Done {
+  int status = 0;
+  std::string said;
+};
+
+class VirtualRobot : public testing::Test {
+ protected:
+  VirtualRobot() {
+    std::string name = (fs::temp_directory_path() / "taut_vr_XXXXXX").string();
+    EXPECT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    std::string spine = Text(TAUT_SOURCE_DIR "/models/tetraspine3.yaml");
+    const std::string limits =
+        "{max_speed_m_per_s: 0.07, max_force_n: 50, min_rest_length_m: 0.01, "
+        "min_length_m: 0.01}";
+    spine.replace(spine.find(limits), limits.size(), "{min_rest_length_m: 0.01, dc_motor: {}}");
+    std::ofstream(folder_ / "robot.yaml") << spine;
+  }
+  ~VirtualRobot() override { fs::remove_all(folder_); }
+
+  static std::string Text(const fs::path& path) {
+    std::ifstream in(path);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  Done Ask(const std::string& arguments) const {
+    const std::string command =
+        "cd " + folder_.string() + "; " TAUT_VIRTUAL_ROBOT " " + arguments + " 2>&1";
+    std::FILE* pipe = popen(command.c_str(), "r");
+    Done done;
+    char buffer[4096];
+    while (const std::size_t got = std::fread(buffer, 1, sizeof buffer, pipe)) {
+      done.said.append(buffer, got);
+    }
+    done.status = WEXITSTATUS(pclose(pipe));
+    return done;
+  }
+  bool Says(const Done& done, const std::string& text) const {
+    return done.said.find(text) != std::string::npos;
+  }
+  fs::path folder_;
+};
+
+TEST_F(VirtualRobot, HelpsAndSaysItsLicence) {
+  const Done done = Ask("--help");
+  EXPECT_EQ(done.status, 0);
+  for (const char* text : {"--model", "--faults", "--link", "--log", "--seed",
+                           "Examples:", "GNU General Public License"}) {
+    EXPECT_TRUE(Says(done, text)) << text << "\n" << done.said;
+  }
+}
+
+TEST_F(VirtualRobot, WrongUsageIsStatusTwo) {
+  EXPECT_EQ(Ask("").status, 2);
+  EXPECT_EQ(Ask("--model").status, 2);
+  EXPECT_EQ(Ask("--model robot.yaml --speed 3").status, 2);
+  EXPECT_EQ(Ask("--model robot.yaml --experiment e.yaml").status, 2);
+  EXPECT_EQ(Ask("--model robot.yaml --set nothing --measure 1").status, 2);
+}
+
+TEST_F(VirtualRobot, AllMistakesOfAllFilesAreSaidAtOnce) {
+  std::ofstream(folder_ / "faults.yaml") << "taut: 1\nkind: faults\nname: f\nfaults:\n"
+                                            "  - {kind: cut_cable, at_s: 1, cable: outer_top_9}\n"
+                                            "  - {kind: brown_out, at_s: -1, board: 6}\n";
+  const Done done =
+      Ask("--model robot.yaml --firmware robot.yaml --faults faults.yaml --measure 1");
+  EXPECT_EQ(done.status, 3);
+  EXPECT_TRUE(Says(done, "robot.yaml: error: is not an ELF file")) << done.said;
+  EXPECT_TRUE(Says(done, "faults.yaml:5:")) << done.said;
+  EXPECT_TRUE(Says(done, "faults.yaml:6:")) << done.said;
+  const Done model = Ask("--model " TAUT_SOURCE_DIR "/models/tetraspine3.yaml --measure 1");
+  EXPECT_EQ(model.status, 3);
+  EXPECT_TRUE(Says(model, "is no motor")) << model.said;
+}
+
+TEST_F(VirtualRobot, MeasuresItsSpeedAndLogsWhatHappens) {
+  std::ofstream(folder_ / "faults.yaml")
+      << "taut: 1\nkind: faults\nname: f\nfaults:\n"
+         "  - {kind: brown_out, at_s: 0.3, for_s: 0.01, board: 2}\n";
+  const std::string arguments = "--model robot.yaml --faults faults.yaml --measure 0.2 --frames ";
+  const Done done = Ask(arguments + "--log first.log");
+  EXPECT_EQ(done.status, 0) << done.said;
+  EXPECT_TRUE(Says(done, "x real time")) << done.said;
+  const std::string log = Text(folder_ / "first.log");
+  EXPECT_NE(log.find("0.300000000 fault: brown_out of board 2 begins\n"), std::string::npos);
+  EXPECT_NE(log.find("0.310000000 board 2: reset: brown-out\n"), std::string::npos);
+  EXPECT_EQ(Ask(arguments + "--log second.log").status, 0);
+  EXPECT_TRUE(log == Text(folder_ / "second.log")) << "two runs, the same bytes";
+  EXPECT_EQ(Ask(arguments + "--log third.log --seed 2").status, 0);
+  EXPECT_FALSE(log == Text(folder_ / "third.log"));
+}
+
+TEST_F(VirtualRobot, EndsCleanlyOnAnInterrupt) {
+  const Done done =
+      Ask("--model robot.yaml --link robot > path & pid=$!; "
+          "for i in $(seq 200); do [ -L robot ] && break; sleep 0.1; done; "
+          "[ -c robot ] || echo no device; kill -INT $pid; wait $pid; echo status $?; "
+          "[ -L robot ] && echo left behind; cat path");
+  EXPECT_TRUE(Says(done, "status 0")) << done.said;
+  EXPECT_TRUE(Says(done, "/dev/pts/")) << done.said;
+  EXPECT_FALSE(Says(done, "no device")) << done.said;
+  EXPECT_FALSE(Says(done, "left behind")) << done.said;
+}
+
+}  // namespace

@@ -1,0 +1,276 @@
+// The two-wire interface of the boards, by the status codes that the probe saw and by times in
+// closed form. Codes: data sheet of the ATmega328P, tables "Status Codes for Slave Receiver Mode"
+// and "... Slave Transmitter Mode".
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "virtual_robot/probe_fixture.h"
+
+namespace taut::virtual_robot {
+namespace {
+
+using Kind = BusStep::Kind;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr Time kBit = 2'500 * kNanosecond;
+constexpr Time kByte = 9 * kBit;
+
+/// Boards and a bus, without motors.
+class Wires {
+ public:
+  explicit Wires(int boards) : bus(3) {
+    for (int i = 0; i < boards; ++i) {
+      all.push_back(std::make_unique<Board>(ProbeProgram(), BoardOptions{i, {}, drift_ppm * i}));
+      bus.Attach(all.back()->bus_side());
+    }
+    RunTo(5 * kMillisecond);
+  }
+
+  void Advance(Time limit) {
+    const Time next = std::min({limit, now + 20 * kMicrosecond, bus.SafeUntil(now)});
+    ASSERT_GT(next, now);
+    for (const auto& board : all) board->RunUntil(next);
+    now = next;
+    bus.Step(now);
+  }
+  void RunTo(Time until) {
+    while (now < until) Advance(until);
+  }
+  BusResult Transfer(std::vector<BusStep> steps, Time limit = 100 * kMillisecond) {
+    began = now;
+    bus.Begin(now, std::move(steps), {});
+    const Time end = now + limit;
+    while (bus.Busy() && now < end) Advance(end);
+    EXPECT_FALSE(bus.Busy());
+    const BusResult result = bus.result();
+    RunTo(now + 500 * kMicrosecond);  // what the stop sets off
+    return result;
+  }
+  Board& board(int i) { return *all[static_cast<std::size_t>(i)]; }
+  /// The codes since the last call.
+  std::string Codes(int i) {
+    Board& one = board(i);
+    std::string text;
+    for (int n = 0; n < one.Memory(kBoxStatusCount); ++n) {
+      const unsigned char code = one.Memory(static_cast<std::uint16_t>(kBoxStatus + n));
+      text += (n == 0 ? "" : " ") + Hex(&code, 1);
+    }
+    one.SetMemory(kBoxStatusCount, 0);
+    return text;
+  }
+
+  static constexpr double drift_ppm = 40;
+  I2cBus bus;
+  std::vector<std::unique_ptr<Board>> all;
+  Time now = 0, began = 0;
+};
+
+std::vector<BusStep> Write(std::uint8_t address, const Bytes& bytes) {
+  std::vector<BusStep> steps{{Kind::kStart}, {Kind::kWrite, address}};
+  for (const std::uint8_t byte : bytes) steps.push_back({Kind::kWrite, byte});
+  steps.push_back({Kind::kStop});
+  return steps;
+}
+std::vector<BusStep> Read(std::uint8_t address, int count) {
+  std::vector<BusStep> steps{{Kind::kStart}, {Kind::kWrite, address}};
+  for (int i = 0; i < count; ++i) steps.push_back({Kind::kRead, 0, i + 1 < count});
+  steps.push_back({Kind::kStop});
+  return steps;
+}
+constexpr std::uint8_t To(int board) { return static_cast<std::uint8_t>((0x10 + board) << 1); }
+constexpr std::uint8_t From(int board) { return static_cast<std::uint8_t>(To(board) | 1); }
+
+TEST(Twi, AGeneralCallReachesAllBoards) {
+  Wires wires(3);
+  const Bytes message{0xC3, 1, 2, 3, 0xFF, 0x00};
+  const BusResult result = wires.Transfer(Write(0, message));
+  EXPECT_EQ(result.outcome, BusOutcome::kDone);
+  EXPECT_EQ(result.written, 7);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(wires.Codes(i), "70 90 90 90 90 90 90 a0") << i;
+    EXPECT_EQ(wires.board(i).Memory(kBoxReceivedCount), message.size());
+    EXPECT_EQ(Bytes8(wires.board(i), kBoxReceived, 6), message);
+  }
+}
+
+TEST(Twi, AnAddressReachesItsBoardAlone) {
+  Wires wires(3);
+  EXPECT_EQ(wires.Transfer(Write(To(1), {0xAB})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Codes(0), "");
+  EXPECT_EQ(wires.Codes(1), "60 80 a0");
+  EXPECT_EQ(wires.Codes(2), "");
+}
+
+TEST(Twi, SixteenBytesAreReadAtOnce) {
+  Wires wires(2);
+  Bytes expected;
+  for (int i = 0; i < 16; ++i) {
+    expected.push_back(static_cast<std::uint8_t>(17 * i + 3));
+    wires.board(1).SetMemory(static_cast<std::uint16_t>(kBoxSend + i), expected.back());
+  }
+  const BusResult result = wires.Transfer(Read(From(1), 16));
+  EXPECT_EQ(result.read, expected);
+  EXPECT_EQ(wires.Codes(1), "a8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 c0");
+  EXPECT_EQ(wires.Codes(0), "");
+  // Again, at once: nothing is left over.
+  EXPECT_EQ(wires.Transfer(Read(From(1), 16)).read, expected);
+}
+
+TEST(Twi, NobodyAnswersForABoardThatIsNotThere) {
+  Wires wires(2);
+  const BusResult result = wires.Transfer(Read(From(5), 4));
+  EXPECT_EQ(result.outcome, BusOutcome::kNoAcknowledge);
+  EXPECT_EQ(result.written, 0);
+  EXPECT_TRUE(result.read.empty());
+  // Start, address, stop; nobody holds the clock.
+  EXPECT_EQ(result.ended - wires.began, kBit + kByte + kBit);
+  EXPECT_EQ(wires.Codes(0) + wires.Codes(1), "");
+}
+
+TEST(Twi, ASlaveRefusesBytes) {
+  Wires wires(1);
+  wires.board(0).SetMemory(kBoxNackFrom, 3);
+  const BusResult result = wires.Transfer(Write(To(0), {1, 2, 3, 4, 5}));
+  EXPECT_EQ(result.outcome, BusOutcome::kNoAcknowledge);
+  EXPECT_EQ(result.written, 3) << "the address and two bytes";
+  EXPECT_EQ(wires.Codes(0), "60 80 80 88");
+  wires.board(0).SetMemory(kBoxNackFrom, 0);
+  EXPECT_EQ(wires.Transfer(Write(To(0), {6})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Codes(0), "60 80 a0");
+}
+
+TEST(Twi, ABoardThatRefusesDoesNotStopAGeneralCall) {
+  Wires wires(2);
+  wires.board(0).SetMemory(kBoxNackFrom, 1);
+  EXPECT_EQ(wires.Transfer(Write(0, {0xC3, 9, 9})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Codes(0), "70 98");
+  EXPECT_EQ(wires.Codes(1), "70 90 90 90 a0");
+}
+
+TEST(Twi, ASlaveThatHasNoMoreSendsOnes) {
+  Wires wires(1);
+  for (std::uint16_t i = 0; i < 4; ++i) wires.board(0).SetMemory(kBoxSend + i, 0x21);
+  wires.board(0).SetMemory(kBoxLastByte, 2);
+  EXPECT_EQ(wires.Transfer(Read(From(0), 4)).read, (Bytes{0x21, 0x21, 0xFF, 0xFF}));
+  EXPECT_EQ(wires.Codes(0), "a8 b8 c8");
+}
+
+TEST(Twi, ARepeatedStartEndsAMessageAndBeginsTheNext) {
+  Wires wires(1);
+  wires.board(0).SetMemory(kBoxSend, 0x5A);
+  const BusResult result = wires.Transfer({{Kind::kStart},
+                                           {Kind::kWrite, To(0)},
+                                           {Kind::kWrite, 0xD2},
+                                           {Kind::kStart},
+                                           {Kind::kWrite, From(0)},
+                                           {Kind::kRead, 0, false},
+                                           {Kind::kStop}});
+  EXPECT_EQ(result.outcome, BusOutcome::kDone);
+  EXPECT_EQ(result.read, Bytes{0x5A});
+  EXPECT_EQ(wires.Codes(0), "60 80 a0 a8 c0");
+}
+
+TEST(Twi, TheClockIsHeldForAsLongAsTheInterruptTakes) {
+  // What a byte costs is 9 bits and, behind each, the wait for the slowest interrupt. The
+  // difference between two lengths of the interrupt is known to the cycle: a loop of the probe.
+  constexpr int kBytes = 6;
+  Time took[3] = {};
+  for (const int extra : {0, 1, 4}) {
+    Wires wires(1);
+    wires.board(0).SetMemory(kBoxStretch, static_cast<std::uint8_t>(extra));
+    const BusResult result = wires.Transfer(Write(To(0), Bytes(kBytes, 0xEE)));
+    took[extra == 4 ? 2 : extra] = result.ended - wires.began;
+    EXPECT_EQ(wires.Codes(0), "60 80 80 80 80 80 80 a0");
+    const StretchStats& stretch = wires.bus.stretch();
+    EXPECT_EQ(stretch.bytes, kBytes + 1U);
+    // All but the last wait, for the stop, is in the statistics.
+    const Time waits = took[extra == 4 ? 2 : extra] - 2 * kBit - (kBytes + 1) * kByte;
+    EXPECT_NEAR(ToSeconds(stretch.sum), ToSeconds(waits) * kBytes / (kBytes + 1), 4e-6);
+  }
+  const Time plain = took[0] - 2 * kBit - (kBytes + 1) * kByte;
+  EXPECT_GT(plain, (kBytes + 1) * kMicrosecond);
+  EXPECT_LT(plain, (kBytes + 1) * 10 * kMicrosecond);
+  const double one = ToSeconds(took[1] - took[0]), four = ToSeconds(took[2] - took[0]);
+  EXPECT_NEAR(one / (kBytes + 1), 10e-6, 1e-6);
+  EXPECT_NEAR(four, 4 * one, 2e-6);
+}
+
+TEST(Twi, TheSlowestBoardSetsThePaceOfAGeneralCall) {
+  const auto took = [](std::initializer_list<int> stretches) {
+    Wires wires(3);
+    int i = 0;
+    for (const int stretch : stretches) {
+      wires.board(i++).SetMemory(kBoxStretch, static_cast<std::uint8_t>(stretch));
+    }
+    const BusResult result = wires.Transfer(Write(0, {0xC3, 1, 2, 3}));
+    EXPECT_EQ(result.outcome, BusOutcome::kDone);
+    return ToSeconds(result.ended - wires.began);
+  };
+  const double one = took({0, 3, 0}), all = took({3, 3, 3}), none = took({0, 0, 0});
+  EXPECT_GT(one, none + 5 * 25e-6);
+  EXPECT_NEAR(one, all, 5 * 3e-6);
+}
+
+TEST(Twi, AHungBoardHoldsTheClockUntilTheMasterGivesUp) {
+  Wires wires(2);
+  wires.board(0).Hang();
+  const BusResult result = wires.Transfer(Write(0, {0xC3, 1}));
+  EXPECT_EQ(result.outcome, BusOutcome::kStuck);
+  EXPECT_NEAR(ToSeconds(result.ended - wires.began), 25e-3, 0.1e-3);
+  // The watchdog takes it off the bus, and all is well again.
+  wires.RunTo(wires.now + 100 * kMillisecond);
+  wires.Codes(0), wires.Codes(1);
+  EXPECT_EQ(wires.Transfer(Write(0, {0xC3, 1})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Codes(0), "70 90 90 a0");
+  EXPECT_EQ(wires.Codes(1), "a0 70 90 90 a0") << "only the next start ended the message for it";
+}
+
+TEST(Twi, AnIllegalStartIsSeenAsABusErrorAndRecoveredFrom) {
+  Wires wires(2);
+  wires.bus.DisturbNextByte();
+  EXPECT_EQ(wires.Transfer(Write(0, {0xC3, 1, 2})).outcome, BusOutcome::kError);
+  EXPECT_EQ(wires.Codes(0), "") << "before it was addressed it is nothing to it";
+  std::vector<BusStep> steps = Write(To(1), {0xC3, 1, 2});
+  wires.began = wires.now;
+  wires.bus.Begin(wires.now, steps, {});
+  wires.RunTo(wires.now + 40 * kMicrosecond);  // within the first byte after the address
+  wires.bus.DisturbNextByte();
+  wires.RunTo(wires.now + kMillisecond);
+  EXPECT_EQ(wires.bus.result().outcome, BusOutcome::kError);
+  EXPECT_EQ(wires.Codes(1).substr(0, 2), "60");
+  EXPECT_EQ(wires.Transfer(Write(To(1), {7})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Codes(1), "60 80 a0");
+}
+
+TEST(Twi, WhatIsDueInTheCycleThatACoreHasEndedHappensAtOnce) {
+  // The core has reached that time and does not run again before the bus asks it.
+  for (int extra = 0; extra < 40; ++extra) {
+    Board board(ProbeProgram(), {});
+    const Time time = 5 * kMillisecond + extra * 31 * kNanosecond;
+    board.RunUntil(time);
+    I2cSlave& slave = board.bus_side();
+    slave.Schedule({.kind = BusEvent::Kind::kAddress, .at = time, .byte = 0x20});
+    board.RunUntil(time);
+    EXPECT_TRUE(slave.Acked() && slave.HoldsClock()) << extra;
+  }
+}
+
+TEST(Twi, TheNextMessageWaitsForTheInterruptOfTheLast) {
+  Wires wires(1);
+  wires.board(0).SetMemory(kBoxStretch, 9);
+  wires.began = wires.now;
+  wires.bus.Begin(wires.now, Write(To(0), {1}), {});
+  while (wires.bus.Busy()) wires.Advance(wires.now + kSecond);
+  wires.bus.Begin(wires.now, Write(To(0), {2}), {});  // the interrupt of the stop has just begun
+  while (wires.bus.Busy()) wires.Advance(wires.now + kSecond);
+  wires.RunTo(wires.now + kMillisecond);
+  EXPECT_EQ(wires.Codes(0), "60 80 a0 60 80 a0");
+  EXPECT_EQ(wires.board(0).Memory(kBoxReceived), 2);
+}
+
+}  // namespace
+}  // namespace taut::virtual_robot

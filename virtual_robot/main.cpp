@@ -1,0 +1,238 @@
+// taut_virtual_robot: the boards of a robot, emulated, behind a pseudo-terminal or at full speed.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "taut/faults.h"
+#include "taut/version.h"
+#include "virtual_robot/load_host.h"
+#include "virtual_robot/motor_plant.h"
+#include "virtual_robot/paced.h"
+
+namespace taut::virtual_robot {
+namespace {
+
+/// As those of `taut` (docs/cli.md).
+enum Exit : int { kOk = 0, kFailed = 1, kUsage = 2, kBadInput = 3 };
+
+struct Arguments {
+  std::string model, experiment, firmware = TAUT_FIRMWARE_ELF, faults, link, log;
+  std::vector<std::string> set;
+  std::vector<double> drift_ppm;
+  std::uint64_t seed = 1;
+  double measure_s = 0;
+  bool frames = false;
+};
+
+std::atomic<bool> stop_asked{false};
+extern "C" void AskToStop(int) { stop_asked = true; }
+
+int Fail(const Diagnostics& found) {
+  fmt::print(stderr, "{}", found.Format());
+  return kBadInput;
+}
+
+/// "name=value", as taut's own flag of that name.
+std::optional<Overrides> ParseSet(const std::vector<std::string>& set) {
+  Overrides overrides;
+  for (const std::string& one : set) {
+    const std::size_t equals = one.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      fmt::print(stderr, "error: --set {}: not of the form name=value\n", one);
+      return std::nullopt;
+    }
+    overrides.emplace_back(one.substr(0, equals), one.substr(equals + 1));
+  }
+  return overrides;
+}
+
+/// A file of lines, or nothing if none is wanted.
+class LogFile {
+ public:
+  bool Open(const std::string& path) {
+    if (path.empty()) return true;
+    file_ = path == "-" ? stderr : std::fopen(path.c_str(), "w");
+    return file_ != nullptr;
+  }
+  ~LogFile() {
+    if (file_ && file_ != stderr) std::fclose(file_);
+  }
+  LogFile() = default;
+  LogFile(const LogFile&) = delete;
+  LogFile& operator=(const LogFile&) = delete;
+  LogSink Sink() const {
+    if (!file_) return {};
+    return [file = file_](Time at, std::string_view who, std::string_view what) {
+      const std::string line = LogLine(at, who, what);
+      std::fwrite(line.data(), 1, line.size(), file);
+      std::fflush(file);
+    };
+  }
+
+ private:
+  std::FILE* file_ = nullptr;
+};
+
+/// How fast this machine is: the boards with a host that keeps them busy, without waiting.
+int Measure(Robot& robot, double seconds) {
+  LoadHost host(robot);
+  if (!host.Start()) {
+    fmt::print(stderr, "error: the adapter does not answer\n");
+    return kFailed;
+  }
+  const Time begun = robot.now();
+  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t processor_start = std::clock();
+  while (!stop_asked && robot.now() < begun + FromSeconds(seconds)) host.Cycle();
+  const double took_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double done_s = ToSeconds(robot.now() - begun);
+  const double processor_s = static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
+  fmt::print("{:.2f} x real time: {:.2f} s of {} boards in {:.2f} s\n", done_s / took_s, done_s,
+             robot.board_count(), took_s);
+  fmt::print("{:.2f} x by the processor's time, {:.0f} million cycles/s\n", done_s / processor_s,
+             16.0 * robot.board_count() * done_s / processor_s);
+  fmt::print(
+      "a broadcast and {} reads took {:.2f} ms with USB, at most {:.2f} ms; boards held the "
+      "clock for {:.1f} us a byte, at most {:.1f} us\n",
+      robot.board_count(), host.mean_cycle_s() * 1e3, host.longest_cycle_s() * 1e3,
+      1e6 * ToSeconds(robot.bus().stretch().sum) / static_cast<double>(robot.bus().stretch().bytes),
+      1e6 * ToSeconds(robot.bus().stretch().longest));
+  return kOk;
+}
+
+std::unique_ptr<MotorPlant> LoadPlant(const Arguments& arguments, const Overrides& overrides,
+                                      Diagnostics& found) {
+  if (!arguments.experiment.empty()) {
+    const auto experiment = LoadExperiment(arguments.experiment, overrides, found);
+    return experiment ? MotorPlant::Make(experiment->robot, found) : nullptr;
+  }
+  auto robot = LoadRobot(arguments.model, overrides, found);
+  if (!robot) return nullptr;
+  PlaneDef floor;
+  floor.name = "floor";
+  robot->def.planes.push_back(floor);
+  return MotorPlant::Make(*robot, found);
+}
+
+int Run(const Arguments& arguments) {
+  const auto overrides = ParseSet(arguments.set);
+  if (!overrides) return kUsage;
+  Diagnostics found;
+  const auto plant = LoadPlant(arguments, *overrides, found);
+  RobotOptions options;
+  options.program = ReadAvrProgram(arguments.firmware, found);
+  std::optional<FaultScript> script;
+  if (!arguments.faults.empty() && plant) {
+    script = LoadFaults(arguments.faults, plant->cable_names(), found);
+  }
+  if (!found.ok()) return Fail(found);
+  fmt::print(stderr, "{}", found.Format());  // warnings
+  LogFile log;
+  if (!log.Open(arguments.log)) {
+    fmt::print(stderr, "error: {} cannot be written\n", arguments.log);
+    return kFailed;
+  }
+  options.seed = arguments.seed;
+  options.drift_ppm = arguments.drift_ppm;
+  options.log = log.Sink();
+  options.log_frames = arguments.frames;
+  if (script) options.faults = script->faults;
+  Robot robot(*plant, options);
+  std::signal(SIGINT, AskToStop);
+  std::signal(SIGTERM, AskToStop);
+  std::signal(SIGHUP, AskToStop);
+  if (arguments.measure_s > 0) return Measure(robot, arguments.measure_s);
+  PacedOptions paced;
+  paced.link = arguments.link;
+  paced.on_path = [&](const std::string& path) {
+    fmt::print("{}{}\n", path, arguments.link.empty() ? "" : " (" + arguments.link + ")");
+    std::fflush(stdout);
+  };
+  paced.on_late = [&](double late_s) {
+    fmt::print(stderr, "warning: {:.2f} s late: this machine is too slow or too busy\n", late_s);
+  };
+  if (!RunPaced(robot, paced, stop_asked, found)) {
+    fmt::print(stderr, "{}", found.Format());
+    return kFailed;
+  }
+  return kOk;
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app{
+      "The boards of a robot, emulated instruction by instruction, with taut's physics at their "
+      "motors.\nPrints the device that stands for the robot's USB-ISS, and runs in real time until "
+      "Ctrl-C.",
+      "taut_virtual_robot"};
+  Arguments arguments;
+  app.set_help_flag("-h,--help", "Print this and end");
+  app.set_version_flag("-V,--version", std::string("taut ") + kVersion,
+                       "Print the version and end");
+  CLI::Option* model =
+      app.add_option("--model", arguments.model,
+                     "The robot: a model whose actuators are motors, on a floor of friction 0.5")
+          ->option_text("FILE");
+  app.add_option("--experiment", arguments.experiment,
+                 "The robot and the terrain of an experiment, instead; its controllers do nothing")
+      ->option_text("FILE")
+      ->excludes(model);
+  app.add_option("--set", arguments.set, "Change a parameter of the model")
+      ->option_text("NAME=VALUE ...");
+  app.add_option("--firmware", arguments.firmware, "Program of the boards; that of taut if absent")
+      ->option_text("ELF");
+  app.add_option("--faults", arguments.faults, "What goes wrong and when (docs/formats/faults.md)")
+      ->option_text("FILE");
+  app.add_option("--link", arguments.link, "Make a symbolic link to the device")
+      ->option_text("PATH");
+  app.add_option("--log", arguments.log, "Write down what happens; - for the standard error")
+      ->option_text("FILE");
+  app.add_flag("--frames", arguments.frames, "The log has all frames of USB, too");
+  app.add_option("--seed", arguments.seed, "Of all noise")->option_text("NUMBER");
+  app.add_option("--drift_ppm", arguments.drift_ppm, "How fast the clock of each board is")
+      ->expected(1, 6)
+      ->check(CLI::Range(-100'000.0, 100'000.0))
+      ->option_text("NUMBER ...");
+  app.add_option("--measure", arguments.measure_s,
+                 "Instead: run so long with a busy host at full speed, and say how fast that was")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->option_text("SECONDS");
+  app.footer(
+      "Examples:\n"
+      "  taut_virtual_robot --model robot.yaml --link /tmp/robot --log robot.log\n"
+      "  taut_virtual_robot --model robot.yaml --faults noisy_bus.yaml --seed 7\n"
+      "  taut_virtual_robot --model robot.yaml --measure 5\n"
+      "This program contains libsimavr and is under the GNU General Public License, version 3.\n"
+      "Exit status: 0 good, 1 failed, 2 bad usage, 3 bad input.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "error: {}; taut_virtual_robot --help tells more\n", error.what());
+    return kUsage;
+  }
+  if (arguments.model.empty() && arguments.experiment.empty()) {
+    fmt::print(stderr, "error: --model FILE or --experiment FILE is missing\n");
+    return kUsage;
+  }
+  if (arguments.firmware.empty()) {
+    fmt::print(stderr, "error: --firmware ELF is missing: taut was built without its own\n");
+    return kUsage;
+  }
+  return Run(arguments);
+}
+
+}  // namespace
+}  // namespace taut::virtual_robot
+
+int main(int argc, char** argv) { return taut::virtual_robot::Main(argc, argv); }
