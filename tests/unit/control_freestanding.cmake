@@ -1,6 +1,6 @@
 # cmake -DCOMPILER=... -DKIND=host|avr -DSOURCE_DIR=... -DWORK_DIR=... -P control_freestanding.cmake
 #
-# Every header of include/taut/control compiles alone as C++14 without a standard library, and a
+# Every header of include/taut/control and include/taut/board compiles alone as C++14 without a standard library, and a
 # program that uses all of it needs nothing but, on an AVR, the compiler's arithmetic in software:
 # no libm, no heap, no exceptions.
 if(NOT COMPILER)
@@ -15,10 +15,10 @@ if(KIND STREQUAL avr)
 endif()
 
 file(MAKE_DIRECTORY ${WORK_DIR})
-file(GLOB headers ${SOURCE_DIR}/include/taut/control/*.h)
+file(GLOB headers ${SOURCE_DIR}/include/taut/control/*.h ${SOURCE_DIR}/include/taut/board/*.h)
 list(LENGTH headers count)
-if(count LESS 6)
-  message(FATAL_ERROR "only ${count} headers in include/taut/control")
+if(count LESS 15)
+  message(FATAL_ERROR "only ${count} headers in include/taut/control and include/taut/board")
 endif()
 foreach(header IN LISTS headers)
   execute_process(COMMAND ${COMPILER} ${flags} -fsyntax-only -x c++ -include ${header} /dev/null
@@ -41,7 +41,7 @@ string(REGEX MATCHALL "U [^\n]+" needed "${needed}")
 if(KIND STREQUAL avr)
   # + - * /, comparisons and conversions in software are the compiler's own: __addsf3, __floatdisf
   list(FILTER needed EXCLUDE REGEX
-    "^U __(do_copy_data|(add|sub|mul|div|neg|cmp|fix|float|[gln][et]|eq)[a-z0-9_]*)$")
+    "^U __(do_copy_data|tablejump2__|(add|sub|mul|div|neg|cmp|fix|float|[gln][et]|eq)[a-z0-9_]*)$")
 else()
   # g++ takes memcpy and its like for granted even so, and copies structures with it on AArch64
   list(FILTER needed EXCLUDE REGEX "^U (_GLOBAL_OFFSET_TABLE_|__stack_chk_fail|mem(cpy|move|set|cmp))$")

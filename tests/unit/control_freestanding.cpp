@@ -1,5 +1,6 @@
 // What a microcontroller's program takes from the controllers, compiled without a standard
 // library: this file must link against nothing (see control_freestanding.cmake).
+#include "taut/board/board.h"
 #include "taut/control/clock.h"
 #include "taut/control/cpg.h"
 #include "taut/control/impedance.h"
@@ -86,4 +87,13 @@ int main() {
   control::CpgState<float> oscillators[] = {control::StartCpg<float>(), control::StartCpg<float>()};
   const float gait = SpeedFromSine(0.25f) + SpeedFromOscillators(oscillators, 12.0f);
   return speed < 0.0f && gait < 1.0f && NextTick(0.5f) > 0 ? 0 : 1;
+}
+
+// All that a board decides in a millisecond, and what it makes of a message.
+extern "C" void BoardTick(taut::board::Board* board, const taut::board::Inputs* inputs,
+                          const uint8_t* message, uint8_t size,
+                          uint8_t (*frame)[taut::board::kFrameSize]) {
+  taut::board::Receive(message, size, size > 11, *board);
+  taut::board::Tick(*inputs, *board);
+  taut::board::MakeFrame(*board, *frame);
 }

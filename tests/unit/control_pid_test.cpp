@@ -37,6 +37,20 @@ TEST(ControlPid, StartingAtTheErrorGivesNoKick) {
   EXPECT_EQ(StepPid(derivative_only, smooth, 3.0, kPeriod), 0.0);
 }
 
+TEST(ControlPid, StartingFromAnOutputGoesOnFromThere) {
+  for (const double error : {-2.0, 0.0, 0.7}) {
+    for (const double output : {-1.0, 0.0, 0.4}) {
+      PidState<double> state = StartPidFrom(kPid, error, output, kPeriod);
+      EXPECT_NEAR(StepPid(kPid, state, error, kPeriod), output, 1e-12);
+      // and then it integrates
+      EXPECT_NEAR(StepPid(kPid, state, error, kPeriod), output + 30.0 * error * kPeriod, 1e-12);
+    }
+  }
+  const Pid<double> proportional{2.0, 0.0, 0.0};
+  PidState<double> state = StartPidFrom(proportional, 0.5, 9.0, kPeriod);
+  EXPECT_EQ(StepPid(proportional, state, 0.5, kPeriod), 1.0);
+}
+
 TEST(ControlPid, ZeroGainsGiveZero) {
   const Pid<double> none{0.0, 0.0, 0.0};
   PidState<double> state = StartPid<double>();

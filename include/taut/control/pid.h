@@ -33,6 +33,20 @@ constexpr PidState<Real> StartPidAt(Real error) noexcept {
   return PidState<Real>{error, Literal<Real>(0.0f)};
 }
 
+/// Starts so that the first tick gives `output` if its error is `error` (eq. K.14): what drove
+/// before another law took over goes on without a jump. Without an integral gain the output cannot
+/// be met, and the integral starts at 0.
+template <class Real>
+constexpr PidState<Real> StartPidFrom(const Pid<Real>& pid, Real error, Real output,
+                                      Real period_s) noexcept {
+  const Real zero = Literal<Real>(0.0f), one = Literal<Real>(1.0f);
+  const Real sum = output - pid.proportional * error;
+  const auto can = pid.integral > zero;
+  // less what the first tick will add
+  const Real integral = sum / Select(can, pid.integral, one) - error * period_s;
+  return PidState<Real>{error, Select(can, integral, zero)};
+}
+
 /// One tick (docs/theory/control.md, eq. K.5); returns u.
 ///   I_n = I_(n-1) + (e_n + e_(n-1)) / 2 h
 ///   u_n = kp e_n + ki I_n + kd (e_n - e_(n-1)) / h
@@ -40,10 +54,14 @@ constexpr PidState<Real> StartPidAt(Real error) noexcept {
 template <class Real>
 constexpr Real StepPid(const Pid<Real>& pid, PidState<Real>& state, Real error,
                        Real period_s) noexcept {
-  state.integral = state.integral + Literal<Real>(0.5f) * (error + state.error_before) * period_s;
-  const Real rate = (error - state.error_before) / period_s;
+  state.integral = state.integral + (error + state.error_before) * (Literal<Real>(0.5f) * period_s);
+  const Real before = state.error_before;
   state.error_before = error;
-  return pid.proportional * error + pid.integral * state.integral + pid.derivative * rate;
+  const Real u = pid.proportional * error + pid.integral * state.integral;
+  // a board has no time for a division that a gain of 0 makes nothing of
+  const Real zero = Literal<Real>(0.0f);
+  if (!Any((pid.derivative > zero) | (pid.derivative < zero))) return u;
+  return u + pid.derivative * ((error - before) / period_s);
 }
 
 /// The range of an actuator.
@@ -66,16 +84,13 @@ constexpr Real StepPidLimited(const Pid<Real>& pid, PidState<Real>& state, Real 
   const Real integral_before = state.integral;
   const Real u = StepPid(pid, state, error, period_s);
   if (windup == Windup::kAllowed) return Clamp(u, limits.low, limits.high);
+  if (!Any((u > limits.high) | (u < limits.low))) return u;  // what follows would change nothing
 
-  const Real push = pid.integral * (state.integral - integral_before);
   const Real zero = Literal<Real>(0.0f);
-  const Real held_above = Select(push > zero, integral_before, state.integral);
-  const Real held_below = Select(push < zero, integral_before, state.integral);
-  const Real integral_now =
-      Select(u > limits.high, held_above, Select(u < limits.low, held_below, state.integral));
-  const Real u_now = u - pid.integral * (state.integral - integral_now);
-  state.integral = integral_now;
-  return Clamp(u_now, limits.low, limits.high);
+  const Real push = pid.integral * (state.integral - integral_before);
+  const auto held = ((u > limits.high) & (push > zero)) | ((u < limits.low) & (push < zero));
+  state.integral = Select(held, integral_before, state.integral);
+  return Clamp(Select(held, u - push, u), limits.low, limits.high);
 }
 
 }  // namespace control

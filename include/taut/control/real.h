@@ -3,8 +3,8 @@
 ///
 /// Everything in this folder is C++14 without a standard library, heap, exceptions or libm, and
 /// uses only + - * / and comparisons, which give the same bits on an AVR and on a PC
-/// (docs/theory/control.md). A wide number brings its own `Max`, `Min` and `Select`, found by its
-/// namespace, and a static `Splat`.
+/// (docs/theory/control.md). A wide number brings its own `Max`, `Min`, `Select` and, of its
+/// conditions, `Any`, found by its namespace, and a static `Splat`.
 #pragma once
 
 namespace taut {
@@ -33,6 +33,9 @@ template <class Real>
 constexpr Real Literal(float x) noexcept {
   return FromScalar<Real>(x);
 }
+
+/// Whether it is so in any lane.
+[[gnu::always_inline]] constexpr bool Any(bool condition) noexcept { return condition; }
 
 template <class Real>
 constexpr Real Select(bool condition, Real yes, Real no) noexcept {

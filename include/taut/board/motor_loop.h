@@ -1,0 +1,199 @@
+/// A motor's loop on its board, every millisecond: what load cell and encoder say, and the duty by
+/// the laws of include/taut/control (paper section III). Freestanding C++14; float, whose
+/// arithmetic gives the same bits on an AVR and on a PC.
+#pragma once
+
+#include <stdint.h>
+
+#include "taut/board/parameters.h"
+#include "taut/control/filter.h"
+#include "taut/control/impedance.h"
+#include "taut/control/pid.h"
+
+namespace taut {
+namespace board {
+
+constexpr float kTick_s = 0.001f;
+constexpr int16_t kFullWidth = 400;  ///< Steps of the PWM at full duty.
+
+/// A motor's parameters as its loop takes them, computed when one changes: a division is 30 us.
+struct LoopNumbers {
+  control::Pid<float> force,
+      length;              ///< From N and from counts to steps of the PWM; in units of `kHalfTick`.
+  float limit_counts;      ///< Of the load cell: where winding in ends.
+  float band_from_counts;  ///< Where it begins to get weaker.
+  float most, most_per_count;     ///< Of the drive.
+  float counts_per_n;             ///< Of the load cell.
+  float speed_per_count_m_per_s;  ///< Lengthening, of a count a tick.
+};
+
+/// The unit of time of the PIDs is half a tick: their period is 2, and the compiler leaves out what
+/// it is multiplied by. Their errors are as the sensors count them, their outputs steps of the PWM,
+/// for the same reason.
+constexpr float kHalfTick_s = 0.5f * kTick_s;
+constexpr float kPeriod = 2.0f;
+
+inline control::Pid<float> InSteps(float per_unit, float p, float i, float d) noexcept {
+  const float scale = per_unit * static_cast<float>(kFullWidth);
+  return control::Pid<float>{scale * p, scale * (i * kHalfTick_s), scale * (d / kHalfTick_s)};
+}
+
+inline LoopNumbers NumbersOf(const float* p) noexcept {
+  const float counts_per_n = 1.0f / p[kNewtonsPerCount];
+  LoopNumbers numbers;
+  numbers.force = InSteps(1.0f, p[kForceP], p[kForceI], p[kForceD]);
+  numbers.length = InSteps(p[kLengthPerCount], p[kLengthP], p[kLengthI], p[kLengthD]);
+  numbers.counts_per_n = counts_per_n;
+  numbers.limit_counts = p[kCountsAtZero] + p[kTensionLimit] * counts_per_n;
+  const float band_counts = p[kTensionBand] * counts_per_n;
+  numbers.band_from_counts = numbers.limit_counts - band_counts;
+  numbers.most = p[kDutyLimit] * static_cast<float>(kFullWidth);
+  numbers.most_per_count = numbers.most / band_counts;
+  numbers.speed_per_count_m_per_s = -p[kLengthPerCount] / kTick_s;
+  return numbers;
+}
+
+struct MotorLoop {
+  // measured
+  uint16_t encoder = 0;         ///< As read last, modulo 2^16.
+  int16_t step = 0;             ///< Counts since the tick before.
+  int32_t counts = 0;           ///< From the reference; winding in positive.
+  float tension_counts = 0.0f;  ///< Filtered.
+  // for impedance control only, which is why they cost nothing else anything
+  float counts_per_tick = 0.0f;  ///< Filtered.
+  float tension_n = 0.0f, rest_length_m = 0.0f, length_m = 0.0f, rate_m_per_s = 0.0f;
+  // commanded
+  int32_t target_counts = 0;
+  float velocity_input_m_per_s = 0.0f;  ///< V0.
+  float drive_input = 0.0f;
+  control::Impedance<float> gains{};  ///< As they act now.
+  // decided
+  control::PidState<float> pid{};
+  float set_point_n = 0.0f;
+  float drive = 0.0f;  ///< Steps of the PWM, winding in positive.
+  int16_t width = 0;   ///< The same, whole.
+};
+
+/// Reads the sensors. `adc`: 0 .. 1023.
+inline void Sense(const float* p, uint16_t adc, uint16_t encoder, MotorLoop& motor) noexcept {
+  motor.step = static_cast<int16_t>(static_cast<uint16_t>(encoder - motor.encoder));
+  motor.encoder = encoder;
+  motor.counts += motor.step;
+  const float measured = static_cast<float>(adc);
+  if (p[kWindingCounts] > 0.0f) {
+    control::StepComplementary(motor.tension_counts, measured,
+                               static_cast<float>(motor.step) * p[kWindingCounts],
+                               p[kTensionShare]);
+  } else {
+    control::StepLowPass(motor.tension_counts, measured, p[kTensionShare]);
+  }
+}
+
+inline float Tension(const float* p, const MotorLoop& motor) noexcept {
+  return (motor.tension_counts - p[kCountsAtZero]) * p[kNewtonsPerCount];
+}
+
+/// What impedance control needs and position control does not (the paper: it "consumes additional
+/// computational time"). The rate is that of the rest length: what the load cell knows of the
+/// spring's rate drowns in its quanta.
+inline void SenseCable(const float* p, const LoopNumbers& numbers, MotorLoop& motor) noexcept {
+  control::StepLowPass(motor.counts_per_tick, static_cast<float>(motor.step), p[kRateShare]);
+  motor.rate_m_per_s = motor.counts_per_tick * numbers.speed_per_count_m_per_s;
+  motor.tension_n = Tension(p, motor);
+  motor.rest_length_m = p[kReferenceLength] - static_cast<float>(motor.counts) * p[kLengthPerCount];
+  motor.length_m = control::LengthFromTension(motor.rest_length_m, motor.tension_n, p[kStiffness]);
+}
+
+/// How much it may still wind in: all below limit and band, nothing at the limit.
+inline control::OutputLimits<float> DriveLimits(const LoopNumbers& numbers,
+                                                const MotorLoop& motor) noexcept {
+  float winding = numbers.most;
+  if (motor.tension_counts > numbers.band_from_counts) {
+    const float room = numbers.limit_counts - motor.tension_counts;
+    winding = room > 0.0f ? numbers.most_per_count * room : 0.0f;
+  }
+  return control::OutputLimits<float>{-numbers.most, winding};
+}
+
+/// How far the rest length is above its target [counts]: what has to be wound in.
+inline float LengthError(const MotorLoop& motor) noexcept {
+  return static_cast<float>(motor.target_counts - motor.counts);
+}
+
+/// The drive goes on from where it is.
+inline void StartPosition(const LoopNumbers& numbers, MotorLoop& motor) noexcept {
+  motor.set_point_n = 0.0f;
+  motor.pid = control::StartPidFrom(numbers.length, LengthError(motor), motor.drive, kPeriod);
+}
+inline void StepPosition(const LoopNumbers& numbers, MotorLoop& motor) noexcept {
+  motor.drive = control::StepPidLimited(numbers.length, motor.pid, LengthError(motor), kPeriod,
+                                        DriveLimits(numbers, motor), control::Windup::kHeld);
+}
+
+inline void FindSetPoint(MotorLoop& motor) noexcept {
+  motor.set_point_n = control::ImpedanceTension(motor.gains, motor.length_m, motor.rate_m_per_s,
+                                                motor.velocity_input_m_per_s);
+}
+
+/// `capture`: what is measured now becomes L0 and T0, in the parameters, too. The drive goes on
+/// from where it is.
+inline void StartImpedance(float* p, const LoopNumbers& numbers, bool capture,
+                           MotorLoop& motor) noexcept {
+  motor.counts_per_tick = 0.0f;  // one count of a motor that holds would pass for 13 mm/s
+  SenseCable(p, numbers, motor);
+  if (capture) {
+    p[kTensionOffset] = control::Max(0.0f, motor.tension_n);
+    p[kLengthOffset] = motor.length_m;
+  }
+  motor.gains = control::Impedance<float>{p[kTensionOffset], p[kLengthOffset], p[kPositionGain],
+                                          p[kVelocityGain]};
+  FindSetPoint(motor);
+  motor.pid = control::StartPidFrom(numbers.force, motor.set_point_n - motor.tension_n, motor.drive,
+                                    kPeriod);
+}
+inline void StepImpedance(const float* p, const LoopNumbers& numbers, MotorLoop& motor) noexcept {
+  SenseCable(p, numbers, motor);
+  FindSetPoint(motor);
+  motor.drive =
+      control::StepPidLimited(numbers.force, motor.pid, motor.set_point_n - motor.tension_n,
+                              kPeriod, DriveLimits(numbers, motor), control::Windup::kHeld);
+}
+
+inline void StepDuty(const LoopNumbers& numbers, MotorLoop& motor) noexcept {
+  const control::OutputLimits<float> limits = DriveLimits(numbers, motor);
+  motor.drive = control::Clamp(motor.drive_input, limits.low, limits.high);
+}
+
+namespace internal {
+
+inline float Towards(float from, float to, float most) noexcept {
+  return from + control::Clamp(to - from, -most, most);
+}
+
+}  // namespace internal
+
+/// Gains that were set while the motor runs move there within a second or so. One gain a call,
+/// `which` = 0 .. 3; `share_s`: the time since its last turn.
+inline void SlewGain(const float* p, uint8_t which, float share_s, MotorLoop& motor) noexcept {
+  control::Impedance<float>& gains = motor.gains;
+  switch (which) {
+    case 0:
+      gains.tension_offset_n =
+          internal::Towards(gains.tension_offset_n, p[kTensionOffset], 20.0f * share_s);
+      break;
+    case 1:
+      gains.length_offset_m =
+          internal::Towards(gains.length_offset_m, p[kLengthOffset], 0.05f * share_s);
+      break;
+    case 2:
+      gains.position_gain_n_per_m =
+          internal::Towards(gains.position_gain_n_per_m, p[kPositionGain], 500.0f * share_s);
+      break;
+    default:
+      gains.velocity_gain_n_s_per_m =
+          internal::Towards(gains.velocity_gain_n_s_per_m, p[kVelocityGain], 500.0f * share_s);
+  }
+}
+
+}  // namespace board
+}  // namespace taut

@@ -1,0 +1,386 @@
+/// What goes over the bus between the PC and the motor boards, version 1: the only definition, for
+/// the boards' firmware, the driver and the virtual robot. docs/hardware/protocol.md has it byte by
+/// byte.
+///
+/// All messages have at most 32 bytes; numbers are little endian. Freestanding C++14.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "taut/board/crc.h"
+
+namespace taut {
+namespace board {
+
+constexpr uint8_t kProtocolVersion = 1;
+constexpr uint8_t kBoards = 6;
+constexpr uint8_t kMotors =
+    2;  ///< Of a board. Motor m of board b is cable 2 b + m with an actuator.
+constexpr uint8_t kCables = kBoards * kMotors;
+
+constexpr uint8_t kBroadcastAddress = 0x00;  ///< I2C's general call.
+constexpr uint8_t BoardAddress(uint8_t board) noexcept {
+  return static_cast<uint8_t>(0x10 + board);
+}
+
+// --- what a board is told to do -----------------------------------------------------------------
+
+enum class Mode : uint8_t {
+  kOff = 0,        ///< The driver is off: motors coast.
+  kHold = 1,       ///< Position control at where the motors were when it began.
+  kPosition = 2,   ///< Values: encoder counts from the reference.
+  kImpedance = 3,  ///< Values: V0 in units of `kSpeedUnit_m_per_s`, lengthening positive.
+  kDuty = 4,       ///< Values: duty in 1/32767, winding in positive. For tests on the bench.
+  kReply = 5,      ///< Never commanded: marks a frame that answers a request.
+  kStopped = 7,    ///< Emergency stop: as kOff, left through clearing faults only.
+};
+
+constexpr float kSpeedUnit_m_per_s = 2e-5f;
+
+/// Motors have power in two steps: a broadcast with kReady while all is off and well, then kGo.
+enum class Arm : uint8_t { kNot = 0, kReady = 1, kGo = 2 };
+
+/// The cyclic broadcast, 29 bytes.
+struct Cyclic {
+  uint8_t sequence = 0;  ///< A board takes a broadcast whose number differs from the last one's.
+  Mode mode = Mode::kOff;
+  bool capture = false;  ///< On entering kImpedance: L0 and T0 are what is measured (paper).
+  bool clear_faults =
+      false;  ///< Latched faults, an emergency stop and a timeout end, if mode is kOff or kHold.
+  bool zero_inputs = false;  ///< V0 = 0, whatever the values say.
+  Arm arm = Arm::kNot;
+  int16_t values[kCables] = {};
+};
+
+/// What board `first / 2` takes of it.
+struct Command {
+  uint8_t sequence = 0;
+  Mode mode = Mode::kOff;
+  bool capture = false, clear_faults = false, zero_inputs = false;
+  Arm arm = Arm::kNot;
+  int16_t values[kMotors] = {};
+};
+
+enum class Decoded : uint8_t { kGood, kUnknown, kWrongSize, kWrongCrc, kWrongVersion, kWrongValue };
+
+constexpr size_t kMaxMessageSize = 32;
+constexpr size_t kCyclicSize = 29;
+constexpr size_t kStopSize = 4;
+constexpr uint8_t kCyclicHead = 0xc0;  ///< High half; the low half is the version.
+constexpr uint8_t kStopHead = 0xce;
+
+namespace internal {
+
+constexpr void Put16(uint8_t* at, uint16_t x) noexcept {
+  at[0] = static_cast<uint8_t>(x & 0xff);
+  at[1] = static_cast<uint8_t>(x >> 8);
+}
+constexpr uint16_t Get16(const uint8_t* at) noexcept {
+  return static_cast<uint16_t>(at[0] | static_cast<uint16_t>(at[1]) << 8);
+}
+constexpr void Put32(uint8_t* at, uint32_t x) noexcept {
+  Put16(at, static_cast<uint16_t>(x & 0xffff));
+  Put16(at + 2, static_cast<uint16_t>(x >> 16));
+}
+constexpr uint32_t Get32(const uint8_t* at) noexcept {
+  return Get16(at) | static_cast<uint32_t>(Get16(at + 2)) << 16;
+}
+/// The checksum alone stands high byte first, so that it goes on where the message ends, as on
+/// paper, and no burst of up to 16 wrong bits, wherever it begins, stays unnoticed.
+constexpr void Seal16(uint8_t* frame, size_t size) noexcept {
+  const uint16_t crc = Crc16(frame, size - 2);
+  frame[size - 2] = static_cast<uint8_t>(crc >> 8);
+  frame[size - 1] = static_cast<uint8_t>(crc & 0xff);
+}
+/// What is sealed leaves nothing over.
+constexpr bool IsSealed16(const uint8_t* frame, size_t size) noexcept {
+  return Crc16(frame, size) == 0;
+}
+
+}  // namespace internal
+
+constexpr void Encode(const Cyclic& message, uint8_t (&frame)[kCyclicSize]) noexcept {
+  frame[0] = kCyclicHead | kProtocolVersion;
+  frame[1] = message.sequence;
+  frame[2] = static_cast<uint8_t>(static_cast<uint8_t>(message.mode) | (message.capture ? 8 : 0) |
+                                  (message.clear_faults ? 16 : 0) | (message.zero_inputs ? 32 : 0) |
+                                  static_cast<uint8_t>(static_cast<uint8_t>(message.arm) << 6));
+  for (size_t i = 0; i < kCables; ++i) {
+    internal::Put16(frame + 3 + 2 * i, static_cast<uint16_t>(message.values[i]));
+  }
+  internal::Seal16(frame, kCyclicSize);
+}
+
+/// The part for the board whose first motor is number `first`.
+constexpr Decoded Decode(const uint8_t* frame, size_t size, uint8_t first, Command& out) noexcept {
+  if (size < 1 || (frame[0] & 0xf0) != kCyclicHead || frame[0] == kStopHead)
+    return Decoded::kUnknown;
+  if ((frame[0] & 0x0f) != kProtocolVersion) return Decoded::kWrongVersion;
+  if (size != kCyclicSize) return Decoded::kWrongSize;
+  if (!internal::IsSealed16(frame, size)) return Decoded::kWrongCrc;
+  const uint8_t mode = frame[2] & 7, arm = static_cast<uint8_t>(frame[2] >> 6);
+  if (mode > static_cast<uint8_t>(Mode::kDuty) || arm > static_cast<uint8_t>(Arm::kGo)) {
+    return Decoded::kWrongValue;
+  }
+  out.sequence = frame[1];
+  out.mode = static_cast<Mode>(mode);
+  out.capture = (frame[2] & 8) != 0;
+  out.clear_faults = (frame[2] & 16) != 0;
+  out.zero_inputs = (frame[2] & 32) != 0;
+  out.arm = static_cast<Arm>(arm);
+  for (uint8_t m = 0; m < kMotors; ++m) {
+    out.values[m] = static_cast<int16_t>(internal::Get16(frame + 3 + 2 * (first + m)));
+  }
+  return Decoded::kGood;
+}
+
+/// Emergency stop, to all: sent alone and several times.
+constexpr void EncodeStop(uint8_t (&frame)[kStopSize]) noexcept {
+  frame[0] = kStopHead;
+  frame[1] = 'S';
+  frame[2] = 'T';
+  frame[3] = Crc8(frame, 3);
+}
+constexpr bool IsStop(const uint8_t* frame, size_t size) noexcept {
+  return size == kStopSize && frame[0] == kStopHead && frame[1] == 'S' && frame[2] == 'T' &&
+         frame[3] == Crc8(frame, 3);
+}
+
+// --- requests to one board: what the next read of it then answers --------------------------------
+
+enum class Request : uint8_t {
+  kSet = 0xd1,  ///< A parameter gets a value.
+  kAsk = 0xd2,  ///< For a parameter, or one of `Asked`.
+  kDo = 0xd3,   ///< One of `Action`.
+};
+
+/// What else but parameters (0 .. 127) can be asked for.
+enum class Asked : uint8_t { kInfo = 0xf0, kFaults = 0xf1, kCounters = 0xf2 };
+
+enum class Action : uint8_t {
+  kStore = 0xe1,         ///< Parameters into the EEPROM; only while off.
+  kLoad = 0xe2,          ///< Parameters from it; only while off.
+  kDefaults = 0xe3,      ///< Parameters as the firmware brings them; only while off.
+  kSetReference = 0xe4,  ///< The motor's encoder is at `value` counts now; off or holding.
+};
+
+/// A request as it came. Size: kSet 9, kAsk 4, kDo 11 bytes.
+struct Asking {
+  Request request = Request::kAsk;
+  uint8_t what = 0;    ///< Parameter, `Asked` or `Action`.
+  uint8_t index = 0;   ///< Motor, or `kMotors`: the board itself.
+  uint32_t value = 0;  ///< kSet: the bits of a float; kDo: an int32.
+  uint16_t nonce = 0;  ///< kDo: the boot it is meant for (`Info::nonce`).
+};
+constexpr size_t kSetSize = 9, kAskSize = 4, kDoSize = 11;
+
+constexpr size_t SizeOf(Request request) noexcept {
+  return request == Request::kSet ? kSetSize : request == Request::kAsk ? kAskSize : kDoSize;
+}
+
+/// Returns how many bytes of `frame` it takes.
+constexpr size_t Encode(const Asking& message, uint8_t (&frame)[kDoSize]) noexcept {
+  frame[0] = static_cast<uint8_t>(message.request);
+  frame[1] = message.what;
+  frame[2] = message.index;
+  if (message.request == Request::kAsk) {
+    frame[3] = Crc8(frame, 3);
+    return kAskSize;
+  }
+  internal::Put32(frame + 3, message.value);
+  if (message.request == Request::kDo) internal::Put16(frame + 7, message.nonce);
+  internal::Seal16(frame, SizeOf(message.request));
+  return SizeOf(message.request);
+}
+
+constexpr Decoded Decode(const uint8_t* frame, size_t size, Asking& out) noexcept {
+  if (size < 1 || frame[0] < static_cast<uint8_t>(Request::kSet) ||
+      frame[0] > static_cast<uint8_t>(Request::kDo)) {
+    return Decoded::kUnknown;
+  }
+  const Request request = static_cast<Request>(frame[0]);
+  if (size != SizeOf(request)) return Decoded::kWrongSize;
+  const bool ask = request == Request::kAsk;
+  if (ask ? frame[3] != Crc8(frame, 3) : !internal::IsSealed16(frame, size)) {
+    return Decoded::kWrongCrc;
+  }
+  out.request = request;
+  out.what = frame[1];
+  out.index = frame[2];
+  out.value = ask ? 0 : internal::Get32(frame + 3);
+  out.nonce = request == Request::kDo ? internal::Get16(frame + 7) : uint16_t{0};
+  return Decoded::kGood;
+}
+
+// --- what a board says: 16 bytes, whatever is read -----------------------------------------------
+
+constexpr size_t kFrameSize = 16;
+
+/// What the byte `Status::more` is, by its frame's sequence number modulo 16.
+enum class More : uint8_t {
+  kFaults0,
+  kFaults1,
+  kBoardFaults,
+  kCrcErrors,
+  kOverruns,
+  kLoopTime8us,
+  kResetCause,
+  kTemperature0C,
+  kTemperature1C,
+  kFirmwareMajor,
+  kFirmwareMinor,
+  kProtocol,
+  kParametersCrc,
+  kNonce,
+  kMissed,
+  kRecoveries,
+};
+constexpr uint8_t kMores = 16;
+
+/// Of one motor.
+struct MotorStatus {
+  uint16_t tension_quarters =
+      0;  ///< Filtered reading of the load cell, in quarters of a count, 12 bit.
+  uint16_t set_point_quarters = 0;  ///< What it should be, in the same; 0 where there is none.
+  uint16_t encoder_counts = 0;      ///< Modulo 2^16; winding in positive.
+  int8_t duty = 0;                  ///< In 1/127, winding in positive.
+};
+
+struct Status {
+  uint8_t sequence = 0;  ///< Of the last broadcast that was taken.
+  Mode mode = Mode::kOff;
+  bool referenced = false, faulty = false, timeout = false;
+  bool overrun = false;    ///< A tick came late since the last frame.
+  bool was_reset = false;  ///< Since faults were cleared last.
+  MotorStatus motors[kMotors];
+  uint8_t more = 0;  ///< `More`.
+};
+
+enum class Answer : uint8_t {
+  kGood = 0,
+  kUnknown = 1,     ///< No such parameter, action or motor.
+  kOutOfRange = 2,  ///< Not finite, or outside the parameter's limits.
+  kNotInThisMode = 3,
+  kBusy = 4,   ///< The EEPROM is still being written.
+  kStale = 5,  ///< Meant for another boot.
+};
+
+/// The frame after a request.
+struct Reply {
+  uint8_t what = 0;
+  uint8_t index = 0;
+  Answer answer = Answer::kGood;
+  uint8_t payload[11] = {};
+};
+
+namespace internal {
+
+/// The board's number is part of the checksum but not of the frame: what another board said
+/// does not pass for its answer. The start is not 0, so that a line that is stuck low does not
+/// either.
+constexpr uint8_t FrameCrc(const uint8_t* frame, uint8_t board) noexcept {
+  return Crc8(frame, kFrameSize - 1, AddToCrc8(0xff, board));
+}
+
+}  // namespace internal
+
+constexpr void Encode(const Status& status, uint8_t board, uint8_t (&frame)[kFrameSize]) noexcept {
+  frame[0] = status.sequence;
+  frame[1] = static_cast<uint8_t>(static_cast<uint8_t>(status.mode) | (status.referenced ? 8 : 0) |
+                                  (status.faulty ? 16 : 0) | (status.timeout ? 32 : 0) |
+                                  (status.overrun ? 64 : 0) | (status.was_reset ? 128 : 0));
+  uint8_t* at = frame + 2;
+  for (uint8_t m = 0; m < kMotors; ++m, at += 6) {
+    const MotorStatus& motor = status.motors[m];
+    at[0] = static_cast<uint8_t>(motor.tension_quarters & 0xff);
+    at[1] = static_cast<uint8_t>(((motor.tension_quarters >> 8) & 0x0f) |
+                                 ((motor.set_point_quarters & 0x0f) << 4));
+    at[2] = static_cast<uint8_t>(motor.set_point_quarters >> 4);
+    internal::Put16(at + 3, motor.encoder_counts);
+    at[5] = static_cast<uint8_t>(motor.duty);
+  }
+  frame[14] = status.more;
+  frame[15] = internal::FrameCrc(frame, board);
+}
+
+constexpr void Encode(const Reply& reply, uint8_t board, uint8_t (&frame)[kFrameSize]) noexcept {
+  frame[0] = reply.what;
+  frame[1] = static_cast<uint8_t>(Mode::kReply);
+  frame[2] = reply.index;
+  frame[3] = static_cast<uint8_t>(reply.answer);
+  for (size_t i = 0; i < sizeof reply.payload; ++i) frame[4 + i] = reply.payload[i];
+  frame[15] = internal::FrameCrc(frame, board);
+}
+
+/// Whether it is a whole frame of this board.
+constexpr bool IsFrame(const uint8_t* frame, size_t size, uint8_t board) noexcept {
+  return size == kFrameSize && frame[15] == internal::FrameCrc(frame, board);
+}
+constexpr bool IsReply(const uint8_t (&frame)[kFrameSize]) noexcept {
+  return (frame[1] & 7) == static_cast<uint8_t>(Mode::kReply);
+}
+
+/// Of a frame that `IsFrame` and is no reply.
+constexpr Status DecodeStatus(const uint8_t (&frame)[kFrameSize]) noexcept {
+  Status status;
+  status.sequence = frame[0];
+  status.mode = static_cast<Mode>(frame[1] & 7);
+  status.referenced = (frame[1] & 8) != 0;
+  status.faulty = (frame[1] & 16) != 0;
+  status.timeout = (frame[1] & 32) != 0;
+  status.overrun = (frame[1] & 64) != 0;
+  status.was_reset = (frame[1] & 128) != 0;
+  const uint8_t* at = frame + 2;
+  for (uint8_t m = 0; m < kMotors; ++m, at += 6) {
+    MotorStatus& motor = status.motors[m];
+    motor.tension_quarters = static_cast<uint16_t>(at[0] | (at[1] & 0x0f) << 8);
+    motor.set_point_quarters = static_cast<uint16_t>(at[1] >> 4 | at[2] << 4);
+    motor.encoder_counts = internal::Get16(at + 3);
+    motor.duty = static_cast<int8_t>(at[5]);
+  }
+  status.more = frame[14];
+  return status;
+}
+
+/// Of a frame that `IsFrame` and `IsReply`.
+constexpr Reply DecodeReply(const uint8_t (&frame)[kFrameSize]) noexcept {
+  Reply reply;
+  reply.what = frame[0];
+  reply.index = frame[2];
+  reply.answer = static_cast<Answer>(frame[3]);
+  for (size_t i = 0; i < sizeof reply.payload; ++i) reply.payload[i] = frame[4 + i];
+  return reply;
+}
+
+/// The payload of the reply to `Asked::kInfo`.
+struct Info {
+  uint8_t protocol_min = 0, protocol_max = 0;
+  uint8_t firmware_major = 0, firmware_minor = 0;
+  uint32_t parameters_version = 0;  ///< Checksum of the parameters' table of this firmware.
+  uint16_t nonce = 0;               ///< Counts boots.
+  uint8_t board = 0;
+};
+constexpr void Encode(const Info& info, uint8_t (&payload)[11]) noexcept {
+  payload[0] = info.protocol_min;
+  payload[1] = info.protocol_max;
+  payload[2] = info.firmware_major;
+  payload[3] = info.firmware_minor;
+  internal::Put32(payload + 4, info.parameters_version);
+  internal::Put16(payload + 8, info.nonce);
+  payload[10] = info.board;
+}
+constexpr Info DecodeInfo(const uint8_t (&payload)[11]) noexcept {
+  Info info;
+  info.protocol_min = payload[0];
+  info.protocol_max = payload[1];
+  info.firmware_major = payload[2];
+  info.firmware_minor = payload[3];
+  info.parameters_version = internal::Get32(payload + 4);
+  info.nonce = internal::Get16(payload + 8);
+  info.board = payload[10];
+  return info;
+}
+
+}  // namespace board
+}  // namespace taut
