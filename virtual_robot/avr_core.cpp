@@ -70,11 +70,12 @@ void AvrCore::RunUntil(std::uint64_t cycle) {
       Hang();
     }
   }
-  if (avr_->state != cpu_Sleeping) return;
-  // A core that sleeps has jumped to this cycle; what happens in it, simavr would look at first
-  // thing in the next run, which is after whoever asked for this one has looked.
-  asleep_ = true;
+  // What is due in this cycle, simavr would look at first thing in the next run, which is after
+  // whoever asked for this one has looked: a core that sleeps has jumped here, and one that entered
+  // an interrupt has gone on by the cycles of that.
+  asleep_ = avr_->state == cpu_Sleeping;
   avr_cycle_timer_process(avr_);
+  if (!asleep_) return;
   if (avr_->interrupt_state) avr_service_interrupts(avr_);
 }
 

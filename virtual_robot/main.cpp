@@ -17,6 +17,7 @@
 #include "virtual_robot/load_host.h"
 #include "virtual_robot/motor_plant.h"
 #include "virtual_robot/paced.h"
+#include "virtual_robot/run_experiment.h"
 
 namespace taut::virtual_robot {
 namespace {
@@ -29,8 +30,12 @@ struct Arguments {
   std::vector<std::string> set;
   std::vector<double> drift_ppm;
   std::uint64_t seed = 1;
-  double measure_s = 0;
-  bool frames = false;
+  double measure_s = 0, duration_s = -1;
+  std::vector<std::string> board;
+  std::string out;
+  double noise_counts = LoadCellOptions().noise_counts;
+  double usb_latency_s = ToSeconds(UsbIssOptions().request_latency);
+  bool frames = false, run = false, quiet = false;
 };
 
 std::atomic<bool> stop_asked{false};
@@ -124,13 +129,53 @@ std::unique_ptr<MotorPlant> LoadPlant(const Arguments& arguments, const Override
   return MotorPlant::Make(*robot, found);
 }
 
+/// What the boards and what is around them are like.
+RobotOptions OptionsOf(const Arguments& arguments, Diagnostics& found) {
+  RobotOptions options;
+  options.program = ReadAvrProgram(arguments.firmware, found);
+  options.seed = arguments.seed;
+  options.drift_ppm = arguments.drift_ppm;
+  options.log_frames = arguments.frames;
+  options.load_cell.noise_counts = arguments.noise_counts;
+  options.usb.request_latency = options.usb.reply_latency = FromSeconds(arguments.usb_latency_s);
+  return options;
+}
+
+int RunAnExperiment(const Arguments& arguments, const Overrides& overrides) {
+  Diagnostics found;
+  auto experiment = LoadExperiment(arguments.experiment, overrides, found);
+  BoardsOptions options;
+  options.robot = OptionsOf(arguments, found);
+  for (const std::string& one : arguments.board) {
+    if (const auto setting = ReadSetting(one, found)) options.settings.push_back(*setting);
+  }
+  if (!arguments.faults.empty() && experiment) {
+    const auto motors = MotorPlant::Make(experiment->robot, found);
+    const auto script =
+        motors ? LoadFaults(arguments.faults, motors->cable_names(), found) : std::nullopt;
+    if (script) options.robot.faults = script->faults;
+  }
+  if (!found.ok()) return Fail(found);
+  LogFile log;
+  if (!log.Open(arguments.log)) {
+    fmt::print(stderr, "error: {} cannot be written\n", arguments.log);
+    return kFailed;
+  }
+  options.robot.log = log.Sink();
+  if (arguments.duration_s >= 0) experiment->duration_s = arguments.duration_s;
+  return RunOnBoards(*experiment, options, {arguments.out, arguments.quiet}, stop_asked, found);
+}
+
 int Run(const Arguments& arguments) {
   const auto overrides = ParseSet(arguments.set);
   if (!overrides) return kUsage;
+  std::signal(SIGINT, AskToStop);
+  std::signal(SIGTERM, AskToStop);
+  std::signal(SIGHUP, AskToStop);
+  if (arguments.run) return RunAnExperiment(arguments, *overrides);
   Diagnostics found;
   const auto plant = LoadPlant(arguments, *overrides, found);
-  RobotOptions options;
-  options.program = ReadAvrProgram(arguments.firmware, found);
+  RobotOptions options = OptionsOf(arguments, found);
   std::optional<FaultScript> script;
   if (!arguments.faults.empty() && plant) {
     script = LoadFaults(arguments.faults, plant->cable_names(), found);
@@ -142,15 +187,9 @@ int Run(const Arguments& arguments) {
     fmt::print(stderr, "error: {} cannot be written\n", arguments.log);
     return kFailed;
   }
-  options.seed = arguments.seed;
-  options.drift_ppm = arguments.drift_ppm;
   options.log = log.Sink();
-  options.log_frames = arguments.frames;
   if (script) options.faults = script->faults;
   Robot robot(*plant, options);
-  std::signal(SIGINT, AskToStop);
-  std::signal(SIGTERM, AskToStop);
-  std::signal(SIGHUP, AskToStop);
   if (arguments.measure_s > 0) return Measure(robot, arguments.measure_s);
   PacedOptions paced;
   paced.link = arguments.link;
@@ -206,11 +245,34 @@ int Main(int argc, char** argv) {
                  "Instead: run so long with a busy host at full speed, and say how fast that was")
       ->check(CLI::Range(0.01, 3600.0))
       ->option_text("SECONDS");
+  CLI::Option* run =
+      app.add_flag("--run", arguments.run,
+                   "Instead: run the experiment in virtual time, with a PC that drives the boards");
+  app.add_option("--out", arguments.out, "With --run: the folder; runs/NAME_on_boards if absent")
+      ->option_text("FOLDER")
+      ->needs(run);
+  app.add_option("--duration_s", arguments.duration_s, "With --run: instead of the file's")
+      ->option_text("S")
+      ->check(CLI::Range(0.0, 1e9))
+      ->needs(run);
+  app.add_option("--board", arguments.board,
+                 "With --run: a parameter of all motors (docs/hardware/parameters.md)")
+      ->option_text("NAME=VALUE ...")
+      ->needs(run);
+  app.add_flag("--quiet", arguments.quiet, "With --run: no table, no progress")->needs(run);
+  app.add_option("--noise_counts", arguments.noise_counts, "Of load cells, standard deviation")
+      ->option_text("NUMBER")
+      ->check(CLI::Range(0.0, 100.0));
+  app.add_option("--usb_latency_s", arguments.usb_latency_s, "Of the adapter, each way")
+      ->option_text("S")
+      ->check(CLI::Range(0.0, 0.1));
   app.footer(
       "Examples:\n"
       "  taut_virtual_robot --model robot.yaml --link /tmp/robot --log robot.log\n"
       "  taut_virtual_robot --model robot.yaml --faults noisy_bus.yaml --seed 7\n"
       "  taut_virtual_robot --model robot.yaml --measure 5\n"
+      "  taut_virtual_robot --experiment experiments/push_20n_motors.yaml --run --out "
+      "runs/on_boards\n"
       "This program contains libsimavr and is under the GNU General Public License, version 3.\n"
       "Exit status: 0 good, 1 failed, 2 bad usage, 3 bad input.");
   try {
@@ -223,6 +285,10 @@ int Main(int argc, char** argv) {
   }
   if (arguments.model.empty() && arguments.experiment.empty()) {
     fmt::print(stderr, "error: --model FILE or --experiment FILE is missing\n");
+    return kUsage;
+  }
+  if (arguments.run && arguments.experiment.empty()) {
+    fmt::print(stderr, "error: --run needs --experiment FILE\n");
     return kUsage;
   }
   if (arguments.firmware.empty()) {

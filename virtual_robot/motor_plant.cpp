@@ -52,6 +52,7 @@ MotorPlant::MotorPlant(std::shared_ptr<const Model> model, std::vector<int> cabl
 
 void MotorPlant::Advance(double duration_s, std::span<const MotorDrive> drives) {
   TAUT_ASSERT(drives.size() == cables_.size());
+  if (held_) return;
   for (std::size_t i = 0; i < cables_.size(); ++i) {
     batch_.SetDuty(0, cables_[i], drives[i].duty);
     batch_.SetMotorEnabled(0, cables_[i], drives[i].enabled);

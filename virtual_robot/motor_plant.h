@@ -28,6 +28,9 @@ class MotorPlant : public Plant {
   /// The cables that motors wind, in the model's order.
   const std::vector<std::string>& cable_names() const { return names_; }
   const Batch& batch() const { return batch_; }
+  Batch& batch() { return batch_; }
+  /// On a stand: nothing moves, and load cells feel what they feel at the start.
+  void SetHeld(bool held) { held_ = held; }
   int cable(int motor) const { return cables_.at(static_cast<std::size_t>(motor)); }
 
  private:
@@ -38,6 +41,7 @@ class MotorPlant : public Plant {
   std::vector<int> cables_;
   std::vector<std::string> names_;
   std::vector<bool> cut_;
+  bool held_ = false;
 };
 
 }  // namespace taut::virtual_robot

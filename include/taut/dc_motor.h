@@ -60,9 +60,9 @@ enum class MotorMode : unsigned char {
 /// A motor at the current time. Currents, voltages and duty are means over the last step.
 struct MotorState {
   MotorMode mode = MotorMode::kServo;
-  double duty = 0.0;             ///< -1..1; positive winds in.
-  double voltage_v = 0.0;        ///< duty times the supply's.
-  double current_a = 0.0;        ///< In the winding; positive winds in.
+  double duty = 0.0;       ///< -1..1, by a little more where a servo comes to an end; > 0 winds in.
+  double voltage_v = 0.0;  ///< duty times the supply's.
+  double current_a = 0.0;  ///< In the winding; positive winds in.
   double rotor_angle_rad = 0.0;  ///< Not wrapped; 0 at the model's rest length; rises winding in.
   double rotor_speed_rad_per_s = 0.0;  ///< Positive winds in.
   double winding_temperature_c = 0.0;  ///<

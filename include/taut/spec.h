@@ -236,9 +236,9 @@ struct LoadCellSpec {
   double quantum_n = 0.0;  ///< Step of the converter, from min_n on; 0: none.
   double delay_s = 0.0;    ///< Whole sensor periods.
   // Standard deviations over the cells, each drawn once a run: what a calibration got wrong.
-  double gain_error = 0.0;               ///< Of the gain, relative. [1]
-  double drift_n_per_s = 0.0;            ///< Of the rate at which the zero moves.
-  std::optional<LoadCellCounts> counts;  ///< In place of range and quantum.
+  double gain_error = 0.0;                              ///< Of the gain, relative. [1]
+  double drift_n_per_s = 0.0;                           ///< Of the rate at which the zero moves.
+  std::optional<LoadCellCounts> counts = std::nullopt;  ///< In place of range and quantum.
 };
 
 /// A rest length through counts of a motor's encoder.

@@ -7,6 +7,8 @@ PARTS = {
     "Files": ["docs/formats/model.md", "docs/formats/experiment.md", "docs/formats/gait.md", "docs/formats/study.md",
               "docs/formats/"],
     "In C++": ["api/index.rst", "docs/plant.md"],
+    "Hardware": ["docs/hardware/firmware.md", "docs/hardware/protocol.md", "docs/hardware/virtual_robot.md",
+                 "docs/hardware/"],
     "Theory": ["docs/theory/integrator.md", "docs/theory/cables.md", "docs/theory/contact.md", "docs/theory/"],
     "How good it is": ["docs/validation/README.md", "docs/validation/", "docs/performance.md", "docs/determinism.md",
                        "docs/robustness.md"],

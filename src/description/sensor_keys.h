@@ -10,10 +10,11 @@ inline const Choices<bool> kLengthSources{{"exact", false}, {"from_tension", tru
 
 template <class Io>
 void Keys(Io& io, Like<LoadCellCounts> auto& c) {
-  io.Map("", "load_cell.counts",
-         "The cell's amplifier and converter, instead of a range and a quantum: whole counts from 0 "
-         "on, rounded down, and the force that the board takes them for, gain * count + offset. The "
-         "defaults are those of Tetraspine3 (the paper's eq. 7): `counts: {}`.");
+  io.Map(
+      "", "load_cell.counts",
+      "The cell's amplifier and converter, instead of a range and a quantum: whole counts from 0 "
+      "on, rounded down, and the force that the board takes them for, gain * count + offset. The "
+      "defaults are those of Tetraspine3 (the paper's eq. 7): `counts: {}`.");
   io("gain_n_per_count", c.gain_n_per_count, Bound::kPositive, "Force per count [N].");
   io("offset_n", c.offset_n, "The force of count 0.");
   io("bits", c.bits, Bound{.least = 1, .most = 32}, "Of the converter: it ends at 2^bits - 1.");
@@ -74,7 +75,9 @@ void Keys(Io& io, Encoder& e) {
        "`zero_error_m` is a whole number of turns, the nearest. With `lines`.");
     io.Rule(R"("dependentRequired": {"counts_per_turn": ["spool_radius_m"], )"
             R"("lines": ["spool_radius_m"], "decoding": ["lines"], "gear_ratio": ["lines"], )"
-            R"("index": ["lines"]})");
+            R"("index": ["lines"]}, "dependentSchemas": {"spool_radius_m": {"anyOf": )"
+            R"([{"required": ["counts_per_turn"]}, {"required": ["lines"]}]}})");
+    io.Rule(R"("not": {"required": ["decoding"], "properties": {"decoding": {"const": 3}}})");
   } else {
     io("index_m", e.index_m, LaterThan{0.0});
   }
@@ -82,7 +85,8 @@ void Keys(Io& io, Encoder& e) {
      "Standard deviation, over the cables, of the error of the rest length that counts begin with, "
      "drawn once a run.");
   io("gain_error", e.gain_error, LaterThan{0.0}, Bound::kNonNegative,
-     "Standard deviation, over the cables, of the error of the rest length per count, as a share of "
+     "Standard deviation, over the cables, of the error of the rest length per count, as a share "
+     "of "
      "it, drawn once a run: a spool of another radius.");
   io("delay_s", e.delay_s, Bound::kNonNegative,
      "How late readings are, a whole number of sensor periods.");

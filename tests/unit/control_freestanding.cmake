@@ -41,7 +41,7 @@ string(REGEX MATCHALL "U [^\n]+" needed "${needed}")
 if(KIND STREQUAL avr)
   # + - * /, comparisons and conversions in software are the compiler's own: __addsf3, __floatdisf
   list(FILTER needed EXCLUDE REGEX
-    "^U __(do_copy_data|tablejump2__|(add|sub|mul|div|neg|cmp|fix|float|[gln][et]|eq)[a-z0-9_]*)$")
+    "^U __(do_copy_data|tablejump2__|unordsf2|usmulhisi3|(add|sub|mul|div|neg|cmp|fix|float|[gln][et]|eq)[a-z0-9_]*)$")
 else()
   # g++ takes memcpy and its like for granted even so, and copies structures with it on AArch64
   list(FILTER needed EXCLUDE REGEX "^U (_GLOBAL_OFFSET_TABLE_|__stack_chk_fail|mem(cpy|move|set|cmp))$")

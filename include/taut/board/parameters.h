@@ -55,17 +55,17 @@ namespace board {
 /// As on the wire. `kGains` of a motor, the first four, may change while it runs: they then move
 /// slowly.
 enum MotorParameter : uint8_t {
-#define TAUT_ENUM(name, key, value, least, greatest) name,
-  TAUT_MOTOR_PARAMETERS(TAUT_ENUM)
-#undef TAUT_ENUM
+#define TAUT_MOTOR_ENUM(name, key, value, least, greatest) name,
+  TAUT_MOTOR_PARAMETERS(TAUT_MOTOR_ENUM)
+#undef TAUT_MOTOR_ENUM
       kMotorParameters
 };
 constexpr uint8_t kGains = 4;
 
 enum BoardParameter : uint8_t {
-#define TAUT_ENUM(name, key, value, least, greatest) name,
-  TAUT_BOARD_PARAMETERS(TAUT_ENUM)
-#undef TAUT_ENUM
+#define TAUT_BOARD_ENUM(name, key, value, least, greatest) name,
+  TAUT_BOARD_PARAMETERS(TAUT_BOARD_ENUM)
+#undef TAUT_BOARD_ENUM
       kBoardParameters
 };
 

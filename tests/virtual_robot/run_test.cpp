@@ -1,0 +1,101 @@
+// An experiment on the emulated boards, as `taut_virtual_robot --run` has it.
+#include "virtual_robot/run_experiment.h"
+
+#include <gtest/gtest.h>
+
+#include "taut/run.h"
+
+namespace taut::virtual_robot {
+namespace {
+
+ExperimentSpec Push(double duration_s) {
+  Diagnostics found;
+  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/experiments/push_20n_motors.yaml", {}, found);
+  EXPECT_TRUE(experiment.has_value()) << found.Format();
+  experiment->duration_s = duration_s;
+  return *experiment;
+}
+
+BoardsOptions Options() {
+  Diagnostics found;
+  BoardsOptions options;
+  options.robot.program = ReadAvrProgram(TAUT_FIRMWARE_ELF, found);
+  EXPECT_TRUE(found.ok()) << found.Format();
+  return options;
+}
+
+struct Done {
+  RunSummary summary;
+  std::vector<Heard> heard;
+  std::int64_t bad_frames = 0, late_cycles = 0;
+  std::vector<double> tensions_n;
+};
+
+Done RunPush(double duration_s, const BoardsOptions& options) {
+  const ExperimentSpec experiment = Push(duration_s);
+  Diagnostics found;
+  const auto motors = MotorPlant::Make(experiment.robot, found);
+  BoardsPlant plant(experiment, *motors, options);
+  EXPECT_TRUE(plant.Prepare(found)) << found.Format();
+  RunOptions how;
+  how.plant = &plant;
+  const auto summary = RunExperiment(experiment, how, found);
+  EXPECT_TRUE(summary.has_value()) << found.Format();
+  Done done{*summary, plant.heard(), plant.bad_frames(), plant.late_cycles(), {}};
+  for (int m = 0; m < motors->motor_count(); ++m)
+    done.tensions_n.push_back(motors->LoadCellForce(m));
+  return done;
+}
+
+TEST(RunOnBoards, HoldsTheSpineAsTheSimulationDoes) {
+  const Done boards = RunPush(3.0, Options());
+  EXPECT_EQ(boards.bad_frames, 0);
+  EXPECT_EQ(boards.late_cycles, 0);
+  for (const Heard& heard : boards.heard) {
+    EXPECT_EQ(heard.status.mode, board::Mode::kImpedance);
+    EXPECT_FALSE(heard.status.faulty);
+    EXPECT_FALSE(heard.status.overrun);
+  }
+  Diagnostics found;
+  const auto simulated = RunExperiment(Push(3.0), {}, found);
+  ASSERT_TRUE(simulated.has_value());
+  EXPECT_NEAR(boards.summary.system_max_tension_n, simulated->system_max_tension_n,
+              0.02 * simulated->system_max_tension_n);
+  EXPECT_NEAR(boards.tensions_n[5], 32.3, 1.0) << "inner_top_1";
+}
+
+TEST(RunOnBoards, TwoRunsAreTheSameAndNoiseIsAnother) {
+  BoardsOptions options = Options();
+  const Done first = RunPush(0.3, options), second = RunPush(0.3, options);
+  EXPECT_EQ(first.summary.state_hash, second.summary.state_hash);
+  options.robot.seed = 2;
+  EXPECT_NE(RunPush(0.3, options).summary.state_hash, first.summary.state_hash);
+}
+
+TEST(RunOnBoards, ParametersReachTheBoards) {
+  BoardsOptions options = Options();
+  options.settings.push_back({board::kDutyLimit, 0.0f});
+  for (const Heard& heard : RunPush(0.3, options).heard) {
+    EXPECT_EQ(heard.status.motors[0].duty, 0);
+    EXPECT_EQ(heard.status.motors[1].duty, 0);
+  }
+}
+
+TEST(RunOnBoards, SettingsAreReadStrictly) {
+  Diagnostics found;
+  const auto good = ReadSetting("tension_filter_share=0.5", found);
+  ASSERT_TRUE(good && found.ok());
+  EXPECT_EQ(good->parameter, board::kTensionShare);
+  EXPECT_EQ(good->value, 0.5f);
+  for (const char* wrong :
+       {"tension_filter_share", "tension_filter_share=", "tension_filter_share=x",
+        "tension_filter_share=0.5x", "tension_filter_share=2", "tension_filter_share=nan",
+        "filter=0.5", "=1", ""}) {
+    Diagnostics complaints;
+    EXPECT_FALSE(ReadSetting(wrong, complaints).has_value()) << wrong;
+    EXPECT_FALSE(complaints.ok()) << wrong;
+  }
+}
+
+}  // namespace
+}  // namespace taut::virtual_robot
