@@ -69,6 +69,7 @@ void AvrCore::RunUntil(std::uint64_t cycle) {
       if (on_crash) on_crash();
       Hang();
     }
+    CatchUp();
   }
   if (avr_->state != cpu_Sleeping) return;
   // A core that sleeps has jumped to this cycle; what happens in it, simavr would look at first
@@ -76,6 +77,13 @@ void AvrCore::RunUntil(std::uint64_t cycle) {
   asleep_ = true;
   avr_cycle_timer_process(avr_);
   if (avr_->interrupt_state) avr_service_interrupts(avr_);
+  CatchUp();
+}
+
+void AvrCore::CatchUp() {
+  if (!entered_) return;
+  entered_ = false;
+  avr_cycle_timer_process(avr_);
 }
 
 void AvrCore::Reset(std::uint8_t cause, bool power_on) {
