@@ -71,11 +71,12 @@ void AvrCore::RunUntil(std::uint64_t cycle) {
     }
     CatchUp();
   }
-  if (avr_->state != cpu_Sleeping) return;
-  // A core that sleeps has jumped to this cycle; what happens in it, simavr would look at first
-  // thing in the next run, which is after whoever asked for this one has looked.
-  asleep_ = true;
+  // What is due in this cycle, simavr would look at first thing in the next run, which is after
+  // whoever asked for this one has looked: a core that sleeps has jumped here.
+  const bool sleeps = avr_->state == cpu_Sleeping;
   avr_cycle_timer_process(avr_);
+  if (!sleeps) return;
+  asleep_ = true;
   if (avr_->interrupt_state) avr_service_interrupts(avr_);
   CatchUp();
 }
