@@ -69,14 +69,22 @@ void AvrCore::RunUntil(std::uint64_t cycle) {
       if (on_crash) on_crash();
       Hang();
     }
+    CatchUp();
   }
   // What is due in this cycle, simavr would look at first thing in the next run, which is after
-  // whoever asked for this one has looked: a core that sleeps has jumped here, and one that entered
-  // an interrupt has gone on by the cycles of that.
-  asleep_ = avr_->state == cpu_Sleeping;
+  // whoever asked for this one has looked: a core that sleeps has jumped here.
+  const bool sleeps = avr_->state == cpu_Sleeping;
   avr_cycle_timer_process(avr_);
-  if (!asleep_) return;
+  if (!sleeps) return;
+  asleep_ = true;
   if (avr_->interrupt_state) avr_service_interrupts(avr_);
+  CatchUp();
+}
+
+void AvrCore::CatchUp() {
+  if (!entered_) return;
+  entered_ = false;
+  avr_cycle_timer_process(avr_);
 }
 
 void AvrCore::Reset(std::uint8_t cause, bool power_on) {

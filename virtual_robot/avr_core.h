@@ -72,6 +72,9 @@ class AvrCore {
   friend struct Hooks;
 
   void AfterReset();
+  /// Entering an interrupt takes cycles of which simavr knows nothing: what was due in them happens
+  /// before its first instruction.
+  void CatchUp();
   void StartPinTimer();
 
   avr_t* avr_;
@@ -79,7 +82,7 @@ class AvrCore {
   std::uint32_t free_memory_;
   std::deque<PinLevel> levels_;  ///< Still to come.
   std::uint64_t stop_cycle_ = 0;
-  bool reset_seen_ = false, asleep_ = false;
+  bool reset_seen_ = false, asleep_ = false, entered_ = false;
   std::uint8_t causes_ = 0;  ///< MCUSR, which only its reader and loss of power clear.
   std::uint8_t wanted_cause_ = 0;
   std::uint8_t temp_ = 0;                        ///< The high byte that all of Timer 1 shares.

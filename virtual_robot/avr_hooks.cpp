@@ -94,6 +94,7 @@ void AvrCore::Hooks::InterruptBegins(avr_irq_t*, std::uint32_t value, void* self
   avr_t& avr = *core.avr_;
   const std::uint64_t cycles = kEntryCycles + (core.asleep_ ? kWakeCycles : 0);
   avr.cycle += cycles;
+  core.entered_ = true;
   avr.run_cycle_count = avr.run_cycle_count > cycles ? avr.run_cycle_count - cycles : 1;
 }
 

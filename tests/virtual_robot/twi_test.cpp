@@ -259,6 +259,24 @@ TEST(Twi, WhatIsDueInTheCycleThatACoreHasEndedHappensAtOnce) {
   }
 }
 
+TEST(Twi, WhatIsDueWhileACoreEntersAnInterruptHappensBeforeTheBusLooks) {
+  Board board(ProbeProgram(), {});
+  board.RunUntil(5 * kMillisecond);
+  I2cSlave& slave = board.bus_side();
+  // The tick comes every 16000 cycles; from a little before it to a little behind.
+  for (int cycles = 0; cycles < 16'000; cycles += 3) {
+    const Time from = board.now() + (cycles % 60) * 63 * kNanosecond;
+    const Time due = from + (cycles % 13) * 63 * kNanosecond;
+    slave.Schedule({.kind = BusEvent::Kind::kAddress, .at = due, .byte = 0x20});
+    board.RunUntil(from);
+    board.RunUntil(due);
+    ASSERT_TRUE(slave.Acked()) << cycles;
+    board.RunUntil(due + 40 * kMicrosecond);
+    slave.Schedule({.kind = BusEvent::Kind::kStop, .at = board.now() + kMicrosecond});
+    board.RunUntil(board.now() + 100 * kMicrosecond);
+  }
+}
+
 TEST(Twi, TheNextMessageWaitsForTheInterruptOfTheLast) {
   Wires wires(1);
   wires.board(0).SetMemory(kBoxStretch, 9);
