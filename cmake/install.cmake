@@ -39,6 +39,20 @@ foreach(folder IN ITEMS models experiments gaits studies schema mappings)
   endif()
 endforeach()
 
+# `cmake --install build/install --component virtual_robot --prefix ~/.local`: the emulated boards and
+# their firmware. Only when asked for by that name: the program contains libsimavr, so it is under the
+# GPL, and no package of taut is to have it by the way.
+set(alone COMPONENT virtual_robot EXCLUDE_FROM_ALL)
+if(TARGET taut_virtual_robot)
+  install(TARGETS taut_virtual_robot RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} ${alone})
+  install(FILES LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR} ${alone})
+endif()
+if(TARGET taut_firmware)
+  get_target_property(elf taut_firmware TAUT_ELF)
+  string(REGEX REPLACE "\\.elf$" ".hex" hex ${elf})
+  install(FILES ${elf} ${hex} DESTINATION ${CMAKE_INSTALL_DATADIR}/taut/firmware ${alone})
+endif()
+
 # What is to be read, with the licence that goes with every copy.
 install(FILES LICENSE NOTICE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,38 +1,24 @@
-/// A robot whose cables emulated boards control, as a plant (taut/plant.h): an experiment's gait
-/// becomes the V0 of broadcasts every 10 ms, its gains parameters of the boards. A PC in virtual
-/// time.
+/// A robot whose cables emulated boards control, as a plant (taut/plant.h): the driver and its
+/// plant, in the robot's own time, on a robot whose true state is known.
 #pragma once
 
-#include <array>
-#include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
-#include "taut/board/parameters.h"
-#include "taut/board/protocol.h"
-#include "taut/plant.h"
+#include "taut/link/robot_plant.h"
 #include "virtual_robot/motor_plant.h"
 #include "virtual_robot/robot.h"
+#include "virtual_robot/robot_port.h"
 
 namespace taut::virtual_robot {
 
-/// What differs from what the boards have by default: a parameter of every motor.
-struct BoardSetting {
-  std::uint8_t parameter = 0;  ///< `board::MotorParameter`.
-  float value = 0;
-};
-
 struct BoardsOptions {
   RobotOptions robot;
-  std::vector<BoardSetting> settings;  ///< After what follows from model and experiment.
-  Time period = 10 * kMillisecond;     ///< Of broadcasts.
-};
-
-/// What the PC has received of a board, as it came last.
-struct Heard {
-  board::Status status;
-  Time at = -1;                                    ///< Never, while negative.
-  std::array<std::uint8_t, board::kMores> more{};  ///< `board::More`, each as it was said last.
+  std::vector<link::ParameterValue> settings;  ///< Of all boards and motors, after what follows
+                                               ///< from model and experiment.
+  double recover_s = std::numeric_limits<double>::infinity();  ///< By the experiment's clock: when
+                                                               ///< `Recover` is called.
 };
 
 /// One lane. The robot is held on a stand until `Prepare` is through: boards began, parameters set,
@@ -45,57 +31,53 @@ class BoardsPlant final : public taut::Plant {
   /// False and complaints if a board does not answer or refuses.
   bool Prepare(Diagnostics& out);
 
-  const Observation& Observe() override;
-  Commands& commands() override { return simulation_->commands(); }
-  void Advance(const double* step_s, const double* to_s) override;
-  void Restart(int lane) override { simulation_->Restart(lane); }
-  bool Goes(int lane) const override { return simulation_->Goes(lane); }
-  World* world() noexcept override { return simulation_->world(); }
+  /// After a fault, as an operator would have it: configures all anew, sets references to what the
+  /// cables really are, clears faults, arms and goes on. False and complaints if a board does not
+  /// play along. The experiment's clock stands still meanwhile.
+  bool Recover(Diagnostics& out);
 
-  /// Called when all boards have been read.
-  std::function<void(double time_s)> on_cycle;
-  const std::vector<Heard>& heard() const { return heard_; }
-  std::int64_t bad_frames() const { return bad_frames_; }
+  /// The truth, not what boards sense.
+  const Observation& Observe() override;
+  Commands& commands() override { return plant_.commands(); }
+  void Advance(const double* step_s, const double* to_s) override;
+  void Restart(int lane) override { plant_.Restart(lane); }
+  bool Goes(int lane) const override { return truth_->Goes(lane); }
+  World* world() noexcept override { return truth_->world(); }
+
+  link::Driver& driver() { return driver_; }
+  const link::State& heard() const { return driver_.state(); }
+  /// By the driver's clock, where the experiment's time is 0.
+  double started_s() const { return plant_.started_s(); }
   /// Ticks of all boards that came late since the experiment began; asks them.
   int LateTicks();
-  std::int64_t late_cycles() const {
-    return late_cycles_;
-  }  ///< That had not ended when the next was due.
-  /// From a cycle's begin to its last frame [s].
-  double mean_cycle_s() const {
-    return cycles_ > 0 ? cycle_sum_s_ / static_cast<double>(cycles_) : 0;
-  }
-  double longest_cycle_s() const { return longest_cycle_s_; }
+  /// Frames that came with a wrong checksum, or not at all, since then.
+  std::int64_t bad_frames() const { return link::BadFrames(heard()); }
   Robot& robot() { return robot_; }
+  /// The largest tension of any cable with a motor, at any step of the plant so far.
+  double most_n() const { return most_n_; }
+  /// Whether it was asked to recover, and did.
+  bool recovered() const { return recovered_; }
+  const Diagnostics& recovery() const { return recovery_; }
 
  private:
-  bool Ask(std::uint8_t board, const board::Asking& asking, board::Reply* reply, Diagnostics& out);
+  std::vector<link::Setting> Settings() const;
   bool SetUp(Diagnostics& out);
-  bool ReadNonces(Diagnostics& out);
   int CountLateTicks();
-  bool Set(int motor, board::MotorParameter parameter, double value, Diagnostics& out);
-  std::vector<Bytes> CycleFrames();
-  void TakeReply(const Bytes& reply);
-  void Exchange();  ///< A cycle, letting time pass: while the robot is held.
-  void Poll();      ///< As far as a cycle under way has come.
 
   const ExperimentSpec& experiment_;
   MotorPlant& motors_;
   BoardsOptions options_;
-  std::unique_ptr<taut::Plant> simulation_;
+  std::unique_ptr<taut::Plant> truth_;
   Robot robot_;
+  RobotPort port_;
+  link::Driver driver_;
+  link::RobotPlant plant_;
   Observation seen_;
   double time_s_ = 0;
-  Time started_ = 0;  ///< Where the experiment's time is 0.
-  board::Cyclic say_;
-  std::array<std::uint16_t, board::kBoards> nonces_{};
-  std::vector<Heard> heard_;
-  std::vector<Bytes> frames_;  ///< Of the cycle under way.
-  std::size_t sent_ = 0, answered_ = 0;
-  Time next_cycle_ = 0, cycle_begun_ = 0;
-  std::int64_t bad_frames_ = 0, late_cycles_ = 0, cycles_ = 0;
   int late_before_ = 0;  ///< Ticks, while the boards were set up.
-  double cycle_sum_s_ = 0, longest_cycle_s_ = 0;
+  double most_n_ = 0;
+  bool asked_to_recover_ = false, recovered_ = false;
+  Diagnostics recovery_;
 };
 
 }  // namespace taut::virtual_robot

@@ -7,9 +7,11 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "taut/faults.h"
@@ -17,7 +19,10 @@
 #include "virtual_robot/load_host.h"
 #include "virtual_robot/motor_plant.h"
 #include "virtual_robot/paced.h"
+#include "virtual_robot/parent_watch.h"
 #include "virtual_robot/run_experiment.h"
+#include "virtual_robot/stand.h"
+#include "virtual_robot/truth_server.h"
 
 namespace taut::virtual_robot {
 namespace {
@@ -26,17 +31,32 @@ namespace {
 enum Exit : int { kOk = 0, kFailed = 1, kUsage = 2, kBadInput = 3 };
 
 struct Arguments {
-  std::string model, experiment, firmware = TAUT_FIRMWARE_ELF, faults, link, log;
+  std::string model, experiment, firmware, faults, link, truth, log;
   std::vector<std::string> set;
   std::vector<double> drift_ppm;
   std::uint64_t seed = 1;
-  double measure_s = 0, duration_s = -1;
+  double measure_s = 0, duration_s = -1, recover_s = -1;
   std::vector<std::string> board;
   std::string out;
   double noise_counts = LoadCellOptions().noise_counts;
   double usb_latency_s = ToSeconds(UsbIssOptions().request_latency);
-  bool frames = false, run = false, quiet = false;
+  double slip_s = PacedOptions().slip_s;
+  bool frames = false, run = false, quiet = false, stand = false, with_parent = false;
 };
+
+/// The firmware that came with this program: beside it where both were built, in share/taut where
+/// they were installed. Empty: none did.
+std::string OwnFirmware() {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", failed).parent_path();
+  for (const fs::path& place :
+       {folder / "firmware", folder.parent_path() / "share/taut/firmware"}) {
+    const fs::path elf = place / "taut_board.elf";
+    if (fs::is_regular_file(elf, failed)) return elf.string();
+  }
+  return {};
+}
 
 std::atomic<bool> stop_asked{false};
 extern "C" void AskToStop(int) { stop_asked = true; }
@@ -147,7 +167,9 @@ int RunAnExperiment(const Arguments& arguments, const Overrides& overrides) {
   BoardsOptions options;
   options.robot = OptionsOf(arguments, found);
   for (const std::string& one : arguments.board) {
-    if (const auto setting = ReadSetting(one, found)) options.settings.push_back(*setting);
+    if (const auto value = link::ReadParameter(one, "--board", found)) {
+      options.settings.push_back(*value);
+    }
   }
   if (!arguments.faults.empty() && experiment) {
     const auto motors = MotorPlant::Make(experiment->robot, found);
@@ -162,8 +184,51 @@ int RunAnExperiment(const Arguments& arguments, const Overrides& overrides) {
     return kFailed;
   }
   options.robot.log = log.Sink();
+  if (arguments.recover_s >= 0) options.recover_s = arguments.recover_s;
   if (arguments.duration_s >= 0) experiment->duration_s = arguments.duration_s;
   return RunOnBoards(*experiment, options, {arguments.out, arguments.quiet}, stop_asked, found);
+}
+
+/// By then boards answer: they take 4 ms to begin.
+constexpr Time kBegun = 10 * kMillisecond;
+
+/// In real time, behind a terminal, until it is asked to stop.
+int RunInRealTime(const Arguments& arguments, MotorPlant& plant, Robot& robot, const LogSink& log) {
+  Diagnostics found;
+  std::unique_ptr<TruthServer> truth;
+  if (!arguments.truth.empty()) {
+    truth = TruthServer::Open(arguments.truth, plant, found);
+    if (!truth) {
+      fmt::print(stderr, "{}", found.Format());
+      return kFailed;
+    }
+  }
+  std::optional<Stand> stand;
+  if (arguments.stand) stand.emplace(plant, robot, log);
+  robot.after_plant_step = [&](Time now) {
+    if (stand) stand->Step(now);
+    if (truth) truth->Step(now);
+  };
+  robot.AdvanceTo(kBegun);  // whoever reads the path may talk to them at once
+  // fputs: whoever reads may be gone, which is no reason to end without tidying up.
+  PacedOptions paced;
+  paced.link = arguments.link;
+  paced.slip_s = arguments.slip_s;
+  paced.on_path = [&](const std::string& path) {
+    const std::string link = arguments.link.empty() ? "" : " (" + arguments.link + ")";
+    std::fputs((path + link + "\n").c_str(), stdout);
+    std::fflush(stdout);
+  };
+  paced.on_late = [&](double late_s) {
+    std::fputs(fmt::format("warning: {:.2f} s late: this machine is too slow or too busy\n", late_s)
+                   .c_str(),
+               stderr);
+  };
+  if (!RunPaced(robot, paced, stop_asked, found)) {
+    fmt::print(stderr, "{}", found.Format());
+    return kFailed;
+  }
+  return kOk;
 }
 
 int Run(const Arguments& arguments) {
@@ -172,6 +237,9 @@ int Run(const Arguments& arguments) {
   std::signal(SIGINT, AskToStop);
   std::signal(SIGTERM, AskToStop);
   std::signal(SIGHUP, AskToStop);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::optional<ParentWatch> parent;
+  if (arguments.with_parent) parent.emplace(stop_asked);
   if (arguments.run) return RunAnExperiment(arguments, *overrides);
   Diagnostics found;
   const auto plant = LoadPlant(arguments, *overrides, found);
@@ -191,20 +259,7 @@ int Run(const Arguments& arguments) {
   if (script) options.faults = script->faults;
   Robot robot(*plant, options);
   if (arguments.measure_s > 0) return Measure(robot, arguments.measure_s);
-  PacedOptions paced;
-  paced.link = arguments.link;
-  paced.on_path = [&](const std::string& path) {
-    fmt::print("{}{}\n", path, arguments.link.empty() ? "" : " (" + arguments.link + ")");
-    std::fflush(stdout);
-  };
-  paced.on_late = [&](double late_s) {
-    fmt::print(stderr, "warning: {:.2f} s late: this machine is too slow or too busy\n", late_s);
-  };
-  if (!RunPaced(robot, paced, stop_asked, found)) {
-    fmt::print(stderr, "{}", found.Format());
-    return kFailed;
-  }
-  return kOk;
+  return RunInRealTime(arguments, *plant, robot, options.log);
 }
 
 int Main(int argc, char** argv) {
@@ -233,6 +288,19 @@ int Main(int argc, char** argv) {
       ->option_text("FILE");
   app.add_option("--link", arguments.link, "Make a symbolic link to the device")
       ->option_text("PATH");
+  CLI::Option* stand = app.add_flag(
+      "--stand", arguments.stand,
+      "Hold the robot on a stand until the drivers of all boards have been on for 0.1 s");
+  CLI::Option* truth =
+      app.add_option("--truth", arguments.truth,
+                     "Say what the robot truly does at a socket (docs/formats/truth.md)")
+          ->option_text("PATH");
+  app.add_option("--slip_s", arguments.slip_s,
+                 "Where it is late by more, its time does not catch up (default: 1)")
+      ->option_text("S")
+      ->check(CLI::Range(0.001, 1000.0));
+  app.add_flag("--with_parent", arguments.with_parent,
+               "End when the program ends that has started this one");
   app.add_option("--log", arguments.log, "Write down what happens; - for the standard error")
       ->option_text("FILE");
   app.add_flag("--frames", arguments.frames, "The log has all frames of USB, too");
@@ -241,13 +309,15 @@ int Main(int argc, char** argv) {
       ->expected(1, 6)
       ->check(CLI::Range(-100'000.0, 100'000.0))
       ->option_text("NUMBER ...");
-  app.add_option("--measure", arguments.measure_s,
-                 "Instead: run so long with a busy host at full speed, and say how fast that was")
-      ->check(CLI::Range(0.01, 3600.0))
-      ->option_text("SECONDS");
+  CLI::Option* measure =
+      app.add_option("--measure", arguments.measure_s,
+                     "Instead: run so long with a busy host at full speed, and say how fast it was")
+          ->check(CLI::Range(0.01, 3600.0))
+          ->option_text("SECONDS");
   CLI::Option* run =
       app.add_flag("--run", arguments.run,
                    "Instead: run the experiment in virtual time, with a PC that drives the boards");
+  for (CLI::Option* in_real_time : {stand, truth}) in_real_time->excludes(measure)->excludes(run);
   app.add_option("--out", arguments.out, "With --run: the folder; runs/NAME_on_boards if absent")
       ->option_text("FOLDER")
       ->needs(run);
@@ -255,8 +325,13 @@ int Main(int argc, char** argv) {
       ->option_text("S")
       ->check(CLI::Range(0.0, 1e9))
       ->needs(run);
+  app.add_option("--recover_s", arguments.recover_s,
+                 "With --run: when the PC configures all anew, clears faults, and goes on")
+      ->option_text("S")
+      ->check(CLI::Range(0.0, 1e9))
+      ->needs(run);
   app.add_option("--board", arguments.board,
-                 "With --run: a parameter of all motors (docs/hardware/parameters.md)")
+                 "With --run: a parameter of all motors or boards (docs/hardware/parameters.md)")
       ->option_text("NAME=VALUE ...")
       ->needs(run);
   app.add_flag("--quiet", arguments.quiet, "With --run: no table, no progress")->needs(run);
@@ -291,8 +366,9 @@ int Main(int argc, char** argv) {
     fmt::print(stderr, "error: --run needs --experiment FILE\n");
     return kUsage;
   }
+  if (arguments.firmware.empty()) arguments.firmware = OwnFirmware();
   if (arguments.firmware.empty()) {
-    fmt::print(stderr, "error: --firmware ELF is missing: taut was built without its own\n");
+    fmt::print(stderr, "error: --firmware ELF is missing: taut's own is not there\n");
     return kUsage;
   }
   return Run(arguments);

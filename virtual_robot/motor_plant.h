@@ -31,6 +31,7 @@ class MotorPlant : public Plant {
   Batch& batch() { return batch_; }
   /// On a stand: nothing moves, and load cells feel what they feel at the start.
   void SetHeld(bool held) { held_ = held; }
+  bool held() const { return held_; }
   int cable(int motor) const { return cables_.at(static_cast<std::size_t>(motor)); }
 
  private:

@@ -16,7 +16,6 @@ using Clock = std::chrono::steady_clock;
 // Replies leave between two slices of time, so that they are late by a slice at most.
 constexpr Time kSlice = 250 * kMicrosecond;
 constexpr double kLongestWait_s = 0.001;
-constexpr Time kGiveUp = kSecond;
 
 Time Since(Clock::time_point start) {
   const auto passed = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start);
@@ -39,23 +38,27 @@ bool RunPaced(Robot& robot, const PacedOptions& options, const std::atomic<bool>
   Clock::time_point start = Clock::now();
   const Time begun = robot.now();
   const auto due = [&] { return begun + Since(start); };
-  Time warned_at = -kSecond;
-  while (!stop) {
-    // A frame comes at the time at which it is read, and the robot catches up to it first.
+  Time warned_at = -kSecond, left_out = 0;
+  const auto catch_up = [&] {
     const Time end = due();
     while (!stop && robot.now() < end) {
       robot.AdvanceTo(std::min(end, robot.now() + kSlice));
       if (const auto reply = robot.HostReads(); reply && pty) pty->Write(*reply);
       const Time late = due() - robot.now();
-      if (late > FromSeconds(options.late_s) && due() > warned_at + kSecond) {
+      if (late + left_out > FromSeconds(options.late_s) && due() > warned_at + kSecond) {
         warned_at = due();
-        if (options.on_late) options.on_late(ToSeconds(late));
+        if (options.on_late) options.on_late(ToSeconds(late + left_out));
+        left_out = 0;
       }
-      if (late > kGiveUp) {
+      if (late > FromSeconds(options.slip_s)) {
         start += std::chrono::nanoseconds(late / kNanosecond);
+        left_out += late;
         break;
       }
     }
+  };
+  while (!stop) {
+    catch_up();
     // An adapter that was pulled out takes its device with it.
     if (!robot.usb_connected()) {
       pty.reset();
@@ -65,9 +68,9 @@ bool RunPaced(Robot& robot, const PacedOptions& options, const std::atomic<bool>
     if (!pty) {
       std::this_thread::sleep_for(std::chrono::duration<double>(kLongestWait_s));
     } else if (pty->Wait(kLongestWait_s)) {
+      // A frame comes at the time at which it is read, and the robot catches up to it first.
       const Bytes burst = pty->Read();
-      robot.AdvanceTo(std::max(robot.now(), due()));
-      if (const auto reply = robot.HostReads()) pty->Write(*reply);
+      catch_up();
       robot.HostWrites(burst);
     }
   }

@@ -17,7 +17,4 @@ struct ExperimentRun {
 int RunOnBoards(const ExperimentSpec& experiment, const BoardsOptions& options,
                 const ExperimentRun& run, const std::atomic<bool>& stop, Diagnostics& out);
 
-/// "name=value" of a motor's parameter (docs/hardware/parameters.md); complains.
-std::optional<BoardSetting> ReadSetting(const std::string& text, Diagnostics& out);
-
 }  // namespace taut::virtual_robot

@@ -26,7 +26,9 @@ enum DirectError : std::uint8_t {
   kUnderflow = 0x03,
   kUnknownPart = 0x04
 };
+constexpr std::uint8_t kIoChange = 0x10;  // sets pins; what else there is stays as it is
 constexpr std::size_t kMostWritten = 60, kMostRead = 64, kDirectBuffer = 60;
+constexpr std::size_t kMostWrittenAfterTwo = 59, kMostReadAfterOne = 60;  // registers
 constexpr int kFirstWithTest = 5, kFirstThatStops = 8;
 
 using Kind = BusStep::Kind;
@@ -197,7 +199,7 @@ std::optional<UsbIss::Command> UsbIss::ParseIss(std::span<const std::uint8_t> fr
     } else if (frame.size() < *used) {
       return std::nullopt;
     } else {
-      mode_ = frame[2];
+      if (frame[2] != kIoChange) mode_ = frame[2];
       command.fixed = {kAcknowledge, 0x00};
     }
   } else {
@@ -226,7 +228,9 @@ std::optional<UsbIss::Command> UsbIss::ParseTransfer(std::span<const std::uint8_
     if (frame.size() < data) return std::nullopt;
     const std::size_t count = counted ? frame[data - 1] : 1;
     *used = data + (reads ? 0 : count);
-    const std::size_t most = reads ? kMostRead : kMostWritten;
+    const std::size_t most_written = registers == 2 ? kMostWrittenAfterTwo : kMostWritten;
+    const std::size_t most_read = registers == 1 ? kMostReadAfterOne : kMostRead;
+    const std::size_t most = reads ? most_read : most_written;
     if (count == 0 || count > most || frame.size() < *used) return std::nullopt;
     const auto before = frame.subspan(2, registers);
     if (reads && registers > 0) {

@@ -24,6 +24,7 @@ void AddLearn(CLI::App& app, int& exit_code);
 void AddList(CLI::App& app, int& exit_code);
 void AddNew(CLI::App& app, int& exit_code);
 void AddReport(CLI::App& app, int& exit_code);
+void AddRobot(CLI::App& app, int& exit_code);
 void AddSchema(CLI::App& app, int& exit_code);
 void AddView(CLI::App& app, int& exit_code);
 

@@ -69,6 +69,7 @@ int Run(int argc, char** argv) {
   AddList(app, exit_code);
   AddNew(app, exit_code);
   AddReport(app, exit_code);
+  AddRobot(app, exit_code);
   AddSchema(app, exit_code);
   AddView(app, exit_code);
   AddHelp(app, exit_code);

@@ -19,6 +19,8 @@
 #include "streams.h"
 #include "taut/run.h"
 #include "taut/spec.h"
+#include "view_robot.h"
+#include "view_server.h"
 
 namespace taut::cli {
 namespace {
@@ -32,6 +34,7 @@ struct ViewArguments {
   double speed = 1, step_s = 0;
   bool max = false, settled = false, paused = false;
   viewer::ServerOptions server;
+  ViewRobotArguments robot;  ///< Its `port` empty: no robot.
 };
 
 bool IsTrace(const std::string& path) {
@@ -63,13 +66,6 @@ std::unique_ptr<Session> MakeReplay(const ViewArguments& args, int& exit) {
   fmt::print(stderr, "{}", found.Format());
   exit = kBadInput;
   return nullptr;
-}
-
-/// On the terminal, if there still is one.
-void Tell(const std::string& text) {
-  const std::string line = text + "\n";
-  std::fputs(line.c_str(), stderr);
-  std::fflush(stderr);
 }
 
 /// A live run of an experiment or of a model alone. Nothing: `exit` says how to end.
@@ -114,36 +110,32 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
   return session;
 }
 
-/// The token that the environment names, else the random one. One that is easily guessed is none.
-bool TokenOf(const char* variable, std::string& token) {
-  const char* named = std::getenv(variable);
-  if (named == nullptr || *named == '\0') return true;
-  token = named;
-  const bool plain = std::all_of(token.begin(), token.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-           c == '_';
-  });
-  if (plain && token.size() >= 16 && token.size() <= 128) return true;
-  fmt::print(stderr, "error: {} must be 16 to 128 letters, digits, - or _\n", variable);
-  return false;
-}
-
-/// The two addresses, and what is dangerous about them.
-void SayAddresses(const std::string& title, const viewer::ServerOptions& options,
-                  std::uint16_t port) {
-  fmt::print("{}: {}\nOnly to watch: {}\nCtrl-C ends it.\n", title,
-             viewer::Url(options, port, options.drive_token),
-             viewer::Url(options, port, options.watch_token));
-  std::fflush(stdout);
-  if (viewer::IsLoopback(options.address)) return;
-  Tell(fmt::format(
-      "warning: this listens to other machines, and without encryption: whoever can read the "
-      "network between them and this one can read these addresses, and then drive. Where that "
-      "matters, leave --listen out and connect by ssh -L {0}:localhost:{0} MACHINE",
-      port));
+/// A dashboard, where nothing else fits.
+int Dashboard(const ViewArguments& args) {
+  if (!args.file.empty() || !args.compare.empty() || args.settled || args.paused || args.max ||
+      args.speed != 1 || args.step_s > 0) {
+    fmt::print(stderr,
+               "error: --robot goes without a file, --compare, --settled, --paused, --max, --speed "
+               "and --step_s\n");
+    return kUsage;
+  }
+  ViewRobotArguments robot = args.robot;
+  robot.set = args.set;
+  robot.out = args.out;
+  robot.server = args.server;
+  return ViewRobot(std::move(robot));
 }
 
 int View(ViewArguments args) {
+  if (!args.robot.port.empty()) return Dashboard(args);
+  if (args.file.empty()) {
+    fmt::print(stderr, "error: what is to be seen? a file, or --robot PORT\n");
+    return kUsage;
+  }
+  if (!args.robot.model.empty() || !args.robot.calibration.empty()) {
+    fmt::print(stderr, "error: --model and --calibration go with --robot\n");
+    return kUsage;
+  }
   OutputIsNews();
   std::string error;
   const std::optional<std::string> web = viewer::FindWebFolder(error);
@@ -160,14 +152,7 @@ int View(ViewArguments args) {
     fmt::print(stderr, "error: --compare goes with a trace only\n");
     return kUsage;
   }
-  if (!TokenOf("TAUT_TOKEN", args.server.drive_token) ||
-      !TokenOf("TAUT_WATCH_TOKEN", args.server.watch_token)) {
-    return kUsage;
-  }
-  if (args.server.drive_token == args.server.watch_token) {
-    fmt::print(stderr, "error: TAUT_TOKEN and TAUT_WATCH_TOKEN must differ\n");
-    return kUsage;
-  }
+  if (!TokensOf(args.server)) return kUsage;
   int exit = kOk;
   const std::unique_ptr<Session> session =
       IsTrace(args.file) ? MakeReplay(args, exit) : MakeLive(args, exit);
@@ -177,7 +162,7 @@ int View(ViewArguments args) {
     fmt::print(stderr, "error: {}\n", error);
     return kFailed;
   }
-  SayAddresses(session->title(), args.server, server.port());
+  SayAddresses(session->title(), args.server, server.port(), "Ctrl-C ends it.");
   server.Run();
   return session->Finish() ? kOk : kFailed;
 }
@@ -188,8 +173,17 @@ void AddView(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<ViewArguments>();
   CLI::App* view =
       app.add_subcommand("view", "Watch an experiment live, replay a trace, look at a model.");
-  view->add_option("file", args->file, "Experiment or model (YAML), or trace (.h5, .csv, .csv.gz)")
-      ->required();
+  view->add_option("file", args->file, "Experiment or model (YAML), or trace (.h5, .csv, .csv.gz)");
+  args->robot.port.clear();
+  view->add_option("--robot", args->robot.port,
+                   "Instead of a file: drive the robot behind this serial port, or an emulated one")
+      ->option_text("virtual|PORT");
+  view->add_option("--model", args->robot.model,
+                   "Robot: its model (default: tetraspine3_motors.yaml of taut)")
+      ->option_text("FILE");
+  view->add_option("--calibration", args->robot.calibration,
+                   "Robot: what was measured, to be set on the boards")
+      ->option_text("FILE");
   view->add_option("--set", args->set, "Parameter of the experiment or model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
@@ -206,8 +200,9 @@ void AddView(CLI::App& app, int& exit_code) {
                    "Replay: traces of other runs, 7 at most, drawn beside this one, each with a "
                    "ghost of its robot")
       ->option_text("TRACE");
-  view->add_option("--out", args->out,
-                   "Live: folder to record into (trace, inputs, what was done); default: none")
+  view->add_option(
+          "--out", args->out,
+          "Live, robot: folder to record into (trace, inputs, what was done); default: none")
       ->option_text("FOLDER");
   view->add_option("--listen", args->server.address,
                    "Address to listen on (default: 127.0.0.1, this machine only)")
@@ -225,9 +220,12 @@ void AddView(CLI::App& app, int& exit_code) {
       "  taut view experiments/push_20n.yaml --speed 0.25\n"
       "  taut view runs/push_20n/trace.h5 --compare runs/a/trace.h5 runs/b/trace.h5\n"
       "  taut view models/tetraspine3.yaml --settled\n"
+      "  taut view --robot virtual\n"
       "It prints two addresses, each with a secret token, to open in a browser: who has the first\n"
       "may look and drive, who has the second look. The tokens are new every time, unless the\n"
-      "environment names them: TAUT_TOKEN, TAUT_WATCH_TOKEN.");
+      "environment names them: TAUT_TOKEN, TAUT_WATCH_TOKEN. With --robot only this machine is "
+      "listened\n"
+      "to, and Ctrl-C turns motors off.");
   view->callback([args, &exit_code] { exit_code = View(*args); });
 }
 

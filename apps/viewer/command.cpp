@@ -121,6 +121,10 @@ std::optional<Command> ParseCommand(std::string_view text, std::string& error) {
       command.name = value.get<std::string>();
     } else if (key == "gain") {
       command.gain = value.get<std::string>();
+    } else if (key == "mode") {
+      command.mode = value.get<std::string>();
+    } else if (key == "on") {
+      command.on = value.get<bool>();
     } else if (key == "target_m" || key == "force_n") {
       command.vector = {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
     } else if (key == "value" || key == "factor" || key == "time_s" || key == "duration_s") {

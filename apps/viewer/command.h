@@ -20,10 +20,12 @@ struct Command {
   std::string type;  ///< A key of "client" in messages.json.
   std::string name;  ///< node, name, cable or channel.
   std::string gain;
+  std::string mode;       ///< Of robot_mode.
   Vec3 vector;            ///< target_m or force_n.
   double value = 0;       ///< value, factor, time_s, duration_s.
   double t0 = 0, t1 = 0;  ///< Of want_series [s].
   int id = 0, source = 0, points = 0, count = 1;
+  bool on = false;  ///< Of record.
 };
 
 /// Nothing if the text is not a message of the protocol; `error` says why.

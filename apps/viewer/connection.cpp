@@ -58,12 +58,19 @@ void Connection::SendFrame(std::shared_ptr<const std::string> frame) {
   Write();
 }
 
+void Connection::SendStatus(std::shared_ptr<const std::string> text) {
+  if (!open_ || closing_ || text == said_status_) return;
+  status_ = said_status_ = std::move(text);
+  Write();
+}
+
 void Connection::Close(const std::string& reason) {
   if (closing_) return;
   closing_ = true;
   close_reason_ = reason.substr(0, 120);  // a close frame has room for 123 bytes
   texts_.clear();
   frame_.reset();
+  status_.reset();
   Write();
 }
 
@@ -85,6 +92,12 @@ void Connection::Write() {
     waiting_bytes_ -= sending_text_.size();
     stream_.text(true);
     stream_.async_write(asio::buffer(sending_text_), written);
+  } else if (status_) {
+    writing_ = true;
+    sending_ = std::move(status_);
+    status_.reset();
+    stream_.text(true);
+    stream_.async_write(asio::buffer(*sending_), written);
   } else if (frame_) {
     writing_ = true;
     sending_ = std::move(frame_);

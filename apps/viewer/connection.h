@@ -1,4 +1,5 @@
-/// One WebSocket client. Texts are sent in order and all of them; of frames only the newest.
+/// One WebSocket client. Texts are sent in order and all of them; of frames and of what a robot
+/// says of itself only the newest.
 #pragma once
 
 #include <deque>
@@ -26,6 +27,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void Accept(const http::request<http::empty_body>& request);
   void SendText(std::string text);
   void SendFrame(std::shared_ptr<const std::string> frame);
+  void SendStatus(std::shared_ptr<const std::string> text);
   void Close(const std::string& reason);
 
  private:
@@ -40,7 +42,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::flat_buffer received_;
   std::deque<std::string> texts_;
   std::size_t waiting_bytes_ = 0;
-  std::shared_ptr<const std::string> frame_, sending_;
+  std::shared_ptr<const std::string> frame_, status_, said_status_, sending_;
   std::string sending_text_, close_reason_;
   bool open_ = false, writing_ = false, closing_ = false, finished_ = false;
 };

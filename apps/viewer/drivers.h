@@ -11,7 +11,8 @@ class Drivers {
 
   /// Whether the command may be passed on. Whoever asks first while nobody drives, drives.
   bool Allow(int client, const std::string& type) {
-    if (type == "want_series") return true;
+    // An emergency stop asks for no control, and takes none.
+    if (type == "want_series" || type == "stop") return true;
     if (type == "take_control" || driver_ == 0) driver_ = client;
     return driver_ == client;
   }

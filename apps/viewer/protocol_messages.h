@@ -3,7 +3,7 @@
 
 namespace taut::viewer {
 
-inline constexpr int kProtocolVersion = 4;
+inline constexpr int kProtocolVersion = 5;
 
 /// How a field of a message is written in JSON.
 enum class FieldKind { kString, kNumber, kInteger, kBoolean, kVec3, kChoice };
@@ -39,6 +39,12 @@ inline constexpr MessageField kClientFields[] = {
     {"set_gain", "cable", FieldKind::kString, false, ""},
     {"set_gain", "gain", FieldKind::kChoice, false, "length_offset_m|position_gain_n_per_m|velocity_gain_n_s_per_m"},
     {"set_gain", "value", FieldKind::kNumber, false, ""},
+    {"stop", "", FieldKind::kString, true, ""},
+    {"robot_mode", "mode", FieldKind::kChoice, false, "off|arm|hold|impedance|clear_faults"},
+    {"robot_gain", "cable", FieldKind::kString, false, ""},
+    {"robot_gain", "gain", FieldKind::kChoice, false, "tension_offset_n|length_offset_m|position_gain_n_per_m|velocity_gain_n_s_per_m"},
+    {"robot_gain", "value", FieldKind::kNumber, false, ""},
+    {"record", "on", FieldKind::kBoolean, false, ""},
     {"want_series", "id", FieldKind::kInteger, false, ""},
     {"want_series", "channel", FieldKind::kString, false, ""},
     {"want_series", "source", FieldKind::kInteger, true, ""},

@@ -82,6 +82,7 @@ struct Server::Impl {
     if (!who.may_drive()) hello["watch_only"] = true;
     who.SendText(Dump(hello));
     if (std::string scene = session.scene(); !scene.empty()) who.SendText(std::move(scene));
+    if (const auto status = session.status()) who.SendStatus(status);
     if (const auto frame = session.frame()) who.SendFrame(frame);
   }
 
@@ -150,6 +151,9 @@ struct Server::Impl {
         const auto keep = at->second;
         keep->SendText(std::move(message.text));
       }
+    }
+    if (const auto status = session.status()) {
+      for (const auto& [id, client] : Clients()) client->SendStatus(status);
     }
     if (const auto frame = session.frame()) {
       for (const auto& [id, client] : Clients()) client->SendFrame(frame);

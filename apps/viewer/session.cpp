@@ -41,6 +41,7 @@ bool Session::idle() const {
 }
 
 bool Session::Post(int client, Command command) {
+  if (TakeAtOnce(client, command)) return true;
   {
     const std::lock_guard lock(mutex_);
     if (commands_.size() >= kMaxWaiting || series_waiting_ >= kMaxSeriesWaiting) return false;
@@ -54,6 +55,11 @@ bool Session::Post(int client, Command command) {
 std::shared_ptr<const std::string> Session::frame() const {
   const std::lock_guard lock(mutex_);
   return frame_;
+}
+
+std::shared_ptr<const std::string> Session::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
 }
 
 std::string Session::scene() const {
@@ -89,6 +95,15 @@ void Session::SetScene(const Json& scene, bool tell) {
     scene_ = std::move(text);
   }
   if (tell && wake_) wake_();
+}
+
+void Session::SetStatus(const Json& message) {
+  auto text = std::make_shared<const std::string>(Dump(message));
+  {
+    const std::lock_guard lock(mutex_);
+    status_.swap(text);
+  }
+  if (wake_) wake_();
 }
 
 void Session::Say(int client, const Json& message) {

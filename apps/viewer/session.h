@@ -51,6 +51,8 @@ class Session {
   bool Post(int client, Command command);
   std::shared_ptr<const std::string> frame() const;  ///< The newest; nothing before the first.
   std::string scene() const;                         ///< The message; empty if there is none.
+  /// The newest of a robot; nothing where there is none.
+  std::shared_ptr<const std::string> status() const;
   std::vector<Outgoing> TakeMessages();
   void SetDriver(int client);
 
@@ -61,6 +63,10 @@ class Session {
   /// called again at the latest.
   virtual Clock::time_point Work() = 0;
 
+  /// What must not wait for the session's work: called on the server's thread, returns at once.
+  /// False: the command is handled as all others.
+  virtual bool TakeAtOnce(int /*client*/, const Command& /*command*/) { return false; }
+
   /// Whether Stop was called. What takes long looks at it and ends.
   bool stopping() const noexcept { return stop_; }
   /// Whether no command waits.
@@ -68,6 +74,7 @@ class Session {
 
   void Publish(Frame frame);
   void SetScene(const Json& scene, bool tell);
+  void SetStatus(const Json& message);
   void Say(int client, const Json& message);
   void SayError(int client, const std::string& text);
   void SayEvent(double time_s, const std::string& text);
@@ -86,7 +93,7 @@ class Session {
   std::atomic<bool> stop_{false};
   std::deque<std::pair<int, Command>> commands_;
   int series_waiting_ = 0;
-  std::shared_ptr<const std::string> frame_;
+  std::shared_ptr<const std::string> frame_, status_;
   std::string scene_;
   std::vector<Outgoing> messages_;
 };

@@ -52,7 +52,8 @@ class RunFolder {
   /// there is no room: then what the folder holds is still all of the run before.
   bool Prepare(const std::string& experiment, Diagnostics& out);
 
-  /// The run begins: the pieces of the one before go, the summary first, and inputs.yaml is there.
+  /// The run begins: the pieces of the one before go, the summary first, and inputs.yaml is there,
+  /// if it was prepared: what a robot was seen to do has none.
   /// Traces appear with their first rows. False and a complaint if that fails.
   bool Begin(Diagnostics& out);
 

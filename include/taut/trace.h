@@ -65,6 +65,10 @@ std::unique_ptr<TraceWriter> CreateCsvTrace(const std::string& path,
                                             const std::vector<ChannelInfo>& channels,
                                             Diagnostics& out);
 
+/// The same, on a thread of its own: `Append` never waits for a disk, and says a little later that
+/// writing has failed. For who drives a robot meanwhile. `channels`: how many there are.
+std::unique_ptr<TraceWriter> WriteBehind(std::unique_ptr<TraceWriter> writer, std::size_t channels);
+
 /// A trace in memory.
 struct Trace {
   std::vector<ChannelInfo> channels;

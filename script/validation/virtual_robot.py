@@ -1,155 +1,248 @@
-"""The paper's experiments on emulated boards, beside the pure simulation and NTRT; and where the difference comes from."""
+"""The paper's experiments on emulated boards, beside the pure simulation and NTRT; and where they differ."""
 
 import concurrent.futures
-import csv
-import gzip
 import json
 import os
 import pathlib
 import subprocess
 
-from validation.runs import ROOT, Problem, fill, replaced, table
+from validation.runs import ROOT, Problem, fill, keep_picture, table
+from validation.tension_curves import Curve, picture
+from validation.tension_waves import Off, h5py, read_ntrt, read_trace
+from validation.virtual_robot_causes import (ADDED, LIMITED, LOSS_ALONE, MOTORS_CHANGED, ON_BOARDS, SENSITIVITY, STIFF,
+                                             STIFF_PID, STRONG_P, TOGETHER, Cause, build_firmware)
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
-MODEL = "models/tetraspine3_motors.yaml"
-EXPERIMENTS = {"push_20n": "push", "sine_hand_tuned": "sine_hand_tuned", "cpg_learned": "cpg_learned"}
-NTRT = "tests/data/ntrt/{}_1000hz.csv.gz"
-START_S = 5.0
-CABLES = [f"{side}_{where}_{n}" for n in (1, 2) for side in ("outer", "inner") for where in ("right", "left", "top")]
-CAUSES = (  # what differs: name, flags, replacements in the model
-    ("as it is", [], {}),
-    ("load cells without noise", ["--noise_counts", "0"], {}),
-    ("load cells not filtered", ["--board", "tension_filter_share=1"], {}),
-    ("rate of the encoder not filtered", ["--board", "rate_filter_share=1"], {}),
-    ("PID three times as strong", ["--board", "force_p_per_n=0.18", "force_i_per_n_s=1.8"], {}),
-    ("motors and gears without friction", [],
-     {"static_friction_torque_n_m: 0.00012": "static_friction_torque_n_m: 0\n    friction_torque_n_m: 0",
-      "gear_efficiency: 0.66": "gear_efficiency: 1"}),
-    ("supply of 24 V", [], {"supply_voltage_v: 12": "supply_voltage_v: 24"}),
-    ("USB without delay", ["--usb_latency_s", "0"], {}),
-)
+PUSH, SINE, CPG = "push_20n", "sine_hand_tuned", "cpg_learned"
+EXPERIMENTS = (PUSH, SINE, CPG)
+NTRT = {name: ROOT / f"tests/data/ntrt/{trace}_1000hz.csv.gz"
+        for name, trace in ((PUSH, "push"), (SINE, SINE), (CPG, CPG))}
+CAUSE_S = 20.0  # how long the gaits' runs for causes are; the push is over after 45 s
+# Of the pictures: from when to when, time between points, width of the set point (the push's tensions cover it).
+SPANS = {PUSH: ((20, 60), 0.2, 4.5), SINE: ((30, 40), 0.04, 1.2), CPG: ((30, 35), 0.02, 0.8)}
+FULL_DUTY = 0.999
+FAULTS = ("over tension", "sensor", "slack", "stall", "polarity", "runaway", "hot")  # MotorFault of taut/board/faults.h
 
 
-def h5py():
-    try:
-        import h5py as module
-    except ImportError:
-        raise Problem("this page reads traces with h5py (Debian: python3-h5py)") from None
-    return module
+class Runs:
+    """Runs of causes, simulated and on boards, by experiment and cause."""
 
-
-class Waves:
-    """Tensions of the cables after the start [N], 100 or 50 a second."""
-
-    def __init__(self, path):
-        with h5py().File(path, "r") as file:
-            time_s = file["time_s"][:]
-            rows = time_s >= START_S - 1e-9
-            self.of = {cable: file[f"cable/{cable}/tension_n"][:][rows] for cable in CABLES}
-
-    def largest(self):
-        return max(wave.max() for wave in self.of.values())
-
-    def mean(self):
-        return sum(wave.mean() for wave in self.of.values()) / len(self.of)
-
-    def off(self, other):
-        """Root mean square and largest difference over all cables."""
-        squares = [((self.of[c] - other.of[c]) ** 2).mean() for c in CABLES]
-        return (sum(squares) / len(squares)) ** 0.5, max(abs(self.of[c] - other.of[c]).max() for c in CABLES)
-
-
-def ntrt_figures(name):
-    """Largest and mean tension of NTRT's elastic part after the start."""
-    with gzip.open(ROOT / NTRT.format(EXPERIMENTS[name]), "rt") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    columns = [column for column in rows[0] if column.endswith("tension_n") or column.endswith("_tension_N")
-               or "elastic" in column]
-    late = [row for row in rows if float(row["time_s"]) >= START_S]
-    values = [[float(row[column]) for row in late] for column in columns]
-    return max(map(max, values)), sum(sum(v) / len(v) for v in values) / len(values)
-
-
-class Boards:
     def __init__(self, taut):
         self.taut, self.command = taut, pathlib.Path(taut.command).parent / "taut_virtual_robot"
         if not os.access(self.command, os.X_OK):
             raise Problem(f"there is no {self.command}: it wants gcc-avr, avr-libc and libsimavr-dev")
+        self.firmware = {}  # by what is changed in it
 
-    def run(self, job):
-        name, cause = job
-        title, flags, changes = CAUSES[cause]
-        folder = self.taut.folder / f"boards_{name}_{cause}"
-        folder.mkdir(parents=True, exist_ok=True)
-        model = (ROOT / MODEL).read_text().replace("base: tetraspine3.yaml",
-                                                   f"base: {os.path.relpath(ROOT / 'models', folder)}/tetraspine3.yaml")
-        for old, new in changes.items():
-            model = replaced(model, old, new)
-        (folder / "model.yaml").write_text(model)
-        base = os.path.relpath(ROOT / "experiments" / f"{name}.yaml", folder)
-        (folder / "experiment.yaml").write_text(
-            f"taut: 1\nkind: experiment\nbase: {base}\nname: {name}_boards\nmodel: model.yaml\n")
-        done = subprocess.run([self.command, "--experiment", folder / "experiment.yaml", "--run", "--quiet", "--out",
-                               folder, *flags], capture_output=True, text=True)
+    def folder(self, kind, name, cause):
+        title = "".join(letter if letter.isalnum() else "_" for letter in cause.title)
+        return self.taut.folder / f"{kind}_{name}_{title}"
+
+    def simulate(self, name, cause):
+        folder = self.folder(cause.model, name, cause)
+        self.taut("run", cause.write(folder, name), "--quiet", "--out", folder / "run")
+        return folder / "run"
+
+    def on_boards(self, job):
+        name, cause, duration_s = job
+        folder = self.folder("boards", name, cause)
+        flags = list(cause.flags)
+        if cause.firmware:
+            flags += ["--firmware", self.firmware[cause.title]]
+        if duration_s:
+            flags += ["--duration_s", str(duration_s)]
+        done = subprocess.run([self.command, "--experiment", cause.write(folder, name), "--run", "--quiet",
+                               "--out", folder / "run", *flags], capture_output=True, text=True)
         if done.returncode != 0:
-            raise Problem(f"{title}: {done.stdout}{done.stderr}")
-        return job, (Waves(folder / "trace.h5"),
-                     json.loads((folder / "boards.json").read_text()))
+            raise Problem(f"{cause.title}: {done.stdout}{done.stderr}")
+        return job, folder / "run"
+
+    def all_on_boards(self, jobs):
+        for cause in dict.fromkeys(cause for _, cause, _ in jobs if cause.firmware):
+            self.firmware[cause.title] = build_firmware(self.folder("firmware", "motor_loop", cause), cause.firmware)
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            return {(name, cause): path for (name, cause, _), path in pool.map(self.on_boards, jobs)}
 
 
-def simulated(taut, name):
-    out = taut.folder / f"simulated_{name}"
-    taut("run", f"experiments/{name}.yaml", "--quiet", "--out", out)
-    return Waves(out / "trace.h5")
+class Beside:
+    """The pure simulation of an experiment, and what others are set beside it."""
+
+    def __init__(self, name, path):
+        self.name, self.path, self.whole = name, path, read_trace(path / "trace.h5")
+        self.until_s = None if name == PUSH else CAUSE_S
+        self.cut = read_trace(path / "trace.h5", self.until_s)
+        self.frequency_hz = None if name == PUSH else self.whole.strongest()
+
+    def off(self, path):
+        """From the start to the end of a cause's run."""
+        return Off(read_trace(path / "trace.h5", self.until_s), self.cut, self.frequency_hz)
 
 
 def percent(value, reference):
     return f"{100 * (value / reference - 1):+.1f} %"
 
 
-def page(taut):
-    boards = Boards(taut)
-    pure = {name: simulated(taut, name) for name in EXPERIMENTS}
-    motors = {name: simulated(taut, name + "_motors") for name in EXPERIMENTS}
-    jobs = [(name, 0) for name in EXPERIMENTS]
-    jobs += [(name, cause) for name in ("push_20n", "cpg_learned") for cause in range(1, len(CAUSES))]
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        done = dict(pool.map(boards.run, jobs))
+def late_ms(off):
+    return f"{round(1000 * off.lag_s) + 0:d}"
+
+
+def compared_tables(beside, motors, boards):
+    """Of the whole minute: how large, and of what the difference is made."""
+    sizes, shapes = [], []
+    for name in EXPERIMENTS:
+        ntrt, pure = read_ntrt(NTRT[name]), beside[name]
+        sizes.append([name, "NTRT", f"{ntrt.largest():.2f}", "", f"{ntrt.mean():.2f}", f"{ntrt.swing():.2f}", "", ""])
+        for who, path in (("simulated", pure.path), ("simulated, with motors", motors[name]),
+                          ("emulated boards", boards[name])):
+            waves = read_trace(path / "trace.h5")
+            off = Off(waves, pure.whole, pure.frequency_hz)
+            itself = path == pure.path
+            sizes.append(["", who, f"{waves.largest():.2f}", percent(waves.largest(), ntrt.largest()),
+                          f"{waves.mean():.2f}", f"{waves.swing():.2f}",
+                          *(("", "") if itself else (f"{off.rms_n:.3f}", f"{off.most_n:.2f}"))])
+            if name != PUSH:
+                shapes.append(["" if not itself else name, who, f"{1 / waves.strongest():.3f}", *(
+                    [""] * 5 if itself else (f"{off.rms_n:.2f}", f"{off.means_n:.2f}", f"{100 * off.swing:.0f}",
+                                             late_ms(off), f"{off.aligned_n:.2f}"))])
+    return (table(["experiment", "who", "largest tension [N]", "off NTRT's", "mean tension [N]", "swing [N]",
+                   "rms off the simulation [N]", "most [N]"], sizes),
+            table(["experiment", "who", "period [s]", "rms off [N]", "means off [N]", "swing [%]", "late by [ms]",
+                   "left when aligned [N]"], shapes))
+
+
+def causes_table(causes, names, beside, path_of):
+    """A row for each cause; of the push the difference, of the gaits also what it is made of."""
+    head, rows = ["what is different"], []
+    for name in names:
+        head += ["push: rms [N]", "most [N]"] if name == PUSH else [
+            f"{'sine' if name == SINE else 'learned gait'}: rms [N]", "means [N]", "swing [%]", "late [ms]"]
+    for cause in causes:
+        row = [cause.title]
+        for name in names:
+            off = beside[name].off(path_of(name, cause))
+            row += [f"{off.rms_n:.3f}", f"{off.most_n:.2f}"] if name == PUSH else [
+                f"{off.rms_n:.3f}", f"{off.means_n:.2f}", f"{100 * off.swing:.0f}", late_ms(off)]
+        rows.append(row)
+    return table(head, rows)
+
+
+def winding_table(motors, boards, strong):
+    """How fast a motor winds at full voltage, in and out, and how often it is there."""
+    rows = []
+    for name in (SINE, CPG):
+        rows.append([f"{name}, with motors", *winding_cells(motors[name])])
+        rows.append([f"{name}, emulated boards", *winding_cells(boards[name])])
+        rows.append([f"{name}, emulated boards, P ten times as strong", *winding_cells(strong[name])])
+    return table(["", "winding in at full voltage [% of the time]", "speed [cm/s]", "tension then [N]",
+                  "paying out [% of the time]", "speed [cm/s]", "tension then [N]"], rows)
+
+
+def winding_cells(path):
+    import numpy
+    parts = {1: [], -1: []}
+    count = 0
+    with h5py().File(path / "trace.h5", "r") as file:
+        late = file["time_s"][:] >= 5
+        for cable in file["cable"].values():
+            duty, tension_n = cable["duty"][:][late], cable["tension_n"][:][late]
+            speed_rad_per_s = cable["rotor_speed_rad_per_s"][:][late]
+            m_per_rad = -numpy.polyfit(cable["rotor_angle_rad"][:], cable["rest_length_m"][:], 1)[0]
+            count += len(duty)
+            for sign, part in parts.items():
+                full = sign * duty > FULL_DUTY
+                part.append((100 * m_per_rad * sign * speed_rad_per_s[full], tension_n[full]))
+    cells = []
+    for part in parts.values():
+        speeds, tensions = (numpy.concatenate(column) for column in zip(*part))
+        cells.append(f"{100 * len(speeds) / count:.0f}")
+        cells += [f"{speeds.mean():.1f}", f"{tensions.mean():.1f}"] if len(speeds) else ["", ""]
+    return cells
+
+
+def faults(done):
+    """What of the runs on boards must not be taken at its word: faults that stopped a motor."""
+    found = []
+    for (name, cause), path in done.items():
+        with h5py().File(path / "host.h5", "r") as file:
+            for cable, channels in sorted(file["cable"].items()):
+                bits = set(channels["faults"][:].astype(int)) - {0}
+                what = [word for bit, word in enumerate(FAULTS) if any(value >> bit & 1 for value in bits)]
+                if what:
+                    found.append(f"{cause.title}, {name}, {cable}: {', '.join(what)}")
+    return "; ".join(found) if found else "none"
+
+
+def times_table(boards):
     rows = []
     for name in EXPERIMENTS:
-        largest, mean = ntrt_figures(name)
-        rows.append([name, "NTRT", f"{largest:.2f}", "", f"{mean:.2f}", "", ""])
-        for kind, waves in (("simulated", pure[name]), ("simulated, with motors", motors[name]),
-                            ("emulated boards", done[(name, 0)][0])):
-            rms, most = waves.off(pure[name])
-            rows.append(["", kind, f"{waves.largest():.2f}", percent(waves.largest(), largest), f"{waves.mean():.2f}",
-                         *((f"{rms:.3f}", f"{most:.2f}") if waves is not pure[name] else ("", ""))])
-    causes = []
-    for cause, (title, _, _) in enumerate(CAUSES):
-        cells = []
-        for name in ("push_20n", "cpg_learned"):
-            rms, most = done[(name, cause)][0].off(pure[name])
-            cells += [f"{rms:.3f}", f"{most:.2f}", f"{done[(name, cause)][0].largest():.2f}"]
-        causes.append([title, *cells])
-    for title, source in (("no boards: motors that follow exact sensors", motors),):
-        cells = []
-        for name in ("push_20n", "cpg_learned"):
-            rms, most = source[name].off(pure[name])
-            cells += [f"{rms:.3f}", f"{most:.2f}", f"{source[name].largest():.2f}"]
-        causes.append([title, *cells])
-    times = []
+        figures = json.loads((boards[name] / "boards.json").read_text())
+        rows.append([name, f"{figures['tick_mean_us']:.0f}", f"{figures['tick_longest_us']:.0f}",
+                     str(figures["late_ticks"]), f"{figures['cycle_mean_ms']:.2f}",
+                     f"{figures['cycle_longest_ms']:.2f}", str(figures["bad_frames"])])
+    return table(["experiment", "tick, mean [us]", "longest [us]", "late ticks", "cycle, mean [ms]", "longest [ms]",
+                  "bad frames"], rows)
+
+
+def draw(taut, name, pure, boards):
+    def heard(quantity):
+        with h5py().File(boards / "host.h5", "r") as file:
+            return file["time_s"][:], {cable: group[quantity][:] for cable, group in file["cable"].items()}
+
+    span_s, row_s, wide = SPANS[name]
+    ntrt = read_ntrt(NTRT[name], 0)
+    tensions = [Curve("simulation", "black", pure.whole.time_s, pure.whole.of, 2),
+                Curve("NTRT, elastic part", "#e0a020", ntrt.time_s, ntrt.of, 1.4, "4 3"),
+                Curve("boards: load cells", "#e03020", *heard("tension_n"), 0.9)]
+    set_point = Curve("boards: set point", "#9cc6f0", *heard("setpoint_n"), wide)
+    keep_picture(taut, f"docs/validation/virtual_robot_{name}.svg", picture(set_point, tensions, span_s, row_s))
+
+
+def called(causes, title):
+    return next(cause for cause in causes if cause.title == title)
+
+
+def headlines(beside, motors, boards, done, simulate):
+    """The figures of the page's first lines: rms off the pure simulation [N], as in the tables below them."""
+
+    def rms(name, path):
+        return f"{beside[name].off(path).rms_n:.1f}"
+
+    alone = called(MOTORS_CHANGED, LOSS_ALONE)
+    stiff, stiff_pid = called(ON_BOARDS, STIFF), called(TOGETHER, STIFF_PID)
+    return {
+        "push_most": f"{beside[PUSH].off(boards[PUSH]).most_n:.2f}",
+        "cpg_boards": rms(CPG, boards[CPG]), "cpg_motors": rms(CPG, motors[CPG]),
+        "cpg_alone": rms(CPG, simulate(CPG, alone)),
+        "cpg_stiff": rms(CPG, done[CPG, stiff]), "cpg_stiff_pid": rms(CPG, done[CPG, stiff_pid]),
+        "sine_boards": rms(SINE, boards[SINE]), "sine_rest": rms(SINE, done[SINE, TOGETHER[-1]]),
+        "cause_s": f"{CAUSE_S:.0f}",
+    }
+
+
+def page(taut):
+    runs = Runs(taut)
+    as_it_is, motors_cause, pure_cause = ON_BOARDS[0], MOTORS_CHANGED[0], Cause("nothing", LIMITED)
+    jobs = [(name, as_it_is, None) for name in EXPERIMENTS]
+    jobs += [(name, cause, CAUSE_S) for cause in (*ON_BOARDS[1:], *TOGETHER) for name in (SINE, CPG)]
+    done = runs.all_on_boards(jobs)
+    beside = {name: Beside(name, runs.simulate(name, pure_cause)) for name in EXPERIMENTS}
+    boards = {name: done[name, as_it_is] for name in EXPERIMENTS}
+    motors = {name: runs.simulate(name, motors_cause) for name in EXPERIMENTS}
     for name in EXPERIMENTS:
-        figures = done[(name, 0)][1]
-        times.append([name, f"{figures['tick_mean_us']:.0f}", f"{figures['tick_longest_us']:.0f}",
-                      str(figures["late_ticks"]), f"{figures['cycle_mean_ms']:.2f}",
-                      f"{figures['cycle_longest_ms']:.2f}", str(figures["bad_frames"])])
-    figures = done[("push_20n", 0)][1]
+        draw(taut, name, beside[name], boards[name])
+    compared, shapes = compared_tables(beside, motors, boards)
+    strong_p = called(ON_BOARDS, STRONG_P)
+    figures = json.loads((boards[PUSH] / "boards.json").read_text())
     return fill(TEMPLATE.read_text(), {
-        "compared": table(["experiment", "who", "largest tension [N]", "off NTRT's", "mean tension [N]",
-                           "rms off the simulation [N]", "most [N]"], rows),
-        "causes": table(["what is different", "push: rms [N]", "most [N]", "largest [N]", "learned gait: rms [N]",
-                         "most [N]", "largest [N]"], causes),
-        "times": table(["experiment", "tick, mean [us]", "longest [us]", "late ticks", "cycle, mean [ms]",
-                        "longest [ms]", "bad frames"], times),
+        "compared": compared,
+        "shapes": shapes,
+        "winding": winding_table(motors, boards, {name: done[name, strong_p] for name in (SINE, CPG)}),
+        "sensitivity": causes_table(SENSITIVITY, EXPERIMENTS, beside, runs.simulate),
+        "added": causes_table(ADDED, EXPERIMENTS, beside, runs.simulate),
+        "motors": causes_table(MOTORS_CHANGED, EXPERIMENTS, beside, runs.simulate),
+        "on_boards": causes_table(ON_BOARDS, (SINE, CPG), beside, lambda name, cause: done[name, cause]),
+        "together": causes_table(TOGETHER, (SINE, CPG), beside, lambda name, cause: done[name, cause]),
+        "faults": faults(done),
+        **headlines(beside, motors, boards, done, runs.simulate),
+        "times": times_table(boards),
         "memory": f"{figures['static_memory_bytes']} bytes of variables and {figures['deepest_stack_bytes']} of stack",
     })

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/name_unit.h"
+#include "description/calibration_keys.h"
 #include "description/experiment_keys.h"
 #include "description/fault_keys.h"
 #include "description/gait_keys.h"
@@ -314,7 +315,8 @@ std::string Schema() {
 }  // namespace description
 
 const std::vector<std::string>& FormatNames() {
-  static const std::vector<std::string> names{"model", "experiment", "gait", "study", "faults"};
+  static const std::vector<std::string> names{"model", "experiment", "gait",
+                                              "study", "faults",     "calibration"};
   return names;
 }
 
@@ -324,6 +326,7 @@ std::optional<std::string> FormatSchema(std::string_view format) {
   if (format == "gait") return description::Schema<description::GaitText>();
   if (format == "study") return description::Schema<description::StudyFileText>();
   if (format == "faults") return description::Schema<description::FaultFileText>();
+  if (format == "calibration") return description::Schema<description::CalibrationFileText>();
   return std::nullopt;
 }
 

@@ -73,10 +73,14 @@ void Statistics::Take(double time_s, double step_s, const Observation& now,
     }
     if (kind != ActuatorDef::Kind::kNone) {
       cable.max_force_n = std::max(cable.max_force_n, r.tension_n);
+      cable.since_s += step_s;
+      const double wound_m = cable.rest_length_m - r.rest_length_m;
+      // What is read of a robot stands still between two readings.
+      const double over_s = world != nullptr ? step_s : cable.since_s;
+      if (wound_m != 0) cable.since_s = 0;
       if (step_s > 0) {
-        const double wound_m = cable.rest_length_m - r.rest_length_m;
-        cable.max_speed = std::max(cable.max_speed, std::fabs(wound_m) / step_s);
-        cable.max_power_w = std::max(cable.max_power_w, r.tension_n * wound_m / step_s);
+        cable.max_speed = std::max(cable.max_speed, std::fabs(wound_m) / over_s);
+        cable.max_power_w = std::max(cable.max_power_w, r.tension_n * wound_m / over_s);
         cable.energy_j += r.tension_n * std::max(wound_m, 0.0);
         cable.net_energy_j += r.tension_n * wound_m;
       }

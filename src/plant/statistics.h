@@ -36,6 +36,7 @@ class Statistics {
     Quantity tension, elastic;
     double rest_length_m = 0, max_force_n = 0, max_speed = 0, max_power_w = 0, energy_j = 0,
            net_energy_j = 0;
+    double since_s = 0;  ///< The last time that the rest length was another.
     std::optional<MotorSummary> motor;
   };
   void Take(Quantity& quantity, double time_s, double force_n) const;

@@ -144,11 +144,13 @@ bool RunFolder::Prepare(const std::string& experiment, Diagnostics& out) {
 }
 
 bool RunFolder::Begin(Diagnostics& out) {
-  if (!RemoveRunBefore(folder_, {kInputs}, out)) return false;
+  std::vector<std::string> replaced;
+  if (inputs_) replaced.push_back(kInputs);
+  if (!RemoveRunBefore(folder_, replaced, out)) return false;
   for (const std::string& name : more_) {
     if (!RemoveOld(Path(name), out)) return false;
   }
-  if (inputs_->Publish()) return true;
+  if (!inputs_ || inputs_->Publish()) return true;
   out.Error({Path(kInputs)}, "cannot be written: " + inputs_->why());
   return false;
 }

@@ -359,5 +359,19 @@ TEST(Board, RandomMessagesAndReadingsBreakNothing) {
   }
 }
 
+// Off, and its cable unwinds it: no current flows, whatever the encoder says.
+TEST(Heat, IsNotOfAMotorThatCoasts) {
+  Bench bench;
+  bench.Run(300);
+  const int before_c = bench.board.temperature_c[0];
+  for (int i = 0; i < 2000; ++i) {
+    bench.motors[0].wound_m -= 3e-4;  // 0.3 m/s
+    bench.Run(1);
+  }
+  EXPECT_EQ(bench.board.mode, Mode::kOff);
+  EXPECT_LE(bench.board.temperature_c[0], before_c);
+  EXPECT_EQ(bench.board.faults[0], 0);
+}
+
 }  // namespace
 }  // namespace taut::board

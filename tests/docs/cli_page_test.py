@@ -56,13 +56,18 @@ def main():
     top = help_of(taut)
     subcommands = subcommands_of_help(top)
     expected = {"taut": flags_of_help(top)}
-    for name in subcommands:
-        text = help_of(taut, name)
+
+    def read(words):
+        text = help_of(taut, *words)
         parts = subcommands_of_help(text)
-        expected[f"taut {name}"] = flags_of_help(text) | set(arguments_of_help(text)) | set(parts)
+        expected[" ".join(["taut", *words])] = (
+            flags_of_help(text) | set(arguments_of_help(text)) | set(parts)
+        )
         for inner in parts:
-            text = help_of(taut, name, inner)
-            expected[f"taut {name} {inner}"] = flags_of_help(text) | set(arguments_of_help(text))
+            read([*words, inner])
+
+    for name in subcommands:
+        read([name])
     if not subcommands or not all(expected.values()):
         wrong.append("the help texts cannot be read")
     found = {

@@ -1,4 +1,4 @@
-/// Motors in company: energies, supplies, heat, backlash, the servo, and what a step's length does.
+/// Motors in company: energies, heat, backlash, the servo, and what a step's length does.
 
 #include <gtest/gtest.h>
 
@@ -84,57 +84,6 @@ TEST(MotorEnergy, OfASteadyLiftIsThatOfTheLaw) {
               1e-3 * 12 * current * 5);
   EXPECT_NEAR(to.energy_to_cable_j - from.energy_to_cable_j, load * way * speed * 5,
               1e-3 * load * way * speed * 5);
-}
-
-ModelDef TwoMotors(const DcMotorDef& a, const DcMotorDef& b) {
-  ModelDef def = MotorAlone(a, 1, 1e5);
-  def.cables.push_back(def.cables[0]);
-  def.cables[1].name = "other";
-  Wind(def.cables[1], b);
-  return def;
-}
-
-// Two stalled motors at duty d: V = V0 - r I, I = sum of d (d V / R).
-TEST(MotorSupply, SagsByTheCurrentsOfAllItsMotors) {
-  DcMotorDef motor = PlainMotor();
-  motor.supply_resistance_ohm = 5;  // so much that a lagging voltage would swing
-  motor.resistance_ohm = 4;
-  DcMotorDef apart = motor;
-  apart.supply = "other";
-  for (const double h : kThreeStepsS) {
-    Batch world = MakeBatch(TwoMotors(motor, motor));
-    world.SetDuty(0, 0, 1);
-    world.SetDuty(0, 1, 0.5);
-    world.Step(h, StepsIn(5.0, h));
-    const double volts = 12 / (1 + 5 * (1 + 0.25) / 4);
-    for (const int cable : {0, 1}) {
-      EXPECT_NEAR(world.Motor(0, cable).supply_voltage_v, volts, 1e-6 * volts);
-    }
-    EXPECT_NEAR(world.Motor(0, 0).current_a, volts / 4, 1e-6 * volts);
-    EXPECT_NEAR(world.Motor(0, 1).voltage_v, volts / 2, 1e-6 * volts);
-    // Of its own supply each has what it would have alone.
-    Batch two = MakeBatch(TwoMotors(motor, apart));
-    two.SetDuty(0, 0, 1);
-    two.SetDuty(0, 1, 0.5);
-    two.Step(h, StepsIn(5.0, h));
-    EXPECT_NEAR(two.Motor(0, 0).supply_voltage_v, 12 / (1 + 5.0 / 4), 1e-5);
-    EXPECT_NEAR(two.Motor(0, 1).supply_voltage_v, 12 / (1 + 5 * 0.25 / 4), 1e-5);
-  }
-}
-
-// What a braking motor gives back does not lift the supply above its voltage without load.
-TEST(MotorSupply, IsNotChargedAboveItsVoltage) {
-  DcMotorDef motor = PlainMotor();
-  motor.supply_resistance_ohm = 5;
-  Batch world = MakeBatch(MotorAlone(motor));
-  world.SetDuty(0, 0, 1);
-  world.Step(1e-3, 200);
-  const double energy = world.Motor(0, 0).energy_from_supply_j;
-  world.SetDuty(0, 0, 0.3);
-  world.Step(1e-3, 2);
-  EXPECT_LT(world.Motor(0, 0).current_a, 0);
-  EXPECT_EQ(world.Motor(0, 0).supply_voltage_v, 12);
-  EXPECT_LT(world.Motor(0, 0).energy_from_supply_j, energy);
 }
 
 // A stalled motor whose housing stays cold: the winding's temperature rises by

@@ -124,9 +124,10 @@ TEST_F(CliCommand, WhatIsMissingOrTooMuchIsNamed) {
             "error: B is missing (Trace: the reference); usage: taut compare [FLAGS] A B");
   EXPECT_EQ(Refusal({"check", "a.yaml", "b.yaml"}),
             "error: \"b.yaml\" is too much; usage: taut check [FLAGS] FILE");
-  EXPECT_EQ(Refusal({"view", "a.h5", "b.h5"}),
-            "error: \"b.h5\" is too much; usage: taut view [FLAGS] FILE (beside another: --compare "
-            "b.h5)");
+  EXPECT_EQ(
+      Refusal({"view", "a.h5", "b.h5"}),
+      "error: \"b.h5\" is too much; usage: taut view [FLAGS] [FILE] (beside another: --compare "
+      "b.h5)");
   EXPECT_EQ(Refusal({"run", kHang, "--out"}), "error: --out needs a value: --out FOLDER");
   EXPECT_EQ(Refusal({"run", kHang, "--csv=3"}), "error: --csv takes no value");
   EXPECT_EQ(Refusal({"run", kHang, "--out", "a", "--out", "b"}),

@@ -109,6 +109,22 @@ TEST_F(ViewCommand, ListeningToOthersIsSaidToBeReadable) {
   EXPECT_NE(said.find(fmt::format("ssh -L {0}:localhost:{0} MACHINE\n", port_)), said.npos) << said;
 }
 
+TEST_F(ViewCommand, WhatMovesMotorsListensToThisMachineOnly) {
+  for (const std::string address : {"0.0.0.0", "::", "192.0.2.1"}) {
+    const CommandResult result = Run({"view", "--robot", "virtual", "--listen", address});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.errors.find("--listen " + address + " does not go with a robot"),
+              result.errors.npos)
+        << result.errors;
+    EXPECT_NE(result.errors.find("ssh -L 8080:localhost:8080 MACHINE"), result.errors.npos);
+  }
+  EXPECT_EQ(Run({"view", kHang, "--robot", "virtual"}).status, 2);
+  EXPECT_EQ(Run({"view", "--robot", "virtual", "--speed", "2"}).status, 2);
+  EXPECT_EQ(Run({"view", kHang, "--model", "m.yaml"}).status, 2);
+  EXPECT_EQ(Run({"view"}).status, 2);
+  EXPECT_EQ(Run({"view", "--robot", "/absent", "--port", "0"}).status, 1);
+}
+
 /// A limit to the size of files stands for a full disk: writes fail in the same way.
 TEST_F(ViewCommand, AFullDiskIsSaidToAllAndAtTheTerminal) {
   const auto limit = [] {

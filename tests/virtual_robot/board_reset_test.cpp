@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "virtual_robot/avr_core.h"
 #include "virtual_robot/board_fixture.h"
+#include "virtual_robot/simavr.h"
 
 namespace taut::virtual_robot {
 namespace {
@@ -67,6 +69,28 @@ TEST(Board, TheWatchdogEndsAHangWithinItsTimeAndSaysSo) {
     EXPECT_EQ(board.Memory(kBoxCause), 8);
     EXPECT_EQ(board.Memory(kBoxBoots), 2);
   }
+}
+
+TEST(Board, AProgramClearsCausesOfResetsAndSetsNone) {
+  Board board(ProbeProgram(), {});
+  RunTo(board, kBoot);
+  board.SetMemory(kBoxCausesRead, 0xFF);
+  board.SetMemory(kBoxOrder, kOrderSetCauses);
+  RunTo(board, board.now() + 5 * kMillisecond);
+  EXPECT_EQ(board.Memory(kBoxCausesRead), 0) << "it had cleared them all when it began";
+  board.SetMemory(kBoxOrder, kOrderHang);
+  RunTo(board, board.now() + 100 * kMillisecond);
+  EXPECT_EQ(board.Memory(kBoxCause), 8) << "and the next reset has its own cause only";
+}
+
+// Else simavr would look at its timers after every instruction or so: the same, ten times slower.
+TEST(Board, ACoreRunsOnForAsLongAfterAReset) {
+  AvrCore core(*ProbeProgram());
+  core.Reset(1, true);
+  EXPECT_EQ(core.avr().run_cycle_limit, 100'000U);
+  core.avr().run_cycle_limit = 1;
+  core.Reset(4, false);
+  EXPECT_EQ(core.avr().run_cycle_limit, 100'000U);
 }
 
 TEST(Board, AProgramThatIsLostIsCaughtByTheWatchdog) {

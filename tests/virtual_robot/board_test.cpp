@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "virtual_robot/board_fixture.h"
@@ -108,6 +109,39 @@ TEST(Board, DutyDirectionAndEnableArriveAtTheMotors) {
   }
   RunTo(board, board.now() + 110 * kMillisecond);  // the probe lets go without messages
   EXPECT_FALSE(board.Drive(0).enabled);
+}
+
+// Mode 8 is the only one of Timer 1 that is emulated. A program that chooses another, inverts its
+// outputs or stops its clock drives nothing, so that it cannot pass for one that works.
+TEST(Board, OtherModesOfItsTimerDriveNothing) {
+  Board board(ProbeProgram(), {});
+  RunTo(board, kBoot);
+  board.SetMemory(kBoxDuty, 100);
+  board.SetMemory(kBoxDuty + 2, 100);
+  board.SetMemory(kBoxEnable, 1);
+  board.SetMemory(kBoxNewDuty, 1);
+  RunTo(board, board.now() + 2 * kMillisecond);
+  ASSERT_NEAR(std::fabs(board.Drive(0).duty), 0.25, 1e-12);
+  constexpr std::uint8_t kOutputs = 0xA0, kInverted = 0xF0, kMode8 = 0x11;
+  for (const auto& [a, b] :
+       std::vector<std::pair<int, int>>{{kOutputs, 0x01},      // 0, normal
+                                        {kOutputs | 1, 0x01},  // 1, eight bits
+                                        {kOutputs, 0x09},      // 4, clear on compare
+                                        {kOutputs | 2, 0x19},  // 14, fast
+                                        {kInverted, kMode8},
+                                        {kOutputs, 0x10}}) {  // 8, without a clock
+    board.SetMemory(kBoxTimer1, static_cast<std::uint8_t>(a));
+    board.SetMemory(kBoxTimer1 + 1, static_cast<std::uint8_t>(b));
+    board.SetMemory(kBoxOrder, kOrderTimer1);
+    RunTo(board, board.now() + 2 * kMillisecond);
+    EXPECT_EQ(board.Drive(0).duty, 0) << a << " " << b;
+    EXPECT_EQ(board.Drive(1).duty, 0) << a << " " << b;
+  }
+  board.SetMemory(kBoxTimer1, kOutputs);
+  board.SetMemory(kBoxTimer1 + 1, kMode8);
+  board.SetMemory(kBoxOrder, kOrderTimer1);
+  RunTo(board, board.now() + 2 * kMillisecond);
+  EXPECT_NEAR(std::fabs(board.Drive(0).duty), 0.25, 1e-12);
 }
 
 TEST(Board, EveryCodeOfTheConverterIsRead) {

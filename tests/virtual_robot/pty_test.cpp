@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -35,7 +36,9 @@ class Client {
   Client& operator=(const Client&) = delete;
   bool good() const { return port_ >= 0; }
   void Write(const Bytes& bytes) const {
-    EXPECT_EQ(write(port_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+    const ssize_t written = write(port_, bytes.data(), bytes.size());
+    EXPECT_TRUE(written == static_cast<ssize_t>(bytes.size()) || (written < 0 && errno == EIO))
+        << "a port that is gone may refuse";
   }
   /// So many bytes; fewer where the port is gone or patience ends.
   Bytes Read(std::size_t count) const {
@@ -143,35 +146,46 @@ TEST(Pty, NothingButALinkIsReplaced) {
   EXPECT_FALSE(Pty::Open(folder.path / "no" / "such" / "folder", found));
 }
 
-TEST(Paced, AClientTalksToTheAdapterAndIsCutOffWithIt) {
+// What a client and the adapter say before the adapter is pulled out at `loss_s` and after. False
+// if it was pulled out too soon for a client on a machine as busy as this one.
+bool TalksUntil(double loss_s) {
   const Folder folder;
   const std::string link = folder.path / "robot";
   SpringPlant plant(2);
   RobotOptions options;
   options.program = ProbeProgram();
-  options.faults = {{.kind = FaultKind::kUsbLoss, .at_s = 1.0, .for_s = 0.05}};
+  options.faults = {{.kind = FaultKind::kUsbLoss, .at_s = loss_s, .for_s = 0.05}};
   auto running = std::make_unique<Running>(plant, options, link);
-  ASSERT_TRUE(Comes([&] { return running->opened == 1; }));
+  EXPECT_TRUE(Comes([&] { return running->opened >= 1; }));
+  const auto ask = [&](const Client& client, const Bytes& frame, std::size_t count) {
+    client.Write(frame);
+    return client.Read(count);
+  };
   {
     Client client(link);
-    ASSERT_TRUE(client.good());
-    client.Write({0x5A, 0x01});
-    EXPECT_EQ(client.Read(3), (Bytes{0x07, 8, 0x40}));
-    client.Write({0x5A, 0x02, 0x70, 0x04});
-    EXPECT_EQ(client.Read(2), (Bytes{0xFF, 0x00}));
-    client.Write({0x58, 0x20});
-    EXPECT_EQ(client.Read(1), Bytes{0xFF}) << "board 0 is there";
+    if (!client.good()) return false;
+    const Bytes version = ask(client, {0x5A, 0x01}, 3),
+                mode = ask(client, {0x5A, 0x02, 0x70, 0x04}, 2),
+                board = ask(client, {0x58, 0x20}, 1);
+    if (running->opened > 1 || board.empty()) return false;
+    EXPECT_EQ(version, (Bytes{0x07, 8, 0x40}));
+    EXPECT_EQ(mode, (Bytes{0xFF, 0x00}));
+    EXPECT_EQ(board, Bytes{0xFF}) << "board 0 is there";
     EXPECT_EQ(client.Read(1), Bytes{}) << "the port is gone";
   }
-  ASSERT_TRUE(Comes([&] { return running->opened == 2; }));
+  EXPECT_TRUE(Comes([&] { return running->opened == 2; }));
   {
     Client client(link);
-    ASSERT_TRUE(client.good());
-    client.Write({0x5A, 0x01});
-    EXPECT_EQ(client.Read(3), (Bytes{0x07, 8, 0x40})) << "it has forgotten its mode";
+    EXPECT_TRUE(client.good());
+    EXPECT_EQ(ask(client, {0x5A, 0x01}, 3), (Bytes{0x07, 8, 0x40})) << "it has forgotten its mode";
   }
   running.reset();
   EXPECT_FALSE(fs::exists(fs::symlink_status(link)));
+  return true;
+}
+
+TEST(Paced, AClientTalksToTheAdapterAndIsCutOffWithIt) {
+  EXPECT_TRUE(TalksUntil(0.5) || TalksUntil(2) || TalksUntil(8) || TalksUntil(30));
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ BoardsOptions Options() {
 
 struct Done {
   RunSummary summary;
-  std::vector<Heard> heard;
-  std::int64_t bad_frames = 0, late_cycles = 0;
+  link::State heard;
+  std::int64_t bad_frames = 0;
   std::vector<double> tensions_n;
 };
 
@@ -41,7 +41,7 @@ Done RunPush(double duration_s, const BoardsOptions& options) {
   how.plant = &plant;
   const auto summary = RunExperiment(experiment, how, found);
   EXPECT_TRUE(summary.has_value()) << found.Format();
-  Done done{*summary, plant.heard(), plant.bad_frames(), plant.late_cycles(), {}};
+  Done done{*summary, plant.heard(), plant.bad_frames(), {}};
   for (int m = 0; m < motors->motor_count(); ++m)
     done.tensions_n.push_back(motors->LoadCellForce(m));
   return done;
@@ -50,8 +50,8 @@ Done RunPush(double duration_s, const BoardsOptions& options) {
 TEST(RunOnBoards, HoldsTheSpineAsTheSimulationDoes) {
   const Done boards = RunPush(3.0, Options());
   EXPECT_EQ(boards.bad_frames, 0);
-  EXPECT_EQ(boards.late_cycles, 0);
-  for (const Heard& heard : boards.heard) {
+  EXPECT_EQ(boards.heard.link.late_cycles, 0);
+  for (const link::BoardView& heard : boards.heard.boards) {
     EXPECT_EQ(heard.status.mode, board::Mode::kImpedance);
     EXPECT_FALSE(heard.status.faulty);
     EXPECT_FALSE(heard.status.overrun);
@@ -74,26 +74,10 @@ TEST(RunOnBoards, TwoRunsAreTheSameAndNoiseIsAnother) {
 
 TEST(RunOnBoards, ParametersReachTheBoards) {
   BoardsOptions options = Options();
-  options.settings.push_back({board::kDutyLimit, 0.0f});
-  for (const Heard& heard : RunPush(0.3, options).heard) {
+  options.settings.push_back({true, board::kDutyLimit, 0.0f});
+  for (const link::BoardView& heard : RunPush(0.3, options).heard.boards) {
     EXPECT_EQ(heard.status.motors[0].duty, 0);
     EXPECT_EQ(heard.status.motors[1].duty, 0);
-  }
-}
-
-TEST(RunOnBoards, SettingsAreReadStrictly) {
-  Diagnostics found;
-  const auto good = ReadSetting("tension_filter_share=0.5", found);
-  ASSERT_TRUE(good && found.ok());
-  EXPECT_EQ(good->parameter, board::kTensionShare);
-  EXPECT_EQ(good->value, 0.5f);
-  for (const char* wrong :
-       {"tension_filter_share", "tension_filter_share=", "tension_filter_share=x",
-        "tension_filter_share=0.5x", "tension_filter_share=2", "tension_filter_share=nan",
-        "filter=0.5", "=1", ""}) {
-    Diagnostics complaints;
-    EXPECT_FALSE(ReadSetting(wrong, complaints).has_value()) << wrong;
-    EXPECT_FALSE(complaints.ok()) << wrong;
   }
 }
 

@@ -143,6 +143,22 @@ TEST(Twi, ASlaveRefusesBytes) {
   EXPECT_EQ(wires.Codes(0), "60 80 a0");
 }
 
+// TWSTO of a slave: "... returns to a well-defined unaddressed slave mode"; it sends no stop.
+TEST(Twi, ASlaveThatLetsGoIsNotAddressedUntilTheNextStart) {
+  Wires wires(2);
+  wires.board(0).SetMemory(kBoxLetGo, 2);
+  const BusResult result = wires.Transfer(Write(To(0), {1, 2, 3, 4, 5}));
+  EXPECT_EQ(result.outcome, BusOutcome::kNoAcknowledge);
+  EXPECT_EQ(result.written, 3) << "the address and two bytes";
+  EXPECT_EQ(wires.Codes(0), "60 80 80") << "not even a stop";
+  EXPECT_EQ(wires.Transfer(Write(0, {0xC3, 1, 2})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Codes(0), "70 90 90");
+  EXPECT_EQ(wires.Codes(1), "70 90 90 90 a0") << "others stay";
+  wires.board(0).SetMemory(kBoxLetGo, 0);
+  EXPECT_EQ(wires.Transfer(Write(To(0), {6})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Codes(0), "60 80 a0");
+}
+
 TEST(Twi, ABoardThatRefusesDoesNotStopAGeneralCall) {
   Wires wires(2);
   wires.board(0).SetMemory(kBoxNackFrom, 1);

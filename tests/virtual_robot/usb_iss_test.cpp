@@ -68,7 +68,7 @@ TEST(UsbIss, SaysWhatItIs) {
 
 TEST(UsbIss, KnowsItsModesAndRefusesOthers) {
   Desk desk;
-  for (const int mode : {0x20, 0x30, 0x40, 0x50, 0x60, 0x70, 0x80, 0x00, 0x10, 0x90, 0x93}) {
+  for (const int mode : {0x20, 0x30, 0x40, 0x50, 0x60, 0x70, 0x80, 0x00, 0x90, 0x93}) {
     EXPECT_EQ(desk.Ask({0x5A, 0x02, static_cast<std::uint8_t>(mode), 0x04}), (Bytes{0xFF, 0x00}));
     EXPECT_EQ(desk.adapter.mode(), mode);
   }
@@ -78,6 +78,9 @@ TEST(UsbIss, KnowsItsModesAndRefusesOthers) {
   EXPECT_EQ(desk.Ask({0x5A, 0x09}), (Bytes{0x00, 0x05}));
   EXPECT_EQ(desk.adapter.mode(), 0x01) << "as before";
   EXPECT_EQ(desk.Ask({0x53, 0x20, 0x01}), Bytes{}) << "no bus in this mode";
+  desk.Ask(Fast());
+  EXPECT_EQ(desk.Ask({0x5A, 0x02, 0x10, 0x04}), (Bytes{0xFF, 0x00})) << "IO_CHANGE";
+  EXPECT_EQ(desk.adapter.mode(), 0x70) << "it changes pins only";
 }
 
 TEST(UsbIss, SpeedFollowsTheMode) {
@@ -202,6 +205,16 @@ TEST(UsbIss, AFrameThatIsNotCompleteIsIgnored) {
   Bytes much(3 + 61, 0);
   much[0] = 0x54, much[1] = 0x20, much[2] = 61;
   EXPECT_EQ(desk.Ask(much), Bytes{}) << "longer than its memory";
+  much.resize(5 + 60);
+  much[0] = 0x56, much[4] = 60;
+  EXPECT_EQ(desk.Ask(much), Bytes{}) << "with two registers";
+  much.resize(5 + 59);
+  much[4] = 59;
+  EXPECT_EQ(desk.Ask(much), Bytes{0xFF});
+  EXPECT_EQ(desk.Ask({0x55, 0x21, 0, 61}), Bytes{});
+  EXPECT_EQ(desk.Ask({0x55, 0x21, 0, 60}).size(), 60U);
+  EXPECT_EQ(desk.Ask({0x56, 0x21, 0, 0, 65}), Bytes{});
+  EXPECT_EQ(desk.Ask({0x56, 0x21, 0, 0, 64}).size(), 64U);
 }
 
 TEST(UsbIss, SeveralCommandsInABurstAreAnsweredTogether) {

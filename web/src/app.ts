@@ -1,6 +1,6 @@
 // What the page knows, in one place; the parts of the page watch it and never each other.
 import { frameOfScene, type Frame } from "./frame";
-import type { ClientMessage, EventMessage, HelloMessage, Report, Scene, SeriesMessage, ServerMessage } from "./protocol";
+import type { ClientMessage, EventMessage, GainAnswerMessage, HelloMessage, Report, RobotStatus, Scene, SeriesMessage, ServerMessage } from "./protocol";
 import { PROTOCOL_VERSION } from "./protocol";
 import type { Connection, Source } from "./source";
 import { memory, Signal } from "./util";
@@ -29,6 +29,10 @@ export class App {
   readonly events = new Signal<readonly EventMessage[]>([]);
   readonly seriesAnswer = new Signal<SeriesMessage | null>(null);
 
+  /** How a robot is that motor boards move. */
+  readonly robot = new Signal<RobotStatus | null>(null);
+  readonly gainAnswer = new Signal<GainAnswerMessage | null>(null);
+
   constructor(
     private readonly source: Source,
     readonly report: Report | null,
@@ -52,9 +56,14 @@ export class App {
     return sent;
   }
 
-  /** An experiment, or a model by itself, that is simulated now, or what somebody's own program shows. */
+  /** What goes on now: an experiment or a model by itself that is simulated, what somebody's own program shows, a robot. */
   get live(): boolean {
-    return this.movable || this.hello.value?.mode === "program";
+    return this.movable || this.isRobot || this.hello.value?.mode === "program";
+  }
+
+  /** Motor boards are driven: nothing pauses, and space stops them. */
+  get isRobot(): boolean {
+    return this.hello.value?.mode === "robot";
   }
 
   /** Robots that hands, sliders and a reset act on. */
@@ -68,7 +77,7 @@ export class App {
 
   /** Can another time than the present be looked at? */
   get seekable(): boolean {
-    return this.replay || this.live;
+    return this.replay || (this.live && !this.isRobot);
   }
 
   /** A live run is looked at as it was earlier. */
@@ -132,6 +141,12 @@ export class App {
         break;
       case "error":
         this.notice.value = message.text;
+        break;
+      case "robot":
+        this.robot.value = message.status;
+        break;
+      case "gain_answer":
+        this.gainAnswer.value = message;
         break;
       case "driver":
         this.driver.value = message.id;

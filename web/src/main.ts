@@ -1,6 +1,7 @@
 // The page: as a live view, as a replay, or as a report, by what it finds inside itself.
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
+import "./robot/robot.css";
 import "./runs.css";
 import { App } from "./app";
 import { ReportSource } from "./embedded";
@@ -12,6 +13,8 @@ import { legend } from "./scene/legend";
 import { foresee } from "./scene/foresee";
 import { runsList } from "./scene/runs_list";
 import { View } from "./scene/view";
+import { alarms, poseNote, robotBar } from "./robot/bar";
+import { robotPanel } from "./robot/panel";
 import { giveRunColours } from "./runs";
 import { SeriesStore } from "./series";
 import { belowView } from "./ui/below_view";
@@ -44,15 +47,15 @@ function start(root: HTMLElement): void {
   app.hello.watch(() => (controlsButton.hidden = !app.movable || app.watches));
   const keys = keysOf(app, view, { help: () => help.toggle(), controls: toggleControls, editor: () => plots.toggleEditor() });
   help.fill(keys);
-  listenToKeys(keys);
+  listenToKeys(app, keys);
 
   view.element.append(runsList(app, view));
-  const below = belowView(view.element, [...(view.draws ? [legend(app, view)] : []), inspector(app)]);
-  plots.element.prepend(drawer);
+  const below = belowView(view.element, [poseNote(app, view.element), ...(view.draws ? [legend(app, view)] : []), inspector(app)]);
+  plots.element.prepend(robotPanel(app), drawer);
   const top = header(app, () => help.toggle(), [controlsButton, recorder(app, view), gifMaker(app, store, view)]);
   const overlays = [help.element, notices(app), failurePage(app)];
   if (report) reportPage(root, report, { top, view, plots, timeline: timeline(app), overlays });
-  else root.append(top, el("main.split", {}, view.element, plots.element), timeline(app), ...overlays);
+  else root.append(top, alarms(app), el("main.split", {}, view.element, plots.element), timeline(app), robotBar(app), ...overlays);
   view.element.after(below);
   Object.assign(window, { taut: { app, view, store } });
   app.start();

@@ -1,18 +1,18 @@
 // Made of web/protocol/messages.json by script/protocol. Do not edit.
 //
 // What the viewer's server and its pages say to each other. JSON texts, except frames, which are binary. script/protocol makes web/src/structs.ts, web/src/protocol.ts, web/src/layout.ts and apps/viewer/protocol_messages.h of this file. SI units; W is the world frame, z up; quaternions are unit, order w, x, y, z. A field whose name ends with ? may be absent.
-import type { Scene, SeriesData, Vec3 } from "./structs";
+import type { RobotStatus, Scene, SeriesData, Vec3 } from "./structs";
 export type * from "./structs";
 
-export const PROTOCOL_VERSION = 4;
+export const PROTOCOL_VERSION = 5;
 
 /** The first message. */
 export interface HelloMessage {
   type: "hello";
   /** Of this definition. */
   version: number;
-  /** program: what somebody's own program shows (taut/page.h); nothing in it can be moved. */
-  mode: "live" | "replay" | "model" | "program";
+  /** robot: motor boards are driven; its clock is the wall's. program: what somebody's own program shows (taut/page.h); nothing in it can be moved. */
+  mode: "live" | "replay" | "model" | "program" | "robot";
   title: string;
   /** Who you are, 1 or more. */
   client: number;
@@ -55,13 +55,33 @@ export interface DriverMessage {
   id: number;
 }
 
+/** How a robot is, some ten times a second. Latest wins, as with frames. */
+export interface RobotMessage {
+  type: "robot";
+  status: RobotStatus;
+}
+
+/** What a board said to robot_gain, to everyone. */
+export interface GainAnswerMessage {
+  type: "gain_answer";
+  cable: string;
+  gain: string;
+  value: number;
+  /** It has taken it. */
+  good: boolean;
+  /** In words. */
+  text: string;
+}
+
 export type ServerMessage =
   | HelloMessage
   | SceneMessage
   | SeriesMessage
   | EventMessage
   | ErrorMessage
-  | DriverMessage;
+  | DriverMessage
+  | RobotMessage
+  | GainAnswerMessage;
 
 /** Drive from now on. The first command of anybody does so, too, while nobody drives. */
 export interface TakeControlMessage {
@@ -144,6 +164,31 @@ export interface SetGainMessage {
   value: number;
 }
 
+/** Robot: emergency stop. Obeyed from every link that may drive, whoever drives. */
+export interface StopMessage {
+  type: "stop";
+}
+
+/** Power in two steps: arm, then hold or impedance, which takes what is measured as its offsets. */
+export interface RobotModeMessage {
+  type: "robot_mode";
+  mode: "off" | "arm" | "hold" | "impedance" | "clear_faults";
+}
+
+/** Sent to the motor's board; gain_answer says what it said. */
+export interface RobotGainMessage {
+  type: "robot_gain";
+  cable: string;
+  gain: "tension_offset_n" | "length_offset_m" | "position_gain_n_per_m" | "velocity_gain_n_s_per_m";
+  value: number;
+}
+
+/** Robot: every cycle into a folder, from now on or no longer. */
+export interface RecordMessage {
+  type: "record";
+  on: boolean;
+}
+
 /** Anyone may ask, also who may only watch. */
 export interface WantSeriesMessage {
   type: "want_series";
@@ -174,4 +219,8 @@ export type ClientMessage =
   | SetParameterMessage
   | SetSetpointMessage
   | SetGainMessage
+  | StopMessage
+  | RobotModeMessage
+  | RobotGainMessage
+  | RecordMessage
   | WantSeriesMessage;

@@ -8,17 +8,17 @@ import { PAGE } from "./browser.mjs";
 export const TAUT = process.env.TAUT_COMMAND;
 export const ROOT = fileURLToPath(new URL("../..", import.meta.url));
 export const options = { skip: TAUT ? false : "TAUT_COMMAND is not set" };
-const ENV = { ...process.env, TAUT_WEB: dirname(PAGE) };
+const env = () => ({ ...process.env, TAUT_WEB: dirname(PAGE) });
 let server = null;
 
 /** Runs another command of it to its end. */
-export const taut = (...words) => execFileSync(TAUT, words, { cwd: ROOT, env: ENV });
+export const taut = (...words) => execFileSync(TAUT, words, { cwd: ROOT, env: env() });
 
 /** Starts `taut view` with random tokens; answers its address. */
 export const view = (...words) => viewWithToken("", ...words);
 
 export async function viewWithToken(token, ...words) {
-  server = spawn(TAUT, ["view", ...words], { cwd: ROOT, env: { ...ENV, TAUT_TOKEN: token } });
+  server = spawn(TAUT, ["view", ...words], { cwd: ROOT, env: { ...env(), TAUT_TOKEN: token } });
   let said = "";
   return new Promise((resolve, reject) => {
     const hear = (data) => {
@@ -34,6 +34,10 @@ export async function viewWithToken(token, ...words) {
 
 export async function stop() {
   if (!server) return;
+  if (server.exitCode !== null) {
+    server = null;
+    return;
+  }
   const ended = endOf();
   server.kill("SIGINT");
   await ended;
@@ -44,6 +48,9 @@ export async function stop() {
 export function endOf() {
   return new Promise((resolve) => server.on("exit", resolve));
 }
+
+/** Processes that it has started. */
+export const childrenOf = () => readFileSync(`/proc/${server.pid}/task/${server.pid}/children`, "utf8").trim().split(" ").filter((pid) => pid !== "").map(Number);
 
 /** As by a power cut. */
 export function kill() {

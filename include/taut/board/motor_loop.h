@@ -135,14 +135,15 @@ inline void FindSetPoint(MotorLoop& motor) noexcept {
                                                 motor.velocity_input_m_per_s);
 }
 
-/// `capture`: what is measured now becomes L0 and T0, in the parameters, too. The drive goes on
-/// from where it is.
+/// `capture`: what is measured now becomes L0 and T0, in the parameters, too; T0 within its range,
+/// for what pulls more is to be let go. The drive goes on from where it is.
 inline void StartImpedance(float* p, const LoopNumbers& numbers, bool capture,
                            MotorLoop& motor) noexcept {
   motor.counts_per_tick = 0.0f;  // one count of a motor that holds would pass for 13 mm/s
   SenseCable(p, numbers, motor);
   if (capture) {
-    p[kTensionOffset] = control::Max(0.0f, motor.tension_n);
+    const Range range = MotorRange(kTensionOffset);
+    p[kTensionOffset] = control::Clamp(motor.tension_n, range.least, range.greatest);
     p[kLengthOffset] = motor.length_m;
   }
   motor.gains = control::Impedance<float>{p[kTensionOffset], p[kLengthOffset], p[kPositionGain],

@@ -112,8 +112,10 @@ constexpr void Encode(const Cyclic& message, uint8_t (&frame)[kCyclicSize]) noex
   internal::Seal16(frame, kCyclicSize);
 }
 
-/// The part for the board whose first motor is number `first`.
+/// The part for the board whose first motor is number `first`; a board that was given no number has
+/// none.
 constexpr Decoded Decode(const uint8_t* frame, size_t size, uint8_t first, Command& out) noexcept {
+  if (first + kMotors > kCables) return Decoded::kWrongValue;
   if (size < 1 || (frame[0] & 0xf0) != kCyclicHead || frame[0] == kStopHead)
     return Decoded::kUnknown;
   if ((frame[0] & 0x0f) != kProtocolVersion) return Decoded::kWrongVersion;
@@ -164,6 +166,8 @@ enum class Action : uint8_t {
   kDefaults = 0xe3,      ///< Parameters as the firmware brings them; only while off.
   kSetReference = 0xe4,  ///< The motor's encoder is at `value` counts now; off or holding.
 };
+
+constexpr int32_t kMostReference = int32_t{1} << 23;  ///< 112 m of cable; a float has all of them.
 
 /// A request as it came. Size: kSet 9, kAsk 4, kDo 11 bytes.
 struct Asking {
@@ -260,7 +264,7 @@ struct Status {
 enum class Answer : uint8_t {
   kGood = 0,
   kUnknown = 1,     ///< No such parameter, action or motor.
-  kOutOfRange = 2,  ///< Not finite, or outside the parameter's limits.
+  kOutOfRange = 2,  ///< Not finite, or outside the parameter's limits or a reference's.
   kNotInThisMode = 3,
   kBusy = 4,   ///< The EEPROM is still being written.
   kStale = 5,  ///< Meant for another boot.

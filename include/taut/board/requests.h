@@ -90,6 +90,7 @@ inline Answer Do(Board& board, const Asking& asking) noexcept {
       if (asking.index >= kMotors) return Answer::kUnknown;
       MotorLoop& motor = board.loops[asking.index];
       const int32_t counts = static_cast<int32_t>(asking.value);
+      if (counts > kMostReference || counts < -kMostReference) return Answer::kOutOfRange;
       motor.target_counts += counts - motor.counts;
       motor.counts = counts;
       board.referenced[asking.index] = true;
@@ -202,7 +203,8 @@ inline void MakeFrame(Board& board, uint8_t (&frame)[kFrameSize]) noexcept {
     const MotorLoop& motor = board.loops[m];
     const float* const p = board.parameters.motor[m];
     MotorStatus& out = status.motors[m];
-    out.tension_quarters = static_cast<uint16_t>(control::Max(0.0f, motor.tension_counts) * 4.0f);
+    out.tension_quarters =
+        static_cast<uint16_t>(control::Clamp(motor.tension_counts, 0.0f, 1023.0f) * 4.0f);
     if (board.mode == Mode::kImpedance) {
       const float counts = motor.set_point_n * board.numbers[m].counts_per_n + p[kCountsAtZero];
       out.set_point_quarters = counts < 1023.0f ? static_cast<uint16_t>(counts * 4.0f) : 4095;

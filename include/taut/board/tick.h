@@ -117,7 +117,9 @@ inline void React(bool driver_fault, Board& board) noexcept {
     if (board.parameters.board[kOnTimeout] >= 0.5f) {
       Enter(Mode::kOff, false, board);
       board.armed = false;
-    } else if (board.mode != Mode::kImpedance && board.mode != Mode::kHold) {
+      return;  // a fault besides does not make it hold
+    }
+    if (board.mode != Mode::kImpedance && board.mode != Mode::kHold) {
       Enter(Mode::kHold, false, board);  // impedance control holds by itself, with V0 = 0
     }
   }
@@ -131,10 +133,10 @@ inline void Restrain(Board& board, uint8_t m) noexcept {
   constexpr float kPayOut = -0.3f * kFullWidth;
   MotorLoop& motor = board.loops[m];
   const float* const p = board.parameters.motor[m];
-  const bool too_much = (board.faults[m] & kOverTension) != 0 &&
+  const bool too_much = board.mode != Mode::kOff && (board.faults[m] & kOverTension) != 0 &&
                         (board.faults[m] & (kSensor | kPolarity | kRunaway)) == 0 &&
                         Tension(p, motor) > p[kTensionLimit] - p[kTensionBand];
-  motor.drive = too_much ? kPayOut : 0.0f;
+  motor.drive = too_much ? control::Max(kPayOut, -board.numbers[m].most) : 0.0f;
 }
 
 inline void CountTicks(uint8_t elapsed, Board& board) noexcept {
@@ -186,10 +188,16 @@ inline void Tick(const Inputs& in, Board& board) noexcept {
         break;
       default:
         motor.drive = 0.0f;
+        motor.step = 0;  // `Feel`: no current flows, however fast the cable turns it
     }
     internal::Restrain(board, m);
     motor.width = static_cast<int16_t>(motor.drive);
   }
+}
+
+/// Off, motors coast; else duty 0 brakes.
+inline bool IsPowered(const Board& board) noexcept {
+  return board.mode != Mode::kOff && board.mode != Mode::kStopped && !board.stopped;
 }
 
 /// After every tick.
@@ -214,11 +222,6 @@ inline void DoSlowWork(Board& board) noexcept {
   board.turn = static_cast<uint8_t>((board.turn + 1) % 8);
   const uint8_t m = board.turn / kGains;
   SlewGain(board.parameters.motor[m], board.turn % kGains, 8 * kTick_s, board.loops[m]);
-}
-
-/// Off, motors coast; else duty 0 brakes.
-inline bool IsPowered(const Board& board) noexcept {
-  return board.mode != Mode::kOff && board.mode != Mode::kStopped && !board.stopped;
 }
 
 }  // namespace board

@@ -130,9 +130,14 @@ inline HeatNumbers HeatOf(const float* board, float length_per_count_m) noexcept
                      kTime_s / board[kHousingTime]};
 }
 
+constexpr int16_t kMostStep = 2000;  ///< Of what is felt, a tick [counts].
+
 /// What heats a winding is the current's square, tick by tick: a drive that changes its sign ten
 /// times a second has a mean of nothing.
 inline void FeelHeat(int16_t width, int16_t step, Watch& watch) noexcept {
+  // No encoder counts more, and of this much the sums hold what is felt between two looks.
+  if (step > kMostStep) step = kMostStep;
+  if (step < -kMostStep) step = -kMostStep;
   watch.width_width += int32_t{width} * width;
   watch.width_step += int32_t{width} * step;
   watch.step_step += int32_t{step} * step;

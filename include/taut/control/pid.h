@@ -35,13 +35,14 @@ constexpr PidState<Real> StartPidAt(Real error) noexcept {
 
 /// Starts so that the first tick gives `output` if its error is `error` (eq. K.14): what drove
 /// before another law took over goes on without a jump. Without an integral gain the output cannot
-/// be met, and the integral starts at 0.
+/// be met, and the integral starts at 0; so it does where that gain is next to nothing, by which no
+/// float can be divided.
 template <class Real>
 constexpr PidState<Real> StartPidFrom(const Pid<Real>& pid, Real error, Real output,
                                       Real period_s) noexcept {
   const Real zero = Literal<Real>(0.0f), one = Literal<Real>(1.0f);
   const Real sum = output - pid.proportional * error;
-  const auto can = pid.integral > zero;
+  const auto can = pid.integral > Literal<Real>(1e-20f);
   // less what the first tick will add
   const Real integral = sum / Select(can, pid.integral, one) - error * period_s;
   return PidState<Real>{error, Select(can, integral, zero)};

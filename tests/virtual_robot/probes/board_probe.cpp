@@ -63,6 +63,12 @@ void Obey() {
     sleep_cpu();
   } else if (order == kOrderLeave) {
     asm volatile("ldi r30, 0xFF\n ldi r31, 0x7F\n ijmp\n");
+  } else if (order == kOrderSetCauses) {
+    MCUSR = 0x0F;
+    Byte(kBoxCausesRead) = MCUSR;
+  } else if (order == kOrderTimer1) {
+    TCCR1A = Byte(kBoxTimer1);
+    TCCR1B = Byte(kBoxTimer1 + 1);
   }
 }
 
@@ -134,6 +140,10 @@ ISR(TWI_vect) {
     case 0x90:
       if (position < 64) Byte(static_cast<uint16_t>(kBoxReceived + position)) = TWDR;
       ++position;
+      if (position == Byte(kBoxLetGo)) {
+        TWCR = _BV(TWINT) | _BV(TWSTO) | _BV(TWEA) | _BV(TWEN) | _BV(TWIE);
+        return;
+      }
       if (refused != 0 && position + 1 >= refused) acknowledge = 0;
       break;
     case 0xA0:

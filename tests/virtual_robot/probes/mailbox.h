@@ -16,7 +16,8 @@ enum {
   kBoxReceivedCount = 0x117,
   kBoxMissed = 0x118,  // milliseconds since the last broadcast, up to 255
   kBoxBandgap = 0x119,
-  kBoxEarly = 0x11A,  // 2 bytes: what was read of a conversion that had just begun
+  kBoxEarly = 0x11A,       // 2 bytes: what was read of a conversion that had just begun
+  kBoxCausesRead = 0x11C,  // MCUSR after kOrderSetCauses
   // Orders of tests.
   kBoxStretch = 0x120,   // tens of microseconds that each interrupt of the bus takes longer
   kBoxNackFrom = 0x121,  // refuse this byte and those behind it; 0: take all
@@ -26,6 +27,8 @@ enum {
   kBoxDuty = 0x126,      // 2 bytes a motor, 0..400
   kBoxWindsIn = 0x12A,   // bit m: of motor m
   kBoxEnable = 0x12B,
+  kBoxLetGo = 0x12C,     // let go of the bus at this byte of a message; 0: never
+  kBoxTimer1 = 0x12D,    // for kOrderTimer1: TCCR1A, TCCR1B
   kBoxStatus = 0x140,    // 32 bytes: what TWSR said, in a ring
   kBoxReceived = 0x160,  // 64 bytes: the last message
   kBoxSend = 0x1A0,      // 64 bytes: what reads get
@@ -33,5 +36,7 @@ enum {
   kOrderNone = 0,
   kOrderHang = 1,          // with interrupts off
   kOrderSleepForever = 2,  // the same
-  kOrderLeave = 3          // jump beyond the flash
+  kOrderLeave = 3,         // jump beyond the flash
+  kOrderSetCauses = 4,     // write ones to MCUSR
+  kOrderTimer1 = 5         // another mode
 };

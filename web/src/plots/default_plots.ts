@@ -25,6 +25,14 @@ function alone(channel: string): PlotSpec {
   return { title: channel, channels: [channel] };
 }
 
+/** Six cables a plot: there are as many colours. */
+function robotPlots(motors: readonly string[]): PlotSpec[] {
+  const halves = [motors.slice(0, 6), motors.slice(6)].filter((list) => list.length > 0);
+  const plots = (title: string, channel: string) => halves.map((list, i) =>
+    ({ title: `${title}, boards ${3 * i} to ${3 * i + Math.ceil(list.length / 2) - 1}`, channels: list.map((name) => `cable/${name}/${channel}`) }));
+  return [...plots("duty", "duty"), ...plots("rest length", "rest_length_m"), { title: "cycle", channels: ["link/cycle_s", "link/lateness_s"] }];
+}
+
 /** `done` comes at once, or when the largest tensions are known; not if another scene was asked about since. */
 export class DefaultPlots {
   private wanted = 0;
@@ -36,12 +44,12 @@ export class DefaultPlots {
 
   find(scene: Scene, done: (plots: PlotSpec[]) => void): void {
     const asked = ++this.wanted;
-    const all = scene.cables.map(({ name }) => name);
+    const all = scene.robot?.motors ?? scene.cables.map(({ name }) => name);
     // a layout that is made of these shall not name what the run does not have
     const known = ({ title, channels }: PlotSpec) => ({ title, channels: channels.filter((name) => this.store.has(name, 0) || this.store.has(name, 1)) });
     const answer = (cables: readonly string[]) => {
       if (asked !== this.wanted) return;
-      done([...cables.map(tensionPlot), ...scene.values.map(alone), ...SYSTEM].map(known).filter(({ channels }) => channels.length > 0));
+      done([...cables.map(tensionPlot), ...scene.values.map(alone), ...(scene.robot ? robotPlots(scene.robot.motors) : SYSTEM)].map(known).filter(({ channels }) => channels.length > 0));
     };
     if (all.length <= FEW_CABLES) answer(all);
     else if (this.app.live) this.ofTheMoment(scene, answer);

@@ -147,7 +147,8 @@ export class PlotPanel {
   }
 
   private showRemark(): void {
-    const cables = this.app.scene.value?.cables.length ?? 0;
+    const scene = this.app.scene.value;
+    const cables = (scene?.robot?.motors ?? scene?.cables ?? []).length;
     const shown = this.charts.filter(({ figure }) => figure.group === "tension").length;
     const absent = [...new Set(this.plots.flatMap(({ channels }) => channels))].filter((name) => !this.store.has(name, 0) && !this.store.has(name, 1));
     const isDefault = this.layouts.plots.value === null;

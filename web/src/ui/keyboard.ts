@@ -8,6 +8,8 @@ export interface Key {
   keys: string[];
   shown: string;
   does: string;
+  /** It is about time, of which a robot has only one. */
+  time?: true;
   act(event: KeyboardEvent): void;
 }
 
@@ -35,14 +37,14 @@ export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
   };
   const scene = () => app.scene.value;
   return [
-    { keys: [" "], shown: "space", does: "play or pause", act: () => app.togglePlay() },
-    { keys: ["ArrowRight"], shown: "→", does: "one step on (with shift: one second)", act: step(1) },
-    { keys: ["ArrowLeft"], shown: "←", does: "one step back (with shift: one second); live: through what was, nothing is undone", act: step(-1) },
-    { keys: ["Home"], shown: "home", does: "to the start", act: () => app.seek(scene()?.first_s ?? 0) },
-    { keys: ["End"], shown: "end", does: "to the end; live: back to now", act: () => (app.live ? app.goToNow() : app.seek(scene()?.duration_s ?? 0)) },
-    { keys: ["r", "R"], shown: "R", does: "reset: back to the start", act: () => app.goToStart() },
-    { keys: ["["], shown: "[", does: "slower", act: speed(false) },
-    { keys: ["]"], shown: "]", does: "faster", act: speed(true) },
+    { time: true, keys: [" "], shown: "space", does: "play or pause; a robot: emergency stop", act: () => app.togglePlay() },
+    { time: true, keys: ["ArrowRight"], shown: "→", does: "one step on (with shift: one second)", act: step(1) },
+    { time: true, keys: ["ArrowLeft"], shown: "←", does: "one step back (with shift: one second); live: through what was, nothing is undone", act: step(-1) },
+    { time: true, keys: ["Home"], shown: "home", does: "to the start", act: () => app.seek(scene()?.first_s ?? 0) },
+    { time: true, keys: ["End"], shown: "end", does: "to the end; live: back to now", act: () => (app.live ? app.goToNow() : app.seek(scene()?.duration_s ?? 0)) },
+    { time: true, keys: ["r", "R"], shown: "R", does: "reset: back to the start", act: () => app.goToStart() },
+    { time: true, keys: ["["], shown: "[", does: "slower", act: speed(false) },
+    { time: true, keys: ["]"], shown: "]", does: "faster", act: speed(true) },
     { keys: ["f", "F"], shown: "F", does: "fit the robot into the view", act: () => view.fit() },
     { keys: ["v", "V"], shown: "V", does: "the view follows the robot, or stays", act: () => {
       view.follow = !view.follow;
@@ -66,7 +68,7 @@ export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
   ];
 }
 
-export function listenToKeys(keys: readonly Key[]): void {
+export function listenToKeys(app: App, keys: readonly Key[]): void {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     const target = event.target as HTMLElement;
@@ -78,7 +80,7 @@ export function listenToKeys(keys: readonly Key[]): void {
     if (event.key === " " && target.closest("button, summary, input[type=checkbox]")) return;
     if (event.key.startsWith("Arrow") && target.closest("input[type=range]:not(.timeline input)")) return;
     const key = keys.find((each) => each.keys.includes(event.key));
-    if (!key) return;
+    if (!key || (app.isRobot && key.time)) return;
     event.preventDefault();
     key.act(event);
   });

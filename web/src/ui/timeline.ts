@@ -48,6 +48,7 @@ export function timeline(app: App): HTMLElement {
   };
   app.scene.watch(stretch);
   app.hello.watch(() => {
+    element.hidden = app.isRobot;
     slider.disabled = !app.seekable;
     stretch();
   });

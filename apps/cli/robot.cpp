@@ -1,0 +1,254 @@
+#include "robot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "interrupt.h"
+#include "output.h"
+#include "overrides.h"
+#include "shipped.h"
+
+namespace taut::cli {
+namespace {
+
+constexpr char kVirtual[] = "virtual";
+/// For boards that have power since a moment to begin.
+constexpr double kBoot_s = 0.2;
+
+const std::map<std::string, link::OnFault> kOnFault{
+    {"hold", link::OnFault::kHold}, {"off", link::OnFault::kOff}, {"stop", link::OnFault::kStop}};
+
+std::vector<std::string> WithOverrides(std::vector<std::string> words,
+                                       const std::vector<std::string>& set) {
+  for (const std::string& one : set) words.insert(words.end(), {"--set", one});
+  return words;
+}
+
+}  // namespace
+
+void AddPort(CLI::App& command, RobotArguments& args) {
+  command
+      .add_option("--port", args.port,
+                  "The adapter's serial port, or `virtual`: an emulated robot (default: "
+                  "/dev/ttyACM0)")
+      ->option_text("PORT")
+      ->envname("TAUT_ROBOT_PORT");
+}
+
+void AddModel(CLI::App& command, RobotArguments& args) {
+  command
+      .add_option("--model", args.model,
+                  "The robot: names of its cables (default: tetraspine3_motors.yaml of taut)")
+      ->option_text("FILE");
+  command.add_option("--set", args.set, "Parameter of the model")
+      ->option_text("NAME=VALUE")
+      ->allow_extra_args(false);
+}
+
+void AddDriving(CLI::App& command, RobotArguments& args) {
+  command
+      .add_option("--calibration", args.calibration, "What was measured, to be set on the boards")
+      ->option_text("FILE");
+  command
+      .add_option("--encoder_lines", args.encoder_lines,
+                  "Marks a turn of the encoders (default: 16)")
+      ->option_text("N")
+      ->check(WholeNumberWithin(1, 10'000));
+  command
+      .add_option("--on_fault", args.on_fault,
+                  "What all motors do when one or its board is not well (default: hold)")
+      ->option_text("hold|off|stop")
+      ->check(OneOf({"hold", "off", "stop"}));
+  command.add_flag("--clear_faults,--clear-faults", args.clear_faults,
+                   "Take back latched faults, time-outs and emergency stops first");
+  command.add_flag("--dry_run,--dry-run", args.dry_run, "Only say what would be done");
+}
+
+void AddJson(CLI::App& command, RobotArguments& args) {
+  command.add_flag("--json", args.json, "As JSON");
+}
+
+std::string ModelPath(const RobotArguments& args) {
+  if (!args.model.empty()) return args.model;
+  const auto folder = ShippedFolder("models");
+  return folder.value_or("models") + "/tetraspine3_motors.yaml";
+}
+
+std::string DeviceOf(const RobotArguments& args, Diagnostics& out) {
+  if (args.port != kVirtual) return args.port;
+  const auto found = link::VirtualRobot::Find(out);
+  if (found) return found->device();
+  if (out.ok())
+    out.Error({}, "no virtual robot runs", "`taut robot hold --port virtual` starts one");
+  return {};
+}
+
+bool RobotDesk::Read(const RobotArguments& args, const ExperimentSpec* experiment,
+                     Diagnostics& found) {
+  if (experiment != nullptr) {
+    robot_ = experiment->robot;
+  } else {
+    const auto overrides = ParseOverrides(args.set);
+    if (!overrides) return false;
+    auto robot = LoadRobot(ModelPath(args), *overrides, found);
+    if (!robot) return false;
+    robot_ = std::move(*robot);
+  }
+  if (link::MotorCables(robot_, found).empty()) return false;
+  cables_ = link::MotorNames(robot_);
+  if (args.calibration.empty()) return true;
+  calibration_ = LoadCalibration(args.calibration, cables_, found);
+  return calibration_.has_value();
+}
+
+bool RobotDesk::Connect(const RobotArguments& args, const ExperimentSpec* experiment,
+                        Diagnostics& found) {
+  std::string device = args.port;
+  if (args.port == kVirtual) {
+    virtual_ = link::VirtualRobot::Find(found);
+    if (!virtual_ && found.ok()) {
+      std::vector<std::string> words =
+          experiment != nullptr
+              ? std::vector<std::string>{"--experiment", experiment->files.front()}
+              : std::vector<std::string>{"--model", ModelPath(args)};
+      virtual_ = link::VirtualRobot::Start(WithOverrides(std::move(words), args.set), found);
+    }
+    if (!virtual_) return false;
+    device = virtual_->device();
+  }
+  lock_ = link::RobotLock::Take(device, found);
+  if (!lock_) return false;
+  port_ = link::OpenSerialPort(device, found);
+  return port_ != nullptr;
+}
+
+bool RobotDesk::SetUp(const RobotArguments& args, const ExperimentSpec* experiment,
+                      Diagnostics& found) {
+  link::DriverOptions options;
+  options.motors = static_cast<int>(cables_.size());
+  options.cables = cables_;
+  options.on_fault = kOnFault.at(args.on_fault);
+  // Where robot and PC are the same machine, a reply that does not come is only late.
+  if (virtual_) options.patience_s = 0.5;
+  driver_ = std::make_unique<link::Driver>(*port_, options);
+  driver_->on_cycle = [this](const link::State& state) { AfterCycle(state); };
+  driver_->on_event = [this](double time_s, const std::string& text) {
+    if (!quiet_) fmt::print(stderr, "{}\n", text);
+    if (on_event) on_event(time_s, text);
+  };
+  const bool ours = virtual_ && virtual_->is_ours();
+  std::vector<link::Setting> settings;
+  const auto add = [&](const std::vector<link::Setting>& more) {
+    settings.insert(settings.end(), more.begin(), more.end());
+  };
+  if (experiment != nullptr || ours) add(link::SettingsFor(robot_, args.encoder_lines));
+  if (experiment != nullptr) add(link::GainsFor(*experiment));
+  if (calibration_) add(link::SettingsFor(*calibration_, robot_));
+  if (ours) {
+    const double ready_s = port_->now_s() + kBoot_s;
+    while (port_->now_s() < ready_s) port_->Wait(ready_s);
+  }
+  if (!driver_->Configure(settings, found)) return false;
+  driver_->Cycle(1);  // what sensors say
+  if (ours) {
+    for (std::size_t m = 0; m < cables_.size(); ++m) {
+      const auto cable = std::find_if(robot_.def.cables.begin(), robot_.def.cables.end(),
+                                      [&](const CableDef& one) { return one.name == cables_[m]; });
+      if (!driver_->SetReference(static_cast<int>(m), cable->rest_length_m, found)) return false;
+    }
+  }
+  return !(ours || args.clear_faults) || ClearFaults(found);
+}
+
+std::unique_ptr<RobotDesk> RobotDesk::Open(const RobotArguments& args,
+                                           const ExperimentSpec* experiment, int& exit) {
+  Diagnostics found;
+  std::unique_ptr<RobotDesk> desk(new RobotDesk());
+  desk->quiet_ = args.quiet;
+  exit = kBadInput;
+  if (!desk->Read(args, experiment, found)) {
+    if (found.ok()) exit = kUsage;
+    fmt::print(stderr, "{}", found.Format());
+    return nullptr;
+  }
+  exit = kFailed;
+  CatchInterrupts();
+  const bool good = desk->Connect(args, experiment, found) && desk->SetUp(args, experiment, found);
+  fmt::print(stderr, "{}", found.Format());
+  return good ? std::move(desk) : nullptr;
+}
+
+RobotDesk::~RobotDesk() { End(); }
+
+void RobotDesk::End() {
+  if (!driver_) return;
+  on_cycle = {};
+  const link::State& state = driver_->state();
+  if (state.stage == link::Stage::kUnconfigured || !state.link.connected) return;
+  if (state.stage == link::Stage::kActive) driver_->Off();
+  driver_->Cycle(3);  // whatever was commanded last is said
+}
+
+std::optional<int> RobotDesk::MotorOf(const std::string& cable) const {
+  const auto found = std::find(cables_.begin(), cables_.end(), cable);
+  if (found == cables_.end()) return std::nullopt;
+  return static_cast<int>(found - cables_.begin());
+}
+
+void RobotDesk::AfterCycle(const link::State& state) {
+  if (state.stopping) lock_->Stopped();  // the frames have gone
+  if (lock_->StopAsked()) {
+    stop_asked_ = true;
+    driver_->Stop("asked for by `taut robot estop`");
+  }
+  if (interrupt_asked && !stop_asked_) {
+    stop_asked_ = true;
+    // Who only looks on leaves what holds as it is.
+    if (state.stage == link::Stage::kActive) driver_->Stop("interrupted");
+  }
+  if (on_cycle) on_cycle(state);
+}
+
+Exit RobotDesk::stop_exit() const { return interrupt_asked ? kInterrupted : kFailed; }
+
+void RobotDesk::RunWhile(const std::function<bool()>& go_on) {
+  while (!stop_asked_ && go_on()) driver_->Cycle(1);
+  if (stop_asked_) driver_->Cycle(2);
+}
+
+bool RobotDesk::ClearFaults(Diagnostics& out) {
+  driver_->ClearFaults();
+  driver_->Cycle(3);
+  if (!driver_->state().link.connected) out.Error({}, "the adapter is gone");
+  return out.ok();
+}
+
+void AddRobot(CLI::App& app, int& exit_code) {
+  CLI::App* robot =
+      app.add_subcommand("robot", "Drive a real robot, or an emulated one, over its motor boards.");
+  robot->require_subcommand(1);
+  AddRobotScan(*robot, exit_code);
+  AddRobotStatus(*robot, exit_code);
+  AddRobotRun(*robot, exit_code);
+  AddRobotLog(*robot, exit_code);
+  AddRobotCalibrate(*robot, exit_code);
+  AddRobotReference(*robot, exit_code);
+  AddRobotHold(*robot, exit_code);
+  AddRobotRelease(*robot, exit_code);
+  AddRobotSet(*robot, exit_code);
+  AddRobotFlash(*robot, exit_code);
+  AddRobotSelftest(*robot, exit_code);
+  AddRobotEstop(*robot, exit_code);
+  robot->footer(
+      "Examples:\n"
+      "  taut robot scan --port /dev/ttyACM0\n"
+      "  taut robot run experiments/push_20n_motors.yaml --port virtual\n"
+      "  taut robot estop\n"
+      "One program at a time drives a robot; `taut robot estop` stops it from any terminal.\n"
+      "Ctrl-C turns motors off before a command ends (exit status 130).");
+}
+
+}  // namespace taut::cli

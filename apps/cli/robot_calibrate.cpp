@@ -1,0 +1,241 @@
+// taut robot calibrate: what a count is worth, from what somebody hangs on a cable or measures of
+// it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <iostream>
+#include <utility>
+
+#include "interrupt.h"
+#include "output.h"
+#include "overrides.h"
+#include "robot.h"
+#include "taut/files.h"
+
+namespace taut::cli {
+namespace {
+
+/// Of a reading: at 100 a second.
+constexpr int kReadings = 100;
+
+struct CalibrateArguments : RobotArguments {
+  std::string cable, out = "calibration.yaml";
+  std::vector<double> forces_n;
+  double way_m = 0;
+};
+
+struct Mean {
+  double value = 0, deviation = 0;
+};
+
+/// A line from a person. False: there is nobody, or Ctrl-C.
+bool WaitForPerson(const std::string& text) {
+  fmt::print("{} Then press Enter. ", text);
+  std::fflush(stdout);
+  std::string line;
+  return static_cast<bool>(std::getline(std::cin, line)) && !interrupt_asked;
+}
+
+/// Readings of the load cell [counts]. False: it was broken off, or the board is gone.
+bool ReadLoadCell(RobotDesk& desk, int motor, Mean& out) {
+  const link::MotorFigures& figures = desk.driver().figures(motor);
+  std::vector<double> counts;
+  desk.RunWhile([&] {
+    const link::State& state = desk.driver().state();
+    if (state.link.cycles > 0) {
+      counts.push_back(state.motors[static_cast<std::size_t>(motor)].tension_n /
+                           figures.n_per_count +
+                       figures.counts_at_zero);
+    }
+    return static_cast<int>(counts.size()) < kReadings;
+  });
+  const auto count = static_cast<double>(counts.size());
+  for (const double c : counts) out.value += c / count;
+  for (const double c : counts) {
+    out.deviation += (c - out.value) * (c - out.value) / count;
+  }
+  out.deviation = std::sqrt(out.deviation);
+  const auto board = static_cast<std::size_t>(motor / board::kMotors);
+  return !desk.stop_asked() && desk.driver().state().boards[board].there;
+}
+
+std::string Today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  localtime_r(&now, &parts);
+  char text[16];
+  return {text, std::strftime(text, sizeof text, "%Y-%m-%d", &parts)};
+}
+
+/// Puts what was measured into the file: beside what it had of other cables, and of this one.
+int Keep(const CalibrateArguments& args, const RobotDesk& desk, const CableCalibration& measured) {
+  Diagnostics found;
+  Calibration all;
+  if (std::filesystem::exists(args.out)) {
+    auto before = LoadCalibration(args.out, desk.cables(), found);
+    if (!before) return Fail(found, kBadInput);
+    all = std::move(*before);
+  } else {
+    all.name = std::filesystem::path(args.out).stem().string();
+    if (!CheckName(all.name).empty()) all.name = "calibration";
+  }
+  auto at = std::find_if(all.cables.begin(), all.cables.end(),
+                         [&](const CableCalibration& one) { return one.cable == measured.cable; });
+  if (at == all.cables.end()) at = all.cables.insert(at, CableCalibration{measured.cable, {}, {}});
+  at->measured = measured.measured;
+  at->how = at->how.empty() ? measured.how : at->how + " " + measured.how;
+  const auto take = [](std::optional<double>& to, const std::optional<double>& from) {
+    if (from) to = from;
+  };
+  take(at->load_cell_n_per_count, measured.load_cell_n_per_count);
+  take(at->load_cell_counts_at_zero, measured.load_cell_counts_at_zero);
+  take(at->encoder_m_per_count, measured.encoder_m_per_count);
+  if (!WriteWholeFile(args.out, CalibrationYaml(all), found)) return Fail(found, kFailed);
+  fmt::print("{}: `--calibration {}` sets it on the boards\n", args.out, args.out);
+  return kOk;
+}
+
+std::optional<int> FindMotor(const RobotDesk& desk, const std::string& cable) {
+  const auto motor = desk.MotorOf(cable);
+  if (!motor) {
+    Diagnostics found;
+    found.Error({}, "there is no actuated cable \"" + cable + "\"",
+                DidYouMean(cable, desk.cables()));
+    fmt::print(stderr, "{}", found.Format());
+  }
+  return motor;
+}
+
+int LoadCell(const CalibrateArguments& args) {
+  std::vector<double> distinct = args.forces_n;
+  std::sort(distinct.begin(), distinct.end());
+  if (std::unique(distinct.begin(), distinct.end()) - distinct.begin() < 2) {
+    fmt::print(stderr, "error: two different forces are needed for a straight line\n");
+    return kUsage;
+  }
+  int exit = kOk;
+  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  if (!desk) return exit;
+  const auto motor = FindMotor(*desk, args.cable);
+  if (!motor) return kBadInput;
+  // Least squares: force = gain (counts - zero).
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  std::vector<std::pair<double, double>> points;
+  for (const double force_n : args.forces_n) {
+    if (!WaitForPerson(fmt::format("Let cable {} pull with {:g} N.", args.cable, force_n))) {
+      return desk->stop_asked() || interrupt_asked ? kInterrupted : kFailed;
+    }
+    Mean counts;
+    if (!ReadLoadCell(*desk, *motor, counts))
+      return desk->stop_asked() ? desk->stop_exit() : kFailed;
+    fmt::print("{:g} N: {:.2f} counts, +- {:.2f}\n", force_n, counts.value, counts.deviation);
+    n += 1;
+    x += counts.value;
+    y += force_n;
+    xx += counts.value * counts.value;
+    xy += counts.value * force_n;
+    points.emplace_back(counts.value, force_n);
+  }
+  const double spread = n * xx - x * x;
+  const double gain = (n * xy - x * y) / spread;
+  if (!(spread > 1.0) || !(gain > 0)) {
+    fmt::print(stderr,
+               "error: the readings do not rise with the force: is it this cable's cell, and wired "
+               "the right way round?\n");
+    return kFailed;
+  }
+  const double zero = (x - y / gain) / n;
+  double worst_n = 0;
+  for (const auto& [counts, force_n] : points) {
+    worst_n = std::max(worst_n, std::abs(gain * (counts - zero) - force_n));
+  }
+  fmt::print("{:.5g} N a count, {:.2f} counts at zero; at most {:.2f} N off the line\n", gain, zero,
+             worst_n);
+  CableCalibration measured{
+      args.cable, Today(),
+      fmt::format("Load cell: {} forces, {:.2f} N off at most.", points.size(), worst_n)};
+  measured.load_cell_n_per_count = gain;
+  measured.load_cell_counts_at_zero = zero;
+  return Keep(args, *desk, measured);
+}
+
+int Encoder(const CalibrateArguments& args) {
+  int exit = kOk;
+  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  if (!desk) return exit;
+  const auto motor = FindMotor(*desk, args.cable);
+  if (!motor) return kBadInput;
+  const auto counts = [&] {
+    desk->driver().Cycle(3);
+    return desk->driver().state().motors[static_cast<std::size_t>(*motor)].encoder_counts;
+  };
+  if (!WaitForPerson(fmt::format("Mark the cable {} where it enters.", args.cable))) return kFailed;
+  const auto before = counts();
+  // The board's count is of 16 bits: it has to be followed on the way.
+  if (!WaitForPerson(
+          fmt::format("Wind in {:g} m by hand, within what 32 767 counts are.", args.way_m))) {
+    return kFailed;
+  }
+  const auto wound = counts() - before;
+  if (wound <= 10) {
+    fmt::print(stderr,
+               "error: {} counts: winding in has to count up by many (are A and B the right way "
+               "round?)\n",
+               wound);
+    return kFailed;
+  }
+  CableCalibration measured{args.cable, Today(),
+                            fmt::format("Encoder: {} counts over {:g} m.", wound, args.way_m)};
+  measured.encoder_m_per_count = args.way_m / static_cast<double>(wound);
+  fmt::print("{} counts: {:.4g} m a count\n", wound, *measured.encoder_m_per_count);
+  return Keep(args, *desk, measured);
+}
+
+void AddCommon(CLI::App& command, CalibrateArguments& args) {
+  command.add_option("cable", args.cable, "Which cable, by its name")->required();
+  AddPort(command, args);
+  AddModel(command, args);
+  command
+      .add_option("--out", args.out,
+                  "Calibration file to write, or to add to (default: calibration.yaml)")
+      ->option_text("FILE");
+}
+
+}  // namespace
+
+void AddRobotCalibrate(CLI::App& robot, int& exit_code) {
+  CLI::App* calibrate = robot.add_subcommand(
+      "calibrate", "Find out what counts of load cells and encoders are worth.");
+  calibrate->require_subcommand(1);
+  auto cell_args = std::make_shared<CalibrateArguments>();
+  CLI::App* cell =
+      calibrate->add_subcommand("load_cell", "From two or more forces that somebody hangs on it.");
+  AddCommon(*cell, *cell_args);
+  cell->add_option("--force_n", cell_args->forces_n, "Forces [N], in the order of the questions")
+      ->required()
+      ->option_text("N ...")
+      ->check(NumberWithin(0.0, 150.0));
+  cell->footer(
+      "Examples:\n  taut robot calibrate load_cell outer_top_1 --force_n 0 9.81 19.62\n"
+      "Motors are off. It asks for each force, reads for a second, fits a line and writes the "
+      "file.");
+  cell->callback([cell_args, &exit_code] { exit_code = LoadCell(*cell_args); });
+  auto encoder_args = std::make_shared<CalibrateArguments>();
+  CLI::App* encoder =
+      calibrate->add_subcommand("encoder", "From a length of cable that somebody winds in.");
+  AddCommon(*encoder, *encoder_args);
+  encoder->add_option("--way_m", encoder_args->way_m, "Length to wind in [m]")
+      ->required()
+      ->option_text("M")
+      ->check(NumberWithin(1e-4, 10.0));
+  encoder->footer("Examples:\n  taut robot calibrate encoder outer_top_1 --way_m 0.1");
+  encoder->callback([encoder_args, &exit_code] { exit_code = Encoder(*encoder_args); });
+  calibrate->footer(
+      "Examples:\n  taut robot calibrate load_cell outer_top_1 --force_n 0 9.81 19.62\n"
+      "  taut robot calibrate encoder outer_top_1 --way_m 0.1");
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,124 @@
+// taut robot flash: the firmware into a board, by avrdude.
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "output.h"
+#include "overrides.h"
+#include "robot.h"
+#include "shipped.h"
+
+namespace taut::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FlashArguments {
+  std::string port = "/dev/ttyUSB0", hex, programmer = "arduino";
+  int board = -1, baud = 57'600;
+  bool fuses = false, keep_identity = false, dry_run = false;
+};
+
+/// That of --hex, of the installed taut, or of the tree that it was built in.
+std::string HexPath(const FlashArguments& args) {
+  if (!args.hex.empty()) return args.hex;
+  std::error_code error;
+  const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const char* const place :
+       {"firmware/taut_board.hex", "../share/taut/firmware/taut_board.hex"}) {
+    if (fs::exists(beside / place, error)) return (beside / place).lexically_normal().string();
+  }
+  return {};
+}
+
+std::vector<std::string> Words(const FlashArguments& args, const std::string& hex) {
+  std::vector<std::string> words{"avrdude",       "-p", "atmega328p", "-c",
+                                 args.programmer, "-P", args.port};
+  if (args.programmer == "arduino") words.insert(words.end(), {"-b", std::to_string(args.baud)});
+  // Before the program: a chip without an identity never drives anything.
+  if (args.fuses) words.insert(words.end(), {"-U", "efuse:w:0xFC:m"});
+  words.insert(words.end(), {"-U", "flash:w:" + hex + ":i"});
+  if (!args.keep_identity) {
+    words.insert(words.end(), {"-U", fmt::format("eeprom:w:0x{:02x}:m", args.board)});
+  }
+  return words;
+}
+
+int Flash(const FlashArguments& args) {
+  Diagnostics found;
+  const std::string hex = HexPath(args);
+  std::error_code error;
+  if (hex.empty() || !fs::is_regular_file(hex, error)) {
+    found.Error({hex.empty() ? "firmware" : hex}, "there is no such firmware",
+                "it is built where avr-g++ is (docs/hardware/firmware.md), or --hex names one");
+    return Fail(found, kBadInput);
+  }
+  if (args.fuses && args.programmer == "arduino") {
+    found.Error({}, "a bootloader cannot set fuses", "--programmer usbasp or the like");
+    return Fail(found, kBadInput);
+  }
+  std::vector<std::string> words = Words(args, hex);
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + word;
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
+  if (args.dry_run) return kOk;
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    execvp(argv[0], argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) {
+    found.Error({}, "avrdude did not end well");
+  } else if (WEXITSTATUS(status) == 127) {
+    found.Error({}, "there is no avrdude", "Debian's package avrdude has it");
+  } else if (WEXITSTATUS(status) != 0) {
+    found.Error({}, fmt::format("avrdude failed with {}", WEXITSTATUS(status)),
+                "is it this port, and does nobody else have it open?");
+  }
+  if (!found.ok()) return Fail(found, kFailed);
+  fmt::print("Board {} has the firmware. `taut robot scan` should show it at 0x{:02x}.\n",
+             args.board, board::BoardAddress(static_cast<std::uint8_t>(args.board)));
+  return kOk;
+}
+
+}  // namespace
+
+void AddRobotFlash(CLI::App& robot, int& exit_code) {
+  auto args = std::make_shared<FlashArguments>();
+  CLI::App* flash = robot.add_subcommand(
+      "flash", "Bring the firmware and its number to a board, by avrdude over its own USB.");
+  flash->add_option("--board", args->board, "Number of the board, 0 to 5")
+      ->required()
+      ->option_text("N")
+      ->check(WholeNumberWithin(0, board::kBoards - 1));
+  flash
+      ->add_option("--port", args->port,
+                   "Serial port of the board itself, not the adapter's (default: /dev/ttyUSB0)")
+      ->option_text("PORT");
+  flash->add_option("--hex", args->hex, "Program (default: that of taut)")->option_text("FILE");
+  flash
+      ->add_option("--programmer", args->programmer,
+                   "avrdude's name of the programmer (default: arduino, the bootloader)")
+      ->option_text("NAME");
+  flash->add_option("--baud", args->baud, "Of the bootloader (default: 57600; new ones: 115200)")
+      ->option_text("N")
+      ->check(WholeNumberWithin(1200, 1'000'000));
+  flash->add_flag("--fuses", args->fuses, "Brown-out detection at 4.3 V; not by a bootloader");
+  flash->add_flag("--keep_identity", args->keep_identity, "Leave the EEPROM as it is");
+  flash->add_flag("--dry_run,--dry-run", args->dry_run, "Only print what avrdude would be told");
+  flash->footer(
+      "Examples:\n  taut robot flash --board 0 --port /dev/ttyUSB0\n"
+      "  taut robot flash --board 3 --programmer usbasp --port usb --fuses --dry_run\n"
+      "Disconnect the motors' supply first. Not verified on hardware.");
+  flash->callback([args, &exit_code] { exit_code = Flash(*args); });
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,242 @@
+// taut robot hold, release, estop, log: power, no power, and looking on.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "output.h"
+#include "overrides.h"
+#include "robot.h"
+#include "robot_recording.h"
+#include "taut/run_folder.h"
+#include "taut/version.h"
+
+namespace taut::cli {
+namespace {
+
+/// Between two lines about how it is.
+constexpr double kReport_s = 1.0;
+constexpr double kStopPatience_s = 0.3;
+constexpr int kStops = 3;
+
+struct HoldArguments : RobotArguments {
+  double duration_s = -1;
+  std::string out = "runs/robot_log";
+};
+
+void ShowLine(const link::State& state, double since_s) {
+  double most = 0, least = 1e9, duty = 0;
+  for (const link::MotorView& motor : state.motors) {
+    most = std::max(most, motor.tension_n);
+    least = std::min(least, motor.tension_n);
+    duty = std::max(duty, std::abs(motor.duty));
+  }
+  fmt::print("{:7.1f} s  {}  {:.1f} to {:.1f} N  duty to {:.2f}  cycle {:.1f} ms, {} late\n",
+             since_s, link::ModeName(state.commanded), least, most, duty,
+             state.link.mean_cycle_s * 1e3, state.link.late_cycles);
+  std::fflush(stdout);
+}
+
+int Hold(const HoldArguments& args) {
+  if (args.dry_run) {
+    fmt::print("would give power to all motors of {} and hold them where they are\n", args.port);
+    return kOk;
+  }
+  int exit = kOk;
+  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  if (!desk) return exit;
+  Diagnostics found;
+  if (!desk->driver().Enable(board::Mode::kHold, false, found)) return Fail(found, kFailed);
+  if (!args.quiet) fmt::print("All motors hold. Ctrl-C turns them off.\n");
+  const double begun_s = desk->driver().port().now_s();
+  double shown_s = begun_s;
+  bool active = true;
+  desk->RunWhile([&] {
+    const link::State& state = desk->driver().state();
+    if (!args.quiet && state.time_s >= shown_s + kReport_s) {
+      shown_s = state.time_s;
+      ShowLine(state, state.time_s - begun_s);
+    }
+    active = state.stage == link::Stage::kActive;
+    return active && (args.duration_s < 0 || state.time_s < begun_s + args.duration_s);
+  });
+  desk->End();
+  if (!args.quiet) fmt::print("Motors are off.\n");
+  return desk->stop_asked() ? desk->stop_exit() : active ? kOk : kFailed;
+}
+
+int Release(const RobotArguments& args) {
+  if (args.dry_run) {
+    fmt::print("would turn off all motors of {}\n", args.port);
+    return kOk;
+  }
+  int exit = kOk;
+  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  if (!desk) return exit;
+  link::Driver& driver = desk->driver();
+  driver.Off();
+  driver.Cycle(3);
+  Diagnostics found;
+  for (std::size_t b = 0; b < driver.state().boards.size(); ++b) {
+    const link::BoardView& board = driver.state().boards[b];
+    if (board.there && board.status.mode == board::Mode::kOff) continue;
+    if (board.there && board.status.mode == board::Mode::kStopped) continue;
+    found.Error({}, fmt::format("board {} {}", b, board.there ? "is not off" : "does not answer"));
+  }
+  if (!found.ok()) return Fail(found, kFailed);
+  if (!args.quiet) fmt::print("Motors are off.\n");
+  return kOk;
+}
+
+/// Straight at the bus, whoever drives: his frames may be lost by it, and his boards stop.
+int StopDirectly(const std::string& device, int boards) {
+  Diagnostics found;
+  const auto port = link::OpenSerialPort(device, found);
+  if (!port) return Fail(found, kFailed);
+  link::UsbIss adapter(*port);
+  adapter.SetMode();
+  std::uint8_t stop[board::kStopSize];
+  board::EncodeStop(stop);
+  bool heard = false;
+  for (int i = 0; i < kStops; ++i) heard = adapter.Write(board::kBroadcastAddress, stop) || heard;
+  link::Requests requests(adapter);
+  int stopped = 0;
+  for (int b = 0; b < boards; ++b) {
+    Diagnostics silent;
+    const auto faults = requests.Faults(b, silent);
+    if (faults && faults->stopped) ++stopped;
+    if (!faults) fmt::print(stderr, "board {} does not answer\n", b);
+    if (faults && !faults->stopped) fmt::print(stderr, "board {} has NOT stopped\n", b);
+  }
+  if (stopped == boards) {
+    fmt::print("All {} boards have stopped.\n", boards);
+    return kOk;
+  }
+  fmt::print(stderr, "error: {} of {} boards have stopped{}: cut the motors' supply\n", stopped,
+             boards, heard ? "" : "; nobody acknowledged");
+  return kFailed;
+}
+
+int Estop(const RobotArguments& args, int boards) {
+  Diagnostics found;
+  const std::string device = DeviceOf(args, found);
+  if (device.empty()) return Fail(found, kFailed);
+  switch (link::AskToStop(device, kStopPatience_s, found)) {
+    case link::StopAnswer::kStopped:
+      fmt::print("Who drives the robot has stopped it.\n");
+      return kOk;
+    case link::StopAnswer::kSilent:
+      fmt::print(stderr, "who drives the robot does not answer: stopping it directly\n");
+      break;
+    case link::StopAnswer::kNobody:
+      break;
+  }
+  return StopDirectly(device, boards);
+}
+
+int Log(const HoldArguments& args) {
+  Diagnostics found;
+  const auto lock = FolderLock::Take(args.out, found);
+  if (!lock) return Fail(found, kFailed);
+  int exit = kOk;
+  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  if (!desk) return exit;
+  if (!RemoveRunBefore(args.out, {"trace.h5", "events.jsonl"}, found)) return Fail(found, kFailed);
+  const std::string trace = args.out + "/trace.h5";
+  const auto recording = RobotRecording::Start(trace, args.out + "/events.jsonl", desk->cables(),
+                                               {{"taut_version", kVersion},
+                                                {"model", desk->robot().def.name},
+                                                {kRunIdKey, NewRunId()},
+                                                {"plant", "robot at " + args.port}},
+                                               found);
+  if (!recording) return Fail(found, kFailed);
+  link::Driver& driver = desk->driver();
+  const double begun_s = driver.port().now_s();
+  recording->BeginAt(begun_s);
+  desk->on_cycle = [&](const link::State& state) { recording->Take(state); };
+  desk->on_event = [&](double time_s, const std::string& text) { recording->Event(time_s, text); };
+  if (!args.quiet) fmt::print("Nothing is commanded. Ctrl-C ends it.\n");
+  double shown_s = begun_s;
+  desk->RunWhile([&] {
+    const link::State& state = driver.state();
+    if (!args.quiet && state.time_s >= shown_s + kReport_s) {
+      shown_s = state.time_s;
+      ShowLine(state, state.time_s - begun_s);
+    }
+    return args.duration_s < 0 || state.time_s < begun_s + args.duration_s;
+  });
+  desk->on_cycle = {};
+  desk->on_event = {};
+  if (!recording->Finish(found)) return Fail(found, kFailed);
+  fmt::print("{} rows: {}\n", recording->rows(), trace);
+  return desk->stop_asked() ? desk->stop_exit() : kOk;
+}
+
+void AddDuration(CLI::App& command, HoldArguments& args) {
+  command.add_option("--duration_s", args.duration_s, "How long (default: until Ctrl-C)")
+      ->option_text("S")
+      ->check(NumberWithin(0.0, 1e9));
+}
+
+}  // namespace
+
+void AddRobotHold(CLI::App& robot, int& exit_code) {
+  auto args = std::make_shared<HoldArguments>();
+  CLI::App* hold = robot.add_subcommand("hold", "Give motors power and hold them where they are.");
+  AddPort(*hold, *args);
+  AddModel(*hold, *args);
+  AddDriving(*hold, *args);
+  AddDuration(*hold, *args);
+  hold->add_flag("--quiet", args->quiet, "Only what goes wrong");
+  hold->footer(
+      "Examples:\n  taut robot hold\n  taut robot hold --port virtual --duration_s 5\n"
+      "At its end, Ctrl-C included, motors are turned off.");
+  hold->callback([args, &exit_code] { exit_code = Hold(*args); });
+}
+
+void AddRobotRelease(CLI::App& robot, int& exit_code) {
+  auto args = std::make_shared<RobotArguments>();
+  CLI::App* release = robot.add_subcommand(
+      "release", "Turn motors off that hold since nobody drives them: they coast.");
+  AddPort(*release, *args);
+  AddModel(*release, *args);
+  release->add_flag("--dry_run,--dry-run", args->dry_run, "Only say what would be done");
+  release->add_flag("--quiet", args->quiet, "Only what goes wrong");
+  release->footer("Examples:\n  taut robot release\n  taut robot release --port /tmp/robot");
+  release->callback([args, &exit_code] { exit_code = Release(*args); });
+}
+
+void AddRobotEstop(CLI::App& robot, int& exit_code) {
+  auto args = std::make_shared<RobotArguments>();
+  auto boards = std::make_shared<int>(board::kBoards);
+  CLI::App* estop = robot.add_subcommand(
+      "estop", "Emergency stop: all motors off, whoever drives them, from any terminal.");
+  AddPort(*estop, *args);
+  estop->add_option("--boards", *boards, "How many must answer (default: 6)")
+      ->option_text("N")
+      ->check(WholeNumberWithin(1, board::kBoards));
+  estop->footer(
+      "Examples:\n  taut robot estop\n  taut robot estop --port virtual\n"
+      "Motors stay off until faults are cleared. It is no replacement for a switch in the motors'\n"
+      "supply.\n"
+      "Exit status: 0 if all have stopped, else 1.");
+  estop->callback([args, boards, &exit_code] { exit_code = Estop(*args, *boards); });
+}
+
+void AddRobotLog(CLI::App& robot, int& exit_code) {
+  auto args = std::make_shared<HoldArguments>();
+  CLI::App* log =
+      robot.add_subcommand("log", "Record what boards sense, a row a cycle, and command nothing.");
+  AddPort(*log, *args);
+  AddModel(*log, *args);
+  AddDuration(*log, *args);
+  log->add_option("--out", args->out, "Folder to write into (default: runs/robot_log)")
+      ->option_text("FOLDER");
+  log->add_flag("--quiet", args->quiet, "Only what goes wrong");
+  log->footer(
+      "Examples:\n  taut robot log --duration_s 60 --out runs/by_hand\n"
+      "  taut view runs/by_hand/trace.h5");
+  log->callback([args, &exit_code] { exit_code = Log(*args); });
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,39 @@
+#include "robot_recording.h"
+
+#include <nlohmann/json.hpp>
+
+namespace taut::cli {
+
+std::unique_ptr<RobotRecording> RobotRecording::Start(const std::string& trace_path,
+                                                      const std::string& events_path,
+                                                      const std::vector<std::string>& cables,
+                                                      const TraceMetadata& metadata,
+                                                      Diagnostics& out) {
+  std::unique_ptr<RobotRecording> recording(new RobotRecording(cables, events_path));
+  recording->trace_ = CreateHdf5Trace(trace_path, recording->log_.channels(), metadata, out);
+  if (!recording->trace_) return nullptr;
+  recording->trace_ = WriteBehind(std::move(recording->trace_), recording->log_.channels().size());
+  if (recording->events_.Create() && recording->events_.Publish()) return recording;
+  out.Error({events_path}, "cannot be written: " + recording->events_.why());
+  return nullptr;
+}
+
+void RobotRecording::Take(const link::State& state) {
+  trace_->Append(state.time_s - begun_s_, log_.Row(state));
+  ++rows_;
+}
+
+void RobotRecording::Event(double time_s, const std::string& text) {
+  const nlohmann::ordered_json line{{"time_s", time_s - begun_s_}, {"who", "pc"}, {"what", text}};
+  events_good_ = events_.WriteAllOrNone(line.dump() + "\n") && events_good_;
+}
+
+bool RobotRecording::Finish(Diagnostics& out) {
+  if (!trace_->Finish()) out.Error({}, trace_->error());
+  if (!events_good_ || !events_.Sync()) {
+    out.Error({events_.path()}, "cannot be written: " + events_.why());
+  }
+  return out.ok();
+}
+
+}  // namespace taut::cli

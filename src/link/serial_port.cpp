@@ -1,0 +1,104 @@
+#include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/serial_port.hpp>
+#include <boost/asio/write.hpp>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "taut/link/port.h"
+
+namespace taut::link {
+namespace {
+
+namespace asio = boost::asio;
+using Clock = std::chrono::steady_clock;
+
+class SerialPort final : public Port {
+ public:
+  explicit SerialPort(std::string device) : device_(std::move(device)) {}
+
+  /// Empty: it is open.
+  std::string Open() {
+    boost::system::error_code error;
+    port_.emplace(context_);
+    port_->open(device_, error);  // raw: Asio sets that
+    // The adapter ignores the rate; some drivers want one all the same.
+    if (!error) port_->set_option(asio::serial_port_base::baud_rate(115'200), error);
+    if (!error) port_->set_option(asio::serial_port_base::flow_control(), error);
+    if (error) {
+      port_.reset();
+      return error.message();
+    }
+    arrived_.clear();
+    context_.restart();
+    Listen();
+    return {};
+  }
+
+  bool Write(std::span<const std::uint8_t> frame) override {
+    if (!port_) return false;
+    boost::system::error_code error;
+    asio::write(*port_, asio::buffer(frame.data(), frame.size()), error);
+    if (error) Close();
+    return !error;
+  }
+
+  Bytes Read() override {
+    context_.restart();
+    context_.poll();
+    return std::exchange(arrived_, {});
+  }
+
+  void Wait(double until_s) override {
+    const auto until = Clock::time_point(
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(until_s)));
+    // Without a port nothing would be waited for.
+    std::optional<asio::executor_work_guard<asio::io_context::executor_type>> guard;
+    guard.emplace(context_.get_executor());
+    context_.restart();
+    while (arrived_.empty() && context_.run_one_until(until) > 0) {
+    }
+  }
+
+  double now_s() const override {
+    return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+  }
+  bool is_open() const override { return port_.has_value(); }
+  bool Reopen() override { return Open().empty(); }
+
+ private:
+  void Listen() {
+    port_->async_read_some(asio::buffer(chunk_),
+                           [this](const boost::system::error_code& error, std::size_t size) {
+                             if (error == asio::error::operation_aborted) return;
+                             if (error) return Close();
+                             arrived_.insert(arrived_.end(), chunk_.begin(),
+                                             chunk_.begin() + static_cast<std::ptrdiff_t>(size));
+                             Listen();
+                           });
+  }
+
+  void Close() { port_.reset(); }
+
+  std::string device_;
+  asio::io_context context_;
+  std::optional<asio::serial_port> port_;  ///< Nothing: lost.
+  std::array<std::uint8_t, 256> chunk_{};
+  Bytes arrived_;
+};
+
+}  // namespace
+
+std::unique_ptr<Port> OpenSerialPort(const std::string& device, Diagnostics& out) {
+  auto port = std::make_unique<SerialPort>(device);
+  const std::string why = port->Open();
+  if (why.empty()) return port;
+  out.Error({device, 0, 0}, "cannot be opened: " + why,
+            "the adapter is /dev/ttyACM0 or the like, which the group dialout may open; "
+            "--port virtual is an emulated robot");
+  return nullptr;
+}
+
+}  // namespace taut::link

@@ -1,0 +1,145 @@
+#include "taut/link/virtual_robot.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include "link/runtime_folder.h"
+
+namespace taut::link {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kProgram[] = "taut_virtual_robot";
+/// To read the model and start six boards, on a machine that has other work.
+constexpr int kStart_ms = 30'000;
+
+/// $TAUT_VIRTUAL_ROBOT, or the program beside this one, or that of the path.
+std::string ProgramPath() {
+  if (const char* const given = std::getenv("TAUT_VIRTUAL_ROBOT"); given && *given != '\0') {
+    return given;
+  }
+  std::error_code error;
+  const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / kProgram;
+  return !error && fs::exists(beside, error) ? beside.string() : kProgram;
+}
+
+std::string FolderOfIt(Diagnostics& out) {
+  const std::string runtime = RuntimeFolder(out);
+  if (runtime.empty()) return {};
+  const std::string folder = runtime + "/virtual";
+  if (mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST) return folder;
+  out.Error({folder}, std::string("cannot make this folder: ") + std::strerror(errno));
+  return {};
+}
+
+/// Whether somebody listens there: a link to a terminal may have stayed, and lead to another one.
+bool Lives(const std::string& truth) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (truth.size() >= sizeof address.sun_path) return false;
+  std::memcpy(address.sun_path, truth.c_str(), truth.size() + 1);
+  const int caller = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (caller < 0) return false;
+  const bool lives =
+      connect(caller, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  close(caller);
+  return lives;
+}
+
+/// The first line that comes, without its end; nothing if none comes in time.
+std::optional<std::string> FirstLine(int from) {
+  std::string line;
+  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(kStart_ms);
+  for (;;) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+        until - std::chrono::steady_clock::now());
+    pollfd waits{from, POLLIN, 0};
+    if (left.count() <= 0 || poll(&waits, 1, static_cast<int>(left.count())) <= 0) return {};
+    char c = 0;
+    if (read(from, &c, 1) != 1) return {};
+    if (c == '\n') return line;
+    line += c;
+  }
+}
+
+}  // namespace
+
+VirtualRobot::VirtualRobot(const std::string& folder, int process, int says)
+    : device_(folder + "/port"), truth_(folder + "/truth"), process_(process), says_(says) {}
+
+VirtualRobot::~VirtualRobot() {
+  if (says_ >= 0) close(says_);
+  if (process_ <= 0) return;
+  kill(process_, SIGTERM);
+  for (int i = 0; i < 200; ++i) {
+    if (waitpid(process_, nullptr, WNOHANG) != 0) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  kill(process_, SIGKILL);
+  waitpid(process_, nullptr, 0);
+}
+
+std::unique_ptr<VirtualRobot> VirtualRobot::Find(Diagnostics& out) {
+  const std::string folder = FolderOfIt(out);
+  if (folder.empty()) return nullptr;
+  std::unique_ptr<VirtualRobot> robot(new VirtualRobot(folder, -1, -1));
+  return Lives(robot->truth_) ? std::move(robot) : nullptr;
+}
+
+std::unique_ptr<VirtualRobot> VirtualRobot::Start(const std::vector<std::string>& arguments,
+                                                  Diagnostics& out) {
+  const std::string folder = FolderOfIt(out);
+  if (folder.empty()) return nullptr;
+  const std::string program = ProgramPath();
+  std::vector<std::string> words{program,          "--stand", "--with_parent",
+                                 "--slip_s",       "0.02",    "--link",
+                                 folder + "/port", "--truth", folder + "/truth"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  int says[2];
+  if (pipe2(says, O_CLOEXEC) != 0) {
+    out.Error({}, std::string("no pipe: ") + std::strerror(errno));
+    return nullptr;
+  }
+  const pid_t child = fork();
+  if (child == 0) {
+    setpgid(0, 0);  // Ctrl-C is for who drives: the robot stays until its motors are off
+    dup2(says[1], STDOUT_FILENO);
+    execvp(argv[0], argv.data());
+    _exit(127);
+  }
+  close(says[1]);
+  std::unique_ptr<VirtualRobot> robot(new VirtualRobot(folder, child, says[0]));
+  const auto line = child > 0 ? FirstLine(says[0]) : std::nullopt;
+  if (!line) {
+    int status = 0;
+    const bool ended = child > 0 && waitpid(child, &status, WNOHANG) == child;
+    if (ended) robot->process_ = -1;
+    const bool missing = ended && WIFEXITED(status) && WEXITSTATUS(status) == 127;
+    out.Error({program}, missing ? "there is no such program" : "did not start",
+              missing ? "it is built where avr-g++ and libsimavr are (docs/hardware/"
+                        "virtual_robot.md); TAUT_VIRTUAL_ROBOT may name it"
+                      : "");
+    return nullptr;
+  }
+  return robot;
+}
+
+}  // namespace taut::link

@@ -1,0 +1,110 @@
+// What moves a robot, always in sight: the emergency stop, power in two steps, off. In place of the
+// timeline, because a robot has no time to go back to.
+import type { App } from "../app";
+import type { RobotStatus } from "../protocol";
+import { button, clock, el } from "../util";
+
+type Mode = "off" | "arm" | "hold" | "impedance" | "clear_faults";
+
+export function stop(app: App): void {
+  if (app.watches) app.notice.value = "this link is for watching only: it cannot stop the robot";
+  else if (!app.send({ type: "stop" })) app.notice.value = "NOT CONNECTED: the stop was not sent. Press Ctrl-C in the terminal, or cut the motors' supply.";
+}
+
+export function robotBar(app: App): HTMLElement {
+  const mode = (name: Mode, label: string, title: string, spec = "button") =>
+    button(label, title, () => app.send({ type: "robot_mode", mode: name }), spec);
+  const stopButton = button("STOP", "emergency stop: all motors off, until faults are cleared (space)", () => stop(app), "button.stop");
+  const off = mode("off", "off", "motors off: they coast");
+  const arm = mode("arm", "1 arm", "first step: boards make ready, nothing moves yet");
+  const hold = mode("hold", "2 hold", "second step: power; motors hold where they are");
+  const impedance = mode("impedance", "2 impedance", "second step: power, hold, then impedance control about the tensions and lengths that are measured");
+  const clear = mode("clear_faults", "clear faults", "take back latched faults, time-outs and emergency stops; motors are turned off unless they hold");
+  const record = button("record cycles", "write every cycle into a folder, or end that", () => app.send({ type: "record", on: app.robot.value?.recording === "" }));
+  const state = el("span.state", { role: "status" });
+  const time = el("span.time");
+  const element = el("footer.robotbar", { "aria-label": "the robot" }, stopButton,
+    el("div.modes", {}, state, arm, hold, impedance, off, clear, record, time));
+
+  const draw = () => {
+    const status = app.robot.value;
+    element.hidden = !app.isRobot;
+    if (!app.isRobot) return;
+    const info = app.tuning.value?.robot;
+    const mayDrive = app.drives && app.link.value === "open" && status !== null;
+    const stage = status?.stage ?? "unconfigured";
+    state.textContent = status ? stateText(status) : "…";
+    state.dataset["state"] = status?.stopping ? "stopped" : stage;
+    stopButton.disabled = app.watches;
+    arm.disabled = !mayDrive || stage !== "inactive" || info?.experiment === true || status!.alarms.length > 0;
+    for (const each of [hold, impedance]) each.disabled = !mayDrive || !["ready", "active"].includes(stage) || info?.experiment === true;
+    off.disabled = !mayDrive || !["ready", "active"].includes(stage);
+    clear.disabled = !mayDrive || info?.experiment === true;
+    for (const each of [arm, hold, impedance, clear]) each.hidden = app.watches || info?.experiment === true;
+    off.hidden = app.watches;
+    arm.classList.toggle("primary", !arm.disabled);
+    for (const each of [hold, impedance]) each.classList.toggle("primary", stage === "ready" && !each.disabled);
+    record.hidden = app.watches || info?.may_record !== true;
+    record.disabled = !mayDrive;
+    const records = (status?.recording ?? "") !== "";
+    record.textContent = records ? "end recording" : "record cycles";
+    record.classList.toggle("recording", records);
+    time.textContent = `${records ? `→ ${status!.recording}  ` : ""}${clock(status?.time_s ?? 0, 1)}`;
+  };
+  for (const signal of [app.robot, app.hello, app.driver, app.link, app.tuning]) signal.watch(draw);
+
+  // Before anything else that acts on space: a button that was pressed last must not be pressed again by it.
+  const typed = (event: KeyboardEvent) => {
+    const target = event.target as HTMLElement;
+    return app.isRobot && event.key === " " && !target.closest("input[type=search], input[type=text], textarea");
+  };
+  document.addEventListener("keydown", (event) => {
+    if (!typed(event)) return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (!event.repeat) stop(app);
+  }, { capture: true });
+  document.addEventListener("keyup", (event) => {
+    if (!typed(event)) return;
+    event.preventDefault(); // Firefox presses buttons when the key is let go
+    event.stopPropagation();
+  }, { capture: true });
+  return element;
+}
+
+function stateText({ stage, commanded, stopping }: RobotStatus): string {
+  if (stopping) return "stopped";
+  return { unconfigured: "not set up", inactive: "motors off", ready: "armed", active: commanded }[stage];
+}
+
+/** All that is wrong, in red, over everything. */
+export function alarms(app: App): HTMLElement {
+  const list = el("ul");
+  const element = el("div.alarms", { role: "alert", hidden: true }, list);
+  let shown = "";
+  const draw = () => {
+    const status = app.robot.value;
+    const all = app.isRobot && status ? [...(app.link.value === "lost" ? ["no connection to taut: what is shown is old, and nothing can be sent"] : []), ...status.alarms] : [];
+    // times within a text change all the while; who listens shall not hear it each time
+    const text = all.join("\n").replace(/[\d.]+ s$/gm, "");
+    element.hidden = all.length === 0;
+    if (text === shown && list.childElementCount === all.length) return;
+    shown = text;
+    list.replaceChildren(...all.map((each) => el("li", {}, each)));
+  };
+  app.robot.watch(draw);
+  app.link.watch(draw);
+  return element;
+}
+
+/** Where what is drawn comes from. */
+export function poseNote(app: App, view: HTMLElement): HTMLElement {
+  const element = el("div.posenote", { role: "note", hidden: true });
+  app.tuning.watch((scene) => {
+    const robot = scene?.robot;
+    element.hidden = robot === undefined;
+    view.classList.toggle("described", robot !== undefined && !robot.true_pose);
+    element.textContent = robot?.true_pose ? "true pose, told by the virtual robot" : "as described, not measured: nobody measures the pose";
+  });
+  return element;
+}
