@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { closeBrowser, cursorTo, numbersBeside, openPage, picture, untilTime, writeReport } from "./browser.mjs";
-import { comparedRuns, contactCount, pose, RATE_HZ, reference, report, rowsOf, rowTime, scene, seriesOf, setpoint_n, tension_n } from "./fixture.mjs";
+import { comparedRuns, contactCount, pose, RATE_HZ, reference, report, rowsOf, rowTime, scene, seriesOf, setpoint_n, tension_n, VERSION } from "./fixture.mjs";
 
 let folder;
 let page;
@@ -230,7 +230,7 @@ test("AxesFitWhatTheyShow", async () => {
 });
 
 for (const [what, data, says] of [
-  ["OfAnotherVersion", { ...report(), version: 7 }, /version 7, this page reads version 4/],
+  ["OfAnotherVersion", { ...report(), version: 7 }, new RegExp(`version 7, this page reads version ${VERSION}`)],
   ["CutOff", { ...report(), frame_count: 3 }, /holds \d+ numbers of frames, not 3 times/],
   ["WithTooFewRows", { ...report(), rows: [{ ...report().rows[0], count: 3 }] }, /holds \d+ numbers of rows, not \d+/],
 ]) {
