@@ -61,8 +61,7 @@ class Events {
                      [](const Event& a, const Event& b) { return a.at_s < b.at_s; });
     std::string text;
     for (const Event& event : all_) {
-      text += fmt::format("{{\"time_s\": {:.6f}, \"who\": \"{}\", \"what\": \"{}\"}}\n",
-                          event.at_s - started_s, Quoted(event.who), Quoted(event.what));
+      text += link::EventLine(event.at_s - started_s, event.who, event.what);
     }
     return WriteWholeFile(path, text, out);
   }
@@ -72,14 +71,6 @@ class Events {
     double at_s;
     std::string who, what;
   };
-  static std::string Quoted(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-      if (c == '"' || c == '\\') out += '\\';
-      out += c < ' ' ? ' ' : c;
-    }
-    return out;
-  }
   std::vector<Event> all_;
 };
 

@@ -6,54 +6,29 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <utility>
+
+#include "base/unix_address.h"
 
 namespace taut::virtual_robot {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr int kWaitingClients = 16;
 
-std::string Quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + '"';
-}
+/// NaN and infinity, which JSON does not know, become null.
+std::string Line(const Json& json) { return json.dump() + '\n'; }
 
-/// JSON knows neither NaN nor infinity.
-std::string Number(double value) {
-  return std::isfinite(value) ? fmt::format("{}", value) : "null";
-}
-
-/// `[text(of[0]),text(of[1]),...]`
+/// `text` of each of them.
 template <class List, class F>
-std::string Array(const List& of, F&& text) {
-  std::string array = "[";
-  for (const auto& one : of) {
-    if (array.size() > 1) array += ',';
-    array += text(one);
-  }
-  return array + ']';
-}
-
-bool AddressOf(const std::string& path, sockaddr_un* address) {
-  *address = {};
-  address->sun_family = AF_UNIX;
-  if (path.empty() || path.size() >= sizeof address->sun_path) return false;
-  std::memcpy(address->sun_path, path.data(), path.size());
-  return true;
+Json Array(const List& of, F&& text) {
+  Json array = Json::array();
+  for (const auto& one : of) array.push_back(text(one));
+  return array;
 }
 
 int NewSocket() { return socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0); }
@@ -77,10 +52,12 @@ std::string MakeRoom(const std::string& path, const sockaddr_un& address) {
 
 std::string TruthHeader(const MotorPlant& plant) {
   const ModelDef& def = plant.batch().model().def();
-  const auto name = [](const auto& one) { return Quoted(one.name); };
-  return fmt::format(R"({{"format":"taut_truth","version":1,"name":{},"bodies":{},"cables":{}}})"
-                     "\n",
-                     Quoted(def.name), Array(def.bodies, name), Array(def.cables, name));
+  const auto name = [](const auto& one) { return one.name; };
+  return Line({{"format", "taut_truth"},
+               {"version", 1},
+               {"name", def.name},
+               {"bodies", Array(def.bodies, name)},
+               {"cables", Array(def.cables, name)}});
 }
 
 std::string TruthFrame(const MotorPlant& plant, Time now) {
@@ -97,22 +74,23 @@ std::string TruthFrame(const MotorPlant& plant, Time now) {
   const auto pose = [](const BodyState& body) {
     const Vec3& p = body.position_m;
     const Quat& q = body.orientation;
-    return Array(std::array{p.x, p.y, p.z, q.w, q.x, q.y, q.z}, Number);
+    return Json{p.x, p.y, p.z, q.w, q.x, q.y, q.z};
   };
   const auto of_all = [&cables](double CableState::*reading) {
-    return Array(cables, [reading](const CableState& cable) { return Number(cable.*reading); });
+    return Array(cables, [reading](const CableState& cable) { return cable.*reading; });
   };
-  return fmt::format(
-      R"({{"time_s":{},"held":{},"bodies":{},"tension_n":{},"length_m":{},"rest_length_m":{}}})"
-      "\n",
-      Number(ToSeconds(now)), plant.held(), Array(bodies, pose), of_all(&CableState::tension_n),
-      of_all(&CableState::length_m), of_all(&CableState::rest_length_m));
+  return Line({{"time_s", ToSeconds(now)},
+               {"held", plant.held()},
+               {"bodies", Array(bodies, pose)},
+               {"tension_n", of_all(&CableState::tension_n)},
+               {"length_m", of_all(&CableState::length_m)},
+               {"rest_length_m", of_all(&CableState::rest_length_m)}});
 }
 
 std::unique_ptr<TruthServer> TruthServer::Open(const std::string& path, const MotorPlant& plant,
                                                Diagnostics& out) {
   sockaddr_un address{};
-  if (!AddressOf(path, &address)) {
+  if (!UnixAddress(path, &address)) {
     out.Error({path}, fmt::format("cannot become a socket: a path of 1 to {} bytes is wanted",
                                   sizeof address.sun_path - 1));
     return nullptr;

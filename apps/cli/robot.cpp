@@ -104,25 +104,31 @@ bool RobotDesk::Read(const RobotArguments& args, const ExperimentSpec* experimen
   return calibration_.has_value();
 }
 
+std::optional<RobotLine> RobotLine::Open(const RobotArguments& args,
+                                         std::vector<std::string> virtual_words, Diagnostics& out) {
+  RobotLine line;
+  line.device = args.port;
+  if (args.port == kVirtual) {
+    line.virtual_robot = link::VirtualRobot::Find(out);
+    if (!line.virtual_robot && out.ok()) {
+      line.virtual_robot =
+          link::VirtualRobot::Start(WithOverrides(std::move(virtual_words), args.set), out);
+    }
+    if (!line.virtual_robot) return std::nullopt;
+    line.device = line.virtual_robot->device();
+  }
+  line.lock = link::RobotLock::Take(line.device, out);
+  if (line.lock) line.port = link::OpenSerialPort(line.device, out);
+  if (!line.port) return std::nullopt;
+  return line;
+}
+
 bool RobotDesk::Connect(const RobotArguments& args, const ExperimentSpec* experiment,
                         Diagnostics& found) {
-  std::string device = args.port;
-  if (args.port == kVirtual) {
-    virtual_ = link::VirtualRobot::Find(found);
-    if (!virtual_ && found.ok()) {
-      std::vector<std::string> words =
-          experiment != nullptr
-              ? std::vector<std::string>{"--experiment", experiment->files.front()}
-              : std::vector<std::string>{"--model", ModelPath(args)};
-      virtual_ = link::VirtualRobot::Start(WithOverrides(std::move(words), args.set), found);
-    }
-    if (!virtual_) return false;
-    device = virtual_->device();
-  }
-  lock_ = link::RobotLock::Take(device, found);
-  if (!lock_) return false;
-  port_ = link::OpenSerialPort(device, found);
-  return port_ != nullptr;
+  line_ = experiment != nullptr
+              ? RobotLine::Open(args, {"--experiment", experiment->files.front()}, found)
+              : RobotLine::Open(args, {"--model", ModelPath(args)}, found);
+  return line_.has_value();
 }
 
 bool RobotDesk::SetUp(const RobotArguments& args, const ExperimentSpec* experiment,
@@ -132,14 +138,14 @@ bool RobotDesk::SetUp(const RobotArguments& args, const ExperimentSpec* experime
   options.cables = cables_;
   options.on_fault = kOnFault.at(args.on_fault);
   // Where robot and PC are the same machine, a reply that does not come is only late.
-  if (virtual_) options.patience_s = 0.5;
-  driver_ = std::make_unique<link::Driver>(*port_, options);
+  if (virtual_robot() != nullptr) options.patience_s = 0.5;
+  driver_ = std::make_unique<link::Driver>(*line_->port, options);
   driver_->on_cycle = [this](const link::State& state) { AfterCycle(state); };
   driver_->on_event = [this](double time_s, const std::string& text) {
     if (!quiet_) fmt::print(stderr, "{}\n", text);
     if (on_event) on_event(time_s, text);
   };
-  const bool ours = virtual_ && virtual_->is_ours();
+  const bool ours = virtual_robot() != nullptr && virtual_robot()->is_ours();
   std::vector<link::Setting> settings;
   const auto add = [&](const std::vector<link::Setting>& more) {
     settings.insert(settings.end(), more.begin(), more.end());
@@ -147,10 +153,7 @@ bool RobotDesk::SetUp(const RobotArguments& args, const ExperimentSpec* experime
   if (experiment != nullptr || ours) add(link::SettingsFor(robot_, args.encoder_lines));
   if (experiment != nullptr) add(link::GainsFor(*experiment));
   if (calibration_) add(link::SettingsFor(*calibration_, robot_));
-  if (ours) {
-    const double ready_s = port_->now_s() + kBoot_s;
-    while (port_->now_s() < ready_s) port_->Wait(ready_s);
-  }
+  if (ours) link::WaitUntil(*line_->port, line_->port->now_s() + kBoot_s);
   if (!driver_->Configure(settings, found)) return false;
   driver_->Cycle(1);  // what sensors say
   if (ours) {
@@ -198,9 +201,17 @@ std::optional<int> RobotDesk::MotorOf(const std::string& cable) const {
   return static_cast<int>(found - cables_.begin());
 }
 
+std::optional<int> RobotDesk::MotorOf(const std::string& cable, Diagnostics& out) const {
+  const auto motor = MotorOf(cable);
+  if (!motor) {
+    out.Error({}, "there is no actuated cable \"" + cable + "\"", DidYouMean(cable, cables_));
+  }
+  return motor;
+}
+
 void RobotDesk::AfterCycle(const link::State& state) {
-  if (state.stopping) lock_->Stopped();  // the frames have gone
-  if (lock_->StopAsked()) {
+  if (state.stopping) line_->lock->Stopped();  // the frames have gone
+  if (line_->lock->StopAsked()) {
     stop_asked_ = true;
     driver_->Stop("asked for by `taut robot estop`");
   }

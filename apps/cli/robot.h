@@ -36,6 +36,19 @@ void AddModel(CLI::App& command, RobotArguments& args);
 void AddDriving(CLI::App& command, RobotArguments& args);
 void AddJson(CLI::App& command, RobotArguments& args);
 
+/// A robot's port, which is this command's alone while it lives.
+struct RobotLine {
+  /// Where no virtual robot runs yet, `virtual_words` say with which experiment or model to start
+  /// one. Nothing and a complaint if there is no port to be had.
+  static std::optional<RobotLine> Open(const RobotArguments& args,
+                                       std::vector<std::string> virtual_words, Diagnostics& out);
+
+  std::unique_ptr<link::VirtualRobot> virtual_robot;  ///< Null: a real one.
+  std::string device;
+  std::unique_ptr<link::RobotLock> lock;
+  std::unique_ptr<link::Port> port;
+};
+
 /// A robot that this command alone drives. Ctrl-C and `taut robot estop` stop its motors, whatever
 /// the command is about.
 class RobotDesk {
@@ -52,7 +65,9 @@ class RobotDesk {
   const RobotSpec& robot() const { return robot_; }
   const std::vector<std::string>& cables() const { return cables_; }
   std::optional<int> MotorOf(const std::string& cable) const;
-  const link::VirtualRobot* virtual_robot() const { return virtual_.get(); }
+  /// The same; a complaint if no motor has that cable.
+  std::optional<int> MotorOf(const std::string& cable, Diagnostics& out) const;
+  const link::VirtualRobot* virtual_robot() const { return line_->virtual_robot.get(); }
   /// Somebody wants it to end; all is stopped, or about to be.
   bool stop_asked() const { return stop_asked_; }
   /// The status to end with then: interrupted, or stopped from elsewhere, which is a failure.
@@ -77,9 +92,7 @@ class RobotDesk {
   RobotSpec robot_;
   std::vector<std::string> cables_;
   std::optional<Calibration> calibration_;
-  std::unique_ptr<link::VirtualRobot> virtual_;
-  std::unique_ptr<link::RobotLock> lock_;
-  std::unique_ptr<link::Port> port_;
+  std::optional<RobotLine> line_;
   std::unique_ptr<link::Driver> driver_;
   bool stop_asked_ = false, quiet_ = false;
 };

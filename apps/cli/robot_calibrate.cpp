@@ -99,13 +99,9 @@ int Keep(const CalibrateArguments& args, const RobotDesk& desk, const CableCalib
 }
 
 std::optional<int> FindMotor(const RobotDesk& desk, const std::string& cable) {
-  const auto motor = desk.MotorOf(cable);
-  if (!motor) {
-    Diagnostics found;
-    found.Error({}, "there is no actuated cable \"" + cable + "\"",
-                DidYouMean(cable, desk.cables()));
-    fmt::print(stderr, "{}", found.Format());
-  }
+  Diagnostics found;
+  const auto motor = desk.MotorOf(cable, found);
+  fmt::print(stderr, "{}", found.Format());
   return motor;
 }
 

@@ -136,17 +136,17 @@ int Estop(const RobotArguments& args, int boards) {
 
 int Log(const HoldArguments& args) {
   Diagnostics found;
-  const auto lock = FolderLock::Take(args.out, found);
-  if (!lock) return Fail(found, kFailed);
+  const auto folder = RunFolder::Open(args.out, {"events.jsonl"}, found);
+  if (!folder) return Fail(found, kFailed);
   int exit = kOk;
   const auto desk = RobotDesk::Open(args, nullptr, exit);
   if (!desk) return exit;
-  if (!RemoveRunBefore(args.out, {"trace.h5", "events.jsonl"}, found)) return Fail(found, kFailed);
-  const std::string trace = args.out + "/trace.h5";
-  const auto recording = RobotRecording::Start(trace, args.out + "/events.jsonl", desk->cables(),
+  if (!folder->Begin(found)) return Fail(found, kFailed);
+  const std::string trace = folder->Path("trace.h5");
+  const auto recording = RobotRecording::Start(trace, folder->Path("events.jsonl"), desk->cables(),
                                                {{"taut_version", kVersion},
                                                 {"model", desk->robot().def.name},
-                                                {kRunIdKey, NewRunId()},
+                                                {kRunIdKey, folder->id()},
                                                 {"plant", "robot at " + args.port}},
                                                found);
   if (!recording) return Fail(found, kFailed);

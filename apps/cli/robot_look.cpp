@@ -29,20 +29,10 @@ Json InfoJson(const board::Info& info) {
 /// The adapter, and all that acknowledges an address.
 int Scan(const RobotArguments& args) {
   Diagnostics found;
-  std::unique_ptr<link::VirtualRobot> virtual_robot;
-  std::string device = args.port;
-  if (args.port == "virtual") {
-    virtual_robot = link::VirtualRobot::Find(found);
-    if (!virtual_robot && found.ok()) {
-      virtual_robot = link::VirtualRobot::Start({"--model", ModelPath(args)}, found);
-    }
-    if (!virtual_robot) return Fail(found, kFailed);
-    device = virtual_robot->device();
-  }
-  const auto lock = link::RobotLock::Take(device, found);
-  const auto port = lock ? link::OpenSerialPort(device, found) : nullptr;
-  if (!port) return Fail(found, kFailed);
-  link::UsbIss adapter(*port);
+  const auto line = RobotLine::Open(args, {"--model", ModelPath(args)}, found);
+  if (!line) return Fail(found, kFailed);
+  const std::string& device = line->device;
+  link::UsbIss adapter(*line->port);
   const auto info = adapter.Identify();
   if (!info || !adapter.SetMode()) {
     found.Error({device}, "nothing answers as a USB-ISS does");

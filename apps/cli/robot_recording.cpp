@@ -1,7 +1,5 @@
 #include "robot_recording.h"
 
-#include <nlohmann/json.hpp>
-
 namespace taut::cli {
 
 std::unique_ptr<RobotRecording> RobotRecording::Start(const std::string& trace_path,
@@ -24,8 +22,8 @@ void RobotRecording::Take(const link::State& state) {
 }
 
 void RobotRecording::Event(double time_s, const std::string& text) {
-  const nlohmann::ordered_json line{{"time_s", time_s - begun_s_}, {"who", "pc"}, {"what", text}};
-  events_good_ = events_.WriteAllOrNone(line.dump() + "\n") && events_good_;
+  const std::string line = link::EventLine(time_s - begun_s_, "pc", text);
+  events_good_ = events_.WriteAllOrNone(line) && events_good_;
 }
 
 bool RobotRecording::Finish(Diagnostics& out) {

@@ -21,12 +21,7 @@ std::vector<int> MotorsOf(const RobotDesk& desk, const std::vector<std::string>&
                           Diagnostics& out) {
   std::vector<int> motors;
   for (const std::string& cable : cables) {
-    if (const auto motor = desk.MotorOf(cable)) {
-      motors.push_back(*motor);
-    } else {
-      out.Error({}, "there is no actuated cable \"" + cable + "\"",
-                DidYouMean(cable, desk.cables()));
-    }
+    if (const auto motor = desk.MotorOf(cable, out)) motors.push_back(*motor);
   }
   if (cables.empty()) {
     for (int m = 0; m < static_cast<int>(desk.cables().size()); ++m) motors.push_back(m);
@@ -53,8 +48,7 @@ int List(RobotDesk& desk, const std::vector<int>& motors, bool json, Diagnostics
     const auto infos = link::MotorParameters();
     for (std::size_t p = 0; p < infos.size(); ++p) {
       if (!show(desk.cables()[static_cast<std::size_t>(motor)],
-                link::PlaceOf(motor, static_cast<std::uint8_t>(p)),
-                infos[p])) {
+                link::PlaceOf(motor, static_cast<std::uint8_t>(p)), infos[p])) {
         return Fail(found, kFailed);
       }
     }
@@ -173,12 +167,7 @@ int Reference(const SetArguments& args, bool as_model) {
       if (desk->MotorOf(cable.name)) references.push_back({cable.name, cable.rest_length_m});
     }
   }
-  for (const ReferenceText& one : references) {
-    if (!desk->MotorOf(one.cable)) {
-      found.Error({}, "there is no actuated cable \"" + one.cable + "\"",
-                  DidYouMean(one.cable, desk->cables()));
-    }
-  }
+  for (const ReferenceText& one : references) desk->MotorOf(one.cable, found);
   if (!found.ok()) return Fail(found, kBadInput);
   for (const ReferenceText& one : references) {
     if (!desk->driver().SetReference(*desk->MotorOf(one.cable), one.rest_length_m, found)) {

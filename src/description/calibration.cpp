@@ -1,14 +1,12 @@
 #include "taut/calibration.h"
 
-#include <algorithm>
 #include <charconv>
 #include <set>
 #include <utility>
 
 #include "description/calibration_keys.h"
-#include "description/merged_file.h"
-#include "description/parameters.h"
 #include "description/read_keys.h"
+#include "description/robot_file.h"
 
 namespace taut {
 namespace description {
@@ -36,11 +34,7 @@ Calibration ReadCalibration(const Value& root, const std::vector<std::string>& c
     if (!name.empty() && !known.insert(name).second) {
       scope.out.Error(one.cable.at, "cable \"" + name + "\" was there already");
     }
-    if (!name.empty() && !cables.empty() &&
-        std::find(cables.begin(), cables.end(), name) == cables.end()) {
-      scope.out.Error(one.cable.at, "there is no actuated cable \"" + name + "\"",
-                      NameHint(name, cables));
-    }
+    if (!name.empty() && !cables.empty()) FindActuatedCable(one.cable, cables, scope);
     one.values.cable = name;
     one.values.measured = one.measured.text;
     calibration.cables.push_back(std::move(one.values));
@@ -68,16 +62,11 @@ void Check(const MapReader& map, CableCalibrationText& cable) {
 std::optional<Calibration> LoadCalibration(const std::string& path,
                                            const std::vector<std::string>& cables,
                                            Diagnostics& out) {
-  const std::size_t errors_before = out.items().size();
-  description::MergedFile file = description::ReadMergedFile(path, "calibration", out);
-  if (!file.root) return std::nullopt;
-  const description::NameTable names = description::ResolveParameters(file.parameters, out);
-  description::NameSet used;
-  Calibration calibration = description::ReadCalibration(*file.root, cables, {names, out, &used});
-  if (out.items().size() != errors_before) return std::nullopt;
-  description::WarnOfUnused(file.parameters, std::move(used), file.files, out);
-  calibration.files = std::move(file.files);
-  return calibration;
+  return description::LoadRobotFile(
+      path, "calibration", out,
+      [&](const description::Value& root, const description::Scope& scope) {
+        return description::ReadCalibration(root, cables, scope);
+      });
 }
 
 std::string CalibrationYaml(const Calibration& calibration) {

@@ -8,9 +8,8 @@
 
 #include "base/assert.h"
 #include "description/fault_keys.h"
-#include "description/merged_file.h"
-#include "description/parameters.h"
 #include "description/read_keys.h"
+#include "description/robot_file.h"
 
 namespace taut {
 namespace description {
@@ -54,22 +53,13 @@ std::string KindsWith(const char* key) {
   return out;
 }
 
-/// Index of the cable; -1 after a complaint.
-int FindCable(const Placed& name, const std::vector<std::string>& cables, const Scope& scope) {
-  const auto found = std::find(cables.begin(), cables.end(), name.text);
-  if (found != cables.end()) return static_cast<int>(found - cables.begin());
-  scope.out.Error(name.at, "there is no actuated cable \"" + name.text + "\"",
-                  NameHint(name.text, cables));
-  return -1;
-}
-
 FaultScript ReadScript(const Value& root, const std::vector<std::string>& cables,
                        const Scope& scope) {
   FaultFileText text;
   ReadMapping(root, "", scope, text);
   FaultScript script{text.name, text.description, {}, {}};
   for (FaultText& fault : text.faults) {
-    if (!fault.cable.text.empty()) fault.spec.cable = FindCable(fault.cable, cables, scope);
+    if (!fault.cable.text.empty()) fault.spec.cable = FindActuatedCable(fault.cable, cables, scope);
     const int boards = static_cast<int>(cables.size() + 1) / 2;
     if (fault.board && *fault.board >= boards) {
       scope.out.Error(fault.board_at, "there is no board " + std::to_string(*fault.board),
@@ -121,16 +111,10 @@ const char* FaultName(FaultKind kind) {
 
 std::optional<FaultScript> LoadFaults(const std::string& path,
                                       const std::vector<std::string>& cables, Diagnostics& out) {
-  const std::size_t errors_before = out.items().size();
-  description::MergedFile file = description::ReadMergedFile(path, "faults", out);
-  if (!file.root) return std::nullopt;
-  const description::NameTable names = description::ResolveParameters(file.parameters, out);
-  description::NameSet used;
-  FaultScript script = description::ReadScript(*file.root, cables, {names, out, &used});
-  if (out.items().size() != errors_before) return std::nullopt;
-  description::WarnOfUnused(file.parameters, std::move(used), file.files, out);
-  script.files = std::move(file.files);
-  return script;
+  return description::LoadRobotFile(
+      path, "faults", out, [&](const description::Value& root, const description::Scope& scope) {
+        return description::ReadScript(root, cables, scope);
+      });
 }
 
 }  // namespace taut

@@ -1,8 +1,14 @@
 #include "taut/link/log.h"
 
+#include <nlohmann/json.hpp>
+
 #include "base/assert.h"
 
 namespace taut::link {
+
+std::string EventLine(double time_s, const std::string& who, const std::string& what) {
+  return nlohmann::ordered_json{{"time_s", time_s}, {"who", who}, {"what", what}}.dump() + "\n";
+}
 
 RobotLog::RobotLog(const std::vector<std::string>& cables) : motors_(cables.size()) {
   for (const std::string& name : cables) {

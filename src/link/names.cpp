@@ -80,10 +80,8 @@ std::vector<Setting> ForAll(const ParameterValue& value, int motors) {
   std::vector<Setting> settings;
   const int boards = (motors + board::kMotors - 1) / board::kMotors;
   for (int i = 0; i < (value.of_motor ? motors : boards); ++i) {
-    settings.push_back(
-        value.of_motor
-            ? Setting{{i / board::kMotors, i % board::kMotors, value.parameter}, value.value}
-            : Setting{{i, board::kMotors, value.parameter}, value.value});
+    settings.push_back(value.of_motor ? Setting{PlaceOf(i, value.parameter), value.value}
+                                      : Setting{{i, board::kMotors, value.parameter}, value.value});
   }
   return settings;
 }

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/unix_address.h"
 #include "link/runtime_folder.h"
 
 namespace taut::link {
@@ -31,14 +32,6 @@ std::string PathFor(const std::string& device, Diagnostics& out) {
     if (c == '/') c = '_';
   }
   return folder + "/robot" + name;
-}
-
-bool Address(const std::string& path, sockaddr_un& to) {
-  to = {};
-  to.sun_family = AF_UNIX;
-  if (path.size() >= sizeof to.sun_path) return false;
-  std::memcpy(to.sun_path, path.c_str(), path.size() + 1);
-  return true;
 }
 
 }  // namespace
@@ -79,7 +72,7 @@ std::unique_ptr<RobotLock> RobotLock::Take(const std::string& device, Diagnostic
   const int socket_to = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   sockaddr_un address;
   unlink(socket_path.c_str());  // of one that was killed: the lock is ours
-  if (socket_to < 0 || !Address(socket_path, address) ||
+  if (socket_to < 0 || !UnixAddress(socket_path, &address) ||
       bind(socket_to, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     out.Error({socket_path}, std::string("cannot be listened to: ") + std::strerror(errno));
     if (socket_to >= 0) close(socket_to);
@@ -121,7 +114,7 @@ void RobotLock::Stopped() {
 StopAnswer AskToStop(const std::string& device, double patience_s, Diagnostics& out) {
   const std::string path = PathFor(device, out);
   sockaddr_un address;
-  if (path.empty() || !Address(path + ".stop", address)) return StopAnswer::kNobody;
+  if (path.empty() || !UnixAddress(path + ".stop", &address)) return StopAnswer::kNobody;
   const int asking = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (asking < 0) return StopAnswer::kNobody;
   // A name of its own, which the kernel chooses, for the answer to go to.

@@ -19,9 +19,7 @@ const ImpedanceGains* GainsOf(const ExperimentSpec& experiment, int cable) {
 }
 
 Setting Of(std::size_t motor, board::MotorParameter parameter, double value) {
-  return {{static_cast<int>(motor) / board::kMotors, static_cast<int>(motor) % board::kMotors,
-           parameter},
-          static_cast<float>(value)};
+  return {PlaceOf(static_cast<int>(motor), parameter), static_cast<float>(value)};
 }
 
 std::vector<int> CablesOf(const RobotSpec& robot) {

@@ -17,6 +17,7 @@
 #include <optional>
 #include <thread>
 
+#include "base/unix_address.h"
 #include "link/runtime_folder.h"
 
 namespace taut::link {
@@ -49,10 +50,8 @@ std::string FolderOfIt(Diagnostics& out) {
 
 /// Whether somebody listens there: a link to a terminal may have stayed, and lead to another one.
 bool Lives(const std::string& truth) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (truth.size() >= sizeof address.sun_path) return false;
-  std::memcpy(address.sun_path, truth.c_str(), truth.size() + 1);
+  sockaddr_un address;
+  if (!UnixAddress(truth, &address)) return false;
   const int caller = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (caller < 0) return false;
   const bool lives =

@@ -12,6 +12,9 @@
 
 namespace taut::link {
 
+/// A line of events.jsonl: who says what, and when.
+std::string EventLine(double time_s, const std::string& who, const std::string& what);
+
 class RobotLog {
  public:
   /// Names of the motors' cables.

@@ -1,0 +1,20 @@
+/// The address of a socket that has a place among files.
+#pragma once
+
+#include <sys/un.h>
+
+#include <cstring>
+#include <string>
+
+namespace taut {
+
+/// False if the path is empty or too long for one (`sizeof to->sun_path`).
+inline bool UnixAddress(const std::string& path, sockaddr_un* to) {
+  *to = {};
+  to->sun_family = AF_UNIX;
+  if (path.empty() || path.size() >= sizeof to->sun_path) return false;
+  std::memcpy(to->sun_path, path.c_str(), path.size() + 1);
+  return true;
+}
+
+}  // namespace taut
