@@ -97,6 +97,16 @@ void JoinedRobots::AddTerrain(const ModelDef& robot, const std::string& prefix, 
     box.center_m = Plus(box.center_m, at_m);
     AddUnlessThere(joined_.terrain_boxes, std::move(box));
   }
+  for (HeightFieldDef field : robot.height_fields) {
+    field.name = prefix + field.name;
+    field.origin_m = Plus(field.origin_m, at_m);
+    AddUnlessThere(joined_.height_fields, std::move(field));
+  }
+  for (TerrainMeshDef mesh : robot.terrain_meshes) {
+    mesh.name = prefix + mesh.name;
+    for (Vec3& corner : mesh.corners_m) corner = Plus(corner, at_m);
+    AddUnlessThere(joined_.terrain_meshes, std::move(mesh));
+  }
 }
 
 void JoinedRobots::Set(int robot, const RobotMoment& moment) {

@@ -1,6 +1,7 @@
 #include "scene.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace taut::viewer {
 namespace {
@@ -66,6 +67,58 @@ Json Cables(const ModelDef& def) {
   return cables;
 }
 
+/// Of a large field only so many corners are drawn.
+constexpr int kMostCorners = 250'000;
+
+void AddField(const HeightFieldDef& field, Json& terrain) {
+  int step = 1;
+  const auto kept = [&](int corners) { return (corners - 1) / step + 1; };
+  while (static_cast<double>(kept(field.columns)) * kept(field.rows) > kMostCorners) ++step;
+  const int columns = kept(field.columns), rows = kept(field.rows);
+  Json corners = Json::array(), triangles = Json::array();
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      const int at = j * step * field.columns + i * step;
+      corners.push_back(field.origin_m.x + (i * step - 0.5 * (field.columns - 1)) * field.cell_m);
+      corners.push_back(field.origin_m.y + (j * step - 0.5 * (field.rows - 1)) * field.cell_m);
+      corners.push_back(field.origin_m.z + field.height_m[static_cast<std::size_t>(at)]);
+    }
+  }
+  const auto height = [&](int corner) {
+    return corners[static_cast<std::size_t>(3 * corner + 2)].get<double>();
+  };
+  for (int j = 0; j + 1 < rows; ++j) {
+    for (int i = 0; i + 1 < columns; ++i) {
+      const int a = j * columns + i, b = a + 1, d = a + columns, c = d + 1;
+      using Split = HeightFieldDef::Split;
+      const bool shorter = std::fabs(height(c) - height(a)) <= std::fabs(height(d) - height(b));
+      const bool rising = field.split == Split::kSame ||
+                          (field.split == Split::kAlternating ? (i + j) * step % 2 == 0 : shorter);
+      for (const int corner : {a, b, rising ? c : d, rising ? a : b, c, d}) {
+        triangles.push_back(corner);
+      }
+    }
+  }
+  terrain.push_back({{"kind", "surface"},
+                     {"name", field.name},
+                     {"corners_m", std::move(corners)},
+                     {"triangles", std::move(triangles)}});
+}
+
+void AddMesh(const TerrainMeshDef& mesh, Json& terrain) {
+  Json corners = Json::array(), triangles = Json::array();
+  for (const Vec3& p : mesh.corners_m) {
+    for (const double x : {p.x, p.y, p.z}) corners.push_back(x);
+  }
+  for (const auto& triangle : mesh.triangles) {
+    for (const int corner : triangle) triangles.push_back(corner);
+  }
+  terrain.push_back({{"kind", "surface"},
+                     {"name", mesh.name},
+                     {"corners_m", std::move(corners)},
+                     {"triangles", std::move(triangles)}});
+}
+
 Json Terrain(const ModelDef& def) {
   Json terrain = Json::array();
   for (const PlaneDef& plane : def.planes) {
@@ -81,6 +134,8 @@ Json Terrain(const ModelDef& def) {
                        {"half_extents_m", ToJson(box.half_extents_m)},
                        {"orientation", ToJson(box.orientation)}});
   }
+  for (const HeightFieldDef& field : def.height_fields) AddField(field, terrain);
+  for (const TerrainMeshDef& mesh : def.terrain_meshes) AddMesh(mesh, terrain);
   return terrain;
 }
 

@@ -101,7 +101,15 @@ struct ContactState {
 
 /// A shape or plane of a `ModelDef`: in which of its lists, and which of them.
 struct ShapeRef {
-  enum class List { kSpheres, kCapsules, kBoxes, kTerrainBoxes, kPlanes };
+  enum class List {
+    kSpheres,
+    kCapsules,
+    kBoxes,
+    kTerrainBoxes,
+    kPlanes,
+    kHeightFields,
+    kTerrainMeshes
+  };
   List list = List::kSpheres;
   int index = 0;
 };

@@ -6,6 +6,7 @@
 /// the moment t = 0, as described (before any settling).
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -126,6 +127,33 @@ struct TerrainBoxDef {
   Material material;
 };
 
+/// Ground above a rectangle: heights at the corners of square cells, each of which is two
+/// triangles. Below it is solid. Outside of the rectangle there is nothing.
+struct HeightFieldDef {
+  /// Along which diagonal a cell is split. Corner (i, j) is the i-th along x of the j-th along y.
+  enum class Split {
+    kSame,         ///< From (i, j) to (i + 1, j + 1).
+    kAlternating,  ///< So where i + j is even, else across.
+    kShortest,     ///< That of the two whose ends differ less in height.
+  };
+  std::string name;
+  int columns = 0, rows = 0;     ///< Corners along x and y, >= 2.
+  double cell_m = 0.0;           ///< Side of a cell, > 0.
+  Vec3 origin_m;                 ///< Middle of the rectangle; its z is added to all heights.
+  std::vector<double> height_m;  ///< columns * rows, x running fastest.
+  Split split = Split::kAlternating;
+  Material material;
+};
+
+/// Ground of any form.
+struct TerrainMeshDef {
+  std::string name;
+  std::vector<Vec3> corners_m;                ///< In W.
+  std::vector<std::array<int, 3>> triangles;  ///< Corners, counter-clockwise seen from outside.
+  bool solid = true;  ///< Closed: there is an inside. Else a thin sheet with two sides.
+  Material material;
+};
+
 /// How the coefficients of two touching materials become one.
 enum class CombineRule { kProduct, kGeometricMean, kMinimum, kMaximum };
 
@@ -147,6 +175,8 @@ struct ModelDef {
   std::vector<CableDef> cables;
   std::vector<PlaneDef> planes;
   std::vector<TerrainBoxDef> terrain_boxes;
+  std::vector<HeightFieldDef> height_fields;
+  std::vector<TerrainMeshDef> terrain_meshes;
 
   Vec3 gravity_m_per_s2{0.0, 0.0, -9.81};
   CombineRule friction_combine = CombineRule::kGeometricMean;

@@ -58,6 +58,7 @@ struct RobotSpec {
   std::vector<SourceRef> body_sources;   ///< Per body.
   std::vector<SourceRef> node_sources;   ///< Per node.
   std::vector<SourceRef> plane_sources, terrain_box_sources;  ///< Per part of the terrain.
+  std::vector<SourceRef> height_field_sources, mesh_sources;  ///< The same.
   std::optional<SolidsSpec> solids;          ///< Not known of a resolved experiment.
   std::map<std::string, double> parameters;  ///< As resolved, overrides applied.
   std::vector<std::string> files;            ///< Every file that was read, the model first.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "description/experiment_keys.h"
 #include "description/experiment_parts.h"
@@ -119,6 +120,18 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
       def.terrain_boxes.push_back(*text.box);
       def.terrain_boxes.back().name = text.name;
       robot.terrain_box_sources.push_back(text.at);
+    } else if (text.height_field) {
+      if (auto field = ReadHeightField(*text.height_field, scope)) {
+        def.height_fields.push_back(std::move(*field));
+        def.height_fields.back().name = text.name;
+        robot.height_field_sources.push_back(text.at);
+      }
+    } else if (text.mesh) {
+      if (auto mesh = ReadTerrainMesh(*text.mesh, scope)) {
+        def.terrain_meshes.push_back(std::move(*mesh));
+        def.terrain_meshes.back().name = text.name;
+        robot.mesh_sources.push_back(text.at);
+      }
     }
     if (text.name.empty()) continue;
     const auto [first, fresh] = names.emplace(text.name, text.name_at);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "description/gait_keys.h"
+#include "description/ground_keys.h"
 #include "description/head_keys.h"
 #include "description/model_text.h"
 #include "description/surface_keys.h"
@@ -49,6 +50,8 @@ struct TerrainText {
   SourceRef at, name_at, name_key_at;
   std::optional<PlaneText> plane;
   std::optional<TerrainBoxText> box;
+  std::optional<HeightFieldText> height_field;
+  std::optional<TerrainMeshText> mesh;
 };
 struct PlaceText {
   SourceRef at;

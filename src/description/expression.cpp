@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "math/elementary.h"
+#include "math/noise.h"
 #include "taut/diagnostics.h"
 
 namespace taut::description {
@@ -20,11 +21,12 @@ struct Function {
   std::string_view name;
   int arguments;  ///< -2: two or more.
 };
-constexpr std::array kFunctions{
-    Function{"sqrt", 1}, Function{"sin", 1},   Function{"cos", 1},  Function{"tan", 1},
-    Function{"asin", 1}, Function{"acos", 1},  Function{"atan", 1}, Function{"atan2", 2},
-    Function{"exp", 1},  Function{"log", 1},   Function{"abs", 1},  Function{"min", -2},
-    Function{"max", -2}, Function{"floor", 1}, Function{"ceil", 1}, Function{"round", 1}};
+constexpr std::array kFunctions{Function{"sqrt", 1},  Function{"sin", 1},   Function{"cos", 1},
+                                Function{"tan", 1},   Function{"asin", 1},  Function{"acos", 1},
+                                Function{"atan", 1},  Function{"atan2", 2}, Function{"exp", 1},
+                                Function{"log", 1},   Function{"abs", 1},   Function{"min", -2},
+                                Function{"max", -2},  Function{"floor", 1}, Function{"ceil", 1},
+                                Function{"round", 1}, Function{"noise", 3}};
 
 const Function* FindFunction(std::string_view name) {
   for (const Function& function : kFunctions) {
@@ -191,9 +193,10 @@ class Evaluator {
     Expect(')');
     const int count = static_cast<int>(arguments.size());
     if (function->arguments > 0 ? count != function->arguments : count < -function->arguments) {
-      const std::string wanted = function->arguments == 1    ? "1 argument"
-                                 : function->arguments == -2 ? "2 or more arguments"
-                                                             : "2 arguments";
+      const std::string wanted = function->arguments == 1 ? "1 argument"
+                                 : function->arguments == -2
+                                     ? "2 or more arguments"
+                                     : std::to_string(function->arguments) + " arguments";
       throw Failure{std::string(name) + " takes " + wanted + ", got " + std::to_string(count), ""};
     }
     for (const double argument : arguments) {
@@ -229,11 +232,22 @@ class Evaluator {
     if (name == "floor") return std::floor(x);
     if (name == "ceil") return std::ceil(x);
     if (name == "round") return std::round(x);
+    if (name == "noise") return Noise(x, arguments[1], arguments[2]);
     double best = x;  // min and max
     for (const double other : arguments) {
       if (name == "min" ? other < best : other > best) best = other;
     }
     return best;
+  }
+
+  static double Noise(double seed, double x, double y) {
+    if (!(seed >= 0.0 && seed <= 0x1p53 && std::floor(seed) == seed)) {
+      throw Failure{"the seed of noise is not a whole number", "0, 1, 2, ..."};
+    }
+    if (!(std::fabs(x) < 1e9 && std::fabs(y) < 1e9)) {
+      throw Failure{"noise of a place beyond 1e9", ""};
+    }
+    return math::Noise(static_cast<std::uint64_t>(seed), x, y);
   }
 
   static double Checked(double value, std::string_view of) {

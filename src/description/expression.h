@@ -2,8 +2,9 @@
 ///
 /// + - * / ^ ( ), unary minus, numbers, named parameters, pi, and the functions sqrt, sin, cos,
 /// tan, asin, acos, atan, atan2, exp, log, abs, min, max, floor, ceil, round (half away from
-/// zero). `^` binds tightest and groups to the right: -2^2 is -4, 2^3^2 is 512. Angles in rad.
-/// The same text gives the same bits on every machine (math/elementary.h).
+/// zero), noise (seed, x, y: math/noise.h). `^` binds tightest and groups to the right: -2^2 is -4,
+/// 2^3^2 is 512. Angles in rad. The same text gives the same bits on every machine
+/// (math/elementary.h).
 #pragma once
 
 #include <map>

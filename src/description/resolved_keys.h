@@ -41,6 +41,8 @@ void Keys(Io& io, Like<RobotSpec> auto& r) {
   io("cable_tags", r.cable_tags);
   io("planes", r.def.planes);
   io("terrain_boxes", r.def.terrain_boxes);
+  io("height_fields", r.def.height_fields, kLater);
+  io("terrain_meshes", r.def.terrain_meshes, kLater);
 }
 
 }  // namespace taut::description

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -44,6 +46,14 @@ void Read(const Value& value, const std::string& what, const Scope& scope, Inert
 void Read(const Value& value, const std::string& what, const Scope& scope,
           std::pair<double, double>& out) {
   if (const auto point = ReadNumbers(value, what, 2, scope)) out = {(*point)[0], (*point)[1]};
+}
+void Read(const Value& value, const std::string& what, const Scope& scope,
+          std::array<int, 3>& out) {
+  const auto items = Items(&value, what, scope);
+  if (items.size() != out.size()) scope.out.Error(value.at, what + " must be three corners");
+  for (std::size_t k = 0; k < std::min(items.size(), out.size()); ++k) {
+    Read(*items[k], what, scope, out[k]);
+  }
 }
 template <class T>
 void Read(const Value& value, const std::string& what, const Scope& scope, T& out);  // a struct
@@ -154,6 +164,7 @@ void CheckNames(const ExperimentSpec& experiment, const SourceRef& at, Diagnosti
   check_all(def.bodies), check_all(def.nodes), check_all(def.cables);
   check_all(def.spheres), check_all(def.capsules), check_all(def.boxes);
   check_all(def.planes), check_all(def.terrain_boxes);
+  check_all(def.height_fields), check_all(def.terrain_meshes);
   check_all(experiment.controllers), check_all(experiment.pushes), check_all(experiment.drags);
   check_all(experiment.phases);
 }
@@ -229,6 +240,8 @@ std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Overri
   robot.node_sources.resize(robot.def.nodes.size(), at);
   robot.plane_sources.resize(robot.def.planes.size(), at);
   robot.terrain_box_sources.resize(robot.def.terrain_boxes.size(), at);
+  robot.height_field_sources.resize(robot.def.height_fields.size(), at);
+  robot.mesh_sources.resize(robot.def.terrain_meshes.size(), at);
   CheckPositions(robot, out);
   if (out.items().size() != errors_before) return std::nullopt;
   WarnOfOddNumbers(robot, out);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -42,6 +43,8 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
       return Text(std::vector{value.xx, value.yy, value.zz, value.xy, value.xz, value.yz});
     } else if constexpr (std::same_as<T, std::pair<double, double>>) {
       return Text(std::vector{value.first, value.second});
+    } else if constexpr (std::same_as<T, std::array<int, 3>>) {
+      return Text(std::vector(value.begin(), value.end()));
     } else {
       FlowWriter writer(spelt);
       Keys(writer, value);

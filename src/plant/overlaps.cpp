@@ -16,7 +16,8 @@ using List = ShapeRef::List;
 constexpr double kTouching = 0.01;
 
 bool IsTerrain(const ShapeRef& ref) {
-  return ref.list == List::kPlanes || ref.list == List::kTerrainBoxes;
+  return ref.list == List::kPlanes || ref.list == List::kTerrainBoxes ||
+         ref.list == List::kHeightFields || ref.list == List::kTerrainMeshes;
 }
 
 std::string NameOf(const ModelDef& def, const ShapeRef& ref) {
@@ -32,6 +33,10 @@ std::string NameOf(const ModelDef& def, const ShapeRef& ref) {
       return "the terrain \"" + def.terrain_boxes[i].name + '"';
     case List::kPlanes:
       return "the terrain \"" + def.planes[i].name + '"';
+    case List::kHeightFields:
+      return "the terrain \"" + def.height_fields[i].name + '"';
+    case List::kTerrainMeshes:
+      return "the terrain \"" + def.terrain_meshes[i].name + '"';
   }
   return {};
 }
@@ -44,6 +49,8 @@ SourceRef PlaceOf(const RobotSpec& robot, const Overlap& overlap) {
   };
   if (overlap.b.list == List::kPlanes) return at(robot.plane_sources, overlap.b.index);
   if (overlap.b.list == List::kTerrainBoxes) return at(robot.terrain_box_sources, overlap.b.index);
+  if (overlap.b.list == List::kHeightFields) return at(robot.height_field_sources, overlap.b.index);
+  if (overlap.b.list == List::kTerrainMeshes) return at(robot.mesh_sources, overlap.b.index);
   return at(robot.body_sources, overlap.body_a);
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/assert.h"
 #include "math/principal_axes.h"
@@ -36,6 +37,9 @@ double Combine(CombineRule rule, double a, double b) {
       return std::max(a, b);
   }
 }
+
+/// The radius of a sphere around a surface, which has no middle.
+constexpr double kEverywhere_m = 1e30;
 
 /// Turns a checked definition into tables.
 class Compiler {
@@ -220,6 +224,8 @@ class Compiler {
     t_.shape_refs.push_back(ref);
   }
 
+  void AddPoints(std::size_t, const sim::SurfaceShape&, const Material&) {}
+
   void Shapes() {
     shapes_of_.resize(def_.bodies.size() + 1);
     using List = ShapeRef::List;
@@ -238,6 +244,29 @@ class Compiler {
     each(List::kTerrainBoxes, def_.terrain_boxes, [&](const ShapeRef& ref, const TerrainBoxDef& b) {
       Box(ref, kWorld, b.center_m, b.orientation, b.half_extents_m, b.material);
     });
+    // Pointers to their tables go into shapes.
+    t_.surfaces.reserve(def_.height_fields.size() + def_.terrain_meshes.size());
+    each(List::kHeightFields, def_.height_fields, [&](const ShapeRef& ref, const auto& field) {
+      Ground(ref, sim::Surface(field), field.material);
+    });
+    each(List::kTerrainMeshes, def_.terrain_meshes, [&](const ShapeRef& ref, const auto& mesh) {
+      Ground(ref, sim::Surface(mesh), mesh.material);
+    });
+  }
+
+  /// Ground is a partner of its own for every body: how far one is from it says nothing about
+  /// boxes.
+  void Ground(const ShapeRef& ref, sim::Surface surface, const Material& material) {
+    t_.surfaces.push_back(std::move(surface));
+    sim::ShapeTable s;
+    s.body = t_.body_count;
+    s.shape_P.kind = sim::ShapeKind::kSurface;
+    s.shape_P.surface.table = &t_.surfaces.back().table();
+    s.bound_m = kEverywhere_m;
+    s.material = material;
+    ground_.push_back(t_.shapes.size());
+    t_.shapes.push_back(s);
+    t_.shape_refs.push_back(ref);
   }
 
   /// Points that can touch planes. Of several in one place the thickest counts, spheres first:
@@ -308,8 +337,14 @@ class Compiler {
       if (!shapes_of_[static_cast<std::size_t>(a)].empty()) solid.push_back(a);
     }
     for (const int a : solid) {
+      if (!Moves(a)) continue;
       for (const int b : solid) {
-        if (Moves(a) && !Moves(b)) AddPair(a, b, id);
+        if (!Moves(b)) AddPair(a, b, id);
+      }
+      for (const std::size_t ground : ground_) {
+        BeginPair(a, t_.body_count);
+        for (const std::size_t i : shapes_of_[static_cast<std::size_t>(a)]) Meet(i, ground, id);
+        EndPair();
       }
     }
     t_.world_pair_count = static_cast<int>(t_.body_pairs.size());
@@ -342,27 +377,37 @@ class Compiler {
     t_.slot_count = first;
   }
 
+  void BeginPair(int a, int b) {
+    t_.body_pairs.push_back({a, b, static_cast<int>(t_.shape_pairs.size()), 0});
+  }
+  void EndPair() {
+    if (t_.body_pairs.back().pair_count == 0) t_.body_pairs.pop_back();
+  }
+  void Meet(std::size_t i, std::size_t j, std::uint32_t& id) {
+    const Material &m = t_.shapes[i].material, &n = t_.shapes[j].material;
+    t_.shape_pairs.push_back(
+        {static_cast<int>(i), static_cast<int>(j), id,
+         Combine(def_.friction_combine, m.static_friction, n.static_friction),
+         Combine(def_.friction_combine, m.kinetic_friction, n.kinetic_friction),
+         Combine(def_.restitution_combine, m.restitution, n.restitution)});
+    id += sim::kMaxPointsPerPair;
+    ++t_.body_pairs.back().pair_count;
+  }
+
   void AddPair(int a, int b, std::uint32_t& id) {
-    sim::BodyPairTable pair{a, b, static_cast<int>(t_.shape_pairs.size()), 0};
+    BeginPair(a, b);
     for (const std::size_t i : shapes_of_[static_cast<std::size_t>(a)]) {
-      for (const std::size_t j : shapes_of_[static_cast<std::size_t>(b)]) {
-        const Material &m = t_.shapes[i].material, &n = t_.shapes[j].material;
-        t_.shape_pairs.push_back(
-            {static_cast<int>(i), static_cast<int>(j), id,
-             Combine(def_.friction_combine, m.static_friction, n.static_friction),
-             Combine(def_.friction_combine, m.kinetic_friction, n.kinetic_friction),
-             Combine(def_.restitution_combine, m.restitution, n.restitution)});
-        id += sim::kMaxPointsPerPair;
-        ++pair.pair_count;
-      }
+      for (const std::size_t j : shapes_of_[static_cast<std::size_t>(b)]) Meet(i, j, id);
     }
-    if (pair.pair_count > 0) t_.body_pairs.push_back(pair);
+    EndPair();
   }
 
   Tables& t_;
   const ModelDef& def_;
   std::vector<Frame> frames_;
-  std::vector<std::vector<std::size_t>> shapes_of_;  ///< Per body and the world.
+  std::vector<std::vector<std::size_t>>
+      shapes_of_;                    ///< Per body and the world, but for the ground.
+  std::vector<std::size_t> ground_;  ///< Surfaces among the shapes.
 };
 
 }  // namespace

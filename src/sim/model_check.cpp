@@ -6,43 +6,11 @@
 #include <vector>
 
 #include "math/principal_axes.h"
+#include "sim/checker.h"
 #include "sim/tables.h"
 
 namespace taut::sim {
 namespace {
-
-/// Checks numbers and names what is wrong; there are no file positions at this level.
-class Checker {
- public:
-  explicit Checker(Diagnostics& out) : out_(out) {}
-  void Require(bool good, const std::string& what) {
-    if (!good) out_.Error({}, what);
-  }
-  void Positive(double x, const std::string& what) {
-    Require(x > 0 && std::isfinite(x), what + " must be a positive number");
-  }
-  void NonNegative(double x, const std::string& what) {
-    Require(x >= 0 && std::isfinite(x), what + " must be zero or a positive number");
-  }
-  void Finite(const Vec3& p, const std::string& what) {
-    Require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z),
-            what + " must be finite");
-  }
-  void Body(int body, const ModelDef& def, const std::string& what) {
-    Require(body >= kWorld && body < static_cast<int>(def.bodies.size()),
-            what + " refers to a body that is not there");
-  }
-  void Surface(const Material& m, const std::string& what) {
-    NonNegative(m.kinetic_friction, what + ": kinetic friction");
-    NonNegative(m.static_friction, what + ": static friction");
-    Require(!(m.static_friction < m.kinetic_friction),
-            what + ": static friction must not be below kinetic friction");
-    Require(m.restitution >= 0 && m.restitution <= 1, what + ": restitution must be 0..1");
-  }
-
- private:
-  Diagnostics& out_;
-};
 
 void CheckBodies(const ModelDef& def, Checker& check) {
   for (const BodyDef& b : def.bodies) {
@@ -179,7 +147,8 @@ void CheckCables(const ModelDef& def, Checker& check) {
 /// cables that pull at one body.
 void CheckSizes(const ModelDef& def, Checker& check) {
   std::vector<double> shapes(def.bodies.size()), ends(def.bodies.size());
-  double fixed = static_cast<double>(def.terrain_boxes.size());
+  double fixed = static_cast<double>(def.terrain_boxes.size() + def.height_fields.size() +
+                                     def.terrain_meshes.size());
   const auto moves = [&](int body) {
     return body != kWorld && !def.bodies[static_cast<std::size_t>(body)].fixed;
   };
@@ -220,6 +189,7 @@ bool CheckModel(const ModelDef& def, Diagnostics& out) {
   CheckShapes(def, check);
   CheckCables(def, check);
   CheckSupplies(def, check);
+  CheckGround(def, check);
   if (out.items().size() == before) CheckSizes(def, check);
   return out.items().size() == before;
 }

@@ -19,6 +19,7 @@ double HalfThickness(const sim::RoundShape& shape) { return shape.radius_m; }
 double HalfThickness(const sim::BoxShape& shape) {
   return std::min({shape.half_m[0], shape.half_m[1], shape.half_m[2]});
 }
+double HalfThickness(const sim::SurfaceShape&) { return 1e300; }
 double HalfThicknessOf(const Shape& shape) {
   return WithShape(shape, [](const auto& s) noexcept { return HalfThickness(s); });
 }
@@ -36,6 +37,8 @@ double Lowest(const sim::BoxShape& s, const double n[3]) {
   }
   return lowest;
 }
+
+double Lowest(const sim::SurfaceShape&, const double*) { return 1e300; }
 
 class Finder {
  public:

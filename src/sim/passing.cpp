@@ -45,6 +45,18 @@ const TouchPoint* Same(const TouchPoint& point, bool only_one, const TouchPoint*
   return only_one && later_count > 0 ? later : nullptr;
 }
 
+/// The same on ground, whose features are numbered as they are found: the nearest, if the shape may
+/// have come so far.
+const TouchPoint* SameOfGround(const TouchPoint& point, double travel_m, const TouchPoint* later,
+                               int later_count) noexcept {
+  const TouchPoint* same = nullptr;
+  for (int i = 0; i < later_count; ++i) {
+    const double apart = Norm(Load(later[i].point) - Load(point.point));
+    if (apart <= travel_m) travel_m = apart, same = later + i;
+  }
+  return same;
+}
+
 }  // namespace
 
 uint32_t ClosingPoints(const MovingShape& a, const MovingShape& b, double step_s,
@@ -62,6 +74,7 @@ int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint3
   // As good as touching: this share of what they travel, or of their size.
   constexpr double kNearTravel = 1e-3, kNearSize = 1e-9;
   constexpr int kMaxLooks = 1000;
+  constexpr double kSamePlane = 1.0 - 1e-12;
   const double speed = FastestApproach(a, b);
   const double near_m = kNearTravel * speed * step_s + kNearSize * (a.bound_m + b.bound_m);
   double t = 0.0;
@@ -84,7 +97,14 @@ int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint3
     const TouchPoint* met = nullptr;
     if (closing >> i & 1u) {
       if (!meet) continue;
-      met = Same(points[i], count == 1, later, later_count);
+      met = b.shape->kind == ShapeKind::kSurface
+                ? SameOfGround(points[i], speed * step_s + near_m, later, later_count)
+                : Same(points[i], count == 1, later, later_count);
+    }
+    // On ground that goes on as it is here, here and there are the same plane.
+    if (met != nullptr && b.shape->kind == ShapeKind::kSurface &&
+        Dot(Load(met->normal), Load(points[i].normal)) > kSamePlane) {
+      met = nullptr;
     }
     TouchPoint p = met == nullptr ? points[i] : *met;
     if (met != nullptr) {

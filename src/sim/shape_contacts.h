@@ -16,7 +16,7 @@ namespace taut::sim {
 
 /// A contact point: the unit normal points from the second shape to the first.
 struct TouchPoint {
-  double point[3];  ///< Midway between the two surfaces [m].
+  double point[3];  ///< Midway between the two surfaces; on the shape's where it meets ground [m].
   double normal[3];
   double gap_m;   ///< Negative: penetration.
   int feature;    ///< Below kMaxPointsPerPair; stable while the shapes slide.
@@ -42,15 +42,39 @@ int Touch(const RoundShape& a, const BoxShape& b, double margin_m, TouchPoint* o
 /// corner beside the face that is nearer.
 int Touch(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoint* out) noexcept;
 
+/// Features: 0..2 and 3..5 places of the ends (a sphere has one), by their normals' directions;
+/// 6..12 edges and corners that stick out, against the flank, by the seventh of it.
+int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
+
+/// Pairs that `CheckModel` refuses, or that do not move.
+inline int Touch(const BoxShape&, const SurfaceShape&, double, TouchPoint*) noexcept { return 0; }
+inline int Touch(const SurfaceShape&, const SurfaceShape&, double, TouchPoint*) noexcept {
+  return 0;
+}
+
 /// A lower bound of the distance between two shapes, 0 if they may touch. Exact where one is round.
 double Distance(const RoundShape& a, const RoundShape& b) noexcept;
 double Distance(const RoundShape& a, const BoxShape& b) noexcept;
 double Distance(const BoxShape& a, const BoxShape& b) noexcept;
+/// Exact where they are near.
+double Distance(const RoundShape& a, const SurfaceShape& b) noexcept;
+inline double Distance(const BoxShape&, const SurfaceShape&) noexcept { return 1e300; }
+inline double Distance(const SurfaceShape&, const SurfaceShape&) noexcept { return 1e300; }
+
+/// The same in a time that does not depend on what is near: for who looks where they are only to
+/// know when to look again.
+template <class A, class B>
+double Bound(const A& a, const B& b) noexcept {
+  return Distance(a, b);
+}
+double Bound(const RoundShape& a, const SurfaceShape& b) noexcept;
 
 /// The same for shapes of any two kinds, in either order, each given in a frame of its own.
 int TouchShapes(const Shape& a, const ShapePose& at_a, const Shape& b, const ShapePose& at_b,
                 double margin_m, TouchPoint* out) noexcept;
 double DistanceOfShapes(const Shape& a, const ShapePose& at_a, const Shape& b,
                         const ShapePose& at_b) noexcept;
+double BoundOfShapes(const Shape& a, const ShapePose& at_a, const Shape& b,
+                     const ShapePose& at_b) noexcept;
 
 }  // namespace taut::sim

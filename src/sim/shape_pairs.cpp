@@ -42,4 +42,11 @@ double DistanceOfShapes(const Shape& a, const ShapePose& at_a, const Shape& b,
   });
 }
 
+double BoundOfShapes(const Shape& a, const ShapePose& at_a, const Shape& b,
+                     const ShapePose& at_b) noexcept {
+  return WithPair(a, at_a, b, at_b, [](const auto& first, const auto& second, bool) noexcept {
+    return Bound(first, second);
+  });
+}
+
 }  // namespace taut::sim

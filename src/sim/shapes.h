@@ -9,7 +9,7 @@
 namespace taut::sim {
 
 /// In this order pairs are written: `Touch(a, b)` where the kind of `a` is not behind that of `b`.
-enum class ShapeKind { kRound, kBox };
+enum class ShapeKind { kRound, kBox, kSurface };
 
 /// A sphere (from = to) or capsule.
 struct RoundShape {
@@ -22,6 +22,14 @@ struct RoundShape {
 struct BoxShape {
   static constexpr ShapeKind kKind = ShapeKind::kBox;
   double center[3], axes[9], half_m[3];
+};
+
+struct SurfaceTable;
+
+/// Triangles that do not move (surface.h).
+struct SurfaceShape {
+  static constexpr ShapeKind kKind = ShapeKind::kSurface;
+  const SurfaceTable* table;
 };
 
 /// Where a frame is: x -> r x + origin.
@@ -60,11 +68,14 @@ inline BoxShape Moved(const BoxShape& shape, const ShapePose& pose) noexcept {
   return moved;
 }
 
+inline SurfaceShape Moved(const SurfaceShape& shape, const ShapePose&) noexcept { return shape; }
+
 /// A shape of any kind; of the others only the one that `kind` says is filled in.
 struct Shape {
   ShapeKind kind = ShapeKind::kRound;
   RoundShape round = {};
   BoxShape box = {};
+  SurfaceShape surface = {};
 };
 
 /// How far its surface is from its skeleton of points and lines.
@@ -80,6 +91,8 @@ auto WithShape(const Shape& shape, const Use& use) noexcept {
       return use(shape.round);
     case ShapeKind::kBox:
       return use(shape.box);
+    case ShapeKind::kSurface:
+      return use(shape.surface);
   }
   __builtin_unreachable();
 }

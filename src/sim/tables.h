@@ -11,6 +11,7 @@
 
 #include "sim/shape_contacts.h"
 #include "sim/state_rows.h"
+#include "sim/surface_build.h"
 #include "taut/batch.h"
 
 namespace taut::sim {
@@ -200,6 +201,7 @@ class Tables final : public Model {
   std::vector<PointTable> points;
   std::vector<ShapeTable> shapes;
   std::vector<ShapeRef> shape_refs;  ///< Per shape: what it is made from.
+  std::vector<Surface> surfaces;
   std::vector<ShapePairTable> shape_pairs;
   std::vector<BodyPairTable> body_pairs;
   int world_pair_count = 0;     ///< Of them, the first: `b` does not move; by `a`.

@@ -62,7 +62,7 @@ export interface Cable {
 }
 
 export interface Terrain {
-  kind: "plane" | "box";
+  kind: "plane" | "box" | "surface";
   name: string;
   /** plane: unit, out of the solid, in W */
   normal?: Vec3;
@@ -74,6 +74,10 @@ export interface Terrain {
   half_extents_m?: Vec3;
   /** box: q_WBox */
   orientation?: Quat;
+  /** surface: x, y and z of each corner, in W. Of a field of more than 250 000 only every second, third, ... */
+  corners_m?: (number | null)[];
+  /** surface: three corners each */
+  triangles?: integer[];
 }
 
 /** What set_parameter may change. */

@@ -1,6 +1,6 @@
-// The ground: planes with a grid of metres drawn on them, boxes, and the axes of the world.
+// The ground: planes with a grid of metres drawn on them, boxes, triangles, and the axes of the world.
 import {
-  BoxGeometry, CanvasTexture, Color, DoubleSide, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh,
+  BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, DoubleSide, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh,
   MeshStandardMaterial, Plane, PlaneGeometry, Quaternion, Sprite, SpriteMaterial, Vector3,
 } from "three";
 import type { Theme } from "../app";
@@ -26,6 +26,7 @@ export class Ground implements Part {
     this.spacing_m = size_m > 20 ? 1 : size_m < 0.15 ? 0.01 : 0.1;
     for (const terrain of scene.terrain) {
       if (terrain.kind === "plane") this.addPlane(new Vector3(...terrain.normal!), new Vector3(...terrain.point_m!));
+      else if (terrain.kind === "surface") this.addSurface(terrain.corners_m!, terrain.triangles!);
       else this.addBox(terrain.center_m!, terrain.half_extents_m!, terrain.orientation ?? [1, 0, 0, 0]);
     }
     this.object.add(this.labels);
@@ -70,6 +71,18 @@ export class Ground implements Part {
     mesh.position.copy(point);
     mesh.receiveShadow = true;
     this.planes.push({ material, uniforms, surface: new Plane().setFromNormalAndCoplanarPoint(normal, point) });
+    this.object.add(mesh);
+  }
+
+  private addSurface(corners: number[], triangles: number[]): void {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(corners), 3));
+    geometry.setIndex(triangles);
+    geometry.computeVertexNormals();
+    const material = new MeshStandardMaterial({ roughness: 0.95, flatShading: true, side: DoubleSide });
+    const mesh = new Mesh(geometry, material);
+    mesh.receiveShadow = true;
+    this.boxes.push(material);
     this.object.add(mesh);
   }
 

@@ -1,0 +1,144 @@
+// Height fields by formula or from CSV, and where meshes are.
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "base/input_file.h"
+#include "description/expression.h"
+#include "description/ground_keys.h"
+#include "description/mesh_file.h"
+#include "description/reader.h"
+#include "math/vec.h"
+
+namespace taut::description {
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+
+/// Heights by a formula, which is looked at once a corner.
+bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldDef& field) {
+  NameTable names = scope.names;
+  if (scope.used != nullptr) {
+    for (const std::string& name : NamesIn(text.formula.text)) scope.used->insert(name);
+  }
+  field.height_m.reserve(static_cast<std::size_t>(field.columns) *
+                         static_cast<std::size_t>(field.rows));
+  for (int j = 0; j < field.rows; ++j) {
+    for (int i = 0; i < field.columns; ++i) {
+      names["i"] = i, names["j"] = j;
+      names["x_m"] = (i - 0.5 * (field.columns - 1)) * field.cell_m;
+      names["y_m"] = (j - 0.5 * (field.rows - 1)) * field.cell_m;
+      const Evaluated height = Evaluate(text.formula.text, names);
+      if (!height.error.empty()) {
+        scope.out.Error(text.formula.at,
+                        "height_field.height_m at i = " + std::to_string(i) +
+                            ", j = " + std::to_string(j) + ": " + height.error,
+                        height.hint);
+        return false;
+      }
+      if (std::isnan(height.value)) return false;
+      field.height_m.push_back(height.value);
+    }
+  }
+  return true;
+}
+
+/// The numbers of a line; where one is wrong, which.
+std::optional<std::size_t> AddRow(std::string_view line, std::vector<double>& row) {
+  std::size_t at = 0;
+  for (std::size_t number = 1;; ++number) {
+    const std::size_t end = std::min(line.find(',', at), line.size());
+    std::string_view word = line.substr(at, end - at);
+    while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
+    while (!word.empty() && (word.back() == ' ' || word.back() == '\r')) word.remove_suffix(1);
+    double value = 0;
+    const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool good = read.ec == std::errc() && read.ptr == word.data() + word.size();
+    if (!good || !std::isfinite(value)) return number;
+    row.push_back(value);
+    if (end == line.size()) return std::nullopt;
+    at = end + 1;
+  }
+}
+
+bool ReadCsv(const std::string& path, const Scope& scope, HeightFieldDef& field) {
+  const auto text = base::ReadInputFile(path, kMostBytes, "fewer, larger cells", scope.out);
+  if (!text) return false;
+  const std::size_t errors_before = scope.out.items().size();
+  constexpr std::size_t kMostErrors = 10;
+  int line_number = 0;
+  std::vector<double> row;
+  for (std::size_t at = 0; at < text->size();) {
+    const std::size_t end = std::min(text->find('\n', at), text->size());
+    const std::string_view line = std::string_view(*text).substr(at, end - at);
+    at = end + 1;
+    ++line_number;
+    if (line.empty() || line == "\r" || line.front() == '#') continue;
+    row.clear();
+    const SourceRef place{path, line_number, 0};
+    if (const auto wrong = AddRow(line, row)) {
+      scope.out.Error(place, "number " + std::to_string(*wrong) + " of this line is none",
+                      "finite numbers in m, with commas between them");
+    } else if (field.columns > 0 && row.size() != static_cast<std::size_t>(field.columns)) {
+      scope.out.Error(place, "this line has " + std::to_string(row.size()) +
+                                 " heights, those before have " + std::to_string(field.columns));
+    } else {
+      field.columns = static_cast<int>(row.size());
+      ++field.rows;
+      field.height_m.insert(field.height_m.end(), row.begin(), row.end());
+    }
+    if (scope.out.items().size() - errors_before >= kMostErrors) break;
+  }
+  if (scope.out.items().size() != errors_before) return false;
+  if (field.columns >= 2 && field.rows >= 2) return true;
+  scope.out.Error({path, 0, 0}, "a height field needs two lines or more of two heights or more");
+  return false;
+}
+
+}  // namespace
+
+void Check(const MapReader& map, HeightFieldText& field) {
+  field.material = ToMaterial(map, field.surface);
+  field.at = map.at();
+  for (const char* key : {"columns", "rows"}) {
+    if (map.Has("height_m")) map.Require(key);
+    if (map.Has("file") && map.Has(key)) {
+      map.Error(key, map.Path(key) + " has no effect here", "the file says how many there are");
+    }
+  }
+}
+
+void Check(const MapReader& map, TerrainMeshText& mesh) {
+  mesh.material = ToMaterial(map, mesh.surface);
+  mesh.at = map.at();
+}
+
+std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const Scope& scope) {
+  HeightFieldDef field = text;
+  if (!text.file.text.empty()) {
+    field.columns = field.rows = 0;
+    const std::string path = PathBeside(text.file.at.file, text.file.text);
+    if (!ReadCsv(path, scope, field)) return std::nullopt;
+  } else {
+    const bool known = !text.formula.text.empty() && field.columns >= 2 && field.rows >= 2 &&
+                       std::isfinite(field.cell_m);
+    if (!known || !FillByFormula(text, scope, field)) return std::nullopt;
+  }
+  return field;
+}
+
+std::optional<TerrainMeshDef> ReadTerrainMesh(const TerrainMeshText& text, const Scope& scope) {
+  if (text.file.text.empty() || !std::isfinite(text.scale_m)) return std::nullopt;
+  auto mesh = ReadMeshFile(PathBeside(text.file.at.file, text.file.text), scope.out);
+  if (!mesh) return std::nullopt;
+  TerrainMeshDef def = text;
+  def.triangles = std::move(mesh->triangles);
+  for (const Vec3& corner : mesh->corners) {
+    def.corners_m.push_back(text.place.at_m + Rotate(text.place.rotate, text.scale_m * corner));
+  }
+  return def;
+}
+
+}  // namespace taut::description

@@ -1,0 +1,129 @@
+#include "sim/shape_contacts.h"
+#include "sim/surface_near.h"
+#include "sim/touch_list.h"
+
+namespace taut::sim {
+namespace {
+
+constexpr int kPlacesOfEnd = 3, kPlacesBetween = 4;
+/// Places between the ends are numbered by where on the rod they are.
+constexpr int kStretches = kMaxPointsPerPair - 2 * kPlacesOfEnd;
+static_assert(kPlacesBetween <= kStretches);
+/// How far around itself a shape looks, per its size: so that it need not look again until it has
+/// come as far.
+constexpr double kLooks[] = {4.0, 1.0, 0.25, 0.0625};
+
+struct Reach {
+  Vec3 low, high;
+};
+
+Reach ReachOf(const RoundShape& shape, double more_m) noexcept {
+  const double r = shape.radius_m + more_m;
+  const Vec3 a = Load(shape.from), b = Load(shape.to);
+  return {{Smaller(a.x, b.x) - r, Smaller(a.y, b.y) - r, Smaller(a.z, b.z) - r},
+          {Larger(a.x, b.x) + r, Larger(a.y, b.y) + r, Larger(a.z, b.z) + r}};
+}
+
+/// Whether a shape may come within a distance of a surface, by bounds only.
+bool MayBeNear(const SurfaceTable& s, const Reach& reach) noexcept {
+  if (reach.low.x > s.high.x || reach.low.y > s.high.y || reach.low.z > s.high.z) return false;
+  if (reach.high.x < s.low.x || reach.high.y < s.low.y) return false;
+  if (!s.is_field) return reach.high.z >= s.low.z;
+  return reach.low.z <= TopOver(s, reach.low, reach.high);
+}
+
+/// A point of a rod that its neighbours hold up is left out: a straight line between them does not
+/// reach it. In as many parts of the radius, and where all three look the same way.
+constexpr double kSameGap = 1e-6, kSameWay = 0.999;
+
+/// A place found along a rod.
+struct Found {
+  double share;
+  SurfacePlace place;
+  int feature;
+};
+
+/// Whether two others, one on either side, keep the rod off a place.
+bool IsHeld(const Found* all, int count, int which, double tolerance_m) noexcept {
+  const Found& f = all[which];
+  for (int i = 0; i < count; ++i) {
+    const Found& low = all[i];
+    if (!(low.share < f.share) || Dot(low.place.normal, f.place.normal) < kSameWay) continue;
+    for (int k = 0; k < count; ++k) {
+      const Found& high = all[k];
+      if (!(high.share > f.share) || Dot(high.place.normal, f.place.normal) < kSameWay) continue;
+      const double part = (f.share - low.share) / (high.share - low.share);
+      const double chord =
+          low.place.distance_m + part * (high.place.distance_m - low.place.distance_m);
+      if (f.place.distance_m > chord - tolerance_m) return true;
+    }
+  }
+  return false;
+}
+
+/// Whether one direction comes before another: an order that stays while shapes slide.
+bool Before(const Vec3& a, const Vec3& b) noexcept {
+  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
+}  // namespace
+
+int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept {
+  const SurfaceTable& s = *b.table;
+  TouchList list(out, margin_m);
+  if (!MayBeNear(s, ReachOf(a, margin_m))) return 0;
+  const double r = a.radius_m, limit_m = r + Larger(margin_m, 0.0);
+  const Vec3 from = Load(a.from), to = Load(a.to);
+  Found all[2 * kPlacesOfEnd + kPlacesBetween];
+  int count = 0;
+  const bool ball = from.x == to.x && from.y == to.y && from.z == to.z;
+  for (int end = 0; end < (ball ? 1 : 2); ++end) {
+    SurfacePlace places[kPlacesOfEnd];
+    const int ways = NearestPlaces(s, end == 0 ? from : to, limit_m, places, kPlacesOfEnd);
+    for (int i = 1; i < ways; ++i) {
+      for (int k = i; k > 0 && Before(places[k].normal, places[k - 1].normal); --k) {
+        const SurfacePlace swapped = places[k];
+        places[k] = places[k - 1], places[k - 1] = swapped;
+      }
+    }
+    for (int i = 0; i < ways; ++i) {
+      all[count++] = {static_cast<double>(end), places[i], kPlacesOfEnd * end + i};
+    }
+  }
+  if (!ball) {
+    LinePlace between[kPlacesBetween];
+    const int places = NearestAlong(s, from, to, limit_m, r, between, kPlacesBetween);
+    bool taken[kStretches] = {};
+    for (int i = 0; i < places; ++i) {
+      int stretch = static_cast<int>(between[i].share * kStretches);
+      while (taken[stretch]) stretch = stretch + 1 == kStretches ? 0 : stretch + 1;
+      taken[stretch] = true;
+      all[count++] = {between[i].share, between[i].place, 2 * kPlacesOfEnd + stretch};
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    const SurfacePlace& place = all[i].place;
+    const double gap = place.distance_m - r;
+    if (IsHeld(all, count, i, kSameGap * r)) continue;
+    list.Add(place.at + gap * place.normal, place.normal, gap, all[i].feature);
+  }
+  return list.count();
+}
+
+double Bound(const RoundShape& a, const SurfaceShape& b) noexcept {
+  const double size_m = Norm(Load(a.to) - Load(a.from)) + a.radius_m;
+  for (const double look : kLooks) {
+    if (!MayBeNear(*b.table, ReachOf(a, look * size_m))) return look * size_m;
+  }
+  return 0.0;
+}
+
+double Distance(const RoundShape& a, const SurfaceShape& b) noexcept {
+  const double bound_m = Bound(a, b);
+  if (bound_m > 0.0) return bound_m;
+  const Vec3 from = Load(a.from), to = Load(a.to);
+  const double look_m = 0.0625 * (Norm(to - from) + a.radius_m);
+  return Larger(DistanceOfLine(*b.table, from, to, look_m + a.radius_m) - a.radius_m, 0.0);
+}
+
+}  // namespace taut::sim

@@ -1,0 +1,36 @@
+/// Which places of a surface are nearest to a point or to a line.
+#pragma once
+
+#include "sim/surface.h"
+
+namespace taut::sim {
+
+/// A place of the surface that is nearer than all around it.
+struct SurfacePlace {
+  Vec3 at;
+  Vec3 normal;        ///< Unit, from there to the point.
+  double distance_m;  ///< Below 0: the point is inside.
+};
+
+/// Local minima of the distance of a point, those within `limit_m`, the nearest first; at most
+/// `most` of them, and how many. Inside of what is solid only the nearest: ways out could be at
+/// odds.
+int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, SurfacePlace* out,
+                  int most) noexcept;
+
+/// Where a straight line, between its ends, is nearest to an edge or a corner.
+struct LinePlace {
+  double share;  ///< Along the line, between 0 and 1.
+  SurfacePlace place;
+};
+
+/// The same for the inside of a line: edges and corners that stick out, each where it is nearest of
+/// all places of the line that it is the nearest to. In the order of `share`.
+int NearestAlong(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
+                 double radius_m, LinePlace* out, int most) noexcept;
+
+/// The distance of a line, or `limit_m` if that is less. 0 if it is inside or passes through.
+double DistanceOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,
+                      double limit_m) noexcept;
+
+}  // namespace taut::sim

@@ -1,0 +1,227 @@
+// Height fields and meshes under balls, rods and robots (docs/theory/ground.md). Speeds that a flat
+// field must leave alone, closed forms, and what never happens on hills.
+#include <gtest/gtest.h>
+
+#include "scenes/ball.h"
+#include "scenes/rod.h"
+#include "scenes/rough_ground.h"
+#include "scenes/six_strut.h"
+#include "tests/physics/world.h"
+
+namespace taut::test {
+namespace {
+
+constexpr double kG = 9.81;
+using Split = HeightFieldDef::Split;
+
+/// One flat ground in all its forms.
+struct Ground {
+  const char* name;
+  int form;
+
+  void AddTo(ModelDef& def, double slope, const Material& material) const {
+    HeightFieldDef field =
+        scenes::Field(300, 40, 0.04, material, [=](double x, double) { return -slope * x; });
+    field.split = form == 0 ? Split::kSame : form == 1 ? Split::kAlternating : Split::kShortest;
+    if (form < 3) {
+      def.height_fields.push_back(field);
+    } else {
+      def.terrain_meshes.push_back(scenes::MeshOf(field, 7));
+    }
+  }
+};
+constexpr Ground kGrounds[] = {
+    {"same", 0}, {"alternating", 1}, {"shortest", 2}, {"mesh, random diagonals", 3}};
+
+TEST(Ground, ABallRollsOverTheTrianglesOfAPlaneAsOnAPlane) {
+  const Material material{0.5, 0.5, 0};
+  for (const Ground& ground : kGrounds) {
+    for (const double angle : {0.0, 10 * 3.14159265358979323846 / 180}) {
+      ModelDef def;
+      const double r = 0.05;
+      const Vec3 up{std::sin(angle), 0, std::cos(angle)},
+          down{std::cos(angle), 0, -std::sin(angle)};
+      const Vec3 start = Vec3{-5.5, 0.013, 5.5 * std::tan(angle)} + r * up;
+      scenes::AddBall(def, "ball", 0.3, r, start, material);
+      def.bodies[0].velocity_m_per_s = 1.0 * down;
+      def.bodies[0].angular_velocity_rad_per_s = {0, 1.0 / r, 0};
+      ground.AddTo(def, std::tan(angle), material);
+      Batch world = MakeBatch(def);
+      const double h = 1e-3;
+      const int steps = StepsIn(3, h);
+      world.Step(h, steps);
+      const BodyState end = world.Body(0, 0);
+      const double speed = 1 + 5.0 / 7.0 * kG * std::sin(angle) * 3;
+      EXPECT_NEAR(Dot(end.velocity_m_per_s, down), speed, 1e-9) << ground.name << " " << angle;
+      EXPECT_NEAR(end.position_m.y, 0.013, 1e-10) << ground.name << " " << angle;
+      EXPECT_NEAR(Dot(end.position_m - start, up), 0, 1e-9) << ground.name << " " << angle;
+      EXPECT_NEAR(Dot(end.position_m - start, down), 3 * 0.5 * (1 + speed), 1e-8)
+          << ground.name << " " << angle;
+    }
+  }
+}
+
+TEST(Ground, ARodSlidesAsFarAsOnAPlane) {
+  const Material material{0.2, 0.2, 0};
+  for (const Ground& ground : kGrounds) {
+    for (const double turn : {0.0, 0.3, 1.1}) {
+      ModelDef def;
+      const double r = 0.01;
+      const Vec3 along{std::cos(turn), std::sin(turn), 0};
+      const Vec3 middle{-0.5, 0.013, r};
+      scenes::AddRod(def, "rod", 0.1, r, middle - 0.19 * along, middle + 0.19 * along, material);
+      // Along itself it slides, and does not roll.
+      def.bodies[0].velocity_m_per_s = 1.0 * along;
+      ground.AddTo(def, 0, material);
+      Batch world = MakeBatch(def);
+      const double h = 1e-3;
+      world.Step(h, StepsIn(1, h));
+      const BodyState end = world.Body(0, 0);
+      EXPECT_NEAR(Dot(end.position_m - middle, along), 1 / (2 * 0.2 * kG), 2e-6) << ground.name;
+      EXPECT_NEAR(end.position_m.z, r, 1e-9) << ground.name;
+      EXPECT_LE(Norm(end.velocity_m_per_s), 1e-9) << ground.name;
+    }
+  }
+}
+
+TEST(Ground, ARodRollsWithoutLoss) {
+  const Material material{0.5, 0.5, 0};
+  for (const Ground& ground : kGrounds) {
+    ModelDef def;
+    const double r = 0.02;
+    scenes::AddRod(def, "rod", 0.1, r, {-0.6, -0.17, r}, {-0.6, 0.21, r}, material);
+    def.bodies[0].velocity_m_per_s = {0.3, 0, 0};
+    def.bodies[0].angular_velocity_rad_per_s = {0, 0.3 / r, 0};
+    ground.AddTo(def, 0, material);
+    Batch world = MakeBatch(def);
+    const double h = 1e-3;
+    world.Step(h, StepsIn(2, h));
+    const BodyState end = world.Body(0, 0);
+    EXPECT_NEAR(end.velocity_m_per_s.x, 0.3, 1e-9) << ground.name;
+    EXPECT_NEAR(end.position_m.x, 0.0, 1e-8) << ground.name;
+    EXPECT_NEAR(end.position_m.y, 0.02, 1e-9) << ground.name;
+  }
+}
+
+TEST(Ground, AFlatFieldIsThePlane) {
+  const Material material{0.5, 0.4, 0.3};
+  scenes::SixStrut robot;
+  robot.material = material;
+  robot.center_m.z = 0.6;
+  robot.orientation = scenes::Turn({0.6, 0.0, 0.8}, 0.3);
+  ModelDef on_plane = robot.Def();
+  for (BodyDef& body : on_plane.bodies) body.velocity_m_per_s = {0.4, 0.2, 0};
+  ModelDef on_field = on_plane;
+  scenes::AddGround(on_plane, material);
+  Ground{"alternating", 1}.AddTo(on_field, 0, material);
+  // The two solve the same equations in other directions, each to its tolerance.
+  BatchOptions options;
+  options.tolerance_m_per_s = 1e-12;
+  Batch plane = MakeBatch(on_plane, options), field = MakeBatch(on_field, options);
+  const double h = 1e-3;
+  for (int i = 0; i < 400; ++i) {
+    plane.Step(h, 1);
+    field.Step(h, 1);
+    ASSERT_LE(Distance(plane.Body(0, 0).position_m, field.Body(0, 0).position_m), 1e-9) << i;
+  }
+  EXPECT_EQ(field.Status(0).bits, kStatusOk);
+}
+
+/// What a robot of six struts does on hills.
+struct OnHills {
+  static ModelDef Def(std::uint64_t seed, double drop_m) {
+    scenes::SixStrut robot;
+    const Material material{0.6, 0.5, 0.0};
+    robot.material = material;
+    robot.length_m = 0.4;
+    robot.rod_mass_kg = 0.05;
+    robot.rod_radius_m = 0.005;
+    robot.damping_n_s_per_m = 3;
+    scenes::Chance chance(seed);
+    robot.center_m = {chance.Within(-0.3, 0.3), chance.Within(-0.3, 0.3), 0.24 + drop_m};
+    robot.orientation = scenes::Turn(chance.Direction(), chance.Within(0.0, 3.0));
+    ModelDef def = robot.Def();
+    def.height_fields.push_back(scenes::Hills(120, 120, material));
+    return def;
+  }
+};
+
+/// Rods and balls of several sizes that fall onto hills.
+ModelDef ThingsOverHills(std::uint64_t seed) {
+  const Material material{0.6, 0.5, 0.0};
+  ModelDef def;
+  scenes::Chance chance(seed);
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 middle{chance.Within(-0.6, 0.6), chance.Within(-0.6, 0.6), 0.25 + 0.1 * i};
+    const Vec3 half = chance.Within(0.05, 0.2) * chance.Direction();
+    const std::string name = std::to_string(i);
+    scenes::AddRod(def, "rod_" + name, 0.05, 0.004 + 0.003 * i, middle - half, middle + half,
+                   material);
+    scenes::AddBall(def, "ball_" + name, 0.02, 0.01 + 0.01 * i,
+                    {chance.Within(-0.6, 0.6), chance.Within(-0.6, 0.6), 0.7 + 0.1 * i}, material);
+  }
+  def.height_fields.push_back(scenes::Hills(120, 120, material));
+  return def;
+}
+
+TEST(Ground, OnHillsEnergyNeverRisesAndNothingSinksIn) {
+  double highest_m = 0, deepest_m = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const ModelDef def = ThingsOverHills(seed);
+    Batch world = MakeBatch(def);
+    double mass_kg = 0;
+    for (const BodyDef& body : def.bodies) mass_kg += body.mass_kg;
+    double least_j = EnergyOf(world);
+    for (int i = 0; i < 2000; ++i) {
+      world.Step(1e-3, 1);
+      const double now_j = EnergyOf(world);
+      highest_m = std::max(highest_m, (now_j - least_j) / (mass_kg * kG));
+      least_j = std::min(least_j, now_j);
+      for (const Overlap& overlap : world.Overlaps(0)) {
+        if (overlap.body_b == kWorld) deepest_m = std::max(deepest_m, overlap.depth_m);
+      }
+    }
+    EXPECT_EQ(world.Status(0).bits, kStatusOk) << "seed " << seed;
+    for (std::size_t b = 0; b < def.bodies.size(); ++b) {
+      EXPECT_GT(world.Body(0, static_cast<int>(b)).position_m.z, -0.02) << seed << " " << b;
+    }
+  }
+  EXPECT_LE(highest_m, 1e-4);
+  EXPECT_LE(deepest_m, 1e-4);
+  RecordProperty("highest_um", std::to_string(1e6 * highest_m));
+  RecordProperty("deepest_um", std::to_string(1e6 * deepest_m));
+}
+
+TEST(Ground, ARobotStandsOnHillsWithoutCreeping) {
+  const ModelDef def = OnHills::Def(3, 0.03);
+  Batch world = MakeBatch(def);
+  world.Step(1e-3, 20000);
+  for (std::size_t b = 0; b < def.bodies.size(); ++b) {
+    EXPECT_LE(Norm(world.Body(0, static_cast<int>(b)).velocity_m_per_s), 1e-9) << b;
+  }
+}
+
+TEST(Ground, LanesOnDifferentHillsHaveTheBitsOfAWorldAlone) {
+  BatchOptions options;
+  options.worlds = 8;
+  const ModelDef def = OnHills::Def(1, 0.05);
+  Batch all = MakeBatch(def, options);
+  const auto start = [&](Batch& batch, int world, int which) {
+    for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) {
+      BodyState state = batch.Body(world, b);
+      state.position_m = state.position_m + Vec3{0.07 * which, -0.05 * which, 0};
+      batch.SetBodyState(world, b, state);
+    }
+  };
+  for (int w = 0; w < 8; ++w) start(all, w, w);
+  all.Step(1e-3, 600);
+  for (int w = 0; w < 8; ++w) {
+    Batch alone = MakeBatch(def);
+    start(alone, 0, w);
+    alone.Step(1e-3, 600);
+    EXPECT_EQ(alone.Hash(0), all.Hash(w)) << w;
+  }
+}
+
+}  // namespace
+}  // namespace taut::test
