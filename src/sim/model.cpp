@@ -54,6 +54,7 @@ class Compiler {
     Shapes();
     Points();
     Pairs();
+    sim::LayOutTree(t_);
     sim::LayOutMotors(t_);
     sim::CoupleCables(t_);
     Check();
