@@ -77,12 +77,14 @@ void Check(const MapReader& map, TerrainBoxText& box);
 
 template <class Io>
 void Keys(Io& io, Like<TerrainText> auto& t) {
-  io.Map("terrain", "terrain", "A part of the terrain: a plane or a box.",
+  io.Map("terrain", "terrain", "A part of the terrain: a plane, a box, or many boxes.",
          R"({"name": "ground", "plane": {"height_m": 0, "friction": 0.5}})");
   io("name", t.name, kNeeded, kName, "Name of the part.");
-  io.OneOf({"plane", "box"});
+  io.OneOf({"plane", "box", "scatter", "stairs"});
   io("plane", t.plane);
   io("box", t.box);
+  io("scatter", t.scatter);
+  io("stairs", t.stairs);
 }
 void Check(const MapReader& map, TerrainText& terrain);
 

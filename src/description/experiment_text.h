@@ -11,6 +11,7 @@
 #include "description/head_keys.h"
 #include "description/model_text.h"
 #include "description/surface_keys.h"
+#include "description/terrain_boxes.h"
 #include "taut/spec.h"
 
 namespace taut::description {
@@ -49,6 +50,8 @@ struct TerrainText {
   SourceRef at, name_at, name_key_at;
   std::optional<PlaneText> plane;
   std::optional<TerrainBoxText> box;
+  std::optional<ScatterText> scatter;
+  std::optional<StairsText> stairs;
 };
 struct PlaceText {
   SourceRef at;
