@@ -77,12 +77,15 @@ void Check(const MapReader& map, TerrainBoxText& box);
 
 template <class Io>
 void Keys(Io& io, Like<TerrainText> auto& t) {
-  io.Map("terrain", "terrain", "A part of the terrain: a plane, a box, a height field or a mesh.",
+  io.Map("terrain", "terrain",
+         "A part of the terrain: a plane, a box, many boxes, a height field or a mesh.",
          R"({"name": "ground", "plane": {"height_m": 0, "friction": 0.5}})");
   io("name", t.name, kNeeded, kName, "Name of the part.");
-  io.OneOf({"plane", "box", "height_field", "mesh"});
+  io.OneOf({"plane", "box", "scatter", "stairs", "height_field", "mesh"});
   io("plane", t.plane);
   io("box", t.box);
+  io("scatter", t.scatter);
+  io("stairs", t.stairs);
   io("height_field", t.height_field);
   io("mesh", t.mesh);
 }

@@ -63,7 +63,7 @@ std::vector<ReferenceSpec> ToReferences(const std::vector<ReferenceText>& texts,
 std::vector<ScaleSpec> ToScales(const std::vector<ScaleText>& texts, const RobotSpec* robot,
                                 const Scope& scope);
 
-/// Planes and boxes, appended to what `robot` has.
+/// Planes and boxes, stairs and scattered blocks, appended to what `robot` has.
 void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, RobotSpec& robot);
 
 /// Moves the robot in `def` (but not the terrain) and gives it a velocity. `start` is for the

@@ -134,10 +134,36 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
       }
     }
     if (text.name.empty()) continue;
-    const auto [first, fresh] = names.emplace(text.name, text.name_at);
-    if (!fresh) {
-      scope.out.Error(text.name_key_at, "there are two parts of the terrain called " + text.name,
-                      "the first is in line " + std::to_string(first->second.line));
+    const auto claim = [&](const std::string& name) {
+      const auto [first, fresh] = names.emplace(name, text.name_at);
+      if (!fresh) {
+        scope.out.Error(text.name_key_at, "there are two parts of the terrain called " + name,
+                        "the first is in line " + std::to_string(first->second.line));
+      }
+      return fresh;
+    };
+    if (!claim(text.name)) continue;
+    std::vector<TerrainBoxDef> boxes;
+    if (text.scatter) boxes = Boxes(*text.scatter);
+    if (text.stairs) boxes = Boxes(*text.stairs);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      boxes[i].name = text.name + '_' + std::to_string(i);
+      if (boxes[i].name.size() > kMaxNameLength) {
+        scope.out.Error(text.name_at,
+                        "terrain.name: with the number of a box it has more than " +
+                            std::to_string(kMaxNameLength) + " characters",
+                        "a shorter name");
+        break;
+      }
+      if (!claim(boxes[i].name)) break;
+      def.terrain_boxes.push_back(std::move(boxes[i]));
+      robot.terrain_box_sources.push_back(text.at);
+    }
+    if (!boxes.empty() && def.terrain_boxes.size() > static_cast<std::size_t>(kMostBoxes)) {
+      scope.out.Error(text.at,
+                      "the terrain has " + std::to_string(def.terrain_boxes.size()) +
+                          " boxes up to here, more than " + std::to_string(kMostBoxes),
+                      "what a run writes of more could not be read back");
     }
   }
 }

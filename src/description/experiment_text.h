@@ -12,6 +12,7 @@
 #include "description/head_keys.h"
 #include "description/model_text.h"
 #include "description/surface_keys.h"
+#include "description/terrain_boxes.h"
 #include "taut/spec.h"
 
 namespace taut::description {
@@ -50,6 +51,8 @@ struct TerrainText {
   SourceRef at, name_at, name_key_at;
   std::optional<PlaneText> plane;
   std::optional<TerrainBoxText> box;
+  std::optional<ScatterText> scatter;
+  std::optional<StairsText> stairs;
   std::optional<HeightFieldText> height_field;
   std::optional<TerrainMeshText> mesh;
 };

@@ -39,40 +39,42 @@ inline constexpr Bound kCorners{.least = 2, .most = 100'000};
 
 template <class Io, Either<HeightFieldDef, HeightFieldText> Field>
 void Keys(Io& io, Field& f) {
-  io.Map("height_field", "terrain.height_field",
-         "Ground above a rectangle, solid below: heights at the corners of square cells, each of "
-         "which is two triangles. Outside of the rectangle there is nothing.",
-         R"json({"columns": 240, "rows": 240, "cell_m": 0.04, "height_m": "0.02 * sin(i) * cos(j)"})json");
+  io.Map(
+      "height_field", "terrain.height_field",
+      "Ground above a rectangle, solid below: heights at the corners of square cells, each of "
+      "which is two triangles. Outside of the rectangle there is nothing.",
+      R"json({"columns": 240, "rows": 240, "cell_m": 0.04, "height_m": "0.02 * sin(i) * cos(j)"})json");
   io("name", f.name, kResolvedOnly);
-if constexpr (Io::kResolved) {
-  io("columns", f.columns);
-  io("rows", f.rows);
-} else {
-  io.OneOf({"file", "height_m"});
-  io("file", f.file,
-     "Heights in m as CSV, from the experiment's folder: a line for each row of corners, that of "
-     "the least y first, x rising along the line. Lines that begin with # are skipped.");
-  io("columns", f.columns, kCorners, "Corners along x. Goes with a formula.");
-  io("rows", f.rows, kCorners, "Corners along y. Goes with a formula.");
-}
-io("cell_m", f.cell_m, kNeeded, Bound::kPositive, "Side of a cell.");
-io("origin_m", f.origin_m, "Middle of the rectangle; its z is added to all heights.");
-if constexpr (Io::kResolved) {
-  io("height_m", f.height_m);
-} else {
-  io("height_m", f.formula,
-     "A formula: heights by `x_m` and `y_m`, counted from the middle, or by `i` and `j`, counted "
-     "from 0 at the corner of least x and y; `noise(seed, x, y)` is smooth, between -1 and 1, and "
-     "has another value at each whole x and y.");
-}
-io("split", f.split, kSplits,
-   "Along which diagonal a cell is split: by turns, always from its corner of least x and y, or "
-   "that whose ends differ less in height.");
-if constexpr (Io::kResolved) {
-  io("material", f.material);
-} else {
-  SurfaceKeys(io, f.surface);
-}
+  if constexpr (Io::kResolved) {
+    io("columns", f.columns);
+    io("rows", f.rows);
+  } else {
+    io.OneOf({"file", "height_m"});
+    io("file", f.file,
+       "Heights in m as CSV, from the experiment's folder: a line for each row of corners, that of "
+       "the least y first, x rising along the line. Lines that begin with # are skipped.");
+    io("columns", f.columns, kCorners, "Corners along x. Goes with a formula.");
+    io("rows", f.rows, kCorners, "Corners along y. Goes with a formula.");
+  }
+  io("cell_m", f.cell_m, kNeeded, Bound::kPositive, "Side of a cell.");
+  io("origin_m", f.origin_m, "Middle of the rectangle; its z is added to all heights.");
+  if constexpr (Io::kResolved) {
+    io("height_m", f.height_m);
+  } else {
+    io("height_m", f.formula,
+       "A formula: heights by `x_m` and `y_m`, counted from the middle, or by `i` and `j`, counted "
+       "from 0 at the corner of least x and y; `noise(seed, x, y)` is smooth, between -1 and 1, "
+       "and "
+       "has another value at each whole x and y.");
+  }
+  io("split", f.split, kSplits,
+     "Along which diagonal a cell is split: by turns, always from its corner of least x and y, or "
+     "that whose ends differ less in height.");
+  if constexpr (Io::kResolved) {
+    io("material", f.material);
+  } else {
+    SurfaceKeys(io, f.surface);
+  }
 }
 void Check(const MapReader& map, HeightFieldText& field);
 
@@ -89,8 +91,10 @@ void Keys(Io& io, Mesh& m) {
          R"({"file": "rock.obj", "scale_m": 0.001})");
   io("name", m.name, kResolvedOnly);
   if constexpr (Io::kResolved) {
-    io("corners_m", m.corners_m);
-    io("triangles", m.triangles);
+    Packed corners{m.corners_m};
+    Packed triangles{m.triangles};
+    io("corners_m", corners);
+    io("triangles", triangles);
   } else {
     io("file", m.file, kNeeded,
        "Wavefront OBJ or STL, text or binary, from the experiment's folder. Corners run "

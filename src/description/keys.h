@@ -222,6 +222,27 @@ struct Raw {
   const Value* value = nullptr;
 };
 
+/// A list of a resolved experiment that may be too long for a list of YAML: numbers in one text.
+template <class List>
+struct Packed {
+  List& list;
+};
+template <class T>
+inline constexpr bool kIsPacked = false;
+template <class List>
+inline constexpr bool kIsPacked<Packed<List>> = true;
+
+template <class Number, class Use>
+void EachNumber(Number& number, const Use& use) {
+  if constexpr (std::same_as<std::remove_const_t<Number>, Vec3>) {
+    use(number.x), use(number.y), use(number.z);
+  } else if constexpr (requires { number.begin(); }) {
+    for (auto& one : number) use(one);
+  } else {
+    use(number);
+  }
+}
+
 /// A mapping that is checked when it is read, and read once more over what a model says.
 template <class T>
 struct Overlay {

@@ -16,8 +16,6 @@ bool IsName(std::string_view text) {
 namespace description {
 namespace {
 
-constexpr std::size_t kMaxNameLength = 200;  ///< A model has many copies of each.
-
 std::string ReadNameText(const Value& value, std::string_view what, bool dots, const Scope& scope) {
   if (value.kind != Value::Kind::kScalar) {
     WrongType(value, what, "a name", scope);

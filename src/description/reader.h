@@ -69,6 +69,7 @@ std::optional<std::vector<double>> ReadNumbers(const Value& value, std::string_v
 /// or a list of them, applied one after the other about the fixed axes of W.
 Quat ReadRotation(const Value& value, std::string_view what, const Scope& scope);
 std::string ReadText(const Value& value, std::string_view what, const Scope& scope);
+inline constexpr std::size_t kMaxNameLength = 200;  ///< A model has many copies of each.
 /// A text that `IsName`, and not too long.
 std::string ReadName(const Value& value, std::string_view what, const Scope& scope);
 /// The same of a map's free key.

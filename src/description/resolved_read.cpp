@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -47,13 +45,24 @@ void Read(const Value& value, const std::string& what, const Scope& scope,
           std::pair<double, double>& out) {
   if (const auto point = ReadNumbers(value, what, 2, scope)) out = {(*point)[0], (*point)[1]};
 }
-void Read(const Value& value, const std::string& what, const Scope& scope,
-          std::array<int, 3>& out) {
-  const auto items = Items(&value, what, scope);
-  if (items.size() != out.size()) scope.out.Error(value.at, what + " must be three corners");
-  for (std::size_t k = 0; k < std::min(items.size(), out.size()); ++k) {
-    Read(*items[k], what, scope, out[k]);
+/// Numbers with a space between them.
+template <class List>
+void Read(const Value& value, const std::string& what, const Scope& scope, Packed<List>& out) {
+  const char* at = value.text.data();
+  const char* const end = at + value.text.size();
+  bool good = true;
+  const auto take = [&](auto& number) {
+    const auto [stop, status] = std::from_chars(at, end, number);
+    good = good && status == std::errc();
+    at = stop;
+    if (at != end && *at == ' ') ++at;
+  };
+  while (good && at != end) {
+    const char* const before = at;
+    EachNumber(out.list.emplace_back(), take);
+    good = good && at != before;
   }
+  if (!good) scope.out.Error(value.at, what + " must be numbers with a space between them");
 }
 template <class T>
 void Read(const Value& value, const std::string& what, const Scope& scope, T& out);  // a struct

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -17,6 +16,18 @@ namespace taut::description {
 std::string Quoted(const std::string& text);
 /// Without quotes if that is as good.
 std::string PlainOrQuoted(const std::string& text);
+
+/// All numbers of a list that is too long to be one, as a text.
+template <class List>
+std::string PackedText(const Packed<List>& packed) {
+  std::string text = "\"";
+  const auto put = [&text](double number) {
+    if (text.size() > 1) text += ' ';
+    text += Shown(number);
+  };
+  for (const auto& item : packed.list) EachNumber(item, put);
+  return text + '"';
+}
 
 /// One line: `{name: "ground", point_m: [0, 0, 0]}`, or a single `key: value` of it. Files for
 /// people lack what says nothing: empty texts and lists, values that code reads.
@@ -43,8 +54,8 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
       return Text(std::vector{value.xx, value.yy, value.zz, value.xy, value.xz, value.yz});
     } else if constexpr (std::same_as<T, std::pair<double, double>>) {
       return Text(std::vector{value.first, value.second});
-    } else if constexpr (std::same_as<T, std::array<int, 3>>) {
-      return Text(std::vector(value.begin(), value.end()));
+    } else if constexpr (kIsPacked<T>) {
+      return PackedText(value);
     } else {
       FlowWriter writer(spelt);
       Keys(writer, value);

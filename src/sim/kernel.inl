@@ -18,6 +18,7 @@
 #include "sim/shape_pairs.inl"
 #include "sim/rod_distance.inl"
 #include "sim/stage_collide.inl"
+#include "sim/many_shapes.inl"
 #include "sim/prepare_contact.inl"
 #include "sim/fit_biases.inl"
 #include "sim/follow_arcs.inl"

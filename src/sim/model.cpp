@@ -58,6 +58,7 @@ class Compiler {
     Shapes();
     Points();
     Pairs();
+    sim::LayOutTree(t_);
     sim::LayOutMotors(t_);
     sim::CoupleCables(t_);
     Check();

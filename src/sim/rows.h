@@ -142,8 +142,9 @@ struct Scratch {
   StiffCable<W>* stiff;
   Link<W, 1>* links;  ///< Of all cables.
   MotorWork<W>* motors;
-  W* supplies;  ///< Voltage under load, per supply [V].
-  W* unsolved;  ///< Per body: 1 in lanes in which it is left to the lane's own solve.
+  W* supplies;     ///< Voltage under load, per supply [V].
+  uint64_t* near;  ///< A bit for each of the world's shapes, if it has many.
+  W* unsolved;     ///< Per body: 1 in lanes in which it is left to the lane's own solve.
   LaneMemory<simd::Lane<W>> lane;
   DualMemory<W> dual;
   int stiff_count = 0, link_count = 0;
@@ -174,6 +175,7 @@ struct Scratch {
     motors = room_.Take<MotorWork<W>>(m.motor_count);
     supplies = room_.Take<W>(m.supply_count);
     unsolved = room_.Take<W>(bodies_count);
+    near = room_.Take<uint64_t>((m.tree_shapes + 63) / 64);
     lane.Take(m, room_);
     dual.Take(m, room_);
   }

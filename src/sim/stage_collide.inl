@@ -199,8 +199,34 @@ Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return found;
 }
 
-/// The points of one pair of shapes, in the order of their features: into the slots of a body if
-/// the other does not move, else into the lists of touches.
+/// The points of one pair of shapes in one lane, in the order of their features: into the slots of
+/// a body if the other does not move, else into the lists of touches.
+template <class W>
+void PutTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+                const ShapePairTable& pair, int lane, double margin, double step_s,
+                SlotFiller<W>* slots, uint32_t* overflow) noexcept {
+  const int body = m.shapes[pair.a].body;
+  TouchPoint points[kMaxPointsPerPair];
+  const int found = TouchLane(m, s, work, pair, lane, margin, points);
+  const int count = slots != nullptr
+                        ? KeepTouching(m, s, work, pair, lane, step_s, m.first_slot[body],
+                                       g.slots_used[body], points, found)
+                        : KeepTouching(m, s, work, pair, lane, step_s, m.slot_count, g.touches_used,
+                                       points, found);
+  for (int feature = 0, left = count; left > 0; ++feature) {
+    for (int i = 0; i < count; ++i) {
+      if (points[i].feature != feature) continue;
+      --left;
+      const bool room =
+          slots != nullptr
+              ? slots->Add(FoundTouch(m, s, work, pair, points[i], body, lane), lane)
+              : work.AddTouch(m, lane, static_cast<int>(&pair - m.shape_pairs), points[i]);
+      if (!room) *overflow |= 1u << lane;
+    }
+  }
+}
+
+/// The same for all lanes in which the bounding spheres meet.
 template <class W>
 void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                    const ShapePairTable& pair, W margin, W center_distance2, double step_s,
@@ -209,28 +235,21 @@ void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
   const W limit = W::Splat(reach) + margin;
   const auto close = center_distance2 < limit * limit;
   if (!Any(close)) return;
-  const int body = m.shapes[pair.a].body;
   for (int lane = 0; lane < W::kLanes; ++lane) {
     if (!close[lane]) continue;
-    TouchPoint points[kMaxPointsPerPair];
-    const int found = TouchLane(m, s, work, pair, lane, margin[lane], points);
-    const int count = slots != nullptr
-                          ? KeepTouching(m, s, work, pair, lane, step_s, m.first_slot[body],
-                                         g.slots_used[body], points, found)
-                          : KeepTouching(m, s, work, pair, lane, step_s, m.slot_count,
-                                         g.touches_used, points, found);
-    for (int feature = 0, left = count; left > 0; ++feature) {
-      for (int i = 0; i < count; ++i) {
-        if (points[i].feature != feature) continue;
-        --left;
-        const bool room =
-            slots != nullptr
-                ? slots->Add(FoundTouch(m, s, work, pair, points[i], body, lane), lane)
-                : work.AddTouch(m, lane, static_cast<int>(&pair - m.shape_pairs), points[i]);
-        if (!room) *overflow |= 1u << lane;
-      }
-    }
+    PutTouches(m, s, g, work, pair, lane, margin[lane], step_s, slots, overflow);
   }
+}
+
+/// Lanes in which two bodies may touch, as far as the last look knows, and how far each may reach.
+template <class W>
+MaskOf<W> ClearanceUsedUp(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair, W h,
+                          W since_last, W& margin) noexcept {
+  const BodyPairTable& bodies = m.body_pairs[pair];
+  const BodyWork<W>&a = work.bodies[bodies.a], &b = work.bodies[bodies.b];
+  margin = h * Norm1(a.v - b.v) + (a.turns + b.turns) + W::Splat(kContactMarginM);
+  s.clearance[pair] -= since_last * Norm1(a.v0 - b.v0) + (a.turned + b.turned);
+  return s.clearance[pair] < margin;
 }
 
 /// Whether two bodies may touch in some lane, and if so how far each may reach.
@@ -238,10 +257,7 @@ template <class W>
 bool MayTouch(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair, W h, W since_last,
               W& margin) noexcept {
   const BodyPairTable& bodies = m.body_pairs[pair];
-  const BodyWork<W>&a = work.bodies[bodies.a], &b = work.bodies[bodies.b];
-  margin = h * Norm1(a.v - b.v) + (a.turns + b.turns) + W::Splat(kContactMarginM);
-  s.clearance[pair] -= since_last * Norm1(a.v0 - b.v0) + (a.turned + b.turned);
-  auto near = s.clearance[pair] < margin;
+  auto near = ClearanceUsedUp(m, s, work, pair, h, since_last, margin);
   if (!Any(near)) return false;
   if (bodies.b < m.body_count) {
     const V3<W> d = s.pos[bodies.a] - s.pos[bodies.b];
@@ -255,12 +271,22 @@ bool MayTouch(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair,
   return Any(s.clearance[pair] < margin);
 }
 
+// Of a body and a world with many shapes (many_shapes.inl).
+template <class W>
+void CollideManyShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
+                       double step_s, W since_last, SlotFiller<W>* slots,
+                       uint32_t* overflow) noexcept;
+
 template <class W>
 void CollideBodies(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
                    double step_s, W since_last, SlotFiller<W>* slots, uint32_t* overflow) noexcept {
+  const BodyPairTable& bodies = m.body_pairs[pair];
+  if (bodies.by_tree) {
+    CollideManyShapes(m, s, g, work, pair, step_s, since_last, slots, overflow);
+    return;
+  }
   W margin;
   if (!MayTouch(m, s, work, pair, W::Splat(step_s), since_last, margin)) return;
-  const BodyPairTable& bodies = m.body_pairs[pair];
   for (int k = 0; k < bodies.pair_count; ++k) {
     const ShapePairTable& shapes = m.shape_pairs[bodies.first_pair + k];
     const V3<W> d = ShapeCenter(m, s, work, shapes.a) - ShapeCenter(m, s, work, shapes.b);

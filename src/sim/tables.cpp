@@ -32,7 +32,10 @@ View Tables::View() const noexcept {
           static_cast<int>(motors.size()),
           static_cast<int>(supplies.size()),
           motors.data(),
-          supplies.data()};
+          supplies.data(),
+          static_cast<int>(tree.size()),
+          tree_shapes,
+          tree.data()};
 }
 
 Layout Tables::MakeLayout() const {

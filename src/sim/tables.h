@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/shape_contacts.h"
+#include "sim/shape_tree.h"
 #include "sim/state_rows.h"
 #include "sim/surface_build.h"
 #include "taut/batch.h"
@@ -92,7 +93,11 @@ struct ShapePairTable {
 struct BodyPairTable {
   int a = 0, b = 0;  ///< b may be the world.
   int first_pair = 0, pair_count = 0;
+  bool by_tree = false;  ///< b is the world, whose shapes are looked up in its tree.
 };
+
+/// So many shapes of the world are looked at one after the other; of more there is a tree.
+inline constexpr int kFewShapes = 8;
 
 inline constexpr int kMaxPlanes = 8;
 
@@ -156,6 +161,8 @@ struct View {
   int motor_count, supply_count;
   const MotorTable* motors;
   const SupplyTable* supplies;
+  int tree_nodes, tree_shapes;
+  const TreeNode* tree;
 
   // Always inline: of a function that several instruction sets emit the linker keeps any one.
   /// Contacts that one world may have at once.
@@ -210,6 +217,8 @@ class Tables final : public Model {
   std::uint32_t first_pair_id = 0;  ///< Keys below are point * planes + plane, others of pairs.
   int pair_capacity = 0;            ///< Contacts of moving bodies that one world may have at once.
   bool along_slip = false;
+  std::vector<TreeNode> tree;    ///< Of the world's shapes, where they are more than kFewShapes.
+  int tree_shapes = 0;           ///< How many those are; 0 without a tree.
   std::vector<double> coupling;  ///< Per cable: sum over all cables of |coupling| [1/kg].
   double largest_coupling = 0;   ///< Largest eigenvalue of the couplings [1/kg].
 
@@ -218,6 +227,9 @@ class Tables final : public Model {
   struct View View() const noexcept;
   Layout MakeLayout() const;
 };
+
+/// Fills the tree of the world's shapes if they are many, and says so to the pairs with it.
+void LayOutTree(Tables& tables);
 
 /// Fills motors and supplies, and which cable has which motor.
 void LayOutMotors(Tables& tables);

@@ -2,6 +2,7 @@
 // through the solver and need other numbers of its steps: each gives the bits that it gives alone.
 #include <gtest/gtest.h>
 
+#include "scenes/chance.h"
 #include "scenes/heap.h"
 #include "scenes/many_rows.h"
 #include "scenes/six_strut.h"
@@ -73,6 +74,43 @@ TEST(Company, ABallInANetOfStiffCables) {
   ExpectTheSameInAnyCompany(scenes::BallInNet().Def(), 200);
 }
 TEST(Company, ASpineOnRubble) { ExpectTheSameInAnyCompany(scenes::SpineOnRubble().Def(), 300); }
+TEST(Company, RodsOnDifferentPartsOfAFieldOfManyBoxes) {
+  // Each world has them at another place of the field, and one beside it.
+  scenes::Chance chance(4);
+  scenes::RodHeap heap;
+  heap.rods = 5;
+  ModelDef def = heap.Def();
+  def.planes.clear();
+  def.terrain_boxes.clear();
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 at{chance.Within(-3, 3), chance.Within(-3, 3), chance.Within(-0.1, 0)};
+    def.terrain_boxes.push_back({"stone",
+                                 at,
+                                 scenes::Turn(chance.Direction(), 0.5),
+                                 {chance.Within(0.05, 0.3), 0.2, 0.05},
+                                 {0.5, 0.5, 0}});
+  }
+  const auto start = [](Batch& batch, int world, int number) {
+    for (int b = 0; b < static_cast<int>(batch.model().def().bodies.size()); ++b) {
+      BodyState at = batch.Body(world, b);
+      at.position_m.x += number - 3.0;
+      at.position_m.y += 0.7 * number - 2;
+      batch.SetBodyState(world, b, at);
+    }
+    Jolt(batch, world, number);
+  };
+  BatchOptions wide;
+  wide.worlds = kWorlds;
+  Batch together = MakeBatch(def, wide);
+  for (int i = 0; i < kWorlds; ++i) start(together, i, i);
+  together.Step(kStepS, 800);
+  for (int i = 0; i < kWorlds; ++i) {
+    Batch alone = MakeBatch(def, {});
+    start(alone, 0, i);
+    alone.Step(kStepS, 800);
+    EXPECT_EQ(together.Hash(i), alone.Hash(0)) << i;
+  }
+}
 TEST(Company, SixStrutsWithStrongDampersOnTheGround) {
   scenes::SixStrut robot;
   robot.damping_n_s_per_m = 200;

@@ -33,6 +33,14 @@ TEST(ExperimentFuzz, ADamagedPushIsReadOrRefused) {
 TEST(ExperimentFuzz, ADamagedDropIsReadOrRefused) {
   ReadDamaged("drop.yaml", Shipped("drop_six_strut"), 500);
 }
+TEST(ExperimentFuzz, DamagedStairsAndBlocksAreReadOrRefused) {
+  std::string text = Shipped("stairs");
+  text.insert(
+      text.find("terrain:\n") + 9,
+      "  - name: field\n    scatter: {count: 30, seed: 2, within_m: [[-1, -1, -2], [1, 1, -1]], "
+      "box_m: [0.1, 0.2, 0.3]}\n");
+  ReadDamaged("stairs.yaml", text, 500);
+}
 TEST(ExperimentFuzz, ADamagedResolvedExperimentIsReadOrRefused) {
   Diagnostics out;
   const auto hang = LoadExperiment(TAUT_SOURCE_DIR "/experiments/hang.yaml", {}, out);

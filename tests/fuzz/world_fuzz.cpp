@@ -179,7 +179,8 @@ ModelDef RandomModel(Draw& draw) {
     def.planes.push_back(
         {"plane", draw.Coin() ? Vec3{0, 0, 1} : draw.Direction(), draw.Point(0.2), draw.Surface()});
   }
-  if (draw.Coin()) {
+  // More than a few are looked up another way.
+  for (int block = draw.Coin() ? draw.Int(1, 16) : 0; block > 0; --block) {
     def.terrain_boxes.push_back({"block",
                                  draw.Point(1),
                                  draw.Turn(),

@@ -1,0 +1,72 @@
+// Lays out the tree of the world's shapes (shape_tree.h).
+#include <algorithm>
+#include <utility>
+
+#include "base/assert.h"
+#include "sim/tables.h"
+
+namespace taut::sim {
+namespace {
+
+Bounds Around(const Bounds& a, const Bounds& b) {
+  Bounds both;
+  for (int i = 0; i < 3; ++i) {
+    both.low[i] = std::min(a.low[i], b.low[i]);
+    both.high[i] = std::max(a.high[i], b.high[i]);
+  }
+  return both;
+}
+
+/// Appends the tree of some leaves, halved along the axis on which they spread most.
+void Append(TreeNode* first, TreeNode* last, std::vector<TreeNode>& tree) {
+  const std::size_t at = tree.size();
+  tree.push_back(*first);
+  if (last - first > 1) {
+    TreeNode& node = tree.back();
+    node.shape = -1;
+    const auto twice_center = [](const TreeNode& n, int axis) {
+      return n.bounds.low[axis] + n.bounds.high[axis];
+    };
+    int widest = 0;
+    double width = -1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [least, most] =
+          std::minmax_element(first, last, [&](const auto& a, const auto& b) {
+            return twice_center(a, axis) < twice_center(b, axis);
+          });
+      const double spread = twice_center(*most, axis) - twice_center(*least, axis);
+      if (spread > width) widest = axis, width = spread;
+    }
+    for (const TreeNode* leaf = first; leaf != last; ++leaf) {
+      node.bounds = Around(node.bounds, leaf->bounds);
+    }
+    TreeNode* const middle = first + (last - first) / 2;
+    std::nth_element(first, middle, last, [&](const auto& a, const auto& b) {
+      return twice_center(a, widest) < twice_center(b, widest);
+    });
+    Append(first, middle, tree);
+    Append(middle, last, tree);
+  }
+  tree[at].next = static_cast<int>(tree.size());
+}
+
+}  // namespace
+
+void LayOutTree(Tables& t) {
+  std::vector<TreeNode> leaves;
+  for (const ShapeTable& shape : t.shapes) {
+    if (shape.body != t.body_count || shape.shape_P.kind == ShapeKind::kSurface) continue;
+    leaves.push_back({BoundsOf(shape.shape_P), 0, static_cast<int>(leaves.size())});
+  }
+  if (leaves.size() <= static_cast<std::size_t>(kFewShapes)) return;
+  t.tree_shapes = static_cast<int>(leaves.size());
+  Append(leaves.data(), leaves.data() + leaves.size(), t.tree);
+  for (BodyPairTable& pair : t.body_pairs) {
+    const auto first =
+        static_cast<std::size_t>(t.shape_pairs[static_cast<std::size_t>(pair.first_pair)].b);
+    pair.by_tree = pair.b == t.body_count && t.shapes[first].shape_P.kind != ShapeKind::kSurface;
+    TAUT_ASSERT(!pair.by_tree || pair.pair_count % t.tree_shapes == 0);
+  }
+}
+
+}  // namespace taut::sim
