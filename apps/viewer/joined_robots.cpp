@@ -28,6 +28,17 @@ bool Same(const TerrainBoxDef& a, const TerrainBoxDef& b) {
          Same(a.half_extents_m, b.half_extents_m);
 }
 
+bool Same(const HeightFieldDef& a, const HeightFieldDef& b) {
+  return a.columns == b.columns && a.cell_m == b.cell_m && a.split == b.split &&
+         Same(a.origin_m, b.origin_m) && a.height_m == b.height_m;
+}
+
+bool Same(const TerrainMeshDef& a, const TerrainMeshDef& b) {
+  return a.triangles == b.triangles &&
+         std::equal(a.corners_m.begin(), a.corners_m.end(), b.corners_m.begin(), b.corners_m.end(),
+                    [](const Vec3& p, const Vec3& q) { return Same(p, q); });
+}
+
 template <class T>
 void AddUnlessThere(std::vector<T>& list, T part) {
   const auto is_same = [&](const T& other) { return Same(other, part); };

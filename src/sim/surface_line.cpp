@@ -84,6 +84,15 @@ double DistanceOf(const SurfaceTriangle& t, const Vec3& from, const Vec3& to) no
   return least;
 }
 
+/// Whether a line is further from a triangle's plane than that, all of it on one side: most are.
+bool IsClear(const SurfaceTriangle& t, const Vec3& from, const Vec3& to, double limit_m) noexcept {
+  const Vec3 n = Cross(t.p[1] - t.p[0], t.p[2] - t.p[0]);
+  const double at_from = Dot(n, from - t.p[0]), at_to = Dot(n, to - t.p[0]);
+  if (!(at_from * at_to > 0.0)) return false;
+  const double least = Smaller(Abs(at_from), Abs(at_to));
+  return least * least > limit_m * limit_m * Dot(n, n);
+}
+
 /// `use` with every triangle near a line, piece by piece of the line, and which piece it is.
 template <class Use>
 void EachNearLine(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
@@ -263,7 +272,8 @@ int NearestAlong(const SurfaceTable& s, const Vec3& from, const Vec3& to, double
                    const Vec3& b) noexcept {
                  Beside near;
                  EachTriangle(s, low, high, [&](const SurfaceTriangle& t) noexcept {
-                   if (near.count == kMaxNear || !(DistanceOf(t, a, b) <= limit_m)) return;
+                   if (near.count == kMaxNear || IsClear(t, a, b, limit_m)) return;
+                   if (!(DistanceOf(t, a, b) <= limit_m)) return;
                    near.all[near.count++] = t;
                  });
                  if (near.count > 0) search.Look(near, piece);
@@ -278,7 +288,7 @@ double DistanceOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,
                [&](const Vec3& low, const Vec3& high, const Stretch&, const Vec3& a,
                    const Vec3& b) noexcept {
                  EachTriangle(s, low, high, [&](const SurfaceTriangle& t) noexcept {
-                   least = Smaller(least, DistanceOf(t, a, b));
+                   if (!IsClear(t, a, b, least)) least = Smaller(least, DistanceOf(t, a, b));
                  });
                });
   // Inside, the surface may be far.

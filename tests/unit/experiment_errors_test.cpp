@@ -167,11 +167,13 @@ TEST_F(ExperimentErrors, PlanesLieInOneWay) {
 TEST_F(ExperimentErrors, TerrainIsPlanesAndBoxes) {
   const std::string ground = "- {name: ground, plane: {height_m: 0, friction: 0.5}}";
   Expect(ground, "- {name: ground}",
-         "7:5: error: terrain needs one of plane, box, scatter, stairs");
+         "7:5: error: terrain needs one of plane, box, scatter, stairs, height_field, "
+         "mesh");
   Expect(ground, "- {name: ground, hills: {}}",
-         "7:5: error: terrain needs one of plane, box, scatter, stairs\n7:20: error: unknown key "
+         "7:5: error: terrain needs one of plane, box, scatter, stairs, height_field, "
+         "mesh\n7:20: error: unknown key "
          "\"hills\" in "
-         "terrain (one of: name, plane, box, scatter, stairs)");
+         "terrain (one of: name, plane, box, scatter, stairs, height_field, mesh)");
   Expect(ground, "- {plane: {height_m: 0}}", "7:5: error: terrain needs the key \"name\"");
   Expect(ground, ground + "\n  " + ground,
          "8:6: error: there are two parts of the terrain called ground (the first is in line 7)");
