@@ -5,38 +5,18 @@
 #include "base/assert.h"
 #include "math/principal_axes.h"
 #include "math/rotation.h"
+#include "sim/body_frame.h"
+#include "sim/combine.h"
 #include "sim/model_check.h"
 #include "sim/tables.h"
 
 namespace taut {
 namespace {
 
+using sim::Frame;
+using sim::Length;
 using sim::Tables;
-
-struct Frame {
-  double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< R_WP, row major.
-  double origin[3] = {};
-};
-
-void ToBody(const Frame& f, const Vec3& p, double out[3]) {
-  const double d[3] = {p.x - f.origin[0], p.y - f.origin[1], p.z - f.origin[2]};
-  for (int i = 0; i < 3; ++i) out[i] = f.r[i] * d[0] + f.r[3 + i] * d[1] + f.r[6 + i] * d[2];
-}
-
-double Length(const double p[3]) { return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]); }
-
-double Combine(CombineRule rule, double a, double b) {
-  switch (rule) {
-    case CombineRule::kProduct:
-      return a * b;
-    case CombineRule::kGeometricMean:
-      return std::sqrt(a * b);
-    case CombineRule::kMinimum:
-      return std::min(a, b);
-    default:
-      return std::max(a, b);
-  }
-}
+using sim::ToBody;
 
 /// The radius of a sphere around a surface, which has no middle.
 constexpr double kEverywhere_m = 1e30;
@@ -314,13 +294,10 @@ class Compiler {
     std::copy(p, p + 3, point.p_P);
     point.radius_m = radius;
     for (std::size_t k = 0; k < def_.planes.size(); ++k) {
-      const Material& plane = def_.planes[k].material;
-      point.static_friction[k] =
-          Combine(def_.friction_combine, material.static_friction, plane.static_friction);
-      point.kinetic_friction[k] =
-          Combine(def_.friction_combine, material.kinetic_friction, plane.kinetic_friction);
-      point.restitution[k] =
-          Combine(def_.restitution_combine, material.restitution, plane.restitution);
+      const sim::Coefficients both = sim::Combined(def_, material, def_.planes[k].material);
+      point.static_friction[k] = both.static_friction;
+      point.kinetic_friction[k] = both.kinetic_friction;
+      point.restitution[k] = both.restitution;
     }
     t_.points.push_back(point);
   }
@@ -385,12 +362,10 @@ class Compiler {
     if (t_.body_pairs.back().pair_count == 0) t_.body_pairs.pop_back();
   }
   void Meet(std::size_t i, std::size_t j, std::uint32_t& id) {
-    const Material &m = t_.shapes[i].material, &n = t_.shapes[j].material;
+    const auto [at_rest, sliding, restitution] =
+        sim::Combined(def_, t_.shapes[i].material, t_.shapes[j].material);
     t_.shape_pairs.push_back(
-        {static_cast<int>(i), static_cast<int>(j), id,
-         Combine(def_.friction_combine, m.static_friction, n.static_friction),
-         Combine(def_.friction_combine, m.kinetic_friction, n.kinetic_friction),
-         Combine(def_.restitution_combine, m.restitution, n.restitution)});
+        {static_cast<int>(i), static_cast<int>(j), id, at_rest, sliding, restitution});
     id += sim::kMaxPointsPerPair;
     ++t_.body_pairs.back().pair_count;
   }
