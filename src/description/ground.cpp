@@ -16,12 +16,20 @@ namespace taut::description {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+/// A formula takes 2 us a corner.
+constexpr double kMostByFormula = 4e6;
 
 /// Heights by a formula, which is looked at once a corner.
 bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldDef& field) {
+  const Value& formula = *text.formula.value;
+  if (formula.kind != Value::Kind::kScalar) {
+    scope.out.Error(formula.at, "height_field.height_m must be a formula, got " +
+                                    std::string(KindName(formula)));
+    return false;
+  }
   NameTable names = scope.names;
   if (scope.used != nullptr) {
-    for (const std::string& name : NamesIn(text.formula.text)) scope.used->insert(name);
+    for (const std::string& name : NamesIn(formula.text)) scope.used->insert(name);
   }
   field.height_m.reserve(static_cast<std::size_t>(field.columns) *
                          static_cast<std::size_t>(field.rows));
@@ -30,9 +38,9 @@ bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldD
       names["i"] = i, names["j"] = j;
       names["x_m"] = (i - 0.5 * (field.columns - 1)) * field.cell_m;
       names["y_m"] = (j - 0.5 * (field.rows - 1)) * field.cell_m;
-      const Evaluated height = Evaluate(text.formula.text, names);
+      const Evaluated height = Evaluate(formula.text, names);
       if (!height.error.empty()) {
-        scope.out.Error(text.formula.at,
+        scope.out.Error(formula.at,
                         "height_field.height_m at i = " + std::to_string(i) +
                             ", j = " + std::to_string(j) + ": " + height.error,
                         height.hint);
@@ -122,8 +130,13 @@ std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const
     const std::string path = PathBeside(text.file.at.file, text.file.text);
     if (!ReadCsv(path, scope, field)) return std::nullopt;
   } else {
-    const bool known = !text.formula.text.empty() && field.columns >= 2 && field.rows >= 2 &&
+    const bool known = text.formula.value != nullptr && field.columns >= 2 && field.rows >= 2 &&
                        std::isfinite(field.cell_m);
+    if (known && static_cast<double>(field.columns) * field.rows > kMostByFormula) {
+      scope.out.Error(text.at, "a formula may have 4 000 000 corners at most",
+                      "fewer, larger cells, or a file");
+      return std::nullopt;
+    }
     if (!known || !FillByFormula(text, scope, field)) return std::nullopt;
   }
   return field;

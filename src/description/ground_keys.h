@@ -10,9 +10,15 @@
 
 namespace taut::description {
 
+/// An expression with more names than numbers have.
+struct FormulaForm {
+  static constexpr const char* kSchema =
+      R"("$ref": "#/$defs/number", "title": "formula", "unit": "m")";
+};
 struct HeightFieldText : HeightFieldDef {
   SourceRef at;
-  Placed file, formula;
+  Placed file;
+  Raw<FormulaForm> formula;
   SurfaceText surface;
 };
 /// `place` of a mesh.
@@ -53,8 +59,8 @@ void Keys(Io& io, Field& f) {
     io("file", f.file,
        "Heights in m as CSV, from the experiment's folder: a line for each row of corners, that of "
        "the least y first, x rising along the line. Lines that begin with # are skipped.");
-    io("columns", f.columns, kCorners, "Corners along x. Goes with a formula.");
-    io("rows", f.rows, kCorners, "Corners along y. Goes with a formula.");
+    io("columns", f.columns, kCorners, kInherited, "Corners along x. Goes with a formula.");
+    io("rows", f.rows, kCorners, kInherited, "Corners along y. Goes with a formula.");
   }
   io("cell_m", f.cell_m, kNeeded, Bound::kPositive, "Side of a cell.");
   io("origin_m", f.origin_m, "Middle of the rectangle; its z is added to all heights.");

@@ -196,6 +196,8 @@ TEST_F(GroundText, WrongFieldsAreNamed) {
   has(field("height_m: x_m, cell_m: -1, columns: 3, rows: 3"), "must be positive");
   has(field("height_m: x_m, cell_m: 1, columns: 3, rows: 1"),
       "rows must be a whole number within 2..100000");
+  has(field("height_m: [1], cell_m: 1, columns: 3, rows: 3"), "must be a formula, got a list");
+  has(field("height_m: 0, cell_m: 1, columns: 100000, rows: 50"), "4 000 000 corners at most");
   has(field("height_m: x, cell_m: 1, columns: 3, rows: 3"), "unknown name \"x\"");
   has(field("height_m: 1 / i, cell_m: 1, columns: 3, rows: 3"), "at i = 0, j = 0");
   has(field("height_m: \"noise(0.5, i, j)\", cell_m: 1, columns: 3, rows: 3"),
