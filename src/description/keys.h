@@ -227,6 +227,8 @@ template <class List>
 struct Packed {
   List& list;
 };
+template <class List>
+Packed(List&) -> Packed<List>;
 template <class T>
 inline constexpr bool kIsPacked = false;
 template <class List>

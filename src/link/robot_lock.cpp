@@ -120,14 +120,15 @@ StopAnswer AskToStop(const std::string& device, double patience_s, Diagnostics& 
   // A name of its own, which the kernel chooses, for the answer to go to.
   sockaddr_un own{};
   own.sun_family = AF_UNIX;
-  bind(asking, reinterpret_cast<const sockaddr*>(&own), sizeof own.sun_family);
+  const bool named =
+      bind(asking, reinterpret_cast<const sockaddr*>(&own), sizeof own.sun_family) == 0;
   StopAnswer answer = StopAnswer::kNobody;
   if (sendto(asking, kStop, sizeof kStop, 0, reinterpret_cast<const sockaddr*>(&address),
              sizeof address) >= 0) {
     answer = StopAnswer::kSilent;
     pollfd waits{asking, POLLIN, 0};
     char text[16];
-    if (poll(&waits, 1, static_cast<int>(patience_s * 1000)) > 0 &&
+    if (named && poll(&waits, 1, static_cast<int>(patience_s * 1000)) > 0 &&
         recv(asking, text, sizeof text, 0) == sizeof kStopped) {
       answer = StopAnswer::kStopped;
     }

@@ -11,9 +11,8 @@ namespace taut::link {
 
 std::string RuntimeFolder(Diagnostics& out) {
   const char* const given = std::getenv("XDG_RUNTIME_DIR");
-  const std::string folder = given != nullptr && *given != '\0'
-                                 ? std::string(given) + "/taut"
-                                 : "/tmp/taut-" + std::to_string(getuid());
+  std::string folder = given != nullptr && *given != '\0' ? std::string(given) + "/taut"
+                                                          : "/tmp/taut-" + std::to_string(getuid());
   if (mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) {
     out.Error({folder}, std::string("cannot make this folder: ") + std::strerror(errno));
     return {};

@@ -42,7 +42,7 @@ std::string ProgramPath() {
 std::string FolderOfIt(Diagnostics& out) {
   const std::string runtime = RuntimeFolder(out);
   if (runtime.empty()) return {};
-  const std::string folder = runtime + "/virtual";
+  std::string folder = runtime + "/virtual";
   if (mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST) return folder;
   out.Error({folder}, std::string("cannot make this folder: ") + std::strerror(errno));
   return {};

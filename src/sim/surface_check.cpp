@@ -96,8 +96,7 @@ void CheckGround(const ModelDef& def, Checker& check) {
   for (const TerrainMeshDef& mesh : def.terrain_meshes) CheckMesh(mesh, check);
   if (def.height_fields.empty() && def.terrain_meshes.empty()) return;
   for (const BoxDef& box : def.boxes) {
-    const bool moves = box.body != kWorld && box.body >= 0 &&
-                       box.body < static_cast<int>(def.bodies.size()) &&
+    const bool moves = box.body >= 0 && box.body < static_cast<int>(def.bodies.size()) &&
                        !def.bodies[static_cast<std::size_t>(box.body)].fixed;
     check.Require(!moves || !box.collides,
                   "box " + box.name +
