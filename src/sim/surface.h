@@ -46,6 +46,8 @@ inline int CellAt(double x, int count) noexcept {
 
 /// Height of a field above a place within it.
 double HeightAt(const SurfaceTable& s, double x, double y) noexcept;
+/// How far below a field's surface a point is, within its rectangle; else 0 or less.
+double DepthBelow(const SurfaceTable& s, const Vec3& p) noexcept;
 /// No less than any height of a field between these.
 double TopOver(const SurfaceTable& s, const Vec3& low, const Vec3& high) noexcept;
 

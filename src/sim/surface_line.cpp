@@ -198,11 +198,7 @@ class LineSearch {
   }
 
   /// Of a field it can be told; of a mesh both triangles have said so.
-  bool IsUnder(const Vec3& p) const noexcept {
-    if (!s_.is_field) return true;
-    return p.x >= s_.low.x && p.x <= s_.high.x && p.y >= s_.low.y && p.y <= s_.high.y &&
-           p.z < HeightAt(s_, p.x, p.y);
-  }
+  bool IsUnder(const Vec3& p) const noexcept { return !s_.is_field || DepthBelow(s_, p) > 0.0; }
 
   void Corner(const Beside& near, int i, int k) noexcept {
     const SurfaceTriangle& t = near.all[i];

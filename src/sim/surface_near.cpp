@@ -115,10 +115,7 @@ bool IsLeast(const Neighbours& near, int which) noexcept {
 /// Whether a point is inside, seen from the triangles at the nearest place of all.
 bool IsInside(const SurfaceTable& s, const Vec3& p, const Neighbours& near, int nearest) noexcept {
   if (!s.solid) return false;
-  if (s.is_field) {
-    return p.x >= s.low.x && p.x <= s.high.x && p.y >= s.low.y && p.y <= s.high.y &&
-           p.z < HeightAt(s, p.x, p.y);
-  }
+  if (s.is_field) return DepthBelow(s, p) > 0.0;
   // At an edge or a corner the triangle that faces the point most directly knows.
   const Vec3 away = p - near.all[nearest].nearest.at;
   const double same = near.all[nearest].distance_m * (1.0 + kSameDistance);
@@ -163,10 +160,7 @@ class Places {
 
 int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, SurfacePlace* out,
                   int most) noexcept {
-  if (s.is_field && point.x >= s.low.x && point.x <= s.high.x && point.y >= s.low.y &&
-      point.y <= s.high.y) {
-    limit_m = Larger(limit_m, HeightAt(s, point.x, point.y) - point.z);
-  }
+  if (s.is_field) limit_m = Larger(limit_m, DepthBelow(s, point));
   if (!s.is_field && s.solid) limit_m += s.bucket_m;  // so deep it is still found
   Neighbours near;
   near.Find(s, point, limit_m);

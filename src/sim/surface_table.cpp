@@ -20,6 +20,11 @@ double HeightAt(const SurfaceTable& s, double x, double y) noexcept {
                       : z11 + (1.0 - u) * (z01 - z11) + (1.0 - v) * (z10 - z11);
 }
 
+double DepthBelow(const SurfaceTable& s, const Vec3& p) noexcept {
+  const bool within = p.x >= s.low.x && p.x <= s.high.x && p.y >= s.low.y && p.y <= s.high.y;
+  return within ? HeightAt(s, p.x, p.y) - p.z : 0.0;
+}
+
 double TopOver(const SurfaceTable& s, const Vec3& low, const Vec3& high) noexcept {
   int i0 = CellAt((low.x - s.low.x) * s.inv_cell, s.columns - 1);
   int i1 = CellAt((high.x - s.low.x) * s.inv_cell, s.columns - 1);
