@@ -15,6 +15,10 @@ constexpr double kCoincidentM = 1e-10;
 constexpr double kSameDistance = 1e-12;
 /// And, as its root, so far from each other.
 constexpr double kSamePlace = 4e-6;
+/// A point so nearly above the plane of a triangle, seen from its edge, is above the plane: what is
+/// over an edge of one plane has the plane's normal, whatever rounding says of which triangle it
+/// is.
+constexpr double kAbovePlane = 1e-7;
 constexpr int kMaxNear = 96, kMaxPlaces = 16;
 
 enum class On { kFace, kEdge, kCorner };
@@ -131,10 +135,16 @@ bool IsInside(const SurfaceTable& s, const Vec3& p, const Neighbours& near, int 
 }
 
 SurfacePlace PlaceOf(const NearTriangle& t, const Vec3& p, bool inside) noexcept {
-  const Vec3 away = p - t.nearest.at;
+  const Vec3 away = p - t.nearest.at, normal = NormalOf(t.triangle);
   const double sign = inside ? -1.0 : 1.0;
-  const Vec3 n = t.distance_m > kCoincidentM ? (sign / t.distance_m) * away : NormalOf(t.triangle);
-  return {t.nearest.at, n, sign * t.distance_m};
+  if (t.distance_m <= kCoincidentM) return {t.nearest.at, normal, sign * t.distance_m};
+  const Vec3 aside = away - Dot(away, normal) * normal;
+  if (Norm(aside) <= kAbovePlane * t.distance_m) {
+    const double height = Dot(away, normal);
+    const Vec3 n = (height < 0.0 ? -sign : sign) * normal;
+    return {t.nearest.at + aside, n, sign * Abs(height)};
+  }
+  return {t.nearest.at, (sign / t.distance_m) * away, sign * t.distance_m};
 }
 
 /// Places found so far, the nearest first.
