@@ -1,9 +1,9 @@
 #include "peers/peer.h"
 
-#include <cmath>
 #include <stdexcept>
 
 #include "peers/adapters.h"
+#include "sim/combine.h"
 
 namespace taut::peers {
 namespace {
@@ -58,22 +58,9 @@ const Material* FirstMaterial(const ModelDef& def) {
   return nullptr;
 }
 
-double Combine(CombineRule rule, double a, double b) {
-  switch (rule) {
-    case CombineRule::kProduct:
-      return a * b;
-    case CombineRule::kGeometricMean:
-      return std::sqrt(a * b);
-    case CombineRule::kMinimum:
-      return std::fmin(a, b);
-    default:
-      return std::fmax(a, b);
-  }
-}
-
 Contact Between(const ModelDef& def, const Material& a, const Material& b) {
-  return {Combine(def.friction_combine, a.kinetic_friction, b.kinetic_friction),
-          Combine(def.restitution_combine, a.restitution, b.restitution)};
+  const sim::Coefficients both = sim::Combined(def, a, b);
+  return {both.kinetic_friction, both.restitution};
 }
 
 }  // namespace

@@ -164,17 +164,16 @@ class LineSearch {
     }
     const Vec3 a = from_ - p;
     const double edge2 = Dot(edge, edge);
-    const auto cut = [&](Stretch& stretch, const Vec3& apex, double sign) noexcept {
-      const Vec3 in = apex - p, inward = in - (Dot(in, edge) / edge2) * edge;
-      stretch.CutAbove(sign * Dot(a, inward), sign * Dot(along_, inward));
-    };
     // Above the edge's own length, and beyond both of its triangles.
-    Stretch beside{0.0, 1.0};
-    beside.CutAbove(-Dot(a, edge), -Dot(along_, edge));
-    beside.CutAbove(Dot(a, edge) - edge2, Dot(along_, edge));
-    Stretch outside = beside;
-    cut(outside, t.p[m], 1.0);
-    if (other != nullptr) cut(outside, other_apex, 1.0);
+    Stretch outside{0.0, 1.0};
+    outside.CutAbove(-Dot(a, edge), -Dot(along_, edge));
+    outside.CutAbove(Dot(a, edge) - edge2, Dot(along_, edge));
+    const auto cut = [&](const Vec3& apex) noexcept {
+      const Vec3 in = apex - p, inward = in - (Dot(in, edge) / edge2) * edge;
+      outside.CutAbove(Dot(a, inward), Dot(along_, inward));
+    };
+    cut(t.p[m]);
+    if (other != nullptr) cut(other_apex);
     const Crossing c = CrossingOf(from_, along_, p, edge);
     const double nearest = c.parallel ? 0.5 * (outside.low + outside.high) : c.s;
     const auto at_edge = [&](double share) noexcept {

@@ -138,9 +138,9 @@ SurfacePlace PlaceOf(const NearTriangle& t, const Vec3& p, bool inside) noexcept
   const Vec3 away = p - t.nearest.at, normal = NormalOf(t.triangle);
   const double sign = inside ? -1.0 : 1.0;
   if (t.distance_m <= kCoincidentM) return {t.nearest.at, normal, sign * t.distance_m};
-  const Vec3 aside = away - Dot(away, normal) * normal;
+  const double height = Dot(away, normal);
+  const Vec3 aside = away - height * normal;
   if (Norm(aside) <= kAbovePlane * t.distance_m) {
-    const double height = Dot(away, normal);
     const Vec3 n = (height < 0.0 ? -sign : sign) * normal;
     return {t.nearest.at + aside, n, sign * Abs(height)};
   }
