@@ -150,7 +150,8 @@ std::string Collisions(const ModelDef& def) {
       table.Add({def.bodies[a].name + " - " + def.bodies[b].name, fmt::format("{}", count)});
     }
   }
-  const int terrain = static_cast<int>(def.planes.size() + def.terrain_boxes.size());
+  const int terrain = static_cast<int>(def.planes.size() + def.terrain_boxes.size() +
+                                       def.height_fields.size() + def.terrain_meshes.size());
   std::string text = fmt::format("May collide: {} of bodies, {} of shapes; with ",
                                  Counted(pairs, "pair"), Counted(shape_pairs, "pair"));
   text += terrain == 0 ? "terrain, which is the experiment's\n"

@@ -29,6 +29,8 @@ bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
   floating.gravity_m_per_s2 = {};
   floating.planes.clear();
   floating.terrain_boxes.clear();
+  floating.height_fields.clear();
+  floating.terrain_meshes.clear();
   const auto model = Model::Compile(floating, out);
   if (!model) return false;
   Batch alone(model, {});

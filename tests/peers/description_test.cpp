@@ -83,6 +83,12 @@ TEST(Peers, SayWhatTheyDoNotKnow) {
   other.terrain_boxes.emplace_back();
   EXPECT_EQ(Unsupported(other), "terrain boxes");
   other = def;
+  other.height_fields.emplace_back();
+  EXPECT_EQ(Unsupported(other), "height fields and meshes");
+  other = def;
+  other.terrain_meshes.emplace_back();
+  EXPECT_EQ(Unsupported(other), "height fields and meshes");
+  other = def;
   other.bodies[1].fixed = true;
   EXPECT_EQ(Unsupported(other), "the fixed body " + def.bodies[1].name);
   other = def;

@@ -64,6 +64,24 @@ TEST_F(SettledStartTest, ARobotThatHoldsItsShapeIsNotWarnedOf) {
   EXPECT_NEAR(settled->change.described_max_tension_n, 20, 1e-9);
 }
 
+TEST_F(SettledStartTest, FloatingItTouchesNoGroundOfAnyKind) {
+  ExperimentSpec experiment = Load("stands.yaml", {});
+  experiment.start = StartKind::kSettledFloating;
+  experiment.robot.def.planes.clear();
+  Diagnostics out;
+  const auto free = FindSettledStart(experiment, out);
+  HeightFieldDef field;  // 4 mm above the underside of its lower ends
+  field.columns = field.rows = 2;
+  field.cell_m = 4;
+  field.height_m = {0.004, 0.004, 0.004, 0.004};
+  experiment.robot.def.height_fields.push_back(field);
+  const auto in_ground = FindSettledStart(experiment, out);
+  ASSERT_TRUE(free && in_ground) << out.Format();
+  for (std::size_t b = 0; b < free->pose.bodies.size(); ++b) {
+    EXPECT_EQ(free->pose.bodies[b].position_m.z, in_ground->pose.bodies[b].position_m.z) << b;
+  }
+}
+
 TEST_F(SettledStartTest, AHeapIsWarnedOfWithNamesAndNumbers) {
   Diagnostics out;
   const auto settled = Settle({{"turn_rad", "-0.6"}, {"side_n", "2"}}, out);
