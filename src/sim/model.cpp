@@ -235,8 +235,8 @@ class Compiler {
     });
   }
 
-  /// Ground is a partner of its own for every body: how far one is from it says nothing about
-  /// boxes.
+  /// Ground is a partner of its own for every shape: that a body's lowest rod lies on it is no
+  /// reason to look where its other rods are.
   void Ground(const ShapeRef& ref, sim::Surface surface, const Material& material) {
     t_.surfaces.push_back(std::move(surface));
     sim::ShapeTable s;
@@ -320,9 +320,11 @@ class Compiler {
         if (!Moves(b)) AddPair(a, b, id);
       }
       for (const std::size_t ground : ground_) {
-        BeginPair(a, t_.body_count);
-        for (const std::size_t i : shapes_of_[static_cast<std::size_t>(a)]) Meet(i, ground, id);
-        EndPair();
+        for (const std::size_t i : shapes_of_[static_cast<std::size_t>(a)]) {
+          BeginPair(a, t_.body_count);
+          Meet(i, ground, id);
+          t_.body_pairs.back().on_ground = true;
+        }
       }
     }
     t_.world_pair_count = static_cast<int>(t_.body_pairs.size());

@@ -62,9 +62,7 @@ void LayOutTree(Tables& t) {
   t.tree_shapes = static_cast<int>(leaves.size());
   Append(leaves.data(), leaves.data() + leaves.size(), t.tree);
   for (BodyPairTable& pair : t.body_pairs) {
-    const auto first =
-        static_cast<std::size_t>(t.shape_pairs[static_cast<std::size_t>(pair.first_pair)].b);
-    pair.by_tree = pair.b == t.body_count && t.shapes[first].shape_P.kind != ShapeKind::kSurface;
+    pair.by_tree = pair.b == t.body_count && !pair.on_ground;
     TAUT_ASSERT(!pair.by_tree || pair.pair_count % t.tree_shapes == 0);
   }
 }

@@ -47,13 +47,24 @@ class Finder {
       : t_(tables), poses_(std::move(poses)) {}
 
   std::vector<Overlap> Run() {
-    for (const sim::BodyPairTable& pair : t_.body_pairs) {
-      Begin(pair.a, pair.b == t_.body_count ? kWorld : pair.b);
+    const auto other = [&](const sim::BodyPairTable& pair) {
+      return t_.shape_pairs[static_cast<std::size_t>(pair.first_pair)].b;
+    };
+    for (std::size_t k = 0; k < t_.body_pairs.size(); ++k) {
+      const sim::BodyPairTable& pair = t_.body_pairs[k];
+      // All shapes of a body on one ground come one after the other.
+      const bool goes_on = k > 0 && pair.on_ground && t_.body_pairs[k - 1].on_ground &&
+                           t_.body_pairs[k - 1].a == pair.a &&
+                           other(t_.body_pairs[k - 1]) == other(pair);
+      if (!goes_on) {
+        End();
+        Begin(pair.a, pair.b == t_.body_count ? kWorld : pair.b);
+      }
       for (int i = pair.first_pair; i < pair.first_pair + pair.pair_count; ++i) {
         Look(t_.shape_pairs[static_cast<std::size_t>(i)]);
       }
-      End();
     }
+    End();
     std::vector<std::vector<std::size_t>> shapes_of(poses_.size());
     for (std::size_t i = 0; i < t_.shapes.size(); ++i) {
       shapes_of[static_cast<std::size_t>(t_.shapes[i].body)].push_back(i);

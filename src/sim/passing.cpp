@@ -81,7 +81,8 @@ int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint3
   bool meet = true;
   // No point comes nearer than the distance in the time that the fastest takes for it.
   for (int look = 0; look < kMaxLooks; ++look) {
-    const double distance = DistanceOfShapes(*a.shape, PoseAfter(a, t), *b.shape, PoseAfter(b, t));
+    const double distance = DistanceOfShapes(*a.shape, PoseAfter(a, t), *b.shape, PoseAfter(b, t),
+                                             speed * (step_s - t) + near_m);
     if (distance < near_m) break;
     t += distance / speed;
     meet = t < step_s;

@@ -56,25 +56,21 @@ inline int Touch(const SurfaceShape&, const SurfaceShape&, double, TouchPoint*) 
 double Distance(const RoundShape& a, const RoundShape& b) noexcept;
 double Distance(const RoundShape& a, const BoxShape& b) noexcept;
 double Distance(const BoxShape& a, const BoxShape& b) noexcept;
-/// Exact where they are near.
-double Distance(const RoundShape& a, const SurfaceShape& b) noexcept;
 inline double Distance(const BoxShape&, const SurfaceShape&) noexcept { return 1e300; }
 inline double Distance(const SurfaceShape&, const SurfaceShape&) noexcept { return 1e300; }
 
-/// The same in a time that does not depend on what is near: for who looks where they are only to
-/// know when to look again.
+/// The same for who knows that `enough_m` is far enough: what is near ground looks no further.
 template <class A, class B>
-double Bound(const A& a, const B& b) noexcept {
+double DistanceUpTo(const A& a, const B& b, double) noexcept {
   return Distance(a, b);
 }
-double Bound(const RoundShape& a, const SurfaceShape& b) noexcept;
+/// Exact where they are near.
+double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m) noexcept;
 
 /// The same for shapes of any two kinds, in either order, each given in a frame of its own.
 int TouchShapes(const Shape& a, const ShapePose& at_a, const Shape& b, const ShapePose& at_b,
                 double margin_m, TouchPoint* out) noexcept;
 double DistanceOfShapes(const Shape& a, const ShapePose& at_a, const Shape& b,
-                        const ShapePose& at_b) noexcept;
-double BoundOfShapes(const Shape& a, const ShapePose& at_a, const Shape& b,
-                     const ShapePose& at_b) noexcept;
+                        const ShapePose& at_b, double enough_m = 1e300) noexcept;
 
 }  // namespace taut::sim

@@ -13,25 +13,6 @@ static_assert(kPlacesBetween <= kStretches);
 /// come as far.
 constexpr double kLooks[] = {4.0, 1.0, 0.25, 0.0625};
 
-struct Reach {
-  Vec3 low, high;
-};
-
-Reach ReachOf(const RoundShape& shape, double more_m) noexcept {
-  const double r = shape.radius_m + more_m;
-  const Vec3 a = Load(shape.from), b = Load(shape.to);
-  return {{Smaller(a.x, b.x) - r, Smaller(a.y, b.y) - r, Smaller(a.z, b.z) - r},
-          {Larger(a.x, b.x) + r, Larger(a.y, b.y) + r, Larger(a.z, b.z) + r}};
-}
-
-/// Whether a shape may come within a distance of a surface, by bounds only.
-bool MayBeNear(const SurfaceTable& s, const Reach& reach) noexcept {
-  if (reach.low.x > s.high.x || reach.low.y > s.high.y || reach.low.z > s.high.z) return false;
-  if (reach.high.x < s.low.x || reach.high.y < s.low.y) return false;
-  if (!s.is_field) return reach.high.z >= s.low.z;
-  return reach.low.z <= TopOver(s, reach.low, reach.high);
-}
-
 /// A point of a rod that its neighbours hold up is left out: a straight line between them does not
 /// reach it. In as many parts of the radius, and where all three look the same way.
 constexpr double kSameGap = 1e-6, kSameWay = 0.999;
@@ -71,13 +52,15 @@ bool Before(const Vec3& a, const Vec3& b) noexcept {
 int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept {
   const SurfaceTable& s = *b.table;
   TouchList list(out, margin_m);
-  if (!MayBeNear(s, ReachOf(a, margin_m))) return 0;
   const double r = a.radius_m, limit_m = r + Larger(margin_m, 0.0);
   const Vec3 from = Load(a.from), to = Load(a.to);
+  const LineReach line = ReachOfLine(s, from, to, limit_m);
+  if (line.low > line.high) return 0;
   Found all[2 * kPlacesOfEnd + kPlacesBetween];
   int count = 0;
   const bool ball = from.x == to.x && from.y == to.y && from.z == to.z;
   for (int end = 0; end < (ball ? 1 : 2); ++end) {
+    if (end == 0 ? line.low > 0.0 : line.high < 1.0) continue;
     SurfacePlace places[kPlacesOfEnd];
     const int ways = NearestPlaces(s, end == 0 ? from : to, limit_m, places, kPlacesOfEnd);
     for (int i = 1; i < ways; ++i) {
@@ -92,7 +75,7 @@ int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoin
   }
   if (!ball) {
     LinePlace between[kPlacesBetween];
-    const int places = NearestAlong(s, from, to, limit_m, r, between, kPlacesBetween);
+    const int places = NearestAlong(s, line, r, between, kPlacesBetween);
     bool taken[kStretches] = {};
     for (int i = 0; i < places; ++i) {
       int stretch = static_cast<int>(between[i].share * kStretches);
@@ -110,20 +93,18 @@ int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoin
   return list.count();
 }
 
-double Bound(const RoundShape& a, const SurfaceShape& b) noexcept {
-  const double size_m = Norm(Load(a.to) - Load(a.from)) + a.radius_m;
-  for (const double look : kLooks) {
-    if (!MayBeNear(*b.table, ReachOf(a, look * size_m))) return look * size_m;
-  }
-  return 0.0;
-}
-
-double Distance(const RoundShape& a, const SurfaceShape& b) noexcept {
-  const double bound_m = Bound(a, b);
-  if (bound_m > 0.0) return bound_m;
+double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m) noexcept {
+  const SurfaceTable& s = *b.table;
   const Vec3 from = Load(a.from), to = Load(a.to);
-  const double look_m = 0.0625 * (Norm(to - from) + a.radius_m);
-  return Larger(DistanceOfLine(*b.table, from, to, look_m + a.radius_m) - a.radius_m, 0.0);
+  const double size_m = Norm(to - from) + a.radius_m;
+  double look_m = enough_m;
+  for (const double look : kLooks) {
+    if (look * size_m >= enough_m) continue;
+    look_m = look * size_m;
+    const LineReach line = ReachOfLine(s, from, to, look_m + a.radius_m);
+    if (line.low > line.high) return look_m;
+  }
+  return Larger(DistanceOfLine(s, from, to, look_m + a.radius_m) - a.radius_m, 0.0);
 }
 
 }  // namespace taut::sim

@@ -36,16 +36,9 @@ int TouchShapes(const Shape& a, const ShapePose& at_a, const Shape& b, const Sha
 }
 
 double DistanceOfShapes(const Shape& a, const ShapePose& at_a, const Shape& b,
-                        const ShapePose& at_b) noexcept {
-  return WithPair(a, at_a, b, at_b, [](const auto& first, const auto& second, bool) noexcept {
-    return Distance(first, second);
-  });
-}
-
-double BoundOfShapes(const Shape& a, const ShapePose& at_a, const Shape& b,
-                     const ShapePose& at_b) noexcept {
-  return WithPair(a, at_a, b, at_b, [](const auto& first, const auto& second, bool) noexcept {
-    return Bound(first, second);
+                        const ShapePose& at_b, double enough_m) noexcept {
+  return WithPair(a, at_a, b, at_b, [&](const auto& first, const auto& second, bool) noexcept {
+    return DistanceUpTo(first, second, enough_m);
   });
 }
 

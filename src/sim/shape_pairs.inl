@@ -78,8 +78,8 @@ template <class W>
 double DistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
                     const ShapePairTable& pair, int lane) noexcept {
   const ShapeTable &a = m.shapes[pair.a], &b = m.shapes[pair.b];
-  return BoundOfShapes(a.shape_P, LanePose(m, s, work, a.body, lane), b.shape_P,
-                       LanePose(m, s, work, b.body, lane));
+  return DistanceOfShapes(a.shape_P, LanePose(m, s, work, a.body, lane), b.shape_P,
+                          LanePose(m, s, work, b.body, lane));
 }
 
 }  // namespace taut::sim

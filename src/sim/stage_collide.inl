@@ -200,9 +200,9 @@ Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
 }
 
 /// The points of one pair of shapes in one lane, in the order of their features: into the slots of
-/// a body if the other does not move, else into the lists of touches.
+/// a body if the other does not move, else into the lists of touches. False if none is near.
 template <class W>
-void PutTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+bool PutTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                 const ShapePairTable& pair, int lane, double margin, double step_s,
                 SlotFiller<W>* slots, uint32_t* overflow) noexcept {
   const int body = m.shapes[pair.a].body;
@@ -224,6 +224,7 @@ void PutTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& wor
       if (!room) *overflow |= 1u << lane;
     }
   }
+  return found > 0;
 }
 
 /// The same for all lanes in which the bounding spheres meet.
@@ -277,10 +278,31 @@ void CollideManyShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<
                        double step_s, W since_last, SlotFiller<W>* slots,
                        uint32_t* overflow) noexcept;
 
+/// Of a shape and ground, each lane by itself: what touches is looked at in each step, all else
+/// when it may have come as near.
+template <class W>
+void CollideGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
+                   double step_s, W since_last, SlotFiller<W>* slots, uint32_t* overflow) noexcept {
+  W margin;
+  const auto near = ClearanceUsedUp(m, s, work, pair, W::Splat(step_s), since_last, margin);
+  if (!Any(near)) return;
+  const ShapePairTable& shapes = m.shape_pairs[m.body_pairs[pair].first_pair];
+  for (int lane = 0; lane < W::kLanes; ++lane) {
+    if (!near[lane]) continue;
+    const bool touches =
+        PutTouches(m, s, g, work, shapes, lane, margin[lane], step_s, slots, overflow);
+    s.clearance[pair].Set(lane, touches ? 0.0 : DistanceLane(m, s, work, shapes, lane));
+  }
+}
+
 template <class W>
 void CollideBodies(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
                    double step_s, W since_last, SlotFiller<W>* slots, uint32_t* overflow) noexcept {
   const BodyPairTable& bodies = m.body_pairs[pair];
+  if (bodies.on_ground) {
+    CollideGround(m, s, g, work, pair, step_s, since_last, slots, overflow);
+    return;
+  }
   if (bodies.by_tree) {
     CollideManyShapes(m, s, g, work, pair, step_s, since_last, slots, overflow);
     return;

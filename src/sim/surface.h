@@ -10,6 +10,25 @@ namespace taut::sim {
 
 inline constexpr int kMaxTopLevels = 32;
 
+/// What belongs to corner (i, j) of a field: the cell between it and (i + 1, j + 1), two of that
+/// cell's sides, and the corner itself.
+enum FieldMark : unsigned char {
+  kRising = 1,       ///< The cell's diagonal is that of (i, j).
+  kSharpAlongX = 2,  ///< The edge to (i + 1, j) sticks out: a rod may touch it with its flank.
+  kSharpAlongY = 4,  ///< That to (i, j + 1).
+  kSharpDiagonal = 8,
+  kSharpCorner = 16,
+};
+
+/// An edge of a mesh, and the third corners of its triangles: beside[first], ...
+struct MeshEdge {
+  int from, to, first, count;
+};
+/// A corner of a mesh, and the other ends of its edges.
+struct MeshCorner {
+  int corner, first, count;
+};
+
 struct SurfaceTable {
   bool is_field = false;  ///< Else a mesh.
   bool solid = false;     ///< There is an inside; of a field what is below it.
@@ -18,8 +37,8 @@ struct SurfaceTable {
   // A field: corner (i, j) is at low + (i, j) cells; columns along x, rows along y.
   int columns = 0, rows = 0;
   double cell_m = 0, inv_cell = 0;
-  const double* height_m = nullptr;       ///< In W, row by row.
-  const unsigned char* rising = nullptr;  ///< Per cell: whether the diagonal is that of (i, j).
+  const double* height_m = nullptr;      ///< In W, row by row.
+  const unsigned char* marks = nullptr;  ///< Per corner (i, j): `FieldMark`s.
   int levels = 0;
   const double* tops[kMaxTopLevels] = {};  ///< Greatest height of 2^level by 2^level cells [m].
 
@@ -30,6 +49,12 @@ struct SurfaceTable {
   double bucket_m = 0, inv_bucket = 0;
   const int* first_in_bucket = nullptr;
   const int* in_bucket = nullptr;  ///< Triangles, rising.
+  // Its edges and corners that stick out, each with one of its triangles: those of triangle k from
+  // first_edge[k] on, from first_corner[k] on.
+  const int *first_edge = nullptr, *first_corner = nullptr;
+  const MeshEdge* edges = nullptr;
+  const MeshCorner* sharp_corners = nullptr;
+  const int* beside = nullptr;  ///< Corners beside those.
 };
 
 /// A triangle of a surface.
@@ -73,7 +98,7 @@ void EachOfField(const SurfaceTable& s, const Vec3& low, const Vec3& high,
       const double y0 = s.low.y + j * s.cell_m, y1 = s.low.y + (j + 1) * s.cell_m;
       const Vec3 a{x0, y0, z00}, b{x1, y0, z10}, c{x1, y1, z11}, d{x0, y1, z01};
       const int na = at, nb = at + 1, nc = at + s.columns + 1, nd = at + s.columns;
-      if (s.rising[j * (s.columns - 1) + i] != 0) {
+      if ((s.marks[at] & kRising) != 0) {
         use(SurfaceTriangle{{a, b, c}, {na, nb, nc}});
         use(SurfaceTriangle{{a, c, d}, {na, nc, nd}});
       } else {
@@ -93,6 +118,7 @@ inline double Most(double a, double b, double c) noexcept {
   return ab > c ? ab : c;
 }
 
+/// `use` with the numbers of triangles.
 template <class Use>
 void EachOfMesh(const SurfaceTable& s, const Vec3& low, const Vec3& high, const Use& use) noexcept {
   const double from[3] = {low.x - s.low.x, low.y - s.low.y, low.z - s.low.z};
@@ -123,7 +149,7 @@ void EachOfMesh(const SurfaceTable& s, const Vec3& low, const Vec3& high, const 
               z != (bz > first[2] ? bz : first[2])) {
             continue;
           }
-          use(SurfaceTriangle{{a, b, c}, {v[0], v[1], v[2]}});
+          use(s.in_bucket[k]);
         }
       }
     }
@@ -141,7 +167,10 @@ void EachTriangle(const SurfaceTable& s, const Vec3& low, const Vec3& high,
   if (s.is_field) {
     detail::EachOfField(s, low, high, use);
   } else {
-    detail::EachOfMesh(s, low, high, use);
+    detail::EachOfMesh(s, low, high, [&](int triangle) noexcept {
+      const int* const v = s.triangles + 3 * triangle;
+      use(SurfaceTriangle{{s.corners[v[0]], s.corners[v[1]], s.corners[v[2]]}, {v[0], v[1], v[2]}});
+    });
   }
 }
 

@@ -44,14 +44,17 @@ Surface::Surface(const HeightFieldDef& field) : height_m_(field.height_m) {
   t.high = {t.low.x + columns * field.cell_m, t.low.y + rows * field.cell_m, *most};
   t.height_m = height_m_.data();
   std::vector<double> top;
+  marks_.assign(height_m_.size(), 0);
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
-      rising_.push_back(Rises(field, i, j) ? 1 : 0);
-      const double* const z = t.height_m + j * field.columns + i;
+      const int at = j * field.columns + i;
+      if (Rises(field, i, j)) marks_[static_cast<std::size_t>(at)] = kRising;
+      const double* const z = t.height_m + at;
       top.push_back(std::max({z[0], z[1], z[field.columns], z[field.columns + 1]}));
     }
   }
-  t.rising = rising_.data();
+  t.marks = marks_.data();
+  MarkField();
   tops_.push_back(std::move(top));
   for (int width = columns, height = rows; width > 1 || height > 1;) {
     const int w = (width + 1) / 2, h = (height + 1) / 2;
@@ -129,6 +132,7 @@ Surface::Surface(const TerrainMeshDef& mesh) : corners_(mesh.corners_m) {
   });
   t.first_in_bucket = first_in_bucket_.data();
   t.in_bucket = in_bucket_.data();
+  FindSharp();
 }
 
 }  // namespace taut::sim

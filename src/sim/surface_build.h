@@ -18,12 +18,19 @@ class Surface {
   const SurfaceTable& table() const { return *table_; }
 
  private:
+  // What sticks out (surface_sharp.cpp).
+  void MarkField();
+  void FindSharp();
+
   std::unique_ptr<SurfaceTable> table_ = std::make_unique<SurfaceTable>();
   std::vector<double> height_m_;
-  std::vector<unsigned char> rising_;
+  std::vector<unsigned char> marks_;
   std::vector<std::vector<double>> tops_;
   std::vector<Vec3> corners_;
   std::vector<int> triangles_, first_in_bucket_, in_bucket_;
+  std::vector<int> first_edge_, first_corner_, beside_;
+  std::vector<MeshEdge> edges_;
+  std::vector<MeshCorner> sharp_corners_;
 };
 
 }  // namespace taut::sim

@@ -1,6 +1,7 @@
 // Straight lines beside a surface: where edges and corners that stick out touch the flank of a rod.
 #include "math/scalar.h"
 #include "sim/surface_near.h"
+#include "sim/surface_sharp.h"
 #include "sim/touch_list.h"
 
 namespace taut::sim {
@@ -8,7 +9,8 @@ namespace {
 
 /// A stretch of a line shorter than this share of the radius has no contact of its own.
 constexpr double kShortStretch = 1e-6;
-constexpr int kMaxNear = 64, kMaxPieces = 4096;
+/// Nor has one along which the rod is parallel to it, as the square of a sine.
+constexpr double kParallel = 1e-24;
 
 /// Two straight lines, where they are nearest.
 struct Crossing {
@@ -19,24 +21,9 @@ struct Crossing {
 Crossing CrossingOf(const Vec3& a, const Vec3& u, const Vec3& b, const Vec3& v) noexcept {
   const Vec3 c = Cross(u, v), ab = b - a;
   const double c2 = Dot(c, c);
-  if (!(c2 > 1e-24 * Dot(u, u) * Dot(v, v))) return {};
+  if (!(c2 > kParallel * Dot(u, u) * Dot(v, v))) return {};
   return {Dot(Cross(ab, v), c) / c2, Dot(Cross(ab, u), c) / c2, false};
 }
-
-/// Where along a line something holds, as shares.
-struct Stretch {
-  double low, high;
-  /// Keeps where `at + share * slope` is not above 0.
-  void CutAbove(double at, double slope) noexcept {
-    if (slope > 0.0) {
-      high = Smaller(high, -at / slope);
-    } else if (slope < 0.0) {
-      low = Larger(low, -at / slope);
-    } else if (at > 0.0) {
-      high = low - 1.0;
-    }
-  }
-};
 
 double DistanceOfLines(const Vec3& a, const Vec3& u, const Vec3& b, const Vec3& v) noexcept {
   const double u2 = Dot(u, u), v2 = Dot(v, v);
@@ -93,136 +80,81 @@ bool IsClear(const SurfaceTriangle& t, const Vec3& from, const Vec3& to, double 
   return least * least > limit_m * limit_m * Dot(n, n);
 }
 
-/// `use` with every triangle near a line, piece by piece of the line, and which piece it is.
-template <class Use>
-void EachNearLine(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
-                  const Use& use) noexcept {
-  const double length = Norm(to - from);
-  const double piece_m = Larger(s.is_field ? s.cell_m : s.bucket_m, limit_m);
-  const int pieces = CellAt(length / piece_m, kMaxPieces) + 1;
-  const Vec3 reach{limit_m, limit_m, limit_m};
-  for (int k = 0; k < pieces; ++k) {
-    const double low = static_cast<double>(k) / pieces, high = (k + 1.0) / pieces;
-    const Vec3 a = from + low * (to - from), b = from + high * (to - from);
-    const Vec3 least{Smaller(a.x, b.x), Smaller(a.y, b.y), Smaller(a.z, b.z)};
-    const Vec3 most{Larger(a.x, b.x), Larger(a.y, b.y), Larger(a.z, b.z)};
-    use(least - reach, most + reach, Stretch{low, high}, a, b);
-  }
-}
-
-/// The triangles beside one piece of a line.
-struct Beside {
-  SurfaceTriangle all[kMaxNear];
-  int count = 0;
-};
-
 /// A line between edges and corners, and what it found.
 class LineSearch {
  public:
-  LineSearch(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
-             double radius_m, LinePlace* out, int most) noexcept
+  LineSearch(const SurfaceTable& s, const LineReach& line, double radius_m, LinePlace* out,
+             int most) noexcept
       : s_(s),
-        from_(from),
-        along_(to - from),
-        length_m_(Norm(along_)),
-        limit_m_(limit_m),
-        short_(kShortStretch * radius_m / length_m_),
-        apart_(1e-3 * radius_m / length_m_),
+        from_(line.from),
+        along_(line.along),
+        along2_(Dot(along_, along_)),
+        limit_m_(line.limit_m),
+        short_(kShortStretch * radius_m / Sqrt(along2_)),
+        apart_(1e-3 * radius_m / Sqrt(along2_)),
         out_(out),
         most_(most) {}
 
-  void Look(const Beside& near, const Stretch& piece) noexcept {
-    piece_ = piece;
-    for (int i = 0; i < near.count; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        Edge(near, i, k);
-        Corner(near, i, k);
-      }
+  void Edge(const LineStretch& piece, const SurfaceEdge& e) noexcept {
+    const Vec3 edge = e.to - e.from, a = from_ - e.from, c = Cross(along_, edge);
+    const double edge2 = Dot(edge, edge), c2 = Dot(c, c), apart = Dot(a, c);
+    if (!(c2 > kParallel * along2_ * edge2)) return;
+    if (apart * apart > limit_m_ * limit_m_ * c2) return;  // the nearest of the two straight lines
+    // Above the edge's own length, and beyond all of its triangles.
+    LineStretch outside{0.0, 1.0};
+    const double from_edge = Dot(a, edge), along_edge = Dot(along_, edge);
+    outside.CutAbove(-from_edge, -along_edge);
+    outside.CutAbove(from_edge - edge2, along_edge);
+    for (int k = 0; k < e.sides; ++k) {
+      const Vec3 in = e.apex[k] - e.from, inward = in - (Dot(in, edge) / edge2) * edge;
+      outside.CutAbove(Dot(a, inward), Dot(along_, inward));
+    }
+    const double crossing = -Dot(Cross(a, edge), c) / c2;
+    const auto at_edge = [&](double share) noexcept {
+      return e.from + Clamp((from_edge + share * along_edge) / edge2, 0.0, 1.0) * edge;
+    };
+    if (outside.high - outside.low > short_) {
+      const double share = Clamp(crossing, outside.low, outside.high);
+      Take(piece, share, at_edge(share), false);
+      return;
+    }
+    // Under a ridge: the line has gone through it, and leaves across it.
+    if (!s_.solid || e.sides != 2) return;
+    const double beside = from_edge + crossing * along_edge;
+    if (!(beside > 0.0 && beside < edge2)) return;
+    const Vec3 under = a + crossing * along_;
+    const auto inside = [&](int side, int other) noexcept {
+      Vec3 n = Cross(edge, e.apex[side] - e.from);
+      if (Dot(n, e.apex[other] - e.from) > 0.0) n = -1.0 * n;  // out of what sticks out
+      return Dot(n, under) < 0.0;
+    };
+    if (inside(0, 1) && inside(1, 0) && IsUnder(under + e.from)) {
+      Take(piece, crossing, at_edge(crossing), true);
+    }
+  }
+
+  template <class EachBeside>
+  void Corner(const LineStretch& piece, const Vec3& p, const EachBeside& each_beside) noexcept {
+    const Vec3 a = from_ - p;
+    const double nearest = -Dot(a, along_) / along2_;
+    const Vec3 apart = a + nearest * along_;
+    if (Dot(apart, apart) > limit_m_ * limit_m_) return;
+    LineStretch outside{0.0, 1.0};
+    each_beside([&](const Vec3& other) noexcept {
+      outside.CutAbove(Dot(a, other - p), Dot(along_, other - p));
+    });
+    if (outside.high - outside.low > short_) {
+      Take(piece, Clamp(nearest, outside.low, outside.high), p, false);
     }
   }
   int count() const noexcept { return count_; }
 
  private:
-  /// The edge from corner k of triangle i to the next one: once of the two triangles that share it.
-  void Edge(const Beside& near, int i, int k) noexcept {
-    const SurfaceTriangle& t = near.all[i];
-    const int l = k == 2 ? 0 : k + 1, m = 3 - k - l;
-    const Vec3 &p = t.p[k], edge = t.p[l] - p;
-    const SurfaceTriangle* other = nullptr;
-    Vec3 other_apex;
-    for (int j = 0; j < near.count; ++j) {
-      if (j == i) continue;
-      const SurfaceTriangle& u = near.all[j];
-      for (int n = 0; n < 3; ++n) {
-        const int o = n == 2 ? 0 : n + 1;
-        const bool same = (u.corner[n] == t.corner[l] && u.corner[o] == t.corner[k]) ||
-                          (u.corner[n] == t.corner[k] && u.corner[o] == t.corner[l]);
-        if (!same) continue;
-        if (j < i) return;
-        other = &u, other_apex = u.p[3 - n - o];
-      }
-    }
-    const Vec3 a = from_ - p;
-    const double edge2 = Dot(edge, edge);
-    // Above the edge's own length, and beyond both of its triangles.
-    Stretch outside{0.0, 1.0};
-    outside.CutAbove(-Dot(a, edge), -Dot(along_, edge));
-    outside.CutAbove(Dot(a, edge) - edge2, Dot(along_, edge));
-    const auto cut = [&](const Vec3& apex) noexcept {
-      const Vec3 in = apex - p, inward = in - (Dot(in, edge) / edge2) * edge;
-      outside.CutAbove(Dot(a, inward), Dot(along_, inward));
-    };
-    cut(t.p[m]);
-    if (other != nullptr) cut(other_apex);
-    const Crossing c = CrossingOf(from_, along_, p, edge);
-    const double nearest = c.parallel ? 0.5 * (outside.low + outside.high) : c.s;
-    const auto at_edge = [&](double share) noexcept {
-      const Vec3 point = from_ + share * along_;
-      return p + Clamp(Dot(point - p, edge) / edge2, 0.0, 1.0) * edge;
-    };
-    if (!c.parallel && outside.high - outside.low > short_) {
-      const double share = Clamp(nearest, outside.low, outside.high);
-      Take(share, at_edge(share), false);
-      return;
-    }
-    // Under a ridge: the line has gone through it, and leaves across it.
-    if (!s_.solid || c.parallel || other == nullptr || !(c.t > 0.0 && c.t < 1.0)) return;
-    const Vec3 n = Cross(t.p[1] - t.p[0], t.p[2] - t.p[0]);
-    const Vec3 m_other = Cross(other->p[1] - other->p[0], other->p[2] - other->p[0]);
-    const Vec3 under = from_ + c.s * along_ - p;
-    const bool sticks_out = Dot(n, other_apex - p) < 0.0;
-    if (sticks_out && Dot(n, under) < 0.0 && Dot(m_other, under) < 0.0 && IsUnder(under + p)) {
-      Take(c.s, at_edge(c.s), true);
-    }
-  }
-
   /// Of a field it can be told; of a mesh both triangles have said so.
   bool IsUnder(const Vec3& p) const noexcept { return !s_.is_field || DepthBelow(s_, p) > 0.0; }
 
-  void Corner(const Beside& near, int i, int k) noexcept {
-    const SurfaceTriangle& t = near.all[i];
-    const int corner = t.corner[k];
-    const Vec3 &p = t.p[k], a = from_ - p;
-    Stretch outside{0.0, 1.0};
-    for (int j = 0; j < near.count; ++j) {
-      const SurfaceTriangle& u = near.all[j];
-      for (int n = 0; n < 3; ++n) {
-        if (u.corner[n] != corner) continue;
-        if (j < i) return;  // looked at
-        for (int o = 0; o < 3; ++o) {
-          if (o == n) continue;
-          const Vec3 edge = u.p[o] - p;
-          outside.CutAbove(Dot(a, edge), Dot(along_, edge));
-        }
-      }
-    }
-    if (outside.high - outside.low > short_) {
-      Take(Clamp(-Dot(a, along_) / Dot(along_, along_), outside.low, outside.high), p, false);
-    }
-  }
-
-  void Take(double share, const Vec3& at, bool inside) noexcept {
-    if (!(share >= piece_.low && share < piece_.high)) return;
+  void Take(const LineStretch& piece, double share, const Vec3& at, bool inside) noexcept {
+    if (!(share >= piece.low && share < piece.high)) return;
     if (share <= apart_ || share >= 1.0 - apart_) return;  // the ends have it
     const Vec3 away = from_ + share * along_ - at;
     const double distance = Norm(away);
@@ -251,41 +183,57 @@ class LineSearch {
 
   const SurfaceTable& s_;
   Vec3 from_, along_;
-  double length_m_, limit_m_, short_, apart_;
+  double along2_, limit_m_, short_, apart_;
   LinePlace* out_;
   int most_, count_ = 0;
-  Stretch piece_{0.0, 1.0};
 };
 
 }  // namespace
 
-int NearestAlong(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
-                 double radius_m, LinePlace* out, int most) noexcept {
-  LineSearch search(s, from, to, limit_m, radius_m, out, most);
-  EachNearLine(s, from, to, limit_m,
-               [&](const Vec3& low, const Vec3& high, const Stretch& piece, const Vec3& a,
-                   const Vec3& b) noexcept {
-                 Beside near;
-                 EachTriangle(s, low, high, [&](const SurfaceTriangle& t) noexcept {
-                   if (near.count == kMaxNear || IsClear(t, a, b, limit_m)) return;
-                   if (!(DistanceOf(t, a, b) <= limit_m)) return;
-                   near.all[near.count++] = t;
-                 });
-                 if (near.count > 0) search.Look(near, piece);
-               });
+LineReach ReachOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,
+                      double limit_m) noexcept {
+  LineReach line{from, to - from, 0.0, 1.0, limit_m};
+  const Vec3 reach{limit_m, limit_m, limit_m};
+  // Each time that much is cut off, what is below the rest may be lower.
+  for (double before = 4.0; line.low <= line.high && line.high - line.low < 0.5 * before;) {
+    before = line.high - line.low;
+    const Vec3 a = line.At(line.low), b = line.At(line.high);
+    const Vec3 low = Vec3{Smaller(a.x, b.x), Smaller(a.y, b.y), Smaller(a.z, b.z)} - reach;
+    const Vec3 high = Vec3{Larger(a.x, b.x), Larger(a.y, b.y), Larger(a.z, b.z)} + reach;
+    const bool beside = low.x > s.high.x || low.y > s.high.y || high.x < s.low.x ||
+                        high.y < s.low.y || (!s.is_field && high.z < s.low.z);
+    LineStretch part{line.low, beside ? line.low - 1.0 : line.high};
+    const double top = s.is_field ? TopOver(s, low, high) : s.high.z;
+    if (!beside) part.CutAbove(from.z - limit_m - top, line.along.z);
+    line.low = part.low, line.high = part.high;
+  }
+  return line;
+}
+
+int NearestAlong(const SurfaceTable& s, const LineReach& line, double radius_m, LinePlace* out,
+                 int most) noexcept {
+  LineSearch search(s, line, radius_m, out, most);
+  if (line.low > line.high) return 0;
+  EachSharp(
+      s, line,
+      [&](const LineStretch& piece, const SurfaceEdge& edge) noexcept { search.Edge(piece, edge); },
+      [&](const LineStretch& piece, const Vec3& corner, const auto& each_beside) noexcept {
+        search.Corner(piece, corner, each_beside);
+      });
   return search.count();
 }
 
 double DistanceOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,
                       double limit_m) noexcept {
   double least = limit_m;
-  EachNearLine(s, from, to, limit_m,
-               [&](const Vec3& low, const Vec3& high, const Stretch&, const Vec3& a,
-                   const Vec3& b) noexcept {
-                 EachTriangle(s, low, high, [&](const SurfaceTriangle& t) noexcept {
-                   if (!IsClear(t, a, b, least)) least = Smaller(least, DistanceOf(t, a, b));
-                 });
-               });
+  const LineReach line = ReachOfLine(s, from, to, limit_m);
+  if (line.low > line.high) return least;
+  EachPiece(s, line, [&](const LineStretch& piece, const Vec3& low, const Vec3& high) noexcept {
+    const Vec3 a = line.At(piece.low), b = line.At(piece.high);
+    EachTriangle(s, low, high, [&](const SurfaceTriangle& t) noexcept {
+      if (!IsClear(t, a, b, least)) least = Smaller(least, DistanceOf(t, a, b));
+    });
+  });
   // Inside, the surface may be far.
   const Vec3* const ends[] = {&from, &to};
   for (const Vec3* const end : ends) {

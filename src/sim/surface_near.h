@@ -1,7 +1,7 @@
 /// Which places of a surface are nearest to a point or to a line.
 #pragma once
 
-#include "sim/surface.h"
+#include "sim/surface_sharp.h"
 
 namespace taut::sim {
 
@@ -24,10 +24,15 @@ struct LinePlace {
   SurfacePlace place;
 };
 
+/// A line, but for what the highest that is below says to be out of reach; `low` above `high` where
+/// all of it is.
+LineReach ReachOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,
+                      double limit_m) noexcept;
+
 /// The same for the inside of a line: edges and corners that stick out, each where it is nearest of
 /// all places of the line that it is the nearest to. In the order of `share`.
-int NearestAlong(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
-                 double radius_m, LinePlace* out, int most) noexcept;
+int NearestAlong(const SurfaceTable& s, const LineReach& line, double radius_m, LinePlace* out,
+                 int most) noexcept;
 
 /// The distance of a line, or `limit_m` if that is less. 0 if it is inside or passes through.
 double DistanceOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,

@@ -10,9 +10,10 @@ double HeightAt(const SurfaceTable& s, double x, double y) noexcept {
   const int j = CellAt((y - s.low.y) * s.inv_cell, s.rows - 1);
   const double u = Clamp((x - (s.low.x + i * s.cell_m)) * s.inv_cell, 0.0, 1.0);
   const double v = Clamp((y - (s.low.y + j * s.cell_m)) * s.inv_cell, 0.0, 1.0);
-  const double* const z = s.height_m + (j * s.columns + i);
+  const int at = j * s.columns + i;
+  const double* const z = s.height_m + at;
   const double z00 = z[0], z10 = z[1], z01 = z[s.columns], z11 = z[s.columns + 1];
-  if (s.rising[j * (s.columns - 1) + i] != 0) {
+  if ((s.marks[at] & kRising) != 0) {
     return u >= v ? z00 + u * (z10 - z00) + v * (z11 - z10)
                   : z00 + v * (z01 - z00) + u * (z11 - z01);
   }

@@ -89,11 +89,12 @@ struct ShapePairTable {
   double static_friction = 0, kinetic_friction = 0, restitution = 0;
 };
 
-/// Two bodies that may touch, with all pairs of their shapes.
+/// Two bodies that may touch, with all pairs of their shapes; or a shape of a body and ground.
 struct BodyPairTable {
   int a = 0, b = 0;  ///< b may be the world.
   int first_pair = 0, pair_count = 0;
-  bool by_tree = false;  ///< b is the world, whose shapes are looked up in its tree.
+  bool by_tree = false;    ///< b is the world, whose shapes are looked up in its tree.
+  bool on_ground = false;  ///< One pair, whose second shape is a surface.
 };
 
 /// So many shapes of the world are looked at one after the other; of more there is a tree.

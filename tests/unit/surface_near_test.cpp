@@ -217,21 +217,26 @@ TEST(NearestAlong, ARodAcrossARidgeTouchesItWhereTheyCross) {
   // A roof along y, 45 degrees.
   const Known roof(scenes::Field(3, 5, 1.0, {}, [](double x, double) { return -std::abs(x); }));
   LinePlace found[4];
-  const int count =
-      NearestAlong(roof.table(), {-0.5, 0.3, 0.05}, {0.5, 0.3, 0.05}, 0.06, 0.05, found, 4);
+  const int count = NearestAlong(
+      roof.table(), ReachOfLine(roof.table(), {-0.5, 0.3, 0.05}, {0.5, 0.3, 0.05}, 0.06), 0.05,
+      found, 4);
   ASSERT_EQ(count, 1);
   EXPECT_NEAR(found[0].share, 0.5, 1e-12);
   EXPECT_LT(Length(found[0].place.at - Vec3{0, 0.3, 0}), 1e-12);
   EXPECT_LT(Length(found[0].place.normal - Vec3{0, 0, 1}), 1e-12);
   EXPECT_NEAR(found[0].place.distance_m, 0.05, 1e-12);
   // A little under it, it is to leave the same way.
-  ASSERT_EQ(NearestAlong(roof.table(), {-0.5, 0.3, -0.01}, {0.5, 0.3, -0.01}, 0.06, 0.05, found, 4),
+  ASSERT_EQ(NearestAlong(roof.table(),
+                         ReachOfLine(roof.table(), {-0.5, 0.3, -0.01}, {0.5, 0.3, -0.01}, 0.06),
+                         0.05, found, 4),
             1);
   EXPECT_LT(Length(found[0].place.normal - Vec3{0, 0, 1}), 1e-12);
   EXPECT_NEAR(found[0].place.distance_m, -0.01, 1e-12);
   // In a valley only its ends touch.
   const Known valley(scenes::Field(3, 5, 1.0, {}, [](double x, double) { return std::abs(x); }));
-  EXPECT_EQ(NearestAlong(valley.table(), {-0.5, 0.3, 0.52}, {0.5, 0.3, 0.52}, 0.06, 0.05, found, 4),
+  EXPECT_EQ(NearestAlong(valley.table(),
+                         ReachOfLine(valley.table(), {-0.5, 0.3, 0.52}, {0.5, 0.3, 0.52}, 0.06),
+                         0.05, found, 4),
             0);
 }
 
@@ -246,7 +251,10 @@ TEST(NearestAlong, OnAPlaneOfTrianglesThereIsNothingBetweenTheEnds) {
       end.z = 0.3 * end.x - 0.2 * end.y + 0.02 * std::sqrt(1 + 0.13);
     }
     LinePlace found[4];
-    EXPECT_EQ(NearestAlong(flat.table(), ends[0], ends[1], 0.03, 0.02, found, 4), 0) << k;
+    EXPECT_EQ(NearestAlong(flat.table(), ReachOfLine(flat.table(), ends[0], ends[1], 0.03), 0.02,
+                           found, 4),
+              0)
+        << k;
   }
 }
 
@@ -274,7 +282,8 @@ TEST(NearestAlong, WhatIsFoundIsTheDistanceOfTheLineWhereItIsLeast) {
       if (at < 0.03 || at > 0.97 || least > 0.08) continue;
       ++between;
       LinePlace found[8];
-      const int count = NearestAlong(field.table(), a, b, 0.1, 0.01, found, 8);
+      const int count =
+          NearestAlong(field.table(), ReachOfLine(field.table(), a, b, 0.1), 0.01, found, 8);
       double nearest = kInf;
       for (int i = 0; i < count; ++i) nearest = std::min(nearest, found[i].place.distance_m);
       EXPECT_NEAR(nearest, least, step_m) << "seed " << seed << ", line " << k;
