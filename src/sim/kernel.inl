@@ -24,6 +24,7 @@
 #include "sim/follow_arcs.inl"
 #include "sim/solve/impacts.inl"
 #include "sim/solve/body_dual.inl"
+#include "sim/solve/packed_contacts.inl"
 #include "sim/solve/world_dual.inl"
 #include "sim/solve/world_dual_contacts.inl"
 #include "sim/solve/body_matrix.inl"

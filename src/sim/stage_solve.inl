@@ -96,6 +96,21 @@ void MarkUnsolved(const View& m, Scratch<W>& work, M alone) noexcept {
   }
 }
 
+/// Lanes whose worlds, if cables tie them, may be solved all at once. `touches`: of moving bodies.
+template <class W>
+MaskOf<W> MayGoToDual(const View& m, const Scratch<W>& work, W touches) noexcept {
+  const W zero = W::Splat(0.0);
+  if (work.dual.capacity == 0) return MaskOf<W>::Splat(false);
+  if (!m.has_ground) return touches == zero;
+  W contacts = zero;
+  for (int b = 0; b < m.body_count; ++b) {
+    for (int k = 0; k < work.contact_count[b]; ++k) {
+      contacts += work.contacts[m.first_slot[b] + k].live;
+    }
+  }
+  return (touches == zero) & !(contacts > W::Splat(work.dual.packed_capacity));
+}
+
 /// Bodies whose contacts with the world are islands.
 template <class W, class M>
 void SolveBodies(const View& m, Scratch<W>& work, Target target, M lanes,
@@ -286,14 +301,18 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
   for (int i = 0; i < work.stiff_count; ++i) cables += work.stiff[i].live;
   for (int lane = 0; lane < W::kLanes; ++lane) touches.Set(lane, work.touch_count[lane]);
   const auto cabled = busy & (cables > zero);
-  const auto dual = work.dual.capacity > 0 ? cabled & (touches == zero) : MaskOf<W>::Splat(false);
+  const auto dual = cabled & MayGoToDual(m, work, touches);
   MarkUnsolved(m, work, cabled & !dual);
   FitWorldBiases(m, work, cabled);
   FinishWorldBiases(m, s, work, cabled, step_s);
   SolveBodies(m, work, target, busy & !cabled, result);
   if (Any(dual)) {
+    const auto solve = [&](auto contacts) {
+      return WorldDual<W, decltype(contacts)>(m, s, work, contacts)
+          .Solve(target, dual, result.residual, result.linear_solves);
+    };
     const auto failed =
-        WorldDual<W>(m, s, work).Solve(target, dual, result.residual, result.linear_solves);
+        m.has_ground ? solve(PackedContacts<W>(m, work, dual)) : solve(ContactsInSlots<W>(m, work));
     for (int b = 0; b < m.body_count; ++b) {
       work.unsolved[b] = Select(failed, W::Splat(1.0), work.unsolved[b]);
     }

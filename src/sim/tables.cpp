@@ -29,6 +29,7 @@ View Tables::View() const noexcept {
           static_cast<int>(attachments.size()),
           static_cast<int>(spots.size()),
           along_slip,
+          !surfaces.empty(),
           static_cast<int>(motors.size()),
           static_cast<int>(supplies.size()),
           motors.data(),

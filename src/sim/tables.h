@@ -159,6 +159,7 @@ struct View {
   std::uint32_t first_pair_id;
   int pair_capacity, max_attachments, attachment_count, spot_count;
   bool along_slip;
+  bool has_ground;  ///< Height fields or meshes.
   int motor_count, supply_count;
   const MotorTable* motors;
   const SupplyTable* supplies;

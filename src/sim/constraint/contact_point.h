@@ -43,6 +43,20 @@ struct ContactPoint {
     return !Any(a.slides) || Any(a.s1 * b.s1 + a.s2 * b.s2 > Num::Splat(0.9999));
   }
 
+  /// All that another contact says but its links, as `pick(its, mine)` has it.
+  template <int kOther, class F>
+  TAUT_INLINE void TakeLaw(const ContactPoint<Num, kOther>& from, const F& pick) noexcept {
+    const auto take = [&pick](const Num& x, Num& mine) { mine = pick(x, mine); };
+    take(from.live, live);
+    take(from.wnn, wnn), take(from.wt, wt);
+    take(from.inv_wnn, inv_wnn), take(from.inv_wt, inv_wt);
+    take(from.w1n, w1n), take(from.w2n, w2n);
+    take(from.w11, w11), take(from.w12, w12), take(from.w22, w22);
+    take(from.mu, mu), take(from.restitution, restitution), take(from.before, before);
+    for (int r = 0; r < kRows; ++r) take(from.bias[r], bias[r]), take(from.l[r], l[r]);
+    one_direction = from.one_direction;
+  }
+
   /// Inverse effective masses from the links, whose directions are orthonormal.
   TAUT_INLINE void FinishMasses() noexcept {
     wnn = w1n = w2n = w11 = w12 = w22 = Num::Splat(0.0);

@@ -79,13 +79,17 @@ struct LaneMemory {
 template <class W>
 struct DualMemory {
   static constexpr int kMaxRows = 96, kMaxRowsPerBody = 12;
+  /// On ground, where rods have room for many contacts and have few.
+  using Packed = ContactPoint<W, W::kLanes>;
 
   /// A row of J that acts on a body.
   struct Column {
     int row;
     const V3<W>*lin, *ang, *turn;
   };
-  int capacity;          ///< Rows; 0: not solved so.
+  int capacity;         ///< Rows; 0: not solved so.
+  int packed_capacity;  ///< Contacts of a world, if they are packed (packed_contacts.inl).
+  Packed* packed;
   W* a;                  ///< Inverse effective mass, then factors: an upper triangle, row by row.
   W* c;                  ///< The contacts' system.
   W *u, *l, *r, *q;      ///< Velocities, impulses; right sides, then changes.
@@ -96,20 +100,26 @@ struct DualMemory {
   Column* columns;    ///< By body:
   int* first_column;  ///< where each body's start.
 
-  static int CapacityFor(const View& m) noexcept {
-    const int rows = 3 * m.slot_count + m.cable_count;
-    return rows <= kMaxRows && rows <= kMaxRowsPerBody * m.body_count ? rows : 0;
-  }
   void Take(const View& m, Room& room) noexcept {
-    capacity = CapacityFor(m);
+    const int of_bodies = kMaxRowsPerBody * m.body_count;
+    const int most = of_bodies < kMaxRows ? of_bodies : kMaxRows;
+    int contacts = m.slot_count;
+    if (m.has_ground) contacts = most > m.cable_count ? (most - m.cable_count) / 3 : 0;
+    const int rows = 3 * contacts + m.cable_count;
+    const bool fits = rows <= most && (contacts > 0 || !m.has_ground);
+    capacity = fits ? rows : 0;
+    if (capacity == 0) contacts = 0;
+    packed_capacity = m.has_ground ? contacts : 0;
+    packed = room.Take<Packed>(packed_capacity);
     a = room.Take<W>(capacity * (capacity + 1) / 2);
-    c = room.Take<W>(9 * m.slot_count * (capacity > 0 ? m.slot_count : 0));
+    c = room.Take<W>(9 * contacts * contacts);
     W** const per_row[] = {
         &u, &l, &r, &q, &d, &now, &diagonal, &active, &impacts.before, &impacts.u, &impacts.l};
     for (W** list : per_row) *list = room.Take<W>(capacity);
     v = room.Take<Twist<W>>(m.body_count);
     first_column = room.Take<int>(m.body_count + 1);
-    columns = room.Take<Column>(3 * m.slot_count + m.attachment_count);
+    const int links = m.has_ground ? W::kLanes * packed_capacity : m.slot_count;
+    columns = room.Take<Column>(3 * links + m.attachment_count);
   }
 };
 

@@ -9,7 +9,8 @@
 
 namespace taut::sim {
 
-template <class W>
+/// `Contacts`: those with the world (packed_contacts.inl).
+template <class W, class Contacts>
 class WorldDual {
   static constexpr int kMaxIterations = 10, kMaxContactIterations = 8;
   static constexpr double kCompliance = 1e-9;
@@ -17,8 +18,8 @@ class WorldDual {
   using Column = typename DualMemory<W>::Column;
 
  public:
-  WorldDual(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept
-      : m_(m), s_(s), work_(work), mem_(work.dual) {}
+  WorldDual(const View& m, const Rows<W>& s, Scratch<W>& work, Contacts contacts) noexcept
+      : m_(m), s_(s), work_(work), contacts_(contacts), mem_(work.dual) {}
 
   /// Solves `lanes`; returns those in which it did not get there, which stay as they were.
   M Solve(Target target, M lanes, W& residual, W& solves) noexcept {
@@ -48,9 +49,11 @@ class WorldDual {
   ImpactRows<W> impacts() noexcept { return mem_.impacts; }
   void MeasureBefore() noexcept {
     ForEachContact([&](auto& law, int row) {
-      const BodyWork<W>& body = work_.bodies[law.links[0].body];
       for (int r = 0; r < 3; ++r) mem_.impacts.before[row + r] = W::Splat(0.0);
-      AddVelocity(law.links[0], body.v0, body.w0, mem_.impacts.before + row);
+      for (int i = 0; i < law.link_count; ++i) {
+        const BodyWork<W>& body = work_.bodies[law.links[i].body];
+        AddVelocity(law.links[i], body.v0, body.w0, mem_.impacts.before + row);
+      }
     });
   }
   void SolveAgain(M lanes) noexcept { Iterate(lanes, false); }
@@ -91,11 +94,10 @@ class WorldDual {
   template <class F>
   TAUT_INLINE void ForEachContact(F&& f) noexcept {
     int row = work_.stiff_count;
-    for (int b = 0; b < m_.body_count; ++b) {
-      for (int k = 0; k < work_.contact_count[b]; ++k, row += 3) {
-        f(work_.contacts[m_.first_slot[b] + k], row);
-      }
-    }
+    contacts_.ForEach([&](auto& law) {
+      f(law, row);
+      row += 3;
+    });
     rows_ = row;
   }
 
@@ -298,8 +300,10 @@ class WorldDual {
       mem_.r[row] -= mem_.active[row] * u;
     });
     ForEachContact([&](auto& law, int row) {
-      const Twist<W>& t = mem_.v[law.links[0].body];
-      AddVelocity(law.links[0], t.v, t.w, mem_.q + row);
+      for (int i = 0; i < law.link_count; ++i) {
+        const Twist<W>& t = mem_.v[law.links[i].body];
+        AddVelocity(law.links[i], t.v, t.w, mem_.q + row);
+      }
     });
   }
 
@@ -338,6 +342,7 @@ class WorldDual {
         law.l[r] = Select(solved, mem_.l[row + r], law.l[r]);
       }
     });
+    contacts_.Finish(solved);
     for (int b = 0; b < m_.body_count; ++b) {
       BodyWork<W>& body = work_.bodies[b];
       body.v = Select3(solved, mem_.v[b].v, body.v);
@@ -348,6 +353,7 @@ class WorldDual {
   const View& m_;
   const Rows<W>& s_;
   Scratch<W>& work_;
+  Contacts contacts_;
   DualMemory<W>& mem_;
   int rows_ = 0, cables_ = 0;
   W now_, solves_;

@@ -5,8 +5,8 @@ namespace taut::sim {
 
 /// Newton's method for the contacts, with the cables giving way: u = u* + W' dl,  u* = u + q.
 /// Leaves dl in r.
-template <class W>
-void WorldDual<W>::SolveContacts(M lanes, W goal) noexcept {
+template <class W, class Contacts>
+void WorldDual<W, Contacts>::SolveContacts(M lanes, W goal) noexcept {
   const W zero = W::Splat(0.0);
   const int first = cables_, size = rows_ - cables_;
   for (int i = first; i < rows_; ++i) {
@@ -36,8 +36,8 @@ void WorldDual<W>::SolveContacts(M lanes, W goal) noexcept {
 }
 
 /// Newton's equations of the contacts: c d = d.
-template <class W>
-void WorldDual<W>::LinearizeContacts(int size) noexcept {
+template <class W, class Contacts>
+void WorldDual<W, Contacts>::LinearizeContacts(int size) noexcept {
   const int first = cables_;
   ForEachContact([&](auto& law, int row) {
     const W* const l = mem_.now + (row - first);
@@ -56,8 +56,8 @@ void WorldDual<W>::LinearizeContacts(int size) noexcept {
 }
 
 /// d <- c^-1 d, without pivots; a lane that this spoils does not get there.
-template <class W>
-void WorldDual<W>::EliminateContacts(int size) noexcept {
+template <class W, class Contacts>
+void WorldDual<W, Contacts>::EliminateContacts(int size) noexcept {
   W* const x = mem_.d;
   for (int k = 0; k < size; ++k) {
     W* const pivot_row = mem_.c + k * size;
