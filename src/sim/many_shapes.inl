@@ -3,9 +3,6 @@
 
 namespace taut::sim {
 
-/// A look is for so many steps like this one, if nothing is nearer.
-inline constexpr double kLookAheadSteps = 16.0;
-
 /// Looks once at the shapes near a body in one lane, in the order of their pairs. Returns the
 /// clearance: no shape of the world is nearer.
 template <class W>

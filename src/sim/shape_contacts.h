@@ -64,7 +64,8 @@ template <class A, class B>
 double DistanceUpTo(const A& a, const B& b, double) noexcept {
   return Distance(a, b);
 }
-/// Exact where they are near.
+/// From what `Touch` finds: never more than the least gap of that, and no less by a hundredth of
+/// the radius. Beyond `enough_m` it goes by bounds.
 double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m) noexcept;
 
 /// The same for shapes of any two kinds, in either order, each given in a frame of its own.

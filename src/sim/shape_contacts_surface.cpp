@@ -9,9 +9,12 @@ constexpr int kPlacesOfEnd = 3, kPlacesBetween = 4;
 /// Places between the ends are numbered by where on the rod they are.
 constexpr int kStretches = kMaxPointsPerPair - 2 * kPlacesOfEnd;
 static_assert(kPlacesBetween <= kStretches);
-/// How far around itself a shape looks, per its size: so that it need not look again until it has
-/// come as far.
-constexpr double kLooks[] = {4.0, 1.0, 0.25, 0.0625};
+/// How far around itself a shape looks for what is below it, in its size; and where more than
+/// bounds are looked at, as a share of that.
+constexpr double kFarthestLook = 4.0, kNearestLook = 1.0 / 64, kFurther = 4.0;
+/// Places of a rod that are nearer to each other than a thousandth of its radius are one: by so
+/// much and more the least gap may be another after the rod has moved by nothing. In radii.
+constexpr double kSameContact = 0.01;
 
 /// A point of a rod that its neighbours hold up is left out: a straight line between them does not
 /// reach it. In as many parts of the radius, and where all three look the same way.
@@ -94,17 +97,22 @@ int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoin
 }
 
 double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m) noexcept {
-  const SurfaceTable& s = *b.table;
   const Vec3 from = Load(a.from), to = Load(a.to);
-  const double size_m = Norm(to - from) + a.radius_m;
-  double look_m = enough_m;
-  for (const double look : kLooks) {
-    if (look * size_m >= enough_m) continue;
-    look_m = look * size_m;
-    const LineReach line = ReachOfLine(s, from, to, look_m + a.radius_m);
-    if (line.low > line.high) return look_m;
+  const double most_m = kFarthestLook * (Norm(to - from) + a.radius_m);
+  double look_m = Smaller(enough_m, kNearestLook * most_m);
+  TouchPoint points[kMaxPointsPerPair];
+  const int count = Touch(a, b, look_m, points);
+  if (count > 0) {
+    double least_m = look_m;
+    for (int i = 0; i < count; ++i) least_m = Smaller(least_m, points[i].gap_m);
+    return Larger(least_m - kSameContact * a.radius_m, 0.0);
   }
-  return Larger(DistanceOfLine(s, from, to, look_m + a.radius_m) - a.radius_m, 0.0);
+  const auto is_clear = [&](double reach_m) noexcept {
+    const LineReach line = ReachOfLine(*b.table, from, to, reach_m + a.radius_m);
+    return line.low > line.high;
+  };
+  while (look_m < most_m && is_clear(kFurther * look_m)) look_m = kFurther * look_m;
+  return look_m;
 }
 
 }  // namespace taut::sim

@@ -76,10 +76,10 @@ int KeepTouching(const View& m, const Rows<W>& s, const Scratch<W>& work,
 /// A lower bound of the distance of a pair.
 template <class W>
 double DistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
-                    const ShapePairTable& pair, int lane) noexcept {
+                    const ShapePairTable& pair, int lane, double enough_m = 1e300) noexcept {
   const ShapeTable &a = m.shapes[pair.a], &b = m.shapes[pair.b];
   return DistanceOfShapes(a.shape_P, LanePose(m, s, work, a.body, lane), b.shape_P,
-                          LanePose(m, s, work, b.body, lane));
+                          LanePose(m, s, work, b.body, lane), enough_m);
 }
 
 }  // namespace taut::sim

@@ -11,6 +11,9 @@ namespace taut::sim {
 /// How close a contact must be to get a row: what its body may travel in this step, and a bit.
 inline constexpr double kContactMarginM = 1e-5;
 
+/// A look is for so many steps like this one, if nothing is nearer.
+inline constexpr double kLookAheadSteps = 16.0;
+
 /// How far turning may take any point of each body in this step, and may have taken it since the
 /// middle of the step before.
 template <class W>
@@ -291,7 +294,8 @@ void CollideGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
     if (!near[lane]) continue;
     const bool touches =
         PutTouches(m, s, g, work, shapes, lane, margin[lane], step_s, slots, overflow);
-    s.clearance[pair].Set(lane, touches ? 0.0 : DistanceLane(m, s, work, shapes, lane));
+    const double enough = kLookAheadSteps * margin[lane];
+    s.clearance[pair].Set(lane, touches ? 0.0 : DistanceLane(m, s, work, shapes, lane, enough));
   }
 }
 

@@ -12,74 +12,6 @@ constexpr double kShortStretch = 1e-6;
 /// Nor has one along which the rod is parallel to it, as the square of a sine.
 constexpr double kParallel = 1e-24;
 
-/// Two straight lines, where they are nearest.
-struct Crossing {
-  double s = 0, t = 0;  ///< Shares of the two, not bounded.
-  bool parallel = true;
-};
-
-Crossing CrossingOf(const Vec3& a, const Vec3& u, const Vec3& b, const Vec3& v) noexcept {
-  const Vec3 c = Cross(u, v), ab = b - a;
-  const double c2 = Dot(c, c);
-  if (!(c2 > kParallel * Dot(u, u) * Dot(v, v))) return {};
-  return {Dot(Cross(ab, v), c) / c2, Dot(Cross(ab, u), c) / c2, false};
-}
-
-double DistanceOfLines(const Vec3& a, const Vec3& u, const Vec3& b, const Vec3& v) noexcept {
-  const double u2 = Dot(u, u), v2 = Dot(v, v);
-  const auto to_line = [](const Vec3& p, const Vec3& q, const Vec3& w, double w2) noexcept {
-    const double t = w2 > 0.0 ? Clamp(Dot(p - q, w) / w2, 0.0, 1.0) : 0.0;
-    return Norm(p - (q + t * w));
-  };
-  double least = Smaller(to_line(a, b, v, v2), to_line(a + u, b, v, v2));
-  least = Smaller(least, Smaller(to_line(b, a, u, u2), to_line(b + v, a, u, u2)));
-  const Crossing c = CrossingOf(a, u, b, v);
-  if (!c.parallel && c.s > 0.0 && c.s < 1.0 && c.t > 0.0 && c.t < 1.0) {
-    least = Smaller(least, Norm((a + c.s * u) - (b + c.t * v)));
-  }
-  return least;
-}
-
-/// Whether a line goes through a triangle; else how far its ends are from the plane, where they are
-/// above the triangle.
-double DistanceFromFace(const SurfaceTriangle& t, const Vec3& from, const Vec3& to) noexcept {
-  const Vec3 ab = t.p[1] - t.p[0], ac = t.p[2] - t.p[0], n = Cross(ab, ac);
-  const double n2 = Dot(n, n), length = Sqrt(n2);
-  const double at_from = Dot(n, from - t.p[0]), at_to = Dot(n, to - t.p[0]);
-  const auto above = [&](const Vec3& p) noexcept {
-    for (int k = 0; k < 3; ++k) {
-      const Vec3& corner = t.p[k];
-      if (Dot(Cross(t.p[k == 2 ? 0 : k + 1] - corner, p - corner), n) < 0.0) return false;
-    }
-    return true;
-  };
-  double least = 1e300;
-  if (above(from)) least = Smaller(least, Abs(at_from) / length);
-  if (above(to)) least = Smaller(least, Abs(at_to) / length);
-  if (at_from * at_to < 0.0 && above(from + (at_from / (at_from - at_to)) * (to - from)))
-    return 0.0;
-  return least;
-}
-
-double DistanceOf(const SurfaceTriangle& t, const Vec3& from, const Vec3& to) noexcept {
-  const Vec3 along = to - from;
-  double least = DistanceFromFace(t, from, to);
-  for (int k = 0; k < 3; ++k) {
-    const Vec3& a = t.p[k];
-    least = Smaller(least, DistanceOfLines(from, along, a, t.p[k == 2 ? 0 : k + 1] - a));
-  }
-  return least;
-}
-
-/// Whether a line is further from a triangle's plane than that, all of it on one side: most are.
-bool IsClear(const SurfaceTriangle& t, const Vec3& from, const Vec3& to, double limit_m) noexcept {
-  const Vec3 n = Cross(t.p[1] - t.p[0], t.p[2] - t.p[0]);
-  const double at_from = Dot(n, from - t.p[0]), at_to = Dot(n, to - t.p[0]);
-  if (!(at_from * at_to > 0.0)) return false;
-  const double least = Smaller(Abs(at_from), Abs(at_to));
-  return least * least > limit_m * limit_m * Dot(n, n);
-}
-
 /// A line between edges and corners, and what it found.
 class LineSearch {
  public:
@@ -88,6 +20,7 @@ class LineSearch {
       : s_(s),
         from_(line.from),
         along_(line.along),
+        reach_{line.low, line.high},
         along2_(Dot(along_, along_)),
         limit_m_(line.limit_m),
         short_(kShortStretch * radius_m / Sqrt(along2_)),
@@ -95,16 +28,20 @@ class LineSearch {
         out_(out),
         most_(most) {}
 
-  void Edge(const LineStretch& piece, const SurfaceEdge& e) noexcept {
-    const Vec3 edge = e.to - e.from, a = from_ - e.from, c = Cross(along_, edge);
+  template <class EdgeOf>
+  void Edge(const LineStretch& piece, const Vec3& start, const Vec3& end,
+            const EdgeOf& edge_of) noexcept {
+    const Vec3 edge = end - start, a = from_ - start, c = Cross(along_, edge);
     const double edge2 = Dot(edge, edge), c2 = Dot(c, c), apart = Dot(a, c);
     if (!(c2 > kParallel * along2_ * edge2)) return;
     if (apart * apart > limit_m_ * limit_m_ * c2) return;  // the nearest of the two straight lines
     // Above the edge's own length, and beyond all of its triangles.
-    LineStretch outside{0.0, 1.0};
+    LineStretch outside = reach_;
     const double from_edge = Dot(a, edge), along_edge = Dot(along_, edge);
     outside.CutAbove(-from_edge, -along_edge);
     outside.CutAbove(from_edge - edge2, along_edge);
+    if (!(outside.high > outside.low)) return;
+    const SurfaceEdge e = edge_of();
     for (int k = 0; k < e.sides; ++k) {
       const Vec3 in = e.apex[k] - e.from, inward = in - (Dot(in, edge) / edge2) * edge;
       outside.CutAbove(Dot(a, inward), Dot(along_, inward));
@@ -139,7 +76,7 @@ class LineSearch {
     const double nearest = -Dot(a, along_) / along2_;
     const Vec3 apart = a + nearest * along_;
     if (Dot(apart, apart) > limit_m_ * limit_m_) return;
-    LineStretch outside{0.0, 1.0};
+    LineStretch outside = reach_;
     each_beside([&](const Vec3& other) noexcept {
       outside.CutAbove(Dot(a, other - p), Dot(along_, other - p));
     });
@@ -161,10 +98,16 @@ class LineSearch {
     if (!(distance <= limit_m_ && distance > 0.0)) return;
     int place = count_;
     while (place > 0 && share < out_[place - 1].share) --place;
-    if (place > 0 && share - out_[place - 1].share < apart_) return;
-    if (place < count_ && out_[place].share - share < apart_) return;
     const double sign = inside ? -1.0 : 1.0;
     const LinePlace found{share, {at, (sign / distance) * away, sign * distance}};
+    // Of two in the same place the nearer one counts.
+    const bool repeats_before = place > 0 && share - out_[place - 1].share < apart_;
+    const bool repeats_after = place < count_ && out_[place].share - share < apart_;
+    if (repeats_before || repeats_after) {
+      LinePlace& same = out_[repeats_before ? place - 1 : place];
+      if (found.place.distance_m < same.place.distance_m) same = found;
+      return;
+    }
     if (count_ == most_) {
       // The farthest goes.
       int farthest = 0;
@@ -183,6 +126,7 @@ class LineSearch {
 
   const SurfaceTable& s_;
   Vec3 from_, along_;
+  LineStretch reach_;  ///< Beyond it nothing is within the limit.
   double along2_, limit_m_, short_, apart_;
   LinePlace* out_;
   int most_, count_ = 0;
@@ -216,31 +160,12 @@ int NearestAlong(const SurfaceTable& s, const LineReach& line, double radius_m, 
   if (line.low > line.high) return 0;
   EachSharp(
       s, line,
-      [&](const LineStretch& piece, const SurfaceEdge& edge) noexcept { search.Edge(piece, edge); },
+      [&](const LineStretch& piece, const Vec3& start, const Vec3& end,
+          const auto& edge_of) noexcept { search.Edge(piece, start, end, edge_of); },
       [&](const LineStretch& piece, const Vec3& corner, const auto& each_beside) noexcept {
         search.Corner(piece, corner, each_beside);
       });
   return search.count();
-}
-
-double DistanceOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,
-                      double limit_m) noexcept {
-  double least = limit_m;
-  const LineReach line = ReachOfLine(s, from, to, limit_m);
-  if (line.low > line.high) return least;
-  EachPiece(s, line, [&](const LineStretch& piece, const Vec3& low, const Vec3& high) noexcept {
-    const Vec3 a = line.At(piece.low), b = line.At(piece.high);
-    EachTriangle(s, low, high, [&](const SurfaceTriangle& t) noexcept {
-      if (!IsClear(t, a, b, least)) least = Smaller(least, DistanceOf(t, a, b));
-    });
-  });
-  // Inside, the surface may be far.
-  const Vec3* const ends[] = {&from, &to};
-  for (const Vec3* const end : ends) {
-    SurfacePlace place;
-    if (s.solid && NearestPlaces(s, *end, 0.0, &place, 1) > 0 && place.distance_m < 0.0) return 0.0;
-  }
-  return least;
 }
 
 }  // namespace taut::sim

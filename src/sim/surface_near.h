@@ -34,8 +34,4 @@ LineReach ReachOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,
 int NearestAlong(const SurfaceTable& s, const LineReach& line, double radius_m, LinePlace* out,
                  int most) noexcept;
 
-/// The distance of a line, or `limit_m` if that is less. 0 if it is inside or passes through.
-double DistanceOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,
-                      double limit_m) noexcept;
-
 }  // namespace taut::sim

@@ -148,23 +148,35 @@ void EachSharpOfField(const SurfaceTable& s, const LineReach& line, const UseEdg
       const double* const z = s.height_m + at;
       const double here = z[0], to_east = east ? z[1] : here,
                    to_north = north ? z[s.columns] : here;
-      if ((marks & kSharpAlongX) != 0 && Larger(here, to_east) >= floor) {
-        use_edge(EdgeOfField(s, i, j, kSharpAlongX));
-      }
-      if ((marks & kSharpAlongY) != 0 && Larger(here, to_north) >= floor) {
-        use_edge(EdgeOfField(s, i, j, kSharpAlongY));
-      }
+      const double x = s.low.x + i * s.cell_m, x_east = s.low.x + (i + 1) * s.cell_m;
+      const double y = s.low.y + j * s.cell_m, y_north = s.low.y + (j + 1) * s.cell_m;
+      const Vec3 corner{x, y, here}, at_east{x_east, y, to_east}, at_north{x, y_north, to_north};
+      const auto look = [&](FieldMark mark, const Vec3& from, const Vec3& to) noexcept {
+        if (Larger(from.z, to.z) < floor) return;
+        use_edge(from, to, [&]() noexcept { return EdgeOfField(s, i, j, mark); });
+      };
+      if ((marks & kSharpAlongX) != 0) look(kSharpAlongX, corner, at_east);
+      if ((marks & kSharpAlongY) != 0) look(kSharpAlongY, corner, at_north);
       if ((marks & kSharpDiagonal) != 0) {
-        const bool rises = (marks & kRising) != 0;
-        const double top = rises ? Larger(here, z[s.columns + 1]) : Larger(to_east, to_north);
-        if (top >= floor) use_edge(EdgeOfField(s, i, j, kSharpDiagonal));
+        if ((marks & kRising) != 0) {
+          look(kSharpDiagonal, corner, {x_east, y_north, z[s.columns + 1]});
+        } else {
+          look(kSharpDiagonal, at_east, at_north);
+        }
       }
       if ((marks & kSharpCorner) != 0 && here >= floor) {
-        use_corner(CornerOf(s, i, j),
-                   [&](const auto& use) noexcept { EachBesideOfField(s, i, j, use); });
+        use_corner(corner, [&](const auto& use) noexcept { EachBesideOfField(s, i, j, use); });
       }
     }
   }
+}
+
+inline SurfaceEdge EdgeOfMesh(const SurfaceTable& s, const MeshEdge& found) noexcept {
+  SurfaceEdge edge;
+  edge.from = s.corners[found.from], edge.to = s.corners[found.to];
+  edge.sides = found.count < SurfaceEdge::kMaxSides ? found.count : SurfaceEdge::kMaxSides;
+  for (int n = 0; n < edge.sides; ++n) edge.apex[n] = s.corners[s.beside[found.first + n]];
+  return edge;
 }
 
 /// Piece by piece of the line. Pieces share what is near both of them.
@@ -175,13 +187,8 @@ void EachSharpOfMesh(const SurfaceTable& s, const LineReach& line, const UseEdge
     EachOfMesh(s, low, high, [&](int triangle) noexcept {
       for (int e = s.first_edge[triangle]; e < s.first_edge[triangle + 1]; ++e) {
         const MeshEdge& found = s.edges[e];
-        SurfaceEdge edge;
-        edge.from = s.corners[found.from], edge.to = s.corners[found.to];
-        edge.sides = found.count < SurfaceEdge::kMaxSides ? found.count : SurfaceEdge::kMaxSides;
-        for (int n = 0; n < edge.sides; ++n) {
-          edge.apex[n] = s.corners[s.beside[found.first + n]];
-        }
-        use_edge(piece, edge);
+        use_edge(piece, s.corners[found.from], s.corners[found.to],
+                 [&]() noexcept { return EdgeOfMesh(s, found); });
       }
       for (int c = s.first_corner[triangle]; c < s.first_corner[triangle + 1]; ++c) {
         const MeshCorner& found = s.sharp_corners[c];
@@ -195,16 +202,20 @@ void EachSharpOfMesh(const SurfaceTable& s, const LineReach& line, const UseEdge
 
 }  // namespace detail
 
-/// `use_edge(stretch, edge)` and `use_corner(stretch, corner, each_beside)` with all that stick out
-/// and are within reach of a line, and perhaps with some beside. What a line has on a stretch is
-/// told once with that stretch, and perhaps again with others.
+/// `use_edge(stretch, from, to, edge)`, where edge() says all of it, and `use_corner(stretch,
+/// corner, each_beside)` with all that stick out and are within reach of a line, and perhaps with
+/// some beside. What a line has on a stretch is told once with that stretch, and perhaps again with
+/// others.
 template <class UseEdge, class UseCorner>
 void EachSharp(const SurfaceTable& s, const LineReach& line, const UseEdge& use_edge,
                const UseCorner& use_corner) noexcept {
   if (!s.is_field) return detail::EachSharpOfMesh(s, line, use_edge, use_corner);
   const LineStretch all{line.low, line.high};
   detail::EachSharpOfField(
-      s, line, [&](const SurfaceEdge& edge) noexcept { use_edge(all, edge); },
+      s, line,
+      [&](const Vec3& from, const Vec3& to, const auto& edge) noexcept {
+        use_edge(all, from, to, edge);
+      },
       [&](const Vec3& corner, const auto& each_beside) noexcept {
         use_corner(all, corner, each_beside);
       });
