@@ -15,12 +15,14 @@ constexpr double kStraight = 1e-8;
 /// Of a corner that sticks out at least so many edges do: fewer do not span a cone.
 constexpr int kEdgesOfSharpCorner = 3;
 
-/// How far the sides of an edge fall away from each other, as the sine of the angle between them:
-/// seen from where corners of the first triangle run counter-clockwise.
-double Falls(const Vec3& from, const Vec3& to, const Vec3& apex, const Vec3& other) {
-  const Vec3 along = to - from, n = Cross(along, apex - from);
-  const Vec3 aside = other - from - (Dot(other - from, along) / Dot(along, along)) * along;
-  return -Dot(n, aside) / (Norm(n) * Norm(aside));
+/// Whether the sides of an edge fall away from each other by more than that (1), rise (-1), or
+/// neither: seen from where corners of the first triangle run counter-clockwise.
+int Falls(const Vec3& from, const Vec3& to, const Vec3& apex, const Vec3& other) {
+  const Vec3 along = to - from, n = Cross(along, apex - from), m = Cross(along, other - from);
+  // The sine of the angle is that, over the lengths of n and m.
+  const double sine = -Dot(n, other - from);
+  if (sine * sine * Dot(along, along) <= kStraight * kStraight * Dot(n, n) * Dot(m, m)) return 0;
+  return sine > 0.0 ? 1 : -1;
 }
 
 bool IsSharp(const SurfaceEdge& edge) {
@@ -28,7 +30,7 @@ bool IsSharp(const SurfaceEdge& edge) {
   // Counter-clockwise seen from above.
   const Vec3 up = Cross(edge.to - edge.from, edge.apex[0] - edge.from);
   return (up.z < 0.0 ? Falls(edge.to, edge.from, edge.apex[0], edge.apex[1])
-                     : Falls(edge.from, edge.to, edge.apex[0], edge.apex[1])) > kStraight;
+                     : Falls(edge.from, edge.to, edge.apex[0], edge.apex[1])) > 0;
 }
 
 }  // namespace
@@ -102,7 +104,7 @@ void Surface::FindSharp() {
       const double falls =
           Falls(corner(edge.from), corner(edge.to), corner(edge.apexes[0]), corner(edge.apexes[1]));
       // A sheet has two sides.
-      sticks_out = (t.solid ? falls : Abs(falls)) > kStraight;
+      sticks_out = t.solid ? falls > 0 : falls != 0;
     }
     if (!sticks_out) continue;
     found.push_back(&edge);

@@ -223,5 +223,74 @@ TEST(Ground, LanesOnDifferentHillsHaveTheBitsOfAWorldAlone) {
   }
 }
 
+TEST(Ground, WhenItIsLookedAtChangesNothing) {
+  // After a restored state everything is looked at again; a world that goes on looks when it has
+  // come near.
+  const ModelDef def = OnHills::Def(5, 0.05);
+  Batch goes_on = MakeBatch(def), looks = MakeBatch(def);
+  for (int i = 0; i < 600; ++i) {
+    goes_on.Step(1e-3, 1);
+    ASSERT_TRUE(looks.Restore(0, looks.Save(0)));
+    looks.Step(1e-3, 1);
+    ASSERT_EQ(goes_on.Hash(0), looks.Hash(0)) << i;
+  }
+}
+
+/// Two rods, tied by a stiff cable, that fall onto bumps of a few centimetres.
+ModelDef TiedRodsOverBumps() {
+  const Material material{0.6, 0.5, 0.2};
+  ModelDef def;
+  scenes::AddRod(def, "a", 0.05, 0.004, {-0.15, -0.05, 0.06}, {0.15, -0.05, 0.06}, material);
+  scenes::AddRod(def, "b", 0.05, 0.004, {-0.15, 0.05, 0.06}, {0.15, 0.05, 0.06}, material);
+  CableDef cable;
+  cable.name = "cable";
+  cable.attachments = {{0, {-0.15, -0.05, 0.06}}, {1, {-0.15, 0.05, 0.06}}};
+  cable.stiffness_n_per_m = 50000;
+  cable.damping_n_s_per_m = 3;
+  cable.rest_length_m = 0.0995;
+  def.cables.push_back(cable);
+  scenes::Chance chance(4);
+  def.height_fields.push_back(scenes::Field(
+      200, 200, 0.02, material, [&](double, double) { return chance.Within(-0.002, 0.002); }));
+  return def;
+}
+
+TEST(Ground, WorldsWithManyContactsAndWithFewHaveTheBitsOfAWorldAlone) {
+  BatchOptions options;
+  options.worlds = 8;
+  const ModelDef def = TiedRodsOverBumps();
+  Batch all = MakeBatch(def, options);
+  const auto start = [&](Batch& batch, int world, int which) {
+    for (int b = 0; b < 2; ++b) {
+      BodyState state = batch.Body(world, b);
+      state.position_m = state.position_m + Vec3{0.05 * which, -0.05 * which, 0.002 * which};
+      state.velocity_m_per_s = {0.02 * which, 0, 0};
+      batch.SetBodyState(world, b, state);
+    }
+  };
+  for (int w = 0; w < 8; ++w) start(all, w, w);
+  std::vector<Batch> alone;
+  for (int w = 0; w < 8; ++w) {
+    alone.push_back(MakeBatch(def));
+    start(alone.back(), 0, w);
+  }
+  // A pair of rods has room for seven contacts where worlds are solved in lanes.
+  std::size_t most = 0, fewest = 1000;
+  for (int i = 0; i < 50; ++i) {
+    all.Step(1e-3, 20);
+    for (int w = 0; w < 8; ++w) {
+      Batch& one = alone[static_cast<std::size_t>(w)];
+      one.Step(1e-3, 20);
+      ASSERT_EQ(one.Hash(0), all.Hash(w)) << w << " " << i;
+      EXPECT_EQ(one.Status(0).bits, kStatusOk) << w << " " << i;
+      const std::size_t contacts = one.Contacts(0).size();
+      if (contacts > 0) fewest = std::min(fewest, contacts);
+      most = std::max(most, contacts);
+    }
+  }
+  EXPECT_LE(fewest, 3u);
+  EXPECT_GE(most, 8u);
+}
+
 }  // namespace
 }  // namespace taut::test

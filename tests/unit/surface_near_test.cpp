@@ -301,5 +301,72 @@ TEST(NearestAlong, WhatIsFoundIsTheDistanceOfTheLineWhereItIsLeast) {
   EXPECT_GT(between, 50);
 }
 
+TEST(NearestAlong, AFieldAndItsMeshAreTheSame) {
+  int found_along = 0, found_places = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    HeightFieldDef def = RoughField(seed, 30, 25);
+    def.split = HeightFieldDef::Split::kAlternating;  // as that of the mesh
+    const Known field(def), mesh(scenes::MeshOf(def));
+    const Vec3 middle = def.origin_m;
+    Points3 random(seed);
+    for (int k = 0; k < 300; ++k) {
+      const Vec3 a = middle + random.Within(1.0, 0.0, 0.4),
+                 b = middle + random.Within(1.0, 0.0, 0.4);
+      const double radius_m = 0.02;
+      // Lines through it are other ones: a mesh that is not closed has no inside.
+      bool above = true;
+      for (int i = 0; i <= 1000; ++i) {
+        const Vec3 p = a + 1e-3 * i * (b - a);
+        above = above && p.z > HeightAt(field.table(), p.x, p.y) + 0.003;
+      }
+      if (!above) continue;
+      LinePlace of_field[16], of_mesh[16];
+      const double limit_m = 0.03;
+      const int count = NearestAlong(field.table(), ReachOfLine(field.table(), a, b, limit_m),
+                                     radius_m, of_field, 16);
+      ASSERT_EQ(NearestAlong(mesh.table(), ReachOfLine(mesh.table(), a, b, limit_m), radius_m,
+                             of_mesh, 16),
+                count);
+      for (int i = 0; i < count; ++i) {
+        EXPECT_NEAR(of_field[i].share, of_mesh[i].share, 1e-9);
+        EXPECT_LT(Length(of_field[i].place.at - of_mesh[i].place.at), 1e-9);
+        EXPECT_LT(Length(of_field[i].place.normal - of_mesh[i].place.normal), 1e-9);
+      }
+      found_along += count;
+      SurfacePlace at_field[8], at_mesh[8];
+      const int places = NearestPlaces(field.table(), a, 0.1, at_field, 8);
+      ASSERT_EQ(NearestPlaces(mesh.table(), a, 0.1, at_mesh, 8), places);
+      for (int i = 0; i < places; ++i) {
+        EXPECT_LT(Length(at_field[i].at - at_mesh[i].at), 1e-9);
+      }
+      found_places += places;
+    }
+  }
+  EXPECT_GT(found_along, 30);
+  EXPECT_GT(found_places, 200);
+}
+
+TEST(NearestAlong, ARodLyingOnRidgesTouchesEachOfThem) {
+  // Roofs along y, 0.2 m apart, each at its height: what is looked for is known without a search.
+  const auto height = [](double x) {
+    const double at = x / 0.2 - std::floor(x / 0.2);
+    return 0.1 * (1 - std::abs(2 * at - 1)) + 0.01 * std::floor(x / 0.2);
+  };
+  const Known roofs(
+      scenes::Field(41, 21, 0.1, {}, [&](double x, double) { return height(x + 1e-9); }));
+  const double radius_m = 0.02;
+  // Along the line that their ridges, at x = 0.1 + 0.2 k, have in common.
+  const Vec3 a{-0.85, 0.33, 0.1 - 0.05 + radius_m + 0.0025},
+      b{0.85, 0.38, 0.1 + 0.035 + radius_m + 0.0025};
+  LinePlace found[16];
+  const int count =
+      NearestAlong(roofs.table(), ReachOfLine(roofs.table(), a, b, 0.03), radius_m, found, 16);
+  ASSERT_EQ(count, 8);
+  for (int i = 0; i < count; ++i) {
+    EXPECT_NEAR(found[i].place.at.x, -0.7 + 0.2 * i, 1e-3);
+    EXPECT_GT(found[i].place.normal.z, 0.99);
+  }
+}
+
 }  // namespace
 }  // namespace taut::sim

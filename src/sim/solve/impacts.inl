@@ -66,9 +66,11 @@ M SolveImpacts(Problem& p, int rows, M lanes) noexcept {
   auto hit = M::Splat(false);
   for (int round = 0; round < kMaxRounds; ++round) {
     auto fresh = M::Splat(false);
+    // A later round is for those that had an earlier one: an impact of a neighbour is none.
+    const auto may = round > 0 ? lanes & hit : lanes;
     p.ForEach([&](auto& law, int row) {
       if constexpr (kRebounds<decltype(law)>)
-        fresh = fresh | law.Rebound(p.u() + row, p.l() + row, lanes, round > 0);
+        fresh = fresh | law.Rebound(p.u() + row, p.l() + row, may, round > 0);
     });
     if (!Any(fresh)) break;
     for (int i = 0; round == 0 && i < rows; ++i) kept.u[i] = p.u()[i], kept.l[i] = p.l()[i];
