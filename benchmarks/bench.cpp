@@ -139,6 +139,26 @@ void RegisterTaut(Case what, const ModelDef& def, int settle_periods) {
   Register(what, make, settle_periods, stages);
 }
 
+/// Fields of ten million cells are made only where one is measured.
+void RegisterHills(const std::string& robot, const std::string& ground, int corners, int lanes) {
+  constexpr int kSettle = 300;
+  BatchOptions options;
+  options.worlds = lanes;
+  options.simd = static_cast<Simd>(lanes);
+  const Make make = [robot, corners, options] {
+    auto runner = std::make_unique<TautRunner>(OnHills(robot, corners), options);
+    SpreadOut(runner->batch());
+    return runner;
+  };
+  Register({.kind = "hills",
+            .robot = robot + "@" + ground,
+            .worlds = lanes,
+            .lanes = lanes,
+            .engine = "taut",
+            .setting = "default"},
+           make, kSettle);
+}
+
 void RegisterPeers(Case what, const ModelDef& def, int settle_periods, bool all,
                    std::vector<Elsewhere>& elsewhere) {
   for (const peers::Setting& setting : peers::kSettings) {
@@ -184,6 +204,13 @@ std::vector<Elsewhere> RegisterAll() {
     for (int lanes : {1, widest}) {
       RegisterTaut({.kind = "stages", .robot = robot, .worlds = lanes, .lanes = lanes}, def,
                    kSettle);
+    }
+  }
+  for (const char* robot : {"six_strut", "six_strut_stiff", "tetraspine12"}) {
+    for (int lanes : {1, widest}) {
+      RegisterHills(robot, "plane", 0, lanes);
+      RegisterHills(robot, "hills", 120, lanes);
+      RegisterHills(robot, "many", 3163, lanes);
     }
   }
   const auto growth = [&](const char* kind, const std::string& robot, const ModelDef& def) {

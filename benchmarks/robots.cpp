@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "scenes/many_rows.h"
+#include "scenes/rough_ground.h"
+#include "scenes/six_strut.h"
 #include "scenes/tetraspine3.h"
 #include "taut/spec.h"
 
@@ -27,15 +29,53 @@ std::shared_ptr<const Model> Compiled(const ModelDef& def) {
   return model;
 }
 
-}  // namespace
-
-ModelDef OnGround(const std::string& robot) {
+ModelDef Loaded(const std::string& robot) {
   Diagnostics complaints;
   const auto spec = LoadRobot(TAUT_MODELS "/" + robot + ".yaml", {}, complaints);
   if (!spec) throw std::runtime_error(complaints.Format());
-  ModelDef def = spec->def;
+  return spec->def;
+}
+
+/// A small one, whose cables are too stiff for explicit forces at 1 ms.
+ModelDef StiffSixStrut() {
+  scenes::SixStrut robot;
+  robot.length_m = 0.4;
+  robot.rod_mass_kg = 0.05;
+  robot.rod_radius_m = 0.005;
+  robot.damping_n_s_per_m = 3;
+  robot.center_m.z = 0.22;
+  robot.orientation = scenes::Turn({0.6, 0.0, 0.8}, 0.3);
+  return robot.Def();
+}
+
+}  // namespace
+
+ModelDef OnGround(const std::string& robot) {
+  ModelDef def = Loaded(robot);
   def.planes = {Ground()};
   return def;
+}
+
+ModelDef OnHills(const std::string& robot, int corners) {
+  ModelDef def = robot == "six_strut_stiff" ? StiffSixStrut() : Loaded(robot);
+  if (corners > 0) {
+    def.height_fields = {scenes::Hills(corners, corners, Ground().material)};
+  } else {
+    def.planes = {Ground()};
+  }
+  return def;
+}
+
+void SpreadOut(Batch& batch) {
+  for (int world = 0; world < batch.worlds(); ++world) {
+    for (int body = 0; body < static_cast<int>(batch.model().def().bodies.size()); ++body) {
+      BodyState state = batch.Body(world, body);
+      state.position_m.x += 0.13 * world;
+      state.position_m.y += 0.07 * world;
+      state.position_m.z += 0.03;
+      batch.SetBodyState(world, body, state);
+    }
+  }
 }
 
 ModelDef Spine(int segments) {

@@ -16,6 +16,12 @@ inline constexpr int kControlSteps = 10;  ///< Rest lengths are commanded at 100
 /// A model of models/ on the ground.
 ModelDef OnGround(const std::string& robot);
 
+/// A model of models/, or "six_strut_stiff", whose cables are rows of the solver, on hills with so
+/// many corners along each side; 0: on a plane.
+ModelDef OnHills(const std::string& robot, int corners);
+/// Each world a bit further along, so that each stands on other hills.
+void SpreadOut(Batch& batch);
+
 /// Tetraspine3 with another number of segments, on the ground.
 ModelDef Spine(int segments);
 

@@ -11,6 +11,7 @@ from validation.runs import Problem, fill, table
 TEMPLATE = pathlib.Path(__file__).with_name("performance.md.in")
 ROBOTS = ("tetraspine3", "tetraspine12", "six_strut")
 STAGES = ("start", "kinematics", "cables", "kick", "collide", "solve", "integrate", "judge")
+GROUNDS = {"plane": "plane", "hills": "hills", "many": "10^7 cells"}
 UNCONVERGED = "*"  # some step of it stopped at the largest number of linear solves
 
 
@@ -148,6 +149,24 @@ def growth(items, kind):
     return table([kind, *(column[3] for column in columns)], rows)
 
 
+def hills(items):
+    """Microseconds of a world's step on a plane and on hills."""
+    results = Results(items)
+    found = results.of(kind="hills")
+    lanes = sorted({item["lanes"] for item in found})
+    rows = []
+    for robot in sorted({item["robot"].split("@")[0] for item in found}):
+        us = {(ground, n): 1e6 / rate for ground in GROUNDS for n in lanes
+              if (rate := results.rate(kind="hills", robot=f"{robot}@{ground}", lanes=n))}
+        row = [robot]
+        for n in lanes:
+            for ground in GROUNDS:
+                times = f" ({number(us[ground, n] / us['plane', n], 2)}x)" if ground != "plane" and {(ground, n), ("plane", n)} <= us.keys() else ""
+                row.append(number(us[ground, n]) + times if (ground, n) in us else NOTHING)
+        rows.append(row)
+    return table(["robot", *(f"{name}, {n} lane{'s' * (n > 1)}" for n in lanes for name in GROUNDS.values())], rows)
+
+
 def spread(items):
     """How far the repetitions of a benchmark are apart, in per cent of their median."""
     worst = max(items, key=lambda item: item["spread"])
@@ -173,7 +192,7 @@ def text(items):
     if not items:
         raise Problem("these results are of contact-rich scenes alone; the page needs all others, too")
     values = {"one": one_world(items), "mujocos": mujocos(items), "which_mujoco": which_mujoco(items), "batches": batches(items), "against": against_batches(items),
-              "stages": stages(items), "memory": memory(items), "segments": growth(items, "segments"),
+              "stages": stages(items), "memory": memory(items), "hills": hills(items), "segments": growth(items, "segments"),
               "contacts": growth(items, "contacts"), "contact_scenes": scenes,
               **spread(items),
               "repetitions": str(min(item["repetitions"] for item in items)),

@@ -21,7 +21,7 @@ from measuring import compare, measure, page, wasm  # noqa: E402
 from validation.runs import Problem  # noqa: E402
 
 PROGRAM = sys.argv[1]
-FEW = "(one|batch|stages)/.*/tetraspine3/|/(spine|footed)_4/"
+FEW = "(one|batch|stages)/.*/tetraspine3/|/(spine|footed)_4/|^hills/.*/six_strut@(plane|hills)/"
 
 
 def bench(*words, **more):
@@ -75,6 +75,9 @@ def MakesThePageFromItsList():
     rate = page.Results(results).rate(kind="one", engine="taut", robot="tetraspine3")
     assert f"| taut | {page.number(rate)} | - | - |" in text
     assert page.one_world(results) in text
+    assert page.hills(results) in text
+    us = [1e6 / page.Results(results).rate(kind="hills", robot=f"six_strut@{ground}", lanes=1) for ground in ("plane", "hills")]
+    assert f"| six_strut | {page.number(us[0])} | {page.number(us[1])} ({page.number(us[1] / us[0], 2)}x) | -" in text
     elsewhere = {**results[0], "machine": {**results[0]["machine"], "processor": "another"}}
     try:
         page.text([*results, elsewhere])
