@@ -81,7 +81,12 @@ std::string Unsupported(const ModelDef& def) {
     if (cable.damping_law != DampingLaw::kExact) return "the damping law of cable " + cable.name;
   }
   const Material* const material = FirstMaterial(def);
-  const auto fits = [&](const Material& m) { return Same(m, *material); };
+  const auto special = [](const Material& m) { return m.stribeck || m.directions; };
+  for (const PlaneDef& p : def.planes) {
+    if (special(p.material)) return "friction by speed or by direction";
+  }
+  if (material != nullptr && special(*material)) return "friction by speed or by direction";
+  const auto fits = [&](const Material& m) { return Same(m, *material) && !special(m); };
   for (const SphereDef& s : def.spheres) {
     if (s.collides && !fits(s.material)) return "shapes of different materials";
   }

@@ -44,12 +44,16 @@ enum class Simd { kScalar = 1, kSse2 = 2, kNeon = 2, kAvx2 = 4, kAvx512 = 8 };
 /// it while none changes the environment.
 Simd BestSimd();
 
+class ContactFriction;  // taut/friction.h
+
 struct BatchOptions {
   int worlds = 1;
   int threads = 1;               ///< 0: one a core.
   std::optional<Simd> simd;      ///< Nothing: `BestSimd()`, or scalar for a single world.
   int max_linear_solves = 1000;  ///< Bound of a step's work, per island; what needs more says so.
   double tolerance_m_per_s = 1e-10;  ///< Residual at which the contact solve counts as done.
+  /// A law of one's own; null: the model's.
+  std::shared_ptr<const ContactFriction> friction = nullptr;
 };
 
 /// What a world has to say for itself. Bits; 0 is good. Sticky until `ClearStatus`.
@@ -59,13 +63,19 @@ enum StatusBits : std::uint32_t {
   kStatusNotConverged = 1u << 1,     ///< Contacts, stiff cables: not to the tolerance.
   kStatusContactOverflow = 1u << 2,  ///< More contacts than the model has room for.
   kStatusStepTooLong = 1u << 3,  ///< For a cable's tension, across it (docs/theory/cables.md, 12).
+  /// A body's centre of mass is below all of a terrain that has a height field or a mesh and no
+  /// plane: it has left what it stood on, and falls for ever.
+  kStatusFellOff = 1u << 4,
 };
 
 struct WorldStatus {
   std::uint32_t bits = kStatusOk;
-  double first_time_s = 0.0;    ///< When the first bit was set.
-  int body = kWorld;            ///< Concerned body, or kWorld.
-  int cable = -1;               ///< Concerned cable, or -1.
+  double first_time_s = 0.0;  ///< When the first bit was set.
+  int body = kWorld;          ///< Concerned body, or kWorld.
+  int cable = -1;             ///< Concerned cable, or -1.
+  /// Which height field, or, counted after them, which mesh is nearest, seen from above, to a body
+  /// that fell off; else -1.
+  int ground = -1;
   double residual_m_per_s = 0;  ///< Of the last solve.
   int linear_solves = 0;        ///< Of the last step: in lanes, of all islands, and of pushing out.
 };

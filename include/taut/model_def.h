@@ -16,11 +16,29 @@
 
 namespace taut {
 
+/// Friction that falls from the static to the kinetic coefficient while the speed of sliding rises
+/// (docs/theory/friction.md, eq. 1).
+struct StribeckDef {
+  double speed_m_per_s = 0.0;  ///< At which half of what friction at rest has more is gone, > 0.
+  double viscous_friction_s_per_m = 0.0;  ///< What the coefficient gains per speed, >= 0.
+};
+
+/// Factors on a surface's coefficients of friction, by the direction in which it slides over what
+/// it touches: scales, skates (docs/theory/friction.md, eq. 3). At right angles to the axis it
+/// slides sideways.
+struct FrictionDirections {
+  double forward = 1.0, backward = 1.0, sideways = 1.0;  ///< >= 0.
+  Vec3 axis;  ///< Where forward is, of any length, in W at t = 0; turns with the body. Zero, for
+              ///< rods only: along the rod, `from_m` to `to_m`.
+};
+
 /// Surface properties of a shape. How two of them combine is `ModelDef::friction_combine`.
 struct Material {
   double static_friction = 0.5;   ///< Coulomb coefficient while sticking, >= kinetic_friction.
   double kinetic_friction = 0.5;  ///< Coulomb coefficient while sliding, >= 0.
   double restitution = 0.0;       ///< Newton's coefficient, 0..1.
+  std::optional<StribeckDef> stribeck = std::nullopt;           ///< None: the same at any speed.
+  std::optional<FrictionDirections> directions = std::nullopt;  ///< None: the same in all.
 };
 
 /// A rigid body. Shapes, cables and nodes refer to it by its index.

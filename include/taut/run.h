@@ -104,6 +104,9 @@ struct RunOptions {
   std::vector<TraceWriter*> traces;
   /// Controllers and sensors that act beside the experiment's.
   Brought brought;
+  /// A friction law of one's own (taut/friction.h) in the simulation, settling included. Null: what
+  /// the model says. Without effect on a `plant`.
+  std::shared_ptr<const ContactFriction> friction;
   /// At its start, of one lane: the experiment's controllers act on it. Null: a simulation is made
   /// and brought to the experiment's start. The run ends at the latest when the plant goes no more.
   Plant* plant = nullptr;

@@ -177,15 +177,15 @@ class BodyBuilder {
       weld.solids.push_back(SolidCylinder(from, to, r, builder.rod->mass.Of(volume, length)));
       weld.bounds = Union(weld.bounds, BulletCylinderBounds(from, to, r));
       robot_.solids->capsules.push_back(builder.rod->mass.AsWritten());
-      CapsuleDef& def = Add(robot_.def.capsules, *builder.rod, placed.name, body);
+      CapsuleDef& def =
+          Add(robot_.def.capsules, *builder.rod, placed.name, body, TurnOf(placed.instance));
       def.from_m = from;
       def.to_m = to;
     } else if (builder.box) {
       const BoxText& box = *builder.box;
-      const Quat q_WPart =
-          placed.instance < 0 ? Quat{} : assembly_.instances[placed.instance].q_WPart;
+      const Quat q_WPart = TurnOf(placed.instance);
       const Vec3 u = Rotate(Conjugate(q_WPart), (1.0 / length) * (to - from));
-      AddBox(weld, box, placed.name, body, 0.5 * (from + to), q_WPart * BeamOrientation(u),
+      AddBox(weld, box, placed.name, body, q_WPart, 0.5 * (from + to), q_WPart * BeamOrientation(u),
              {0.5 * length, 0.5 * box.width_m, 0.5 * box.height_m},
              box.mass.Of(length * box.width_m * box.height_m, length));
     }
@@ -201,7 +201,8 @@ class BodyBuilder {
             placed.position_m, r, builder.sphere->mass.Of(4.0 / 3.0 * kPi * r * r * r, 0.0)));
         weld.bounds = Union(weld.bounds, SphereBounds(placed.position_m, r));
         robot_.solids->spheres.push_back(builder.sphere->mass.AsWritten());
-        Add(robot_.def.spheres, *builder.sphere, placed.name, body).center_m = placed.position_m;
+        Add(robot_.def.spheres, *builder.sphere, placed.name, body, TurnOf(placed.instance))
+            .center_m = placed.position_m;
       } else if (builder.point_mass) {
         const PointMassText& mass = *builder.point_mass;
         const bool lone = weld.nodes.size() == 1 && assignment_.of_node[node].size() == 1;
@@ -211,28 +212,38 @@ class BodyBuilder {
       } else if (builder.box) {
         const BoxText& box = *builder.box;
         const Vec3 size = 2.0 * box.half_extents_m;
-        AddBox(weld, box, placed.name, body, placed.position_m,
-               assembly_.instances[placed.instance].q_WPart, box.half_extents_m,
-               box.mass.Of(size.x * size.y * size.z, 0.0));
+        const Quat q_WPart = TurnOf(placed.instance);
+        AddBox(weld, box, placed.name, body, q_WPart, placed.position_m, q_WPart,
+               box.half_extents_m, box.mass.Of(size.x * size.y * size.z, 0.0));
       }
     }
   }
 
-  /// A shape as its builder has it, on a body.
+  Quat TurnOf(int instance) const {
+    return instance < 0 ? Quat{} : assembly_.instances[instance].q_WPart;
+  }
+
+  /// A shape as its builder has it, on a body. Directions of its surface turn with the part.
   template <class Def, class Text>
-  static Def& Add(std::vector<Def>& shapes, const Text& text, const std::string& name, int body) {
+  static Def& Add(std::vector<Def>& shapes, const Text& text, const std::string& name, int body,
+                  const Quat& q_WPart) {
     Def& def = shapes.emplace_back(text);
     def.name = name;
     def.body = body;
+    if (def.material.directions) {
+      Vec3& axis = def.material.directions->axis;
+      axis = Rotate(q_WPart, axis);
+    }
     return def;
   }
 
   void AddBox(Weld& weld, const BoxText& text, const std::string& name, int body,
-              const Vec3& center, const Quat& q, const Vec3& half, double mass) {
+              const Quat& q_WPart, const Vec3& center, const Quat& q, const Vec3& half,
+              double mass) {
     weld.solids.push_back(SolidBox(center, q, half, mass));
     weld.bounds = Union(weld.bounds, BoxBounds(center, q, half));
     robot_.solids->boxes.push_back(text.mass.AsWritten());
-    BoxDef& def = Add(robot_.def.boxes, text, name, body);
+    BoxDef& def = Add(robot_.def.boxes, text, name, body, q_WPart);
     def.center_m = center;
     def.orientation = q;
     def.half_extents_m = half;

@@ -34,14 +34,22 @@ void Move(const Vec3& at_m, const Quat& q, ModelDef& def) {
     body.velocity_m_per_s = Rotate(q, body.velocity_m_per_s);
     body.angular_velocity_rad_per_s = Rotate(q, body.angular_velocity_rad_per_s);
   }
-  for (SphereDef& sphere : def.spheres) sphere.center_m = moved(sphere.center_m);
+  const auto turn = [&](Material& material) {
+    if (material.directions) material.directions->axis = Rotate(q, material.directions->axis);
+  };
+  for (SphereDef& sphere : def.spheres) {
+    sphere.center_m = moved(sphere.center_m);
+    turn(sphere.material);
+  }
   for (CapsuleDef& capsule : def.capsules) {
+    turn(capsule.material);
     capsule.from_m = moved(capsule.from_m);
     capsule.to_m = moved(capsule.to_m);
   }
   for (BoxDef& box : def.boxes) {
     box.center_m = moved(box.center_m);
     box.orientation = q * box.orientation;
+    turn(box.material);
   }
   for (NodeDef& node : def.nodes) node.position_m = moved(node.position_m);
   for (CableDef& cable : def.cables) {

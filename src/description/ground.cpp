@@ -5,17 +5,21 @@
 #include <string_view>
 #include <utility>
 
+#include "base/brief.h"
 #include "base/input_file.h"
 #include "description/expression.h"
 #include "description/ground_keys.h"
+#include "description/height_image.h"
 #include "description/mesh_file.h"
 #include "description/reader.h"
 #include "math/vec.h"
+#include "trace/hdf5_table.h"
 
 namespace taut::description {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+constexpr double kMostInFile = 1e8;
 /// A formula takes 2 us a corner.
 constexpr double kMostByFormula = 4e6;
 
@@ -99,9 +103,70 @@ bool ReadCsv(const std::string& path, const Scope& scope, HeightFieldDef& field)
     }
     if (scope.out.items().size() - errors_before >= kMostErrors) break;
   }
-  if (scope.out.items().size() != errors_before) return false;
-  if (field.columns >= 2 && field.rows >= 2) return true;
-  scope.out.Error({path, 0, 0}, "a height field needs two lines or more of two heights or more");
+  return scope.out.items().size() == errors_before;
+}
+
+bool IsImage(const std::string& file) { return EndsIn(file, ".png"); }
+
+bool ReadImage(const HeightFieldText& text, const std::string& path, const Scope& scope,
+               HeightFieldDef& field) {
+  const auto image = ReadHeightImage(path, kMostInFile, scope.out);
+  if (!image || !text.height_range_m) return false;
+  const auto [low, high] = *text.height_range_m;
+  const double steps = std::exp2(image->bits) - 1;
+  if (image->bits < 16) {
+    scope.out.Warning({path, 0, 0},
+                      "has " + std::to_string(image->bits) +
+                          " bits a sample: heights in steps of " +
+                          base::Brief(std::fabs(high - low) / steps) + " m",
+                      "16 bits make slopes smooth");
+  }
+  field.columns = image->columns;
+  field.rows = image->rows;
+  for (const double share : image->shares) field.height_m.push_back(low + (high - low) * share);
+  return true;
+}
+
+/// `hills.h5:/z`: where the name of the data set begins.
+std::size_t SetIn(const std::string& file) {
+  for (const char* end : {".h5:", ".hdf5:"}) {
+    const std::size_t at = file.find(end);
+    if (at != file.npos) return at + std::string_view(end).size();
+  }
+  return file.npos;
+}
+
+bool ReadHdf5(const std::string& path, const std::string& set, const Scope& scope,
+              HeightFieldDef& field) {
+  auto table = trace::ReadHdf5Table(path, set, kMostInFile, scope.out);
+  if (!table) return false;
+  for (std::size_t i = 0; i < table->values.size(); ++i) {
+    if (std::isfinite(table->values[i])) continue;
+    const std::size_t columns = static_cast<std::size_t>(table->columns);
+    scope.out.Error({path, 0, 0},
+                    set + ": row " + std::to_string(i / columns) + ", column " +
+                        std::to_string(i % columns) + " is no finite number",
+                    "heights in m");
+    return false;
+  }
+  field.columns = table->columns;
+  field.rows = table->rows;
+  field.height_m = std::move(table->values);
+  return true;
+}
+
+/// Heights from a file of any kind.
+bool ReadHeights(const HeightFieldText& text, const Scope& scope, HeightFieldDef& field) {
+  field.columns = field.rows = 0;
+  const std::string& file = text.file.text;
+  const std::size_t set = SetIn(file);
+  const std::string path =
+      PathBeside(text.file.at.file, set == file.npos ? file : file.substr(0, set - 1));
+  const bool good = set != file.npos ? ReadHdf5(path, file.substr(set), scope, field)
+                    : IsImage(file)  ? ReadImage(text, path, scope, field)
+                                     : ReadCsv(path, scope, field);
+  if (!good || (field.columns >= 2 && field.rows >= 2)) return good;
+  scope.out.Error({path, 0, 0}, "a height field needs two rows or more of two heights or more");
   return false;
 }
 
@@ -110,6 +175,17 @@ bool ReadCsv(const std::string& path, const Scope& scope, HeightFieldDef& field)
 void Check(const MapReader& map, HeightFieldText& field) {
   field.material = ToMaterial(map, field.surface);
   field.at = map.at();
+  const std::string& file = field.file.text;
+  if (IsImage(file)) {
+    map.Require("height_range_m");
+  } else if (map.Has("height_range_m")) {
+    map.Error("height_range_m", map.Path("height_range_m") + " has no effect here",
+              "it says what black and white are in an image, .png");
+  }
+  if ((EndsIn(file, ".h5") || EndsIn(file, ".hdf5"))) {
+    map.Error("file", map.Path("file") + " does not say which data set",
+              "behind a colon: " + file + ":/z");
+  }
   for (const char* key : {"columns", "rows"}) {
     if (map.Has("height_m")) map.Require(key);
     if (map.Has("file") && map.Has(key)) {
@@ -126,9 +202,7 @@ void Check(const MapReader& map, TerrainMeshText& mesh) {
 std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const Scope& scope) {
   HeightFieldDef field = text;
   if (!text.file.text.empty()) {
-    field.columns = field.rows = 0;
-    const std::string path = PathBeside(text.file.at.file, text.file.text);
-    if (!ReadCsv(path, scope, field)) return std::nullopt;
+    if (!ReadHeights(text, scope, field)) return std::nullopt;
   } else {
     const bool known = text.formula.value != nullptr && field.columns >= 2 && field.rows >= 2 &&
                        std::isfinite(field.cell_m);

@@ -18,6 +18,7 @@ struct FormulaForm {
 struct HeightFieldText : HeightFieldDef {
   SourceRef at;
   Placed file;
+  std::optional<std::pair<double, double>> height_range_m;
   Raw<FormulaForm> formula;
   SurfaceText surface;
 };
@@ -57,8 +58,12 @@ void Keys(Io& io, Field& f) {
   } else {
     io.OneOf({"file", "height_m"});
     io("file", f.file,
-       "Heights in m as CSV, from the experiment's folder: a line for each row of corners, that of "
-       "the least y first, x rising along the line. Lines that begin with # are skipped.");
+       "Heights, from the experiment's folder. CSV: in m, a line for each row of corners, that of "
+       "the least y first, x rising along the line; lines that begin with # are skipped. PNG: "
+       "gray, "
+       "best with 16 bits, with `height_range_m`; as on a map, x rises to the right and y upwards. "
+       "HDF5: `hills.h5:/z`, the data set z, in m, its rows as those of CSV.");
+    io("height_range_m", f.height_range_m, "Of an image: the heights of black and of white.");
     io("columns", f.columns, kCorners, kInherited, "Corners along x. Goes with a formula.");
     io("rows", f.rows, kCorners, kInherited, "Corners along y. Goes with a formula.");
   }

@@ -174,6 +174,8 @@ void ReadStlBinary(const std::string& path, std::string_view bytes, MeshFile& me
   }
 }
 
+}  // namespace
+
 bool EndsIn(const std::string& path, std::string_view end) {
   if (path.size() < end.size()) return false;
   for (std::size_t i = 0; i < end.size(); ++i) {
@@ -182,8 +184,6 @@ bool EndsIn(const std::string& path, std::string_view end) {
   }
   return true;
 }
-
-}  // namespace
 
 std::optional<MeshFile> ReadMeshFile(const std::string& path, Diagnostics& out) {
   const bool obj = EndsIn(path, ".obj");

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "taut/diagnostics.h"
@@ -19,5 +20,8 @@ struct MeshFile {
 /// Wavefront OBJ (`v` and `f`; faces of more corners become fans) or STL, text or binary, by the
 /// name's end. Nothing and complaints, with lines where there are some, if it is none.
 std::optional<MeshFile> ReadMeshFile(const std::string& path, Diagnostics& out);
+
+/// Whether a file is of a kind, in small or capital letters: ".obj".
+bool EndsIn(const std::string& path, std::string_view end);
 
 }  // namespace taut::description

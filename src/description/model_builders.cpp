@@ -9,7 +9,9 @@ ActuatorText::ActuatorText() {
       std::numeric_limits<double>::infinity();
 }
 
-void Check(const MapReader& map, RodText& rod) { rod.material = ToMaterial(map, rod.surface); }
+void Check(const MapReader& map, RodText& rod) {
+  rod.material = ToMaterial(map, rod.surface, true);
+}
 
 void Check(const MapReader& map, SphereText& sphere) {
   sphere.material = ToMaterial(map, sphere.surface);

@@ -32,6 +32,21 @@ bool Near(const Quat& a, const Quat& b) {
   return Near(Rotate(a, x), Rotate(b, x)) && Near(Rotate(a, y), Rotate(b, y));
 }
 bool Same(const Material& a, const Material& b) {
+  if (a.stribeck.has_value() != b.stribeck.has_value() ||
+      a.directions.has_value() != b.directions.has_value()) {
+    return false;
+  }
+  if (a.stribeck &&
+      (a.stribeck->speed_m_per_s != b.stribeck->speed_m_per_s ||
+       a.stribeck->viscous_friction_s_per_m != b.stribeck->viscous_friction_s_per_m)) {
+    return false;
+  }
+  if (a.directions && (a.directions->forward != b.directions->forward ||
+                       a.directions->backward != b.directions->backward ||
+                       a.directions->sideways != b.directions->sideways ||
+                       !Near(a.directions->axis, b.directions->axis))) {
+    return false;
+  }
   return a.static_friction == b.static_friction && a.kinetic_friction == b.kinetic_friction &&
          a.restitution == b.restitution;
 }

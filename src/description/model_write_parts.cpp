@@ -4,7 +4,9 @@
 
 #include "description/model_write.h"
 #include "description/reader.h"
+#include "description/surface_keys.h"
 #include "description/union_find.h"
+#include "description/write_keys.h"
 #include "math/vec.h"
 
 namespace taut::description {
@@ -28,6 +30,14 @@ std::string SurfaceText(const Material& m, bool collides) {
                          : ", static_friction: " + Shown(m.static_friction) +
                                ", kinetic_friction: " + Shown(m.kinetic_friction);
   if (m.restitution != 0) text += ", restitution: " + Shown(m.restitution);
+  if (m.stribeck) text += ", stribeck: " + FlowWriter<false>::Text(*m.stribeck);
+  if (m.directions) {
+    const FrictionDirections& d = *m.directions;
+    text += ", friction_directions: {forward: " + Shown(d.forward) +
+            ", backward: " + Shown(d.backward) + ", sideways: " + Shown(d.sideways);
+    if (Dot(d.axis, d.axis) > 0) text += ", axis: " + FlowWriter<false>::Text(d.axis);
+    text += "}";
+  }
   return collides ? text : text + ", collides: false";
 }
 

@@ -194,6 +194,28 @@ void CheckPositions(const RobotSpec& robot, Diagnostics& out, const SourceRef* p
       complain(robot.terrain_box_sources[b], "the box \"" + box.name + "\"", far_m);
     }
   }
+  for (std::size_t f = 0; f < def.height_fields.size(); ++f) {
+    const HeightFieldDef& field = def.height_fields[f];
+    const double side_m = 0.5 * field.cell_m * (std::max(field.columns, field.rows) - 1);
+    double high_m = 0.0;
+    for (const double height : field.height_m) {
+      high_m = std::max(high_m, std::fabs(field.origin_m.z + height));
+    }
+    const Vec3& middle = field.origin_m;
+    const double far_m = std::max(Farthest({middle.x, middle.y, 0.0}) + side_m, high_m);
+    if (too_far(far_m)) {
+      complain(robot.height_field_sources[f], "the height field \"" + field.name + "\"", far_m);
+    }
+  }
+  for (std::size_t m = 0; m < def.terrain_meshes.size(); ++m) {
+    double far_m = 0.0;
+    for (const Vec3& corner : def.terrain_meshes[m].corners_m) {
+      far_m = std::max(far_m, Farthest(corner));
+    }
+    if (too_far(far_m)) {
+      complain(robot.mesh_sources[m], "the mesh \"" + def.terrain_meshes[m].name + "\"", far_m);
+    }
+  }
 }
 
 void WarnOfOddNumbers(const RobotSpec& robot, Diagnostics& out) {

@@ -2,7 +2,25 @@
 
 namespace taut::description {
 
-Material ToMaterial(const MapReader& map, const SurfaceText& surface) {
+namespace {
+
+void CheckLaws(const MapReader& map, const Material& material, bool has_axis) {
+  if (material.stribeck && material.static_friction == material.kinetic_friction &&
+      material.stribeck->viscous_friction_s_per_m == 0.0) {
+    map.Error("stribeck", map.Path("stribeck") + " has no effect",
+              "static_friction above kinetic_friction, or viscous_friction_s_per_m");
+  }
+  if (!material.directions || has_axis) return;
+  const Vec3& axis = material.directions->axis;
+  if (axis.x == 0.0 && axis.y == 0.0 && axis.z == 0.0) {
+    map.Error("friction_directions", map.Path("friction_directions") + " needs an axis",
+              "only rods have one of their own: axis: [1, 0, 0]");
+  }
+}
+
+}  // namespace
+
+Material ToMaterial(const MapReader& map, const SurfaceText& surface, bool has_axis) {
   Material material = surface.material;
   if (map.Has("friction")) {
     material.static_friction = material.kinetic_friction = surface.friction;
@@ -21,6 +39,7 @@ Material ToMaterial(const MapReader& map, const SurfaceText& surface) {
                 "a contact that sticks holds at least as much as one that slides");
     }
   }
+  CheckLaws(map, material, has_axis);
   return material;
 }
 

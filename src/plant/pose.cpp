@@ -41,9 +41,21 @@ RobotSpec RobotAt(const RobotSpec& robot, const Pose& pose) {
     if (def.bodies[b].fixed) return;
     point_m = pose.bodies[b].position_m + Rotate(turns[b], point_m - robot.def.bodies[b].com_m);
   };
-  for (SphereDef& sphere : def.spheres) move(sphere.body, sphere.center_m);
-  for (CapsuleDef& rod : def.capsules) move(rod.body, rod.from_m), move(rod.body, rod.to_m);
+  const auto turn = [&](int body, Material& material) {
+    if (body == kWorld || !material.directions) return;
+    Vec3& axis = material.directions->axis;
+    axis = Rotate(turns[static_cast<std::size_t>(body)], axis);
+  };
+  for (SphereDef& sphere : def.spheres) {
+    move(sphere.body, sphere.center_m);
+    turn(sphere.body, sphere.material);
+  }
+  for (CapsuleDef& rod : def.capsules) {
+    move(rod.body, rod.from_m), move(rod.body, rod.to_m);
+    turn(rod.body, rod.material);
+  }
   for (BoxDef& box : def.boxes) {
+    turn(box.body, box.material);
     move(box.body, box.center_m);
     if (def.bodies[static_cast<std::size_t>(box.body)].fixed) continue;
     box.orientation = turns[static_cast<std::size_t>(box.body)] * box.orientation;

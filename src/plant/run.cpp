@@ -16,18 +16,27 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 std::string DescribeStatus(const ModelDef& def, const WorldStatus& status) {
+  const auto body_name = [&] { return def.bodies[static_cast<std::size_t>(status.body)].name; };
+  const std::string when = std::to_string(status.first_time_s) + " s";
+  if (status.bits == kStatusFellOff) {
+    const auto ground = static_cast<std::size_t>(status.ground), fields = def.height_fields.size();
+    return "body " + body_name() + " left the " +
+           (ground < fields ? "height field " + def.height_fields[ground].name
+                            : "mesh " + def.terrain_meshes[ground - fields].name) +
+           " and is below all of the terrain at t = " + when;
+  }
   std::string out;
   const auto add = [&](const char* text) { out += (out.empty() ? "" : "; ") + std::string(text); };
   if (status.bits & kStatusNonFinite) add("the state is no longer finite");
   if (status.bits & kStatusNotConverged) add("a contact solve did not converge");
   if (status.bits & kStatusStepTooLong) add("the step is too long for the tension of a cable");
   if (status.bits & kStatusContactOverflow) add("more contacts than there is room for");
+  if (status.bits & kStatusFellOff) add("a body is below all of the terrain");
   if (out.empty()) return out;
-  if (status.body != kWorld)
-    out += ", body " + def.bodies[static_cast<std::size_t>(status.body)].name;
+  if (status.body != kWorld) out += ", body " + body_name();
   if (status.cable >= 0)
     out += ", cable " + def.cables[static_cast<std::size_t>(status.cable)].name;
-  return out + ", first at t = " + std::to_string(status.first_time_s) + " s";
+  return out + ", first at t = " + when;
 }
 
 /// One experiment while it runs.
@@ -142,6 +151,7 @@ std::optional<RunSummary> RunExperiment(const ExperimentSpec& experiment, const 
   BatchOptions batch_options;
   batch_options.threads = options.threads;
   batch_options.simd = options.simd;
+  batch_options.friction = options.friction;
   Batch batch(model, batch_options);
   std::optional<SettledStart> settled;
   if (!plant::PrepareStart(experiment, batch, out, {}, &settled)) return std::nullopt;

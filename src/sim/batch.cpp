@@ -113,6 +113,9 @@ Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
       kernel(KernelOf(*options.simd)),
       layout(model->MakeLayout()),
       pool(options.threads) {
+  friction = {model->friction_sides.data(), static_cast<int>(model->shapes.size()),
+              model->shape_of_point.data(), model->def().friction_combine, options.friction.get()};
+  if (model->friction_by_slip || friction.law != nullptr) view.friction = &friction;
   const int n = lanes();
   const auto group_count = static_cast<std::size_t>((options.worlds + n - 1) / n);
   const auto bodies = static_cast<std::size_t>(model->body_count);
@@ -127,6 +130,7 @@ Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
   groups.resize(group_count);
   for (std::size_t g = 0; g < group_count; ++g) {
     groups[g].lanes = n;
+    groups[g].first_world = static_cast<int>(g) * n;
     groups[g].rows = rows.get() + g * stride;
     groups[g].slots_used = slots_used.data() + g * bodies;
     groups[g].forced_nodes = forced.data() + g * nodes;

@@ -37,6 +37,7 @@ struct Batch::Impl {
 
   std::shared_ptr<const sim::Tables> model;
   sim::View view;
+  sim::FrictionTable friction;  ///< `view` points to it, if it is needed.
   BatchOptions options;
   const sim::Kernel* kernel;
   sim::Layout layout;

@@ -12,7 +12,8 @@ namespace taut::sim {
 /// Checks numbers and names what is wrong; there are no file positions at this level.
 class Checker {
  public:
-  explicit Checker(Diagnostics& out) : out_(out) {}
+  Checker(const ModelDef& def, Diagnostics& out)
+      : out_(out), cone_(def.friction_law == FrictionLaw::kCone) {}
   void Require(bool good, const std::string& what) {
     if (!good) out_.Error({}, what);
   }
@@ -30,16 +31,32 @@ class Checker {
     Require(body >= kWorld && body < static_cast<int>(def.bodies.size()),
             what + " refers to a body that is not there");
   }
-  void Surface(const Material& m, const std::string& what) {
+  /// `has_axis`: the shape itself says where forward is.
+  void Surface(const Material& m, const std::string& what, bool has_axis = false) {
     NonNegative(m.kinetic_friction, what + ": kinetic friction");
     NonNegative(m.static_friction, what + ": static friction");
     Require(!(m.static_friction < m.kinetic_friction),
             what + ": static friction must not be below kinetic friction");
     Require(m.restitution >= 0 && m.restitution <= 1, what + ": restitution must be 0..1");
+    if (m.stribeck) {
+      Positive(m.stribeck->speed_m_per_s, what + ": Stribeck's speed");
+      NonNegative(m.stribeck->viscous_friction_s_per_m, what + ": viscous friction");
+    }
+    if (m.directions) Directions(*m.directions, what, has_axis);
+  }
+  void Directions(const FrictionDirections& d, const std::string& what, bool has_axis) {
+    NonNegative(d.forward, what + ": factor of friction forward");
+    NonNegative(d.backward, what + ": factor of friction backward");
+    NonNegative(d.sideways, what + ": factor of friction sideways");
+    Finite(d.axis, what + ": axis of friction");
+    Require(has_axis || d.axis.x != 0 || d.axis.y != 0 || d.axis.z != 0,
+            what + ": the axis of friction must not be zero; only rods have one of their own");
+    Require(cone_, what + ": friction by direction needs FrictionLaw::kCone");
   }
 
  private:
   Diagnostics& out_;
+  bool cone_;
 };
 
 /// Height fields and meshes (surface_check.cpp).

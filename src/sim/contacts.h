@@ -20,6 +20,7 @@ struct Contact : ContactPoint<Num, kLinks> {
   Num deep;             ///< What velocities leave of it for displacements, below 0 [m]; or 0.
   Num lands;            ///< 1 if it closes faster than this step's forces make it.
   Num radius;           ///< From the shape's skeleton to its surface [m].
+  bool directed;        ///< In some lane its tangents are not of length 1 (friction.inl).
   bool upright;         ///< Its directions are z, x and y, in all lanes.
   V3<Num> arm[kLinks];  ///< From the centre of mass [m].
   Num static_friction, kinetic_friction;

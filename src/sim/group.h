@@ -13,7 +13,7 @@ namespace taut::sim {
 struct LaneStatus {
   uint32_t bits = 0;
   double first_time_s = 0;
-  int body = kWorld, cable = -1;
+  int body = kWorld, cable = -1, ground = -1;
 };
 
 /// The key of a slot or of a memory that holds nothing. Others: see Tables.
@@ -24,6 +24,7 @@ inline constexpr double kSlipUnknown = -1.0;
 /// N worlds. `rows` is laid out by `Layout`: row i of lane j is rows[i * lanes + j].
 struct Group {
   int lanes = 1;
+  int first_world = 0;
   double* rows = nullptr;
   int* slots_used = nullptr;    ///< Per body: its slots that some lane used in the last step.
   int touches_used = 0;         ///< The longest lane's list of touches of the last step.

@@ -11,6 +11,7 @@
 #include "sim/rows.h"
 #include "sim/poison.inl"
 #include "sim/passing.h"
+#include "sim/friction.h"
 #include "sim/stage_bodies.inl"
 #include "sim/stiff_cables.inl"
 #include "sim/dc_motor.inl"
@@ -19,6 +20,7 @@
 #include "sim/rod_distance.inl"
 #include "sim/stage_collide.inl"
 #include "sim/many_shapes.inl"
+#include "sim/friction.inl"
 #include "sim/prepare_contact.inl"
 #include "sim/fit_biases.inl"
 #include "sim/follow_arcs.inl"
@@ -127,6 +129,35 @@ void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& w
   }
 }
 
+/// Lanes in which a body is below all ground (kStatusFellOff).
+template <class W>
+MaskOf<W> FellOff(const View& m, const Rows<W>& s) noexcept {
+  const W zero = W::Splat(0.0);
+  auto fallen = MaskOf<W>::Splat(false);
+  for (int b = 0; b < m.body_count; ++b) {
+    fallen = fallen | ((s.pos[b].z < W::Splat(m.floor_m)) & (s.inv_mass[b] > zero));
+  }
+  return fallen & (s.gravity[0].z < zero) & (s.halted[0] == zero);
+}
+
+/// Which body of a lane fell off, and off which of the surfaces.
+template <class W>
+void NameFallen(const View& m, const Rows<W>& s, int lane, LaneStatus& status) noexcept {
+  int body = 0;
+  while (!(s.pos[body].z[lane] < m.floor_m && s.inv_mass[body][lane] > 0)) ++body;
+  const double x = s.pos[body].x[lane], y = s.pos[body].y[lane];
+  double least = 0;
+  for (int i = 0; i < m.ground_count; ++i) {
+    const SurfaceTable& g = *m.shapes[m.first_ground + i].shape_P.surface.table;
+    const double dx = x < g.low.x ? g.low.x - x : x > g.high.x ? x - g.high.x : 0.0;
+    const double dy = y < g.low.y ? g.low.y - y : y > g.high.y ? y - g.high.y : 0.0;
+    if (i > 0 && !(dx * dx + dy * dy < least)) continue;
+    least = dx * dx + dy * dy;
+    status.ground = i;
+  }
+  status.body = body;
+}
+
 /// Writes down which lanes have something to say, and halts those that are no longer finite.
 template <class W>
 void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
@@ -150,7 +181,9 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
   const auto too_long = (share > W::Splat(1.0)) & (!was_halted);
   s.residual[0] = solve.residual;
   s.linear_solves[0] = solve.linear_solves;
-  if (!Any(lost | unsolved | too_long) && overflow == 0) return;
+  auto fallen = MaskOf<W>::Splat(false);
+  if (m.ground_count > 0) fallen = FellOff(m, s);
+  if (!Any(lost | unsolved | too_long | fallen) && overflow == 0) return;
   for (int lane = 0; lane < W::kLanes; ++lane) {
     if (was_halted[lane]) continue;
     LaneStatus& status = g.status[lane];
@@ -159,6 +192,7 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
     if (unsolved[lane]) bits |= kStatusNotConverged;
     if (overflow & (1u << lane)) bits |= kStatusContactOverflow;
     if (too_long[lane]) bits |= kStatusStepTooLong;
+    if (fallen[lane]) bits |= kStatusFellOff;
     if (bits != 0 && status.bits == 0) {
       status.first_time_s = s.time[0][lane];
       status.body = kWorld;
@@ -172,6 +206,7 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
         }
       }
     }
+    if (bits & ~status.bits & kStatusFellOff) NameFallen(m, s, lane, status);
     if (bits & kStatusNonFinite) {
       for (int c = m.cable_count - 1; c >= 0; --c) {
         const double x = s.rest[c][lane] + s.target[c][lane];

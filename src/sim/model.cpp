@@ -40,6 +40,7 @@ class Compiler {
     Pairs();
     sim::LayOutTree(t_);
     sim::LayOutMotors(t_);
+    sim::LayOutFriction(t_), sim::LayOutFloor(t_);
     sim::CoupleCables(t_);
     Check();
   }
@@ -260,6 +261,7 @@ class Compiler {
       for (const std::size_t number : shapes_of_[static_cast<std::size_t>(body)]) {
         const sim::ShapeTable& s = t_.shapes[number];
         WithShape(s.shape_P, [&](const auto& shape) { AddPoints(first, shape, s.material); });
+        t_.shape_of_point.resize(t_.points.size(), static_cast<int>(number));
       }
     }
     t_.first_point.push_back(static_cast<int>(t_.points.size()));

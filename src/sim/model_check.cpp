@@ -39,7 +39,8 @@ void CheckShapes(const ModelDef& def, Checker& check) {
     check.Finite(c.from_m, "rod " + c.name + ": end");
     check.Finite(c.to_m, "rod " + c.name + ": end");
     check.Positive(c.radius_m, "rod " + c.name + ": radius");
-    check.Surface(c.material, "rod " + c.name);
+    const Vec3 d{c.to_m.x - c.from_m.x, c.to_m.y - c.from_m.y, c.to_m.z - c.from_m.z};
+    check.Surface(c.material, "rod " + c.name, d.x != 0 || d.y != 0 || d.z != 0);
   }
   const auto box = [&](const std::string& name, const Vec3& center, const Quat& q, const Vec3& half,
                        const Material& m) {
@@ -183,7 +184,7 @@ void CheckSizes(const ModelDef& def, Checker& check) {
 
 bool CheckModel(const ModelDef& def, Diagnostics& out) {
   const std::size_t before = out.items().size();
-  Checker check(out);
+  Checker check(def, out);
   check.Finite(def.gravity_m_per_s2, "gravity");
   CheckBodies(def, check);
   CheckShapes(def, check);

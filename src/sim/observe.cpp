@@ -309,6 +309,7 @@ WorldStatus Batch::Status(int world) const noexcept {
           s.first_time_s,
           s.body,
           s.cable,
+          s.ground,
           d.at(world, d.layout.residual),
           static_cast<int>(d.at(world, d.layout.linear_solves))};
 }

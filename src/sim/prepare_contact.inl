@@ -5,17 +5,14 @@ namespace taut::sim {
 
 /// A contact that is inside may leave at this share of its speed.
 inline constexpr double kPushOutShare = 1e-3;
-/// A contact that moves faster than this along its surface slides, a slower one sticks [m/s].
-inline constexpr double kSlidingMPerS = 1e-6;
-
 template <class Num>
 TAUT_INLINE V3<Num> PointVelocity(const V3<Num>& v, const V3<Num>& w, const V3<Num>& arm) noexcept {
   return v + Cross(w, arm);
 }
 
 /// Two unit tangents. With one friction direction the first lies along the sliding velocity that
-/// would result without contact, as Bullet chooses it. Where a plane has given them (frame >= 0)
-/// they stay.
+/// would result without contact, as Bullet chooses it. Where a plane or friction.inl has given them
+/// (frame >= 0) they stay.
 template <class Num, int kLinks>
 TAUT_INLINE void MakeTangents(Contact<Num, kLinks>& c, const V3<Num>& velocity) noexcept {
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
@@ -129,6 +126,7 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   c.l[0] = Max(h * Dot(memory.force, c.links[0].lin[0]), zero) * c.live;
   c.l[1] = h * Dot(memory.force, c.links[0].lin[1]) * c.live;
   c.l[2] = c.one_direction ? zero : h * Dot(memory.force, c.links[0].lin[2]) * c.live;
+  if (c.directed) FinishDirected(c);
 }
 
 /// Whether a contact slid in this step: decides its coefficient in the next. `u`: its velocities.

@@ -87,6 +87,7 @@ class SlotFiller {
       // Lanes that have no such contact keep a harmless one.
       ++count_;
       slot.one_direction = one_direction_;
+      slot.directed = false;
       slot.upright = found.upright;
       slot.live = W::Splat(0.0);
       PutContact(slot, found, MaskOf<W>::Splat(true));

@@ -40,6 +40,9 @@ void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
       Contact<W, 1>& c = work.contacts[m.first_slot[b] + k];
       const auto memory = Recall(s, c, m.first_slot[b], g.slots_used[b], cursor);
       const BodyWork<W>& body = work.bodies[b];
+      for (int lane = 0; m.friction != nullptr && lane < W::kLanes; ++lane) {
+        if (c.live[lane] > 0) AskFriction(m, s, g, work, {b}, memory, lane, lane, c);
+      }
       PrepareContact(c, memory, body, b, s.inv_mass[b], body, b, s.inv_mass[b], s.friction_scale[0],
                      step_s);
     }
@@ -180,6 +183,7 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
     c.kinetic_friction = L::Splat(pair.kinetic_friction);
     c.restitution = L::Splat(pair.restitution);
     c.one_direction = m.along_slip;
+    c.directed = false;
     c.links[0].lin[0] = simd::Splat3<L>(point.normal);
     c.links[0].lin[1] = c.links[0].lin[2] = c.links[0].lin[0];  // to be made
     ContactMemory<L> memory = ContactMemory<L>::None();
@@ -191,6 +195,7 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
       memory.force = OfLane<L>(s.contact_force[memory_at], lane);
       memory.slip = OfLane<L>(s.contact_slip[memory_at], lane);
     }
+    if (m.friction != nullptr) AskFriction(m, s, g, work, bodies, memory, lane, 0, c);
     PrepareContact(c, memory, body[0], bodies[0], OfLane<L>(s.inv_mass[bodies[0]], lane), body[1],
                    bodies[1], OfLane<L>(s.inv_mass[bodies[1]], lane),
                    OfLane<L>(s.friction_scale[0], lane), step_s);

@@ -1,6 +1,10 @@
 // The tables as the step sees them, and where a group of worlds keeps what.
 #include "sim/tables.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace taut::sim {
 
 View Tables::View() const noexcept {
@@ -36,7 +40,25 @@ View Tables::View() const noexcept {
           supplies.data(),
           static_cast<int>(tree.size()),
           tree_shapes,
-          tree.data()};
+          tree.data(),
+          nullptr,
+          floor_m,
+          static_cast<int>(shapes.size() - surfaces.size()),
+          static_cast<int>(surfaces.size())};
+}
+
+void LayOutFloor(Tables& t) {
+  const ModelDef& def = t.def();
+  t.floor_m = -std::numeric_limits<double>::infinity();
+  if (t.surfaces.empty() || !def.planes.empty()) return;
+  t.floor_m = -t.floor_m;
+  for (const Surface& surface : t.surfaces) {
+    t.floor_m = std::min(t.floor_m, surface.table().low.z);
+  }
+  for (const TerrainBoxDef& box : def.terrain_boxes) {
+    const Vec3& h = box.half_extents_m;  // no corner is lower than this
+    t.floor_m = std::min(t.floor_m, box.center_m.z - std::sqrt(h.x * h.x + h.y * h.y + h.z * h.z));
+  }
 }
 
 Layout Tables::MakeLayout() const {

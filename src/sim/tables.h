@@ -77,6 +77,28 @@ struct PointTable {
   double static_friction[8] = {}, kinetic_friction[8] = {}, restitution[8] = {};  ///< A plane each.
 };
 
+/// One side of a contact as friction sees it.
+struct FrictionSide {
+  ShapeRef ref;
+  int body = kWorld;  ///< As in a `ModelDef`.
+  bool directed = false;
+  bool by_slip = false;  ///< Anything but two constant coefficients.
+  double at_rest = 0, sliding = 0;
+  double inv_stribeck2 = 0;  ///< 1 / speed^2 [s^2/m^2], or 0.
+  double viscous = 0;        ///< [s/m]
+  double forward = 1, backward = 1, sideways = 1;
+  double axis_P[3] = {};  ///< Unit vector, if directed.
+};
+
+/// What a step needs where friction is more than two coefficients a pair (friction.h).
+struct FrictionTable {
+  const FrictionSide* sides = nullptr;  ///< Of all shapes, then of all planes.
+  int shape_count = 0;
+  const int* shape_of_point = nullptr;
+  CombineRule combine = CombineRule::kGeometricMean;
+  const ContactFriction* law = nullptr;  ///< Of the user's, or null.
+};
+
 struct PlaneTable {
   double normal[3] = {}, tangent1[3] = {}, tangent2[3] = {};
   double offset_m = 0;   ///< normal . x of its points.
@@ -165,6 +187,9 @@ struct View {
   const SupplyTable* supplies;
   int tree_nodes, tree_shapes;
   const TreeNode* tree;
+  const FrictionTable* friction;   ///< Null: coefficients are those of the pairs.
+  double floor_m;                  ///< Whoever is below falls for ever; minus infinity: nobody.
+  int first_ground, ground_count;  ///< Surfaces among the shapes.
 
   // Always inline: of a function that several instruction sets emit the linker keeps any one.
   /// Contacts that one world may have at once.
@@ -219,10 +244,14 @@ class Tables final : public Model {
   std::uint32_t first_pair_id = 0;  ///< Keys below are point * planes + plane, others of pairs.
   int pair_capacity = 0;            ///< Contacts of moving bodies that one world may have at once.
   bool along_slip = false;
-  std::vector<TreeNode> tree;    ///< Of the world's shapes, where they are more than kFewShapes.
-  int tree_shapes = 0;           ///< How many those are; 0 without a tree.
-  std::vector<double> coupling;  ///< Per cable: sum over all cables of |coupling| [1/kg].
-  double largest_coupling = 0;   ///< Largest eigenvalue of the couplings [1/kg].
+  std::vector<FrictionSide> friction_sides;  ///< Of all shapes, then of all planes.
+  std::vector<int> shape_of_point;
+  bool friction_by_slip = false;  ///< Some side is.
+  double floor_m = 0;             ///< See View.
+  std::vector<TreeNode> tree;     ///< Of the world's shapes, where they are more than kFewShapes.
+  int tree_shapes = 0;            ///< How many those are; 0 without a tree.
+  std::vector<double> coupling;   ///< Per cable: sum over all cables of |coupling| [1/kg].
+  double largest_coupling = 0;    ///< Largest eigenvalue of the couplings [1/kg].
 
   /// The same tables as plain pointers, for code that is compiled for several instruction sets
   /// and must not touch the standard library.
@@ -232,6 +261,12 @@ class Tables final : public Model {
 
 /// Fills the tree of the world's shapes if they are many, and says so to the pairs with it.
 void LayOutTree(Tables& tables);
+
+/// Fills floor_m.
+void LayOutFloor(Tables& tables);
+
+/// Fills friction_sides and friction_by_slip.
+void LayOutFriction(Tables& tables);
 
 /// Fills motors and supplies, and which cable has which motor.
 void LayOutMotors(Tables& tables);

@@ -61,6 +61,66 @@ TEST(Ground, ABallRollsOverTheTrianglesOfAPlaneAsOnAPlane) {
   }
 }
 
+TEST(Ground, WhoeverFallsOffSaysSo) {
+  // A ball beside two fields, from 0.2 m above the lower one's plane.
+  const double h = 1e-3, fall = std::sqrt(2 * 0.2 / kG);
+  ModelDef def;
+  scenes::AddBall(def, "far", 1, 0.05, {0, 0, 1.05}, {0.5, 0.5, 0});
+  scenes::AddBall(def, "ball", 1, 0.05, {0, 3, 0.2}, {0.5, 0.5, 0});
+  def.height_fields.push_back(scenes::Field(20, 20, 0.1, {}, [](double, double) { return 1.0; }));
+  def.height_fields.push_back(scenes::Field(20, 20, 0.1, {}, [](double, double) { return 0.0; }));
+  def.height_fields[1].origin_m = {0, 5.0, 0};
+  BatchOptions options;
+  options.worlds = 3;
+  for (const Simd simd : {Simd::kScalar, Simd::kSse2, Simd::kAvx2, Simd::kAvx512}) {
+    options.simd = simd;
+    Batch world = MakeBatch(def, options);
+    for (const int safe : {0, 2}) {
+      BodyState s = world.Body(safe, 1);
+      s.position_m = {0, 5, 0.05};
+      world.SetBodyState(safe, 1, s);
+    }
+    world.Step(h, StepsIn(0.3, h));
+    EXPECT_EQ(world.Status(0).bits, kStatusOk);
+    EXPECT_EQ(world.Status(2).bits, kStatusOk);
+    const WorldStatus status = world.Status(1);
+    EXPECT_EQ(status.bits, kStatusFellOff);
+    EXPECT_EQ(status.body, 1);
+    EXPECT_EQ(status.ground, 1);
+    EXPECT_NEAR(status.first_time_s, fall, h);
+    // Sticky; gone when somebody says so and the ball is back.
+    BodyState back = world.Body(1, 1);
+    back.position_m.z = 0.2;
+    back.velocity_m_per_s = {};
+    world.SetBodyState(1, 1, back);
+    world.Step(h);
+    EXPECT_EQ(world.Status(1).bits, kStatusFellOff);
+    EXPECT_EQ(world.Status(1).first_time_s, status.first_time_s);
+    world.ClearStatus(1);
+    world.Step(h);
+    EXPECT_EQ(world.Status(1).bits, kStatusOk);
+  }
+  const auto bits = [&](const ModelDef& other) {
+    Batch world = MakeBatch(other);
+    world.Step(h, StepsIn(0.3, h));
+    return world.Status(0).bits;
+  };
+  ModelDef caught = def;  // by a plane, at last
+  caught.planes.push_back({"floor", {0, 0, 1}, {0, 0, -9}, {}});
+  EXPECT_EQ(bits(caught), kStatusOk);
+  ModelDef held = def;
+  held.bodies[1].fixed = true;
+  held.bodies[1].com_m.z = held.spheres[1].center_m.z = -1;
+  EXPECT_EQ(bits(held), kStatusOk);
+  ModelDef weightless = def;
+  weightless.gravity_m_per_s2 = {};
+  weightless.bodies[1].com_m.z = weightless.spheres[1].center_m.z = -1;
+  EXPECT_EQ(bits(weightless), kStatusOk);
+  ModelDef above_a_box = def;
+  above_a_box.terrain_boxes.push_back({"low", {9, 9, -3}, {}, {1, 1, 1}, {}});
+  EXPECT_EQ(bits(above_a_box), kStatusOk);
+}
+
 TEST(Ground, ARodSlidesAsFarAsOnAPlane) {
   const Material material{0.2, 0.2, 0};
   for (const Ground& ground : kGrounds) {

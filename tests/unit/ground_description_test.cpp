@@ -8,33 +8,11 @@
 #include "math/random.h"
 #include "math/vec.h"
 #include "taut/batch.h"
-#include "unit/experiment_fixture.h"
+#include "taut/run.h"
+#include "unit/ground_fixture.h"
 
 namespace taut::test {
 namespace {
-
-const std::string kGround = "- {name: ground, plane: {height_m: 0, friction: 0.5}}";
-
-class GroundText : public ExperimentFolder {
- protected:
-  std::optional<ExperimentSpec> Load(const std::string& terrain, Diagnostics& out) {
-    Write("trial.yaml", kExperiment);
-    Change(kGround, terrain);
-    return LoadExperiment(Path("trial.yaml"), {}, out);
-  }
-  RobotSpec With(const std::string& terrain) {
-    Diagnostics out;
-    const auto experiment = Load(terrain, out);
-    EXPECT_TRUE(experiment) << out.Format();
-    return experiment ? experiment->robot : RobotSpec{};
-  }
-  /// What is said of a terrain that is wrong.
-  std::string Said(const std::string& terrain) {
-    Diagnostics out;
-    EXPECT_FALSE(Load(terrain, out)) << terrain;
-    return out.Format();
-  }
-};
 
 TEST_F(GroundText, AFormulaIsLookedAtInEveryCorner) {
   const RobotSpec robot = With(
@@ -87,6 +65,41 @@ TEST_F(GroundText, HeightsComeFromCsv) {
   EXPECT_EQ(field.columns, 3);
   EXPECT_EQ(field.rows, 2);
   EXPECT_EQ(field.height_m, (std::vector<double>{0, 1, 2, 3, 4.5, -0.1}));
+}
+
+TEST_F(GroundText, GroundFarFromTheOriginIsRefused) {
+  const auto has = [](const std::string& text, const std::string& what) {
+    EXPECT_NE(text.find(what), std::string::npos) << text;
+  };
+  has(Said("- {name: hills, height_field: {columns: 3, rows: 3, cell_m: 1, height_m: 0, origin_m: "
+           "[1e9, 0, 0]}}"),
+      "error: the height field \"hills\" is 1e+09 m from the origin, where positions are rounded "
+      "to");
+  has(Said("- {name: hills, height_field: {columns: 3, rows: 3, cell_m: 1, height_m: 1e9}}"),
+      "error: the height field \"hills\" is 1e+09 m from the origin");
+  Write("rock.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1e9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  has(Said("- {name: rock, mesh: {file: rock.obj, scale_m: 1}}"),
+      "error: the mesh \"rock\" is 1e+09 m from the origin");
+}
+
+TEST_F(GroundText, ARunSaysWhoLeftTheGround) {
+  Write("ball.yaml",
+        "taut: 1\nkind: model\nname: ball\nnodes: {a: [0, 0, 0]}\n"
+        "builders: [{match: a, sphere: {radius_m: 0.05, mass_kg: 1}}]\n");
+  Write("fall.yaml",
+        "taut: 1\nkind: experiment\nname: fall\nmodel: ball.yaml\nduration_s: 0.5\n"
+        "start: as_described\nplace: {at_m: [3, 0, 0.2]}\n"
+        "terrain: [{name: hills, height_field: {columns: 3, rows: 3, cell_m: 1, height_m: 0}}]\n");
+  Diagnostics out;
+  const auto experiment = LoadExperiment(Path("fall.yaml"), {}, out);
+  ASSERT_TRUE(experiment) << out.Format();
+  const auto summary = RunExperiment(*experiment, {}, out);
+  ASSERT_TRUE(summary) << out.Format();
+  EXPECT_EQ(summary->status.bits, kStatusFellOff);
+  // In the step in which sqrt(2 * 0.2 / 9.81) = 0.2019 s falls.
+  EXPECT_EQ(summary->status_text,
+            "body ball left the height field hills and is below all of the terrain at t = 0.201000 "
+            "s");
 }
 
 /// A tetrahedron with its corners at the origin and 1 along each axis.
@@ -211,7 +224,7 @@ TEST_F(GroundText, WrongFieldsAreNamed) {
   has(said, "field.csv:3: error: number 2 of this line is none");
   has(said, "field.csv:4: error: number 2 of this line is none");
   Write("field.csv", "1,2\n");
-  has(field("file: field.csv, cell_m: 1"), "two lines or more");
+  has(field("file: field.csv, cell_m: 1"), "two rows or more of two heights or more");
   Write("field.csv", "1,2\n3,4\n");
   has(field("file: field.csv, cell_m: 1, rows: 2"), "rows has no effect here");
 }

@@ -1,0 +1,101 @@
+// What goes through the pipe: error as length and bytes (empty: none) | rows | columns | numbers,
+// in the machine's own form.
+#include "trace/hdf5_table.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdint>
+#include <utility>
+
+#include "base/input_file.h"
+#include "trace/child_process.h"
+#include "trace/hdf5.h"
+
+namespace taut::trace {
+namespace {
+
+constexpr std::chrono::seconds kPatience{30};
+constexpr std::uint64_t kMostErrorBytes = 1 << 16;
+
+/// The data set, with a sentence if it is none that holds a table.
+std::string OpenTable(const std::string& path, const std::string& name, double most, Hdf5Id& file,
+                      Hdf5Id& set, hsize_t size[2]) {
+  const QuietHdf5 quiet;
+  file = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file) return "is not HDF5 or is damaged: " + quiet.why();
+  set = Hdf5Id(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!set) return "has no data set " + name;
+  const Hdf5Id type(H5Dget_type(set), H5Tclose);
+  const H5T_class_t kind = H5Tget_class(type);
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) return name + " holds no numbers";
+  const Hdf5Id space(H5Dget_space(set), H5Sclose);
+  const int dimensions = H5Sget_simple_extent_ndims(space);
+  if (dimensions != 2) {
+    return fmt::format("{} has {} dimensions, a table has 2", name, dimensions);
+  }
+  H5Sget_simple_extent_dims(space, size, nullptr);
+  if (static_cast<double>(size[0]) * static_cast<double>(size[1]) > most) {
+    return fmt::format("{} has {} x {} numbers, more than {:.0f}", name, size[0], size[1], most);
+  }
+  return "";
+}
+
+/// All that the child does.
+void SendTable(const std::string& path, const std::string& name, double most,
+               const ChildOutput& to) {
+  Hdf5Id file, set;
+  hsize_t size[2] = {0, 0};
+  std::string error = OpenTable(path, name, most, file, set, size);
+  std::vector<double> values;
+  if (error.empty()) {
+    const QuietHdf5 quiet;
+    values.resize(size[0] * size[1]);
+    if (H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+      error = "is damaged: " + name + " cannot be read: " + quiet.why();
+    }
+  }
+  const std::uint64_t head[3] = {error.size(), size[0], size[1]};
+  to.Write(head, sizeof head);
+  to.Write(error.data(), error.size());
+  if (error.empty()) to.Write(values.data(), values.size() * sizeof(double));
+}
+
+}  // namespace
+
+std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::string& name,
+                                       double most, Diagnostics& out) {
+  // Whether it can be opened at all is told in the system's words.
+  constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+  if (!base::ReadInputFile(path, kMostBytes, "fewer numbers", out)) return std::nullopt;
+  ChildProcess child([&](const ChildOutput& to) { SendTable(path, name, most, to); },
+                     static_cast<std::size_t>(most) * 2 * sizeof(double), kPatience);
+  std::uint64_t head[3] = {};
+  std::string error;
+  Hdf5Table table;
+  bool good = child.Read(head, sizeof head) && head[0] <= kMostErrorBytes;
+  if (good) {
+    error.resize(head[0]);
+    good = child.Read(error.data(), error.size());
+  }
+  if (good && error.empty()) {
+    good = static_cast<double>(head[1]) * static_cast<double>(head[2]) <= most;
+    if (good) {
+      table.rows = static_cast<int>(head[1]);
+      table.columns = static_cast<int>(head[2]);
+      table.values.resize(head[1] * head[2]);
+      good = child.Read(table.values.data(), table.values.size() * sizeof(double));
+    }
+  }
+  if (!good) {
+    const std::string how = child.End();
+    error = "is damaged: reading it " + (how.empty() ? "gave nonsense" : how);
+  }
+  if (!error.empty()) {
+    out.Error({path}, error);
+    return std::nullopt;
+  }
+  return table;
+}
+
+}  // namespace taut::trace
