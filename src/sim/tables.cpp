@@ -35,7 +35,19 @@ View Tables::View() const noexcept {
           supplies.data(),
           static_cast<int>(tree.size()),
           tree_shapes,
-          tree.data()};
+          tree.data(),
+          static_cast<int>(joints.size()),
+          static_cast<int>(joint_rows.size()),
+          static_cast<int>(joint_bodies.size()),
+          joints.data(),
+          joint_rows.data(),
+          joint_bodies.data(),
+          joint_number.data(),
+          &joint_pattern,
+          joint_loops,
+          free_chains.empty() ? 0 : static_cast<int>(free_chains.size()) - 1,
+          free_chains.data(),
+          free_chain_bodies.data()};
 }
 
 Layout Tables::MakeLayout() const {

@@ -9,8 +9,11 @@
 #include <memory>
 #include <vector>
 
+#include "sim/body_frame.h"
+#include "sim/joint_table.h"
 #include "sim/shape_contacts.h"
 #include "sim/shape_tree.h"
+#include "sim/solve/elimination.h"
 #include "sim/state_rows.h"
 #include "sim/surface_build.h"
 #include "taut/batch.h"
@@ -163,6 +166,14 @@ struct View {
   const SupplyTable* supplies;
   int tree_nodes, tree_shapes;
   const TreeNode* tree;
+  int joint_count, joint_row_count, joint_body_count;
+  const JointTable* joints;
+  const JointRowTable* joint_rows;
+  const int *joint_bodies, *joint_number;
+  const BlockPattern* joint_pattern;
+  bool joint_loops;
+  int free_chain_count;
+  const int *free_chains, *free_chain_bodies;
 
   // Always inline: of a function that several instruction sets emit the linker keeps any one.
   /// Contacts that one world may have at once.
@@ -178,6 +189,10 @@ struct View {
         return motor_count;
       case Per::kNode:
         return node_count;
+      case Per::kJoint:
+        return joint_count;
+      case Per::kJointRow:
+        return joint_row_count;
       case Per::kBodyPair:
         return body_pair_count;
       case Per::kContact:
@@ -217,8 +232,18 @@ class Tables final : public Model {
   std::uint32_t first_pair_id = 0;  ///< Keys below are point * planes + plane, others of pairs.
   int pair_capacity = 0;            ///< Contacts of moving bodies that one world may have at once.
   bool along_slip = false;
-  std::vector<TreeNode> tree;    ///< Of the world's shapes, where they are more than kFewShapes.
-  int tree_shapes = 0;           ///< How many those are; 0 without a tree.
+  std::vector<TreeNode> tree;  ///< Of the world's shapes, where they are more than kFewShapes.
+  int tree_shapes = 0;         ///< How many those are; 0 without a tree.
+  std::vector<JointTable> joints;
+  std::vector<JointRowTable> joint_rows;
+  bool joint_loops = false;       ///< They close one, so that some of their rows may be redundant.
+  std::vector<int> joint_bodies;  ///< Those that joints move, in the order of elimination;
+  std::vector<int> joint_number;  ///< per body its place there, or -1;
+  BlockPattern joint_pattern{};   ///< the blocks of their system, in what follows.
+  std::vector<int> joint_slot, joint_below, joint_first_below;
+  /// Bodies that joints tie to each other and not to what does not move: where each chain of them
+  /// starts, one more, and all their bodies.
+  std::vector<int> free_chains, free_chain_bodies;
   std::vector<double> coupling;  ///< Per cable: sum over all cables of |coupling| [1/kg].
   double largest_coupling = 0;   ///< Largest eigenvalue of the couplings [1/kg].
 
@@ -233,6 +258,9 @@ void LayOutTree(Tables& tables);
 
 /// Fills motors and supplies, and which cable has which motor.
 void LayOutMotors(Tables& tables);
+
+/// Fills all that is of joints. `frames`: of the bodies and the world.
+void LayOutJoints(Tables& tables, const std::vector<Frame>& frames);
 
 /// Fills coupling and largest_coupling.
 void CoupleCables(Tables& tables);
