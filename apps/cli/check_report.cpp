@@ -138,12 +138,14 @@ std::string Loads(const ModelDef& def) {
 
 std::string Collisions(const ModelDef& def) {
   const std::vector<ShapeCount> shapes = CollidingShapes(def);
+  const auto apart = KeptApart(def);
   Table table({"pair of bodies", "pairs of shapes"});
   long long pairs = 0, shape_pairs = 0;
   for (std::size_t a = 0; a < shapes.size(); ++a) {
     for (std::size_t b = a + 1; b < shapes.size(); ++b) {
       const long long count = static_cast<long long>(shapes[a].total()) * shapes[b].total();
       if (count == 0 || (def.bodies[a].fixed && def.bodies[b].fixed)) continue;
+      if (apart.count({static_cast<int>(a), static_cast<int>(b)}) > 0) continue;
       ++pairs;
       shape_pairs += count;
       if (pairs > kMostCollisions) continue;

@@ -134,6 +134,15 @@ struct Overlap {
   double half_thickness_m = 0;
 };
 
+/// A joint at the current time; its forces are those of the last step.
+struct JointState {
+  double coordinate = 0;  ///< As `JointDef` says [rad] or [m]; 0 if it has none that is free.
+  double rate = 0;        ///< [rad/s] or [m/s]
+  Vec3 force_n;           ///< On its body b, at b's point, in W.
+  Vec3 torque_n_m;        ///< On b, about that point, in W.
+  double gap_m = 0;       ///< How far it is from what it holds; of turns, at the bodies' gyration.
+};
+
 /// Which per-world parameter `SetParameter` changes. `index`: a body, a cable or a surface.
 enum class Parameter {
   kBodyMass,        ///< [kg]; inertia scales with it.
@@ -145,7 +154,7 @@ enum class Parameter {
   kGravityZ,  ///< [m/s^2]; index 0.
 };
 
-/// An index that is out of range (world, group, body, cable, node) is a mistake of the program that
+/// An index that is out of range (world, group, body, cable, joint, node) is a mistake of the program that
 /// calls: a line on stderr names it, and the program ends by abort().
 ///
 /// Threads: any number may call const functions of a batch at once. A function that is not const,
@@ -206,6 +215,7 @@ class Batch {
   BodyState Body(int world, int body) const noexcept;
   Vec3 NodePosition(int world, int node) const noexcept;  ///< [m], in W.
   Vec3 NodeVelocity(int world, int node) const noexcept;  ///< [m/s], in W.
+  JointState Joint(int world, int joint) const noexcept;
   Energy TotalEnergy(int world) const noexcept;
   Vec3 Momentum(int world) const noexcept;              ///< [kg m/s], in W.
   Vec3 AngularMomentum(int world) const noexcept;       ///< About W's origin [kg m^2/s].

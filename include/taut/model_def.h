@@ -8,10 +8,13 @@
 
 #include <array>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "taut/dc_motor.h"
+#include "taut/joint_def.h"
 #include "taut/types.h"
 
 namespace taut {
@@ -191,6 +194,8 @@ struct ModelDef {
   std::vector<BoxDef> boxes;
   std::vector<NodeDef> nodes;
   std::vector<CableDef> cables;
+  std::vector<JointDef> joints;
+  std::vector<ApartDef> apart;
   std::vector<PlaneDef> planes;
   std::vector<TerrainBoxDef> terrain_boxes;
   std::vector<HeightFieldDef> height_fields;
@@ -201,5 +206,8 @@ struct ModelDef {
   CombineRule restitution_combine = CombineRule::kMaximum;
   FrictionLaw friction_law = FrictionLaw::kCone;
 };
+
+/// Bodies that never touch each other, the lower index first: `apart`, and what joints join.
+std::set<std::pair<int, int>> KeptApart(const ModelDef& def);
 
 }  // namespace taut

@@ -102,6 +102,7 @@ class World : public Bodies {
   virtual Energy TotalEnergy(int lane) const = 0;
   virtual MotorState Motor(int lane, int cable) const = 0;  ///< Of a cable with a `dc_motor`.
   virtual std::vector<ContactState> Contacts(int lane) const = 0;
+  virtual JointState Joint(int lane, int joint) const = 0;
   virtual WorldStatus Status(int lane) const = 0;
   virtual std::uint64_t Hash(int lane) const = 0;
 };

@@ -28,7 +28,12 @@ BodyOfNode BuildBodies(const ModelText& model, const Assembly& assembly,
 void BuildCables(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
                  const BodyOfNode& body_of_node, RobotSpec& robot, Diagnostics& out);
 
-/// Complains about bodies that no chain of cables joins to the others or to the world.
+/// Joints of pairs and supports of nodes, behind those of rods that turn in their nodes
+/// (BuildBodies); and what is kept apart.
+void BuildJoints(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
+                 const BodyOfNode& body_of_node, RobotSpec& robot, Diagnostics& out);
+
+/// Complains about bodies that no chain of cables and joints joins to the others or to the world.
 void CheckConnected(const RobotSpec& robot, Diagnostics& out);
 
 }  // namespace taut::description

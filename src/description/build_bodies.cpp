@@ -53,6 +53,7 @@ class BodyBuilder {
   BodyOfNode Run() {
     FindWelds();
     for (Weld& weld : welds_) BuildWeld(weld);
+    for (const Pin& pin : pins_) AddPin(pin);
     SetVelocities();
     for (std::size_t node = 0; node < assembly_.nodes.size(); ++node) {
       const PlacedNode& placed = assembly_.nodes[node];
@@ -71,11 +72,39 @@ class BodyBuilder {
 
   bool IsSolid(std::size_t pair) const {
     const BuilderText* builder = PairBuilder(pair);
-    return builder && !builder->cable;
+    return builder && !builder->cable && !builder->joint;
+  }
+  /// Rods whose ends turn in their nodes: bodies of their own, as elements of sets behind the
+  /// nodes.
+  bool TurnsInNodes(std::size_t pair) const {
+    const BuilderText* builder = PairBuilder(pair);
+    return builder && builder->rod && builder->rod->class_k;
+  }
+  int Element(std::size_t pair) const { return static_cast<int>(assembly_.nodes.size() + pair); }
+
+  /// A node goes with what is welded to it, else with the first of the rods that turn in it; the
+  /// others are pinned there.
+  void JoinRods(UnionFind& sets) {
+    std::vector<bool> taken(assembly_.nodes.size(), false);
+    for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
+      if (!IsSolid(pair) || TurnsInNodes(pair)) continue;
+      for (const int node : assembly_.pairs[pair].nodes) taken[node] = true;
+    }
+    for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
+      if (!TurnsInNodes(pair)) continue;
+      for (const int node : assembly_.pairs[pair].nodes) {
+        if (taken[node]) {
+          pins_.push_back({static_cast<int>(pair), node});
+        } else {
+          sets.Join(node, Element(pair));
+        }
+        taken[node] = true;
+      }
+    }
   }
 
   void FindWelds() {
-    UnionFind sets(assembly_.nodes.size());
+    UnionFind sets(assembly_.nodes.size() + assembly_.pairs.size());
     for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
       const std::vector<int>& nodes = assembly_.pairs[pair].nodes;
       if (!IsSolid(pair)) continue;
@@ -84,20 +113,27 @@ class BodyBuilder {
                                                  assembly_.pairs[pair].name + "\" has " +
                                                  std::to_string(nodes.size()));
       }
+      if (TurnsInNodes(pair)) continue;
       for (const int node : nodes) sets.Join(nodes[0], node);
+      sets.Join(nodes[0], Element(pair));
     }
+    JoinRods(sets);
     for (std::size_t node = 0; node < assembly_.nodes.size(); ++node) {
       if (assembly_.nodes[node].fixed_to >= 0) {
         sets.Join(static_cast<int>(node), assembly_.nodes[node].fixed_to);
       }
     }
-    std::vector<int> weld_of_root(assembly_.nodes.size(), -1);
-    for (int node = 0; node < static_cast<int>(assembly_.nodes.size()); ++node) {
-      int& weld = weld_of_root[sets.Root(node)];
+    std::vector<int> weld_of_root(assembly_.nodes.size() + assembly_.pairs.size(), -1);
+    const auto weld_of = [&](int element) {
+      int& weld = weld_of_root[sets.Root(element)];
       if (weld < 0) {
         weld = static_cast<int>(welds_.size());
         welds_.emplace_back();
       }
+      return weld;
+    };
+    for (int node = 0; node < static_cast<int>(assembly_.nodes.size()); ++node) {
+      const int weld = weld_of(node);
       welds_[weld].nodes.push_back(node);
       for (const int b : assignment_.of_node[node]) {
         (model_.builders[b].anchor ? welds_[weld].anchored : welds_[weld].has_solid) = true;
@@ -105,16 +141,18 @@ class BodyBuilder {
     }
     for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
       if (!IsSolid(pair) || assembly_.pairs[pair].nodes.size() != 2) continue;
-      Weld& weld = welds_[weld_of_root[sets.Root(assembly_.pairs[pair].nodes[0])]];
+      Weld& weld = welds_[weld_of(Element(pair))];
       weld.pairs.push_back(static_cast<int>(pair));
       weld.has_solid = true;
     }
     std::vector<int> welds_in_instance(assembly_.instances.size(), 0);
     for (const Weld& weld : welds_) {
-      if (weld.has_solid) ++welds_in_instance[assembly_.nodes[weld.nodes[0]].instance];
+      const int instance = FirstInstance(weld);
+      if (weld.has_solid && instance >= 0) ++welds_in_instance[instance];
     }
     bodies_in_instance_ = std::move(welds_in_instance);
     body_of_node_.assign(assembly_.nodes.size(), kWorld);
+    body_of_pair_.assign(assembly_.pairs.size(), kWorld);
   }
 
   void BuildWeld(Weld& weld) {
@@ -124,7 +162,7 @@ class BodyBuilder {
     }
     const int body = static_cast<int>(robot_.def.bodies.size());
     for (const int node : weld.nodes) body_of_node_[node] = body;
-    for (const int pair : weld.pairs) AddPair(weld, pair, body);
+    for (const int pair : weld.pairs) AddPair(weld, pair, body), body_of_pair_[pair] = body;
     for (const int node : weld.nodes) AddNode(weld, node, body);
     const MassProperties whole = Combine(weld.solids);
     BodyDef def;
@@ -265,9 +303,32 @@ class BodyBuilder {
                "its mass is all on one line: give the point_mass a radius_m");
   }
 
+  /// A rod that turns in a node which goes with another body.
+  struct Pin {
+    int pair, node;
+  };
+  void AddPin(const Pin& pin) {
+    const PlacedNode& node = assembly_.nodes[pin.node];
+    JointDef joint;
+    joint.name = assembly_.pairs[pin.pair].name + "." + node.name;
+    joint.body_a = body_of_node_[pin.node], joint.body_b = body_of_pair_[pin.pair];
+    joint.from_m = joint.to_m = node.position_m;
+    for (const Pin& other : pins_) {
+      if (&other == &pin) break;
+      if (other.node != pin.node) continue;
+      robot_.def.apart.push_back({body_of_pair_[other.pair], joint.body_b});
+    }
+    robot_.def.joints.push_back(std::move(joint));
+  }
+
+  /// That of its first node; of a rod without nodes of its own, the rod's.
+  int FirstInstance(const Weld& weld) const {
+    return weld.nodes.empty() ? assembly_.pairs[weld.pairs[0]].instance
+                              : assembly_.nodes[weld.nodes[0]].instance;
+  }
   /// The instance that all nodes of the body are in, or -1.
   int InstanceOf(const Weld& weld) const {
-    const int instance = assembly_.nodes[weld.nodes[0]].instance;
+    const int instance = FirstInstance(weld);
     const bool same = std::all_of(weld.nodes.begin(), weld.nodes.end(), [&](int node) {
       return assembly_.nodes[node].instance == instance;
     });
@@ -340,6 +401,8 @@ class BodyBuilder {
   std::vector<const Weld*> welds_with_body_;  ///< Per body.
   std::vector<int> instance_of_body_, bodies_in_instance_;
   BodyOfNode body_of_node_;
+  std::vector<int> body_of_pair_;  ///< Of those that are solid.
+  std::vector<Pin> pins_;
   std::set<std::string> names_;
   std::set<std::pair<int, int>> bodiless_, short_;  ///< Complained about once in the file.
 };

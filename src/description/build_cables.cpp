@@ -170,6 +170,9 @@ void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
       sets.Join(index(cable.attachments[0].body), index(at.body));
     }
   }
+  for (const JointDef& joint : robot.def.joints) {
+    sets.Join(index(joint.body_a), index(joint.body_b));
+  }
   // The first body's set is the robot. The world alone is no set of bodies.
   int robot_set = -1;
   std::set<int> reported;
@@ -179,7 +182,7 @@ void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
     if (robot_set < 0) robot_set = set;
     if (set == robot_set || !reported.insert(set).second) continue;
     out.Error(robot.body_sources[body],
-              "no cable joins the body \"" + bodies[body].name + "\" to \"" +
+              "no cable or joint joins the body \"" + bodies[body].name + "\" to \"" +
                   bodies[robot_set].name + "\"",
               "if that is meant, write `allow_disconnected: true`");
   }

@@ -31,6 +31,15 @@ inline const Choices<ActuatorDef::Kind> kActuatorKinds{{"none", ActuatorDef::Kin
                                                        {"ideal", ActuatorDef::Kind::kIdeal},
                                                        {"limited", ActuatorDef::Kind::kLimited},
                                                        {"dc_motor", ActuatorDef::Kind::kDcMotor}};
+inline const Choices<JointKind> kJointKinds{{"ball", JointKind::kBall},
+                                            {"hinge", JointKind::kHinge},
+                                            {"weld", JointKind::kWeld},
+                                            {"prismatic", JointKind::kPrismatic},
+                                            {"cylindrical", JointKind::kCylindrical},
+                                            {"planar", JointKind::kPlanar},
+                                            {"line", JointKind::kLine},
+                                            {"plane", JointKind::kPlane},
+                                            {"distance", JointKind::kDistance}};
 inline const Choices<bool> kCableEnds{{"node", false}, {"surface", true}};
 
 }  // namespace taut::description

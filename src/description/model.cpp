@@ -73,6 +73,7 @@ LoadedModel BuildModel(const MergedFile& file, std::size_t errors_before, Diagno
                         model.pairs_complete && model.builders_complete;
   const BodyOfNode body_of_node = BuildBodies(model, assembly, assignment, robot, out);
   BuildCables(model, assembly, assignment, body_of_node, robot, out);
+  BuildJoints(model, assembly, assignment, body_of_node, robot, out);
 
   // Only a model that is otherwise good: a cable that could not be read joins nothing.
   if (errors() == errors_before && !model.allow_disconnected) CheckConnected(robot, out);

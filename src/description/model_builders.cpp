@@ -86,7 +86,7 @@ void Check(const MapReader& map, CableText& cable) {
 
 void Check(const MapReader& map, BuilderText& builder) {
   if (map.Has("match")) builder.match_at = map.Find("match")->at;
-  for (const char* kind : {"rod", "sphere", "point_mass", "box", "cable", "anchor"}) {
+  for (const char* kind : {"rod", "sphere", "point_mass", "box", "cable", "anchor", "joint", "support"}) {
     if (!map.Has(kind)) continue;
     builder.kind = builder.kind.empty() ? kind : "several";
   }

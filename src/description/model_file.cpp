@@ -47,6 +47,7 @@ void Check(const MapReader& map, ModelText& model) {
   model.pairs_complete = model.pairs_complete && model.loose.pairs_complete;
   FinishStructure(map, model);
   FinishBuilders(map, model);
+  if (map.Has("apart")) model.apart_at = map.Find("apart")->at;
   for (BuilderText& builder : model.builders) {
     if (!model.actuator_text || !builder.cable || !builder.cable->actuator_text) continue;
     builder.cable->actuator = *model.actuator_text;

@@ -1,6 +1,7 @@
 /// The keys of a model file, and what of them is in a resolved experiment.
 #pragma once
 
+#include "description/joint_keys.h"
 #include "description/model_text.h"
 #include "description/motor_keys.h"
 #include "description/rotation.h"
@@ -143,6 +144,8 @@ void Keys(Io& io, Rod& r) {
   if constexpr (Io::kResolved) {
     io("material", r.material);
   } else {
+    io("class_k", r.class_k,
+       "Whether rods that share a node are joined there by ball joints, instead of being welded.");
     MassKeys(io, r.mass, Along::kPair);
     SurfaceKeys(io, r.surface);
   }
@@ -275,13 +278,15 @@ void Keys(Io& io, Like<BuilderText> auto& b) {
      "Which nodes or pairs. `a`: all that carry the tag a. `[a, b]`: all that carry both tags. "
      "`[[a, b], [c]]`: all that carry any of these sets. What no number of copies could match is "
      "an error.");
-  io.OneOf({"rod", "sphere", "point_mass", "box", "cable", "anchor"});
+  io.OneOf({"rod", "sphere", "point_mass", "box", "cable", "anchor", "joint", "support"});
   io("rod", b.rod);
   io("sphere", b.sphere);
   io("point_mass", b.point_mass);
   io("box", b.box);
   io("cable", b.cable);
   io("anchor", b.anchor);
+  io("joint", b.joint);
+  io("support", b.support);
 }
 void Check(const MapReader& map, BuilderText& builder);
 
@@ -311,6 +316,10 @@ void Keys(Io& io, Like<ModelText> auto& m) {
   io("builders", m.builders,
      "What becomes of the nodes and pairs. Each pair must be built by exactly one builder; a node "
      "by none or by several of different kinds.");
+  io("apart", m.apart,
+     "Lists of bodies, by their names, of which none touches another of the same list. Bodies that "
+     "a joint joins do not touch each other anyway, unless it says `collides: true`.",
+     Example{R"([["upper_leg", "foot"]])"});
   io("gravity_m_per_s2", m.def.gravity_m_per_s2, "Gravity in the world frame.");
   io("contact", m.def);
   io("inertia", m.inertia, kInertiaLaws, kInertiaMeaning);

@@ -109,6 +109,7 @@ struct MassText {
 // gets name, body and positions.
 
 struct RodText : CapsuleDef {
+  bool class_k = false;
   MassText mass;
   SurfaceText surface;
 };
@@ -143,6 +144,9 @@ struct CableText : CableDef {
   std::optional<ActuatorText> actuator_text;
 };
 struct AnchorText {};
+/// Between the bodies of a pair's nodes, the axis in the part's frame; or, as a support, between
+/// the world and a node's body.
+struct JointText : JointDef {};
 
 using Match = std::vector<std::vector<std::string>>;
 
@@ -159,9 +163,10 @@ struct BuilderText {
   std::optional<BoxText> box;
   std::optional<CableText> cable;
   std::optional<AnchorText> anchor;
+  std::optional<JointText> joint, support;
 
   /// True for what goes on pairs, false for what goes on nodes.
-  bool on_pairs() const { return rod || cable || (box && box->along_pair); }
+  bool on_pairs() const { return rod || cable || joint || (box && box->along_pair); }
 };
 
 /// Laws of the model that an experiment may replace.
@@ -189,6 +194,8 @@ struct ModelText {
   std::vector<PartText> parts;
   std::vector<PlacementText> structure;
   std::vector<BuilderText> builders;
+  std::vector<std::vector<std::string>> apart;
+  SourceRef apart_at;
   bool builders_complete = true;  ///< False: at least one could not be read.
   bool nodes_complete = true;  ///< False: at least one node, part or placement could not be read.
   bool pairs_complete = true;  ///< False: at least one pair could not be read.

@@ -27,6 +27,11 @@ void Keys(Io& io, Like<AttachmentDef> auto& a) {
   io("position_m", a.position_m);
 }
 template <class Io>
+void Keys(Io& io, Like<ApartDef> auto& a) {
+  io("body_a", a.body_a);
+  io("body_b", a.body_b);
+}
+template <class Io>
 void Keys(Io& io, Like<RobotSpec> auto& r) {
   io("name", r.def.name);
   io("gravity_m_per_s2", r.def.gravity_m_per_s2);
@@ -39,6 +44,8 @@ void Keys(Io& io, Like<RobotSpec> auto& r) {
   io("node_tags", r.node_tags);
   io("cables", r.def.cables);
   io("cable_tags", r.cable_tags);
+  io("joints", r.def.joints, kLater);
+  io("apart", r.def.apart, kLater);
   io("planes", r.def.planes);
   io("terrain_boxes", r.def.terrain_boxes);
   io("height_fields", r.def.height_fields, kLater);

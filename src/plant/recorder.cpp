@@ -69,6 +69,7 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
           PutBody(s.exact->bodies->Body(0, static_cast<int>(b)), out);
         });
   }
+  if (is_world) AddJointChannels(experiment, *this);
   for (std::size_t i = 0; is_world && i < experiment.pushes.size(); ++i) {
     Add("push/" + experiment.pushes[i].name + "/", {{"force_n", "N"}},
         [i](const RecordSource& s, double* out) { *out = s.timeline->push_n()[i]; });

@@ -62,4 +62,7 @@ class Checker {
 /// Height fields and meshes (surface_check.cpp).
 void CheckGround(const ModelDef& def, Checker& check);
 
+/// Joints, and bodies that are kept apart (joint_check.cpp).
+void CheckJoints(const ModelDef& def, Checker& check);
+
 }  // namespace taut::sim

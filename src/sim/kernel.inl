@@ -36,6 +36,9 @@
 #include "sim/solve/sweeps.inl"
 #include "sim/solve/proximal.inl"
 #include "sim/solve/island_solver.inl"
+#include "sim/solve/common_turn.inl"
+#include "sim/joints.inl"
+#include "sim/joint_places.inl"
 #include "sim/solve/lane_solve.inl"
 #include "sim/solve/push_out.inl"
 #include "sim/stage_solve.inl"
@@ -231,7 +234,7 @@ enum class Stage {
   kCables,      ///< Actuators and cable forces.
   kKick,        ///< Velocities from forces.
   kCollide,     ///< Find the contacts.
-  kSolve,       ///< Contacts and stiff cables.
+  kSolve,       ///< Contacts, stiff cables and joints.
   kIntegrate,   ///< Keep the contacts, half a drift.
   kJudge,       ///< Look whether it went well.
   kCount
@@ -278,6 +281,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   watch.Mark(Stage::kSolve);
   StoreResults(m, s, g, work, step_s);
   StageDriftSecond(m, s, work, half_h);
+  if (m.joint_count > 0) StageJointPlaces(m, s, work);
   watch.Mark(Stage::kIntegrate);
   Judge(m, s, g, work, solve, settings, overflow);
 

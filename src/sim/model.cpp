@@ -34,6 +34,7 @@ class Compiler {
     t_.along_slip = def_.friction_law == FrictionLaw::kAlongSlip;
     Bodies();
     Cables();
+    sim::LayOutJoints(t_, frames_);
     Planes();
     Shapes();
     Points();
@@ -375,6 +376,7 @@ class Compiler {
   }
 
   void AddPair(int a, int b, std::uint32_t& id) {
+    if (apart_.count(std::minmax(a, b)) > 0) return;
     BeginPair(a, b);
     for (const std::size_t i : shapes_of_[static_cast<std::size_t>(a)]) {
       for (const std::size_t j : shapes_of_[static_cast<std::size_t>(b)]) Meet(i, j, id);
@@ -384,6 +386,7 @@ class Compiler {
 
   Tables& t_;
   const ModelDef& def_;
+  const std::set<std::pair<int, int>> apart_ = KeptApart(def_);
   std::vector<Frame> frames_;
   std::vector<std::vector<std::size_t>>
       shapes_of_;                    ///< Per body and the world, but for the ground.

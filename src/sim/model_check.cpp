@@ -191,6 +191,7 @@ bool CheckModel(const ModelDef& def, Diagnostics& out) {
   CheckCables(def, check);
   CheckSupplies(def, check);
   CheckGround(def, check);
+  CheckJoints(def, check);
   if (out.items().size() == before) CheckSizes(def, check);
   return out.items().size() == before;
 }

@@ -96,6 +96,12 @@ Energy Batch::TotalEnergy(int world) const noexcept {
     const double stretch = std::max(cable.length_m - cable.rest_length_m, 0.0);
     e.elastic_j += 0.5 * d.at(world, d.layout.stiffness + c) * stretch * stretch;
   }
+  for (int i = 0; i < d.view.joint_count; ++i) {
+    const JointDef& joint = d.model->def().joints[static_cast<std::size_t>(i)];
+    if (joint.stiffness == 0) continue;
+    const double stretch = Joint(world, i).coordinate - joint.rest;
+    e.elastic_j += 0.5 * joint.stiffness * stretch * stretch;
+  }
   return e;
 }
 

@@ -4,9 +4,11 @@
 #include "base/assert.h"
 #include "math/cable_path.h"
 #include "sim/constraint/cable_row.h"
+#include "sim/constraint/joint_row.h"
 #include "sim/contacts.h"
 #include "sim/group.h"
 #include "sim/solve/memory.h"
+#include "simd/angle.h"
 #include "simd/vec3.h"
 
 namespace taut::sim {
@@ -113,6 +115,13 @@ struct StiffCable : CableRow<W> {
   W across;  ///< Share of the largest stable tension, per tension [1/N] (cables.md, eq. 12).
 };
 
+/// A row of a joint, and in which direction of W it acts on the joint's body b.
+template <class W>
+struct HeldRow : JointRow<W> {
+  int joint;
+  V3<W> lin, turn;
+};
+
 /// A motor while its cable's tension T is found: its mean speed over the step is `mean` - `slows`
 /// T.
 template <class W>
@@ -140,7 +149,10 @@ struct Scratch {
   W* start;  ///< Rows that go back to the start of the step in worlds that turn non-finite.
   CableWork<W>* cables;
   StiffCable<W>* stiff;
-  Link<W, 1>* links;  ///< Of all cables.
+  Link<W, 1>* links;      ///< Of all cables.
+  HeldRow<W>* joints;     ///< Rows of all joints.
+  Twist<W>* joint_guess;  ///< Per body and the world: guessed velocities of the step's end.
+  JointMemory<W> joint_memory;
   MotorWork<W>* motors;
   W* supplies;     ///< Voltage under load, per supply [V].
   uint64_t* near;  ///< A bit for each of the world's shapes, if it has many.
@@ -172,6 +184,9 @@ struct Scratch {
     cables = room_.Take<CableWork<W>>(m.cable_count);
     stiff = room_.Take<StiffCable<W>>(m.cable_count);
     links = room_.Take<Link<W, 1>>(m.attachment_count);
+    joints = room_.Take<HeldRow<W>>(m.joint_row_count);
+    joint_guess = room_.Take<Twist<W>>(m.joint_count > 0 ? bodies_count : 0);
+    joint_memory.Take(m, room_);
     motors = room_.Take<MotorWork<W>>(m.motor_count);
     supplies = room_.Take<W>(m.supply_count);
     unsolved = room_.Take<W>(bodies_count);

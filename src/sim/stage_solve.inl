@@ -1,5 +1,5 @@
-/// Stage: impulses of contacts and stiff cables (docs/theory/contact.md, sections 4 and 5). One
-/// solve in three places: bodies that only stand on the world, and worlds that hang together by
+/// Stage: impulses of contacts, stiff cables and joints (docs/theory/contact.md, sections 4 and 5).
+/// One solve in three places: bodies that only stand on the world, and worlds that hang together by
 /// stiff cables, in all lanes at once; all else, and what those did not get, lane by lane.
 
 namespace taut::sim {
@@ -84,12 +84,13 @@ void FinishWorldBiases(const View& m, const Rows<W>& s, Scratch<W>& work, M tied
   }
 }
 
-/// Which lanes' bodies are left to the lane's own solve from the start: those that touch moving
-/// bodies, and all of a world with stiff cables that is not solved in lanes.
+/// Which lanes' bodies are left to the lane's own solve from the start: those that have joints or
+/// touch moving bodies, and all of a world with stiff cables that is not solved in lanes.
 template <class W, class M>
 void MarkUnsolved(const View& m, Scratch<W>& work, M alone) noexcept {
   const W mark = Select(alone, W::Splat(1.0), W::Splat(0.0));
   for (int b = 0; b < m.body_count; ++b) work.unsolved[b] = mark;
+  for (int k = 0; k < m.joint_body_count; ++k) work.unsolved[m.joint_bodies[k]] = W::Splat(1.0);
   for (int lane = 0; lane < W::kLanes; ++lane) {
     for (int i = 0; i < work.touch_count[lane]; ++i) {
       const ShapePairTable& pair = m.shape_pairs[work.touches[lane * m.pair_capacity + i].pair];
@@ -291,8 +292,8 @@ void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
 }
 
 /// Stage: solve.
-///   reads   contacts[], touches[] (geometry), stiff cables, memory of the step before
-///   writes  bodies[].v, .w, impulses, mom, memory of touches
+///   reads   contacts[], touches[] (geometry), stiff cables, pos, memory of the step before
+///   writes  bodies[].v, .w, impulses, mom, memory of touches, joint_*
 template <class W>
 SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
                           const StepSettings& settings, double step_s) noexcept {
@@ -301,6 +302,7 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
   SolveResult<W> result{zero, zero, {}};
   for (int& body : result.body) body = kWorld;
   PrepareContacts(m, s, g, work, step_s);
+  if (m.joint_count > 0) PrepareJoints(m, s, work, step_s);
   const auto busy = s.halted[0] == zero;
   W cables = zero, touches = zero;
   for (int i = 0; i < work.stiff_count; ++i) cables += work.stiff[i].live;
@@ -308,8 +310,9 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
   const auto cabled = busy & (cables > zero);
   const auto dual = cabled & MayGoToDual(m, work, touches);
   MarkUnsolved(m, work, cabled & !dual);
-  FitWorldBiases(m, work, cabled);
-  FinishWorldBiases(m, s, work, cabled, step_s);
+  const auto tied = m.joint_count > 0 ? busy : cabled;
+  FitWorldBiases(m, work, tied);
+  FinishWorldBiases(m, s, work, tied, step_s);
   SolveBodies(m, work, target, busy & !cabled, result);
   if (Any(dual)) {
     const auto solve = [&](auto contacts) {
@@ -335,6 +338,7 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
     }
   }
   FinishStiffCables(s, work, step_s);
+  if (m.joint_count > 0) FinishJoints(m, s, work, step_s);
   return result;
 }
 

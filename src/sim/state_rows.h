@@ -6,7 +6,7 @@
 namespace taut::sim {
 
 /// How many of a row there are.
-enum class Per { kWorld, kBody, kCable, kMotor, kNode, kBodyPair, kContact };
+enum class Per { kWorld, kBody, kCable, kMotor, kNode, kJoint, kJointRow, kBodyPair, kContact };
 
 /// What it is for, in the order in which the rows lie.
 enum class Role {
@@ -68,6 +68,8 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(orders,         Orders, kMotor,    kState,     kStays,    FollowTarget) \
   ROW(target,         Number, kCable,    kState,     kStays,    RestLength)       /* [m] */ \
   ROW(tension,        Number, kCable,    kState,     kZero,     Tension)          /* [N] */ \
+  ROW(joint_angle,    Number, kJoint,    kState,     kGoesBack, Zero)             /* of hinges, with turns [rad] */ \
+  ROW(joint_load,     Number, kJointRow, kState,     kZero,     Zero)             /* along a row [N] */ \
   ROW(node_force,     V3,     kNode,     kState,     kStays,    Zero)             /* in W [N] */ \
   ROW(mass,           Number, kBody,     kParameter, kStays,    Mass)             /* [kg] */ \
   ROW(inv_mass,       Number, kBody,     kParameter, kStays,    InverseMass)      /* [1/kg] */ \
@@ -85,6 +87,8 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(contact_arm,    V3,     kContact,  kDerived,   kStays,    Zero)             /* from body a, in W [m] */ \
   ROW(contact_normal, V3,     kContact,  kDerived,   kStays,    Zero)             /* in W */ \
   ROW(contact_gap,    Number, kContact,  kDerived,   kStays,    Zero)             /* [m] */ \
+  ROW(joint_force,    V3,     kJoint,    kDerived,   kZero,     Zero)             /* on body b, in W [N] */ \
+  ROW(joint_torque,   V3,     kJoint,    kDerived,   kZero,     Zero)             /* on b about its point [N m] */ \
   ROW(clearance,      Number, kBodyPair, kDerived,   kStays,    Zero)             /* at least this far apart [m] */ \
   ROW(residual,       Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last solve [m/s] */ \
   ROW(linear_solves,  Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last step */ \

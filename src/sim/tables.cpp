@@ -44,7 +44,19 @@ View Tables::View() const noexcept {
           nullptr,
           floor_m,
           static_cast<int>(shapes.size() - surfaces.size()),
-          static_cast<int>(surfaces.size())};
+          static_cast<int>(surfaces.size()),
+          static_cast<int>(joints.size()),
+          static_cast<int>(joint_rows.size()),
+          static_cast<int>(joint_bodies.size()),
+          joints.data(),
+          joint_rows.data(),
+          joint_bodies.data(),
+          joint_number.data(),
+          &joint_pattern,
+          joint_loops,
+          free_chains.empty() ? 0 : static_cast<int>(free_chains.size()) - 1,
+          free_chains.data(),
+          free_chain_bodies.data()};
 }
 
 void LayOutFloor(Tables& t) {

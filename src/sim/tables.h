@@ -9,8 +9,11 @@
 #include <memory>
 #include <vector>
 
+#include "sim/body_frame.h"
+#include "sim/joint_table.h"
 #include "sim/shape_contacts.h"
 #include "sim/shape_tree.h"
+#include "sim/solve/elimination.h"
 #include "sim/state_rows.h"
 #include "sim/surface_build.h"
 #include "taut/batch.h"
@@ -190,6 +193,14 @@ struct View {
   const FrictionTable* friction;   ///< Null: coefficients are those of the pairs.
   double floor_m;                  ///< Whoever is below falls for ever; minus infinity: nobody.
   int first_ground, ground_count;  ///< Surfaces among the shapes.
+  int joint_count, joint_row_count, joint_body_count;
+  const JointTable* joints;
+  const JointRowTable* joint_rows;
+  const int *joint_bodies, *joint_number;
+  const BlockPattern* joint_pattern;
+  bool joint_loops;
+  int free_chain_count;
+  const int *free_chains, *free_chain_bodies;
 
   // Always inline: of a function that several instruction sets emit the linker keeps any one.
   /// Contacts that one world may have at once.
@@ -205,6 +216,10 @@ struct View {
         return motor_count;
       case Per::kNode:
         return node_count;
+      case Per::kJoint:
+        return joint_count;
+      case Per::kJointRow:
+        return joint_row_count;
       case Per::kBodyPair:
         return body_pair_count;
       case Per::kContact:
@@ -250,8 +265,18 @@ class Tables final : public Model {
   double floor_m = 0;             ///< See View.
   std::vector<TreeNode> tree;     ///< Of the world's shapes, where they are more than kFewShapes.
   int tree_shapes = 0;            ///< How many those are; 0 without a tree.
-  std::vector<double> coupling;   ///< Per cable: sum over all cables of |coupling| [1/kg].
-  double largest_coupling = 0;    ///< Largest eigenvalue of the couplings [1/kg].
+  std::vector<JointTable> joints;
+  std::vector<JointRowTable> joint_rows;
+  bool joint_loops = false;       ///< They close one, so that some of their rows may be redundant.
+  std::vector<int> joint_bodies;  ///< Those that joints move, in the order of elimination;
+  std::vector<int> joint_number;  ///< per body its place there, or -1;
+  BlockPattern joint_pattern{};   ///< the blocks of their system, in what follows.
+  std::vector<int> joint_slot, joint_below, joint_first_below;
+  /// Bodies that joints tie to each other and not to what does not move: where each chain of them
+  /// starts, one more, and all their bodies.
+  std::vector<int> free_chains, free_chain_bodies;
+  std::vector<double> coupling;  ///< Per cable: sum over all cables of |coupling| [1/kg].
+  double largest_coupling = 0;   ///< Largest eigenvalue of the couplings [1/kg].
 
   /// The same tables as plain pointers, for code that is compiled for several instruction sets
   /// and must not touch the standard library.
@@ -270,6 +295,9 @@ void LayOutFriction(Tables& tables);
 
 /// Fills motors and supplies, and which cable has which motor.
 void LayOutMotors(Tables& tables);
+
+/// Fills all that is of joints. `frames`: of the bodies and the world.
+void LayOutJoints(Tables& tables, const std::vector<Frame>& frames);
 
 /// Fills coupling and largest_coupling.
 void CoupleCables(Tables& tables);

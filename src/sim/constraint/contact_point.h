@@ -14,8 +14,6 @@ template <class Num, int kMaxLinks>
 struct ContactPoint {
   using Number = Num;
   static constexpr int kRows = 3;
-  /// Slower rebounds are lost in what a solve leaves over [m/s].
-  static constexpr double kLeastRebound = 1e-9;
 
   Num live;             ///< 1 in lanes that have this contact, else 0.
   Num wnn, wt;          ///< Inverse effective mass: of the normal, a bound of the tangents' [1/kg].

@@ -11,6 +11,9 @@ namespace taut::sim {
 
 using simd::V3;
 
+/// Slower rebounds are lost in what a solve leaves over [m/s].
+inline constexpr double kLeastRebound = 1e-9;
+
 template <class Num>
 using MaskOf = decltype(Num() < Num());
 

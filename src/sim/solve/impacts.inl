@@ -82,7 +82,7 @@ M SolveImpacts(Problem& p, int rows, M lanes) noexcept {
   WorkOfImpacts<Num> work;
   p.ForEach([&](auto& law, int row) {
     if constexpr (kRebounds<decltype(law)>) {
-      for (int i = row; i < row + 3; ++i) {
+      for (int i = row; i < row + LawOf<decltype(law)>::kRows; ++i) {
         work.Add(kept.before[i], kept.u[i], kept.l[i], p.u()[i], p.l()[i]);
       }
     }

@@ -119,6 +119,10 @@ class LaneSolve {
         first = body;
       }
     }
+    for (int i = 0; i < m_.joint_count; ++i) {
+      const JointTable& j = m_.joints[i];
+      if (j.a_moves && j.b_moves) Join(j.a, j.b);
+    }
     for (int b = 0; b < m_.body_count; ++b) mem_.local[b] = 0;
     for (int b = 0; b < m_.body_count; ++b) {
       if (asks(b)) mem_.local[Root(b)] = 1;
@@ -144,6 +148,7 @@ class LaneSolve {
     for (int k = 0; k < count_; ++k) GatherBody(mem_.bodies[mem_.order[k]], island.bodies[k]);
     GatherContacts(island.pools);
     GatherCables(island.pools);
+    GatherJoints(island.pools);
     island.rows = island.pools.rows();
     int row = 0;
     Pool<ContactPoint<L, 2>>& contacts = island.pools;
@@ -152,6 +157,8 @@ class LaneSolve {
     }
     Pool<CableRow<L>>& cables = island.pools;
     for (int i = 0; i < cables.count; ++i) island.m.l[row++] = cables.items[i].l[0];
+    Pool<JointRow<L>>& joints = island.pools;
+    for (int i = 0; i < joints.count; ++i) island.m.l[row++] = joints.items[i].l[0];
     return row > 0;
   }
 
@@ -177,6 +184,11 @@ class LaneSolve {
           if (Moves(b)) graph.Join(mem_.local[a], mem_.local[b]);
         }
       }
+    }
+    for (int i = 0; i < m_.joint_count; ++i) {
+      const JointTable& j = m_.joints[i];
+      if (!j.a_moves || !j.b_moves || mem_.root[j.a] != island_root_) continue;
+      graph.Join(mem_.local[j.a], mem_.local[j.b]);
     }
     mem_.island.has_matrix =
         Eliminate(graph, mem_.block_capacity, mem_.order, mem_.place, mem_.island.pattern);
@@ -278,6 +290,21 @@ class LaneSolve {
       to.TakeLaw(from, [&](W x) { return OfLane<L>(x, lane_); });
       to.FinishMasses();
     }
+    joint_source_ = cable_source_ + pool.count;
+  }
+
+  void GatherJoints(Pool<JointRow<L>>& pool) noexcept {
+    pool.count = 0;
+    for (int i = 0; i < m_.joint_row_count; ++i) {
+      const HeldRow<W>& from = work_.joints[i];
+      if (!(from.live[lane_] > 0) || mem_.root[from.links[0].body] != island_root_) continue;
+      JointRow<L>& to = pool.items[pool.count];
+      joint_source_[pool.count++] = i;
+      to.link_count = from.link_count;
+      for (int k = 0; k < from.link_count; ++k) GatherLink(from.links[k], to.links[k]);
+      to.TakeLaw(from, [&](W x) { return OfLane<L>(x, lane_); });
+      if (displaces_) to.Hold();
+    }
   }
 
   /// Impulses and velocities back into the lane.
@@ -300,6 +327,10 @@ class LaneSolve {
     for (int i = 0; i < cables.count; ++i) {
       work_.stiff[cable_source_[i]].l[0].Set(lane_, (l++)->v);
     }
+    const Pool<JointRow<L>>& joints = island.pools;
+    for (int i = 0; i < joints.count; ++i) {
+      work_.joints[joint_source_[i]].l[0].Set(lane_, (l++)->v);
+    }
     for (int b = 0; b < count_; ++b) {
       const Twist<L> t = island.Load(island.m.v + kDofs * b);
       BodyWork<W>& body = work_.bodies[island.bodies[b].body];
@@ -317,7 +348,7 @@ class LaneSolve {
   L h_;
   bool displaces_ = false;
   int count_ = 0, island_root_ = 0;
-  int* cable_source_ = nullptr;
+  int *cable_source_ = nullptr, *joint_source_ = nullptr;
 };
 
 }  // namespace taut::sim

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/constraint/cable_row.h"
+#include "sim/constraint/joint_row.h"
 #include "sim/contacts.h"
 #include "sim/solve/island.h"
 #include "sim/tables.h"
@@ -24,7 +25,7 @@ struct Room {
 
 /// The kinds of constraints that a step knows.
 template <class Num>
-using StepPools = Pools<ContactPoint<Num, 2>, CableRow<Num>>;
+using StepPools = Pools<ContactPoint<Num, 2>, CableRow<Num>, JointRow<Num>>;
 
 /// What solving one lane's islands takes. Systems with more blocks than there is room for (over 128
 /// bodies that are all tied together) are left to the sweeps.
@@ -43,13 +44,14 @@ struct LaneMemory {
 
   void Take(const View& m, Room& room) noexcept {
     const int64_t n = m.body_count, contacts = m.slot_count + m.pair_capacity;
-    const int64_t rows = 3 * contacts + m.cable_count, cells = 9 * contacts + m.cable_count;
+    const int64_t single = m.cable_count + m.joint_row_count;
+    const int64_t rows = 3 * contacts + single, cells = 9 * contacts + single;
     const int64_t blocks = n < kFullBodies ? n * n : kFullBodies * n;
     block_capacity = static_cast<int>(blocks);
     pairs = room.Take<Contact<Num, 2>>(m.pair_capacity);
     int** const per_body[] = {&root, &local, &bodies, &order, &place};
     for (int** list : per_body) *list = room.Take<int>(n + 1);
-    source = room.Take<int>(contacts + m.cable_count);
+    source = room.Take<int>(contacts + single);
     graph.bits = room.Take<uint64_t>(n * BodyGraph::WordsFor(m.body_count));
     links = room.Take<Link<Num, 1>>(m.attachment_count);
     island.bodies = room.Take<Unknown<Num>>(n);
@@ -62,6 +64,9 @@ struct LaneMemory {
     Pool<CableRow<Num>>& cables = island.pools;
     cables.items = room.Take<CableRow<Num>>(m.cable_count);
     cables.branches = room.Take<typename CableRow<Num>::Branch>(m.cable_count);
+    Pool<JointRow<Num>>& joints = island.pools;
+    joints.items = room.Take<JointRow<Num>>(m.joint_row_count);
+    joints.branches = room.Take<typename JointRow<Num>::Branch>(m.joint_row_count);
     IslandMemory<Num>& x = island.m;
     Num** const per_dof[] = {&x.v, &x.rhs, &x.direction, &x.trial_v};
     for (Num** list : per_dof) *list = room.Take<Num>(kDofs * n);
@@ -71,6 +76,28 @@ struct LaneMemory {
     for (Num** list : per_row) *list = room.Take<Num>(rows);
     x.g = room.Take<Num>(cells);
     x.blocks = room.Take<Num>(36 * blocks);
+  }
+};
+
+/// What the system of all that joints hold takes (joint_places.inl).
+template <class W>
+struct JointMemory {
+  Unknown<W>* bodies;
+  JointRow<W>* rows;
+  W *G, *miss;      ///< Per row.
+  W *rhs, *change;  ///< 6 a body.
+  W* moved;         ///< Per body: how far the last displacement moved any of its points [m],
+  V3<W>* gained;    ///< and the angular momentum that it gained by it.
+  W* blocks;        ///< 36 a block.
+
+  void Take(const View& m, Room& room) noexcept {
+    const int64_t n = m.joint_body_count;
+    bodies = room.Take<Unknown<W>>(n);
+    rows = room.Take<JointRow<W>>(m.joint_row_count);
+    G = room.Take<W>(m.joint_row_count), miss = room.Take<W>(m.joint_row_count);
+    rhs = room.Take<W>(kDofs * n), change = room.Take<W>(kDofs * n);
+    moved = room.Take<W>(n), gained = room.Take<V3<W>>(n);
+    blocks = room.Take<W>(36 * static_cast<int64_t>(m.joint_pattern->lower_count));
   }
 };
 
@@ -106,7 +133,7 @@ struct DualMemory {
     int contacts = m.slot_count;
     if (m.has_ground) contacts = most > m.cable_count ? (most - m.cable_count) / 3 : 0;
     const int rows = 3 * contacts + m.cable_count;
-    const bool fits = rows <= most && (contacts > 0 || !m.has_ground);
+    const bool fits = rows <= most && (contacts > 0 || !m.has_ground) && m.joint_row_count == 0;
     capacity = fits ? rows : 0;
     if (capacity == 0) contacts = 0;
     packed_capacity = m.has_ground ? contacts : 0;

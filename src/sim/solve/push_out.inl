@@ -55,11 +55,13 @@ bool LaneSolve<W>::IsAlone() const noexcept {
     const bool both = c.link_count == 2 && Moves(Body(c, 0)) && Moves(Body(c, 1));
     alone = alone && (both || !Any(mem_.island.m.l[3 * i] > L::Splat(0.0)));
   }
+  const Pool<JointRow<L>>& joints = mem_.island.pools;
+  for (int i = 0; i < joints.count; ++i) alone = alone && joints.items[i].link_count == 2;
   return alone;
 }
 
-/// Angular momentum that this step's contacts with the world and stiff cables have yet to add to a
-/// body's.
+/// Angular momentum that this step's contacts with the world, stiff cables and joints have yet to
+/// add to a body's.
 template <class W>
 V3<simd::Lane<W>> LaneSolve<W>::Pending(int body) const noexcept {
   V3<L> sum{L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};
@@ -73,6 +75,13 @@ V3<simd::Lane<W>> LaneSolve<W>::Pending(int body) const noexcept {
     for (int k = 0; k < cable.link_count; ++k) {
       if (cable.links[k].body != body) continue;
       sum += OfLane<L>(cable.l[0] * cable.links[k].ang[0], lane_);
+    }
+  }
+  for (int i = 0; i < m_.joint_row_count; ++i) {
+    const HeldRow<W>& row = work_.joints[i];
+    if (!(row.live[lane_] > 0)) continue;
+    for (int k = 0; k < row.link_count; ++k) {
+      if (row.links[k].body == body) sum += OfLane<L>(row.l[0] * row.links[k].ang[0], lane_);
     }
   }
   return sum;
@@ -111,37 +120,17 @@ V3<simd::Lane<W>> LaneSolve<W>::Displace(int number) noexcept {
 /// its bodies gained.
 template <class W>
 void LaneSolve<W>::KeepMomentum(const V3<L>& gained) noexcept {
-  const L zero = L::Splat(0.0);
-  V3<L> centre{zero, zero, zero};
-  L mass = zero;
+  const auto solid = [&](int b) {
+    const Unknown<L>& body = mem_.island.bodies[b];
+    return Solid<L>{OfLane<L>(s_.pos[body.body], lane_), body.mass, body.inertia};
+  };
+  const CommonTurn<L> turn(count_, solid, -gained);
   for (int b = 0; b < count_; ++b) {
     const Unknown<L>& body = mem_.island.bodies[b];
-    centre += body.mass * OfLane<L>(s_.pos[body.body], lane_);
-    mass += body.mass;
-  }
-  centre = (L::Splat(1.0) / mass) * centre;
-  L a[3][3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}};
-  for (int b = 0; b < count_; ++b) {
-    const Unknown<L>& body = mem_.island.bodies[b];
-    const V3<L> r = OfLane<L>(s_.pos[body.body], lane_) - centre;
-    const S3<L>& i = body.inertia;
-    a[0][0] += i.xx + body.mass * (r.y * r.y + r.z * r.z);
-    a[1][1] += i.yy + body.mass * (r.x * r.x + r.z * r.z);
-    a[2][2] += i.zz + body.mass * (r.x * r.x + r.y * r.y);
-    a[1][0] += i.xy - body.mass * r.x * r.y;
-    a[2][0] += i.xz - body.mass * r.x * r.z;
-    a[2][1] += i.yz - body.mass * r.y * r.z;
-  }
-  L x[3] = {zero - gained.x, zero - gained.y, zero - gained.z};
-  SolveSymmetric(a, x);
-  const V3<L> w{x[0], x[1], x[2]};
-  for (int b = 0; b < count_; ++b) {
-    const Unknown<L>& body = mem_.island.bodies[b];
-    const V3<L> r = OfLane<L>(s_.pos[body.body], lane_) - centre;
     V3<W>& v = work_.bodies[body.body].v;
-    SetLane(v, OfLane<L>(v, lane_) + Cross(w, r), lane_);
+    SetLane(v, OfLane<L>(v, lane_) + turn.VelocityAt(solid(b).x), lane_);
     V3<W>& momentum = s_.mom[body.body];
-    SetLane(momentum, OfLane<L>(momentum, lane_) + body.inertia * w, lane_);
+    SetLane(momentum, OfLane<L>(momentum, lane_) + body.inertia * turn.w, lane_);
   }
 }
 

@@ -1,0 +1,67 @@
+/// Joints: what of one body's motion relative to another's is held, and what acts on the rest
+/// (docs/theory/joints.md). A support is a joint with the world.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "taut/types.h"
+
+namespace taut {
+
+/// What a joint leaves free of the motion of its body b relative to its body a. `axis`, and two
+/// directions across it, are fixed in a.
+enum class JointKind {
+  kBall,         ///< All turns.
+  kHinge,        ///< Turns about the axis.
+  kWeld,         ///< Nothing.
+  kPrismatic,    ///< Sliding along the axis.
+  kCylindrical,  ///< Sliding along the axis, and turns about it.
+  kPlanar,       ///< Sliding across the axis, and turns about it.
+  kLine,         ///< All turns; b's point slides along the axis through a's.
+  kPlane,        ///< All turns; b's point slides in the plane through a's that is across the axis.
+  kDistance,     ///< All but the distance of the two points.
+};
+
+/// A joint's coordinate, if it has one that is free: the angle of a hinge [rad], how far a
+/// prismatic joint, a cylindrical one or a line has slid [m], the length of a distance [m]; of a
+/// ball the angle between its axis in a and that in b [rad]. Angles and slides are 0 in the pose
+/// that is described, and of a hinge count turns. Forces are torques [N m] where it is an angle.
+struct JointDef {
+  /// Points that a joint holds together may be this far apart at first; the first step closes it.
+  static constexpr double kClosed_m = 1e-6;
+
+  std::string name;
+  JointKind kind = JointKind::kBall;
+  int body_a = kWorld, body_b = 0;  ///< b is a body; not both are fixed.
+  Vec3 from_m, to_m;                ///< A point of a and one of b, in W.
+  Vec3 axis{0.0, 0.0, 1.0};         ///< Unit vector in W.
+  bool collides = false;            ///< Whether its bodies touch each other.
+
+  // Of the coordinate:
+  std::optional<double> least, most;      ///< Stops; of a ball `most` alone.
+  double restitution = 0.0;               ///< Of the stops, 0..1.
+  double friction = 0.0;                  ///< Largest dry friction, >= 0; not of a ball.
+  double stiffness = 0.0, damping = 0.0;  ///< Of a spring and a damper, >= 0; not of a ball.
+  double rest = 0.0;                      ///< Where the spring is at rest.
+};
+
+/// Whether a distance joint holds its length: if nothing else says what that may be.
+inline bool HoldsLength(const JointDef& j) noexcept {
+  return !j.least && !j.most && j.stiffness == 0.0;
+}
+
+/// How far the two points are apart in directions that the joint holds [m].
+double HeldGap(const JointDef& joint) noexcept;
+
+/// Two bodies that do not touch each other.
+struct ApartDef {
+  int body_a = 0, body_b = 0;
+};
+
+/// Whether a joint's coordinate is an angle.
+inline bool IsAngle(JointKind kind) noexcept {
+  return kind == JointKind::kHinge || kind == JointKind::kBall;
+}
+
+}  // namespace taut

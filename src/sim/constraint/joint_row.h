@@ -1,0 +1,129 @@
+/// A kind of constraint: one direction in which a joint acts (docs/theory/joints.md, eq. 1).
+///
+///   u + give l  = target   where  lower < l < upper,
+///               >= target  where  l = lower,   <= target  where  l = upper;
+///
+///   u: the velocity of the one body against the other along it, after the step
+///
+/// Held: no limits and nothing given. A stop: it only pushes. Dry friction: target 0, between the
+/// limits. A spring and damper: gives by what they let it move per impulse.
+#pragma once
+
+#include "sim/constraint/links.h"
+
+namespace taut::sim {
+
+template <class Num>
+struct JointRow {
+  using Number = Num;
+  using Mask = MaskOf<Num>;
+  static constexpr int kRows = 1;
+  static constexpr double kNoLimit = 1e300;
+
+  Num live;          ///< 1 in lanes in which it acts, else 0.
+  Num target;        ///< [m/s]
+  Num give;          ///< [1/kg], >= 0.
+  Num lower, upper;  ///< Of the impulse [N s], lower <= 0 <= upper.
+  Num A;             ///< Inverse effective mass along it [1/kg].
+  Num l[1];          ///< Impulse [N s].
+  Num before;        ///< u at the start of the step [m/s],
+  Num restitution;   ///< and how much of an approach comes back. 0 but for stops.
+  Num rebound;       ///< The speed that it is to leave with; 0: none (impacts.inl).
+  int link_count;
+  Link<Num, 1> links[2];
+
+  struct Branch {
+    Mask inside;  ///< Between its limits.
+    Num beyond;   ///< -1 below, 1 above, 0 between them.
+    Num impulse;  ///< At the limit that it is beyond.
+  };
+  static bool Same(const Branch& a, const Branch& b) noexcept {
+    return !Any(Abs(a.beyond - b.beyond) > Num::Splat(0.5));
+  }
+
+  /// All but the links, as `pick` takes it out of another row.
+  template <class Other, class F>
+  TAUT_INLINE void TakeLaw(const JointRow<Other>& from, const F& pick) noexcept {
+    live = pick(from.live);
+    target = pick(from.target), give = pick(from.give);
+    lower = pick(from.lower), upper = pick(from.upper);
+    A = pick(from.A), l[0] = pick(from.l[0]);
+    before = pick(from.before), restitution = pick(from.restitution);
+    rebound = pick(from.rebound);
+  }
+  /// Of a displacement: what is held stays as it is, springs and friction are none, and a stop's
+  /// other side stays free.
+  void Hold() noexcept {
+    const Num zero = Num::Splat(0.0);
+    const auto free = (give > zero) | (upper < Num::Splat(kNoLimit));
+    target = give = l[0] = restitution = zero;
+    lower = Select(free, zero, lower), upper = Select(free, zero, upper);
+  }
+
+  void FinishMasses() noexcept {
+    A = Num::Splat(0.0);
+    for (int i = 0; i < link_count; ++i) AddCoupling(links[i], links[i], &A);
+  }
+
+  Branch Project(const Num* u, const Num* center, Num e, Num* out) const noexcept {
+    const Num soft = e * A;
+    const Branch b = Judge((target - u[0] + soft * center[0]) / (give + soft), out);
+    return b;
+  }
+  void ProjectFrozen(const Num* u, const Num* center, Num e, const Num*, Num* out) const noexcept {
+    Project(u, center, e, out);
+  }
+  void Derivative(const Branch& b, Num e, Num* g) const noexcept {
+    g[0] = Select(b.inside, Num::Splat(1.0) / (give + e * A), Num::Splat(0.0));
+  }
+  void Stiffen(const Branch&, Num, Num*) const noexcept {}
+
+  Branch BranchOf(const Num* u, const Num* l_now) const noexcept {
+    Num out;
+    return Judge((target - u[0] + A * l_now[0]) / (give + A), &out);
+  }
+  Num Residual(const Branch& b, const Num* u, const Num* l_now) const noexcept {
+    const Num inside = Abs(target - u[0] - give * l_now[0]);
+    return Select(b.inside, inside, (give + A) * Abs(b.impulse - l_now[0]));
+  }
+  void Linearize(const Branch& b, const Num* u, const Num* l_now, Num e,
+                 LinearLaw<Num, 1>& out) const noexcept {
+    const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
+    out.A[0][0] = Select(b.inside, give + e * A, one);
+    out.S[0][0] = Select(b.inside, one, zero);
+    out.r[0] = Select(b.inside, target - u[0] - give * l_now[0], b.impulse - l_now[0]);
+  }
+
+  void SolveAlone(const Num* u, Num* l_now) const noexcept {
+    Num out;
+    Project(u, l_now, Num::Splat(1.0), &out);
+    l_now[0] = out;
+  }
+  void Clamp(Num* l_now) const noexcept { l_now[0] = Min(Max(l_now[0], lower), upper); }
+
+  /// Of stops, as contacts do (impacts.inl): how fast it would leave again. False if none would.
+  bool ExpectRebound(Num) noexcept {
+    const Num zero = Num::Splat(0.0), speed = zero - restitution * before;
+    rebound = Select((speed > Num::Splat(kLeastRebound)) & (live > zero), speed, zero);
+    return Any(rebound > zero);
+  }
+  Mask Rebound(const Num*, const Num* l_now, Mask lanes, bool) noexcept {
+    const Num zero = Num::Splat(0.0);
+    const auto now = lanes & (l_now[0] > zero) & (rebound > zero) & (target < rebound);
+    target = Select(now, rebound, target);
+    return now;
+  }
+
+ private:
+  Branch Judge(Num wish, Num* out) const noexcept {
+    const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
+    out[0] = Min(Max(wish, lower), upper);
+    Branch b;
+    b.inside = (wish > lower) & (wish < upper);
+    b.beyond = Select(wish > lower, Select(wish < upper, zero, one), zero - one);
+    b.impulse = out[0];
+    return b;
+  }
+};
+
+}  // namespace taut::sim

@@ -1,0 +1,250 @@
+/// Joints (docs/theory/joints.md): their rows for the solver at the middle of the step, what their
+/// impulses come to, and places that are held to round-off at its end.
+
+namespace taut::sim {
+
+/// Where a joint is: its points and axes in W, the points from their bodies' centres of mass.
+template <class W>
+struct JointPlace {
+  V3<W> own_a, own_b;  ///< [m]
+  V3<W> gap;           ///< From a's point to b's [m].
+  M3<W> axes_a, axes_b;
+
+  V3<W> arm_a() const noexcept { return own_a + gap; }  ///< To b's point, as own_b is.
+};
+
+/// A row's direction: of b's velocity at its point, and of b's turns. Its value, and how fast that
+/// grows, are those of what it measures; a's are the opposite.
+template <class W>
+struct JointDirection {
+  V3<W> lin, turn;
+  W value;
+};
+
+template <class W>
+TAUT_INLINE M3<W> AxesOf(const M3<W>& R, const double* axes_P) noexcept {
+  return {R * simd::Splat3<W>(axes_P), R * simd::Splat3<W>(axes_P + 3),
+          R * simd::Splat3<W>(axes_P + 6)};
+}
+
+/// `Ra`, `Rb`: how the bodies are turned.
+template <class W>
+JointPlace<W> PlaceOf(const View& m, const Rows<W>& s, const JointTable& j, const M3<W>& Ra,
+                      const M3<W>& Rb) noexcept {
+  JointPlace<W> p;
+  p.own_a = Ra * simd::Splat3<W>(j.own_a_P), p.own_b = Rb * simd::Splat3<W>(j.own_b_P);
+  p.gap = p.own_b - p.own_a;
+  if (j.b < m.body_count) p.gap += s.pos[j.b];
+  if (j.a < m.body_count) p.gap -= s.pos[j.a];
+  p.axes_a = AxesOf(Ra, j.axes_a_P), p.axes_b = AxesOf(Rb, j.axes_b_P);
+  return p;
+}
+
+/// The angle of a hinge, -pi..pi.
+template <class W>
+TAUT_INLINE W HingeAngle(const JointPlace<W>& p) noexcept {
+  return simd::Atan2(Dot(p.axes_a.r2, p.axes_b.r1), Dot(p.axes_a.r1, p.axes_b.r1));
+}
+
+/// `angle`: of a hinge, with turns.
+template <class W>
+JointDirection<W> DirectionOf(const JointTable& j, JointMeasure measure, const JointPlace<W>& p,
+                              W angle) noexcept {
+  const W zero = W::Splat(0.0), reach = W::Splat(j.reach_m), tiny = W::Splat(1e-300);
+  const V3<W> none{zero, zero, zero};
+  const auto along = [&](const V3<W>& axis) {
+    return JointDirection<W>{axis, none, Dot(axis, p.gap)};
+  };
+  const auto across = [&](const V3<W>& in_a, const V3<W>& in_b) {
+    return JointDirection<W>{none, reach * Cross(in_b, in_a), reach * Dot(in_a, in_b)};
+  };
+  switch (measure) {
+    case JointMeasure::kAlongAxis:
+      return along(p.axes_a.r0);
+    case JointMeasure::kAcross1:
+      return along(p.axes_a.r1);
+    case JointMeasure::kAcross2:
+      return along(p.axes_a.r2);
+    case JointMeasure::kDistance: {
+      const W length = Sqrt(Dot(p.gap, p.gap));
+      return {(W::Splat(1.0) / Max(length, tiny)) * p.gap, none, length};
+    }
+    case JointMeasure::kSwing1:
+      return across(p.axes_a.r1, p.axes_b.r0);
+    case JointMeasure::kSwing2:
+      return across(p.axes_a.r2, p.axes_b.r0);
+    case JointMeasure::kTwist:
+      return across(p.axes_a.r2, p.axes_b.r1);
+    case JointMeasure::kAngle:
+      return {none, reach * p.axes_a.r0, reach * angle};
+    case JointMeasure::kCone:
+      break;
+  }
+  const V3<W> c = Cross(p.axes_a.r0, p.axes_b.r0);
+  const W sine = Sqrt(Dot(c, c));
+  return {none, (reach / Max(sine, tiny)) * c,
+          reach * simd::Atan2(sine, Dot(p.axes_a.r0, p.axes_b.r0))};
+}
+
+/// The velocity that a row has at (va, wa), (vb, wb).
+template <class W>
+TAUT_INLINE W RateOf(const JointPlace<W>& p, const JointDirection<W>& d, const Twist<W>& a,
+                     const Twist<W>& b) noexcept {
+  const V3<W> apart = (b.v + Cross(b.w, p.own_b)) - (a.v + Cross(a.w, p.arm_a()));
+  return Dot(d.lin, apart) + Dot(d.turn, b.w - a.w);
+}
+
+/// Links and inverse effective mass of a row in direction `d`.
+template <class W>
+void SetJointLinks(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
+                   const JointPlace<W>& p, const JointDirection<W>& d, JointRow<W>& row) noexcept {
+  row.link_count = 0;
+  const auto link = [&](int body, const V3<W>& lin, const V3<W>& ang) {
+    Link<W, 1>& to = row.links[row.link_count++];
+    to.body = body;
+    to.inv_mass = s.inv_mass[body];
+    to.lin[0] = lin, to.ang[0] = ang;
+    to.turn[0] = work.bodies[body].inv_inertia * ang;
+  };
+  if (j.b_moves) link(j.b, d.lin, Cross(p.own_b, d.lin) + d.turn);
+  if (j.a_moves) link(j.a, -d.lin, -(Cross(p.arm_a(), d.lin) + d.turn));
+  row.FinishMasses();
+}
+
+/// a + turn x a + turn x (turn x a) / 2
+template <class W>
+TAUT_INLINE V3<W> Turned(const V3<W>& turn, const V3<W>& a) noexcept {
+  const V3<W> once = Cross(turn, a);
+  return a + once + W::Splat(0.5) * Cross(turn, once);
+}
+
+/// Where the joint will be after `t` at the velocities a and b.
+template <class W>
+JointPlace<W> PlaceAfter(const JointPlace<W>& p, const Twist<W>& a, const Twist<W>& b,
+                         W t) noexcept {
+  const V3<W> turn_a = t * a.w, turn_b = t * b.w;
+  const auto axes = [](const V3<W>& turn, const M3<W>& of) {
+    return M3<W>{Turned(turn, of.r0), Turned(turn, of.r1), Turned(turn, of.r2)};
+  };
+  JointPlace<W> q;
+  q.own_a = Turned(turn_a, p.own_a), q.own_b = Turned(turn_b, p.own_b);
+  q.gap = p.gap + t * (b.v - a.v) + (q.own_b - p.own_b) - (q.own_a - p.own_a);
+  q.axes_a = axes(turn_a, p.axes_a), q.axes_b = axes(turn_b, p.axes_b);
+  return q;
+}
+
+template <class W>
+TAUT_INLINE Twist<W> Before(const BodyWork<W>& body) noexcept {
+  return {body.v0, body.w0};
+}
+template <class W>
+TAUT_INLINE Twist<W> Free(const BodyWork<W>& body) noexcept {
+  return {body.v, body.w};
+}
+
+/// A stop (eq. 4): it lets what comes near go as far as to touch, and what is beyond come back no
+/// faster than this step's forces would take it further, as contacts do (contact.md, eq. 5).
+template <class W>
+void SetStop(const JointTable& j, W gap, W before, W free, W h, W live, JointRow<W>& row) noexcept {
+  const W zero = W::Splat(0.0), half = W::Splat(0.5);
+  const W kick = Max(before - free, zero), slowly = W::Splat(kPushOutShare) * Abs(before);
+  const auto near = gap < h * (Abs(before) + Abs(free)) + W::Splat(kContactMarginM);
+  row.live = Select(near, live, zero);
+  row.target = zero - Max(gap / h, zero - (half * kick + slowly));
+  row.lower = zero;
+  row.restitution = W::Splat(j.restitution);
+}
+
+/// A spring and damper, as a line through the mean of the step's start and end (eq. 6).
+template <class W>
+void SetSpring(const JointTable& j, W stretch, W before, W h, JointRow<W>& row) noexcept {
+  const W one = W::Splat(1.0), half = W::Splat(0.5), quarter = W::Splat(0.25);
+  const W k = h * W::Splat(j.stiffness), b = h * W::Splat(j.damping);
+  const W gain = quarter * h * k + half * b;
+  row.give = one / gain;
+  row.target = (quarter * h * k * before - half * b * before - k * stretch) / gain;
+}
+
+template <class W>
+void AgreeGuesses(const View& m, const Rows<W>& s, Scratch<W>& work, W half_h) noexcept;
+
+/// The rows of all joints.
+///   reads   pos, bodies[]     writes  joints[], joint_angle
+template <class W>
+void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  const W h = W::Splat(step_s), half_h = W::Splat(0.5 * step_s);
+  const W no_limit = W::Splat(JointRow<W>::kNoLimit);
+  for (int b = 0; b <= m.body_count; ++b) work.joint_guess[b] = Before(work.bodies[b]);
+  if (m.joint_loops) AgreeGuesses(m, s, work, half_h);
+  const W live = Select(s.halted[0] > zero, zero, one);
+  for (int i = 0; i < m.joint_count; ++i) {
+    const JointTable& j = m.joints[i];
+    const BodyWork<W>&a = work.bodies[j.a], &b = work.bodies[j.b];
+    const Twist<W>&guess_a = work.joint_guess[j.a], &guess_b = work.joint_guess[j.b];
+    const JointPlace<W> place = PlaceOf(m, s, j, a.R, b.R);
+    const JointPlace<W> end = PlaceAfter(place, guess_a, guess_b, half_h);
+    W angle = zero;
+    if (j.has_angle) {
+      const W turn = W::Splat(2 * simd::kPi), inv_turn = W::Splat(0.5 / simd::kPi);
+      angle = HingeAngle(place);
+      angle += turn * simd::Round(inv_turn * (s.joint_angle[i] - angle));
+      s.joint_angle[i] = angle;
+    }
+    for (int r = j.first_row; r < j.first_row + j.row_count; ++r) {
+      const JointRowTable& table = m.joint_rows[r];
+      HeldRow<W>& row = work.joints[r];
+      JointDirection<W> d = DirectionOf(j, table.measure, place, angle);
+      if (table.role == JointRole::kMost) {
+        d = {-d.lin, -d.turn, W::Splat(j.most) - d.value};
+      } else if (table.role == JointRole::kLeast) {
+        d.value -= W::Splat(j.least);
+      }
+      row.joint = i;
+      row.lin = d.lin, row.turn = d.turn;
+      SetJointLinks(s, work, j, place, d, row);
+      row.live = live;
+      row.target = row.give = row.restitution = row.rebound = zero;
+      row.lower = -no_limit, row.upper = no_limit;
+      row.before = RateOf(place, d, Before(a), Before(b));
+      switch (table.role) {
+        case JointRole::kHold:
+          row.target = RateOf(place, d, guess_a, guess_b) -
+                       RateOf(end, DirectionOf(j, table.measure, end, angle), guess_a, guess_b);
+          break;
+        case JointRole::kLeast:
+        case JointRole::kMost:
+          SetStop(j, d.value, row.before, RateOf(place, d, Free(a), Free(b)), h, live, row);
+          break;
+        case JointRole::kFriction:
+          row.upper = h * W::Splat(j.friction);
+          row.lower = -row.upper;
+          break;
+        case JointRole::kSpring:
+          SetSpring(j, d.value - W::Splat(j.rest), row.before, h, row);
+          break;
+      }
+      row.l[0] = Select(row.live > zero, Min(Max(h * s.joint_load[r], row.lower), row.upper), zero);
+    }
+  }
+}
+
+/// Loads of what the solver found, and the angular momenta that they give.
+template <class W>
+void FinishJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
+  const W zero = W::Splat(0.0), inv_h = W::Splat(1.0 / step_s);
+  const V3<W> none{zero, zero, zero};
+  for (int i = 0; i < m.joint_count; ++i) s.joint_force[i] = s.joint_torque[i] = none;
+  for (int r = 0; r < m.joint_row_count; ++r) {
+    const HeldRow<W>& row = work.joints[r];
+    const W l = Select(row.live > zero, row.l[0], zero), load = inv_h * l;
+    for (int k = 0; k < row.link_count; ++k) {
+      s.mom[row.links[k].body] += l * row.links[k].ang[0];
+    }
+    s.joint_load[r] = load + zero;
+    s.joint_force[row.joint] += load * row.lin;
+    s.joint_torque[row.joint] += load * row.turn;
+  }
+}
+
+}  // namespace taut::sim

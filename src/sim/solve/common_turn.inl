@@ -1,0 +1,48 @@
+/// Several bodies that turn about their common centre of mass as if they were one.
+
+namespace taut::sim {
+
+template <class Num>
+struct Solid {
+  V3<Num> x;        ///< Its centre of mass in W [m].
+  Num mass;         ///< [kg]
+  S3<Num> inertia;  ///< In W [kg m^2].
+};
+
+template <class Num>
+struct CommonTurn {
+  V3<Num> centre;  ///< [m]
+  V3<Num> w;       ///< [rad/s]
+
+  /// The turn that has the angular momentum `momentum`. `solid(k)`: the bodies, count of them.
+  template <class F>
+  CommonTurn(int count, const F& solid, const V3<Num>& momentum) noexcept {
+    const Num zero = Num::Splat(0.0);
+    Num mass = zero;
+    centre = {zero, zero, zero};
+    for (int k = 0; k < count; ++k) {
+      const Solid<Num> body = solid(k);
+      centre += body.mass * body.x;
+      mass += body.mass;
+    }
+    centre = (Num::Splat(1.0) / mass) * centre;
+    Num a[3][3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}};
+    for (int k = 0; k < count; ++k) {
+      const Solid<Num> body = solid(k);
+      const V3<Num> r = body.x - centre;
+      const S3<Num>& i = body.inertia;
+      a[0][0] += i.xx + body.mass * (r.y * r.y + r.z * r.z);
+      a[1][1] += i.yy + body.mass * (r.x * r.x + r.z * r.z);
+      a[2][2] += i.zz + body.mass * (r.x * r.x + r.y * r.y);
+      a[1][0] += i.xy - body.mass * r.x * r.y;
+      a[2][0] += i.xz - body.mass * r.x * r.z;
+      a[2][1] += i.yz - body.mass * r.y * r.z;
+    }
+    Num x[3] = {momentum.x, momentum.y, momentum.z};
+    SolveSymmetric(a, x);
+    w = {x[0], x[1], x[2]};
+  }
+  V3<Num> VelocityAt(const V3<Num>& x) const noexcept { return Cross(w, x - centre); }
+};
+
+}  // namespace taut::sim

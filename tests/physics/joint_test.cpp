@@ -1,0 +1,440 @@
+// Joints against closed forms (docs/theory/joints.md).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scenes/rod.h"
+#include "tests/physics/world.h"
+
+namespace taut::test {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846, kG = 9.81;
+
+/// A thin rod of 1 m and 1 kg that hangs from the world at its upper end, turned out of the plumb.
+ModelDef Pendulum(double angle_rad, JointKind kind = JointKind::kBall) {
+  ModelDef def;
+  const Vec3 end{std::sin(angle_rad), 0, -std::cos(angle_rad)};
+  scenes::AddRod(def, "rod", 1.0, 1e-3, {}, end, {});
+  JointDef pin;
+  pin.name = "pin", pin.kind = kind, pin.body_b = 0;
+  pin.axis = {0, 1, 0};
+  def.joints.push_back(pin);
+  return def;
+}
+
+/// When the pin's rod swings through the plumb the n-th time, from rest; linear between steps.
+double CrossingTime(Batch& world, double step_s, int crossings) {
+  double before = world.Body(0, 0).position_m.x;
+  for (int n = 1, found = 0; n < 100000; ++n) {
+    world.Step(step_s);
+    const double now = world.Body(0, 0).position_m.x;
+    if (before * now < 0 && ++found == crossings) {
+      return step_s * (n - now / (now - before));
+    }
+    before = now;
+  }
+  return 0;
+}
+
+TEST(Joint, APinnedRodSwingsWithThePeriodOfItsLength) {
+  // Of a rod about its end w^2 = 3 g / 2 L. From 90 degrees: times 2 K(1/sqrt 2) / pi.
+  const double small = 2 * kPi * std::sqrt(2.0 / (3 * kG)), wide = 1.180340599016096 * small;
+  EXPECT_NEAR(small, 1.63795, 1e-5);
+  for (const JointKind kind : {JointKind::kBall, JointKind::kHinge}) {
+    Batch slow = MakeBatch(Pendulum(1e-3, kind)), far = MakeBatch(Pendulum(kPi / 2, kind));
+    EXPECT_NEAR(CrossingTime(slow, 1e-3, 5) / 2.25, small, 1e-5 * small);
+    EXPECT_NEAR(CrossingTime(far, 1e-3, 5) / 2.25, wide, 1e-5 * wide);
+  }
+}
+
+TEST(Joint, ASwingingRodKeepsItsEnergyAndItsPin) {
+  // Second order, and no trend: the energy swings with the rod, by as much after a minute as
+  // before.
+  double worst[3] = {}, last[3] = {};
+  for (int k = 0; k < 3; ++k) {
+    const double h = kThreeStepsS[k];
+    Batch world = MakeBatch(Pendulum(2.5));
+    const double start = EnergyOf(world);
+    const int steps = StepsIn(60, h);
+    for (int n = 1; n <= steps; ++n) {
+      world.Step(h);
+      const double off = std::fabs(EnergyOf(world) - start);
+      double& most = n > steps - StepsIn(5, h) ? last[k] : worst[k];
+      most = std::max(most, off);
+      ASSERT_LT(world.Joint(0, 0).gap_m, 1e-11);
+    }
+    EXPECT_EQ(world.Status(0).bits, kStatusOk);
+    EXPECT_LT(last[k], 1.02 * worst[k]);
+  }
+  EXPECT_LT(worst[1], 1e-4);
+  EXPECT_NEAR(worst[1] / worst[0], 16, 1.5);
+  EXPECT_NEAR(worst[2] / worst[1], 16, 2);
+}
+
+/// Rods of 0.1 m in a row from the origin along `step`, the first of them pinned there.
+ModelDef Chain(int rods, const Vec3& step_m, double last_mass_kg) {
+  ModelDef def;
+  Vec3 at;
+  for (int i = 0; i < rods; ++i) {
+    const std::string number = std::to_string(i);
+    const double mass = i + 1 == rods ? last_mass_kg : 1.0;
+    scenes::AddRod(def, "rod" + number, mass, 0.01, at, at + step_m, {});
+    def.capsules.back().collides = false;
+    JointDef joint;
+    joint.name = "joint" + number, joint.body_a = i - 1, joint.body_b = i;
+    joint.from_m = joint.to_m = at;
+    def.joints.push_back(joint);
+    at = at + step_m;
+  }
+  return def;
+}
+double WorstGap(const Batch& world, const ModelDef& def) {
+  double gap = 0;
+  for (int i = 0; i < static_cast<int>(def.joints.size()); ++i) {
+    gap = std::max(gap, world.Joint(0, i).gap_m);
+  }
+  return gap;
+}
+
+TEST(Joint, AChainWithAThousandfoldMassAtItsEndCarriesItsWeight) {
+  const ModelDef def = Chain(64, {0, 0, -0.1}, 1000);
+  Batch world = MakeBatch(def);
+  int solves = 0;
+  for (int n = 0; n < 1000; ++n) {
+    world.Step(1e-3);
+    solves = std::max(solves, world.Status(0).linear_solves);
+  }
+  EXPECT_LT(WorstGap(world, def), 1e-12);
+  EXPECT_NEAR(world.Joint(0, 0).force_n.z, 1063 * kG, 1e-9 * 1063 * kG);
+  EXPECT_NEAR(world.Joint(0, 63).force_n.z, 1000 * kG, 1e-9 * 1000 * kG);
+  EXPECT_LE(solves, 5);
+  EXPECT_EQ(world.Status(0).bits, kStatusOk);
+}
+
+TEST(Joint, AChainThatSwingsWithAHeavyEndStaysTogether) {
+  // Ten times: across a rod of 1 kg under 400 N it swings 200 times a second. A thousandfold mass
+  // would make that 1.5 kHz, beyond what steps of 1 ms can follow.
+  const ModelDef def = Chain(64, {0.1, 0, 0}, 10);
+  Batch world = MakeBatch(def);
+  const double start = EnergyOf(world);
+  for (int n = 0; n < 3000; ++n) {
+    world.Step(1e-3);
+    ASSERT_LT(WorstGap(world, def), 1e-9) << n;
+    ASSERT_LE(world.Status(0).linear_solves, 5) << n;
+  }
+  EXPECT_EQ(world.Status(0).bits, kStatusOk);
+  EXPECT_NEAR(EnergyOf(world), start, 1e-3 * 73 * kG * 6.4);
+}
+
+TEST(Joint, AFreeChainKeepsItsMomenta) {
+  ModelDef def = Chain(5, {0.06, 0.08, 0}, 2);
+  def.gravity_m_per_s2 = {};
+  def.joints.erase(def.joints.begin());
+  for (int i = 0; i < 5; ++i) {
+    BodyDef& body = def.bodies[static_cast<std::size_t>(i)];
+    body.angular_velocity_rad_per_s = {1.0 + i, 2, 3 - i * 2.0};
+    body.velocity_m_per_s = {0.1 * i, 0, 0.3};
+  }
+  Batch world = MakeBatch(def);
+  const Vec3 p = world.Momentum(0), l = world.AngularMomentum(0);
+  for (int n = 0; n < 10000; ++n) world.Step(1e-3);
+  EXPECT_LT(Distance(world.Momentum(0), p), 1e-11);
+  EXPECT_LT(Distance(world.AngularMomentum(0), l), 1e-11);
+  EXPECT_LT(WorstGap(world, def), 1e-9);
+}
+
+/// A box of 1 kg and 0.1 m, its centre at `at`, on a joint with the world there.
+ModelDef BoxOn(JointKind kind, const Vec3& axis, const Vec3& at = {}) {
+  ModelDef def;
+  scenes::AddRod(def, "body", 1.0, 0.05, at - Vec3{0.1, 0, 0}, at + Vec3{0.1, 0, 0}, {});
+  JointDef joint;
+  joint.name = "joint", joint.kind = kind, joint.axis = axis;
+  joint.from_m = joint.to_m = at;
+  def.joints.push_back(joint);
+  return def;
+}
+double InertiaAlongY(const ModelDef& def) { return def.bodies[0].inertia_kg_m2.yy; }
+
+TEST(Joint, WhatAKindLeavesFreeIsFreeAndTheRestIsHeld) {
+  // Pushed along and turned about every axis of a skew frame: what moves is what it says.
+  const Vec3 n{2.0 / 7, 3.0 / 7, 6.0 / 7}, s{6.0 / 7, 2.0 / 7, -3.0 / 7}, t = Cross(n, s);
+  const struct {
+    JointKind kind;
+    int slides, turns;  // bits: along or about n, s, t
+  } kinds[] = {{JointKind::kBall, 0, 7},        {JointKind::kHinge, 0, 1},
+               {JointKind::kWeld, 0, 0},        {JointKind::kPrismatic, 1, 0},
+               {JointKind::kCylindrical, 1, 1}, {JointKind::kPlanar, 6, 1},
+               {JointKind::kLine, 1, 7},        {JointKind::kPlane, 6, 7}};
+  const Vec3 axes[] = {n, s, t};
+  for (const auto& kind : kinds) {
+    for (int i = 0; i < 3; ++i) {
+      for (const bool turn : {false, true}) {
+        ModelDef def = BoxOn(kind.kind, n);
+        def.gravity_m_per_s2 = {};
+        BodyDef& body = def.bodies[0];
+        body.inertia_kg_m2 = {0.01, 0.01, 0.01, 0, 0, 0};
+        (turn ? body.angular_velocity_rad_per_s : body.velocity_m_per_s) = axes[i];
+        Batch world = MakeBatch(def);
+        for (int k = 0; k < 100; ++k) world.Step(1e-3);
+        const BodyState now = world.Body(0, 0);
+        const Vec3 v = turn ? now.angular_velocity_rad_per_s : now.velocity_m_per_s;
+        const bool is_free = ((turn ? kind.turns : kind.slides) >> i & 1) != 0;
+        EXPECT_LT(Distance(v, is_free ? axes[i] : Vec3{}), 1e-9)
+            << static_cast<int>(kind.kind) << " " << i << turn;
+        EXPECT_LT(world.Joint(0, 0).gap_m, 1e-12);
+      }
+    }
+  }
+}
+
+TEST(Joint, AWeldCarriesForceAndTorqueLikeAClampedBeam) {
+  // A rod of 1 m that sticks out of a wall: its weight, and that times half its length.
+  ModelDef def;
+  scenes::AddRod(def, "rod", 2.0, 0.01, {}, {1, 0, 0}, {});
+  JointDef joint;
+  joint.name = "wall", joint.kind = JointKind::kWeld;
+  def.joints.push_back(joint);
+  Batch world = MakeBatch(def);
+  for (int n = 0; n < 10; ++n) world.Step(1e-3);
+  const JointState wall = world.Joint(0, 0);
+  EXPECT_LT(Distance(wall.force_n, {0, 0, 2 * kG}), 1e-9);
+  EXPECT_LT(Distance(wall.torque_n_m, {0, -2 * kG * 0.5, 0}), 1e-9);
+  EXPECT_LT(Norm(world.Body(0, 0).velocity_m_per_s), 1e-12);
+}
+
+TEST(Joint, AHingesSpringTurnsWithTheFrequencyOfItsStiffness) {
+  ModelDef def = BoxOn(JointKind::kHinge, {0, 1, 0});
+  def.joints[0].stiffness = 5, def.joints[0].rest = 0.3;
+  const double w = std::sqrt(5 / InertiaAlongY(def)), h = 1e-3;
+  Batch world = MakeBatch(def);
+  const double start = EnergyOf(world);
+  // The mean of start and end makes it tan(w h / 2): a little slower.
+  const double seen = 2 / h * std::atan(w * h / 2);
+  for (int n = 1; n <= 2000; ++n) {
+    world.Step(h);
+    const double wanted = 0.3 - 0.3 * std::cos(seen * n * h);
+    ASSERT_NEAR(world.Joint(0, 0).coordinate, wanted, 2e-5) << n;
+    ASSERT_NEAR(EnergyOf(world), start, 1e-5 * start) << n;
+  }
+}
+
+TEST(Joint, AHeavilyDampedStiffSpringIsStable) {
+  ModelDef def = BoxOn(JointKind::kPrismatic, {0, 0, 1});
+  def.joints[0].stiffness = 1e9, def.joints[0].damping = 1e5;
+  Batch world = MakeBatch(def);
+  for (int n = 0; n < 10000; ++n) {
+    world.Step(4e-3);
+    ASSERT_LT(std::fabs(world.Joint(0, 0).coordinate), 1e-3);
+  }
+  EXPECT_NEAR(world.Joint(0, 0).coordinate, -kG / 1e9, 1e-12);
+  EXPECT_LT(Norm(world.Body(0, 0).velocity_m_per_s), 1e-9);
+}
+
+TEST(Joint, FrictionHoldsUpToItsLimitAndSlowsBeyondIt) {
+  for (const double limit : {9.82, 9.80}) {
+    ModelDef def = BoxOn(JointKind::kPrismatic, {0, 0, 1});
+    def.joints[0].friction = limit;
+    Batch world = MakeBatch(def);
+    for (int n = 0; n < 1000; ++n) world.Step(1e-3);
+    const double wanted = limit > kG ? 0 : limit - kG;
+    EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.z, wanted, 1e-10);
+  }
+  // Of a hinge: a spinning body stops, after w J / F, and stays.
+  ModelDef def = BoxOn(JointKind::kHinge, {0, 1, 0});
+  def.bodies[0].angular_velocity_rad_per_s = {0, 10, 0};
+  def.joints[0].friction = 0.1;
+  const double stops_s = 10 * InertiaAlongY(def) / 0.1, angle = 0.5 * 10 * stops_s;
+  Batch world = MakeBatch(def);
+  for (int n = 0; n < StepsIn(2 * stops_s, 1e-3); ++n) world.Step(1e-3);
+  EXPECT_NEAR(world.Joint(0, 0).coordinate, angle, 1e-2 * angle);
+  EXPECT_LT(std::fabs(world.Joint(0, 0).rate), 1e-10);
+}
+
+TEST(Joint, AHingeCountsItsTurns) {
+  ModelDef def = BoxOn(JointKind::kHinge, {0, 1, 0});
+  def.bodies[0].angular_velocity_rad_per_s = {0, -20, 0};
+  Batch world = MakeBatch(def);
+  for (int n = 0; n < 3000; ++n) world.Step(1e-3);
+  // A drift turns by h w (1 - (h w)^4 / 120).
+  EXPECT_NEAR(world.Joint(0, 0).coordinate, -60 * (1 - std::pow(0.01, 4) / 120), 1e-11);
+}
+
+TEST(Joint, StopsHoldAndSendBack) {
+  for (const double restitution : {0.0, 0.5, 1.0}) {
+    ModelDef def = BoxOn(JointKind::kPrismatic, {1, 0, 0});
+    def.gravity_m_per_s2 = {};
+    def.bodies[0].velocity_m_per_s = {1, 0, 0};
+    def.joints[0].least = -0.2, def.joints[0].most = 0.1, def.joints[0].restitution = restitution;
+    Batch world = MakeBatch(def);
+    double far = 0;
+    for (int n = 0; n < 200; ++n)
+      world.Step(1e-3), far = std::max(far, world.Joint(0, 0).coordinate);
+    EXPECT_LT(far, 0.1 + 1e-9);
+    EXPECT_GT(far, 0.1 - 2e-3);
+    EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.x, -restitution, 1e-6);
+  }
+  // Pressed against it by its weight: it stands there, and the stop carries the weight.
+  ModelDef def = BoxOn(JointKind::kPrismatic, {0, 0, 1});
+  def.joints[0].least = -0.05;
+  Batch world = MakeBatch(def);
+  for (int n = 0; n < 1000; ++n) world.Step(1e-3);
+  EXPECT_NEAR(world.Joint(0, 0).coordinate, -0.05, 1e-8);
+  EXPECT_NEAR(world.Joint(0, 0).force_n.z, kG, 1e-7);
+  EXPECT_LT(Norm(world.Body(0, 0).velocity_m_per_s), 1e-9);
+}
+
+TEST(Joint, ABallsConeStopsASwing) {
+  ModelDef def = Pendulum(0.0);
+  def.joints[0].axis = {0, 0, -1}, def.joints[0].most = 0.4;
+  def.gravity_m_per_s2 = {3, 2, 0};
+  Batch world = MakeBatch(def);
+  for (int n = 0; n < 4000; ++n) {
+    world.Step(1e-3);
+    ASSERT_LT(world.Joint(0, 0).coordinate, 0.4 + 1e-5) << n;
+  }
+  EXPECT_NEAR(world.Joint(0, 0).coordinate, 0.4, 1e-5);
+}
+
+TEST(Joint, ADistanceHoldsOrPullsOrStops) {
+  const auto hung = [](auto&& change) {
+    ModelDef def;
+    scenes::AddRod(def, "rod", 1.0, 0.01, {0, 0, -0.5}, {0, 0, -0.7}, {});
+    JointDef j;
+    j.name = "line", j.kind = JointKind::kDistance, j.from_m = {}, j.to_m = {0, 0, -0.5};
+    change(j);
+    def.joints.push_back(j);
+    Batch world = MakeBatch(def);
+    for (int n = 0; n < 2000; ++n) world.Step(1e-3);
+    return world.Joint(0, 0);
+  };
+  EXPECT_NEAR(hung([](JointDef&) {}).coordinate, 0.5, 1e-12);
+  EXPECT_NEAR(hung([](JointDef&) {}).force_n.z, kG, 1e-9);
+  const JointState rope = hung([](JointDef& j) { j.most = 0.6; });
+  EXPECT_NEAR(rope.coordinate, 0.6, 1e-6);
+  const JointState spring =
+      hung([](JointDef& j) { j.stiffness = 100, j.damping = 20, j.rest = 0.5; });
+  EXPECT_NEAR(spring.coordinate, 0.5 + kG / 100, 1e-6);
+}
+
+/// Four rods in a square in the plane of x and z, on hinges about y, the lower one's ends pinned.
+ModelDef FourBars(JointKind kind) {
+  ModelDef def;
+  const Vec3 corners[] = {{0, 0, 0}, {0.2, 0, 1}, {1.2, 0, 1}, {1, 0, 0}};
+  for (int i = 0; i < 3; ++i) {
+    scenes::AddRod(def, "rod" + std::to_string(i), 1, 0.02, corners[i], corners[i + 1], {});
+    def.capsules.back().collides = false;
+  }
+  for (int i = 0; i < 4; ++i) {
+    JointDef j;
+    j.name = "hinge" + std::to_string(i), j.kind = kind, j.axis = {0, 1, 0};
+    j.body_a = i == 0 || i == 3 ? kWorld : i - 1, j.body_b = i == 3 ? 2 : i;
+    j.from_m = j.to_m = corners[i];
+    def.joints.push_back(j);
+  }
+  return def;
+}
+
+TEST(Joint, AClosedLoopWithRedundantRowsMovesAsAParallelogram) {
+  // Two rods that turn about their ends and one that is carried: (1/3 + 1/3 + 1) m L^2 w' =
+  // (1/2 + 1/2 + 1) m g L sin(a). Against a fine solution of that.
+  const ModelDef def = FourBars(JointKind::kHinge);
+  const double L = std::sqrt(1.04), k = 2.0 / (5.0 / 3) * kG / L;
+  Batch world = MakeBatch(def);
+  double a = std::atan(0.2), w = 0;
+  const double a0 = a;
+  for (int n = 1; n <= 2000; ++n) {
+    world.Step(1e-3);
+    ASSERT_EQ(world.Status(0).bits, kStatusOk) << n;
+    ASSERT_LE(world.Status(0).linear_solves, 6) << n;
+    ASSERT_LT(WorstGap(world, def), 1e-10) << n;
+    for (int i = 0; i < 10; ++i) {  // leapfrog, 0.1 ms
+      a += 0.5e-4 * w, w += 1e-4 * k * std::sin(a), a += 0.5e-4 * w;
+    }
+    ASSERT_NEAR(world.Joint(0, 0).coordinate, a - a0, 2e-3) << n;
+  }
+}
+
+TEST(Joint, LanesHaveTheBitsOfAWorldAlone) {
+  ModelDef def = FourBars(JointKind::kHinge);
+  def.joints[1].friction = 0.2, def.joints[0].most = 2.0, def.joints[0].restitution = 0.5;
+  def.joints[2].stiffness = 1;
+  const auto prepare = [](Batch& batch, int world, int as) {
+    batch.SetParameter(world, Parameter::kBodyMass, 1, 1 + 0.3 * as);
+  };
+  for (const int worlds : {2, 4, 8, 11}) {
+    BatchOptions options;
+    options.worlds = worlds, options.simd = BestSimd();
+    Batch together = MakeBatch(def, options);
+    for (int w = 0; w < worlds; ++w) prepare(together, w, w);
+    together.Step(1e-3, 1500);
+    for (int w = 0; w < worlds; ++w) {
+      BatchOptions one;
+      one.simd = Simd::kScalar;
+      Batch alone = MakeBatch(def, one);
+      prepare(alone, 0, w);
+      alone.Step(1e-3, 1500);
+      EXPECT_EQ(alone.Hash(0), together.Hash(w)) << worlds << " " << w;
+    }
+  }
+}
+
+TEST(Joint, ASnapshotGoesOnWithTheSameBits) {
+  ModelDef def = FourBars(JointKind::kHinge);
+  def.joints[1].friction = 0.2;
+  Batch world = MakeBatch(def);
+  world.Step(1e-3, 300);
+  const auto snapshot = world.Save(0);
+  world.Step(1e-3, 300);
+  const auto there = world.Hash(0);
+  ASSERT_TRUE(world.Restore(0, snapshot));
+  world.Step(1e-3, 300);
+  EXPECT_EQ(world.Hash(0), there);
+}
+
+TEST(Joint, WrongOnesAreAllNamed) {
+  const auto complaints = [](auto&& change) {
+    ModelDef def = Chain(2, {0.1, 0, 0}, 1);
+    change(def);
+    Diagnostics out;
+    EXPECT_EQ(Model::Compile(def, out), nullptr);
+    return out.Format();
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].body_a = 1; }),
+              HasSubstr("both of its bodies"));
+  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].body_a = 7; }), HasSubstr("not there"));
+  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].to_m.y = 0.2; }), HasSubstr("0.2 m apart"));
+  EXPECT_THAT(complaints([](ModelDef& d) {
+                d.joints[1].axis = {0, 0, 2};
+              }),
+              HasSubstr("unit vector"));
+  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].friction = 1; }), HasSubstr("no friction"));
+  EXPECT_THAT(complaints([](ModelDef& d) {
+                d.joints[1].kind = JointKind::kHinge;
+                d.joints[1].least = 1, d.joints[1].most = 0;
+              }),
+              HasSubstr("must rise"));
+  EXPECT_THAT(complaints([](ModelDef& d) { d.bodies[0].fixed = true; }), HasSubstr("can move"));
+  const std::string all = complaints([](ModelDef& d) {
+    d.joints[0].axis = {}, d.joints[1].restitution = 2, d.apart.push_back({0, 5});
+  });
+  EXPECT_THAT(all, testing::AllOf(HasSubstr("unit vector"), HasSubstr("restitution"),
+                                  HasSubstr("kept apart")));
+}
+
+TEST(Joint, WhatItJoinsDoesNotTouchUnlessItSaysSo) {
+  for (const bool collides : {false, true}) {
+    ModelDef def = Chain(2, {0.1, 0, 0}, 1);
+    for (CapsuleDef& rod : def.capsules) rod.collides = true;
+    def.gravity_m_per_s2 = {};
+    def.joints[1].collides = collides;
+    Batch world = MakeBatch(def);
+    world.Step(1e-3);
+    EXPECT_EQ(world.Contacts(0).empty(), !collides);
+  }
+}
+
+}  // namespace
+}  // namespace taut::test
