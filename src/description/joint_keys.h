@@ -56,4 +56,6 @@ void Keys(Io& io, Joint& j) {
   io("collides", j.collides, "Whether its bodies touch each other.");
 }
 
+void Check(const MapReader& map, JointText& joint);
+
 }  // namespace taut::description

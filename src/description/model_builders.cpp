@@ -84,9 +84,35 @@ void Check(const MapReader& map, CableText& cable) {
   if (cable.actuator_text) cable.actuator = *cable.actuator_text;
 }
 
+void Check(const MapReader& map, JointText& joint) {
+  const bool ball = joint.kind == JointKind::kBall;
+  const bool none = joint.kind == JointKind::kWeld || joint.kind == JointKind::kPlanar ||
+                    joint.kind == JointKind::kPlane;
+  for (const char* key : {"least_rad", "least_m", "most_rad", "most_m", "friction_n_m",
+                          "friction_n", "stiffness_n_m_per_rad", "stiffness_n_per_m",
+                          "damping_n_m_s_per_rad", "damping_n_s_per_m", "rest_rad", "rest_m"}) {
+    if (!map.Has(key)) continue;
+    if (none) {
+      map.Error(key,
+                map.Path(key) + ": a joint of this kind leaves nothing free that has one number");
+    } else if (ball && std::string_view(key) != "most_rad") {
+      map.Error(key, map.Path(key) + ": a ball joint has no friction, spring, damper or lower stop",
+                "most_rad is how far its axis may turn away");
+    }
+  }
+  if (!joint.least || !joint.most || *joint.least < *joint.most) return;
+  const char* const key = IsAngle(joint.kind) ? "most_rad" : "most_m";
+  if (!map.Has(key)) return;
+  map.Error(key,
+            map.Path(key) + " is " + Shown(*joint.most) + ", not above the least of " +
+                Shown(*joint.least),
+            "limits must rise");
+}
+
 void Check(const MapReader& map, BuilderText& builder) {
   if (map.Has("match")) builder.match_at = map.Find("match")->at;
-  for (const char* kind : {"rod", "sphere", "point_mass", "box", "cable", "anchor", "joint", "support"}) {
+  for (const char* kind :
+       {"rod", "sphere", "point_mass", "box", "cable", "anchor", "joint", "support"}) {
     if (!map.Has(kind)) continue;
     builder.kind = builder.kind.empty() ? kind : "several";
   }

@@ -51,6 +51,7 @@ class Taker {
       m_.nodes.push_back({node.name, node.body, node.position_m, robot_.node_tags[n], -1});
       if (node.body == kWorld) Build(m_.on_nodes, "anchor: {}", static_cast<int>(n));
     }
+    if (!def_.joints.empty() || !def_.apart.empty()) Refuse("it has joints, or bodies kept apart");
     Rods(), Boxes(), Spheres(), PointMasses(), Anchors();
     m_.solid_pairs = m_.pairs.size();
     Cables();

@@ -1,0 +1,133 @@
+// Joints, supports and rods that turn in their nodes, as model files say them.
+#include <gmock/gmock.h>
+
+#include "taut/batch.h"
+#include "taut/run.h"
+#include "unit/model_fixture.h"
+
+namespace taut {
+namespace {
+
+using testing::HasSubstr;
+
+/// Two rods, end to end at x = 1, with a node each there.
+std::string Leg(const std::string& joint, const std::string& more = "",
+                const std::string& lower = "[1, 0, 0]") {
+  return "nodes: {hip: [0, 0, 0], a: [1, 0, 0], b: " + lower +
+         ", foot: [2, 0, 0]}\n"
+         "pairs:\n"
+         "  - {name: upper, nodes: [hip, a], tags: [rod]}\n"
+         "  - {name: lower, nodes: [b, foot], tags: [rod]}\n"
+         "  - {name: knee, nodes: [a, b]}\n"
+         "builders:\n"
+         "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
+         "  - {match: knee, joint: {" +
+         joint + "}}\n" + more;
+}
+
+TEST(JointText, APairBecomesAJointAndANodeASupport) {
+  const RobotSpec robot = Good(
+      Leg("kind: hinge, axis: [0, 2, 0], least_rad: -0.5, most_rad: 1.2, restitution: 0.3, "
+          "friction_n_m: 0.01, stiffness_n_m_per_rad: 2, damping_n_m_s_per_rad: 0.1, rest_rad: 0.2",
+          "  - {match: hip, support: {kind: ball}}\n"));
+  ASSERT_EQ(robot.def.joints.size(), 2u);
+  const JointDef& knee = robot.def.joints[0];
+  EXPECT_EQ(knee.name, "knee");
+  EXPECT_EQ(knee.kind, JointKind::kHinge);
+  EXPECT_EQ(robot.def.bodies[static_cast<std::size_t>(knee.body_a)].name, "upper");
+  EXPECT_EQ(robot.def.bodies[static_cast<std::size_t>(knee.body_b)].name, "lower");
+  EXPECT_EQ(knee.axis.y, 1);
+  EXPECT_EQ(knee.from_m.x, 1);
+  EXPECT_EQ(knee.least, -0.5);
+  EXPECT_EQ(knee.most, 1.2);
+  EXPECT_EQ(knee.restitution, 0.3);
+  EXPECT_EQ(knee.friction, 0.01);
+  EXPECT_EQ(knee.stiffness, 2);
+  EXPECT_EQ(knee.damping, 0.1);
+  EXPECT_EQ(knee.rest, 0.2);
+  const JointDef& hip = robot.def.joints[1];
+  EXPECT_EQ(hip.body_a, kWorld);
+  EXPECT_EQ(hip.name, "hip");
+  Diagnostics out;
+  EXPECT_NE(Model::Compile(robot.def, out), nullptr) << out.Format();
+}
+
+TEST(JointText, TheAxisTurnsWithThePart) {
+  const RobotSpec robot = Good(
+      "parts:\n"
+      "  leg:\n"
+      "    nodes: {hip: [0, 0, 0], a: [1, 0, 0], b: [1, 0, 0], foot: [2, 0, 0]}\n"
+      "    pairs:\n"
+      "      - {nodes: [hip, a], tags: [rod]}\n"
+      "      - {nodes: [b, foot], tags: [rod]}\n"
+      "      - {name: knee, nodes: [a, b], tags: [knee]}\n"
+      "structure:\n"
+      "  - {part: leg, copies: 2, step_m: [0, 0, 1], rotate: {axis: [0, 0, 1], angle_rad: pi / "
+      "2}}\n"
+      "builders:\n"
+      "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
+      "  - {match: knee, joint: {kind: hinge, axis: [0, 1, 0]}}\n"
+      "allow_disconnected: true\n");
+  ASSERT_EQ(robot.def.joints.size(), 2u);
+  EXPECT_NEAR(robot.def.joints[1].axis.x, -1, 1e-15);
+  EXPECT_NEAR(robot.def.joints[1].axis.y, 0, 1e-15);
+  EXPECT_EQ(robot.def.joints[1].name, "leg_1.knee");
+}
+
+TEST(JointText, RodsOfClassKArePinnedInTheirNodes) {
+  // A triangle and a fourth rod at one corner: three rods meet in a.
+  const RobotSpec robot = Good(
+      "nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [0, 1, 0], d: [0, 0, 1]}\n"
+      "pairs:\n"
+      "  - {tags: [rod], each: [[a, b], [b, c], [c, a], [a, d]]}\n"
+      "builders:\n"
+      "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1, class_k: true}}\n");
+  EXPECT_EQ(robot.def.bodies.size(), 4u);
+  ASSERT_EQ(robot.def.joints.size(), 4u);  // a: two beside the first, b and c: one each
+  for (const JointDef& j : robot.def.joints) EXPECT_EQ(j.kind, JointKind::kBall);
+  EXPECT_EQ(robot.def.joints[0].name, "b-c.b");
+  // Around a every two of its three rods are apart.
+  EXPECT_EQ(KeptApart(robot.def).size(), 5u);
+  Diagnostics out;
+  EXPECT_NE(Model::Compile(robot.def, out), nullptr) << out.Format();
+}
+
+TEST(JointText, WhatIsApartIsNamed) {
+  const RobotSpec robot = Good(Leg("kind: ball, collides: true", "apart: [[upper, lower]]\n"));
+  ASSERT_EQ(robot.def.apart.size(), 1u);
+  EXPECT_THAT(Errors(Leg("kind: ball", "apart: [[upper, lowr]]\n")),
+              HasSubstr("apart: there is no body \"lowr\""));
+}
+
+TEST(JointText, MistakesAreNamed) {
+  EXPECT_THAT(Errors(Leg("kind: ball", "", "[1, 0, 0.02]")),
+              HasSubstr("the nodes of the joint \"knee\" are 0.02 m apart"));
+  EXPECT_THAT(Errors(Leg("kind: knee")), HasSubstr("kind"));
+  EXPECT_THAT(Errors(Leg("axis: [0, 1, 0]")), HasSubstr("kind"));
+  EXPECT_THAT(Errors(Leg("kind: hinge, axis: [0, 0, 0]")), HasSubstr("axis"));
+  EXPECT_THAT(Errors(Leg("kind: hinge, least_m: 1")), HasSubstr("least_m"));
+  EXPECT_THAT(Errors(Leg("kind: prismatic, friction_n_m: 1")), HasSubstr("friction_n_m"));
+  EXPECT_THAT(Errors(Leg("kind: hinge, friction_n_m: -1")), HasSubstr("friction_n_m"));
+  EXPECT_THAT(Errors(Leg("kind: hinge, restitution: 2")), HasSubstr("restitution"));
+  EXPECT_THAT(Errors(Leg("kind: ball", "  - {match: hip, support: {kind: distance}}\n")),
+              HasSubstr("no second point"));
+  EXPECT_THAT(Errors("nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [2, 0, 0]}\n"
+                     "pairs:\n"
+                     "  - {nodes: [a, b], tags: [rod]}\n"
+                     "  - {nodes: [b, c], tags: [rod]}\n"
+                     "  - {name: knee, nodes: [a, c]}\n"
+                     "builders:\n"
+                     "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
+                     "  - {match: knee, joint: {kind: weld}}\n"),
+              HasSubstr("to itself"));
+}
+
+TEST(JointText, LimitsThatMakeNoSenseAreNamed) {
+  EXPECT_THAT(Errors(Leg("kind: hinge, least_rad: 1, most_rad: 0.5")),
+              HasSubstr("not above the least"));
+  EXPECT_THAT(Errors(Leg("kind: ball, friction_n_m: 1")),
+              HasSubstr("a ball joint has no friction"));
+}
+
+}  // namespace
+}  // namespace taut
