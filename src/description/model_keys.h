@@ -327,7 +327,7 @@ void Keys(Io& io, Like<ModelText> auto& m) {
   io("actuator", m.actuator_text,
      "In place of the `actuator` of every cable whose builder has one: for files with a `base`.");
   io("allow_disconnected", m.allow_disconnected,
-     "Whether bodies that no cable joins to the others are meant. An error if false.");
+     "Whether bodies that no cable or joint joins to the others are meant. An error if false.");
 }
 void Check(const MapReader& map, ModelText& model);
 

@@ -41,8 +41,10 @@ TEST(ModelBuildErrors, BuildersAreWellFormed) {
           "  - {match: rod, rod: {radius_m: 1, mass_kg: 1}, cable: {}}\n  - {match: a, anchor: "
           "{at: 1}}\n")),
       "robot.yaml:12:5: error: builder needs the key \"match\"\n"
-      "robot.yaml:13:5: error: builder needs one of rod, sphere, point_mass, box, cable, anchor\n"
-      "robot.yaml:14:5: error: builder needs one of rod, sphere, point_mass, box, cable, anchor\n"
+      "robot.yaml:13:5: error: builder needs one of rod, sphere, point_mass, box, cable, anchor, "
+      "joint, support\n"
+      "robot.yaml:14:5: error: builder needs one of rod, sphere, point_mass, box, cable, anchor, "
+      "joint, support\n"
       "robot.yaml:14:18: error: unknown key \"rods\" in builder (did you mean \"rod\"?)\n"
       "robot.yaml:15:50: error: builder has both rod and cable (only one of them may be there)\n"
       "robot.yaml:16:25: error: unknown key \"at\" in anchor\n");
@@ -178,13 +180,14 @@ TEST(ModelBuildErrors, EveryNodeBelongsToABody) {
 }
 
 TEST(ModelBuildErrors, BodiesAreConnected) {
-  EXPECT_EQ(Errors(std::string(kBars) + "structure: [{part: bar, copies: 3, step_m: [0, 1, 0]}]\n"),
-            "robot.yaml:7:13: error: no cable joins the body \"bar_1\" to \"bar_0\" (if that is "
-            "meant, write "
-            "`allow_disconnected: true`)\n"
-            "robot.yaml:7:13: error: no cable joins the body \"bar_2\" to \"bar_0\" (if that is "
-            "meant, write "
-            "`allow_disconnected: true`)\n");
+  EXPECT_EQ(
+      Errors(std::string(kBars) + "structure: [{part: bar, copies: 3, step_m: [0, 1, 0]}]\n"),
+      "robot.yaml:7:13: error: no cable or joint joins the body \"bar_1\" to \"bar_0\" (if that is "
+      "meant, write "
+      "`allow_disconnected: true`)\n"
+      "robot.yaml:7:13: error: no cable or joint joins the body \"bar_2\" to \"bar_0\" (if that is "
+      "meant, write "
+      "`allow_disconnected: true`)\n");
 }
 
 TEST(ModelBuildErrors, VelocitiesOfJoinedPlacements) {

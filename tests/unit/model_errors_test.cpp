@@ -16,7 +16,7 @@ TEST(ModelErrors, KeysAreStrict) {
   EXPECT_EQ(Errors(OneRod("{radius_m: 0.1, mass_kg: 1}") + "conections: []\n"),
             "robot.yaml:7:1: error: unknown key \"conections\" (one of: taut, kind, name, "
             "description, base, "
-            "parameters, parts, nodes, pairs, structure, builders, gravity_m_per_s2, ...)\n");
+            "parameters, parts, nodes, pairs, structure, builders, apart, ...)\n");
   EXPECT_EQ(Errors(OneRod("{radius_m: 0.1, mass_kg: 1}") + "pairs: []\n"),
             "robot.yaml:7:1: error: duplicate key \"pairs\" (first in line 5)\n");
 }

@@ -183,7 +183,8 @@ TEST_F(TerrainBoxErrors, OfStairs) {
          "stairs.restitution must be within 0..1, got 2");
   expect("steps: 3, heading_rad: 1, " + sizes,
          "7:34: error: unknown key \"heading_rad\" in stairs (one of: steps, width_m, tread_m, "
-         "rise_m, at_m, rotate, friction, static_friction, kinetic_friction, restitution)");
+         "rise_m, at_m, rotate, friction, static_friction, kinetic_friction, restitution, "
+         "stribeck, friction_directions)");
   expect("steps: 3, static_friction: 0.1, kinetic_friction: 0.2, " + sizes,
          "7:34: error: stairs.static_friction is below kinetic_friction (a contact that sticks "
          "holds at least as much as one that slides)");
