@@ -356,6 +356,31 @@ TEST(Joint, AClosedLoopWithRedundantRowsMovesAsAParallelogram) {
   }
 }
 
+TEST(Joint, AFrameOfWeldsThatTumblesIsSolvedThoughSixOfItsRowsAreRedundant) {
+  ModelDef def;
+  const Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 0.7, 0.2}, {0, 0.7, 0.1}};
+  for (int i = 0; i < 4; ++i) {
+    scenes::AddRod(def, "rod" + std::to_string(i), 1 + i, 0.02, corners[i], corners[(i + 1) % 4],
+                   {});
+    def.capsules.back().collides = false;
+    def.bodies.back().angular_velocity_rad_per_s = {8, 5, -6};
+    def.bodies.back().velocity_m_per_s = Cross(Vec3{8, 5, -6}, def.bodies.back().com_m);
+    JointDef j;
+    j.name = "weld" + std::to_string(i), j.kind = JointKind::kWeld;
+    j.body_a = (i + 3) % 4, j.body_b = i, j.from_m = j.to_m = corners[i];
+    def.joints.push_back(j);
+  }
+  Batch world = MakeBatch(def);
+  int solves = 0;
+  for (int n = 0; n < 2000; ++n) {
+    world.Step(1e-3);
+    solves = std::max(solves, world.Status(0).linear_solves);
+    ASSERT_LT(WorstGap(world, def), 1e-9) << n;
+  }
+  EXPECT_EQ(world.Status(0).bits, kStatusOk);
+  EXPECT_LE(solves, 6);
+}
+
 TEST(Joint, LanesHaveTheBitsOfAWorldAlone) {
   ModelDef def = FourBars(JointKind::kHinge);
   def.joints[1].friction = 0.2, def.joints[0].most = 2.0, def.joints[0].restitution = 0.5;
