@@ -154,8 +154,8 @@ enum class Parameter {
   kGravityZ,  ///< [m/s^2]; index 0.
 };
 
-/// An index that is out of range (world, group, body, cable, joint, node) is a mistake of the program that
-/// calls: a line on stderr names it, and the program ends by abort().
+/// An index that is out of range (world, group, body, cable, joint, node) is a mistake of the
+/// program that calls: a line on stderr names it, and the program ends by abort().
 ///
 /// Threads: any number may call const functions of a batch at once. A function that is not const,
 /// and writing where `Cables` points to, needs the batch for itself. Batches do not know of each

@@ -65,8 +65,7 @@ JointState Batch::Joint(int world, int joint) const noexcept {
       case M::kTwist:
         return j.reach_m * Dot(a.axes[2], b.axes[1]);
       case M::kAngle: {
-        const double angle =
-            math::Atan2(Dot(a.axes[2], b.axes[1]), Dot(a.axes[1], b.axes[1]));
+        const double angle = math::Atan2(Dot(a.axes[2], b.axes[1]), Dot(a.axes[1], b.axes[1]));
         const double last = d.at(world, d.layout.joint_angle + joint);
         out.rate = Dot(a.axes[0], spin);
         return angle + 2 * kPi * std::round((last - angle) / (2 * kPi));
