@@ -25,8 +25,9 @@ enum class JointKind {
 
 /// A joint's coordinate, if it has one that is free: the angle of a hinge [rad], how far a
 /// prismatic joint, a cylindrical one or a line has slid [m], the length of a distance [m]; of a
-/// ball the angle between its axis in a and that in b [rad]. Angles and slides are 0 in the pose
-/// that is described, and of a hinge count turns. Forces are torques [N m] where it is an angle.
+/// ball the angle between its axis in a and that in b [rad]. A slide is that from a's point to b's;
+/// angles are 0 in the pose that is described, but for `turned`, and of a hinge count turns. Forces
+/// are torques [N m] where it is an angle.
 struct JointDef {
   /// Points that a joint holds together may be this far apart at first; the first step closes it.
   static constexpr double kClosed_m = 1e-6;
@@ -36,7 +37,10 @@ struct JointDef {
   int body_a = kWorld, body_b = 0;  ///< b is a body; not both are fixed.
   Vec3 from_m, to_m;                ///< A point of a and one of b, in W.
   Vec3 axis{0.0, 0.0, 1.0};         ///< Unit vector in W.
-  bool collides = false;            ///< Whether its bodies touch each other.
+  /// How b's axes are turned against a's, in W: not at all, but where a robot is described in
+  /// another pose than that in which the axes are one.
+  Quat turned;
+  bool collides = false;  ///< Whether its bodies touch each other.
 
   // Of the coordinate:
   std::optional<double> least, most;      ///< Stops; of a ball `most` alone.
@@ -58,6 +62,11 @@ double HeldGap(const JointDef& joint) noexcept;
 struct ApartDef {
   int body_a = 0, body_b = 0;
 };
+
+/// Whether one number says how far it has moved, or several have to.
+inline bool HasCoordinate(JointKind kind) noexcept {
+  return kind != JointKind::kWeld && kind != JointKind::kPlanar && kind != JointKind::kPlane;
+}
 
 /// Whether a joint's coordinate is an angle.
 inline bool IsAngle(JointKind kind) noexcept {

@@ -4,7 +4,8 @@
 #include <set>
 
 #include "description/build.h"
-#include "description/union_find.h"
+#include "description/once.h"
+#include "description/welds.h"
 #include "math/vec.h"
 #include "mechanics/mass_properties.h"
 #include "taut/statics.h"
@@ -18,14 +19,11 @@ constexpr double kShortest_m = 1e-9;  ///< What is shorter has no direction.
 /// shape, so it never turns and the value changes nothing; it only has to be a number.
 constexpr double kPointRadius_m = 0.01;
 
-/// What is welded into one body.
-struct Weld {
-  std::vector<int> nodes, pairs;  ///< `pairs`: its rods and beams.
-  std::vector<MassProperties> solids;
+/// A weld with what it is made of.
+struct Solids {
+  std::vector<MassProperties> parts;
   Bounds bounds;
-  bool anchored = false;
-  bool has_solid = false;
-  bool complete = true;  ///< False: one of its rods was complained about and is not in `solids`.
+  bool complete = true;  ///< False: one of its rods was complained about and is not in `parts`.
 };
 
 /// Of a beam along the unit vector u of its part: x along it, y level, z up; a beam along z has
@@ -48,11 +46,24 @@ class BodyBuilder {
  public:
   BodyBuilder(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
               RobotSpec& robot, Diagnostics& out)
-      : model_(model), assembly_(assembly), assignment_(assignment), robot_(robot), out_(out) {}
+      : model_(model),
+        assembly_(assembly),
+        assignment_(assignment),
+        robot_(robot),
+        out_(out),
+        bodiless_(out),
+        short_(out) {
+    Welds found = FindWelds(model, assembly, assignment);
+    welds_ = std::move(found.welds);
+    pins_ = std::move(found.pins);
+    body_of_node_.assign(assembly.nodes.size(), kWorld);
+    body_of_pair_.assign(assembly.pairs.size(), kWorld);
+  }
 
   BodyOfNode Run() {
-    FindWelds();
-    for (Weld& weld : welds_) BuildWeld(weld);
+    CheckPairs();
+    CountBodies();
+    for (const Weld& weld : welds_) BuildWeld(weld);
     for (const Pin& pin : pins_) AddPin(pin);
     SetVelocities();
     for (std::size_t node = 0; node < assembly_.nodes.size(); ++node) {
@@ -65,116 +76,51 @@ class BodyBuilder {
   }
 
  private:
-  const BuilderText* PairBuilder(std::size_t pair) const {
-    const int b = assignment_.of_pair[pair];
-    return b < 0 ? nullptr : &model_.builders[b];
+  const BuilderText& PairBuilder(int pair) const {
+    return model_.builders[assignment_.of_pair[pair]];
   }
 
-  bool IsSolid(std::size_t pair) const {
-    const BuilderText* builder = PairBuilder(pair);
-    return builder && !builder->cable && !builder->joint;
-  }
-  /// Rods whose ends turn in their nodes: bodies of their own, as elements of sets behind the
-  /// nodes.
-  bool TurnsInNodes(std::size_t pair) const {
-    const BuilderText* builder = PairBuilder(pair);
-    return builder && builder->rod && builder->rod->class_k;
-  }
-  int Element(std::size_t pair) const { return static_cast<int>(assembly_.nodes.size() + pair); }
-
-  /// A node goes with what is welded to it, else with the first of the rods that turn in it; the
-  /// others are pinned there.
-  void JoinRods(UnionFind& sets) {
-    std::vector<bool> taken(assembly_.nodes.size(), false);
+  void CheckPairs() {
     for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
-      if (!IsSolid(pair) || TurnsInNodes(pair)) continue;
-      for (const int node : assembly_.pairs[pair].nodes) taken[node] = true;
-    }
-    for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
-      if (!TurnsInNodes(pair)) continue;
-      for (const int node : assembly_.pairs[pair].nodes) {
-        if (taken[node]) {
-          pins_.push_back({static_cast<int>(pair), node});
-        } else {
-          sets.Join(node, Element(pair));
-        }
-        taken[node] = true;
-      }
+      const PlacedPair& placed = assembly_.pairs[pair];
+      const int b = assignment_.of_pair[pair];
+      if (b < 0 || !IsSolid(model_.builders[b]) || placed.nodes.size() == 2) continue;
+      out_.Error(placed.at, "a " + model_.builders[b].kind + " has two nodes, \"" + placed.name +
+                                "\" has " + std::to_string(placed.nodes.size()));
     }
   }
 
-  void FindWelds() {
-    UnionFind sets(assembly_.nodes.size() + assembly_.pairs.size());
-    for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
-      const std::vector<int>& nodes = assembly_.pairs[pair].nodes;
-      if (!IsSolid(pair)) continue;
-      if (nodes.size() != 2) {
-        out_.Error(assembly_.pairs[pair].at, "a " + PairBuilder(pair)->kind + " has two nodes, \"" +
-                                                 assembly_.pairs[pair].name + "\" has " +
-                                                 std::to_string(nodes.size()));
-      }
-      if (TurnsInNodes(pair)) continue;
-      for (const int node : nodes) sets.Join(nodes[0], node);
-      sets.Join(nodes[0], Element(pair));
-    }
-    JoinRods(sets);
-    for (std::size_t node = 0; node < assembly_.nodes.size(); ++node) {
-      if (assembly_.nodes[node].fixed_to >= 0) {
-        sets.Join(static_cast<int>(node), assembly_.nodes[node].fixed_to);
-      }
-    }
-    std::vector<int> weld_of_root(assembly_.nodes.size() + assembly_.pairs.size(), -1);
-    const auto weld_of = [&](int element) {
-      int& weld = weld_of_root[sets.Root(element)];
-      if (weld < 0) {
-        weld = static_cast<int>(welds_.size());
-        welds_.emplace_back();
-      }
-      return weld;
-    };
-    for (int node = 0; node < static_cast<int>(assembly_.nodes.size()); ++node) {
-      const int weld = weld_of(node);
-      welds_[weld].nodes.push_back(node);
-      for (const int b : assignment_.of_node[node]) {
-        (model_.builders[b].anchor ? welds_[weld].anchored : welds_[weld].has_solid) = true;
-      }
-    }
-    for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
-      if (!IsSolid(pair) || assembly_.pairs[pair].nodes.size() != 2) continue;
-      Weld& weld = welds_[weld_of(Element(pair))];
-      weld.pairs.push_back(static_cast<int>(pair));
-      weld.has_solid = true;
-    }
-    std::vector<int> welds_in_instance(assembly_.instances.size(), 0);
+  void CountBodies() {
+    bodies_in_instance_.assign(assembly_.instances.size(), 0);
     for (const Weld& weld : welds_) {
       const int instance = FirstInstance(weld);
-      if (weld.has_solid && instance >= 0) ++welds_in_instance[instance];
+      if (weld.has_solid && instance >= 0) ++bodies_in_instance_[instance];
     }
-    bodies_in_instance_ = std::move(welds_in_instance);
-    body_of_node_.assign(assembly_.nodes.size(), kWorld);
-    body_of_pair_.assign(assembly_.pairs.size(), kWorld);
   }
 
-  void BuildWeld(Weld& weld) {
+  void BuildWeld(const Weld& weld) {
     if (!weld.has_solid) {
       if (!weld.anchored) ReportBodiless(weld);
       return;
     }
     const int body = static_cast<int>(robot_.def.bodies.size());
     for (const int node : weld.nodes) body_of_node_[node] = body;
-    for (const int pair : weld.pairs) AddPair(weld, pair, body), body_of_pair_[pair] = body;
-    for (const int node : weld.nodes) AddNode(weld, node, body);
-    const MassProperties whole = Combine(weld.solids);
+    Solids solids;
+    for (const int pair : weld.pairs) AddPair(solids, pair, body), body_of_pair_[pair] = body;
+    for (const int node : weld.nodes) AddNode(weld, solids, node, body);
+    const MassProperties whole = Combine(solids.parts);
     BodyDef def;
     def.name = Name(weld);
     def.mass_kg = whole.mass_kg;
-    def.com_m = whole.mass_kg == 0.0 ? assembly_.nodes[weld.nodes[0]].position_m : whole.com_m;
+    def.com_m = whole.mass_kg == 0.0 && !weld.nodes.empty()
+                    ? assembly_.nodes[weld.nodes[0]].position_m
+                    : whole.com_m;
     def.inertia_kg_m2 = whole.inertia_kg_m2;
-    if (model_.inertia == InertiaLaw::kBoundingBox && weld.bounds.low.x < weld.bounds.high.x) {
-      def.inertia_kg_m2 = BoundingBoxInertia(weld.bounds, whole.mass_kg);
+    if (model_.inertia == InertiaLaw::kBoundingBox && solids.bounds.low.x < solids.bounds.high.x) {
+      def.inertia_kg_m2 = BoundingBoxInertia(solids.bounds, whole.mass_kg);
     }
     def.fixed = weld.anchored;
-    if (!def.fixed) CheckMass(weld, def);
+    if (!def.fixed) CheckMass(weld, solids, def);
     if (!names_.insert(def.name).second) {
       out_.Error(Source(weld), "two bodies would be called \"" + def.name + "\"",
                  "give one of its pairs a `name:`");
@@ -187,33 +133,29 @@ class BodyBuilder {
 
   void ReportBodiless(const Weld& weld) {
     const PlacedNode& node = assembly_.nodes[weld.nodes[0]];
-    if (!model_.builders_complete || !assembly_.complete ||
-        !bodiless_.insert({node.at.line, node.at.column}).second)
-      return;
-    out_.Error(node.at, "node \"" + node.name + "\" belongs to no body",
-               "a rod, box, sphere or point_mass makes a body of it, fixed_to joins it to another "
-               "node's, an anchor fixes it in the world");
+    if (!model_.builders_complete || !assembly_.complete) return;
+    bodiless_(node.at, "node \"" + node.name + "\" belongs to no body",
+              "a rod, box, sphere or point_mass makes a body of it, fixed_to joins it to another "
+              "node's, an anchor fixes it in the world");
   }
 
-  void AddPair(Weld& weld, int pair, int body) {
+  void AddPair(Solids& solids, int pair, int body) {
     const PlacedPair& placed = assembly_.pairs[pair];
     const Vec3 from = assembly_.nodes[placed.nodes[0]].position_m;
     const Vec3 to = assembly_.nodes[placed.nodes[1]].position_m;
     const double length = std::sqrt(Dot(to - from, to - from));
-    weld.complete = weld.complete && length >= kShortest_m;
+    solids.complete = solids.complete && length >= kShortest_m;
     if (std::isnan(length)) return;
-    const BuilderText& builder = *PairBuilder(static_cast<std::size_t>(pair));
+    const BuilderText& builder = PairBuilder(pair);
     if (length < kShortest_m) {
-      if (short_.insert({placed.at.line, placed.at.column}).second) {
-        out_.Error(placed.at, "the " + builder.kind + " \"" + placed.name + "\" has no length",
-                   "its nodes are in one place");
-      }
+      short_(placed.at, "the " + builder.kind + " \"" + placed.name + "\" has no length",
+             "its nodes are in one place");
       return;
     }
     if (builder.rod) {
       const double r = builder.rod->radius_m, volume = kPi * r * r * length;
-      weld.solids.push_back(SolidCylinder(from, to, r, builder.rod->mass.Of(volume, length)));
-      weld.bounds = Union(weld.bounds, BulletCylinderBounds(from, to, r));
+      solids.parts.push_back(SolidCylinder(from, to, r, builder.rod->mass.Of(volume, length)));
+      solids.bounds = Union(solids.bounds, BulletCylinderBounds(from, to, r));
       robot_.solids->capsules.push_back(builder.rod->mass.AsWritten());
       CapsuleDef& def =
           Add(robot_.def.capsules, *builder.rod, placed.name, body, TurnOf(placed.instance));
@@ -223,21 +165,21 @@ class BodyBuilder {
       const BoxText& box = *builder.box;
       const Quat q_WPart = TurnOf(placed.instance);
       const Vec3 u = Rotate(Conjugate(q_WPart), (1.0 / length) * (to - from));
-      AddBox(weld, box, placed.name, body, q_WPart, 0.5 * (from + to), q_WPart * BeamOrientation(u),
-             {0.5 * length, 0.5 * box.width_m, 0.5 * box.height_m},
+      AddBox(solids, box, placed.name, body, q_WPart, 0.5 * (from + to),
+             q_WPart * BeamOrientation(u), {0.5 * length, 0.5 * box.width_m, 0.5 * box.height_m},
              box.mass.Of(length * box.width_m * box.height_m, length));
     }
   }
 
-  void AddNode(Weld& weld, int node, int body) {
+  void AddNode(const Weld& weld, Solids& solids, int node, int body) {
     const PlacedNode& placed = assembly_.nodes[node];
     for (const int b : assignment_.of_node[node]) {
       const BuilderText& builder = model_.builders[b];
       if (builder.sphere) {
         const double r = builder.sphere->radius_m;
-        weld.solids.push_back(SolidSphere(
+        solids.parts.push_back(SolidSphere(
             placed.position_m, r, builder.sphere->mass.Of(4.0 / 3.0 * kPi * r * r * r, 0.0)));
-        weld.bounds = Union(weld.bounds, SphereBounds(placed.position_m, r));
+        solids.bounds = Union(solids.bounds, SphereBounds(placed.position_m, r));
         robot_.solids->spheres.push_back(builder.sphere->mass.AsWritten());
         Add(robot_.def.spheres, *builder.sphere, placed.name, body, TurnOf(placed.instance))
             .center_m = placed.position_m;
@@ -245,13 +187,13 @@ class BodyBuilder {
         const PointMassText& mass = *builder.point_mass;
         const bool lone = weld.nodes.size() == 1 && assignment_.of_node[node].size() == 1;
         const double r = lone && mass.radius_m == 0.0 ? kPointRadius_m : mass.radius_m;
-        weld.solids.push_back(SolidSphere(placed.position_m, r, mass.mass_kg));
+        solids.parts.push_back(SolidSphere(placed.position_m, r, mass.mass_kg));
         robot_.solids->point_masses.push_back({node, mass.mass_kg, mass.radius_m});
       } else if (builder.box) {
         const BoxText& box = *builder.box;
         const Vec3 size = 2.0 * box.half_extents_m;
         const Quat q_WPart = TurnOf(placed.instance);
-        AddBox(weld, box, placed.name, body, q_WPart, placed.position_m, q_WPart,
+        AddBox(solids, box, placed.name, body, q_WPart, placed.position_m, q_WPart,
                box.half_extents_m, box.mass.Of(size.x * size.y * size.z, 0.0));
       }
     }
@@ -275,11 +217,11 @@ class BodyBuilder {
     return def;
   }
 
-  void AddBox(Weld& weld, const BoxText& text, const std::string& name, int body,
+  void AddBox(Solids& solids, const BoxText& text, const std::string& name, int body,
               const Quat& q_WPart, const Vec3& center, const Quat& q, const Vec3& half,
               double mass) {
-    weld.solids.push_back(SolidBox(center, q, half, mass));
-    weld.bounds = Union(weld.bounds, BoxBounds(center, q, half));
+    solids.parts.push_back(SolidBox(center, q, half, mass));
+    solids.bounds = Union(solids.bounds, BoxBounds(center, q, half));
     robot_.solids->boxes.push_back(text.mass.AsWritten());
     BoxDef& def = Add(robot_.def.boxes, text, name, body, q_WPart);
     def.center_m = center;
@@ -287,8 +229,8 @@ class BodyBuilder {
     def.half_extents_m = half;
   }
 
-  void CheckMass(const Weld& weld, const BodyDef& def) {
-    if (!weld.complete || std::isnan(def.mass_kg) ||
+  void CheckMass(const Weld& weld, const Solids& solids, const BodyDef& def) {
+    if (!solids.complete || std::isnan(def.mass_kg) ||
         std::isnan(def.com_m.x + def.com_m.y + def.com_m.z))
       return;
     if (def.mass_kg <= 0.0) {
@@ -303,10 +245,6 @@ class BodyBuilder {
                "its mass is all on one line: give the point_mass a radius_m");
   }
 
-  /// A rod that turns in a node which goes with another body.
-  struct Pin {
-    int pair, node;
-  };
   void AddPin(const Pin& pin) {
     const PlacedNode& node = assembly_.nodes[pin.node];
     JointDef joint;
@@ -398,13 +336,13 @@ class BodyBuilder {
   RobotSpec& robot_;
   Diagnostics& out_;
   std::vector<Weld> welds_;
+  std::vector<Pin> pins_;
   std::vector<const Weld*> welds_with_body_;  ///< Per body.
   std::vector<int> instance_of_body_, bodies_in_instance_;
   BodyOfNode body_of_node_;
   std::vector<int> body_of_pair_;  ///< Of those that are solid.
-  std::vector<Pin> pins_;
   std::set<std::string> names_;
-  std::set<std::pair<int, int>> bodiless_, short_;  ///< Complained about once in the file.
+  OncePerPlace bodiless_, short_;
 };
 
 }  // namespace

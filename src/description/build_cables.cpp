@@ -2,8 +2,9 @@
 #include <limits>
 #include <set>
 
+#include "base/union_find.h"
 #include "description/build.h"
-#include "description/union_find.h"
+#include "description/once.h"
 #include "math/cable_path.h"
 #include "math/vec.h"
 #include "taut/statics.h"
@@ -32,7 +33,8 @@ class CableMaker {
         assignment_(assignment),
         body_of_node_(body_of_node),
         robot_(robot),
-        out_(out) {}
+        out_(out),
+        once_(out) {}
 
   void Run() {
     for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
@@ -64,10 +66,10 @@ class CableMaker {
       if (model_.builders[b].sphere) return model_.builders[b].sphere->radius_m;
     }
     if (body_of_node_[node] != kWorld) {
-      Once(builder.ends_at,
-           "cable.ends: the node \"" + assembly_.nodes[node].name + "\" of the cable \"" +
-               pair.name + "\" has no sphere",
-           "give the node a sphere, or write `ends: node`");
+      once_(builder.ends_at,
+            "cable.ends: the node \"" + assembly_.nodes[node].name + "\" of the cable \"" +
+                pair.name + "\" has no sphere",
+            "give the node a sphere, or write `ends: node`");
     }
     return 0.0;
   }
@@ -85,8 +87,8 @@ class CableMaker {
     };
     const double first_radius = move(0, 1), last_radius = move(last, last - 1);
     if (last == 1 && LengthBetween(nodes[0], nodes[1]) < first_radius + last_radius) {
-      Once(pair.at, "the spheres at the ends of the cable \"" + pair.name + "\" overlap",
-           "nothing is left for the cable between their surfaces");
+      once_(pair.at, "the spheres at the ends of the cable \"" + pair.name + "\" overlap",
+            "nothing is left for the cable between their surfaces");
     }
   }
 
@@ -98,19 +100,20 @@ class CableMaker {
       const double leg = LengthBetween(cable.attachments[i - 1], cable.attachments[i]);
       if (std::isnan(leg)) return false;
       if (leg >= kShortest_m) continue;
-      Once(pair.at,
-           "the cable \"" + pair.name + "\" has no length between \"" +
-               assembly_.nodes[pair.nodes[i - 1]].name + "\" and \"" +
-               assembly_.nodes[pair.nodes[i]].name + "\"",
-           "these nodes are in one place");
+      once_(pair.at,
+            "the cable \"" + pair.name + "\" has no length between \"" +
+                assembly_.nodes[pair.nodes[i - 1]].name + "\" and \"" +
+                assembly_.nodes[pair.nodes[i]].name + "\"",
+            "these nodes are in one place");
       return false;
     }
     if (one_body && model_.builders_complete && assembly_.complete) {
       const int body = cable.attachments[0].body;
-      Once(pair.at,
-           "the cable \"" + pair.name + "\" ends twice on " +
-               (body == kWorld ? "the world" : "the body \"" + robot_.def.bodies[body].name + "\""),
-           "it would do nothing");
+      once_(
+          pair.at,
+          "the cable \"" + pair.name + "\" ends twice on " +
+              (body == kWorld ? "the world" : "the body \"" + robot_.def.bodies[body].name + "\""),
+          "it would do nothing");
     }
     return true;
   }
@@ -120,28 +123,22 @@ class CableMaker {
     if (builder.prestress_n) {
       cable.rest_length_m = length - *builder.prestress_n / builder.stiffness_n_per_m;
       if (cable.rest_length_m <= 0.0) {
-        Once(builder.rest_at,
-             "cable.prestress_n: " + Number(*builder.prestress_n) +
-                 " N would stretch the cable \"" + pair.name + "\" to more than its length of " +
-                 Number(length) + " m",
-             "at " + Number(builder.stiffness_n_per_m) + " N/m at most " +
-                 Number(builder.stiffness_n_per_m * length) + " N");
+        once_(builder.rest_at,
+              "cable.prestress_n: " + Number(*builder.prestress_n) +
+                  " N would stretch the cable \"" + pair.name + "\" to more than its length of " +
+                  Number(length) + " m",
+              "at " + Number(builder.stiffness_n_per_m) + " N/m at most " +
+                  Number(builder.stiffness_n_per_m * length) + " N");
       }
     } else if (builder.rest_length_ratio) {
       cable.rest_length_m = *builder.rest_length_ratio * length;
     }
     if (cable.rest_length_m > 0.0 && cable.rest_length_m < cable.actuator.min_rest_length_m) {
-      Once(builder.rest_at, "the cable \"" + pair.name + "\" starts with a rest length of " +
-                                Number(cable.rest_length_m) +
-                                " m, below its min_rest_length_m of " +
-                                Number(cable.actuator.min_rest_length_m) + " m");
+      once_(builder.rest_at, "the cable \"" + pair.name + "\" starts with a rest length of " +
+                                 Number(cable.rest_length_m) +
+                                 " m, below its min_rest_length_m of " +
+                                 Number(cable.actuator.min_rest_length_m) + " m");
     }
-  }
-
-  /// One complaint a place in the file: copies would only repeat it.
-  void Once(const SourceRef& at, std::string what, std::string hint = {}) {
-    if (reported_.insert({at.line, at.column}).second)
-      out_.Error(at, std::move(what), std::move(hint));
   }
 
   const ModelText& model_;
@@ -150,7 +147,7 @@ class CableMaker {
   const BodyOfNode& body_of_node_;
   RobotSpec& robot_;
   Diagnostics& out_;
-  std::set<std::pair<int, int>> reported_;
+  OncePerPlace once_;
 };
 
 }  // namespace
@@ -163,7 +160,7 @@ void BuildCables(const ModelText& model, const Assembly& assembly, const Assignm
 void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
   const std::vector<BodyDef>& bodies = robot.def.bodies;
   const int world = static_cast<int>(bodies.size());  // and all that is fixed in it
-  UnionFind sets(bodies.size() + 1);
+  base::UnionFind sets(bodies.size() + 1);
   const auto index = [&](int body) { return body == kWorld || bodies[body].fixed ? world : body; };
   for (const CableDef& cable : robot.def.cables) {
     for (const AttachmentDef& at : cable.attachments) {

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "description/build.h"
+#include "description/once.h"
 #include "math/vec.h"
 
 namespace taut::description {
@@ -17,9 +18,11 @@ class JointMaker {
         assignment_(assignment),
         body_of_node_(body_of_node),
         robot_(robot),
-        out_(out) {}
+        out_(out),
+        once_(out) {}
 
   void Run() {
+    for (const JointDef& pin : robot_.def.joints) names_.insert(pin.name);
     for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
       const int b = assignment_.of_pair[pair];
       if (b >= 0 && model_.builders[b].joint)
@@ -42,8 +45,8 @@ class JointMaker {
 
   void Between(const PlacedPair& pair, const JointText& text) {
     if (pair.nodes.size() != 2) {
-      Once(pair.at,
-           "a joint has two nodes, \"" + pair.name + "\" has " + std::to_string(pair.nodes.size()));
+      once_(pair.at, "a joint has two nodes, \"" + pair.name + "\" has " +
+                         std::to_string(pair.nodes.size()));
       return;
     }
     JointDef joint = text;
@@ -70,8 +73,8 @@ class JointMaker {
     joint.body_a = kWorld, joint.body_b = body_of_node_[node];
     joint.from_m = joint.to_m = placed.position_m;
     if (joint.kind == JointKind::kDistance) {
-      Once(placed.at, "a support of the kind distance has no second point",
-           "join the node to one in the world: a pair with a joint");
+      once_(placed.at, "a support of the kind distance has no second point",
+            "join the node to one in the world: a pair with a joint");
       return;
     }
     Add(placed.at, std::move(joint));
@@ -80,25 +83,30 @@ class JointMaker {
   void Add(const SourceRef& at, JointDef joint) {
     const bool known = model_.builders_complete && assembly_.complete;
     if (known && joint.body_a == joint.body_b) {
-      Once(at,
-           "the joint \"" + joint.name + "\" joins the body \"" +
-               (joint.body_b == kWorld ? "world" : robot_.def.bodies[joint.body_b].name) +
-               "\" to itself",
-           "each of its nodes belongs to a body of its own; nodes that solids share weld them");
+      once_(at,
+            "the joint \"" + joint.name + "\" joins the body \"" +
+                (joint.body_b == kWorld ? "world" : robot_.def.bodies[joint.body_b].name) +
+                "\" to itself",
+            "each of its nodes belongs to a body of its own; nodes that solids share weld them");
       return;
     }
     if (known && IsFixed(joint.body_a) && IsFixed(joint.body_b)) {
-      Once(at, "the joint \"" + joint.name + "\" joins two things that do not move");
+      once_(at, "the joint \"" + joint.name + "\" joins two things that do not move");
       return;
     }
     const double gap = HeldGap(joint);
     if (gap > JointDef::kClosed_m) {
       char text[32];
       std::snprintf(text, sizeof text, "%.3g m", gap);
-      Once(at,
-           "the nodes of the joint \"" + joint.name + "\" are " + text +
-               " apart where it holds them together",
-           joint.kind == JointKind::kBall ? "put them in one place" : "see its kind and axis");
+      once_(at,
+            "the nodes of the joint \"" + joint.name + "\" are " + text +
+                " apart where it holds them together",
+            joint.kind == JointKind::kBall ? "put them in one place" : "see its kind and axis");
+      return;
+    }
+    if (!names_.insert(joint.name).second) {
+      once_(at, "two joints would be called \"" + joint.name + "\"",
+            "a pair has the name that its `name:` says, a support that of its node");
       return;
     }
     robot_.def.joints.push_back(std::move(joint));
@@ -125,19 +133,14 @@ class JointMaker {
     }
   }
 
-  /// One complaint a place in the file: copies would only repeat it.
-  void Once(const SourceRef& at, std::string what, std::string hint = {}) {
-    if (reported_.insert({at.line, at.column}).second)
-      out_.Error(at, std::move(what), std::move(hint));
-  }
-
   const ModelText& model_;
   const Assembly& assembly_;
   const Assignment& assignment_;
   const BodyOfNode& body_of_node_;
   RobotSpec& robot_;
   Diagnostics& out_;
-  std::set<std::pair<int, int>> reported_;
+  OncePerPlace once_;
+  std::set<std::string> names_;
 };
 
 }  // namespace

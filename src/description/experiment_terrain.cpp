@@ -7,6 +7,7 @@
 #include "description/experiment_parts.h"
 #include "math/elementary.h"
 #include "math/vec.h"
+#include "mechanics/placed_parts.h"
 
 namespace taut::description {
 namespace {
@@ -25,36 +26,23 @@ Inertia Rotated(const Quat& q, const Inertia& inertia) {
   return {product(0, 0), product(1, 1), product(2, 2), product(0, 1), product(0, 2), product(1, 2)};
 }
 
-/// Turns the robot by `q` about the origin, then moves it by `at_m`.
-void Move(const Vec3& at_m, const Quat& q, ModelDef& def) {
-  const auto moved = [&](const Vec3& p) { return at_m + Rotate(q, p); };
+/// Turned by `q` about the origin, then moved by `at_m`: bodies, and what is fixed in the world.
+struct Placing {
+  Vec3 at_m;
+  Quat q;
+  static bool Moves(int) { return true; }
+  Vec3 Moved(int, const Vec3& point_m) const { return at_m + Rotate(q, point_m); }
+  const Quat& Turned(int) const { return q; }
+};
+
+void Move(const Placing& placing, ModelDef& def) {
   for (BodyDef& body : def.bodies) {
-    body.com_m = moved(body.com_m);
-    body.inertia_kg_m2 = Rotated(q, body.inertia_kg_m2);
-    body.velocity_m_per_s = Rotate(q, body.velocity_m_per_s);
-    body.angular_velocity_rad_per_s = Rotate(q, body.angular_velocity_rad_per_s);
+    body.com_m = placing.Moved(kWorld, body.com_m);
+    body.inertia_kg_m2 = Rotated(placing.q, body.inertia_kg_m2);
+    body.velocity_m_per_s = Rotate(placing.q, body.velocity_m_per_s);
+    body.angular_velocity_rad_per_s = Rotate(placing.q, body.angular_velocity_rad_per_s);
   }
-  const auto turn = [&](Material& material) {
-    if (material.directions) material.directions->axis = Rotate(q, material.directions->axis);
-  };
-  for (SphereDef& sphere : def.spheres) {
-    sphere.center_m = moved(sphere.center_m);
-    turn(sphere.material);
-  }
-  for (CapsuleDef& capsule : def.capsules) {
-    turn(capsule.material);
-    capsule.from_m = moved(capsule.from_m);
-    capsule.to_m = moved(capsule.to_m);
-  }
-  for (BoxDef& box : def.boxes) {
-    box.center_m = moved(box.center_m);
-    box.orientation = q * box.orientation;
-    turn(box.material);
-  }
-  for (NodeDef& node : def.nodes) node.position_m = moved(node.position_m);
-  for (CableDef& cable : def.cables) {
-    for (AttachmentDef& end : cable.attachments) end.position_m = moved(end.position_m);
-  }
+  MoveParts(placing, def);
 }
 
 /// Adds a motion of the whole robot: of its centre of mass, and about it.
@@ -186,7 +174,7 @@ void Place(const PlaceText& place, StartKind start, const Scope& scope, ModelDef
   check(moving, place.velocity_at, "velocity_m_per_s");
   check(turning, place.angular_velocity_at, "angular_velocity_rad_per_s");
   // Nothing is touched for nothing: a robot that is not placed keeps its numbers bit for bit.
-  if (place.moved) Move(place.at_m, place.rotate, def);
+  if (place.moved) Move({place.at_m, place.rotate}, def);
   if (moving || turning) {
     AddVelocity(place.velocity_m_per_s, place.angular_velocity_rad_per_s, def);
   }

@@ -31,6 +31,7 @@ void Keys(Io& io, Joint& j) {
   io("body_b", j.body_b, kResolvedOnly);
   io("from_m", j.from_m, kResolvedOnly);
   io("to_m", j.to_m, kResolvedOnly);
+  io("turned", j.turned, kResolvedOnly);
   io("kind", j.kind, kJointKinds, kNeeded,
      "What it leaves free. `ball`: all turns. `hinge`: turns about the axis. `weld`: nothing. "
      "`prismatic`: sliding along the axis. `cylindrical`: both. `planar`: sliding across the axis "
@@ -41,8 +42,8 @@ void Keys(Io& io, Joint& j) {
      "The axis as described: in the part's frame of the pair or node, in the world's if its nodes "
      "are in several parts.");
   io(Coordinate("least_rad", "least_m"), j.least,
-     "Where its coordinate stops downwards. Angles and slides are 0 in the pose that is "
-     "described; turns of a hinge count on. Not of a ball.");
+     "Where its coordinate stops downwards. Angles are 0 in the pose that is described, and "
+     "turns of a hinge count on; a slide is that from a's node to b's. Not of a ball.");
   io(Coordinate("most_rad", "most_m"), j.most, "Where its coordinate stops upwards.");
   io("restitution", j.restitution, Bound::kFraction,
      "Of the stops: how much of the speed comes back.");

@@ -86,13 +86,11 @@ void Check(const MapReader& map, CableText& cable) {
 
 void Check(const MapReader& map, JointText& joint) {
   const bool ball = joint.kind == JointKind::kBall;
-  const bool none = joint.kind == JointKind::kWeld || joint.kind == JointKind::kPlanar ||
-                    joint.kind == JointKind::kPlane;
   for (const char* key : {"least_rad", "least_m", "most_rad", "most_m", "friction_n_m",
                           "friction_n", "stiffness_n_m_per_rad", "stiffness_n_per_m",
                           "damping_n_m_s_per_rad", "damping_n_s_per_m", "rest_rad", "rest_m"}) {
     if (!map.Has(key)) continue;
-    if (none) {
+    if (!HasCoordinate(joint.kind)) {
       map.Error(key,
                 map.Path(key) + ": a joint of this kind leaves nothing free that has one number");
     } else if (ball && std::string_view(key) != "most_rad") {

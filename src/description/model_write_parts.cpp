@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/union_find.h"
 #include "description/model_write.h"
 #include "description/reader.h"
 #include "description/surface_keys.h"
-#include "description/union_find.h"
 #include "description/write_keys.h"
 #include "math/vec.h"
 
@@ -280,7 +280,7 @@ class Taker {
 
   /// What no rod or box welds to the rest of its body is fixed to it.
   void FixNodes() {
-    UnionFind welds(m_.nodes.size());
+    base::UnionFind welds(m_.nodes.size());
     for (std::size_t p = 0; p < m_.solid_pairs; ++p)
       welds.Join(m_.pairs[p].nodes[0], m_.pairs[p].nodes[1]);
     std::map<std::pair<int, std::string>, int> first;

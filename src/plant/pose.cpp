@@ -4,6 +4,7 @@
 
 #include "base/assert.h"
 #include "math/vec.h"
+#include "mechanics/placed_parts.h"
 #include "plant/start.h"
 #include "taut/start.h"
 
@@ -26,6 +27,26 @@ Inertia Turned(const Quat& q, const Inertia& i) {
   return {a.x, b.y, c.z, 0.5 * (a.y + b.x), 0.5 * (a.z + c.x), 0.5 * (b.z + c.y)};
 }
 
+/// From where bodies are described to where they have come.
+class ToPose {
+ public:
+  ToPose(const ModelDef& from, const Pose& to) : from_(from.bodies), to_(to.bodies) {
+    for (const BodyState& state : to_) turns_.push_back(Normalized(state.orientation));
+  }
+  bool Moves(int body) const { return body != kWorld && !from_[Index(body)].fixed; }
+  Vec3 Moved(int body, const Vec3& point_m) const {
+    const std::size_t b = Index(body);
+    return to_[b].position_m + Rotate(turns_[b], point_m - from_[b].com_m);
+  }
+  const Quat& Turned(int body) const { return turns_[Index(body)]; }
+
+ private:
+  static std::size_t Index(int body) { return static_cast<std::size_t>(body); }
+  const std::vector<BodyDef>& from_;
+  const std::vector<BodyState>& to_;
+  std::vector<Quat> turns_;
+};
+
 }  // namespace
 
 RobotSpec RobotAt(const RobotSpec& robot, const Pose& pose) {
@@ -33,36 +54,9 @@ RobotSpec RobotAt(const RobotSpec& robot, const Pose& pose) {
   ModelDef& def = moved.def;
   TAUT_ASSERT(pose.bodies.size() == def.bodies.size());
   TAUT_ASSERT(pose.rest_lengths_m.size() == def.cables.size());
-  std::vector<Quat> turns;
-  for (const BodyState& state : pose.bodies) turns.push_back(Normalized(state.orientation));
-  const auto move = [&](int body, Vec3& point_m) {
-    if (body == kWorld) return;
-    const auto b = static_cast<std::size_t>(body);
-    if (def.bodies[b].fixed) return;
-    point_m = pose.bodies[b].position_m + Rotate(turns[b], point_m - robot.def.bodies[b].com_m);
-  };
-  const auto turn = [&](int body, Material& material) {
-    if (body == kWorld || !material.directions) return;
-    Vec3& axis = material.directions->axis;
-    axis = Rotate(turns[static_cast<std::size_t>(body)], axis);
-  };
-  for (SphereDef& sphere : def.spheres) {
-    move(sphere.body, sphere.center_m);
-    turn(sphere.body, sphere.material);
-  }
-  for (CapsuleDef& rod : def.capsules) {
-    move(rod.body, rod.from_m), move(rod.body, rod.to_m);
-    turn(rod.body, rod.material);
-  }
-  for (BoxDef& box : def.boxes) {
-    turn(box.body, box.material);
-    move(box.body, box.center_m);
-    if (def.bodies[static_cast<std::size_t>(box.body)].fixed) continue;
-    box.orientation = turns[static_cast<std::size_t>(box.body)] * box.orientation;
-  }
-  for (NodeDef& node : def.nodes) move(node.body, node.position_m);
+  const ToPose motion(robot.def, pose);
+  MoveParts(motion, def);
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
-    for (AttachmentDef& at : def.cables[c].attachments) move(at.body, at.position_m);
     def.cables[c].rest_length_m = pose.rest_lengths_m[c];
   }
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
@@ -70,7 +64,7 @@ RobotSpec RobotAt(const RobotSpec& robot, const Pose& pose) {
     body.velocity_m_per_s = body.angular_velocity_rad_per_s = {};
     if (body.fixed) continue;
     body.com_m = pose.bodies[b].position_m;
-    body.inertia_kg_m2 = Turned(turns[b], body.inertia_kg_m2);
+    body.inertia_kg_m2 = Turned(motion.Turned(static_cast<int>(b)), body.inertia_kg_m2);
   }
   return moved;
 }

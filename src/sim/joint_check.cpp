@@ -25,8 +25,6 @@ namespace {
 
 using K = JointKind;
 
-bool HasCoordinate(K kind) { return kind != K::kWeld && kind != K::kPlanar && kind != K::kPlane; }
-
 std::string Metres(double x) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.3g m", x);

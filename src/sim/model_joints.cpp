@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "base/union_find.h"
 #include "math/rotation.h"
 #include "math/vec.h"
 #include "sim/body_frame.h"
@@ -88,7 +89,9 @@ class JointCompiler {
     across = (1 / std::sqrt(Dot(across, across))) * across;
     const Vec3 axes[3] = {n, across, Cross(n, across)};
     Axes(j.a, axes, j.axes_a_P);
-    Axes(j.b, axes, j.axes_b_P);
+    const Vec3 in_b[3] = {Rotate(def.turned, axes[0]), Rotate(def.turned, axes[1]),
+                          Rotate(def.turned, axes[2])};
+    Axes(j.b, in_b, j.axes_b_P);
     j.reach_m = std::max(Gyration(j.a), Gyration(j.b));
     j.first_row = static_cast<int>(t_.joint_rows.size());
     const KindTable& kind = KindOf(def.kind);
@@ -126,22 +129,17 @@ class JointCompiler {
   /// Whether joints close a loop, of bodies or through what does not move: rows may be redundant.
   /// And which bodies hang together without hanging from that.
   void FindChains() {
-    std::vector<int> root(static_cast<std::size_t>(t_.body_count) + 1);
-    for (std::size_t i = 0; i < root.size(); ++i) root[i] = static_cast<int>(i);
-    const auto find = [&](int i) {
-      while (root[static_cast<std::size_t>(i)] != i) i = root[static_cast<std::size_t>(i)];
-      return i;
-    };
+    base::UnionFind sets(static_cast<std::size_t>(t_.body_count) + 1);
     for (const JointTable& j : t_.joints) {
-      const int a = find(j.a_moves ? j.a : t_.body_count),
-                b = find(j.b_moves ? j.b : t_.body_count);
-      t_.joint_loops = t_.joint_loops || a == b;
-      root[static_cast<std::size_t>(a)] = b;
+      const int a = j.a_moves ? j.a : t_.body_count, b = j.b_moves ? j.b : t_.body_count;
+      t_.joint_loops = t_.joint_loops || sets.Root(a) == sets.Root(b);
+      sets.Join(a, b);
     }
+    const int world = sets.Root(t_.body_count);
     std::map<int, std::set<int>> chains;
     for (const JointTable& j : t_.joints) {
       for (const int body : {j.a, j.b}) {
-        if (find(body) != find(t_.body_count)) chains[find(body)].insert(body);
+        if (sets.Root(body) != world) chains[sets.Root(body)].insert(body);
       }
     }
     for (const auto& [first, bodies] : chains) {

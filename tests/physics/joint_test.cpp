@@ -1,28 +1,12 @@
 // Joints against closed forms (docs/theory/joints.md).
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "scenes/rod.h"
-#include "tests/physics/world.h"
+#include "tests/physics/joint_scenes.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846, kG = 9.81;
-
-/// A thin rod of 1 m and 1 kg that hangs from the world at its upper end, turned out of the plumb.
-ModelDef Pendulum(double angle_rad, JointKind kind = JointKind::kBall) {
-  ModelDef def;
-  const Vec3 end{std::sin(angle_rad), 0, -std::cos(angle_rad)};
-  scenes::AddRod(def, "rod", 1.0, 1e-3, {}, end, {});
-  JointDef pin;
-  pin.name = "pin", pin.kind = kind, pin.body_b = 0;
-  pin.axis = {0, 1, 0};
-  def.joints.push_back(pin);
-  return def;
-}
 
 /// When the pin's rod swings through the plumb the n-th time, from rest; linear between steps.
 double CrossingTime(Batch& world, double step_s, int crossings) {
@@ -71,31 +55,6 @@ TEST(Joint, ASwingingRodKeepsItsEnergyAndItsPin) {
   EXPECT_LT(worst[1], 1e-4);
   EXPECT_NEAR(worst[1] / worst[0], 16, 1.5);
   EXPECT_NEAR(worst[2] / worst[1], 16, 2);
-}
-
-/// Rods of 0.1 m in a row from the origin along `step`, the first of them pinned there.
-ModelDef Chain(int rods, const Vec3& step_m, double last_mass_kg) {
-  ModelDef def;
-  Vec3 at;
-  for (int i = 0; i < rods; ++i) {
-    const std::string number = std::to_string(i);
-    const double mass = i + 1 == rods ? last_mass_kg : 1.0;
-    scenes::AddRod(def, "rod" + number, mass, 0.01, at, at + step_m, {});
-    def.capsules.back().collides = false;
-    JointDef joint;
-    joint.name = "joint" + number, joint.body_a = i - 1, joint.body_b = i;
-    joint.from_m = joint.to_m = at;
-    def.joints.push_back(joint);
-    at = at + step_m;
-  }
-  return def;
-}
-double WorstGap(const Batch& world, const ModelDef& def) {
-  double gap = 0;
-  for (int i = 0; i < static_cast<int>(def.joints.size()); ++i) {
-    gap = std::max(gap, world.Joint(0, i).gap_m);
-  }
-  return gap;
 }
 
 TEST(Joint, AChainWithAThousandfoldMassAtItsEndCarriesItsWeight) {
@@ -316,149 +275,6 @@ TEST(Joint, ADistanceHoldsOrPullsOrStops) {
   const JointState spring =
       hung([](JointDef& j) { j.stiffness = 100, j.damping = 20, j.rest = 0.5; });
   EXPECT_NEAR(spring.coordinate, 0.5 + kG / 100, 1e-6);
-}
-
-/// Four rods in a square in the plane of x and z, on hinges about y, the lower one's ends pinned.
-ModelDef FourBars(JointKind kind) {
-  ModelDef def;
-  const Vec3 corners[] = {{0, 0, 0}, {0.2, 0, 1}, {1.2, 0, 1}, {1, 0, 0}};
-  for (int i = 0; i < 3; ++i) {
-    scenes::AddRod(def, "rod" + std::to_string(i), 1, 0.02, corners[i], corners[i + 1], {});
-    def.capsules.back().collides = false;
-  }
-  for (int i = 0; i < 4; ++i) {
-    JointDef j;
-    j.name = "hinge" + std::to_string(i), j.kind = kind, j.axis = {0, 1, 0};
-    j.body_a = i == 0 || i == 3 ? kWorld : i - 1, j.body_b = i == 3 ? 2 : i;
-    j.from_m = j.to_m = corners[i];
-    def.joints.push_back(j);
-  }
-  return def;
-}
-
-TEST(Joint, AClosedLoopWithRedundantRowsMovesAsAParallelogram) {
-  // Two rods that turn about their ends and one that is carried: (1/3 + 1/3 + 1) m L^2 w' =
-  // (1/2 + 1/2 + 1) m g L sin(a). Against a fine solution of that.
-  const ModelDef def = FourBars(JointKind::kHinge);
-  const double L = std::sqrt(1.04), k = 2.0 / (5.0 / 3) * kG / L;
-  Batch world = MakeBatch(def);
-  double a = std::atan(0.2), w = 0;
-  const double a0 = a;
-  for (int n = 1; n <= 2000; ++n) {
-    world.Step(1e-3);
-    ASSERT_EQ(world.Status(0).bits, kStatusOk) << n;
-    ASSERT_LE(world.Status(0).linear_solves, 6) << n;
-    ASSERT_LT(WorstGap(world, def), 1e-10) << n;
-    for (int i = 0; i < 10; ++i) {  // leapfrog, 0.1 ms
-      a += 0.5e-4 * w, w += 1e-4 * k * std::sin(a), a += 0.5e-4 * w;
-    }
-    ASSERT_NEAR(world.Joint(0, 0).coordinate, a - a0, 2e-3) << n;
-  }
-}
-
-TEST(Joint, AFrameOfWeldsThatTumblesIsSolvedThoughSixOfItsRowsAreRedundant) {
-  ModelDef def;
-  const Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 0.7, 0.2}, {0, 0.7, 0.1}};
-  for (int i = 0; i < 4; ++i) {
-    scenes::AddRod(def, "rod" + std::to_string(i), 1 + i, 0.02, corners[i], corners[(i + 1) % 4],
-                   {});
-    def.capsules.back().collides = false;
-    def.bodies.back().angular_velocity_rad_per_s = {8, 5, -6};
-    def.bodies.back().velocity_m_per_s = Cross(Vec3{8, 5, -6}, def.bodies.back().com_m);
-    JointDef j;
-    j.name = "weld" + std::to_string(i), j.kind = JointKind::kWeld;
-    j.body_a = (i + 3) % 4, j.body_b = i, j.from_m = j.to_m = corners[i];
-    def.joints.push_back(j);
-  }
-  Batch world = MakeBatch(def);
-  int solves = 0;
-  for (int n = 0; n < 2000; ++n) {
-    world.Step(1e-3);
-    solves = std::max(solves, world.Status(0).linear_solves);
-    ASSERT_LT(WorstGap(world, def), 1e-9) << n;
-  }
-  EXPECT_EQ(world.Status(0).bits, kStatusOk);
-  EXPECT_LE(solves, 6);
-}
-
-TEST(Joint, LanesHaveTheBitsOfAWorldAlone) {
-  ModelDef def = FourBars(JointKind::kHinge);
-  def.joints[1].friction = 0.2, def.joints[0].most = 2.0, def.joints[0].restitution = 0.5;
-  def.joints[2].stiffness = 1;
-  const auto prepare = [](Batch& batch, int world, int as) {
-    batch.SetParameter(world, Parameter::kBodyMass, 1, 1 + 0.3 * as);
-  };
-  for (const int worlds : {2, 4, 8, 11}) {
-    BatchOptions options;
-    options.worlds = worlds, options.simd = BestSimd();
-    Batch together = MakeBatch(def, options);
-    for (int w = 0; w < worlds; ++w) prepare(together, w, w);
-    together.Step(1e-3, 1500);
-    for (int w = 0; w < worlds; ++w) {
-      BatchOptions one;
-      one.simd = Simd::kScalar;
-      Batch alone = MakeBatch(def, one);
-      prepare(alone, 0, w);
-      alone.Step(1e-3, 1500);
-      EXPECT_EQ(alone.Hash(0), together.Hash(w)) << worlds << " " << w;
-    }
-  }
-}
-
-TEST(Joint, ASnapshotGoesOnWithTheSameBits) {
-  ModelDef def = FourBars(JointKind::kHinge);
-  def.joints[1].friction = 0.2;
-  Batch world = MakeBatch(def);
-  world.Step(1e-3, 300);
-  const auto snapshot = world.Save(0);
-  world.Step(1e-3, 300);
-  const auto there = world.Hash(0);
-  ASSERT_TRUE(world.Restore(0, snapshot));
-  world.Step(1e-3, 300);
-  EXPECT_EQ(world.Hash(0), there);
-}
-
-TEST(Joint, WrongOnesAreAllNamed) {
-  const auto complaints = [](auto&& change) {
-    ModelDef def = Chain(2, {0.1, 0, 0}, 1);
-    change(def);
-    Diagnostics out;
-    EXPECT_EQ(Model::Compile(def, out), nullptr);
-    return out.Format();
-  };
-  using testing::HasSubstr;
-  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].body_a = 1; }),
-              HasSubstr("both of its bodies"));
-  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].body_a = 7; }), HasSubstr("not there"));
-  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].to_m.y = 0.2; }), HasSubstr("0.2 m apart"));
-  EXPECT_THAT(complaints([](ModelDef& d) {
-                d.joints[1].axis = {0, 0, 2};
-              }),
-              HasSubstr("unit vector"));
-  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].friction = 1; }), HasSubstr("no friction"));
-  EXPECT_THAT(complaints([](ModelDef& d) {
-                d.joints[1].kind = JointKind::kHinge;
-                d.joints[1].least = 1, d.joints[1].most = 0;
-              }),
-              HasSubstr("must rise"));
-  EXPECT_THAT(complaints([](ModelDef& d) { d.bodies[0].fixed = true; }), HasSubstr("can move"));
-  const std::string all = complaints([](ModelDef& d) {
-    d.joints[0].axis = {}, d.joints[1].restitution = 2, d.apart.push_back({0, 5});
-  });
-  EXPECT_THAT(all, testing::AllOf(HasSubstr("unit vector"), HasSubstr("restitution"),
-                                  HasSubstr("kept apart")));
-}
-
-TEST(Joint, WhatItJoinsDoesNotTouchUnlessItSaysSo) {
-  for (const bool collides : {false, true}) {
-    ModelDef def = Chain(2, {0.1, 0, 0}, 1);
-    for (CapsuleDef& rod : def.capsules) rod.collides = true;
-    def.gravity_m_per_s2 = {};
-    def.joints[1].collides = collides;
-    Batch world = MakeBatch(def);
-    world.Step(1e-3);
-    EXPECT_EQ(world.Contacts(0).empty(), !collides);
-  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "taut/batch.h"
 #include "taut/run.h"
+#include "taut/start.h"
 #include "unit/model_fixture.h"
 
 namespace taut {
@@ -92,6 +93,60 @@ TEST(JointText, RodsOfClassKArePinnedInTheirNodes) {
   EXPECT_NE(Model::Compile(robot.def, out), nullptr) << out.Format();
 }
 
+TEST(JointText, NodesFixedToARodGoWithItAndAnchorsHoldIt) {
+  const std::string rods =
+      "nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [0, 1, 0], m: {at_m: [0, 0.1, 0], fixed_to: a}}\n"
+      "pairs:\n"
+      "  - {tags: [rod], each: [[a, b], [a, c]]}\n"
+      "builders:\n"
+      "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1, class_k: true}}\n";
+  const RobotSpec free = Good(rods);
+  ASSERT_EQ(free.def.joints.size(), 1u);
+  EXPECT_EQ(free.def.bodies[static_cast<std::size_t>(free.def.nodes[3].body)].name, "a-b");
+  const RobotSpec held = Good(rods + "  - {match: a, anchor: {}}\n");
+  ASSERT_EQ(held.def.joints.size(), 2u);
+  for (const JointDef& pin : held.def.joints) EXPECT_EQ(pin.body_a, kWorld);
+  for (const BodyDef& body : held.def.bodies) EXPECT_FALSE(body.fixed);
+}
+
+TEST(JointText, ASupportMakesNoBody) {
+  EXPECT_THAT(Errors("nodes: {a: [0, 0, 0], b: [1, 0, 0], lost: [2, 0, 0]}\n"
+                     "pairs: [{nodes: [a, b], tags: [rod]}]\n"
+                     "builders:\n"
+                     "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
+                     "  - {match: lost, support: {kind: ball}}\n"),
+              HasSubstr("\"lost\" belongs to no body"));
+}
+
+/// The upper rod lies turned about z, the lower one is bent at the knee and has slid.
+TEST(JointText, AnotherPoseHasTheSameCoordinates) {
+  for (const std::string kind : {"hinge", "cylindrical", "weld", "line"}) {
+    const RobotSpec robot = Good(Leg("kind: " + kind + ", axis: [0, 0.6, 0.8]"));
+    Diagnostics out;
+    const auto model = Model::Compile(robot.def, out);
+    ASSERT_NE(model, nullptr) << out.Format();
+    Batch batch(model, {});
+    batch.SetParameter(0, Parameter::kGravityZ, 0, 0);
+    BodyState kicked = batch.Body(0, 1);
+    kicked.velocity_m_per_s = {0.3, 1.1, -0.4};
+    kicked.angular_velocity_rad_per_s = {2, 0.1, 0.2};
+    batch.SetBodyState(0, 1, kicked);
+    batch.Step(1e-3, 700);
+    const JointState there = batch.Joint(0, 0);
+    Pose pose;
+    for (int b = 0; b < 2; ++b) pose.bodies.push_back(batch.Body(0, b));
+    const RobotSpec moved = RobotAt(robot, pose);
+    const auto again = Model::Compile(moved.def, out);
+    ASSERT_NE(again, nullptr) << kind << out.Format();
+    const JointState here = Batch(again, {}).Joint(0, 0);
+    EXPECT_NEAR(here.coordinate, there.coordinate, 1e-12) << kind;
+    EXPECT_LT(here.gap_m, 1e-10) << kind;
+    if (kind == "hinge") {
+      EXPECT_GT(std::fabs(here.coordinate), 0.1);
+    }
+  }
+}
+
 TEST(JointText, WhatIsApartIsNamed) {
   const RobotSpec robot = Good(Leg("kind: ball, collides: true", "apart: [[upper, lower]]\n"));
   ASSERT_EQ(robot.def.apart.size(), 1u);
@@ -127,6 +182,21 @@ TEST(JointText, LimitsThatMakeNoSenseAreNamed) {
               HasSubstr("not above the least"));
   EXPECT_THAT(Errors(Leg("kind: ball, friction_n_m: 1")),
               HasSubstr("a ball joint has no friction"));
+}
+
+TEST(JointText, TwoOfOneNameAreAnError) {
+  EXPECT_THAT(Errors("nodes:\n"
+                     "  {knee: {at_m: [0, 0, 0], tags: [held]}, a: [1, 0, 0], b: [1, 0, 0], "
+                     "c: [2, 0, 0]}\n"
+                     "pairs:\n"
+                     "  - {nodes: [knee, a], tags: [rod]}\n"
+                     "  - {nodes: [b, c], tags: [rod]}\n"
+                     "  - {name: knee, nodes: [a, b], tags: [joint]}\n"
+                     "builders:\n"
+                     "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
+                     "  - {match: joint, joint: {kind: ball}}\n"
+                     "  - {match: held, support: {kind: ball}}\n"),
+              HasSubstr("two joints would be called \"knee\""));
 }
 
 }  // namespace

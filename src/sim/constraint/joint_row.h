@@ -67,8 +67,7 @@ struct JointRow {
 
   Branch Project(const Num* u, const Num* center, Num e, Num* out) const noexcept {
     const Num soft = e * A;
-    const Branch b = Judge((target - u[0] + soft * center[0]) / (give + soft), out);
-    return b;
+    return Judge((target - u[0] + soft * center[0]) / (give + soft), out);
   }
   void ProjectFrozen(const Num* u, const Num* center, Num e, const Num*, Num* out) const noexcept {
     Project(u, center, e, out);

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace taut::description {
+namespace taut::base {
 
 class UnionFind {
  public:
@@ -30,4 +30,4 @@ class UnionFind {
   std::vector<int> parent_;
 };
 
-}  // namespace taut::description
+}  // namespace taut::base

@@ -1,0 +1,33 @@
+/// Which nodes and rods are one rigid body.
+#pragma once
+
+#include <vector>
+
+#include "description/build.h"
+
+namespace taut::description {
+
+/// What is welded into one body. Rods and beams weld their nodes to themselves, `fixed_to` welds
+/// nodes to each other.
+struct Weld {
+  std::vector<int> nodes, pairs;  ///< `pairs`: its rods and beams.
+  bool anchored = false;
+  bool has_solid = false;
+};
+
+/// A rod that turns in a node which goes with another body.
+struct Pin {
+  int pair, node;
+};
+
+struct Welds {
+  std::vector<Weld> welds;
+  std::vector<Pin> pins;
+};
+
+/// A rod or a beam, not a cable or a joint.
+bool IsSolid(const BuilderText& builder);
+
+Welds FindWelds(const ModelText& model, const Assembly& assembly, const Assignment& assignment);
+
+}  // namespace taut::description

@@ -1,0 +1,154 @@
+// Joints in loops, in lanes, in snapshots, and what is wrong with them (docs/theory/joints.md).
+#include <gmock/gmock.h>
+
+#include "math/vec.h"
+#include "tests/physics/joint_scenes.h"
+
+namespace taut::test {
+namespace {
+
+/// Four rods in a square in the plane of x and z, on hinges about y, the lower one's ends pinned.
+ModelDef FourBars(JointKind kind) {
+  ModelDef def;
+  const Vec3 corners[] = {{0, 0, 0}, {0.2, 0, 1}, {1.2, 0, 1}, {1, 0, 0}};
+  for (int i = 0; i < 3; ++i) {
+    scenes::AddRod(def, "rod" + std::to_string(i), 1, 0.02, corners[i], corners[i + 1], {});
+    def.capsules.back().collides = false;
+  }
+  for (int i = 0; i < 4; ++i) {
+    JointDef j;
+    j.name = "hinge" + std::to_string(i), j.kind = kind, j.axis = {0, 1, 0};
+    j.body_a = i == 0 || i == 3 ? kWorld : i - 1, j.body_b = i == 3 ? 2 : i;
+    j.from_m = j.to_m = corners[i];
+    def.joints.push_back(j);
+  }
+  return def;
+}
+
+TEST(Joint, AClosedLoopWithRedundantRowsMovesAsAParallelogram) {
+  // Two rods that turn about their ends and one that is carried: (1/3 + 1/3 + 1) m L^2 w' =
+  // (1/2 + 1/2 + 1) m g L sin(a). Against a fine solution of that.
+  const ModelDef def = FourBars(JointKind::kHinge);
+  const double L = std::sqrt(1.04), k = 2.0 / (5.0 / 3) * kG / L;
+  Batch world = MakeBatch(def);
+  double a = std::atan(0.2), w = 0;
+  const double a0 = a;
+  for (int n = 1; n <= 2000; ++n) {
+    world.Step(1e-3);
+    ASSERT_EQ(world.Status(0).bits, kStatusOk) << n;
+    ASSERT_LE(world.Status(0).linear_solves, 6) << n;
+    ASSERT_LT(WorstGap(world, def), 1e-10) << n;
+    for (int i = 0; i < 10; ++i) {  // leapfrog, 0.1 ms
+      a += 0.5e-4 * w, w += 1e-4 * k * std::sin(a), a += 0.5e-4 * w;
+    }
+    ASSERT_NEAR(world.Joint(0, 0).coordinate, a - a0, 2e-3) << n;
+  }
+}
+
+TEST(Joint, AFrameOfWeldsThatTumblesIsSolvedThoughSixOfItsRowsAreRedundant) {
+  ModelDef def;
+  const Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 0.7, 0.2}, {0, 0.7, 0.1}};
+  for (int i = 0; i < 4; ++i) {
+    scenes::AddRod(def, "rod" + std::to_string(i), 1 + i, 0.02, corners[i], corners[(i + 1) % 4],
+                   {});
+    def.capsules.back().collides = false;
+    def.bodies.back().angular_velocity_rad_per_s = {8, 5, -6};
+    def.bodies.back().velocity_m_per_s = Cross(Vec3{8, 5, -6}, def.bodies.back().com_m);
+    JointDef j;
+    j.name = "weld" + std::to_string(i), j.kind = JointKind::kWeld;
+    j.body_a = (i + 3) % 4, j.body_b = i, j.from_m = j.to_m = corners[i];
+    def.joints.push_back(j);
+  }
+  Batch world = MakeBatch(def);
+  int solves = 0;
+  for (int n = 0; n < 2000; ++n) {
+    world.Step(1e-3);
+    solves = std::max(solves, world.Status(0).linear_solves);
+    ASSERT_LT(WorstGap(world, def), 1e-9) << n;
+  }
+  EXPECT_EQ(world.Status(0).bits, kStatusOk);
+  EXPECT_LE(solves, 6);
+}
+
+TEST(Joint, LanesHaveTheBitsOfAWorldAlone) {
+  ModelDef def = FourBars(JointKind::kHinge);
+  def.joints[1].friction = 0.2, def.joints[0].most = 2.0, def.joints[0].restitution = 0.5;
+  def.joints[2].stiffness = 1;
+  const auto prepare = [](Batch& batch, int world, int as) {
+    batch.SetParameter(world, Parameter::kBodyMass, 1, 1 + 0.3 * as);
+  };
+  for (const int worlds : {2, 4, 8, 11}) {
+    BatchOptions options;
+    options.worlds = worlds, options.simd = BestSimd();
+    Batch together = MakeBatch(def, options);
+    for (int w = 0; w < worlds; ++w) prepare(together, w, w);
+    together.Step(1e-3, 1500);
+    for (int w = 0; w < worlds; ++w) {
+      BatchOptions one;
+      one.simd = Simd::kScalar;
+      Batch alone = MakeBatch(def, one);
+      prepare(alone, 0, w);
+      alone.Step(1e-3, 1500);
+      EXPECT_EQ(alone.Hash(0), together.Hash(w)) << worlds << " " << w;
+    }
+  }
+}
+
+TEST(Joint, ASnapshotGoesOnWithTheSameBits) {
+  ModelDef def = FourBars(JointKind::kHinge);
+  def.joints[1].friction = 0.2;
+  Batch world = MakeBatch(def);
+  world.Step(1e-3, 300);
+  const auto snapshot = world.Save(0);
+  world.Step(1e-3, 300);
+  const auto there = world.Hash(0);
+  ASSERT_TRUE(world.Restore(0, snapshot));
+  world.Step(1e-3, 300);
+  EXPECT_EQ(world.Hash(0), there);
+}
+
+TEST(Joint, WrongOnesAreAllNamed) {
+  const auto complaints = [](auto&& change) {
+    ModelDef def = Chain(2, {0.1, 0, 0}, 1);
+    change(def);
+    Diagnostics out;
+    EXPECT_EQ(Model::Compile(def, out), nullptr);
+    return out.Format();
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].body_a = 1; }),
+              HasSubstr("both of its bodies"));
+  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].body_a = 7; }), HasSubstr("not there"));
+  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].to_m.y = 0.2; }), HasSubstr("0.2 m apart"));
+  EXPECT_THAT(complaints([](ModelDef& d) {
+                d.joints[1].axis = {0, 0, 2};
+              }),
+              HasSubstr("unit vector"));
+  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].friction = 1; }), HasSubstr("no friction"));
+  EXPECT_THAT(complaints([](ModelDef& d) {
+                d.joints[1].kind = JointKind::kHinge;
+                d.joints[1].least = 1, d.joints[1].most = 0;
+              }),
+              HasSubstr("must rise"));
+  EXPECT_THAT(complaints([](ModelDef& d) { d.bodies[0].fixed = true; }), HasSubstr("can move"));
+  const std::string all = complaints([](ModelDef& d) {
+    d.joints[0].axis = {}, d.joints[1].restitution = 2, d.apart.push_back({0, 5});
+  });
+  EXPECT_THAT(all, testing::AllOf(HasSubstr("unit vector"), HasSubstr("restitution"),
+                                  HasSubstr("kept apart")));
+}
+
+TEST(Joint, WhatItJoinsDoesNotTouchUnlessItSaysSo) {
+  for (const bool collides : {false, true}) {
+    ModelDef def = Chain(2, {0.1, 0, 0}, 1);
+    for (CapsuleDef& rod : def.capsules) rod.collides = true;
+    def.gravity_m_per_s2 = {};
+    def.joints[1].collides = collides;
+    Batch world = MakeBatch(def);
+    world.Step(1e-3);
+    EXPECT_EQ(world.Contacts(0).empty(), !collides);
+  }
+}
+
+}  // namespace
+}  // namespace taut::test
