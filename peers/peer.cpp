@@ -74,6 +74,7 @@ std::string Version(Engine engine) {
 std::string Unsupported(const ModelDef& def) {
   if (!def.terrain_boxes.empty()) return "terrain boxes";
   if (!def.height_fields.empty() || !def.terrain_meshes.empty()) return "height fields and meshes";
+  if (!def.motions.empty()) return "bodies that a program moves";
   if (!def.joints.empty() || !def.apart.empty()) return "joints, and bodies that are kept apart";
   for (const BodyDef& body : def.bodies) {
     if (body.fixed) return "the fixed body " + body.name;

@@ -62,7 +62,9 @@ enum StatusBits : std::uint32_t {
   kStatusNonFinite = 1u << 0,        ///< A state is NaN or infinite: the world stands still.
   kStatusNotConverged = 1u << 1,     ///< Contacts, stiff cables: not to the tolerance.
   kStatusContactOverflow = 1u << 2,  ///< More contacts than the model has room for.
-  kStatusStepTooLong = 1u << 3,  ///< For a cable's tension, across it (docs/theory/cables.md, 12).
+  /// For a cable's tension, across it (docs/theory/cables.md, 12), or for what joints hold a body
+  /// with (docs/theory/joints.md, 8).
+  kStatusStepTooLong = 1u << 3,
   /// A body's centre of mass is below all of a terrain that has a height field or a mesh and no
   /// plane: it has left what it stood on, and falls for ever.
   kStatusFellOff = 1u << 4,
@@ -143,6 +145,15 @@ struct JointState {
   double gap_m = 0;       ///< How far it is from what it holds; of turns, at the bodies' gyration.
 };
 
+/// A motion of a body at the current time; its force and torque are those of the last step.
+struct MotionState {
+  double slide_m = 0, slide_rate_m_per_s = 0;
+  double turn_rad = 0, turn_rate_rad_per_s = 0;
+  Vec3 force_n;       ///< That the motion has to hold its body with, in W; without its own weight
+  Vec3 torque_n_m;    ///< and inertia. About the body's origin (`BodyDef::com_m`).
+  double work_j = 0;  ///< That it has done on all else since the start.
+};
+
 /// Which per-world parameter `SetParameter` changes. `index`: a body, a cable or a surface.
 enum class Parameter {
   kBodyMass,        ///< [kg]; inertia scales with it.
@@ -216,6 +227,7 @@ class Batch {
   Vec3 NodePosition(int world, int node) const noexcept;  ///< [m], in W.
   Vec3 NodeVelocity(int world, int node) const noexcept;  ///< [m/s], in W.
   JointState Joint(int world, int joint) const noexcept;
+  MotionState Motion(int world, int motion) const noexcept;
   Energy TotalEnergy(int world) const noexcept;
   Vec3 Momentum(int world) const noexcept;              ///< [kg m/s], in W.
   Vec3 AngularMomentum(int world) const noexcept;       ///< About W's origin [kg m^2/s].
@@ -225,7 +237,9 @@ class Batch {
   std::vector<Overlap> Overlaps(int world) const;
 
   // --- state -------------------------------------------------------------------------------
+  /// Not of a body with a motion, which is where that says.
   void SetBodyState(int world, int body, const BodyState& state) noexcept;
+  /// Bodies with motions go where they are at that time.
   void SetTime(int world, double time_s) noexcept;
   void SetRestLength(int world, int cable, double rest_length_m) noexcept;
   void SetParameter(int world, Parameter parameter, int index, double value) noexcept;

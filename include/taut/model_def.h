@@ -15,6 +15,7 @@
 
 #include "taut/dc_motor.h"
 #include "taut/joint_def.h"
+#include "taut/motion_def.h"
 #include "taut/types.h"
 
 namespace taut {
@@ -196,6 +197,7 @@ struct ModelDef {
   std::vector<CableDef> cables;
   std::vector<JointDef> joints;
   std::vector<ApartDef> apart;
+  std::vector<MotionDef> motions;
   std::vector<PlaneDef> planes;
   std::vector<TerrainBoxDef> terrain_boxes;
   std::vector<HeightFieldDef> height_fields;

@@ -103,6 +103,7 @@ class World : public Bodies {
   virtual MotorState Motor(int lane, int cable) const = 0;  ///< Of a cable with a `dc_motor`.
   virtual std::vector<ContactState> Contacts(int lane) const = 0;
   virtual JointState Joint(int lane, int joint) const = 0;
+  virtual MotionState Motion(int lane, int motion) const = 0;
   virtual WorldStatus Status(int lane) const = 0;
   virtual std::uint64_t Hash(int lane) const = 0;
 };

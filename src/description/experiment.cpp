@@ -60,6 +60,7 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   if (text.gravity_m_per_s2) def.gravity_m_per_s2 = *text.gravity_m_per_s2;
   if (text.place) Place(*text.place, text.start, scope, def);
   AddTerrain(text.terrain, scope, text.robot);
+  AddMotions(text.motions, model.good, scope, text.robot);
   if (scope.out.ok()) CheckPositions(text.robot, scope.out, text.place ? &text.place->at : nullptr);
   return text;
 }

@@ -279,6 +279,8 @@ void Keys(Io& io, Experiment& e) {
     io("terrain", e.terrain,
        "What the robot stands on and runs against. Nothing if absent: the robot floats or falls.");
     io("place", e.place);
+    io("motion", e.motions,
+       "Bodies that a program moves: shakers, turntables, platforms. Nothing moves so if absent.");
   }
   io("step_s", e.step_s, Bound{.least = 1e-9, .most = 1.0, .least_text = "1e-9"},
      "Longest step of the integrator. Steps also land on the ticks of controllers and on the "

@@ -51,6 +51,10 @@ std::vector<int> CheckGaits(const GaitInputSpec& input, const GaitInputKind& kin
 void CheckGaitDrives(const ControllerSpec& controller, const std::vector<int>& cables,
                      const RobotSpec& robot, const SourceRef& at, Diagnostics& out);
 
+/// What programs move, of the robot or the terrain, which must be there.
+void AddMotions(const std::vector<MotionText>& texts, bool robot_known, const Scope& scope,
+                RobotSpec& robot);
+
 /// Phases and events, into `out`, which has its duration already (NaN if that is unknown).
 void AddTimeline(const TimelineText& text, const RobotSpec* robot, const Scope& scope,
                  ExperimentSpec& out);

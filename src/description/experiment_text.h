@@ -11,6 +11,7 @@
 #include "description/ground_keys.h"
 #include "description/head_keys.h"
 #include "description/model_text.h"
+#include "description/motion_keys.h"
 #include "description/surface_keys.h"
 #include "description/terrain_boxes.h"
 #include "taut/spec.h"
@@ -174,6 +175,7 @@ struct ExperimentText : ExperimentSpec {
   Overlay<ModelOptions> model_options;
   std::optional<Vec3> gravity_m_per_s2;
   std::vector<TerrainText> terrain;
+  std::vector<MotionText> motions;
   std::optional<PlaceText> place;
   std::vector<ScaleText> scale_texts;
   std::optional<SensorText> sensor_text;

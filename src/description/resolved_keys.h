@@ -46,6 +46,7 @@ void Keys(Io& io, Like<RobotSpec> auto& r) {
   io("cable_tags", r.cable_tags);
   io("joints", r.def.joints, kLater);
   io("apart", r.def.apart, kLater);
+  io("motions", r.def.motions, kLater);
   io("planes", r.def.planes);
   io("terrain_boxes", r.def.terrain_boxes);
   io("height_fields", r.def.height_fields, kLater);

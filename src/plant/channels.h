@@ -11,6 +11,7 @@ void AddNodeChannels(const ExperimentSpec& experiment, Recorder& recorder);
 void AddLoadChannels(const ExperimentSpec& experiment, Recorder& recorder);
 /// What joints carry, and where they are.
 void AddJointChannels(const ExperimentSpec& experiment, Recorder& recorder);
+void AddMotionChannels(const ExperimentSpec& experiment, Recorder& recorder);
 void AddContactChannels(const ExperimentSpec& experiment, Recorder& recorder);
 
 /// Writes a vector's components behind each other.

@@ -70,6 +70,7 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
         });
   }
   if (is_world) AddJointChannels(experiment, *this);
+  if (is_world) AddMotionChannels(experiment, *this);
   for (std::size_t i = 0; is_world && i < experiment.pushes.size(); ++i) {
     Add("push/" + experiment.pushes[i].name + "/", {{"force_n", "N"}},
         [i](const RecordSource& s, double* out) { *out = s.timeline->push_n()[i]; });

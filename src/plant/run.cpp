@@ -29,7 +29,10 @@ std::string DescribeStatus(const ModelDef& def, const WorldStatus& status) {
   const auto add = [&](const char* text) { out += (out.empty() ? "" : "; ") + std::string(text); };
   if (status.bits & kStatusNonFinite) add("the state is no longer finite");
   if (status.bits & kStatusNotConverged) add("a contact solve did not converge");
-  if (status.bits & kStatusStepTooLong) add("the step is too long for the tension of a cable");
+  if (status.bits & kStatusStepTooLong) {
+    add(status.cable >= 0 ? "the step is too long for the tension of a cable"
+                          : "the step is too long for the forces of a body's joints");
+  }
   if (status.bits & kStatusContactOverflow) add("more contacts than there is room for");
   if (status.bits & kStatusFellOff) add("a body is below all of the terrain");
   if (out.empty()) return out;

@@ -34,6 +34,8 @@ bool Settle(Batch& batch, int world, double step_s, const std::function<bool()>&
             int max_steps) {
   constexpr double kAtRestMPerS = 1e-9;
   const double time_s = batch.Time(world);
+  // Programs that move bodies have not begun yet.
+  if (!batch.model().def().motions.empty()) batch.SetTime(world, -(max_steps + 1) * step_s);
   Stop(batch, world);
   double energy_before = 0;
   bool first_after_stop = true, settled = false;

@@ -75,6 +75,7 @@ class SimulatedPlant final : public Plant, public World {
   MotorState Motor(int lane, int cable) const override { return batch_.Motor(lane, cable); }
   std::vector<ContactState> Contacts(int lane) const override { return batch_.Contacts(lane); }
   JointState Joint(int lane, int joint) const override { return batch_.Joint(lane, joint); }
+  MotionState Motion(int lane, int motion) const override { return batch_.Motion(lane, motion); }
   WorldStatus Status(int lane) const override { return batch_.Status(lane); }
   std::uint64_t Hash(int lane) const override { return batch_.Hash(lane); }
 

@@ -277,6 +277,7 @@ void Batch::SetNodeForce(int world, int node, const Vec3& force_n) noexcept {
 void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
   Impl& d = *impl_;
   d.CheckBody(__func__, world, body);
+  if (d.view.HasMotion(body)) return;
   const auto first = static_cast<std::size_t>(4 * body);
   const double* q0 = d.model->q_WP0.data() + first;
   const Quat q = state.orientation * Quat{q0[0], q0[1], q0[2], q0[3]};
@@ -296,6 +297,7 @@ void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
 void Batch::SetTime(int world, double time_s) noexcept {
   impl_->CheckWorld(__func__, world);
   impl_->at(world, impl_->layout.time) = time_s;
+  impl_->PlaceMotions(world);
 }
 
 void Batch::SetRestLength(int world, int cable, double rest_length_m) noexcept {

@@ -166,6 +166,8 @@ struct Batch::Impl {
   void JudgeStiffness(int world) noexcept;
   /// Bodies moved by hand: what was known about distances is void.
   void Moved(int world) noexcept;
+  /// Bodies with motions to where they are at the world's time.
+  void PlaceMotions(int world) noexcept;
   /// Makes the kSensed rows of the world's group belong to the current state.
   void Sense(int world) const noexcept;
   void ForceNode(int world, int node) noexcept;

@@ -65,4 +65,7 @@ void CheckGround(const ModelDef& def, Checker& check);
 /// Joints, and bodies that are kept apart (joint_check.cpp).
 void CheckJoints(const ModelDef& def, Checker& check);
 
+/// Motions of bodies (motion_check.cpp).
+void CheckMotions(const ModelDef& def, Checker& check);
+
 }  // namespace taut::sim

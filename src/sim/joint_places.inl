@@ -27,27 +27,28 @@ class JointSystem {
         mem_(work.joint_memory),
         matrix_(*m.joint_pattern, mem_.blocks) {}
 
-  /// `R(body)`: how bodies are turned; `place(joint)`: where it is.
+  /// `inertia(body)`: in W, what turns cost; `place(joint)`: where it is.
   template <class F, class G>
-  void Assemble(const F& R, const G& place) noexcept {
+  void Assemble(const F& inertia, const G& place) noexcept {
     for (int k = 0; k < m_.joint_body_count; ++k) {
       const int b = m_.joint_bodies[k];
       Unknown<W>& body = mem_.bodies[k];
       body.body = b, body.size = kDofs;
       body.mass = s_.mass[b], body.inv_mass = s_.inv_mass[b];
-      body.inertia = Congruence(R(b), s_.inertia[b]);
+      body.inertia = inertia(b);
     }
     matrix_.Start(mem_.bodies, true);
     rows_ = 0;
     for (int i = 0; i < m_.joint_count; ++i) {
       const JointTable& j = m_.joints[i];
       const JointPlace<W> p = place(i);
+      const JointInertias<W> inertias(s_, work_, j);
       for (int r = j.first_row; r < j.first_row + j.row_count; ++r) {
         const JointRowTable& table = m_.joint_rows[r];
         if (table.role != JointRole::kHold) break;
         const JointDirection<W> d = DirectionOf(j, table.measure, p, W::Splat(0.0));
         JointRow<W>& row = mem_.rows[rows_];
-        SetJointLinks(s_, work_, j, p, d, row);
+        SetJointLinks(s_, work_, j, inertias, p, d, IsTurn(table.measure), row);
         for (int k = 0; k < row.link_count; ++k) {
           row.links[k].body = m_.joint_number[row.links[k].body];
         }
@@ -71,10 +72,11 @@ class JointSystem {
     const int size = kDofs * m_.joint_body_count;
     for (int i = 0; i < size; ++i) mem_.change[i] = zero;
     for (int pass = 0; pass < kPasses; ++pass) {
-      for (int i = 0; i < size; ++i) mem_.rhs[i] = zero;
+      for (int i = 0; i < size + kDofs * m_.motion_count; ++i) mem_.rhs[i] = zero;
       for (int r = 0; r < rows_; ++r) {
         const W push = zero - mem_.G[r] * mem_.miss[r];
         for (int k = 0; k < mem_.rows[r].link_count; ++k) {
+          if (mem_.rows[r].links[k].body >= m_.joint_body_count) continue;
           Island<W, Pools<JointRow<W>>>::AddForce(mem_.rows[r].links[k], &push, mem_.rhs);
         }
       }
@@ -121,13 +123,18 @@ class JointSystem {
 template <class W>
 void AgreeGuesses(const View& m, const Rows<W>& s, Scratch<W>& work, W half_h) noexcept {
   JointSystem<W> system(m, s, work);
-  system.Assemble([&](int b) -> const M3<W>& { return work.bodies[b].R; },
-                  [&](int i) {
-                    const JointTable& j = m.joints[i];
-                    const JointPlace<W> p =
-                        PlaceOf(m, s, j, work.bodies[j.a].R, work.bodies[j.b].R);
-                    return PlaceAfter(p, work.joint_guess[j.a], work.joint_guess[j.b], half_h);
-                  });
+  // All turns cost alike: by mass a thin rod's turn about its axis would be nearly free, and a
+  // guess far off.
+  const auto same = [&](int b) {
+    const V3<W>& moments = s.inertia[b];
+    const W most = Max(moments.x, Max(moments.y, moments.z)), zero = W::Splat(0.0);
+    return S3<W>{most, most, most, zero, zero, zero};
+  };
+  system.Assemble(same, [&](int i) {
+    const JointTable& j = m.joints[i];
+    const JointPlace<W> p = PlaceOf(m, s, j, work.bodies[j.a].R, work.bodies[j.b].R);
+    return PlaceAfter(p, work.joint_guess[j.a], work.joint_guess[j.b], half_h);
+  });
   for (int r = 0; r < system.rows(); ++r) system.Miss(r, system.RateAt(r, work.joint_guess));
   system.Solve();
   for (int k = 0; k < m.joint_body_count; ++k) {
@@ -190,7 +197,7 @@ void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, MaskOf<W> lane
   const W zero = W::Splat(0.0);  // + 0: see StageDriftSecond
   const V3<W> none{zero, zero, zero};
   JointSystem<W> system(m, s, work);
-  system.Assemble([&](int b) -> const M3<W>& { return work.bodies[b].R; },
+  system.Assemble([&](int b) { return Congruence(work.bodies[b].R, s.inertia[b]); },
                   [&](int i) {
                     const JointTable& j = m.joints[i];
                     return PlaceOf(m, s, j, work.bodies[j.a].R, work.bodies[j.b].R);
@@ -218,7 +225,7 @@ void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, MaskOf<W> lane
   }
   const auto moved = [&](int b) {
     const int k = m.joint_number[b];
-    return k < 0 ? zero : work.joint_memory.moved[k];
+    return k < 0 || k >= m.joint_body_count ? zero : work.joint_memory.moved[k];
   };
   for (int pair = 0; pair < m.body_pair_count; ++pair) {
     s.clearance[pair] -= moved(m.body_pairs[pair].a) + moved(m.body_pairs[pair].b);

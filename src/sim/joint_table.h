@@ -25,12 +25,14 @@ struct JointRowTable {
 };
 
 struct JointTable {
-  int a = 0, b = 0;                           ///< Bodies; the world is one.
-  bool a_moves = false, b_moves = false;      ///< By impulses.
-  double own_a_P[3] = {}, own_b_P[3] = {};    ///< The points, each in its body's frame [m].
-  double axes_a_P[9] = {}, axes_b_P[9] = {};  ///< Axis and two directions across it, one a row.
-  double reach_m = 0;                         ///< Of turns: see JointMeasure.
-  int first_row = 0, row_count = 0;           ///< Those that hold come first.
+  int a = 0, b = 0;                             ///< Bodies; the world is one.
+  bool a_moves = false, b_moves = false;        ///< By impulses;
+  bool a_is_moved = false, b_is_moved = false;  ///< as a program says.
+  bool holds_point = false;                     ///< All of the distance between its points.
+  double own_a_P[3] = {}, own_b_P[3] = {};      ///< The points, each in its body's frame [m].
+  double axes_a_P[9] = {}, axes_b_P[9] = {};    ///< Axis and two directions across it, one a row.
+  double reach_m = 0;                           ///< Of turns: see JointMeasure.
+  int first_row = 0, row_count = 0;             ///< Those that hold come first.
   bool has_coordinate = false, has_angle = false;
   JointMeasure coordinate = JointMeasure::kAlongAxis;
   // Of its coordinate, in metres of it; forces in N of that.

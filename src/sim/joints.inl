@@ -94,10 +94,45 @@ TAUT_INLINE W RateOf(const JointPlace<W>& p, const JointDirection<W>& d, const T
   return Dot(d.lin, apart) + Dot(d.turn, b.w - a.w);
 }
 
-/// Links and inverse effective mass of a row in direction `d`.
+/// The inertias in W of the two bodies that a joint moves.
+template <class W>
+struct JointInertias {
+  S3<W> a, b;
+
+  JointInertias(const Rows<W>& s, const Scratch<W>& work, const JointTable& j) noexcept {
+    if (!HaveShares(j)) return;
+    a = Congruence(work.bodies[j.a].R, s.inertia[j.a]);
+    b = Congruence(work.bodies[j.b].R, s.inertia[j.b]);
+  }
+  static bool HaveShares(const JointTable& j) noexcept {
+    return j.holds_point && j.a_moves && j.b_moves;
+  }
+  /// The turn that both would take together from an angular momentum.
+  V3<W> TurnOf(const V3<W>& momentum) const noexcept {
+    W sum[3][3], x[3] = {momentum.x, momentum.y, momentum.z};
+    sum[0][0] = a.xx + b.xx, sum[1][1] = a.yy + b.yy, sum[2][2] = a.zz + b.zz;
+    sum[1][0] = a.xy + b.xy, sum[2][0] = a.xz + b.xz, sum[2][1] = a.yz + b.yz;
+    SolveSymmetric(sum, x);
+    return {x[0], x[1], x[2]};
+  }
+};
+
+/// Links and inverse effective mass of a row in direction `d`; the first link is to a body that
+/// impulses move.
+///
+/// Where a joint holds a point, each body is pushed at its own (joints.md, eq. 9): at the other's,
+/// which is off by the gap, a thin rod would be turned about its axis. What the two pushes then
+/// miss of angular momentum both bodies take together, as a turn.
 template <class W>
 void SetJointLinks(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
-                   const JointPlace<W>& p, const JointDirection<W>& d, JointRow<W>& row) noexcept {
+                   const JointInertias<W>& inertias, const JointPlace<W>& p,
+                   const JointDirection<W>& d, bool is_turn, JointRow<W>& row) noexcept {
+  const V3<W> arm_a = j.holds_point ? p.own_a : p.arm_a();
+  V3<W> on_b = Cross(p.own_b, d.lin) + d.turn, on_a = -(Cross(arm_a, d.lin) + d.turn);
+  if (JointInertias<W>::HaveShares(j) && !is_turn) {
+    const V3<W> turn = inertias.TurnOf(Cross(p.gap, d.lin));
+    on_b -= inertias.b * turn, on_a -= inertias.a * turn;
+  }
   row.link_count = 0;
   const auto link = [&](int body, const V3<W>& lin, const V3<W>& ang) {
     Link<W, 1>& to = row.links[row.link_count++];
@@ -106,9 +141,28 @@ void SetJointLinks(const Rows<W>& s, const Scratch<W>& work, const JointTable& j
     to.lin[0] = lin, to.ang[0] = ang;
     to.turn[0] = work.bodies[body].inv_inertia * ang;
   };
-  if (j.b_moves) link(j.b, d.lin, Cross(p.own_b, d.lin) + d.turn);
-  if (j.a_moves) link(j.a, -d.lin, -(Cross(p.arm_a(), d.lin) + d.turn));
+  if (j.b_moves) link(j.b, d.lin, on_b);
+  if (j.a_moves) link(j.a, -d.lin, on_a);
+  if (j.b_is_moved) link(j.b, d.lin, on_b);
+  if (j.a_is_moved) link(j.a, -d.lin, on_a);
   row.FinishMasses();
+}
+
+/// The velocity of a row, of those of all bodies.
+template <class W>
+TAUT_INLINE W RateOf(const JointRow<W>& row, const Twist<W>* of) noexcept {
+  W u = W::Splat(0.0);
+  for (int k = 0; k < row.link_count; ++k) {
+    const Twist<W>& t = of[row.links[k].body];
+    AddVelocity(row.links[k], t.v, t.w, &u);
+  }
+  return u;
+}
+
+/// Whether it is of turns alone.
+TAUT_INLINE bool IsTurn(JointMeasure measure) noexcept {
+  return measure != JointMeasure::kAlongAxis && measure != JointMeasure::kAcross1 &&
+         measure != JointMeasure::kAcross2 && measure != JointMeasure::kDistance;
 }
 
 /// a + turn x a + turn x (turn x a) / 2
@@ -184,6 +238,7 @@ void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double ste
     const Twist<W>&guess_a = work.joint_guess[j.a], &guess_b = work.joint_guess[j.b];
     const JointPlace<W> place = PlaceOf(m, s, j, a.R, b.R);
     const JointPlace<W> end = PlaceAfter(place, guess_a, guess_b, half_h);
+    const JointInertias<W> inertias(s, work, j);
     W angle = zero;
     if (j.has_angle) {
       const W turn = W::Splat(2 * simd::kPi), inv_turn = W::Splat(0.5 / simd::kPi);
@@ -202,14 +257,14 @@ void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double ste
       }
       row.joint = i;
       row.lin = d.lin, row.turn = d.turn;
-      SetJointLinks(s, work, j, place, d, row);
+      SetJointLinks(s, work, j, inertias, place, d, IsTurn(table.measure), row);
       row.live = live;
       row.target = row.give = row.restitution = row.rebound = zero;
       row.lower = -no_limit, row.upper = no_limit;
       row.before = RateOf(place, d, Before(a), Before(b));
       switch (table.role) {
         case JointRole::kHold:
-          row.target = RateOf(place, d, guess_a, guess_b) -
+          row.target = RateOf(row, work.joint_guess) -
                        RateOf(end, DirectionOf(j, table.measure, end, angle), guess_a, guess_b);
           break;
         case JointRole::kLeast:
@@ -227,6 +282,40 @@ void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double ste
       row.l[0] = Select(row.live > zero, Min(Max(h * s.joint_load[r], row.lower), row.upper), zero);
     }
   }
+}
+
+/// Share of the largest stable force that joints hold a body with (joints.md, eq. 8), the largest
+/// of all bodies, and whose it is.
+template <class W>
+struct JointShare {
+  W share;
+  int body[W::kLanes];
+};
+
+/// Along its line a joint's force is implicit, across it it is not: it turns the body back like a
+/// spring that is the stiffer the more it carries.
+template <class W>
+JointShare<W> ShareOfStableJoints(const View& m, const Rows<W>& s, double step_s) noexcept {
+  const W zero = W::Splat(0.0), quarter_h2 = W::Splat(0.25 * step_s * step_s);
+  JointShare<W> worst{zero, {}};
+  for (int k = 0; k < m.joint_body_count; ++k) {
+    const int b = m.joint_bodies[k];
+    W stiffness = zero;
+    for (int i = 0; i < m.joint_count; ++i) {
+      const JointTable& j = m.joints[i];
+      if (j.a != b && j.b != b) continue;
+      const V3<W> arm = simd::Splat3<W>(j.a == b ? j.own_a_P : j.own_b_P), force = s.joint_force[i];
+      stiffness += Sqrt(Dot(arm, arm) * Dot(force, force));
+    }
+    const V3<W>& moments = s.inertia[b];
+    const W share = quarter_h2 * stiffness / Max(moments.x, Max(moments.y, moments.z));
+    const auto more = share > worst.share;
+    for (int lane = 0; lane < W::kLanes; ++lane) {
+      if (more[lane]) worst.body[lane] = b;
+    }
+    worst.share = Max(share, worst.share);
+  }
+  return worst;
 }
 
 /// Loads of what the solver found, and the angular momenta that they give.

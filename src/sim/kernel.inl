@@ -10,9 +10,11 @@
 // clang-format off
 #include "sim/rows.h"
 #include "sim/poison.inl"
+#include "sim/motion_at.h"
 #include "sim/passing.h"
 #include "sim/friction.h"
 #include "sim/stage_bodies.inl"
+#include "sim/motion.inl"
 #include "sim/stiff_cables.inl"
 #include "sim/dc_motor.inl"
 #include "sim/stage_cables.inl"
@@ -164,7 +166,8 @@ void NameFallen(const View& m, const Rows<W>& s, int lane, LaneStatus& status) n
 /// Writes down which lanes have something to say, and halts those that are no longer finite.
 template <class W>
 void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
-           const SolveResult<W>& solve, const StepSettings& settings, uint32_t overflow) noexcept {
+           const SolveResult<W>& solve, const StepSettings& settings, uint32_t overflow,
+           double step_s) noexcept {
   const W zero = W::Splat(0.0);
   W sum = zero;  // stays 0 while everything is finite
   for (int b = 0; b < m.body_count; ++b) {
@@ -181,7 +184,9 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
   for (int i = 0; i < work.stiff_count; ++i) {
     share = Max(ShareOfStableTension(s, work.stiff[i]), share);
   }
-  const auto too_long = (share > W::Splat(1.0)) & (!was_halted);
+  JointShare<W> jointed{zero, {}};
+  if (m.joint_count > 0) jointed = ShareOfStableJoints(m, s, step_s);
+  const auto too_long = (Max(share, jointed.share) > W::Splat(1.0)) & (!was_halted);
   s.residual[0] = solve.residual;
   s.linear_solves[0] = solve.linear_solves;
   auto fallen = MaskOf<W>::Splat(false);
@@ -202,7 +207,9 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
       status.cable = -1;
     }
     if (bits & ~status.bits & kStatusNotConverged) status.body = solve.body[lane];
-    if (bits & ~status.bits & kStatusStepTooLong) {
+    if (bits & ~status.bits & kStatusStepTooLong && jointed.share[lane] > share[lane]) {
+      status.body = jointed.body[lane];
+    } else if (bits & ~status.bits & kStatusStepTooLong) {
       for (int i = 0; i < work.stiff_count; ++i) {
         if (ShareOfStableTension(s, work.stiff[i])[lane] == share[lane]) {
           status.cable = work.stiff[i].cable;
@@ -263,7 +270,9 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   SaveStart(m, s, work);
   watch.Mark(Stage::kStart);
   StageDriftFirst(m, s, half_h);
+  if (m.motion_count > 0) StageMotionPlaces(m, s, work, h);
   StageKinematics(m, s, g, work, ahead);
+  if (m.motion_count > 0) StageMotionStart(m, work);
   StageSpots(m, s, work);
   watch.Mark(Stage::kKinematics);
   if (m.motor_count == 0) {
@@ -273,6 +282,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   }
   watch.Mark(Stage::kCables);
   StageKick(m, s, work, h);
+  if (m.motion_count > 0) StageMotionKick(m, s, work, h);
   watch.Mark(Stage::kKick);
   const uint32_t overflow = StageCollide(m, s, g, work, step_s, Max(h, last));
   watch.Mark(Stage::kCollide);
@@ -281,9 +291,10 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   watch.Mark(Stage::kSolve);
   StoreResults(m, s, g, work, step_s);
   StageDriftSecond(m, s, work, half_h);
+  if (m.motion_count > 0) StageMotionEnd(m, s, work, step_s);
   if (m.joint_count > 0) StageJointPlaces(m, s, work);
   watch.Mark(Stage::kIntegrate);
-  Judge(m, s, g, work, solve, settings, overflow);
+  Judge(m, s, g, work, solve, settings, overflow, step_s);
 
   const auto halted = s.halted[0] > zero;
   if (Any(halted)) KeepStart(m, s, work, halted);
@@ -312,6 +323,7 @@ void SenseGroup(const View& m, const Layout& layout, Group& g, void* scratch) {
   const Rows<W> s(m, layout, g);
   Poison(m, s, g, work);
   StageSenseBodies(m, s, work);
+  if (m.motion_count > 0) SenseMotions(m, s, work);
   StageSpots(m, s, work);
   StageSense(m, s, work);
 }

@@ -33,6 +33,7 @@ class Compiler {
     t_.plane_count = static_cast<int>(def_.planes.size());
     t_.along_slip = def_.friction_law == FrictionLaw::kAlongSlip;
     Bodies();
+    sim::LayOutMotions(t_);
     Cables();
     sim::LayOutJoints(t_, frames_);
     Planes();
@@ -309,6 +310,10 @@ class Compiler {
     return index < t_.body_count && !def_.bodies[static_cast<std::size_t>(index)].fixed;
   }
 
+  bool HasMotion(int index) const {
+    return index < t_.body_count && t_.motion_of_body[static_cast<std::size_t>(index)] >= 0;
+  }
+
   /// Pairs of which one body does not move come first, by the body that does: their contacts go
   /// into that body's slots.
   void Pairs() {
@@ -320,7 +325,7 @@ class Compiler {
     for (const int a : solid) {
       if (!Moves(a)) continue;
       for (const int b : solid) {
-        if (!Moves(b)) AddPair(a, b, id);
+        if (!Moves(b) && !HasMotion(b)) AddPair(a, b, id);
       }
       for (const std::size_t ground : ground_) {
         for (const std::size_t i : shapes_of_[static_cast<std::size_t>(a)]) {
@@ -335,7 +340,9 @@ class Compiler {
     const std::uint32_t first_of_two = id;
     for (std::size_t i = 0; i < solid.size(); ++i) {
       for (std::size_t j = i + 1; j < solid.size(); ++j) {
-        if (Moves(solid[i]) && Moves(solid[j])) AddPair(solid[i], solid[j], id);
+        const int a = solid[i], b = solid[j];
+        if (Moves(a) && (Moves(b) || HasMotion(b))) AddPair(a, b, id);
+        if (HasMotion(a) && Moves(b)) AddPair(b, a, id);
       }
     }
     t_.pair_capacity = static_cast<int>(std::min<std::uint64_t>(

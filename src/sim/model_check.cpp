@@ -192,6 +192,7 @@ bool CheckModel(const ModelDef& def, Diagnostics& out) {
   CheckSupplies(def, check);
   CheckGround(def, check);
   CheckJoints(def, check);
+  CheckMotions(def, check);
   if (out.items().size() == before) CheckSizes(def, check);
   return out.items().size() == before;
 }

@@ -63,6 +63,10 @@ class JointCompiler {
     return index < t_.body_count && !t_.def().bodies[static_cast<std::size_t>(index)].fixed;
   }
 
+  bool HasMotion(int index) const {
+    return index < t_.body_count && t_.motion_of_body[static_cast<std::size_t>(index)] >= 0;
+  }
+
   void Axes(int body, const Vec3 (&axes)[3], double out[9]) const {
     Frame turned = frames_[static_cast<std::size_t>(body)];
     std::fill_n(turned.origin, 3, 0.0);
@@ -81,6 +85,7 @@ class JointCompiler {
     JointTable j;
     j.a = Index(def.body_a), j.b = Index(def.body_b);
     j.a_moves = Moves(j.a), j.b_moves = Moves(j.b);
+    j.a_is_moved = HasMotion(j.a), j.b_is_moved = HasMotion(j.b);
     ToBody(frames_[static_cast<std::size_t>(j.a)], def.from_m, j.own_a_P);
     ToBody(frames_[static_cast<std::size_t>(j.b)], def.to_m, j.own_b_P);
     const Vec3 n = (1 / std::sqrt(Dot(def.axis, def.axis))) * def.axis;
@@ -104,6 +109,10 @@ class JointCompiler {
       j.rest = std::sqrt(Dot(d, d));
     }
     j.row_count = static_cast<int>(t_.joint_rows.size()) - j.first_row;
+    j.holds_point =
+        std::count_if(kind.holds.begin(), kind.holds.end(), [](M measure) {
+          return measure == M::kAlongAxis || measure == M::kAcross1 || measure == M::kAcross2;
+        }) == 3;
     t_.joints.push_back(j);
   }
 
@@ -139,7 +148,7 @@ class JointCompiler {
     std::map<int, std::set<int>> chains;
     for (const JointTable& j : t_.joints) {
       for (const int body : {j.a, j.b}) {
-        if (sets.Root(body) != world) chains[sets.Root(body)].insert(body);
+        if (Moves(body) && sets.Root(body) != world) chains[sets.Root(body)].insert(body);
       }
     }
     for (const auto& [first, bodies] : chains) {
@@ -181,6 +190,11 @@ class JointCompiler {
       const int body = members[static_cast<std::size_t>(order[static_cast<std::size_t>(k)])];
       t_.joint_bodies.push_back(body);
       t_.joint_number[static_cast<std::size_t>(body)] = k;
+    }
+    int next = n;
+    for (const MotionTable& motion : t_.motions) {
+      t_.joint_bodies.push_back(motion.body);
+      t_.joint_number[static_cast<std::size_t>(motion.body)] = next++;
     }
   }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "sim/batch_impl.h"
+#include "sim/motion.h"
 
 namespace taut {
 
@@ -53,6 +54,11 @@ BodyState Batch::Body(int world, int body) const noexcept {
   const double* q0 = d.model->q_WP0.data() + static_cast<std::size_t>(4 * body);
   const Vec3 l = Rotate(Conjugate(q), d.vec(world, d.layout.mom + 3 * body));
   const Vec3 inv = d.vec(world, d.layout.inv_inertia + 3 * body);
+  if (d.view.HasMotion(body)) {
+    const sim::MotionSample now =
+        sim::SampleMotion(d.view, d.view.motion_of_body[body], Time(world));
+    return {now.position_m, now.orientation, now.velocity_m_per_s, now.spin_rad_per_s};
+  }
   return {d.vec(world, d.layout.pos + 3 * body), q * Conjugate({q0[0], q0[1], q0[2], q0[3]}),
           d.vec(world, d.layout.vel + 3 * body),
           Rotate(q, {inv.x * l.x, inv.y * l.y, inv.z * l.z})};
@@ -270,7 +276,8 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
     const Touching bodies = BodiesOf(m, Read<double>(at));
     at -= sizeof(double);
     // A body's slots, or the touches behind all of them.
-    const bool moves = bodies.b < m.body_count && d.at(world, d.layout.mass + bodies.b) > 0;
+    const bool moves = bodies.b < m.body_count &&
+                       (d.at(world, d.layout.mass + bodies.b) > 0 || d.view.HasMotion(bodies.b));
     const int first = moves ? m.slot_count : m.first_slot[static_cast<std::size_t>(bodies.a)];
     if (list != first) next = first;
     list = first;

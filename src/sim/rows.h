@@ -122,6 +122,12 @@ struct HeldRow : JointRow<W> {
   V3<W> lin, turn;
 };
 
+/// How a motion moves its body in this step, as far as its end.
+template <class W>
+struct MotionWork {
+  V3<W> v0, w0, v_mid, w_mid;
+};
+
 /// A motor while its cable's tension T is found: its mean speed over the step is `mean` - `slows`
 /// T.
 template <class W>
@@ -153,6 +159,7 @@ struct Scratch {
   HeldRow<W>* joints;     ///< Rows of all joints.
   Twist<W>* joint_guess;  ///< Per body and the world: guessed velocities of the step's end.
   JointMemory<W> joint_memory;
+  MotionWork<W>* motions;
   MotorWork<W>* motors;
   W* supplies;     ///< Voltage under load, per supply [V].
   uint64_t* near;  ///< A bit for each of the world's shapes, if it has many.
@@ -187,6 +194,7 @@ struct Scratch {
     joints = room_.Take<HeldRow<W>>(m.joint_row_count);
     joint_guess = room_.Take<Twist<W>>(m.joint_count > 0 ? bodies_count : 0);
     joint_memory.Take(m, room_);
+    motions = room_.Take<MotionWork<W>>(m.motion_count);
     motors = room_.Take<MotorWork<W>>(m.motor_count);
     supplies = room_.Take<W>(m.supply_count);
     unsolved = room_.Take<W>(bodies_count);

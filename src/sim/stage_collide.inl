@@ -337,6 +337,7 @@ uint32_t StageCollide(const View& m, const Rows<W>& s, const Group& g, Scratch<W
                       double step_s, W since_last) noexcept {
   const W h = W::Splat(step_s);
   BoundTurns(m, work, h, since_last);
+  if (m.motion_count > 0) BoundMotions(m, s, work, h, since_last);
   uint32_t overflow = 0;
   int pair = 0;
   for (int body = 0; body < m.body_count; ++body) {

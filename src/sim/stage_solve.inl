@@ -95,7 +95,8 @@ void MarkUnsolved(const View& m, Scratch<W>& work, M alone) noexcept {
     for (int i = 0; i < work.touch_count[lane]; ++i) {
       const ShapePairTable& pair = m.shape_pairs[work.touches[lane * m.pair_capacity + i].pair];
       work.unsolved[m.shapes[pair.a].body].Set(lane, 1.0);
-      work.unsolved[m.shapes[pair.b].body].Set(lane, 1.0);
+      const int b = m.shapes[pair.b].body;
+      if (!m.HasMotion(b)) work.unsolved[b].Set(lane, 1.0);
     }
   }
 }
@@ -153,6 +154,24 @@ V3<L> MeetingPoint(const Rows<W>& s, const TouchPoint& point, const int* bodies,
   return p - L::Splat(point.when_s) * way;
 }
 
+/// What sticks to a body with a motion is a point of it that goes on along an arc until the middle
+/// of the next step, as points on the other body do (contact.md, eq. 12a): along the surface they
+/// are to stay together.
+template <class W, class L>
+void FollowMotion(const Scratch<W>& work, int lane, Contact<L, 2>& c, L h) noexcept {
+  const L half_h = L::Splat(0.5) * h, sixth_h2 = L::Splat(1.0 / 6.0) * h * h;
+  const auto bend = [&](int k) {
+    const V3<L> w = OfLane<L>(work.bodies[c.links[k].body].w_mid, lane);
+    const V3<L> once = Cross(w, Cross(w, c.arm[k]));
+    return half_h * once + sixth_h2 * Cross(w, once);
+  };
+  const V3<L> apart = bend(0) - bend(1);
+  for (int r = 1; r < 3; ++r) {
+    if (r == 2 && c.one_direction) continue;
+    c.bias[r] += Dot(c.links[0].lin[r], apart);
+  }
+}
+
 /// A lane's touches as contacts, from what they remember.
 template <class W>
 void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int lane,
@@ -208,6 +227,9 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
       ++next;
     }
     if (next - first > 1) FitBiases(work.lane.pairs + first, next - first, MaskOf<L>::Splat(true));
+    for (int i = first; m.HasMotion(c[first].links[1].body) && i < next; ++i) {
+      FollowMotion(work, lane, work.lane.pairs[i], L::Splat(step_s));
+    }
   }
 }
 
@@ -227,6 +249,11 @@ void FinishTouches(const View& m, const Rows<W>& s, Scratch<W>& work, int lane,
                   OfLane<L>(work.bodies[body].w, lane), u);
       const V3<L> turned = Cross(c.arm[k], impulse), before = OfLane<L>(s.mom[body], lane);
       SetLane(s.mom[body], k == 0 ? before + turned : before - turned, lane);
+    }
+    if (m.HasMotion(c.links[1].body)) {
+      BodyWork<W>& body = work.bodies[c.links[1].body];
+      SetLane(body.force, OfLane<L>(body.force, lane) - inv_h * impulse, lane);
+      SetLane(body.torque, OfLane<L>(body.torque, lane) - inv_h * Cross(c.arm[1], impulse), lane);
     }
     JudgeSlip(c, u);
     for (int k = 0; k < 2 && Any((c.lands > L::Splat(0.0)) & (c.l[0] > L::Splat(0.0))); ++k) {

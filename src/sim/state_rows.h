@@ -6,7 +6,7 @@
 namespace taut::sim {
 
 /// How many of a row there are.
-enum class Per { kWorld, kBody, kCable, kMotor, kNode, kJoint, kJointRow, kBodyPair, kContact };
+enum class Per { kWorld, kBody, kCable, kMotor, kNode, kJoint, kJointRow, kMotion, kBodyPair, kContact };
 
 /// What it is for, in the order in which the rows lie.
 enum class Role {
@@ -70,6 +70,7 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(tension,        Number, kCable,    kState,     kZero,     Tension)          /* [N] */ \
   ROW(joint_angle,    Number, kJoint,    kState,     kGoesBack, Zero)             /* of hinges, with turns [rad] */ \
   ROW(joint_load,     Number, kJointRow, kState,     kZero,     Zero)             /* along a row [N] */ \
+  ROW(motion_work,    Number, kMotion,   kState,     kGoesBack, Zero)             /* done on all else [J] */ \
   ROW(node_force,     V3,     kNode,     kState,     kStays,    Zero)             /* in W [N] */ \
   ROW(mass,           Number, kBody,     kParameter, kStays,    Mass)             /* [kg] */ \
   ROW(inv_mass,       Number, kBody,     kParameter, kStays,    InverseMass)      /* [1/kg] */ \
@@ -89,6 +90,8 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(contact_gap,    Number, kContact,  kDerived,   kStays,    Zero)             /* [m] */ \
   ROW(joint_force,    V3,     kJoint,    kDerived,   kZero,     Zero)             /* on body b, in W [N] */ \
   ROW(joint_torque,   V3,     kJoint,    kDerived,   kZero,     Zero)             /* on b about its point [N m] */ \
+  ROW(motion_force,   V3,     kMotion,   kDerived,   kZero,     Zero)             /* on its body, in W [N] */ \
+  ROW(motion_torque,  V3,     kMotion,   kDerived,   kZero,     Zero)             /* on it, about its origin [N m] */ \
   ROW(clearance,      Number, kBodyPair, kDerived,   kStays,    Zero)             /* at least this far apart [m] */ \
   ROW(residual,       Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last solve [m/s] */ \
   ROW(linear_solves,  Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last step */ \

@@ -47,7 +47,8 @@ View Tables::View() const noexcept {
           static_cast<int>(surfaces.size()),
           static_cast<int>(joints.size()),
           static_cast<int>(joint_rows.size()),
-          static_cast<int>(joint_bodies.size()),
+          static_cast<int>(joint_bodies.size()) -
+              (joints.empty() ? 0 : static_cast<int>(motions.size())),
           joints.data(),
           joint_rows.data(),
           joint_bodies.data(),
@@ -56,7 +57,11 @@ View Tables::View() const noexcept {
           joint_loops,
           free_chains.empty() ? 0 : static_cast<int>(free_chains.size()) - 1,
           free_chains.data(),
-          free_chain_bodies.data()};
+          free_chain_bodies.data(),
+          static_cast<int>(motions.size()),
+          motions.data(),
+          motion_knots.data(),
+          motion_of_body.data()};
 }
 
 void LayOutFloor(Tables& t) {

@@ -11,6 +11,7 @@
 
 #include "sim/body_frame.h"
 #include "sim/joint_table.h"
+#include "sim/motion_table.h"
 #include "sim/shape_contacts.h"
 #include "sim/shape_tree.h"
 #include "sim/solve/elimination.h"
@@ -201,10 +202,18 @@ struct View {
   bool joint_loops;
   int free_chain_count;
   const int *free_chains, *free_chain_bodies;
+  int motion_count;
+  const MotionTable* motions;
+  const MotionKnot* motion_knots;
+  const int* motion_of_body;  ///< Per body, or -1; null without motions.
 
   // Always inline: of a function that several instruction sets emit the linker keeps any one.
   /// Contacts that one world may have at once.
   [[gnu::always_inline]] int ContactCapacity() const noexcept { return slot_count + pair_capacity; }
+  /// Whether a program says how it moves.
+  [[gnu::always_inline]] bool HasMotion(int body) const noexcept {
+    return motion_count > 0 && body < body_count && motion_of_body[body] >= 0;
+  }
   /// How many elements a row has.
   [[gnu::always_inline]] int Count(Per per) const noexcept {
     switch (per) {
@@ -220,6 +229,8 @@ struct View {
         return joint_count;
       case Per::kJointRow:
         return joint_row_count;
+      case Per::kMotion:
+        return motion_count;
       case Per::kBodyPair:
         return body_pair_count;
       case Per::kContact:
@@ -268,13 +279,17 @@ class Tables final : public Model {
   std::vector<JointTable> joints;
   std::vector<JointRowTable> joint_rows;
   bool joint_loops = false;       ///< They close one, so that some of their rows may be redundant.
-  std::vector<int> joint_bodies;  ///< Those that joints move, in the order of elimination;
+  std::vector<int> joint_bodies;  ///< Those that joints move, in the order of elimination, then
+                                  ///< those with motions;
   std::vector<int> joint_number;  ///< per body its place there, or -1;
   BlockPattern joint_pattern{};   ///< the blocks of their system, in what follows.
   std::vector<int> joint_slot, joint_below, joint_first_below;
   /// Bodies that joints tie to each other and not to what does not move: where each chain of them
   /// starts, one more, and all their bodies.
   std::vector<int> free_chains, free_chain_bodies;
+  std::vector<MotionTable> motions;
+  std::vector<MotionKnot> motion_knots;
+  std::vector<int> motion_of_body;
   std::vector<double> coupling;  ///< Per cable: sum over all cables of |coupling| [1/kg].
   double largest_coupling = 0;   ///< Largest eigenvalue of the couplings [1/kg].
 
@@ -298,6 +313,9 @@ void LayOutMotors(Tables& tables);
 
 /// Fills all that is of joints. `frames`: of the bodies and the world.
 void LayOutJoints(Tables& tables, const std::vector<Frame>& frames);
+
+/// Fills all that is of motions. Before shapes and joints.
+void LayOutMotions(Tables& tables);
 
 /// Fills coupling and largest_coupling.
 void CoupleCables(Tables& tables);

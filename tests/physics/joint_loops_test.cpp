@@ -45,6 +45,48 @@ TEST(Joint, AClosedLoopWithRedundantRowsMovesAsAParallelogram) {
   }
 }
 
+TEST(Joint, HowThickRodsAreIsNothingToAnOpenOrClosedChainOfBalls) {
+  // Two cables pull a folded square of four rods through itself and out again, all in space. What
+  // turns a thin rod about its axis would cost next to nothing.
+  for (const bool closed : {true, false}) {
+    for (const double radius_m : {0.05, 1e-4}) {
+      double off[2] = {};
+      for (int k = 0; k < 2; ++k) {
+        const double h = k == 0 ? 1e-3 : 0.5e-3;
+        ModelDef def;
+        def.gravity_m_per_s2 = {};
+        const Vec3 corners[] = {{-1, 0, 0}, {0, -1, 0.3}, {1, 0, 0}, {0, 1, 0.3}};
+        for (int i = 0; i < 4; ++i) {
+          scenes::AddRod(def, "rod" + std::to_string(i), 1, radius_m, corners[i],
+                         corners[(i + 1) % 4], {});
+          def.capsules.back().collides = false;
+          if (i == 0 && !closed) continue;
+          JointDef j;
+          j.name = "ball" + std::to_string(i), j.body_a = (i + 3) % 4, j.body_b = i;
+          j.from_m = j.to_m = corners[i];
+          def.joints.push_back(j);
+        }
+        for (int i = 0; i < 2; ++i) {
+          CableDef cable;
+          cable.name = "cable" + std::to_string(i);
+          cable.attachments = {{i, corners[i]}, {i + 2, corners[i + 2]}};
+          cable.stiffness_n_per_m = 100, cable.rest_length_m = i == 0 ? 0.5 : 1.0;
+          def.cables.push_back(cable);
+        }
+        Batch world = MakeBatch(def);
+        const double start = EnergyOf(world);
+        for (int n = 0; n < StepsIn(2, h); ++n) {
+          world.Step(h);
+          off[k] = std::max(off[k], std::fabs(EnergyOf(world) - start));
+          ASSERT_LT(WorstGap(world, def), 1e-9) << n;
+        }
+      }
+      EXPECT_LT(off[0], 0.02) << closed << " " << radius_m;  // of 162 J
+      EXPECT_NEAR(off[0] / off[1], 4, 0.5) << closed << " " << radius_m;
+    }
+  }
+}
+
 TEST(Joint, AFrameOfWeldsThatTumblesIsSolvedThoughSixOfItsRowsAreRedundant) {
   ModelDef def;
   const Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 0.7, 0.2}, {0, 0.7, 0.1}};
@@ -68,6 +110,20 @@ TEST(Joint, AFrameOfWeldsThatTumblesIsSolvedThoughSixOfItsRowsAreRedundant) {
   }
   EXPECT_EQ(world.Status(0).bits, kStatusOk);
   EXPECT_LE(solves, 6);
+}
+
+TEST(Joint, ABodyThatIsFixedHoldsLikeTheWorld) {
+  const ModelDef by_world = Chain(3, {0.1, 0, 0}, 1);
+  ModelDef by_body = by_world;
+  BodyDef post;
+  post.name = "post", post.com_m = {0.3, 0.1, 0.2}, post.fixed = true;
+  by_body.bodies.push_back(post);
+  by_body.joints[0].body_a = 3;
+  Batch one = MakeBatch(by_world), other = MakeBatch(by_body);
+  one.Step(1e-3, 1000), other.Step(1e-3, 1000);
+  EXPECT_EQ(other.Status(0).bits, kStatusOk);
+  EXPECT_LT(Distance(one.Body(0, 2).position_m, other.Body(0, 2).position_m), 1e-9);
+  EXPECT_GT(Distance(one.Body(0, 2).position_m, by_world.bodies[2].com_m), 0.05);
 }
 
 TEST(Joint, LanesHaveTheBitsOfAWorldAlone) {

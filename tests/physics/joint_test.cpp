@@ -87,6 +87,25 @@ TEST(Joint, AChainThatSwingsWithAHeavyEndStaysTogether) {
   EXPECT_NEAR(EnergyOf(world), start, 1e-3 * 73 * kG * 6.4);
 }
 
+TEST(Joint, AChainThatCarriesTooMuchForTheStepSaysSo) {
+  // Of rods that carry F at both ends, across: w^2 = 12 F / (m l), so 2 / w is 1.2 ms at 14 kN.
+  const auto status = [](double last_kg, const Vec3& along, double step_s) {
+    const ModelDef def = Chain(16, along, last_kg);
+    Batch world = MakeBatch(def);
+    for (int n = 0; n < StepsIn(1.5, step_s) && world.Status(0).bits == kStatusOk; ++n) {
+      world.Step(step_s);
+    }
+    return world.Status(0);
+  };
+  const WorldStatus heavy = status(1000, {0.1, 0, 0}, 1e-3);
+  EXPECT_EQ(heavy.bits, kStatusStepTooLong);
+  EXPECT_GE(heavy.body, 0);
+  EXPECT_EQ(heavy.cable, -1);
+  EXPECT_EQ(status(1000, {0.1, 0, 0}, 2.5e-4).bits, kStatusOk);
+  EXPECT_EQ(status(1000, {0, 0, -0.1}, 1e-3).bits, kStatusOk);
+  EXPECT_EQ(status(10, {0.1, 0, 0}, 1e-3).bits, kStatusOk);
+}
+
 TEST(Joint, AFreeChainKeepsItsMomenta) {
   ModelDef def = Chain(5, {0.06, 0.08, 0}, 2);
   def.gravity_m_per_s2 = {};

@@ -85,6 +85,7 @@ class LaneSolve {
     return mem_.island.bodies[c.links[k].body].body;
   }
 
+  /// By impulses.
   bool Moves(int body) const noexcept {
     return body < m_.body_count && s_.inv_mass[body][lane_] > 0;
   }
@@ -107,7 +108,7 @@ class LaneSolve {
     for (int b = 0; b < m_.body_count; ++b) mem_.root[b] = b;
     for (int i = 0; i < work_.touch_count[lane_]; ++i) {
       const ContactPoint<L, 2>& c = mem_.pairs[i];
-      Join(c.links[0].body, c.links[1].body);
+      if (Moves(c.links[1].body)) Join(c.links[0].body, c.links[1].body);
     }
     for (int i = 0; i < work_.stiff_count; ++i) {
       const StiffCable<W>& cable = work_.stiff[i];
@@ -144,8 +145,13 @@ class LaneSolve {
     island_root_ = root;
     Order();
     Island<L, StepPools<L>>& island = mem_.island;
-    island.body_count = count_;
     for (int k = 0; k < count_; ++k) GatherBody(mem_.bodies[mem_.order[k]], island.bodies[k]);
+    island.body_count = count_;
+    for (int i = 0; i < m_.motion_count; ++i) {  // prescribed
+      const int b = m_.motions[i].body, k = island.body_count++;
+      mem_.local[b] = mem_.place[k] = k;
+      GatherBody(b, island.bodies[k]);
+    }
     GatherContacts(island.pools);
     GatherCables(island.pools);
     GatherJoints(island.pools);
@@ -171,7 +177,7 @@ class LaneSolve {
     graph.Clear();
     for (int i = 0; i < work_.touch_count[lane_]; ++i) {
       const ContactPoint<L, 2>& c = mem_.pairs[i];
-      if (mem_.root[c.links[0].body] != island_root_) continue;
+      if (mem_.root[c.links[0].body] != island_root_ || !Moves(c.links[1].body)) continue;
       graph.Join(mem_.local[c.links[0].body], mem_.local[c.links[1].body]);
     }
     for (int i = 0; i < work_.stiff_count; ++i) {
@@ -279,12 +285,15 @@ class LaneSolve {
       CableRow<L>& to = pool.items[pool.count];
       to.links = mem_.links + link_count;
       to.link_count = 0;
+      bool pulls = false;
       for (int k = 0; k < from.link_count; ++k) {
         const int body = from.links[k].body;
-        if (!Moves(body) || mem_.root[body] != island_root_) continue;
+        const bool mine = Moves(body) && mem_.root[body] == island_root_;
+        if (!mine && !m_.HasMotion(body)) continue;
+        pulls = pulls || mine;
         GatherLink(from.links[k], to.links[to.link_count++]);
       }
-      if (to.link_count == 0) continue;
+      if (!pulls) continue;
       link_count += to.link_count;
       cable_source_[pool.count++] = i;
       to.TakeLaw(from, [&](W x) { return OfLane<L>(x, lane_); });

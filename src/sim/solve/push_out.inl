@@ -56,7 +56,10 @@ bool LaneSolve<W>::IsAlone() const noexcept {
     alone = alone && (both || !Any(mem_.island.m.l[3 * i] > L::Splat(0.0)));
   }
   const Pool<JointRow<L>>& joints = mem_.island.pools;
-  for (int i = 0; i < joints.count; ++i) alone = alone && joints.items[i].link_count == 2;
+  for (int i = 0; i < joints.count; ++i) {
+    const JointRow<L>& row = joints.items[i];
+    alone = alone && row.link_count == 2 && Moves(mem_.island.bodies[row.links[1].body].body);
+  }
   return alone;
 }
 

@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <set>
+
+#include "description/experiment_keys.h"
+#include "description/experiment_parts.h"
+
+namespace taut::description {
+namespace {
+
+/// A box of the terrain becomes a body that stands still. Returns its number.
+int BodyOfBox(std::size_t box, RobotSpec& robot) {
+  ModelDef& def = robot.def;
+  const TerrainBoxDef& from = def.terrain_boxes[box];
+  BodyDef body;
+  body.name = from.name;
+  body.com_m = from.center_m;
+  body.fixed = true;
+  const int number = static_cast<int>(def.bodies.size());
+  def.boxes.push_back(
+      {from.name, number, from.center_m, from.orientation, from.half_extents_m, from.material});
+  def.bodies.push_back(std::move(body));
+  robot.body_sources.push_back(robot.terrain_box_sources[box]);
+  if (robot.solids) robot.solids->boxes.emplace_back();
+  const auto at = static_cast<std::ptrdiff_t>(box);
+  def.terrain_boxes.erase(def.terrain_boxes.begin() + at);
+  robot.terrain_box_sources.erase(robot.terrain_box_sources.begin() + at);
+  return number;
+}
+
+template <class List>
+std::size_t Find(const List& list, const std::string& name) {
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const auto& x) { return x.name == name; });
+  return static_cast<std::size_t>(found - list.begin());
+}
+
+void CheckLaw(const MapReader& map, const char* speed, const char* amplitude) {
+  if (map.Has(amplitude) && !map.Has("frequency_hz")) {
+    map.Error(amplitude, map.Path(amplitude) + " needs a frequency_hz");
+  }
+  if (!map.Has(amplitude) && !map.Has(speed)) {
+    map.scope().out.Error(map.at(), map.what() + " says no speed and no amplitude");
+  }
+}
+
+}  // namespace
+
+void Check(const MapReader& map, SlideText&) { CheckLaw(map, "speed_m_per_s", "amplitude_m"); }
+void Check(const MapReader& map, TurnText&) { CheckLaw(map, "speed_rad_per_s", "amplitude_rad"); }
+void Check(const MapReader& map, MotionText&) {
+  if (map.Has("slide") || map.Has("turn")) return;
+  map.scope().out.Error(map.at(), map.what() + " needs a slide or a turn");
+}
+
+void AddMotions(const std::vector<MotionText>& texts, bool robot_known, const Scope& scope,
+                RobotSpec& robot) {
+  ModelDef& def = robot.def;
+  std::set<std::string> names, moved;
+  for (const MotionText& text : texts) {
+    if (!names.insert(text.name).second) {
+      scope.out.Error(text.at, "there are two motions called " + text.name);
+      continue;
+    }
+    if (!moved.insert(text.of.text).second) {
+      scope.out.Error(text.of.at, "motion.of: \"" + text.of.text + "\" has another motion");
+      continue;
+    }
+    MotionDef motion;
+    motion.name = text.name;
+    if (text.slide) motion.direction = text.slide->direction, motion.slide = text.slide->law;
+    if (text.turn) {
+      motion.axis = text.turn->axis, motion.center_m = text.turn->center_m;
+      motion.turn = text.turn->law;
+    }
+    const std::size_t body = Find(def.bodies, text.of.text);
+    const std::size_t box = Find(def.terrain_boxes, text.of.text);
+    if (body < def.bodies.size()) {
+      motion.body = static_cast<int>(body);
+      def.bodies[body].fixed = true;
+      def.bodies[body].velocity_m_per_s = def.bodies[body].angular_velocity_rad_per_s = {};
+    } else if (box < def.terrain_boxes.size()) {
+      motion.body = BodyOfBox(box, robot);
+    } else {
+      std::vector<std::string> known;
+      for (const BodyDef& b : def.bodies) known.push_back(b.name);
+      for (const TerrainBoxDef& b : def.terrain_boxes) known.push_back(b.name);
+      if (robot_known) {
+        scope.out.Error(text.of.at,
+                        "motion.of: \"" + text.of.text +
+                            "\" is neither a body of the robot nor a box of the terrain",
+                        NameHint(text.of.text, known));
+      }
+      continue;
+    }
+    def.motions.push_back(std::move(motion));
+  }
+}
+
+}  // namespace taut::description
