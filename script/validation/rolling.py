@@ -52,6 +52,7 @@ class Run:
         (x0, y0, _), (x1, y1, _) = self.path[0], self.path[-1]
         self.way_m, self.forward_m = math.hypot(x1 - x0, y1 - y0), x1 - x0
         self.length_m = sum(math.dist(a, b) for a, b in zip(self.path, self.path[1:]))
+        self.height_m = statistics.mean(z for _, _, z in self.path)
         turning = [name for name in at if "/angular_velocity_" in name]
         if not turning:
             return
@@ -177,7 +178,7 @@ def page(taut):
     com = ["system/com_*"]
     for rim_m in RIMS_M:
         add(f"rim_{1000 * rim_m:.0f}", "roll_six_strut_crater", parameters={"rim_m": rim_m}, channels=com)
-    add("rim_ntrt", "roll_six_strut_crater_deep", channels=com)
+    add("rim_ntrt", "roll_six_strut_crater_deep")
     taut.run([v for group in groups.values() for v in group])
     runs = {name: [Run(taut.folder / v.name, downhill.get(name, 0.0)) for v in group]
             for name, group in groups.items()}
@@ -189,6 +190,7 @@ def page(taut):
     def forward(run):
         return run.forward_m
 
+    level = runs["level"][0]
     values = {
         "level": table(MOVING, [moving_row("level ground", runs["level"], way)]),
         "slope": table(MOVING, [moving_row("its own gait", runs["slope"], forward),
@@ -199,6 +201,10 @@ def page(taut):
                          + [out_row(2, "NTRT's: 1000 m/s, 10 kN", runs["rim_ntrt"])]),
         "steps": ", ".join(f"{runs[f'step_{i}'][0].way_m:.1f} m at {1000 * step_s:g} ms"
                            for i, step_s in enumerate(STEPS_S)),
+        "per_turn": f"{level.length_m / level.turns:.2f}",
+        "height": f"{level.height_m:.2f}",
+        "wheel": f"{2 * math.pi * level.height_m:.2f}",
+        "hop_w": f"{runs['rim_ntrt'][0].power_w / 1000:.0f}",
         "starts": str(STARTS - 1),
         "version": taut("--version").split()[-1],
         "runs": str(sum(len(group) for group in groups.values())),
