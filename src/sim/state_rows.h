@@ -6,7 +6,18 @@
 namespace taut::sim {
 
 /// How many of a row there are.
-enum class Per { kWorld, kBody, kCable, kMotor, kNode, kJoint, kJointRow, kMotion, kBodyPair, kContact };
+enum class Per {
+  kWorld,
+  kBody,
+  kCable,
+  kMotor,
+  kNode,
+  kJoint,
+  kJointRow,
+  kMotion,
+  kBodyPair,
+  kContact
+};
 
 /// What it is for, in the order in which the rows lie.
 enum class Role {

@@ -33,8 +33,8 @@ TAUT_INLINE W Atan2(W y, W x) noexcept {
   return Select(y < zero, zero - angle, angle);
 }
 
-/// Sine and cosine of 2 pi `turns`, for |turns| < 2^48, to some 2 units in the last place of 1; + - *
-/// alone.
+/// Sine and cosine of 2 pi `turns`, for |turns| < 2^48, to some 2 units in the last place of 1; + -
+/// * alone.
 template <class W>
 TAUT_INLINE void SinCosOfTurns(W turns, W& sine, W& cosine) noexcept {
   constexpr int kTerms = 8;  // (pi / 4)^17 / 17! < 1e-16
