@@ -11,7 +11,8 @@ class MonteCarlo final : public Optimizer {
 
   std::vector<UnitPoint> Ask() override {
     std::vector<UnitPoint> points;
-    if (drawn_ == 0 && !start_.score) points.push_back(start_.point);
+    if (!begun_ && !start_.score) points.push_back(start_.point);
+    begun_ = true;
     while (points.size() < static_cast<std::size_t>(batch_)) {
       points.push_back(UniformPoint(start_.point.size(), DrawOf(start_, drawn_++)));
     }
@@ -23,6 +24,7 @@ class MonteCarlo final : public Optimizer {
   int batch_;
   OptimizerStart start_;
   std::uint64_t drawn_ = 0;
+  bool begun_ = false;  ///< A batch of one is the start alone: nothing is drawn for it.
 };
 
 }  // namespace

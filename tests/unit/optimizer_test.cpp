@@ -202,6 +202,23 @@ TEST(HillClimbing, WithAFixedStepStallsAtItsLength) {
   EXPECT_LT(run.value, 10.0);
 }
 
+TEST(MonteCarlo, OneAtATimeItGoesOnFromTheStart) {
+  SearchSpec spec;
+  spec.batch = 1;
+  OptimizerStart start;
+  start.point = {0.5, 0.25};
+  const auto search = MakeOptimizer(spec, start);
+  const auto next = [&] {
+    const UnitPoint point = search->Ask().at(0);
+    search->Tell({0.0});
+    return point;
+  };
+  EXPECT_EQ(next(), start.point);
+  const UnitPoint second = next(), third = next();
+  EXPECT_NE(second, start.point);
+  EXPECT_NE(third, second);
+}
+
 TEST(MonteCarlo, CoversTheCubeEvenly) {
   SearchSpec search;
   search.batch = 1000;
