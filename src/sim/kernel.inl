@@ -10,6 +10,7 @@
 // clang-format off
 #include "sim/rows.h"
 #include "sim/poison.inl"
+#include "sim/joined_boxes.h"
 #include "sim/passing.h"
 #include "sim/friction.h"
 #include "sim/stage_bodies.inl"
@@ -19,6 +20,7 @@
 #include "sim/shape_pairs.inl"
 #include "sim/rod_distance.inl"
 #include "sim/stage_collide.inl"
+#include "sim/joined_boxes.inl"
 #include "sim/many_shapes.inl"
 #include "sim/friction.inl"
 #include "sim/prepare_contact.inl"
