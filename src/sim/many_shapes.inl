@@ -4,8 +4,8 @@
 namespace taut::sim {
 
 /// Looks once at the shapes near a body in one lane, in the order of their pairs. Returns the
-/// clearance: no shape of the world is nearer.
-template <class W>
+/// clearance: no shape of the world is nearer. `kJoined`: some of them touch each other.
+template <bool kJoined, class W>
 double CollideNear(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                    const BodyPairTable& bodies, double margin, double step_s, int lane,
                    SlotFiller<W>* slots, uint32_t* overflow) noexcept {
@@ -16,6 +16,7 @@ double CollideNear(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
   double clearance = kLookAheadSteps * margin;
   const int words = (m.tree_shapes + 63) / 64;
   for (int i = 0; i < words; ++i) work.near[i] = 0;
+  [[maybe_unused]] NearPairs<W> together(m, s, g, work, margin, step_s, lane, slots, overflow);
   const ShapePairTable* pairs = m.shape_pairs + bodies.first_pair;
   const ShapePairTable* const end = pairs + bodies.pair_count;
   for (; pairs != end; pairs += m.tree_shapes) {
@@ -33,9 +34,14 @@ double CollideNear(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
           reach = clearance < touch_m ? touch_m : clearance;
         }
         if (!(distance < touch_m)) continue;
-        PutTouches(m, s, g, work, pair, lane, margin, step_s, slots, overflow);
+        if constexpr (kJoined) {
+          together.Add(pair);
+        } else {
+          PutTouches(m, s, g, work, pair, lane, margin, step_s, slots, overflow);
+        }
       }
     }
+    if constexpr (kJoined) together.Flush();
   }
   return clearance;
 }
@@ -49,8 +55,12 @@ void CollideManyShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<
   if (!Any(near)) return;
   for (int lane = 0; lane < W::kLanes; ++lane) {
     if (!near[lane]) continue;
-    s.clearance[pair].Set(lane, CollideNear(m, s, g, work, m.body_pairs[pair], margin[lane], step_s,
-                                            lane, slots, overflow));
+    const BodyPairTable& bodies = m.body_pairs[pair];
+    const double clearance = bodies.joined ? CollideNear<true>(m, s, g, work, bodies, margin[lane],
+                                                               step_s, lane, slots, overflow)
+                                           : CollideNear<false>(m, s, g, work, bodies, margin[lane],
+                                                                step_s, lane, slots, overflow);
+    s.clearance[pair].Set(lane, clearance);
   }
 }
 

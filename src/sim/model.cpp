@@ -41,6 +41,7 @@ class Compiler {
     Points();
     Pairs();
     sim::LayOutTree(t_);
+    sim::JoinBoxes(t_);
     sim::LayOutMotors(t_);
     sim::LayOutFriction(t_), sim::LayOutFloor(t_);
     sim::CoupleCables(t_);

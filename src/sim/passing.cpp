@@ -103,7 +103,7 @@ int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint3
                 : Same(points[i], count == 1, later, later_count);
     }
     // On ground that goes on as it is here, here and there are the same plane.
-    if (met != nullptr && b.shape->kind == ShapeKind::kSurface &&
+    if (met != nullptr && b.goes_on &&
         Dot(Load(met->normal), Load(points[i].normal)) > kSamePlane) {
       met = nullptr;
     }

@@ -14,6 +14,7 @@ struct MovingShape {
   ShapePose at;        ///< Now, at the middle of the step.
   double v[3], w[3];   ///< Of its body, without contacts [m/s], [rad/s].
   double bound_m;      ///< No point of the body is further from its centre.
+  bool goes_on;        ///< Beside what it touches it may go on, in the same plane.
 };
 
 /// A bit for each of `points` that is open now and closed after `step_s`, if nothing turns.

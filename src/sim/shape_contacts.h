@@ -46,8 +46,11 @@ int Touch(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoint* out
 /// 6..12 edges and corners that stick out, against the flank, by the seventh of it.
 int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
 
-/// Pairs that `CheckModel` refuses, or that do not move.
-inline int Touch(const BoxShape&, const SurfaceShape&, double, TouchPoint*) noexcept { return 0; }
+/// Features: 0..7 corners; 8..12 edges, corners of the ground under faces, and more planes of
+/// corners.
+int Touch(const BoxShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
+
+/// Neither moves.
 inline int Touch(const SurfaceShape&, const SurfaceShape&, double, TouchPoint*) noexcept {
   return 0;
 }
@@ -56,7 +59,6 @@ inline int Touch(const SurfaceShape&, const SurfaceShape&, double, TouchPoint*) 
 double Distance(const RoundShape& a, const RoundShape& b) noexcept;
 double Distance(const RoundShape& a, const BoxShape& b) noexcept;
 double Distance(const BoxShape& a, const BoxShape& b) noexcept;
-inline double Distance(const BoxShape&, const SurfaceShape&) noexcept { return 1e300; }
 inline double Distance(const SurfaceShape&, const SurfaceShape&) noexcept { return 1e300; }
 
 /// The same for who knows that `enough_m` is far enough: what is near ground looks no further.
@@ -65,8 +67,9 @@ double DistanceUpTo(const A& a, const B& b, double) noexcept {
   return Distance(a, b);
 }
 /// From what `Touch` finds: never more than the least gap of that, and no less by a hundredth of
-/// the radius. Beyond `enough_m` it goes by bounds.
+/// the radius (of a box by a hundred-thousandth of the gap). Beyond `enough_m` it goes by bounds.
 double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m) noexcept;
+double DistanceUpTo(const BoxShape& a, const SurfaceShape& b, double enough_m) noexcept;
 
 /// The same for shapes of any two kinds, in either order, each given in a frame of its own.
 int TouchShapes(const Shape& a, const ShapePose& at_a, const Shape& b, const ShapePose& at_b,

@@ -32,13 +32,15 @@ int TouchLane(const View& m, const Rows<W>& s, const Scratch<W>& work, const Sha
 template <class W>
 MovingShape LaneMoving(const View& m, const Rows<W>& s, const Scratch<W>& work, int shape,
                        int lane) noexcept {
-  const int body = m.shapes[shape].body;
+  const ShapeTable& table = m.shapes[shape];
+  const int body = table.body;
   const V3<W>&v = work.bodies[body].v, &w = work.bodies[body].w;
-  return {&m.shapes[shape].shape_P,
+  return {&table.shape_P,
           LanePose(m, s, work, body, lane),
           {v.x[lane], v.y[lane], v.z[lane]},
           {w.x[lane], w.y[lane], w.z[lane]},
-          m.bound_m[body]};
+          m.bound_m[body],
+          table.shape_P.kind == ShapeKind::kSurface || table.beside_count > 0};
 }
 
 /// Features of a pair that pressed in the step before, a bit each. `first`, `count`: where the
@@ -66,6 +68,10 @@ int KeepTouching(const View& m, const Rows<W>& s, const Scratch<W>& work,
   const MovingShape b = LaneMoving(m, s, work, pair.b, lane);
   uint32_t closing = ClosingPoints(a, b, step_s, points, count);
   if (closing == 0) return count;
+  if (m.shapes[pair.b].beside_count > 0) {
+    closing &= ~ArrivesBeside(a, m.shapes, pair.b, closing, points, count);
+    if (closing == 0) return count;
+  }
   const uint32_t pressing = PressingFeatures(s, pair.id, first, memory, lane);
   for (int i = 0; i < count; ++i) {
     if (pressing >> points[i].feature & 1u) closing &= ~(1u << i);

@@ -203,15 +203,14 @@ Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return found;
 }
 
-/// The points of one pair of shapes in one lane, in the order of their features: into the slots of
-/// a body if the other does not move, else into the lists of touches. False if none is near.
+/// Of the points that one pair of shapes has in one lane those that do not only pass by, in the
+/// order of their features: into the slots of a body if the other does not move, else into the
+/// lists of touches.
 template <class W>
-bool PutTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
-                const ShapePairTable& pair, int lane, double margin, double step_s,
-                SlotFiller<W>* slots, uint32_t* overflow) noexcept {
+TAUT_INLINE void PutPoints(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+                           const ShapePairTable& pair, int lane, double step_s, TouchPoint* points,
+                           int found, SlotFiller<W>* slots, uint32_t* overflow) noexcept {
   const int body = m.shapes[pair.a].body;
-  TouchPoint points[kMaxPointsPerPair];
-  const int found = TouchLane(m, s, work, pair, lane, margin, points);
   const int count = slots != nullptr
                         ? KeepTouching(m, s, work, pair, lane, step_s, m.first_slot[body],
                                        g.slots_used[body], points, found)
@@ -228,6 +227,16 @@ bool PutTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& wor
       if (!room) *overflow |= 1u << lane;
     }
   }
+}
+
+/// All points of a pair. False if none is near.
+template <class W>
+bool PutTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+                const ShapePairTable& pair, int lane, double margin, double step_s,
+                SlotFiller<W>* slots, uint32_t* overflow) noexcept {
+  TouchPoint points[kMaxPointsPerPair];
+  const int found = TouchLane(m, s, work, pair, lane, margin, points);
+  PutPoints(m, s, g, work, pair, lane, step_s, points, found, slots, overflow);
   return found > 0;
 }
 
@@ -276,6 +285,12 @@ bool MayTouch(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair,
   return Any(s.clearance[pair] < margin);
 }
 
+// Of a body and a world some of whose boxes touch each other (joined_boxes.inl).
+template <class W>
+void CollideJoined(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+                   const BodyPairTable& bodies, W margin, double step_s, SlotFiller<W>* slots,
+                   uint32_t* overflow) noexcept;
+
 // Of a body and a world with many shapes (many_shapes.inl).
 template <class W>
 void CollideManyShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
@@ -314,6 +329,10 @@ void CollideBodies(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
   }
   W margin;
   if (!MayTouch(m, s, work, pair, W::Splat(step_s), since_last, margin)) return;
+  if (bodies.joined) {
+    CollideJoined(m, s, g, work, bodies, margin, step_s, slots, overflow);
+    return;
+  }
   for (int k = 0; k < bodies.pair_count; ++k) {
     const ShapePairTable& shapes = m.shape_pairs[bodies.first_pair + k];
     const V3<W> d = ShapeCenter(m, s, work, shapes.a) - ShapeCenter(m, s, work, shapes.b);

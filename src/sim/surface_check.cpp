@@ -94,15 +94,6 @@ void CheckMesh(const TerrainMeshDef& mesh, Checker& check) {
 void CheckGround(const ModelDef& def, Checker& check) {
   for (const HeightFieldDef& field : def.height_fields) CheckField(field, check);
   for (const TerrainMeshDef& mesh : def.terrain_meshes) CheckMesh(mesh, check);
-  if (def.height_fields.empty() && def.terrain_meshes.empty()) return;
-  for (const BoxDef& box : def.boxes) {
-    const bool moves = box.body >= 0 && box.body < static_cast<int>(def.bodies.size()) &&
-                       !def.bodies[static_cast<std::size_t>(box.body)].fixed;
-    check.Require(!moves || !box.collides,
-                  "box " + box.name +
-                      ": boxes that move do not touch height fields and meshes; use rods and "
-                      "spheres, or say that it does not collide");
-  }
 }
 
 }  // namespace taut::sim

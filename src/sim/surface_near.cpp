@@ -188,6 +188,10 @@ class PlaceSearch {
 
 }  // namespace
 
+Vec3 NearestPlaceOf(const SurfaceTriangle& t, const Vec3& point) noexcept {
+  return NearestOf(t, point);
+}
+
 int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, SurfacePlace* out,
                   int most) noexcept {
   PlaceSearch search(point, limit_m, out, most);

@@ -18,6 +18,9 @@ struct SurfacePlace {
 int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, SurfacePlace* out,
                   int most) noexcept;
 
+/// The place of a triangle that is nearest to a point.
+Vec3 NearestPlaceOf(const SurfaceTriangle& t, const Vec3& point) noexcept;
+
 /// Where a straight line, between its ends, is nearest to an edge or a corner.
 struct LinePlace {
   double share;  ///< Along the line, between 0 and 1.

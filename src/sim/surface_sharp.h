@@ -111,6 +111,37 @@ void EachBesideOfField(const SurfaceTable& s, int i, int j, const Use& use) noex
   if (east && south && !Rises(s, i, j - 1)) use(CornerOf(s, i + 1, j - 1));
 }
 
+/// What sticks out of what belongs to corner (i, j) of a field, and reaches above `floor`.
+template <class UseEdge, class UseCorner>
+void EachSharpOfCell(const SurfaceTable& s, int i, int j, double floor, const UseEdge& use_edge,
+                     const UseCorner& use_corner) noexcept {
+  const int at = j * s.columns + i;
+  const unsigned char marks = s.marks[at];
+  if ((marks & ~kRising) == 0) return;
+  const bool east = i + 1 < s.columns, north = j + 1 < s.rows;
+  const double* const z = s.height_m + at;
+  const double here = z[0], to_east = east ? z[1] : here, to_north = north ? z[s.columns] : here;
+  const double x = s.low.x + i * s.cell_m, x_east = s.low.x + (i + 1) * s.cell_m;
+  const double y = s.low.y + j * s.cell_m, y_north = s.low.y + (j + 1) * s.cell_m;
+  const Vec3 corner{x, y, here}, at_east{x_east, y, to_east}, at_north{x, y_north, to_north};
+  const auto look = [&](FieldMark mark, const Vec3& from, const Vec3& to) noexcept {
+    if (Larger(from.z, to.z) < floor) return;
+    use_edge(from, to, [&]() noexcept { return EdgeOfField(s, i, j, mark); });
+  };
+  if ((marks & kSharpAlongX) != 0) look(kSharpAlongX, corner, at_east);
+  if ((marks & kSharpAlongY) != 0) look(kSharpAlongY, corner, at_north);
+  if ((marks & kSharpDiagonal) != 0) {
+    if ((marks & kRising) != 0) {
+      look(kSharpDiagonal, corner, {x_east, y_north, z[s.columns + 1]});
+    } else {
+      look(kSharpDiagonal, at_east, at_north);
+    }
+  }
+  if ((marks & kSharpCorner) != 0 && here >= floor) {
+    use_corner(corner, [&](const auto& use) noexcept { EachBesideOfField(s, i, j, use); });
+  }
+}
+
 /// Slab by slab across the axis along which the line goes furthest: in each of them the part of the
 /// line that is near it says which few cells, and how high, are of interest.
 template <class UseEdge, class UseCorner>
@@ -141,32 +172,7 @@ void EachSharpOfField(const SurfaceTable& s, const LineReach& line, const UseEdg
     const int stop = CellAt((Larger(side_p, side_q) + line.limit_m) * s.inv_cell, across);
     const double floor = Smaller(p.z, q.z) - line.limit_m;
     for (int k = begin; k <= stop; ++k) {
-      const int i = by_x ? slab : k, j = by_x ? k : slab, at = j * s.columns + i;
-      const unsigned char marks = s.marks[at];
-      if ((marks & ~kRising) == 0) continue;
-      const bool east = i + 1 < s.columns, north = j + 1 < s.rows;
-      const double* const z = s.height_m + at;
-      const double here = z[0], to_east = east ? z[1] : here,
-                   to_north = north ? z[s.columns] : here;
-      const double x = s.low.x + i * s.cell_m, x_east = s.low.x + (i + 1) * s.cell_m;
-      const double y = s.low.y + j * s.cell_m, y_north = s.low.y + (j + 1) * s.cell_m;
-      const Vec3 corner{x, y, here}, at_east{x_east, y, to_east}, at_north{x, y_north, to_north};
-      const auto look = [&](FieldMark mark, const Vec3& from, const Vec3& to) noexcept {
-        if (Larger(from.z, to.z) < floor) return;
-        use_edge(from, to, [&]() noexcept { return EdgeOfField(s, i, j, mark); });
-      };
-      if ((marks & kSharpAlongX) != 0) look(kSharpAlongX, corner, at_east);
-      if ((marks & kSharpAlongY) != 0) look(kSharpAlongY, corner, at_north);
-      if ((marks & kSharpDiagonal) != 0) {
-        if ((marks & kRising) != 0) {
-          look(kSharpDiagonal, corner, {x_east, y_north, z[s.columns + 1]});
-        } else {
-          look(kSharpDiagonal, at_east, at_north);
-        }
-      }
-      if ((marks & kSharpCorner) != 0 && here >= floor) {
-        use_corner(corner, [&](const auto& use) noexcept { EachBesideOfField(s, i, j, use); });
-      }
+      EachSharpOfCell(s, by_x ? slab : k, by_x ? k : slab, floor, use_edge, use_corner);
     }
   }
 }
@@ -179,24 +185,38 @@ inline SurfaceEdge EdgeOfMesh(const SurfaceTable& s, const MeshEdge& found) noex
   return edge;
 }
 
+/// Of a mesh, between bounds.
+template <class UseEdge, class UseCorner>
+void EachSharpOfBounds(const SurfaceTable& s, const Vec3& low, const Vec3& high,
+                       const UseEdge& use_edge, const UseCorner& use_corner) noexcept {
+  EachOfMesh(s, low, high, [&](int triangle) noexcept {
+    for (int e = s.first_edge[triangle]; e < s.first_edge[triangle + 1]; ++e) {
+      const MeshEdge& found = s.edges[e];
+      use_edge(s.corners[found.from], s.corners[found.to],
+               [&]() noexcept { return EdgeOfMesh(s, found); });
+    }
+    for (int c = s.first_corner[triangle]; c < s.first_corner[triangle + 1]; ++c) {
+      const MeshCorner& found = s.sharp_corners[c];
+      use_corner(s.corners[found.corner], [&](const auto& use) noexcept {
+        for (int n = 0; n < found.count; ++n) use(s.corners[s.beside[found.first + n]]);
+      });
+    }
+  });
+}
+
 /// Piece by piece of the line. Pieces share what is near both of them.
 template <class UseEdge, class UseCorner>
 void EachSharpOfMesh(const SurfaceTable& s, const LineReach& line, const UseEdge& use_edge,
                      const UseCorner& use_corner) noexcept {
   EachPiece(s, line, [&](const LineStretch& piece, const Vec3& low, const Vec3& high) noexcept {
-    EachOfMesh(s, low, high, [&](int triangle) noexcept {
-      for (int e = s.first_edge[triangle]; e < s.first_edge[triangle + 1]; ++e) {
-        const MeshEdge& found = s.edges[e];
-        use_edge(piece, s.corners[found.from], s.corners[found.to],
-                 [&]() noexcept { return EdgeOfMesh(s, found); });
-      }
-      for (int c = s.first_corner[triangle]; c < s.first_corner[triangle + 1]; ++c) {
-        const MeshCorner& found = s.sharp_corners[c];
-        use_corner(piece, s.corners[found.corner], [&](const auto& use) noexcept {
-          for (int n = 0; n < found.count; ++n) use(s.corners[s.beside[found.first + n]]);
+    EachSharpOfBounds(
+        s, low, high,
+        [&](const Vec3& from, const Vec3& to, const auto& edge) noexcept {
+          use_edge(piece, from, to, edge);
+        },
+        [&](const Vec3& corner, const auto& each_beside) noexcept {
+          use_corner(piece, corner, each_beside);
         });
-      }
-    });
   });
 }
 
@@ -219,6 +239,24 @@ void EachSharp(const SurfaceTable& s, const LineReach& line, const UseEdge& use_
       [&](const Vec3& corner, const auto& each_beside) noexcept {
         use_corner(all, corner, each_beside);
       });
+}
+
+/// The same between bounds: `use_edge(from, to, edge)` and `use_corner(corner, each_beside)` with
+/// each of them once.
+template <class UseEdge, class UseCorner>
+void EachSharpWithin(const SurfaceTable& s, const Vec3& low, const Vec3& high,
+                     const UseEdge& use_edge, const UseCorner& use_corner) noexcept {
+  if (!s.is_field) return detail::EachSharpOfBounds(s, low, high, use_edge, use_corner);
+  // One cell more: an edge belongs to its first corner.
+  const int i0 = CellAt((low.x - s.low.x) * s.inv_cell - 1.0, s.columns);
+  const int i1 = CellAt((high.x - s.low.x) * s.inv_cell, s.columns);
+  const int j0 = CellAt((low.y - s.low.y) * s.inv_cell - 1.0, s.rows);
+  const int j1 = CellAt((high.y - s.low.y) * s.inv_cell, s.rows);
+  for (int j = j0; j <= j1; ++j) {
+    for (int i = i0; i <= i1; ++i) {
+      detail::EachSharpOfCell(s, i, j, low.z, use_edge, use_corner);
+    }
+  }
 }
 
 }  // namespace taut::sim

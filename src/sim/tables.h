@@ -72,7 +72,14 @@ struct ShapeTable {
   double center_P[3] = {};
   double bound_m = 0;  ///< Radius of the sphere around `center_P` that holds it.
   Material material;
+  const int* beside = nullptr;  ///< Of a box of the world: other boxes of it that it touches.
+  int beside_count = 0;
 };
+
+/// Boxes of the world that are no further apart touch each other [m].
+inline constexpr double kJoinedM = 1e-9;
+/// So many of them, and of their points, are looked at together.
+inline constexpr int kMostJoinedPairs = 32, kMostJoinedPoints = kMostJoinedPairs * 13;
 
 /// A point that can touch a plane: a sphere's centre, a capsule's end, a box's corner.
 struct PointTable {
@@ -121,6 +128,7 @@ struct BodyPairTable {
   int first_pair = 0, pair_count = 0;
   bool by_tree = false;    ///< b is the world, whose shapes are looked up in its tree.
   bool on_ground = false;  ///< One pair, whose second shape is a surface.
+  bool joined = false;     ///< b is the world, and some boxes of it touch each other.
 };
 
 /// So many shapes of the world are looked at one after the other; of more there is a tree.
@@ -276,6 +284,7 @@ class Tables final : public Model {
   double floor_m = 0;             ///< See View.
   std::vector<TreeNode> tree;     ///< Of the world's shapes, where they are more than kFewShapes.
   int tree_shapes = 0;            ///< How many those are; 0 without a tree.
+  std::vector<int> beside;        ///< What ShapeTable::beside points into.
   std::vector<JointTable> joints;
   std::vector<JointRowTable> joint_rows;
   bool joint_loops = false;       ///< They close one, so that some of their rows may be redundant.
@@ -301,6 +310,9 @@ class Tables final : public Model {
 
 /// Fills the tree of the world's shapes if they are many, and says so to the pairs with it.
 void LayOutTree(Tables& tables);
+
+/// Finds the boxes of the world that touch each other, and says so to the pairs with it.
+void JoinBoxes(Tables& tables);
 
 /// Fills floor_m.
 void LayOutFloor(Tables& tables);

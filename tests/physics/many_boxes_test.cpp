@@ -16,18 +16,24 @@ namespace {
 
 const Material kMaterial{0.6, 0.6, 0.2};
 
-/// Boxes of all sizes that lie about in a square of 4 m, turned anyhow, one of them under all.
-std::vector<TerrainBoxDef> Field(int count, std::uint64_t seed) {
+/// Boxes of all sizes that lie about in a square of 4 m, turned anyhow, one of them under all. With
+/// `apart` none touches another: those that do are one surface, of which bodies know nothing.
+std::vector<TerrainBoxDef> Field(int count, std::uint64_t seed, bool apart = false) {
   scenes::Chance chance(seed);
   std::vector<TerrainBoxDef> boxes;
-  for (int i = 0; i < count; ++i) {
+  while (static_cast<int>(boxes.size()) < count) {
     const Vec3 at{chance.Within(-2, 2), chance.Within(-2, 2), chance.Within(-0.1, 0.1)};
     const Quat q = scenes::Turn(chance.Direction(), chance.Within(-1.5, 1.5));
     const Vec3 half{chance.Within(0.02, 0.12), chance.Within(0.02, 0.12),
                     chance.Within(0.02, 0.12)};
-    boxes.push_back({"box_" + std::to_string(i), at, q, half, kMaterial});
+    const bool meets = std::any_of(boxes.begin(), boxes.end(), [&](const TerrainBoxDef& box) {
+      return Norm(box.center_m - at) < Norm(box.half_extents_m) + Norm(half);
+    });
+    if (apart && meets) continue;
+    boxes.push_back({"box_" + std::to_string(boxes.size()), at, q, half, kMaterial});
   }
-  boxes[static_cast<std::size_t>(count / 2)] = {"floor", {0, 0, -0.5}, {}, {4, 4, 0.45}, kMaterial};
+  const Vec3 below{0, 0, apart ? -0.85 : -0.5};
+  boxes[static_cast<std::size_t>(count / 2)] = {"floor", below, {}, {4, 4, 0.45}, kMaterial};
   return boxes;
 }
 
@@ -89,7 +95,7 @@ void ExpectTheSameBits(const Batch& a, const Batch& b, int body) {
 
 TEST(ManyBoxes, GiveTheBitsOfAsManyFixedBodies) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const std::vector<TerrainBoxDef> boxes = Field(300, seed);
+    const std::vector<TerrainBoxDef> boxes = Field(300, seed, true);
     ModelDef terrain = Tumblers(seed), bodies = terrain;
     const int moving = static_cast<int>(terrain.bodies.size());
     terrain.terrain_boxes = boxes;
@@ -108,7 +114,7 @@ TEST(ManyBoxes, GiveTheBitsOfAsManyFixedBodies) {
     }
     for (int body = 0; body < moving; ++body) ExpectTheSameBits(looked_up, each, body);
     EXPECT_EQ(looked_up.Status(0).bits, each.Status(0).bits);
-    EXPECT_GT(touched.size(), 20u);  // so that the field was used
+    EXPECT_GT(touched.size(), 15u);  // so that the field was used
   }
 }
 
