@@ -59,14 +59,6 @@ class JointCompiler {
 
  private:
   int Index(int body) const { return body == kWorld ? t_.body_count : body; }
-  bool Moves(int index) const {
-    return index < t_.body_count && !t_.def().bodies[static_cast<std::size_t>(index)].fixed;
-  }
-
-  bool HasMotion(int index) const {
-    return index < t_.body_count && t_.motion_of_body[static_cast<std::size_t>(index)] >= 0;
-  }
-
   void Axes(int body, const Vec3 (&axes)[3], double out[9]) const {
     Frame turned = frames_[static_cast<std::size_t>(body)];
     std::fill_n(turned.origin, 3, 0.0);
@@ -75,7 +67,7 @@ class JointCompiler {
 
   /// How far from its centre of mass a body's mass is, in the mean, about its most unwieldy axis.
   double Gyration(int body) const {
-    if (!Moves(body)) return 0;
+    if (!t_.Moves(body)) return 0;
     const double* const moments = &t_.inertia[static_cast<std::size_t>(3 * body)];
     const double most = std::max({moments[0], moments[1], moments[2]});
     return std::sqrt(most / t_.def().bodies[static_cast<std::size_t>(body)].mass_kg);
@@ -84,8 +76,8 @@ class JointCompiler {
   void Lay(const JointDef& def) {
     JointTable j;
     j.a = Index(def.body_a), j.b = Index(def.body_b);
-    j.a_moves = Moves(j.a), j.b_moves = Moves(j.b);
-    j.a_is_moved = HasMotion(j.a), j.b_is_moved = HasMotion(j.b);
+    j.a_moves = t_.Moves(j.a), j.b_moves = t_.Moves(j.b);
+    j.a_is_moved = t_.HasMotion(j.a), j.b_is_moved = t_.HasMotion(j.b);
     ToBody(frames_[static_cast<std::size_t>(j.a)], def.from_m, j.own_a_P);
     ToBody(frames_[static_cast<std::size_t>(j.b)], def.to_m, j.own_b_P);
     const Vec3 n = (1 / std::sqrt(Dot(def.axis, def.axis))) * def.axis;
@@ -148,7 +140,7 @@ class JointCompiler {
     std::map<int, std::set<int>> chains;
     for (const JointTable& j : t_.joints) {
       for (const int body : {j.a, j.b}) {
-        if (Moves(body) && sets.Root(body) != world) chains[sets.Root(body)].insert(body);
+        if (t_.Moves(body) && sets.Root(body) != world) chains[sets.Root(body)].insert(body);
       }
     }
     for (const auto& [first, bodies] : chains) {

@@ -253,6 +253,15 @@ class Tables final : public Model {
  public:
   explicit Tables(ModelDef def) : Model(std::move(def)) {}
 
+  /// By impulses. `body` may be the world.
+  bool Moves(int body) const {
+    return body < body_count && !def().bodies[static_cast<std::size_t>(body)].fixed;
+  }
+  /// As a program says.
+  bool HasMotion(int body) const {
+    return body < body_count && motion_of_body[static_cast<std::size_t>(body)] >= 0;
+  }
+
   int body_count = 0, cable_count = 0, node_count = 0, plane_count = 0;
   std::vector<double> q_WP0;    ///< 4 per body: principal frame at t = 0.
   std::vector<double> inertia;  ///< 3 per body: principal moments [kg m^2].
@@ -307,6 +316,11 @@ class Tables final : public Model {
   struct View View() const noexcept;
   Layout MakeLayout() const;
 };
+
+/// Fills pairs and slots. `shapes_of`: the shapes of each body and the world, but for the ground;
+/// `ground`: surfaces among the shapes.
+void LayOutPairs(Tables& tables, const std::vector<std::vector<std::size_t>>& shapes_of,
+                 const std::vector<std::size_t>& ground);
 
 /// Fills the tree of the world's shapes if they are many, and says so to the pairs with it.
 void LayOutTree(Tables& tables);
