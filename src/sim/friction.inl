@@ -1,5 +1,6 @@
 /// Where friction is more than two coefficients a pair (friction.h): from wide numbers to scalar
-/// code and back, before contacts get their equations.
+/// code and back, before contacts get their equations. Not inlined: models without it must not pay
+/// for it in registers.
 
 namespace taut::sim {
 
@@ -26,9 +27,10 @@ TAUT_INLINE void AddPointVelocity(const V3<W>& v, const V3<W>& w, int lane, cons
 /// Coefficients and directions of the contact `c` of a lane, in which it is number `at`: of all
 /// lanes, or alone. `bodies`: of its links.
 template <class W, class Num, int kLinks>
-void AskFriction(const View& m, const Rows<W>& s, const Group& g, const Scratch<W>& work,
-                 const int (&bodies)[kLinks], const ContactMemory<Num>& memory, int lane, int at,
-                 Contact<Num, kLinks>& c) noexcept {
+[[gnu::noinline]] void AskFriction(const View& m, const Rows<W>& s, const Group& g,
+                                   const Scratch<W>& work, const int (&bodies)[kLinks],
+                                   const ContactMemory<Num>& memory, int lane, int at,
+                                   Contact<Num, kLinks>& c) noexcept {
   SlidingContact asked{};
   asked.key = c.key[at];
   asked.world = g.first_world + lane;
@@ -63,10 +65,20 @@ void AskFriction(const View& m, const Rows<W>& s, const Group& g, const Scratch<
   Put(asked.across, at, c.links[0].lin[2]);
 }
 
+/// The same of a contact with the world, in all lanes that have it.
+template <class W>
+[[gnu::noinline]] void AskFrictions(const View& m, const Rows<W>& s, const Group& g,
+                                    const Scratch<W>& work, int body,
+                                    const ContactMemory<W>& memory, Contact<W, 1>& c) noexcept {
+  for (int lane = 0; lane < W::kLanes; ++lane) {
+    if (c.live[lane] > 0) AskFriction(m, s, g, work, {body}, memory, lane, lane, c);
+  }
+}
+
 /// What `ContactPoint::FinishMasses` takes for 1: squares of the tangents' lengths. A lane without
 /// directions keeps its bits.
 template <class Num, int kLinks>
-void FinishDirected(Contact<Num, kLinks>& c) noexcept {
+[[gnu::noinline]] void FinishDirected(Contact<Num, kLinks>& c) noexcept {
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
   const auto directed = !(c.frame < Num::Splat(kFirstDirectedFrame));
   const V3<Num>* const d = c.links[0].lin;

@@ -138,7 +138,7 @@ void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& w
 
 /// Lanes in which a body is below all ground (kStatusFellOff).
 template <class W>
-MaskOf<W> FellOff(const View& m, const Rows<W>& s) noexcept {
+[[gnu::noinline]] MaskOf<W> FellOff(const View& m, const Rows<W>& s) noexcept {
   const W zero = W::Splat(0.0);
   auto fallen = MaskOf<W>::Splat(false);
   for (int b = 0; b < m.body_count; ++b) {
@@ -149,7 +149,8 @@ MaskOf<W> FellOff(const View& m, const Rows<W>& s) noexcept {
 
 /// Which body of a lane fell off, and off which of the surfaces.
 template <class W>
-void NameFallen(const View& m, const Rows<W>& s, int lane, LaneStatus& status) noexcept {
+[[gnu::noinline]] void NameFallen(const View& m, const Rows<W>& s, int lane,
+                                  LaneStatus& status) noexcept {
   int body = 0;
   while (!(s.pos[body].z[lane] < m.floor_m && s.inv_mass[body][lane] > 0)) ++body;
   const double x = s.pos[body].x[lane], y = s.pos[body].y[lane];

@@ -40,9 +40,7 @@ void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
       Contact<W, 1>& c = work.contacts[m.first_slot[b] + k];
       const auto memory = Recall(s, c, m.first_slot[b], g.slots_used[b], cursor);
       const BodyWork<W>& body = work.bodies[b];
-      for (int lane = 0; m.friction != nullptr && lane < W::kLanes; ++lane) {
-        if (c.live[lane] > 0) AskFriction(m, s, g, work, {b}, memory, lane, lane, c);
-      }
+      if (m.friction != nullptr) AskFrictions(m, s, g, work, b, memory, c);
       PrepareContact(c, memory, body, b, s.inv_mass[b], body, b, s.inv_mass[b], s.friction_scale[0],
                      step_s);
     }
