@@ -45,18 +45,35 @@ bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
   return true;
 }
 
+/// Per body: the first of those that joints tie to it, which a start moves together; kWorld if it
+/// is tied to what does not move.
+std::vector<int> JointedTo(const ModelDef& def) {
+  const int world = static_cast<int>(def.bodies.size());
+  base::UnionFind sets(def.bodies.size() + 1);
+  const auto index = [&](int body) {
+    return body == kWorld || def.bodies[static_cast<std::size_t>(body)].fixed ? world : body;
+  };
+  for (const JointDef& joint : def.joints) sets.Join(index(joint.body_a), index(joint.body_b));
+  std::vector<int> first;
+  for (int b = 0; b < world; ++b) {
+    first.push_back(sets.Root(b) == sets.Root(world) ? kWorld : sets.Root(b));
+  }
+  return first;
+}
+
 /// Bodies a little off, upwards rather than into the ground; then the whole robot turned.
 void Disturb(const ExperimentSpec& experiment, Batch& batch) {
   const StartNoise& noise = experiment.start_noise;
   const ModelDef& def = experiment.robot.def;
+  const std::vector<int> together = JointedTo(def);
   Vec3 center;
   double mass = 0;
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     if (def.bodies[b].fixed) continue;
     const int body = static_cast<int>(b);
     BodyState state = batch.Body(kTheWorld, body);
-    if (noise.position_m > 0) {
-      math::Random random(experiment.seed, kStartPosition, b);
+    if (noise.position_m > 0 && together[b] != kWorld) {
+      math::Random random(experiment.seed, kStartPosition, static_cast<std::uint64_t>(together[b]));
       const double x = random.Uniform(-noise.position_m, noise.position_m);
       const double y = random.Uniform(-noise.position_m, noise.position_m);
       state.position_m = state.position_m + Vec3{x, y, random.Uniform(0.0, noise.position_m)};

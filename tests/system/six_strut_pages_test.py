@@ -3,6 +3,7 @@
 Usage: six_strut_pages_test.py TEST TAUT. One test of this file, by the name of its function.
 """
 
+import os
 import pathlib
 import sys
 import tempfile
@@ -47,4 +48,6 @@ def ARollIsAsThePageShowsIt(command):
 
 
 if __name__ == "__main__":
-    globals()[sys.argv[1]](sys.argv[2])
+    taut = pathlib.Path(sys.argv[2]).resolve()
+    os.chdir(ROOT)  # variants name their base from there
+    globals()[sys.argv[1]](taut)
