@@ -17,8 +17,12 @@ GRAVITY = 9.81
 FROM_S = 2.0        # what it takes to get going
 JOINTS = [(f"{leg}.{a}", f"{leg}.{b}") for leg in LEGS for a, b in (("socket", "hip"), ("knee", "shank_knee"))]
 GIRDLES = ("vertebra_0.centre-left", "vertebra_3.centre-left")
-RECORD = (f"record: {{rate_hz: 500, contacts: {SLOTS}, channels: ['system/*', 'body/*', 'contact/*/body_*', "
-          "'contact/*/force_*', 'contact/*/gap_m', 'cable/*/tension_n', 'node/*/position_*']}\n")
+RECORD = ("record: {{rate_hz: 500, contacts: {slots}, channels: ['system/*', 'body/*', 'contact/*/body_*', "
+          "'contact/*/force_z_n', 'cable/*/tension_n', 'node/*/position_*'{more}]}}\n")
+
+
+def record(more=""):
+    return RECORD.format(slots=SLOTS, more=more)
 
 
 class Trace:
@@ -105,8 +109,8 @@ def phase(on, time_s, frequency_hz):
 
 
 def later(a, b):
-    """By how much of a period b comes after a, from -0.5 to 0.5, of phases in periods."""
-    return (a - b + 0.5) % 1 - 0.5
+    """By how much of a period b comes after a, of phases in periods: from -0.2, so that half a period is not minus half."""
+    return (a - b + 0.2) % 1 - 0.2
 
 
 def frequency_hz():
@@ -120,12 +124,19 @@ def work_j(summary):
 
 def standing(trace, mass_kg):
     force, others = trace.feet()
-    last = {leg: force[leg][-1] for leg in LEGS}
-    speed = max(math.hypot(*v) for body in trace.bodies for v in trace.vectors(f"body/{body}/velocity", "m_per_s"))
-    moved = max(math.dist(p, trace.vectors(f"body/{body}/position", "m")[0])
-                for body in trace.bodies for p in trace.vectors(f"body/{body}/position", "m"))
-    low, high = trace.tensions_n()
+    push_n = trace["push/nudge/force_n"]
+    pushed = next(i for i, n in enumerate(push_n) if n > 0) - 1  # the last row before
+    last = {leg: force[leg][pushed] for leg in LEGS}
+    places = {body: trace.vectors(f"body/{body}/position", "m") for body in trace.bodies}
+    speeds = {body: [math.hypot(*v) for v in trace.vectors(f"body/{body}/velocity", "m_per_s")] for body in trace.bodies}
+    speed = max(v for body in trace.bodies for v in speeds[body][:pushed])
+    moved = max(math.dist(p, places[body][0]) for body in trace.bodies for p in places[body][:pushed])
+    low, high = (pick(pick(trace[name][:pushed]) for name in trace.columns if name.startswith("cable/")) for pick in (min, max))
+    aside = [1000 * abs(p[1] - places["vertebra_1"][0][1]) for p in places["vertebra_1"]]
     return {
+        "push_n": f"{max(push_n):.0f}", "push_mm": f"{max(aside):.0f}", "push_end": f"{aside[-1]:.0f}",
+        "push_speed": f"{max(v[-1] for v in speeds.values()):.0e}",
+        "push_least": str(min(sum(force[leg][i] > 0 for leg in LEGS) for i in range(1, len(push_n)))),
         "stand_forces": ", ".join(f"{last[leg]:.2f}" for leg in LEGS),
         "stand_sum": f"{sum(last.values()):.3f}", "weight": f"{mass_kg * GRAVITY:.3f}",
         "stand_speed": f"{speed:.0e}", "stand_moved": f"{moved:.0e}", "stand_gap": f"{trace.gap_m():.0e}",
@@ -175,7 +186,7 @@ def gait(trace, summary, mass_kg):
         on = [force[leg][i] > 0 for i in window]
         phases[leg] = phase(on, times, hz)
         lift = max(trace[f"node/{leg}.foot/position_z_m"][i] for i in walking) - FOOT_RADIUS_M
-        rows.append([leg, f"{sum(on) / len(on):.2f}", f"{later(phases[LEGS[0]], phases[leg]):+.2f}", f"{1000 * lift:.0f}",
+        rows.append([leg, f"{sum(on) / len(on):.2f}", f"{later(phases[LEGS[0]], phases[leg]):.2f}", f"{1000 * lift:.0f}",
                      f"{sum(force[leg][i] for i in window) / len(window):.2f}", f"{max(force[leg][i] for i in walking):.0f}",
                      f"{trace.slid_m(force, leg) / way:.2f}"])
     count = [0] * 5
@@ -193,15 +204,16 @@ def gait(trace, summary, mass_kg):
         "yaw": f"{math.degrees(trace.yaw_rad()):+.0f}", "gap": f"{trace.gap_m():.0e}",
         "work": f"{work:.0f}", "cost": f"{work / (mass_kg * GRAVITY * ahead[-1]):.1f}",
         "power": f"{max(cable['actuator']['max_power_w'] for cable in summary['cables'] if 'actuator' in cable):.1f}",
-        "tensions": "{:.1f} to {:.1f}".format(*trace.tensions_n()),
+        "tensions": "{:.0f} to {:.0f}".format(*trace.tensions_n()),
+        "slack": str(sum(min(trace[name]) <= 0 for name in trace.columns if name.startswith("cable/"))),
     }
 
 
 def page(taut):
     started = time.monotonic()
     mass_kg = float(taut("check", "models/puppy.yaml").split(" kg that move")[0].split()[-1])
-    stand = Variant("puppy_stand", "puppy_stand", RECORD, full_trace=True)
-    trots = {name: Variant("puppy_" + name.replace(" ", "_"), "puppy_trot", keys + RECORD, parameters, full_trace=True,
+    stand = Variant("puppy_stand", "puppy_stand", record(", 'push/*'"), full_trace=True)
+    trots = {name: Variant("puppy_" + name.replace(" ", "_"), "puppy_trot", keys + record(), parameters, full_trace=True,
                            any_status=True)
              for name, keys, parameters in variants()}
     results = taut.run([stand, *trots.values()])
