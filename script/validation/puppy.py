@@ -7,7 +7,7 @@ import pathlib
 import time
 
 from validation.push import machine
-from validation.runs import Variant, fill, table, yaml_block
+from validation.runs import Variant, fill, keep_picture, table, yaml_block
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 LEGS = ("front_left", "rear_right", "front_right", "rear_left")  # a diagonal, then the other
@@ -146,16 +146,15 @@ def standing(trace, mass_kg):
 
 def variants():
     """Name of a row, keys that make it."""
-    yield "as shipped", "", {}
+    yield "as shipped", ""
     for step_s in (0.0005, 0.00025):
-        yield f"step {1000 * step_s:g} ms", f"step_s: {step_s}\n", {}
-    for factor in (0.7, 1.3):
-        yield f"friction x {factor}", f"scale: [{{friction: {factor}}}]\n", {}
-    for quantity in ("mass", "stiffness"):
-        for factor in (0.9, 1.1):
-            yield f"{quantity} x {factor}", f"scale: [{{{quantity}: {factor}}}]\n", {}
+        yield f"step {1000 * step_s:g} ms", f"step_s: {step_s}\n"
+    for quantity, factors in (("friction", (0.4, 0.7, 1.3)), ("mass", (0.9, 1.1, 1.3)), ("stiffness", (0.9, 1.1)),
+                              ("damping", (0.5, 0.7, 1.3))):
+        for factor in factors:
+            yield f"{quantity} x {factor}", f"scale: [{{{quantity}: {factor}}}]\n"
     for seed in (1, 2, 3, 4, 5):
-        yield f"start {seed}", f"seed: {seed}\nstart_noise: {{position_m: 0.001, heading_rad: 0.05}}\n", {}
+        yield f"start {seed}", f"seed: {seed}\nstart_noise: {{position_m: 0.001, heading_rad: 0.05}}\n"
 
 
 def row(name, trace, summary):
@@ -209,13 +208,42 @@ def gait(trace, summary, mass_kg):
     }
 
 
+def picture(trace):
+    """A bar for each time that a foot carries, from FROM_S on for two seconds; a row a foot, a shade a diagonal."""
+    force, _ = trace.feet()
+    left, top, width, high = 100, 20, 720, 28
+
+    def across(time_s):
+        return left + width * (time_s - FROM_S) / 2
+
+    rows = [i for i, t in enumerate(trace.time_s) if FROM_S <= t <= FROM_S + 2]
+    out = ['<svg xmlns="http://www.w3.org/2000/svg" width="860" height="190" viewBox="0 0 860 190" '
+           'font-family="sans-serif" font-size="13">', '<rect width="860" height="190" fill="white"/>']
+    for number, leg in enumerate(LEGS):
+        y = top + number * (high + 6)
+        out.append(f'<text x="{left - 8}" y="{y + high / 2 + 4:g}" text-anchor="end">{leg.replace("_", " ")}</text>')
+        begin = None
+        for i in rows:
+            carries = force[leg][i] > 0
+            if carries and begin is None:
+                begin = trace.time_s[i]
+            if begin is not None and (not carries or i == rows[-1]):
+                out.append(f'<rect x="{across(begin):.1f}" y="{y}" width="{across(trace.time_s[i]) - across(begin):.1f}" '
+                           f'height="{high}" fill="{"#2171b5" if number < 2 else "#e08a1e"}"/>')
+                begin = None
+    for tenth in range(0, 21, 5):
+        time_s = FROM_S + tenth / 10
+        out.append(f'<text x="{across(time_s):.1f}" y="{top + 4 * (high + 6) + 14}" text-anchor="middle">{time_s:g} s</text>')
+    return "\n".join(out + ["</svg>", ""])
+
+
 def page(taut):
     started = time.monotonic()
     mass_kg = float(taut("check", "models/puppy.yaml").split(" kg that move")[0].split()[-1])
     stand = Variant("puppy_stand", "puppy_stand", record(", 'push/*'"), full_trace=True)
-    trots = {name: Variant("puppy_" + name.replace(" ", "_"), "puppy_trot", keys + record(), parameters, full_trace=True,
+    trots = {name: Variant("puppy_" + name.replace(" ", "_"), "puppy_trot", keys + record(), full_trace=True,
                            any_status=True)
-             for name, keys, parameters in variants()}
+             for name, keys in variants()}
     results = taut.run([stand, *trots.values()])
     rows, values = [], {}
     for name, variant in trots.items():
@@ -223,6 +251,7 @@ def page(taut):
         rows.append(row(name, trace, summary))
         if name == "as shipped":
             values |= gait(trace, summary, mass_kg)
+            keep_picture(taut, "docs/validation/puppy_feet.svg", picture(trace))
             values["duration"] = f"{trace.time_s[-1]:g}"
     values |= standing(Trace(taut.folder / stand.name), mass_kg)
     values |= {
