@@ -149,8 +149,8 @@ def variants():
     yield "as shipped", ""
     for step_s in (0.0005, 0.00025):
         yield f"step {1000 * step_s:g} ms", f"step_s: {step_s}\n"
-    for quantity, factors in (("friction", (0.4, 0.7, 1.3)), ("mass", (0.9, 1.1, 1.3)), ("stiffness", (0.9, 1.1)),
-                              ("damping", (0.5, 0.7, 1.3))):
+    for quantity, factors in (("friction", (0.2, 0.7, 1.3)), ("mass", (0.9, 1.1, 1.3, 1.6)), ("stiffness", (0.9, 1.1)),
+                              ("damping", (0.25, 0.7, 1.3))):
         for factor in factors:
             yield f"{quantity} x {factor}", f"scale: [{{{quantity}: {factor}}}]\n"
     for seed in (1, 2, 3, 4, 5):
