@@ -41,6 +41,21 @@ LoadedModel LoadItsModel(const ExperimentText& text, const OverrideSet& of_user,
   return model;
 }
 
+/// Complains about a start that would tear the robot off what it is joined to.
+void CheckHeading(const ModelDef& def, const Value* noise, const Scope& scope) {
+  const auto still = [&](int body) {
+    return body == kWorld || def.bodies[static_cast<std::size_t>(body)].fixed;
+  };
+  for (const JointDef& joint : def.joints) {
+    if (!still(joint.body_a) && !still(joint.body_b)) continue;
+    scope.out.Error(noise->at,
+                    "start_noise.heading_rad: the joint \"" + joint.name +
+                        "\" holds the robot in the world",
+                    "start_noise.position_m moves what is not tied to the world");
+    return;
+  }
+}
+
 /// Whatever could be read; the caller looks at the diagnostics.
 ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, const Scope& scope) {
   ExperimentText text;
@@ -60,6 +75,7 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   if (text.gravity_m_per_s2) def.gravity_m_per_s2 = *text.gravity_m_per_s2;
   if (text.place) Place(*text.place, text.start, scope, def);
   AddTerrain(text.terrain, scope, text.robot);
+  if (text.start_noise.heading_rad > 0) CheckHeading(def, root.Find("start_noise"), scope);
   AddMotions(text.motions, model.good, scope, text.robot);
   if (scope.out.ok()) CheckPositions(text.robot, scope.out, text.place ? &text.place->at : nullptr);
   return text;

@@ -200,7 +200,8 @@ void Keys(Io& io, Like<StartNoise> auto& n) {
   io.Map("", "start_noise",
          "How far the start may be from what is described, drawn evenly from the seed.");
   io("position_m", n.position_m, Bound::kNonNegative,
-     "Each body is moved by up to this along x and y, and upwards.");
+     "Each body is moved by up to this along x and y, and upwards. Bodies that joints tie to each "
+     "other are moved together; those that are tied to the world stay.");
   io("heading_rad", n.heading_rad, Bound::kNonNegative,
      "The robot is turned about the vertical by up to this either way.");
 }

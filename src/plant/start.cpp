@@ -1,5 +1,6 @@
 #include "plant/start.h"
 
+#include "base/union_find.h"
 #include "math/elementary.h"
 #include "math/random.h"
 #include "math/vec.h"

@@ -1,9 +1,11 @@
 // Joints, supports and rods that turn in their nodes, as model files say them.
 #include <gmock/gmock.h>
 
+#include "plant/start.h"
 #include "taut/batch.h"
 #include "taut/run.h"
 #include "taut/start.h"
+#include "unit/experiment_fixture.h"
 #include "unit/model_fixture.h"
 
 namespace taut {
@@ -197,6 +199,37 @@ TEST(JointText, TwoOfOneNameAreAnError) {
                      "  - {match: joint, joint: {kind: ball}}\n"
                      "  - {match: held, support: {kind: ball}}\n"),
               HasSubstr("two joints would be called \"knee\""));
+}
+
+using JointedStart = test::ExperimentFolder;
+
+TEST_F(JointedStart, NoiseMovesWhatIsJoinedTogether) {
+  const std::string model = "taut: 1\nkind: model\nname: leg\n" +
+                            Leg("kind: ball", "allow_disconnected: true\n");
+  const std::string experiment =
+      "taut: 1\nkind: experiment\nname: trial\nmodel: leg.yaml\nduration_s: 1\n"
+      "start_noise: {position_m: 0.01}\n";
+  Write("leg.yaml", model);
+  Write("trial.yaml", experiment);
+  const auto gap = [&](const ExperimentSpec& e) {
+    Diagnostics out;
+    Batch batch(Model::Compile(e.robot.def, out), {});
+    EXPECT_TRUE(plant::PrepareStart(e, batch, out)) << out.Format();
+    EXPECT_NE(batch.Body(0, 0).position_m.x, e.robot.def.bodies[0].com_m.x);
+    return batch.Joint(0, 0).gap_m;
+  };
+  EXPECT_LT(gap(Load()), 1e-15);
+  Write("leg.yaml", "taut: 1\nkind: model\nname: leg\n" +
+                        Leg("kind: ball", "  - {match: hip, support: {kind: ball}}\n"));
+  Write("trial.yaml", experiment + "");
+  Diagnostics out;
+  const ExperimentSpec held = Load();
+  Batch batch(Model::Compile(held.robot.def, out), {});
+  ASSERT_TRUE(plant::PrepareStart(held, batch, out));
+  EXPECT_EQ(batch.Body(0, 0).position_m.x, held.robot.def.bodies[0].com_m.x);
+  Write("trial.yaml", "taut: 1\nkind: experiment\nname: trial\nmodel: leg.yaml\nduration_s: 1\n"
+                      "start_noise: {heading_rad: 0.1}\n");
+  EXPECT_THAT(Complaints(), HasSubstr("the joint \"hip\" holds the robot in the world"));
 }
 
 }  // namespace

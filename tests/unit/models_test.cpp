@@ -291,6 +291,23 @@ TEST(SixStrut, HasNtrtsNumbers) {
   EXPECT_LT(WorstLoad(Load("six_strut", {{"spacing_m", "rod_length_m / 4"}}).def), 1e-12);
 }
 
+TEST(Puppy, IsASpineOfFourVertebraeWithFourLegs) {
+  const RobotSpec puppy = Load("puppy");
+  EXPECT_EQ(puppy.def.bodies.size(), 4u + 2 * 4u);
+  EXPECT_EQ(puppy.def.cables.size(), 3 * 8u + 4 * 6u);
+  EXPECT_EQ(puppy.def.joints.size(), 2 * 4u);  // a hip and a knee a leg
+  double mass_kg = 0;
+  for (const BodyDef& body : puppy.def.bodies) mass_kg += body.mass_kg;
+  EXPECT_NEAR(mass_kg, 2.144, 1e-3);
+  // The vertebrae that carry no legs are held by prestress alone.
+  const std::vector<BodyLoad> loads = StartLoads(puppy.def);
+  for (const std::size_t i : {1u, 2u}) {
+    EXPECT_EQ(puppy.def.bodies[i].name, "vertebra_" + std::to_string(i));
+    EXPECT_LT(Size(loads[i].cable_force_n), 1e-12);
+    EXPECT_LT(Size(loads[i].cable_torque_n_m), 1e-13);
+  }
+}
+
 TEST(HangingMass, HangsStill) {
   const RobotSpec robot = Load("hanging_mass");
   ASSERT_EQ(robot.def.bodies.size(), 1u);
