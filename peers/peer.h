@@ -50,6 +50,8 @@ class World {
   virtual BodyState Body(int body) const = 0;
   virtual MassState Mass(int body) const = 0;
   virtual int ContactCount() const = 0;  ///< Of the last step.
+  /// Steps since the start that the engine says it has not solved. Only ODE's full step says so.
+  virtual int UnsolvedSteps() const { return 0; }
 };
 
 /// Why the peers cannot run a model, in words; empty if they can.
