@@ -90,9 +90,6 @@ class Springs {
   std::vector<Point> points_;
 };
 
-/// Heights of a field as MuJoCo takes them: from 0 to 1, in single precision.
-std::vector<float> MujocoHeights(const HeightFieldDef& field);
-
 // One file each; nothing if the engine is not there.
 std::unique_ptr<World> MakeMujoco(const ModelDef& def, const Options& options);
 std::unique_ptr<World> MakeBullet(const ModelDef& def, const Options& options);
