@@ -27,6 +27,8 @@ namespace {
 constexpr int kWorldsPerThread = 64;
 
 using Make = std::function<std::unique_ptr<Runner>()>;
+/// Says, in counters, what the steps were worth.
+using Judge = std::function<void(benchmark::State&, const Runner&)>;
 
 struct Case {
   std::string kind, robot;
@@ -73,9 +75,9 @@ void Measure(benchmark::State& state, Runner& runner) {
   state.counters["steps_per_s"] =
       benchmark::Counter(StepsOf(state, runner), benchmark::Counter::kIsRate);
   state.counters["contacts"] = runner.contacts();
+  state.counters["converged"] = runner.converged() ? 1 : 0;
   if (auto* const ours = dynamic_cast<TautRunner*>(&runner)) {
     state.counters["bytes_per_world"] = static_cast<double>(ours->batch().BytesPerWorld());
-    state.counters["converged"] = ours->converged() ? 1 : 0;
     state.counters["linear_solves"] = ours->batch().Status(0).linear_solves;
   }
 }
@@ -108,13 +110,15 @@ void MeasureStages(benchmark::State& state, TautRunner& runner) {
   state.counters["steps_per_s"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
 }
 
-void Register(const Case& what, const Make& make, int settle_periods, bool stages = false) {
+void Register(const Case& what, const Make& make, int settle_periods, bool stages = false,
+              const Judge& judge = {}) {
   const auto standing = std::make_shared<Standing>(make, settle_periods);
   auto* const registered = benchmark::RegisterBenchmark(
-      what.Name().c_str(), [standing, stages](benchmark::State& state) {
+      what.Name().c_str(), [standing, stages, judge](benchmark::State& state) {
         try {
           Runner& runner = (*standing)();
           stages ? MeasureStages(state, dynamic_cast<TautRunner&>(runner)) : Measure(state, runner);
+          if (judge) judge(state, runner);
         } catch (const std::exception& error) {
           state.SkipWithError(error.what());
         }
@@ -139,9 +143,16 @@ void RegisterTaut(Case what, const ModelDef& def, int settle_periods) {
   Register(what, make, settle_periods, stages);
 }
 
+constexpr int kHillsSettle = 300, kHillsCorners = 120;
+
+Judge HowDeep(const std::string& robot) {
+  return [robot](benchmark::State& state, const Runner& runner) {
+    state.counters["deepest_m"] = Deepest(OnHills(robot, kHillsCorners), runner);
+  };
+}
+
 /// Fields of ten million cells are made only where one is measured.
 void RegisterHills(const std::string& robot, const std::string& ground, int corners, int lanes) {
-  constexpr int kSettle = 300;
   BatchOptions options;
   options.worlds = lanes;
   options.simd = static_cast<Simd>(lanes);
@@ -156,11 +167,11 @@ void RegisterHills(const std::string& robot, const std::string& ground, int corn
             .lanes = lanes,
             .engine = "taut",
             .setting = "default"},
-           make, kSettle);
+           make, kHillsSettle, false, corners == kHillsCorners ? HowDeep(robot) : Judge());
 }
 
 void RegisterPeers(Case what, const ModelDef& def, int settle_periods, bool all,
-                   std::vector<Elsewhere>& elsewhere) {
+                   std::vector<Elsewhere>& elsewhere, const Judge& judge = {}) {
   for (const peers::Setting& setting : peers::kSettings) {
     if (!(setting.main || all)) continue;
     if (setting.engine == peers::Engine::kMujoco) {
@@ -176,7 +187,49 @@ void RegisterPeers(Case what, const ModelDef& def, int settle_periods, bool all,
         [def, setting] {
           return std::make_unique<PeerRunner>(setting.engine, def, setting.options);
         },
-        settle_periods);
+        settle_periods, false, judge);
+  }
+}
+
+/// A ball rolls for 3 s over level triangles, again and again: on how much of its 1 m/s is left.
+void RegisterBall(const std::string& engine, const std::string& setting, const Make& make) {
+  constexpr int kRolling = 300;
+  const Case what{.kind = "hills", .robot = "ball@level", .engine = engine, .setting = setting};
+  benchmark::RegisterBenchmark(what.Name().c_str(), [make](benchmark::State& state) {
+    double speed = 0;
+    for (auto _ : state) {
+      state.PauseTiming();
+      auto runner = make();
+      state.ResumeTiming();
+      runner->Run(kRolling);
+      speed = runner->Body(0).velocity_m_per_s.x;
+      state.PauseTiming();
+      runner.reset();
+      state.ResumeTiming();
+    }
+    const double steps = static_cast<double>(state.iterations()) * kRolling * kControlSteps;
+    state.counters["steps_per_s"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
+    state.counters["speed_kept"] = speed;
+  });
+}
+
+/// The peers on the same hills; not with cables that are too stiff for explicit forces.
+void RegisterPeersOnHills(std::vector<Elsewhere>& elsewhere) {
+  for (const char* robot : {"six_strut", "tetraspine12"}) {
+    const std::string name = robot;
+    RegisterPeers({.kind = "hills", .robot = name + "@plane"}, OnHills(robot, 0), kHillsSettle,
+                  false, elsewhere);
+    RegisterPeers({.kind = "hills", .robot = name + "@hills"}, OnHills(robot, kHillsCorners),
+                  kHillsSettle, false, elsewhere, HowDeep(robot));
+  }
+  const ModelDef ball = BallOnTriangles();
+  RegisterBall("taut", "default",
+               [ball] { return std::make_unique<TautRunner>(ball, BatchOptions{}); });
+  for (const peers::Setting& setting : peers::kSettings) {
+    if (!setting.main || !peers::Available(setting.engine)) continue;
+    RegisterBall(peers::Name(setting.engine), setting.name, [ball, setting] {
+      return std::make_unique<PeerRunner>(setting.engine, ball, setting.options);
+    });
   }
 }
 
@@ -209,10 +262,11 @@ std::vector<Elsewhere> RegisterAll() {
   for (const char* robot : {"six_strut", "six_strut_stiff", "tetraspine12"}) {
     for (int lanes : {1, widest}) {
       RegisterHills(robot, "plane", 0, lanes);
-      RegisterHills(robot, "hills", 120, lanes);
+      RegisterHills(robot, "hills", kHillsCorners, lanes);
       RegisterHills(robot, "many", 3163, lanes);
     }
   }
+  RegisterPeersOnHills(elsewhere);
   const auto growth = [&](const char* kind, const std::string& robot, const ModelDef& def) {
     constexpr int kSettle = 50;
     RegisterTaut({.kind = kind, .robot = robot}, def, kSettle);

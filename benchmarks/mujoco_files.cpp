@@ -12,6 +12,7 @@ constexpr int kFreePeriods = 10;
 /// Engines differ in contacts, so that these would hide whether the model is the same.
 ModelDef WithoutContacts(ModelDef def) {
   def.planes.clear();
+  def.height_fields.clear();
   for (SphereDef& sphere : def.spheres) sphere.collides = false;
   for (CapsuleDef& capsule : def.capsules) capsule.collides = false;
   for (BoxDef& box : def.boxes) box.collides = false;
@@ -47,7 +48,10 @@ Json MujocoFile(const ModelDef& def, const peers::Options& options, bool moves) 
     for (int c = 0; c < motion.cables(); ++c) row.push_back(motion.RestLength(0, c, tick));
     commands.push_back(row);
   }
+  Json heights = Json::array();
+  for (const HeightFieldDef& field : def.height_fields) heights = peers::MujocoHeights(field);
   return {{"mjcf", peers::Mjcf(def, options)},
+          {"heights", heights},
           {"bodies", def.bodies.size()},
           {"step_s", kStepS},
           {"control_steps", kControlSteps},

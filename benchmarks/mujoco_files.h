@@ -12,11 +12,11 @@ inline constexpr const char* kMujocoElsewhere = "mujoco_wasm";  ///< Its name am
 
 /// A case of the MuJoCo peer as that program needs it:
 ///   mjcf            the model, with a keyframe of its start
+///   heights         of the height field that it names, as `hfield_data`
 ///   bodies          how many, all of them free
 ///   step_s, control_steps
 ///   rest_lengths_m  for each control period the rest lengths of all cables, over and over; empty
-///   if
-///                   they stay
+///                   if they stay
 ///   free            what the model must do there as here if it is the same: the same model without
 ///                   ground and contacts, moving for `steps`, and, if a MuJoCo is built in, its
 ///                   masses and where its bodies end

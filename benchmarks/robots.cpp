@@ -1,8 +1,10 @@
 #include "benchmarks/robots.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "scenes/ball.h"
 #include "scenes/many_rows.h"
 #include "scenes/rough_ground.h"
 #include "scenes/six_strut.h"
@@ -58,11 +60,28 @@ ModelDef OnGround(const std::string& robot) {
 
 ModelDef OnHills(const std::string& robot, int corners) {
   ModelDef def = robot == "six_strut_stiff" ? StiffSixStrut() : Loaded(robot);
+  constexpr double kBelow_m = 0.03;
   if (corners > 0) {
     def.height_fields = {scenes::Hills(corners, corners, Ground().material)};
+    def.height_fields[0].split = HeightFieldDef::Split::kSame;  // as all engines can
+    def.height_fields[0].origin_m.z = -kBelow_m;
   } else {
     def.planes = {Ground()};
+    def.planes[0].point_m.z = -kBelow_m;
   }
+  return def;
+}
+
+ModelDef BallOnTriangles() {
+  constexpr double kRadius_m = 0.05;
+  const Material material = Ground().material;
+  ModelDef def;
+  def.name = "ball";
+  scenes::AddBall(def, "ball", 0.3, kRadius_m, {-5.5, 0.013, kRadius_m}, material);
+  def.bodies[0].velocity_m_per_s = {1, 0, 0};
+  def.bodies[0].angular_velocity_rad_per_s = {0, 1 / kRadius_m, 0};
+  def.height_fields = {scenes::Field(300, 40, 0.04, material, [](double, double) { return 0.0; })};
+  def.height_fields[0].split = HeightFieldDef::Split::kSame;
   return def;
 }
 
@@ -72,7 +91,6 @@ void SpreadOut(Batch& batch) {
       BodyState state = batch.Body(world, body);
       state.position_m.x += 0.13 * world;
       state.position_m.y += 0.07 * world;
-      state.position_m.z += 0.03;
       batch.SetBodyState(world, body, state);
     }
   }
@@ -123,6 +141,18 @@ void TautRunner::Run(int control_periods) {
     }
     if (bits != kStatusOk) converged_ = false;
   }
+}
+
+double Deepest(const ModelDef& def, const Runner& runner) {
+  Batch geometry(Compiled(def), {});
+  for (int body = 0; body < static_cast<int>(def.bodies.size()); ++body) {
+    geometry.SetBodyState(0, body, runner.Body(body));
+  }
+  double deepest_m = 0;
+  for (const Overlap& overlap : geometry.Overlaps(0)) {
+    if (overlap.body_b == kWorld) deepest_m = std::max(deepest_m, overlap.depth_m);
+  }
+  return deepest_m;
 }
 
 PeerRunner::PeerRunner(peers::Engine engine, const ModelDef& def, const peers::Options& options)

@@ -16,9 +16,11 @@ inline constexpr int kControlSteps = 10;  ///< Rest lengths are commanded at 100
 /// A model of models/ on the ground.
 ModelDef OnGround(const std::string& robot);
 
-/// A model of models/, or "six_strut_stiff", whose cables are rows of the solver, on hills with so
-/// many corners along each side; 0: on a plane.
+/// A model of models/, or "six_strut_stiff", whose cables are rows of the solver, above hills with
+/// so many corners along each side; 0: above a plane.
 ModelDef OnHills(const std::string& robot, int corners);
+/// A ball that rolls at 1 m/s, and would for ever, over level triangles.
+ModelDef BallOnTriangles();
 /// Each world a bit further along, so that each stands on other hills.
 void SpreadOut(Batch& batch);
 
@@ -51,7 +53,10 @@ class Runner {
   virtual ~Runner() = default;
   virtual void Run(int control_periods) = 0;
   virtual int worlds() const = 0;
-  virtual double contacts() = 0;  ///< Of the first world.
+  virtual double contacts() = 0;               ///< Of the first world.
+  virtual BodyState Body(int body) const = 0;  ///< Of the first world.
+  /// Whether every contact solve since the start reached its tolerance, as far as the engine says.
+  virtual bool converged() const = 0;
 };
 
 /// taut. A world that is not finite or has too many contacts becomes an exception.
@@ -61,9 +66,9 @@ class TautRunner final : public Runner {
   void Run(int control_periods) override;
   int worlds() const override { return batch_.worlds(); }
   double contacts() override { return static_cast<double>(batch_.Contacts(0).size()); }
+  BodyState Body(int body) const override { return batch_.Body(0, body); }
+  bool converged() const override { return converged_; }
   Batch& batch() { return batch_; }
-  /// Whether every contact solve since the start reached its tolerance.
-  bool converged() const { return converged_; }
 
  private:
   Motion motion_;
@@ -74,12 +79,17 @@ class TautRunner final : public Runner {
   int tick_ = 0;
 };
 
+/// How deep the robot of the first world is in the ground, by taut's geometry [m].
+double Deepest(const ModelDef& def, const Runner& runner);
+
 class PeerRunner final : public Runner {
  public:
   PeerRunner(peers::Engine engine, const ModelDef& def, const peers::Options& options);
   void Run(int control_periods) override;
   int worlds() const override { return 1; }
   double contacts() override { return world_->ContactCount(); }
+  BodyState Body(int body) const override { return world_->Body(body); }
+  bool converged() const override { return world_->UnsolvedSteps() == 0; }
 
  private:
   Motion motion_;

@@ -1,5 +1,6 @@
 #include "peers/adapters.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "math/vec.h"
@@ -120,6 +121,11 @@ std::vector<Shape> ShapesOf(const ModelDef& def) {
                       .half_extents_m = b.half_extents_m});
   }
   return shapes;
+}
+
+Range HeightsOf(const HeightFieldDef& field) {
+  const auto [least, most] = std::minmax_element(field.height_m.begin(), field.height_m.end());
+  return {*least, *most};
 }
 
 Springs::Springs(const ModelDef& def) {

@@ -1,5 +1,6 @@
 /// Bullet: a compound shape a body, cables as forces on the bodies before each step.
 #include <BulletCollision/CollisionDispatch/btCompoundCompoundCollisionAlgorithm.h>
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <cmath>
@@ -28,7 +29,7 @@ Rotation Ours(const btMatrix3x3& m) {
   return r;
 }
 
-/// Bullet asks this for a plane and a part of a compound, and for parts of two compounds.
+/// Bullet asks this for ground and a part of a compound, and for parts of two compounds.
 bool Meets(const btCollisionShape* a, const btCollisionShape* b) {
   const bool plane =
       a->getShapeType() == STATIC_PLANE_PROXYTYPE || b->getShapeType() == STATIC_PLANE_PROXYTYPE;
@@ -38,14 +39,14 @@ bool Meets(const btCollisionShape* a, const btCollisionShape* b) {
 
 /// Coefficients of surfaces from those of contacts: Bullet multiplies.
 struct Factors {
-  double body = 0, plane = 0;
+  double body = 0, ground = 0;
 };
-Factors Split(double bodies, double with_plane) {
+Factors Split(double bodies, double with_ground) {
   const double body = std::sqrt(bodies);
-  if (body == 0 && with_plane != 0) {
-    throw std::invalid_argument("Bullet cannot have bodies that are smoother than with a plane");
+  if (body == 0 && with_ground != 0) {
+    throw std::invalid_argument("Bullet cannot have bodies that are smoother than with the ground");
   }
-  return {body, body == 0 ? 0 : with_plane / body};
+  return {body, body == 0 ? 0 : with_ground / body};
 }
 
 class Bullet final : public World {
@@ -64,7 +65,11 @@ class Bullet final : public World {
       world_.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
     }
     const std::vector<Shape> shapes = ShapesOf(def);
-    for (std::size_t i = 0; i < def.planes.size(); ++i) AddPlane(def, static_cast<int>(i));
+    for (const PlaneDef& p : def.planes) {
+      AddGround(def, p.material, {0, 0, 0}, kPlaneBit,
+                std::make_unique<btStaticPlaneShape>(Bt(p.normal), Dot(p.normal, p.point_m)));
+    }
+    for (const HeightFieldDef& f : def.height_fields) AddField(def, f);
     for (std::size_t b = 0; b < def.bodies.size(); ++b) AddBody(def, static_cast<int>(b), shapes);
     Look();
   }
@@ -72,7 +77,7 @@ class Bullet final : public World {
   Bullet& operator=(const Bullet&) = delete;
   ~Bullet() override {
     for (const auto& body : bodies_) world_.removeRigidBody(body.get());
-    for (const auto& plane : planes_) world_.removeRigidBody(plane.get());
+    for (const auto& ground : grounds_) world_.removeRigidBody(ground.get());
   }
 
   void Step(double step_s, int count) override {
@@ -113,17 +118,29 @@ class Bullet final : public World {
   }
 
  private:
-  void AddPlane(const ModelDef& def, int index) {
-    const PlaneDef& p = def.planes[static_cast<std::size_t>(index)];
-    auto shape = std::make_unique<btStaticPlaneShape>(Bt(p.normal), Dot(p.normal, p.point_m));
-    shape->setUserIndex(kPlaneBit);
+  void AddGround(const ModelDef& def, const Material& material, const Vec3& at_m, int bit,
+                 std::unique_ptr<btCollisionShape> shape) {
+    shape->setUserIndex(bit);
     btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, shape.get());
-    const Contact bodies = BetweenBodies(def), plane = WithPlane(def, index);
-    info.m_friction = Split(bodies.friction, plane.friction).plane;
-    info.m_restitution = Split(bodies.restitution, plane.restitution).plane;
-    planes_.push_back(std::make_unique<btRigidBody>(info));
+    info.m_startWorldTransform.setOrigin(Bt(at_m));
+    const Contact bodies = BetweenBodies(def), ground = WithGround(def, material);
+    info.m_friction = Split(bodies.friction, ground.friction).ground;
+    info.m_restitution = Split(bodies.restitution, ground.restitution).ground;
+    grounds_.push_back(std::make_unique<btRigidBody>(info));
     shapes_.push_back(std::move(shape));
-    world_.addRigidBody(planes_.back().get());
+    world_.addRigidBody(grounds_.back().get());
+  }
+
+  /// Bullet keeps no heights of its own, and puts the middle of their range at the body's place.
+  void AddField(const ModelDef& def, const HeightFieldDef& field) {
+    heights_ = field.height_m;
+    const Range range = HeightsOf(field);
+    auto shape = std::make_unique<btHeightfieldTerrainShape>(
+        field.columns, field.rows, heights_.data(), range.least_m, range.most_m, 2, true);
+    shape->setLocalScaling({field.cell_m, field.cell_m, 1});
+    const double middle_m = 0.5 * (range.least_m + range.most_m);
+    AddGround(def, field.material, field.origin_m + Vec3{0, 0, middle_m}, kBodyBit,
+              std::move(shape));
   }
 
   void AddBody(const ModelDef& def, int index, const std::vector<Shape>& shapes) {
@@ -176,7 +193,8 @@ class Bullet final : public World {
   btSequentialImpulseConstraintSolver solver_;
   btDiscreteDynamicsWorld world_;
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
-  std::vector<std::unique_ptr<btRigidBody>> bodies_, planes_;
+  std::vector<std::unique_ptr<btRigidBody>> bodies_, grounds_;
+  std::vector<double> heights_;  ///< Of the height field.
   std::vector<Rotation> start_;  ///< From the axes of the start to principal axes.
   Springs springs_;
   std::vector<Pose> poses_;

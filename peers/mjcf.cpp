@@ -1,5 +1,6 @@
 /// The MuJoCo peer as text: what mujoco.cpp compiles, and what a program with another version of
 /// MuJoCo can load. Needs no MuJoCo.
+#include <algorithm>
 #include <sstream>
 
 #include "math/vec.h"
@@ -13,6 +14,9 @@ constexpr int kPlaneBit = 1, kBodyBit = 2;
 std::ostream& operator<<(std::ostream& out, const Vec3& v) {
   return out << '"' << v.x << ' ' << v.y << ' ' << v.z << '"';
 }
+
+/// MuJoCo wants it above 0.
+double Rise(const Range& range) { return std::max(range.most_m - range.least_m, 1e-3); }
 
 void WriteShapes(std::ostream& xml, const std::vector<Shape>& shapes, int body) {
   for (const Shape& s : shapes) {
@@ -46,14 +50,31 @@ void WriteSites(std::ostream& xml, const ModelDef& def, int body) {
   }
 }
 
-void WritePlanes(std::ostream& xml, const ModelDef& def) {
-  for (std::size_t i = 0; i < def.planes.size(); ++i) {
-    const PlaneDef& p = def.planes[i];
-    // Of two geoms the one of higher priority says the friction.
-    xml << "<geom type='plane' size='1 1 1' priority='1' pos=" << p.point_m << " zaxis=" << p.normal
-        << " contype='" << kPlaneBit << "' conaffinity='0' friction='"
-        << WithPlane(def, static_cast<int>(i)).friction << " 0 0'/>\n";
+void WriteGround(std::ostream& xml, const ModelDef& def) {
+  // Of two geoms the one of higher priority says the friction.
+  const auto write = [&](const Material& material, int bit) {
+    xml << " priority='1' contype='" << bit << "' conaffinity='0' friction='"
+        << WithGround(def, material).friction << " 0 0'/>\n";
+  };
+  for (const PlaneDef& p : def.planes) {
+    xml << "<geom type='plane' size='1 1 1' pos=" << p.point_m << " zaxis=" << p.normal;
+    write(p.material, kPlaneBit);
   }
+  for (const HeightFieldDef& f : def.height_fields) {
+    xml << "<geom type='hfield' hfield='field' pos="
+        << f.origin_m + Vec3{0, 0, HeightsOf(f).least_m};
+    write(f.material, kBodyBit);
+  }
+}
+
+/// How large a field is: its heights are put in when the model is loaded (MujocoHeights).
+void WriteField(std::ostream& xml, const HeightFieldDef& field) {
+  constexpr double kBase_m = 1;
+  const Range range = HeightsOf(field);
+  xml << "<asset><hfield name='field' nrow='" << field.rows << "' ncol='" << field.columns
+      << "' size='" << 0.5 * (field.columns - 1) * field.cell_m << ' '
+      << 0.5 * (field.rows - 1) * field.cell_m << ' ' << Rise(range) << ' ' << kBase_m
+      << "'/></asset>\n";
 }
 
 /// Speeds and rest lengths of the start. What is not named, the poses, is as in the bodies.
@@ -75,6 +96,15 @@ void WriteStart(std::ostream& xml, const ModelDef& def) {
 
 }  // namespace
 
+std::vector<float> MujocoHeights(const HeightFieldDef& field) {
+  const Range range = HeightsOf(field);
+  std::vector<float> heights;
+  for (const double z : field.height_m) {
+    heights.push_back(static_cast<float>((z - range.least_m) / Rise(range)));
+  }
+  return heights;
+}
+
 std::string Mjcf(const ModelDef& def, const Options& options) {
   const std::vector<Shape> shapes = ShapesOf(def);
   // Bodies of many shapes, a disc on feet, need more; but its memory grows with the square of this.
@@ -90,8 +120,10 @@ std::string Mjcf(const ModelDef& def, const Options& options) {
       << (options.elliptic ? "elliptic" : "pyramidal") << "' gravity=" << def.gravity_m_per_s2
       << "/>\n<size nconmax='" << contacts << "' njmax='" << 4 * contacts
       << "'/>\n<default><geom condim='3' friction='" << BetweenBodies(def).friction
-      << " 0 0'/></default>\n<worldbody>\n";
-  WritePlanes(xml, def);
+      << " 0 0'/></default>\n";
+  for (const HeightFieldDef& field : def.height_fields) WriteField(xml, field);
+  xml << "<worldbody>\n";
+  WriteGround(xml, def);
   WriteSites(xml, def, kWorld);
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     const BodyDef& body = def.bodies[b];

@@ -5,6 +5,7 @@
 /// that is slack and grows longer quickly, b dl/dt > k (L - l), already pulls.
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -41,6 +42,10 @@ class Mujoco final : public World {
  public:
   Mujoco(const ModelDef& def, const Options& options)
       : model_(Compile(Mjcf(def, options))), data_(mj_makeData(model_)) {
+    for (const HeightFieldDef& field : def.height_fields) {
+      const std::vector<float> heights = MujocoHeights(field);
+      std::copy(heights.begin(), heights.end(), model_->hfield_data);
+    }
     mju_user_warning = [](const char*) {};  // Step looks at the warnings; no file of them
     mj_resetDataKeyframe(model_, data_, 0);
   }

@@ -2,6 +2,8 @@
 #include <ode/ode.h>
 
 #include <array>
+#include <atomic>
+#include <cstdarg>
 #include <mutex>
 #include <stdexcept>
 
@@ -17,9 +19,16 @@ constexpr unsigned long kPlaneBit = 1, kBodyBit = 2;
 Rotation Ours(const dReal* m) { return {{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}}; }
 Vec3 OursVector(const dReal* v) { return {v[0], v[1], v[2]}; }
 
+/// What ODE says of a step, "LCP internal error", and to nobody in particular.
+std::atomic<int> g_messages = 0;
+void Hear(int, const char*, va_list) { ++g_messages; }
+
 void Initialize() {
   static std::once_flag once;
-  std::call_once(once, [] { dInitODE2(0); });
+  std::call_once(once, [] {
+    dInitODE2(0);
+    dSetMessageHandler(Hear);
+  });
 }
 
 class Ode final : public World {
@@ -38,16 +47,13 @@ class Ode final : public World {
     dWorldSetGravity(world_, g.x, g.y, g.z);
     dWorldSetQuickStepNumIterations(world_, options.iterations);
     between_bodies_ = BetweenBodies(def);
-    for (std::size_t i = 0; i < def.planes.size(); ++i) {
-      const PlaneDef& p = def.planes[i];
-      const dGeomID plane =
-          dCreatePlane(space_, p.normal.x, p.normal.y, p.normal.z, Dot(p.normal, p.point_m));
-      dGeomSetCategoryBits(plane, kPlaneBit);
-      dGeomSetCollideBits(plane, 0);
-      with_plane_.push_back(WithPlane(def, static_cast<int>(i)));
+    with_ground_.reserve(def.planes.size() + def.height_fields.size());  // geoms point to them
+    for (const PlaneDef& p : def.planes) {
+      AddGround(def, p.material, kPlaneBit,
+                dCreatePlane(space_, p.normal.x, p.normal.y, p.normal.z, Dot(p.normal, p.point_m)));
     }
-    for (std::size_t i = 0; i < with_plane_.size(); ++i) {
-      dGeomSetData(dSpaceGetGeom(space_, static_cast<int>(i)), &with_plane_[i]);
+    for (const HeightFieldDef& f : def.height_fields) {
+      AddGround(def, f.material, kBodyBit, FieldOf(f));
     }
     const std::vector<Shape> shapes = ShapesOf(def);
     for (std::size_t b = 0; b < def.bodies.size(); ++b) AddBody(def, static_cast<int>(b), shapes);
@@ -58,6 +64,7 @@ class Ode final : public World {
   ~Ode() override {
     dJointGroupDestroy(contacts_);
     dSpaceDestroy(space_);
+    if (heights_ != nullptr) dGeomHeightfieldDataDestroy(heights_);
     dWorldDestroy(world_);
   }
 
@@ -71,8 +78,10 @@ class Ode final : public World {
       }
       contact_count_ = 0;
       dSpaceCollide(space_, this, Near);
+      const int before = g_messages;
       const int done = full_step_ ? dWorldStep(world_, step_s) : dWorldQuickStep(world_, step_s);
       if (done == 0) throw std::runtime_error("ODE has no memory for a step");
+      if (g_messages != before) ++unsolved_;
       dJointGroupEmpty(contacts_);
       Look();
     }
@@ -96,8 +105,33 @@ class Ode final : public World {
             {j.m[0], j.m[4], j.m[8], j.m[1], j.m[2], j.m[5]}};
   }
   int ContactCount() const override { return contact_count_; }
+  int UnsolvedSteps() const override { return unsolved_; }
 
  private:
+  void AddGround(const ModelDef& def, const Material& material, unsigned long bit, dGeomID geom) {
+    with_ground_.push_back(WithGround(def, material));
+    dGeomSetData(geom, &with_ground_.back());
+    dGeomSetCategoryBits(geom, bit);
+    dGeomSetCollideBits(geom, 0);
+  }
+
+  /// ODE's fields have y up and rows along z: turned about x by a quarter, with the last row first.
+  dGeomID FieldOf(const HeightFieldDef& field) {
+    std::vector<double> heights;
+    for (auto end = field.height_m.end(); end != field.height_m.begin(); end -= field.columns) {
+      heights.insert(heights.end(), end - field.columns, end);
+    }
+    heights_ = dGeomHeightfieldDataCreate();
+    dGeomHeightfieldDataBuildDouble(heights_, heights.data(), 1, (field.columns - 1) * field.cell_m,
+                                    (field.rows - 1) * field.cell_m, field.columns, field.rows, 1,
+                                    0, 1, 0);
+    const dGeomID geom = dCreateHeightfield(space_, heights_, 1);
+    const dMatrix3 turn = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0};
+    dGeomSetRotation(geom, turn);
+    dGeomSetPosition(geom, field.origin_m.x, field.origin_m.y, field.origin_m.z);
+    return geom;
+  }
+
   void AddBody(const ModelDef& def, int index, const std::vector<Shape>& shapes) {
     const BodyDef& body = def.bodies[static_cast<std::size_t>(index)];
     const dBodyID id = dBodyCreate(world_);
@@ -144,11 +178,11 @@ class Ode final : public World {
       dSpaceCollide2(a, b, this, Near);
       return;
     }
-    std::array<dContact, 8> found;  // as many as two boxes can have
+    std::array<dContact, 64> found;  // more than two boxes have, or a rod on hills
     const int count =
         dCollide(a, b, static_cast<int>(found.size()), &found[0].geom, sizeof(dContact));
-    const void* const plane = dGeomGetData(a) != nullptr ? dGeomGetData(a) : dGeomGetData(b);
-    const Contact& how = plane != nullptr ? *static_cast<const Contact*>(plane) : between_bodies_;
+    const void* const ground = dGeomGetData(a) != nullptr ? dGeomGetData(a) : dGeomGetData(b);
+    const Contact& how = ground != nullptr ? *static_cast<const Contact*>(ground) : between_bodies_;
     for (int i = 0; i < count; ++i) {
       dContact& contact = found[static_cast<std::size_t>(i)];
       contact.surface = {};
@@ -174,9 +208,10 @@ class Ode final : public World {
   dWorldID world_ = nullptr;
   dSpaceID space_ = nullptr;
   dJointGroupID contacts_ = nullptr;
-  int contact_count_ = 0;
+  int contact_count_ = 0, unsolved_ = 0;
   Contact between_bodies_;
-  std::vector<Contact> with_plane_;
+  std::vector<Contact> with_ground_;
+  dHeightfieldDataID heights_ = nullptr;
   std::vector<dBodyID> bodies_;
   Springs springs_;
   std::vector<Pose> poses_;

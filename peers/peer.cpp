@@ -58,6 +58,14 @@ const Material* FirstMaterial(const ModelDef& def) {
   return nullptr;
 }
 
+/// Of all grounds that peers know.
+std::vector<const Material*> Grounds(const ModelDef& def) {
+  std::vector<const Material*> found;
+  for (const PlaneDef& p : def.planes) found.push_back(&p.material);
+  for (const HeightFieldDef& f : def.height_fields) found.push_back(&f.material);
+  return found;
+}
+
 Contact Between(const ModelDef& def, const Material& a, const Material& b) {
   const sim::Coefficients both = sim::Combined(def, a, b);
   return {both.kinetic_friction, both.restitution};
@@ -73,7 +81,11 @@ std::string Version(Engine engine) {
 
 std::string Unsupported(const ModelDef& def) {
   if (!def.terrain_boxes.empty()) return "terrain boxes";
-  if (!def.height_fields.empty() || !def.terrain_meshes.empty()) return "height fields and meshes";
+  if (!def.terrain_meshes.empty()) return "terrain meshes";
+  if (def.height_fields.size() > 1) return "more than one height field";
+  for (const HeightFieldDef& f : def.height_fields) {  // MuJoCo and ODE split theirs all alike
+    if (f.split != HeightFieldDef::Split::kSame) return "height fields split other than the same";
+  }
   if (!def.motions.empty()) return "bodies that a program moves";
   if (!def.joints.empty() || !def.apart.empty()) return "joints, and bodies that are kept apart";
   for (const BodyDef& body : def.bodies) {
@@ -84,8 +96,8 @@ std::string Unsupported(const ModelDef& def) {
   }
   const Material* const material = FirstMaterial(def);
   const auto special = [](const Material& m) { return m.stribeck || m.directions; };
-  for (const PlaneDef& p : def.planes) {
-    if (special(p.material)) return "friction by speed or by direction";
+  for (const Material* const ground : Grounds(def)) {
+    if (special(*ground)) return "friction by speed or by direction";
   }
   if (material != nullptr && special(*material)) return "friction by speed or by direction";
   const auto fits = [&](const Material& m) { return Same(m, *material) && !special(m); };
@@ -98,8 +110,8 @@ std::string Unsupported(const ModelDef& def) {
   for (const BoxDef& b : def.boxes) {
     if (b.collides && !fits(b.material)) return "shapes of different materials";
   }
-  for (const PlaneDef& p : def.planes) {
-    if (p.material.static_friction != p.material.kinetic_friction) {
+  for (const Material* const ground : Grounds(def)) {
+    if (ground->static_friction != ground->kinetic_friction) {
       return "static friction that differs from kinetic friction";
     }
   }
@@ -115,10 +127,9 @@ Contact BetweenBodies(const ModelDef& def) {
   return m == nullptr ? Contact{} : Between(def, *m, *m);
 }
 
-Contact WithPlane(const ModelDef& def, int plane) {
+Contact WithGround(const ModelDef& def, const Material& ground) {
   const Material* const m = FirstMaterial(def);
-  return m == nullptr ? Contact{}
-                      : Between(def, *m, def.planes[static_cast<std::size_t>(plane)].material);
+  return m == nullptr ? Contact{} : Between(def, *m, ground);
 }
 
 std::unique_ptr<World> MakeWorld(Engine engine, const ModelDef& def, const Options& options) {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "taut/batch.h"
 
@@ -50,6 +51,8 @@ class World {
   virtual BodyState Body(int body) const = 0;
   virtual MassState Mass(int body) const = 0;
   virtual int ContactCount() const = 0;  ///< Of the last step.
+  /// Steps since the start that the engine says it has not solved. Only ODE's full step says so.
+  virtual int UnsolvedSteps() const { return 0; }
 };
 
 /// Why the peers cannot run a model, in words; empty if they can.
@@ -58,6 +61,9 @@ std::string Unsupported(const ModelDef& def);
 /// The model in MuJoCo's language, with a keyframe of its start: what the engine of that name runs,
 /// for other versions of it. The model is supported.
 std::string Mjcf(const ModelDef& def, const Options& options = {});
+/// The heights of a field as that model takes them when it is loaded, from 0 to 1 in single
+/// precision.
+std::vector<float> MujocoHeights(const HeightFieldDef& field);
 
 /// A world as `def` describes it. The engine is available and the model supported, otherwise
 /// std::invalid_argument says what is wrong.

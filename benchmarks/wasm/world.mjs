@@ -21,6 +21,7 @@ export class World {
     this.model = mujoco.MjModel.from_xml_string(mjcf.replace(/<size [^>]*>/, ROOM));
     if (!this.model) throw new Error(`MuJoCo ${VERSION} does not take the model`);
     this.model.opt.timestep = file.step_s;
+    if (this.model.nhfielddata > 0) this.model.hfield_data.set(file.heights);
     this.data = new mujoco.MjData(this.model);
     mujoco.mj_resetDataKeyframe(this.model, this.data, 0);
     this.commands = file.rest_lengths_m;

@@ -63,9 +63,11 @@ def results(raw):
                 "worlds": int(worlds), "lanes": int(lanes), "threads": int(threads),
                 "steps_per_s": statistics.median(rates), "repetitions": len(rates),
                 "spread": (max(rates) - min(rates)) / statistics.median(rates)}
-        for key in ("contacts", "linear_solves", "bytes_per_world", "apart_m"):
+        for key in ("contacts", "linear_solves", "bytes_per_world", "apart_m", "speed_kept"):
             if runs[0].get(key) is not None:
                 item[key] = statistics.median(run[key] for run in runs)
+        if "deepest_m" in runs[0]:
+            item["deepest_m"] = max(run["deepest_m"] for run in runs)
         if "converged" in runs[0]:
             item["converged"] = all(run["converged"] == 1 for run in runs)
         stages = {key.removeprefix(STAGE): statistics.median(run[key] for run in runs)

@@ -4,37 +4,14 @@ import pathlib
 import statistics
 import textwrap
 
-from measuring import contacts, wasm
+from measuring import contacts, hills, wasm
 from measuring.figures import NOTHING, SETTINGS, number
+from measuring.results import Results, mark, shared
 from validation.runs import Problem, fill, table
 
 TEMPLATE = pathlib.Path(__file__).with_name("performance.md.in")
 ROBOTS = ("tetraspine3", "tetraspine12", "six_strut")
 STAGES = ("start", "kinematics", "cables", "kick", "collide", "solve", "integrate", "judge")
-GROUNDS = {"plane": "plane", "hills": "hills", "many": "10^7 cells"}
-UNCONVERGED = "*"  # some step of it stopped at the largest number of linear solves
-
-
-class Results:
-    def __init__(self, items):
-        self.items = items
-
-    def of(self, **wanted):
-        return [item for item in self.items if all(item[key] == value for key, value in wanted.items())]
-
-    def one(self, **wanted):
-        found = self.of(**wanted)
-        if len(found) > 1:
-            raise Problem(f"{len(found)} results for {wanted}")
-        return found[0] if found else None
-
-    def rate(self, **wanted):
-        found = self.one(**wanted)
-        return found["steps_per_s"] if found else None
-
-
-def mark(item):
-    return "" if item.get("converged", True) else UNCONVERGED
 
 
 def one_world(items):
@@ -149,24 +126,6 @@ def growth(items, kind):
     return table([kind, *(column[3] for column in columns)], rows)
 
 
-def hills(items):
-    """Microseconds of a world's step on a plane and on hills."""
-    results = Results(items)
-    found = results.of(kind="hills")
-    lanes = sorted({item["lanes"] for item in found})
-    rows = []
-    for robot in sorted({item["robot"].split("@")[0] for item in found}):
-        us = {(ground, n): 1e6 / rate for ground in GROUNDS for n in lanes
-              if (rate := results.rate(kind="hills", robot=f"{robot}@{ground}", lanes=n))}
-        row = [robot]
-        for n in lanes:
-            for ground in GROUNDS:
-                times = f" ({number(us[ground, n] / us['plane', n], 2)}x)" if ground != "plane" and {(ground, n), ("plane", n)} <= us.keys() else ""
-                row.append(number(us[ground, n]) + times if (ground, n) in us else NOTHING)
-        rows.append(row)
-    return table(["robot", *(f"{name}, {n} lane{'s' * (n > 1)}" for n in lanes for name in GROUNDS.values())], rows)
-
-
 def spread(items):
     """How far the repetitions of a benchmark are apart, in per cent of their median."""
     worst = max(items, key=lambda item: item["spread"])
@@ -177,8 +136,7 @@ def spread(items):
 
 
 def company(machine):
-    """Whether others worked there, which the wall's clock shows."""
-    if machine["load"][0] <= machine["cores"] / 2:
+    if not shared(machine):
         return ""
     return "\nOthers worked there at the same time: rows of several threads say little, all others more in their ratios."
 
@@ -192,7 +150,7 @@ def text(items):
     if not items:
         raise Problem("these results are of contact-rich scenes alone; the page needs all others, too")
     values = {"one": one_world(items), "mujocos": mujocos(items), "which_mujoco": which_mujoco(items), "batches": batches(items), "against": against_batches(items),
-              "stages": stages(items), "memory": memory(items), "hills": hills(items), "segments": growth(items, "segments"),
+              "stages": stages(items), "memory": memory(items), "hills": hills.section(items), "segments": growth(items, "segments"),
               "contacts": growth(items, "contacts"), "contact_scenes": scenes,
               **spread(items),
               "repetitions": str(min(item["repetitions"] for item in items)),

@@ -17,7 +17,7 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "script"))
 
-from measuring import compare, measure, page, wasm  # noqa: E402
+from measuring import compare, hills, measure, page, wasm  # noqa: E402
 from validation.runs import Problem  # noqa: E402
 
 PROGRAM = sys.argv[1]
@@ -75,8 +75,8 @@ def MakesThePageFromItsList():
     rate = page.Results(results).rate(kind="one", engine="taut", robot="tetraspine3")
     assert f"| taut | {page.number(rate)} | - | - |" in text
     assert page.one_world(results) in text
-    assert page.hills(results) in text
-    us = [1e6 / page.Results(results).rate(kind="hills", robot=f"six_strut@{ground}", lanes=1) for ground in ("plane", "hills")]
+    assert hills.section(results) in text
+    us = [1e6 / page.Results(results).rate(kind="hills", engine="taut", robot=f"six_strut@{ground}", lanes=1) for ground in ("plane", "hills")]
     assert f"| six_strut | {page.number(us[0])} | {page.number(us[1])} ({page.number(us[1] / us[0], 2)}x) | -" in text
     elsewhere = {**results[0], "machine": {**results[0]["machine"], "processor": "another"}}
     try:
@@ -85,6 +85,28 @@ def MakesThePageFromItsList():
         assert str(problem) == "these results are of several machines or versions"
     else:
         raise AssertionError("results of two machines on one page")
+
+
+def MakesTheSectionOnHillsAlone():
+    with tempfile.TemporaryDirectory() as folder:
+        _, results = measured(folder, "^hills/.*/(six_strut@(plane|hills)|ball@level)/")
+    text = hills.replaced("a\n\n### On hills, by the clock\n\nold\n\nold\n\n### Next\n\nb\n", results)
+    assert text == f"a\n\n### On hills, by the clock\n\n{hills.section(results)}\n\n### Next\n\nb\n"
+    assert "{{" not in text
+    (row,) = (line for line in hills.Beside(results).worth().splitlines() if line.startswith("| taut |"))
+    assert row == "| taut | 1 | < 0.001 |", row
+    for item in results:
+        if item["robot"] == "ball@level":
+            assert 0.9 < item["speed_kept"] < 1.0001, item
+        elif item["robot"] == "six_strut@hills" and item["engine"] != wasm.ENGINE:
+            assert 0 <= item["deepest_m"] < 0.031, item
+        assert hills.SETTINGS[item["engine"], item["setting"]] in text, item
+    try:
+        hills.replaced("### Other\n\n", results)
+    except Problem as problem:
+        assert str(problem) == "the page has no section ### On hills"
+    else:
+        raise AssertionError("a page without that section")
 
 
 def AMujocoElsewhereGetsTheRobotAsText():
