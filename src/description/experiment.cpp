@@ -48,10 +48,10 @@ void CheckHeading(const ModelDef& def, const Value* noise, const Scope& scope) {
   };
   for (const JointDef& joint : def.joints) {
     if (!still(joint.body_a) && !still(joint.body_b)) continue;
-    scope.out.Error(noise->at,
-                    "start_noise.heading_rad: the joint \"" + joint.name +
-                        "\" holds the robot in the world",
-                    "start_noise.position_m moves what is not tied to the world");
+    scope.out.Error(
+        noise->at,
+        "start_noise.heading_rad: the joint \"" + joint.name + "\" holds the robot in the world",
+        "start_noise.position_m moves what is not tied to the world");
     return;
   }
 }

@@ -204,8 +204,8 @@ TEST(JointText, TwoOfOneNameAreAnError) {
 using JointedStart = test::ExperimentFolder;
 
 TEST_F(JointedStart, NoiseMovesWhatIsJoinedTogether) {
-  const std::string model = "taut: 1\nkind: model\nname: leg\n" +
-                            Leg("kind: ball", "allow_disconnected: true\n");
+  const std::string model =
+      "taut: 1\nkind: model\nname: leg\n" + Leg("kind: ball", "allow_disconnected: true\n");
   const std::string experiment =
       "taut: 1\nkind: experiment\nname: trial\nmodel: leg.yaml\nduration_s: 1\n"
       "start_noise: {position_m: 0.01}\n";
@@ -227,8 +227,9 @@ TEST_F(JointedStart, NoiseMovesWhatIsJoinedTogether) {
   Batch batch(Model::Compile(held.robot.def, out), {});
   ASSERT_TRUE(plant::PrepareStart(held, batch, out));
   EXPECT_EQ(batch.Body(0, 0).position_m.x, held.robot.def.bodies[0].com_m.x);
-  Write("trial.yaml", "taut: 1\nkind: experiment\nname: trial\nmodel: leg.yaml\nduration_s: 1\n"
-                      "start_noise: {heading_rad: 0.1}\n");
+  Write("trial.yaml",
+        "taut: 1\nkind: experiment\nname: trial\nmodel: leg.yaml\nduration_s: 1\n"
+        "start_noise: {heading_rad: 0.1}\n");
   EXPECT_THAT(Complaints(), HasSubstr("the joint \"hip\" holds the robot in the world"));
 }
 
