@@ -51,10 +51,14 @@ class GroundOf : public testing::TestWithParam<Setting> {
 };
 
 TEST_P(GroundOf, ABallFallsFreelyDownToItsTriangle) {
-  // NTRT's hills, not square and not in the middle. Over the centroid of a triangle a small ball
-  // touches that one first, and the diagonal decides how high it is, by as much as 1 cm.
+  // NTRT's hills, shifted so that no half is like another, not square and not in the middle. Over
+  // the centroid of a triangle a small ball touches that one first, and the diagonal decides how
+  // high it is, by as much as 1 cm.
   constexpr double kStep_s = 1e-4, kRadius_m = 0.002, kDrop_m = 0.01;
-  HeightFieldDef field = SplitTheSame(scenes::Hills(40, 30, {0, 0, 0}));
+  HeightFieldDef field =
+      SplitTheSame(scenes::Field(40, 30, 0.04, {0, 0, 0}, [](double x, double y) {
+        return 0.02 * std::sin(x / 0.04 + 1) * std::cos(y / 0.04 + 2);
+      }));
   field.origin_m = {0.3, -0.2, 0.1};
   for (int k = 0; k < 24; ++k) {
     const int i = 3 + 5 * k % 33, j = 2 + 7 * k % 25;
