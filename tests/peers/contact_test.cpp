@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "math/vec.h"
-#include "peers/settings.h"
+#include "peers/engine_test.h"
 #include "peers/sled.h"
 #include "scenes/block_on_slope.h"
 
@@ -15,15 +15,8 @@ namespace {
 constexpr double kStepS = 0.001;
 constexpr double kPi = 3.14159265358979323846;
 
-class ContactOf : public testing::TestWithParam<Setting> {
+class ContactOf : public EngineTest {
  protected:
-  void SetUp() override {
-    if (!Available(GetParam().engine))
-      GTEST_SKIP() << Name(GetParam().engine) << " is not built in";
-  }
-  static std::unique_ptr<World> Make(const ModelDef& def) {
-    return MakeWorld(GetParam().engine, def, GetParam().options);
-  }
   static double WayOf(double heading_rad) {
     const auto world = Make(test::Sled(1, heading_rad));
     world->Step(kStepS, 2000);

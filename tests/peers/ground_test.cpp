@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "math/vec.h"
-#include "peers/settings.h"
+#include "peers/engine_test.h"
 #include "peers/sled.h"
 #include "scenes/ball.h"
 #include "scenes/rod.h"
@@ -38,15 +38,8 @@ struct Slope {
   }
 };
 
-class GroundOf : public testing::TestWithParam<Setting> {
+class GroundOf : public EngineTest {
  protected:
-  void SetUp() override {
-    if (!Available(GetParam().engine))
-      GTEST_SKIP() << Name(GetParam().engine) << " is not built in";
-  }
-  static std::unique_ptr<World> Make(const ModelDef& def) {
-    return MakeWorld(GetParam().engine, def, GetParam().options);
-  }
   static bool Is(Engine engine) { return GetParam().engine == engine; }
 };
 

@@ -5,7 +5,7 @@
 #include "scenes/rough_ground.h"
 #include "sim/shape_contacts.h"
 #include "sim/surface_build.h"
-#include "tests/instruction_sets.h"
+#include "tests/physics/lanes_alike.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
@@ -220,29 +220,7 @@ INSTANTIATE_TEST_SUITE_P(Forms, BoxesOnHills,
 TEST(BoxOnGround, LanesHaveTheBitsOfAWorldAlone) {
   for (const Form form : {Form::kField, Form::kSheet}) {
     const ModelDef def = BoxesOverHills(5, form);
-    const auto start = [&](Batch& batch, int world, int which) {
-      for (int b = 0; b < 3; ++b) {
-        BodyState state = batch.Body(world, b);
-        state.position_m = state.position_m + Vec3{0.07 * which, -0.05 * which, 0};
-        batch.SetBodyState(world, b, state);
-      }
-    };
-    std::uint64_t expected[8];
-    for (int w = 0; w < 8; ++w) {
-      Batch alone = MakeBatch(def);
-      start(alone, 0, w);
-      alone.Step(1e-3, 600);
-      expected[w] = alone.Hash(0);
-    }
-    for (const InstructionSet& set : kInstructionSets) {
-      BatchOptions options;
-      options.worlds = 8;
-      options.simd = set.simd;
-      Batch all = MakeBatch(def, options);
-      for (int w = 0; w < 8; ++w) start(all, w, w);
-      all.Step(1e-3, 600);
-      for (int w = 0; w < 8; ++w) EXPECT_EQ(all.Hash(w), expected[w]) << set.name << " " << w;
-    }
+    ExpectLanesLikeWorldsAlone(def, {0.07, -0.05, 0}, 600);
   }
 }
 

@@ -5,7 +5,7 @@
 #include "scenes/box.h"
 #include "scenes/rod.h"
 #include "scenes/six_strut.h"
-#include "tests/instruction_sets.h"
+#include "tests/physics/lanes_alike.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
@@ -174,29 +174,7 @@ TEST(JoinedBoxes, LanesHaveTheBitsOfAWorldAlone) {
   kThings[4].add(def);
   def.planes.clear();
   AddTiles(def, 25, 20, 0.09, 0.11);
-  const auto start = [&](Batch& batch, int world, int which) {
-    for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) {
-      BodyState state = batch.Body(world, b);
-      state.position_m = state.position_m + Vec3{0.03 * which, -0.02 * which, 0};
-      batch.SetBodyState(world, b, state);
-    }
-  };
-  std::uint64_t expected[8];
-  for (int w = 0; w < 8; ++w) {
-    Batch alone = MakeBatch(def);
-    start(alone, 0, w);
-    alone.Step(1e-3, 500);
-    expected[w] = alone.Hash(0);
-  }
-  for (const InstructionSet& set : kInstructionSets) {
-    BatchOptions options;
-    options.worlds = 8;
-    options.simd = set.simd;
-    Batch all = MakeBatch(def, options);
-    for (int w = 0; w < 8; ++w) start(all, w, w);
-    all.Step(1e-3, 500);
-    for (int w = 0; w < 8; ++w) EXPECT_EQ(all.Hash(w), expected[w]) << set.name << " " << w;
-  }
+  ExpectLanesLikeWorldsAlone(def, {0.03, -0.02, 0}, 500);
 }
 
 }  // namespace

@@ -5,40 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <map>
 #include <numbers>
 
+#include "system/columns.h"
 #include "taut/run.h"
 #include "taut/spec.h"
-#include "taut/trace.h"
 
 namespace taut {
 namespace {
 
 const std::string kRoot = TAUT_SOURCE_DIR "/";
 constexpr double kRowS = 0.04;  // of NTRT's traces in tests/data
-
-/// Columns by name, a row every 0.04 s.
-using Columns = std::map<std::string, std::vector<double>>;
-
-class Rows final : public TraceWriter {
- public:
-  explicit Rows(const ExperimentSpec& experiment) : channels_(RunChannels(experiment)) {}
-  bool Append(double, const double* values) override {
-    for (std::size_t i = 0; i < channels_.size(); ++i) {
-      columns[channels_[i].name].push_back(values[i]);
-    }
-    return true;
-  }
-  bool FlushOld() override { return true; }
-  bool Finish() override { return true; }
-  const std::string& error() const override { return none_; }
-  Columns columns;
-
- private:
-  std::vector<ChannelInfo> channels_;
-  std::string none_;
-};
 
 ExperimentSpec Load(const std::string& name) {
   Diagnostics out;

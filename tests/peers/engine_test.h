@@ -1,0 +1,23 @@
+/// A test of one engine with one of its settings; skipped where that is not built in.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "peers/settings.h"
+
+namespace taut::peers {
+
+class EngineTest : public testing::TestWithParam<Setting> {
+ protected:
+  void SetUp() override {
+    if (!Available(GetParam().engine))
+      GTEST_SKIP() << Name(GetParam().engine) << " is not built in";
+  }
+  static std::unique_ptr<World> Make(const ModelDef& def) {
+    return MakeWorld(GetParam().engine, def, GetParam().options);
+  }
+};
+
+}  // namespace taut::peers
