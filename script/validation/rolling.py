@@ -137,7 +137,7 @@ def picture(runs):
     points = [(x, y) for run in runs for x, y, _ in run.path]
     low, high = (min(min(p) for p in points), max(max(p) for p in points))
     low, high = 5 * math.floor(low / 5), 5 * math.ceil(high / 5)
-    left, top, size = 50, 15, 520
+    left, top, size = 60, 15, 520
 
     def place(x, y):
         return f"{left + size * (x - low) / (high - low):.1f},{top + size * (high - y) / (high - low):.1f}"
@@ -156,7 +156,9 @@ def picture(runs):
     for i, (text, shade) in enumerate((("as it is", "#b2182b"), ("other starts", "#4aa3c7"))):
         out.append(f'<path d="M{left + size + 15} {top + 15 + 20 * i}h24" stroke="{shade}" stroke-width="2"/>'
                    f'<text x="{left + size + 45}" y="{top + 19 + 20 * i}">{text}</text>')
-    out.append(f'<text x="{left + size / 2}" y="{top + size + 42}" text-anchor="middle">x, m</text>')
+    out.append(f'<text x="{left + size / 2}" y="{top + size + 42}" text-anchor="middle">x, m</text>'
+               f'<text x="12" y="{top + size / 2}" text-anchor="middle" '
+               f'transform="rotate(-90 12 {top + size / 2})">y, m</text>')
     return "\n".join(out + ["</svg>", ""])
 
 

@@ -33,7 +33,6 @@ class CableMaker {
         assignment_(assignment),
         body_of_node_(body_of_node),
         robot_(robot),
-        out_(out),
         once_(out) {}
 
   void Run() {
@@ -146,7 +145,6 @@ class CableMaker {
   const Assignment& assignment_;
   const BodyOfNode& body_of_node_;
   RobotSpec& robot_;
-  Diagnostics& out_;
   OncePerPlace once_;
 };
 
