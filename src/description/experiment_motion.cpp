@@ -43,6 +43,20 @@ void CheckLaw(const MapReader& map, const char* speed, const char* amplitude) {
   }
 }
 
+/// Of a body that forces do not move any more.
+void CheckJoints(const ModelDef& def, int body, const SourceRef& at, const Scope& scope) {
+  const auto still = [&](int b) {
+    return b == kWorld || def.bodies[static_cast<std::size_t>(b)].fixed;
+  };
+  for (const JointDef& joint : def.joints) {
+    if (joint.body_a != body && joint.body_b != body) continue;
+    if (!still(joint.body_a) || !still(joint.body_b)) continue;
+    scope.out.Error(at,
+                    "motion.of: the joint \"" + joint.name + "\" ties it to what no force moves",
+                    "leave the joint out of the model");
+  }
+}
+
 }  // namespace
 
 void Check(const MapReader& map, SlideText&) { CheckLaw(map, "speed_m_per_s", "amplitude_m"); }
@@ -78,6 +92,7 @@ void AddMotions(const std::vector<MotionText>& texts, bool robot_known, const Sc
       motion.body = static_cast<int>(body);
       def.bodies[body].fixed = true;
       def.bodies[body].velocity_m_per_s = def.bodies[body].angular_velocity_rad_per_s = {};
+      CheckJoints(def, motion.body, text.of.at, scope);
     } else if (box < def.terrain_boxes.size()) {
       motion.body = BodyOfBox(box, robot);
     } else {

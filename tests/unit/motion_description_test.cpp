@@ -95,6 +95,14 @@ TEST_F(MotionText, EveryMistakeIsNamedAtOnce) {
   EXPECT_THAT(errors, HasSubstr("two motions called c"));
 }
 
+TEST_F(MotionText, WhatASupportHoldsCannotBeMoved) {
+  std::string model = kModel;
+  Write("model.yaml", model + "  - {match: a0, support: {kind: ball}}\n");
+  Add("  - {name: hand, of: a, slide: {direction: [0, 0, 1], speed_m_per_s: [[0, 1]]}}\n");
+  EXPECT_THAT(Complaints(),
+              HasSubstr("trial.yaml:10:22: error: motion.of: the joint \"a0\" ties it"));
+}
+
 TEST_F(MotionText, WhileItSettlesNothingMoves) {
   Add("  - {name: hand, of: a, slide: {direction: [0, 0, 1], speed_m_per_s: [[0, 0.5]]}}\n");
   ExperimentSpec experiment = Load();
