@@ -126,6 +126,27 @@ TEST(Joint, ABodyThatIsFixedHoldsLikeTheWorld) {
   EXPECT_GT(Distance(one.Body(0, 2).position_m, by_world.bodies[2].com_m), 0.05);
 }
 
+TEST(JointLong, AnHourOfSwingsLeavesNoGap) {
+  for (const bool loop : {false, true}) {
+    const ModelDef def = loop ? FourBars(JointKind::kHinge) : Chain(3, {0.1, 0, 0}, 1);
+    Batch world = MakeBatch(def);
+    double gap = 0;
+    int unsolved = 0;
+    for (int n = 0; n < 3'600'000; ++n) {
+      world.Step(1e-3);
+      gap = std::max(gap, WorstGap(world, def));
+      if (world.Status(0).bits == kStatusOk) continue;
+      // A parallelogram that goes through its flat pose has one more redundant row there.
+      ASSERT_EQ(world.Status(0).bits, kStatusNotConverged) << n;
+      ASSERT_LT(world.Status(0).residual_m_per_s, 1e-7) << n;
+      world.ClearStatus(0);
+      ++unsolved;
+    }
+    EXPECT_LT(gap, 1e-9) << loop;
+    EXPECT_LE(unsolved, loop ? 100 : 0);
+  }
+}
+
 TEST(Joint, LanesHaveTheBitsOfAWorldAlone) {
   ModelDef def = FourBars(JointKind::kHinge);
   def.joints[1].friction = 0.2, def.joints[0].most = 2.0, def.joints[0].restitution = 0.5;
