@@ -2,6 +2,7 @@
 #include <limits>
 #include <set>
 
+#include "base/fixed.h"
 #include "base/union_find.h"
 #include "description/build.h"
 #include "description/once.h"
@@ -159,7 +160,7 @@ void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
   const std::vector<BodyDef>& bodies = robot.def.bodies;
   const int world = static_cast<int>(bodies.size());  // and all that is fixed in it
   base::UnionFind sets(bodies.size() + 1);
-  const auto index = [&](int body) { return body == kWorld || bodies[body].fixed ? world : body; };
+  const auto index = [&](int body) { return base::IsFixed(robot.def, body) ? world : body; };
   for (const CableDef& cable : robot.def.cables) {
     for (const AttachmentDef& at : cable.attachments) {
       sets.Join(index(cable.attachments[0].body), index(at.body));

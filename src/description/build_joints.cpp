@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/fixed.h"
 #include "description/build.h"
 #include "description/once.h"
 #include "math/vec.h"
@@ -41,7 +42,7 @@ class JointMaker {
   Vec3 AxisIn(int instance, const Vec3& axis) const {
     return instance < 0 ? axis : Rotate(assembly_.instances[instance].q_WPart, axis);
   }
-  bool IsFixed(int body) const { return body == kWorld || robot_.def.bodies[body].fixed; }
+  bool IsFixed(int body) const { return base::IsFixed(robot_.def, body); }
 
   void Between(const PlacedPair& pair, const JointText& text) {
     if (pair.nodes.size() != 2) {

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "base/fixed.h"
 #include "description/experiment_keys.h"
 #include "description/experiment_parts.h"
 #include "description/hash.h"
@@ -43,11 +44,8 @@ LoadedModel LoadItsModel(const ExperimentText& text, const OverrideSet& of_user,
 
 /// Complains about a start that would tear the robot off what it is joined to.
 void CheckHeading(const ModelDef& def, const Value* noise, const Scope& scope) {
-  const auto still = [&](int body) {
-    return body == kWorld || def.bodies[static_cast<std::size_t>(body)].fixed;
-  };
   for (const JointDef& joint : def.joints) {
-    if (!still(joint.body_a) && !still(joint.body_b)) continue;
+    if (!base::IsFixed(def, joint.body_a) && !base::IsFixed(def, joint.body_b)) continue;
     scope.out.Error(
         noise->at,
         "start_noise.heading_rad: the joint \"" + joint.name + "\" holds the robot in the world",

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/fixed.h"
 #include "description/experiment_keys.h"
 #include "description/experiment_parts.h"
 
@@ -45,12 +46,9 @@ void CheckLaw(const MapReader& map, const char* speed, const char* amplitude) {
 
 /// Of a body that forces do not move any more.
 void CheckJoints(const ModelDef& def, int body, const SourceRef& at, const Scope& scope) {
-  const auto still = [&](int b) {
-    return b == kWorld || def.bodies[static_cast<std::size_t>(b)].fixed;
-  };
   for (const JointDef& joint : def.joints) {
     if (joint.body_a != body && joint.body_b != body) continue;
-    if (!still(joint.body_a) || !still(joint.body_b)) continue;
+    if (!base::IsFixed(def, joint.body_a) || !base::IsFixed(def, joint.body_b)) continue;
     scope.out.Error(at,
                     "motion.of: the joint \"" + joint.name + "\" ties it to what no force moves",
                     "leave the joint out of the model");

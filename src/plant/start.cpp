@@ -1,5 +1,6 @@
 #include "plant/start.h"
 
+#include "base/fixed.h"
 #include "base/union_find.h"
 #include "math/elementary.h"
 #include "math/random.h"
@@ -51,9 +52,7 @@ bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
 std::vector<int> JointedTo(const ModelDef& def) {
   const int world = static_cast<int>(def.bodies.size());
   base::UnionFind sets(def.bodies.size() + 1);
-  const auto index = [&](int body) {
-    return body == kWorld || def.bodies[static_cast<std::size_t>(body)].fixed ? world : body;
-  };
+  const auto index = [&](int body) { return base::IsFixed(def, body) ? world : body; };
   for (const JointDef& joint : def.joints) sets.Join(index(joint.body_a), index(joint.body_b));
   std::vector<int> first;
   for (int b = 0; b < world; ++b) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 
+#include "base/fixed.h"
 #include "math/vec.h"
 #include "sim/checker.h"
 
@@ -67,9 +68,7 @@ void CheckJoints(const ModelDef& def, Checker& check) {
   const auto known = [&](int body) {
     return body >= kWorld && body < static_cast<int>(def.bodies.size());
   };
-  const auto fixed = [&](int body) {
-    return body == kWorld || def.bodies[static_cast<std::size_t>(body)].fixed;
-  };
+  const auto fixed = [&](int body) { return base::IsFixed(def, body); };
   for (const JointDef& j : def.joints) {
     const std::string name = "joint " + j.name;
     check.Body(j.body_a, def, name);
