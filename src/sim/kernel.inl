@@ -10,7 +10,6 @@
 // clang-format off
 #include "sim/rows.h"
 #include "sim/poison.inl"
-#include "sim/motion_at.h"
 #include "sim/joined_boxes.h"
 #include "sim/passing.h"
 #include "sim/friction.h"
@@ -285,7 +284,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   }
   watch.Mark(Stage::kCables);
   StageKick(m, s, work, h);
-  if (m.motion_count > 0) StageMotionKick(m, s, work, h);
+  if (m.motion_count > 0) StageMotionKick(m, work);
   watch.Mark(Stage::kKick);
   const uint32_t overflow = StageCollide(m, s, g, work, step_s, Max(h, last));
   watch.Mark(Stage::kCollide);

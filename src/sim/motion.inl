@@ -21,6 +21,7 @@ void StageMotionPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, W h) n
     const Motion<W> middle = MotionAt(m, m.motions[i], t + half_h);
     motion.v0 = start.v, motion.w0 = start.w;
     motion.v_mid = middle.v, motion.w_mid = middle.w;
+    motion.end = MotionAt(m, m.motions[i], t + h);
     PutPlace(s, m.motions[i].body, middle);
   }
 }
@@ -41,13 +42,12 @@ void StageMotionStart(const View& m, Scratch<W>& work) noexcept {
 }
 
 /// Velocities of the step's end, after the kick.
-///   reads   time, motions[]     writes  bodies[].v, .w
+///   reads   motions[]     writes  bodies[].v, .w
 template <class W>
-void StageMotionKick(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexcept {
+void StageMotionKick(const View& m, Scratch<W>& work) noexcept {
   for (int i = 0; i < m.motion_count; ++i) {
     BodyWork<W>& body = work.bodies[m.motions[i].body];
-    const Motion<W> end = MotionAt(m, m.motions[i], s.time[0] + h);
-    body.v = end.v, body.w = end.w;
+    body.v = work.motions[i].end.v, body.w = work.motions[i].end.w;
   }
 }
 
@@ -67,7 +67,8 @@ void BoundMotions(const View& m, const Rows<W>& s, Scratch<W>& work, W h, W sinc
 
 /// Stage: the work of motions, against all that acts on their bodies at the middle of the step, and
 /// where they are at its end, after the second half of the drift.
-///   reads   time, bodies[], stiff[], joints[]     writes  pos, quat, vel, mom, old_*, motion_*
+///   reads   motions[], bodies[], stiff[], joints[]     writes  pos, quat, vel, mom, old_*,
+///   motion_*
 template <class W>
 void StageMotionEnd(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0), h = W::Splat(step_s), inv_h = W::Splat(1.0 / step_s);
@@ -93,7 +94,7 @@ void StageMotionEnd(const View& m, const Rows<W>& s, Scratch<W>& work, double st
     s.motion_force[i] = none - force, s.motion_torque[i] = none - torque;
     const W work_done = zero - h * (Dot(force, body.v_mid) + Dot(torque, body.w_mid));
     s.motion_work[i] += Select(halted, zero, work_done);
-    const Motion<W> end = MotionAt(m, m.motions[i], s.time[0] + h);
+    const Motion<W>& end = work.motions[i].end;
     PutPlace(s, b, end);
     body.R = RotationOf(end.quat);
     s.vel[b] = end.v + none;

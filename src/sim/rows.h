@@ -7,6 +7,7 @@
 #include "sim/constraint/joint_row.h"
 #include "sim/contacts.h"
 #include "sim/group.h"
+#include "sim/motion_at.h"
 #include "sim/solve/memory.h"
 #include "simd/angle.h"
 #include "simd/vec3.h"
@@ -122,10 +123,11 @@ struct HeldRow : JointRow<W> {
   V3<W> lin, turn;
 };
 
-/// How a motion moves its body in this step, as far as its end.
+/// How a motion moves its body in this step: velocities at its start and middle, and its end.
 template <class W>
 struct MotionWork {
   V3<W> v0, w0, v_mid, w_mid;
+  Motion<W> end;
 };
 
 /// A motor while its cable's tension T is found: its mean speed over the step is `mean` - `slows`
