@@ -86,6 +86,7 @@ std::string Unsupported(const ModelDef& def) {
   for (const HeightFieldDef& f : def.height_fields) {  // MuJoCo and ODE split theirs all alike
     if (f.split != HeightFieldDef::Split::kSame) return "height fields split other than the same";
   }
+  if (!def.hulls.empty()) return "hulls";
   if (!def.motions.empty()) return "bodies that a program moves";
   if (!def.joints.empty() || !def.apart.empty()) return "joints, and bodies that are kept apart";
   for (const BodyDef& body : def.bodies) {

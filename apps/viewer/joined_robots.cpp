@@ -85,6 +85,10 @@ int JoinedRobots::Add(const ModelDef& robot, const std::string& name, const Vec3
     add(part, joined_.capsules, &CapsuleDef::from_m, &CapsuleDef::to_m);
   }
   for (const BoxDef& part : robot.boxes) add(part, joined_.boxes, &BoxDef::center_m);
+  for (HullDef part : robot.hulls) {
+    for (Vec3& corner : part.corners_m) corner = Plus(corner, at_m);
+    add(std::move(part), joined_.hulls);
+  }
   for (const NodeDef& part : robot.nodes) add(part, joined_.nodes, &NodeDef::position_m);
   for (CableDef cable : robot.cables) {
     cable.name = prefix + cable.name;

@@ -48,6 +48,11 @@ Json Bodies(const ModelDef& def) {
                    {"half_extents_m", ToJson(box.half_extents_m)},
                    {"orientation", ToJson(box.orientation)}});
   }
+  for (const HullDef& hull : def.hulls) {
+    Json corners = Json::array();
+    for (const Vec3& corner : hull.corners_m) corners.push_back(InBody(def, hull.body, corner));
+    add(hull.body, {{"kind", "hull"}, {"name", hull.name}, {"corners_m", corners}});
+  }
   return bodies;
 }
 

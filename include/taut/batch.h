@@ -117,6 +117,7 @@ struct ShapeRef {
     kSpheres,
     kCapsules,
     kBoxes,
+    kHulls,
     kTerrainBoxes,
     kPlanes,
     kHeightFields,
@@ -131,8 +132,9 @@ struct Overlap {
   ShapeRef a, b;  ///< `a` is of a body that moves.
   int body_a = 0, body_b = kWorld;
   double depth_m = 0;  ///< How far they have to part to touch only, > 0.
-  /// Half the thickness of the thinner one: its radius, or half the smallest edge of a box; of `a`
-  /// alone where `b` is a plane. Deeper than this, the way out may be the other side.
+  /// Half the thickness of the thinner one: its radius, half the smallest edge of a box, how far a
+  /// hull's middle is from its nearest face; of `a` alone where `b` is a plane. Deeper than this,
+  /// the way out may be the other side.
   double half_thickness_m = 0;
 };
 

@@ -85,6 +85,18 @@ struct BoxDef {
   bool collides = true;
 };
 
+/// A convex solid with flat faces: what its corners span.
+struct HullDef {
+  /// No more count; a finer form is to be thinned out before (docs/theory/contact.md).
+  static constexpr int kMostCorners = 64;
+  std::string name;
+  int body = 0;
+  std::vector<Vec3>
+      corners_m;  ///< 4 to kMostCorners, not all in one plane; what is inside does not count.
+  Material material;
+  bool collides = true;
+};
+
 /// A named point of a body (or of the world): where forces are applied and positions measured.
 struct NodeDef {
   std::string name;
@@ -193,6 +205,7 @@ struct ModelDef {
   std::vector<SphereDef> spheres;
   std::vector<CapsuleDef> capsules;
   std::vector<BoxDef> boxes;
+  std::vector<HullDef> hulls;
   std::vector<NodeDef> nodes;
   std::vector<CableDef> cables;
   std::vector<JointDef> joints;

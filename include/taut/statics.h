@@ -32,8 +32,8 @@ double TotalMass(const ModelDef& def);
 
 /// How many shapes of a body may touch something.
 struct ShapeCount {
-  int capsules = 0, spheres = 0, boxes = 0;
-  int total() const noexcept { return capsules + spheres + boxes; }
+  int capsules = 0, spheres = 0, boxes = 0, hulls = 0;
+  int total() const noexcept { return capsules + spheres + boxes + hulls; }
 };
 std::vector<ShapeCount> CollidingShapes(const ModelDef& def);  ///< Per body of `def`.
 

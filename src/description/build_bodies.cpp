@@ -195,6 +195,8 @@ class BodyBuilder {
         const Quat q_WPart = TurnOf(placed.instance);
         AddBox(solids, box, placed.name, body, q_WPart, placed.position_m, q_WPart,
                box.half_extents_m, box.mass.Of(size.x * size.y * size.z, 0.0));
+      } else if (builder.convex) {
+        AddConvex(solids, *builder.convex, placed, body);
       }
     }
   }
@@ -227,6 +229,32 @@ class BodyBuilder {
     def.center_m = center;
     def.orientation = q;
     def.half_extents_m = half;
+  }
+
+  void AddConvex(Solids& solids, const ConvexText& text, const PlacedNode& node, int body) {
+    if (text.parts.empty()) solids.complete = false;
+    const Quat q_WPart = TurnOf(node.instance);
+    const auto place = [&](std::vector<Vec3> corners_m) {
+      for (Vec3& p : corners_m) p = node.position_m + Rotate(q_WPart, p);
+      return corners_m;
+    };
+    double volume_m3 = 0.0;
+    for (const ConvexText::Part& part : text.parts) {
+      volume_m3 += math::SixVolumes(part.corners_m, part.triangles) / 6.0;
+    }
+    const double density_kg_per_m3 = text.mass.Of(volume_m3, 0.0) / volume_m3;
+    for (std::size_t i = 0; i < text.parts.size(); ++i) {
+      const ConvexText::Part& part = text.parts[i];
+      solids.parts.push_back(SolidMesh(place(part.corners_m), part.triangles, density_kg_per_m3));
+      const std::string number = text.parts.size() == 1 ? "" : "_" + std::to_string(i);
+      HullDef& def = Add(robot_.def.hulls, text, node.name + number, body, q_WPart);
+      def.corners_m = place(part.hull_m);
+      for (const Vec3& p : def.corners_m) solids.bounds.Add(p, {});
+    }
+    const auto read = std::find(robot_.files.begin(), robot_.files.end(), text.read_file);
+    if (!text.read_file.empty() && read == robot_.files.end()) {
+      robot_.files.push_back(text.read_file);
+    }
   }
 
   void CheckMass(const Weld& weld, const Solids& solids, const BodyDef& def) {

@@ -121,12 +121,15 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
         def.height_fields.push_back(std::move(*field));
         def.height_fields.back().name = text.name;
         robot.height_field_sources.push_back(text.at);
+        if (!text.height_field->file.text.empty())
+          robot.files.push_back(PathOf(*text.height_field));
       }
     } else if (text.mesh) {
       if (auto mesh = ReadTerrainMesh(*text.mesh, scope)) {
         def.terrain_meshes.push_back(std::move(*mesh));
         def.terrain_meshes.back().name = text.name;
         robot.mesh_sources.push_back(text.at);
+        robot.files.push_back(PathOf(*text.mesh));
       }
     }
     if (text.name.empty()) continue;

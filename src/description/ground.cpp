@@ -160,8 +160,7 @@ bool ReadHeights(const HeightFieldText& text, const Scope& scope, HeightFieldDef
   field.columns = field.rows = 0;
   const std::string& file = text.file.text;
   const std::size_t set = SetIn(file);
-  const std::string path =
-      PathBeside(text.file.at.file, set == file.npos ? file : file.substr(0, set - 1));
+  const std::string path = PathOf(text);
   const bool good = set != file.npos ? ReadHdf5(path, file.substr(set), scope, field)
                     : IsImage(file)  ? ReadImage(text, path, scope, field)
                                      : ReadCsv(path, scope, field);
@@ -199,6 +198,16 @@ void Check(const MapReader& map, TerrainMeshText& mesh) {
   mesh.at = map.at();
 }
 
+std::string PathOf(const HeightFieldText& text) {
+  const std::string& file = text.file.text;
+  const std::size_t set = SetIn(file);
+  return PathBeside(text.file.at.file, set == file.npos ? file : file.substr(0, set - 1));
+}
+
+std::string PathOf(const TerrainMeshText& text) {
+  return PathBeside(text.file.at.file, text.file.text);
+}
+
 std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const Scope& scope) {
   HeightFieldDef field = text;
   if (!text.file.text.empty()) {
@@ -218,7 +227,7 @@ std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const
 
 std::optional<TerrainMeshDef> ReadTerrainMesh(const TerrainMeshText& text, const Scope& scope) {
   if (text.file.text.empty() || !std::isfinite(text.scale_m)) return std::nullopt;
-  auto mesh = ReadMeshFile(PathBeside(text.file.at.file, text.file.text), scope.out);
+  auto mesh = ReadMeshFile(PathOf(text), scope.out);
   if (!mesh) return std::nullopt;
   TerrainMeshDef def = text;
   def.triangles = std::move(mesh->triangles);

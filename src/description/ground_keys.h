@@ -124,6 +124,9 @@ void Keys(Io& io, Mesh& m) {
 }
 void Check(const MapReader& map, TerrainMeshText& mesh);
 
+/// Of its file, if it has one.
+std::string PathOf(const HeightFieldText& text);
+std::string PathOf(const TerrainMeshText& text);
 /// Heights from the file or the formula; nothing after a complaint.
 std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const Scope& scope);
 /// Corners and triangles from the file, in place; nothing after a complaint.

@@ -85,6 +85,8 @@ class ObjReader {
         points_.push_back(corners_.Add(point.value_or(Vec3{})));
       } else if (kind == "f") {
         Face(line);
+      } else if (kind == "o" || kind == "g") {
+        mesh_.BeginPart(NextWord(line));
       }
       return out_.items().size() - errors_before < kMostErrors;
     });
@@ -137,6 +139,8 @@ void ReadStlText(const std::string& path, std::string_view text, MeshFile& mesh,
       if (count != 3) out.Error(at, "a facet has three corners, this one " + std::to_string(count));
       mesh.triangles.push_back(triangle);
       count = 0;
+    } else if (kind == "solid") {
+      mesh.BeginPart(NextWord(line));
     }
     return out.items().size() - errors_before < kMostErrors;
   });
@@ -195,6 +199,7 @@ std::optional<MeshFile> ReadMeshFile(const std::string& path, Diagnostics& out) 
   if (!text) return std::nullopt;
   const std::size_t errors_before = out.items().size();
   MeshFile mesh;
+  mesh.BeginPart({});
   // Some programs begin binary files with "solid", too: their size tells.
   const bool binary = !obj && text->size() >= kStlHead &&
                       text->size() == kStlHead + kStlTriangle * std::size_t{Word(*text, 80)};
@@ -210,6 +215,7 @@ std::optional<MeshFile> ReadMeshFile(const std::string& path, Diagnostics& out) 
               obj ? "faces are lines that begin with f" : "neither text nor binary STL");
   }
   if (out.items().size() != errors_before) return std::nullopt;
+  if (mesh.parts.back().first_triangle == mesh.triangles.size()) mesh.parts.pop_back();
   return mesh;
 }
 

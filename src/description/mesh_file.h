@@ -15,6 +15,18 @@ namespace taut::description {
 struct MeshFile {
   std::vector<Vec3> corners;  ///< In the file's unit; no two are the same.
   std::vector<std::array<int, 3>> triangles;
+  /// Where its parts begin: groups and objects of an OBJ, solids of an STL, those with triangles.
+  struct Part {
+    std::string name;  ///< As written; may be empty.
+    std::size_t first_triangle = 0;
+  };
+  std::vector<Part> parts;
+
+  /// Names the triangles that follow.
+  void BeginPart(std::string_view name) {
+    if (!parts.empty() && parts.back().first_triangle == triangles.size()) parts.pop_back();
+    parts.push_back({std::string(name), triangles.size()});
+  }
 };
 
 /// Wavefront OBJ (`v` and `f`; faces of more corners become fans) or STL, text or binary, by the

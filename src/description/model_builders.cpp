@@ -110,7 +110,7 @@ void Check(const MapReader& map, JointText& joint) {
 void Check(const MapReader& map, BuilderText& builder) {
   if (map.Has("match")) builder.match_at = map.Find("match")->at;
   for (const char* kind :
-       {"rod", "sphere", "point_mass", "box", "cable", "anchor", "joint", "support"}) {
+       {"rod", "sphere", "point_mass", "box", "convex", "cable", "anchor", "joint", "support"}) {
     if (!map.Has(kind)) continue;
     builder.kind = builder.kind.empty() ? kind : "several";
   }

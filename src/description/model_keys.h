@@ -208,6 +208,34 @@ void Keys(Io& io, Box& b) {
 }
 void Check(const MapReader& map, BoxText& box);
 
+template <class Io, Either<HullDef, ConvexText> Convex>
+void Keys(Io& io, Convex& c) {
+  io.Map("convex", "builder.convex",
+         "A solid with flat faces at a node, its axes those of the part: from a file, of which "
+         "every object touches as its convex hull, or what some corners span.",
+         R"({"file": "foot.obj", "scale_m": 0.001, "density_kg_per_m3": 1200})");
+  io("name", c.name, kResolvedOnly);
+  io("body", c.body, kResolvedOnly);
+  if constexpr (!Io::kResolved) {
+    io.OneOf({"file", "corners_m"});
+    io("file", c.file,
+       "Wavefront OBJ or STL, text or binary, from the model's folder; its origin is at the node. "
+       "What weighs is what each of its objects encloses, what touches the hull of each: with 64 "
+       "corners at most, the outermost ones.");
+    io("scale_m", c.scale_m, kInherited, Bound::kPositive,
+       "What 1 in the file is: 0.001 if it is in mm. Goes with a file.");
+  }
+  io("corners_m", c.corners_m, "Corners from the node, four at least and 64 at most.");
+  if constexpr (Io::kResolved) {
+    io("material", c.material);
+  } else {
+    MassKeys(io, c.mass, Along::kNothing);
+    SurfaceKeys(io, c.surface);
+  }
+  io("collides", c.collides, kCollidesMeaning);
+}
+void Check(const MapReader& map, ConvexText& convex);
+
 template <class Io, Either<ActuatorDef, ActuatorText> Actuator>
 void Keys(Io& io, Actuator& a) {
   io.Map("", "builder.cable.actuator",
@@ -278,11 +306,12 @@ void Keys(Io& io, Like<BuilderText> auto& b) {
      "Which nodes or pairs. `a`: all that carry the tag a. `[a, b]`: all that carry both tags. "
      "`[[a, b], [c]]`: all that carry any of these sets. What no number of copies could match is "
      "an error.");
-  io.OneOf({"rod", "sphere", "point_mass", "box", "cable", "anchor", "joint", "support"});
+  io.OneOf({"rod", "sphere", "point_mass", "box", "convex", "cable", "anchor", "joint", "support"});
   io("rod", b.rod);
   io("sphere", b.sphere);
   io("point_mass", b.point_mass);
   io("box", b.box);
+  io("convex", b.convex);
   io("cable", b.cable);
   io("anchor", b.anchor);
   io("joint", b.joint);

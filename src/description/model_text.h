@@ -13,6 +13,7 @@
 #include "description/parameters.h"
 #include "description/reader.h"
 #include "description/surface_keys.h"
+#include "math/closed_mesh.h"
 #include "taut/spec.h"
 
 namespace taut::description {
@@ -129,6 +130,20 @@ struct BoxText : BoxDef {
   SurfaceText surface;
   bool along_pair = false;
 };
+/// At a node. Its parts are those of the file, or the one that the corners span.
+struct ConvexText : HullDef {
+  struct Part {
+    std::vector<Vec3> hull_m;  ///< Corners of what touches.
+    std::vector<Vec3> corners_m;
+    math::Triangles triangles;  ///< What has mass, by those.
+  };
+  Placed file;
+  double scale_m = 1.0;
+  MassText mass;
+  SurfaceText surface;
+  std::vector<Part> parts;  ///< In the part's frame, from the node; none after a complaint.
+  std::string read_file;    ///< Where they come from.
+};
 struct ActuatorText : ActuatorDef {
   ActuatorText();  ///< Without limits.
   bool ideal = false;
@@ -161,6 +176,7 @@ struct BuilderText {
   std::optional<SphereText> sphere;
   std::optional<PointMassText> point_mass;
   std::optional<BoxText> box;
+  std::optional<ConvexText> convex;
   std::optional<CableText> cable;
   std::optional<AnchorText> anchor;
   std::optional<JointText> joint, support;

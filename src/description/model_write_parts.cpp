@@ -52,6 +52,7 @@ class Taker {
       if (node.body == kWorld) Build(m_.on_nodes, "anchor: {}", static_cast<int>(n));
     }
     if (!def_.joints.empty() || !def_.apart.empty()) Refuse("it has joints, or bodies kept apart");
+    if (!def_.hulls.empty()) Refuse("it has convex solids", "take the model that it was made from");
     if (!def_.motions.empty()) Refuse("a program moves some of it");
     Rods(), Boxes(), Spheres(), PointMasses(), Anchors();
     m_.solid_pairs = m_.pairs.size();

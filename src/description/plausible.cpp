@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/brief.h"
+#include "math/convex_hull.h"
 #include "math/vec.h"
 
 namespace taut::description {
@@ -37,6 +38,21 @@ double Thinnest(const BoxDef& box) {
   return std::min({box.half_extents_m.x, box.half_extents_m.y, box.half_extents_m.z});
 }
 
+/// Of the bounds along the axes.
+double Thinnest(const HullDef& hull) {
+  Vec3 low{kInf, kInf, kInf}, high = -1.0 * low;
+  for (const Vec3& p : hull.corners_m) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return std::min({high.x - low.x, high.y - low.y, high.z - low.z});
+}
+
+double VolumeOf(const HullDef& hull) {
+  const math::ConvexHull found = math::HullOf(hull.corners_m, HullDef::kMostCorners);
+  return math::SixVolumes(found.corners, math::TrianglesOf(found)) / 6.0;
+}
+
 double Length(const CapsuleDef& rod) {
   const Vec3 d = rod.to_m - rod.from_m;
   return std::sqrt(Dot(d, d));
@@ -61,7 +77,7 @@ using Items = std::vector<Item>;
 
 bool Less(const Item& a, const Item& b) { return a.value < b.value; }
 
-/// Radii, and half the smallest edges of boxes [m].
+/// Radii, half the smallest edges of boxes, half the smallest extents of hulls [m].
 Items Sizes(const RobotSpec& robot) {
   Items sizes;
   const auto add = [&](double size_m, const char* kind, const auto& shape) {
@@ -71,6 +87,7 @@ Items Sizes(const RobotSpec& robot) {
   for (const SphereDef& sphere : robot.def.spheres) add(sphere.radius_m, "sphere", sphere);
   for (const CapsuleDef& rod : robot.def.capsules) add(rod.radius_m, "rod", rod);
   for (const BoxDef& box : robot.def.boxes) add(Thinnest(box), "box", box);
+  for (const HullDef& hull : robot.def.hulls) add(0.5 * Thinnest(hull), "hull", hull);
   return sizes;
 }
 
@@ -134,6 +151,7 @@ void WarnOfDensities(const RobotSpec& robot, Diagnostics& out) {
   for (const BoxDef& b : robot.def.boxes) {
     add(b.body, 8.0 * b.half_extents_m.x * b.half_extents_m.y * b.half_extents_m.z);
   }
+  for (const HullDef& h : robot.def.hulls) add(h.body, VolumeOf(h));
   std::set<std::pair<int, int>> seen;
   for (std::size_t b = 0; b < robot.def.bodies.size(); ++b) {
     const BodyDef& body = robot.def.bodies[b];
@@ -155,7 +173,8 @@ void WarnOfDensities(const RobotSpec& robot, Diagnostics& out) {
 void CheckPositions(const RobotSpec& robot, Diagnostics& out, const SourceRef* place) {
   Items sizes = Sizes(robot);
   for (const CableDef& cable : robot.def.cables) {  // for want of shapes
-    if (robot.def.spheres.empty() && robot.def.capsules.empty() && robot.def.boxes.empty()) {
+    if (robot.def.spheres.empty() && robot.def.capsules.empty() && robot.def.boxes.empty() &&
+        robot.def.hulls.empty()) {
       sizes.push_back({cable.rest_length_m, "cable \"" + cable.name + "\"", {}});
     }
   }

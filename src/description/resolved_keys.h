@@ -40,6 +40,7 @@ void Keys(Io& io, Like<RobotSpec> auto& r) {
   io("spheres", r.def.spheres);
   io("capsules", r.def.capsules);
   io("boxes", r.def.boxes);
+  io("hulls", r.def.hulls, kLater);
   io("nodes", r.def.nodes);
   io("node_tags", r.node_tags);
   io("cables", r.def.cables);

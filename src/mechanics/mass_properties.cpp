@@ -71,6 +71,35 @@ MassProperties SolidBox(const Vec3& center_m, const Quat& q_WBox, const Vec3& ha
   return {mass_kg, center_m, inertia};
 }
 
+MassProperties SolidMesh(const std::vector<Vec3>& corners_m, const math::Triangles& triangles,
+                         double density_kg_per_m3) {
+  // From a corner, not from the origin: far from there little would be left of large differences.
+  const Vec3 from = corners_m[static_cast<std::size_t>(triangles.front()[0])];
+  double volume_m3 = 0.0;
+  Vec3 first;  // of x, y, z
+  double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;
+  for (const std::array<int, 3>& t : triangles) {
+    const auto corner = [&](std::size_t k) {
+      return corners_m[static_cast<std::size_t>(t[k])] - from;
+    };
+    const Vec3 a = corner(0), b = corner(1), c = corner(2), sum = a + b + c;
+    const double volume = Dot(a, Cross(b, c)) / 6.0;
+    volume_m3 += volume;
+    first = first + (0.25 * volume) * sum;
+    const auto second = [&](double Vec3::*u, double Vec3::*v) {
+      return volume / 20.0 * (a.*u * a.*v + b.*u * b.*v + c.*u * c.*v + sum.*u * sum.*v);
+    };
+    xx += second(&Vec3::x, &Vec3::x), yy += second(&Vec3::y, &Vec3::y);
+    zz += second(&Vec3::z, &Vec3::z), xy += second(&Vec3::x, &Vec3::y);
+    xz += second(&Vec3::x, &Vec3::z), yz += second(&Vec3::y, &Vec3::z);
+  }
+  const Vec3 com = (1.0 / volume_m3) * first;
+  const double d = density_kg_per_m3, mass_kg = d * volume_m3;
+  const Inertia about_corner{d * (yy + zz), d * (xx + zz), d * (xx + yy),
+                             -d * xy,       -d * xz,       -d * yz};
+  return {mass_kg, from + com, about_corner + PointInertia(-mass_kg, com)};
+}
+
 MassProperties Combine(const std::vector<MassProperties>& parts) {
   MassProperties whole;
   for (const MassProperties& part : parts) {

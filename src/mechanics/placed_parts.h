@@ -35,6 +35,10 @@ void MoveParts(const Motion& motion, ModelDef& def) {
     turn_surface(box.body, box.material);
     if (motion.Moves(box.body)) box.orientation = motion.Turned(box.body) * box.orientation;
   }
+  for (HullDef& hull : def.hulls) {
+    for (Vec3& corner : hull.corners_m) move(hull.body, corner);
+    turn_surface(hull.body, hull.material);
+  }
   for (NodeDef& node : def.nodes) move(node.body, node.position_m);
   for (CableDef& cable : def.cables) {
     for (AttachmentDef& at : cable.attachments) move(at.body, at.position_m);

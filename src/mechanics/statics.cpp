@@ -59,6 +59,7 @@ std::vector<ShapeCount> CollidingShapes(const ModelDef& def) {
   for (const CapsuleDef& shape : def.capsules) counts[shape.body].capsules += shape.collides;
   for (const SphereDef& shape : def.spheres) counts[shape.body].spheres += shape.collides;
   for (const BoxDef& shape : def.boxes) counts[shape.body].boxes += shape.collides;
+  for (const HullDef& shape : def.hulls) counts[shape.body].hulls += shape.collides;
   return counts;
 }
 

@@ -29,6 +29,8 @@ std::string NameOf(const ModelDef& def, const ShapeRef& ref) {
       return "the rod \"" + def.capsules[i].name + '"';
     case List::kBoxes:
       return "the box \"" + def.boxes[i].name + '"';
+    case List::kHulls:
+      return "the hull \"" + def.hulls[i].name + '"';
     case List::kTerrainBoxes:
       return "the terrain \"" + def.terrain_boxes[i].name + '"';
     case List::kPlanes:

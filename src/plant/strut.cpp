@@ -73,6 +73,7 @@ std::optional<Strut> StrutOf(const ModelDef& def, int body) {
   if (whole.fixed || rod == nullptr) return std::nullopt;
   const auto here = [&](const auto& shape) { return shape.body == body; };
   if (std::any_of(def.boxes.begin(), def.boxes.end(), here)) return std::nullopt;
+  if (std::any_of(def.hulls.begin(), def.hulls.end(), here)) return std::nullopt;
   const double length_m = Length(rod->to_m - rod->from_m);
   const auto at_end = [&](const Vec3& point_m) {
     return std::min(Length(point_m - rod->from_m), Length(point_m - rod->to_m)) <=

@@ -1,6 +1,6 @@
 #include "sim/joined_boxes.h"
 
-#include "sim/touch_list.h"
+#include "sim/convex.h"
 
 namespace taut::sim {
 namespace {
@@ -125,14 +125,6 @@ void MarkRound(const RoundShape& round, const ShapeTable* shapes, JoinedPoint* p
   }
 }
 
-bool IsCorner(const BoxShape& box, const Vec3& p, double same_m) noexcept {
-  const Vec3 d = p - Load(box.center);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (Abs(Abs(Dot(d, AxisOf(box, axis))) - box.half_m[axis]) > same_m) return false;
-  }
-  return true;
-}
-
 /// Whether boxes go on all around a place on a face of one of them.
 bool IsFlat(const ShapeTable* shapes, int number, const Vec3& place, const Vec3& up, double step_m,
             double same_m) noexcept {
@@ -147,15 +139,23 @@ bool IsFlat(const ShapeTable* shapes, int number, const Vec3& place, const Vec3&
   return true;
 }
 
-/// Where boxes go on all around in one plane, a box that moves has its corners only, along the
-/// normal of that plane; and no way out of one of them leads into another.
-void MarkBox(const BoxShape& box, const ShapeTable* shapes, JoinedPoint* points,
-             int count) noexcept {
+bool IsCorner(const Convex& body, const Vec3& p, double same_m) noexcept {
+  for (int i = 0; i < body.table->corner_count; ++i) {
+    const Vec3 d = p - body.corners[i];
+    if (Abs(d.x) <= same_m && Abs(d.y) <= same_m && Abs(d.z) <= same_m) return true;
+  }
+  return false;
+}
+
+/// Where boxes go on all around in one plane, a body with flat faces that moves has its corners
+/// only, along the normal of that plane; and no way out of one of them leads into another.
+void MarkFlat(const Convex& body, double size_m, const ShapeTable* shapes, JoinedPoint* points,
+              int count) noexcept {
   for (int i = 0; i < count; ++i) {
     JoinedPoint& p = points[i];
     const Vec3 place = PlaceOf(p.touch), normal = Load(p.touch.normal);
     const ShapeTable& own = shapes[p.box];
-    const double same_m = kCutAside * (Norm(Load(box.half_m)) + own.bound_m) + kSamePlaceM;
+    const double same_m = kCutAside * (size_m + own.bound_m) + kSamePlaceM;
     const double step_m = kSteps * same_m;
     bool shared = false;
     for (int k = 0; k < own.beside_count && p.kept; ++k) {
@@ -165,7 +165,7 @@ void MarkBox(const BoxShape& box, const ShapeTable* shapes, JoinedPoint* points,
       p.kept = !IsIn(other, place + step_m * normal, -same_m);
     }
     if (!shared) continue;
-    const bool is_corner = IsCorner(box, place + p.touch.gap_m * normal, same_m);
+    const bool is_corner = IsCorner(body, place + p.touch.gap_m * normal, same_m);
     const Vec3 d = place - Load(own.shape_P.box.center);
     for (int axis = 0; axis < 3 && p.kept; ++axis) {
       const double at = Dot(d, AxisOf(own.shape_P.box, axis));
@@ -183,7 +183,12 @@ void MarkKept(const Shape& shape, const ShapeTable* shapes, JoinedPoint* points,
               int count) noexcept {
   for (int i = 0; i < count; ++i) points[i].kept = true;
   if (shape.kind == ShapeKind::kRound) MarkRound(shape.round, shapes, points, count);
-  if (shape.kind == ShapeKind::kBox) MarkBox(shape.box, shapes, points, count);
+  if (shape.kind == ShapeKind::kBox) {
+    MarkFlat(Convex(shape.box), Norm(Load(shape.box.half_m)), shapes, points, count);
+  }
+  if (shape.kind == ShapeKind::kHull) {
+    MarkFlat(Convex(shape.hull), shape.hull.table->bound_m, shapes, points, count);
+  }
   for (int i = 0; i < count; ++i) {
     TouchPoint& t = points[i].touch;
     for (int k = 0; k < 3; ++k) t.point[k] += 0.5 * t.gap_m * t.normal[k];

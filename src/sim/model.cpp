@@ -201,6 +201,25 @@ class Compiler {
     AddShape(s, ref);
   }
 
+  void Convex(const ShapeRef& ref, const HullDef& def) {
+    math::ConvexHull hull = math::HullOf(def.corners_m, sim::kMaxHullCorners);
+    for (Vec3& p : hull.corners) {
+      double at[3];
+      ToBody(frame(def.body), p, at);
+      p = {at[0], at[1], at[2]};
+    }
+    t_.hulls.emplace_back(std::move(hull));
+    const sim::HullTable& table = t_.hulls.back().table();
+    sim::ShapeTable s;
+    s.body = Index(def.body);
+    s.shape_P.kind = sim::ShapeKind::kHull;
+    s.shape_P.hull = {&table, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}};
+    s.center_P[0] = table.center.x, s.center_P[1] = table.center.y, s.center_P[2] = table.center.z;
+    s.bound_m = table.bound_m;
+    s.material = def.material;
+    AddShape(s, ref);
+  }
+
   void AddShape(const sim::ShapeTable& s, const ShapeRef& ref) {
     double& bound = t_.bound_m[static_cast<std::size_t>(s.body)];
     bound = std::max(bound, Length(s.center_P) + s.bound_m);
@@ -226,10 +245,15 @@ class Compiler {
     each(List::kBoxes, def_.boxes, [&](const ShapeRef& ref, const BoxDef& b) {
       if (b.collides) Box(ref, b.body, b.center_m, b.orientation, b.half_extents_m, b.material);
     });
+    // Pointers to their tables go into shapes.
+    t_.hulls.reserve(def_.hulls.size());
+    each(List::kHulls, def_.hulls, [&](const ShapeRef& ref, const HullDef& h) {
+      if (h.collides) Convex(ref, h);
+    });
     each(List::kTerrainBoxes, def_.terrain_boxes, [&](const ShapeRef& ref, const TerrainBoxDef& b) {
       Box(ref, kWorld, b.center_m, b.orientation, b.half_extents_m, b.material);
     });
-    // Pointers to their tables go into shapes.
+    // The same.
     t_.surfaces.reserve(def_.height_fields.size() + def_.terrain_meshes.size());
     each(List::kHeightFields, def_.height_fields, [&](const ShapeRef& ref, const auto& field) {
       Ground(ref, sim::Surface(field), field.material);
@@ -285,6 +309,14 @@ class Compiler {
           p[i] += ((corner >> axis) & 1 ? 1 : -1) * s.half_m[axis] * s.axes[3 * axis + i];
         }
       }
+      AddPoint(first, p, 0.0, material);
+    }
+  }
+
+  void AddPoints(std::size_t first, const sim::HullShape& s, const Material& material) {
+    for (int i = 0; i < s.table->corner_count; ++i) {
+      const Vec3& corner = s.table->corners[i];
+      const double p[3] = {corner.x, corner.y, corner.z};
       AddPoint(first, p, 0.0, material);
     }
   }

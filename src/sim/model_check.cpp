@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "math/convex_hull.h"
 #include "math/principal_axes.h"
 #include "sim/checker.h"
 #include "sim/tables.h"
@@ -55,6 +56,17 @@ void CheckShapes(const ModelDef& def, Checker& check) {
   for (const BoxDef& b : def.boxes) {
     check.Body(b.body, def, "box " + b.name);
     box("box " + b.name, b.center_m, b.orientation, b.half_extents_m, b.material);
+  }
+  for (const HullDef& h : def.hulls) {
+    const std::string name = "hull " + h.name;
+    check.Body(h.body, def, name);
+    for (const Vec3& p : h.corners_m) check.Finite(p, name + ": corner");
+    check.Surface(h.material, name);
+    check.Require(h.corners_m.size() <= HullDef::kMostCorners,
+                  name + " has more than " + std::to_string(HullDef::kMostCorners) + " corners");
+    if (h.corners_m.size() > HullDef::kMostCorners) continue;
+    check.Require(!math::HullOf(h.corners_m, HullDef::kMostCorners).corners.empty(),
+                  name + " has no volume: its corners are in one plane, or fewer than four");
   }
   for (const TerrainBoxDef& b : def.terrain_boxes) {
     box("terrain box " + b.name, b.center_m, b.orientation, b.half_extents_m, b.material);
@@ -162,6 +174,7 @@ void CheckSizes(const ModelDef& def, Checker& check) {
   count(def.spheres);
   count(def.capsules);
   count(def.boxes);
+  count(def.hulls);
   for (const CableDef& cable : def.cables) {
     for (const AttachmentDef& a : cable.attachments) {
       if (moves(a.body)) ends[static_cast<std::size_t>(a.body)] += 1;

@@ -6,6 +6,7 @@
 
 #include "math/rotation.h"
 #include "sim/batch_impl.h"
+#include "sim/convex.h"
 #include "sim/shape_contacts.h"
 
 namespace taut {
@@ -19,6 +20,7 @@ double HalfThickness(const sim::RoundShape& shape) { return shape.radius_m; }
 double HalfThickness(const sim::BoxShape& shape) {
   return std::min({shape.half_m[0], shape.half_m[1], shape.half_m[2]});
 }
+double HalfThickness(const sim::HullShape& shape) { return shape.table->thin_m; }
 double HalfThickness(const sim::SurfaceShape&) { return 1e300; }
 double HalfThicknessOf(const Shape& shape) {
   return WithShape(shape, [](const auto& s) noexcept { return HalfThickness(s); });
@@ -38,6 +40,9 @@ double Lowest(const sim::BoxShape& s, const double n[3]) {
   return lowest;
 }
 
+double Lowest(const sim::HullShape& s, const double n[3]) {
+  return sim::Convex(s).Lowest({n[0], n[1], n[2]}, 0.0);
+}
 double Lowest(const sim::SurfaceShape&, const double*) { return 1e300; }
 
 class Finder {

@@ -42,13 +42,22 @@ int Touch(const RoundShape& a, const BoxShape& b, double margin_m, TouchPoint* o
 /// corner beside the face that is nearer.
 int Touch(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoint* out) noexcept;
 
+/// Features: 0, 1 the ends (a sphere has one); 2 the place of the centre line nearest to the hull;
+/// 3..12 where the centre line comes over a face or beside an edge and leaves it.
+int Touch(const RoundShape& a, const HullShape& b, double margin_m, TouchPoint* out) noexcept;
+
+/// Features: 0..12 by where the points are; more of them are thinned out (many_touches.h).
+int Touch(const BoxShape& a, const HullShape& b, double margin_m, TouchPoint* out) noexcept;
+int Touch(const HullShape& a, const HullShape& b, double margin_m, TouchPoint* out) noexcept;
+
 /// Features: 0..2 and 3..5 places of the ends (a sphere has one), by their normals' directions;
 /// 6..12 edges and corners that stick out, against the flank, by the seventh of it.
 int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
 
-/// Features: 0..7 corners; 8..12 edges, corners of the ground under faces, and more planes of
-/// corners.
+/// Features: 0..12 by where the points are, of a box 0..7 its corners; more of them are thinned
+/// out.
 int Touch(const BoxShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
+int Touch(const HullShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
 
 /// Neither moves.
 inline int Touch(const SurfaceShape&, const SurfaceShape&, double, TouchPoint*) noexcept {
@@ -59,6 +68,7 @@ inline int Touch(const SurfaceShape&, const SurfaceShape&, double, TouchPoint*) 
 double Distance(const RoundShape& a, const RoundShape& b) noexcept;
 double Distance(const RoundShape& a, const BoxShape& b) noexcept;
 double Distance(const BoxShape& a, const BoxShape& b) noexcept;
+double Distance(const RoundShape& a, const HullShape& b) noexcept;
 inline double Distance(const SurfaceShape&, const SurfaceShape&) noexcept { return 1e300; }
 
 /// The same for who knows that `enough_m` is far enough: what is near ground looks no further.
@@ -66,10 +76,14 @@ template <class A, class B>
 double DistanceUpTo(const A& a, const B& b, double) noexcept {
   return Distance(a, b);
 }
+/// Not exact where two corners are nearest to each other.
+double DistanceUpTo(const BoxShape& a, const HullShape& b, double enough_m) noexcept;
+double DistanceUpTo(const HullShape& a, const HullShape& b, double enough_m) noexcept;
 /// From what `Touch` finds: never more than the least gap of that, and no less by a hundredth of
 /// the radius (of a box by a hundred-thousandth of the gap). Beyond `enough_m` it goes by bounds.
 double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m) noexcept;
 double DistanceUpTo(const BoxShape& a, const SurfaceShape& b, double enough_m) noexcept;
+double DistanceUpTo(const HullShape& a, const SurfaceShape& b, double enough_m) noexcept;
 
 /// The same for shapes of any two kinds, in either order, each given in a frame of its own.
 int TouchShapes(const Shape& a, const ShapePose& at_a, const Shape& b, const ShapePose& at_b,

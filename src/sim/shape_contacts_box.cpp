@@ -1,21 +1,12 @@
 // Two boxes: separating axes, then the points of the face or the edges that belong to the best one.
+#include "sim/face_or_edge.h"
 #include "sim/shape_contacts.h"
-#include "sim/touch_list.h"
 
 namespace taut::sim {
 namespace {
 
 constexpr int kMeetingFeature = 12;
 static_assert(kMeetingFeature < kMaxPointsPerPair, "every feature needs a number");
-
-/// Another axis must be better by this share of the depth, and of the boxes' size, before it takes
-/// over: `b`'s faces from `a`'s, edges from faces. So the choice does not flicker.
-constexpr double kBetterShare = 0.05, kBetterSize = 1e-4;
-/// Faces are this much larger when the other's corners are cut off, so that corners on corners
-/// stay what they are.
-constexpr double kCutSlack = 1e-5;
-/// Edges at less than this angle are parallel: faces do better.
-constexpr double kParallelSin = 1e-3;
 
 double Sign(double x) noexcept { return x < 0.0 ? -1.0 : 1.0; }
 
@@ -216,10 +207,6 @@ void TouchCorner(const BoxShape& a, const BoxShape& b, double slack_m, TouchList
   if (!(best.distance_m < list.least_gap_m() - slack_m)) return;
   const Vec3 normal = ((use_b ? -1.0 : 1.0) / best.distance_m) * (best.corner - best.other);
   list.Add(0.5 * (best.corner + best.other), normal, best.distance_m, kMeetingFeature);
-}
-
-bool ClearlyBetter(double apart_m, double than_m, double size_m) noexcept {
-  return apart_m > than_m + kBetterShare * Larger(-than_m, 0.0) + kBetterSize * size_m;
 }
 
 double SizeOf(const BoxShape& box) noexcept {

@@ -1,5 +1,7 @@
 #include "sim/shape_tree.h"
 
+#include "sim/convex.h"
+
 namespace taut::sim {
 namespace {
 
@@ -24,6 +26,19 @@ Bounds BoundsOf(const BoxShape& shape) noexcept {
     }
     bounds.low[i] = shape.center[i] - reach;
     bounds.high[i] = shape.center[i] + reach;
+  }
+  return bounds;
+}
+
+Bounds BoundsOf(const HullShape& shape) noexcept {
+  const Convex hull(shape);
+  Bounds bounds{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+  for (int k = 0; k < hull.table->corner_count; ++k) {
+    const double p[3] = {hull.corners[k].x, hull.corners[k].y, hull.corners[k].z};
+    for (int i = 0; i < 3; ++i) {
+      bounds.low[i] = Smaller(bounds.low[i], p[i]);
+      bounds.high[i] = Larger(bounds.high[i], p[i]);
+    }
   }
   return bounds;
 }
@@ -61,6 +76,16 @@ double SkeletonDistance2(const BoxShape& shape, const double* p) noexcept {
   return sum;
 }
 
+/// From the ball around it.
+double SkeletonDistance2(const HullShape& shape, const double* p) noexcept {
+  const Vec3 own = shape.table->center;
+  const double center[3] = {own.x, own.y, own.z};
+  double moved[3];
+  Move(shape.at, center, moved);
+  const double beyond = Larger(Norm(Load(p) - Load(moved)) - shape.table->bound_m, 0.0);
+  return beyond * beyond;
+}
+
 double SkeletonDistance2(const SurfaceShape&, const double*) noexcept { return 0.0; }
 
 /// False also where a number is not finite: such a body is near nothing.
@@ -82,6 +107,9 @@ Shape MovedShape(const Shape& shape, const ShapePose& pose) noexcept {
       break;
     case ShapeKind::kBox:
       moved.box = Moved(shape.box, pose);
+      break;
+    case ShapeKind::kHull:
+      moved.hull = Moved(shape.hull, pose);
       break;
     case ShapeKind::kSurface:
       moved.surface = shape.surface;

@@ -9,7 +9,7 @@
 namespace taut::sim {
 
 /// In this order pairs are written: `Touch(a, b)` where the kind of `a` is not behind that of `b`.
-enum class ShapeKind { kRound, kBox, kSurface };
+enum class ShapeKind { kRound, kBox, kHull, kSurface };
 
 /// A sphere (from = to) or capsule.
 struct RoundShape {
@@ -24,18 +24,26 @@ struct BoxShape {
   double center[3], axes[9], half_m[3];
 };
 
+struct HullTable;
 struct SurfaceTable;
-
-/// Triangles that do not move (surface.h).
-struct SurfaceShape {
-  static constexpr ShapeKind kKind = ShapeKind::kSurface;
-  const SurfaceTable* table;
-};
 
 /// Where a frame is: x -> r x + origin.
 struct ShapePose {
   double r[9];  ///< Row major.
   double origin[3];
+};
+
+/// A convex body with flat faces (hull.h).
+struct HullShape {
+  static constexpr ShapeKind kKind = ShapeKind::kHull;
+  const HullTable* table;
+  ShapePose at;  ///< Of the table's frame.
+};
+
+/// Triangles that do not move (surface.h).
+struct SurfaceShape {
+  static constexpr ShapeKind kKind = ShapeKind::kSurface;
+  const SurfaceTable* table;
 };
 
 inline void Turn(const ShapePose& pose, const double* p, double* out) noexcept {
@@ -67,6 +75,18 @@ inline BoxShape Moved(const BoxShape& shape, const ShapePose& pose) noexcept {
   }
   return moved;
 }
+inline HullShape Moved(const HullShape& shape, const ShapePose& pose) noexcept {
+  HullShape moved;
+  moved.table = shape.table;
+  Move(pose, shape.at.origin, moved.at.origin);
+  for (int k = 0; k < 3; ++k) {
+    const double column[3] = {shape.at.r[k], shape.at.r[3 + k], shape.at.r[6 + k]};
+    double turned[3];
+    Turn(pose, column, turned);
+    for (int i = 0; i < 3; ++i) moved.at.r[3 * i + k] = turned[i];
+  }
+  return moved;
+}
 
 inline SurfaceShape Moved(const SurfaceShape& shape, const ShapePose&) noexcept { return shape; }
 
@@ -75,6 +95,7 @@ struct Shape {
   ShapeKind kind = ShapeKind::kRound;
   RoundShape round = {};
   BoxShape box = {};
+  HullShape hull = {};
   SurfaceShape surface = {};
 };
 
@@ -91,6 +112,8 @@ auto WithShape(const Shape& shape, const Use& use) noexcept {
       return use(shape.round);
     case ShapeKind::kBox:
       return use(shape.box);
+    case ShapeKind::kHull:
+      return use(shape.hull);
     case ShapeKind::kSurface:
       return use(shape.surface);
   }

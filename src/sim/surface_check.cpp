@@ -1,8 +1,7 @@
 #include <array>
-#include <map>
 #include <string>
-#include <utility>
 
+#include "math/closed_mesh.h"
 #include "math/vec.h"
 #include "sim/checker.h"
 
@@ -28,32 +27,6 @@ void CheckField(const HeightFieldDef& field, Checker& check) {
     check.Require(false, name + ": height " + std::to_string(i) + " must be finite");
     return;
   }
-}
-
-/// Of a closed mesh every edge belongs to two triangles, which run along it in opposite directions.
-void CheckClosed(const TerrainMeshDef& mesh, const std::string& name, Checker& check) {
-  std::map<std::pair<int, int>, int> edges;
-  double six_volumes = 0;
-  for (const std::array<int, 3>& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
-    const auto corner = [&](std::size_t k) {
-      return mesh.corners_m[static_cast<std::size_t>(t[k])];
-    };
-    six_volumes += Dot(corner(0), Cross(corner(1), corner(2)));
-  }
-  for (const auto& [edge, count] : edges) {
-    const std::string where = "the edge between corners " + std::to_string(edge.first) + " and " +
-                              std::to_string(edge.second);
-    if (count > 1) {
-      return check.Require(
-          false, name + ": " + where + " has two triangles on one side, or more than two in all");
-    }
-    if (edges.count({edge.second, edge.first}) == 0) {
-      return check.Require(false, name + " is not closed: " + where + " has one triangle only");
-    }
-  }
-  check.Require(six_volumes > 0,
-                name + " is inside out: corners must run counter-clockwise seen from outside");
 }
 
 void CheckMesh(const TerrainMeshDef& mesh, Checker& check) {
@@ -86,7 +59,9 @@ void CheckMesh(const TerrainMeshDef& mesh, Checker& check) {
       return check.Require(false, which + " has no area");
     }
   }
-  if (mesh.solid && !mesh.triangles.empty()) CheckClosed(mesh, name, check);
+  if (!mesh.solid || mesh.triangles.empty()) return;
+  const std::string why = math::WhyNotClosed(mesh.corners_m, mesh.triangles);
+  check.Require(why.empty(), name + why);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 /// Part of a step: no standard library.
 #pragma once
 
+#include "sim/line_stretch.h"
 #include "sim/surface.h"
-#include "sim/touch_list.h"
 
 namespace taut::sim {
 
@@ -18,21 +18,6 @@ struct SurfaceEdge {
   Vec3 from, to;
   Vec3 apex[kMaxSides];
   int sides;
-};
-
-/// A part of a line, between two shares of it.
-struct LineStretch {
-  double low, high;
-  /// Keeps where `at + share * slope` is not above 0.
-  void CutAbove(double at, double slope) noexcept {
-    if (slope > 0.0) {
-      high = Smaller(high, -at / slope);
-    } else if (slope < 0.0) {
-      low = Larger(low, -at / slope);
-    } else if (at > 0.0) {
-      high = low - 1.0;
-    }
-  }
 };
 
 /// A straight line and how far around it is looked, between two places of it.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/body_frame.h"
+#include "sim/hull_build.h"
 #include "sim/joint_table.h"
 #include "sim/motion_table.h"
 #include "sim/shape_contacts.h"
@@ -81,7 +82,7 @@ inline constexpr double kJoinedM = 1e-9;
 /// So many of them, and of their points, are looked at together.
 inline constexpr int kMostJoinedPairs = 32, kMostJoinedPoints = kMostJoinedPairs * 13;
 
-/// A point that can touch a plane: a sphere's centre, a capsule's end, a box's corner.
+/// A point that can touch a plane: a sphere's centre, a capsule's end, a box's or a hull's corner.
 struct PointTable {
   double p_P[3] = {};
   double radius_m = 0;
@@ -278,6 +279,7 @@ class Tables final : public Model {
   std::vector<PointTable> points;
   std::vector<ShapeTable> shapes;
   std::vector<ShapeRef> shape_refs;  ///< Per shape: what it is made from.
+  std::vector<Hull> hulls;
   std::vector<Surface> surfaces;
   std::vector<ShapePairTable> shape_pairs;
   std::vector<BodyPairTable> body_pairs;

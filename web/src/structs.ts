@@ -7,7 +7,7 @@ export type Quat = [number, number, number, number];
 /** Part of a body, in the body's frame (origin: centre of mass). */
 export interface Shape {
   /** Which of the fields below are there. */
-  kind: "rod" | "sphere" | "box";
+  kind: "rod" | "sphere" | "box" | "hull";
   name: string;
   /** rod: one end of the axis */
   from_m?: Vec3;
@@ -21,6 +21,8 @@ export interface Shape {
   half_extents_m?: Vec3;
   /** box: q_BodyBox */
   orientation?: Quat;
+  /** hull: what it spans */
+  corners_m?: Vec3[];
 }
 
 export interface Body {
@@ -77,7 +79,7 @@ export interface Terrain {
   /** surface: x, y and z of each corner, in W. Of a field of more than 250 000 only every second, third, ... */
   corners_m?: (number | null)[];
   /** surface: three corners each */
-  triangles?: integer[];
+  triangles?: number[];
 }
 
 /** What set_parameter may change. */

@@ -1,7 +1,8 @@
-// Rigid bodies: rods, spheres and boxes, each body a group that takes the pose of its frame.
+// Rigid bodies: rods, spheres, boxes and hulls, each body a group that takes the pose of its frame.
 import {
-  AxesHelper, BoxGeometry, CapsuleGeometry, Group, type Material, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
+  AxesHelper, BoxGeometry, type BufferGeometry, CapsuleGeometry, Group, type Material, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
 } from "three";
+import { ConvexGeometry } from "three/examples/jsm/geometries/ConvexGeometry.js";
 import type { Theme } from "../app";
 import { palette } from "../colours";
 import type { Frame } from "../frame";
@@ -82,8 +83,8 @@ export function shapeMesh(shape: Shape, material: Material): Mesh {
     const along = new Vector3(...shape.to_m!).sub(from);
     mesh.position.copy(from).addScaledVector(along, 0.5);
     if (along.length() > 0) mesh.quaternion.setFromUnitVectors(AXIS_Y, along.normalize());
-  } else {
-    mesh.position.set(...shape.center_m!);
+  } else if (shape.center_m) {
+    mesh.position.set(...shape.center_m);
     if (shape.orientation) {
       const [w, x, y, z] = shape.orientation;
       mesh.quaternion.copy(new Quaternion(x, y, z, w));
@@ -92,7 +93,7 @@ export function shapeMesh(shape: Shape, material: Material): Mesh {
   return mesh;
 }
 
-function geometryOf(shape: Shape): BoxGeometry | CapsuleGeometry | SphereGeometry {
+function geometryOf(shape: Shape): BufferGeometry {
   switch (shape.kind) {
     case "rod": {
       const length_m = new Vector3(...shape.to_m!).distanceTo(new Vector3(...shape.from_m!));
@@ -104,5 +105,7 @@ function geometryOf(shape: Shape): BoxGeometry | CapsuleGeometry | SphereGeometr
       const [x, y, z] = shape.half_extents_m!;
       return new BoxGeometry(2 * x, 2 * y, 2 * z);
     }
+    case "hull":
+      return new ConvexGeometry(shape.corners_m!.map((p) => new Vector3(...p)));
   }
 }

@@ -1,15 +1,16 @@
-// A box on ground (docs/theory/ground.md, section 3): its corners against faces, its edges against
-// edges that stick out, and corners of the ground that stick out against its faces. Between sharp
-// bodies there is nothing else.
-#include "sim/shape_contacts.h"
+// A box or a hull on ground (docs/theory/ground.md, section 3): its corners against faces, its
+// edges against edges that stick out, and corners of the ground that stick out against its faces.
+// Between sharp bodies there is nothing else.
+#include "sim/convex.h"
+#include "sim/many_touches.h"
 #include "sim/surface_near.h"
-#include "sim/touch_list.h"
 
 namespace taut::sim {
 namespace {
 
-/// Corners of the box are features 0..7, all else comes behind.
-constexpr int kCorners = 8, kOthers = kMaxPointsPerPair - kCorners;
+/// Numbers of points that tell where they are: corners, more planes of theirs, edges, faces.
+constexpr int kFirstPlane = kMaxHullCorners, kFirstEdge = 2 * kMaxHullCorners;
+constexpr int kFirstFace = kFirstEdge + kMaxHullEdges;
 /// Places of a corner, and how many planes it may have.
 constexpr int kPlacesOfCorner = 3, kPlanesOfCorner = 4;
 /// Sines and cosines by so much are rounding: level is level.
@@ -17,14 +18,14 @@ constexpr double kLevel = 1e-6;
 /// Edges at a smaller angle are parallel: other pairs hold them [rad].
 constexpr double kParallel = 1e-6;
 /// Normals that agree so well are of one plane; contacts that are so near to each other, in sizes
-/// of the box, one.
+/// of the body, one.
 constexpr double kSamePlane = 1.0 - 1e-9, kSamePlace = 1e-6;
 /// How deep edges may be in each other, and corners through a sheet, in thinnest half edges.
 constexpr double kDeepestEdge = 0.5, kDeepestSheet = 0.25;
 /// Planes that rise beside a corner count as far from it as the step goes, and so many times its
 /// depth.
 constexpr double kBesideDepths = 4.0;
-/// How far a box looks around, in its size; and where more than bounds are looked at.
+/// How far a body looks around, in its size; and where more than bounds are looked at.
 constexpr double kFarthestLook = 4.0, kNearestLook = 1.0 / 64, kFurther = 4.0;
 /// What was left out as found twice may be nearer by so much, as a share and [m].
 constexpr double kSameGap = 1e-5, kSameGapM = 1e-9;
@@ -39,64 +40,20 @@ bool Before(const Vec3& a, const Vec3& b) noexcept {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-/// A contact of an edge, of a face, or one more of a corner. `id` says where, so that most find
-/// their memory again.
-struct Other {
-  Vec3 point, normal;
-  double gap_m;
-  int id;
-};
-
-/// The nearest of them.
-class Others {
+/// A body between triangles, and what it found.
+class ConvexSearch {
  public:
-  explicit Others(double same_m) noexcept : same2_(same_m * same_m) {}
-  void Add(const Other& other) noexcept {
-    for (int i = 0; i < count_; ++i) {
-      const Vec3 apart = all_[i].point - other.point;
-      if (Dot(apart, apart) <= same2_ && Dot(all_[i].normal, other.normal) > kSamePlane) return;
-    }
-    int at = count_ < kOthers ? count_++ : kOthers;
-    while (at > 0 && other.gap_m < all_[at - 1].gap_m) {
-      if (at < kOthers) all_[at] = all_[at - 1];
-      --at;
-    }
-    if (at < kOthers) all_[at] = other;
-  }
-  void AddTo(TouchList& list) const noexcept {
-    bool taken[kOthers] = {};
-    for (int i = 0; i < count_; ++i) {
-      int place = all_[i].id % kOthers;
-      while (taken[place]) place = place + 1 == kOthers ? 0 : place + 1;
-      taken[place] = true;
-      list.Add(all_[i].point, all_[i].normal, all_[i].gap_m, kCorners + place);
-    }
-  }
-
- private:
-  double same2_;
-  Other all_[kOthers];
-  int count_ = 0;
-};
-
-double Sign(int bits, int axis) noexcept { return (bits >> axis & 1) != 0 ? 1.0 : -1.0; }
-
-/// A box between triangles, and what it found.
-class BoxSearch {
- public:
-  BoxSearch(const BoxShape& box, const SurfaceTable& s, double margin_m, TouchList& list) noexcept
+  ConvexSearch(const Convex& body, const SurfaceTable& s, double margin_m) noexcept
       : s_(s),
-        center_(Load(box.center)),
-        axes_{AxisOf(box, 0), AxisOf(box, 1), AxisOf(box, 2)},
-        half_{box.half_m[0], box.half_m[1], box.half_m[2]},
-        thinnest_m_(Smaller(Smaller(half_[0], half_[1]), half_[2])),
+        body_(body),
+        center_(body.center),
+        thinnest_m_(body.thin_m),
         limit_m_(Larger(margin_m, 0.0)),
-        list_(list),
-        others_(kSamePlace * thinnest_m_) {}
+        touches_(kSamePlace * thinnest_m_, margin_m) {}
 
-  void Run() noexcept {
+  void Run(TouchList& list) noexcept {
     if (!IsClear(limit_m_)) Look();
-    others_.AddTo(list_);
+    touches_.AddTo(list);
   }
   /// Whether nothing of the surface is as near as that, as far as bounds can say.
   bool IsClear(double reach_m) const noexcept {
@@ -106,30 +63,38 @@ class BoxSearch {
 
  private:
   void Look() noexcept {
-    for (int corner = 0; corner < kCorners; ++corner) Corner(corner);
-    double side[3] = {limit_m_, limit_m_, limit_m_};
-    for (int axis = 0; axis < 3; ++axis) {
-      side[0] += half_[axis] * Abs(axes_[axis].x);
-      side[1] += half_[axis] * Abs(axes_[axis].y);
-      side[2] += half_[axis] * Abs(axes_[axis].z);
+    Vec3 low = center_, high = center_;
+    for (int i = 0; i < body_.table->corner_count; ++i) {
+      const Vec3& p = body_.corners[i];
+      low = {Smaller(low.x, p.x), Smaller(low.y, p.y), Smaller(low.z, p.z)};
+      high = {Larger(high.x, p.x), Larger(high.y, p.y), Larger(high.z, p.z)};
+      Corner(i);
     }
-    const Vec3 reach{side[0], side[1], side[2]};
+    const Vec3 reach{limit_m_, limit_m_, limit_m_};
     EachSharpWithin(
-        s_, center_ - reach, center_ + reach,
+        s_, low - reach, high + reach,
         [&](const Vec3& start, const Vec3& end, const auto& edge_of) noexcept {
-          Edge(start, end, edge_of);
+          Edges(start, end, edge_of);
         },
         [&](const Vec3& p, const auto& each_beside) noexcept { Peak(p, each_beside); });
   }
-  /// All around the box, as what is around its longest middle line.
+  /// All around the body, as what is around a line through its centre and its farthest corner.
   LineReach Reach(double more_m) const noexcept {
-    int longest = 0;
-    for (int axis = 1; axis < 3; ++axis) {
-      if (half_[axis] > half_[longest]) longest = axis;
+    int farthest = 0;
+    double most2 = 0.0;
+    for (int i = 0; i < body_.table->corner_count; ++i) {
+      const Vec3 d = body_.corners[i] - center_;
+      if (Dot(d, d) > most2) most2 = Dot(d, d), farthest = i;
     }
-    const double u = half_[(longest + 1) % 3], v = half_[(longest + 2) % 3];
-    const Vec3 half = half_[longest] * axes_[longest];
-    return ReachOfLine(s_, center_ - half, center_ + half, Sqrt(u * u + v * v) + more_m);
+    const Vec3 along = (1.0 / Sqrt(most2)) * (body_.corners[farthest] - center_);
+    double low = 0.0, high = 0.0, aside2 = 0.0;
+    for (int i = 0; i < body_.table->corner_count; ++i) {
+      const Vec3 d = body_.corners[i] - center_;
+      const double at = Dot(d, along);
+      low = Smaller(low, at), high = Larger(high, at);
+      aside2 = Larger(aside2, Dot(d, d) - at * at);
+    }
+    return ReachOfLine(s_, center_ + low * along, center_ + high * along, Sqrt(aside2) + more_m);
   }
   /// Away from ground; of a sheet to where the box is.
   Vec3 NormalOf(const SurfaceTriangle& t) const noexcept {
@@ -162,8 +127,7 @@ class BoxSearch {
   }
 
   void Corner(int corner) noexcept {
-    Vec3 p = center_;
-    for (int axis = 0; axis < 3; ++axis) p = p + Sign(corner, axis) * half_[axis] * axes_[axis];
+    const Vec3 p = body_.corners[corner];
     SurfacePlace places[kPlacesOfCorner];
     const double look_m = s_.solid ? limit_m_ : Larger(limit_m_, kDeepestSheet * thinnest_m_);
     const int found = NearestPlaces(s_, p, look_m, places, kPlacesOfCorner);
@@ -190,8 +154,10 @@ class BoxSearch {
         planes[k] = planes[k - 1], planes[k - 1] = swapped;
       }
     }
-    list_.Add(p, planes[0].normal, planes[0].gap_m, corner);
-    for (int i = 1; i < count; ++i) others_.Add({p, planes[i].normal, planes[i].gap_m, corner + i});
+    touches_.Add(p, planes[0].normal, planes[0].gap_m, corner);
+    for (int i = 1; i < count; ++i) {
+      touches_.Add(p, planes[i].normal, planes[i].gap_m, kFirstPlane + corner + i);
+    }
   }
 
   /// Beside its nearest place `base` ground may rise: there a corner is held by planes of triangles
@@ -230,50 +196,48 @@ class BoxSearch {
     return count - 1;
   }
 
-  struct InBox {
-    double x[3];
-  };
-  InBox Turned(const Vec3& p) const noexcept {
-    return {{Dot(p, axes_[0]), Dot(p, axes_[1]), Dot(p, axes_[2])}};
-  }
-
-  /// An edge of the ground against those of the box: along the direction at right angles to both,
+  /// An edge of the ground against those of the body: along the direction at right angles to both,
   /// if it leads out of both.
   template <class EdgeOf>
-  void Edge(const Vec3& start, const Vec3& end, const EdgeOf& edge_of) noexcept {
-    const InBox a = Turned(start - center_), d = Turned(end - start);
-    for (int axis = 0; axis < 3; ++axis) {
-      const double beyond = half_[axis] + limit_m_, b = a.x[axis] + d.x[axis];
-      if ((a.x[axis] > beyond && b > beyond) || (a.x[axis] < -beyond && b < -beyond)) return;
+  void Edges(const Vec3& start, const Vec3& end, const EdgeOf& edge_of) noexcept {
+    for (int face = 0; face < body_.table->face_count; ++face) {
+      if (body_.Above(face, start) > limit_m_ && body_.Above(face, end) > limit_m_) return;
     }
-    const double length2 = Dot(end - start, end - start);
+    const Vec3 along = end - start;
+    const double length2 = Dot(along, along);
     SurfaceEdge edge;
     edge.sides = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-      const double du = d.x[u], dv = d.x[v], across2 = du * du + dv * dv;
-      if (!(across2 > kParallel * kParallel * length2)) continue;
-      const double across = Sqrt(across2);
-      for (int which = 0; which < 4; ++which) {
-        const double su = Sign(which, 0), sv = Sign(which, 1);
-        const double side = dv * su - du * sv > 0.0 ? 1.0 / across : -1.0 / across;
-        const double nu = -side * dv, nv = side * du;  // into the box
-        const double cu = su * half_[u] - a.x[u], cv = sv * half_[v] - a.x[v];
-        const double gap_m = nu * cu + nv * cv;
-        if (!(gap_m < limit_m_ && gap_m > -kDeepestEdge * thinnest_m_)) continue;
-        if (nu * su * half_[u] > 0.5 * limit_m_ + kLevel * half_[u]) continue;
-        if (nv * sv * half_[v] > 0.5 * limit_m_ + kLevel * half_[v]) continue;
-        const double along = (cu * du + cv * dv) / across2;
-        const double at = a.x[axis] + along * d.x[axis];
-        if (!(along >= 0.0 && along <= 1.0 && Abs(at) <= half_[axis])) continue;
-        const Vec3 normal = nu * axes_[u] + nv * axes_[v];
-        if (edge.sides == 0) edge = edge_of();
-        if (!LeadsOut(edge, normal, length2)) continue;
-        const Vec3 p =
-            center_ + at * axes_[axis] + su * half_[u] * axes_[u] + sv * half_[v] * axes_[v];
-        others_.Add({p, normal, gap_m, 4 * axis + which + static_cast<int>(at > 0.0)});
-      }
+    for (int i = 0; i < body_.table->edge_count; ++i) {
+      const HullEdge& own = body_.table->edges[i];
+      const Vec3 from = body_.FromOf(own), side = body_.AlongOf(own), c = Cross(along, side);
+      const double c2 = Dot(c, c);
+      if (!(c2 > kParallel * kParallel * length2 * Dot(side, side))) continue;
+      const double into = Dot(c, center_ - from) < 0.0 ? -1.0 : 1.0;
+      const Vec3 normal = (into / Sqrt(c2)) * c, between = from - start;
+      const double gap_m = Dot(normal, between);
+      if (!(gap_m < limit_m_ && gap_m > -kDeepestEdge * thinnest_m_)) continue;
+      const double on_ground = Dot(Cross(between, side), c) / c2;
+      const double on_own = Dot(Cross(between, along), c) / c2;
+      if (!(on_ground >= 0.0 && on_ground <= 1.0 && on_own >= 0.0 && on_own <= 1.0)) continue;
+      if (!IsLowest(own, normal)) continue;
+      if (edge.sides == 0) edge = edge_of();
+      if (!LeadsOut(edge, normal, length2)) continue;
+      touches_.Add(from + on_own * side, normal, gap_m,
+                   kFirstEdge + i + static_cast<int>(on_own > 0.5));
     }
+  }
+  /// Whether the faces beside an edge of the body rise from it.
+  bool IsLowest(const HullEdge& own, const Vec3& normal) const noexcept {
+    const Vec3 from = body_.FromOf(own);
+    bool lowest = true;
+    const int beside[2] = {own.left, own.right};
+    for (const int face : beside) {
+      body_.EachSide(face, [&](const Vec3& corner, const Vec3&) noexcept {
+        const Vec3 way = corner - from;
+        lowest = lowest && Dot(normal, way) >= -limit_m_ - kLevel * Norm(way);
+      });
+    }
+    return lowest;
   }
   bool LeadsOut(const SurfaceEdge& edge, const Vec3& normal, double length2) const noexcept {
     const Vec3 along = edge.to - edge.from;
@@ -285,17 +249,13 @@ class BoxSearch {
     return true;
   }
 
-  /// A corner of the ground beside the box, or in it and nearest to a face that it can have come
+  /// A corner of the ground beside the body, or in it and nearest to a face that it can have come
   /// through.
   template <class EachBeside>
   void Peak(const Vec3& p, const EachBeside& each_beside) noexcept {
-    const InBox at = Turned(p - center_);
-    double above[3], to_box[3], distance2 = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      above[axis] = Abs(at.x[axis]) - half_[axis];
-      if (above[axis] > limit_m_) return;
-      to_box[axis] = Clamp(at.x[axis], -half_[axis], half_[axis]) - at.x[axis];
-      distance2 += to_box[axis] * to_box[axis];
+    const int faces = body_.table->face_count;
+    for (int face = 0; face < faces; ++face) {
+      if (body_.Above(face, p) > limit_m_) return;
     }
     const auto leads_out = [&](const Vec3& normal) noexcept {
       bool out = true;
@@ -305,60 +265,68 @@ class BoxSearch {
       });
       return out;
     };
-    const auto take = [&](const Vec3& normal, double gap_m, int face) noexcept {
-      others_.Add({p + gap_m * normal, normal, gap_m, face});
-    };
-    const double distance = Sqrt(distance2);
-    if (distance > kSameGapM) {
-      if (distance > limit_m_) return;
-      Vec3 normal{0.0, 0.0, 0.0};
-      for (int axis = 0; axis < 3; ++axis) {
-        normal = normal + (to_box[axis] / distance) * axes_[axis];
-      }
-      if (leads_out(normal)) take(normal, distance, 0);
+    const NearestOfConvex nearest = NearestTo(body_, p);
+    if (nearest.distance_m > kSameGapM) {
+      if (nearest.distance_m > limit_m_) return;
+      const Vec3 normal = -1.0 * nearest.normal;
+      if (leads_out(normal))
+        touches_.Add(p + nearest.distance_m * normal, normal, nearest.distance_m, kFirstFace);
       return;
     }
-    bool seen[3] = {false, false, false};
-    for (int i = 0; i < 3; ++i) {
-      int face = -1;
-      for (int axis = 0; axis < 3; ++axis) {
-        if (!seen[axis] && (face < 0 || above[axis] > above[face])) face = axis;
-      }
-      seen[face] = true;
-      const Vec3 normal = (at.x[face] < 0.0 ? 1.0 : -1.0) * axes_[face];
-      if (!leads_out(normal)) continue;
-      take(normal, above[face], face);
-      return;
+    int best = -1;
+    for (int face = 0; face < faces; ++face) {
+      if (best >= 0 && body_.Above(face, p) <= body_.Above(best, p)) continue;
+      if (leads_out(-1.0 * body_.normals[face])) best = face;
     }
+    if (best < 0) return;
+    const double gap_m = body_.Above(best, p);
+    touches_.Add(p - gap_m * body_.normals[best], -1.0 * body_.normals[best], gap_m,
+                 kFirstFace + best);
   }
 
   const SurfaceTable& s_;
-  Vec3 center_, axes_[3];
-  double half_[3], thinnest_m_, limit_m_;
-  TouchList& list_;
-  Others others_;
+  const Convex& body_;
+  Vec3 center_;
+  double thinnest_m_, limit_m_;
+  ManyTouches touches_;
 };
 
-}  // namespace
-
-int Touch(const BoxShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept {
+int TouchGround(const Convex& body, const SurfaceTable& s, double margin_m,
+                TouchPoint* out) noexcept {
   TouchList list(out, margin_m);
-  BoxSearch(a, *b.table, margin_m, list).Run();
+  ConvexSearch(body, s, margin_m).Run(list);
   return list.count();
 }
 
-double DistanceUpTo(const BoxShape& a, const SurfaceShape& b, double enough_m) noexcept {
-  const double most_m = kFarthestLook * Norm(Load(a.half_m));
+double DistanceToGround(const Convex& body, double size_m, const SurfaceTable& s,
+                        double enough_m) noexcept {
+  const double most_m = kFarthestLook * size_m;
   double look_m = Smaller(enough_m, kNearestLook * most_m);
   TouchPoint points[kMaxPointsPerPair];
   TouchList list(points, look_m);
-  BoxSearch search(a, *b.table, look_m, list);
-  search.Run();
+  ConvexSearch search(body, s, look_m);
+  search.Run(list);
   if (list.count() > 0) {
     return Larger((1.0 - kSameGap) * list.least_gap_m() - kSameGapM, 0.0);
   }
   while (look_m < most_m && search.IsClear(kFurther * look_m)) look_m = kFurther * look_m;
   return look_m;
+}
+
+}  // namespace
+
+int Touch(const BoxShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept {
+  return TouchGround(Convex(a), *b.table, margin_m, out);
+}
+int Touch(const HullShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept {
+  return TouchGround(Convex(a), *b.table, margin_m, out);
+}
+
+double DistanceUpTo(const BoxShape& a, const SurfaceShape& b, double enough_m) noexcept {
+  return DistanceToGround(Convex(a), Norm(Load(a.half_m)), *b.table, enough_m);
+}
+double DistanceUpTo(const HullShape& a, const SurfaceShape& b, double enough_m) noexcept {
+  return DistanceToGround(Convex(a), a.table->bound_m, *b.table, enough_m);
 }
 
 }  // namespace taut::sim
