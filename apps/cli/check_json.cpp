@@ -34,7 +34,8 @@ Json BodiesJson(const ModelDef& def) {
                       {"weight_n", ToJson(loads[i].weight_n)},
                       {"colliding_rods", shapes[i].capsules},
                       {"colliding_spheres", shapes[i].spheres},
-                      {"colliding_boxes", shapes[i].boxes}});
+                      {"colliding_boxes", shapes[i].boxes},
+                      {"colliding_hulls", shapes[i].hulls}});
   }
   return bodies;
 }

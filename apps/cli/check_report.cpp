@@ -85,6 +85,7 @@ std::string ShapeText(const ShapeCount& shapes) {
   add(shapes.capsules, "rod", "rods");
   add(shapes.spheres, "sphere", "spheres");
   add(shapes.boxes, "box", "boxes");
+  add(shapes.hulls, "hull", "hulls");
   return text.empty() ? "-" : text;
 }
 
