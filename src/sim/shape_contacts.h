@@ -43,7 +43,7 @@ int Touch(const RoundShape& a, const BoxShape& b, double margin_m, TouchPoint* o
 int Touch(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoint* out) noexcept;
 
 /// Features: 0, 1 the ends (a sphere has one); 2 the place of the centre line nearest to the hull;
-/// 3..12 where the centre line comes over a face or beside an edge and leaves it.
+/// 3..12 where the centre line comes beside an edge and leaves it.
 int Touch(const RoundShape& a, const HullShape& b, double margin_m, TouchPoint* out) noexcept;
 
 /// Features: 0..12 by where the points are; more of them are thinned out (many_touches.h).

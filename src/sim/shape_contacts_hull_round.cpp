@@ -90,33 +90,13 @@ class RoundSearch {
   void TouchOutside(TouchList& list) noexcept {
     AddStation(list, 0.0, ends_[0], 0);
     AddStation(list, 1.0, ends_[1], 1);
-    for (int face = 0; face < convex_.table->face_count; ++face) OverFace(face, list);
     for (int i = 0; i < convex_.table->edge_count; ++i) AlongEdge(i, list);
     if (IsHeld(radius_m_ + list.margin_m())) return;
     Add(list, nearest_at_, nearest_, kNearestFeature);
   }
 
-  /// Where the line comes over a face and leaves it.
-  void OverFace(int face, TouchList& list) noexcept {
-    const Vec3 normal = convex_.normals[face];
-    const double rise = Dot(normal, along_), start = convex_.Above(face, from_);
-    LineStretch over{0.0, 1.0};
-    over.CutAbove(-start, -rise);
-    over.CutAbove(start - radius_m_ - list.margin_m(), rise);
-    if (over.low > over.high) return;
-    over = {0.0, 1.0};
-    convex_.EachSide(face, [&](const Vec3& from, const Vec3& to) noexcept {
-      const Vec3 out = Cross(to - from, normal);
-      over.CutAbove(Dot(out, from_ - from), Dot(out, along_));
-    });
-    if (over.low > over.high) return;
-    for (int end = 0; end < 2; ++end) {
-      const double t = end == 0 ? over.low : over.high, above = start + t * rise;
-      if (above > 0.0) AddPlace(list, t, {At(t) - above * normal, normal, above}, 2 * face + end);
-    }
-  }
-
-  /// Where it comes beside an edge, between the two faces, and leaves it.
+  /// Where it comes beside an edge, between the two faces, and leaves it: there it comes from over
+  /// a face, or goes there.
   void AlongEdge(int which, TouchList& list) noexcept {
     const HullEdge& edge = convex_.table->edges[which];
     const Vec3 start = convex_.FromOf(edge), side = convex_.AlongOf(edge), to_line = from_ - start;

@@ -129,6 +129,14 @@ TEST(TouchHull, TopologyOfABoxIsTheSameEitherWay) {
   }
 }
 
+TEST(TouchHull, OfAPointInsideTheNearestPlaceIsOnAFace) {
+  const Convex c(Box({0.3, 0.2, 0.1}));
+  const NearestOfConvex nearest = NearestTo(c, {0.1, 0.05, 0.08});
+  EXPECT_NEAR(nearest.distance_m, -0.02, kTiny);
+  EXPECT_LT(Length(nearest.at - Vec3{0.1, 0.05, 0.1}), kTiny);
+  EXPECT_LT(Length(nearest.normal - Vec3{0, 0, 1}), kTiny);
+}
+
 TEST(TouchHull, RodsTouchTheHullOfABoxAsTheBox) {
   RandomShapes random(1);
   int touching = 0;
@@ -156,6 +164,29 @@ TEST(TouchHull, RodsTouchTheHullOfABoxAsTheBox) {
     }
   }
   EXPECT_GT(touching, 150);
+}
+
+TEST(TouchHull, ARodOnAFaceIsHeldAtTheEndsOfWhatLiesOnIt) {
+  const OwnHull hull(CornersOf(Box({0.2, 0.1, 0.05})));
+  const Points points = Touch(Rod({-0.3, 0.02, 0.0599}, {0.1, 0.02, 0.0599}, 0.01), hull.At());
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_NEAR(std::min(points[0].point[0], points[1].point[0]), -0.2, kTiny);
+  EXPECT_NEAR(std::max(points[0].point[0], points[1].point[0]), 0.1, kTiny);
+  for (const TouchPoint& p : points) {
+    EXPECT_NEAR(p.gap_m, -1e-4, kTiny);
+    EXPECT_LT(Length(AsVec(p.normal) - Vec3{0, 0, 1}), kTiny);
+  }
+}
+
+TEST(TouchHull, ARodWhoseMiddleIsInsideLeavesThroughTheNearestFace) {
+  const OwnHull hull(CornersOf(Box({0.2, 0.1, 0.05})));
+  const Points points = Touch(Rod({-0.3, 0.02, 0.04}, {0.3, 0.02, 0.04}, 0.01), hull.At());
+  ASSERT_EQ(points.size(), 2u);
+  for (const TouchPoint& p : points) {
+    EXPECT_NEAR(p.gap_m, -0.02, kTiny);
+    EXPECT_LT(Length(AsVec(p.normal) - Vec3{0, 0, 1}), kTiny);
+    EXPECT_NEAR(std::fabs(p.point[0]), 0.2, kTiny);
+  }
 }
 
 TEST(TouchHull, TwoHullsOfBoxesTouchAsTheBoxes) {
