@@ -274,6 +274,13 @@ TEST(TouchHull, OfAFaceOfManyCornersTheOutermostAreKept) {
   EXPECT_LT(std::hypot(sum.x, sum.y), 0.1);  // all around
   const Points tilted = Touch(floor, hull.At(Turn({0.3, 1, 0}, 1e-4)), 1e-3);
   EXPECT_NEAR(Deepest(tilted).gap_m, -1e-5, 1e-7);
+  // Steeper, all that are near are there: of 32 corners the 11 up to 60 degrees from the lowest.
+  const Points steep = Touch(floor, hull.At(Turn({0, 1, 0}, 0.02, {0, 0, 3e-3})), 1e-2);
+  EXPECT_EQ(steep.size(), static_cast<std::size_t>(kMaxPointsPerPair));
+  const double lowest = Deepest(steep).gap_m;
+  EXPECT_EQ(std::count_if(steep.begin(), steep.end(),
+                          [&](const TouchPoint& p) { return p.gap_m < lowest + 1.05e-3; }),
+            11);
 }
 
 TEST(TouchHull, PointsOfARodThatTiltsOverAnEdgeStayContinuous) {
