@@ -185,16 +185,18 @@ Points Start(const Points& points, double same_m) {
   return start.size() == 4 ? start : Points{};
 }
 
-/// The point that is farthest outside, and how far.
-std::pair<Vec3, double> Outermost(const Points& points, const ConvexHull& hull) {
+/// The point that is farthest outside, and how far. Points that are not outside are taken away: as
+/// the hull grows they never will be.
+std::pair<Vec3, double> Outermost(Points& outside, const ConvexHull& hull, double same_m) {
   std::vector<Plane> planes;
   for (const Face& face : hull.faces) planes.push_back(PlaneOf(hull.corners, face));
-  std::pair<Vec3, double> best{{}, -1e300};
-  for (const Vec3& p : points) {
+  std::pair<Vec3, double> best{{}, 0.0};
+  std::erase_if(outside, [&](const Vec3& p) {
     double out = -1e300;
     for (const Plane& plane : planes) out = std::max(out, plane.Above(p));
     if (out > best.second) best = {p, out};
-  }
+    return out <= same_m;
+  });
   return best;
 }
 
@@ -210,7 +212,7 @@ ConvexHull HullOf(const std::vector<Vec3>& points, int most_corners) {
   if (points.size() < 4) return {};
   const double size_m = Length(high - low), same_m = kSame * size_m;
   ConvexHull hull;
-  Points chosen = Start(points, same_m);
+  Points chosen = Start(points, same_m), outside = points;
   if (chosen.empty()) return {};
   for (;;) {
     for (double near_m = same_m; near_m <= kWidest * size_m; near_m *= kWider) {
@@ -218,8 +220,8 @@ ConvexHull HullOf(const std::vector<Vec3>& points, int most_corners) {
       if (!hull.corners.empty()) break;
     }
     if (hull.corners.empty()) return {};
-    const auto [farthest, out_m] = Outermost(points, hull);
-    hull.left_out_m = std::max(out_m, 0.0);
+    const auto [farthest, out_m] = Outermost(outside, hull, same_m);
+    hull.left_out_m = out_m;
     const bool full = static_cast<int>(hull.corners.size()) >= most_corners;
     if (out_m <= same_m || full) break;
     chosen = hull.corners;
