@@ -12,6 +12,7 @@
 #include "description/height_image.h"
 #include "description/mesh_file.h"
 #include "description/reader.h"
+#include "math/mesh_fault.h"
 #include "math/vec.h"
 #include "trace/hdf5_table.h"
 
@@ -216,10 +217,51 @@ std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const
   return field;
 }
 
+namespace {
+
+/// What is wrong with a mesh as its file has it, at its lines.
+void ReportFaults(const MeshFile& mesh, bool solid, const std::string& path, Diagnostics& out) {
+  using Kind = math::MeshFault::Kind;
+  constexpr std::size_t kMostFaults = 10;
+  TerrainMeshDef as_read;
+  as_read.corners_m = mesh.corners;
+  as_read.triangles = mesh.triangles;
+  as_read.solid = solid;
+  const auto corner = [&](int i) {
+    const Vec3& p = mesh.corners[static_cast<std::size_t>(i)];
+    return "(" + base::Brief(p.x) + ", " + base::Brief(p.y) + ", " + base::Brief(p.z) + ")";
+  };
+  for (const math::MeshFault& fault : math::FindFaults(as_read, kMostFaults)) {
+    const auto triangle = static_cast<std::size_t>(fault.triangle);
+    const bool has_line = fault.triangle >= 0 && triangle < mesh.lines.size();
+    const SourceRef at{path, has_line ? mesh.lines[triangle] : 0, 0};
+    const std::string edge =
+        fault.from < 0 ? "" : "the edge from " + corner(fault.from) + " to " + corner(fault.to);
+    if (fault.kind == Kind::kOpen) {
+      out.Error(at, "the mesh is not closed: " + edge + " has one triangle only",
+                "close it, or write `solid: surface`");
+    } else if (fault.kind == Kind::kCrowded) {
+      out.Error(at, edge + " has two triangles on one side, or more than two in all",
+                "all must run counter-clockwise seen from outside; or write `solid: surface`");
+    } else if (fault.kind == Kind::kInsideOut) {
+      out.Error(at, "the mesh is inside out",
+                "corners must run counter-clockwise seen from outside");
+    } else {
+      const std::string which =
+          has_line ? "this triangle" : "triangle " + std::to_string(fault.triangle);
+      out.Error(at, which + " has no area", "its corners are on one line: leave it out");
+    }
+  }
+}
+
+}  // namespace
+
 std::optional<TerrainMeshDef> ReadTerrainMesh(const TerrainMeshText& text, const Scope& scope) {
   if (text.file.text.empty() || !std::isfinite(text.scale_m)) return std::nullopt;
-  auto mesh = ReadMeshFile(PathBeside(text.file.at.file, text.file.text), scope.out);
+  const std::string path = PathBeside(text.file.at.file, text.file.text);
+  auto mesh = ReadMeshFile(path, scope.out);
   if (!mesh) return std::nullopt;
+  ReportFaults(*mesh, text.solid, path, scope.out);
   TerrainMeshDef def = text;
   def.triangles = std::move(mesh->triangles);
   for (const Vec3& corner : mesh->corners) {

@@ -81,7 +81,9 @@ class ObjReader {
       const std::string_view kind = NextWord(line);
       if (kind == "v") {
         const auto point = ReadPoint(line);
-        if (!point) out_.Error(at_, "a corner needs three finite numbers");
+        if (!point)
+          out_.Error(at_, "a corner needs three finite numbers",
+                     "x, y and z, with blanks between them");
         points_.push_back(corners_.Add(point.value_or(Vec3{})));
       } else if (kind == "f") {
         Face(line);
@@ -109,6 +111,7 @@ class ObjReader {
     if (face.size() < 3) out_.Error(at_, "a face needs three corners or more");
     for (std::size_t k = 2; k < face.size(); ++k) {
       mesh_.triangles.push_back({face[0], face[k - 1], face[k]});
+      mesh_.lines.push_back(at_.line);
     }
   }
 
@@ -130,12 +133,15 @@ void ReadStlText(const std::string& path, std::string_view text, MeshFile& mesh,
     const std::string_view kind = NextWord(line);
     if (kind == "vertex") {
       const auto point = ReadPoint(line);
-      if (!point) out.Error(at, "a corner needs three finite numbers");
+      if (!point)
+        out.Error(at, "a corner needs three finite numbers",
+                  "x, y and z, with blanks between them");
       if (count < 3) triangle[count] = corners.Add(point.value_or(Vec3{}));
       ++count;
     } else if (kind == "endfacet") {
       if (count != 3) out.Error(at, "a facet has three corners, this one " + std::to_string(count));
       mesh.triangles.push_back(triangle);
+      mesh.lines.push_back(number);
       count = 0;
     }
     return out.items().size() - errors_before < kMostErrors;

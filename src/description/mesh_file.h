@@ -15,6 +15,7 @@ namespace taut::description {
 struct MeshFile {
   std::vector<Vec3> corners;  ///< In the file's unit; no two are the same.
   std::vector<std::array<int, 3>> triangles;
+  std::vector<int> lines;  ///< Of the triangles; none of a binary file.
 };
 
 /// Wavefront OBJ (`v` and `f`; faces of more corners become fans) or STL, text or binary, by the

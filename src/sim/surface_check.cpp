@@ -1,9 +1,6 @@
-#include <array>
-#include <map>
 #include <string>
-#include <utility>
 
-#include "math/vec.h"
+#include "math/mesh_fault.h"
 #include "sim/checker.h"
 
 namespace taut::sim {
@@ -30,63 +27,40 @@ void CheckField(const HeightFieldDef& field, Checker& check) {
   }
 }
 
-/// Of a closed mesh every edge belongs to two triangles, which run along it in opposite directions.
-void CheckClosed(const TerrainMeshDef& mesh, const std::string& name, Checker& check) {
-  std::map<std::pair<int, int>, int> edges;
-  double six_volumes = 0;
-  for (const std::array<int, 3>& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
-    const auto corner = [&](std::size_t k) {
-      return mesh.corners_m[static_cast<std::size_t>(t[k])];
-    };
-    six_volumes += Dot(corner(0), Cross(corner(1), corner(2)));
+/// What is wrong, by the numbers of triangles and corners.
+std::string Text(const math::MeshFault& fault) {
+  using Kind = math::MeshFault::Kind;
+  const std::string triangle = ": triangle " + std::to_string(fault.triangle),
+                    edge = "the edge between corners " + std::to_string(fault.from) + " and " +
+                           std::to_string(fault.to);
+  switch (fault.kind) {
+    case Kind::kNoCorner:
+      return triangle + " refers to a corner that is not there";
+    case Kind::kNoArea:
+      return triangle + " has no area";
+    case Kind::kOpen:
+      return " is not closed: " + edge + " has one triangle only";
+    case Kind::kCrowded:
+      return ": " + edge + " has two triangles on one side, or more than two in all";
+    case Kind::kInsideOut:
+      return " is inside out: corners must run counter-clockwise seen from outside";
   }
-  for (const auto& [edge, count] : edges) {
-    const std::string where = "the edge between corners " + std::to_string(edge.first) + " and " +
-                              std::to_string(edge.second);
-    if (count > 1) {
-      return check.Require(
-          false, name + ": " + where + " has two triangles on one side, or more than two in all");
-    }
-    if (edges.count({edge.second, edge.first}) == 0) {
-      return check.Require(false, name + " is not closed: " + where + " has one triangle only");
-    }
-  }
-  check.Require(six_volumes > 0,
-                name + " is inside out: corners must run counter-clockwise seen from outside");
+  return {};
 }
 
 void CheckMesh(const TerrainMeshDef& mesh, Checker& check) {
   const std::string name = "mesh " + mesh.name;
   check.Surface(mesh.material, name);
   check.Require(!mesh.triangles.empty(), name + " has no triangle");
-  Vec3 least{1e300, 1e300, 1e300}, most{-1e300, -1e300, -1e300};
   for (std::size_t i = 0; i < mesh.corners_m.size(); ++i) {
     const Vec3& p = mesh.corners_m[i];
     if (!std::isfinite(p.x + p.y + p.z)) {
       return check.Require(false, name + ": corner " + std::to_string(i) + " must be finite");
     }
-    least = {std::fmin(least.x, p.x), std::fmin(least.y, p.y), std::fmin(least.z, p.z)};
-    most = {std::fmax(most.x, p.x), std::fmax(most.y, p.y), std::fmax(most.z, p.z)};
   }
-  const double size = most.x - least.x + (most.y - least.y) + (most.z - least.z);
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const std::array<int, 3>& t = mesh.triangles[i];
-    const std::string which = name + ": triangle " + std::to_string(i);
-    for (const int corner : t) {
-      if (corner < 0 || corner >= static_cast<int>(mesh.corners_m.size())) {
-        return check.Require(false, which + " refers to a corner that is not there");
-      }
-    }
-    const auto corner = [&](std::size_t k) {
-      return mesh.corners_m[static_cast<std::size_t>(t[k])];
-    };
-    const Vec3 n = Cross(corner(1) - corner(0), corner(2) - corner(0));
-    if (!(Dot(n, n) > 1e-24 * size * size * size * size)) {
-      return check.Require(false, which + " has no area");
-    }
+  for (const math::MeshFault& fault : math::FindFaults(mesh, 1)) {
+    check.Require(false, name + Text(fault));
   }
-  if (mesh.solid && !mesh.triangles.empty()) CheckClosed(mesh, name, check);
 }
 
 }  // namespace
