@@ -186,6 +186,28 @@ TEST_F(ModelWriteJoints, InAnotherPoseAnglesAndSlidesGoOn) {
   }
 }
 
+/// Where a part has a box it is turned as that is, and so are the axes of its joints.
+TEST_F(ModelWriteJoints, AxesTurnWithAPartThatHasABox) {
+  for (const char* hip : {"hinge", "cylindrical"}) {
+    const RobotSpec robot =
+        Described(Leg(hip) + "  - {match: heel, box: {size_m: [0.1, 0.05, 0.02], mass_kg: 0.1}}\n");
+    const RobotSpec moved = Moved(robot, 300);
+    const std::string text = TextOf(moved);
+    EXPECT_THAT(text, HasSubstr("{part: leg, rotate: {quaternion: ["));
+    EXPECT_THAT(text, HasSubstr("turned: {quaternion: ["));
+    const RobotSpec back = Back(moved);
+    ASSERT_EQ(back.def.joints.size(), 2u);
+    const auto a = Run(moved, 200), b = Run(back, 200), start = Run(back, 0), end = Run(robot, 300);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::size_t k = back.def.joints[i].name == moved.def.joints[i].name ? i : 1 - i;
+      const int there = static_cast<int>(i), here = static_cast<int>(k);
+      EXPECT_GT(std::fabs(end->Joint(0, there).coordinate), 1e-3);
+      EXPECT_NEAR(start->Joint(0, here).coordinate, end->Joint(0, there).coordinate, 1e-10);
+      EXPECT_NEAR(b->Joint(0, here).coordinate, a->Joint(0, there).coordinate, 1e-8);
+    }
+  }
+}
+
 TEST_F(ModelWriteJoints, ItSaysWhatPeopleWouldWrite) {
   const std::string leg = TextOf(Described(Leg("ball")));
   EXPECT_THAT(leg, HasSubstr("{name: knee, nodes: [a, b], tags: [joint_2]}"));

@@ -61,7 +61,7 @@ export class Joints implements Part {
   constructor(private readonly scene: Scene, size_m: number) {
     this.points = scene.joints.map(() => [new Vector3(), new Vector3()]);
     this.marks = scene.joints.map((joint, i) => new Mark(joint, i, radiusOf(joint, scene, size_m), hangs(joint, scene)));
-    this.object.add(...this.marks.map(({ object }) => object));
+    for (const { object } of this.marks) this.object.add(object);
     this.meshes = this.marks.flatMap(({ meshes }) => meshes);
     this.distances = scene.joints.flatMap(({ kind }, i) => (kind === "distance" ? [i] : []));
     const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(6 * this.distances.length), 3));
