@@ -97,6 +97,12 @@ int JoinedRobots::Add(const ModelDef& robot, const std::string& name, const Vec3
     }
     joined_.cables.push_back(std::move(cable));
   }
+  for (JointDef joint : robot.joints) {
+    joint.name = prefix + joint.name;
+    joint.body_a = moved(joint.body_a), joint.body_b = moved(joint.body_b);
+    joint.from_m = Plus(joint.from_m, at_m), joint.to_m = Plus(joint.to_m, at_m);
+    joined_.joints.push_back(std::move(joint));
+  }
   AddTerrain(robot, prefix, at_m);
   return static_cast<int>(robots_.size()) - 1;
 }

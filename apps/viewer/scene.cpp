@@ -72,6 +72,45 @@ Json Cables(const ModelDef& def) {
   return cables;
 }
 
+/// As messages.json spells it.
+const char* KindText(JointKind kind) {
+  switch (kind) {
+    case JointKind::kBall:
+      return "ball";
+    case JointKind::kHinge:
+      return "hinge";
+    case JointKind::kWeld:
+      return "weld";
+    case JointKind::kPrismatic:
+      return "prismatic";
+    case JointKind::kCylindrical:
+      return "cylindrical";
+    case JointKind::kPlanar:
+      return "planar";
+    case JointKind::kLine:
+      return "line";
+    case JointKind::kPlane:
+      return "plane";
+    case JointKind::kDistance:
+      return "distance";
+  }
+  return "";
+}
+
+Json Joints(const ModelDef& def) {
+  Json joints = Json::array();
+  for (const JointDef& joint : def.joints) {
+    joints.push_back({{"name", joint.name},
+                      {"kind", KindText(joint.kind)},
+                      {"body_a", joint.body_a},
+                      {"body_b", joint.body_b},
+                      {"from_m", InBody(def, joint.body_a, joint.from_m)},
+                      {"to_m", InBody(def, joint.body_b, joint.to_m)},
+                      {"axis", ToJson(joint.axis)}});
+  }
+  return joints;
+}
+
 /// Of a large field only so many corners are drawn.
 constexpr int kMostCorners = 250'000;
 
@@ -146,8 +185,8 @@ Json Terrain(const ModelDef& def) {
 
 Json Empty() {
   Json scene;
-  for (const char* key : {"bodies", "nodes", "cables", "terrain", "parameters", "controls",
-                          "channels", "phases", "values", "compared"}) {
+  for (const char* key : {"bodies", "nodes", "cables", "joints", "terrain", "parameters",
+                          "controls", "channels", "phases", "values", "compared"}) {
     scene[key] = Json::array();
   }
   scene["first_s"] = 0;
@@ -195,6 +234,7 @@ Json SceneOf(const ExperimentSpec& experiment) {
                               {"position_m", InBody(def, node.body, node.position_m)}});
   }
   scene["cables"] = Cables(def);
+  scene["joints"] = Joints(def);
   scene["terrain"] = Terrain(def);
   for (const PhaseSpec& phase : experiment.phases) {
     scene["phases"].push_back(

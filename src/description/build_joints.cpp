@@ -2,13 +2,20 @@
 #include <cmath>
 #include <set>
 
+#include "base/brief.h"
 #include "base/fixed.h"
+#include "base/union_find.h"
 #include "description/build.h"
 #include "description/once.h"
+#include "math/joint_turn.h"
 #include "math/vec.h"
 
 namespace taut::description {
 namespace {
+
+/// So far a joint may be beyond a stop: robots that have come to rest on one are, a little [rad,
+/// m].
+constexpr double kPassed = 1e-3;
 
 class JointMaker {
  public:
@@ -35,12 +42,21 @@ class JointMaker {
           Support(static_cast<int>(node), *model_.builders[b].support);
       }
     }
+    RefusePassedStops();
+    RefuseRedundantWelds();
     Apart();
   }
 
  private:
-  Vec3 AxisIn(int instance, const Vec3& axis) const {
-    return instance < 0 ? axis : Rotate(assembly_.instances[instance].q_WPart, axis);
+  /// A joint as its builder has it, whose directions are those of the part.
+  JointDef In(int instance, const JointText& text) const {
+    JointDef joint = text;
+    if (instance < 0) return joint;
+    const Quat& q_WPart = assembly_.instances[instance].q_WPart;
+    joint.axis = Rotate(q_WPart, text.axis);
+    const bool is_turned = text.turned.x != 0 || text.turned.y != 0 || text.turned.z != 0;
+    if (is_turned) joint.turned = q_WPart * text.turned * Conjugate(q_WPart);
+    return joint;
   }
   bool IsFixed(int body) const { return base::IsFixed(robot_.def, body); }
 
@@ -50,9 +66,8 @@ class JointMaker {
                          std::to_string(pair.nodes.size()));
       return;
     }
-    JointDef joint = text;
+    JointDef joint = In(pair.instance, text);
     joint.name = pair.name;
-    joint.axis = AxisIn(pair.instance, text.axis);
     const auto set = [&](int node, int& body, Vec3& point) {
       body = body_of_node_[node];
       point = assembly_.nodes[node].position_m;
@@ -68,9 +83,8 @@ class JointMaker {
 
   void Support(int node, const JointText& text) {
     const PlacedNode& placed = assembly_.nodes[node];
-    JointDef joint = text;
+    JointDef joint = In(placed.instance, text);
     joint.name = placed.name;
-    joint.axis = AxisIn(placed.instance, text.axis);
     joint.body_a = kWorld, joint.body_b = body_of_node_[node];
     joint.from_m = joint.to_m = placed.position_m;
     if (joint.kind == JointKind::kDistance) {
@@ -83,6 +97,12 @@ class JointMaker {
 
   void Add(const SourceRef& at, JointDef joint) {
     const bool known = model_.builders_complete && assembly_.complete;
+    const auto told = [&](const Diagnostic& other) {
+      return other.at.line == at.line && other.at.column == at.column;
+    };
+    if (joint.body_b == kWorld && std::any_of(out_.items().begin(), out_.items().end(), told)) {
+      return;  // that its node belongs to no body
+    }
     if (known && joint.body_a == joint.body_b) {
       once_(at,
             "the joint \"" + joint.name + "\" joins the body \"" +
@@ -92,7 +112,8 @@ class JointMaker {
       return;
     }
     if (known && IsFixed(joint.body_a) && IsFixed(joint.body_b)) {
-      once_(at, "the joint \"" + joint.name + "\" joins two things that do not move");
+      once_(at, "the joint \"" + joint.name + "\" joins two things that do not move",
+            "leave it out, or an anchor");
       return;
     }
     const double gap = HeldGap(joint);
@@ -105,12 +126,85 @@ class JointMaker {
             joint.kind == JointKind::kBall ? "put them in one place" : "see its kind and axis");
       return;
     }
+    const Vec3 apart = joint.to_m - joint.from_m;
+    if (joint.kind == JointKind::kDistance && Dot(apart, apart) == 0) {
+      once_(at, "the nodes of the joint \"" + joint.name + "\" are in one place",
+            "a distance has a direction; a ball holds two nodes in one place");
+      return;
+    }
+    if (math::HeldTurn(joint) > math::kClosedTurn_rad) {
+      once_(at, "the joint \"" + joint.name + "\" holds its bodies as `turned` does not have them",
+            "a hinge, a cylindrical and a planar joint let them turn about the axis alone, a weld "
+            "and a prismatic joint not at all");
+      return;
+    }
     if (!names_.insert(joint.name).second) {
       once_(at, "two joints would be called \"" + joint.name + "\"",
             "a pair has the name that its `name:` says, a support that of its node");
       return;
     }
+    sources_.push_back(at);
     robot_.def.joints.push_back(std::move(joint));
+  }
+
+  /// Joints that a builder says, without those that rods of `class_k` bring along.
+  template <class F>
+  void EachJoint(const F& use) const {
+    const std::vector<JointDef>& joints = robot_.def.joints;
+    const std::size_t first = joints.size() - sources_.size();
+    for (std::size_t i = 0; i < sources_.size(); ++i) use(joints[first + i], sources_[i]);
+  }
+
+  /// A joint's coordinate as described, of a hinge without turns.
+  static double Coordinate(const JointDef& j) {
+    const Vec3 d = j.to_m - j.from_m;
+    switch (j.kind) {
+      case JointKind::kDistance:
+        return std::sqrt(Dot(d, d));
+      case JointKind::kHinge:
+        return 2 * std::atan2(Dot(j.axis, {j.turned.x, j.turned.y, j.turned.z}), j.turned.w);
+      case JointKind::kBall:
+        return std::acos(std::clamp(Dot(j.axis, Rotate(j.turned, j.axis)), -1.0, 1.0));
+      default:
+        return Dot(j.axis, d);
+    }
+  }
+
+  /// A stop that is passed holds a joint where it is, and does not push it back.
+  void RefusePassedStops() {
+    if (!out_.ok()) return;  // limits that are wrong have been named
+    EachJoint([&](const JointDef& j, const SourceRef& at) {
+      const double now = Coordinate(j);
+      const double beyond = std::max(j.least ? *j.least - now : 0, j.most ? now - *j.most : 0);
+      if (!(beyond > kPassed)) return;
+      once_(at,
+            "the joint \"" + j.name + "\" is " + base::Brief(beyond) +
+                (IsAngle(j.kind) ? " rad" : " m") + " beyond its stop as described",
+            "describe it in another pose, or move the stop, which would not push it back");
+    });
+  }
+
+  /// What welds hold together needs no other joint, and no other joint can do anything there.
+  void RefuseRedundantWelds() {
+    const std::size_t world = robot_.def.bodies.size();
+    base::UnionFind welded(world + 1);
+    const auto place = [&](int body) { return IsFixed(body) ? static_cast<int>(world) : body; };
+    const auto together = [&](const JointDef& j) {
+      return welded.Root(place(j.body_a)) == welded.Root(place(j.body_b));
+    };
+    EachJoint([&](const JointDef& j, const SourceRef& at) {
+      if (j.kind != JointKind::kWeld) return;
+      if (together(j)) {
+        once_(at, "the weld \"" + j.name + "\" is redundant: other welds hold its bodies together",
+              "leave it out");
+      }
+      welded.Join(place(j.body_a), place(j.body_b));
+    });
+    EachJoint([&](const JointDef& j, const SourceRef& at) {
+      if (j.kind == JointKind::kWeld || !together(j)) return;
+      once_(at, "the joint \"" + j.name + "\" can do nothing: welds hold its bodies together",
+            "leave it out, or a weld");
+    });
   }
 
   void Apart() {
@@ -119,11 +213,19 @@ class JointMaker {
     for (const BodyDef& body : bodies) names.push_back(body.name);
     for (const std::vector<std::string>& list : model_.apart) {
       std::vector<int> found;
+      if (list.size() < 2) {
+        out_.Error(model_.apart_at, "apart: \"" + list[0] + "\" stands alone in its list",
+                   "a list has two bodies or more, that do not touch each other: [[a, b]]");
+      }
       for (const std::string& name : list) {
         const auto at = std::find(names.begin(), names.end(), name);
         if (at == names.end()) {
           out_.Error(model_.apart_at, "apart: there is no body \"" + name + "\"",
                      NameHint(name, names));
+          continue;
+        }
+        if (std::find(found.begin(), found.end(), at - names.begin()) != found.end()) {
+          out_.Error(model_.apart_at, "apart: \"" + name + "\" stands twice in one list");
           continue;
         }
         for (const int other : found) {
@@ -142,6 +244,7 @@ class JointMaker {
   Diagnostics& out_;
   OncePerPlace once_;
   std::set<std::string> names_;
+  std::vector<SourceRef> sources_;  ///< Of the joints that builders say: the last ones.
 };
 
 }  // namespace

@@ -75,6 +75,7 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   AddTerrain(text.terrain, scope, text.robot);
   if (text.start_noise.heading_rad > 0) CheckHeading(def, root.Find("start_noise"), scope);
   AddMotions(text.motions, model.good, scope, text.robot);
+  if (scope.out.ok()) CheckMotions(text.motions, text, scope);
   if (scope.out.ok()) CheckPositions(text.robot, scope.out, text.place ? &text.place->at : nullptr);
   return text;
 }

@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <set>
 
+#include "base/brief.h"
 #include "base/fixed.h"
 #include "description/experiment_keys.h"
 #include "description/experiment_parts.h"
+#include "description/plausible.h"
+#include "math/elementary.h"
 
 namespace taut::description {
 namespace {
@@ -106,6 +109,43 @@ void AddMotions(const std::vector<MotionText>& texts, bool robot_known, const Sc
       continue;
     }
     def.motions.push_back(std::move(motion));
+  }
+}
+
+void CheckMotions(const std::vector<MotionText>& texts, const ExperimentSpec& experiment,
+                  const Scope& scope) {
+  const double duration_s = experiment.duration_s;
+  const auto reach = [&](const TimeLaw& law) {
+    double fastest = 0;
+    for (const auto& [time_s, speed] : law.speed) fastest = std::max(fastest, std::fabs(speed));
+    return fastest * duration_s + 2 * std::fabs(law.amplitude);
+  };
+  const auto check = [&](const MotionText& text, const TimeLaw& law) {
+    if (law.amplitude == 0 || law.frequency_hz * experiment.step_s <= 0.5) return;
+    scope.out.Warning(text.at,
+                      "the motion \"" + text.name + "\" has " + base::Brief(law.frequency_hz) +
+                          " Hz, and a step of " + base::Brief(experiment.step_s) +
+                          " s sees less than two steps of a period",
+                      "a smaller step_s");
+  };
+  const std::string in_time = " in " + base::Brief(duration_s) + " s";
+  for (const MotionText& text : texts) {
+    const double way_m = text.slide ? reach(text.slide->law) : 0;
+    const double angle_rad = text.turn ? reach(text.turn->law) : 0;
+    if (IsTooFar(experiment.robot, way_m)) {
+      scope.out.Error(
+          text.at,
+          "the motion \"" + text.name + "\" may go " + base::Brief(way_m) + " m far" + in_time,
+          "positions so far away are too coarse for the robot");
+    }
+    if (!(angle_rad <= math::kMaxAngle)) {
+      scope.out.Error(text.at,
+                      "the motion \"" + text.name + "\" may turn by " + base::Brief(angle_rad) +
+                          " rad" + in_time,
+                      "at most 1e9 rad: angles beyond are too coarse");
+    }
+    if (text.slide) check(text, text.slide->law);
+    if (text.turn) check(text, text.turn->law);
   }
 }
 

@@ -55,6 +55,11 @@ void CheckGaitDrives(const ControllerSpec& controller, const std::vector<int>& c
 void AddMotions(const std::vector<MotionText>& texts, bool robot_known, const Scope& scope,
                 RobotSpec& robot);
 
+/// Complains about motions that go too far in the time of the experiment, warns of those that are
+/// too fast for its steps.
+void CheckMotions(const std::vector<MotionText>& texts, const ExperimentSpec& experiment,
+                  const Scope& scope);
+
 /// Phases and events, into `out`, which has its duration already (NaN if that is unknown).
 void AddTimeline(const TimelineText& text, const RobotSpec* robot, const Scope& scope,
                  ExperimentSpec& out);

@@ -227,8 +227,11 @@ std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const
 
 std::optional<TerrainMeshDef> ReadTerrainMesh(const TerrainMeshText& text, const Scope& scope) {
   if (text.file.text.empty() || !std::isfinite(text.scale_m)) return std::nullopt;
-  auto mesh = ReadMeshFile(PathOf(text), scope.out);
+  const std::string path = PathOf(text);
+  auto mesh = ReadMeshFile(path, scope.out);
   if (!mesh) return std::nullopt;
+  const MeshWords words{"the mesh", ", or write `solid: surface`"};
+  if (!ReportFaults(*mesh, text.solid, path, words, scope.out)) return std::nullopt;
   TerrainMeshDef def = text;
   def.triangles = std::move(mesh->triangles);
   for (const Vec3& corner : mesh->corners) {

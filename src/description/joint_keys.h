@@ -31,7 +31,11 @@ void Keys(Io& io, Joint& j) {
   io("body_b", j.body_b, kResolvedOnly);
   io("from_m", j.from_m, kResolvedOnly);
   io("to_m", j.to_m, kResolvedOnly);
-  io("turned", j.turned, kResolvedOnly);
+  io("turned", j.turned,
+     "How b is turned against a as described, about axes as that of `axis`, from the pose where "
+     "the "
+     "joint's angle is 0. If absent, angles are 0 as described. It is what a model has that taut "
+     "writes of a robot in a pose that it has come to.");
   io("kind", j.kind, kJointKinds, kNeeded,
      "What it leaves free. `ball`: all turns. `hinge`: turns about the axis. `weld`: nothing. "
      "`prismatic`: sliding along the axis. `cylindrical`: both. `planar`: sliding across the axis "

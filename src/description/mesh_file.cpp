@@ -9,7 +9,9 @@
 #include <string_view>
 #include <tuple>
 
+#include "base/brief.h"
 #include "base/input_file.h"
+#include "math/triangles.h"
 
 namespace taut::description {
 namespace {
@@ -81,7 +83,9 @@ class ObjReader {
       const std::string_view kind = NextWord(line);
       if (kind == "v") {
         const auto point = ReadPoint(line);
-        if (!point) out_.Error(at_, "a corner needs three finite numbers");
+        if (!point)
+          out_.Error(at_, "a corner needs three finite numbers",
+                     "x, y and z, with blanks between them");
         points_.push_back(corners_.Add(point.value_or(Vec3{})));
       } else if (kind == "f") {
         Face(line);
@@ -111,6 +115,7 @@ class ObjReader {
     if (face.size() < 3) out_.Error(at_, "a face needs three corners or more");
     for (std::size_t k = 2; k < face.size(); ++k) {
       mesh_.triangles.push_back({face[0], face[k - 1], face[k]});
+      mesh_.lines.push_back(at_.line);
     }
   }
 
@@ -132,12 +137,15 @@ void ReadStlText(const std::string& path, std::string_view text, MeshFile& mesh,
     const std::string_view kind = NextWord(line);
     if (kind == "vertex") {
       const auto point = ReadPoint(line);
-      if (!point) out.Error(at, "a corner needs three finite numbers");
+      if (!point)
+        out.Error(at, "a corner needs three finite numbers",
+                  "x, y and z, with blanks between them");
       if (count < 3) triangle[count] = corners.Add(point.value_or(Vec3{}));
       ++count;
     } else if (kind == "endfacet") {
       if (count != 3) out.Error(at, "a facet has three corners, this one " + std::to_string(count));
       mesh.triangles.push_back(triangle);
+      mesh.lines.push_back(number);
       count = 0;
     } else if (kind == "solid") {
       mesh.BeginPart(NextWord(line));
@@ -179,6 +187,61 @@ void ReadStlBinary(const std::string& path, std::string_view bytes, MeshFile& me
 }
 
 }  // namespace
+
+MeshFile PartOf(const MeshFile& mesh, std::size_t part) {
+  const std::size_t first = mesh.parts[part].first_triangle;
+  const std::size_t end =
+      part + 1 < mesh.parts.size() ? mesh.parts[part + 1].first_triangle : mesh.triangles.size();
+  MeshFile out;
+  std::vector<int> number(mesh.corners.size(), -1);
+  for (std::size_t t = first; t < end; ++t) {
+    std::array<int, 3> triangle = mesh.triangles[t];
+    for (int& corner : triangle) {
+      int& known = number[static_cast<std::size_t>(corner)];
+      if (known < 0) {
+        known = static_cast<int>(out.corners.size());
+        out.corners.push_back(mesh.corners[static_cast<std::size_t>(corner)]);
+      }
+      corner = known;
+    }
+    out.triangles.push_back(triangle);
+    if (t < mesh.lines.size()) out.lines.push_back(mesh.lines[t]);
+  }
+  return out;
+}
+
+bool ReportFaults(const MeshFile& mesh, bool closed, const std::string& path,
+                  const MeshWords& words, Diagnostics& out) {
+  using Kind = math::MeshFault::Kind;
+  constexpr std::size_t kMostFaults = 10;
+  const auto corner = [&](int i) {
+    const Vec3& p = mesh.corners[static_cast<std::size_t>(i)];
+    return "(" + base::Brief(p.x) + ", " + base::Brief(p.y) + ", " + base::Brief(p.z) + ")";
+  };
+  const auto faults = math::FindFaults(mesh.corners, mesh.triangles, closed, kMostFaults);
+  for (const math::MeshFault& fault : faults) {
+    const auto triangle = static_cast<std::size_t>(fault.triangle);
+    const bool has_line = fault.triangle >= 0 && triangle < mesh.lines.size();
+    const SourceRef at{path, has_line ? mesh.lines[triangle] : 0, 0};
+    const std::string edge =
+        fault.from < 0 ? "" : "the edge from " + corner(fault.from) + " to " + corner(fault.to);
+    if (fault.kind == Kind::kOpen) {
+      out.Error(at, words.what + " is not closed: " + edge + " has one triangle only",
+                "close it" + words.or_else);
+    } else if (fault.kind == Kind::kCrowded) {
+      out.Error(at, edge + " has two triangles on one side, or more than two in all",
+                "all must run counter-clockwise seen from outside" + words.or_else);
+    } else if (fault.kind == Kind::kInsideOut) {
+      out.Error(at, words.what + " is inside out",
+                "corners must run counter-clockwise seen from outside");
+    } else {
+      const std::string which =
+          has_line ? "this triangle" : "triangle " + std::to_string(fault.triangle);
+      out.Error(at, which + " has no area", "its corners are on one line: leave it out");
+    }
+  }
+  return faults.empty();
+}
 
 bool EndsIn(const std::string& path, std::string_view end) {
   if (path.size() < end.size()) return false;

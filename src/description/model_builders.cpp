@@ -98,11 +98,25 @@ void Check(const MapReader& map, JointText& joint) {
                 "most_rad is how far its axis may turn away");
     }
   }
+  const char* const most = IsAngle(joint.kind) ? "most_rad" : "most_m";
+  if (ball && joint.most && *joint.most <= 0 && map.Has(most)) {
+    map.Error(most, map.Path(most) + " must be positive, got " + Shown(*joint.most),
+              "it is how far a ball's axis may turn away, to any side");
+  }
+  if (joint.kind == JointKind::kDistance) {
+    const bool below = joint.least && *joint.least < 0;
+    if (below)
+      map.Error("least_m", map.Path("least_m") + " must not be negative: it is a distance");
+    if (joint.most && *joint.most <= 0 && map.Has(most)) {
+      map.Error(most, map.Path(most) + " must be positive, got " + Shown(*joint.most),
+                "it is a distance");
+    }
+    if (below) return;
+  }
   if (!joint.least || !joint.most || *joint.least < *joint.most) return;
-  const char* const key = IsAngle(joint.kind) ? "most_rad" : "most_m";
-  if (!map.Has(key)) return;
-  map.Error(key,
-            map.Path(key) + " is " + Shown(*joint.most) + ", not above the least of " +
+  if (!map.Has(most)) return;
+  map.Error(most,
+            map.Path(most) + " is " + Shown(*joint.most) + ", not above the least of " +
                 Shown(*joint.least),
             "limits must rise");
 }

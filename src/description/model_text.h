@@ -13,7 +13,7 @@
 #include "description/parameters.h"
 #include "description/reader.h"
 #include "description/surface_keys.h"
-#include "math/closed_mesh.h"
+#include "math/triangles.h"
 #include "taut/spec.h"
 
 namespace taut::description {

@@ -80,28 +80,13 @@ class Writer {
 
   /// In its placement if its name says so, else among the pairs of the whole model.
   void NamePair(WrittenPair& pair) {
-    std::string full, shorter;
-    const std::string placement =
-        PlacementOf(m_.nodes[static_cast<std::size_t>(pair.nodes[0])].name);
-    bool inside = !placement.empty() && pair.name.starts_with(placement + ".");
-    for (const int n : pair.nodes) {
-      const std::string& name = m_.nodes[static_cast<std::size_t>(n)].name;
-      full += (full.empty() ? "" : "-") + name;
-      shorter += (shorter.empty() ? "" : "-") + ShortName(name);
-      inside = inside && PlacementOf(name) == placement;
-    }
-    std::string given = pair.name;
-    if (inside) {
-      const std::string own = pair.name.substr(placement.size() + 1);
-      inside = own == shorter || IsName(own);
-      if (inside) given = own == shorter ? "" : own;
-    }
-    if (!inside && pair.name == full) given.clear();
+    const auto [placement, given] = NameOf(m_, pair);
+    const bool inside = !placement.empty();
     if (!given.empty() && !IsName(given)) {
       Refuse("\"" + pair.name + "\" cannot be the name of a pair",
              "give the pair a `name:` in the model");
     }
-    pair.placement = inside ? placement : "";
+    pair.placement = placement;
     pair.line = given.empty() ? "{" : "{name: " + Name(given) + ", ";
     pair.line += "nodes: [";
     for (std::size_t i = 0; i < pair.nodes.size(); ++i) {
@@ -250,6 +235,7 @@ class Writer {
     FlowWriter<false> contact;
     ContactKeys(contact, def_);
     text += "contact: {" + contact.text() + "}\n";
+    if (!m_.apart.empty()) text += "apart: " + FlowWriter<false>::Text(m_.apart) + "\n";
     Diagnostics apart;
     CheckConnected(robot_, apart);
     return apart.ok() ? text : text + "allow_disconnected: true\n";
@@ -271,6 +257,24 @@ std::string Commented(const std::string& heading) {
 }
 
 }  // namespace
+
+PairName NameOf(const WrittenModel& model, const WrittenPair& pair) {
+  std::string full, shorter;
+  const auto name_of = [&](int n) { return model.nodes[static_cast<std::size_t>(n)].name; };
+  const std::string placement = PlacementOf(name_of(pair.nodes[0]));
+  bool inside = !placement.empty() && pair.name.starts_with(placement + ".");
+  for (const int n : pair.nodes) {
+    const std::string name = name_of(n);
+    full += (full.empty() ? "" : "-") + name;
+    shorter += (shorter.empty() ? "" : "-") + ShortName(name);
+    inside = inside && PlacementOf(name) == placement;
+  }
+  if (inside) {
+    const std::string own = pair.name.substr(placement.size() + 1);
+    if (own == shorter || IsName(own)) return {placement, own == shorter ? "" : own};
+  }
+  return {"", pair.name == full ? "" : pair.name};
+}
 
 std::string TextOf(const RobotSpec& robot, WrittenModel model, Diagnostics& out) {
   return Writer(robot, std::move(model), out).Text();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct WrittenPair {
   std::vector<int> nodes;
   std::string line;       ///< Of `pairs:`, once it is known how it is named.
   std::string placement;  ///< Whose pair it is; empty: none's.
+  bool turns = false;     ///< A rod of `class_k` that turns in a node of another body.
 };
 /// What builders of one text go on: indices of nodes or pairs.
 struct WrittenBuilder {
@@ -34,10 +36,32 @@ struct WrittenModel {
   std::vector<WrittenNode> nodes;  ///< Those of the robot first, in its order.
   std::vector<WrittenPair> pairs;  ///< Solids first.
   std::size_t solid_pairs = 0;
-  std::vector<int> cables;  ///< Of the robot: the pairs after the solids.
+  std::vector<int> cables;                      ///< Of the robot: the pairs after the solids.
+  std::set<int> pins;                           ///< Joints that rods of `class_k` bring along.
+  std::vector<std::vector<std::string>> apart;  ///< Bodies, by their names.
   std::vector<WrittenBuilder> on_pairs, on_nodes;
   std::map<std::string, Quat> turns;  ///< Per placement with boxes.
 };
+
+/// A box of the terrain that an experiment moves: no part of the robot.
+bool IsTerrain(const ModelDef& def, int body);
+/// Whether the robot says that the body stands still, and not an experiment that moves it.
+bool IsAnchored(const ModelDef& def, int body);
+
+/// The node of the body, or of the world, that is exactly there; -1: none.
+int NodeAt(const WrittenModel& model, int body, const Vec3& p);
+/// The builder of that text goes on one more.
+void Build(std::vector<WrittenBuilder>& list, const std::string& text, int on);
+
+/// How a pair is written: `given` is its `name:`, empty for that of its nodes.
+struct PairName {
+  std::string placement, given;
+};
+PairName NameOf(const WrittenModel& model, const WrittenPair& pair);
+
+/// Joints, supports and what does not touch each other: the last pairs, and builders. What rods of
+/// `class_k` bring along is left out.
+void TakeJoints(const RobotSpec& robot, WrittenModel& model, Diagnostics& out);
 
 /// Complains about what a model file cannot say; what comes back is whole if there was nothing.
 WrittenModel TakeApart(const RobotSpec& robot, Diagnostics& out);

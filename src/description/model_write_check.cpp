@@ -12,26 +12,40 @@ namespace {
 /// What rounding may change, of the size of a number and of the distances that go into it.
 constexpr double kRounding = 1e-12;
 
-bool Near(double a, double b, double size) {
-  return a == b || std::fabs(a - b) <= kRounding * std::max(std::fabs(a), size);
+struct Nearness {
+  double share = kRounding;
+
+  bool operator()(double a, double b, double size) const {
+    return a == b || std::fabs(a - b) <= share * std::max(std::fabs(a), size);
+  }
+  bool operator()(const Vec3& a, const Vec3& b) const {
+    const double size = std::max({1.0, std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
+    return (*this)(a.x, b.x, size) && (*this)(a.y, b.y, size) && (*this)(a.z, b.z, size);
+  }
+  /// Between bodies far from the origin and their parts digits are lost.
+  bool operator()(const Inertia& a, const Inertia& b, const BodyDef& body) const {
+    const Vec3& c = body.com_m;
+    const double size = a.xx + a.yy + a.zz + 1e-3 * body.mass_kg * std::sqrt(Dot(c, c));
+    const auto near = [&](double x, double y) { return (*this)(x, y, size); };
+    return near(a.xx, b.xx) && near(a.yy, b.yy) && near(a.zz, b.zz) && near(a.xy, b.xy) &&
+           near(a.xz, b.xz) && near(a.yz, b.yz);
+  }
+  /// q and -q are the same turn.
+  bool operator()(const Quat& a, const Quat& b) const {
+    const Vec3 x{1, 0, 0}, y{0, 1, 0};
+    return (*this)(Rotate(a, x), Rotate(b, x)) && (*this)(Rotate(a, y), Rotate(b, y));
+  }
+};
+
+/// The points that a joint holds together become one node. Of parts of a centimetre and more, what
+/// that moves is this share.
+Nearness NearnessFor(const ModelDef& def) {
+  double gap_m = 0;
+  for (const JointDef& joint : def.joints) gap_m = std::max(gap_m, HeldGap(joint));
+  return {std::max(kRounding, 100 * gap_m)};
 }
-bool Near(const Vec3& a, const Vec3& b) {
-  const double size = std::max({1.0, std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
-  return Near(a.x, b.x, size) && Near(a.y, b.y, size) && Near(a.z, b.z, size);
-}
-/// Between bodies far from the origin and their parts digits are lost.
-bool Near(const Inertia& a, const Inertia& b, const BodyDef& body) {
-  const Vec3& c = body.com_m;
-  const double size = a.xx + a.yy + a.zz + 1e-3 * body.mass_kg * std::sqrt(Dot(c, c));
-  return Near(a.xx, b.xx, size) && Near(a.yy, b.yy, size) && Near(a.zz, b.zz, size) &&
-         Near(a.xy, b.xy, size) && Near(a.xz, b.xz, size) && Near(a.yz, b.yz, size);
-}
-/// q and -q are the same turn.
-bool Near(const Quat& a, const Quat& b) {
-  const Vec3 x{1, 0, 0}, y{0, 1, 0};
-  return Near(Rotate(a, x), Rotate(b, x)) && Near(Rotate(a, y), Rotate(b, y));
-}
-bool Same(const Material& a, const Material& b) {
+
+bool Same(const Material& a, const Material& b, const Nearness& near) {
   if (a.stribeck.has_value() != b.stribeck.has_value() ||
       a.directions.has_value() != b.directions.has_value()) {
     return false;
@@ -44,7 +58,7 @@ bool Same(const Material& a, const Material& b) {
   if (a.directions && (a.directions->forward != b.directions->forward ||
                        a.directions->backward != b.directions->backward ||
                        a.directions->sideways != b.directions->sideways ||
-                       !Near(a.directions->axis, b.directions->axis))) {
+                       !near(a.directions->axis, b.directions->axis))) {
     return false;
   }
   return a.static_friction == b.static_friction && a.kinetic_friction == b.kinetic_friction &&
@@ -61,6 +75,14 @@ bool Same(const ActuatorDef& a, const ActuatorDef& b) {
          a.max_force_n == b.max_force_n && a.min_rest_length_m == b.min_rest_length_m &&
          a.min_length_m == b.min_length_m;
 }
+bool Same(const JointDef& a, const JointDef& b, const Nearness& near) {
+  // Nothing acts about the axis of a ball without a stop; those of rods of `class_k` have no say.
+  const bool free = a.kind == JointKind::kBall && !a.most;
+  const bool along = free || (near(a.axis, b.axis) && near(a.turned, b.turned));
+  return a.kind == b.kind && along && a.least == b.least && a.most == b.most &&
+         a.restitution == b.restitution && a.friction == b.friction && a.stiffness == b.stiffness &&
+         a.damping == b.damping && a.rest == b.rest && a.collides == b.collides;
+}
 bool Same(Tags a, Tags b) {
   std::sort(a.begin(), a.end());
   std::sort(b.begin(), b.end());
@@ -70,22 +92,30 @@ bool Same(Tags a, Tags b) {
 class Comparison {
  public:
   Comparison(const RobotSpec& robot, const RobotSpec& read, Diagnostics& out)
-      : robot_(robot), a_(robot.def), b_(read.def), read_(read), out_(out) {}
+      : robot_(robot),
+        a_(robot.def),
+        b_(read.def),
+        read_(read),
+        out_(out),
+        near_(NearnessFor(a_)) {}
 
   bool Run() {
     Bodies();
-    Shapes("sphere", a_.spheres, b_.spheres, [](const SphereDef& x, const SphereDef& y) {
-      return x.radius_m == y.radius_m && Near(x.center_m, y.center_m);
+    Shapes("sphere", a_.spheres, b_.spheres, [&](const SphereDef& x, const SphereDef& y) {
+      return x.radius_m == y.radius_m && near_(x.center_m, y.center_m);
     });
-    Shapes("rod", a_.capsules, b_.capsules, [](const CapsuleDef& x, const CapsuleDef& y) {
-      return x.radius_m == y.radius_m && Near(x.from_m, y.from_m) && Near(x.to_m, y.to_m);
+    Shapes("rod", a_.capsules, b_.capsules, [&](const CapsuleDef& x, const CapsuleDef& y) {
+      return x.radius_m == y.radius_m && near_(x.from_m, y.from_m) && near_(x.to_m, y.to_m);
     });
-    Shapes("box", a_.boxes, b_.boxes, [](const BoxDef& x, const BoxDef& y) {
-      return Near(x.center_m, y.center_m) && Near(x.orientation, y.orientation) &&
-             Near(x.half_extents_m, y.half_extents_m);
+    std::vector<BoxDef> boxes = a_.boxes;
+    std::erase_if(boxes, [&](const BoxDef& box) { return IsTerrain(a_, box.body); });
+    Shapes("box", boxes, b_.boxes, [&](const BoxDef& x, const BoxDef& y) {
+      return near_(x.center_m, y.center_m) && near_(x.orientation, y.orientation) &&
+             near_(x.half_extents_m, y.half_extents_m);
     });
     Nodes();
     Cables();
+    Joints();
     return good_;
   }
 
@@ -96,8 +126,8 @@ class Comparison {
     RefuseModel(out_, std::string("the ") + kind + " \"" + name + "\" would have another " + what);
   }
 
-  template <class Items>
-  bool SameCount(const char* kind, const Items& a, const Items& b) {
+  template <class Items, class OtherItems>
+  bool SameCount(const char* kind, const Items& a, const OtherItems& b) {
     if (a.size() == b.size()) return true;
     if (good_) {
       RefuseModel(out_, "it would have " + std::to_string(b.size()) + " of kind " + kind +
@@ -111,14 +141,18 @@ class Comparison {
   }
 
   void Bodies() {
-    if (!SameCount("body", a_.bodies, b_.bodies)) return;
-    for (std::size_t i = 0; i < a_.bodies.size(); ++i) {
-      const BodyDef &x = a_.bodies[i], &y = b_.bodies[i];
+    std::vector<int> bodies;  // of the robot
+    for (int i = 0; i < static_cast<int>(a_.bodies.size()); ++i) {
+      if (!IsTerrain(a_, i)) bodies.push_back(i);
+    }
+    if (!SameCount("body", bodies, b_.bodies)) return;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const BodyDef &x = a_.bodies[static_cast<std::size_t>(bodies[i])], &y = b_.bodies[i];
       if (x.name != y.name) Differs("body", x.name, "name");
-      if (x.fixed != y.fixed) Differs("body", x.name, "anchor");
-      if (!Near(x.mass_kg, y.mass_kg, 0)) Differs("body", x.name, "mass");
-      if (!Near(x.com_m, y.com_m)) Differs("body", x.name, "centre of mass");
-      if (!Near(x.inertia_kg_m2, y.inertia_kg_m2, x)) Differs("body", x.name, "inertia");
+      if (IsAnchored(a_, bodies[i]) != y.fixed) Differs("body", x.name, "anchor");
+      if (!near_(x.mass_kg, y.mass_kg, 0)) Differs("body", x.name, "mass");
+      if (!near_(x.com_m, y.com_m)) Differs("body", x.name, "centre of mass");
+      if (!near_(x.inertia_kg_m2, y.inertia_kg_m2, x)) Differs("body", x.name, "inertia");
     }
   }
 
@@ -146,7 +180,7 @@ class Comparison {
         Differs(kind, x.name, "body");
       } else if (!same(x, y)) {
         Differs(kind, x.name, "place");
-      } else if (!Same(x.material, y.material) || x.collides != y.collides) {
+      } else if (!Same(x.material, y.material, near_) || x.collides != y.collides) {
         Differs(kind, x.name, "surface");
       }
     });
@@ -156,7 +190,7 @@ class Comparison {
     ByName("node", a_.nodes, b_.nodes, [&](std::size_t i, std::size_t k) {
       const NodeDef &x = a_.nodes[i], &y = b_.nodes[k];
       if (NameOf(a_, x.body) != NameOf(b_, y.body)) Differs("node", x.name, "body");
-      if (!Near(x.position_m, y.position_m)) Differs("node", x.name, "place");
+      if (!near_(x.position_m, y.position_m)) Differs("node", x.name, "place");
       if (!Same(robot_.node_tags[i], read_.node_tags[k])) {
         Differs("node", x.name, "list of tags");
       }
@@ -169,11 +203,11 @@ class Comparison {
       const CableDef &x = a_.cables[i], &y = b_.cables[k];
       bool same_path = x.attachments.size() == y.attachments.size();
       for (std::size_t j = 0; same_path && j < x.attachments.size(); ++j) {
-        same_path = Near(x.attachments[j].position_m, y.attachments[j].position_m) &&
+        same_path = near_(x.attachments[j].position_m, y.attachments[j].position_m) &&
                     NameOf(a_, x.attachments[j].body) == NameOf(b_, y.attachments[j].body);
       }
       if (!same_path) Differs("cable", x.name, "path");
-      if (!Near(x.rest_length_m, y.rest_length_m, 0)) Differs("cable", x.name, "rest length");
+      if (!near_(x.rest_length_m, y.rest_length_m, 0)) Differs("cable", x.name, "rest length");
       if (x.stiffness_n_per_m != y.stiffness_n_per_m ||
           x.damping_n_s_per_m != y.damping_n_s_per_m || x.damping_law != y.damping_law) {
         Differs("cable", x.name, "stiffness or damper");
@@ -185,10 +219,37 @@ class Comparison {
     });
   }
 
+  void Joints() {
+    if (!SameCount("joint", a_.joints, b_.joints)) return;
+    ByName("joint", a_.joints, b_.joints, [&](std::size_t i, std::size_t k) {
+      const JointDef &x = a_.joints[i], &y = b_.joints[k];
+      if (NameOf(a_, x.body_a) != NameOf(b_, y.body_a) ||
+          NameOf(a_, x.body_b) != NameOf(b_, y.body_b)) {
+        Differs("joint", x.name, "pair of bodies");
+      } else if (!near_(x.from_m, y.from_m) || !near_(x.to_m, y.to_m)) {
+        Differs("joint", x.name, "place");
+      } else if (!Same(x, y, near_)) {
+        Differs("joint", x.name, "kind, axis or force");
+      }
+    });
+    const auto apart = [&](const ModelDef& def) {
+      std::set<std::pair<std::string, std::string>> names;
+      for (const ApartDef& pair : def.apart) {
+        names.insert(std::minmax({NameOf(def, pair.body_a), NameOf(def, pair.body_b)}));
+      }
+      return names;
+    };
+    if (good_ && apart(a_) != apart(b_)) {
+      good_ = false;
+      RefuseModel(out_, "other bodies would be kept apart");
+    }
+  }
+
   const RobotSpec& robot_;
   const ModelDef &a_, &b_;
   const RobotSpec& read_;
   Diagnostics& out_;
+  const Nearness near_;
   bool good_ = true;
 };
 

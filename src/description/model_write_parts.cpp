@@ -51,12 +51,11 @@ class Taker {
       m_.nodes.push_back({node.name, node.body, node.position_m, robot_.node_tags[n], -1});
       if (node.body == kWorld) Build(m_.on_nodes, "anchor: {}", static_cast<int>(n));
     }
-    if (!def_.joints.empty() || !def_.apart.empty()) Refuse("it has joints, or bodies kept apart");
     if (!def_.hulls.empty()) Refuse("it has convex solids", "take the model that it was made from");
-    if (!def_.motions.empty()) Refuse("a program moves some of it");
     Rods(), Boxes(), Spheres(), PointMasses(), Anchors();
     m_.solid_pairs = m_.pairs.size();
     Cables();
+    TakeJoints(robot_, m_, out_);
     FixNodes();
     return std::move(m_);
   }
@@ -66,26 +65,7 @@ class Taker {
     RefuseModel(out_, what, hint);
   }
 
-  static void Build(std::vector<WrittenBuilder>& list, const std::string& text, int on) {
-    const auto same = std::find_if(list.begin(), list.end(),
-                                   [&](const WrittenBuilder& b) { return b.text == text; });
-    if (same == list.end()) {
-      list.push_back({text, {on}});
-    } else {
-      same->on.push_back(on);
-    }
-  }
-
-  /// A node of the body, or of the world, that is exactly there; -1: none.
-  int NodeAt(int body, const Vec3& p) const {
-    for (std::size_t n = 0; n < m_.nodes.size(); ++n) {
-      const Vec3& at = m_.nodes[n].position_m;
-      if (m_.nodes[n].body == body && at.x == p.x && at.y == p.y && at.z == p.z) {
-        return static_cast<int>(n);
-      }
-    }
-    return -1;
-  }
+  int NodeAt(int body, const Vec3& p) const { return description::NodeAt(m_, body, p); }
   int NodeCalled(const std::string& name) const {
     for (std::size_t n = 0; n < m_.nodes.size(); ++n) {
       if (m_.nodes[n].name == name) return static_cast<int>(n);
@@ -112,29 +92,74 @@ class Taker {
 
   /// The tags of a pair that becomes a solid are not kept when it is built.
   int AddSolidPair(const std::string& name, int a, int b) {
-    m_.pairs.push_back({name, {}, {a, b}, {}, {}});
+    m_.pairs.push_back({name, {}, {a, b}, {}, {}, false});
     return static_cast<int>(m_.pairs.size()) - 1;
   }
 
   void Rods() {
-    for (std::size_t i = 0; i < def_.capsules.size(); ++i) {
+    for (const std::size_t i : InOrder()) {
       const CapsuleDef& rod = def_.capsules[i];
-      const int from = NodeAt(rod.body, rod.from_m), to = NodeAt(rod.body, rod.to_m);
+      const std::size_t pins = m_.pins.size();
+      const int from = RodEnd(rod, rod.from_m), to = RodEnd(rod, rod.to_m);
       if (from < 0 || to < 0) {
         Refuse("the rod \"" + rod.name + "\" does not end at nodes");
         continue;
       }
+      const bool turns = m_.pins.size() > pins;
+      const int pair = AddSolidPair(rod.name, from, to);
+      m_.pairs.back().turns = turns;
       Build(m_.on_pairs,
-            "rod: {radius_m: " + Shown(rod.radius_m) + ", " +
+            "rod: {radius_m: " + Shown(rod.radius_m) + (turns ? ", class_k: true, " : ", ") +
                 MassText(MassOf(&SolidsSpec::capsules, i, rod.body)) +
                 SurfaceText(rod.material, rod.collides) + "}",
-            AddSolidPair(rod.name, from, to));
+            pair);
     }
+  }
+
+  /// Rods as they are, but those that are pinned as their joints are: these follow the pairs.
+  std::vector<std::size_t> InOrder() const {
+    std::vector<std::size_t> order, places;
+    std::vector<std::pair<std::size_t, std::size_t>> pinned;  // joint, rod
+    for (std::size_t i = 0; i < def_.capsules.size(); ++i) {
+      order.push_back(i);
+      for (std::size_t j = 0; j < def_.joints.size(); ++j) {
+        if (!IsPin(def_.joints[j], def_.capsules[i])) continue;
+        places.push_back(i);
+        pinned.emplace_back(j, i);
+        break;
+      }
+    }
+    std::sort(pinned.begin(), pinned.end());
+    for (std::size_t k = 0; k < places.size(); ++k) order[places[k]] = pinned[k].second;
+    return order;
+  }
+
+  /// Whether a rod of `class_k` brings the joint along.
+  bool IsPin(const JointDef& joint, const CapsuleDef& rod) const {
+    if (joint.kind != JointKind::kBall || joint.body_b != rod.body) return false;
+    const int node = NodeAt(joint.body_a, joint.from_m);
+    return node >= 0 && NodeAt(rod.body, joint.to_m) < 0 &&
+           joint.name == rod.name + "." + m_.nodes[static_cast<std::size_t>(node)].name;
+  }
+
+  /// A node of the rod's body, or that of another which it is pinned to.
+  int RodEnd(const CapsuleDef& rod, const Vec3& p) {
+    const int own = NodeAt(rod.body, p);
+    if (own >= 0) return own;
+    for (std::size_t j = 0; j < def_.joints.size(); ++j) {
+      const JointDef& pin = def_.joints[j];
+      const Vec3& at = pin.to_m;
+      if (at.x != p.x || at.y != p.y || at.z != p.z || !IsPin(pin, rod)) continue;
+      m_.pins.insert(static_cast<int>(j));
+      return NodeAt(pin.body_a, pin.from_m);
+    }
+    return -1;
   }
 
   void Boxes() {
     for (std::size_t i = 0; i < def_.boxes.size(); ++i) {
       const BoxDef& box = def_.boxes[i];
+      if (IsTerrain(def_, box.body)) continue;
       const SolidMass mass = MassOf(&SolidsSpec::boxes, i, box.body);
       const std::string more = MassText(mass) + SurfaceText(box.material, box.collides) + "}";
       const Vec3 h = box.half_extents_m;
@@ -230,7 +255,7 @@ class Taker {
 
   void Anchors() {
     for (std::size_t b = 0; b < def_.bodies.size(); ++b) {
-      if (!def_.bodies[b].fixed) continue;
+      if (!IsAnchored(def_, static_cast<int>(b))) continue;
       for (std::size_t n = 0; n < m_.nodes.size(); ++n) {
         if (m_.nodes[n].body != static_cast<int>(b)) continue;
         Build(m_.on_nodes, "anchor: {}", static_cast<int>(n));
@@ -242,7 +267,7 @@ class Taker {
   void Cables() {
     for (std::size_t c = 0; c < def_.cables.size(); ++c) {
       const CableDef& cable = def_.cables[c];
-      WrittenPair pair{cable.name, robot_.cable_tags[c], {}, {}, {}};
+      WrittenPair pair{cable.name, robot_.cable_tags[c], {}, {}, {}, false};
       for (std::size_t i = 0; i < cable.attachments.size(); ++i) {
         pair.nodes.push_back(EndNode(cable, i));
       }
@@ -283,8 +308,10 @@ class Taker {
   /// What no rod or box welds to the rest of its body is fixed to it.
   void FixNodes() {
     base::UnionFind welds(m_.nodes.size());
-    for (std::size_t p = 0; p < m_.solid_pairs; ++p)
-      welds.Join(m_.pairs[p].nodes[0], m_.pairs[p].nodes[1]);
+    for (std::size_t p = 0; p < m_.solid_pairs; ++p) {
+      const WrittenPair& pair = m_.pairs[p];
+      if (!pair.turns) welds.Join(pair.nodes[0], pair.nodes[1]);
+    }
     std::map<std::pair<int, std::string>, int> first;
     for (int n = 0; n < static_cast<int>(m_.nodes.size()); ++n) {
       WrittenNode& node = m_.nodes[static_cast<std::size_t>(n)];
@@ -306,6 +333,40 @@ class Taker {
 
 void RefuseModel(Diagnostics& out, const std::string& what, const std::string& hint) {
   out.Error({}, "a model file cannot say all of this robot: " + what, hint);
+}
+
+bool IsTerrain(const ModelDef& def, int body) {
+  const auto at_body = [&](const auto& part) { return part.body == body; };
+  return std::any_of(def.motions.begin(), def.motions.end(), at_body) &&
+         std::none_of(def.nodes.begin(), def.nodes.end(), at_body) &&
+         std::none_of(def.capsules.begin(), def.capsules.end(), at_body);
+}
+
+bool IsAnchored(const ModelDef& def, int body) {
+  const BodyDef& b = def.bodies[static_cast<std::size_t>(body)];
+  const bool moved = std::any_of(def.motions.begin(), def.motions.end(),
+                                 [&](const MotionDef& motion) { return motion.body == body; });
+  return b.fixed && !(moved && b.mass_kg > 0);
+}
+
+int NodeAt(const WrittenModel& model, int body, const Vec3& p) {
+  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+    const Vec3& at = model.nodes[n].position_m;
+    if (model.nodes[n].body == body && at.x == p.x && at.y == p.y && at.z == p.z) {
+      return static_cast<int>(n);
+    }
+  }
+  return -1;
+}
+
+void Build(std::vector<WrittenBuilder>& list, const std::string& text, int on) {
+  const auto same = std::find_if(list.begin(), list.end(),
+                                 [&](const WrittenBuilder& b) { return b.text == text; });
+  if (same == list.end()) {
+    list.push_back({text, {on}});
+  } else {
+    same->on.push_back(on);
+  }
 }
 
 WrittenModel TakeApart(const RobotSpec& robot, Diagnostics& out) { return Taker(robot, out).Run(); }

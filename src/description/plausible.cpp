@@ -170,16 +170,30 @@ void WarnOfDensities(const RobotSpec& robot, Diagnostics& out) {
 
 }  // namespace
 
-void CheckPositions(const RobotSpec& robot, Diagnostics& out, const SourceRef* place) {
+namespace {
+
+/// The smallest size of a robot: of a shape, for want of shapes of a cable, for want of all a
+/// metre.
+Item Smallest(const RobotSpec& robot) {
   Items sizes = Sizes(robot);
-  for (const CableDef& cable : robot.def.cables) {  // for want of shapes
-    if (robot.def.spheres.empty() && robot.def.capsules.empty() && robot.def.boxes.empty() &&
-        robot.def.hulls.empty()) {
+  if (sizes.empty()) {
+    for (const CableDef& cable : robot.def.cables) {
       sizes.push_back({cable.rest_length_m, "cable \"" + cable.name + "\"", {}});
     }
   }
-  if (sizes.empty()) sizes.push_back({1.0, "a metre", {}});
-  const Item smallest = *std::min_element(sizes.begin(), sizes.end(), Less);
+  if (sizes.empty()) return {1.0, "a metre", {}};
+  return *std::min_element(sizes.begin(), sizes.end(), Less);
+}
+
+}  // namespace
+
+bool IsTooFar(const RobotSpec& robot, double far_m) {
+  const double smallest_m = Smallest(robot).value;
+  return smallest_m > 0.0 && !(Rounding(far_m) <= kFinest * smallest_m);
+}
+
+void CheckPositions(const RobotSpec& robot, Diagnostics& out, const SourceRef* place) {
+  const Item smallest = Smallest(robot);
   if (!(smallest.value > 0.0)) return;
   const auto complain = [&](const SourceRef& at, const std::string& what, double far_m) {
     out.Error(at,

@@ -155,6 +155,8 @@ Vec3 ReadDirection(const Value& value, std::string_view what, const Scope& scope
     scope.out.Error(value.at, std::string(what) + " must not be zero", "it is a direction");
     return {kNan, kNan, kNan};
   }
+  // Of length 1 up to rounding: as taut writes it, to be read to the bit.
+  if (std::fabs(v.x * v.x + v.y * v.y + v.z * v.z - 1.0) < 1e-15) return v;
   const Vec3 s{v.x / largest, v.y / largest, v.z / largest};
   const double length = std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z);
   return {s.x / length, s.y / length, s.z / length};

@@ -32,7 +32,9 @@ Quat ReadQuaternion(const Value& value, const std::string& path, const Scope& sc
     scope.out.Error(value.at, path + " must not be zero", "order w, x, y, z");
     return {};
   }
-  return Normalized({(*q)[0], (*q)[1], (*q)[2], (*q)[3]});
+  const Quat read{(*q)[0], (*q)[1], (*q)[2], (*q)[3]};
+  // Of length 1 up to rounding: as taut writes it, to be read to the bit.
+  return std::fabs(square - 1.0) < 1e-15 ? read : Normalized(read);
 }
 
 Quat ReadOneRotation(const Value& value, const std::string& path, const Scope& scope) {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "math/closed_mesh.h"
+#include "math/triangles.h"
 
 namespace taut::math {
 

@@ -1,6 +1,7 @@
-// How far apart the points of a joint are described.
+// How far apart the points of a joint are described, and how far off its bodies' turns are.
 #include <cmath>
 
+#include "math/joint_turn.h"
 #include "math/vec.h"
 #include "taut/joint_def.h"
 
@@ -25,5 +26,25 @@ double HeldGap(const JointDef& j) noexcept {
       return std::sqrt(all2);
   }
 }
+
+namespace math {
+
+double HeldTurn(const JointDef& j) noexcept {
+  using K = JointKind;
+  const auto off = [](const Vec3& d) { return std::sqrt(Dot(d, d)); };
+  switch (j.kind) {
+    case K::kWeld:
+    case K::kPrismatic:
+      return 2 * off({j.turned.x, j.turned.y, j.turned.z});
+    case K::kHinge:
+    case K::kCylindrical:
+    case K::kPlanar:
+      return off(Rotate(j.turned, j.axis) - j.axis);
+    default:
+      return 0;
+  }
+}
+
+}  // namespace math
 
 }  // namespace taut

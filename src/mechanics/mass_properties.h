@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "math/closed_mesh.h"
+#include "math/triangles.h"
 #include "taut/types.h"
 
 namespace taut {
@@ -22,7 +22,7 @@ MassProperties SolidSphere(const Vec3& center_m, double radius_m, double mass_kg
 MassProperties SolidBox(const Vec3& center_m, const Quat& q_WBox, const Vec3& half_extents_m,
                         double mass_kg);
 
-/// What closed triangles enclose (math/closed_mesh.h). After Tonon (2005), "Explicit exact formulas
+/// What closed triangles enclose (math/triangles.h). After Tonon (2005), "Explicit exact formulas
 /// for the 3-D tetrahedron inertia tensor": of tetrahedra from one point to every triangle.
 MassProperties SolidMesh(const std::vector<Vec3>& corners_m, const math::Triangles& triangles,
                          double density_kg_per_m3);

@@ -31,9 +31,11 @@ Inertia Turned(const Quat& q, const Inertia& i) {
 class ToPose {
  public:
   ToPose(const ModelDef& from, const Pose& to) : from_(from.bodies), to_(to.bodies) {
+    for (const BodyDef& body : from_) moves_.push_back(!body.fixed);
+    for (const MotionDef& motion : from.motions) moves_[Index(motion.body)] = true;
     for (const BodyState& state : to_) turns_.push_back(Normalized(state.orientation));
   }
-  bool Moves(int body) const { return body != kWorld && !from_[Index(body)].fixed; }
+  bool Moves(int body) const { return body != kWorld && moves_[Index(body)]; }
   Vec3 Moved(int body, const Vec3& point_m) const {
     const std::size_t b = Index(body);
     return to_[b].position_m + Rotate(turns_[b], point_m - from_[b].com_m);
@@ -45,6 +47,7 @@ class ToPose {
   const std::vector<BodyDef>& from_;
   const std::vector<BodyState>& to_;
   std::vector<Quat> turns_;
+  std::vector<bool> moves_;  ///< By forces or by a program.
 };
 
 }  // namespace
@@ -62,7 +65,7 @@ RobotSpec RobotAt(const RobotSpec& robot, const Pose& pose) {
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     BodyDef& body = def.bodies[b];
     body.velocity_m_per_s = body.angular_velocity_rad_per_s = {};
-    if (body.fixed) continue;
+    if (!motion.Moves(static_cast<int>(b))) continue;
     body.com_m = pose.bodies[b].position_m;
     body.inertia_kg_m2 = Turned(motion.Turned(static_cast<int>(b)), body.inertia_kg_m2);
   }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/fixed.h"
+#include "math/joint_turn.h"
 #include "math/vec.h"
 #include "sim/checker.h"
 
@@ -59,6 +60,8 @@ void CheckCoordinate(const JointDef& j, const std::string& name, Checker& check)
   if (j.kind == K::kDistance) {
     const Vec3 d = j.to_m - j.from_m;
     check.Require(Dot(d, d) > 0, name + ": its points are in the same place");
+    check.Require((!j.least || *j.least >= 0) && (!j.most || *j.most > 0),
+                  name + ": a distance is not negative");
   }
 }
 
@@ -85,6 +88,8 @@ void CheckJoints(const ModelDef& def, Checker& check) {
     const double gap = HeldGap(j);
     check.Require(!(gap > JointDef::kClosed_m),
                   name + ": its points are " + Metres(gap) + " apart where it holds them together");
+    check.Require(!(math::HeldTurn(j) > math::kClosedTurn_rad),
+                  name + ": its bodies are turned against each other where it holds them");
   }
   for (const auto& pair : def.apart) {
     check.Body(pair.body_a, def, "bodies that are kept apart");

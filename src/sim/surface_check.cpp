@@ -1,8 +1,6 @@
-#include <array>
 #include <string>
 
-#include "math/closed_mesh.h"
-#include "math/vec.h"
+#include "math/triangles.h"
 #include "sim/checker.h"
 
 namespace taut::sim {
@@ -29,39 +27,41 @@ void CheckField(const HeightFieldDef& field, Checker& check) {
   }
 }
 
+/// What is wrong, by the numbers of triangles and corners.
+std::string Text(const math::MeshFault& fault) {
+  using Kind = math::MeshFault::Kind;
+  const std::string triangle = ": triangle " + std::to_string(fault.triangle),
+                    edge = "the edge between corners " + std::to_string(fault.from) + " and " +
+                           std::to_string(fault.to);
+  switch (fault.kind) {
+    case Kind::kNoCorner:
+      return triangle + " refers to a corner that is not there";
+    case Kind::kNoArea:
+      return triangle + " has no area";
+    case Kind::kOpen:
+      return " is not closed: " + edge + " has one triangle only";
+    case Kind::kCrowded:
+      return ": " + edge + " has two triangles on one side, or more than two in all";
+    case Kind::kInsideOut:
+      return " is inside out: corners must run counter-clockwise seen from outside";
+  }
+  return {};
+}
+
 void CheckMesh(const TerrainMeshDef& mesh, Checker& check) {
   const std::string name = "mesh " + mesh.name;
   check.Surface(mesh.material, name);
   check.Require(!mesh.triangles.empty(), name + " has no triangle");
-  Vec3 least{1e300, 1e300, 1e300}, most{-1e300, -1e300, -1e300};
   for (std::size_t i = 0; i < mesh.corners_m.size(); ++i) {
     const Vec3& p = mesh.corners_m[i];
     if (!std::isfinite(p.x + p.y + p.z)) {
       return check.Require(false, name + ": corner " + std::to_string(i) + " must be finite");
     }
-    least = {std::fmin(least.x, p.x), std::fmin(least.y, p.y), std::fmin(least.z, p.z)};
-    most = {std::fmax(most.x, p.x), std::fmax(most.y, p.y), std::fmax(most.z, p.z)};
   }
-  const double size = most.x - least.x + (most.y - least.y) + (most.z - least.z);
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const std::array<int, 3>& t = mesh.triangles[i];
-    const std::string which = name + ": triangle " + std::to_string(i);
-    for (const int corner : t) {
-      if (corner < 0 || corner >= static_cast<int>(mesh.corners_m.size())) {
-        return check.Require(false, which + " refers to a corner that is not there");
-      }
-    }
-    const auto corner = [&](std::size_t k) {
-      return mesh.corners_m[static_cast<std::size_t>(t[k])];
-    };
-    const Vec3 n = Cross(corner(1) - corner(0), corner(2) - corner(0));
-    if (!(Dot(n, n) > 1e-24 * size * size * size * size)) {
-      return check.Require(false, which + " has no area");
-    }
+  for (const math::MeshFault& fault :
+       math::FindFaults(mesh.corners_m, mesh.triangles, mesh.solid, 1)) {
+    check.Require(false, name + Text(fault));
   }
-  if (!mesh.solid || mesh.triangles.empty()) return;
-  const std::string why = math::WhyNotClosed(mesh.corners_m, mesh.triangles);
-  check.Require(why.empty(), name + why);
 }
 
 }  // namespace

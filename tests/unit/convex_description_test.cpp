@@ -126,8 +126,8 @@ TEST_F(ConvexText, WhatIsHollowedOutIsSaid) {
   const double p[6][2] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
   for (const double z : {0.0, 1.0}) {
     for (const auto& c : p) {
-      obj += "v " + std::to_string(c[0]) + " " + std::to_string(c[1]) + " " + std::to_string(z) +
-             "\n";
+      obj +=
+          "v " + std::to_string(c[0]) + " " + std::to_string(c[1]) + " " + std::to_string(z) + "\n";
     }
   }
   obj += "f 1 4 3 2\nf 1 6 5 4\nf 7 8 9 10\nf 7 10 11 12\n";
@@ -139,15 +139,17 @@ TEST_F(ConvexText, WhatIsHollowedOutIsSaid) {
   Write("l.obj", obj);
   const RobotSpec robot = With("file: l.obj, scale_m: 0.1, density_kg_per_m3: 1000");
   EXPECT_NEAR(robot.def.bodies[0].mass_kg, 3, 1e-12);
-  ExpectHas(warnings_, "is not convex: its hull, which is what touches, has 1.167 times its volume");
+  ExpectHas(warnings_,
+            "is not convex: its hull, which is what touches, has 1.167 times its volume");
 }
 
 TEST_F(ConvexText, WrongOnesAreNamed) {
   Write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
   Write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n");
   Write("turned.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n");
-  ExpectHas(Said("file: open.obj, scale_m: 1, mass_kg: 1"), "open.obj is not closed");
-  ExpectHas(Said("file: flat.obj, scale_m: 1, mass_kg: 1"), "flat.obj has no volume");
+  ExpectHas(Said("file: open.obj, scale_m: 1, mass_kg: 1"),
+            "open.obj:7: error: the mesh is not closed");
+  ExpectHas(Said("file: flat.obj, scale_m: 1, mass_kg: 1"), "the mesh is inside out");
   ExpectHas(Said("file: turned.obj, scale_m: 1, mass_kg: 1"), "is inside out");
   ExpectHas(Said("file: none.obj, scale_m: 1, mass_kg: 1"), "none.obj");
   ExpectHas(Said("file: open.obj, mass_kg: 1"), "scale_m");

@@ -77,8 +77,8 @@ TEST_F(GroundText, GroundFarFromTheOriginIsRefused) {
       "to");
   has(Said("- {name: hills, height_field: {columns: 3, rows: 3, cell_m: 1, height_m: 1e9}}"),
       "error: the height field \"hills\" is 1e+09 m from the origin");
-  Write("rock.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1e9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
-  has(Said("- {name: rock, mesh: {file: rock.obj, scale_m: 1}}"),
+  Write("rock.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  has(Said("- {name: rock, mesh: {file: rock.obj, scale_m: 1, place: {at_m: [0, 1e9, 0]}}}"),
       "error: the mesh \"rock\" is 1e+09 m from the origin");
 }
 
@@ -246,6 +246,19 @@ TEST_F(GroundText, WrongMeshesAreNamed) {
   has(mesh("rock.obj", "v 0 0 0\n"), "there is no triangle in it");
   has(mesh("rock.stl", "solid\nfacet\nvertex 0 0 0\nendfacet\n"),
       "rock.stl:4: error: a facet has three corners, this one 1");
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 2 0 0\n";
+  has(mesh("rock.obj", corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\n"),
+      "rock.obj:6: error: the mesh is not closed: the edge from (0, 0, 0) to (0, 1, 0) has one "
+      "triangle only (close it, or write `solid: surface`)");
+  has(mesh("rock.obj", corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 1 2 4\n"),
+      "rock.obj:10: error: the edge from (0, 0, 0) to (1, 0, 0) has two triangles on one side, or "
+      "more than two in all (all must run");
+  has(mesh("rock.obj", corners + "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n"),
+      "rock.obj: error: the mesh is inside out (corners must run counter-clockwise seen from");
+  has(mesh("rock.obj", corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 1 2 5\n"),
+      "rock.obj:10: error: this triangle has no area (its corners are on one line: leave it out)");
+  has(mesh("rock.stl", "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 2 0 0\nendfacet\n"),
+      "rock.stl:6: error: this triangle has no area");
   std::string cut = StlBinary();
   cut.resize(cut.size() - 1);
   has(mesh("rock.stl", cut), "there is no triangle in it");

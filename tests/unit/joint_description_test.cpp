@@ -112,12 +112,14 @@ TEST(JointText, NodesFixedToARodGoWithItAndAnchorsHoldIt) {
 }
 
 TEST(JointText, ASupportMakesNoBody) {
-  EXPECT_THAT(Errors("nodes: {a: [0, 0, 0], b: [1, 0, 0], lost: [2, 0, 0]}\n"
-                     "pairs: [{nodes: [a, b], tags: [rod]}]\n"
-                     "builders:\n"
-                     "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
-                     "  - {match: lost, support: {kind: ball}}\n"),
-              HasSubstr("\"lost\" belongs to no body"));
+  const std::string errors = Errors(
+      "nodes: {a: [0, 0, 0], b: [1, 0, 0], lost: [2, 0, 0]}\n"
+      "pairs: [{nodes: [a, b], tags: [rod]}]\n"
+      "builders:\n"
+      "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
+      "  - {match: lost, support: {kind: ball}}\n");
+  EXPECT_THAT(errors, HasSubstr("\"lost\" belongs to no body"));
+  EXPECT_THAT(errors, testing::Not(HasSubstr("to itself")));  // one mistake, one complaint
 }
 
 /// The upper rod lies turned about z, the lower one is bent at the knee and has slid.
@@ -154,6 +156,10 @@ TEST(JointText, WhatIsApartIsNamed) {
   ASSERT_EQ(robot.def.apart.size(), 1u);
   EXPECT_THAT(Errors(Leg("kind: ball", "apart: [[upper, lowr]]\n")),
               HasSubstr("apart: there is no body \"lowr\""));
+  EXPECT_THAT(Errors(Leg("kind: ball", "apart: [[upper]]\n")),
+              HasSubstr("apart: \"upper\" stands alone in its list (a list has two bodies"));
+  EXPECT_THAT(Errors(Leg("kind: ball", "apart: [[upper, lower, upper]]\n")),
+              HasSubstr("apart: \"upper\" stands twice in one list"));
 }
 
 TEST(JointText, MistakesAreNamed) {
@@ -184,6 +190,78 @@ TEST(JointText, LimitsThatMakeNoSenseAreNamed) {
               HasSubstr("not above the least"));
   EXPECT_THAT(Errors(Leg("kind: ball, friction_n_m: 1")),
               HasSubstr("a ball joint has no friction"));
+}
+
+TEST(JointText, LimitsOfABallAndOfADistanceAreAboveZero) {
+  EXPECT_THAT(
+      Errors(Leg("kind: ball, axis: [1, 0, 0], most_rad: -0.5")),
+      HasSubstr("11:56: error: builder.joint.most_rad must be positive, got -0.5 (it is how "
+                "far a ball's axis may turn away"));
+  const std::string apart =
+      Errors(Leg("kind: distance, least_m: -1, most_m: -0.5", "", "[1.2, 0, 0]"));
+  EXPECT_THAT(apart, HasSubstr("least_m must not be negative"));
+  EXPECT_THAT(apart, HasSubstr("most_m must be positive, got -0.5 (it is a distance)"));
+  EXPECT_THAT(Errors(Leg("kind: distance")),
+              HasSubstr("the nodes of the joint \"knee\" are in one place (a distance has a"));
+}
+
+TEST(JointText, AStopThatIsPassedAsDescribedIsAnError) {
+  EXPECT_THAT(Errors(Leg("kind: hinge, axis: [0, 1, 0], least_rad: 0.3, most_rad: 0.5")),
+              HasSubstr("the joint \"knee\" is 0.3 rad beyond its stop as described (describe it "
+                        "in another pose"));
+  EXPECT_THAT(Errors(Leg("kind: prismatic, axis: [1, 0, 0], most_m: 0.1", "", "[1.15, 0, 0]")),
+              HasSubstr("is 0.05 m beyond its stop"));
+  EXPECT_THAT(Errors(Leg("kind: distance, most_m: 0.1", "", "[1.2, 0, 0]")),
+              HasSubstr("is 0.1 m beyond its stop"));
+  EXPECT_THAT(Errors(Leg("kind: ball, most_rad: 0.2, turned: {axis: x, angle_rad: 0.5}")),
+              HasSubstr("is 0.3 rad beyond its stop"));
+  Good(
+      Leg("kind: hinge, axis: [0, 1, 0], least_rad: 0.3, most_rad: 0.5, turned: {axis: y, "
+          "angle_rad: 0.4}"));
+  Good(Leg("kind: hinge, axis: [0, 1, 0], least_rad: 0.0001, most_rad: 0.5"));
+}
+
+TEST(JointText, WhatWeldsHoldNeedsNoOtherJoint) {
+  const auto twice = [](const std::string& one, const std::string& other) {
+    return "nodes: {hip: [0, 0, 0], a: [1, 0, 0], b: [1, 0, 0], foot: [2, 0, 0]}\n"
+           "pairs:\n"
+           "  - {name: upper, nodes: [hip, a], tags: [rod]}\n"
+           "  - {name: lower, nodes: [b, foot], tags: [rod]}\n"
+           "  - {name: one, nodes: [a, b]}\n"
+           "  - {name: other, nodes: [a, b]}\n"
+           "builders:\n"
+           "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
+           "  - {match: one, joint: {kind: " +
+           one + "}}\n  - {match: other, joint: {kind: " + other + "}}\n";
+  };
+  EXPECT_THAT(Errors(twice("weld", "weld")),
+              HasSubstr("9:5: error: the weld \"other\" is redundant: other welds hold its bodies "
+                        "together (leave it out)"));
+  EXPECT_THAT(Errors(twice("hinge", "weld")),
+              HasSubstr("8:5: error: the joint \"one\" can do nothing: welds hold its bodies"));
+  Good(twice("ball", "ball"));  // redundant rows are solved
+  EXPECT_THAT(Errors(Leg("kind: ball",
+                         "  - {match: hip, support: {kind: weld}}\n"
+                         "  - {match: a, support: {kind: weld}}\n")),
+              HasSubstr("the weld \"a\" is redundant"));
+  // Around a triangle the third one is.
+  EXPECT_THAT(Errors("nodes:\n"
+                     "  {a: [0, 0, 0], b: [1, 0, 0], c: [1, 0, 0], d: [1, 1, 0], e: [1, 1, 0], "
+                     "f: [0, 0, 0]}\n"
+                     "pairs:\n"
+                     "  - {tags: [rod], each: [[a, b], [c, d], [e, f]]}\n"
+                     "  - {tags: [weld], each: [[b, c], [d, e], [f, a]]}\n"
+                     "builders:\n"
+                     "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
+                     "  - {match: weld, joint: {kind: weld}}\n"),
+              HasSubstr("the weld \"f-a\" is redundant"));
+}
+
+TEST(JointText, NeitherOfItsBodiesMoves) {
+  EXPECT_THAT(
+      Errors(Leg("kind: ball", "  - {match: hip, anchor: {}}\n  - {match: foot, anchor: {}}\n")),
+      HasSubstr("8:5: error: the joint \"knee\" joins two things that do not move (leave it "
+                "out, or an anchor)"));
 }
 
 TEST(JointText, TwoOfOneNameAreAnError) {

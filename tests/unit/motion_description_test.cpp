@@ -95,6 +95,23 @@ TEST_F(MotionText, EveryMistakeIsNamedAtOnce) {
   EXPECT_THAT(errors, HasSubstr("two motions called c"));
 }
 
+TEST_F(MotionText, WhatGoesTooFarIsAnErrorAndWhatIsTooFastAWarning) {
+  Add("  - {name: a, of: plate, slide: {direction: [0, 0, 1], speed_m_per_s: [[0, 1e300]]}}\n"
+      "  - {name: b, of: b, turn: {axis: [0, 0, 1], speed_rad_per_s: [[0, 1], [1, -1e9]]}}\n",
+      kPlate);
+  const std::string errors = Complaints();
+  EXPECT_THAT(errors, HasSubstr("the motion \"a\" may go 1e+301 m far in 10 s (positions so far "
+                                "away are too coarse for the robot)"));
+  EXPECT_THAT(errors, HasSubstr("the motion \"b\" may turn by 1e+10 rad in 10 s (at most 1e9 rad"));
+  Add("  - {name: a, of: plate, slide: {direction: [0, 0, 1], amplitude_m: 0.1, frequency_hz: "
+      "600}}\n",
+      kPlate);
+  Diagnostics out;
+  EXPECT_TRUE(LoadExperiment(Path("trial.yaml"), {}, out));
+  EXPECT_THAT(out.Format(), HasSubstr("warning: the motion \"a\" has 600 Hz, and a step of 0.001 s "
+                                      "sees less than two steps of a period (a smaller step_s)"));
+}
+
 TEST_F(MotionText, WhatASupportHoldsCannotBeMoved) {
   std::string model = kModel;
   Write("model.yaml", model + "  - {match: a0, support: {kind: ball}}\n");

@@ -5,7 +5,7 @@ import { PROTOCOL_VERSION } from "./protocol";
 import type { Connection, Source } from "./source";
 import { memory, Signal } from "./util";
 
-export type Selection = { kind: "cable" | "body" | "node"; index: number };
+export type Selection = { kind: "cable" | "body" | "node" | "joint"; index: number };
 export type Theme = "dark" | "light";
 
 export class App {
@@ -180,12 +180,18 @@ export class App {
   }
 }
 
-function looks({ bodies, nodes, cables, terrain, channels, phases, duration_s, compared, contact_forces, notice }: Scene): string {
-  return JSON.stringify([bodies, nodes, cables, terrain, channels, phases, duration_s, compared, contact_forces, notice]);
+/** What is called so; empty: there is no such thing. */
+export function nameOf(scene: Scene, { kind, index }: Selection): string {
+  const list = { cable: scene.cables, body: scene.bodies, node: scene.nodes, joint: scene.joints }[kind];
+  return list[index]?.name ?? "";
 }
 
-function names({ bodies, nodes, cables }: Scene): string {
-  return JSON.stringify([bodies, nodes, cables].map((list) => list.map(({ name }) => name)));
+function looks({ bodies, nodes, cables, joints, terrain, channels, phases, duration_s, compared, contact_forces, notice }: Scene): string {
+  return JSON.stringify([bodies, nodes, cables, joints, terrain, channels, phases, duration_s, compared, contact_forces, notice]);
+}
+
+function names({ bodies, nodes, cables, joints }: Scene): string {
+  return JSON.stringify([bodies, nodes, cables, joints].map((list) => list.map(({ name }) => name)));
 }
 
 function startTheme(): Theme {

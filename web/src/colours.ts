@@ -13,6 +13,7 @@ export interface Palette {
   sphere: string;
   box: string;
   hull: string;
+  joint: string;
   slack: string;
   contact: string;
   push: string;
@@ -29,7 +30,7 @@ export interface Palette {
 
 const LIGHT: Palette = {
   background: "#dfe7ee", horizon: "#eef2f5", ground: "#e9ecee", gridMinor: "#cfd5da", gridMajor: "#9aa5ae",
-  text: "#1c232b", rod: "#39414b", sphere: "#5c6773", box: "#8b97a3", hull: "#8b97a3", slack: "#6d7781",
+  text: "#1c232b", rod: "#39414b", sphere: "#5c6773", box: "#8b97a3", hull: "#8b97a3", joint: "#a0771f", slack: "#6d7781",
   contact: "#009e73", push: "#d55e00", path: "#0072b2", selected: "#e69f00",
   setpoint: "#0072b2", own: "#000000", grid: "#00000018",
   runs: ["#d43a00", "#008a63", "#9a3fb5", "#a87200", "#d6337c", "#66741f", "#7d4b2c"],
@@ -38,7 +39,7 @@ const LIGHT: Palette = {
 
 const DARK: Palette = {
   background: "#10151b", horizon: "#1a222b", ground: "#1d252e", gridMinor: "#2b3641", gridMajor: "#51606f",
-  text: "#e3e8ed", rod: "#b4bfca", sphere: "#8fa0b0", box: "#64748b", hull: "#64748b", slack: "#8c98a4",
+  text: "#e3e8ed", rod: "#b4bfca", sphere: "#8fa0b0", box: "#64748b", hull: "#64748b", joint: "#b98d3e", slack: "#8c98a4",
   contact: "#2bd4a4", push: "#ff8c42", path: "#56b4e9", selected: "#f0c541",
   setpoint: "#56b4e9", own: "#f2f4f6", grid: "#ffffff1c",
   runs: ["#ff7a45", "#2bd4a4", "#c58cff", "#f0c541", "#ff8fc0", "#b5cc5a", "#d0a37c"],

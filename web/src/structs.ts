@@ -63,6 +63,23 @@ export interface Cable {
   actuated: boolean;
 }
 
+/** Holds a part of one body's motion against another's; a support is a joint with the world. */
+export interface Joint {
+  name: string;
+  /** What it leaves free. */
+  kind: "ball" | "hinge" | "weld" | "prismatic" | "cylindrical" | "planar" | "line" | "plane" | "distance";
+  /** Place in Scene.bodies, or -1: the world. */
+  body_a: number;
+  /** Place in Scene.bodies. */
+  body_b: number;
+  /** Its point of body a, in that body's frame; in W if that is the world. */
+  from_m: Vec3;
+  /** Its point of body b, in that body's frame. */
+  to_m: Vec3;
+  /** Unit, in body a's frame. */
+  axis: Vec3;
+}
+
 export interface Terrain {
   kind: "plane" | "box" | "surface";
   name: string;
@@ -326,6 +343,7 @@ export interface Scene {
   bodies: Body[];
   nodes: Node[];
   cables: Cable[];
+  joints: Joint[];
   terrain: Terrain[];
   /** Empty unless live. */
   parameters: Parameter[];

@@ -70,6 +70,7 @@ export const scene = {
   })),
   nodes,
   cables,
+  joints: [],
   terrain: [
     { kind: "plane", name: "ground", normal: [0, 0, 1], point_m: [0, 0, 0] },
     { kind: "box", name: "step", center_m: [0.9, 0, 0.05], half_extents_m: [0.2, 0.4, 0.05], orientation: [1, 0, 0, 0] },

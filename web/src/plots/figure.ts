@@ -1,4 +1,5 @@
 // What a plot shows: lines over time with their channels; the same for the screen and for export.
+import type { Selection } from "../app";
 import type { Palette } from "../colours";
 import { NOTHING, type Points } from "../points";
 import type { Scene } from "../protocol";
@@ -92,7 +93,7 @@ function figureOf(plot: PlotSpec, scene: Scene, store: SeriesStore): Figure {
 }
 
 /** What there is to plot of a cable, body or node, a figure for each unit. */
-export function ownFigures(scene: Scene, store: SeriesStore, kind: "cable" | "body" | "node", name: string): Figure[] {
+export function ownFigures(scene: Scene, store: SeriesStore, kind: Selection["kind"], name: string): Figure[] {
   const figure = (id: string, unit: string, title: string, keys: string[]): Figure => ({
     id: `own:${kind}:${name}:${id}`, title: `${name} ${title}`, unit, group: "own",
     lines: keys.map((key, i) => ({ label: nameAndUnit(key)[0], channel: `${kind}/${name}/${key}`, source: 0, ink: i })),
@@ -110,6 +111,12 @@ export function ownFigures(scene: Scene, store: SeriesStore, kind: "cable" | "bo
       figure("spin", "rad/s", "angular velocity", ["angular_velocity_x_rad_per_s", "angular_velocity_y_rad_per_s", "angular_velocity_z_rad_per_s"]),
     ],
     node: [position],
+    joint: [
+      figure("angle", "rad", "angle", ["angle_rad"]),
+      figure("slide", "m", "position", ["position_m"]),
+      figure("force", "N", "force", ["force_x_n", "force_y_n", "force_z_n"]),
+      figure("torque", "N m", "torque", ["torque_x_n_m", "torque_y_n_m", "torque_z_n_m"]),
+    ],
   }[kind];
   const split = scene.compared.length > 0 ? figures.flatMap((each) => ofEachChannel(scene, each)) : figures;
   return split.map((each) => known(each, store)).filter((each) => each.lines.length > 0);

@@ -1,5 +1,5 @@
 // All plots: what they show, when they are filled anew, which are in sight.
-import type { App } from "../app";
+import { type App, nameOf, type Selection } from "../app";
 import { button, el } from "../util";
 import type { SeriesStore } from "../series";
 import { Chart } from "./chart";
@@ -39,7 +39,7 @@ export class PlotPanel {
   private sameScale = true;
   private wholeRun = false;
   private due = 0;
-  private own: { kind: "cable" | "body" | "node"; name: string } | null = null;
+  private own: { kind: Selection["kind"]; name: string } | null = null;
 
   constructor(
     private readonly app: App,
@@ -75,8 +75,7 @@ export class PlotPanel {
     app.selection.watch((selection) => {
       const scene = app.scene.value;
       if (!scene || !selection) return;
-      const list = { cable: scene.cables, body: scene.bodies, node: scene.nodes }[selection.kind];
-      this.plotOwn(selection.kind, list[selection.index]!.name);
+      this.plotOwn(selection.kind, nameOf(scene, selection));
     });
     app.cursor_s.watch(() => this.mark());
     store.rowsCame.watch(() => this.mark());
@@ -98,7 +97,7 @@ export class PlotPanel {
     return [Math.max(0, end_s - LIVE_SPAN_S), Math.max(end_s, LIVE_SPAN_S)];
   }
 
-  private plotOwn(kind: "cable" | "body" | "node", name: string): void {
+  private plotOwn(kind: Selection["kind"], name: string): void {
     if (this.own?.kind === kind && this.own.name === name) return;
     this.own = { kind, name };
     this.drop((chart) => chart.figure.group === "own");

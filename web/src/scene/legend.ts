@@ -12,11 +12,12 @@ export function legend(app: App, view: View): HTMLElement {
   const scale = el<HTMLCanvasElement>("canvas", { width: 2 * WIDTH_PX, height: 20, "aria-hidden": "true" });
   const marks = el("div.marks");
   const arrows = el("div.row");
+  const joints = el("div.row");
   const grid = el("div.row");
   const unrecorded = el("div.unrecorded", {}, UNRECORDED);
   const element = el("div.legend", { role: "note", "aria-label": "legend" },
     el("div.title", {}, "cable tension"), scale, marks,
-    el("div.row", {}, el("span.dash"), "slack"), arrows, unrecorded, grid);
+    el("div.row", {}, el("span.dash"), "slack"), arrows, unrecorded, joints, grid);
 
   let shown = "";
   const draw = () => {
@@ -25,7 +26,7 @@ export function legend(app: App, view: View): HTMLElement {
     const theme = app.theme.value;
     const max_n = world.cables.scale_n;
     const { reference_n, reference_m } = world.forces;
-    const key = `${theme} ${max_n} ${reference_n} ${world.size_m} ${world.scene.contact_forces}`;
+    const key = `${theme} ${max_n} ${reference_n} ${world.size_m} ${world.scene.contact_forces} ${world.scene.joints.length}`;
     if (key === shown) return;
     shown = key;
     const context = scale.getContext("2d")!;
@@ -41,8 +42,10 @@ export function legend(app: App, view: View): HTMLElement {
     const { contact_forces } = world.scene;
     unrecorded.hidden = contact_forces || app.live;
     arrows.replaceChildren(
-      ...(contact_forces ? [arrow(colours.contact), "contact"] : []), arrow(colours.push), "push",
+      ...(contact_forces ? [sign(colours.contact), "contact"] : []), sign(colours.push), "push",
       el("span.note", {}, `${number(reference_m, 2)} m = ${number(reference_n, 2)} N`));
+    joints.replaceChildren(sign(colours.joint, "●"), "joint");
+    joints.hidden = world.scene.joints.length === 0;
     grid.textContent = `grid ${number(world.ground.spacing_m, 1)} m, bold ${number(10 * world.ground.spacing_m, 1)} m`;
     grid.hidden = !world.scene.terrain.some((terrain) => terrain.kind === "plane");
     element.dataset["maxN"] = String(max_n);
@@ -52,8 +55,8 @@ export function legend(app: App, view: View): HTMLElement {
   return element;
 }
 
-function arrow(colour: string): HTMLElement {
-  const shown = el("span.arrow", {}, "➔");
+function sign(colour: string, shape = "➔"): HTMLElement {
+  const shown = el("span.arrow", {}, shape);
   shown.style.color = colour;
   return shown;
 }

@@ -1,10 +1,11 @@
-// What is under the mouse: a node or a cable within some pixels, else a body.
+// What is under the mouse: the mark of a joint, a node or a cable within some pixels, else a body.
 import { type Camera, Raycaster, Vector2, Vector3 } from "three";
 import type { Selection } from "../app";
 import type { Frame } from "../frame";
 import type { Scene } from "../protocol";
 import type { Bodies } from "./bodies";
 import type { Cables } from "./cables";
+import type { Joints } from "./joints";
 import { worldPoint } from "./poses";
 
 const NODE_PX = 9;
@@ -26,37 +27,53 @@ const a = new Vector3();
 const b = new Vector3();
 const ray = new Raycaster();
 
-export function pick(
-  x_px: number, y_px: number, view: Viewport, scene: Scene, frame: Frame, bodies: Bodies, cables: Cables,
-): Selection | null {
-  let best: Selection | null = null;
+/** What is drawn and can be pointed at. */
+export interface Targets {
+  scene: Scene;
+  bodies: Bodies;
+  cables: Cables;
+  joints: Joints;
+}
+
+/** The nearest node within some pixels; -1: none. */
+export function nodeUnder(x_px: number, y_px: number, view: Viewport, scene: Scene, frame: Frame): number {
+  let best = -1;
   let nearest_px = NODE_PX;
   scene.nodes.forEach((node, index) => {
     project(worldPoint(frame, node.body, node.position_m, a), view, a);
     const away_px = Math.hypot(a.x - x_px, a.y - y_px);
     if (a.z <= 1 && away_px < nearest_px) {
       nearest_px = away_px;
-      best = { kind: "node", index };
+      best = index;
     }
   });
-  if (best) return best;
-  nearest_px = CABLE_PX;
-  cables.points.forEach((points, index) => {
-    for (let k = 0; k + 1 < points.length; ++k) {
-      project(points[k]!, view, a);
-      project(points[k + 1]!, view, b);
-      if (a.z > 1 || b.z > 1) continue;
-      const away_px = distanceToSegment(x_px, y_px, a, b);
-      if (away_px < nearest_px) {
-        nearest_px = away_px;
-        best = { kind: "cable", index };
-      }
-    }
-  });
-  if (best) return best;
+  return best;
+}
+
+/** Marks of joints come first: nodes lie inside of them. */
+export function pick(x_px: number, y_px: number, view: Viewport, frame: Frame, { scene, bodies, cables, joints }: Targets): Selection | null {
   ray.setFromCamera(new Vector2((2 * x_px) / view.width_px - 1, 1 - (2 * y_px) / view.height_px), view.camera);
-  const hit = ray.intersectObjects(bodies.meshes, false)[0];
-  return hit ? { kind: "body", index: hit.object.userData["body"] as number } : null;
+  const [joint, body] = [joints.object.visible ? joints.meshes : [], bodies.meshes].map((meshes) => ray.intersectObjects(meshes, false)[0]);
+  if (joint && !(body && body.distance < joint.distance)) return { kind: "joint", index: joint.object.userData["joint"] as number };
+  const node = nodeUnder(x_px, y_px, view, scene, frame);
+  if (node >= 0) return { kind: "node", index: node };
+  let best: Selection | null = null;
+  let nearest_px = CABLE_PX;
+  const near = (from: Vector3, to: Vector3, selection: Selection) => {
+    project(from, view, a);
+    project(to, view, b);
+    if (a.z > 1 || b.z > 1) return;
+    const away_px = distanceToSegment(x_px, y_px, a, b);
+    if (away_px >= nearest_px) return;
+    nearest_px = away_px;
+    best = selection;
+  };
+  cables.points.forEach((points, index) => {
+    for (let k = 0; k + 1 < points.length; ++k) near(points[k]!, points[k + 1]!, { kind: "cable", index });
+  });
+  if (joints.object.visible) for (const index of joints.distances) near(...joints.points[index]!, { kind: "joint", index });
+  if (best) return best;
+  return body ? { kind: "body", index: body.object.userData["body"] as number } : null;
 }
 
 function distanceToSegment(x: number, y: number, from: Vector3, to: Vector3): number {

@@ -26,7 +26,7 @@ export class Ground implements Part {
     this.spacing_m = size_m > 20 ? 1 : size_m < 0.15 ? 0.01 : 0.1;
     for (const terrain of scene.terrain) {
       if (terrain.kind === "plane") this.addPlane(new Vector3(...terrain.normal!), new Vector3(...terrain.point_m!));
-      else if (terrain.kind === "surface") this.addSurface(terrain.corners_m!, terrain.triangles!);
+      else if (terrain.kind === "surface") this.addSurface(terrain.corners_m! as number[], terrain.triangles!);
       else this.addBox(terrain.center_m!, terrain.half_extents_m!, terrain.orientation ?? [1, 0, 0, 0]);
     }
     this.object.add(this.labels);

@@ -4,11 +4,11 @@ import {
   WebGLRenderer, HemisphereLight,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import type { App } from "../app";
+import { type App, nameOf } from "../app";
 import { palette } from "../colours";
 import { el } from "../util";
 import { Grip } from "./grip";
-import { pick, project, type Viewport } from "./pick";
+import { nodeUnder, pick, project, type Viewport } from "./pick";
 import { centreOfMass, worldPoint } from "./poses";
 import { World } from "./world";
 
@@ -150,6 +150,7 @@ export class View {
       const shown = this.app.selection.value ?? this.app.hover.value;
       this.world?.cables.mark(shown?.kind === "cable" ? shown.index : -1);
       const node = shown?.kind === "node" ? this.app.scene.value?.nodes[shown.index] : undefined;
+      this.world?.joints.mark(shown?.kind === "joint" ? shown.index : -1);
       this.world?.bodies.mark(shown?.kind === "body" ? shown.index : (node?.body ?? -1));
       this.invalidate();
     };
@@ -223,7 +224,13 @@ export class View {
   private pickAt(x: number, y: number) {
     const frame = this.app.frame.value;
     if (!this.world || !frame) return null;
-    return pick(x, y, this.viewport, this.world.scene, frame, this.world.bodies, this.world.cables);
+    return pick(x, y, this.viewport, frame, this.world);
+  }
+
+  /** The node that is there, inside of a joint's mark, too; -1: none. */
+  private nodeUnder(x: number, y: number): number {
+    const frame = this.app.frame.value;
+    return this.world && frame ? nodeUnder(x, y, this.viewport, this.world.scene, frame) : -1;
   }
 
   private listen(canvas: HTMLCanvasElement): void {
@@ -231,8 +238,8 @@ export class View {
     canvas.addEventListener("pointerdown", (event) => {
       const { x, y } = this.at(event);
       this.pressed = { x, y };
-      const under = event.button === 0 ? this.pickAt(x, y) : null;
-      if (under?.kind === "node" && this.app.movable) this.grip.take(under.index, event);
+      const node = event.button === 0 && this.app.movable ? this.nodeUnder(x, y) : -1;
+      if (node >= 0) this.grip.take(node, event);
     }, { capture: true });
     canvas.addEventListener("pointermove", (event) => {
       const { x, y } = this.at(event);
@@ -258,11 +265,12 @@ export class View {
     const before = this.app.hover.value;
     if (under?.kind !== before?.kind || under?.index !== before?.index) this.app.hover.value = under;
     this.tip.hidden = under === null;
-    this.canvas.style.cursor = under ? (under.kind === "node" && this.app.movable ? "grab" : "pointer") : "";
+    const node = under?.kind === "joint" ? this.nodeUnder(x, y) : under?.kind === "node" ? under.index : -1;
+    this.canvas.style.cursor = under ? (node >= 0 && this.app.movable ? "grab" : "pointer") : "";
     if (!under || !this.world) return;
     const scene = this.world.scene;
-    const list = { cable: scene.cables, body: scene.bodies, node: scene.nodes }[under.kind];
-    this.tip.textContent = `${under.kind} ${list[under.index]?.name ?? ""}`;
+    this.tip.textContent = `${under.kind} ${nameOf(scene, under)}`;
+    if (under.kind === "joint" && node >= 0) this.tip.textContent += `, node ${nameOf(scene, { kind: "node", index: node })}`;
     const left = Math.min(x + 14, this.canvas.clientWidth - this.tip.offsetWidth - 4);
     this.tip.style.transform = `translate(${left}px, ${Math.max(y - 28, 4)}px)`;
   }

@@ -8,6 +8,7 @@ import { Bodies } from "./bodies";
 import { Cables } from "./cables";
 import { Forces } from "./forces";
 import { Ghosts } from "./ghosts";
+import { Joints } from "./joints";
 import type { Part } from "./part";
 import { Path } from "./path";
 import { Ground } from "./terrain";
@@ -16,6 +17,7 @@ export class World {
   readonly object = new Group();
   readonly bodies: Bodies;
   readonly cables: Cables;
+  readonly joints: Joints;
   readonly forces: Forces;
   readonly ghosts: Ghosts;
   readonly path: Path;
@@ -30,11 +32,12 @@ export class World {
     this.size_m = Math.max(this.bounds.getSize(new Vector3()).length(), 0.05);
     this.bodies = new Bodies(scene, this.size_m);
     this.cables = new Cables(scene, this.size_m);
+    this.joints = new Joints(scene, this.size_m);
     this.forces = new Forces(scene, this.size_m);
     this.ghosts = new Ghosts(scene);
     this.path = new Path(scene, this.size_m);
     this.ground = new Ground(scene, this.size_m);
-    this.parts = [this.ground, this.bodies, this.cables, this.forces, this.path, this.ghosts];
+    this.parts = [this.ground, this.bodies, this.cables, this.joints, this.forces, this.path, this.ghosts];
     this.object.add(...this.parts.map((part) => part.object));
   }
 

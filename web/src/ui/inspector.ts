@@ -1,5 +1,5 @@
 // The numbers of the selected cable, body or node.
-import type { App, Selection } from "../app";
+import { type App, nameOf, type Selection } from "../app";
 import { cableState, type Frame, isSlack } from "../frame";
 import { VALUES } from "../layout";
 import type { Scene } from "../protocol";
@@ -20,8 +20,7 @@ export function inspector(app: App): HTMLElement {
     const { value: frame } = app.frame;
     element.hidden = selection === null;
     if (!selection || !scene || !frame) return;
-    const list = { cable: scene.cables, body: scene.bodies, node: scene.nodes }[selection.kind];
-    title.textContent = `${selection.kind} ${list[selection.index]?.name ?? ""}`;
+    title.textContent = `${selection.kind} ${nameOf(scene, selection)}`;
     const rows = rowsOf(scene, frame, selection);
     while (table.rows.length > rows.length) table.deleteRow(-1);
     rows.forEach(([what, value], i) => {
@@ -64,9 +63,18 @@ function rowsOf(scene: Scene, frame: Frame, { kind, index }: Selection): Row[] {
       ...(body.fixed ? [["fixed", "yes"] as Row] : []),
     ];
   }
+  const owner = (place: number): string => (place < 0 ? "world" : scene.bodies[place]!.name);
+  if (kind === "joint") {
+    const joint = scene.joints[index]!;
+    return [
+      ["kind", joint.kind],
+      ["between", `${owner(joint.body_a)} → ${owner(joint.body_b)}`],
+      ["position", `${vector(worldPoint(frame, joint.body_b, joint.to_m, new Vector3()).toArray())} m`],
+    ];
+  }
   const node = scene.nodes[index]!;
   return [
     ["position", `${vector(worldPoint(frame, node.body, node.position_m, new Vector3()).toArray())} m`],
-    ["body", node.body < 0 ? "world" : scene.bodies[node.body]!.name],
+    ["body", owner(node.body)],
   ];
 }

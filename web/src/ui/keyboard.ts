@@ -28,7 +28,7 @@ export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
   };
   const speed = (faster: boolean) => () =>
     app.send({ type: "speed", factor: nextSpeed(app.frame.value?.speed ?? 1, faster) });
-  const show = (what: "forces" | "path" | "cables") => () => {
+  const show = (what: "forces" | "path" | "joints") => () => {
     const part = view.world?.[what];
     if (!part) return;
     if (what === "path") view.world!.path.shown = !view.world!.path.shown;
@@ -52,6 +52,7 @@ export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
     } },
     { keys: ["a", "A"], shown: "A", does: "arrows of forces on or off", act: show("forces") },
     { keys: ["p", "P"], shown: "P", does: "path of the centre of mass on or off", act: show("path") },
+    { keys: ["j", "J"], shown: "J", does: "marks of joints on or off", act: show("joints") },
     { keys: ["g", "G"], shown: "G", does: "ghosts of compared runs on or off", act: () => toggleGhosts(view) },
     { keys: ["n", "N"], shown: "N", does: "next cable (with shift: next body): its numbers and plots", act: (event) => {
       const kind = event.shiftKey ? "body" : "cable";
