@@ -1,5 +1,5 @@
 // Friction, springs and dampers of ball joints against closed forms (docs/theory/joints.md, section
-// 4): what acts about every axis alike, wherever the joint's axis points.
+// 5): what acts about every axis alike, wherever the joint's axis points.
 #include <gtest/gtest.h>
 
 #include <algorithm>
