@@ -127,6 +127,13 @@ void Register(const Case& what, const Make& make, int settle_periods, bool stage
   if (what.threads > 1) registered->UseRealTime();
 }
 
+/// What the solver did for how many joints.
+void JudgeJoints(benchmark::State& state, const Runner& runner) {
+  const auto& ours = dynamic_cast<const TautRunner&>(runner);
+  state.counters["joints"] = ours.joints();
+  state.counters["linear_solves"] = ours.linear_solves();
+}
+
 void RegisterTaut(Case what, const ModelDef& def, int settle_periods) {
   what.engine = "taut";
   what.setting = "default";
@@ -134,13 +141,13 @@ void RegisterTaut(Case what, const ModelDef& def, int settle_periods) {
   options.worlds = what.worlds;
   options.threads = what.threads;
   options.simd = static_cast<Simd>(what.lanes);
-  const bool stages = what.kind == "stages";
+  const bool joints = what.kind == "joints", stages = joints || what.kind == "stages";
   const Make make = [def, options, stages] {
     auto runner = std::make_unique<TautRunner>(def, options);
     if (stages) BatchInside::Watch(runner->batch());
     return runner;
   };
-  Register(what, make, settle_periods, stages);
+  Register(what, make, settle_periods, stages, joints ? JudgeJoints : Judge());
 }
 
 constexpr int kHillsSettle = 300, kHillsCorners = 120;
@@ -267,6 +274,16 @@ std::vector<Elsewhere> RegisterAll() {
     }
   }
   RegisterPeersOnHills(elsewhere);
+  const std::pair<const char*, ModelDef> jointed[] = {
+      {"chain_16", SwingingChain(16, 0)},
+      {"chain_64", SwingingChain(64, 0)},
+      {"chain_64_friction", SwingingChain(64, 0.05)},
+      {"puppy", OnGround("puppy")}};
+  for (const auto& [robot, def] : jointed) {
+    for (int lanes : {1, widest}) {
+      RegisterTaut({.kind = "joints", .robot = robot, .worlds = lanes, .lanes = lanes}, def, 50);
+    }
+  }
   const auto growth = [&](const char* kind, const std::string& robot, const ModelDef& def) {
     constexpr int kSettle = 50;
     RegisterTaut({.kind = kind, .robot = robot}, def, kSettle);

@@ -6,6 +6,7 @@
 
 #include "scenes/ball.h"
 #include "scenes/many_rows.h"
+#include "scenes/rod_chain.h"
 #include "scenes/rough_ground.h"
 #include "scenes/six_strut.h"
 #include "scenes/tetraspine3.h"
@@ -108,6 +109,14 @@ ModelDef Footed(int contacts) {
   return disc.Def();
 }
 
+ModelDef SwingingChain(int rods, double friction_n_m) {
+  constexpr double kFromThePlumb_rad = 0.5;
+  ModelDef def = scenes::RodChain(
+      rods, {0.1 * std::sin(kFromThePlumb_rad), 0, -0.1 * std::cos(kFromThePlumb_rad)}, 1.0);
+  for (JointDef& joint : def.joints) joint.friction = friction_n_m;
+  return def;
+}
+
 Motion::Motion(const ModelDef& def) {
   for (const CableDef& cable : def.cables) rest_m_.push_back(cable.rest_length_m);
   for (int i = 0; i < kPeriodTicks; ++i) {
@@ -132,6 +141,7 @@ void TautRunner::Run(int control_periods) {
       }
     }
     batch_.Step(kStepS, control_steps_, targets_m_);
+    linear_solves_ += batch_.Status(0).linear_solves;
   }
   for (int w = 0; w < batch_.worlds(); ++w) {
     const std::uint32_t bits = batch_.Status(w).bits;

@@ -30,6 +30,9 @@ ModelDef Spine(int segments);
 /// A disc that stands on `contacts` feet on the ground and is dragged to and fro by a cable.
 ModelDef Footed(int contacts);
 
+/// Rods of 0.1 m on balls that swing, each ball with that much friction.
+ModelDef SwingingChain(int rods, double friction_n_m);
+
 /// All cables' rest lengths against time: a sine of 1 Hz and 2 % about the described length, each
 /// cable of each world with a phase of its own. Looked up, so that it costs engines nothing.
 class Motion {
@@ -69,6 +72,9 @@ class TautRunner final : public Runner {
   BodyState Body(int body) const override { return batch_.Body(0, body); }
   bool converged() const override { return converged_; }
   Batch& batch() { return batch_; }
+  int joints() const { return static_cast<int>(batch_.model().def().joints.size()); }
+  /// Of the first world's steps, in the mean: each period's last.
+  double linear_solves() const { return linear_solves_ / tick_; }
 
  private:
   Motion motion_;
@@ -76,6 +82,7 @@ class TautRunner final : public Runner {
   std::vector<double> targets_m_;  ///< Of all cables of all worlds.
   int control_steps_;
   bool converged_ = true;
+  double linear_solves_ = 0;  ///< Sum over the periods.
   int tick_ = 0;
 };
 

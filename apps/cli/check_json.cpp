@@ -12,6 +12,7 @@ Json ToJson(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
 
 Json BodiesJson(const ModelDef& def) {
   const std::vector<BodyLoad> loads = StartLoads(def);
+  const std::vector<LeftLoad> left = LeftAtStart(def, StartJointLoads(def));
   const std::vector<ShapeCount> shapes = CollidingShapes(def);
   Json bodies = Json::array();
   for (std::size_t i = 0; i < def.bodies.size(); ++i) {
@@ -32,6 +33,8 @@ Json BodiesJson(const ModelDef& def) {
                       {"cable_force_n", ToJson(loads[i].cable_force_n)},
                       {"cable_torque_n_m", ToJson(loads[i].cable_torque_n_m)},
                       {"weight_n", ToJson(loads[i].weight_n)},
+                      {"left_force_n", ToJson(left[i].force_n)},
+                      {"left_torque_n_m", ToJson(left[i].torque_n_m)},
                       {"colliding_rods", shapes[i].capsules},
                       {"colliding_spheres", shapes[i].spheres},
                       {"colliding_boxes", shapes[i].boxes},
@@ -59,6 +62,23 @@ Json CablesJson(const RobotSpec& robot) {
                       {"attachments", std::move(attachments)}});
   }
   return cables;
+}
+
+Json JointsJson(const ModelDef& def) {
+  const std::vector<JointLoad> loads = StartJointLoads(def);
+  const auto name = [&](int body) { return body == kWorld ? "world" : def.bodies[body].name; };
+  Json joints = Json::array();
+  for (std::size_t i = 0; i < def.joints.size(); ++i) {
+    const JointDef& joint = def.joints[i];
+    joints.push_back({{"name", joint.name},
+                      {"kind", JointKindName(joint.kind)},
+                      {"body_a", name(joint.body_a)},
+                      {"body_b", name(joint.body_b)},
+                      {"position_m", ToJson(joint.to_m)},
+                      {"force_n", loads.empty() ? Json() : ToJson(loads[i].force_n)},
+                      {"torque_n_m", loads.empty() ? Json() : ToJson(loads[i].torque_n_m)}});
+  }
+  return joints;
 }
 
 /// `kind`: the key of what each says.
@@ -112,6 +132,7 @@ std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment,
   json["gravity_m_per_s2"] = ToJson(robot.def.gravity_m_per_s2);
   json["bodies"] = BodiesJson(robot.def);
   json["cables"] = CablesJson(robot);
+  if (!robot.def.joints.empty()) json["joints"] = JointsJson(robot.def);
   json["nodes"] = std::move(nodes);
   return Dump(json);
 }

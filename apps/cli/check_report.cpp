@@ -137,6 +137,35 @@ std::string Loads(const ModelDef& def) {
   return table.Text();
 }
 
+/// What joints carry, and what then is left to turn and move bodies.
+std::string Joints(const ModelDef& def) {
+  const auto name = [&](int body) { return body == kWorld ? "world" : def.bodies[body].name; };
+  const std::vector<JointLoad> loads = StartJointLoads(def);
+  if (loads.empty()) {
+    return fmt::format("  They hold more than {} directions: too many to work out their loads.\n",
+                       kMostHeldDirections);
+  }
+  Table joints({"joint", "kind", "between", "force x", "y", "z", "torque x", "y", "z"});
+  joints.Add({"", "", "", "N", "N", "N", "N m", "N m", "N m"});
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const JointDef& joint = def.joints[i];
+    const Vec3 f = loads[i].force_n, t = loads[i].torque_n_m;
+    joints.Add({joint.name, JointKindName(joint.kind),
+                name(joint.body_a) + " - " + name(joint.body_b), Fixed(f.x, 3), Fixed(f.y, 3),
+                Fixed(f.z, 3), Fixed(t.x, 4), Fixed(t.y, 4), Fixed(t.z, 4)});
+  }
+  Table left({"body", "left x", "y", "z", "turn about x", "y", "z"});
+  left.Add({"", "N", "N", "N", "N m", "N m", "N m"});
+  const std::vector<LeftLoad> rest = LeftAtStart(def, loads);
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    const Vec3 f = rest[i].force_n, t = rest[i].torque_n_m;
+    left.Add({def.bodies[i].name, Fixed(f.x, 3), Fixed(f.y, 3), Fixed(f.z, 3), Fixed(t.x, 4),
+              Fixed(t.y, 4), Fixed(t.z, 4)});
+  }
+  return joints.Text() + "\nLeft of these loads: what moves a body, or has to hold a fixed one\n" +
+         left.Text();
+}
+
 std::string Collisions(const ModelDef& def) {
   const std::vector<ShapeCount> shapes = CollidingShapes(def);
   const auto apart = KeptApart(def);
@@ -179,10 +208,16 @@ std::string RobotTables(const RobotSpec& robot) {
     text += "\n";
   }
   if (!def.bodies.empty()) text += "\nBodies\n" + Bodies(def);
-  if (!def.cables.empty()) {
-    text += "\nCables\n" + Cables(def);
+  if (!def.cables.empty()) text += "\nCables\n" + Cables(def);
+  if (!def.cables.empty() || !def.joints.empty()) {
     text += "\nLoads at the start: what the prestress does to each body, its weight beside it\n" +
             Loads(def);
+  }
+  if (!def.joints.empty()) {
+    text +=
+        "\nJoints at the start: what each does to its second body there, by what it holds and "
+        "its spring\n" +
+        Joints(def);
   }
   return text + "\n" + Collisions(def);
 }

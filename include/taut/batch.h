@@ -145,6 +145,7 @@ struct JointState {
   Vec3 force_n;           ///< On its body b, at b's point, in W.
   Vec3 torque_n_m;        ///< On b, about that point, in W.
   double gap_m = 0;       ///< How far it is from what it holds; of turns, at the bodies' gyration.
+  double turned_rad = 0;  ///< How far b is turned against a from where it is described, 0..pi.
 };
 
 /// A motion of a body at the current time; its force and torque are those of the last step.

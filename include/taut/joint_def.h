@@ -43,16 +43,49 @@ struct JointDef {
   bool collides = false;  ///< Whether its bodies touch each other.
 
   // Of the coordinate:
-  std::optional<double> least, most;      ///< Stops; of a ball `most` alone.
-  double restitution = 0.0;               ///< Of the stops, 0..1.
-  double friction = 0.0;                  ///< Largest dry friction, >= 0; not of a ball.
-  double stiffness = 0.0, damping = 0.0;  ///< Of a spring and a damper, >= 0; not of a ball.
-  double rest = 0.0;                      ///< Where the spring is at rest.
+  std::optional<double> least, most;  ///< Stops; of a ball `most` alone.
+  double restitution = 0.0;           ///< Of the stops, 0..1.
+  // Of the coordinate, too, but of a ball of all its turns, about every axis alike: of b's turn
+  // against a, as a vector of up to half a turn, and of its rate.
+  double friction = 0.0;                  ///< Largest dry friction, >= 0.
+  double stiffness = 0.0, damping = 0.0;  ///< Of a spring and a damper, >= 0.
+  double rest = 0.0;                      ///< Where the spring is at rest; of a ball 0.
 };
 
 /// Whether a distance joint holds its length: if nothing else says what that may be.
 inline bool HoldsLength(const JointDef& j) noexcept {
   return !j.least && !j.most && j.stiffness == 0.0;
+}
+
+/// What a kind holds of b's motion against a. Of a distance nothing that has an axis.
+struct HeldMotions {
+  bool along = false;   ///< Sliding along the axis,
+  bool across = false;  ///< and across it, in all directions.
+  bool swing = false;   ///< Turns of the axis,
+  bool twist = false;   ///< and about it.
+};
+constexpr HeldMotions HeldBy(JointKind kind) noexcept {
+  switch (kind) {
+    case JointKind::kBall:
+      return {true, true, false, false};
+    case JointKind::kHinge:
+      return {true, true, true, false};
+    case JointKind::kWeld:
+      return {true, true, true, true};
+    case JointKind::kPrismatic:
+      return {false, true, true, true};
+    case JointKind::kCylindrical:
+      return {false, true, true, false};
+    case JointKind::kPlanar:
+      return {true, false, true, false};
+    case JointKind::kLine:
+      return {false, true, false, false};
+    case JointKind::kPlane:
+      return {true, false, false, false};
+    case JointKind::kDistance:
+      break;
+  }
+  return {};
 }
 
 /// How far the two points are apart in directions that the joint holds [m].

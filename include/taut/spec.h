@@ -24,6 +24,9 @@ namespace taut {
 /// parts of channel names, of file names and of pages.
 bool IsName(std::string_view text);
 
+/// As model files spell it.
+std::string JointKindName(JointKind kind);
+
 /// `--set name=value` pairs: named parameters whose value replaces the file's. The value may be
 /// an expression such as `2 * edge_m`.
 using Overrides = std::vector<std::pair<std::string, std::string>>;

@@ -1,11 +1,11 @@
 """Robots on hills: the section of docs/performance.md, and that section alone."""
 
 import pathlib
-import re
 
+from measuring import sections
 from measuring.figures import NOTHING, SETTINGS, number
 from measuring.results import Results, mark, shared
-from validation.runs import Problem, fill, table
+from validation.runs import fill, table
 
 KIND = "hills"
 NOT_MEASURED = "Not measured in this run."
@@ -103,8 +103,4 @@ def section(items):
 
 def replaced(page, items):
     """The page with this section anew and all else as it was."""
-    start, rest = re.escape(TITLE) + r"[^\n]*\n\n", r"(?=\n\n### )"
-    if len(re.findall(f"(?m)^{start}", page)) != 1:
-        raise Problem(f"the page has no section {TITLE}")
-    text = section(items)
-    return re.sub(rf"(?ms)^({start}).*?{rest}", lambda match: match[1] + text, page, count=1)
+    return sections.replaced(page, TITLE, section(items))

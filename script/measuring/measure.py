@@ -63,7 +63,7 @@ def results(raw):
                 "worlds": int(worlds), "lanes": int(lanes), "threads": int(threads),
                 "steps_per_s": statistics.median(rates), "repetitions": len(rates),
                 "spread": (max(rates) - min(rates)) / statistics.median(rates)}
-        for key in ("contacts", "linear_solves", "bytes_per_world", "apart_m", "speed_kept"):
+        for key in ("contacts", "linear_solves", "bytes_per_world", "apart_m", "speed_kept", "joints"):
             if runs[0].get(key) is not None:
                 item[key] = statistics.median(run[key] for run in runs)
         if "deepest_m" in runs[0]:

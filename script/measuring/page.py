@@ -4,7 +4,7 @@ import pathlib
 import statistics
 import textwrap
 
-from measuring import contacts, hills, wasm
+from measuring import contacts, hills, joints, wasm
 from measuring.figures import NOTHING, SETTINGS, number
 from measuring.results import Results, mark, shared
 from validation.runs import Problem, fill, table
@@ -150,7 +150,7 @@ def text(items):
     if not items:
         raise Problem("these results are of contact-rich scenes alone; the page needs all others, too")
     values = {"one": one_world(items), "mujocos": mujocos(items), "which_mujoco": which_mujoco(items), "batches": batches(items), "against": against_batches(items),
-              "stages": stages(items), "memory": memory(items), "hills": hills.section(items), "segments": growth(items, "segments"),
+              "stages": stages(items), "memory": memory(items), "hills": hills.section(items), "joints": joints.section(items), "segments": growth(items, "segments"),
               "contacts": growth(items, "contacts"), "contact_scenes": scenes,
               **spread(items),
               "repetitions": str(min(item["repetitions"] for item in items)),

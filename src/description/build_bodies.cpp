@@ -279,6 +279,9 @@ class BodyBuilder {
     joint.name = assembly_.pairs[pin.pair].name + "." + node.name;
     joint.body_a = body_of_node_[pin.node], joint.body_b = body_of_pair_[pin.pair];
     joint.from_m = joint.to_m = node.position_m;
+    const PinText turns = PairBuilder(pin.pair).rod->pins.value_or(PinText());
+    joint.friction = turns.friction;
+    joint.stiffness = turns.stiffness, joint.damping = turns.damping;
     for (const Pin& other : pins_) {
       if (&other == &pin) break;
       if (other.node != pin.node) continue;

@@ -6,6 +6,7 @@
 #include "base/fixed.h"
 #include "base/union_find.h"
 #include "description/build.h"
+#include "description/laws.h"
 #include "description/once.h"
 #include "math/joint_turn.h"
 #include "math/vec.h"
@@ -248,6 +249,20 @@ class JointMaker {
 };
 
 }  // namespace
+}  // namespace taut::description
+
+namespace taut {
+
+std::string JointKindName(JointKind kind) {
+  for (const auto& [name, value] : description::kJointKinds) {
+    if (value == kind) return name;
+  }
+  return {};
+}
+
+}  // namespace taut
+
+namespace taut::description {
 
 void BuildJoints(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
                  const BodyOfNode& body_of_node, RobotSpec& robot, Diagnostics& out) {

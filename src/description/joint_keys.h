@@ -19,13 +19,15 @@ inline const char* WhoHas(JointKind kind) {
 
 template <class Io, Either<JointDef, JointText> Joint>
 void Keys(Io& io, Joint& j) {
-  io.Map("", "builder.joint",
-         "What of the motion of one body against another is held, and what acts on the rest. "
-         "`joint` goes on a pair: between the bodies a and b of its two nodes. `support` goes on a "
-         "node: the world is a. What is free is measured by one coordinate: the angle of a hinge; "
-         "how far b's node has slid along the axis, of prismatic, cylindrical and line; the length "
-         "of a distance; of a ball, how far its axis in b is turned from that in a.",
-         R"({"kind": "hinge", "axis": [0, 1, 0], "least_rad": -0.5, "most_rad": 1.2})");
+  io.Map(
+      "", "builder.joint",
+      "What of the motion of one body against another is held, and what acts on the rest. "
+      "`joint` goes on a pair: between the bodies a and b of its two nodes. `support` goes on a "
+      "node: the world is a. What is free is measured by one coordinate: the angle of a hinge; "
+      "how far b's node has slid along the axis, of prismatic, cylindrical and line; the length "
+      "of a distance; of a ball, how far its axis in b is turned from that in a. Friction, spring "
+      "and damper of a ball act on all of its turns, about every axis alike.",
+      R"({"kind": "hinge", "axis": [0, 1, 0], "least_rad": -0.5, "most_rad": 1.2})");
   io("name", j.name, kResolvedOnly);
   io("body_a", j.body_a, kResolvedOnly);
   io("body_b", j.body_b, kResolvedOnly);
@@ -52,15 +54,29 @@ void Keys(Io& io, Joint& j) {
   io("restitution", j.restitution, Bound::kFraction,
      "Of the stops: how much of the speed comes back.");
   io(Coordinate("friction_n_m", "friction_n"), j.friction, Bound::kNonNegative,
-     "Dry friction: up to this it sticks, and slides against it. Not of a ball.");
+     "Dry friction: up to this it sticks, and slides against it.");
   io(Coordinate("stiffness_n_m_per_rad", "stiffness_n_per_m"), j.stiffness, Bound::kNonNegative,
-     "Of a spring. Not of a ball. A distance with a spring or a stop does not hold its length.");
+     "Of a spring. That of a ball turns b back to how it is described, the shorter way. A "
+     "distance with a spring or a stop does not hold its length.");
   io(Coordinate("damping_n_m_s_per_rad", "damping_n_s_per_m"), j.damping, Bound::kNonNegative,
-     "Of a damper. Not of a ball.");
-  io(Coordinate("rest_rad", "rest_m"), j.rest, "Where the spring is at rest.");
+     "Of a damper.");
+  io(Coordinate("rest_rad", "rest_m"), j.rest, "Where the spring is at rest. Not of a ball.");
   io("collides", j.collides, "Whether its bodies touch each other.");
 }
 
 void Check(const MapReader& map, JointText& joint);
+
+template <class Io>
+void Keys(Io& io, Like<PinText> auto& p) {
+  io.Map("", "builder.rod.pins",
+         "What acts on the turns of a rod of class k in the ball joints at its nodes, about every "
+         "axis alike.",
+         R"({"friction_n_m": 0.01})");
+  io("friction_n_m", p.friction, Bound::kNonNegative,
+     "Dry friction: up to this they stick, and slide against it.");
+  io("stiffness_n_m_per_rad", p.stiffness, Bound::kNonNegative,
+     "Of a spring that turns the rod back to how it is described, the shorter way.");
+  io("damping_n_m_s_per_rad", p.damping, Bound::kNonNegative, "Of a damper.");
+}
 
 }  // namespace taut::description

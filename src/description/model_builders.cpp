@@ -11,6 +11,10 @@ ActuatorText::ActuatorText() {
 
 void Check(const MapReader& map, RodText& rod) {
   rod.material = ToMaterial(map, rod.surface, true);
+  if (rod.pins && !rod.class_k) {
+    map.Error("pins", map.Path("pins") + ": only rods of class k turn in their nodes",
+              "class_k: true, or leave out `pins`");
+  }
 }
 
 void Check(const MapReader& map, SphereText& sphere) {
@@ -93,9 +97,12 @@ void Check(const MapReader& map, JointText& joint) {
     if (!HasCoordinate(joint.kind)) {
       map.Error(key,
                 map.Path(key) + ": a joint of this kind leaves nothing free that has one number");
-    } else if (ball && std::string_view(key) != "most_rad") {
-      map.Error(key, map.Path(key) + ": a ball joint has no friction, spring, damper or lower stop",
+    } else if (ball && key == std::string_view("least_rad")) {
+      map.Error(key, map.Path(key) + ": a ball joint has no lower stop",
                 "most_rad is how far its axis may turn away");
+    } else if (ball && key == std::string_view("rest_rad")) {
+      map.Error(key, map.Path(key) + ": the spring of a ball joint is at rest as described",
+                "turn its bodies in the model");
     }
   }
   const char* const most = IsAngle(joint.kind) ? "most_rad" : "most_m";

@@ -146,6 +146,7 @@ void Keys(Io& io, Rod& r) {
   } else {
     io("class_k", r.class_k,
        "Whether rods that share a node are joined there by ball joints, instead of being welded.");
+    io("pins", r.pins);
     MassKeys(io, r.mass, Along::kPair);
     SurfaceKeys(io, r.surface);
   }

@@ -109,8 +109,13 @@ struct MassText {
 // What builders say. The structs that they build on are what is built but for its place: each copy
 // gets name, body and positions.
 
+/// As those of a ball in `JointDef`.
+struct PinText {
+  double friction = 0.0, stiffness = 0.0, damping = 0.0;
+};
 struct RodText : CapsuleDef {
   bool class_k = false;
+  std::optional<PinText> pins;
   MassText mass;
   SurfaceText surface;
 };

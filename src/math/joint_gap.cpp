@@ -8,23 +8,12 @@
 namespace taut {
 
 double HeldGap(const JointDef& j) noexcept {
-  using K = JointKind;
+  const HeldMotions held = HeldBy(j.kind);
   const Vec3 d = j.to_m - j.from_m;
-  const double along = Dot(j.axis, d), all2 = Dot(d, d);
-  const double across = std::sqrt(std::fmax(all2 - along * along, 0.0));
-  switch (j.kind) {
-    case K::kDistance:
-      return 0;
-    case K::kPrismatic:
-    case K::kCylindrical:
-    case K::kLine:
-      return across;
-    case K::kPlanar:
-    case K::kPlane:
-      return std::fabs(along);
-    default:
-      return std::sqrt(all2);
-  }
+  const double along = Dot(j.axis, d), across2 = std::fmax(Dot(d, d) - along * along, 0.0);
+  if (held.along && held.across) return std::sqrt(Dot(d, d));
+  if (held.across) return std::sqrt(across2);
+  return held.along ? std::fabs(along) : 0;
 }
 
 namespace math {

@@ -53,7 +53,7 @@ void CheckCoordinate(const JointDef& j, const std::string& name, Checker& check)
                       "spring or damper");
   }
   if (j.kind == K::kBall) {
-    check.Require(!acts, name + ": a ball joint has no friction, spring or damper");
+    check.Require(j.rest == 0, name + ": a ball joint's spring is at rest as described");
     check.Require(!j.least && (!j.most || *j.most > 0),
                   name + ": a ball joint has one limit, above 0, of the angle to its axis");
   }

@@ -15,9 +15,19 @@ enum class JointMeasure {
   kTwist,   ///< b's first direction along a's second.
   kAngle,   ///< The angle about the axis, with turns.
   kCone,    ///< The angle between the axis in a and that in b.
+  kTurn1,   ///< Of the turn from a to b as a vector, what is along a's axis
+  kTurn2,   ///< and along the two directions across it.
+  kTurn3,
 };
 
-enum class JointRole { kHold, kLeast, kMost, kFriction, kSpring };
+enum class JointRole {
+  kHold,
+  kLeast,
+  kMost,
+  kFriction,
+  kTurnFriction,  ///< Three rows, one behind the other: one law (turn_friction.h).
+  kSpring,
+};
 
 struct JointRowTable {
   JointMeasure measure = JointMeasure::kAlongAxis;
@@ -34,6 +44,7 @@ struct JointTable {
   double reach_m = 0;                           ///< Of turns: see JointMeasure.
   int first_row = 0, row_count = 0;             ///< Those that hold come first.
   bool has_coordinate = false, has_angle = false;
+  bool has_turn_spring = false;  ///< Of a ball.
   JointMeasure coordinate = JointMeasure::kAlongAxis;
   // Of its coordinate, in metres of it; forces in N of that.
   double least = 0, most = 0, restitution = 0, friction = 0;

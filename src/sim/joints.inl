@@ -46,7 +46,33 @@ TAUT_INLINE W HingeAngle(const JointPlace<W>& p) noexcept {
   return simd::Atan2(Dot(p.axes_a.r2, p.axes_b.r1), Dot(p.axes_a.r1, p.axes_b.r1));
 }
 
-/// `angle`: of a hinge, with turns.
+/// The turn that takes a's axes to b's, as a vector in W: its axis times its angle, 0..pi. At a
+/// half turn either of the two that it may be.
+template <class W>
+V3<W> TurnOf(const JointPlace<W>& p) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0), tiny = W::Splat(1e-300);
+  const W aa = Dot(p.axes_a.r0, p.axes_b.r0), bb = Dot(p.axes_a.r1, p.axes_b.r1),
+          cc = Dot(p.axes_a.r2, p.axes_b.r2);
+  const W ab = Dot(p.axes_a.r0, p.axes_b.r1), ba = Dot(p.axes_a.r1, p.axes_b.r0),
+          ac = Dot(p.axes_a.r0, p.axes_b.r2), ca = Dot(p.axes_a.r2, p.axes_b.r0),
+          bc = Dot(p.axes_a.r1, p.axes_b.r2), cb = Dot(p.axes_a.r2, p.axes_b.r1);
+  // Its quaternion times itself, 4 q q^T; any row has the direction of q, the largest one safely.
+  const W w[4] = {one + aa + bb + cc, cb - bc, ac - ca, ba - ab};
+  const W x[4] = {w[1], one + aa - bb - cc, ab + ba, ac + ca};
+  const W y[4] = {w[2], x[2], one - aa + bb - cc, bc + cb};
+  const W z[4] = {w[3], x[3], y[3], one - aa - bb + cc};
+  const auto xy = x[1] > y[2], xyz = Max(x[1], y[2]) > z[3];
+  const auto first = w[0] > Max(x[1], Max(y[2], z[3]));
+  W q[4];
+  for (int i = 0; i < 4; ++i) q[i] = Select(first, w[i], Select(xyz, Select(xy, x[i], y[i]), z[i]));
+  const auto back = q[0] < zero;
+  for (W& part : q) part = Select(back, zero - part, part);
+  const W sine = Sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  const W angle = W::Splat(2.0) * simd::Atan2(sine, q[0]), scale = angle / Max(sine, tiny);
+  return (scale * q[1]) * p.axes_a.r0 + (scale * q[2]) * p.axes_a.r1 + (scale * q[3]) * p.axes_a.r2;
+}
+
+/// `angle`: of a hinge, with turns. The value of a ball's turn is TurnOf.
 template <class W>
 JointDirection<W> DirectionOf(const JointTable& j, JointMeasure measure, const JointPlace<W>& p,
                               W angle) noexcept {
@@ -77,6 +103,12 @@ JointDirection<W> DirectionOf(const JointTable& j, JointMeasure measure, const J
       return across(p.axes_a.r2, p.axes_b.r1);
     case JointMeasure::kAngle:
       return {none, reach * p.axes_a.r0, reach * angle};
+    case JointMeasure::kTurn1:
+      return {none, reach * p.axes_a.r0, zero};
+    case JointMeasure::kTurn2:
+      return {none, reach * p.axes_a.r1, zero};
+    case JointMeasure::kTurn3:
+      return {none, reach * p.axes_a.r2, zero};
     case JointMeasure::kCone:
       break;
   }
@@ -246,6 +278,8 @@ void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double ste
       angle += turn * simd::Round(inv_turn * (s.joint_angle[i] - angle));
       s.joint_angle[i] = angle;
     }
+    V3<W> turned{zero, zero, zero};
+    if (j.has_turn_spring) turned = TurnOf(place);
     for (int r = j.first_row; r < j.first_row + j.row_count; ++r) {
       const JointRowTable& table = m.joint_rows[r];
       HeldRow<W>& row = work.joints[r];
@@ -272,10 +306,12 @@ void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double ste
           SetStop(j, d.value, row.before, RateOf(place, d, Free(a), Free(b)), h, live, row);
           break;
         case JointRole::kFriction:
+        case JointRole::kTurnFriction:
           row.upper = h * W::Splat(j.friction);
           row.lower = -row.upper;
           break;
         case JointRole::kSpring:
+          if (j.has_turn_spring) d.value = Dot(d.turn, turned);
           SetSpring(j, d.value - W::Splat(j.rest), row.before, h, row);
           break;
       }

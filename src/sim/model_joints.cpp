@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "base/union_find.h"
@@ -16,34 +17,42 @@ namespace {
 
 using M = JointMeasure;
 
-struct KindTable {
-  JointKind kind;
-  std::vector<M> holds;
-  std::vector<M> free;  ///< Its coordinate, if it has one.
-};
-
-/// A kind of joint is a line.
-const std::vector<KindTable>& Kinds() {
-  using K = JointKind;
-  static const std::vector<KindTable> kinds{
-      {K::kBall, {M::kAlongAxis, M::kAcross1, M::kAcross2}, {M::kCone}},
-      {K::kHinge, {M::kAlongAxis, M::kAcross1, M::kAcross2, M::kSwing1, M::kSwing2}, {M::kAngle}},
-      {K::kWeld, {M::kAlongAxis, M::kAcross1, M::kAcross2, M::kSwing1, M::kSwing2, M::kTwist}, {}},
-      {K::kPrismatic,
-       {M::kAcross1, M::kAcross2, M::kSwing1, M::kSwing2, M::kTwist},
-       {M::kAlongAxis}},
-      {K::kCylindrical, {M::kAcross1, M::kAcross2, M::kSwing1, M::kSwing2}, {M::kAlongAxis}},
-      {K::kPlanar, {M::kAlongAxis, M::kSwing1, M::kSwing2}, {}},
-      {K::kLine, {M::kAcross1, M::kAcross2}, {M::kAlongAxis}},
-      {K::kPlane, {M::kAlongAxis}, {}},
-      {K::kDistance, {M::kDistance}, {M::kDistance}},
+/// What a kind's rows hold.
+std::vector<M> HeldMeasures(JointKind kind) {
+  const HeldMotions held = HeldBy(kind);
+  std::vector<M> rows;
+  const auto add = [&](bool has, std::initializer_list<M> measures) {
+    for (const M measure : measures) {
+      if (has) rows.push_back(measure);
+    }
   };
-  return kinds;
+  add(held.along, {M::kAlongAxis});
+  add(held.across, {M::kAcross1, M::kAcross2});
+  add(held.swing, {M::kSwing1, M::kSwing2});
+  add(held.twist, {M::kTwist});
+  add(kind == JointKind::kDistance, {M::kDistance});
+  return rows;
 }
 
-const KindTable& KindOf(JointKind kind) {
-  return *std::find_if(Kinds().begin(), Kinds().end(),
-                       [&](const KindTable& k) { return k.kind == kind; });
+std::optional<M> CoordinateOf(JointKind kind) {
+  using K = JointKind;
+  switch (kind) {
+    case K::kBall:
+      return M::kCone;
+    case K::kHinge:
+      return M::kAngle;
+    case K::kPrismatic:
+    case K::kCylindrical:
+    case K::kLine:
+      return M::kAlongAxis;
+    case K::kDistance:
+      return M::kDistance;
+    case K::kWeld:
+    case K::kPlanar:
+    case K::kPlane:
+      break;
+  }
+  return std::nullopt;
 }
 
 class JointCompiler {
@@ -91,20 +100,19 @@ class JointCompiler {
     Axes(j.b, in_b, j.axes_b_P);
     j.reach_m = std::max(Gyration(j.a), Gyration(j.b));
     j.first_row = static_cast<int>(t_.joint_rows.size());
-    const KindTable& kind = KindOf(def.kind);
     if (def.kind != JointKind::kDistance || HoldsLength(def)) {
-      for (const M measure : kind.holds) t_.joint_rows.push_back({measure, JointRole::kHold});
+      for (const M measure : HeldMeasures(def.kind)) {
+        t_.joint_rows.push_back({measure, JointRole::kHold});
+      }
     }
-    for (const M measure : kind.free) Coordinate(def, measure, j);
+    if (const auto coordinate = CoordinateOf(def.kind)) Coordinate(def, *coordinate, j);
+    if (def.kind == JointKind::kBall) Turns(def, j);
     if (def.kind == JointKind::kDistance && HoldsLength(def)) {
       const Vec3 d = def.to_m - def.from_m;
       j.rest = std::sqrt(Dot(d, d));
     }
     j.row_count = static_cast<int>(t_.joint_rows.size()) - j.first_row;
-    j.holds_point =
-        std::count_if(kind.holds.begin(), kind.holds.end(), [](M measure) {
-          return measure == M::kAlongAxis || measure == M::kAcross1 || measure == M::kAcross2;
-        }) == 3;
+    j.holds_point = HeldBy(def.kind).along && HeldBy(def.kind).across;
     t_.joints.push_back(j);
   }
 
@@ -123,8 +131,22 @@ class JointCompiler {
     };
     add(def.least.has_value(), JointRole::kLeast);
     add(def.most.has_value(), JointRole::kMost);
+    if (def.kind == JointKind::kBall) return;
     add(def.friction > 0, JointRole::kFriction);
-    add(def.stiffness > 0 || def.damping > 0, JointRole::kSpring);
+    add(HasSpring(def), JointRole::kSpring);
+  }
+  static bool HasSpring(const JointDef& def) { return def.stiffness > 0 || def.damping > 0; }
+
+  /// What acts on a ball's turns, about all axes alike.
+  void Turns(const JointDef& def, JointTable& j) {
+    const auto add = [&](JointRole role) {
+      for (const M measure : {M::kTurn1, M::kTurn2, M::kTurn3}) {
+        t_.joint_rows.push_back({measure, role});
+      }
+    };
+    if (def.friction > 0) add(JointRole::kTurnFriction), ++t_.turn_friction_count;
+    if (HasSpring(def)) add(JointRole::kSpring);
+    j.has_turn_spring = def.stiffness > 0;
   }
 
   /// Whether joints close a loop, of bodies or through what does not move: rows may be redundant.

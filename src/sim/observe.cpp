@@ -105,7 +105,9 @@ Energy Batch::TotalEnergy(int world) const noexcept {
   for (int i = 0; i < d.view.joint_count; ++i) {
     const JointDef& joint = d.model->def().joints[static_cast<std::size_t>(i)];
     if (joint.stiffness == 0) continue;
-    const double stretch = Joint(world, i).coordinate - joint.rest;
+    const JointState now = Joint(world, i);
+    const bool turns = joint.kind == JointKind::kBall;
+    const double stretch = turns ? now.turned_rad : now.coordinate - joint.rest;
     e.elastic_j += 0.5 * joint.stiffness * stretch * stretch;
   }
   return e;

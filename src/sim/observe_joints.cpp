@@ -70,6 +70,9 @@ JointState Batch::Joint(int world, int joint) const noexcept {
         out.rate = Dot(a.axes[0], spin);
         return angle + 2 * kPi * std::round((last - angle) / (2 * kPi));
       }
+      case M::kTurn1:
+      case M::kTurn2:
+      case M::kTurn3:  // no coordinates, and not held
       case M::kCone:
         break;
     }
@@ -86,6 +89,13 @@ JointState Batch::Joint(int world, int joint) const noexcept {
   }
   out.rate = 0;
   if (j.has_coordinate) out.coordinate = value(j.coordinate);
+  Vec3 twice_sine;  // of the turn, along its axis
+  double cosines = 0;
+  for (int i = 0; i < 3; ++i) {
+    twice_sine = twice_sine + Cross(a.axes[i], b.axes[i]);
+    cosines += Dot(a.axes[i], b.axes[i]);
+  }
+  out.turned_rad = math::Atan2(std::sqrt(Dot(twice_sine, twice_sine)), cosines - 1);
   return out;
 }
 

@@ -49,6 +49,7 @@ View Tables::View() const noexcept {
           static_cast<int>(joint_rows.size()),
           static_cast<int>(joint_bodies.size()) -
               (joints.empty() ? 0 : static_cast<int>(motions.size())),
+          turn_friction_count,
           joints.data(),
           joint_rows.data(),
           joint_bodies.data(),

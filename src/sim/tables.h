@@ -203,7 +203,7 @@ struct View {
   const FrictionTable* friction;   ///< Null: coefficients are those of the pairs.
   double floor_m;                  ///< Whoever is below falls for ever; minus infinity: nobody.
   int first_ground, ground_count;  ///< Surfaces among the shapes.
-  int joint_count, joint_row_count, joint_body_count;
+  int joint_count, joint_row_count, joint_body_count, turn_friction_count;
   const JointTable* joints;
   const JointRowTable* joint_rows;
   const int *joint_bodies, *joint_number;
@@ -298,6 +298,7 @@ class Tables final : public Model {
   std::vector<int> beside;        ///< What ShapeTable::beside points into.
   std::vector<JointTable> joints;
   std::vector<JointRowTable> joint_rows;
+  int turn_friction_count = 0;    ///< Ball joints with friction.
   bool joint_loops = false;       ///< They close one, so that some of their rows may be redundant.
   std::vector<int> joint_bodies;  ///< Those that joints move, in the order of elimination, then
                                   ///< those with motions;

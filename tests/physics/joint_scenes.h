@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "scenes/rod.h"
+#include "scenes/rod_chain.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
@@ -28,20 +28,7 @@ inline ModelDef Pendulum(double angle_rad, JointKind kind = JointKind::kBall) {
 
 /// Rods of 0.1 m in a row from the origin along `step`, the first of them pinned there.
 inline ModelDef Chain(int rods, const Vec3& step_m, double last_mass_kg) {
-  ModelDef def;
-  Vec3 at;
-  for (int i = 0; i < rods; ++i) {
-    const std::string number = std::to_string(i);
-    const double mass = i + 1 == rods ? last_mass_kg : 1.0;
-    scenes::AddRod(def, "rod" + number, mass, 0.01, at, at + step_m, {});
-    def.capsules.back().collides = false;
-    JointDef joint;
-    joint.name = "joint" + number, joint.body_a = i - 1, joint.body_b = i;
-    joint.from_m = joint.to_m = at;
-    def.joints.push_back(joint);
-    at = at + step_m;
-  }
-  return def;
+  return scenes::RodChain(rods, step_m, last_mass_kg);
 }
 inline double WorstGap(const Batch& world, const ModelDef& def) {
   double gap = 0;

@@ -17,7 +17,7 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "script"))
 
-from measuring import compare, hills, measure, page, wasm  # noqa: E402
+from measuring import compare, hills, joints, measure, page, wasm  # noqa: E402
 from validation.runs import Problem  # noqa: E402
 
 PROGRAM = sys.argv[1]
@@ -85,6 +85,19 @@ def MakesThePageFromItsList():
         assert str(problem) == "these results are of several machines or versions"
     else:
         raise AssertionError("results of two machines on one page")
+
+
+def MakesTheSectionOnJointsAlone():
+    with tempfile.TemporaryDirectory() as folder:
+        _, results = measured(folder, "^joints/.*/(chain_16|puppy)/")
+    text = joints.replaced("a\n\n### With joints\n\nold\n\n### Next\n\nb\n", results)
+    assert text == f"a\n\n### With joints\n\n{joints.section(results)}\n\n### Next\n\nb\n"
+    assert "{{" not in text
+    assert {(item["robot"], item["joints"]) for item in results} == {("chain_16", 16), ("puppy", 8)}
+    for item in results:
+        solve = item["stages_ns"]["solve"] / item["joints"]
+        assert item["linear_solves"] >= 1, item
+        assert f"| {joints.number(solve)} | {joints.number(solve / item['linear_solves'])} |" in text, item
 
 
 def MakesTheSectionOnHillsAlone():

@@ -95,6 +95,32 @@ TEST(JointText, RodsOfClassKArePinnedInTheirNodes) {
   EXPECT_NE(Model::Compile(robot.def, out), nullptr) << out.Format();
 }
 
+TEST(JointText, WhatActsOnTheTurnsOfABallIsSaidAtIt) {
+  const std::string turns =
+      "friction_n_m: 0.1, stiffness_n_m_per_rad: 2, damping_n_m_s_per_rad: 0.3";
+  const std::string rods =
+      "nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [0, 1, 0]}\n"
+      "pairs:\n"
+      "  - {tags: [rod], each: [[a, b], [a, c]]}\n"
+      "builders:\n"
+      "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1, ";
+  const RobotSpec leg = Good(Leg("kind: ball, most_rad: 0.5, " + turns));
+  const RobotSpec net = Good(rods + "class_k: true, pins: {" + turns + "}}}\n");
+  for (const RobotSpec* robot : {&leg, &net}) {
+    ASSERT_EQ(robot->def.joints.size(), 1u);
+    EXPECT_EQ(robot->def.joints[0].friction, 0.1);
+    EXPECT_EQ(robot->def.joints[0].stiffness, 2);
+    EXPECT_EQ(robot->def.joints[0].damping, 0.3);
+    Diagnostics out;
+    EXPECT_NE(Model::Compile(robot->def, out), nullptr) << out.Format();
+  }
+  EXPECT_THAT(Errors(rods + "pins: {friction_n_m: 1}}}\n"),
+              HasSubstr("only rods of class k turn in their nodes"));
+  EXPECT_THAT(Errors(rods + "class_k: true, pins: {friction_n_m: -1}}}\n"),
+              HasSubstr("friction_n_m"));
+  EXPECT_THAT(Errors(rods + "class_k: true, pins: {rest_rad: 1}}}\n"), HasSubstr("rest_rad"));
+}
+
 TEST(JointText, NodesFixedToARodGoWithItAndAnchorsHoldIt) {
   const std::string rods =
       "nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [0, 1, 0], m: {at_m: [0, 0.1, 0], fixed_to: a}}\n"
@@ -188,8 +214,11 @@ TEST(JointText, MistakesAreNamed) {
 TEST(JointText, LimitsThatMakeNoSenseAreNamed) {
   EXPECT_THAT(Errors(Leg("kind: hinge, least_rad: 1, most_rad: 0.5")),
               HasSubstr("not above the least"));
-  EXPECT_THAT(Errors(Leg("kind: ball, friction_n_m: 1")),
-              HasSubstr("a ball joint has no friction"));
+  EXPECT_THAT(Errors(Leg("kind: ball, least_rad: -1")), HasSubstr("has no lower stop"));
+  EXPECT_THAT(Errors(Leg("kind: ball, stiffness_n_m_per_rad: 1, rest_rad: 0.1")),
+              HasSubstr("the spring of a ball joint is at rest as described"));
+  EXPECT_THAT(Errors(Leg("kind: ball, friction_n: 1")), HasSubstr("friction_n"));
+  EXPECT_THAT(Errors(Leg("kind: planar, friction_n_m: 1")), HasSubstr("nothing free"));
 }
 
 TEST(JointText, LimitsOfABallAndOfADistanceAreAboveZero) {

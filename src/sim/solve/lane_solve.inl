@@ -154,7 +154,7 @@ class LaneSolve {
     }
     GatherContacts(island.pools);
     GatherCables(island.pools);
-    GatherJoints(island.pools);
+    GatherJoints(island.pools, island.pools);
     island.rows = island.pools.rows();
     int row = 0;
     Pool<ContactPoint<L, 2>>& contacts = island.pools;
@@ -165,6 +165,12 @@ class LaneSolve {
     for (int i = 0; i < cables.count; ++i) island.m.l[row++] = cables.items[i].l[0];
     Pool<JointRow<L>>& joints = island.pools;
     for (int i = 0; i < joints.count; ++i) island.m.l[row++] = joints.items[i].l[0];
+    Pool<TurnFriction<L>>& frictions = island.pools;
+    for (int i = 0; i < frictions.count; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        island.m.l[row++] = OfLane<L>(work_.joints[friction_source_[i] + k].l[0], lane_);
+      }
+    }
     return row > 0;
   }
 
@@ -216,14 +222,15 @@ class LaneSolve {
     out.before = {OfLane<L>(b.v0, lane_), OfLane<L>(b.w0, lane_)};
   }
 
-  template <int R>
-  void GatherLink(const Link<W, R>& from, Link<L, R>& to) const noexcept {
+  /// `first`: of the rows of `to`.
+  template <int R, int S>
+  void GatherLink(const Link<W, R>& from, Link<L, S>& to, int first = 0) const noexcept {
     to.body = Number(from.body);
     to.inv_mass = OfLane<L>(from.inv_mass, lane_);
     for (int r = 0; r < R; ++r) {
-      to.lin[r] = OfLane<L>(from.lin[r], lane_);
-      to.ang[r] = OfLane<L>(from.ang[r], lane_);
-      to.turn[r] = OfLane<L>(from.turn[r], lane_);
+      to.lin[first + r] = OfLane<L>(from.lin[r], lane_);
+      to.ang[first + r] = OfLane<L>(from.ang[r], lane_);
+      to.turn[first + r] = OfLane<L>(from.turn[r], lane_);
     }
   }
 
@@ -302,17 +309,40 @@ class LaneSolve {
     joint_source_ = cable_source_ + pool.count;
   }
 
-  void GatherJoints(Pool<JointRow<L>>& pool) noexcept {
+  void GatherJoints(Pool<JointRow<L>>& pool, Pool<TurnFriction<L>>& frictions) noexcept {
     pool.count = 0;
     for (int i = 0; i < m_.joint_row_count; ++i) {
       const HeldRow<W>& from = work_.joints[i];
       if (!(from.live[lane_] > 0) || mem_.root[from.links[0].body] != island_root_) continue;
+      if (m_.joint_rows[i].role == JointRole::kTurnFriction) continue;
       JointRow<L>& to = pool.items[pool.count];
       joint_source_[pool.count++] = i;
       to.link_count = from.link_count;
       for (int k = 0; k < from.link_count; ++k) GatherLink(from.links[k], to.links[k]);
       to.TakeLaw(from, [&](W x) { return OfLane<L>(x, lane_); });
       if (displaces_) to.Hold();
+    }
+    friction_source_ = joint_source_ + pool.count;
+    GatherFrictions(frictions);
+  }
+
+  /// Of ball joints: three rows are one law. A displacement has none.
+  void GatherFrictions(Pool<TurnFriction<L>>& pool) noexcept {
+    pool.count = 0;
+    if (m_.turn_friction_count == 0 || displaces_) return;
+    for (int i = 0; i < m_.joint_row_count; ++i) {
+      if (m_.joint_rows[i].role != JointRole::kTurnFriction) continue;
+      const HeldRow<W>* const from = work_.joints + i;
+      i += 2;
+      if (!(from->live[lane_] > 0) || mem_.root[from->links[0].body] != island_root_) continue;
+      TurnFriction<L>& to = pool.items[pool.count];
+      friction_source_[pool.count++] = i - 2;
+      to.limit = OfLane<L>(from->upper, lane_);
+      to.link_count = from->link_count;
+      for (int k = 0; k < to.link_count; ++k) {
+        for (int r = 0; r < 3; ++r) GatherLink(from[r].links[k], to.links[k], r);
+      }
+      to.FinishMasses();
     }
   }
 
@@ -340,6 +370,12 @@ class LaneSolve {
     for (int i = 0; i < joints.count; ++i) {
       work_.joints[joint_source_[i]].l[0].Set(lane_, (l++)->v);
     }
+    const Pool<TurnFriction<L>>& frictions = island.pools;
+    for (int i = 0; i < frictions.count; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        work_.joints[friction_source_[i] + k].l[0].Set(lane_, (l++)->v);
+      }
+    }
     for (int b = 0; b < count_; ++b) {
       const Twist<L> t = island.Load(island.m.v + kDofs * b);
       BodyWork<W>& body = work_.bodies[island.bodies[b].body];
@@ -357,7 +393,7 @@ class LaneSolve {
   L h_;
   bool displaces_ = false;
   int count_ = 0, island_root_ = 0;
-  int *cable_source_ = nullptr, *joint_source_ = nullptr;
+  int *cable_source_ = nullptr, *joint_source_ = nullptr, *friction_source_ = nullptr;
 };
 
 }  // namespace taut::sim

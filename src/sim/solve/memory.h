@@ -3,6 +3,7 @@
 
 #include "sim/constraint/cable_row.h"
 #include "sim/constraint/joint_row.h"
+#include "sim/constraint/turn_friction.h"
 #include "sim/contacts.h"
 #include "sim/solve/island.h"
 #include "sim/tables.h"
@@ -25,7 +26,7 @@ struct Room {
 
 /// The kinds of constraints that a step knows.
 template <class Num>
-using StepPools = Pools<ContactPoint<Num, 2>, CableRow<Num>, JointRow<Num>>;
+using StepPools = Pools<ContactPoint<Num, 2>, CableRow<Num>, JointRow<Num>, TurnFriction<Num>>;
 
 /// What solving one lane's islands takes. Systems with more blocks than there is room for (over 128
 /// bodies that are all tied together) are left to the sweeps.
@@ -45,7 +46,8 @@ struct LaneMemory {
   void Take(const View& m, Room& room) noexcept {
     const int64_t n = m.body_count, contacts = m.slot_count + m.pair_capacity;
     const int64_t single = m.cable_count + m.joint_row_count;
-    const int64_t rows = 3 * contacts + single, cells = 9 * contacts + single;
+    const int64_t rows = 3 * contacts + single;
+    const int64_t cells = 9 * (contacts + m.turn_friction_count) + single;
     const int64_t blocks = n < kFullBodies ? n * n : kFullBodies * n;
     block_capacity = static_cast<int>(blocks);
     pairs = room.Take<Contact<Num, 2>>(m.pair_capacity);
@@ -67,6 +69,9 @@ struct LaneMemory {
     Pool<JointRow<Num>>& joints = island.pools;
     joints.items = room.Take<JointRow<Num>>(m.joint_row_count);
     joints.branches = room.Take<typename JointRow<Num>::Branch>(m.joint_row_count);
+    Pool<TurnFriction<Num>>& frictions = island.pools;
+    frictions.items = room.Take<TurnFriction<Num>>(m.turn_friction_count);
+    frictions.branches = room.Take<typename TurnFriction<Num>::Branch>(m.turn_friction_count);
     IslandMemory<Num>& x = island.m;
     Num** const per_dof[] = {&x.v, &x.rhs, &x.direction, &x.trial_v};
     for (Num** list : per_dof) *list = room.Take<Num>(kDofs * n);

@@ -1,0 +1,41 @@
+"""What joints cost: the section of docs/performance.md, and that section alone."""
+
+import pathlib
+
+from measuring import sections
+from measuring.figures import number
+from measuring.results import mark, shared
+from validation.runs import fill, table
+
+KIND = "joints"
+NOT_MEASURED = "Not measured in this run."
+TEMPLATE = pathlib.Path(__file__).with_name("joints.md.in")
+TITLE = "### With joints"
+COMPANY = "\nOthers worked there at the same time: times are too long, and to be measured again where nothing else runs."
+
+
+def costs(items):
+    """Of a step and of its solve stage; per joint, and per joint and linear system."""
+    rows = []
+    for item in sorted(items, key=lambda item: (item["robot"], item["lanes"])):
+        step, solve = 1e9 / item["steps_per_s"], item["stages_ns"]["solve"]
+        joints, systems = item["joints"], item["linear_solves"]
+        rows.append([item["robot"] + mark(item), str(item["lanes"]), number(joints), number(systems), number(step / 1e3),
+                     number(step / joints), number(solve / joints), number(solve / joints / systems)])
+    return table(["robot", "lanes", "joints", "linear systems a step", "a step, us", "a joint, ns", "its part of `solve`, ns",
+                  "the same a linear system, ns"], rows)
+
+
+def section(items):
+    found = [item for item in items if item["kind"] == KIND]
+    if not found:
+        return NOT_MEASURED
+    machine = found[0]["machine"]
+    return fill(TEMPLATE.read_text(), {
+        "costs": costs(found), "commit": machine["commit"], "repetitions": str(min(item["repetitions"] for item in found)),
+        "load": f"{machine['load'][0]:.1f}", "company": COMPANY if shared(machine) else ""}).rstrip()
+
+
+def replaced(page, items):
+    """The page with this section anew and all else as it was."""
+    return sections.replaced(page, TITLE, section(items))
