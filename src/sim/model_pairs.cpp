@@ -32,7 +32,12 @@ class PairCompiler {
         for (const std::size_t i : shapes_of_[static_cast<std::size_t>(a)]) {
           BeginPair(a, t_.body_count);
           Meet(i, surface, id);
-          t_.body_pairs.back().on_ground = true;
+          BodyPairTable& pair = t_.body_pairs.back();
+          pair.on_ground = true;
+          if (t_.shapes[i].shape_P.kind == ShapeKind::kRound &&
+              t_.shapes[surface].shape_P.surface.table->is_field) {
+            pair.kept = t_.kept_count++;
+          }
         }
       }
     }

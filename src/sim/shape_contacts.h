@@ -46,6 +46,12 @@ int Touch(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoint* out
 /// 6..12 edges and corners that stick out, against the flank, by the seventh of it.
 int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
 
+struct NearParts;
+/// The same for who comes again: `kept` holds what was near (surface_parts.h), or is null. Any
+/// `kept` of this pair gives the same bits.
+int TouchGround(const RoundShape& a, const SurfaceShape& b, double margin_m, NearParts* kept,
+                TouchPoint* out) noexcept;
+
 /// Features: 0..7 corners; 8..12 edges, corners of the ground under faces, and more planes of
 /// corners.
 int Touch(const BoxShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
@@ -70,6 +76,8 @@ double DistanceUpTo(const A& a, const B& b, double) noexcept {
 /// the radius (of a box by a hundred-thousandth of the gap). Beyond `enough_m` it goes by bounds.
 double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m) noexcept;
 double DistanceUpTo(const BoxShape& a, const SurfaceShape& b, double enough_m) noexcept;
+double DistanceToGround(const RoundShape& a, const SurfaceShape& b, double enough_m,
+                        NearParts* kept) noexcept;
 
 /// The same for shapes of any two kinds, in either order, each given in a frame of its own.
 int TouchShapes(const Shape& a, const ShapePose& at_a, const Shape& b, const ShapePose& at_b,

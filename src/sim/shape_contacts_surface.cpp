@@ -53,19 +53,26 @@ bool Before(const Vec3& a, const Vec3& b) noexcept {
 }  // namespace
 
 int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept {
+  return TouchGround(a, b, margin_m, nullptr, out);
+}
+
+int TouchGround(const RoundShape& a, const SurfaceShape& b, double margin_m, NearParts* kept,
+                TouchPoint* out) noexcept {
   const SurfaceTable& s = *b.table;
   TouchList list(out, margin_m);
   const double r = a.radius_m, limit_m = r + Larger(margin_m, 0.0);
   const Vec3 from = Load(a.from), to = Load(a.to);
   const LineReach line = ReachOfLine(s, from, to, limit_m);
   if (line.low > line.high) return 0;
+  const bool known = kept != nullptr && KnowsParts(s, from, to, limit_m, *kept);
   Found all[2 * kPlacesOfEnd + kPlacesBetween];
   int count = 0;
   const bool ball = from.x == to.x && from.y == to.y && from.z == to.z;
   for (int end = 0; end < (ball ? 1 : 2); ++end) {
     if (end == 0 ? line.low > 0.0 : line.high < 1.0) continue;
     SurfacePlace places[kPlacesOfEnd];
-    const int ways = NearestPlaces(s, end == 0 ? from : to, limit_m, places, kPlacesOfEnd);
+    const int ways = NearestPlaces(s, end == 0 ? from : to, limit_m, places, kPlacesOfEnd,
+                                   known ? &kept->ends[end] : nullptr);
     for (int i = 1; i < ways; ++i) {
       for (int k = i; k > 0 && Before(places[k].normal, places[k - 1].normal); --k) {
         const SurfacePlace swapped = places[k];
@@ -78,7 +85,8 @@ int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoin
   }
   if (!ball) {
     LinePlace between[kPlacesBetween];
-    const int places = NearestAlong(s, line, r, between, kPlacesBetween);
+    const int places =
+        NearestAlong(s, line, r, between, kPlacesBetween, known ? &kept->between : nullptr);
     bool taken[kStretches] = {};
     for (int i = 0; i < places; ++i) {
       int stretch = static_cast<int>(between[i].share * kStretches);
@@ -97,11 +105,16 @@ int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoin
 }
 
 double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m) noexcept {
+  return DistanceToGround(a, b, enough_m, nullptr);
+}
+
+double DistanceToGround(const RoundShape& a, const SurfaceShape& b, double enough_m,
+                        NearParts* kept) noexcept {
   const Vec3 from = Load(a.from), to = Load(a.to);
   const double most_m = kFarthestLook * (Norm(to - from) + a.radius_m);
   double look_m = Smaller(enough_m, kNearestLook * most_m);
   TouchPoint points[kMaxPointsPerPair];
-  const int count = Touch(a, b, look_m, points);
+  const int count = TouchGround(a, b, look_m, kept, points);
   if (count > 0) {
     double least_m = look_m;
     for (int i = 0; i < count; ++i) least_m = Smaller(least_m, points[i].gap_m);

@@ -128,6 +128,7 @@ struct BodyPairTable {
   int first_pair = 0, pair_count = 0;
   bool by_tree = false;    ///< b is the world, whose shapes are looked up in its tree.
   bool on_ground = false;  ///< One pair, whose second shape is a surface.
+  int kept = -1;           ///< Its number among those that keep what is near (near_parts.h).
   bool joined = false;     ///< b is the world, and some boxes of it touch each other.
 };
 
@@ -284,6 +285,7 @@ class Tables final : public Model {
   int world_pair_count = 0;     ///< Of them, the first: `b` does not move; by `a`.
   std::vector<int> first_slot;  ///< Of a body's contacts with what does not move; one more.
   int slot_count = 0;
+  int kept_count = 0;               ///< Pairs that keep what is near (BodyPairTable::kept).
   std::uint32_t first_pair_id = 0;  ///< Keys below are point * planes + plane, others of pairs.
   int pair_capacity = 0;            ///< Contacts of moving bodies that one world may have at once.
   bool along_slip = false;
