@@ -9,13 +9,16 @@
 
 namespace taut::sim {
 
+struct SurfaceTable;
+/// So far a rod may move before it is looked up anew [m].
+double SlackOf(const SurfaceTable& s) noexcept;
+
 /// A triangle, an edge or a corner of a field.
 struct SurfacePart {
   enum Kind { kFirstFace, kSecondFace, kEdgeX, kEdgeY, kDiagonal, kCorner };
-  int i;
-  unsigned j_kind;  ///< 8 j + kind: a field has at most 1e8 corners.
-  int j() const noexcept { return static_cast<int>(j_kind >> 3); }
-  Kind kind() const noexcept { return static_cast<Kind>(j_kind & 7u); }
+  static constexpr int kFarthest =
+      4095;           ///< From a cell that all parts of a list are near [cells].
+  short di, dj_kind;  ///< 8 dj + kind
 };
 
 /// Those that count, in the order in which a search comes by them.
@@ -23,17 +26,15 @@ template <int kMost>
 struct PartList {
   static constexpr int kTooMany = kMost + 1;
   int count;  ///< Or kTooMany.
+  int i, j;   ///< The cell.
   SurfacePart parts[kMost];
-
-  void Add(int i, int j, SurfacePart::Kind kind) noexcept {
-    if (count < kMost) parts[count] = {i, static_cast<unsigned>(j) << 3 | kind};
-    if (count <= kMost) ++count;
-  }
 };
 
 /// Zeros: nothing is known.
 struct NearParts {
-  static constexpr int kMostOfEnd = 8, kMostBetween = 16;
+  static constexpr int kMostOfEnd = 8, kMostBetween = 24;
+  /// What did not serve so often is not kept anew before so many more looks have gone by.
+  static constexpr int kFewLooks = 4;
   using OfEnd = PartList<kMostOfEnd>;
   using Between = PartList<kMostBetween>;
 
@@ -41,6 +42,8 @@ struct NearParts {
   double limit_m;  ///< For any limit up to this; 0: nothing is kept.
   int looks;       ///< That it served for since, or that went by without it.
   bool by_x;       ///< In which order.
+  bool above[2];   ///< The end is above all that is below it, within the slack;
+  bool over;       ///< the line is under no edge.
   OfEnd ends[2];
   Between between;
 };

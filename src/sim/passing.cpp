@@ -84,8 +84,8 @@ int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint3
   };
   const auto touch_after = [&](double t, double margin_m, TouchPoint* out) noexcept {
     if (a.kept != nullptr) {
-      return TouchGround(Moved(a.shape->round, PoseAfter(a, t)), b.shape->surface, margin_m, a.kept,
-                         out);
+      return TouchGround(Moved(a.shape->round, PoseAfter(a, t)), b.shape->surface, margin_m, 0,
+                         a.kept, out);
     }
     return TouchShapes(*a.shape, PoseAfter(a, t), *b.shape, PoseAfter(b, t), margin_m, out);
   };

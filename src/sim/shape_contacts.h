@@ -46,11 +46,14 @@ int Touch(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoint* out
 /// 6..12 edges and corners that stick out, against the flank, by the seventh of it.
 int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
 
+/// Those of an end, a bit each.
+constexpr unsigned FeaturesOfEnd(int end) { return 7u << (3 * end); }
+
 struct NearParts;
-/// The same for who comes again: `kept` holds what was near (surface_parts.h), or is null. Any
-/// `kept` of this pair gives the same bits.
-int TouchGround(const RoundShape& a, const SurfaceShape& b, double margin_m, NearParts* kept,
-                TouchPoint* out) noexcept;
+/// The same without the features `elsewhere`, of ends that another shape of the body has. `kept`
+/// holds what was near (surface_parts.h), or is null; any `kept` of this pair gives the same bits.
+int TouchGround(const RoundShape& a, const SurfaceShape& b, double margin_m, unsigned elsewhere,
+                NearParts* kept, TouchPoint* out) noexcept;
 
 /// Features: 0..7 corners; 8..12 edges, corners of the ground under faces, and more planes of
 /// corners.

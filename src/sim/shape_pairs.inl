@@ -33,10 +33,10 @@ template <class W>
 int TouchGroundLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
                     const ShapePairTable& pair, int lane, double margin, NearParts* kept,
                     TouchPoint* out) noexcept {
-  if (kept == nullptr) return TouchLane(m, s, work, pair, lane, margin, out);
   const ShapeTable& a = m.shapes[pair.a];
+  if (a.shape_P.kind != ShapeKind::kRound) return TouchLane(m, s, work, pair, lane, margin, out);
   const RoundShape round = Moved(a.shape_P.round, LanePose(m, s, work, a.body, lane));
-  return TouchGround(round, m.shapes[pair.b].shape_P.surface, margin, kept, out);
+  return TouchGround(round, m.shapes[pair.b].shape_P.surface, margin, pair.elsewhere, kept, out);
 }
 
 /// A shape of a pair with the way of its body through the step.

@@ -298,27 +298,10 @@ void CollideManyShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<
                        double step_s, W since_last, SlotFiller<W>* slots,
                        uint32_t* overflow) noexcept;
 
-/// Of a shape and ground, each lane by itself: what touches is looked at in each step, all else
-/// when it may have come as near.
+// Of a shape and ground (ground.inl).
 template <class W>
 void CollideGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
-                   double step_s, W since_last, SlotFiller<W>* slots, uint32_t* overflow) noexcept {
-  W margin;
-  const auto near = ClearanceUsedUp(m, s, work, pair, W::Splat(step_s), since_last, margin);
-  if (!Any(near)) return;
-  const ShapePairTable& shapes = m.shape_pairs[m.body_pairs[pair].first_pair];
-  const int number = m.body_pairs[pair].kept;
-  NearParts* const of_lanes = number < 0 ? nullptr : g.kept + number * W::kLanes;
-  for (int lane = 0; lane < W::kLanes; ++lane) {
-    if (!near[lane]) continue;
-    TouchPoint points[kMaxPointsPerPair];
-    NearParts* const kept = of_lanes == nullptr ? nullptr : of_lanes + lane;
-    const int found = TouchGroundLane(m, s, work, shapes, lane, margin[lane], kept, points);
-    PutPoints(m, s, g, work, shapes, lane, step_s, kept, points, found, slots, overflow);
-    const double enough = kLookAheadSteps * margin[lane];
-    s.clearance[pair].Set(lane, found > 0 ? 0.0 : DistanceLane(m, s, work, shapes, lane, enough));
-  }
-}
+                   double step_s, W since_last, SlotFiller<W>* slots, uint32_t* overflow) noexcept;
 
 template <class W>
 void CollideBodies(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,

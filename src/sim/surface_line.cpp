@@ -171,7 +171,7 @@ int NearestAlong(const SurfaceTable& s, const LineReach& line, double radius_m, 
     return search.count();
   }
   LineReach wide = line;
-  wide.limit_m *= kWiderLook;
+  wide.limit_m *= WiderLook(s);
   EachSharp(
       s, wide,
       [&](const LineStretch& piece, const Vec3& start, const Vec3& end,

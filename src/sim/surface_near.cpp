@@ -193,10 +193,11 @@ Vec3 NearestPlaceOf(const SurfaceTriangle& t, const Vec3& point) noexcept {
 }
 
 int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, SurfacePlace* out,
-                  int most, const NearParts::OfEnd* known) noexcept {
+                  int most, const NearParts::OfEnd* known, bool above) noexcept {
+  if (above && known != nullptr && known->count == 0) return 0;
   PlaceSearch search(point, limit_m, out, most);
   // So deep it is still found.
-  const double depth = s.is_field ? DepthBelow(s, point) : s.bucket_m;
+  const double depth = above ? 0.0 : s.is_field ? DepthBelow(s, point) : s.bucket_m;
   // Beside a field it may be seen from below, where other edges stick out.
   const bool beside = s.is_field && (point.x < s.low.x || point.x > s.high.x || point.y < s.low.y ||
                                      point.y > s.high.y);
@@ -220,7 +221,7 @@ int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, Surf
     EachPart(s, *known, face, edge, corner);
     return search.count();
   }
-  const double wide_m = kWiderLook * limit_m;
+  const double wide_m = WiderLook(s) * limit_m;
   const Vec3 reach{wide_m, wide_m, wide_m};
   EachTriangle(s, point - reach, point + reach, face);
   EachSharp(

@@ -9,10 +9,6 @@
 namespace taut::sim {
 namespace {
 
-/// The slack, in cells: so far a rod may move before it is looked up anew.
-constexpr double kSlackCells = 1.0 / 32;
-/// What did not serve so often is not kept anew before so many more looks have gone by.
-constexpr int kFewLooks = 4;
 /// More than what the conditions allow for rounding: of the limit, and [m].
 constexpr double kRounding = 1e-6, kRoundingM = 1e-9;
 
@@ -98,14 +94,16 @@ class LineFilter {
       const double away = a_.slack_m * Norm(inward);
       outside.CutAbove(Dot(a, inward) - away, Dot(along_, inward));
     }
-    if (in_reach(outside)) return true;
-    if (!a_.s.solid || e.sides != 2) return false;
+    const bool touches = in_reach(outside);
+    if (!a_.s.solid || e.sides != 2) return touches;
     for (int k = 0; k < 2; ++k) {
       Vec3 n = Cross(edge, e.apex[k] - e.from);
       if (Dot(n, e.apex[1 - k] - e.from) > 0.0) n = -1.0 * n;
       beside.CutAbove(Dot(n, a) - a_.slack_m * Norm(n), Dot(n, along_));
     }
-    return in_reach(beside);
+    const bool under = in_reach(beside);
+    under_ = under_ || under;
+    return touches || under;
   }
   bool Corner(int i, int j) const noexcept {
     const Vec3 p = detail::CornerOf(a_.s, i, j), a = from_ - p;
@@ -119,11 +117,27 @@ class LineFilter {
     const Vec3 there = a + least * along_;
     return Dot(there, there) <= a_.reach_m * a_.reach_m;
   }
+  /// Whether the line may be under an edge that was looked at.
+  bool under() const noexcept { return under_; }
 
  private:
   const Around& a_;
   Vec3 from_, along_;
+  mutable bool under_ = false;
 };
+
+template <int kMost>
+void Add(PartList<kMost>& list, int i, int j, SurfacePart::Kind kind) noexcept {
+  if (list.count == 0) list.i = i, list.j = j;
+  const int di = i - list.i, dj = j - list.j;
+  const bool far = di > SurfacePart::kFarthest || di < -SurfacePart::kFarthest ||
+                   dj > SurfacePart::kFarthest || dj < -SurfacePart::kFarthest;
+  if (far || list.count >= kMost) {
+    list.count = list.kTooMany;
+  } else {
+    list.parts[list.count++] = {static_cast<short>(di), static_cast<short>(8 * dj + kind)};
+  }
+}
 
 /// All that sticks out and passes a filter.
 template <class Filter, int kMost>
@@ -136,16 +150,26 @@ void AddSharp(const Around& around, const LineReach& line, const Filter& filter,
     const double* const z = s.height_m + at;
     const auto look = [&](FieldMark mark, SurfacePart::Kind kind, int from, int to) noexcept {
       if ((marks & mark) == 0 || Larger(z[from], z[to]) < floor) return;
-      if (filter.Edge(detail::EdgeOfField(s, i, j, mark))) list.Add(i, j, kind);
+      if (filter.Edge(detail::EdgeOfField(s, i, j, mark))) Add(list, i, j, kind);
     };
     const bool rises = (marks & kRising) != 0;
     look(kSharpAlongX, SurfacePart::kEdgeX, 0, 1);
     look(kSharpAlongY, SurfacePart::kEdgeY, 0, s.columns);
     look(kSharpDiagonal, SurfacePart::kDiagonal, rises ? 0 : 1, rises ? s.columns + 1 : s.columns);
     if ((marks & kSharpCorner) != 0 && z[0] >= floor && filter.Corner(i, j)) {
-      list.Add(i, j, SurfacePart::kCorner);
+      Add(list, i, j, SurfacePart::kCorner);
     }
   });
+}
+
+/// Whether a point that has moved by less than the slack is above a field's rectangle, and all of
+/// the field there.
+bool IsAbove(const Around& around, const Vec3& point) noexcept {
+  const SurfaceTable& s = around.s;
+  const Vec3 slack{around.slack_m, around.slack_m, around.slack_m};
+  const Vec3 low = point - slack, high = point + slack;
+  return low.x > s.low.x && low.y > s.low.y && high.x < s.high.x && high.y < s.high.y &&
+         low.z > TopOver(s, low, high);
 }
 
 void LookAround(const Around& around, const Vec3& point, NearParts::OfEnd& list) noexcept {
@@ -156,7 +180,7 @@ void LookAround(const Around& around, const Vec3& point, NearParts::OfEnd& list)
   detail::EachCell(s, point - reach, point + reach, [&](int i, int j) noexcept {
     const auto look = [&](SurfacePart::Kind kind) noexcept {
       const bool second = kind == SurfacePart::kSecondFace;
-      if (filter.Face(detail::TriangleOfField(s, i, j, second))) list.Add(i, j, kind);
+      if (filter.Face(detail::TriangleOfField(s, i, j, second))) Add(list, i, j, kind);
     };
     look(SurfacePart::kFirstFace), look(SurfacePart::kSecondFace);
   });
@@ -165,39 +189,44 @@ void LookAround(const Around& around, const Vec3& point, NearParts::OfEnd& list)
 
 }  // namespace
 
-bool KnowsParts(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
-                NearParts& known) noexcept {
-  if (!s.is_field) return false;
-  const double slack_m = kSlackCells * s.cell_m;
-  const Vec3 along = to - from;
-  const bool by_x = detail::GoesByX(along);
-  const Vec3 moved = from - known.from, also = to - known.to;
-  if (limit_m <= known.limit_m && by_x == known.by_x && Dot(moved, moved) <= slack_m * slack_m &&
-      Dot(also, also) <= slack_m * slack_m) {
-    if (known.looks < kFewLooks) ++known.looks;
-    return true;
-  }
-  if (known.limit_m > 0.0 && known.looks < kFewLooks) {
-    known.limit_m = 0.0, known.looks = 0;
+double SlackOf(const SurfaceTable& s) noexcept {
+  constexpr double kCells = 1.0 / 32;
+  return kCells * s.cell_m;
+}
+
+bool Serves(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
+            const NearParts& kept) noexcept {
+  const double slack_m = SlackOf(s);
+  const Vec3 moved = from - kept.from, also = to - kept.to;
+  return limit_m <= kept.limit_m && Dot(moved, moved) <= slack_m * slack_m &&
+         Dot(also, also) <= slack_m * slack_m && detail::GoesByX(to - from) == kept.by_x;
+}
+
+bool KeepParts(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
+               NearParts& kept) noexcept {
+  if (kept.limit_m > 0.0 && kept.looks < NearParts::kFewLooks) kept.limit_m = 0.0, kept.looks = 0;
+  if (kept.limit_m == 0.0 && kept.looks < NearParts::kFewLooks) {
+    ++kept.looks;
     return false;
   }
-  if (known.limit_m == 0.0 && known.looks < kFewLooks) {
-    ++known.looks;
-    return false;
-  }
-  known.looks = 0;
-  known.from = from, known.to = to, known.by_x = by_x;
-  known.limit_m = limit_m + slack_m;
+  const double slack_m = SlackOf(s);
+  kept.looks = 0;
+  kept.from = from, kept.to = to, kept.by_x = detail::GoesByX(to - from);
+  kept.limit_m = limit_m + slack_m;
   // A third slack takes up roundings.
   const LineReach line = ReachOfLine(s, from, to, limit_m + 3.0 * slack_m);
   const Around around{s, line.limit_m, slack_m + kRounding * line.limit_m + kRoundingM};
   const bool ball = from.x == to.x && from.y == to.y && from.z == to.z;
-  known.ends[1].count = known.between.count = 0;
-  LookAround(around, from, known.ends[0]);
+  kept.ends[0].count = kept.ends[1].count = kept.between.count = 0;
+  kept.above[0] = IsAbove(around, from), kept.above[1] = IsAbove(around, to);
+  kept.over = true;
+  LookAround(around, from, kept.ends[0]);
   if (ball) return true;
-  LookAround(around, to, known.ends[1]);
+  LookAround(around, to, kept.ends[1]);
   if (line.low > line.high) return true;
-  AddSharp(around, line, LineFilter(around, line), known.between);
+  const LineFilter filter(around, line);
+  AddSharp(around, line, filter, kept.between);
+  kept.over = !filter.under();
   return true;
 }
 

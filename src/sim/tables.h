@@ -72,6 +72,8 @@ struct ShapeTable {
   double center_P[3] = {};
   double bound_m = 0;  ///< Radius of the sphere around `center_P` that holds it.
   Material material;
+  int point[2] = {};            ///< Of a round one: numbers of its ends among all points;
+  bool elsewhere[2] = {};       ///< another shape of the body has that one.
   const int* beside = nullptr;  ///< Of a box of the world: other boxes of it that it touches.
   int beside_count = 0;
 };
@@ -120,6 +122,7 @@ struct ShapePairTable {
   int a = 0, b = 0;      ///< Shapes; the body of `a` is not the world.
   std::uint32_t id = 0;  ///< Of its first possible contact point.
   double static_friction = 0, kinetic_friction = 0, restitution = 0;
+  std::uint32_t elsewhere = 0;  ///< Features that another pair has, too: a bit each.
 };
 
 /// Two bodies that may touch, with all pairs of their shapes; or a shape of a body and ground.
@@ -195,6 +198,7 @@ struct View {
   int pair_capacity, max_attachments, attachment_count, spot_count;
   bool along_slip;
   bool has_ground;  ///< Height fields or meshes.
+  int kept_count;   ///< Pairs that keep what is near (BodyPairTable::kept).
   int motor_count, supply_count;
   const MotorTable* motors;
   const SupplyTable* supplies;
@@ -242,6 +246,8 @@ struct View {
         return motion_count;
       case Per::kBodyPair:
         return body_pair_count;
+      case Per::kKept:
+        return kept_count;
       case Per::kContact:
         return ContactCapacity();
       default:
