@@ -124,6 +124,9 @@ Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
       static_cast<std::size_t>(layout.rows) * static_cast<std::size_t>(n);
   const std::size_t stride = (group_rows + 7) / 8 * 8;
   rows = AllocateAligned<double>(group_count * stride);
+  const std::size_t group_kept =
+      static_cast<std::size_t>(model->kept_count) * static_cast<std::size_t>(n);
+  kept = AllocateAligned<sim::NearParts>(group_count * group_kept);
   slots_used.resize(group_count * bodies);
   forced.resize(group_count * nodes);
   status.resize(group_count * static_cast<std::size_t>(n));
@@ -132,6 +135,7 @@ Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
     groups[g].lanes = n;
     groups[g].first_world = static_cast<int>(g) * n;
     groups[g].rows = rows.get() + g * stride;
+    groups[g].kept = kept.get() + g * group_kept;
     groups[g].slots_used = slots_used.data() + g * bodies;
     groups[g].forced_nodes = forced.data() + g * nodes;
     groups[g].status = status.data() + g * static_cast<std::size_t>(n);
@@ -360,7 +364,8 @@ double Batch::GetParameter(int world, Parameter parameter, int index) const noex
 
 std::size_t Batch::BytesPerWorld() const noexcept {
   const Impl& d = *impl_;
-  return static_cast<std::size_t>(d.layout.rows) * sizeof(double) + sizeof(sim::LaneStatus);
+  return static_cast<std::size_t>(d.layout.rows) * sizeof(double) + sizeof(sim::LaneStatus) +
+         static_cast<std::size_t>(d.model->kept_count) * sizeof(sim::NearParts);
 }
 
 }  // namespace taut

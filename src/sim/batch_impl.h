@@ -43,6 +43,7 @@ struct Batch::Impl {
   sim::Layout layout;
   mutable std::vector<sim::Group> groups;
   Aligned<double> rows;
+  Aligned<sim::NearParts> kept;
   std::vector<int> slots_used;
   std::vector<int> forced;
   std::vector<sim::LaneStatus> status;

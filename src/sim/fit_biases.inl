@@ -33,10 +33,10 @@ TAUT_INLINE void SolveSymmetric(Num (&a)[N][N], Num (&x)[N]) noexcept {
 }
 
 /// The contacts of one patch: those with `share` 1, all between the same two bodies. `n`, `t1`,
-/// `t2`: the patch's directions.
+/// `t2`: the patch's directions; `most`: by so much a bias may change [m/s], or none does.
 template <class Num, int kLinks, class Share>
 void FitPatch(Contact<Num, kLinks>* contacts, int count, const V3<Num>& n, const V3<Num>& t1,
-              const V3<Num>& t2, const Share& share) noexcept {
+              const V3<Num>& t2, const Share& share, double most) noexcept {
   // Of the least squares' matrix, whose largest entries are about 1: picks the smallest motion.
   constexpr double kTiny = 1e-9;
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
@@ -72,9 +72,16 @@ void FitPatch(Contact<Num, kLinks>* contacts, int count, const V3<Num>& n, const
   }
   SolveSymmetric(a, x);
   const V3<Num> v = x[0] * n, w = scale * (x[1] * t1 + x[2] * t2);
+  auto fits = several;
+  for (int i = 0; most < kFittedMPerS && i < count; ++i) {
+    const Contact<Num, kLinks>& c = contacts[i];
+    const V3<Num> u = v + Cross(w, c.arm[0] - centre);
+    const Num change = share(i) * Abs(c.bias[0] + Dot(c.links[0].lin[0], u));
+    fits = fits & (change < Num::Splat(most));
+  }
   for (int i = 0; i < count; ++i) {
     Contact<Num, kLinks>& c = contacts[i];
-    const auto replace = several & (share(i) > zero);
+    const auto replace = fits & (share(i) > zero);
     const V3<Num> u = v + Cross(w, c.arm[0] - centre);
     for (int r = 0; r < 3; ++r) {
       if (r == 2 && c.one_direction) continue;
@@ -84,9 +91,10 @@ void FitPatch(Contact<Num, kLinks>* contacts, int count, const V3<Num>& n, const
 }
 
 /// The contacts [0, count) are all between the same two bodies; in `lanes`. Patch by patch, each
-/// begun by the first contact that is in none yet.
+/// begun by the first contact that is in none yet. `most`: see FitPatch.
 template <class Num, int kLinks, class M>
-void FitBiases(Contact<Num, kLinks>* contacts, int count, M lanes) noexcept {
+void FitBiases(Contact<Num, kLinks>* contacts, int count, M lanes,
+               double most = kFittedMPerS) noexcept {
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
   const Num free = Num::Splat(0.0), taken = Num::Splat(1.0), mine = Num::Splat(2.0);
   for (int i = 0; i < count; ++i) {
@@ -103,8 +111,9 @@ void FitBiases(Contact<Num, kLinks>* contacts, int count, M lanes) noexcept {
       Num& patch = contacts[i].patch;
       patch = Select(starts & (patch == free) & same, mine, patch);
     }
-    FitPatch(contacts + first, count - first, d[0], d[1], d[2],
-             [&](int i) { return Select(contacts[first + i].patch == mine, one, zero); });
+    FitPatch(
+        contacts + first, count - first, d[0], d[1], d[2],
+        [&](int i) { return Select(contacts[first + i].patch == mine, one, zero); }, most);
     for (int i = first; i < count; ++i) {
       Num& patch = contacts[i].patch;
       patch = Select(patch == mine, taken, patch);
@@ -116,8 +125,7 @@ void FitBiases(Contact<Num, kLinks>* contacts, int count, M lanes) noexcept {
 /// with more rows than it has motions. Where the motion that fits best misses nearly nothing, the
 /// biases become its own (docs/theory/contact.md, eq. 12b).
 template <class Num, class M>
-[[gnu::noinline, gnu::cold]] void AgreeBiases(Contact<Num, 1>* contacts, int count,
-                                              M lanes) noexcept {
+[[gnu::noinline]] void AgreeBiases(Contact<Num, 1>* contacts, int count, M lanes) noexcept {
   constexpr double kTiny = 1e-9, kNearlyClosed = 10 * kDisagreementMPerS;
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
   const int rows = contacts[0].one_direction ? 2 : 3;

@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "sim/near_parts.h"
 #include "sim/tables.h"
 
 namespace taut::sim {
@@ -30,6 +31,8 @@ struct Group {
   int touches_used = 0;         ///< The longest lane's list of touches of the last step.
   int* forced_nodes = nullptr;  ///< Nodes that ever had a force, rising.
   int forced_count = 0;
+  NearParts* kept =
+      nullptr;          ///< Of pair `BodyPairTable::kept` those of lane j at [kept * lanes + j].
   bool sensed = false;  ///< The kSensed rows belong to the current state. Const readers share it.
   LaneStatus* status = nullptr;  ///< Per lane.
 };

@@ -64,7 +64,8 @@ class NearPairs {
       for (; next < count && points[next].box == box; ++next) {
         if (points[next].kept) found[kept++] = points[next].touch;
       }
-      PutPoints(m_, s_, g_, work_, *pairs_[i], lane_, step_s_, found, kept, slots_, overflow_);
+      PutPoints<W>(m_, s_, g_, work_, *pairs_[i], lane_, step_s_, nullptr, found, kept, slots_,
+                   overflow_);
     }
   }
 

@@ -21,6 +21,7 @@
 #include "sim/shape_pairs.inl"
 #include "sim/rod_distance.inl"
 #include "sim/stage_collide.inl"
+#include "sim/ground.inl"
 #include "sim/joined_boxes.inl"
 #include "sim/many_shapes.inl"
 #include "sim/friction.inl"

@@ -228,7 +228,7 @@ class Compiler {
     t_.shape_refs.push_back(ref);
   }
 
-  void AddPoints(std::size_t, const sim::SurfaceShape&, const Material&) {}
+  void AddPoints(std::size_t, const sim::SurfaceShape&, const sim::ShapeTable&) {}
 
   void Shapes() {
     shapes_of_.resize(def_.bodies.size() + 1);
@@ -279,15 +279,15 @@ class Compiler {
   }
 
   /// Points that can touch planes. Of several in one place the thickest counts, spheres first:
-  /// rods that end in a node's sphere add nothing.
+  /// rods that end in a node's sphere add nothing, on other ground neither.
   void Points() {
     for (int body = 0; body < t_.body_count; ++body) {
       t_.first_point.push_back(static_cast<int>(t_.points.size()));
       if (def_.bodies[static_cast<std::size_t>(body)].fixed) continue;
       const std::size_t first = t_.points.size();
       for (const std::size_t number : shapes_of_[static_cast<std::size_t>(body)]) {
-        const sim::ShapeTable& s = t_.shapes[number];
-        WithShape(s.shape_P, [&](const auto& shape) { AddPoints(first, shape, s.material); });
+        sim::ShapeTable& s = t_.shapes[number];
+        WithShape(s.shape_P, [&](const auto& shape) { AddPoints(first, shape, s); });
         t_.shape_of_point.resize(t_.points.size(), static_cast<int>(number));
       }
     }
@@ -295,12 +295,16 @@ class Compiler {
     t_.first_pair_id = static_cast<std::uint32_t>(t_.points.size() * t_.planes.size());
   }
 
-  void AddPoints(std::size_t first, const sim::RoundShape& s, const Material& material) {
-    AddPoint(first, s.from, s.radius_m, material);
-    AddPoint(first, s.to, s.radius_m, material);
+  void AddPoints(std::size_t first, const sim::RoundShape& s, sim::ShapeTable& table) {
+    for (int end = 0; end < 2; ++end) {
+      const std::size_t before = t_.points.size();
+      const double* const p = end == 0 ? s.from : s.to;
+      table.point[end] = AddPoint(first, p, s.radius_m, table.material);
+      table.elsewhere[end] = t_.points.size() == before;
+    }
   }
 
-  void AddPoints(std::size_t first, const sim::BoxShape& s, const Material& material) {
+  void AddPoints(std::size_t first, const sim::BoxShape& s, const sim::ShapeTable& table) {
     for (int corner = 0; corner < 8; ++corner) {
       double p[3];
       for (int i = 0; i < 3; ++i) {
@@ -309,23 +313,24 @@ class Compiler {
           p[i] += ((corner >> axis) & 1 ? 1 : -1) * s.half_m[axis] * s.axes[3 * axis + i];
         }
       }
-      AddPoint(first, p, 0.0, material);
+      AddPoint(first, p, 0.0, table.material);
     }
   }
 
-  void AddPoints(std::size_t first, const sim::HullShape& s, const Material& material) {
+  void AddPoints(std::size_t first, const sim::HullShape& s, const sim::ShapeTable& table) {
     for (int i = 0; i < s.table->corner_count; ++i) {
       const Vec3& corner = s.table->corners[i];
       const double p[3] = {corner.x, corner.y, corner.z};
-      AddPoint(first, p, 0.0, material);
+      AddPoint(first, p, 0.0, table.material);
     }
   }
 
-  void AddPoint(std::size_t first, const double p[3], double radius, const Material& material) {
+  /// Which one it is: there may be one already.
+  int AddPoint(std::size_t first, const double p[3], double radius, const Material& material) {
     for (std::size_t i = first; i < t_.points.size(); ++i) {
       const sim::PointTable& other = t_.points[i];
       const double d[3] = {p[0] - other.p_P[0], p[1] - other.p_P[1], p[2] - other.p_P[2]};
-      if (Length(d) <= 1e-9 && radius <= other.radius_m) return;
+      if (Length(d) <= 1e-9 && radius <= other.radius_m) return static_cast<int>(i);
     }
     sim::PointTable point;
     std::copy(p, p + 3, point.p_P);
@@ -337,6 +342,7 @@ class Compiler {
       point.restitution[k] = both.restitution;
     }
     t_.points.push_back(point);
+    return static_cast<int>(t_.points.size()) - 1;
   }
 
   Tables& t_;

@@ -32,7 +32,16 @@ class PairCompiler {
         for (const std::size_t i : shapes_of_[static_cast<std::size_t>(a)]) {
           BeginPair(a, t_.body_count);
           Meet(i, surface, id);
-          t_.body_pairs.back().on_ground = true;
+          BodyPairTable& pair = t_.body_pairs.back();
+          pair.on_ground = true;
+          for (int end = 0; end < 2; ++end) {
+            if (!t_.shapes[i].elsewhere[end]) continue;
+            t_.shape_pairs.back().elsewhere |= FeaturesOfEnd(end);
+          }
+          if (t_.shapes[i].shape_P.kind == ShapeKind::kRound &&
+              t_.shapes[surface].shape_P.surface.table->is_field) {
+            pair.kept = t_.kept_count++;
+          }
         }
       }
     }
@@ -79,7 +88,7 @@ class PairCompiler {
     const auto [at_rest, sliding, restitution] =
         Combined(t_.def(), t_.shapes[i].material, t_.shapes[j].material);
     t_.shape_pairs.push_back(
-        {static_cast<int>(i), static_cast<int>(j), id, at_rest, sliding, restitution});
+        {static_cast<int>(i), static_cast<int>(j), id, at_rest, sliding, restitution, 0});
     id += kMaxPointsPerPair;
     ++t_.body_pairs.back().pair_count;
   }

@@ -75,14 +75,27 @@ int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint3
   constexpr double kNearTravel = 1e-3, kNearSize = 1e-9;
   constexpr int kMaxLooks = 1000;
   constexpr double kSamePlane = 1.0 - 1e-12;
+  const auto distance_after = [&](double t, double enough_m) noexcept {
+    if (a.kept != nullptr) {
+      return DistanceToGround(Moved(a.shape->round, PoseAfter(a, t)), b.shape->surface, enough_m,
+                              a.kept);
+    }
+    return DistanceOfShapes(*a.shape, PoseAfter(a, t), *b.shape, PoseAfter(b, t), enough_m);
+  };
+  const auto touch_after = [&](double t, double margin_m, TouchPoint* out) noexcept {
+    if (a.kept != nullptr) {
+      return TouchGround(Moved(a.shape->round, PoseAfter(a, t)), b.shape->surface, margin_m, 0,
+                         a.kept, out);
+    }
+    return TouchShapes(*a.shape, PoseAfter(a, t), *b.shape, PoseAfter(b, t), margin_m, out);
+  };
   const double speed = FastestApproach(a, b);
   const double near_m = kNearTravel * speed * step_s + kNearSize * (a.bound_m + b.bound_m);
   double t = 0.0;
   bool meet = true;
   // No point comes nearer than the distance in the time that the fastest takes for it.
   for (int look = 0; look < kMaxLooks; ++look) {
-    const double distance = DistanceOfShapes(*a.shape, PoseAfter(a, t), *b.shape, PoseAfter(b, t),
-                                             speed * (step_s - t) + near_m);
+    const double distance = distance_after(t, speed * (step_s - t) + near_m);
     if (distance < near_m) break;
     t += distance / speed;
     meet = t < step_s;
@@ -90,9 +103,7 @@ int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint3
   }
   if (meet && !(t > 0.0)) return count;  // touch already
   TouchPoint later[kMaxPointsPerPair];
-  const int later_count =
-      meet ? TouchShapes(*a.shape, PoseAfter(a, t), *b.shape, PoseAfter(b, t), 2.0 * near_m, later)
-           : 0;
+  const int later_count = meet ? touch_after(t, 2.0 * near_m, later) : 0;
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     const TouchPoint* met = nullptr;

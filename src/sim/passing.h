@@ -10,11 +10,12 @@ namespace taut::sim {
 
 /// A shape on its way through a step.
 struct MovingShape {
-  const Shape* shape;  ///< In the body's frame.
-  ShapePose at;        ///< Now, at the middle of the step.
-  double v[3], w[3];   ///< Of its body, without contacts [m/s], [rad/s].
-  double bound_m;      ///< No point of the body is further from its centre.
-  bool goes_on;        ///< Beside what it touches it may go on, in the same plane.
+  const Shape* shape;         ///< In the body's frame.
+  ShapePose at;               ///< Now, at the middle of the step.
+  double v[3], w[3];          ///< Of its body, without contacts [m/s], [rad/s].
+  double bound_m;             ///< No point of the body is further from its centre.
+  bool goes_on;               ///< Beside what it touches it may go on, in the same plane.
+  NearParts* kept = nullptr;  ///< Of a round one that meets ground (TouchGround).
 };
 
 /// A bit for each of `points` that is open now and closed after `step_s`, if nothing turns.

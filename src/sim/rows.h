@@ -165,6 +165,7 @@ struct Scratch {
   MotorWork<W>* motors;
   W* supplies;     ///< Voltage under load, per supply [V].
   uint64_t* near;  ///< A bit for each of the world's shapes, if it has many.
+  uint32_t* touched;  ///< Per point: a bit for each lane in which its shape is near ground.
   W* unsolved;     ///< Per body: 1 in lanes in which it is left to the lane's own solve.
   LaneMemory<simd::Lane<W>> lane;
   DualMemory<W> dual;
@@ -199,6 +200,7 @@ struct Scratch {
     motions = room_.Take<MotionWork<W>>(m.motion_count);
     motors = room_.Take<MotorWork<W>>(m.motor_count);
     supplies = room_.Take<W>(m.supply_count);
+    touched = room_.Take<uint32_t>(m.has_ground ? m.first_point[m.body_count] : 0);
     unsolved = room_.Take<W>(bodies_count);
     near = room_.Take<uint64_t>((m.tree_shapes + 63) / 64);
     lane.Take(m, room_);

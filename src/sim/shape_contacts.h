@@ -54,6 +54,15 @@ int Touch(const HullShape& a, const HullShape& b, double margin_m, TouchPoint* o
 /// 6..12 edges and corners that stick out, against the flank, by the seventh of it.
 int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
 
+/// Those of an end, a bit each.
+constexpr unsigned FeaturesOfEnd(int end) { return 7u << (3 * end); }
+
+struct NearParts;
+/// The same without the features `elsewhere`, of ends that another shape of the body has. `kept`
+/// holds what was near (surface_parts.h), or is null; any `kept` of this pair gives the same bits.
+int TouchGround(const RoundShape& a, const SurfaceShape& b, double margin_m, unsigned elsewhere,
+                NearParts* kept, TouchPoint* out) noexcept;
+
 /// Features: 0..12 by where the points are, of a box 0..7 its corners; more of them are thinned
 /// out.
 int Touch(const BoxShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept;
@@ -84,6 +93,8 @@ double DistanceUpTo(const HullShape& a, const HullShape& b, double enough_m) noe
 double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m) noexcept;
 double DistanceUpTo(const BoxShape& a, const SurfaceShape& b, double enough_m) noexcept;
 double DistanceUpTo(const HullShape& a, const SurfaceShape& b, double enough_m) noexcept;
+double DistanceToGround(const RoundShape& a, const SurfaceShape& b, double enough_m,
+                        NearParts* kept) noexcept;
 
 /// The same for shapes of any two kinds, in either order, each given in a frame of its own.
 int TouchShapes(const Shape& a, const ShapePose& at_a, const Shape& b, const ShapePose& at_b,

@@ -7,6 +7,7 @@ namespace {
 
 constexpr int kPlacesOfEnd = 3, kPlacesBetween = 4;
 /// Places between the ends are numbered by where on the rod they are.
+static_assert(FeaturesOfEnd(1) == 7u << kPlacesOfEnd && FeaturesOfEnd(0) == 7u);
 constexpr int kStretches = kMaxPointsPerPair - 2 * kPlacesOfEnd;
 static_assert(kPlacesBetween <= kStretches);
 /// How far around itself a shape looks for what is below it, in its size; and where more than
@@ -53,19 +54,39 @@ bool Before(const Vec3& a, const Vec3& b) noexcept {
 }  // namespace
 
 int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoint* out) noexcept {
+  return TouchGround(a, b, margin_m, 0, nullptr, out);
+}
+
+int TouchGround(const RoundShape& a, const SurfaceShape& b, double margin_m, unsigned elsewhere,
+                NearParts* kept, TouchPoint* out) noexcept {
   const SurfaceTable& s = *b.table;
   TouchList list(out, margin_m);
   const double r = a.radius_m, limit_m = r + Larger(margin_m, 0.0);
   const Vec3 from = Load(a.from), to = Load(a.to);
-  const LineReach line = ReachOfLine(s, from, to, limit_m);
-  if (line.low > line.high) return 0;
+  bool known = kept != nullptr && Serves(s, from, to, limit_m, *kept);
+  LineReach line{from, to - from, 0.0, 1.0, limit_m};
+  if (known && kept->looks < NearParts::kFewLooks) ++kept->looks;
+  // Where the line is over all edges, what is beyond its reach changes nothing.
+  if (!known || !kept->over || kept->between.count > NearParts::kMostBetween) {
+    const LineReach reach = ReachOfLine(s, from, to, WiderLook(s) * limit_m);
+    if (reach.low > reach.high) return 0;
+    line.low = reach.low, line.high = reach.high;
+  }
+  if (kept != nullptr && !known) known = KeepParts(s, from, to, limit_m, *kept);
   Found all[2 * kPlacesOfEnd + kPlacesBetween];
   int count = 0;
   const bool ball = from.x == to.x && from.y == to.y && from.z == to.z;
+  LinePlace between[kPlacesBetween];
+  const int places_between =
+      ball ? 0
+           : NearestAlong(s, line, r, between, kPlacesBetween, known ? &kept->between : nullptr);
   for (int end = 0; end < (ball ? 1 : 2); ++end) {
     if (end == 0 ? line.low > 0.0 : line.high < 1.0) continue;
+    // Of an end that another shape has it counts what it holds.
+    if ((elsewhere & FeaturesOfEnd(end)) != 0 && places_between == 0) continue;
     SurfacePlace places[kPlacesOfEnd];
-    const int ways = NearestPlaces(s, end == 0 ? from : to, limit_m, places, kPlacesOfEnd);
+    const int ways = NearestPlaces(s, end == 0 ? from : to, limit_m, places, kPlacesOfEnd,
+                                   known ? &kept->ends[end] : nullptr, known && kept->above[end]);
     for (int i = 1; i < ways; ++i) {
       for (int k = i; k > 0 && Before(places[k].normal, places[k - 1].normal); --k) {
         const SurfacePlace swapped = places[k];
@@ -76,18 +97,15 @@ int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoin
       all[count++] = {static_cast<double>(end), places[i], kPlacesOfEnd * end + i};
     }
   }
-  if (!ball) {
-    LinePlace between[kPlacesBetween];
-    const int places = NearestAlong(s, line, r, between, kPlacesBetween);
-    bool taken[kStretches] = {};
-    for (int i = 0; i < places; ++i) {
-      int stretch = static_cast<int>(between[i].share * kStretches);
-      while (taken[stretch]) stretch = stretch + 1 == kStretches ? 0 : stretch + 1;
-      taken[stretch] = true;
-      all[count++] = {between[i].share, between[i].place, 2 * kPlacesOfEnd + stretch};
-    }
+  bool taken[kStretches] = {};
+  for (int i = 0; i < places_between; ++i) {
+    int stretch = static_cast<int>(between[i].share * kStretches);
+    while (taken[stretch]) stretch = stretch + 1 == kStretches ? 0 : stretch + 1;
+    taken[stretch] = true;
+    all[count++] = {between[i].share, between[i].place, 2 * kPlacesOfEnd + stretch};
   }
   for (int i = 0; i < count; ++i) {
+    if (elsewhere >> all[i].feature & 1u) continue;
     const SurfacePlace& place = all[i].place;
     const double gap = place.distance_m - r;
     if (IsHeld(all, count, i, kSameGap * r)) continue;
@@ -97,11 +115,16 @@ int Touch(const RoundShape& a, const SurfaceShape& b, double margin_m, TouchPoin
 }
 
 double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m) noexcept {
+  return DistanceToGround(a, b, enough_m, nullptr);
+}
+
+double DistanceToGround(const RoundShape& a, const SurfaceShape& b, double enough_m,
+                        NearParts* kept) noexcept {
   const Vec3 from = Load(a.from), to = Load(a.to);
   const double most_m = kFarthestLook * (Norm(to - from) + a.radius_m);
   double look_m = Smaller(enough_m, kNearestLook * most_m);
   TouchPoint points[kMaxPointsPerPair];
-  const int count = Touch(a, b, look_m, points);
+  const int count = TouchGround(a, b, look_m, 0, kept, points);
   if (count > 0) {
     double least_m = look_m;
     for (int i = 0; i < count; ++i) least_m = Smaller(least_m, points[i].gap_m);

@@ -28,6 +28,17 @@ int TouchLane(const View& m, const Rows<W>& s, const Scratch<W>& work, const Sha
                      LanePose(m, s, work, b.body, lane), margin, out);
 }
 
+/// The same of a shape and ground; `kept`: what was near it, or null.
+template <class W>
+int TouchGroundLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
+                    const ShapePairTable& pair, int lane, double margin, NearParts* kept,
+                    TouchPoint* out) noexcept {
+  const ShapeTable& a = m.shapes[pair.a];
+  if (a.shape_P.kind != ShapeKind::kRound) return TouchLane(m, s, work, pair, lane, margin, out);
+  const RoundShape round = Moved(a.shape_P.round, LanePose(m, s, work, a.body, lane));
+  return TouchGround(round, m.shapes[pair.b].shape_P.surface, margin, pair.elsewhere, kept, out);
+}
+
 /// A shape of a pair with the way of its body through the step.
 template <class W>
 MovingShape LaneMoving(const View& m, const Rows<W>& s, const Scratch<W>& work, int shape,
@@ -62,10 +73,11 @@ uint32_t PressingFeatures(const Rows<W>& s, uint32_t id, int first, int count, i
 template <class W>
 int KeepTouching(const View& m, const Rows<W>& s, const Scratch<W>& work,
                  const ShapePairTable& pair, int lane, double step_s, int first, int memory,
-                 TouchPoint* points, int count) noexcept {
+                 NearParts* kept, TouchPoint* points, int count) noexcept {
   if (count == 0) return 0;
-  const MovingShape a = LaneMoving(m, s, work, pair.a, lane);
+  MovingShape a = LaneMoving(m, s, work, pair.a, lane);
   const MovingShape b = LaneMoving(m, s, work, pair.b, lane);
+  a.kept = kept;
   uint32_t closing = ClosingPoints(a, b, step_s, points, count);
   if (closing == 0) return count;
   if (m.shapes[pair.b].beside_count > 0) {

@@ -208,14 +208,15 @@ Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
 /// lists of touches.
 template <class W>
 TAUT_INLINE void PutPoints(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
-                           const ShapePairTable& pair, int lane, double step_s, TouchPoint* points,
-                           int found, SlotFiller<W>* slots, uint32_t* overflow) noexcept {
+                           const ShapePairTable& pair, int lane, double step_s, NearParts* kept,
+                           TouchPoint* points, int found, SlotFiller<W>* slots,
+                           uint32_t* overflow) noexcept {
   const int body = m.shapes[pair.a].body;
   const int count = slots != nullptr
                         ? KeepTouching(m, s, work, pair, lane, step_s, m.first_slot[body],
-                                       g.slots_used[body], points, found)
+                                       g.slots_used[body], kept, points, found)
                         : KeepTouching(m, s, work, pair, lane, step_s, m.slot_count, g.touches_used,
-                                       points, found);
+                                       kept, points, found);
   for (int feature = 0, left = count; left > 0; ++feature) {
     for (int i = 0; i < count; ++i) {
       if (points[i].feature != feature) continue;
@@ -236,7 +237,7 @@ bool PutTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& wor
                 SlotFiller<W>* slots, uint32_t* overflow) noexcept {
   TouchPoint points[kMaxPointsPerPair];
   const int found = TouchLane(m, s, work, pair, lane, margin, points);
-  PutPoints(m, s, g, work, pair, lane, step_s, points, found, slots, overflow);
+  PutPoints(m, s, g, work, pair, lane, step_s, nullptr, points, found, slots, overflow);
   return found > 0;
 }
 
@@ -297,23 +298,10 @@ void CollideManyShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<
                        double step_s, W since_last, SlotFiller<W>* slots,
                        uint32_t* overflow) noexcept;
 
-/// Of a shape and ground, each lane by itself: what touches is looked at in each step, all else
-/// when it may have come as near.
+// Of a shape and ground (ground.inl).
 template <class W>
 void CollideGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
-                   double step_s, W since_last, SlotFiller<W>* slots, uint32_t* overflow) noexcept {
-  W margin;
-  const auto near = ClearanceUsedUp(m, s, work, pair, W::Splat(step_s), since_last, margin);
-  if (!Any(near)) return;
-  const ShapePairTable& shapes = m.shape_pairs[m.body_pairs[pair].first_pair];
-  for (int lane = 0; lane < W::kLanes; ++lane) {
-    if (!near[lane]) continue;
-    const bool touches =
-        PutTouches(m, s, g, work, shapes, lane, margin[lane], step_s, slots, overflow);
-    const double enough = kLookAheadSteps * margin[lane];
-    s.clearance[pair].Set(lane, touches ? 0.0 : DistanceLane(m, s, work, shapes, lane, enough));
-  }
-}
+                   double step_s, W since_last, SlotFiller<W>* slots, uint32_t* overflow) noexcept;
 
 template <class W>
 void CollideBodies(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,

@@ -53,13 +53,15 @@ template <class W, class M>
 void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
   constexpr int kFewest = 3;
   const W zero = W::Splat(0.0);
+  // Over facets and ridges the gaps of one body need not be those of any motion.
+  const double most = m.has_ground ? kDisagreementMPerS : kFittedMPerS;
   for (int b = 0; b < m.body_count; ++b) {
     const int count = work.contact_count[b];
     if (count < 2) continue;
     Contact<W, 1>* const contacts = work.contacts + m.first_slot[b];
     auto lanes = tied | (work.unsolved[b] > zero);
     if (count >= kFewest) lanes = lanes | (contacts[kFewest - 1].live > zero);
-    if (Any(lanes)) FitBiases(contacts, count, lanes);
+    if (Any(lanes)) FitBiases(contacts, count, lanes, most);
   }
 }
 

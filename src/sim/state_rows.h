@@ -16,6 +16,7 @@ enum class Per {
   kJointRow,
   kMotion,
   kBodyPair,
+  kKept,  ///< Pairs that keep what is near (near_parts.h).
   kContact
 };
 
@@ -104,6 +105,9 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(motion_force,   V3,     kMotion,   kDerived,   kZero,     Zero)             /* on its body, in W [N] */ \
   ROW(motion_torque,  V3,     kMotion,   kDerived,   kZero,     Zero)             /* on it, about its origin [N m] */ \
   ROW(clearance,      Number, kBodyPair, kDerived,   kStays,    Zero)             /* at least this far apart [m] */ \
+  ROW(quiet_from,     V3,     kKept,     kDerived,   kStays,    Zero)             /* a rod's end when it was looked up [m] */ \
+  ROW(quiet_to,       V3,     kKept,     kDerived,   kStays,    Zero)             /* its other end [m] */ \
+  ROW(quiet_limit,    Number, kKept,     kDerived,   kStays,    Zero)             /* near there it has no contact within that [m]; 0: not known */ \
   ROW(residual,       Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last solve [m/s] */ \
   ROW(linear_solves,  Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last step */ \
   ROW(sense_length,   Number, kCable,    kSensed,    kStays,    Zero)             /* [m] */ \

@@ -78,35 +78,50 @@ double TopOver(const SurfaceTable& s, const Vec3& low, const Vec3& high) noexcep
 
 namespace detail {
 
+/// `use(i, j)` with the cells of a field that reach between `low` and `high`.
 template <class Use>
-void EachOfField(const SurfaceTable& s, const Vec3& low, const Vec3& high,
-                 const Use& use) noexcept {
+void EachCell(const SurfaceTable& s, const Vec3& low, const Vec3& high, const Use& use) noexcept {
   const int i0 = CellAt((low.x - s.low.x) * s.inv_cell, s.columns - 1);
   const int i1 = CellAt((high.x - s.low.x) * s.inv_cell, s.columns - 1);
   const int j0 = CellAt((low.y - s.low.y) * s.inv_cell, s.rows - 1);
   const int j1 = CellAt((high.y - s.low.y) * s.inv_cell, s.rows - 1);
   for (int j = j0; j <= j1; ++j) {
     for (int i = i0; i <= i1; ++i) {
-      const int at = j * s.columns + i;
-      const double* const z = s.height_m + at;
+      const double* const z = s.height_m + (j * s.columns + i);
       const double z00 = z[0], z10 = z[1], z01 = z[s.columns], z11 = z[s.columns + 1];
       const double top_a = z00 > z10 ? z00 : z10, top_b = z01 > z11 ? z01 : z11;
       const double low_a = z00 < z10 ? z00 : z10, low_b = z01 < z11 ? z01 : z11;
       if ((top_a > top_b ? top_a : top_b) < low.z) continue;
       if ((low_a < low_b ? low_a : low_b) > high.z) continue;
-      const double x0 = s.low.x + i * s.cell_m, x1 = s.low.x + (i + 1) * s.cell_m;
-      const double y0 = s.low.y + j * s.cell_m, y1 = s.low.y + (j + 1) * s.cell_m;
-      const Vec3 a{x0, y0, z00}, b{x1, y0, z10}, c{x1, y1, z11}, d{x0, y1, z01};
-      const int na = at, nb = at + 1, nc = at + s.columns + 1, nd = at + s.columns;
-      if ((s.marks[at] & kRising) != 0) {
-        use(SurfaceTriangle{{a, b, c}, {na, nb, nc}});
-        use(SurfaceTriangle{{a, c, d}, {na, nc, nd}});
-      } else {
-        use(SurfaceTriangle{{a, b, d}, {na, nb, nd}});
-        use(SurfaceTriangle{{b, c, d}, {nb, nc, nd}});
-      }
+      use(i, j);
     }
   }
+}
+
+/// One of a cell's two triangles.
+inline SurfaceTriangle TriangleOfField(const SurfaceTable& s, int i, int j, bool second) noexcept {
+  const int at = j * s.columns + i;
+  const double* const z = s.height_m + at;
+  const double x0 = s.low.x + i * s.cell_m, x1 = s.low.x + (i + 1) * s.cell_m;
+  const double y0 = s.low.y + j * s.cell_m, y1 = s.low.y + (j + 1) * s.cell_m;
+  const Vec3 a{x0, y0, z[0]}, b{x1, y0, z[1]};
+  const Vec3 c{x1, y1, z[s.columns + 1]}, d{x0, y1, z[s.columns]};
+  const int na = at, nb = at + 1, nc = at + s.columns + 1, nd = at + s.columns;
+  if ((s.marks[at] & kRising) != 0) {
+    return second ? SurfaceTriangle{{a, c, d}, {na, nc, nd}}
+                  : SurfaceTriangle{{a, b, c}, {na, nb, nc}};
+  }
+  return second ? SurfaceTriangle{{b, c, d}, {nb, nc, nd}}
+                : SurfaceTriangle{{a, b, d}, {na, nb, nd}};
+}
+
+template <class Use>
+void EachOfField(const SurfaceTable& s, const Vec3& low, const Vec3& high,
+                 const Use& use) noexcept {
+  EachCell(s, low, high, [&](int i, int j) noexcept {
+    use(TriangleOfField(s, i, j, false));
+    use(TriangleOfField(s, i, j, true));
+  });
 }
 
 inline double Least(double a, double b, double c) noexcept {

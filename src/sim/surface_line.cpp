@@ -155,11 +155,25 @@ LineReach ReachOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,
 }
 
 int NearestAlong(const SurfaceTable& s, const LineReach& line, double radius_m, LinePlace* out,
-                 int most) noexcept {
+                 int most, const NearParts::Between* known) noexcept {
   LineSearch search(s, line, radius_m, out, most);
   if (line.low > line.high) return 0;
+  if (known != nullptr && known->count <= NearParts::kMostBetween) {
+    const LineStretch all{line.low, line.high};
+    EachPart(
+        s, *known, [](const SurfaceTriangle&) noexcept {},
+        [&](const Vec3& start, const Vec3& end, const auto& edge_of) noexcept {
+          search.Edge(all, start, end, edge_of);
+        },
+        [&](const Vec3& corner, const auto& each_beside) noexcept {
+          search.Corner(all, corner, each_beside);
+        });
+    return search.count();
+  }
+  LineReach wide = line;
+  wide.limit_m *= WiderLook(s);
   EachSharp(
-      s, line,
+      s, wide,
       [&](const LineStretch& piece, const Vec3& start, const Vec3& end,
           const auto& edge_of) noexcept { search.Edge(piece, start, end, edge_of); },
       [&](const LineStretch& piece, const Vec3& corner, const auto& each_beside) noexcept {

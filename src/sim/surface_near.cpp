@@ -193,10 +193,11 @@ Vec3 NearestPlaceOf(const SurfaceTriangle& t, const Vec3& point) noexcept {
 }
 
 int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, SurfacePlace* out,
-                  int most) noexcept {
+                  int most, const NearParts::OfEnd* known, bool above) noexcept {
+  if (above && known != nullptr && known->count == 0) return 0;
   PlaceSearch search(point, limit_m, out, most);
   // So deep it is still found.
-  const double depth = s.is_field ? DepthBelow(s, point) : s.bucket_m;
+  const double depth = above ? 0.0 : s.is_field ? DepthBelow(s, point) : s.bucket_m;
   // Beside a field it may be seen from below, where other edges stick out.
   const bool beside = s.is_field && (point.x < s.low.x || point.x > s.high.x || point.y < s.low.y ||
                                      point.y > s.high.y);
@@ -209,17 +210,27 @@ int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, Surf
     }
     if (near.found && beside) search.Add(PlaceOf(near, point, false));
   }
-  const Vec3 reach{limit_m, limit_m, limit_m};
-  EachTriangle(s, point - reach, point + reach,
-               [&](const SurfaceTriangle& t) noexcept { search.Face(t); });
-  const LineReach line{point, {0.0, 0.0, 0.0}, 0.0, 0.0, limit_m};
+  const auto face = [&](const SurfaceTriangle& t) noexcept { search.Face(t); };
+  const auto edge = [&](const Vec3& start, const Vec3& end, const auto& edge_of) noexcept {
+    search.Edge(start, end, edge_of);
+  };
+  const auto corner = [&](const Vec3& p, const auto& each_beside) noexcept {
+    search.Corner(p, each_beside);
+  };
+  if (known != nullptr && known->count <= NearParts::kMostOfEnd) {
+    EachPart(s, *known, face, edge, corner);
+    return search.count();
+  }
+  const double wide_m = WiderLook(s) * limit_m;
+  const Vec3 reach{wide_m, wide_m, wide_m};
+  EachTriangle(s, point - reach, point + reach, face);
   EachSharp(
-      s, line,
+      s, {point, {0.0, 0.0, 0.0}, 0.0, 0.0, wide_m},
       [&](const LineStretch&, const Vec3& start, const Vec3& end, const auto& edge_of) noexcept {
-        search.Edge(start, end, edge_of);
+        edge(start, end, edge_of);
       },
-      [&](const LineStretch&, const Vec3& corner, const auto& each_beside) noexcept {
-        search.Corner(corner, each_beside);
+      [&](const LineStretch&, const Vec3& p, const auto& each_beside) noexcept {
+        corner(p, each_beside);
       });
   return search.count();
 }

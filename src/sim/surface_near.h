@@ -1,7 +1,7 @@
 /// Which places of a surface are nearest to a point or to a line.
 #pragma once
 
-#include "sim/surface_sharp.h"
+#include "sim/surface_parts.h"
 
 namespace taut::sim {
 
@@ -14,9 +14,10 @@ struct SurfacePlace {
 
 /// Local minima of the distance of a point, those within `limit_m`, the nearest first; at most
 /// `most` of them, and how many. Inside of what is solid only the nearest: ways out could be at
-/// odds.
+/// odds. `known`: what is near it (surface_parts.h), or null;
+/// `above`: it is known to be above the field.
 int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, SurfacePlace* out,
-                  int most) noexcept;
+                  int most, const NearParts::OfEnd* known = nullptr, bool above = false) noexcept;
 
 /// The place of a triangle that is nearest to a point.
 Vec3 NearestPlaceOf(const SurfaceTriangle& t, const Vec3& point) noexcept;
@@ -35,6 +36,6 @@ LineReach ReachOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,
 /// The same for the inside of a line: edges and corners that stick out, each where it is nearest of
 /// all places of the line that it is the nearest to. In the order of `share`.
 int NearestAlong(const SurfaceTable& s, const LineReach& line, double radius_m, LinePlace* out,
-                 int most) noexcept;
+                 int most, const NearParts::Between* known = nullptr) noexcept;
 
 }  // namespace taut::sim

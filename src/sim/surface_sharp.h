@@ -127,13 +127,15 @@ void EachSharpOfCell(const SurfaceTable& s, int i, int j, double floor, const Us
   }
 }
 
+/// Whether a line is followed along x, else along y.
+inline bool GoesByX(const Vec3& along) noexcept { return Abs(along.x) >= Abs(along.y); }
+
 /// Slab by slab across the axis along which the line goes furthest: in each of them the part of the
-/// line that is near it says which few cells, and how high, are of interest.
-template <class UseEdge, class UseCorner>
-void EachSharpOfField(const SurfaceTable& s, const LineReach& line, const UseEdge& use_edge,
-                      const UseCorner& use_corner) noexcept {
+/// line that is near it says which few cells, and how high, are of interest. `use(i, j, floor)`.
+template <class Use>
+void EachCellOfField(const SurfaceTable& s, const LineReach& line, const Use& use) noexcept {
   const Vec3 a = line.At(line.low), b = line.At(line.high);
-  const bool by_x = Abs(line.along.x) >= Abs(line.along.y);
+  const bool by_x = GoesByX(line.along);
   const double start = by_x ? a.x - s.low.x : a.y - s.low.y;
   const double end = by_x ? b.x - s.low.x : b.y - s.low.y;
   const double slope = by_x ? line.along.x : line.along.y;
@@ -156,10 +158,16 @@ void EachSharpOfField(const SurfaceTable& s, const LineReach& line, const UseEdg
     const int begin = CellAt((Smaller(side_p, side_q) - line.limit_m) * s.inv_cell, across);
     const int stop = CellAt((Larger(side_p, side_q) + line.limit_m) * s.inv_cell, across);
     const double floor = Smaller(p.z, q.z) - line.limit_m;
-    for (int k = begin; k <= stop; ++k) {
-      EachSharpOfCell(s, by_x ? slab : k, by_x ? k : slab, floor, use_edge, use_corner);
-    }
+    for (int k = begin; k <= stop; ++k) use(by_x ? slab : k, by_x ? k : slab, floor);
   }
+}
+
+template <class UseEdge, class UseCorner>
+void EachSharpOfField(const SurfaceTable& s, const LineReach& line, const UseEdge& use_edge,
+                      const UseCorner& use_corner) noexcept {
+  EachCellOfField(s, line, [&](int i, int j, double floor) noexcept {
+    EachSharpOfCell(s, i, j, floor, use_edge, use_corner);
+  });
 }
 
 inline SurfaceEdge EdgeOfMesh(const SurfaceTable& s, const MeshEdge& found) noexcept {

@@ -34,6 +34,7 @@ View Tables::View() const noexcept {
           static_cast<int>(spots.size()),
           along_slip,
           !surfaces.empty(),
+          kept_count,
           static_cast<int>(motors.size()),
           static_cast<int>(supplies.size()),
           motors.data(),

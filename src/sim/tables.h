@@ -73,6 +73,8 @@ struct ShapeTable {
   double center_P[3] = {};
   double bound_m = 0;  ///< Radius of the sphere around `center_P` that holds it.
   Material material;
+  int point[2] = {};            ///< Of a round one: numbers of its ends among all points;
+  bool elsewhere[2] = {};       ///< another shape of the body has that one.
   const int* beside = nullptr;  ///< Of a box of the world: other boxes of it that it touches.
   int beside_count = 0;
 };
@@ -121,6 +123,7 @@ struct ShapePairTable {
   int a = 0, b = 0;      ///< Shapes; the body of `a` is not the world.
   std::uint32_t id = 0;  ///< Of its first possible contact point.
   double static_friction = 0, kinetic_friction = 0, restitution = 0;
+  std::uint32_t elsewhere = 0;  ///< Features that another pair has, too: a bit each.
 };
 
 /// Two bodies that may touch, with all pairs of their shapes; or a shape of a body and ground.
@@ -129,6 +132,7 @@ struct BodyPairTable {
   int first_pair = 0, pair_count = 0;
   bool by_tree = false;    ///< b is the world, whose shapes are looked up in its tree.
   bool on_ground = false;  ///< One pair, whose second shape is a surface.
+  int kept = -1;           ///< Its number among those that keep what is near (near_parts.h).
   bool joined = false;     ///< b is the world, and some boxes of it touch each other.
 };
 
@@ -195,6 +199,7 @@ struct View {
   int pair_capacity, max_attachments, attachment_count, spot_count;
   bool along_slip;
   bool has_ground;  ///< Height fields or meshes.
+  int kept_count;   ///< Pairs that keep what is near (BodyPairTable::kept).
   int motor_count, supply_count;
   const MotorTable* motors;
   const SupplyTable* supplies;
@@ -242,6 +247,8 @@ struct View {
         return motion_count;
       case Per::kBodyPair:
         return body_pair_count;
+      case Per::kKept:
+        return kept_count;
       case Per::kContact:
         return ContactCapacity();
       default:
@@ -286,6 +293,7 @@ class Tables final : public Model {
   int world_pair_count = 0;     ///< Of them, the first: `b` does not move; by `a`.
   std::vector<int> first_slot;  ///< Of a body's contacts with what does not move; one more.
   int slot_count = 0;
+  int kept_count = 0;               ///< Pairs that keep what is near (BodyPairTable::kept).
   std::uint32_t first_pair_id = 0;  ///< Keys below are point * planes + plane, others of pairs.
   int pair_capacity = 0;            ///< Contacts of moving bodies that one world may have at once.
   bool along_slip = false;

@@ -12,6 +12,7 @@ namespace taut::sim {
 template <class W>
 class ContactsInSlots {
  public:
+  static constexpr bool kPacked = false;
   ContactsInSlots(const View& m, Scratch<W>& work) noexcept : m_(m), work_(work) {}
   template <class F>
   TAUT_INLINE void ForEach(F&& f) noexcept {
@@ -35,6 +36,7 @@ class PackedContacts {
   using Packed = typename DualMemory<W>::Packed;
 
  public:
+  static constexpr bool kPacked = true;
   /// Those of `lanes`, none of which has more than there is room for.
   PackedContacts(const View& m, Scratch<W>& work, M lanes) noexcept
       : m_(m), work_(work), packed_(work.dual.packed), lanes_(lanes) {

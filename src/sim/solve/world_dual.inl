@@ -12,7 +12,12 @@ namespace taut::sim {
 /// `Contacts`: those with the world (packed_contacts.inl).
 template <class W, class Contacts>
 class WorldDual {
-  static constexpr int kMaxIterations = 10, kMaxContactIterations = 8;
+  static constexpr int kMaxIterations = 10;
+  /// Where contacts look in many directions, what takes more iterations mostly goes round in
+  /// circles, and all lanes would wait for it: worlds that did so several times are left to
+  /// themselves.
+  static constexpr int kMaxContactIterations = Contacts::kPacked ? 5 : 8;
+  static constexpr int kMaxCircles = Contacts::kPacked ? 3 : kMaxIterations;
   static constexpr double kCompliance = 1e-9;
   using M = MaskOf<W>;
   using Column = typename DualMemory<W>::Column;
@@ -69,10 +74,11 @@ class WorldDual {
     now_ = Select(lanes, Residual(), now_);
     // At least one step: what cables leave over swings on and adds up.
     M busy = lanes;
+    [[maybe_unused]] W circles = W::Splat(0.0);
     for (int iteration = 0; iteration < kMaxIterations && Any(busy); ++iteration) {
       if (LinearizeCables(first && iteration == 0)) Factor();
       Forward();
-      SolveContacts(busy, goal);
+      [[maybe_unused]] const M circling = SolveContacts(busy, goal);
       Back();
       Take(busy);
       Velocities();
@@ -82,6 +88,10 @@ class WorldDual {
       now_ = Select(busy, Residual(), now_);
       const auto done = (now_ < goal) | ((now_ < tolerance) & (now_ > pays * before));
       busy = busy & !done;  // a NaN stays busy
+      if constexpr (Contacts::kPacked) {
+        circles += Select(circling, one, W::Splat(0.0));
+        busy = busy & (circles < W::Splat(kMaxCircles));
+      }
     }
   }
 
@@ -307,7 +317,7 @@ class WorldDual {
     });
   }
 
-  void SolveContacts(M lanes, W goal) noexcept;
+  M SolveContacts(M lanes, W goal) noexcept;
   void LinearizeContacts(int size) noexcept;
   void EliminateContacts(int size) noexcept;
   /// W', of which a has the upper triangle.

@@ -4,9 +4,9 @@
 namespace taut::sim {
 
 /// Newton's method for the contacts, with the cables giving way: u = u* + W' dl,  u* = u + q.
-/// Leaves dl in r.
+/// Leaves dl in r. Returns the lanes in which it did not get there.
 template <class W, class Contacts>
-void WorldDual<W, Contacts>::SolveContacts(M lanes, W goal) noexcept {
+MaskOf<W> WorldDual<W, Contacts>::SolveContacts(M lanes, W goal) noexcept {
   const W zero = W::Splat(0.0);
   const int first = cables_, size = rows_ - cables_;
   for (int i = first; i < rows_; ++i) {
@@ -22,7 +22,7 @@ void WorldDual<W, Contacts>::SolveContacts(M lanes, W goal) noexcept {
       residual = Max(law.Residual(law.BranchOf(mem_.q + row, l), mem_.q + row, l), residual);
     });
     busy = busy & !(residual < goal);
-    if (!Any(busy)) return;
+    if (!Any(busy)) return busy;
     LinearizeContacts(size);
     EliminateContacts(size);
     for (int i = 0; i < size; ++i) {
@@ -33,6 +33,7 @@ void WorldDual<W, Contacts>::SolveContacts(M lanes, W goal) noexcept {
       for (int j = 0; j < size; ++j) mem_.q[first + i] += Left(first + i, first + j) * mem_.d[j];
     }
   }
+  return busy;
 }
 
 /// Newton's equations of the contacts: c d = d.
