@@ -28,20 +28,14 @@ void KeepQuiet(const Rows<W>& s, int number, int lane, const NearParts& kept) no
   s.quiet_limit[number].Set(lane, kept.between.count == 0 ? kept.limit_m : 0.0);
 }
 
-/// Of a shape and ground, each lane by itself: what touches is looked at in each step, all else
-/// when it may have come as near.
-template <class W>
-void CollideGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
-                   double step_s, W since_last, SlotFiller<W>* slots, uint32_t* overflow) noexcept {
+/// Of a shape and ground, in the lanes in which it may be `near`.
+template <class W, class M>
+void LookAtGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
+                  double step_s, M near, W margin, SlotFiller<W>* slots,
+                  uint32_t* overflow) noexcept {
   const ShapePairTable& shapes = m.shape_pairs[m.body_pairs[pair].first_pair];
   const ShapeTable& shape = m.shapes[shapes.a];
   const bool round = shape.shape_P.kind == ShapeKind::kRound;
-  for (int end = 0; round && end < 2; ++end) {
-    if (!shape.elsewhere[end]) work.touched[shape.point[end]] = 0;
-  }
-  W margin;
-  auto near = ClearanceUsedUp(m, s, work, pair, W::Splat(step_s), since_last, margin);
-  if (!Any(near)) return;
   const int number = m.body_pairs[pair].kept;
   const bool keeps = number >= 0;
   const bool may_be_quiet = keeps && shape.elsewhere[0] && shape.elsewhere[1];
@@ -66,8 +60,31 @@ void CollideGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
       }
     }
     const double enough = kLookAheadSteps * margin[lane];
-    s.clearance[pair].Set(lane, touches ? 0.0 : DistanceLane(m, s, work, shapes, lane, enough));
+    s.clearance[pair].Set(
+        lane, touches ? 0.0 : GroundDistanceLane(m, s, work, shapes, lane, enough, kept));
     if (may_be_quiet) KeepQuiet(s, number, lane, *kept);
+  }
+}
+
+/// Of a body's shapes and ground, pairs [first, end): what touches is looked at in each step, all
+/// else when it may have come as near. Each lane by itself.
+template <class W>
+void CollideGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int first,
+                   int end, double step_s, W since_last, SlotFiller<W>* slots,
+                   uint32_t* overflow) noexcept {
+  const int body = m.body_pairs[first].a;
+  const BodyWork<W>&a = work.bodies[body], &b = work.bodies[m.body_count];
+  const W margin = Reach(a, b, W::Splat(step_s)), used = Used(a, b, since_last);
+  int surface = -1;
+  for (int pair = first; pair < end; ++pair) {
+    const int other = m.shape_pairs[m.body_pairs[pair].first_pair].b;
+    if (other != surface) {
+      for (int i = m.first_point[body]; i < m.first_point[body + 1]; ++i) work.touched[i] = 0;
+      surface = other;
+    }
+    s.clearance[pair] -= used;
+    const auto near = s.clearance[pair] < margin;
+    if (Any(near)) LookAtGround(m, s, g, work, pair, step_s, near, margin, slots, overflow);
   }
 }
 

@@ -163,10 +163,10 @@ struct Scratch {
   JointMemory<W> joint_memory;
   MotionWork<W>* motions;
   MotorWork<W>* motors;
-  W* supplies;     ///< Voltage under load, per supply [V].
-  uint64_t* near;  ///< A bit for each of the world's shapes, if it has many.
+  W* supplies;        ///< Voltage under load, per supply [V].
+  uint64_t* near;     ///< A bit for each of the world's shapes, if it has many.
   uint32_t* touched;  ///< Per point: a bit for each lane in which its shape is near ground.
-  W* unsolved;     ///< Per body: 1 in lanes in which it is left to the lane's own solve.
+  W* unsolved;        ///< Per body: 1 in lanes in which it is left to the lane's own solve.
   LaneMemory<simd::Lane<W>> lane;
   DualMemory<W> dual;
   int stiff_count = 0, link_count = 0;

@@ -124,7 +124,9 @@ double DistanceToGround(const RoundShape& a, const SurfaceShape& b, double enoug
   const double most_m = kFarthestLook * (Norm(to - from) + a.radius_m);
   double look_m = Smaller(enough_m, kNearestLook * most_m);
   TouchPoint points[kMaxPointsPerPair];
-  const int count = TouchGround(a, b, look_m, 0, kept, points);
+  // It looks further than contacts do: not to be kept for that.
+  const bool serves = kept != nullptr && Serves(*b.table, from, to, a.radius_m + look_m, *kept);
+  const int count = TouchGround(a, b, look_m, 0, serves ? kept : nullptr, points);
   if (count > 0) {
     double least_m = look_m;
     for (int i = 0; i < count; ++i) least_m = Smaller(least_m, points[i].gap_m);

@@ -39,6 +39,18 @@ int TouchGroundLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return TouchGround(round, m.shapes[pair.b].shape_P.surface, margin, pair.elsewhere, kept, out);
 }
 
+template <class W>
+double GroundDistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
+                          const ShapePairTable& pair, int lane, double enough_m,
+                          NearParts* kept) noexcept {
+  const ShapeTable& a = m.shapes[pair.a];
+  const ShapePose at = LanePose(m, s, work, a.body, lane);
+  const SurfaceShape& ground = m.shapes[pair.b].shape_P.surface;
+  return a.shape_P.kind == ShapeKind::kRound
+             ? DistanceToGround(Moved(a.shape_P.round, at), ground, enough_m, kept)
+             : DistanceUpTo(Moved(a.shape_P.box, at), ground, enough_m);
+}
+
 /// A shape of a pair with the way of its body through the step.
 template <class W>
 MovingShape LaneMoving(const View& m, const Rows<W>& s, const Scratch<W>& work, int shape,

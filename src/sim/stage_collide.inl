@@ -256,14 +256,25 @@ void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
   }
 }
 
+/// How far two bodies may reach for each other in this step,
+template <class W>
+TAUT_INLINE W Reach(const BodyWork<W>& a, const BodyWork<W>& b, W h) noexcept {
+  return h * Norm1(a.v - b.v) + (a.turns + b.turns) + W::Splat(kContactMarginM);
+}
+/// and what they have used up of their clearance since the step before.
+template <class W>
+TAUT_INLINE W Used(const BodyWork<W>& a, const BodyWork<W>& b, W since_last) noexcept {
+  return since_last * Norm1(a.v0 - b.v0) + (a.turned + b.turned);
+}
+
 /// Lanes in which two bodies may touch, as far as the last look knows, and how far each may reach.
 template <class W>
 MaskOf<W> ClearanceUsedUp(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair, W h,
                           W since_last, W& margin) noexcept {
   const BodyPairTable& bodies = m.body_pairs[pair];
   const BodyWork<W>&a = work.bodies[bodies.a], &b = work.bodies[bodies.b];
-  margin = h * Norm1(a.v - b.v) + (a.turns + b.turns) + W::Splat(kContactMarginM);
-  s.clearance[pair] -= since_last * Norm1(a.v0 - b.v0) + (a.turned + b.turned);
+  margin = Reach(a, b, h);
+  s.clearance[pair] -= Used(a, b, since_last);
   return s.clearance[pair] < margin;
 }
 
@@ -298,19 +309,16 @@ void CollideManyShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<
                        double step_s, W since_last, SlotFiller<W>* slots,
                        uint32_t* overflow) noexcept;
 
-// Of a shape and ground (ground.inl).
+// Of a body's shapes and ground (ground.inl).
 template <class W>
-void CollideGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
-                   double step_s, W since_last, SlotFiller<W>* slots, uint32_t* overflow) noexcept;
+void CollideGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int first,
+                   int end, double step_s, W since_last, SlotFiller<W>* slots,
+                   uint32_t* overflow) noexcept;
 
 template <class W>
 void CollideBodies(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
                    double step_s, W since_last, SlotFiller<W>* slots, uint32_t* overflow) noexcept {
   const BodyPairTable& bodies = m.body_pairs[pair];
-  if (bodies.on_ground) {
-    CollideGround(m, s, g, work, pair, step_s, since_last, slots, overflow);
-    return;
-  }
   if (bodies.by_tree) {
     CollideManyShapes(m, s, g, work, pair, step_s, since_last, slots, overflow);
     return;
@@ -350,8 +358,13 @@ uint32_t StageCollide(const View& m, const Rows<W>& s, const Group& g, Scratch<W
   for (int body = 0; body < m.body_count; ++body) {
     SlotFiller<W> slots(m, work, body);
     CollidePlanes(m, s, work, h, body, slots);
-    for (; pair < m.world_pair_count && m.body_pairs[pair].a == body; ++pair) {
+    const auto is_mine = [&] { return pair < m.world_pair_count && m.body_pairs[pair].a == body; };
+    for (; is_mine() && !m.body_pairs[pair].on_ground; ++pair) {
       CollideBodies(m, s, g, work, pair, step_s, since_last, &slots, &overflow);
+    }
+    if (const int first = pair; is_mine()) {  // ground comes last
+      while (is_mine()) ++pair;
+      CollideGround(m, s, g, work, first, pair, step_s, since_last, &slots, &overflow);
     }
     work.contact_count[body] = slots.count();
   }

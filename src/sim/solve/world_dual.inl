@@ -12,11 +12,9 @@ namespace taut::sim {
 /// `Contacts`: those with the world (packed_contacts.inl).
 template <class W, class Contacts>
 class WorldDual {
-  static constexpr int kMaxIterations = 10;
-  /// Where contacts look in many directions, what takes more iterations mostly goes round in
-  /// circles, and all lanes would wait for it: worlds that did so several times are left to
-  /// themselves.
-  static constexpr int kMaxContactIterations = Contacts::kPacked ? 5 : 8;
+  static constexpr int kMaxIterations = 10, kMaxContactIterations = 8;
+  /// Contacts that look in many directions may go round in circles, and all lanes would wait for
+  /// them: worlds that did so as often are left to themselves.
   static constexpr int kMaxCircles = Contacts::kPacked ? 3 : kMaxIterations;
   static constexpr double kCompliance = 1e-9;
   using M = MaskOf<W>;
