@@ -150,6 +150,7 @@ TEST_F(CheckCommand, ShippedFilesHaveNoWarnings) {
   for (const char* const folder : {"models", "experiments", "gaits"}) {
     for (const auto& file :
          std::filesystem::directory_iterator(TAUT_SOURCE_DIR "/" + std::string(folder))) {
+      if (file.path().extension() != ".yaml") continue;  // a mesh
       const Outcome outcome = Run("'" + file.path().string() + "' --quiet --strict");
       EXPECT_EQ(outcome.status, 0) << outcome.errors;
       ++count;

@@ -41,10 +41,10 @@ TEST(ModelBuildErrors, BuildersAreWellFormed) {
           "  - {match: rod, rod: {radius_m: 1, mass_kg: 1}, cable: {}}\n  - {match: a, anchor: "
           "{at: 1}}\n")),
       "robot.yaml:12:5: error: builder needs the key \"match\"\n"
-      "robot.yaml:13:5: error: builder needs one of rod, sphere, point_mass, box, cable, anchor, "
-      "joint, support\n"
-      "robot.yaml:14:5: error: builder needs one of rod, sphere, point_mass, box, cable, anchor, "
-      "joint, support\n"
+      "robot.yaml:13:5: error: builder needs one of rod, sphere, point_mass, box, convex, cable, "
+      "anchor, joint, support\n"
+      "robot.yaml:14:5: error: builder needs one of rod, sphere, point_mass, box, convex, cable, "
+      "anchor, joint, support\n"
       "robot.yaml:14:18: error: unknown key \"rods\" in builder (did you mean \"rod\"?)\n"
       "robot.yaml:15:50: error: builder has both rod and cable (only one of them may be there)\n"
       "robot.yaml:16:25: error: unknown key \"at\" in anchor\n");
