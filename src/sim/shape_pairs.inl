@@ -28,7 +28,16 @@ int TouchLane(const View& m, const Rows<W>& s, const Scratch<W>& work, const Sha
                      LanePose(m, s, work, b.body, lane), margin, out);
 }
 
-/// The same of a shape and ground; `kept`: what was near it, or null.
+/// A lower bound of the distance of a pair.
+template <class W>
+double DistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
+                    const ShapePairTable& pair, int lane, double enough_m = 1e300) noexcept {
+  const ShapeTable &a = m.shapes[pair.a], &b = m.shapes[pair.b];
+  return DistanceOfShapes(a.shape_P, LanePose(m, s, work, a.body, lane), b.shape_P,
+                          LanePose(m, s, work, b.body, lane), enough_m);
+}
+
+/// Both of a shape and ground; `kept`: what was near it, or null.
 template <class W>
 int TouchGroundLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
                     const ShapePairTable& pair, int lane, double margin, NearParts* kept,
@@ -44,11 +53,9 @@ double GroundDistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& wor
                           const ShapePairTable& pair, int lane, double enough_m,
                           NearParts* kept) noexcept {
   const ShapeTable& a = m.shapes[pair.a];
-  const ShapePose at = LanePose(m, s, work, a.body, lane);
-  const SurfaceShape& ground = m.shapes[pair.b].shape_P.surface;
-  return a.shape_P.kind == ShapeKind::kRound
-             ? DistanceToGround(Moved(a.shape_P.round, at), ground, enough_m, kept)
-             : DistanceUpTo(Moved(a.shape_P.box, at), ground, enough_m);
+  if (a.shape_P.kind != ShapeKind::kRound) return DistanceLane(m, s, work, pair, lane, enough_m);
+  const RoundShape round = Moved(a.shape_P.round, LanePose(m, s, work, a.body, lane));
+  return DistanceToGround(round, m.shapes[pair.b].shape_P.surface, enough_m, kept);
 }
 
 /// A shape of a pair with the way of its body through the step.
@@ -101,15 +108,6 @@ int KeepTouching(const View& m, const Rows<W>& s, const Scratch<W>& work,
     if (pressing >> points[i].feature & 1u) closing &= ~(1u << i);
   }
   return closing == 0 ? count : KeepMeeting(a, b, step_s, closing, points, count);
-}
-
-/// A lower bound of the distance of a pair.
-template <class W>
-double DistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
-                    const ShapePairTable& pair, int lane, double enough_m = 1e300) noexcept {
-  const ShapeTable &a = m.shapes[pair.a], &b = m.shapes[pair.b];
-  return DistanceOfShapes(a.shape_P, LanePose(m, s, work, a.body, lane), b.shape_P,
-                          LanePose(m, s, work, b.body, lane), enough_m);
 }
 
 }  // namespace taut::sim
