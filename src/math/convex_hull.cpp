@@ -113,13 +113,7 @@ std::vector<Face> FacesOf(const Points& points, double same_m) {
 }
 
 Plane PlaneOf(const Points& points, const Face& face) {
-  // The sum over its edges is twice its area, whatever its corners' rounding.
-  Vec3 n;
-  const Vec3 first = At(points, face[0]);
-  for (std::size_t i = 1; i + 1 < face.size(); ++i) {
-    n = n + Cross(At(points, face[i]) - first, At(points, face[i + 1]) - first);
-  }
-  n = (1.0 / Length(n)) * n;
+  const Vec3 n = NormalOf(points, face);
   double offset_m = -1e300;
   for (const int i : face) offset_m = std::max(offset_m, Dot(n, At(points, i)));
   return {n, offset_m};
@@ -228,6 +222,15 @@ ConvexHull HullOf(const std::vector<Vec3>& points, int most_corners) {
     chosen.push_back(farthest);
   }
   return hull;
+}
+
+Vec3 NormalOf(const std::vector<Vec3>& corners, const std::vector<int>& face) {
+  Vec3 n;
+  const Vec3 first = At(corners, face[0]);
+  for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+    n = n + Cross(At(corners, face[i]) - first, At(corners, face[i + 1]) - first);
+  }
+  return (1.0 / Length(n)) * n;
 }
 
 Triangles TrianglesOf(const ConvexHull& hull) {

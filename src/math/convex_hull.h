@@ -20,6 +20,10 @@ struct ConvexHull {
 /// volume, or are not finite.
 ConvexHull HullOf(const std::vector<Vec3>& points, int most_corners);
 
+/// Of a face: unit, outwards, the sum over its fan, so that rounding of single corners counts
+/// little.
+Vec3 NormalOf(const std::vector<Vec3>& corners, const std::vector<int>& face);
+
 /// Its faces as fans, counter-clockwise seen from outside.
 Triangles TrianglesOf(const ConvexHull& hull);
 

@@ -30,6 +30,15 @@ struct Convex {
     }
     return lowest - offset_m;
   }
+  /// Least and greatest coordinates of its corners.
+  void Bounds(Vec3* low, Vec3* high) const noexcept {
+    *low = *high = corners[0];
+    for (int i = 1; i < table->corner_count; ++i) {
+      const Vec3& p = corners[i];
+      *low = {Smaller(low->x, p.x), Smaller(low->y, p.y), Smaller(low->z, p.z)};
+      *high = {Larger(high->x, p.x), Larger(high->y, p.y), Larger(high->z, p.z)};
+    }
+  }
   Vec3 FromOf(const HullEdge& edge) const noexcept { return corners[edge.from]; }
   Vec3 AlongOf(const HullEdge& edge) const noexcept {
     return corners[edge.to] - corners[edge.from];

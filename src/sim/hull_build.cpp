@@ -13,19 +13,15 @@ namespace taut::sim {
 static_assert(kMaxHullCorners == HullDef::kMostCorners);
 
 Hull::Hull(math::ConvexHull hull) : corners_(std::move(hull.corners)) {
-  const auto corner = [&](int i) { return corners_[static_cast<std::size_t>(i)]; };
   std::map<std::pair<int, int>, int> left_of;
   for (const std::vector<int>& face : hull.faces) {
     const int number = static_cast<int>(normals_.size());
     first_in_face_.push_back(static_cast<int>(in_face_.size()));
     in_face_.insert(in_face_.end(), face.begin(), face.end());
-    Vec3 n;
     for (std::size_t i = 0; i < face.size(); ++i) {
       left_of[{face[i], face[(i + 1) % face.size()]}] = number;
-      if (i < 2) continue;
-      n = n + Cross(corner(face[i - 1]) - corner(face[0]), corner(face[i]) - corner(face[0]));
     }
-    n = (1.0 / std::sqrt(Dot(n, n))) * n;
+    const Vec3 n = math::NormalOf(corners_, face);
     double offset_m = -1e300;
     for (const Vec3& p : corners_) offset_m = std::max(offset_m, Dot(n, p));
     normals_.push_back(n);

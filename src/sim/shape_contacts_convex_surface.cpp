@@ -63,13 +63,9 @@ class ConvexSearch {
 
  private:
   void Look() noexcept {
-    Vec3 low = center_, high = center_;
-    for (int i = 0; i < body_.table->corner_count; ++i) {
-      const Vec3& p = body_.corners[i];
-      low = {Smaller(low.x, p.x), Smaller(low.y, p.y), Smaller(low.z, p.z)};
-      high = {Larger(high.x, p.x), Larger(high.y, p.y), Larger(high.z, p.z)};
-      Corner(i);
-    }
+    for (int i = 0; i < body_.table->corner_count; ++i) Corner(i);
+    Vec3 low, high;
+    body_.Bounds(&low, &high);
     const Vec3 reach{limit_m_, limit_m_, limit_m_};
     EachSharpWithin(
         s_, low - reach, high + reach,

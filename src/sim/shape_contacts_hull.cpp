@@ -36,12 +36,8 @@ struct NearEdges {
   int count = 0;
 
   NearEdges(const Convex& convex, const Convex& other, double reach_m) noexcept {
-    Vec3 low = other.corners[0], high = low;
-    for (int i = 1; i < other.table->corner_count; ++i) {
-      const Vec3& p = other.corners[i];
-      low = {Smaller(low.x, p.x), Smaller(low.y, p.y), Smaller(low.z, p.z)};
-      high = {Larger(high.x, p.x), Larger(high.y, p.y), Larger(high.z, p.z)};
-    }
+    Vec3 low, high;
+    other.Bounds(&low, &high);
     const Vec3 reach{reach_m, reach_m, reach_m};
     low = low - reach, high = high + reach;
     for (int i = 0; i < convex.table->edge_count; ++i) {
@@ -154,25 +150,27 @@ void TouchFace(const Convex& convex, int face, const Convex& other, bool convex_
   for (int i = 1; i < other.table->face_count; ++i) {
     if (Dot(other.normals[i], up) < Dot(other.normals[facing], up) - 1e-9) facing = i;
   }
-  Polygon polygon, kept;
+  Polygon rims[2];
+  Polygon* rim = rims;
   const int first = other.table->first_in_face[facing];
   const int last = other.table->first_in_face[facing + 1];
   for (int i = first; i < last; ++i) {
     const int corner = other.table->in_face[i];
-    polygon.Add({other.corners[corner], corner});
+    rim->Add({other.corners[corner], corner});
   }
   const double slack_m = kCutSlack * convex.thin_m;
   int id = kFirstCut;
   convex.EachSide(face, [&](const Vec3& from, const Vec3& to) noexcept {
     const Vec3 out = Cross(to - from, up);
     const double length = Norm(out);
-    Cut(polygon, (1.0 / length) * out, Dot(out, from) / length + slack_m, id, &kept);
-    polygon = kept;
+    Polygon* const kept = rim == rims ? rims + 1 : rims;
+    Cut(*rim, (1.0 / length) * out, Dot(out, from) / length + slack_m, id, kept);
+    rim = kept;
     id += 2;
   });
   const Vec3 normal = (convex_is_a ? -1.0 : 1.0) * up;
-  for (int i = 0; i < polygon.count; ++i) {
-    const Corner& p = polygon.corners[i];
+  for (int i = 0; i < rim->count; ++i) {
+    const Corner& p = rim->corners[i];
     const double height = convex.Above(face, p.p);
     touches.Add(p.p - (0.5 * height) * up, normal, height, p.id);
   }
@@ -199,14 +197,25 @@ CornerPair NearestCorner(const Convex& convex, const Convex& other) noexcept {
   return best;
 }
 
+/// The nearest corner of both.
+struct NearestOfBoth {
+  CornerPair pair;
+  bool of_b;
+};
+
+NearestOfBoth NearestCorners(const Convex& a, const Convex& b) noexcept {
+  const CornerPair from_a = NearestCorner(a, b), from_b = NearestCorner(b, a);
+  const bool of_b = from_b.other.distance_m < from_a.other.distance_m;
+  return {of_b ? from_b : from_a, of_b};
+}
+
 /// Bodies apart may be nearest at a corner that is beside the other's face.
 void TouchCorner(const Convex& a, const Convex& b, double below_m, ManyTouches& touches) noexcept {
-  const CornerPair from_a = NearestCorner(a, b), from_b = NearestCorner(b, a);
-  const bool use_b = from_b.other.distance_m < from_a.other.distance_m;
-  const CornerPair& best = use_b ? from_b : from_a;
-  if (!(best.other.distance_m < below_m)) return;
-  touches.Add(0.5 * (best.corner + best.other.at), (use_b ? -1.0 : 1.0) * best.other.normal,
-              best.other.distance_m, kMeeting);
+  const auto [pair, of_b] = NearestCorners(a, b);
+  const NearestOfConvex& place = pair.other;
+  if (!(place.distance_m < below_m)) return;
+  touches.Add(0.5 * (pair.corner + place.at), (of_b ? -1.0 : 1.0) * place.normal, place.distance_m,
+              kMeeting);
 }
 
 int TouchConvex(const Convex& a, const Convex& b, double margin_m, TouchPoint* out) noexcept {
@@ -242,16 +251,14 @@ int TouchConvex(const Convex& a, const Convex& b, double margin_m, TouchPoint* o
 double DistanceOfConvex(const Convex& a, const Convex& b, double enough_m) noexcept {
   const double face_m = Larger(BestFace(a, b).apart_m, BestFace(b, a).apart_m);
   if (face_m >= enough_m) return face_m;
-  const CornerPair from_a = NearestCorner(a, b), from_b = NearestCorner(b, a);
-  const CornerPair& best = from_b.other.distance_m < from_a.other.distance_m ? from_b : from_a;
-  const double nearest_m = best.other.distance_m;
+  const auto [pair, of_b] = NearestCorners(a, b);
+  const double nearest_m = pair.other.distance_m;
   if (nearest_m <= 0.0) return 0.0;
   // Between a corner and what is nearest to it the bodies may be apart by all of their distance.
-  const bool use_b = &best == &from_b;
-  const Convex &one = use_b ? b : a, &other = use_b ? a : b;
-  const Vec3 way = best.other.normal;
-  const double corner_m =
-      one.Lowest(way, Dot(way, best.other.at)) + other.Lowest(-1.0 * way, -Dot(way, best.other.at));
+  const Convex &one = of_b ? b : a, &other = of_b ? a : b;
+  const Vec3 way = pair.other.normal;
+  const double at = Dot(way, pair.other.at);
+  const double corner_m = one.Lowest(way, at) + other.Lowest(-1.0 * way, -at);
   const double edges_m = BestEdges(a, b, Smaller(nearest_m, enough_m)).apart_m;
   return Larger(Larger(face_m, corner_m), Larger(edges_m, 0.0));
 }

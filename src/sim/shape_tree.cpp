@@ -31,16 +31,9 @@ Bounds BoundsOf(const BoxShape& shape) noexcept {
 }
 
 Bounds BoundsOf(const HullShape& shape) noexcept {
-  const Convex hull(shape);
-  Bounds bounds{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
-  for (int k = 0; k < hull.table->corner_count; ++k) {
-    const double p[3] = {hull.corners[k].x, hull.corners[k].y, hull.corners[k].z};
-    for (int i = 0; i < 3; ++i) {
-      bounds.low[i] = Smaller(bounds.low[i], p[i]);
-      bounds.high[i] = Larger(bounds.high[i], p[i]);
-    }
-  }
-  return bounds;
+  Vec3 low, high;
+  Convex(shape).Bounds(&low, &high);
+  return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
 }
 
 /// Ground has a way of its own to be looked up by: it is in no tree.
