@@ -127,13 +127,26 @@ struct ActuatorDef {
   std::optional<DcMotorDef> dc_motor;      ///< There if and only if it is one.
 };
 
-/// Where a cable is fixed to, or slides through, a body.
+/// A cylinder of a body that a cable goes round: a pulley, a drum (docs/theory/cables.md, section
+/// 4). It has no ends, and no mass of its own.
+struct WheelDef {
+  Vec3 axis;                      ///< Unit vector in W, as the body is described.
+  double radius_m = 0.0;          ///< Of the cable's middle, > 0.
+  bool counterclockwise = false;  ///< How the cable goes round it, seen with the axis towards one.
+  int turns = 0;                  ///< Whole ones on top of what the points beside it ask for, >= 0.
+};
+
+/// Where a cable is fixed to, or slides through, a body; or the middle of a wheel.
 struct AttachmentDef {
   int body = kWorld;
   Vec3 position_m;
+  double friction = 0.0;  ///< mu of the capstan's law, >= 0; 0 at the ends.
+  std::optional<WheelDef> wheel = {};  ///< Not at the ends.
 };
 
-/// A tension-only spring and damper through two or more attachments: one cable, one tension.
+/// A tension-only spring and damper through two or more attachments. One tension, but for friction
+/// at attachments: then each span between those has its own (docs/theory/cables.md, section 5), and
+/// the actuator winds at the first attachment.
 struct CableDef {
   std::string name;
   std::vector<AttachmentDef> attachments;  ///< >= 2, in order along the cable.

@@ -5,13 +5,10 @@
 /// A path is a row of points that belong to bodies, and the spans between them. Its users see three
 /// things only: its length, its rate, and what each point is pulled with per unit of tension.
 ///
-/// Today every point is an attachment, and every span straight with the cable's full tension. Other
-/// elements fit in without their users' knowledge:
-///   - a span that carries `w` times the tension (block and tackle): AddSpan with w u in place of
-///     u, and w times the length;
-///   - a pulley: two points, where the cable arrives and where it leaves, and between them a span
-///     that adds the arc to the length and has no `u`. The rate is right without the arc: the
-///     points slide along the spans that they end.
+/// A point is an attachment, or one of the two where a cable arrives at a wheel and leaves it
+/// (cable_wheel.h). Between those two there is no span that pulls: the arc adds to the length only.
+/// The rate is right without it, since the points slide along the spans that they end
+/// (docs/theory/cables.md, eq. 14).
 #pragma once
 
 #include "math/scalar.h"
@@ -45,7 +42,7 @@ TAUT_INLINE void AddSpan(const PathPoint<V>& from, PathPoint<V>& to, PathLength<
   path.dl = path.dl + Dot(to.u, to.v - from.v);
 }
 
-/// Length and rate of a path; fills in the directions.
+/// Length and rate of a path without wheels; fills in the directions.
 template <class V>
 TAUT_INLINE PathLength<V> MeasurePath(int count, PathPoint<V>* points) noexcept {
   PathLength<V> path;

@@ -23,6 +23,10 @@ TAUT_INLINE double Sqrt(double a) noexcept { return __builtin_sqrt(a); }
 TAUT_INLINE double Abs(double a) noexcept { return __builtin_fabs(a); }
 /// The greater of two; `b` if either is NaN.
 TAUT_INLINE double Max(double a, double b) noexcept { return a > b ? a : b; }
+/// The smaller of two; `b` if either is NaN.
+TAUT_INLINE double Min(double a, double b) noexcept { return a < b ? a : b; }
+TAUT_INLINE double Select(bool which, double yes, double no) noexcept { return which ? yes : no; }
+TAUT_INLINE bool Any(bool which) noexcept { return which; }
 
 /// A constant as a number of type `S`.
 template <class S>

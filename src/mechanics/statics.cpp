@@ -2,15 +2,11 @@
 
 #include <cmath>
 
-#include "math/cable_path.h"
-#include "math/vec.h"
+#include "math/described_path.h"
 
 namespace taut {
 double CableLength(const CableDef& cable) {
-  return MeasureThrough<Vec3>(
-             static_cast<int>(cable.attachments.size()),
-             [&](int i) { return cable.attachments[static_cast<std::size_t>(i)].position_m; })
-      .l;
+  return math::DescribedPath(cable).length_m();
 }
 
 double CableTension(const CableDef& cable) {
@@ -26,16 +22,14 @@ std::vector<BodyLoad> StartLoads(const ModelDef& def) {
     return body == kWorld ? def.bodies.size() : static_cast<std::size_t>(body);
   };
   for (const CableDef& cable : def.cables) {
-    std::vector<PathPoint<Vec3>> path;
-    for (const AttachmentDef& at : cable.attachments) {
-      const Vec3 origin = at.body == kWorld ? Vec3{} : def.bodies[index(at.body)].com_m;
-      path.push_back({at.position_m, {}, at.position_m - origin, {}});
+    math::DescribedPath path(cable);
+    const auto body = [&](int i) { return cable.attachments[path.attachment(i)].body; };
+    for (int i = 0; i < path.count(); ++i) {
+      const Vec3 origin = body(i) == kWorld ? Vec3{} : def.bodies[index(body(i))].com_m;
+      path.points()[i].arm = path.points()[i].p - origin;
     }
-    const int count = static_cast<int>(path.size());
-    MeasurePath(count, path.data());
-    PullBodies(count, path.data(), CableTension(cable), [&](int i) -> Sum& {
-      return sums[index(cable.attachments[static_cast<std::size_t>(i)].body)];
-    });
+    PullBodies(path.count(), path.points(), CableTension(cable),
+               [&](int i) -> Sum& { return sums[index(body(i))]; });
   }
   std::vector<BodyLoad> loads(def.bodies.size());
   for (std::size_t body = 0; body < loads.size(); ++body) {

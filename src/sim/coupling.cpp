@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "math/cable_path.h"
+#include "math/cable_wheel.h"
 #include "math/vec.h"
 #include "sim/tables.h"
 
@@ -27,6 +27,12 @@ Vec3 PointInWorld(const Tables& t, const AttachmentTable& a) {
          Rotate({q[0], q[1], q[2], q[3]}, p);
 }
 
+bool IsOfWheel(const std::vector<Wheel<Vec3>>& wheels, int point) {
+  return std::any_of(wheels.begin(), wheels.end(), [&](const Wheel<Vec3>& w) {
+    return point == w.at || point == w.at + 1;
+  });
+}
+
 std::vector<Pull> PullsOf(const Tables& t, const CableTable& cable) {
   const AttachmentTable* const ends = t.attachments.data() + cable.first_attachment;
   const int count = cable.attachment_count;
@@ -34,15 +40,27 @@ std::vector<Pull> PullsOf(const Tables& t, const CableTable& cable) {
   for (int i = 0; i < count; ++i) {
     path[static_cast<std::size_t>(i)].p = PointInWorld(t, ends[i]);
   }
-  MeasurePath(count, path.data());
+  std::vector<Wheel<Vec3>> wheels;
+  for (int k = 0; k < cable.wheel_count; ++k) {
+    const WheelTable& w = t.wheels[static_cast<std::size_t>(cable.first_wheel + k)];
+    const Vec3 center = PointInWorld(t, t.spots[static_cast<std::size_t>(w.center_spot)]);
+    const Vec3 tip = PointInWorld(t, t.spots[static_cast<std::size_t>(w.axis_spot)]);
+    wheels.push_back({center, tip - center, w.radius_m, w.start_angle, w.at, 0, 0, 0});
+  }
+  LayOnWheels(path.data(), cable.wheel_count, wheels.data());
+  MeasurePath(count, path.data(), cable.wheel_count, wheels.data());
   std::vector<Pull> pulls;
   for (int i = 0; i < count; ++i) {
     if (ends[i].body == t.body_count) continue;
     const double* q = t.q_WP0.data() + static_cast<std::size_t>(4 * ends[i].body);
-    const double* p = ends[i].p_P;
+    const Quat to_P = Conjugate({q[0], q[1], q[2], q[3]});
+    Vec3 arm{ends[i].p_P[0], ends[i].p_P[1], ends[i].p_P[2]};
+    if (IsOfWheel(wheels, i)) {
+      const Vec3 com = t.def().bodies[static_cast<std::size_t>(ends[i].body)].com_m;
+      arm = Rotate(to_P, path[static_cast<std::size_t>(i)].p - com);
+    }
     const Vec3 force = PullAt(count, path.data(), i);
-    const Vec3 local = Rotate(Conjugate({q[0], q[1], q[2], q[3]}), force);
-    pulls.push_back({ends[i].body, force, Cross({p[0], p[1], p[2]}, local)});
+    pulls.push_back({ends[i].body, force, Cross(arm, Rotate(to_P, force))});
   }
   return pulls;
 }

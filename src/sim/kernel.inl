@@ -15,6 +15,7 @@
 #include "sim/friction.h"
 #include "sim/stage_bodies.inl"
 #include "sim/motion.inl"
+#include "sim/cable_wheels.inl"
 #include "sim/stiff_cables.inl"
 #include "sim/dc_motor.inl"
 #include "sim/stage_cables.inl"

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/assert.h"
+#include "math/described_path.h"
 #include "math/principal_axes.h"
 #include "math/rotation.h"
 #include "sim/body_frame.h"
@@ -111,20 +112,39 @@ class Compiler {
     return static_cast<int>(t_.spots.size()) - 1;
   }
 
+  /// Of attachment `i`, which has been added: its second point, and the wheel.
+  void AddWheel(const CableDef& cable, std::size_t i, const sim::CableTable& table) {
+    const AttachmentDef& a = cable.attachments[i];
+    const sim::AttachmentTable center = t_.attachments.back();
+    sim::WheelTable wheel;
+    wheel.at = static_cast<int>(t_.attachments.size()) - 1 - table.first_attachment;
+    wheel.center_spot = center.spot;
+    wheel.axis_spot = Spot(Attach(a.body, a.position_m + a.wheel->axis));
+    wheel.radius_m = a.wheel->radius_m;
+    wheel.start_angle = math::StartAngle(cable, i);
+    t_.attachments.push_back(center);
+    t_.wheels.push_back(wheel);
+  }
+
   void Cables() {
     for (const CableDef& c : def_.cables) {
       sim::CableTable table;
       table.first_attachment = static_cast<int>(t_.attachments.size());
-      table.attachment_count = static_cast<int>(c.attachments.size());
       table.clamped_damping = c.damping_law == DampingLaw::kClamped;
       const ActuatorDef& limit = c.actuator;
       table.actuator = {limit.kind,        limit.max_speed_m_per_s, limit.max_acceleration_m_per_s2,
                         limit.max_force_n, limit.min_rest_length_m, limit.min_length_m};
       table.inv_max_speed = 1.0 / c.actuator.max_speed_m_per_s;
-      for (const AttachmentDef& a : c.attachments) {
+      table.first_wheel = static_cast<int>(t_.wheels.size());
+      for (std::size_t i = 0; i < c.attachments.size(); ++i) {
+        const AttachmentDef& a = c.attachments[i];
         t_.attachments.push_back(Attach(a.body, a.position_m));
         t_.attachments.back().spot = Spot(t_.attachments.back());
+        if (a.wheel) AddWheel(c, i, table);
       }
+      table.attachment_count = static_cast<int>(t_.attachments.size()) - table.first_attachment;
+      table.wheel_count = static_cast<int>(t_.wheels.size()) - table.first_wheel;
+      t_.max_wheels = std::max(t_.max_wheels, table.wheel_count);
       const auto* const ends = &t_.attachments[static_cast<std::size_t>(table.first_attachment)];
       table.joins_two = table.attachment_count == 2 && ends[0].body != ends[1].body &&
                         ends[0].body < t_.body_count && ends[1].body < t_.body_count;

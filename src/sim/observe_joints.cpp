@@ -2,13 +2,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/angle.h"
 #include "math/elementary.h"
 #include "sim/batch_impl.h"
 
 namespace taut {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Vec3 At(const double* p) { return {p[0], p[1], p[2]}; }
 

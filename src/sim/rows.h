@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/assert.h"
-#include "math/cable_path.h"
+#include "math/cable_wheel.h"
 #include "sim/constraint/cable_row.h"
 #include "sim/constraint/joint_row.h"
 #include "sim/contacts.h"
@@ -149,6 +149,7 @@ struct Scratch {
   BodyWork<W>* bodies;
   Spot<W>* spots;
   AttachmentWork<W>* attachments;
+  Wheel<V3<W>>* wheels;  ///< Of one cable.
   Contact<W, 1>* contacts;  ///< Slots of all bodies: those of body b from View::first_slot[b] on.
   int* contact_count;       ///< Used slots, per body.
   TouchingPair* touches;    ///< Those of a lane from lane * pair_capacity on.
@@ -183,6 +184,7 @@ struct Scratch {
     spots = room_.Take<Spot<W>>(m.spot_count);
     start_spots = room_.Take<V3<W>>(m.spot_count);
     attachments = room_.Take<AttachmentWork<W>>(m.max_attachments);
+    wheels = room_.Take<Wheel<V3<W>>>(m.max_wheels);
     contacts = room_.Take<Contact<W, 1>>(m.slot_count);
     contact_count = room_.Take<int>(bodies_count);
     touches = room_.Take<TouchingPair>(W::kLanes * m.pair_capacity);

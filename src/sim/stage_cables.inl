@@ -40,11 +40,15 @@ TAUT_INLINE AttachmentWork<W> Attachment(const AttachmentTable& table,
 
 /// Length and rate of a cable; fills `ends` with its attachments.
 template <class W>
-TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const CableTable& cable,
-                                           int attachment_count, const Scratch<W>& work,
-                                           AttachmentWork<W>* ends) noexcept {
+TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const Rows<W>& s,
+                                           const CableTable& cable, int attachment_count,
+                                           Scratch<W>& work, AttachmentWork<W>* ends) noexcept {
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
   for (int i = 0; i < attachment_count; ++i) ends[i] = Attachment(tables[i], work);
+  if (cable.wheel_count > 0) {
+    PutOnWheels(m, s, cable, work, work.spots, ends);
+    return MeasurePath(attachment_count, ends, cable.wheel_count, work.wheels);
+  }
   return MeasurePath(attachment_count, ends);
 }
 
@@ -226,10 +230,11 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
   W l;
   if constexpr (kTwo) {
     AttachmentWork<W> ends[2];
-    l = MeasureCable(m, cable, 2, work, ends).l;
+    l = MeasureCable(m, s, cable, 2, work, ends).l;
     LinkCable<true>(m, s, work, cable, ends, row);
   } else {
-    l = MeasureCable(m, cable, cable.attachment_count, work, work.attachments).l;
+    l = MeasureCable(m, s, cable, cable.attachment_count, work, work.attachments).l;
+    KeepWheels(s, cable, work);
     LinkCable<false>(m, s, work, cable, work.attachments, row);
   }
   W k = s.stiffness[c], b = s.damping[c], mean, rate;
@@ -296,7 +301,7 @@ template <bool kMotors, class W>
       FinishLinks<false>(work, row);
     }
     AttachmentWork<W>* const ends = work.attachments;
-    const W length = MeasureCable(m, m.cables[c], m.cables[c].attachment_count, work, ends).l;
+    const W length = MeasureCable(m, s, m.cables[c], m.cables[c].attachment_count, work, ends).l;
     const W before = RateBefore(work, row.links, row.link_count);
     W k = s.stiffness[c], b = s.damping[c];
     if (kMotors && m.cables[c].motor >= 0) {
@@ -368,9 +373,9 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
 /// One cable of the stage below; `ends` is room for its attachments: known to be two, they stay in
 /// registers.
 template <class W>
-TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, const Scratch<W>& work, int c,
+TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
                             int attachment_count, AttachmentWork<W>* ends) noexcept {
-  const auto [l, dl] = MeasureCable(m, m.cables[c], attachment_count, work, ends);
+  const auto [l, dl] = MeasureCable(m, s, m.cables[c], attachment_count, work, ends);
   const CableForce<W> f =
       TensionOf(s.stiffness[c], s.damping[c], l, dl, s.rest[c], m.cables[c].clamped_damping);
   s.sense_length[c] = l;
@@ -382,7 +387,7 @@ TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, const Scratch<W>& w
 /// Stage: what sensors see of the cables at the end of a step.
 ///   reads   pos, bodies[] (of the current state)     writes  sense_*
 template <class W>
-void StageSense(const View& m, const Rows<W>& s, const Scratch<W>& work) noexcept {
+void StageSense(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   for (int c = 0; c < m.cable_count; ++c) {
     const int count = m.cables[c].attachment_count;
     if (count == 2) {

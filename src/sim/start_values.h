@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/cable_path.h"
+#include "math/described_path.h"
 #include "math/vec.h"
 #include "sim/group.h"
 #include "sim/tables.h"
@@ -81,16 +81,16 @@ inline Vec3 InverseMoments(const Tables& t, int i) noexcept {
   return MassesOf(t, i, BodyOf(t, i).mass_kg).inv_inertia;
 }
 
+inline double WheelAngle(const Tables& t, int i) noexcept {
+  return t.wheels[static_cast<std::size_t>(i)].start_angle;
+}
 inline double RestLength(const Tables& t, int i) noexcept { return CableOf(t, i).rest_length_m; }
 inline double Stiffness(const Tables& t, int i) noexcept { return CableOf(t, i).stiffness_n_per_m; }
 inline double Damping(const Tables& t, int i) noexcept { return CableOf(t, i).damping_n_s_per_m; }
 /// Where the solver starts from; also what a cable shows before the first step.
 inline double Tension(const Tables& t, int i) noexcept {
   const CableDef& cable = CableOf(t, i);
-  const double length =
-      MeasureThrough<Vec3>(static_cast<int>(cable.attachments.size()), [&](int k) {
-        return cable.attachments[static_cast<std::size_t>(k)].position_m;
-      }).l;
+  const double length = math::DescribedPath(cable).length_m();
   return std::max(cable.stiffness_n_per_m * (length - cable.rest_length_m), 0.0);
 }
 inline Motor MotorAtRest(const Tables& t, int i) noexcept {

@@ -11,6 +11,7 @@ enum class Per {
   kBody,
   kCable,
   kMotor,
+  kWheel,
   kNode,
   kJoint,
   kJointRow,
@@ -76,6 +77,7 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(held_torque,    V3,     kBody,     kState,     kZero,    Zero)             /* of contacts and stiff cables in the last step [N m]; 0 after a landing */ \
   ROW(rest,           Number, kCable,    kState,     kGoesBack, RestLength)       /* [m] */ \
   ROW(rest_rate,      Number, kCable,    kState,     kGoesBack, Zero)             /* [m/s] */ \
+  ROW(wheel_angle,    Number, kWheel,    kState,     kGoesBack, WheelAngle)       /* from point to point about it, with turns [rad] */ \
   ROW(motor,          Motor,  kMotor,    kState,     kGoesBack, MotorAtRest) \
   ROW(orders,         Orders, kMotor,    kState,     kStays,    FollowTarget) \
   ROW(target,         Number, kCable,    kState,     kStays,    RestLength)       /* [m] */ \

@@ -33,9 +33,10 @@ void MeasureStart(const View& m, Scratch<W>& work) noexcept {
 }
 
 template <class W>
-TAUT_INLINE W StartLength(const View& m, Scratch<W>& work, const CableTable& cable) noexcept {
+TAUT_INLINE W StartLength(const View& m, const Rows<W>& s, Scratch<W>& work, const CableTable& cable) noexcept {
   if (!work.start_known) MeasureStart(m, work);
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
+  if (cable.wheel_count > 0) return StartLengthOnWheels(m, s, work, cable);
   return MeasureThrough<V3<W>>(cable.attachment_count,
                                [&](int i) { return work.start_spots[tables[i].spot]; })
       .l;
@@ -61,7 +62,7 @@ TAUT_INLINE void SetCableLaw(const View& m, const Rows<W>& s, Scratch<W>& work, 
   const CableTable& cable = m.cables[c];
   const W half_h = W::Splat(0.5) * h, inv_half = W::Splat(1.0) / half_h;
   const W wound = s.rest_rate[c];
-  const W mid = stretch + (StartLength(m, work, cable) - (length - half_h * rate));
+  const W mid = stretch + (StartLength(m, s, work, cable) - (length - half_h * rate));
   const W z = inv_half * mid;
   row.SetLaw(z - (rate - wound), z - wound, spring, half_h * damping, wound + wound);
   row.upper = W::Splat(1e300);

@@ -30,12 +30,21 @@ struct LimitTable {
 };
 
 struct CableTable {
-  int first_attachment = 0, attachment_count = 0;
+  int first_attachment = 0, attachment_count = 0;  ///< The points of its path.
+  int first_wheel = 0, wheel_count = 0;
   bool clamped_damping = false;
   bool joins_two = false;  ///< Two bodies that are not the world, and no more.
   int motor = -1;          ///< Which one winds it; -1: none.
   LimitTable actuator;
   double inv_max_speed = 0;  ///< 1 / actuator.max_speed_m_per_s [s/m].
+};
+
+/// A cylinder that a cable goes round. Its two points among the attachments have its body.
+struct WheelTable {
+  int at = 0;                      ///< Of the two in its cable's path, the first.
+  int center_spot = 0, axis_spot = 0;  ///< The axis goes from the one to the other, 1 m.
+  double radius_m = 0;
+  double start_angle = 0;  ///< (math/cable_wheel.h) [rad]
 };
 
 /// A `DcMotorDef` in what its law is written in (dc_motor.inl).
@@ -197,6 +206,8 @@ struct View {
   int slot_count;
   std::uint32_t first_pair_id;
   int pair_capacity, max_attachments, attachment_count, spot_count;
+  int wheel_count, max_wheels;
+  const WheelTable* wheels;
   bool along_slip;
   bool has_ground;  ///< Height fields or meshes.
   int kept_count;   ///< Pairs that keep what is near (BodyPairTable::kept).
@@ -237,6 +248,8 @@ struct View {
         return cable_count;
       case Per::kMotor:
         return motor_count;
+      case Per::kWheel:
+        return wheel_count;
       case Per::kNode:
         return node_count;
       case Per::kJoint:
@@ -280,6 +293,8 @@ class Tables final : public Model {
   std::vector<AttachmentTable> attachments;
   std::vector<AttachmentTable> spots;  ///< The distinct points of bodies among them.
   int max_attachments = 0;             ///< Of one cable.
+  std::vector<WheelTable> wheels;      ///< Cable after cable.
+  int max_wheels = 0;                  ///< Of one cable.
   std::vector<AttachmentTable> nodes;
   std::vector<PlaneTable> planes;
   std::vector<int> first_point;  ///< Per body, and one past the last.

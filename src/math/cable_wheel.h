@@ -1,0 +1,154 @@
+/// How a cable lies on wheels: cylinders of bodies that its path goes round (docs/theory/cables.md,
+/// section 4). The shortest path of its kind: how often and which way round it goes is known by one
+/// number, an angle that is followed from step to step.
+#pragma once
+
+#include "math/angle.h"
+#include "math/cable_path.h"
+
+namespace taut {
+
+template <class V>
+struct Wheel {
+  using S = decltype(V::x);
+  V center, axis;  ///< In the path's frame; the axis is a unit vector.
+  S radius;        ///< [m]
+  S before;  ///< Its last `angle`: half a turn away at most.
+  int at;    ///< The path's point where the cable arrives; it leaves from the next one.
+  // Found:
+  S angle;  ///< About the axis, from the point before to the point behind, with all turns [rad].
+  S theta;  ///< Over which the cable lies on; not positive where it does not [rad].
+  S arc;    ///< Its length there [m].
+};
+
+/// Either of two places, lane by lane.
+template <class M, class V>
+TAUT_INLINE V Pick(M which, const V& yes, const V& no) noexcept {
+  return {Select(which, yes.x, no.x), Select(which, yes.y, no.y), Select(which, yes.z, no.z)};
+}
+
+/// Where a cable from `p` to `q` arrives at a wheel, and where it leaves it.
+template <class V>
+struct Tangents {
+  V a, b;
+  typename Wheel<V>::S angle, theta, arc;
+};
+
+/// A straight line on the cylinder when that is unrolled. Points within it are taken to be on it.
+template <class V>
+TAUT_INLINE Tangents<V> LayOn(const Wheel<V>& wheel, const V& p, const V& q) noexcept {
+  using S = typename Wheel<V>::S;
+  using C = Constant<S>;
+  const S zero = C::Of(0.0), one = C::Of(1.0), tiny = C::Of(1e-300), R = wheel.radius;
+  const V to_p = p - wheel.center, to_q = q - wheel.center;
+  const S zp = Dot(to_p, wheel.axis), zq = Dot(to_q, wheel.axis);
+  const V rp = to_p - zp * wheel.axis, rq = to_q - zq * wheel.axis;
+  const V across_p = Cross(wheel.axis, rp), across_q = Cross(wheel.axis, rq);
+  const S principal = Atan2(Dot(across_p, rq), Dot(rp, rq));
+  Tangents<V> found;
+  found.angle =
+      principal + C::Of(2 * kPi) * Round(C::Of(0.5 / kPi) * (wheel.before - principal));
+  const S sp2 = Max(Dot(rp, rp), tiny), sq2 = Max(Dot(rq, rq), tiny);
+  const S lp = Sqrt(Max(sp2 - R * R, zero)), lq = Sqrt(Max(sq2 - R * R, zero));
+  found.theta = Abs(found.angle) - Atan2(lp, R) - Atan2(lq, R);
+  const S side = Select(found.angle < zero, zero - one, one);
+  const S around = R * Max(found.theta, zero);
+  const S rise = (zq - zp) / Max(lp + around + lq, tiny);
+  found.arc = around * Sqrt(one + rise * rise);
+  found.a = wheel.center + (zp + rise * lp) * wheel.axis +
+            (R / sp2) * (R * rp + (side * lp) * across_p);
+  found.b = wheel.center + (zq - rise * lq) * wheel.axis +
+            (R / sq2) * (R * rq - (side * lq) * across_q);
+  return found;
+}
+
+/// Where the cable goes to from wheel k of a row that ends before `last`.
+template <class V>
+TAUT_INLINE V Behind(const PathPoint<V>* points, const Wheel<V>* wheels, int k, int last,
+                     const V& to) noexcept {
+  const auto zero = Constant<typename Wheel<V>::S>::Of(0.0);
+  V q = to;
+  for (int i = last - 1; i > k; --i) q = Pick(wheels[i].theta > zero, points[wheels[i].at].p, q);
+  return q;
+}
+
+/// Lays wheels first..last-1, which follow one another, between the points before and behind them.
+template <class V>
+void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last) noexcept {
+  using S = typename Wheel<V>::S;
+  using C = Constant<S>;
+  constexpr int kMostRounds = 200;
+  constexpr double kStill = 1e-15;  ///< Of the distances between them.
+  const S zero = C::Of(0.0);
+  const V from = points[wheels[first].at - 1].p, to = points[wheels[last - 1].at + 2].p;
+  for (int k = first; k < last; ++k) {
+    wheels[k].theta = wheels[k].arc = zero, wheels[k].angle = wheels[k].before;
+    points[wheels[k].at].p = points[wheels[k].at + 1].p = from;
+  }
+  S busy = C::Of(1.0);
+  for (int round = 0; round < (last - first > 1 ? kMostRounds : 1) && Any(busy > zero); ++round) {
+    S moved = zero;
+    for (int k = first; k < last; ++k) {
+      V p = from;
+      for (int i = first; i < k; ++i) {
+        p = Pick(wheels[i].theta > zero, points[wheels[i].at + 1].p, p);
+      }
+      const V q = Behind(points, wheels, k, last, to);
+      const Tangents<V> now = LayOn(wheels[k], p, q);
+      V& a = points[wheels[k].at].p;
+      V& b = points[wheels[k].at + 1].p;
+      const V way_a = now.a - a, way_b = now.b - b, all = q - p;
+      const S way2 = Dot(way_a, way_a) + Dot(way_b, way_b);
+      const auto still = way2 < C::Of(kStill * kStill) * Dot(all, all);
+      const auto off = (!(wheels[k].theta > zero)) & (!(now.theta > zero));
+      moved = Select(still | off, moved, busy);
+      const auto on = busy > zero;
+      a = Pick(on, now.a, a), b = Pick(on, now.b, b);
+      wheels[k].theta = Select(on, now.theta, wheels[k].theta);
+      wheels[k].arc = Select(on, now.arc, wheels[k].arc);
+      wheels[k].angle = Select(on, now.angle, wheels[k].angle);
+    }
+    busy = moved;
+  }
+  // Where it does not lie on, the pulls on its two points cancel out wherever on the way they are.
+  for (int k = first; k < last; ++k) {
+    const V half = C::Of(0.5) * (points[wheels[k].at - 1].p + Behind(points, wheels, k, last, to));
+    V& a = points[wheels[k].at].p;
+    V& b = points[wheels[k].at + 1].p;
+    const auto on = wheels[k].theta > zero;
+    a = Pick(on, a, half), b = Pick(on, b, half);
+  }
+}
+
+/// Puts the points where the cable arrives at wheels and leaves them; the others are where they
+/// are. A path neither starts nor ends at a wheel.
+template <class V>
+void LayOnWheels(PathPoint<V>* points, int wheel_count, Wheel<V>* wheels) noexcept {
+  int first = 0;
+  while (first < wheel_count) {
+    int last = first + 1;
+    while (last < wheel_count && wheels[last].at == wheels[last - 1].at + 2) ++last;
+    LayOnNeighbours(points, wheels, first, last);
+    first = last;
+  }
+}
+
+/// Length and rate of a path whose points are where they are; fills in the directions.
+template <class V>
+TAUT_INLINE PathLength<V> MeasurePath(int count, PathPoint<V>* points, int wheel_count,
+                                      const Wheel<V>* wheels) noexcept {
+  const auto zero = Constant<typename Wheel<V>::S>::Of(0.0);
+  PathLength<V> path;
+  int wheel = 0;
+  for (int i = 1; i < count; ++i) {
+    if (wheel < wheel_count && i == wheels[wheel].at + 1) {
+      points[i].u = {zero, zero, zero};
+      path.l = path.l + wheels[wheel++].arc;
+    } else {
+      AddSpan(points[i - 1], points[i], path);
+    }
+  }
+  return path;
+}
+
+}  // namespace taut
