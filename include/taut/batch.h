@@ -92,6 +92,13 @@ struct CableRows : ReadingRows {
   double* rest_length_target_m = nullptr;  ///< As `SetRestLengthTarget` sets them; may be written.
 };
 
+/// A part of a cable between places where it may slip.
+struct CableSpanState {
+  double length_m = 0;       ///< With half of the arcs at its ends.
+  double rest_length_m = 0;  ///< Those of a cable's spans add up to its own.
+  double tension_n = 0;      ///< Mean over the last step.
+};
+
 struct BodyState {
   Vec3 position_m;                  ///< Of the centre of mass, in W.
   Quat orientation;                 ///< From the start's orientation (identity at t = 0), in W.
@@ -219,6 +226,11 @@ class Batch {
 
   // --- observation -------------------------------------------------------------------------
   CableState Cable(int world, int cable) const noexcept;
+  /// How many spans with tensions of their own a cable has: those between places with friction.
+  int CableSpans(int cable) const noexcept;
+  CableSpanState CableSpan(int world, int cable, int span) const noexcept;
+  /// What friction along a cable has taken since the start [J].
+  double CableFrictionLoss(int world, int cable) const noexcept;
   /// What `Cable` says, of all cables of a group of `lanes()` worlds at once, and their commands:
   /// for controllers that run over lanes. Group g holds the worlds from g * lanes() on; lanes
   /// behind the last world are there, too.

@@ -140,7 +140,7 @@ struct WheelDef {
 struct AttachmentDef {
   int body = kWorld;
   Vec3 position_m;
-  double friction = 0.0;  ///< mu of the capstan's law, >= 0; 0 at the ends.
+  double friction = 0.0;               ///< mu of the capstan's law, >= 0; 0 at the ends.
   std::optional<WheelDef> wheel = {};  ///< Not at the ends.
 };
 

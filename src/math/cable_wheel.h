@@ -13,8 +13,8 @@ struct Wheel {
   using S = decltype(V::x);
   V center, axis;  ///< In the path's frame; the axis is a unit vector.
   S radius;        ///< [m]
-  S before;  ///< Its last `angle`: half a turn away at most.
-  int at;    ///< The path's point where the cable arrives; it leaves from the next one.
+  S before;        ///< Its last `angle`: half a turn away at most.
+  int at;          ///< The path's point where the cable arrives; it leaves from the next one.
   // Found:
   S angle;  ///< About the axis, from the point before to the point behind, with all turns [rad].
   S theta;  ///< Over which the cable lies on; not positive where it does not [rad].
@@ -46,8 +46,7 @@ TAUT_INLINE Tangents<V> LayOn(const Wheel<V>& wheel, const V& p, const V& q) noe
   const V across_p = Cross(wheel.axis, rp), across_q = Cross(wheel.axis, rq);
   const S principal = Atan2(Dot(across_p, rq), Dot(rp, rq));
   Tangents<V> found;
-  found.angle =
-      principal + C::Of(2 * kPi) * Round(C::Of(0.5 / kPi) * (wheel.before - principal));
+  found.angle = principal + C::Of(2 * kPi) * Round(C::Of(0.5 / kPi) * (wheel.before - principal));
   const S sp2 = Max(Dot(rp, rp), tiny), sq2 = Max(Dot(rq, rq), tiny);
   const S lp = Sqrt(Max(sp2 - R * R, zero)), lq = Sqrt(Max(sq2 - R * R, zero));
   found.theta = Abs(found.angle) - Atan2(lp, R) - Atan2(lq, R);
@@ -55,10 +54,10 @@ TAUT_INLINE Tangents<V> LayOn(const Wheel<V>& wheel, const V& p, const V& q) noe
   const S around = R * Max(found.theta, zero);
   const S rise = (zq - zp) / Max(lp + around + lq, tiny);
   found.arc = around * Sqrt(one + rise * rise);
-  found.a = wheel.center + (zp + rise * lp) * wheel.axis +
-            (R / sp2) * (R * rp + (side * lp) * across_p);
-  found.b = wheel.center + (zq - rise * lq) * wheel.axis +
-            (R / sq2) * (R * rq - (side * lq) * across_q);
+  found.a =
+      wheel.center + (zp + rise * lp) * wheel.axis + (R / sp2) * (R * rp + (side * lp) * across_p);
+  found.b =
+      wheel.center + (zq - rise * lq) * wheel.axis + (R / sq2) * (R * rq - (side * lq) * across_q);
   return found;
 }
 
@@ -131,6 +130,29 @@ void LayOnWheels(PathPoint<V>* points, int wheel_count, Wheel<V>* wheels) noexce
     LayOnNeighbours(points, wheels, first, last);
     first = last;
   }
+}
+
+/// The middle of the arc on a wheel, as an angle about its axis from `mark`, a direction across it
+/// [rad]: it parts the cable's material before it from that behind it. Where the cable does not lie
+/// on, the place that is nearest.
+template <class V>
+TAUT_INLINE typename Wheel<V>::S MiddleOf(const Wheel<V>& wheel, const V& mark,
+                                          const PathPoint<V>* points) noexcept {
+  using S = typename Wheel<V>::S;
+  using C = Constant<S>;
+  const S zero = C::Of(0.0), one = C::Of(1.0);
+  const V across = Cross(wheel.axis, mark);
+  const V from = points[wheel.at - 1].p - wheel.center;
+  const V way = points[wheel.at + 2].p - points[wheel.at - 1].p;
+  const V arrives = points[wheel.at].p - wheel.center;
+  const S px = Dot(mark, from), py = Dot(across, from), dx = Dot(mark, way), dy = Dot(across, way);
+  const S nearest = (zero - (px * dx + py * dy)) / Max(dx * dx + dy * dy, C::Of(1e-300));
+  const S t = Max(Min(nearest, one), zero);
+  const auto on = wheel.theta > zero;
+  const S side = Select(wheel.angle < zero, zero - one, one);
+  return Atan2(Select(on, Dot(across, arrives), py + t * dy),
+               Select(on, Dot(mark, arrives), px + t * dx)) +
+         Select(on, C::Of(0.5) * side * wheel.theta, zero);
 }
 
 /// Length and rate of a path whose points are where they are; fills in the directions.

@@ -30,4 +30,23 @@ DescribedPath::DescribedPath(const CableDef& cable) {
   length_m_ = MeasurePath(count(), points_.data(), wheel_count, wheels_.data()).l;
 }
 
+std::vector<double> SpanLengths(const CableDef& cable) {
+  DescribedPath path(cable);
+  std::vector<double> lengths{0.0};
+  std::size_t wheel = 0;
+  for (int i = 1; i < path.count(); ++i) {
+    const PathPoint<Vec3>* const p = path.points();
+    const bool slips = cable.attachments[path.attachment(i)].friction > 0;
+    if (wheel < path.wheels().size() && i == path.wheels()[wheel].at + 1) {
+      const double arc = path.wheels()[wheel++].arc;
+      lengths.back() += slips ? 0.5 * arc : arc;
+      if (slips) lengths.push_back(0.5 * arc);
+      continue;
+    }
+    lengths.back() += Dot(p[i].u, p[i].p - p[i - 1].p);
+    if (slips && !cable.attachments[path.attachment(i)].wheel) lengths.push_back(0.0);
+  }
+  return lengths;
+}
+
 }  // namespace taut::math

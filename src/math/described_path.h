@@ -33,4 +33,7 @@ class DescribedPath {
   double length_m_ = 0;
 };
 
+/// Lengths of the spans between the places where it may slip: attachments with friction [m].
+std::vector<double> SpanLengths(const CableDef& cable);
+
 }  // namespace taut::math

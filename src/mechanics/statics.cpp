@@ -5,9 +5,7 @@
 #include "math/described_path.h"
 
 namespace taut {
-double CableLength(const CableDef& cable) {
-  return math::DescribedPath(cable).length_m();
-}
+double CableLength(const CableDef& cable) { return math::DescribedPath(cable).length_m(); }
 
 double CableTension(const CableDef& cable) {
   return std::fmax(0.0, cable.stiffness_n_per_m * (CableLength(cable) - cable.rest_length_m));

@@ -28,9 +28,8 @@ Vec3 PointInWorld(const Tables& t, const AttachmentTable& a) {
 }
 
 bool IsOfWheel(const std::vector<Wheel<Vec3>>& wheels, int point) {
-  return std::any_of(wheels.begin(), wheels.end(), [&](const Wheel<Vec3>& w) {
-    return point == w.at || point == w.at + 1;
-  });
+  return std::any_of(wheels.begin(), wheels.end(),
+                     [&](const Wheel<Vec3>& w) { return point == w.at || point == w.at + 1; });
 }
 
 std::vector<Pull> PullsOf(const Tables& t, const CableTable& cable) {

@@ -19,6 +19,8 @@
 #include "sim/stiff_cables.inl"
 #include "sim/dc_motor.inl"
 #include "sim/stage_cables.inl"
+#include "sim/cable_chains.inl"
+#include "sim/stage_sense.inl"
 #include "sim/shape_pairs.inl"
 #include "sim/rod_distance.inl"
 #include "sim/stage_collide.inl"
@@ -45,6 +47,7 @@
 #include "sim/joints.inl"
 #include "sim/joint_places.inl"
 #include "sim/solve/lane_solve.inl"
+#include "sim/solve/lane_chains.inl"
 #include "sim/solve/push_out.inl"
 #include "sim/stage_solve.inl"
 // clang-format on

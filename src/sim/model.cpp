@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "base/assert.h"
-#include "math/described_path.h"
 #include "math/principal_axes.h"
 #include "math/rotation.h"
 #include "sim/body_frame.h"
@@ -35,7 +34,8 @@ class Compiler {
     t_.along_slip = def_.friction_law == FrictionLaw::kAlongSlip;
     Bodies();
     sim::LayOutMotions(t_);
-    Cables();
+    sim::LayOutCables(t_, frames_);
+    Nodes();
     sim::LayOutJoints(t_, frames_);
     Planes();
     Shapes();
@@ -102,55 +102,7 @@ class Compiler {
     return a;
   }
 
-  /// Where many attachments are one point of a body, that point.
-  int Spot(const sim::AttachmentTable& a) {
-    for (std::size_t i = 0; i < t_.spots.size(); ++i) {
-      const sim::AttachmentTable& spot = t_.spots[i];
-      if (spot.body == a.body && std::equal(a.p_P, a.p_P + 3, spot.p_P)) return static_cast<int>(i);
-    }
-    t_.spots.push_back(a);
-    return static_cast<int>(t_.spots.size()) - 1;
-  }
-
-  /// Of attachment `i`, which has been added: its second point, and the wheel.
-  void AddWheel(const CableDef& cable, std::size_t i, const sim::CableTable& table) {
-    const AttachmentDef& a = cable.attachments[i];
-    const sim::AttachmentTable center = t_.attachments.back();
-    sim::WheelTable wheel;
-    wheel.at = static_cast<int>(t_.attachments.size()) - 1 - table.first_attachment;
-    wheel.center_spot = center.spot;
-    wheel.axis_spot = Spot(Attach(a.body, a.position_m + a.wheel->axis));
-    wheel.radius_m = a.wheel->radius_m;
-    wheel.start_angle = math::StartAngle(cable, i);
-    t_.attachments.push_back(center);
-    t_.wheels.push_back(wheel);
-  }
-
-  void Cables() {
-    for (const CableDef& c : def_.cables) {
-      sim::CableTable table;
-      table.first_attachment = static_cast<int>(t_.attachments.size());
-      table.clamped_damping = c.damping_law == DampingLaw::kClamped;
-      const ActuatorDef& limit = c.actuator;
-      table.actuator = {limit.kind,        limit.max_speed_m_per_s, limit.max_acceleration_m_per_s2,
-                        limit.max_force_n, limit.min_rest_length_m, limit.min_length_m};
-      table.inv_max_speed = 1.0 / c.actuator.max_speed_m_per_s;
-      table.first_wheel = static_cast<int>(t_.wheels.size());
-      for (std::size_t i = 0; i < c.attachments.size(); ++i) {
-        const AttachmentDef& a = c.attachments[i];
-        t_.attachments.push_back(Attach(a.body, a.position_m));
-        t_.attachments.back().spot = Spot(t_.attachments.back());
-        if (a.wheel) AddWheel(c, i, table);
-      }
-      table.attachment_count = static_cast<int>(t_.attachments.size()) - table.first_attachment;
-      table.wheel_count = static_cast<int>(t_.wheels.size()) - table.first_wheel;
-      t_.max_wheels = std::max(t_.max_wheels, table.wheel_count);
-      const auto* const ends = &t_.attachments[static_cast<std::size_t>(table.first_attachment)];
-      table.joins_two = table.attachment_count == 2 && ends[0].body != ends[1].body &&
-                        ends[0].body < t_.body_count && ends[1].body < t_.body_count;
-      t_.max_attachments = std::max(t_.max_attachments, table.attachment_count);
-      t_.cables.push_back(table);
-    }
+  void Nodes() {
     for (const NodeDef& n : def_.nodes) t_.nodes.push_back(Attach(n.body, n.position_m));
   }
 

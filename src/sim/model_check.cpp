@@ -7,6 +7,8 @@
 
 #include "math/convex_hull.h"
 #include "math/principal_axes.h"
+#include "math/vec.h"
+#include "sim/constraint/capstan.h"
 #include "sim/checker.h"
 #include "sim/tables.h"
 
@@ -126,6 +128,37 @@ void CheckSupplies(const ModelDef& def, Checker& check) {
   }
 }
 
+/// Wheels and friction along a cable.
+void CheckRoute(const CableDef& c, const std::string& name, Checker& check) {
+  int spans = 1;
+  for (std::size_t i = 0; i < c.attachments.size(); ++i) {
+    const AttachmentDef& a = c.attachments[i];
+    const bool end = i == 0 || i + 1 == c.attachments.size();
+    check.NonNegative(a.friction, name + ": friction");
+    check.Require(!end || (a.friction == 0 && !a.wheel),
+                  name + " ends at an attachment with friction or a wheel");
+    spans += a.friction > 0;
+    if (!a.wheel || end) continue;
+    const std::string wheel = name + ": wheel " + std::to_string(i);
+    check.Positive(a.wheel->radius_m, wheel + ": radius");
+    check.Require(std::fabs(Dot(a.wheel->axis, a.wheel->axis) - 1.0) < 1e-9,
+                  wheel + ": its axis must be a unit vector");
+    check.Require(a.wheel->turns >= 0, wheel + " has a negative number of turns");
+    for (const std::size_t k : {i - 1, i + 1}) {
+      const Vec3 way = c.attachments[k].position_m - a.position_m;
+      const Vec3 across = Cross(a.wheel->axis, way);
+      // A rim's own point may be a rounding inside.
+      check.Require(Dot(across, across) > 0.999 * a.wheel->radius_m * a.wheel->radius_m,
+                    wheel + " has the attachment before or behind it inside, or on its axis");
+    }
+  }
+  check.Require(spans <= kMostSpans, name + " has friction at more than " +
+                                         std::to_string(kMostSpans - 1) + " attachments");
+  check.Require(spans == 1 || c.actuator.kind != ActuatorDef::Kind::kDcMotor,
+                name + " has friction along it and a motor: only ideal and limited actuators wind "
+                       "such a cable");
+}
+
 void CheckCables(const ModelDef& def, Checker& check) {
   for (const NodeDef& n : def.nodes) {
     check.Body(n.body, def, "node " + n.name);
@@ -138,6 +171,7 @@ void CheckCables(const ModelDef& def, Checker& check) {
       check.Body(a.body, def, name);
       check.Finite(a.position_m, name + ": attachment");
     }
+    CheckRoute(c, name, check);
     check.Positive(c.stiffness_n_per_m, name + ": stiffness");
     check.NonNegative(c.damping_n_s_per_m, name + ": damping");
     check.Positive(c.rest_length_m, name + ": rest length");

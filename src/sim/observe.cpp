@@ -29,6 +29,38 @@ CableState Batch::Cable(int world, int cable) const noexcept {
   return MapReadings([&](int row) { return d.at(world, row + cable); }, RowsOf(d.layout));
 }
 
+int Batch::CableSpans(int cable) const noexcept {
+  const Impl& d = *impl_;
+  d.CheckCable(__func__, 0, cable);
+  return std::max(d.view.cables[cable].span_count, 1);
+}
+
+CableSpanState Batch::CableSpan(int world, int cable, int span) const noexcept {
+  const Impl& d = *impl_;
+  d.CheckCable(__func__, world, cable);
+  sim::CheckIndex(__func__, "span", span, CableSpans(cable));
+  d.Sense(world);
+  const sim::CableTable& table = d.view.cables[cable];
+  if (table.span_count == 0) {
+    const CableState all = Cable(world, cable);
+    return {all.length_m, all.rest_length_m, all.tension_n};
+  }
+  const int row = table.first_span + span;
+  return {d.at(world, d.layout.sense_span_length + row),
+          d.at(world, d.layout.sense_span_rest + row), d.at(world, d.layout.span_tension + row)};
+}
+
+double Batch::CableFrictionLoss(int world, int cable) const noexcept {
+  const Impl& d = *impl_;
+  d.CheckCable(__func__, world, cable);
+  d.Sense(world);
+  double sum_j = 0;
+  for (int i = 0; i + 1 < d.view.cables[cable].span_count; ++i) {
+    sum_j += d.at(world, d.layout.sense_slip_loss + d.view.cables[cable].first_slip + i);
+  }
+  return sum_j;
+}
+
 int Batch::groups() const noexcept { return static_cast<int>(impl_->groups.size()); }
 
 CableRows Batch::Cables(int group) noexcept {
@@ -99,6 +131,15 @@ Energy Batch::TotalEnergy(int world) const noexcept {
   }
   for (int c = 0; c < d.view.cable_count; ++c) {
     const CableState cable = Cable(world, c);
+    if (d.view.cables[c].span_count > 0) {
+      const double area_n = cable.stiffness_n_per_m * cable.rest_length_m;
+      for (int i = 0; i < d.view.cables[c].span_count; ++i) {
+        const CableSpanState span = CableSpan(world, c, i);
+        const double longer = std::max(span.length_m - span.rest_length_m, 0.0);
+        e.elastic_j += 0.5 * area_n / span.rest_length_m * longer * longer;
+      }
+      continue;
+    }
     const double stretch = std::max(cable.length_m - cable.rest_length_m, 0.0);
     e.elastic_j += 0.5 * d.at(world, d.layout.stiffness + c) * stretch * stretch;
   }

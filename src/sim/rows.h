@@ -8,6 +8,7 @@
 #include "sim/contacts.h"
 #include "sim/group.h"
 #include "sim/motion_at.h"
+#include "sim/of_lane.h"
 #include "sim/solve/memory.h"
 #include "simd/angle.h"
 #include "simd/vec3.h"
@@ -149,7 +150,7 @@ struct Scratch {
   BodyWork<W>* bodies;
   Spot<W>* spots;
   AttachmentWork<W>* attachments;
-  Wheel<V3<W>>* wheels;  ///< Of one cable.
+  Wheel<V3<W>>* wheels;     ///< Of one cable.
   Contact<W, 1>* contacts;  ///< Slots of all bodies: those of body b from View::first_slot[b] on.
   int* contact_count;       ///< Used slots, per body.
   TouchingPair* touches;    ///< Those of a lane from lane * pair_capacity on.
@@ -158,9 +159,12 @@ struct Scratch {
   W* start;  ///< Rows that go back to the start of the step in worlds that turn non-finite.
   CableWork<W>* cables;
   StiffCable<W>* stiff;
-  Link<W, 1>* links;      ///< Of all cables.
-  HeldRow<W>* joints;     ///< Rows of all joints.
-  Twist<W>* joint_guess;  ///< Per body and the world: guessed velocities of the step's end.
+  Link<W, 1>* links;        ///< Of all cables.
+  ChainSpan<W>* spans;      ///< Of all cables with friction.
+  RowLink<W>* chain_links;  ///< Those of a cable from twice its first attachment on,
+  int* chain_link_count;    ///< and how many; per cable.
+  HeldRow<W>* joints;       ///< Rows of all joints.
+  Twist<W>* joint_guess;    ///< Per body and the world: guessed velocities of the step's end.
   JointMemory<W> joint_memory;
   MotionWork<W>* motions;
   MotorWork<W>* motors;
@@ -196,6 +200,9 @@ struct Scratch {
     cables = room_.Take<CableWork<W>>(m.cable_count);
     stiff = room_.Take<StiffCable<W>>(m.cable_count);
     links = room_.Take<Link<W, 1>>(m.attachment_count);
+    spans = room_.Take<ChainSpan<W>>(m.span_count);
+    chain_links = room_.Take<RowLink<W>>(m.chain_count > 0 ? 2 * m.attachment_count : 0);
+    chain_link_count = room_.Take<int>(m.chain_count > 0 ? m.cable_count : 0);
     joints = room_.Take<HeldRow<W>>(m.joint_row_count);
     joint_guess = room_.Take<Twist<W>>(m.joint_count > 0 ? bodies_count : 0);
     joint_memory.Take(m, room_);

@@ -1,4 +1,4 @@
-/// Stages of the cables: actuators and forces, sensors (docs/theory/cables.md).
+/// Stage of the cables: actuators and forces (docs/theory/cables.md).
 ///
 ///   k, b    stiffness [N/m], damping [N s/m]
 ///   l, dl   length along all attachments [m], its rate [m/s]
@@ -40,9 +40,9 @@ TAUT_INLINE AttachmentWork<W> Attachment(const AttachmentTable& table,
 
 /// Length and rate of a cable; fills `ends` with its attachments.
 template <class W>
-TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const Rows<W>& s,
-                                           const CableTable& cable, int attachment_count,
-                                           Scratch<W>& work, AttachmentWork<W>* ends) noexcept {
+TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const Rows<W>& s, const CableTable& cable,
+                                           int attachment_count, Scratch<W>& work,
+                                           AttachmentWork<W>* ends) noexcept {
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
   for (int i = 0; i < attachment_count; ++i) ends[i] = Attachment(tables[i], work);
   if (cable.wheel_count > 0) {
@@ -351,6 +351,8 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
   for (int c = 0; c < m.cable_count; ++c) {
     if (m.cables[c].joins_two) {
       MeetCable<true, kMotors>(m, s, work, c, damped, step);
+    } else if (m.cables[c].span_count > 0) {
+      MeetChain(m, s, work, c, step.h, step.inv_h);
     } else {
       MeetCable<false, kMotors>(m, s, work, c, damped, step);
     }
@@ -363,39 +365,10 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
     }
     return;
   }
-  if (work.stiff_count == 0) {
+  if (work.stiff_count == 0 && m.chain_count == 0) {
     RelaxBack<true>(m, s, work, step.push);
   } else {
     RelaxBack<false>(m, s, work, step.push);
-  }
-}
-
-/// One cable of the stage below; `ends` is room for its attachments: known to be two, they stay in
-/// registers.
-template <class W>
-TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
-                            int attachment_count, AttachmentWork<W>* ends) noexcept {
-  const auto [l, dl] = MeasureCable(m, s, m.cables[c], attachment_count, work, ends);
-  const CableForce<W> f =
-      TensionOf(s.stiffness[c], s.damping[c], l, dl, s.rest[c], m.cables[c].clamped_damping);
-  s.sense_length[c] = l;
-  s.sense_rate[c] = dl;
-  s.sense_tension[c] = f.tension;
-  s.sense_elastic[c] = f.elastic;
-}
-
-/// Stage: what sensors see of the cables at the end of a step.
-///   reads   pos, bodies[] (of the current state)     writes  sense_*
-template <class W>
-void StageSense(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
-  for (int c = 0; c < m.cable_count; ++c) {
-    const int count = m.cables[c].attachment_count;
-    if (count == 2) {
-      AttachmentWork<W> ends[2];
-      SenseCable(m, s, work, c, 2, ends);
-    } else {
-      SenseCable(m, s, work, c, count, work.attachments);
-    }
   }
 }
 

@@ -105,7 +105,7 @@ void MarkUnsolved(const View& m, Scratch<W>& work, M alone) noexcept {
 template <class W>
 MaskOf<W> MayGoToDual(const View& m, const Scratch<W>& work, W touches) noexcept {
   const W zero = W::Splat(0.0);
-  if (work.dual.capacity == 0) return MaskOf<W>::Splat(false);
+  if (work.dual.capacity == 0 || m.chain_count > 0) return MaskOf<W>::Splat(false);
   if (!m.has_ground) return touches == zero;
   W contacts = zero;
   for (int b = 0; b < m.body_count; ++b) {
@@ -333,6 +333,7 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
   const auto busy = s.halted[0] == zero;
   W cables = zero, touches = zero;
   for (int i = 0; i < work.stiff_count; ++i) cables += work.stiff[i].live;
+  if (m.chain_count > 0) cables = W::Splat(1.0);
   for (int lane = 0; lane < W::kLanes; ++lane) touches.Set(lane, work.touch_count[lane]);
   const auto cabled = busy & (cables > zero);
   const auto dual = cabled & MayGoToDual(m, work, touches);
@@ -365,6 +366,7 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
     }
   }
   FinishStiffCables(s, work, step_s);
+  if (m.chain_count > 0) FinishChains(m, s, work, step_s);
   if (m.joint_count > 0) FinishJoints(m, s, work, step_s);
   return result;
 }

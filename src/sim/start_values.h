@@ -84,6 +84,12 @@ inline Vec3 InverseMoments(const Tables& t, int i) noexcept {
 inline double WheelAngle(const Tables& t, int i) noexcept {
   return t.wheels[static_cast<std::size_t>(i)].start_angle;
 }
+inline double SpanRest(const Tables& t, int i) noexcept {
+  return t.span_rest_m[static_cast<std::size_t>(i)];
+}
+inline double SlipPlace(const Tables& t, int i) noexcept {
+  return t.slips[static_cast<std::size_t>(i)].start_place;
+}
 inline double RestLength(const Tables& t, int i) noexcept { return CableOf(t, i).rest_length_m; }
 inline double Stiffness(const Tables& t, int i) noexcept { return CableOf(t, i).stiffness_n_per_m; }
 inline double Damping(const Tables& t, int i) noexcept { return CableOf(t, i).damping_n_s_per_m; }
@@ -92,6 +98,15 @@ inline double Tension(const Tables& t, int i) noexcept {
   const CableDef& cable = CableOf(t, i);
   const double length = math::DescribedPath(cable).length_m();
   return std::max(cable.stiffness_n_per_m * (length - cable.rest_length_m), 0.0);
+}
+inline double SpanTension(const Tables& t, int i) noexcept {
+  int cable = 0;
+  const auto behind = [&] {
+    const CableTable& table = t.cables[static_cast<std::size_t>(cable)];
+    return i >= table.first_span + table.span_count;
+  };
+  while (behind()) ++cable;
+  return Tension(t, cable);
 }
 inline Motor MotorAtRest(const Tables& t, int i) noexcept {
   const MotorTable& table = t.motors[static_cast<std::size_t>(i)];

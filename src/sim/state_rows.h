@@ -12,6 +12,8 @@ enum class Per {
   kCable,
   kMotor,
   kWheel,
+  kSpan,
+  kSlip,
   kNode,
   kJoint,
   kJointRow,
@@ -78,6 +80,10 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(rest,           Number, kCable,    kState,     kGoesBack, RestLength)       /* [m] */ \
   ROW(rest_rate,      Number, kCable,    kState,     kGoesBack, Zero)             /* [m/s] */ \
   ROW(wheel_angle,    Number, kWheel,    kState,     kGoesBack, WheelAngle)       /* from point to point about it, with turns [rad] */ \
+  ROW(span_rest,      Number, kSpan,     kState,     kGoesBack, SpanRest)         /* [m] */ \
+  ROW(span_tension,   Number, kSpan,     kState,     kZero,     SpanTension)      /* mean over the last step [N] */ \
+  ROW(slip_place,     Number, kSlip,     kState,     kGoesBack, SlipPlace)        /* middle of a wheel's arc, on the wheel [rad] */ \
+  ROW(slip_loss,      Number, kSlip,     kState,     kGoesBack, Zero)             /* energy that friction took [J] */ \
   ROW(motor,          Motor,  kMotor,    kState,     kGoesBack, MotorAtRest) \
   ROW(orders,         Orders, kMotor,    kState,     kStays,    FollowTarget) \
   ROW(target,         Number, kCable,    kState,     kStays,    RestLength)       /* [m] */ \
@@ -112,6 +118,9 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(quiet_limit,    Number, kKept,     kDerived,   kStays,    Zero)             /* near there it has no contact within that [m]; 0: not known */ \
   ROW(residual,       Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last solve [m/s] */ \
   ROW(linear_solves,  Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last step */ \
+  ROW(sense_span_length, Number, kSpan,  kSensed,    kStays,    Zero)             /* [m] */ \
+  ROW(sense_span_rest, Number, kSpan,    kSensed,    kStays,    Zero)             /* after what is still to slip [m] */ \
+  ROW(sense_slip_loss, Number, kSlip,    kSensed,    kStays,    Zero)             /* with that [J] */ \
   ROW(sense_length,   Number, kCable,    kSensed,    kStays,    Zero)             /* [m] */ \
   ROW(sense_rate,     Number, kCable,    kSensed,    kStays,    Zero)             /* [m/s] */ \
   ROW(sense_tension,  Number, kCable,    kSensed,    kStays,    Zero)             /* [N] */ \

@@ -33,7 +33,8 @@ void MeasureStart(const View& m, Scratch<W>& work) noexcept {
 }
 
 template <class W>
-TAUT_INLINE W StartLength(const View& m, const Rows<W>& s, Scratch<W>& work, const CableTable& cable) noexcept {
+TAUT_INLINE W StartLength(const View& m, const Rows<W>& s, Scratch<W>& work,
+                          const CableTable& cable) noexcept {
   if (!work.start_known) MeasureStart(m, work);
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
   if (cable.wheel_count > 0) return StartLengthOnWheels(m, s, work, cable);

@@ -32,6 +32,8 @@ struct LimitTable {
 struct CableTable {
   int first_attachment = 0, attachment_count = 0;  ///< The points of its path.
   int first_wheel = 0, wheel_count = 0;
+  int first_span = 0, span_count = 0;  ///< Of one with friction; without, it has none.
+  int first_slip = 0;                  ///< Places between the spans.
   bool clamped_damping = false;
   bool joins_two = false;  ///< Two bodies that are not the world, and no more.
   int motor = -1;          ///< Which one winds it; -1: none.
@@ -41,10 +43,19 @@ struct CableTable {
 
 /// A cylinder that a cable goes round. Its two points among the attachments have its body.
 struct WheelTable {
-  int at = 0;                      ///< Of the two in its cable's path, the first.
+  int at = 0;                          ///< Of the two in its cable's path, the first.
   int center_spot = 0, axis_spot = 0;  ///< The axis goes from the one to the other, 1 m.
+  int mark_spot = -1;                  ///< 1 m off the middle, across the axis; with friction only.
   double radius_m = 0;
   double start_angle = 0;  ///< (math/cable_wheel.h) [rad]
+};
+
+/// Where a cable with friction may slip.
+struct SlipTable {
+  int at = 0;      ///< Point of its path; of a wheel, where the cable arrives.
+  int wheel = -1;  ///< Among all wheels; -1: an eyelet.
+  double friction = 0;
+  double start_place = 0;  ///< (cable_chains.inl) [rad]
 };
 
 /// A `DcMotorDef` in what its law is written in (dc_motor.inl).
@@ -208,6 +219,8 @@ struct View {
   int pair_capacity, max_attachments, attachment_count, spot_count;
   int wheel_count, max_wheels;
   const WheelTable* wheels;
+  int chain_count, span_count, slip_count;
+  const SlipTable* slips;
   bool along_slip;
   bool has_ground;  ///< Height fields or meshes.
   int kept_count;   ///< Pairs that keep what is near (BodyPairTable::kept).
@@ -250,6 +263,10 @@ struct View {
         return motor_count;
       case Per::kWheel:
         return wheel_count;
+      case Per::kSpan:
+        return span_count;
+      case Per::kSlip:
+        return slip_count;
       case Per::kNode:
         return node_count;
       case Per::kJoint:
@@ -291,10 +308,13 @@ class Tables final : public Model {
   std::vector<MotorTable> motors;  ///< In the order of their cables.
   std::vector<SupplyTable> supplies;
   std::vector<AttachmentTable> attachments;
-  std::vector<AttachmentTable> spots;  ///< The distinct points of bodies among them.
-  int max_attachments = 0;             ///< Of one cable.
-  std::vector<WheelTable> wheels;      ///< Cable after cable.
-  int max_wheels = 0;                  ///< Of one cable.
+  std::vector<AttachmentTable> spots;   ///< The distinct points of bodies among them.
+  int max_attachments = 0;              ///< Of one cable.
+  std::vector<WheelTable> wheels;       ///< Cable after cable.
+  int max_wheels = 0;                   ///< Of one cable.
+  int chain_count = 0, span_count = 0;  ///< Cables with friction, and their spans.
+  std::vector<double> span_rest_m;      ///< Of the spans, at the start.
+  std::vector<SlipTable> slips;
   std::vector<AttachmentTable> nodes;
   std::vector<PlaneTable> planes;
   std::vector<int> first_point;  ///< Per body, and one past the last.
@@ -362,6 +382,9 @@ void LayOutFriction(Tables& tables);
 
 /// Fills motors and supplies, and which cable has which motor.
 void LayOutMotors(Tables& tables);
+
+/// Fills all that is of cables. `frames`: of the bodies and the world.
+void LayOutCables(Tables& tables, const std::vector<Frame>& frames);
 
 /// Fills all that is of joints. `frames`: of the bodies and the world.
 void LayOutJoints(Tables& tables, const std::vector<Frame>& frames);

@@ -116,7 +116,8 @@ ModelDef Atwood(double m1, double m2, int wheels, double stiffness = 1e5) {
   std::vector<AttachmentDef> path{{0, {-arch - (wheels == 1 ? 0 : radius), 0, -1}}};
   for (int k = 0; k < wheels; ++k) {
     const double angle = wheels == 1 ? 0 : kPi * k / (wheels - 1);
-    const Vec3 center = wheels == 1 ? Vec3{} : Vec3{-arch * std::cos(angle), 0, arch * std::sin(angle)};
+    const Vec3 center =
+        wheels == 1 ? Vec3{} : Vec3{-arch * std::cos(angle), 0, arch * std::sin(angle)};
     path.push_back(Round(kWorld, center, {0, 1, 0}, radius, true));
   }
   path.push_back({1, {-path[0].position_m.x, 0, -1}});
@@ -149,7 +150,8 @@ TEST(Wheel, ACableWindsOffADrumAndOnToIt) {
   ModelDef def;
   def.gravity_m_per_s2 = {};
   def.bodies = {Ball(1, center, {}, inertia)};
-  std::vector<AttachmentDef> path{{kWorld, end}, Round(0, center, {0, 1, 0}, radius, true, 3), {0, rim}};
+  std::vector<AttachmentDef> path{
+      {kWorld, end}, Round(0, center, {0, 1, 0}, radius, true, 3), {0, rim}};
   ASSERT_NEAR(LengthOf(path), 1 + radius * wound, 1e-13);
   def.cables.push_back(Cable(path, 1e3, 1 + radius * wound - 0.03));
   Batch world = MakeBatch(def);
@@ -170,12 +172,10 @@ TEST(Wheel, ACableWindsOffADrumAndOnToIt) {
 ModelDef Flight() {
   ModelDef def;
   def.gravity_m_per_s2 = {};
-  def.bodies = {Ball(0.3927, {0, 0, 3}, {0.4, 0, 0.4}, 0.01), Ball(0.5, {0, 0, 12}, {0.4, 0, 0.4}, 0.01),
-                Ball(0.4, {-0.6, 0, 8}, {}, 0.05)};
-  def.cables.push_back(Cable({{0, {0, 0, 4}},
-                              Round(2, {-0.6, 0, 8}, {0, 1, 0}, 0.25, true),
-                              {1, {0, 0, 12}}},
-                             1000, 8));
+  def.bodies = {Ball(0.3927, {0, 0, 3}, {0.4, 0, 0.4}, 0.01),
+                Ball(0.5, {0, 0, 12}, {0.4, 0, 0.4}, 0.01), Ball(0.4, {-0.6, 0, 8}, {}, 0.05)};
+  def.cables.push_back(Cable(
+      {{0, {0, 0, 4}}, Round(2, {-0.6, 0, 8}, {0, 1, 0}, 0.25, true), {1, {0, 0, 12}}}, 1000, 8));
   return def;
 }
 
@@ -208,7 +208,8 @@ TEST(Wheel, ForcesAreTheSlopesOfTheLength) {
                                     Round(2, {0.1, 0.2, 0.1}, {0.6, 0.8, 0}, 0.2, true),
                                     Round(3, {0.5, 0, -0.3}, {0, 1, 0}, 0.15, false),
                                     {4, {1.2, -0.2, 0.1}}};
-    path[static_cast<std::size_t>(which)].position_m = path[static_cast<std::size_t>(which)].position_m + shift;
+    path[static_cast<std::size_t>(which)].position_m =
+        path[static_cast<std::size_t>(which)].position_m + shift;
     return Cable(path, 1, 1);
   };
   math::DescribedPath path(cable_of({}, 0));
@@ -216,12 +217,14 @@ TEST(Wheel, ForcesAreTheSlopesOfTheLength) {
   for (int which = 0; which < 5; ++which) {
     Vec3 pull;
     for (int i = 0; i < path.count(); ++i) {
-      if (path.attachment(i) == static_cast<std::size_t>(which)) pull = pull + PullAt(path.count(), path.points(), i);
+      if (path.attachment(i) == static_cast<std::size_t>(which))
+        pull = pull + PullAt(path.count(), path.points(), i);
     }
     const double d = 1e-6;
     const auto slope = [&](const Vec3& way) {
       return (math::DescribedPath(cable_of(d * way, which)).length_m() -
-              math::DescribedPath(cable_of(-d * way, which)).length_m()) / (2 * d);
+              math::DescribedPath(cable_of(-d * way, which)).length_m()) /
+             (2 * d);
     };
     EXPECT_NEAR(slope({1, 0, 0}), -pull.x, 1e-9) << which;
     EXPECT_NEAR(slope({0, 1, 0}), -pull.y, 1e-9) << which;

@@ -66,7 +66,17 @@ struct LinearLaw {
   Num A[R][R], S[R][R], r[R];
 };
 
-/// What a kind of constraint must offer for the solver. `u`: velocities, `l`: impulses, kRows each.
+/// How many rows a constraint has: kRows, or, where that is the most that one may have, `rows`.
+template <class Law>
+TAUT_INLINE constexpr int RowsOf(const Law& law) noexcept {
+  if constexpr (requires { law.rows; }) {
+    return law.rows;
+  } else {
+    return Law::kRows;
+  }
+}
+
+/// What a kind of constraint must offer for the solver. `u`: velocities, `l`: impulses, one a row.
 ///
 ///   Project      l' = P(center - u / (e w)): the law with the compliance e (a share of its own
 ///                inverse masses w) about `center`. Its fixed points are the law's solutions.
@@ -75,7 +85,7 @@ struct LinearLaw {
 ///                Coulomb's cone): the gradient of a convex function that equals Project at u0.
 ///   Stiffen      makes a derivative larger where Newton's steps go too far.
 ///   BranchOf     the branch of l = P(l - u / w) that u and l are on; on it:
-///   Linearize    Newton's equations, with the compliance e,
+///   Linearize    Newton's equations, with the compliance e; or Step, their solution,
 ///   Residual     how far u and l are from the law [m/s].
 ///   SolveAlone   impulses that satisfy the law if nothing else changes.
 ///   Clamp        impulses nearby that the law admits (no pull, inside the cone).
@@ -89,7 +99,9 @@ concept ConstraintLaw = requires(const K k, const typename K::Number* u, typenam
   k.ProjectFrozen(u, u, e, u, l);
   K::Same(branch, branch);
   branch = k.BranchOf(u, u);
-  k.Linearize(branch, u, u, e, linear);
+  requires requires { k.Linearize(branch, u, u, e, linear); } || requires {
+    k.Step(branch, u, u, e, l, l);
+  };
   e = k.Residual(branch, u, u);
   k.SolveAlone(u, l);
   k.Clamp(l);

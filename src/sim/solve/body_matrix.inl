@@ -42,6 +42,7 @@ class BodyMatrix {
   template <class Law>
   [[gnu::noinline]] void Add(const Law& law, const Num* G) noexcept {
     constexpr int R = Law::kRows;
+    if constexpr (requires { law.links[0].row; }) return AddByRows(law, G);
     for (int k = 0; k < law.link_count; ++k) {
       if (law.links[k].body >= p_.count) continue;
       Num j[R][kDofs], gj[R][kDofs];
@@ -87,6 +88,31 @@ class BodyMatrix {
   }
 
  private:
+  /// The same of one whose links have a row each.
+  template <class Law>
+  void AddByRows(const Law& law, const Num* G) noexcept {
+    for (int k = 0; k < law.link_count; ++k) {
+      const int column = law.links[k].body;
+      if (column >= p_.count) continue;
+      Num jk[1][kDofs];
+      Unpack(law.links[k], jk);
+      for (int i = 0; i < law.link_count; ++i) {
+        const int row = law.links[i].body;
+        const Num g = G[law.rows * law.links[i].row + law.links[k].row];
+        if (row >= p_.count || (symmetric_ && row < column) || !Any(!(g == Num::Splat(0.0)))) {
+          continue;
+        }
+        Num* const block = At(row, column);
+        Num ji[1][kDofs];
+        Unpack(law.links[i], ji);
+        for (int x = 0; x < kDofs; ++x) {
+          const Num f = ji[0][x] * g;
+          for (int y = 0; y < kDofs; ++y) block[kDofs * x + y] += f * jk[0][y];
+        }
+      }
+    }
+  }
+
   template <bool kBodiesOnly>
   TAUT_INLINE void SolveAs(Num* x) const noexcept {
     Rising<ForwardL, kBodiesOnly>(x);

@@ -9,6 +9,7 @@
 /// numbered through, pool after pool.
 #pragma once
 
+#include "sim/constraint/cable_chain.h"
 #include "sim/constraint/links.h"
 #include "sim/solve/elimination.h"
 
@@ -63,22 +64,31 @@ template <class... K>
 struct Pools : Pool<K>... {
   static_assert((ConstraintLaw<K> && ...));
 
-  /// Calls f(law, branch, first row, first cell of its kRows x kRows matrix) for each constraint.
+  /// Calls f(law, branch, first row, first cell of its matrix, rows x rows) for each constraint.
   template <class F>
   TAUT_INLINE void ForEach(F&& f) const noexcept {
     int row = 0, cell = 0;
     (Visit(static_cast<const Pool<K>&>(*this), f, row, cell), ...);
   }
-  int rows() const noexcept { return ((Pool<K>::count * K::kRows) + ... + 0); }
-  int cells() const noexcept { return ((Pool<K>::count * K::kRows * K::kRows) + ... + 0); }
+  int rows() const noexcept {
+    int count = 0;
+    ForEach([&](auto& law, auto&, int row, int) { count = row + RowsOf(law); });
+    return count;
+  }
+  int cells() const noexcept {
+    int count = 0;
+    ForEach([&](auto& law, auto&, int, int cell) { count = cell + RowsOf(law) * RowsOf(law); });
+    return count;
+  }
 
  private:
   template <class K1, class F>
   TAUT_INLINE static void Visit(const Pool<K1>& pool, F& f, int& row, int& cell) noexcept {
     for (int i = 0; i < pool.count; ++i) {
       f(pool.items[i], pool.branches[i], row, cell);
-      row += K1::kRows;
-      cell += K1::kRows * K1::kRows;
+      const int rows = RowsOf(pool.items[i]);
+      row += rows;
+      cell += rows * rows;
     }
   }
 };
@@ -106,7 +116,7 @@ template <class Num>
 struct IslandMemory {
   Num *v, *rhs, *direction, *trial_v;                        ///< 6 an unknown.
   Num *l, *u, *best, *start, *center, *projected, *du, *u2;  ///< 1 a row.
-  Num *g, *f;                                                ///< kRows^2, kRows a constraint.
+  Num *g, *f;                                                ///< rows^2, rows a constraint.
   Num* blocks;                                               ///< 36 a block.
   ImpactRows<Num> impacts;
 };
@@ -158,6 +168,9 @@ struct Island {
       at[0] += l[r] * d.x, at[1] += l[r] * d.y, at[2] += l[r] * d.z;
       at[3] += l[r] * a.x, at[4] += l[r] * a.y, at[5] += l[r] * a.z;
     }
+  }
+  TAUT_INLINE static void AddForce(const RowLink<Num>& link, const Num* l, Num* f) noexcept {
+    AddForce(static_cast<const Link<Num, 1>&>(link), l + link.row, f);
   }
   /// The largest of all constraints [m/s]; leaves their branches.
   Num Residual(const Num* u, const Num* l) const noexcept {

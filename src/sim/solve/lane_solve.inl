@@ -4,33 +4,6 @@
 
 namespace taut::sim {
 
-template <class L, class W>
-TAUT_INLINE L OfLane(W x, int lane) noexcept {
-  return L::Splat(x[lane]);
-}
-template <class L, class W>
-TAUT_INLINE V3<L> OfLane(const V3<W>& a, int lane) noexcept {
-  return {L::Splat(a.x[lane]), L::Splat(a.y[lane]), L::Splat(a.z[lane])};
-}
-template <class L, class W>
-TAUT_INLINE S3<L> OfLane(const S3<W>& a, int lane) noexcept {
-  return {L::Splat(a.xx[lane]), L::Splat(a.yy[lane]), L::Splat(a.zz[lane]),
-          L::Splat(a.xy[lane]), L::Splat(a.xz[lane]), L::Splat(a.yz[lane])};
-}
-template <class L, class W>
-TAUT_INLINE void SetLane(V3<W>& to, const V3<L>& from, int lane) noexcept {
-  to.x.Set(lane, from.x[0]);
-  to.y.Set(lane, from.y[0]);
-  to.z.Set(lane, from.z[0]);
-}
-template <class L, class W>
-TAUT_INLINE void SetLane(Q4<W>& to, const Q4<L>& from, int lane) noexcept {
-  to.w.Set(lane, from.w[0]);
-  to.x.Set(lane, from.x[0]);
-  to.y.Set(lane, from.y[0]);
-  to.z.Set(lane, from.z[0]);
-}
-
 /// What solving one lane came to.
 struct LaneResult {
   double residual = 0;
@@ -102,6 +75,10 @@ class LaneSolve {
     return !displaces_ && cable.live[lane_] > 0;
   }
 
+  template <class F>
+  void EachChain(const F& f) const noexcept;
+  void GatherChains(Pool<CableChain<L>>& pool) noexcept;
+
   /// root[b]: the lowest body of b's island, for islands with a body that `asks` for it; else -1.
   template <class Asks>
   void FindIslands(const Asks& asks) noexcept {
@@ -120,6 +97,7 @@ class LaneSolve {
         first = body;
       }
     }
+    EachChain([&](int, int a, int b) { Join(a, b); });
     for (int i = 0; i < m_.joint_count; ++i) {
       const JointTable& j = m_.joints[i];
       if (j.a_moves && j.b_moves) Join(j.a, j.b);
@@ -155,6 +133,7 @@ class LaneSolve {
     GatherContacts(island.pools);
     GatherCables(island.pools);
     GatherJoints(island.pools, island.pools);
+    GatherChains(island.pools);
     island.rows = island.pools.rows();
     int row = 0;
     Pool<ContactPoint<L, 2>>& contacts = island.pools;
@@ -170,6 +149,10 @@ class LaneSolve {
       for (int k = 0; k < 3; ++k) {
         island.m.l[row++] = OfLane<L>(work_.joints[friction_source_[i] + k].l[0], lane_);
       }
+    }
+    Pool<CableChain<L>>& chains = island.pools;
+    for (int i = 0; i < chains.count; ++i) {
+      for (int k = 0; k < chains.items[i].rows; ++k) island.m.l[row++] = chains.items[i].spans[k].l;
     }
     return row > 0;
   }
@@ -197,6 +180,9 @@ class LaneSolve {
         }
       }
     }
+    EachChain([&](int, int a, int b) {
+      if (mem_.root[a] == island_root_) graph.Join(mem_.local[a], mem_.local[b]);
+    });
     for (int i = 0; i < m_.joint_count; ++i) {
       const JointTable& j = m_.joints[i];
       if (!j.a_moves || !j.b_moves || mem_.root[j.a] != island_root_) continue;
@@ -324,6 +310,7 @@ class LaneSolve {
     }
     friction_source_ = joint_source_ + pool.count;
     GatherFrictions(frictions);
+    chain_source_ = friction_source_ + frictions.count;
   }
 
   /// Of ball joints: three rows are one law. A displacement has none.
@@ -376,6 +363,11 @@ class LaneSolve {
         work_.joints[friction_source_[i] + k].l[0].Set(lane_, (l++)->v);
       }
     }
+    const Pool<CableChain<L>>& chains = island.pools;
+    for (int i = 0; i < chains.count; ++i) {
+      ChainSpan<W>* const spans = work_.spans + m_.cables[chain_source_[i]].first_span;
+      for (int k = 0; k < chains.items[i].rows; ++k) spans[k].l.Set(lane_, (l++)->v);
+    }
     for (int b = 0; b < count_; ++b) {
       const Twist<L> t = island.Load(island.m.v + kDofs * b);
       BodyWork<W>& body = work_.bodies[island.bodies[b].body];
@@ -394,6 +386,7 @@ class LaneSolve {
   bool displaces_ = false;
   int count_ = 0, island_root_ = 0;
   int *cable_source_ = nullptr, *joint_source_ = nullptr, *friction_source_ = nullptr;
+  int* chain_source_ = nullptr;
 };
 
 }  // namespace taut::sim

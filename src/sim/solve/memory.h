@@ -1,6 +1,7 @@
 /// The solver's memory, whose size follows from the model.
 #pragma once
 
+#include "sim/constraint/cable_chain.h"
 #include "sim/constraint/cable_row.h"
 #include "sim/constraint/joint_row.h"
 #include "sim/constraint/turn_friction.h"
@@ -26,7 +27,8 @@ struct Room {
 
 /// The kinds of constraints that a step knows.
 template <class Num>
-using StepPools = Pools<ContactPoint<Num, 2>, CableRow<Num>, JointRow<Num>, TurnFriction<Num>>;
+using StepPools =
+    Pools<ContactPoint<Num, 2>, CableRow<Num>, JointRow<Num>, TurnFriction<Num>, CableChain<Num>>;
 
 /// What solving one lane's islands takes. Systems with more blocks than there is room for (over 128
 /// bodies that are all tied together) are left to the sweeps.
@@ -42,20 +44,25 @@ struct LaneMemory {
   int block_capacity;
   Island<Num, StepPools<Num>> island;
   Link<Num, 1>* links;
+  RowLink<Num>* chain_links;  ///< Those of a cable from twice its first attachment on.
+  ChainSpan<Num>* spans;
 
   void Take(const View& m, Room& room) noexcept {
     const int64_t n = m.body_count, contacts = m.slot_count + m.pair_capacity;
     const int64_t single = m.cable_count + m.joint_row_count;
-    const int64_t rows = 3 * contacts + single;
-    const int64_t cells = 9 * (contacts + m.turn_friction_count) + single;
+    const int64_t rows = 3 * contacts + single + m.span_count;
+    const int64_t cells =
+        9 * (contacts + m.turn_friction_count) + single + kMostSpans * m.span_count;
     const int64_t blocks = n < kFullBodies ? n * n : kFullBodies * n;
     block_capacity = static_cast<int>(blocks);
     pairs = room.Take<Contact<Num, 2>>(m.pair_capacity);
     int** const per_body[] = {&root, &local, &bodies, &order, &place};
     for (int** list : per_body) *list = room.Take<int>(n + 1);
-    source = room.Take<int>(contacts + single);
+    source = room.Take<int>(contacts + single + m.chain_count);
     graph.bits = room.Take<uint64_t>(n * BodyGraph::WordsFor(m.body_count));
     links = room.Take<Link<Num, 1>>(m.attachment_count);
+    chain_links = room.Take<RowLink<Num>>(m.chain_count > 0 ? 2 * m.attachment_count : 0);
+    spans = room.Take<ChainSpan<Num>>(m.span_count);
     island.bodies = room.Take<Unknown<Num>>(n);
     island.pattern.slot = room.Take<int>(n * n);
     island.pattern.below = room.Take<int>(blocks);
@@ -72,6 +79,9 @@ struct LaneMemory {
     Pool<TurnFriction<Num>>& frictions = island.pools;
     frictions.items = room.Take<TurnFriction<Num>>(m.turn_friction_count);
     frictions.branches = room.Take<typename TurnFriction<Num>::Branch>(m.turn_friction_count);
+    Pool<CableChain<Num>>& chains = island.pools;
+    chains.items = room.Take<CableChain<Num>>(m.chain_count);
+    chains.branches = room.Take<typename CableChain<Num>::Branch>(m.chain_count);
     IslandMemory<Num>& x = island.m;
     Num** const per_dof[] = {&x.v, &x.rhs, &x.direction, &x.trial_v};
     for (Num** list : per_dof) *list = room.Take<Num>(kDofs * n);

@@ -48,6 +48,19 @@ TAUT_INLINE bool SolveLaw(const LinearLaw<Num, R>& linear, Num* g, Num* f) noexc
   return symmetric;
 }
 
+/// g and f of a law near u and l, with the compliance e.
+template <class Law, class Num>
+TAUT_INLINE bool StepOf(const Law& law, const typename Law::Branch& branch, const Num* u,
+                        const Num* l, Num e, Num* g, Num* f) noexcept {
+  if constexpr (requires { law.Step(branch, u, l, e, g, f); }) {
+    return law.Step(branch, u, l, e, g, f);
+  } else {
+    LinearLaw<Num, Law::kRows> linear;
+    law.Linearize(branch, u, l, e, linear);
+    return SolveLaw(linear, g, f);
+  }
+}
+
 /// What has been done for an island, and what may be.
 struct SolverWork {
   int linear_solves = 0, limit = 0;
@@ -65,10 +78,7 @@ bool NewtonStep(Island<Num, P>& island, SolverWork& work) noexcept {
   for (int i = 0; i < kDofs * island.body_count; ++i) m.rhs[i] = zero;
   bool symmetric = true;
   island.pools.ForEach([&](auto& law, auto& branch, int row, int cell) {
-    constexpr int R = LawOf<decltype(law)>::kRows;
-    LinearLaw<Num, R> linear;
-    law.Linearize(branch, m.u + row, m.l + row, e, linear);
-    const bool even = SolveLaw(linear, m.g + cell, m.f + row);
+    const bool even = StepOf(law, branch, m.u + row, m.l + row, e, m.g + cell, m.f + row);
     symmetric = symmetric && even;
     island.AddForce(law, m.f + row, m.rhs);
   });
@@ -79,7 +89,7 @@ bool NewtonStep(Island<Num, P>& island, SolverWork& work) noexcept {
   matrix.Solve(m.rhs);
   island.Measure(m.rhs, m.du);
   island.pools.ForEach([&](auto& law, auto&, int row, int cell) {
-    constexpr int R = LawOf<decltype(law)>::kRows;
+    const int R = RowsOf(law);
     for (int i = 0; i < R; ++i) {
       Num dl = m.f[row + i];
       for (int j = 0; j < R; ++j) dl -= m.g[cell + R * i + j] * m.du[row + j];

@@ -124,7 +124,7 @@ class Proximal {
       law.Derivative(branch, e, m_.g + cell);
       if (theta < 1) law.Stiffen(branch, Num::Splat(1 - theta), m_.g + cell);
       Num minus[LawOf<decltype(law)>::kRows];
-      for (int r = 0; r < LawOf<decltype(law)>::kRows; ++r) minus[r] = -m_.projected[row + r];
+      for (int r = 0; r < RowsOf(law); ++r) minus[r] = -m_.projected[row + r];
       island_.AddForce(law, minus, m_.rhs);
     });
   }
@@ -154,7 +154,7 @@ class Proximal {
   /// Without the change of friction with the normal impulse the matrix is positive definite.
   void DropCoupling() noexcept {
     island_.pools.ForEach([&](auto& law, auto&, int, int cell) {
-      constexpr int R = LawOf<decltype(law)>::kRows;
+      const int R = RowsOf(law);
       for (int i = 0; i < R; ++i) {
         for (int j = 0; j < i; ++j) {
           const Num upper = m_.g[cell + R * j + i];
@@ -170,10 +170,11 @@ class Proximal {
     const Num step = Num::Splat(alpha);
     island_.pools.ForEach([&](auto& law, auto&, int row, int) {
       constexpr int R = LawOf<decltype(law)>::kRows;
+      const int rows = RowsOf(law);
       Num u[R], l[R];
-      for (int r = 0; r < R; ++r) u[r] = m_.u[row + r] + step * m_.du[row + r];
+      for (int r = 0; r < rows; ++r) u[r] = m_.u[row + r] + step * m_.du[row + r];
       law.ProjectFrozen(u, m_.center + row, e, m_.projected + row, l);
-      for (int r = 0; r < R; ++r) sum -= l[r] * m_.du[row + r];
+      for (int r = 0; r < rows; ++r) sum -= l[r] * m_.du[row + r];
     });
     return sum[0];
   }
@@ -227,7 +228,7 @@ class Proximal {
   /// l <- l(v) - G J d
   void TakeLinear() noexcept {
     island_.pools.ForEach([&](auto& law, auto&, int row, int cell) {
-      constexpr int R = LawOf<decltype(law)>::kRows;
+      const int R = RowsOf(law);
       for (int i = 0; i < R; ++i) {
         Num l = m_.projected[row + i];
         for (int j = 0; j < R; ++j) l -= m_.g[cell + R * i + j] * m_.du[row + j];

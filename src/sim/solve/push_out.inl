@@ -80,6 +80,14 @@ V3<simd::Lane<W>> LaneSolve<W>::Pending(int body) const noexcept {
       sum += OfLane<L>(cable.l[0] * cable.links[k].ang[0], lane_);
     }
   }
+  for (int c = 0; m_.chain_count > 0 && c < m_.cable_count; ++c) {
+    const CableTable& cable = m_.cables[c];
+    const RowLink<W>* const links = work_.chain_links + 2 * cable.first_attachment;
+    for (int k = 0; cable.span_count > 0 && k < work_.chain_link_count[c]; ++k) {
+      if (links[k].body != body) continue;
+      sum += OfLane<L>(work_.spans[cable.first_span + links[k].row].l * links[k].ang[0], lane_);
+    }
+  }
   for (int i = 0; i < m_.joint_row_count; ++i) {
     const HeldRow<W>& row = work_.joints[i];
     if (!(row.live[lane_] > 0)) continue;

@@ -11,15 +11,16 @@ double Sweep(Island<Num, P>& island, int count) noexcept {
   for (int sweep = 0; sweep < count; ++sweep) {
     island.pools.ForEach([&](auto& law, auto&, int row, int) {
       constexpr int R = LawOf<decltype(law)>::kRows;
+      const int rows = RowsOf(law);
       Num u[R], l[R];
-      for (int r = 0; r < R; ++r) u[r] = Num::Splat(0.0), l[r] = m.l[row + r];
+      for (int r = 0; r < rows; ++r) u[r] = Num::Splat(0.0), l[r] = m.l[row + r];
       for (int i = 0; i < law.link_count; ++i) {
         const Twist<Num> t = island.Load(m.v + kDofs * law.links[i].body);
         AddVelocity(law.links[i], t.v, t.w, u);
       }
       law.SolveAlone(u, l);
       Num change[R];
-      for (int r = 0; r < R; ++r) change[r] = l[r] - m.l[row + r], m.l[row + r] = l[r];
+      for (int r = 0; r < rows; ++r) change[r] = l[r] - m.l[row + r], m.l[row + r] = l[r];
       for (int i = 0; i < law.link_count; ++i) {
         Num* const at = m.v + kDofs * law.links[i].body;
         Twist<Num> t = island.Load(at);

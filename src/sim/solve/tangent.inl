@@ -26,11 +26,9 @@ class IslandTangent {
     if (!island_.has_matrix) return false;
     bool symmetric = true;
     island_.pools.ForEach([&](auto& law, auto& branch, int row, int cell) {
-      constexpr int R = LawOf<decltype(law)>::kRows;
-      LinearLaw<Num, R> linear;
       branch = law.BranchOf(m_.u + row, m_.l + row);
-      law.Linearize(branch, m_.u + row, m_.l + row, Num::Splat(compliance), linear);
-      const bool even = SolveLaw(linear, m_.g + cell, m_.f + row);
+      const bool even = StepOf(law, branch, m_.u + row, m_.l + row, Num::Splat(compliance),
+                               m_.g + cell, m_.f + row);
       symmetric = symmetric && even;
     });
     matrix_.Start(island_.bodies, symmetric);
@@ -87,7 +85,7 @@ class IslandTangent {
   /// out <- -G x, or -G^T x; not in place.
   void TimesMinusG(const Num* x, Num* out, bool transposed) const noexcept {
     island_.pools.ForEach([&](auto& law, auto&, int row, int cell) {
-      constexpr int R = LawOf<decltype(law)>::kRows;
+      const int R = RowsOf(law);
       const int along = transposed ? 1 : R, across = transposed ? R : 1;
       for (int i = 0; i < R; ++i) {
         out[row + i] = Num::Splat(0.0);

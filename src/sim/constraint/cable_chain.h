@@ -1,0 +1,160 @@
+/// A kind of constraint: a cable with friction at what it runs over (docs/theory/cables.md, eq.
+/// 16-19). A row a span; its velocity u is the rate at which the span shortens after the step, its
+/// impulse the span's mean tension over the step. The impulses follow from the velocities of all
+/// spans together, by the capstan's law.
+#pragma once
+
+#include "sim/constraint/capstan.h"
+#include "sim/constraint/links.h"
+
+namespace taut::sim {
+
+/// A link of one row.
+template <class Num>
+struct RowLink : Link<Num, 1> {
+  int row;
+};
+template <class Num>
+TAUT_INLINE void AddVelocity(const RowLink<Num>& link, const V3<Num>& v, const V3<Num>& w,
+                             Num* u) noexcept {
+  u[link.row] += Dot(link.lin[0], v) + Dot(link.ang[0], w);
+}
+template <class Num>
+TAUT_INLINE void Push(const RowLink<Num>& link, const Num* l, V3<Num>& v, V3<Num>& w) noexcept {
+  Push(static_cast<const Link<Num, 1>&>(link), l + link.row, v, w);
+}
+
+/// A span while its tension is found. Its mean stretch over the step is `stretch` - h / 4 u before
+/// it slips, and the mean rate of that `rate` - u / 2.
+template <class Num>
+struct ChainSpan {
+  Num stretch, rate;              ///< [m], [m/s]
+  Num stiffness, slip_stiffness;  ///< Per stretch, per rest length that slips in [N/m].
+  Num damping;                    ///< [N s/m]
+  Num ratio;                      ///< Of the place behind it: exp(mu theta).
+  Num l;                          ///< Impulse [N s].
+};
+
+template <class Num>
+struct CableChain {
+  static_assert(Num::kLanes == 1);
+  using Number = Num;
+  static constexpr int kRows = kMostSpans;  ///< At most:
+
+  int rows;
+  Num h;  ///< The step [s].
+  const ChainSpan<Num>* spans;
+  int link_count;
+  RowLink<Num>* links;
+  Num A[kMostSpans];  ///< Inverse effective masses of the spans [1/kg].
+
+  struct Branch {
+    Capstan<Num> law;
+    Num wish[kMostSpans];   ///< Impulses [N s].
+    Num bends[kMostSpans];  ///< More rest length that the span could take, per -u [s].
+  };
+  static bool Same(const Branch& a, const Branch& b) noexcept {
+    bool same = true;
+    for (int i = 0; i < a.law.count; ++i) {
+      same = same && a.law.upper[i] == b.law.upper[i] && a.law.first[i] == b.law.first[i] &&
+             (a.law.tension[i] > 0.0) == (b.law.tension[i] > 0.0) &&
+             (i + 1 == a.law.count || a.law.way[i] == b.law.way[i]);
+    }
+    return same;
+  }
+
+  void FinishMasses() noexcept {
+    for (int i = 0; i < rows; ++i) A[i] = Num::Splat(0.0);
+    for (int i = 0; i < link_count; ++i) AddCoupling(links[i], links[i], &A[links[i].row]);
+  }
+
+  /// The law is a function of the velocities.
+  Branch BranchOf(const Num* u, const Num*) const noexcept {
+    Branch b;
+    const double step = h[0];
+    b.law.count = rows;
+    for (int i = 0; i < rows; ++i) {
+      const ChainSpan<Num>& s = spans[i];
+      const double k = s.stiffness[0], slips = s.slip_stiffness[0], c = s.damping[0];
+      const double stretch = s.stretch[0] - 0.25 * step * u[i][0];
+      const double rate = s.rate[0] - 0.5 * u[i][0];
+      // The damper's part is no more than what it can have come by since the span got taut.
+      b.law.spans[i].p = 1.0 / (slips + c / step);
+      b.law.spans[i].q = 1.0 / (slips + 2.0 * c / step);
+      b.law.spans[i].a = (k * stretch + c * rate) * b.law.spans[i].p;
+      b.law.spans[i].e = stretch;
+      b.law.ratio[i] = s.ratio[0];
+    }
+    b.law.Solve();
+    for (int i = 0; i < rows; ++i) {
+      const ChainSpan<Num>& s = spans[i];
+      b.wish[i] = h * Num::Splat(b.law.tension[i]);
+      b.bends[i] = Num::Splat(0.25) * h;
+      if (!b.law.upper[i]) {
+        b.bends[i] =
+            Num::Splat(b.law.spans[i].p) * (b.bends[i] * s.stiffness + Num::Splat(0.5) * s.damping);
+      }
+    }
+    return b;
+  }
+  Branch Project(const Num* u, const Num*, Num, Num* out) const noexcept {
+    const Branch b = BranchOf(u, out);
+    for (int i = 0; i < rows; ++i) out[i] = b.wish[i];
+    return b;
+  }
+  void ProjectFrozen(const Num* u, const Num* center, Num e, const Num*, Num* out) const noexcept {
+    Project(u, center, e, out);
+  }
+  void Derivative(const Branch& b, Num, Num* g) const noexcept {
+    for (int i = 0; i < rows; ++i) {
+      for (int j = 0; j < rows; ++j) {
+        const bool together = b.law.first[i] == b.law.first[j] && b.law.tension[i] > 0.0;
+        g[rows * i + j] = Num::Splat(0.0);
+        if (!together) continue;
+        g[rows * i + j] = h * Num::Splat(b.law.weight[i] / b.law.slope[i]) * b.bends[j];
+      }
+    }
+  }
+  void Stiffen(const Branch&, Num, Num*) const noexcept {}
+
+  Num Residual(const Branch& b, const Num*, const Num* l_now) const noexcept {
+    const Num one = Num::Splat(1.0);
+    Num worst = Num::Splat(0.0);
+    for (int i = 0; i < rows; ++i) {
+      Num gain = Num::Splat(0.0);
+      if (b.law.tension[i] > 0.0) {
+        gain = h * Num::Splat(b.law.weight[i] / b.law.slope[i]) * b.bends[i];
+      }
+      worst = Max(Abs(b.wish[i] - l_now[i]) * A[i] / (one + gain * A[i]), worst);
+    }
+    return worst;
+  }
+  /// dl = f - g du. Returns whether g is symmetric.
+  bool Step(const Branch& b, const Num*, const Num* l_now, Num e, Num* g, Num* f) const noexcept {
+    Derivative(b, e, g);
+    bool symmetric = true;
+    for (int i = 0; i < rows; ++i) {
+      f[i] = b.wish[i] - l_now[i];
+      for (int j = 0; j < i; ++j) symmetric = symmetric && g[rows * i + j].v == g[rows * j + i].v;
+    }
+    return symmetric;
+  }
+  /// Nearer to its own solution.
+  void SolveAlone(const Num* u, Num* l_now) const noexcept {
+    const Branch b = BranchOf(u, l_now);
+    const Num one = Num::Splat(1.0);
+    for (int i = 0; i < rows; ++i) {
+      Num gain = Num::Splat(0.0);
+      for (int j = 0; j < rows; ++j) {
+        if (b.law.first[i] != b.law.first[j] || !(b.law.tension[i] > 0.0)) continue;
+        gain += h * Num::Splat(b.law.weight[i] / b.law.slope[i]) * b.bends[j] * A[j];
+      }
+      l_now[i] += (b.wish[i] - l_now[i]) / (one + gain);
+    }
+  }
+  void Clamp(Num* l_now) const noexcept {
+    for (int i = 0; i < rows; ++i) l_now[i] = Max(l_now[i], Num::Splat(0.0));
+  }
+};
+
+}  // namespace taut::sim

@@ -1,0 +1,47 @@
+/// Cables with friction in a lane's islands (lane_solve.inl).
+
+namespace taut::sim {
+
+/// f(cable, a, b) for all pairs of moving bodies that a cable with friction ties.
+template <class W>
+template <class F>
+void LaneSolve<W>::EachChain(const F& f) const noexcept {
+  if (m_.chain_count == 0 || displaces_) return;
+  for (int c = 0; c < m_.cable_count; ++c) {
+    const CableTable& cable = m_.cables[c];
+    const AttachmentTable* const at = m_.attachments + cable.first_attachment;
+    for (int i = 0; cable.span_count > 0 && i < cable.attachment_count; ++i) {
+      for (int k = 0; k < i; ++k) {
+        if (Moves(at[i].body) && Moves(at[k].body)) f(c, at[i].body, at[k].body);
+      }
+    }
+  }
+}
+
+/// Those that pull at bodies of the island.
+template <class W>
+void LaneSolve<W>::GatherChains(Pool<CableChain<L>>& pool) noexcept {
+  pool.count = 0;
+  for (int c = 0; m_.chain_count > 0 && !displaces_ && c < m_.cable_count; ++c) {
+    const CableTable& cable = m_.cables[c];
+    if (cable.span_count == 0) continue;
+    const RowLink<W>* const from = work_.chain_links + 2 * cable.first_attachment;
+    RowLink<L>* const links = mem_.chain_links + 2 * cable.first_attachment;
+    CableChain<L>& to = pool.items[pool.count];
+    to = ChainOfLane<L>(cable, work_, mem_.spans + cable.first_span, lane_, h_);
+    to.links = links;
+    bool pulls = false;
+    for (int k = 0; k < work_.chain_link_count[c]; ++k) {
+      const bool mine = Moves(from[k].body) && mem_.root[from[k].body] == island_root_;
+      if (!mine && !m_.HasMotion(from[k].body)) continue;
+      pulls = pulls || mine;
+      GatherLink(from[k], links[to.link_count]);
+      links[to.link_count++].row = from[k].row;
+    }
+    if (!pulls) continue;
+    chain_source_[pool.count++] = c;
+    to.FinishMasses();
+  }
+}
+
+}  // namespace taut::sim
