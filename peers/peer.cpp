@@ -87,6 +87,11 @@ std::string Unsupported(const ModelDef& def) {
     if (f.split != HeightFieldDef::Split::kSame) return "height fields split other than the same";
   }
   if (!def.hulls.empty()) return "hulls";
+  for (const CableDef& cable : def.cables) {
+    for (const AttachmentDef& at : cable.attachments) {
+      if (at.wheel || at.friction > 0) return "cables with friction or over wheels";
+    }
+  }
   if (!def.motions.empty()) return "bodies that a program moves";
   if (!def.joints.empty() || !def.apart.empty()) return "joints, and bodies that are kept apart";
   for (const BodyDef& body : def.bodies) {

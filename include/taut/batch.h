@@ -92,6 +92,13 @@ struct CableRows : ReadingRows {
   double* rest_length_target_m = nullptr;  ///< As `SetRestLengthTarget` sets them; may be written.
 };
 
+/// A point of a cable's path.
+struct CablePoint {
+  int body = kWorld;
+  Vec3 position_m;  ///< In W.
+  Vec3 force_n;     ///< Of the cable on the body there, in W.
+};
+
 /// A part of a cable between places where it may slip.
 struct CableSpanState {
   double length_m = 0;       ///< With half of the arcs at its ends.
@@ -231,6 +238,11 @@ class Batch {
   CableSpanState CableSpan(int world, int cable, int span) const noexcept;
   /// What friction along a cable has taken since the start [J].
   double CableFrictionLoss(int world, int cable) const noexcept;
+  /// The angle about a cable's wheel, the first of which is 0, from the point before it to that
+  /// behind it, with all turns, counter-clockwise about its axis [rad].
+  double WheelAngle(int world, int cable, int wheel) const noexcept;
+  /// Where a cable is held, and where it arrives at wheels and leaves them: what pulls at bodies.
+  std::vector<CablePoint> CablePath(int world, int cable) const;
   /// What `Cable` says, of all cables of a group of `lanes()` worlds at once, and their commands:
   /// for controllers that run over lanes. Group g holds the worlds from g * lanes() on; lanes
   /// behind the last world are there, too.

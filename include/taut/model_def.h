@@ -148,6 +148,7 @@ struct AttachmentDef {
 /// at attachments: then each span between those has its own (docs/theory/cables.md, section 5), and
 /// the actuator winds at the first attachment.
 struct CableDef {
+  static constexpr int kMostSpans = 16;  ///< That friction parts.
   std::string name;
   std::vector<AttachmentDef> attachments;  ///< >= 2, in order along the cable.
   double stiffness_n_per_m = 0.0;          ///< k > 0.

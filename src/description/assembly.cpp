@@ -219,6 +219,7 @@ class Assembler {
   /// Keeps a pair whose nodes all exist (the others were complained about).
   void Add(PlacedPair pair, const PairText& text, std::size_t node_count) {
     if (pair.nodes.size() != node_count) return;
+    pair.route = text.route;
     if (pair.instance < 0) {
       pair.instance = assembly_.nodes[pair.nodes[0]].instance;
       for (const int node : pair.nodes) {

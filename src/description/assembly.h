@@ -32,6 +32,7 @@ struct PlacedPair {
   int instance = -1;  ///< -1: joins several.
   std::vector<int> nodes;
   Tags tags;
+  std::vector<RouteText> route = {};  ///< Empty, or one a node.
 };
 
 /// What a builder could match if there were copies enough: the tags of one node or pair of the

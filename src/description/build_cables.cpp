@@ -5,6 +5,7 @@
 #include "base/fixed.h"
 #include "base/union_find.h"
 #include "description/build.h"
+#include "description/follow_route.h"
 #include "description/once.h"
 #include "math/cable_path.h"
 #include "math/vec.h"
@@ -54,6 +55,7 @@ class CableMaker {
       cable.attachments.push_back({body_of_node_[node], assembly_.nodes[node].position_m});
     }
     if (builder.ends_on_surface) MoveEndsToSurface(pair, builder, cable);
+    if (!pair.route.empty()) FollowRoute(pair, assembly_, cable, once_);
     if (CheckPath(pair, builder, cable)) SetRestLength(pair, builder, cable);
     robot_.def.cables.push_back(std::move(cable));
     robot_.cable_tags.push_back(pair.tags);
@@ -85,7 +87,11 @@ class CableMaker {
       cable.attachments[end].position_m = nodes[end].position_m + (radius / length) * leg;
       return radius;
     };
-    const double first_radius = move(0, 1), last_radius = move(last, last - 1);
+    const auto ends_here = [&](std::size_t end) {
+      return pair.route.empty() || !pair.route[end].is_drum();
+    };
+    const double first_radius = ends_here(0) ? move(0, 1) : 0.0;
+    const double last_radius = ends_here(last) ? move(last, last - 1) : 0.0;
     if (last == 1 && LengthBetween(nodes[0], nodes[1]) < first_radius + last_radius) {
       once_(pair.at, "the spheres at the ends of the cable \"" + pair.name + "\" overlap",
             "nothing is left for the cable between their surfaces");
@@ -94,18 +100,23 @@ class CableMaker {
 
   /// False if there is no sensible length.
   bool CheckPath(const PlacedPair& pair, const CableText&, const CableDef& cable) {
-    bool one_body = true;
-    for (std::size_t i = 1; i < cable.attachments.size(); ++i) {
-      one_body = one_body && cable.attachments[i].body == cable.attachments[0].body;
-      const double leg = LengthBetween(cable.attachments[i - 1], cable.attachments[i]);
-      if (std::isnan(leg)) return false;
-      if (leg >= kShortest_m) continue;
+    for (std::size_t i = 1; i < pair.nodes.size(); ++i) {
+      const PlacedNode &from = assembly_.nodes[pair.nodes[i - 1]],
+                       &to = assembly_.nodes[pair.nodes[i]];
+      const Vec3 leg = to.position_m - from.position_m;
+      const double length = std::sqrt(Dot(leg, leg));
+      if (std::isnan(length)) return false;
+      if (length >= kShortest_m) continue;
       once_(pair.at,
-            "the cable \"" + pair.name + "\" has no length between \"" +
-                assembly_.nodes[pair.nodes[i - 1]].name + "\" and \"" +
-                assembly_.nodes[pair.nodes[i]].name + "\"",
+            "the cable \"" + pair.name + "\" has no length between \"" + from.name + "\" and \"" +
+                to.name + "\"",
             "these nodes are in one place");
       return false;
+    }
+    if (std::isnan(CableLength(cable))) return false;
+    bool one_body = true;
+    for (const AttachmentDef& at : cable.attachments) {
+      one_body = one_body && at.body == cable.attachments[0].body;
     }
     if (one_body && model_.builders_complete && assembly_.complete) {
       const int body = cable.attachments[0].body;

@@ -58,17 +58,48 @@ void Check(const MapReader& map, NodeText& node);
 bool ReadShort(const Value& value, const std::string& path, const Scope& scope, NodeText& out);
 
 template <class Io>
+void Keys(Io& io, Like<RouteText> auto& r) {
+  io.Map("", "pair.route",
+         "What a cable runs through or round: its two ends, eyelets, pulleys and drums. A node's "
+         "name alone is an end or an eyelet without friction.",
+         R"({"pulley": "wheel", "axis": [0, 1, 0], "radius_m": 0.05, "side": "left"})");
+  io.OneOf({"eyelet", "pulley", "drum"});
+  io("eyelet", r.eyelet, "The node where the cable slides through.");
+  io("pulley", r.pulley,
+     "The node in the middle of a wheel that the cable runs over, and that belongs to the node's "
+     "body. Where the cable does not touch it, it passes by.");
+  io("drum", r.drum, "The node in the middle of a wheel on whose rim the cable ends.");
+  io("friction", r.friction, Bound::kNonNegative,
+     "mu: before it slips here, the tensions on both sides may differ by the factor exp(mu times "
+     "the angle by which the cable turns). Not at an end.");
+  io("axis", r.axis, kDirection,
+     "Of a pulley or drum, in the part's frame; in the world's if the pair joins several parts.");
+  io("radius_m", r.radius_m, Bound::kPositive, "Of a pulley or drum, to the cable's middle.");
+  io("side", r.left, kSides,
+     "Of a pulley or drum: on which side of it the wheel is to who goes along the cable, with the "
+     "axis upwards. Round a wheel on the `left` it goes counter-clockwise.");
+  io("turns", r.turns, Bound::kNonNegative,
+     "Of a pulley: whole turns more than it takes to get by. Of a drum: all that is wound up.");
+}
+void Check(const MapReader& map, RouteText& element);
+/// A node's name alone. False if it is a map.
+bool ReadShort(const Value& value, const std::string& path, const Scope& scope, RouteText& out);
+
+template <class Io>
 void Keys(Io& io, Like<PairsText> auto& p) {
   io.Map("", "pair", "Two nodes that something joins; or several such pairs with the same tags.",
          R"({"nodes": ["right", "left"], "tags": ["rod"]})");
   io("name", p.name, kName,
      "Name of what becomes of it, such as the cable; also a tag of it. If absent, the nodes' "
      "names: right-left.");
-  io.OneOf({"nodes", "each"});
+  io.OneOf({"nodes", "each", "route"});
   io.Rule(R"("not": {"required": ["name", "each"]})");
   io("nodes", p.nodes,
      "The nodes. A cable may have more than two: it slides through those in between.");
   io("each", p.each, "Instead of `nodes`: a list of pairs with the same tags.");
+  io("route", p.route,
+     "Instead of `nodes`, of a cable: its ends, eyelets with friction, pulleys and drums, in order "
+     "along it.");
   io("tags", p.tags, "Tags for builders and controllers to match.");
 }
 void Check(const MapReader& map, PairsText& pairs);

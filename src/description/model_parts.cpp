@@ -46,7 +46,18 @@ std::vector<PairText> ToPairs(const MapReader& map, std::string_view key,
   std::vector<PairText> pairs;
   for (const PairsText& entry : entries) {
     PairText pair{entry.name, entry.at, {}, entry.tags};
-    if (entry.nodes.value && entry.each.value) continue;
+    if (map.Has(key) &&
+        (entry.nodes.value != nullptr) + (entry.each.value != nullptr) + (!entry.route.empty()) !=
+            1) {
+      continue;
+    }
+    if (!entry.route.empty()) {
+      pair.route = entry.route;
+      for (const RouteText& element : entry.route) pair.nodes.push_back(element.node());
+      const auto nameless = [](const Placed& node) { return node.text.empty(); };
+      const bool whole = std::none_of(pair.nodes.begin(), pair.nodes.end(), nameless);
+      if (whole && pair.nodes.size() > 1) pairs.push_back(pair);
+    }
     if (entry.nodes.value) {
       ReadPairNodes(*entry.nodes.value, what + ".nodes", placed_names, scope, pair, pairs);
     }
@@ -68,6 +79,30 @@ bool AllGood(const std::vector<PairsText>& entries) {
   return std::all_of(entries.begin(), entries.end(), [](const PairsText& p) { return p.good; });
 }
 
+/// Ends are ends, and all else is in between.
+void CheckRoute(const MapReader& map, const PairsText& pairs) {
+  const Scope& scope = map.scope();
+  const Value* const value = map.Find("route");
+  if (value == nullptr || value->kind != Value::Kind::kSequence) return;
+  const std::string what = map.Path("route");
+  const std::vector<RouteText>& route = pairs.route;
+  if (route.size() < 2) {
+    map.Error("route", what + " must name 2 or more nodes, got " + std::to_string(route.size()));
+  }
+  for (std::size_t i = 0; i < route.size(); ++i) {
+    const bool end = i == 0 || i + 1 == route.size();
+    if (end && route[i].is_pulley()) {
+      scope.out.Error(route[i].at, what + " ends at a pulley",
+                      "a cable ends at a node or on a drum");
+    } else if (end && !route[i].is_drum() && route[i].friction > 0) {
+      scope.out.Error(route[i].at, what + ": friction at an end, where the cable is fixed");
+    } else if (!end && route[i].is_drum()) {
+      scope.out.Error(route[i].at, what + " has a drum on the way",
+                      "a cable ends on a drum; what it runs over is a `pulley`");
+    }
+  }
+}
+
 }  // namespace
 
 void Check(const MapReader& map, NodeText& node) { CheckTags(map, node.tags); }
@@ -83,8 +118,34 @@ bool ReadShort(const Value& value, const std::string& path, const Scope& scope, 
   return true;
 }
 
+bool ReadShort(const Value& value, const std::string& path, const Scope& scope, RouteText& out) {
+  out.at = value.at;
+  if (value.kind == Value::Kind::kMap) return false;
+  out.eyelet = {ReadText(value, path, scope), value.at};
+  return true;
+}
+
+void Check(const MapReader& map, RouteText& element) {
+  element.at = map.at();
+  const bool round = element.is_pulley() || element.is_drum();
+  const char* const what = element.is_drum() ? "a drum" : "a pulley";
+  for (const char* key : {"axis", "radius_m", "side"}) {
+    if (round && !map.Has(key)) map.Error(key, what + std::string(" needs ") + map.Path(key));
+  }
+  for (const char* key : {"axis", "radius_m", "side", "turns"}) {
+    if (round || !map.Has(key)) continue;
+    map.Error(key, map.Path(key) + " is of pulleys and drums, not of eyelets");
+  }
+  const double turns = element.turns;
+  if (element.is_pulley() && turns != std::floor(turns) && !std::isnan(turns)) {
+    map.Error("turns", map.Path("turns") + " of a pulley must be a whole number",
+              "what it takes to get round it comes on top");
+  }
+}
+
 void Check(const MapReader& map, PairsText& pairs) {
   CheckTags(map, pairs.tags);
+  CheckRoute(map, pairs);
   if (map.Has("each") && !map.Has("nodes") && map.Has("name")) {
     map.Error("name", map.Path("each") + " makes several pairs, which cannot share a name");
   }

@@ -33,11 +33,29 @@ struct NodeText {
 };
 
 /// One pair; an entry of `pairs:` may make several.
+/// An element of a pair's `route:`: what a cable runs through or round.
+struct RouteText {
+  SourceRef at;
+  Placed eyelet, pulley, drum;  ///< Its node; one of them.
+  double friction = 0;
+  Vec3 axis;  ///< In the part's frame.
+  double radius_m = NAN;
+  bool left = false;  ///< It is on the cable's left, with the axis upwards.
+  double turns = 0;
+
+  const Placed& node() const {
+    return !pulley.text.empty() ? pulley : !drum.text.empty() ? drum : eyelet;
+  }
+  bool is_pulley() const { return !pulley.text.empty(); }
+  bool is_drum() const { return !drum.text.empty(); }
+};
+
 struct PairText {
   std::string name;  ///< Empty: made from the nodes.
   SourceRef at;
   std::vector<Placed> nodes;  ///< 2 or more.
   Tags tags;
+  std::vector<RouteText> route = {};  ///< Empty, or one a node.
 };
 
 struct NodeListForm {
@@ -56,6 +74,7 @@ struct PairsText {
   std::string name;
   Raw<NodeListForm> nodes;
   Raw<NodeListsForm> each;
+  std::vector<RouteText> route;
   Tags tags;
   bool good = true;  ///< Nothing was wrong with it.
 };

@@ -51,6 +51,14 @@ class Taker {
       m_.nodes.push_back({node.name, node.body, node.position_m, robot_.node_tags[n], -1});
       if (node.body == kWorld) Build(m_.on_nodes, "anchor: {}", static_cast<int>(n));
     }
+    for (const CableDef& cable : def_.cables) {
+      for (const AttachmentDef& at : cable.attachments) {
+        if (!at.wheel && at.friction == 0) continue;
+        Refuse("the cable \"" + cable.name + "\" has friction or runs over wheels",
+               "take the model that it was made from");
+        break;
+      }
+    }
     if (!def_.hulls.empty()) Refuse("it has convex solids", "take the model that it was made from");
     Rods(), Boxes(), Spheres(), PointMasses(), Anchors();
     m_.solid_pairs = m_.pairs.size();

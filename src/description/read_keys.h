@@ -116,7 +116,7 @@ void ReadField(const Value& value, const std::string& path, const Key& key, cons
     ReadField(value, path, key, scope, out.emplace());
   } else if constexpr (kIsList<T>) {
     for (const ValuePtr& item : Items(&value, path, scope)) {
-      ReadMapping(*item, path, scope, out.emplace_back());
+      ReadField(*item, path, {key.name}, scope, out.emplace_back());
     }
   } else if constexpr (kIsNamed<T>) {
     ReadNamed(value, path, key, scope, out);

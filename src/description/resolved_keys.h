@@ -22,9 +22,18 @@ void Keys(Io& io, Like<NodeDef> auto& n) {
   io("position_m", n.position_m);
 }
 template <class Io>
+void Keys(Io& io, Like<WheelDef> auto& w) {
+  io("axis", w.axis);
+  io("radius_m", w.radius_m);
+  io("counterclockwise", w.counterclockwise);
+  io("turns", w.turns);
+}
+template <class Io>
 void Keys(Io& io, Like<AttachmentDef> auto& a) {
   io("body", a.body);
   io("position_m", a.position_m);
+  io("friction", a.friction, kLater);
+  io("wheel", a.wheel, kLater);
 }
 template <class Io>
 void Keys(Io& io, Like<ApartDef> auto& a) {

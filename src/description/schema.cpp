@@ -177,6 +177,10 @@ std::string TypeOf(const Key& key, Definitions& definitions) {
     return Reference("points") + (unit.empty() ? "" : ", \"unit\": " + Json(unit));
   } else if constexpr (kIsOptional<T>) {
     return TypeOf<typename T::value_type>(key, definitions);
+  } else if constexpr (std::same_as<T, std::vector<RouteText>>) {
+    return R"("type": "array", "minItems": 2, "items": {"title": "node or element", "oneOf": )"
+           R"([{"type": "string"}, {)" +
+           MappingReference<RouteText>(definitions) + "}]}";
   } else if constexpr (kIsList<T>) {
     return R"("type": "array", "items": {)" +
            MappingReference<typename T::value_type>(definitions) + "}";

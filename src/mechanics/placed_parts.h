@@ -41,7 +41,10 @@ void MoveParts(const Motion& motion, ModelDef& def) {
   }
   for (NodeDef& node : def.nodes) move(node.body, node.position_m);
   for (CableDef& cable : def.cables) {
-    for (AttachmentDef& at : cable.attachments) move(at.body, at.position_m);
+    for (AttachmentDef& at : cable.attachments) {
+      move(at.body, at.position_m);
+      if (at.wheel) turn(at.body, at.wheel->axis);
+    }
   }
   for (JointDef& joint : def.joints) {
     move(joint.body_a, joint.from_m), move(joint.body_b, joint.to_m);

@@ -1,10 +1,14 @@
 #include "plant/body_forces.h"
 
+#include <algorithm>
+
 namespace taut::plant {
 
 BodyForces::BodyForces(const ModelDef& def) : body_count_(def.bodies.size()) {
   for (const CableDef& cable : def.cables) {
     std::vector<BodyPoint>& points = cables_.emplace_back();
+    const auto simple = [](const AttachmentDef& at) { return !at.wheel && at.friction == 0; };
+    if (!std::all_of(cable.attachments.begin(), cable.attachments.end(), simple)) continue;
     for (const AttachmentDef& at : cable.attachments) {
       const Vec3 origin =
           at.body == kWorld ? Vec3{} : def.bodies[static_cast<std::size_t>(at.body)].com_m;
@@ -24,6 +28,12 @@ const std::vector<BodyForce>& BodyForces::Gather(const Observation& exact, const
     if (body != kWorld) forces_.push_back({body, point_m, force_n});
   };
   for (std::size_t c = 0; c < cables_.size(); ++c) {
+    if (cables_[c].empty()) {
+      for (const CablePoint& point : world.CablePath(0, static_cast<int>(c))) {
+        add(point.body, point.position_m, point.force_n);
+      }
+      continue;
+    }
     const double tension_n = exact.Cable(static_cast<int>(c)).tension_n;
     if (tension_n == 0) continue;
     path_.clear();

@@ -34,7 +34,7 @@ class BodyForces {
   const std::vector<BodyForce>& Gather(const Observation& exact, const World& world);
 
  private:
-  std::vector<std::vector<BodyPoint>> cables_;
+  std::vector<std::vector<BodyPoint>> cables_;  ///< Empty: their path must be asked for.
   std::vector<int> bodies_of_nodes_;
   std::size_t body_count_;
   std::vector<BodyState> states_;

@@ -9,6 +9,8 @@ namespace taut::plant {
 void AddNodeChannels(const ExperimentSpec& experiment, Recorder& recorder);
 /// The axial forces of struts, and what holds anchored bodies.
 void AddLoadChannels(const ExperimentSpec& experiment, Recorder& recorder);
+/// Of cables with friction or wheels: their spans, what friction took, angles about wheels.
+void AddSpanChannels(const ExperimentSpec& experiment, Recorder& recorder);
 /// What joints carry, and where they are.
 void AddJointChannels(const ExperimentSpec& experiment, Recorder& recorder);
 void AddMotionChannels(const ExperimentSpec& experiment, Recorder& recorder);

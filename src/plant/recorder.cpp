@@ -69,6 +69,7 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
           PutBody(s.exact->bodies->Body(0, static_cast<int>(b)), out);
         });
   }
+  if (is_world) AddSpanChannels(experiment, *this);
   if (is_world) AddJointChannels(experiment, *this);
   if (is_world) AddMotionChannels(experiment, *this);
   for (std::size_t i = 0; is_world && i < experiment.pushes.size(); ++i) {

@@ -74,6 +74,18 @@ class SimulatedPlant final : public Plant, public World {
   Energy TotalEnergy(int lane) const override { return batch_.TotalEnergy(lane); }
   MotorState Motor(int lane, int cable) const override { return batch_.Motor(lane, cable); }
   std::vector<ContactState> Contacts(int lane) const override { return batch_.Contacts(lane); }
+  CableSpanState CableSpan(int lane, int cable, int span) const override {
+    return batch_.CableSpan(lane, cable, span);
+  }
+  double CableFrictionLoss(int lane, int cable) const override {
+    return batch_.CableFrictionLoss(lane, cable);
+  }
+  double WheelAngle(int lane, int cable, int wheel) const override {
+    return batch_.WheelAngle(lane, cable, wheel);
+  }
+  std::vector<CablePoint> CablePath(int lane, int cable) const override {
+    return batch_.CablePath(lane, cable);
+  }
   JointState Joint(int lane, int joint) const override { return batch_.Joint(lane, joint); }
   MotionState Motion(int lane, int motion) const override { return batch_.Motion(lane, motion); }
   WorldStatus Status(int lane) const override { return batch_.Status(lane); }

@@ -307,6 +307,11 @@ void Batch::SetTime(int world, double time_s) noexcept {
 void Batch::SetRestLength(int world, int cable, double rest_length_m) noexcept {
   Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
+  const sim::CableTable& table = d.view.cables[cable];
+  for (int i = 0; i < table.span_count; ++i) {
+    d.at(world, d.layout.span_rest + table.first_span + i) *=
+        rest_length_m / d.at(world, d.layout.rest + cable);
+  }
   d.at(world, d.layout.rest + cable) = rest_length_m;
   d.at(world, d.layout.target + cable) = rest_length_m;
   d.at(world, d.layout.rest_rate + cable) = 0.0;

@@ -128,6 +128,8 @@ void CheckSupplies(const ModelDef& def, Checker& check) {
   }
 }
 
+static_assert(kMostSpans == CableDef::kMostSpans);
+
 /// Wheels and friction along a cable.
 void CheckRoute(const CableDef& c, const std::string& name, Checker& check) {
   int spans = 1;
