@@ -8,8 +8,8 @@
 #include "math/convex_hull.h"
 #include "math/principal_axes.h"
 #include "math/vec.h"
-#include "sim/constraint/capstan.h"
 #include "sim/checker.h"
+#include "sim/constraint/capstan.h"
 #include "sim/tables.h"
 
 namespace taut::sim {
@@ -157,8 +157,9 @@ void CheckRoute(const CableDef& c, const std::string& name, Checker& check) {
   check.Require(spans <= kMostSpans, name + " has friction at more than " +
                                          std::to_string(kMostSpans - 1) + " attachments");
   check.Require(spans == 1 || c.actuator.kind != ActuatorDef::Kind::kDcMotor,
-                name + " has friction along it and a motor: only ideal and limited actuators wind "
-                       "such a cable");
+                name +
+                    " has friction along it and a motor: only ideal and limited actuators wind "
+                    "such a cable");
 }
 
 void CheckCables(const ModelDef& def, Checker& check) {
