@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/statics.h"
+
 namespace taut::viewer {
 namespace {
 
@@ -60,9 +62,15 @@ Json Cables(const ModelDef& def) {
   Json cables = Json::array();
   for (const CableDef& cable : def.cables) {
     Json attachments = Json::array();
-    for (const AttachmentDef& at : cable.attachments) {
-      attachments.push_back(
-          {{"body", at.body}, {"position_m", InBody(def, at.body, at.position_m)}});
+    for (std::size_t i = 0; i < cable.attachments.size(); ++i) {
+      const AttachmentDef& at = cable.attachments[i];
+      Json one{{"body", at.body}, {"position_m", InBody(def, at.body, at.position_m)}};
+      if (at.wheel) {
+        one["wheel"] = {{"axis", ToJson(at.wheel->axis)},
+                        {"radius_m", at.wheel->radius_m},
+                        {"angle_rad", WheelStartAngle(cable, i)}};
+      }
+      attachments.push_back(std::move(one));
     }
     cables.push_back({{"name", cable.name},
                       {"attachments", attachments},

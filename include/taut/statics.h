@@ -10,7 +10,11 @@
 
 namespace taut {
 
-/// Between the ends, along all attachments [m].
+/// The angle about the wheel of attachment `i` as described, from the point before it to that
+/// behind it, with all turns, counter-clockwise about its axis [rad].
+double WheelStartAngle(const CableDef& cable, std::size_t i);
+
+/// Between the ends, along all attachments and round wheels [m].
 double CableLength(const CableDef& cable);
 
 /// k (l - L), 0 when slack [N].

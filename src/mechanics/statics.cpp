@@ -5,6 +5,8 @@
 #include "math/described_path.h"
 
 namespace taut {
+double WheelStartAngle(const CableDef& cable, std::size_t i) { return math::StartAngle(cable, i); }
+
 double CableLength(const CableDef& cable) { return math::DescribedPath(cable).length_m(); }
 
 double CableTension(const CableDef& cable) {

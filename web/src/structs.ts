@@ -51,6 +51,18 @@ export interface Attachment {
   body: number;
   /** In the body's frame; in W if body is -1. */
   position_m: Vec3;
+  /** The cable goes round it: the place is its middle. */
+  wheel?: Wheel;
+}
+
+/** A cylinder that a cable goes round, of an attachment's body. */
+export interface Wheel {
+  /** Unit, in the body's frame. */
+  axis: Vec3;
+  /** To the cable's middle. */
+  radius_m: number;
+  /** At the start: about the axis, from the point before to the point behind, with all turns. */
+  angle_rad: number;
 }
 
 /** Goes through its attachments in order. */

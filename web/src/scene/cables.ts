@@ -7,8 +7,8 @@ import type { Theme } from "../app";
 import { palette, tensionColour } from "../colours";
 import { cableState, type Frame, isSlack } from "../frame";
 import type { Cable, Scene } from "../protocol";
+import { layCable, pointCount } from "./cable_path";
 import { type Part, release } from "./part";
-import { worldPoint } from "./poses";
 
 export const THINNEST_PX = 1.5;
 export const THICKEST_PX = 7;
@@ -24,7 +24,7 @@ export class Cables implements Part {
   private frame: Frame | null = null;
 
   constructor(private readonly scene: Scene, size_m: number) {
-    this.points = scene.cables.map((cable) => cable.attachments.map(() => new Vector3()));
+    this.points = scene.cables.map((cable) => Array.from({ length: pointCount(cable.attachments) }, () => new Vector3()));
     this.lines = scene.cables.map((cable) => this.line(cable, size_m));
   }
 
@@ -34,7 +34,7 @@ export class Cables implements Part {
       const line = this.lines[i];
       if (!line) return;
       const points = this.points[i]!;
-      cable.attachments.forEach((end, k) => worldPoint(frame, end.body, end.position_m, points[k]!));
+      layCable(frame, cable.attachments, cableState(frame, i).length_m, points);
       moveLine(line, points);
       this.colour(i);
     });
@@ -84,7 +84,7 @@ export class Cables implements Part {
   private line(cable: Cable, size_m: number): Line2 | null {
     if (cable.attachments.length < 2) return null;
     const geometry = new LineGeometry();
-    geometry.setPositions(new Float32Array(3 * cable.attachments.length));
+    geometry.setPositions(new Float32Array(3 * pointCount(cable.attachments)));
     const material = new LineMaterial({ dashSize: 0.02 * size_m, gapSize: 0.015 * size_m });
     const line = new Line2(geometry, material);
     line.frustumCulled = false; // its bounds are those of the start

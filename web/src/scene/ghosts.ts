@@ -10,7 +10,8 @@ import type { Body, Cable, ComparedRun, Scene } from "../protocol";
 import { runColourIn } from "../runs";
 import { shapeMesh } from "./bodies";
 import { type Part, release } from "./part";
-import { type Poses, worldPoint } from "./poses";
+import { layCable, pointCount } from "./cable_path";
+import type { Poses } from "./poses";
 
 const BODY_OPACITY = 0.4;
 const CABLE_OPACITY = 0.7;
@@ -68,7 +69,7 @@ export class Ghost {
       this.object.add(group);
       return group;
     });
-    const parts = run.cables.reduce((sum, { attachments }) => sum + Math.max(attachments.length - 1, 0), 0);
+    const parts = run.cables.reduce((sum, { attachments }) => sum + Math.max(pointCount(attachments) - 1, 0), 0);
     const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(6 * parts), 3));
     this.lines = new LineSegments(geometry, this.thread);
     this.lines.frustumCulled = false; // its bounds are those of the start
@@ -106,13 +107,14 @@ export class Ghost {
 
   private moveCables(): void {
     const positions = this.lines.geometry.getAttribute("position") as BufferAttribute;
-    const point = new Vector3();
     let at = 0;
     for (const { attachments } of this.cables) {
-      attachments.forEach(({ body, position_m }, k) => {
-        worldPoint(this.poses, body, position_m, point);
+      if (attachments.length < 2) continue;
+      const points = Array.from({ length: pointCount(attachments) }, () => new Vector3());
+      layCable(this.poses, attachments, NaN, points); // its length is not in the frame
+      points.forEach((point, k) => {
         if (k > 0) at = write(point, positions, at);
-        if (k + 1 < attachments.length) at = write(point, positions, at);
+        if (k + 1 < points.length) at = write(point, positions, at);
       });
     }
     positions.needsUpdate = true;

@@ -12,6 +12,7 @@ import { Joints } from "./joints";
 import type { Part } from "./part";
 import { Path } from "./path";
 import { Ground } from "./terrain";
+import { Wheels } from "./wheels";
 
 export class World {
   readonly object = new Group();
@@ -37,7 +38,7 @@ export class World {
     this.ghosts = new Ghosts(scene);
     this.path = new Path(scene, this.size_m);
     this.ground = new Ground(scene, this.size_m);
-    this.parts = [this.ground, this.bodies, this.cables, this.joints, this.forces, this.path, this.ghosts];
+    this.parts = [this.ground, this.bodies, new Wheels(scene), this.cables, this.joints, this.forces, this.path, this.ghosts];
     this.object.add(...this.parts.map((part) => part.object));
   }
 
