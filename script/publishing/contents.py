@@ -1,7 +1,7 @@
 """What stands where on the website: parts of its sidebar, and the pages of each in their order."""
 
 PARTS = {
-    "Begin": ["docs/tutorial.md", "docs/tutorial_ground.md", "docs/tutorial_joints.md", "docs/gallery.md", "report.md"],
+    "Begin": ["docs/tutorial.md", "docs/tutorial_ground.md", "docs/tutorial_joints.md", "docs/tutorial_cables.md", "docs/gallery.md", "report.md"],
     "Use": ["docs/cli.md", "docs/viewer.md", "docs/learning.md", "docs/cluster.md", "docs/compare.md",
             "docs/python.md", "docs/glossary.md"],
     "Files": ["docs/formats/model.md", "docs/formats/experiment.md", "docs/formats/gait.md", "docs/formats/study.md",
