@@ -136,7 +136,7 @@ template <class W>
   const W half = W::Splat(0.5), quarter = W::Splat(0.25);
   const CableTable& cable = m.cables[c];
   AttachmentWork<W>* const ends = work.attachments;
-  const W l = MeasureCable(m, s, cable, cable.attachment_count, work, ends).l;
+  const W l = MeasureCable<false>(m, s, cable, cable.attachment_count, work, ends).l;
   KeepWheels(s, cable, work);
   const W before = s.rest[c], k = s.stiffness[c];
   W rest = before, rate = s.rest_rate[c];
@@ -242,27 +242,32 @@ template <class W>
     CarryOver(m, s, cable, work, work.spots, slip, cable.first_slip + i, i, ends, length, false,
               rests);
   }
+  // What slips in is much where a span is short: then its stiffness has changed.
+  constexpr int kRounds = 4;
+  W elastic = W::Splat(0.0);
   for (int lane = 0; lane < W::kLanes; ++lane) {
     const double area_n = s.stiffness[c][lane] * s.rest[c][lane];
-    Capstan<simd::Lane<W>> law;
-    law.count = cable.span_count;
-    for (int i = 0; i < cable.span_count; ++i) {
-      const double L = rests[i][lane], l = length[i][lane];
-      const double slips = area_n / L * (l > L ? l / L : 1.0);
-      law.spans[i] = {area_n / L * (l - L) / slips, l - L, 1.0 / slips, 1.0 / slips};
-      law.ratio[i] = ratio[i][lane];
+    for (int round = 0; round < kRounds; ++round) {
+      Capstan<simd::Lane<W>> law;
+      law.count = cable.span_count;
+      for (int i = 0; i < cable.span_count; ++i) {
+        const double L = rests[i][lane], l = length[i][lane];
+        const double slips = area_n / L * (l > L ? l / L : 1.0);
+        law.spans[i] = {area_n / L * (l - L) / slips, l - L, 1.0 / slips, 1.0 / slips};
+        law.ratio[i] = ratio[i][lane];
+      }
+      law.Solve();
+      Slip(cable, law, area_n, lane, rests, loss);
+      elastic.Set(lane, law.tension[0]);
     }
-    law.Solve();
-    Slip(cable, law, area_n, lane, rests, loss);
   }
-  const W area = s.stiffness[c] * s.rest[c], zero = W::Splat(0.0);
   for (int i = 0; i < cable.span_count; ++i) {
     s.sense_span_length[cable.first_span + i] = length[i];
     s.sense_span_rest[cable.first_span + i] = rests[i];
     if (i + 1 < cable.span_count) s.sense_slip_loss[cable.first_slip + i] = loss[i];
   }
   s.sense_tension[c] = s.tension[c];
-  s.sense_elastic[c] = Max(area / rests[0] * (length[0] - rests[0]), zero);
+  s.sense_elastic[c] = elastic;
 }
 
 /// What becomes of the tensions that were found: momenta, slips, and the energy that they take.

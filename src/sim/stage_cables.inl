@@ -38,16 +38,19 @@ TAUT_INLINE AttachmentWork<W> Attachment(const AttachmentTable& table,
   return here;
 }
 
-/// Length and rate of a cable; fills `ends` with its attachments.
-template <class W>
+/// Length and rate of a cable; fills `ends` with its attachments. `kTwo`: it has two, which have to
+/// stay in registers, so that no function by itself may get at them.
+template <bool kTwo, class W>
 TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const Rows<W>& s, const CableTable& cable,
                                            int attachment_count, Scratch<W>& work,
                                            AttachmentWork<W>* ends) noexcept {
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
   for (int i = 0; i < attachment_count; ++i) ends[i] = Attachment(tables[i], work);
-  if (cable.wheel_count > 0) {
-    PutOnWheels(m, s, cable, work, work.spots, ends);
-    return MeasurePath(attachment_count, ends, cable.wheel_count, work.wheels);
+  if constexpr (!kTwo) {
+    if (cable.wheel_count > 0) {
+      PutOnWheels(m, s, cable, work, work.spots, ends);
+      return MeasurePath(attachment_count, ends, cable.wheel_count, work.wheels);
+    }
   }
   return MeasurePath(attachment_count, ends);
 }
@@ -230,10 +233,10 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
   W l;
   if constexpr (kTwo) {
     AttachmentWork<W> ends[2];
-    l = MeasureCable(m, s, cable, 2, work, ends).l;
+    l = MeasureCable<true>(m, s, cable, 2, work, ends).l;
     LinkCable<true>(m, s, work, cable, ends, row);
   } else {
-    l = MeasureCable(m, s, cable, cable.attachment_count, work, work.attachments).l;
+    l = MeasureCable<false>(m, s, cable, cable.attachment_count, work, work.attachments).l;
     KeepWheels(s, cable, work);
     LinkCable<false>(m, s, work, cable, work.attachments, row);
   }
@@ -301,7 +304,8 @@ template <bool kMotors, class W>
       FinishLinks<false>(work, row);
     }
     AttachmentWork<W>* const ends = work.attachments;
-    const W length = MeasureCable(m, s, m.cables[c], m.cables[c].attachment_count, work, ends).l;
+    const W length =
+        MeasureCable<false>(m, s, m.cables[c], m.cables[c].attachment_count, work, ends).l;
     const W before = RateBefore(work, row.links, row.link_count);
     W k = s.stiffness[c], b = s.damping[c];
     if (kMotors && m.cables[c].motor >= 0) {

@@ -4,10 +4,10 @@ namespace taut::sim {
 
 /// One cable of the stage below; `ends` is room for its attachments: known to be two, they stay in
 /// registers.
-template <class W>
+template <bool kTwo, class W>
 TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
                             int attachment_count, AttachmentWork<W>* ends) noexcept {
-  const auto [l, dl] = MeasureCable(m, s, m.cables[c], attachment_count, work, ends);
+  const auto [l, dl] = MeasureCable<kTwo>(m, s, m.cables[c], attachment_count, work, ends);
   const CableForce<W> f =
       TensionOf(s.stiffness[c], s.damping[c], l, dl, s.rest[c], m.cables[c].clamped_damping);
   s.sense_length[c] = l;
@@ -24,9 +24,9 @@ void StageSense(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
     const int count = m.cables[c].attachment_count;
     if (count == 2) {
       AttachmentWork<W> ends[2];
-      SenseCable(m, s, work, c, 2, ends);
+      SenseCable<true>(m, s, work, c, 2, ends);
     } else {
-      SenseCable(m, s, work, c, count, work.attachments);
+      SenseCable<false>(m, s, work, c, count, work.attachments);
       if (m.cables[c].span_count > 0) SenseChain(m, s, work, c);
     }
   }
