@@ -98,7 +98,54 @@ struct TableGait {
   SourceRef at;
 };
 
-/// A gait. Exactly one of the three is present.
+/// A neuron: a weight for each of the layer before it, and a constant.
+struct Neuron {
+  std::string name;
+  std::vector<double> weights;
+  double bias = 0.0;
+  SourceRef at;
+};
+
+/// A feed-forward network with one hidden layer; outputs lie within -1..1
+/// (docs/theory/gaits.md, eq. G.19). An output that is not listed is 0.
+struct NetworkSpec {
+  static constexpr std::size_t kMostHidden = 32;
+  std::vector<Neuron> hidden;   ///< Weights in the order of the inputs.
+  std::vector<Neuron> outputs;  ///< Weights in the order of the hidden neurons.
+  SourceRef at;
+};
+
+/// The oscillators of some cables, with sensory feedback.
+struct FeedbackOscillator {
+  std::string name;
+  CableMatch cables;
+  double amplitude = 0.0;  ///< R [m/s], or [m]; >= 0.
+  double phase_rad = 0.0;  ///< At the start.
+  double offset = 0.0;     ///< Added to the signal [m/s], or [m].
+  SourceRef at;
+};
+
+/// Phase oscillators that two networks act on: one, shared by all cables, that hears each cable's
+/// length and tension; one, shared by all joints, that hears where the goal is.
+struct FeedbackCpgGait {
+  double frequency_hz = 1.0;  ///< v of all oscillators at the start.
+  double convergence_per_s = 5.0;
+  double frequency_gain_hz_per_s = 0.0;
+  double amplitude_gain = 0.0;
+  double phase_gain_rad_per_s = 0.0;
+  double integrator_step_s = 0.01;
+  std::vector<FeedbackOscillator> oscillators;  ///< A cable has one at most.
+  CpgSymmetry symmetry = CpgSymmetry::kSegments;
+  std::vector<CouplingGroup> groups;  ///< Those that are not listed couple nothing.
+  /// Hears "stretch" and "tension"; says "frequency", "amplitude" and "phase".
+  std::optional<NetworkSpec> cable_network;
+  /// Hears "goal_x", "goal_y" and, where it has three inputs, "place"; says
+  /// "OSCILLATOR_frequency", ..., for each name of `oscillators`.
+  std::optional<NetworkSpec> goal_network;
+  SourceRef at;
+};
+
+/// A gait. Exactly one of the four is present.
 struct GaitSpec {
   std::string name;
   std::string description;
@@ -106,6 +153,7 @@ struct GaitSpec {
   std::optional<SineGait> sine;
   std::optional<CpgGait> cpg;
   std::optional<TableGait> table;
+  std::optional<FeedbackCpgGait> feedback_cpg;
   std::vector<std::string> files;  ///< That were read, the gait first.
 };
 
@@ -140,7 +188,8 @@ std::optional<GaitSpec> NewCpgGait(const RobotSpec& robot, CpgSymmetry symmetry,
 std::string GaitTableText(const TableGait& table, GaitDrives drives = GaitDrives::kVelocity);
 
 /// One number of a gait: "sine.<wave>.amplitude_m_per_s", "cpg.frequency_hz",
-/// "cpg.<group>.weight_per_m", "cpg.<group>.phase_rad"; "sine.<wave>.amplitude_m",
+/// "cpg.<group>.weight_per_m", "cpg.<group>.phase_rad",
+/// "feedback_cpg.goal_network.<neuron>.weights_1", ..._2; "sine.<wave>.amplitude_m",
 /// "cpg.<group>.weight_per_m_s" where rest lengths are driven.
 struct GaitValue {
   std::string name;
@@ -181,6 +230,11 @@ struct ResolvedGait {
   std::vector<Wave> waves;   ///< Of a sine: in the order of `cables`.
   CouplingGraph graph;       ///< Of a CPG; its cables are `cables`.
   std::vector<double> sign;  ///< Of a CPG, per oscillator: 1 or -1.
+  // Of a CPG with feedback, per oscillator:
+  std::vector<int> role;               ///< Into `FeedbackCpgGait::oscillators`.
+  std::vector<int> joint;              ///< Cables whose names end in the same number share one.
+  std::vector<double> place;           ///< Of each joint: 1 at the front, -1 at the rear.
+  std::vector<double> most_tension_n;  ///< That its actuator can pull with.
 };
 
 /// Finds the gait's cables in a robot and checks that its groups are the robot's. Nothing if there

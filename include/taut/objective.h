@@ -12,6 +12,7 @@ enum class Measure {
   kDistance,           ///< Horizontal way of the centre of mass from `from_s` to the end [m].
   kHeading,            ///< The part of that way along `direction` [m]; backwards is negative.
   kDistancePerEnergy,  ///< Distance by the motors' work [m/J]: tension times winding in.
+  kNearer,             ///< How much nearer to the goal the watched body is than at `from_s` [m].
   kTracking,           ///< Minus the root mean square of tension less set point [N].
 };
 

@@ -59,6 +59,9 @@ struct Observation {
   const double* shaft_m = nullptr;
   const std::uint32_t* faults = nullptr;  ///< `FaultBits`, a row; null: nobody looks for any.
   const Bodies* bodies = nullptr;         ///< Null: nobody knows.
+  /// Two rows, x and y of lane j at [j] and [lanes + j]: the horizontal unit vector towards the
+  /// goal, as a compass and a beacon say it (`GoalSpec`); null: nobody senses it.
+  const double* goal = nullptr;
 
   CableState Cable(int cable, int lane = 0) const {
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(cable) * lanes + lane;

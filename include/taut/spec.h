@@ -218,6 +218,22 @@ struct ScaleSpec {
 struct StartNoise {
   double position_m = 0.0;   ///< Each body by up to this along x and y, and upwards.
   double heading_rad = 0.0;  ///< The whole robot about the vertical, by up to this either way.
+  double goal_rad = 0.0;     ///< The goal about the vertical through W's origin, likewise.
+};
+
+/// In which frame the way to the goal is sensed.
+enum class GoalFrame {
+  kOfBody,   ///< x where the watched body looks, y to its left: a camera on a beacon.
+  kOfWorld,  ///< x and y of W: with a compass. NTRT's.
+};
+
+/// Where the robot is to go, and how it senses in which direction that is.
+struct GoalSpec {
+  Vec3 at_m;                  ///< In W; its height does not count.
+  int body = 0;               ///< Watched: its centre of mass is to come near.
+  Vec3 ahead{1.0, 0.0, 0.0};  ///< Where that body looks, in W as it is placed. Unit vector.
+  GoalFrame frame = GoalFrame::kOfBody;
+  double period_s = 0.01;  ///< Between two readings.
 };
 
 /// What a board makes of a load cell: whole counts, from 0 on, cut off where the amplifier or the
@@ -302,6 +318,7 @@ struct ExperimentSpec {
   std::uint64_t seed = 0;
   std::vector<ScaleSpec> scales;
   StartNoise start_noise;
+  std::optional<GoalSpec> goal;
   std::optional<SensorSpec> sensors;
   std::vector<ControllerSpec> controllers;
   std::vector<PushSpec> pushes;

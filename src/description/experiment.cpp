@@ -73,6 +73,11 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   if (text.gravity_m_per_s2) def.gravity_m_per_s2 = *text.gravity_m_per_s2;
   if (text.place) Place(*text.place, text.start, scope, def);
   AddTerrain(text.terrain, scope, text.robot);
+  if (text.goal_text) text.goal = ToGoal(*text.goal_text, known ? &text.robot : nullptr, scope);
+  CheckGoalIsSensed(text, scope.out);
+  if (text.start_noise.goal_rad > 0 && !text.goal_text) {
+    scope.out.Error(root.Find("start_noise")->at, "start_noise.goal_rad: there is no `goal`");
+  }
   if (text.start_noise.heading_rad > 0) CheckHeading(def, root.Find("start_noise"), scope);
   AddMotions(text.motions, model.good, scope, text.robot);
   if (scope.out.ok()) CheckMotions(text.motions, text, scope);

@@ -23,6 +23,9 @@ inline const Choices<ReferenceSpec::Statistic> kReferenceStatistics{
     {"mean", ReferenceSpec::Statistic::kMean},
     {"min", ReferenceSpec::Statistic::kMin}};
 
+inline const Choices<GoalFrame> kGoalFrames{{"body", GoalFrame::kOfBody},
+                                            {"world", GoalFrame::kOfWorld}};
+
 template <class Io, Either<PlaneDef, PlaneText> Plane>
 void Keys(Io& io, Plane& p) {
   io.Map("plane", "terrain.plane",
@@ -204,6 +207,32 @@ void Keys(Io& io, Like<StartNoise> auto& n) {
      "other are moved together; those that are tied to the world stay.");
   io("heading_rad", n.heading_rad, Bound::kNonNegative,
      "The robot is turned about the vertical by up to this either way.");
+  io("goal_rad", n.goal_rad, LaterThan{0.0}, Bound::kNonNegative,
+     "The `goal` is turned about the vertical through the world's origin by up to this either "
+     "way.");
+}
+
+template <class Io, Either<GoalSpec, GoalText> Goal>
+void Keys(Io& io, Goal& g) {
+  io.Map("goal", "goal",
+         "Where the robot is to go, and how it senses in which direction that is. Gaits with a "
+         "`goal_network` hear it; the measure `nearer` of a study's objective scores it.",
+         R"({"at_m": [3.5, 0, 0], "body": "segment_2"})");
+  io("at_m", g.at_m, kNeeded, "A point. Its height does not count.");
+  if constexpr (Io::kResolved) {
+    io("body", g.body);
+  } else {
+    io("body", g.body_name, kNeeded,
+       "The body that is watched: its centre of mass is to come near.");
+  }
+  io("ahead", g.ahead, kDirection, kInherited,
+     "Where that body looks: a direction in the world frame, of the robot as it is placed at the "
+     "start, from where on it turns with the body. [1, 0, 0] if absent.");
+  io("frame", g.frame, kGoalFrames,
+     "What the unit vector towards the goal is sensed in. `body`: x is the horizontal part of "
+     "`ahead`, y is to the left of it, as a camera sees a beacon. `world`: x and y of the world, "
+     "which takes a compass.");
+  io("period_s", g.period_s, Bound::kPositive, "Time between two readings.");
 }
 
 template <class Io>
@@ -317,6 +346,11 @@ void Keys(Io& io, Experiment& e) {
        "that meet multiply.");
   }
   io("start_noise", e.start_noise, kLater);
+  if constexpr (Io::kResolved) {
+    io("goal", e.goal, kLater);
+  } else {
+    io("goal", e.goal_text);
+  }
   if constexpr (Io::kResolved) {
     io("sensors", e.sensors, kLater);
     io("controllers", e.controllers);

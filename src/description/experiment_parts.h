@@ -72,6 +72,11 @@ std::vector<ReferenceSpec> ToReferences(const std::vector<ReferenceText>& texts,
 std::vector<ScaleSpec> ToScales(const std::vector<ScaleText>& texts, const RobotSpec* robot,
                                 const Scope& scope);
 
+/// Where the robot is to go. Nothing after a complaint.
+std::optional<GoalSpec> ToGoal(const GoalText& text, const RobotSpec* robot, const Scope& scope);
+/// Complains about gaits that hear of a goal where there is none.
+void CheckGoalIsSensed(const ExperimentSpec& experiment, Diagnostics& out);
+
 /// Planes and boxes, stairs and scattered blocks, appended to what `robot` has.
 void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, RobotSpec& robot);
 

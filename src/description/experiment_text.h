@@ -128,6 +128,9 @@ struct EventText {
   std::optional<DragText> drag;
   SourceRef name_at;
 };
+struct GoalText : GoalSpec {
+  Placed body_name;
+};
 struct TimelineText {
   Named<Raw<SpanForm>> phases;
   std::vector<EventText> events;
@@ -178,6 +181,7 @@ struct ExperimentText : ExperimentSpec {
   std::vector<MotionText> motions;
   std::optional<PlaceText> place;
   std::vector<ScaleText> scale_texts;
+  std::optional<GoalText> goal_text;
   std::optional<SensorText> sensor_text;
   std::vector<ControllerText> controller_texts;
   TimelineText timeline;

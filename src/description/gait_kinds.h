@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "description/gait_cpg.h"
+#include "description/gait_feedback_cpg.h"
 #include "description/gait_sine.h"
 #include "description/gait_table.h"
 
@@ -36,6 +37,7 @@ inline constexpr std::tuple kGaitKinds{
     GaitKind<SineGait>{"sine", &GaitSpec::sine},
     GaitKind<CpgGait>{"cpg", &GaitSpec::cpg},
     GaitKind<TableGait, TableText>{"table", &GaitSpec::table},
+    GaitKind<FeedbackCpgGait>{"feedback_cpg", &GaitSpec::feedback_cpg},
 };
 
 /// visit(kind, its number as a constant), in the order of the list.

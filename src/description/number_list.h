@@ -21,9 +21,13 @@ class NumberList : public KeyVisitor<NumberList<Number>, true> {
   template <class T>
   void On(const Key& key, T& field) {
     if constexpr (std::same_as<T, double>) {
-      Add(key, field);
+      Add(key, key.name, field);
     } else if constexpr (kIsOptional<T>) {
       if (field) On(key, *field);
+    } else if constexpr (std::same_as<T, std::vector<double>>) {
+      for (std::size_t i = 0; key.varied && i < field.size(); ++i) {
+        Add(key, key.name + ("_" + std::to_string(i + 1)), field[i]);
+      }
     } else if constexpr (kIsList<T>) {
       for (auto& item : field) {
         if constexpr (requires { item.name; }) Inside(item.name, item);
@@ -38,13 +42,13 @@ class NumberList : public KeyVisitor<NumberList<Number>, true> {
   std::vector<Number> numbers;
 
  private:
-  void Add(const Key& key, double& field) {
+  void Add(const Key& key, const std::string& name, double& field) {
     constexpr double kPi = 3.14159265358979323846;
     if (key.fixed) return;
     const std::string unit = base::UnitAtEnd(key.name).Text();
     double least = key.bound.least, most = key.bound.most;
     if (unit == "rad" && std::isinf(least) && std::isinf(most)) least = -kPi, most = kPi;
-    numbers.push_back({prefix_ + key.name, unit, &field, least, most});
+    numbers.push_back({prefix_ + name, unit, &field, least, most});
   }
   template <class T>
   void Inside(const std::string& name, T& field) {

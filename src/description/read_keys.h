@@ -102,6 +102,10 @@ void ReadField(const Value& value, const std::string& path, const Key& key, cons
     out = ends ? std::pair((*ends)[0], (*ends)[1]) : std::pair<double, double>(NAN, NAN);
   } else if constexpr (std::same_as<T, std::vector<std::pair<double, double>>>) {
     out = ReadPoints(value, path, key.bound, scope);
+  } else if constexpr (std::same_as<T, std::vector<double>>) {
+    for (const ValuePtr& item : Items(&value, path, scope)) {
+      out.push_back(ReadNumber(*item, path, key.bound, scope));
+    }
   } else if constexpr (std::same_as<T, std::vector<Vec3>>) {
     for (const ValuePtr& item : Items(&value, path, scope)) {
       out.push_back(ReadVec3(*item, path, scope));

@@ -129,7 +129,7 @@ void Read(const Value& value, const std::string& what, const Scope& scope, T& ou
 /// Its numbers must be what a gait file's would have to be.
 void CheckGait(const GaitSpec& gait, const SourceRef& at, Diagnostics& out) {
   if (CountKinds(gait) != 1) {
-    out.Error(at, "a gait is one of sine, cpg and table");
+    out.Error(at, "a gait is one of sine, cpg, table and feedback_cpg");
     return;
   }
   ForEachGaitKind([&](const auto& kind, auto) {
@@ -217,6 +217,8 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
     const std::size_t count = of_bodies ? robot.def.bodies.size() : robot.def.cables.size();
     for (const int index : scale.index) check(index, count, of_bodies ? "body" : "cable");
   }
+  if (experiment.goal) check(experiment.goal->body, robot.def.bodies.size(), "body");
+  CheckGoalIsSensed(experiment, out);
   for (const PushSpec& push : experiment.pushes) check(push.node, robot.def.nodes.size(), "node");
   for (const DragSpec& drag : experiment.drags) check(drag.node, robot.def.nodes.size(), "node");
   if (robot.node_tags.size() != robot.def.nodes.size() ||

@@ -165,6 +165,9 @@ std::string TypeOf(const Key& key, Definitions& definitions) {
     return Reference("names");
   } else if constexpr (std::same_as<T, std::vector<std::vector<std::string>>>) {
     return Reference("selector");
+  } else if constexpr (std::same_as<T, std::vector<double>>) {
+    return R"("type": "array", "title": "numbers", "items": {)" + Reference("number") +
+           Range(key.bound) + "}" + (unit.empty() ? "" : ", \"unit\": " + Json(unit));
   } else if constexpr (std::same_as<T, std::vector<Vec3>>) {
     return R"("type": "array", "items": {)" + Reference("vector") + "}" +
            (unit.empty() ? "" : ", \"unit\": " + Json(unit));

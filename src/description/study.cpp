@@ -48,7 +48,14 @@ StudySpec ReadStudy(const Value& root, const OverrideSet& overrides, const Scope
     scope.out.Error(text.objective.from_at, "objective.from_s is not before the experiment's end",
                     "that is at " + Shown(study.experiment.duration_s) + " s");
   }
+  if (known && study.objective.measure == Measure::kNearer && !study.experiment.goal) {
+    scope.out.Error(text.objective.measure_at, "objective.measure: nearer needs a goal",
+                    "the experiment has no `goal`");
+  }
   if (text.worlds) study.perturbation = *text.worlds;
+  if (known && study.perturbation.start.goal_rad > 0 && !study.experiment.goal) {
+    scope.out.Error(root.Find("worlds")->at, "worlds.start.goal_rad: the experiment has no `goal`");
+  }
   // After complaints about `vary` nobody knows how many parameters were meant.
   const std::size_t dimensions = scope.out.ok() ? study.parameters.size() : 0;
   study.searches = ToSearches(root.Find("search"), text.search, dimensions, scope);

@@ -11,6 +11,7 @@ namespace taut::description {
 inline const Choices<Measure> kMeasures{{"distance", Measure::kDistance},
                                         {"heading", Measure::kHeading},
                                         {"distance_per_energy", Measure::kDistancePerEnergy},
+                                        {"nearer", Measure::kNearer},
                                         {"tracking", Measure::kTracking}};
 inline const Choices<bool> kScales{{"linear", false}, {"log", true}};
 inline const Choices<bool> kJudges{{"mean", false}, {"worst", true}};
@@ -73,7 +74,7 @@ void Keys(Io& io, Like<FallSpec> auto& f) {
 }
 void Check(const MapReader& map, FallSpec& fall);
 struct ObjectiveText : ObjectiveSpec {
-  SourceRef from_at;  ///< Of the key.
+  SourceRef from_at, measure_at;  ///< Of the keys.
 };
 template <class Io>
 void Keys(Io& io, Like<ObjectiveText> auto& o) {
@@ -82,7 +83,8 @@ void Keys(Io& io, Like<ObjectiveText> auto& o) {
   io("measure", o.measure, kMeasures, kNeeded,
      "`distance`: how far the centre of mass gets from where it was, horizontally [m]. `heading`: "
      "the part of that along `direction`. `distance_per_energy`: distance by the motors' work, "
-     "tension times winding in [m/J]. `tracking`: minus the root mean square of the cables' "
+     "tension times winding in [m/J]. `nearer`: how much nearer to the experiment's goal the body "
+     "that it watches is, horizontally [m]. `tracking`: minus the root mean square of the cables' "
      "tensions less their set points [N].");
   io("direction", o.direction, kDirection, kInherited, "For `heading`, in the world frame.",
      Example{"[0, 1, 0]"});

@@ -78,6 +78,7 @@ void Check(const MapReader& map, FallSpec& fall) {
 
 void Check(const MapReader& map, ObjectiveText& objective) {
   objective.from_at = map.KeyAt("from_s");
+  objective.measure_at = map.KeyAt("measure");
   if (!map.Has("direction") && objective.measure == Measure::kHeading) {
     map.Error("measure", "objective: heading needs the key \"direction\"", "such as [1, 0, 0]");
   }

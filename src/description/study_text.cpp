@@ -29,7 +29,7 @@ std::string SearchLine(const SearchSpec& search) {
 }
 
 std::string ObjectiveText(const ObjectiveSpec& objective) {
-  const char* const names[] = {"distance", "heading", "distance_per_energy", "tracking"};
+  const char* const names[] = {"distance", "heading", "distance_per_energy", "nearer", "tracking"};
   const Vec3& d = objective.direction;
   std::string out = Line("objective measure", names[static_cast<int>(objective.measure)]) +
                     Line("objective direction", Shown(d.x) + " " + Shown(d.y) + " " + Shown(d.z)) +
@@ -67,7 +67,8 @@ std::string StudyText(const StudySpec& study) {
       "worlds friction mass stiffness damping",
       Shown(w.friction) + " " + Shown(w.mass) + " " + Shown(w.stiffness) + " " + Shown(w.damping));
   out += Line("worlds start",
-              Shown(w.start.position_m) + " m, " + Shown(w.start.heading_rad) + " rad");
+              Shown(w.start.position_m) + " m, " + Shown(w.start.heading_rad) + " rad" +
+                  (w.start.goal_rad > 0 ? ", goal " + Shown(w.start.goal_rad) + " rad" : ""));
   for (std::size_t i = 0; i < study.searches.size(); ++i) {
     out += Line("search " + std::to_string(i), SearchLine(study.searches[i]));
     // how long all but the last go on shapes what follows

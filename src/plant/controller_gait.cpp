@@ -123,7 +123,7 @@ class GaitController final : public Controller {
     }
     if (playing == 0) return;
     players_[static_cast<std::size_t>(gait)]->Tick(
-        {playing, number_.data(), time_s_.data(), since_s_.data()}, seen.cables);
+        {playing, number_.data(), time_s_.data(), since_s_.data()}, seen);
   }
 
   /// Whether all lanes play the same one gait.

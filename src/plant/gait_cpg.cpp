@@ -53,7 +53,7 @@ class CpgPlayer final : public GaitPlayer {
 
   /// The oscillators start at the first tick, and go from tick to tick under the signal that they
   /// had at the tick before.
-  void Tick(const GaitTick& tick, const ReadingRows& seen) override {
+  void Tick(const GaitTick& tick, const Observation& seen) override {
     const Lanes due = tick.due;
     Lanes first = 0;
     for (int j = 0; j < lanes(); ++j) {
@@ -66,7 +66,8 @@ class CpgPlayer final : public GaitPlayer {
       for (int j = 0; j < lanes(); ++j) {
         if (!Has(due, j)) continue;
         const std::size_t at = At(i, j);
-        const double tension_n = seen.tension_n[At(static_cast<std::size_t>(cables()[i]), j)];
+        const double tension_n =
+            seen.cables.tension_n[At(static_cast<std::size_t>(cables()[i]), j)];
         signal_rad_per_s_[at] = gain_[at] * (tension_n - reference_n_[at]);
       }
     }

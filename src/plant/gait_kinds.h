@@ -42,7 +42,7 @@ class GaitPlayer {
   const std::vector<double>& signal() const noexcept { return signal_; }
 
   /// To the next tick, in the lanes that are due.
-  virtual void Tick(const GaitTick& tick, const ReadingRows& seen) = 0;
+  virtual void Tick(const GaitTick& tick, const Observation& seen) = 0;
   /// A lane gets other numbers, and plays from the beginning.
   virtual void Restart(int lane, const GaitSpec& gait, const ResolvedGait& resolved) = 0;
   /// Goes on in a lane from where another gait is, without a jump. False if there is no such way.
@@ -70,8 +70,9 @@ using MakeGaitPlayer = std::unique_ptr<GaitPlayer> (*)(const GaitSetup&);
 std::unique_ptr<GaitPlayer> MakeSine(const GaitSetup&);
 std::unique_ptr<GaitPlayer> MakeCpg(const GaitSetup&);
 std::unique_ptr<GaitPlayer> MakeTable(const GaitSetup&);
+std::unique_ptr<GaitPlayer> MakeFeedbackCpg(const GaitSetup&);
 
-inline constexpr MakeGaitPlayer kGaitKinds[] = {MakeSine, MakeCpg, MakeTable};
+inline constexpr MakeGaitPlayer kGaitKinds[] = {MakeSine, MakeCpg, MakeTable, MakeFeedbackCpg};
 
 inline std::unique_ptr<GaitPlayer> PlayerOf(const GaitSetup& setup) {
   for (const MakeGaitPlayer make : kGaitKinds) {

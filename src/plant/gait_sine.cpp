@@ -19,7 +19,7 @@ class SinePlayer final : public GaitPlayer {
     }
   }
 
-  void Tick(const GaitTick& tick, const ReadingRows&) override {
+  void Tick(const GaitTick& tick, const Observation&) override {
     OtherLanes others(tick.due, lanes());
     others.Keep(signal_.data(), cables().size());
     kernel_.sine({static_cast<int>(cables().size()), frequency_hz_.data(), amplitude_.data(),

@@ -20,7 +20,7 @@ class TablePlayer final : public GaitPlayer {
     for (const GaitSpec* gait : setup.gaits) tables_.push_back(*gait->table);
   }
 
-  void Tick(const GaitTick& tick, const ReadingRows&) override {
+  void Tick(const GaitTick& tick, const Observation&) override {
     for (int j = 0; j < lanes(); ++j) {
       if (!Has(tick.due, j)) continue;
       const TableGait& table = tables_[static_cast<std::size_t>(j)];

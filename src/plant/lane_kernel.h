@@ -50,6 +50,25 @@ struct CpgRows {
   const double *weight_per_m = nullptr, *phase_turns = nullptr;  ///< Per coupling.
 };
 
+/// A feed-forward network: a row a weight, in the order of `control::EvaluateNetwork`.
+struct NetworkRows {
+  int inputs = 0, hidden = 0, outputs = 0;
+  const double* weights = nullptr;
+};
+/// Hidden neurons that a network may have.
+constexpr int kMostHidden = 32;
+
+/// Oscillators with feedback, one an output, as numbers.
+struct FeedbackCpgRows {
+  int count = 0, coupling_count = 0;
+  const double *frequency_hz = nullptr, *phase_at_start_turns = nullptr, *amplitude = nullptr,
+               *convergence_per_s = nullptr, *frequency_gain_hz_per_s = nullptr,
+               *amplitude_gain = nullptr,
+               *phase_gain_turns_per_s = nullptr;                   ///< Per oscillator.
+  const unsigned short *to = nullptr, *from = nullptr;              ///< Per coupling; all lanes.
+  const double *weight_per_m = nullptr, *coupling_turns = nullptr;  ///< Per coupling.
+};
+
 struct LaneKernel {
   int lanes;
   /// A tick of impedance control.
@@ -69,6 +88,15 @@ struct LaneKernel {
   /// (rad/s) may be null.
   void (*cpg_tick)(int count, int coupling_count, void* memory, const double* feedback,
                    double step_s, int steps, const double* sign, double* velocity_m_per_s);
+  /// What a network says to some inputs, a row each.
+  void (*network)(const NetworkRows&, const double* inputs, double* outputs);
+  /// As those of `cpg_...`. `feedback`: three rows an oscillator, to frequency, amplitude and
+  /// phase.
+  size_t (*feedback_cpg_bytes)(int count, int coupling_count);
+  void (*feedback_cpg_start)(const FeedbackCpgRows&, void* memory);
+  double* (*feedback_cpg_states)(int count, int coupling_count, void* memory);
+  void (*feedback_cpg_tick)(int count, int coupling_count, void* memory, const double* feedback,
+                            double step_s, int steps, const double* offset, double* signal);
 };
 
 extern const LaneKernel kLanesScalar;

@@ -96,6 +96,14 @@ void TickSine(const SineRows& rows, const double* time_s, double* velocity_m_per
   }
 }
 
+/// The next `count` of memory that the caller keeps.
+template <class T>
+T* Take(char*& end, int count) noexcept {
+  T* const first = reinterpret_cast<T*>(end);
+  end += sizeof(T) * static_cast<size_t>(count);
+  return first;
+}
+
 /// A network in memory that the caller keeps.
 template <class W>
 struct LaneCpg {
@@ -104,20 +112,14 @@ struct LaneCpg {
   control::CpgState<W>* states;
   control::CpgWork<W>* work;
   W* feedback;
-  char* end;
 
-  LaneCpg(int count, int coupling_count, void* memory) noexcept : end(static_cast<char*>(memory)) {
-    laws = Take<control::CpgLaw<W>>(count);
-    couplings = Take<control::CpgCoupling<W>>(coupling_count);
-    states = Take<control::CpgState<W>>(count);
-    work = Take<control::CpgWork<W>>(count);
-    feedback = Take<W>(count);
-  }
-  template <class T>
-  T* Take(int count) noexcept {
-    T* const first = reinterpret_cast<T*>(end);
-    end += sizeof(T) * static_cast<size_t>(count);
-    return first;
+  LaneCpg(int count, int coupling_count, void* memory) noexcept {
+    char* end = static_cast<char*>(memory);
+    laws = Take<control::CpgLaw<W>>(end, count);
+    couplings = Take<control::CpgCoupling<W>>(end, coupling_count);
+    states = Take<control::CpgState<W>>(end, count);
+    work = Take<control::CpgWork<W>>(end, count);
+    feedback = Take<W>(end, count);
   }
 };
 
@@ -167,10 +169,18 @@ void TickCpg(int count, int coupling_count, void* memory, const double* feedback
   }
 }
 
+}  // namespace taut::plant
+
+#include "plant/lane_feedback_cpg.inl"
+
+namespace taut::plant {
+
 template <class W>
 constexpr LaneKernel MakeLaneKernel() {
-  return {W::kLanes,   ActImpedance<W>, Measure<W>,   TickSine<W>,
-          CpgBytes<W>, StartCpg<W>,     CpgStates<W>, TickCpg<W>};
+  return {W::kLanes,         ActImpedance<W>,     Measure<W>,          TickSine<W>,
+          CpgBytes<W>,       StartCpg<W>,         CpgStates<W>,        TickCpg<W>,
+          SayNetwork<W>,     FeedbackCpgBytes<W>, StartFeedbackCpg<W>, FeedbackCpgStates<W>,
+          TickFeedbackCpg<W>};
 }
 
 }  // namespace taut::plant

@@ -4,6 +4,7 @@
 
 #include "base/assert.h"
 #include "plant/controller_kinds.h"
+#include "plant/goal.h"
 #include "plant/sensors.h"
 
 namespace taut::plant {
@@ -26,6 +27,7 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
     const LaneClock clock(model->clock(), plant_lanes_);
     sensors_.push_back({std::move(model), clock});
   };
+  if (experiment.goal) add(std::make_unique<GoalSensor>(setup));
   if (experiment.sensors) {
     std::vector<std::uint64_t> seeds;
     for (const RolloutWorld* lane : all) seeds.push_back(lane->seed);

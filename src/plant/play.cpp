@@ -16,6 +16,10 @@ std::optional<TableGait> PlayGait(const GaitSpec& gait, const RobotSpec& robot, 
   }
   GaitSpec deaf = gait;
   if (deaf.cpg) deaf.cpg->feedback.reset();
+  if (deaf.feedback_cpg) {
+    deaf.feedback_cpg->cable_network.reset();
+    deaf.feedback_cpg->goal_network.reset();
+  }
   const double period_s = 1.0 / rate_hz;
   const auto player = plant::PlayerOf({{&deaf}, {std::move(*resolved)}, period_s});
   const auto rows = static_cast<std::int64_t>(std::floor(duration_s * rate_hz + 1e-9)) + 1;

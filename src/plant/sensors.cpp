@@ -59,6 +59,7 @@ void Sensors::Sample(const Tick& tick, const Observation& exact) {
   shown_.time_s = exact.time_s;
   shown_.faults = exact.faults;
   shown_.bodies = exact.bodies;
+  shown_.goal = exact.goal;
   const std::size_t lanes = seeds_.size();
   for (std::size_t i = 0; i < errors_.size(); ++i) {
     const std::size_t lane = i % lanes;

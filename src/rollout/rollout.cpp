@@ -99,7 +99,7 @@ class LaneRollouts final : public Rollouts {
     }
     const auto plant = PlantOf(batch);
     plant::Loop loop(experiment_, lanes, *plant, options_.brought);
-    rollout::Scorer scorer(experiment_, objective_, loop,
+    rollout::Scorer scorer({experiment_, lanes}, objective_, loop,
                            options_.score ? options_.score({experiment_, lanes}) : nullptr);
     for (std::int64_t steps = 0; loop.time_s() < experiment_.duration_s; ++steps) {
       if ((steps & 1023) == 1023 && (Stopped() || !scorer.AnyAlive(count))) {

@@ -7,6 +7,7 @@
 #include "math/elementary.h"
 #include "math/vec.h"
 #include "plant/center_of_mass.h"
+#include "plant/goal.h"
 #include "plant/set_points.h"
 
 namespace taut::rollout {
@@ -23,9 +24,9 @@ std::string Seconds(double time_s) {
 
 }  // namespace
 
-Scorer::Scorer(const ExperimentSpec& experiment, const ObjectiveSpec& objective,
-               const plant::Loop& loop, std::unique_ptr<Score> own)
-    : experiment_(experiment),
+Scorer::Scorer(const ControlSetup& setup, const ObjectiveSpec& objective, const plant::Loop& loop,
+               std::unique_ptr<Score> own)
+    : experiment_(setup.experiment),
       objective_(objective),
       loop_(loop),
       world_(*loop.plant().world()),
@@ -33,11 +34,11 @@ Scorer::Scorer(const ExperimentSpec& experiment, const ObjectiveSpec& objective,
       kernel_(plant::LaneKernelOf(loop.lanes())),
       cos_max_tilt_(objective.fall ? math::Cos(objective.fall->max_tilt_rad) : -1.0) {
   const auto lanes = static_cast<std::size_t>(loop.lanes());
-  const ModelDef& def = experiment.robot.def;
+  const ModelDef& def = experiment_.robot.def;
   for (const CableDef& cable : def.cables) {
     motor_.push_back(cable.actuator.kind == ActuatorDef::Kind::kNone ? 0.0 : 1.0);
   }
-  driven_ = plant::CablesWithSetPoints(experiment.controllers);
+  driven_ = plant::CablesWithSetPoints(experiment_.controllers);
   wound_j_.resize(lanes);
   max_tension_n_.resize(lanes);
   error_n2_s_.resize(lanes);
@@ -46,9 +47,13 @@ Scorer::Scorer(const ExperimentSpec& experiment, const ObjectiveSpec& objective,
   failed_.resize(lanes);
   const double* rest = loop.exact().cables.rest_length_m;
   rest_before_m_.assign(rest, rest + def.cables.size() * lanes);
-  if (objective_.from_s <= 0) {
-    for (std::size_t j = 0; j < lanes; ++j) start_m_[j] = CenterOfMass(static_cast<int>(j));
+  if (experiment_.goal) {
+    for (const RolloutWorld* lane : setup.lanes) {
+      goal_m_.push_back(plant::GoalOf(*experiment_.goal, lane->start_noise, lane->seed));
+    }
+    goal_start_m_.resize(lanes);
   }
+  if (objective_.from_s <= 0) NoteStart();
   if (own_) own_->Take(loop.exact(), loop.commands(), world_, loop.step_s());
 }
 
@@ -61,13 +66,19 @@ void Scorer::Take() {
   if (own_) own_->Take(loop_.exact(), loop_.commands(), world_, loop_.step_s());
   const double time_s = loop_.time_s();
   if (!start_m_[0] && time_s >= objective_.from_s - kTimeToleranceS) {
-    for (int j = 0; j < loop_.lanes(); ++j) {
-      start_m_[static_cast<std::size_t>(j)] = CenterOfMass(j);
-    }
+    NoteStart();
   }
   if (time_s >= static_cast<double>(looks_) * kLookPeriodS - kTimeToleranceS) {
     ++looks_;
     LookAround();
+  }
+}
+
+void Scorer::NoteStart() {
+  for (int j = 0; j < loop_.lanes(); ++j) {
+    const auto lane = static_cast<std::size_t>(j);
+    start_m_[lane] = CenterOfMass(j);
+    if (experiment_.goal) goal_start_m_[lane] = DistanceToGoal(j);
   }
 }
 
@@ -117,6 +128,11 @@ Vec3 Scorer::CenterOfMass(int lane) const {
   return plant::CenterOfMass(world_, lane, experiment_.robot.def.bodies.size());
 }
 
+double Scorer::DistanceToGoal(int lane) const {
+  return plant::DistanceToGoal(goal_m_[static_cast<std::size_t>(lane)],
+                               world_.Body(lane, experiment_.goal->body).position_m);
+}
+
 RolloutResult Scorer::Result(int j) const {
   const auto lane = static_cast<std::size_t>(j);
   RolloutResult out;
@@ -144,6 +160,9 @@ RolloutResult Scorer::Result(int j) const {
       break;
     case Measure::kDistancePerEnergy:
       out.score = out.distance_m / out.energy_j;
+      break;
+    case Measure::kNearer:
+      out.score = start_m_[lane] ? goal_start_m_[lane] - DistanceToGoal(j) : 0.0;
       break;
     case Measure::kTracking:
       out.score = -out.tracking_n;

@@ -14,8 +14,9 @@ namespace taut::rollout {
 
 class Scorer {
  public:
-  /// `loop` is at its start. `own`: in place of the objective's measure; may be null.
-  Scorer(const ExperimentSpec& experiment, const ObjectiveSpec& objective, const plant::Loop& loop,
+  /// `loop` is at its start, its lanes are those of `setup`. `own`: in place of the objective's
+  /// measure; may be null.
+  Scorer(const ControlSetup& setup, const ObjectiveSpec& objective, const plant::Loop& loop,
          std::unique_ptr<Score> own);
 
   /// After every step.
@@ -28,6 +29,8 @@ class Scorer {
  private:
   void LookAround();
   Vec3 CenterOfMass(int lane) const;
+  double DistanceToGoal(int lane) const;
+  void NoteStart();
 
   const ExperimentSpec& experiment_;
   const ObjectiveSpec& objective_;
@@ -40,6 +43,8 @@ class Scorer {
   std::vector<int> driven_;    ///< Cables that have set points, ascending.
   std::vector<double> rest_before_m_, wound_j_, max_tension_n_, error_n2_s_;
   std::vector<std::optional<Vec3>> start_m_;  ///< Centre of mass at `from_s`.
+  std::vector<Vec3> goal_m_;                  ///< Empty without a goal.
+  std::vector<double> goal_start_m_;          ///< Distance to it at `from_s`.
   std::vector<std::optional<double>> fell_s_;
   std::vector<std::string> failed_;
   std::int64_t looks_ = 0;

@@ -45,8 +45,8 @@ struct Player {
     if (tick.due == 0) return;
     const double since_s =
         control::TickTime(control::Clock<double>{spec.period_s, spec.phase_s}, *tick.number);
-    ReadingRows seen;
-    seen.tension_n = tension_n.data();
+    Observation seen;
+    seen.cables.tension_n = tension_n.data();
     player->Tick({tick.due, tick.number, &since_s, &since_s}, seen);
     clock.Advance(tick.due);
   }

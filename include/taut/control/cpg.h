@@ -80,38 +80,27 @@ struct CpgNetwork {
 
 namespace internal {
 
-/// One sine and one cosine for each oscillator, and none for a coupling: the sine of a difference
-/// is taken apart (G.6).
-template <class Real>
-constexpr void CpgWaves(const CpgNetwork<Real>& network, CpgWork<Real>* work) noexcept {
-  for (size_t i = 0; i < network.count; ++i) {
-    CpgWork<Real>& w = work[i];
-    const Real turns = WrapTurns(w.stage.phase_turns), r = w.stage.amplitude_m_per_s;
-    w.sine = SinTurns(turns);
-    w.cosine = CosTurns(turns);
-    w.scaled_sine = r * w.sine;
-    w.scaled_cosine = r * w.cosine;
-  }
+/// What an oscillator shows its neighbours: one sine and one cosine for each oscillator, and none
+/// for a coupling, for the sine of a difference is taken apart (G.6).
+template <class Real, class Work>
+constexpr void SetWave(Real turns, Real amplitude, Work& w) noexcept {
+  w.sine = SinTurns(turns);
+  w.cosine = CosTurns(turns);
+  w.scaled_sine = amplitude * w.sine;
+  w.scaled_cosine = amplitude * w.cosine;
 }
 
-/// S and C (G.6). Couplings that pull at one oscillator are cheapest one after the other: their
-/// sums stay in registers.
-template <class Real>
-constexpr void CpgPulls(const CpgNetwork<Real>& network, const Real* feedback,
-                        CpgWork<Real>* work) noexcept {
-  for (size_t i = 0; i < network.count; ++i) {
-    work[i].pull_sine =
-        feedback ? feedback[i] * control::FromScalar<Real>(kTurnsPerRad) : Literal<Real>(0.0f);
-    work[i].pull_cosine = Literal<Real>(0.0f);
-  }
-  const CpgCoupling<Real>* link = network.couplings;
-  const CpgCoupling<Real>* const end = link + network.coupling_count;
+/// Adds to S and C (G.6). Couplings that pull at one oscillator are cheapest one after the other:
+/// their sums stay in registers.
+template <class Real, class Work>
+constexpr void AddPulls(const CpgCoupling<Real>* link, size_t coupling_count, Work* work) noexcept {
+  const CpgCoupling<Real>* const end = link + coupling_count;
   while (link != end) {
-    CpgWork<Real>& to = work[link->to];
+    Work& to = work[link->to];
     const uint16_t target = link->to;
     Real sine = to.pull_sine, cosine = to.pull_cosine;
     do {
-      const CpgWork<Real>& from = work[link->from];
+      const Work& from = work[link->from];
       sine = sine + (link->along * from.scaled_sine - link->across * from.scaled_cosine);
       cosine = cosine + (link->along * from.scaled_cosine + link->across * from.scaled_sine);
       ++link;
@@ -121,6 +110,31 @@ constexpr void CpgPulls(const CpgNetwork<Real>& network, const Real* feedback,
   }
 }
 
+/// sum_j w_ij r_j sin(theta_j - theta_i - phi_ij) in turns, from the sums.
+template <class Real, class Work>
+constexpr Real PullOf(const Work& w) noexcept {
+  return w.pull_sine * w.cosine - w.pull_cosine * w.sine;
+}
+
+template <class Real>
+constexpr void CpgWaves(const CpgNetwork<Real>& network, CpgWork<Real>* work) noexcept {
+  for (size_t i = 0; i < network.count; ++i) {
+    CpgWork<Real>& w = work[i];
+    SetWave(WrapTurns(w.stage.phase_turns), w.stage.amplitude_m_per_s, w);
+  }
+}
+
+template <class Real>
+constexpr void CpgPulls(const CpgNetwork<Real>& network, const Real* feedback,
+                        CpgWork<Real>* work) noexcept {
+  for (size_t i = 0; i < network.count; ++i) {
+    work[i].pull_sine =
+        feedback ? feedback[i] * control::FromScalar<Real>(kTurnsPerRad) : Literal<Real>(0.0f);
+    work[i].pull_cosine = Literal<Real>(0.0f);
+  }
+  AddPulls(network.couplings, network.coupling_count, work);
+}
+
 /// The rate of an oscillator's state:
 ///   theta_i' = 2 pi v_i + sum_j w_ij r_j sin(theta_j - theta_i - phi_ij) + s_i cos theta_i  (G.3)
 ///   r_i''    = a_i (a_i / 4 (R_i - r_i) - r_i')                                             (G.4)
@@ -128,8 +142,7 @@ template <class Real>
 constexpr CpgState<Real> CpgRate(const CpgLaw<Real>& law, const CpgWork<Real>& w) noexcept {
   const Real a = law.convergence_per_s;
   return CpgState<Real>{
-      law.frequency_hz + (w.pull_sine * w.cosine - w.pull_cosine * w.sine),
-      w.stage.amplitude_rate_m_per_s2,
+      law.frequency_hz + PullOf<Real>(w), w.stage.amplitude_rate_m_per_s2,
       a * (Literal<Real>(0.25f) * a * (law.amplitude_m_per_s - w.stage.amplitude_m_per_s) -
            w.stage.amplitude_rate_m_per_s2)};
 }

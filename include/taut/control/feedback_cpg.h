@@ -1,0 +1,139 @@
+/// Oscillators that sensors act on: on their frequency, their amplitude and their phase.
+///
+/// Source: Mirletz, Bhandal, Adams, Agogino, Quinn, SunSpiral, "Goal-directed CPG-based control for
+/// tensegrity spines with many degrees of freedom traversing irregular terrain", Soft Robotics
+/// 2(4), 2015, as its program has it (NTRTsim, src/util/CPGNodeFB.cpp). Different here: the
+/// amplitude is held relative to R, so that gains have no unit of a gait's signal. Equations:
+/// docs/theory/gaits.md.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "taut/control/cpg.h"
+#include "taut/control/real.h"
+#include "taut/control/turns.h"
+
+namespace taut {
+namespace control {
+
+/// What one oscillator tends to, and how much it heeds its sensors.
+template <class Real>
+struct FeedbackCpgLaw {
+  Real amplitude;                ///< R >= 0 [m/s], or [m]: of the oscillator left to itself.
+  Real convergence_per_s;        ///< a > 0.
+  Real frequency_gain_hz_per_s;  ///< k_f.
+  Real amplitude_gain;           ///< k_a.
+  Real phase_gain_turns_per_s;   ///< k_p.
+};
+
+/// What the sensors say to one oscillator, each -1..1 from a network.
+template <class Real>
+struct CpgFeedback {
+  Real frequency, amplitude, phase;  ///< f_f, f_a, f_p.
+};
+
+/// One oscillator's state.
+template <class Real>
+struct FeedbackCpgState {
+  Real phase_turns;   ///< theta, -1/2..1/2.
+  Real relative;      ///< rho = r / R; 0 stays 0.
+  Real frequency_hz;  ///< v.
+};
+
+/// At its amplitude from the start: it has no way to grow from 0.
+template <class Real>
+constexpr FeedbackCpgState<Real> StartFeedbackCpg(Real phase_turns, Real frequency_hz) noexcept {
+  return FeedbackCpgState<Real>{phase_turns, Literal<Real>(1.0f), frequency_hz};
+}
+
+/// R rho cos theta [m/s], or [m] (G.18).
+template <class Real>
+constexpr Real FeedbackCpgSignal(const FeedbackCpgLaw<Real>& law,
+                                 const FeedbackCpgState<Real>& state) noexcept {
+  return law.amplitude * state.relative * CosTurns(state.phase_turns);
+}
+
+/// What a step needs and forgets, one an oscillator.
+template <class Real>
+struct FeedbackCpgWork {
+  FeedbackCpgState<Real> stage, sum;
+  Real sine, scaled_sine, pull_sine;
+  Real cosine, scaled_cosine, pull_cosine;
+};
+
+/// A network: `count` oscillators, and couplings in any order (the order of the sums).
+template <class Real>
+struct FeedbackCpgNetwork {
+  const FeedbackCpgLaw<Real>* laws;  ///< Per oscillator.
+  size_t count;
+  const CpgCoupling<Real>* couplings;
+  size_t coupling_count;
+};
+
+namespace internal {
+
+/// The rate of an oscillator's state:
+///   theta_i' = 2 pi v_i + k_p f_p + sum_j w_ij r_j sin(theta_j - theta_i - phi_ij)   (G.15)
+///   v_i'     = k_f f_f sin theta_i                                                   (G.16)
+///   rho_i'   = a (1 + k_a f_a - rho_i^2) rho_i                                       (G.17)
+template <class Real>
+constexpr FeedbackCpgState<Real> FeedbackCpgRate(const FeedbackCpgLaw<Real>& law,
+                                                 const CpgFeedback<Real>& says,
+                                                 const FeedbackCpgWork<Real>& w) noexcept {
+  const Real rho = w.stage.relative;
+  return FeedbackCpgState<Real>{
+      w.stage.frequency_hz + law.phase_gain_turns_per_s * says.phase + PullOf<Real>(w),
+      law.convergence_per_s *
+          (Literal<Real>(1.0f) + law.amplitude_gain * says.amplitude - rho * rho) * rho,
+      law.frequency_gain_hz_per_s * says.frequency * w.sine};
+}
+
+template <class Real>
+constexpr FeedbackCpgState<Real> Advanced(const FeedbackCpgState<Real>& state,
+                                          const FeedbackCpgState<Real>& rate, Real h) noexcept {
+  return FeedbackCpgState<Real>{state.phase_turns + h * rate.phase_turns,
+                                state.relative + h * rate.relative,
+                                state.frequency_hz + h * rate.frequency_hz};
+}
+
+}  // namespace internal
+
+/// Advances all oscillators by `step_count` steps of `step_s` with the classical Runge-Kutta method
+/// of fourth order (G.7), under `feedback`, one an oscillator, which is held during the call.
+/// `states` and `work` have `network.count` entries.
+template <class Real>
+constexpr void StepFeedbackCpg(const FeedbackCpgNetwork<Real>& network,
+                               const CpgFeedback<Real>* feedback, Real step_s, uint16_t step_count,
+                               FeedbackCpgState<Real>* states,
+                               FeedbackCpgWork<Real>* work) noexcept {
+  const Real h = step_s, half = Literal<Real>(0.5f) * h;
+  const Real third = h / Literal<Real>(3.0f), sixth = h / Literal<Real>(6.0f);
+  const Real to_next[] = {half, half, h, h}, weight[] = {sixth, third, third, sixth};
+  for (uint16_t step = 0; step < step_count; ++step) {
+    for (size_t i = 0; i < network.count; ++i) work[i].stage = work[i].sum = states[i];
+    for (int stage = 0; stage < 4; ++stage) {
+      for (size_t i = 0; i < network.count; ++i) {
+        FeedbackCpgWork<Real>& w = work[i];
+        internal::SetWave(WrapTurns(w.stage.phase_turns),
+                          network.laws[i].amplitude * w.stage.relative, w);
+        w.pull_sine = w.pull_cosine = Literal<Real>(0.0f);
+      }
+      internal::AddPulls(network.couplings, network.coupling_count, work);
+      for (size_t i = 0; i < network.count; ++i) {
+        FeedbackCpgWork<Real>& w = work[i];
+        const FeedbackCpgState<Real> rate =
+            internal::FeedbackCpgRate(network.laws[i], feedback[i], w);
+        w.sum = internal::Advanced(w.sum, rate, weight[stage]);
+        w.stage = internal::Advanced(states[i], rate, to_next[stage]);
+      }
+    }
+    for (size_t i = 0; i < network.count; ++i) {
+      states[i] = work[i].sum;
+      states[i].phase_turns = WrapTurns(states[i].phase_turns);
+    }
+  }
+}
+
+}  // namespace control
+}  // namespace taut
