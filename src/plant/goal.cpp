@@ -46,7 +46,7 @@ void GoalSensor::Restart(int lane, const RolloutWorld& world) {
   at_m_[static_cast<std::size_t>(lane)] = GoalOf(goal_, world.start_noise, world.seed);
 }
 
-/// sensors.md, S.12 and S.13.
+/// sensors.md, S.8 and S.9.
 void GoalSensor::Sample(const Tick& tick, const Observation& exact) {
   shown_ = exact;
   if (exact.goal != nullptr) return;

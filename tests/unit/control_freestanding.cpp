@@ -3,8 +3,10 @@
 #include "taut/board/board.h"
 #include "taut/control/clock.h"
 #include "taut/control/cpg.h"
+#include "taut/control/feedback_cpg.h"
 #include "taut/control/impedance.h"
 #include "taut/control/impedance_tick.h"
+#include "taut/control/network.h"
 #include "taut/control/pid.h"
 #include "taut/control/position.h"
 #include "taut/control/rate.h"
@@ -71,6 +73,21 @@ extern "C" float SpeedFromOscillators(control::CpgState<float>* states, float te
   return control::CpgVelocity(states[0]);
 }
 
+// The same with a network between cell and oscillator.
+extern "C" float SpeedFromNetwork(control::FeedbackCpgState<float>* state, float tension_n) {
+  const float weights[] = {0.5f, -1.0f, 2.0f, 0.25f};
+  const float heard = (tension_n - 25.0f) / 50.0f;
+  float hidden[1], says = 0.0f;
+  control::EvaluateNetwork<float>(
+      {1, 1, 1}, [&](int n) { return weights[n]; }, [&](int) { return heard; }, hidden,
+      [&](int, float y) { says = y; });
+  const control::FeedbackCpgLaw<float> law{0.07f, 5.0f, 0.0f, 0.5f, 0.3f};
+  const control::CpgFeedback<float> feedback{0.0f, says, -says};
+  control::FeedbackCpgWork<float> work;
+  control::StepFeedbackCpg<float>({&law, 1, nullptr, 0}, &feedback, 0.01f, 1, state, &work);
+  return control::FeedbackCpgSignal(law, *state);
+}
+
 extern "C" int64_t NextTick(float t_s) {
   const control::Clock<float> clock{0.001f, 0.0f};
   const int64_t tick = control::TickAtOrAfter(clock, t_s);
@@ -85,7 +102,8 @@ int main() {
   const float speed =
       SpeedFromTension(&tension, 10.0f, 12.0f) + SpeedFromPosition(&position, rest_length_m, 2.0f);
   control::CpgState<float> oscillators[] = {control::StartCpg<float>(), control::StartCpg<float>()};
-  const float gait = SpeedFromSine(0.25f) + SpeedFromOscillators(oscillators, 12.0f);
+  control::FeedbackCpgState<float> hearing = control::StartFeedbackCpg(0.0f, 0.5f);
+  const float gait = SpeedFromNetwork(&hearing, 20.0f) + SpeedFromSine(0.25f) + SpeedFromOscillators(oscillators, 12.0f);
   return speed < 0.0f && gait < 1.0f && NextTick(0.5f) > 0 ? 0 : 1;
 }
 

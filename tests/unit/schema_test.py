@@ -55,7 +55,7 @@ UNIT_OF_SUFFIX = {
     "_kg_per_m3": "kg/m^3", "_kg_per_m": "kg/m",
     "_rad_per_s": "rad/s", "_m_per_s2_n": "m/(s^2 N)", "_m_per_s_n": "m/(s N)",
     "_m_per_s2": "m/s^2", "_m_per_s": "m/s", "_m_per_n": "m/N", "_per_n": "1/N", "_kg": "kg",
-    "_rad": "rad", "_hz": "Hz", "_n": "N", "_s": "s", "_m": "m",
+    "_hz_per_s": "Hz/s", "_rad": "rad", "_hz": "Hz", "_n": "N", "_s": "s", "_m": "m",
 }
 
 
