@@ -103,7 +103,8 @@ int main() {
       SpeedFromTension(&tension, 10.0f, 12.0f) + SpeedFromPosition(&position, rest_length_m, 2.0f);
   control::CpgState<float> oscillators[] = {control::StartCpg<float>(), control::StartCpg<float>()};
   control::FeedbackCpgState<float> hearing = control::StartFeedbackCpg(0.0f, 0.5f);
-  const float gait = SpeedFromNetwork(&hearing, 20.0f) + SpeedFromSine(0.25f) + SpeedFromOscillators(oscillators, 12.0f);
+  const float gait = SpeedFromNetwork(&hearing, 20.0f) + SpeedFromSine(0.25f) +
+                     SpeedFromOscillators(oscillators, 12.0f);
   return speed < 0.0f && gait < 1.0f && NextTick(0.5f) > 0 ? 0 : 1;
 }
 
