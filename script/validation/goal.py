@@ -1,0 +1,83 @@
+"""A spine of tetrahedra goes to a goal, from a hundred random starts on each of three terrains."""
+
+import pathlib
+import shutil
+import sqlite3
+import statistics
+import time
+
+from validation.push import machine
+from validation.runs import Problem, fill, keep_picture, table
+
+TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
+TERRAINS = {"flat ground": "goal_trials", "hills": "goal_trials_hills", "blocks": "goal_trials_blocks"}
+COLOURS = ("#2471a3", "#1e8449", "#c0392b")
+WANTED_M, ASKED_M = 2.0, 1.5
+
+
+def trials(taut, study):
+    """How much nearer each world came [m], ascending; the first, which is not drawn, is left out."""
+    folder = taut.folder / study
+    shutil.rmtree(folder, ignore_errors=True)   # a gait that has changed is another study
+    taut("learn", f"studies/{study}.yaml", "--out", folder, "--quiet")
+    with sqlite3.connect(folder / "study.sqlite") as log:
+        rows = log.execute("SELECT score, energy_j, max_tension_n FROM world WHERE world > 0").fetchall()
+    if any(score is None for score, *_ in rows):
+        raise Problem(f"{study}: a world failed")
+    return sorted(row[0] for row in rows), statistics.median(row[1] for row in rows), max(row[2] for row in rows)
+
+
+def share(scores, least):
+    return f"{100 * sum(score >= least for score in scores) / len(scores):.0f} %"
+
+
+def row(name, outcome):
+    scores, energy_j, tension_n = outcome
+    at = [f"{scores[int(part * len(scores))]:.2f}" for part in (0.05, 0.1, 0.25)]
+    return [name, f"{scores[0]:.2f}", *at, f"{statistics.median(scores):.2f}", f"{scores[-1]:.2f}",
+            share(scores, ASKED_M), share(scores, WANTED_M), f"{energy_j:.0f}", f"{tension_n:.0f}"]
+
+
+def picture(outcomes):
+    """Shares of the starts that came at least so much nearer."""
+    left, top, width, height, least, most = 60, 20, 640, 300, -1.0, 3.5
+
+    def x_of(score):
+        return left + width * (max(score, least) - least) / (most - least)
+
+    out = ['<svg xmlns="http://www.w3.org/2000/svg" width="740" height="400" viewBox="0 0 740 400" '
+           'font-family="sans-serif" font-size="11">', '<rect width="740" height="400" fill="white"/>',
+           f'<rect x="{left}" y="{top}" width="{width}" height="{height}" fill="none" stroke="#999"/>']
+    for i in range(10):
+        x = left + width * i / 9
+        out.append(f'<text x="{x:.1f}" y="{top + height + 16}" text-anchor="middle">{least + 0.5 * i:.1f}</text>')
+    for i in range(5):
+        y = top + height * (1 - i / 4)
+        out.append(f'<text x="{left - 6}" y="{y + 4:.1f}" text-anchor="end">{25 * i} %</text>')
+    for at in (ASKED_M, WANTED_M):
+        out.append(f'<line x1="{x_of(at):.1f}" y1="{top}" x2="{x_of(at):.1f}" y2="{top + height}" stroke="#ddd"/>')
+    out.append(f'<text x="{left + width / 2}" y="{top + height + 34}" text-anchor="middle">'
+               'came nearer to the goal by at least [m]</text>')
+    for i, ((name, (scores, *_)), colour) in enumerate(zip(outcomes.items(), COLOURS)):
+        points, count = [f"{left},{top}"], len(scores)
+        for k, score in enumerate(scores):
+            for part in (k, k + 1):
+                points.append(f"{x_of(score):.1f},{top + height * part / count:.1f}")
+        out.append(f'<polyline points="{" ".join(points)}" fill="none" stroke="{colour}" stroke-width="1.6"/>')
+        out.append(f'<rect x="{left + 200 * i}" y="375" width="18" height="8" fill="{colour}"/>')
+        out.append(f'<text x="{left + 24 + 200 * i}" y="383">{name}</text>')
+    return "\n".join(out + ["</svg>", ""])
+
+
+def page(taut):
+    started = time.monotonic()
+    outcomes = {name: trials(taut, study) for name, study in TERRAINS.items()}
+    keep_picture(taut, "docs/validation/goal.svg", picture(outcomes))
+    version = taut("--version").split()[-1]
+    return fill(TEMPLATE.read_text(), {
+        "made_by": f"This page was made by `script/validate goal` with taut {version}: 303 runs of 60 s took "
+                   f"{time.monotonic() - started:.0f} s on {machine()}.",
+        "starts": table(["", "least m", "5 % m", "10 % m", "25 % m", "median m", "most m", "at least 1.5 m",
+                         "at least 2 m", "winding J", "largest tension N"],
+                        [row(name, outcome) for name, outcome in outcomes.items()]),
+    })
