@@ -7,6 +7,7 @@ import os
 import pathlib
 import time
 
+from validation import gaits_eyelets
 from validation.push import OWN_LAWS, laws, machine, percent, plain
 from validation.runs import ROOT, Variant, fill, replaced, table, yaml_block
 from validation.waves import dominant, harmonics, line_at, off_sine, off_triangle
@@ -333,7 +334,7 @@ def page(taut):
     under_its_laws = [Variant(gait.key + "_ntrt", gait.key + "_ntrt", full_trace=True) for gait in (SINE, CPG)]
     one_law = {gait.key: law_variants(gait) for gait in (SINE, CPG)}
     results = taut.run([*under_its_laws, *(variant for runs in one_law.values() for _, variant in runs),
-                        *STEP_RUNS.values()])
+                        *STEP_RUNS.values(), *gaits_eyelets.variants()])
     values, ntrts, owns = {}, {}, []
     for gait, prefix in ((SINE, "sine"), (CPG, "cpg")):
         ntrt = ntrts[gait.key] = Ntrt(gait)
@@ -361,6 +362,7 @@ def page(taut):
             values[f"{prefix}_steps_{rate}_worst"] = f"{100 * largest:.1f}"
     values["saturation"] = saturation_table(owns)
     values.update(command_values(taut, ntrts))
+    values.update(gaits_eyelets.values(taut.folder, results))
     values.update({
         "version": results[SINE.key].summary["taut_version"],
         "runs": str(len(results)),
