@@ -167,7 +167,7 @@ template <class W>
     s.span_rest[cable.first_span + i] = rests[i];
     ChainSpan<W>& span = work.spans[cable.first_span + i];
     W stretch = length[i] - rests[i], speed = half * rate0[i];
-    if (i == 0) stretch += rest - mean, speed -= rate;
+    if (i == 0) stretch += rest - mean;
     span.stretch = stretch - quarter * h * rate0[i];
     span.rate = speed;
     span.stiffness = area / rests[i];

@@ -236,6 +236,28 @@ TEST(Capstan, MomentaAreKeptAndEnergyOnlyFalls) {
   EXPECT_LT(Distance(world.AngularMomentum(0), l), 1e-11);
 }
 
+/// As good as none: the same as a cable without, also while it is wound and damped.
+TEST(Capstan, HardlyAnyFrictionIsNone) {
+  double tension[2];
+  for (const double friction : {0.0, 1e-9}) {
+    ModelDef def;
+    def.bodies = {Ball(1e6, {1, 0, 0})};
+    def.gravity_m_per_s2 = {};
+    AddCable(def, {{kWorld, {0, 0, -0.3}}, {kWorld, {0, 0, 0}, friction}, {0, {1, 0, 0}}}, 200, 20);
+    def.cables[0].damping_n_s_per_m = 20;
+    ActuatorDef& motor = def.cables[0].actuator;
+    motor.kind = ActuatorDef::Kind::kLimited;
+    motor.max_speed_m_per_s = 0.07, motor.max_force_n = 1e3;
+    motor.max_acceleration_m_per_s2 = std::numeric_limits<double>::infinity();
+    Batch world = MakeBatch(def);
+    world.SetRestLengthTarget(0, 0, 0.5);
+    world.Step(1e-3, 500);
+    tension[friction > 0] = world.Cable(0, 0).tension_n;
+  }
+  EXPECT_NEAR(tension[0], 27.0, 0.01);
+  EXPECT_NEAR(tension[1], tension[0], 0.01);  // a mean over the step beside its end
+}
+
 TEST(Capstan, LanesAreLikeWorldsAlone) {
   ExpectLanesLikeWorldsAlone(Atwood(1, 0.4, 0.2, 5), {0.002, 0.01, 0.03}, 60);
 }

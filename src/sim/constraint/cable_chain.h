@@ -25,7 +25,7 @@ TAUT_INLINE void Push(const RowLink<Num>& link, const Num* l, V3<Num>& v, V3<Num
 }
 
 /// A span while its tension is found. Its mean stretch over the step is `stretch` - h / 4 u before
-/// it slips, and the mean rate of that `rate` - u / 2.
+/// it slips, and the mean rate of its length `rate` - u / 2.
 template <class Num>
 struct ChainSpan {
   Num stretch, rate;              ///< [m], [m/s]
