@@ -292,11 +292,13 @@ template <bool kMotors, class W>
 [[gnu::noinline, gnu::cold]] void SettleKinks(const View& m, const Rows<W>& s, Scratch<W>& work,
                                               CableStep<W> step) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  // Rates have changed since: in a lane that did not ask, a cable may look near by now.
+  const auto asks = step.room < zero;
   for (int c = 0; c < m.cable_count; ++c) {
     CableWork<W>& row = work.cables[c];
     const W dl = MeanRate<false>(work, row);
     const W way = step.h * (dl - s.rest_rate[c]);
-    const auto near = row.soft & (row.stretch * row.stretch < way * way);
+    const auto near = asks & row.soft & (row.stretch * row.stretch < way * way);
     if (!Any(near)) continue;
     if (m.cables[c].joins_two) {
       FinishLinks<true>(work, row);

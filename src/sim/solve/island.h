@@ -71,14 +71,14 @@ struct Pools : Pool<K>... {
     (Visit(static_cast<const Pool<K>&>(*this), f, row, cell), ...);
   }
   int rows() const noexcept {
-    int count = 0;
-    ForEach([&](auto& law, auto&, int row, int) { count = row + RowsOf(law); });
-    return count;
+    int sum = 0;
+    ForEach([&](auto& law, auto&, int row, int) { sum = row + RowsOf(law); });
+    return sum;
   }
   int cells() const noexcept {
-    int count = 0;
-    ForEach([&](auto& law, auto&, int, int cell) { count = cell + RowsOf(law) * RowsOf(law); });
-    return count;
+    int sum = 0;
+    ForEach([&](auto& law, auto&, int, int cell) { sum = cell + RowsOf(law) * RowsOf(law); });
+    return sum;
   }
 
  private:
