@@ -138,7 +138,7 @@ TEST(ModelErrors, NodesAndPairsAreWellFormed) {
             "robot.yaml:5:70: error: pairs.nodes must be a list of nodes, got a text\n"
             "robot.yaml:5:86: error: pairs.each makes several pairs, which cannot share a name\n"
             "robot.yaml:5:102: error: no builder matches the pair \"n\" (its tags are [n])\n"
-            "robot.yaml:5:112: error: pairs needs one of nodes, each\n"
+            "robot.yaml:5:112: error: pairs needs one of nodes, each, route\n"
             "robot.yaml:5:125: error: pairs must be a map, got a text\n");
 }
 
@@ -296,7 +296,7 @@ TEST(ModelErrors, AllOfThemAtOnce) {
   EXPECT_EQ(errors,
             "robot.yaml:4:17: error: parameters.x: division by zero\n"
             "robot.yaml:5:40: error: nodes.c must have 3 numbers, got 2\n"
-            "robot.yaml:6:39: error: pairs needs one of nodes, each\n"
+            "robot.yaml:6:39: error: pairs needs one of nodes, each, route\n"
             "robot.yaml:6:40: error: unknown key \"node\" in pairs (did you mean \"nodes\"?)\n"
             "robot.yaml:7:41: error: rod.radius_m must be positive, got -1\n"
             "robot.yaml:7:101: error: cable.stiffness_n_per_m must be positive, got 0\n");

@@ -32,7 +32,7 @@ def problem(function, *arguments):
 
 def AnUnknownPageIsAnError():
     run = validate("pull")
-    assert run.returncode == 2 and "no page pull; the pages are: push, gaits, wall, peers" in run.stderr, run
+    assert run.returncode == 2 and "no page pull; the pages are: push, gaits, goal, wall, peers" in run.stderr, run
 
 
 def AMissingTautIsAnError():
