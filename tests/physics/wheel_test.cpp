@@ -232,6 +232,34 @@ TEST(Wheel, ForcesAreTheSlopesOfTheLength) {
   }
 }
 
+/// Also on a body that turns: the rate that sensors see, against a difference of lengths.
+TEST(Wheel, TheRateIsThatOfTheLength) {
+  const double d = 1e-6;
+  const auto at = [&](double time_s) {
+    ModelDef def;
+    def.gravity_m_per_s2 = {};
+    const Vec3 center{0.2, 0.1, 0.3};
+    def.bodies = {Ball(1, center)};
+    // The wheel is off the middle of its body.
+    def.cables.push_back(Cable({{kWorld, {-1, 0, 0}},
+                                Round(0, center + Vec3{0.1, 0, 0.2}, {0, 1, 0}, 0.05, true),
+                                {kWorld, {1, 0.2, 0}}},
+                               1e-9, 1));
+    Batch world = MakeBatch(def);
+    BodyState state = world.Body(0, 0);
+    const double turn = 0.5 * 3.0 * time_s;
+    state.position_m = state.position_m + time_s * Vec3{0.3, -0.2, 0.4};
+    state.velocity_m_per_s = {0.3, -0.2, 0.4};
+    state.orientation = {std::cos(turn), 0, std::sin(turn), 0};
+    state.angular_velocity_rad_per_s = {0, 3, 0};
+    world.SetBodyState(0, 0, state);
+    return world.Cable(0, 0);
+  };
+  const double slope = (at(d).length_m - at(-d).length_m) / (2 * d);
+  EXPECT_NEAR(at(0).rate_m_per_s, slope, 1e-8);
+  EXPECT_GT(std::fabs(slope), 0.1);
+}
+
 TEST(Wheel, AnInterruptedPendulumKeepsItsEnergy) {
   const auto worst = [](double step_s) {
     ModelDef def;
@@ -253,7 +281,6 @@ TEST(Wheel, AnInterruptedPendulumKeepsItsEnergy) {
     }
     EXPECT_GT(most, 0.2);  // it was interrupted, or it would swing out to 0.8
     EXPECT_LT(most, 0.5);
-    std::printf("%g %g\n", off, most);
     return off;
   };
   EXPECT_LT(worst(1e-3), 0.003);
