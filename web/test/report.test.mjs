@@ -230,7 +230,7 @@ test("AxesFitWhatTheyShow", async () => {
 });
 
 for (const [what, data, says] of [
-  ["OfAnotherVersion", { ...report(), version: 7 }, new RegExp(`version 7, this page reads version ${VERSION}`)],
+  ["OfAnotherVersion", { ...report(), version: VERSION + 1 }, new RegExp(`version ${VERSION + 1}, this page reads version ${VERSION}`)],
   ["CutOff", { ...report(), frame_count: 3 }, /holds \d+ numbers of frames, not 3 times/],
   ["WithTooFewRows", { ...report(), rows: [{ ...report().rows[0], count: 3 }] }, /holds \d+ numbers of rows, not \d+/],
 ]) {
