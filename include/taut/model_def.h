@@ -144,6 +144,12 @@ struct AttachmentDef {
   std::optional<WheelDef> wheel = {};  ///< Not at the ends.
 };
 
+/// What a cable does not pass through, but comes to lie against (docs/theory/cables.md, section 6).
+enum class CableTouches {
+  kNone,
+  kTerrain,  ///< Edges of boxes, height fields and meshes of the terrain.
+};
+
 /// A tension-only spring and damper through two or more attachments. One tension, but for friction
 /// at attachments: then each span between those has its own (docs/theory/cables.md, section 5), and
 /// the actuator winds at the first attachment.
@@ -156,6 +162,8 @@ struct CableDef {
   double rest_length_m = 0.0;              ///< L > 0 at t = 0.
   DampingLaw damping_law = DampingLaw::kExact;
   ActuatorDef actuator;
+  CableTouches touches = CableTouches::kNone;  ///< Others only with two plain attachments,
+  double radius_m = 0.0;                       ///< and with a radius > 0.
 };
 
 /// A half space: the ground, a slope. The solid side is opposite to `normal`.

@@ -187,6 +187,7 @@ void Batch::Impl::JudgeStiffness(int world) noexcept {
 
 void Batch::Impl::Moved(int world) noexcept {
   for (int i = 0; i < view.body_pair_count; ++i) at(world, layout.clearance + i) = 0.0;
+  for (int i = 0; i < view.touch_count; ++i) at(world, layout.touch_free + i) = 0.0;
   group(world).sensed = false;
 }
 

@@ -95,6 +95,8 @@ struct Batch::Impl {
   sim::MotorOrders<double> orders(int world, int number) const noexcept {
     return Struct<sim::MotorOrders<double>>(world, layout.orders, number);
   }
+  /// Where a cable lies against edges, along it.
+  std::vector<sim::BendNumbers<double>> Bends(int world, int cable) const;
   Vec3 vec(int world, int row) const noexcept {
     return {at(world, row), at(world, row + 1), at(world, row + 2)};
   }
@@ -129,6 +131,9 @@ struct Batch::Impl {
     SetStruct(world, row, x);
   }
   void set(int world, int row, const sim::MotorOrders<double>& x) const noexcept {
+    SetStruct(world, row, x);
+  }
+  void set(int world, int row, const sim::BendNumbers<double>& x) const noexcept {
     SetStruct(world, row, x);
   }
   Quat quat(int world, int body) const noexcept {

@@ -9,6 +9,7 @@
 // In the order of use: each file needs what stands before it.
 // clang-format off
 #include "sim/rows.h"
+#include "sim/cable_edges.h"
 #include "sim/poison.inl"
 #include "sim/joined_boxes.h"
 #include "sim/passing.h"
@@ -16,6 +17,7 @@
 #include "sim/stage_bodies.inl"
 #include "sim/motion.inl"
 #include "sim/cable_wheels.inl"
+#include "sim/cable_bends.inl"
 #include "sim/stiff_cables.inl"
 #include "sim/dc_motor.inl"
 #include "sim/stage_cables.inl"
@@ -291,7 +293,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   StageKick(m, s, work, h);
   if (m.motion_count > 0) StageMotionKick(m, work);
   watch.Mark(Stage::kKick);
-  const uint32_t overflow = StageCollide(m, s, g, work, step_s, Max(h, last));
+  const uint32_t overflow = StageCollide(m, s, g, work, step_s, Max(h, last)) | work.no_room;
   watch.Mark(Stage::kCollide);
   const SolveResult<W> solve = StageSolve(m, s, g, work, settings, step_s);
   if (m.motor_count > 0) StageMotors(m, s, work, step_s);

@@ -34,9 +34,11 @@ class CableCompiler {
       table.wheel_count = static_cast<int>(t_.wheels.size()) - table.first_wheel;
       t_.max_wheels = std::max(t_.max_wheels, table.wheel_count);
       AddSpans(c, table);
+      AddTouch(c, table);
       const auto* const ends = &t_.attachments[static_cast<std::size_t>(table.first_attachment)];
-      table.joins_two = table.attachment_count == 2 && ends[0].body != ends[1].body &&
-                        ends[0].body < t_.body_count && ends[1].body < t_.body_count;
+      table.joins_two = table.attachment_count == 2 && table.touch < 0 &&
+                        ends[0].body != ends[1].body && ends[0].body < t_.body_count &&
+                        ends[1].body < t_.body_count;
       t_.max_attachments = std::max(t_.max_attachments, table.attachment_count);
       t_.cables.push_back(table);
     }
@@ -116,6 +118,14 @@ class CableCompiler {
     t_.span_count += table.span_count;
     ++t_.chain_count;
     TAUT_ASSERT(static_cast<int>(t_.span_rest_m.size()) == t_.span_count);
+  }
+
+  void AddTouch(const CableDef& cable, CableTable& table) {
+    if (cable.touches == CableTouches::kNone) return;
+    table.touch = static_cast<int>(t_.touches.size());
+    t_.touches.push_back({kMostBends * table.touch, cable.radius_m});
+    t_.max_attachments = std::max(t_.max_attachments, 2 + 2 * kMostBends);
+    t_.max_wheels = std::max(t_.max_wheels, kMostBends);
   }
 
   Tables& t_;

@@ -175,6 +175,11 @@ void CheckCables(const ModelDef& def, Checker& check) {
       check.Finite(a.position_m, name + ": attachment");
     }
     CheckRoute(c, name, check);
+    if (c.touches != CableTouches::kNone) {
+      check.Require(c.attachments.size() == 2,
+                    name + " touches the terrain: it must have two attachments and no more");
+      check.Positive(c.radius_m, name + ": radius");
+    }
     check.Positive(c.stiffness_n_per_m, name + ": stiffness");
     check.NonNegative(c.damping_n_s_per_m, name + ": damping");
     check.Positive(c.rest_length_m, name + ": rest length");

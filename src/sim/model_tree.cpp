@@ -55,9 +55,11 @@ void Append(TreeNode* first, TreeNode* last, std::vector<TreeNode>& tree) {
 
 void LayOutTree(Tables& t) {
   std::vector<TreeNode> leaves;
-  for (const ShapeTable& shape : t.shapes) {
+  for (std::size_t i = 0; i < t.shapes.size(); ++i) {
+    const ShapeTable& shape = t.shapes[i];
     if (shape.body != t.body_count || shape.shape_P.kind == ShapeKind::kSurface) continue;
     leaves.push_back({BoundsOf(shape.shape_P), 0, static_cast<int>(leaves.size())});
+    t.world_shapes.push_back(static_cast<int>(i));
   }
   if (leaves.size() <= static_cast<std::size_t>(kFewShapes)) return;
   t.tree_shapes = static_cast<int>(leaves.size());

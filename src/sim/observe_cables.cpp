@@ -56,6 +56,25 @@ double Batch::WheelAngle(int world, int cable, int wheel) const noexcept {
   return d.at(world, d.layout.wheel_angle + table.first_wheel + wheel);
 }
 
+std::vector<sim::BendNumbers<double>> Batch::Impl::Bends(int world, int cable) const {
+  std::vector<sim::BendNumbers<double>> bends;
+  const int touch = view.cables[cable].touch;
+  for (int k = 0; touch >= 0 && k < sim::kMostBends; ++k) {
+    const int number = view.touches[touch].first_bend + k;
+    bends.push_back(Struct<sim::BendNumbers<double>>(world, layout.bend, number));
+    if (bends.back().key == sim::kNoKey) return bends.pop_back(), bends;
+  }
+  return bends;
+}
+
+int Batch::CableBends(int world, int cable) const noexcept {
+  const Impl& d = *impl_;
+  d.CheckCable(__func__, world, cable);
+  int on = 0;
+  for (const sim::BendNumbers<double>& bend : d.Bends(world, cable)) on += bend.theta > 0.0;
+  return on;
+}
+
 std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
   const Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
@@ -67,32 +86,45 @@ std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
     return d.vec(world, d.layout.pos + 3 * at.body) + Rotate(d.quat(world, at.body), p);
   };
   std::vector<PathPoint<Vec3>> points;
+  std::vector<int> bodies;
   for (int i = 0; i < table.attachment_count; ++i) {
-    points.push_back({place(d.view.attachments[table.first_attachment + i]), {}, {}, {}});
+    const sim::AttachmentTable& at = d.view.attachments[table.first_attachment + i];
+    points.push_back({place(at), {}, {}, {}});
+    bodies.push_back(at.body);
   }
   std::vector<Wheel<Vec3>> wheels;
+  for (const sim::BendNumbers<double>& bend : d.Bends(world, cable)) {
+    const int at = 1 + 2 * static_cast<int>(wheels.size());
+    wheels.push_back({{bend.center[0], bend.center[1], bend.center[2]},
+                      {bend.axis[0], bend.axis[1], bend.axis[2]},
+                      d.view.touches[table.touch].radius_m, bend.angle, at, 0, 0, 0});
+    points.insert(points.begin() + at, 2, PathPoint<Vec3>{});
+    bodies.insert(bodies.begin() + at, 2, d.view.body_count);
+  }
   for (int k = 0; k < table.wheel_count; ++k) {
     const sim::WheelTable& wheel = d.view.wheels[table.first_wheel + k];
     const Vec3 center = place(d.view.spots[wheel.center_spot]);
     wheels.push_back({center, place(d.view.spots[wheel.axis_spot]) - center, wheel.radius_m,
                       WheelAngle(world, cable, k), wheel.at, 0, 0, 0});
   }
-  LayOnWheels(points.data(), table.wheel_count, wheels.data());
-  MeasurePath(table.attachment_count, points.data(), table.wheel_count, wheels.data());
+  const int count = static_cast<int>(points.size());
+  const int wheel_count = static_cast<int>(wheels.size());
+  LayOnWheels(points.data(), wheel_count, wheels.data());
+  MeasurePath(count, points.data(), wheel_count, wheels.data());
   std::vector<CablePoint> path;
   int span = 0;
   const auto tension = [&] {
     return table.span_count > 0 ? CableSpan(world, cable, span).tension_n
                                 : Cable(world, cable).tension_n;
   };
-  for (int i = 0; i < table.attachment_count; ++i) {
-    const int body = d.view.attachments[table.first_attachment + i].body;
+  for (int i = 0; i < count; ++i) {
+    const int body = bodies[static_cast<std::size_t>(i)];
     CablePoint point{body == d.view.body_count ? kWorld : body, points[i].p, {}};
     if (i > 0) point.force_n = point.force_n - tension() * points[i].u;
     const sim::SlipTable* const slip =
         span + 1 < table.span_count ? d.view.slips + table.first_slip + span : nullptr;
     if (slip != nullptr && i == slip->at) ++span;
-    if (i + 1 < table.attachment_count) point.force_n = point.force_n + tension() * points[i + 1].u;
+    if (i + 1 < count) point.force_n = point.force_n + tension() * points[i + 1].u;
     path.push_back(point);
   }
   return path;

@@ -54,6 +54,7 @@ struct Rows {
   using Q4 = simd::Q4<W>;
   using Motor = MotorNumbers<W>;
   using Orders = MotorOrders<W>;
+  using Bend = BendNumbers<W>;
 
 #define TAUT_ROW(name, type, ...) Row<type> name;
   TAUT_STATE_ROWS(TAUT_ROW)
@@ -155,6 +156,9 @@ struct Scratch {
   int* contact_count;       ///< Used slots, per body.
   TouchingPair* touches;    ///< Those of a lane from lane * pair_capacity on.
   int touch_count[W::kLanes];
+  int bends_used = 0;  ///< By the cable that was measured last (cable_bends.inl).
+  uint32_t no_room =
+      0;               ///< A bit for each lane in which a cable touches more than it has room for.
   V3<W>* start_spots;  ///< Spots at the start of the step [m], if start_known.
   W* start;  ///< Rows that go back to the start of the step in worlds that turn non-finite.
   CableWork<W>* cables;

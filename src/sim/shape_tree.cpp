@@ -81,14 +81,6 @@ double SkeletonDistance2(const HullShape& shape, const double* p) noexcept {
 
 double SkeletonDistance2(const SurfaceShape&, const double*) noexcept { return 0.0; }
 
-/// False also where a number is not finite: such a body is near nothing.
-bool Near(const Bounds& a, const Bounds& b, double reach_m) noexcept {
-  for (int i = 0; i < 3; ++i) {
-    if (!(a.low[i] - b.high[i] <= reach_m && b.low[i] - a.high[i] <= reach_m)) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 Shape MovedShape(const Shape& shape, const ShapePose& pose) noexcept {
@@ -124,15 +116,8 @@ bool MayReach(const Shape& shape, const double* center, double radius_m, double 
 
 void MarkNear(const TreeNode* tree, int count, const Bounds& bounds, double reach_m,
               uint64_t* marks) noexcept {
-  for (int i = 0; i < count;) {
-    const TreeNode& node = tree[i];
-    if (!Near(node.bounds, bounds, reach_m)) {
-      i = node.next;
-      continue;
-    }
-    if (node.shape >= 0) marks[node.shape / 64] |= uint64_t{1} << (node.shape % 64);
-    ++i;
-  }
+  EachNear(tree, count, bounds, reach_m,
+           [&](int shape) noexcept { marks[shape / 64] |= uint64_t{1} << (shape % 64); });
 }
 
 }  // namespace taut::sim

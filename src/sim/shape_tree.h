@@ -28,8 +28,31 @@ Bounds BoundsOf(const Shape& shape) noexcept;
 /// False only if a shape is further than `reach_m` from a ball.
 bool MayReach(const Shape& shape, const double* center, double radius_m, double reach_m) noexcept;
 
-/// Sets the bit of each shape whose bounds are, along every axis, at most `reach_m` from `bounds`:
-/// bit i % 64 of marks[i / 64].
+/// False also where a number is not finite: such a thing is near nothing.
+inline bool Near(const Bounds& a, const Bounds& b, double reach_m) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    if (!(a.low[i] - b.high[i] <= reach_m && b.low[i] - a.high[i] <= reach_m)) return false;
+  }
+  return true;
+}
+
+/// `use(number)` with each shape whose bounds are, along every axis, at most `reach_m` from
+/// `bounds`.
+template <class Use>
+void EachNear(const TreeNode* tree, int count, const Bounds& bounds, double reach_m,
+              const Use& use) noexcept {
+  for (int i = 0; i < count;) {
+    const TreeNode& node = tree[i];
+    if (!Near(node.bounds, bounds, reach_m)) {
+      i = node.next;
+      continue;
+    }
+    if (node.shape >= 0) use(node.shape);
+    ++i;
+  }
+}
+
+/// Sets the bits of those: bit i % 64 of marks[i / 64].
 void MarkNear(const TreeNode* tree, int count, const Bounds& bounds, double reach_m,
               uint64_t* marks) noexcept;
 

@@ -47,6 +47,7 @@ TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const Rows<W>& s, cons
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
   for (int i = 0; i < attachment_count; ++i) ends[i] = Attachment(tables[i], work);
   if constexpr (!kTwo) {
+    if (cable.touch >= 0) return MeasureTouching(m, s, cable, work, ends);
     if (cable.wheel_count > 0) {
       PutOnWheels(m, s, cable, work, work.spots, ends);
       return MeasurePath(attachment_count, ends, cable.wheel_count, work.wheels);
@@ -118,10 +119,13 @@ TAUT_INLINE void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work,
     AddLink(s, row, tables[0].body, ends[1].u, ends[0].arm);
     AddLink(s, row, tables[1].body, -ends[1].u, ends[1].arm);
   } else {
-    for (int i = 0; i < cable.attachment_count; ++i) {
-      const int body = tables[i].body;
+    // Edges of the terrain, between the two ends, move nothing.
+    const bool touches = cable.touch >= 0;
+    const int point_count = touches ? 2 + 2 * work.bends_used : cable.attachment_count;
+    for (int i = 0; i < point_count; i += touches ? point_count - 1 : 1) {
+      const int body = tables[touches && i > 0 ? 1 : i].body;
       if (body == m.body_count) continue;
-      const V3<W> direction = PullAt(cable.attachment_count, ends, i);
+      const V3<W> direction = PullAt(point_count, ends, i);
       Link<W, 1>* link = row.links;
       Link<W, 1>* const end = link + row.link_count;
       while (link != end && link->body != body) ++link;
@@ -236,6 +240,7 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
     l = MeasureCable<true>(m, s, cable, 2, work, ends).l;
     LinkCable<true>(m, s, work, cable, ends, row);
   } else {
+    if (cable.touch >= 0) FollowEdges(m, s, work, cable);
     l = MeasureCable<false>(m, s, cable, cable.attachment_count, work, work.attachments).l;
     KeepWheels(s, cable, work);
     LinkCable<false>(m, s, work, cable, work.attachments, row);
@@ -343,6 +348,7 @@ template <bool kMotors, class W>
 void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0);
   work.stiff_count = work.link_count = 0;
+  work.no_room = 0;
   work.start_known = false;
   auto damps = MaskOf<W>::Splat(false);
   for (int c = 0; c < m.cable_count && Any(!damps); ++c) damps = damps | (s.damping[c] > zero);

@@ -22,7 +22,7 @@ template <class W>
 void StageSense(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   for (int c = 0; c < m.cable_count; ++c) {
     const int count = m.cables[c].attachment_count;
-    if (count == 2) {
+    if (count == 2 && m.cables[c].touch < 0) {
       AttachmentWork<W> ends[2];
       SenseCable<true>(m, s, work, c, 2, ends);
     } else {

@@ -16,6 +16,7 @@ using V3 = Vec3;
 using Q4 = Quat;
 using Motor = MotorNumbers<double>;
 using Orders = MotorOrders<double>;
+using Bend = BendNumbers<double>;
 
 /// Zero, whatever the row's type.
 struct Nothing {
@@ -115,6 +116,7 @@ inline Motor MotorAtRest(const Tables& t, int i) noexcept {
   motor.supply = t.supplies[static_cast<std::size_t>(table.supply)].voltage_v;
   return motor;
 }
+inline Bend NoBend(const Tables&, int) noexcept { return {kNoKey, 0, 0, 0, {}, {}}; }
 inline Orders FollowTarget(const Tables&, int) noexcept { return {0.0, 0.0, 1.0}; }
 inline Vec3 Gravity(const Tables& t, int) noexcept { return t.def().gravity_m_per_s2; }
 

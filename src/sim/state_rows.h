@@ -14,6 +14,8 @@ enum class Per {
   kWheel,
   kSpan,
   kSlip,
+  kTouch,  ///< Cables that touch what they come to.
+  kBend,   ///< Their room for places where they lie against an edge.
   kNode,
   kJoint,
   kJointRow,
@@ -57,9 +59,20 @@ struct MotorOrders {
   Num on;       ///< 0: the driver is off.
 };
 
+/// Where a cable lies against an edge of the terrain (cable_bends.inl).
+template <class Num>
+struct BendNumbers {
+  Num key;                 ///< Which one (cable_edges.h), or kNoKey. Those in use come first.
+  Num angle;               ///< From point to point about it [rad].
+  Num theta;               ///< Over which the cable lay on in the last step, if it did [rad].
+  Num half;                ///< Half its length [m].
+  Num center[3], axis[3];  ///< In W [m], [1].
+};
+
 /// Numbers that one element has.
 inline constexpr int kWidthNumber = 1, kWidthV3 = 3, kWidthQ4 = 4;
 inline constexpr int kWidthMotor = sizeof(MotorNumbers<double>) / sizeof(double);
+inline constexpr int kWidthBend = sizeof(BendNumbers<double>) / sizeof(double);
 inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double);
 
 }  // namespace taut::sim
@@ -84,6 +97,7 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(span_tension,   Number, kSpan,     kState,     kZero,     SpanTension)      /* mean over the last step [N] */ \
   ROW(slip_place,     Number, kSlip,     kState,     kGoesBack, SlipPlace)        /* middle of a wheel's arc, on the wheel [rad] */ \
   ROW(slip_loss,      Number, kSlip,     kState,     kGoesBack, Zero)             /* energy that friction took [J] */ \
+  ROW(bend,           Bend,   kBend,     kState,     kForgets,  NoBend)           /* see there */ \
   ROW(motor,          Motor,  kMotor,    kState,     kGoesBack, MotorAtRest) \
   ROW(orders,         Orders, kMotor,    kState,     kStays,    FollowTarget) \
   ROW(target,         Number, kCable,    kState,     kStays,    RestLength)       /* [m] */ \
@@ -116,6 +130,9 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(quiet_from,     V3,     kKept,     kDerived,   kStays,    Zero)             /* a rod's end when it was looked up [m] */ \
   ROW(quiet_to,       V3,     kKept,     kDerived,   kStays,    Zero)             /* its other end [m] */ \
   ROW(quiet_limit,    Number, kKept,     kDerived,   kStays,    Zero)             /* near there it has no contact within that [m]; 0: not known */ \
+  ROW(touch_from,     V3,     kTouch,    kDerived,   kStays,    Zero)             /* where a free cable began when it was looked at [m] */ \
+  ROW(touch_to,       V3,     kTouch,    kDerived,   kStays,    Zero)             /* and where it ended [m] */ \
+  ROW(touch_free,     Number, kTouch,    kDerived,   kStays,    Zero)             /* then nothing was nearer [m]; 0: not known */ \
   ROW(residual,       Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last solve [m/s] */ \
   ROW(linear_solves,  Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last step */ \
   ROW(sense_span_length, Number, kSpan,  kSensed,    kStays,    Zero)             /* [m] */ \

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/body_frame.h"
+#include "sim/cable_table.h"
 #include "sim/hull_build.h"
 #include "sim/joint_table.h"
 #include "sim/motion_table.h"
@@ -21,42 +22,6 @@
 #include "taut/batch.h"
 
 namespace taut::sim {
-
-/// What an actuator obeys in a step, but a motor.
-struct LimitTable {
-  ActuatorDef::Kind kind = ActuatorDef::Kind::kNone;
-  double max_speed_m_per_s = 0, max_acceleration_m_per_s2 = 0, max_force_n = 0;
-  double min_rest_length_m = 0, min_length_m = 0;
-};
-
-struct CableTable {
-  int first_attachment = 0, attachment_count = 0;  ///< The points of its path.
-  int first_wheel = 0, wheel_count = 0;
-  int first_span = 0, span_count = 0;  ///< Of one with friction; without, it has none.
-  int first_slip = 0;                  ///< Places between the spans.
-  bool clamped_damping = false;
-  bool joins_two = false;  ///< Two bodies that are not the world, and no more.
-  int motor = -1;          ///< Which one winds it; -1: none.
-  LimitTable actuator;
-  double inv_max_speed = 0;  ///< 1 / actuator.max_speed_m_per_s [s/m].
-};
-
-/// A cylinder that a cable goes round. Its two points among the attachments have its body.
-struct WheelTable {
-  int at = 0;                          ///< Of the two in its cable's path, the first.
-  int center_spot = 0, axis_spot = 0;  ///< The axis goes from the one to the other, 1 m.
-  int mark_spot = -1;                  ///< 1 m off the middle, across the axis; with friction only.
-  double radius_m = 0;
-  double start_angle = 0;  ///< (math/cable_wheel.h) [rad]
-};
-
-/// Where a cable with friction may slip.
-struct SlipTable {
-  int at = 0;      ///< Point of its path; of a wheel, where the cable arrives.
-  int wheel = -1;  ///< Among all wheels; -1: an eyelet.
-  double friction = 0;
-  double start_place = 0;  ///< (cable_chains.inl) [rad]
-};
 
 /// A `DcMotorDef` in what its law is written in (dc_motor.inl).
 struct MotorTable {
@@ -229,6 +194,10 @@ struct View {
   const SupplyTable* supplies;
   int tree_nodes, tree_shapes;
   const TreeNode* tree;
+  int world_shape_count;    ///< Without surfaces;
+  const int* world_shapes;  ///< in the order of the tree's numbers.
+  int touch_count;
+  const TouchTable* touches;
   const FrictionTable* friction;   ///< Null: coefficients are those of the pairs.
   double floor_m;                  ///< Whoever is below falls for ever; minus infinity: nobody.
   int first_ground, ground_count;  ///< Surfaces among the shapes.
@@ -267,6 +236,10 @@ struct View {
         return span_count;
       case Per::kSlip:
         return slip_count;
+      case Per::kTouch:
+        return touch_count;
+      case Per::kBend:
+        return touch_count * kMostBends;
       case Per::kNode:
         return node_count;
       case Per::kJoint:
@@ -315,6 +288,7 @@ class Tables final : public Model {
   int chain_count = 0, span_count = 0;  ///< Cables with friction, and their spans.
   std::vector<double> span_rest_m;      ///< Of the spans, at the start.
   std::vector<SlipTable> slips;
+  std::vector<TouchTable> touches;
   std::vector<AttachmentTable> nodes;
   std::vector<PlaneTable> planes;
   std::vector<int> first_point;  ///< Per body, and one past the last.
@@ -338,6 +312,7 @@ class Tables final : public Model {
   double floor_m = 0;             ///< See View.
   std::vector<TreeNode> tree;     ///< Of the world's shapes, where they are more than kFewShapes.
   int tree_shapes = 0;            ///< How many those are; 0 without a tree.
+  std::vector<int> world_shapes;  ///< Without surfaces, in the order of the tree's numbers.
   std::vector<int> beside;        ///< What ShapeTable::beside points into.
   std::vector<JointTable> joints;
   std::vector<JointRowTable> joint_rows;

@@ -1,0 +1,262 @@
+#include "sim/cable_edges.h"
+
+#include "sim/surface_near.h"
+
+namespace taut::sim {
+namespace {
+
+/// Edges of a shape have numbers below this one.
+constexpr double kEdgesOfShape = 4294967296.0;
+
+/// Looks at edges that may be crossed, and keeps the deepest.
+class Search {
+ public:
+  Search(const FreeSpan& span, double radius_m, const double* taken, int taken_count,
+         EdgeFound* found) noexcept
+      : span_(span), radius_m_(radius_m), taken_(taken), taken_count_(taken_count), found_(found) {}
+
+  bool any() const noexcept { return any_; }
+
+  /// False if it cannot lift the span.
+  bool Offer(const TerrainEdge& edge, double depth_m) noexcept {
+    for (int i = 0; i < taken_count_; ++i) {
+      if (taken_[i] == edge.key) return false;
+    }
+    const Vec3 way = span_.to - span_.from;
+    const double side = Dot(way, Cross(edge.axis, edge.out)) < 0.0 ? -1.0 : 1.0;
+    const Wheel<Vec3> wheel{edge.center, edge.axis, radius_m_, side * kPi, 1, 0.0, 0.0, 0.0};
+    const Tangents<Vec3> lies = LayOn(wheel, span_.from, span_.to);
+    if (!(lies.theta > 0.0)) return false;
+    const Vec3 middle = 0.5 * (lies.a + lies.b) - edge.center;
+    if (!(Abs(Dot(middle, edge.axis)) < edge.half_m)) return false;
+    if (any_ && !(depth_m > found_->depth_m)) return true;
+    any_ = true;
+    *found_ = {edge, depth_m, side};
+    return true;
+  }
+
+  const FreeSpan& span() const noexcept { return span_; }
+  double radius_m() const noexcept { return radius_m_; }
+
+ private:
+  const FreeSpan& span_;
+  double radius_m_;
+  const double* taken_;
+  int taken_count_;
+  EdgeFound* found_;
+  bool any_ = false;
+};
+
+/// A box and a span in its frame. Faces: 2 i for that against axis i, 2 i + 1 for that along it.
+class BoxSearch {
+ public:
+  BoxSearch(const BoxShape& box, double first_key, Search& search) noexcept
+      : box_(box), first_key_(first_key), search_(search) {
+    const Vec3 center = Load(box.center);
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 axis = Load(box.axes + 3 * i);
+      p_[i] = Dot(axis, search.span().from - center);
+      d_[i] = Dot(axis, search.span().to - search.span().from);
+      h_[i] = box.half_m[i] + search.radius_m();
+    }
+  }
+
+  void Run() noexcept {
+    if (!Cut()) return;
+    if (in_ / 2 != out_ / 2) {
+      search_.Offer(EdgeBetween(in_, out_), CornerDepth());
+      return;
+    }
+    // Through opposite faces: over that of the other four to which it is nearest.
+    int over = -1;
+    double least = 0.0;
+    for (int face = 0; face < 6; ++face) {
+      if (face / 2 == in_ / 2) continue;
+      const double depth = Larger(Below(face, from_), Below(face, to_));
+      if (over < 0 || depth < least) over = face, least = depth;
+    }
+    search_.Offer(EdgeBetween(in_, over), Below(over, from_));
+    search_.Offer(EdgeBetween(over, out_), Below(over, to_));
+  }
+
+ private:
+  double At(int axis, double share) const noexcept { return p_[axis] + share * d_[axis]; }
+  double Below(int face, double share) const noexcept {
+    const double x = At(face / 2, share);
+    return h_[face / 2] - (face % 2 == 1 ? x : -x);
+  }
+  int NearestFace(double share) const noexcept {
+    int nearest = 0;
+    for (int face = 1; face < 6; ++face) {
+      if (Below(face, share) < Below(nearest, share)) nearest = face;
+    }
+    return nearest;
+  }
+
+  /// Where it goes in and out; where a bend is inside, which is round, through the nearest face.
+  /// False if it passes by, or stays at one face.
+  bool Cut() noexcept {
+    from_ = 0.0, to_ = 1.0;
+    in_ = out_ = -1;
+    for (int i = 0; i < 3; ++i) {
+      if (d_[i] == 0.0) {
+        if (!(Abs(p_[i]) < h_[i])) return false;
+        continue;
+      }
+      const bool rises = d_[i] > 0.0;
+      const double enters = ((rises ? -h_[i] : h_[i]) - p_[i]) / d_[i];
+      const double leaves = ((rises ? h_[i] : -h_[i]) - p_[i]) / d_[i];
+      if (enters > from_) from_ = enters, in_ = 2 * i + (rises ? 0 : 1);
+      if (leaves < to_) to_ = leaves, out_ = 2 * i + (rises ? 1 : 0);
+      if (!(from_ < to_)) return false;
+    }
+    if ((in_ < 0 && search_.span().starts) || (out_ < 0 && search_.span().ends)) return false;
+    if (in_ < 0) in_ = NearestFace(from_);
+    if (out_ < 0) out_ = NearestFace(to_);
+    return in_ != out_;
+  }
+
+  /// Of the edge between the two faces, below which the span cuts off a corner.
+  double CornerDepth() const noexcept {
+    const double a = Below(out_, from_), b = Below(in_, to_);
+    return a * b / Larger(Sqrt(a * a + b * b), 1e-300);
+  }
+
+  TerrainEdge EdgeBetween(int f, int g) const noexcept {
+    if (f > g) return EdgeBetween(g, f);
+    const int along = 3 - f / 2 - g / 2;
+    TerrainEdge edge;
+    edge.key = first_key_ + (6 * f + g);
+    edge.axis = Load(box_.axes + 3 * along);
+    edge.half_m = box_.half_m[along];
+    edge.center = Load(box_.center);
+    edge.out = {0.0, 0.0, 0.0};
+    for (const int face : {f, g}) {
+      const Vec3 normal = (face % 2 == 1 ? 1.0 : -1.0) * Load(box_.axes + 3 * (face / 2));
+      edge.center = edge.center + box_.half_m[face / 2] * normal;
+      edge.out = edge.out + 0.70710678118654752 * normal;
+    }
+    return edge;
+  }
+
+  const BoxShape& box_;
+  double first_key_;
+  Search& search_;
+  double p_[3], d_[3], h_[3];
+  double from_ = 0.0, to_ = 1.0;  ///< Shares of the span.
+  int in_ = -1, out_ = -1;
+};
+
+Vec3 Unit(const Vec3& a) noexcept { return (1.0 / Larger(Norm(a), 1e-300)) * a; }
+
+/// Of a surface, which edge and how deep the span is below it.
+void OfferEdge(const SurfaceEdge& edge, double key, Search& search) noexcept {
+  if (edge.sides != 2) return;
+  TerrainEdge found;
+  found.key = key;
+  const Vec3 along = edge.to - edge.from;
+  found.half_m = 0.5 * Norm(along);
+  found.axis = Unit(along);
+  found.center = 0.5 * (edge.from + edge.to);
+  Vec3 in{0.0, 0.0, 0.0};
+  for (int i = 0; i < 2; ++i) {
+    const Vec3 side = edge.apex[i] - edge.from;
+    in = in + Unit(side - Dot(side, found.axis) * found.axis);
+  }
+  found.out = -1.0 * Unit(in);
+  const FreeSpan& span = search.span();
+  const Vec3 across = Cross(span.to - span.from, found.axis);
+  const double across2 = Dot(across, across);
+  if (!(across2 > 0.0)) return;
+  const double apart = Dot(across, found.center - span.from) / Sqrt(across2);
+  const double depth = Dot(across, found.out) < 0.0 ? -apart : apart;
+  if (depth + search.radius_m() > 0.0) search.Offer(found, depth + search.radius_m());
+}
+
+void SearchSurface(const SurfaceTable& s, double first_key, Search& search) noexcept {
+  const FreeSpan& span = search.span();
+  const double radius = search.radius_m();
+  // What is high enough to be touched; of a mesh, no deeper than a cable comes to be in a step.
+  double reach = radius;
+  if (s.is_field) {
+    const Vec3 low{Smaller(span.from.x, span.to.x), Smaller(span.from.y, span.to.y), 0.0};
+    const Vec3 high{Larger(span.from.x, span.to.x), Larger(span.from.y, span.to.y), 0.0};
+    const Vec3 grown{radius, radius, 0.0};
+    const double above = TopOver(s, low - grown, high + grown) - Smaller(span.from.z, span.to.z);
+    if (above + radius < 0.0) return;
+    reach = reach + Larger(above, 0.0);
+  } else {
+    constexpr double kMostM = 0.02;
+    reach = reach + kMostM;
+  }
+  const LineReach line{span.from, span.to - span.from, 0.0, 1.0, reach};
+  if (!s.is_field) {
+    EachPiece(s, line, [&](const LineStretch&, const Vec3& low, const Vec3& high) noexcept {
+      detail::EachOfMesh(s, low, high, [&](int triangle) noexcept {
+        for (int e = s.first_edge[triangle]; e < s.first_edge[triangle + 1]; ++e) {
+          OfferEdge(detail::EdgeOfMesh(s, s.edges[e]), first_key + e, search);
+        }
+      });
+    });
+    return;
+  }
+  constexpr FieldMark kMarks[] = {kSharpAlongX, kSharpAlongY, kSharpDiagonal};
+  detail::EachCellOfField(s, line, [&](int i, int j, double) noexcept {
+    const int at = j * s.columns + i;
+    for (int k = 0; k < 3; ++k) {
+      if ((s.marks[at] & kMarks[k]) == 0) continue;
+      OfferEdge(detail::EdgeOfField(s, i, j, kMarks[k]), first_key + (3.0 * at + k), search);
+    }
+  });
+}
+
+RoundShape RoundOf(const FreeSpan& span, double radius_m) noexcept {
+  return {{span.from.x, span.from.y, span.from.z}, {span.to.x, span.to.y, span.to.z}, radius_m};
+}
+
+/// `use(shape, number)` with the world's boxes that may be within reach of the span.
+template <class Use>
+void EachBox(const View& m, const FreeSpan& span, double reach_m, const Use& use) noexcept {
+  const auto look = [&](int number) noexcept {
+    const Shape& shape = m.shapes[number].shape_P;
+    if (shape.kind == ShapeKind::kBox) use(shape.box, number);
+  };
+  if (m.tree_shapes == 0) {
+    for (int i = 0; i < m.world_shape_count; ++i) look(m.world_shapes[i]);
+    return;
+  }
+  Shape round;
+  round.round = RoundOf(span, 0.0);
+  EachNear(m.tree, m.tree_nodes, BoundsOf(round), reach_m,
+           [&](int i) noexcept { look(m.world_shapes[i]); });
+}
+
+}  // namespace
+
+bool FindEdge(const View& m, const FreeSpan& span, double radius_m, const double* taken,
+              int taken_count, EdgeFound* found) noexcept {
+  Search search(span, radius_m, taken, taken_count, found);
+  EachBox(m, span, radius_m, [&](const BoxShape& box, int number) noexcept {
+    BoxSearch(box, kEdgesOfShape * number, search).Run();
+  });
+  for (int i = 0; i < m.ground_count; ++i) {
+    const int number = m.first_ground + i;
+    SearchSurface(*m.shapes[number].shape_P.surface.table, kEdgesOfShape * number, search);
+  }
+  return search.any();
+}
+
+double FreeDistance(const View& m, const FreeSpan& span, double radius_m,
+                    double enough_m) noexcept {
+  const RoundShape round = RoundOf(span, radius_m);
+  double least = enough_m;
+  EachBox(m, span, radius_m + enough_m,
+          [&](const BoxShape& box, int) noexcept { least = Smaller(least, Distance(round, box)); });
+  for (int i = 0; i < m.ground_count; ++i) {
+    const SurfaceShape& surface = m.shapes[m.first_ground + i].shape_P.surface;
+    least = Smaller(least, DistanceToGround(round, surface, least, nullptr));
+  }
+  return least;
+}
+
+}  // namespace taut::sim
