@@ -88,6 +88,7 @@ std::string Unsupported(const ModelDef& def) {
   }
   if (!def.hulls.empty()) return "hulls";
   for (const CableDef& cable : def.cables) {
+    if (cable.touches != CableTouches::kNone) return "cables that touch what they come to";
     for (const AttachmentDef& at : cable.attachments) {
       if (at.wheel || at.friction > 0) return "cables with friction or over wheels";
     }

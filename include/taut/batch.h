@@ -241,10 +241,10 @@ class Batch {
   /// The angle about a cable's wheel, the first of which is 0, from the point before it to that
   /// behind it, with all turns, counter-clockwise about its axis [rad].
   double WheelAngle(int world, int cable, int wheel) const noexcept;
-  /// Against how many edges a cable lies that touches what it comes to, as of the last step.
-  int CableBends(int world, int cable) const noexcept;
-  /// Where a cable is held, and where it arrives at wheels and edges and leaves them: what pulls at
-  /// bodies.
+  /// Against how many edges and rods a cable lies that touches what it comes to.
+  int CableBends(int world, int cable) const;
+  /// Where a cable is held, and where it arrives at wheels, edges and rods, and leaves them: what
+  /// pulls at bodies.
   std::vector<CablePoint> CablePath(int world, int cable) const;
   /// What `Cable` says, of all cables of a group of `lanes()` worlds at once, and their commands:
   /// for controllers that run over lanes. Group g holds the worlds from g * lanes() on; lanes

@@ -148,6 +148,8 @@ struct AttachmentDef {
 enum class CableTouches {
   kNone,
   kTerrain,  ///< Edges of boxes, height fields and meshes of the terrain.
+  kRods,     ///< Capsules of bodies that collide, but for those on which it ends.
+  kAll
 };
 
 /// A tension-only spring and damper through two or more attachments. One tension, but for friction
@@ -155,6 +157,7 @@ enum class CableTouches {
 /// the actuator winds at the first attachment.
 struct CableDef {
   static constexpr int kMostSpans = 16;  ///< That friction parts.
+  static constexpr int kMostBends = 8;   ///< Edges and rods that it touches at once.
   std::string name;
   std::vector<AttachmentDef> attachments;  ///< >= 2, in order along the cable.
   double stiffness_n_per_m = 0.0;          ///< k > 0.

@@ -56,6 +56,12 @@ class CableMaker {
     }
     if (builder.ends_on_surface) MoveEndsToSurface(pair, builder, cable);
     if (!pair.route.empty()) FollowRoute(pair, assembly_, cable, once_);
+    if (cable.touches != CableTouches::kNone && cable.attachments.size() > 2) {
+      once_(pair.at,
+            "the cable \"" + pair.name +
+                "\" touches what it comes to, and runs over more than two " + "nodes",
+            "cables that touch run from node to node; leave `touches` away or cut it in two");
+    }
     if (CheckPath(pair, builder, cable)) SetRestLength(pair, builder, cable);
     robot_.def.cables.push_back(std::move(cable));
     robot_.cable_tags.push_back(pair.tags);

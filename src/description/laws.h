@@ -40,6 +40,10 @@ inline const Choices<JointKind> kJointKinds{{"ball", JointKind::kBall},
                                             {"line", JointKind::kLine},
                                             {"plane", JointKind::kPlane},
                                             {"distance", JointKind::kDistance}};
+inline const Choices<CableTouches> kCableTouches{{"none", CableTouches::kNone},
+                                                 {"terrain", CableTouches::kTerrain},
+                                                 {"rods", CableTouches::kRods},
+                                                 {"all", CableTouches::kAll}};
 inline const Choices<bool> kSides{{"left", true}, {"right", false}};
 inline const Choices<bool> kCableEnds{{"node", false}, {"surface", true}};
 

@@ -308,6 +308,12 @@ void Keys(Io& io, Cable& c) {
      "How the damper acts; what the model's `damping_law` says if absent. `exact`: b dl/dt, with "
      "a tension that is never negative. `clamped`: b dl/dt limited to the elastic force, as NTRT "
      "does.");
+  io("touches", c.touches, kCableTouches, kLater,
+     "What the cable does not pass through, but comes to lie against, without friction: edges of "
+     "boxes, height fields and meshes of the `terrain`; `rods` of bodies that move, but for those "
+     "on which it ends; or `all` of them. Only of a cable that runs from node to node.");
+  io("radius_m", c.radius_m, kLater, Bound::kNonNegative,
+     "Half its thickness; goes with `touches`.");
   if constexpr (Io::kResolved) {
     io("actuator", c.actuator);
   } else {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "description/build.h"
+#include "description/laws.h"
 #include "description/model.h"
 #include "description/model_keys.h"
 #include "description/model_write.h"
@@ -209,6 +210,10 @@ class Writer {
       std::string kind = "stiffness_n_per_m: " + Shown(cable.stiffness_n_per_m);
       kind += ", damping_n_s_per_m: " + Shown(cable.damping_n_s_per_m);
       if (cable.damping_law == DampingLaw::kClamped) kind += ", damping_law: clamped";
+      for (const auto& [name, touches] : kCableTouches) {
+        if (touches != cable.touches || touches == CableTouches::kNone) continue;
+        kind += ", touches: " + name + ", radius_m: " + Shown(cable.radius_m);
+      }
       if (cable.actuator.kind == ActuatorDef::Kind::kNone) return kind;
       return kind + ", actuator: " + ActuatorText(cable.actuator);
     };

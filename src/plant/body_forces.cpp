@@ -8,7 +8,10 @@ BodyForces::BodyForces(const ModelDef& def) : body_count_(def.bodies.size()) {
   for (const CableDef& cable : def.cables) {
     std::vector<BodyPoint>& points = cables_.emplace_back();
     const auto simple = [](const AttachmentDef& at) { return !at.wheel && at.friction == 0; };
-    if (!std::all_of(cable.attachments.begin(), cable.attachments.end(), simple)) continue;
+    if (cable.touches != CableTouches::kNone ||
+        !std::all_of(cable.attachments.begin(), cable.attachments.end(), simple)) {
+      continue;
+    }
     for (const AttachmentDef& at : cable.attachments) {
       const Vec3 origin =
           at.body == kWorld ? Vec3{} : def.bodies[static_cast<std::size_t>(at.body)].com_m;

@@ -1,6 +1,31 @@
+#include <algorithm>
+#include <limits>
+
+#include "math/vec.h"
 #include "plant/channels.h"
 
 namespace taut::plant {
+namespace {
+
+/// Where a cable that touches what it comes to is bent: the middle of each arc.
+void AddBendChannels(const std::string& prefix, int cable, Recorder& recorder) {
+  std::vector<ChannelInfo> names{{"bends", "1"}};
+  for (int i = 1; i <= CableDef::kMostBends; ++i) {
+    const std::string bend = "bend_" + std::to_string(i) + "_";
+    for (const char* axis : {"x_m", "y_m", "z_m"}) names.push_back({bend + axis, "m"});
+  }
+  recorder.Add(prefix, names, [=](const RecordSource& s, double* out) {
+    const std::vector<CablePoint> path = s.world->CablePath(0, cable);
+    const std::size_t bends = path.size() / 2 - 1;
+    *out++ = static_cast<double>(bends);
+    std::fill_n(out, 3 * CableDef::kMostBends, std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < bends; ++i) {
+      Put(0.5 * (path[2 * i + 1].position_m + path[2 * i + 2].position_m), out + 3 * i);
+    }
+  });
+}
+
+}  // namespace
 
 void AddSpanChannels(const ExperimentSpec& experiment, Recorder& recorder) {
   const auto& cables = experiment.robot.def.cables;
@@ -17,6 +42,7 @@ void AddSpanChannels(const ExperimentSpec& experiment, Recorder& recorder) {
           prefix, {{"wheel_" + std::to_string(i + 1) + "_angle_rad", "rad"}},
           [=](const RecordSource& s, double* out) { *out = s.world->WheelAngle(0, cable, i); });
     }
+    if (cables[c].touches != CableTouches::kNone) AddBendChannels(prefix, cable, recorder);
     if (slips == 0) continue;
     for (int i = 0; i <= slips; ++i) {
       recorder.Add(prefix, {{"span_" + std::to_string(i + 1) + "_tension_n", "N"}},

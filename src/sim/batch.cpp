@@ -84,6 +84,15 @@ BatchOptions Sane(BatchOptions o) {
   return o;
 }
 
+/// To rounding.
+bool SamePlace(const BodyState& a, const BodyState& b) {
+  constexpr double kTurn = 1e-12;
+  const Quat &p = a.orientation, &q = b.orientation;
+  const double same = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
+  const Vec3 &x = a.position_m, &y = b.position_m;
+  return x.x == y.x && x.y == y.y && x.z == y.z && std::fabs(same) > 1.0 - kTurn;
+}
+
 }  // namespace
 
 Simd BestSimd() {
@@ -191,6 +200,13 @@ void Batch::Impl::Moved(int world) noexcept {
   group(world).sensed = false;
 }
 
+void Batch::Impl::ForgetBends(int world) noexcept {
+  for (int i = 0; i < view.touch_rod_count; ++i) at(world, layout.touch_side + i) = 0.0;
+  for (int i = 0; i < view.Count(sim::Per::kBend); ++i) {
+    set(world, layout.bend + sim::kWidthBend * i, sim::start_of::NoBend(*model, i));
+  }
+}
+
 void Batch::Impl::Sense(int world) const noexcept {
   sim::Group& g = group(world);
   // Several threads may read at once: one senses, the others wait for it. Whoever comes later in
@@ -286,6 +302,8 @@ void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
   const auto first = static_cast<std::size_t>(4 * body);
   const double* q0 = d.model->q_WP0.data() + first;
   const Quat q = state.orientation * Quat{q0[0], q0[1], q0[2], q0[3]};
+  const BodyState before = Body(world, body);
+  if (!SamePlace(before, state)) d.ForgetBends(world);
   d.set(world, d.layout.pos + 3 * body, state.position_m);
   d.set(world, d.layout.vel + 3 * body, state.velocity_m_per_s);
   d.set(world, d.layout.old_vel + 3 * body, state.velocity_m_per_s);

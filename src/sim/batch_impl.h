@@ -172,6 +172,8 @@ struct Batch::Impl {
   void JudgeStiffness(int world) noexcept;
   /// Bodies moved by hand: what was known about distances is void.
   void Moved(int world) noexcept;
+  /// Nobody knows any more how the cables lie that touch what they come to: straight.
+  void ForgetBends(int world) noexcept;
   /// Bodies with motions to where they are at the world's time.
   void PlaceMotions(int world) noexcept;
   /// Makes the kSensed rows of the world's group belong to the current state.

@@ -1,8 +1,20 @@
-/// Cables that come to lie against edges of the terrain (cable_edges.h, docs/theory/cables.md,
-/// section 6). Such an edge is a wheel of the cable's radius that does not turn, and that the cable
-/// has only while it lies there.
+/// Cables that come to lie against edges of the terrain (cable_edges.h) and rods (cable_rods.inl;
+/// docs/theory/cables.md, section 6). These are wheels that a cable has only while it lies there.
 
 namespace taut::sim {
+
+template <class W>
+TAUT_INLINE void SetPlace(V3<W>& to, const Vec3& p, int lane) noexcept {
+  to.x.Set(lane, p.x);
+  to.y.Set(lane, p.y);
+  to.z.Set(lane, p.z);
+}
+
+/// Whose rod or edge a lane's bend is; the world's where there is none.
+template <class W>
+TAUT_INLINE int BodyOfBend(const View& m, const BendNumbers<W>& bend, int lane) noexcept {
+  return bend.key[lane] == kNoKey ? m.body_count : static_cast<int>(bend.body[lane]);
+}
 
 /// How many places of a cable's room for bends are in use, in some lane.
 template <class W>
@@ -15,10 +27,10 @@ TAUT_INLINE int BendsInUse(const Rows<W>& s, const TouchTable& touch) noexcept {
 }
 
 /// A path from ends[0] over bends to ends[2 used + 1], on work.wheels. What a lane does not have is
-/// passed by.
-template <class W>
-void LayOverEdges(const Rows<W>& s, const TouchTable& touch, int used, AttachmentWork<W>* ends,
-                  Wheel<V3<W>>* wheels) noexcept {
+/// passed by. `pose(body)`: where that is.
+template <class W, class Pose>
+void LayOverBends(const View& m, const Rows<W>& s, const TouchTable& touch, int used,
+                  AttachmentWork<W>* ends, Wheel<V3<W>>* wheels, const Pose& pose) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
   for (int k = 0; k < used; ++k) {
     const BendNumbers<W>& bend = s.bend[touch.first_bend + k];
@@ -28,17 +40,41 @@ void LayOverEdges(const Rows<W>& s, const TouchTable& touch, int used, Attachmen
     wheel.center = Pick(none, ends[0].p, V3<W>{bend.center[0], bend.center[1], bend.center[2]});
     wheel.axis =
         Pick(none, V3<W>{zero, zero, one}, V3<W>{bend.axis[0], bend.axis[1], bend.axis[2]});
-    wheel.radius = Select(none, zero, W::Splat(touch.radius_m));
+    wheel.radius = Select(none, zero, bend.radius);
     wheel.before = Select(none, zero, bend.angle);
     wheel.at = 1 + 2 * k;
+    if (touch.rod_count == 0) continue;
+    for (int lane = 0; lane < W::kLanes; ++lane) {
+      const int body = BodyOfBend(m, bend, lane);
+      if (body == m.body_count) continue;
+      const Spot<W> at = pose(body, wheel.center, wheel.axis);
+      SetPlace(wheel.center, PlaceOf(at.p, lane), lane);
+      SetPlace(wheel.axis, PlaceOf(at.arm, lane), lane);
+    }
   }
   LayOnWheels(ends, used, wheels);
+}
+
+/// Where bodies are in the middle of a step, for LayOverBends.
+template <class W>
+auto PoseNow(const Rows<W>& s, const Scratch<W>& work) noexcept {
+  return [&](int body, const V3<W>& center, const V3<W>& axis) {
+    const M3<W>& R = work.bodies[body].R;
+    return Spot<W>{s.pos[body] + R * center, R * axis};
+  };
+}
+
+/// Edges do not move.
+template <class W>
+TAUT_INLINE void StandOnEdges(int used, AttachmentWork<W>* ends) noexcept {
+  const W zero = W::Splat(0.0);
+  for (int i = 1; i <= 2 * used; ++i) ends[i].v = ends[i].arm = {zero, zero, zero};
 }
 
 /// Length and rate; fills in the directions. On the way past what it does not touch, a path's
 /// directions are those of the whole way, so that pulls there are nothing.
 template <class W>
-PathLength<V3<W>> MeasureOverEdges(int used, AttachmentWork<W>* ends,
+PathLength<V3<W>> MeasureOverBends(int used, AttachmentWork<W>* ends,
                                    const Wheel<V3<W>>* wheels) noexcept {
   const W zero = W::Splat(0.0);
   const V3<W> none{zero, zero, zero};
@@ -47,7 +83,6 @@ PathLength<V3<W>> MeasureOverEdges(int used, AttachmentWork<W>* ends,
   for (int k = 0; k < used; ++k) {
     const auto on = wheels[k].theta > zero;
     AttachmentWork<W>&a = ends[1 + 2 * k], &b = ends[2 + 2 * k];
-    a.v = b.v = a.arm = b.arm = none;
     PathLength<V3<W>> span;
     AddSpan(from, a, span);
     path.l = path.l + Select(on, span.l + wheels[k].arc, zero);
@@ -80,59 +115,54 @@ class LaneBends {
 
   void Remove(int k) noexcept {
     for (; k + 1 < count_; ++k) Copy(s_.bend[first_ + k + 1], s_.bend[first_ + k]);
-    Clear(s_.bend[first_ + --count_]);
+    Put(s_.bend[first_ + --count_], {kNoKey, 0, 0, 0, 0, 0, {}, {}});
   }
   /// False if there is no room.
-  bool Insert(int k, const EdgeFound& found) noexcept {
+  bool Insert(int k, const BendFound& found) noexcept {
     if (count_ == kMostBends) return false;
     for (int i = count_++; i > k; --i) Copy(s_.bend[first_ + i - 1], s_.bend[first_ + i]);
-    BendNumbers<W>& bend = s_.bend[first_ + k];
-    const TerrainEdge& edge = found.edge;
-    bend.key.Set(lane_, edge.key);
-    bend.angle.Set(lane_, found.side * kPi);
-    bend.theta.Set(lane_, 1.0);  // to be known; not to be dropped at once
-    bend.half.Set(lane_, edge.half_m);
-    const double center[3] = {edge.center.x, edge.center.y, edge.center.z};
-    const double axis[3] = {edge.axis.x, edge.axis.y, edge.axis.z};
-    for (int i = 0; i < 3; ++i) bend.center[i].Set(lane_, center[i]);
-    for (int i = 0; i < 3; ++i) bend.axis[i].Set(lane_, axis[i]);
+    const BendPlace& place = found.place;
+    const Vec3 &c = place.center, &u = place.axis;
+    // Its last angle is to be known, and not to be dropped at once.
+    Put(s_.bend[first_ + k], {place.key,
+                              static_cast<double>(place.body),
+                              found.side * kPi,
+                              1.0,
+                              place.half_m,
+                              place.radius_m,
+                              {c.x, c.y, c.z},
+                              {u.x, u.y, u.z}});
     return true;
   }
 
  private:
+  static constexpr int kWidth = kWidthBend;
+
   void Copy(const BendNumbers<W>& from, BendNumbers<W>& to) const noexcept {
-    to.key.Set(lane_, from.key[lane_]);
-    to.angle.Set(lane_, from.angle[lane_]);
-    to.theta.Set(lane_, from.theta[lane_]);
-    to.half.Set(lane_, from.half[lane_]);
-    for (int i = 0; i < 3; ++i) to.center[i].Set(lane_, from.center[i][lane_]);
-    for (int i = 0; i < 3; ++i) to.axis[i].Set(lane_, from.axis[i][lane_]);
+    for (int i = 0; i < kWidth; ++i) Numbers(to)[i].Set(lane_, Numbers(from)[i][lane_]);
   }
-  void Clear(BendNumbers<W>& bend) const noexcept {
-    bend.key.Set(lane_, kNoKey);
-    bend.angle.Set(lane_, 0.0);
-    bend.theta.Set(lane_, 0.0);
-    bend.half.Set(lane_, 0.0);
-    for (int i = 0; i < 3; ++i) bend.center[i].Set(lane_, 0.0);
-    for (int i = 0; i < 3; ++i) bend.axis[i].Set(lane_, 0.0);
+  void Put(BendNumbers<W>& bend, const BendNumbers<double>& x) const noexcept {
+    for (int i = 0; i < kWidth; ++i) {
+      Numbers(bend)[i].Set(lane_, reinterpret_cast<const double*>(&x)[i]);
+    }
+  }
+  static W* Numbers(BendNumbers<W>& bend) noexcept { return reinterpret_cast<W*>(&bend); }
+  static const W* Numbers(const BendNumbers<W>& bend) noexcept {
+    return reinterpret_cast<const W*>(&bend);
   }
 
   const Rows<W>& s_;
   int first_, lane_, count_ = 0;
 };
 
-template <class W>
-TAUT_INLINE Vec3 PlaceOf(const V3<W>& p, int lane) noexcept {
-  return {p.x[lane], p.y[lane], p.z[lane]};
-}
-
 /// Changes a lane's bends once, if the path as it is laid says so: what it has left is dropped, or
 /// where it is longer than its edge; an edge that a straight part is below is added. What it has
 /// just left stays for a step, which may have begun with it. Returns whether something has changed.
 template <class W>
-bool ChangeBends(const View& m, const Rows<W>& s, const TouchTable& touch, int used, int lane,
-                 bool first_look, const AttachmentWork<W>* ends, const Wheel<V3<W>>* wheels,
-                 uint32_t* no_room) noexcept {
+bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchTable& touch,
+                 int used, int lane, bool first_look) noexcept {
+  const AttachmentWork<W>* const ends = work.attachments;
+  const Wheel<V3<W>>* const wheels = work.wheels;
   LaneBends<W> bends(s, touch, lane);
   const int before = bends.count();
   for (int k = before - 1; k >= 0; --k) {
@@ -147,16 +177,19 @@ bool ChangeBends(const View& m, const Rows<W>& s, const TouchTable& touch, int u
   double taken[kMostBends];
   for (int k = 0; k < bends.count(); ++k) taken[k] = bends.Key(k);
   FreeSpan span{PlaceOf(ends[0].p, lane), {}, true, false};
-  EdgeFound deepest, found;
+  BendFound deepest;
   int place = -1, from = 0;
   for (int k = 0; k <= bends.count(); ++k) {
     const bool end = k == bends.count();
     if (!end && !(wheels[k].theta[lane] > 0.0)) continue;
     span.to = PlaceOf(ends[end ? 2 * used + 1 : 1 + 2 * k].p, lane);
     span.ends = end;
-    if (FindEdge(m, span, touch.radius_m, taken, bends.count(), &found) &&
-        (place < 0 || found.depth_m > deepest.depth_m)) {
-      deepest = found, place = from;
+    if (touch.terrain &&
+        FindEdge(m, span, touch.radius_m, taken, bends.count(), place >= 0, &deepest)) {
+      place = from;
+    }
+    if (FindRod(m, s, work, touch, span, lane, taken, bends.count(), place >= 0, &deepest)) {
+      place = from;
     }
     if (end) break;
     span.from = PlaceOf(ends[2 + 2 * k].p, lane);
@@ -165,7 +198,7 @@ bool ChangeBends(const View& m, const Rows<W>& s, const TouchTable& touch, int u
   }
   if (place < 0) return false;
   if (bends.Insert(place, deepest)) return true;
-  *no_room |= 1u << lane;
+  work.no_room |= 1u << lane;
   return false;
 }
 
@@ -180,31 +213,27 @@ TAUT_INLINE MaskOf<W> MayTouch(const Rows<W>& s, int touch, const V3<W>& p,
 
 /// At the middle of the step: what a cable lies against from here on.
 template <class W>
-[[gnu::noinline]] void FollowEdges(const View& m, const Rows<W>& s, Scratch<W>& work,
+[[gnu::noinline]] void FollowBends(const View& m, const Rows<W>& s, Scratch<W>& work,
                                    const CableTable& cable) noexcept {
   constexpr int kMostRounds = 4 * kMostBends;
   constexpr double kEnoughM = 0.05;
   const TouchTable& touch = m.touches[cable.touch];
   int used = BendsInUse(s, touch);
-  const W zero = W::Splat(0.0);
   AttachmentWork<W>* const ends = work.attachments;
-  V3<W> last;
-  ends[0].p = work.spots[m.attachments[cable.first_attachment].spot].p;
-  last = work.spots[m.attachments[cable.first_attachment + 1].spot].p;
-  auto look = MayTouch(s, cable.touch, ends[0].p, last);
-  for (int k = 0; k < used; ++k) {
-    look = look | !(s.bend[touch.first_bend + k].key == W::Splat(kNoKey));
-  }
-  look = look & (s.halted[0] == zero);
+  const V3<W> first = work.spots[m.attachments[cable.first_attachment].spot].p;
+  const V3<W> last = work.spots[m.attachments[cable.first_attachment + 1].spot].p;
+  const auto free = s.bend[touch.first_bend].key == W::Splat(kNoKey);
+  auto look = (!free) | MayTouchRods(m, s, work, touch, first, last, free);
+  if (touch.terrain) look = look | MayTouch(s, cable.touch, first, last);
+  look = look & (s.halted[0] == W::Splat(0.0));
   if (!Any(look)) return;
   auto busy = look;
   for (int round = 0; round < kMostRounds && Any(busy); ++round) {
+    ends[0].p = first;
     ends[2 * used + 1].p = last;
-    LayOverEdges(s, touch, used, ends, work.wheels);
+    LayOverBends(m, s, touch, used, ends, work.wheels, PoseNow(s, work));
     for (int lane = 0; lane < W::kLanes; ++lane) {
-      if (!busy[lane]) continue;
-      busy.Set(lane,
-               ChangeBends(m, s, touch, used, lane, round == 0, ends, work.wheels, &work.no_room));
+      if (busy[lane]) busy.Set(lane, ChangeBends(m, s, work, touch, used, lane, round == 0));
     }
     if (Any(busy)) used = BendsInUse(s, touch);
   }
@@ -214,18 +243,35 @@ template <class W>
     bend.angle = Select(live, work.wheels[k].angle, bend.angle);
     bend.theta = Select(live, work.wheels[k].theta, bend.theta);
   }
-  // Of one that is free, how far it may go before it is looked at again.
   for (int lane = 0; lane < W::kLanes; ++lane) {
     if (!look[lane]) continue;
-    double free = 0.0;
-    const FreeSpan span{PlaceOf(ends[0].p, lane), PlaceOf(last, lane), true, true};
-    if (used == 0 || s.bend[touch.first_bend].key[lane] == kNoKey) {
-      free = FreeDistance(m, span, touch.radius_m, kEnoughM);
-    }
-    s.touch_free[cable.touch].Set(lane, free);
+    if (touch.rod_count > 0) KeepSides(m, s, work, touch, used, lane);
+    if (!touch.terrain) continue;
+    // Of one that is free, how far it may go before it is looked at again.
+    const FreeSpan span{PlaceOf(first, lane), PlaceOf(last, lane), true, true};
+    const bool bent = s.bend[touch.first_bend].key[lane] != kNoKey;
+    s.touch_free[cable.touch].Set(lane,
+                                  bent ? 0.0 : FreeDistance(m, span, touch.radius_m, kEnoughM));
+    SetPlace(s.touch_from[cable.touch], span.from, lane);
+    SetPlace(s.touch_to[cable.touch], span.to, lane);
   }
-  s.touch_from[cable.touch] = Select3(look, ends[0].p, s.touch_from[cable.touch]);
-  s.touch_to[cable.touch] = Select3(look, last, s.touch_to[cable.touch]);
+}
+
+/// On rods, the points of a path have velocities and arms.
+template <class W>
+void MoveWithRods(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
+                  int used, AttachmentWork<W>* ends) noexcept {
+  for (int i = 1; i <= 2 * used; ++i) {
+    const BendNumbers<W>& bend = s.bend[touch.first_bend + (i - 1) / 2];
+    for (int lane = 0; lane < W::kLanes; ++lane) {
+      const int body = BodyOfBend(m, bend, lane);
+      if (body == m.body_count) continue;
+      const BodyWork<W>& b = work.bodies[body];
+      const Vec3 arm = PlaceOf(ends[i].p, lane) - PlaceOf(s.pos[body], lane);
+      SetPlace(ends[i].arm, arm, lane);
+      SetPlace(ends[i].v, PlaceOf(b.v_mid, lane) + Cross(PlaceOf(b.w_mid, lane), arm), lane);
+    }
+  }
 }
 
 /// Length and rate of such a cable. `ends` has its two, and afterwards all points of its path;
@@ -238,20 +284,66 @@ template <class W>
   const int used = work.bends_used = BendsInUse(s, touch);
   if (used == 0) return MeasurePath(2, ends);
   ends[2 * used + 1] = ends[1];
-  LayOverEdges(s, touch, used, ends, work.wheels);
-  return MeasureOverEdges(used, ends, work.wheels);
+  LayOverBends(m, s, touch, used, ends, work.wheels, PoseNow(s, work));
+  StandOnEdges(used, ends);
+  if (touch.rod_count > 0) MoveWithRods(m, s, work, touch, used, ends);
+  return MeasureOverBends(used, ends, work.wheels);
+}
+
+/// What the tension does to rods: one link a body, in the order of their numbers, whatever each
+/// lane's cable lies against.
+template <class W>
+[[gnu::noinline]] void LinkRods(const View& m, const Rows<W>& s, const Scratch<W>& work,
+                                const CableTable& cable, const AttachmentWork<W>* ends,
+                                CableWork<W>& row) noexcept {
+  const TouchTable& touch = m.touches[cable.touch];
+  const int used = work.bends_used, own = row.link_count;
+  for (int i = 1; i <= 2 * used; ++i) {
+    const BendNumbers<W>& bend = s.bend[touch.first_bend + (i - 1) / 2];
+    const V3<W> pull = PullAt(2 * used + 2, ends, i), turn = Cross(ends[i].arm, pull);
+    for (int lane = 0; lane < W::kLanes; ++lane) {
+      const int body = BodyOfBend(m, bend, lane);
+      if (body == m.body_count) continue;
+      int k = 0;
+      while (k < own && row.links[k].body != body) ++k;
+      if (k == own) {
+        while (k < row.link_count && row.links[k].body < body) ++k;
+        if (k == row.link_count || row.links[k].body != body) {
+          for (int j = row.link_count++; j > k; --j) row.links[j] = row.links[j - 1];
+          Link<W, 1>& link = row.links[k];
+          const W zero = W::Splat(0.0);
+          link.body = body;
+          link.inv_mass = s.inv_mass[body];
+          link.lin[0] = link.ang[0] = {zero, zero, zero};
+        }
+      }
+      Link<W, 1>& link = row.links[k];
+      SetPlace(link.lin[0], PlaceOf(link.lin[0], lane) + PlaceOf(pull, lane), lane);
+      SetPlace(link.ang[0], PlaceOf(link.ang[0], lane) + PlaceOf(turn, lane), lane);
+    }
+  }
 }
 
 /// The length at the start of the step, over what it lies against now.
 template <class W>
-[[gnu::noinline]] W StartLengthOverEdges(const View& m, const Rows<W>& s, Scratch<W>& work,
+[[gnu::noinline]] W StartLengthOverBends(const View& m, const Rows<W>& s, Scratch<W>& work,
                                          const CableTable& cable) noexcept {
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
-  for (int i = 0; i < 2; ++i) {
-    work.attachments[i].p = work.start_spots[tables[i].spot];
-    work.attachments[i].v = work.attachments[i].p;  // nobody needs the rate
-  }
-  return MeasureTouching(m, s, cable, work, work.attachments).l;
+  const TouchTable& touch = m.touches[cable.touch];
+  const int used = BendsInUse(s, touch);
+  AttachmentWork<W>* const ends = work.attachments;
+  ends[0].p = work.start_spots[tables[0].spot];
+  ends[2 * used + 1].p = work.start_spots[tables[1].spot];
+  ends[0].v = ends[2 * used + 1].v = ends[0].p;  // nobody needs the rate
+  const auto* const pos = reinterpret_cast<const V3<W>*>(work.start);
+  const auto* const quat = reinterpret_cast<const Q4<W>*>(pos + m.body_count);
+  LayOverBends(m, s, touch, used, ends, work.wheels,
+               [&](int body, const V3<W>& center, const V3<W>& axis) {
+                 const M3<W> R = RotationOf(quat[body]);
+                 return Spot<W>{pos[body] + R * center, R * axis};
+               });
+  StandOnEdges(used, ends);
+  return MeasureOverBends(used, ends, work.wheels).l;
 }
 
 }  // namespace taut::sim

@@ -3,48 +3,60 @@
 #include "sim/surface_near.h"
 
 namespace taut::sim {
-namespace {
 
-/// Edges of a shape have numbers below this one.
-constexpr double kEdgesOfShape = 4294967296.0;
+bool CanLieOn(const BendPlace& place, const FreeSpan& span, double side) noexcept {
+  const Wheel<Vec3> wheel{place.center, place.axis, place.radius_m, side * kPi, 1, 0.0, 0.0, 0.0};
+  const Tangents<Vec3> lies = LayOn(wheel, span.from, span.to);
+  if (!(lies.theta > 0.0)) return false;
+  const Vec3 middle = 0.5 * (lies.a + lies.b) - place.center;
+  return Abs(Dot(middle, place.axis)) < place.half_m;
+}
+
+namespace {
 
 /// Looks at edges that may be crossed, and keeps the deepest.
 class Search {
  public:
-  Search(const FreeSpan& span, double radius_m, const double* taken, int taken_count,
-         EdgeFound* found) noexcept
-      : span_(span), radius_m_(radius_m), taken_(taken), taken_count_(taken_count), found_(found) {}
+  Search(const View& m, const FreeSpan& span, double radius_m, const double* taken, int taken_count,
+         bool any, BendFound* found) noexcept
+      : world_(m.body_count),
+        span_(span),
+        radius_m_(radius_m),
+        taken_(taken),
+        taken_count_(taken_count),
+        found_(found),
+        any_(any) {}
 
-  bool any() const noexcept { return any_; }
+  bool found() const noexcept { return is_new_; }
 
   /// False if it cannot lift the span.
-  bool Offer(const TerrainEdge& edge, double depth_m) noexcept {
+  bool Offer(TerrainEdge& edge, double depth_m) noexcept {
+    BendPlace& place = edge.place;
     for (int i = 0; i < taken_count_; ++i) {
-      if (taken_[i] == edge.key) return false;
+      if (taken_[i] == place.key) return false;
     }
+    place.radius_m = radius_m_;
     const Vec3 way = span_.to - span_.from;
-    const double side = Dot(way, Cross(edge.axis, edge.out)) < 0.0 ? -1.0 : 1.0;
-    const Wheel<Vec3> wheel{edge.center, edge.axis, radius_m_, side * kPi, 1, 0.0, 0.0, 0.0};
-    const Tangents<Vec3> lies = LayOn(wheel, span_.from, span_.to);
-    if (!(lies.theta > 0.0)) return false;
-    const Vec3 middle = 0.5 * (lies.a + lies.b) - edge.center;
-    if (!(Abs(Dot(middle, edge.axis)) < edge.half_m)) return false;
+    const double side = Dot(way, Cross(place.axis, edge.out)) < 0.0 ? -1.0 : 1.0;
+    if (!CanLieOn(place, span_, side)) return false;
     if (any_ && !(depth_m > found_->depth_m)) return true;
-    any_ = true;
-    *found_ = {edge, depth_m, side};
+    any_ = is_new_ = true;
+    *found_ = {place, depth_m, side};
     return true;
   }
 
+  int world() const noexcept { return world_; }
   const FreeSpan& span() const noexcept { return span_; }
   double radius_m() const noexcept { return radius_m_; }
 
  private:
+  int world_;
   const FreeSpan& span_;
   double radius_m_;
   const double* taken_;
   int taken_count_;
-  EdgeFound* found_;
-  bool any_ = false;
+  BendFound* found_;
+  bool any_, is_new_ = false;
 };
 
 /// A box and a span in its frame. Faces: 2 i for that against axis i, 2 i + 1 for that along it.
@@ -64,7 +76,7 @@ class BoxSearch {
   void Run() noexcept {
     if (!Cut()) return;
     if (in_ / 2 != out_ / 2) {
-      search_.Offer(EdgeBetween(in_, out_), CornerDepth());
+      Offer(in_, out_, CornerDepth());
       return;
     }
     // Through opposite faces: over that of the other four to which it is nearest.
@@ -75,8 +87,8 @@ class BoxSearch {
       const double depth = Larger(Below(face, from_), Below(face, to_));
       if (over < 0 || depth < least) over = face, least = depth;
     }
-    search_.Offer(EdgeBetween(in_, over), Below(over, from_));
-    search_.Offer(EdgeBetween(over, out_), Below(over, to_));
+    Offer(in_, over, Below(over, from_));
+    Offer(over, out_, Below(over, to_));
   }
 
  private:
@@ -122,21 +134,20 @@ class BoxSearch {
     return a * b / Larger(Sqrt(a * a + b * b), 1e-300);
   }
 
-  TerrainEdge EdgeBetween(int f, int g) const noexcept {
-    if (f > g) return EdgeBetween(g, f);
+  /// The edge between two faces.
+  void Offer(int f, int g, double depth_m) noexcept {
+    if (f > g) return Offer(g, f, depth_m);
     const int along = 3 - f / 2 - g / 2;
-    TerrainEdge edge;
-    edge.key = first_key_ + (6 * f + g);
-    edge.axis = Load(box_.axes + 3 * along);
-    edge.half_m = box_.half_m[along];
-    edge.center = Load(box_.center);
-    edge.out = {0.0, 0.0, 0.0};
+    Vec3 center = Load(box_.center), out{0.0, 0.0, 0.0};
     for (const int face : {f, g}) {
-      const Vec3 normal = (face % 2 == 1 ? 1.0 : -1.0) * Load(box_.axes + 3 * (face / 2));
-      edge.center = edge.center + box_.half_m[face / 2] * normal;
-      edge.out = edge.out + 0.70710678118654752 * normal;
+      const Vec3 normal = (face % 2 == 1 ? 1.0 : -1.0) * AxisOf(box_, face / 2);
+      center = center + box_.half_m[face / 2] * normal;
+      out = out + 0.70710678118654752 * normal;
     }
-    return edge;
+    TerrainEdge edge{{first_key_ + (6 * f + g), search_.world(), center, AxisOf(box_, along),
+                      box_.half_m[along], 0.0},
+                     out};
+    search_.Offer(edge, depth_m);
   }
 
   const BoxShape& box_;
@@ -150,34 +161,31 @@ class BoxSearch {
 Vec3 Unit(const Vec3& a) noexcept { return (1.0 / Larger(Norm(a), 1e-300)) * a; }
 
 /// Of a surface, which edge and how deep the span is below it.
-void OfferEdge(const SurfaceEdge& edge, double key, Search& search) noexcept {
+void OfferEdge(const SurfaceEdge& edge, double key, double reach_m, Search& search) noexcept {
   if (edge.sides != 2) return;
-  TerrainEdge found;
-  found.key = key;
   const Vec3 along = edge.to - edge.from;
-  found.half_m = 0.5 * Norm(along);
-  found.axis = Unit(along);
-  found.center = 0.5 * (edge.from + edge.to);
+  const double length_m = Norm(along);
+  const Vec3 axis = Unit(along), center = 0.5 * (edge.from + edge.to);
   Vec3 in{0.0, 0.0, 0.0};
   for (int i = 0; i < 2; ++i) {
     const Vec3 side = edge.apex[i] - edge.from;
-    in = in + Unit(side - Dot(side, found.axis) * found.axis);
+    in = in + Unit(side - Dot(side, axis) * axis);
   }
-  found.out = -1.0 * Unit(in);
+  TerrainEdge found{{key, search.world(), center, axis, 0.5 * length_m, 0.0}, -1.0 * Unit(in)};
   const FreeSpan& span = search.span();
-  const Vec3 across = Cross(span.to - span.from, found.axis);
+  const Vec3 across = Cross(span.to - span.from, axis);
   const double across2 = Dot(across, across);
   if (!(across2 > 0.0)) return;
-  const double apart = Dot(across, found.center - span.from) / Sqrt(across2);
-  const double depth = Dot(across, found.out) < 0.0 ? -apart : apart;
-  if (depth + search.radius_m() > 0.0) search.Offer(found, depth + search.radius_m());
+  const double apart = Dot(across, center - span.from) / Sqrt(across2);
+  const double depth = search.radius_m() + (Dot(across, found.out) < 0.0 ? -apart : apart);
+  if (depth > 0.0 && depth < reach_m) search.Offer(found, depth);
 }
 
 void SearchSurface(const SurfaceTable& s, double first_key, Search& search) noexcept {
   const FreeSpan& span = search.span();
   const double radius = search.radius_m();
   // What is high enough to be touched; of a mesh, no deeper than a cable comes to be in a step.
-  double reach = radius;
+  double reach = 2.0 * radius;
   if (s.is_field) {
     const Vec3 low{Smaller(span.from.x, span.to.x), Smaller(span.from.y, span.to.y), 0.0};
     const Vec3 high{Larger(span.from.x, span.to.x), Larger(span.from.y, span.to.y), 0.0};
@@ -194,7 +202,7 @@ void SearchSurface(const SurfaceTable& s, double first_key, Search& search) noex
     EachPiece(s, line, [&](const LineStretch&, const Vec3& low, const Vec3& high) noexcept {
       detail::EachOfMesh(s, low, high, [&](int triangle) noexcept {
         for (int e = s.first_edge[triangle]; e < s.first_edge[triangle + 1]; ++e) {
-          OfferEdge(detail::EdgeOfMesh(s, s.edges[e]), first_key + e, search);
+          OfferEdge(detail::EdgeOfMesh(s, s.edges[e]), first_key + e, reach, search);
         }
       });
     });
@@ -205,7 +213,7 @@ void SearchSurface(const SurfaceTable& s, double first_key, Search& search) noex
     const int at = j * s.columns + i;
     for (int k = 0; k < 3; ++k) {
       if ((s.marks[at] & kMarks[k]) == 0) continue;
-      OfferEdge(detail::EdgeOfField(s, i, j, kMarks[k]), first_key + (3.0 * at + k), search);
+      OfferEdge(detail::EdgeOfField(s, i, j, kMarks[k]), first_key + (3.0 * at + k), reach, search);
     }
   });
 }
@@ -234,8 +242,8 @@ void EachBox(const View& m, const FreeSpan& span, double reach_m, const Use& use
 }  // namespace
 
 bool FindEdge(const View& m, const FreeSpan& span, double radius_m, const double* taken,
-              int taken_count, EdgeFound* found) noexcept {
-  Search search(span, radius_m, taken, taken_count, found);
+              int taken_count, bool any, BendFound* found) noexcept {
+  Search search(m, span, radius_m, taken, taken_count, any, found);
   EachBox(m, span, radius_m, [&](const BoxShape& box, int number) noexcept {
     BoxSearch(box, kEdgesOfShape * number, search).Run();
   });
@@ -243,7 +251,7 @@ bool FindEdge(const View& m, const FreeSpan& span, double radius_m, const double
     const int number = m.first_ground + i;
     SearchSurface(*m.shapes[number].shape_P.surface.table, kEdgesOfShape * number, search);
   }
-  return search.any();
+  return search.found();
 }
 
 double FreeDistance(const View& m, const FreeSpan& span, double radius_m,

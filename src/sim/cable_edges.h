@@ -8,12 +8,22 @@
 
 namespace taut::sim {
 
-/// An edge that sticks out, as a cable meets it.
-struct TerrainEdge {
-  double key;         ///< Which one: the same number is the same edge of a model.
-  Vec3 center, axis;  ///< In W; a unit vector [m], [1].
+/// Edges of a shape have numbers below this one.
+inline constexpr double kEdgesOfShape = 4294967296.0;
+
+/// A cylinder that a cable may come to lie against.
+struct BendPlace {
+  double key;         ///< Which one: the same number is the same edge or rod of a model.
+  int body;           ///< Or the world; in whose frame P
+  Vec3 center, axis;  ///< these are; a unit vector [m], [1].
   double half_m;      ///< Half its length.
-  Vec3 out;           ///< Unit vector across it, away from the solid.
+  double radius_m;    ///< To the middle of a cable on it.
+};
+
+/// An edge that sticks out.
+struct TerrainEdge {
+  BendPlace place;
+  Vec3 out;  ///< Unit vector across it, away from the solid.
 };
 
 /// A straight stretch of a cable.
@@ -22,15 +32,20 @@ struct FreeSpan {
   bool starts, ends;  ///< Whether those are ends of the cable.
 };
 
-/// The edge with the deepest place of a span below it, of those that can lift the span out, but for
-/// `taken`. `side`: the sign of the angle by which it goes round it. False if there is none. A box
-/// in which the cable ends is passed through.
-struct EdgeFound {
-  TerrainEdge edge;
+/// What a span has come to lie against. `side`: the sign of the angle by which it goes round it.
+struct BendFound {
+  BendPlace place;
   double depth_m, side;
 };
+
+/// Whether a span from end to end, on the given side of it, would lie on that, within its length.
+bool CanLieOn(const BendPlace& place, const FreeSpan& span, double side) noexcept;
+
+/// The edge with the deepest place of a span below it, of those that can lift the span out, but for
+/// `taken`. False if there is none that is deeper than what was found before, if `any` was. A box
+/// in which the cable ends is passed through.
 bool FindEdge(const View& m, const FreeSpan& span, double radius_m, const double* taken,
-              int taken_count, EdgeFound* found) noexcept;
+              int taken_count, bool any, BendFound* found) noexcept;
 
 /// No edge is nearer to the span, up to `enough_m`; 0 or less where one may be touched.
 double FreeDistance(const View& m, const FreeSpan& span, double radius_m, double enough_m) noexcept;

@@ -42,14 +42,23 @@ struct SlipTable {
   double start_place = 0;  ///< (cable_chains.inl) [rad]
 };
 
-/// A cable that comes to lie against edges of the terrain (cable_bends.inl). It has two
+/// A cable that comes to lie against edges of the terrain or rods (cable_bends.inl). It has two
 /// attachments.
 struct TouchTable {
+  int cable = 0;
   int first_bend = 0;  ///< Of kMostBends.
   double radius_m = 0;
+  bool terrain = false;              ///< Edges of it.
+  int first_rod = 0, rod_count = 0;  ///< Those that it may come to.
 };
 
-/// So many edges a cable lies against at once.
-inline constexpr int kMostBends = 8;
+/// A rod as such a cable meets it.
+struct TouchRodTable {
+  int shape = 0, body = 0;  ///< The body moves.
+  double center_P[3] = {}, axis_P[3] = {};
+  double half_m = 0, radius_m = 0;  ///< To the middle of a cable on it.
+};
+
+inline constexpr int kMostBends = CableDef::kMostBends;
 
 }  // namespace taut::sim

@@ -10,6 +10,7 @@
 // clang-format off
 #include "sim/rows.h"
 #include "sim/cable_edges.h"
+#include "sim/line_crossing.h"
 #include "sim/poison.inl"
 #include "sim/joined_boxes.h"
 #include "sim/passing.h"
@@ -17,6 +18,7 @@
 #include "sim/stage_bodies.inl"
 #include "sim/motion.inl"
 #include "sim/cable_wheels.inl"
+#include "sim/cable_rods.inl"
 #include "sim/cable_bends.inl"
 #include "sim/stiff_cables.inl"
 #include "sim/dc_motor.inl"

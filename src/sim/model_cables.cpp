@@ -123,7 +123,9 @@ class CableCompiler {
   void AddTouch(const CableDef& cable, CableTable& table) {
     if (cable.touches == CableTouches::kNone) return;
     table.touch = static_cast<int>(t_.touches.size());
-    t_.touches.push_back({kMostBends * table.touch, cable.radius_m});
+    const bool terrain = cable.touches != CableTouches::kRods;
+    t_.touches.push_back({static_cast<int>(t_.cables.size()), kMostBends * table.touch,
+                          cable.radius_m, terrain, 0, 0});
     t_.max_attachments = std::max(t_.max_attachments, 2 + 2 * kMostBends);
     t_.max_wheels = std::max(t_.max_wheels, kMostBends);
   }
@@ -133,6 +135,38 @@ class CableCompiler {
 };
 
 }  // namespace
+
+void LayOutTouchRods(Tables& t) {
+  for (std::size_t c = 0; c < t.cables.size(); ++c) {
+    const CableDef& def = t.def().cables[c];
+    if (t.cables[c].touch < 0) continue;
+    TouchTable& touch = t.touches[static_cast<std::size_t>(t.cables[c].touch)];
+    touch.first_rod = static_cast<int>(t.touch_rods.size());
+    const auto* const ends = &t.attachments[static_cast<std::size_t>(t.cables[c].first_attachment)];
+    for (std::size_t i = 0; def.touches != CableTouches::kTerrain && i < t.shapes.size(); ++i) {
+      const ShapeTable& shape = t.shapes[i];
+      const RoundShape& round = shape.shape_P.round;
+      if (shape.shape_P.kind != ShapeKind::kRound || !t.Moves(shape.body)) continue;
+      TouchRodTable rod;
+      rod.shape = static_cast<int>(i);
+      rod.body = shape.body;
+      rod.radius_m = round.radius_m + def.radius_m;
+      for (int k = 0; k < 3; ++k) {
+        rod.center_P[k] = 0.5 * (round.from[k] + round.to[k]);
+        rod.axis_P[k] = 0.5 * (round.to[k] - round.from[k]);
+        rod.half_m += rod.axis_P[k] * rod.axis_P[k];
+      }
+      rod.half_m = std::sqrt(rod.half_m);
+      if (!(rod.half_m > 0)) continue;
+      for (double& x : rod.axis_P) x /= rod.half_m;
+      const auto ends_on = [&](const AttachmentTable& end) {
+        return end.body == rod.body && MayReach(shape.shape_P, end.p_P, 0.0, def.radius_m);
+      };
+      if (!ends_on(ends[0]) && !ends_on(ends[1])) t.touch_rods.push_back(rod);
+    }
+    touch.rod_count = static_cast<int>(t.touch_rods.size()) - touch.first_rod;
+  }
+}
 
 void LayOutCables(Tables& tables, const std::vector<Frame>& frames) {
   CableCompiler(tables, frames).Run();

@@ -67,12 +67,10 @@ std::vector<sim::BendNumbers<double>> Batch::Impl::Bends(int world, int cable) c
   return bends;
 }
 
-int Batch::CableBends(int world, int cable) const noexcept {
-  const Impl& d = *impl_;
-  d.CheckCable(__func__, world, cable);
-  int on = 0;
-  for (const sim::BendNumbers<double>& bend : d.Bends(world, cable)) on += bend.theta > 0.0;
-  return on;
+int Batch::CableBends(int world, int cable) const {
+  return impl_->view.cables[cable].touch < 0
+             ? 0
+             : static_cast<int>(CablePath(world, cable).size()) / 2 - 1;
 }
 
 std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
@@ -94,12 +92,17 @@ std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
   }
   std::vector<Wheel<Vec3>> wheels;
   for (const sim::BendNumbers<double>& bend : d.Bends(world, cable)) {
-    const int at = 1 + 2 * static_cast<int>(wheels.size());
-    wheels.push_back({{bend.center[0], bend.center[1], bend.center[2]},
-                      {bend.axis[0], bend.axis[1], bend.axis[2]},
-                      d.view.touches[table.touch].radius_m, bend.angle, at, 0, 0, 0});
+    const int at = 1 + 2 * static_cast<int>(wheels.size()), body = static_cast<int>(bend.body);
+    Vec3 center{bend.center[0], bend.center[1], bend.center[2]};
+    Vec3 axis{bend.axis[0], bend.axis[1], bend.axis[2]};
+    if (body < d.view.body_count) {
+      const Quat q = d.quat(world, body);
+      center = d.vec(world, d.layout.pos + 3 * body) + Rotate(q, center);
+      axis = Rotate(q, axis);
+    }
+    wheels.push_back({center, axis, bend.radius, bend.angle, at, 0, 0, 0});
     points.insert(points.begin() + at, 2, PathPoint<Vec3>{});
-    bodies.insert(bodies.begin() + at, 2, d.view.body_count);
+    bodies.insert(bodies.begin() + at, 2, body);
   }
   for (int k = 0; k < table.wheel_count; ++k) {
     const sim::WheelTable& wheel = d.view.wheels[table.first_wheel + k];
@@ -107,10 +110,17 @@ std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
     wheels.push_back({center, place(d.view.spots[wheel.axis_spot]) - center, wheel.radius_m,
                       WheelAngle(world, cable, k), wheel.at, 0, 0, 0});
   }
+  LayOnWheels(points.data(), static_cast<int>(wheels.size()), wheels.data());
+  // What a cable that touches has left by now is no part of its path.
+  for (std::size_t k = wheels.size(); table.touch >= 0 && k-- > 0;) {
+    if (wheels[k].theta > 0) continue;
+    points.erase(points.begin() + wheels[k].at, points.begin() + wheels[k].at + 2);
+    bodies.erase(bodies.begin() + wheels[k].at, bodies.begin() + wheels[k].at + 2);
+    for (std::size_t i = k + 1; i < wheels.size(); ++i) wheels[i].at -= 2;
+    wheels.erase(wheels.begin() + static_cast<std::ptrdiff_t>(k));
+  }
   const int count = static_cast<int>(points.size());
-  const int wheel_count = static_cast<int>(wheels.size());
-  LayOnWheels(points.data(), wheel_count, wheels.data());
-  MeasurePath(count, points.data(), wheel_count, wheels.data());
+  MeasurePath(count, points.data(), static_cast<int>(wheels.size()), wheels.data());
   std::vector<CablePoint> path;
   int span = 0;
   const auto tension = [&] {

@@ -203,7 +203,8 @@ struct Scratch {
     start = room_.Take<W>(start_rows);
     cables = room_.Take<CableWork<W>>(m.cable_count);
     stiff = room_.Take<StiffCable<W>>(m.cable_count);
-    links = room_.Take<Link<W, 1>>(m.attachment_count);
+    links = room_.Take<Link<W, 1>>(m.attachment_count + (m.touch_rod_count > 0 ? W::kLanes : 0) *
+                                                            kMostBends * m.touch_count);
     spans = room_.Take<ChainSpan<W>>(m.span_count);
     chain_links = room_.Take<RowLink<W>>(m.chain_count > 0 ? 2 * m.attachment_count : 0);
     chain_link_count = room_.Take<int>(m.chain_count > 0 ? m.cable_count : 0);

@@ -119,7 +119,6 @@ TAUT_INLINE void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work,
     AddLink(s, row, tables[0].body, ends[1].u, ends[0].arm);
     AddLink(s, row, tables[1].body, -ends[1].u, ends[1].arm);
   } else {
-    // Edges of the terrain, between the two ends, move nothing.
     const bool touches = cable.touch >= 0;
     const int point_count = touches ? 2 + 2 * work.bends_used : cable.attachment_count;
     for (int i = 0; i < point_count; i += touches ? point_count - 1 : 1) {
@@ -135,6 +134,9 @@ TAUT_INLINE void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work,
         link->lin[0] += direction;
         link->ang[0] += Cross(ends[i].arm, direction);
       }
+    }
+    if (touches && m.touches[cable.touch].rod_count > 0) {
+      LinkRods(m, s, work, cable, ends, row);
     }
   }
   work.link_count += row.link_count;
@@ -240,7 +242,7 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
     l = MeasureCable<true>(m, s, cable, 2, work, ends).l;
     LinkCable<true>(m, s, work, cable, ends, row);
   } else {
-    if (cable.touch >= 0) FollowEdges(m, s, work, cable);
+    if (cable.touch >= 0) FollowBends(m, s, work, cable);
     l = MeasureCable<false>(m, s, cable, cable.attachment_count, work, work.attachments).l;
     KeepWheels(s, cable, work);
     LinkCable<false>(m, s, work, cable, work.attachments, row);

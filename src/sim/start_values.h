@@ -7,6 +7,7 @@
 #include "math/described_path.h"
 #include "math/vec.h"
 #include "sim/group.h"
+#include "sim/line_crossing.h"
 #include "sim/tables.h"
 
 namespace taut::sim::start_of {
@@ -116,7 +117,20 @@ inline Motor MotorAtRest(const Tables& t, int i) noexcept {
   motor.supply = t.supplies[static_cast<std::size_t>(table.supply)].voltage_v;
   return motor;
 }
-inline Bend NoBend(const Tables&, int) noexcept { return {kNoKey, 0, 0, 0, {}, {}}; }
+/// As described.
+inline double TouchSide(const Tables& t, int i) noexcept {
+  const TouchRodTable& rod = t.touch_rods[static_cast<std::size_t>(i)];
+  const auto in_W = [&](const double* p_P) {
+    return Rotate(PrincipalFrame(t, rod.body), {p_P[0], p_P[1], p_P[2]});
+  };
+  std::size_t cable = 0;
+  while (i >= t.touches[cable].first_rod + t.touches[cable].rod_count) ++cable;
+  const auto& ends = CableOf(t, t.touches[cable].cable).attachments;
+  return SideOf(CrossingOf(ends[0].position_m, ends[1].position_m,
+                           CentreOfMass(t, rod.body) + in_W(rod.center_P), in_W(rod.axis_P)),
+                rod.half_m);
+}
+inline Bend NoBend(const Tables&, int) noexcept { return {kNoKey, 0, 0, 0, 0, 0, {}, {}}; }
 inline Orders FollowTarget(const Tables&, int) noexcept { return {0.0, 0.0, 1.0}; }
 inline Vec3 Gravity(const Tables& t, int) noexcept { return t.def().gravity_m_per_s2; }
 

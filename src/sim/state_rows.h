@@ -14,8 +14,9 @@ enum class Per {
   kWheel,
   kSpan,
   kSlip,
-  kTouch,  ///< Cables that touch what they come to.
-  kBend,   ///< Their room for places where they lie against an edge.
+  kTouch,     ///< Cables that touch what they come to.
+  kTouchRod,  ///< Pairs of such a cable and a rod that it may come to.
+  kBend,      ///< Their room for places where they lie against an edge.
   kNode,
   kJoint,
   kJointRow,
@@ -59,14 +60,15 @@ struct MotorOrders {
   Num on;       ///< 0: the driver is off.
 };
 
-/// Where a cable lies against an edge of the terrain (cable_bends.inl).
+/// Where a cable lies against an edge of the terrain or a rod (cable_bends.inl).
 template <class Num>
 struct BendNumbers {
   Num key;                 ///< Which one (cable_edges.h), or kNoKey. Those in use come first.
+  Num body;                ///< Whose number, or that of the world.
   Num angle;               ///< From point to point about it [rad].
   Num theta;               ///< Over which the cable lay on in the last step, if it did [rad].
-  Num half;                ///< Half its length [m].
-  Num center[3], axis[3];  ///< In W [m], [1].
+  Num half, radius;        ///< Half its length; to the middle of the cable [m].
+  Num center[3], axis[3];  ///< In P [m], [1].
 };
 
 /// Numbers that one element has.
@@ -97,6 +99,7 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(span_tension,   Number, kSpan,     kState,     kZero,     SpanTension)      /* mean over the last step [N] */ \
   ROW(slip_place,     Number, kSlip,     kState,     kGoesBack, SlipPlace)        /* middle of a wheel's arc, on the wheel [rad] */ \
   ROW(slip_loss,      Number, kSlip,     kState,     kGoesBack, Zero)             /* energy that friction took [J] */ \
+  ROW(touch_side,     Number, kTouchRod, kState,     kZero,     TouchSide)        /* of the rod, of a cable that crosses it: -1 or 1 (cable_rods.inl) */ \
   ROW(bend,           Bend,   kBend,     kState,     kForgets,  NoBend)           /* see there */ \
   ROW(motor,          Motor,  kMotor,    kState,     kGoesBack, MotorAtRest) \
   ROW(orders,         Orders, kMotor,    kState,     kStays,    FollowTarget) \

@@ -37,7 +37,7 @@ TAUT_INLINE W StartLength(const View& m, const Rows<W>& s, Scratch<W>& work,
                           const CableTable& cable) noexcept {
   if (!work.start_known) MeasureStart(m, work);
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
-  if (cable.touch >= 0) return StartLengthOverEdges(m, s, work, cable);
+  if (cable.touch >= 0) return StartLengthOverBends(m, s, work, cable);
   if (cable.wheel_count > 0) return StartLengthOnWheels(m, s, work, cable);
   return MeasureThrough<V3<W>>(cable.attachment_count,
                                [&](int i) { return work.start_spots[tables[i].spot]; })

@@ -53,6 +53,8 @@ View Tables::View() const noexcept {
           world_shapes.data(),
           static_cast<int>(touches.size()),
           touches.data(),
+          static_cast<int>(touch_rods.size()),
+          touch_rods.data(),
           nullptr,
           floor_m,
           static_cast<int>(shapes.size() - surfaces.size()),

@@ -198,6 +198,8 @@ struct View {
   const int* world_shapes;  ///< in the order of the tree's numbers.
   int touch_count;
   const TouchTable* touches;
+  int touch_rod_count;
+  const TouchRodTable* touch_rods;
   const FrictionTable* friction;   ///< Null: coefficients are those of the pairs.
   double floor_m;                  ///< Whoever is below falls for ever; minus infinity: nobody.
   int first_ground, ground_count;  ///< Surfaces among the shapes.
@@ -238,6 +240,8 @@ struct View {
         return slip_count;
       case Per::kTouch:
         return touch_count;
+      case Per::kTouchRod:
+        return touch_rod_count;
       case Per::kBend:
         return touch_count * kMostBends;
       case Per::kNode:
@@ -289,6 +293,7 @@ class Tables final : public Model {
   std::vector<double> span_rest_m;      ///< Of the spans, at the start.
   std::vector<SlipTable> slips;
   std::vector<TouchTable> touches;
+  std::vector<TouchRodTable> touch_rods;
   std::vector<AttachmentTable> nodes;
   std::vector<PlaneTable> planes;
   std::vector<int> first_point;  ///< Per body, and one past the last.
@@ -360,6 +365,9 @@ void LayOutMotors(Tables& tables);
 
 /// Fills all that is of cables. `frames`: of the bodies and the world.
 void LayOutCables(Tables& tables, const std::vector<Frame>& frames);
+
+/// Fills touch_rods. After the shapes.
+void LayOutTouchRods(Tables& tables);
 
 /// Fills all that is of joints. `frames`: of the bodies and the world.
 void LayOutJoints(Tables& tables, const std::vector<Frame>& frames);

@@ -39,6 +39,14 @@ TerrainBoxDef Box(const Vec3& low, const Vec3& high) {
   return box;
 }
 
+/// A step in which a body goes somewhere, so slowly that nothing else happens.
+constexpr double kStep = 1e-9;
+void Lead(Batch& world, int body, const Vec3& p) {
+  BodyState state = world.Body(0, body);
+  state.velocity_m_per_s = (1 / kStep) * (p - state.position_m);
+  world.SetBodyState(0, body, state);
+}
+
 AttachmentDef Round(const Vec3& center, double radius) {
   return {kWorld, center, 0.0, WheelDef{{0, 1, 0}, radius, true, 0}};
 }
@@ -80,14 +88,13 @@ TEST(Touch, LengthsAreThoseOfThePathWhereverItGoes) {
   int most = 0, changes = 0, last = 0;
   for (int i = 0; i < 2000; ++i) {
     const double t = i * 1e-3;
-    BodyState a = world.Body(0, 0), b = world.Body(0, 1);
-    a.position_m = {-0.3 + 0.1 * std::sin(5 * t), 0.1 * t, 0.1 + 0.2 * std::cos(7 * t)};
-    b.position_m = {0.4 - 0.1 * std::sin(3 * t), 0.1, 0.1 + 0.2 * std::cos(4 * t)};
-    world.SetBodyState(0, 0, a);
-    world.SetBodyState(0, 1, b);
-    world.Step(1e-9);
-    EXPECT_NEAR(world.Cable(0, 0).length_m, OverTheWall(a.position_m, b.position_m, radius), 1e-12)
-        << i;
+    Lead(world, 0, {-0.3 + 0.1 * std::sin(5 * t), 0.1 * t, 0.1 + 0.2 * std::cos(7 * t)});
+    Lead(world, 1, {0.4 - 0.1 * std::sin(3 * t), 0.1, 0.1 + 0.2 * std::cos(4 * t)});
+    world.Step(kStep);
+    const Vec3 a = world.Body(0, 0).position_m, b = world.Body(0, 1).position_m;
+    Lead(world, 0, a), Lead(world, 1, b);
+    world.Step(kStep);  // what it lies against is that of a step's middle
+    EXPECT_NEAR(world.Cable(0, 0).length_m, OverTheWall(a, b, radius), 1e-12) << i;
     const int now = world.CableBends(0, 0);
     changes += now != last;
     most = std::max(most, now);
@@ -95,6 +102,56 @@ TEST(Touch, LengthsAreThoseOfThePathWhereverItGoes) {
   }
   EXPECT_EQ(most, 2);
   EXPECT_GT(changes, 5);
+}
+
+/// A ridge of a height field, whose edge is cut into pieces, and a mesh that is a box.
+TEST(Touch, RidgesOfFieldsAndMeshesAreEdges) {
+  const double radius = 1e-3, height = 0.06;
+  HeightFieldDef field;
+  field.name = "field";
+  field.columns = field.rows = 21;
+  field.cell_m = 0.05;
+  for (int j = 0; j < 21; ++j) {
+    for (int i = 0; i < 21; ++i) field.height_m.push_back(i == 10 ? height : 0.0);
+  }
+  TerrainMeshDef mesh;
+  mesh.name = "mesh";
+  const double x[2] = {0, 0.1}, y[2] = {-1, 1}, z[2] = {-1, height};
+  for (int k = 0; k < 8; ++k) mesh.corners_m.push_back({x[k & 1], y[k >> 1 & 1], z[k >> 2]});
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const auto over_the_ridge = [&](const Vec3& from, const Vec3& to) {
+    CableDef cable = Cable({kWorld, from}, {kWorld, to}, 1, 1, radius);
+    cable.attachments = {{kWorld, from}, Round({0, 0, height}, radius), {kWorld, to}};
+    return math::DescribedPath(cable).length_m();
+  };
+  for (const bool is_field : {true, false}) {
+    const Vec3 from{-0.3, 0, 0.2}, to{0.4, 0.1, 0.2};
+    ModelDef def;
+    def.gravity_m_per_s2 = {};
+    def.bodies = {Ball(1, from), Ball(1, to)};
+    def.cables = {Cable({0, from}, {1, to}, 1e-9, 0.1, radius)};
+    if (is_field) {
+      def.height_fields = {field};
+    } else {
+      def.terrain_meshes = {mesh};
+    }
+    Batch world = MakeBatch(def);
+    int bent = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const double t = i * 1e-3;
+      Lead(world, 0, {-0.3, 0.2 * std::sin(4 * t), 0.08 + 0.07 * std::cos(7 * t)});
+      Lead(world, 1, {0.4, 0.1, 0.08 + 0.07 * std::cos(4 * t)});
+      world.Step(kStep);
+      const Vec3 a = world.Body(0, 0).position_m, b = world.Body(0, 1).position_m;
+      Lead(world, 0, a), Lead(world, 1, b);
+      world.Step(kStep);
+      const double expected = is_field ? over_the_ridge(a, b) : OverTheWall(a, b, radius);
+      ASSERT_NEAR(world.Cable(0, 0).length_m, expected, 1e-9) << is_field << " " << i;
+      bent += world.CableBends(0, 0) > 0;
+    }
+    EXPECT_GT(bent, 100);
+  }
 }
 
 TEST(Touch, AnInterruptedPendulumKeepsItsEnergy) {
@@ -123,6 +180,120 @@ TEST(Touch, AnInterruptedPendulumKeepsItsEnergy) {
   };
   EXPECT_LT(worst(1e-3), 0.003);
   EXPECT_LT(worst(5e-4), 0.001);
+}
+
+/// A rod along y, as heavy as it takes to stay where it is.
+void AddRod(ModelDef& def, const Vec3& center, double half_m, double radius_m,
+            double mass_kg = 1e9) {
+  BodyDef body = Ball(mass_kg, center);
+  const double across = mass_kg * half_m * half_m / 3, along = 0.5 * mass_kg * radius_m * radius_m;
+  body.inertia_kg_m2 = {across, along, across, 0, 0, 0};
+  def.bodies.push_back(body);
+  CapsuleDef rod;
+  rod.name = "rod";
+  rod.body = static_cast<int>(def.bodies.size()) - 1;
+  rod.from_m = center - Vec3{0, half_m, 0};
+  rod.to_m = center + Vec3{0, half_m, 0};
+  rod.radius_m = radius_m;
+  def.capsules.push_back(rod);
+}
+
+/// Two ends that are led, and a rod at the origin.
+ModelDef OverARod(const Vec3& from, const Vec3& to, double radius_m, double cable_radius_m) {
+  ModelDef def;
+  def.gravity_m_per_s2 = {};
+  def.bodies = {Ball(1, from), Ball(1, to)};
+  def.cables = {Cable({0, from}, {1, to}, 1e-9, 0.1, cable_radius_m)};
+  def.cables[0].touches = CableTouches::kRods;
+  AddRod(def, {}, 0.3, radius_m - cable_radius_m);
+  return def;
+}
+
+TEST(Touch, ASkewCableOverARodMeetsItAtTheSameAngleBeforeAndBehind) {
+  const Vec3 from{-0.3, -0.1, -0.2}, to{0.4, 0.15, -0.1};
+  Batch world = MakeBatch(OverARod(from + Vec3{0, 0, 1}, to + Vec3{0, 0, 1}, 0.01, 0.001));
+  for (int i = 0; i <= 100; ++i) {
+    Lead(world, 0, from + Vec3{0, 0, 1 - 0.01 * i});
+    Lead(world, 1, to + Vec3{0, 0, 1 - 0.01 * i});
+    world.Step(kStep);
+  }
+  EXPECT_NEAR(world.Cable(0, 0).length_m, 0.820470984681, 5e-13);
+}
+
+/// As fast as may be: in one step from above to far below.
+TEST(Touch, NoCableGoesThroughARodHoweverFast) {
+  for (const double speed : {0.01, 5.0, 50.0, 500.0}) {
+    const Vec3 from{-0.3, 0.1, 0.02}, to{0.4, -0.1, 0.02};
+    ModelDef def = OverARod(from, to, 0.003, 1e-4);
+    def.bodies[0].velocity_m_per_s = def.bodies[1].velocity_m_per_s = {0, 0, -speed};
+    Batch world = MakeBatch(def);
+    int steps = 0;
+    while (world.Body(0, 0).position_m.z > -0.05) world.Step(1e-3), ++steps;
+    EXPECT_EQ(world.CableBends(0, 0), 1) << speed;
+    EXPECT_GT(world.Cable(0, 0).length_m, std::hypot(0.7, 0.2) + 1e-4) << speed;
+  }
+  // Beside its end there is nothing.
+  ModelDef def = OverARod({-0.3, 0.31, 0.1}, {0.4, 0.31, 0.1}, 0.003, 1e-4);
+  def.bodies[0].velocity_m_per_s = def.bodies[1].velocity_m_per_s = {0, 0, -5.0};
+  Batch world = MakeBatch(def);
+  world.Step(1e-3, 50);
+  EXPECT_LT(world.Body(0, 0).position_m.z, -0.1);
+  EXPECT_EQ(world.CableBends(0, 0), 0);
+}
+
+TEST(Touch, ARodWindsUpAndUnwindsAnyNumberOfTurns) {
+  const double radius = 0.004, far = 0.3;
+  const Vec3 from{-far, 0, 0};
+  Batch world = MakeBatch(OverARod(from, {far, 0, 0.01}, radius, 1e-4));
+  const double tangent = std::sqrt(far * far - radius * radius);
+  for (int i = 0; i <= 800; ++i) {
+    // Downwards, and three turns and a half round, and back.
+    const double turn = 0.02 - 0.06 * (i <= 400 ? i : 800 - i);
+    const Vec3 to{far * std::cos(turn), 0, far * std::sin(turn)};
+    Lead(world, 1, to);
+    world.Step(kStep);
+    const double theta = std::acos(-1.0) - turn - 2 * std::acos(radius / far);
+    const double expected = theta > 0 ? 2 * tangent + radius * theta : Distance(from, to);
+    ASSERT_NEAR(world.Cable(0, 0).length_m, expected, 1e-12) << i;
+  }
+}
+
+/// NTRT's MuscleNP, where momentum falls to 0.86 of what it was.
+ModelDef Flight() {
+  ModelDef def;
+  def.gravity_m_per_s2 = {};
+  def.bodies = {Ball(0.3927, {0, 0.3, 4}, {1, 0.1, 0}), Ball(0.5, {0.1, -0.2, 12}, {0.8, 0, 0.1})};
+  AddRod(def, {1.5, 0, 8}, 1.0, 0.25, 0.4);
+  def.cables = {Cable({0, {0, 0.3, 4}}, {1, {0.1, -0.2, 12}}, 1000, 0, 0.001)};
+  def.cables[0].rest_length_m = Distance({0, 0.3, 4}, {0.1, -0.2, 12});
+  def.cables[0].touches = CableTouches::kRods;
+  return def;
+}
+
+TEST(Touch, AFlightOverAFreeRodKeepsMomentaAndEnergy) {
+  Batch world = MakeBatch(Flight());
+  const double energy = EnergyOf(world);
+  const Vec3 momentum = world.Momentum(0), angular = world.AngularMomentum(0);
+  int touched = 0;
+  for (int i = 0; i < 10000; ++i) {
+    world.Step(1e-3);
+    touched += world.CableBends(0, 0);
+    ASSERT_LT(Distance(world.Momentum(0), momentum), 1e-12) << i;
+    ASSERT_LT(Distance(world.AngularMomentum(0), angular), 1e-10) << i;
+    ASSERT_NEAR(EnergyOf(world), energy, 1e-4 * energy) << i;
+  }
+  EXPECT_GT(touched, 100);
+  EXPECT_GT(world.Body(0, 2).velocity_m_per_s.x, 0.1);
+}
+
+TEST(Touch, LanesAreLikeWorldsAlone) {
+  ExpectLanesLikeWorldsAlone(Flight(), {0.02, 0.01, 0.03}, 2000);
+  ModelDef wall;
+  const Vec3 from{-0.3, 0, 0.1}, to{0.4, 0.1, 0.07};
+  wall.bodies = {Ball(1, from), Ball(1, to)};
+  wall.terrain_boxes = {Box({0, -1, -1}, {0.1, 1, 0.06})};
+  wall.cables = {Cable({0, from}, {1, to}, 1000, Distance(from, to), 1e-3)};
+  ExpectLanesLikeWorldsAlone(wall, {0.01, 0.01, 0.02}, 300);
 }
 
 }  // namespace
