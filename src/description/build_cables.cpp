@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -56,6 +57,9 @@ class CableMaker {
     }
     if (builder.ends_on_surface) MoveEndsToSurface(pair, builder, cable);
     if (!pair.route.empty()) FollowRoute(pair, assembly_, cable, once_);
+    if (cable.touches == CableTouches::kRods || cable.touches == CableTouches::kAll) {
+      CheckEnds(pair, cable);
+    }
     if (cable.touches != CableTouches::kNone && cable.attachments.size() > 2) {
       once_(pair.at,
             "the cable \"" + pair.name +
@@ -66,6 +70,24 @@ class CableMaker {
     robot_.def.cables.push_back(std::move(cable));
     robot_.cable_tags.push_back(pair.tags);
     robot_.cable_sources.push_back(pair.at);
+  }
+
+  /// A cable that rods stop does not begin inside of one of another body.
+  void CheckEnds(const PlacedPair& pair, const CableDef& cable) {
+    for (const CapsuleDef& rod : robot_.def.capsules) {
+      const Vec3 along = rod.to_m - rod.from_m;
+      for (const AttachmentDef& at : cable.attachments) {
+        if (!rod.collides || at.body == rod.body || at.body == kWorld) continue;
+        const double share = Dot(at.position_m - rod.from_m, along) / Dot(along, along);
+        const Vec3 off = at.position_m - rod.from_m - std::clamp(share, 0.0, 1.0) * along;
+        const double inside_m = rod.radius_m - std::sqrt(Dot(off, off));
+        if (!(inside_m > 0)) continue;
+        once_(pair.at,
+              "the cable \"" + pair.name + "\" touches rods and ends " + Number(1000 * inside_m) +
+                  " mm inside the rod \"" + rod.name + "\" of another body",
+              "move one of them");
+      }
+    }
   }
 
   /// The radius of a node's sphere. In the world there is none and the end stays at the node.

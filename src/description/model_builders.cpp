@@ -87,7 +87,7 @@ void Check(const MapReader& map, CableText& cable) {
   if (map.Has("ends")) cable.ends_at = map.Find("ends")->at;
   if (map.Has("touches")) cable.touches_at = map.Find("touches")->at;
   const bool touches = cable.touches != CableTouches::kNone;
-  if (touches && !(cable.radius_m > 0)) {
+  if (touches && cable.radius_m == 0) {
     map.Error("touches", map.Path("touches") + ": a cable that touches needs a `radius_m` above 0",
               "half the cable's thickness, such as 0.001");
   } else if (!touches && map.Has("radius_m")) {
