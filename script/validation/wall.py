@@ -1,4 +1,4 @@
-"""Twelve segments over walls: how high, and how often."""
+"""Twelve segments over walls: how high, and how often, with cables that pass through them and that do not."""
 
 import csv
 import pathlib
@@ -31,10 +31,14 @@ def start(number):
     }
 
 
-def variant(height_m, number):
+# Heights per experiment.
+KINDS = {"wall": HEIGHTS_M, "wall_touching": HEIGHTS_M}
+
+
+def variant(kind, height_m, number):
     keys = (f"duration_s: {DURATION_S}\n"
             "record: {rate_hz: 4, channels: ['body/*/position_x_m', 'body/*/position_y_m']}\n")
-    return Variant(f"wall_{1000 * height_m:.0f}mm_{number}", "wall", keys,
+    return Variant(f"{kind}_{1000 * height_m:.0f}mm_{number}", kind, keys,
                    {"wall_height_m": height_m, **start(number)}, full_trace=True, any_status=True)
 
 
@@ -53,26 +57,34 @@ def over_at_s(folder):
     return None, behind
 
 
-def page(taut):
-    started = time.monotonic()
-    variants = {(height_m, number): variant(height_m, number)
-                for height_m in HEIGHTS_M for number in range(STARTS)}
-    results = taut.run(variants.values())
+def walls(taut, kind, results):
+    """The table of one experiment, and the highest wall that the unperturbed robot is over."""
     rows, highest = [], 0.0
-    for height_m in HEIGHTS_M:
-        outcomes = [over_at_s(taut.folder / variants[height_m, number].name) for number in range(STARTS)]
+    for height_m in KINDS[kind]:
+        names = [variant(kind, height_m, number).name for number in range(STARTS)]
+        outcomes = [over_at_s(taut.folder / name) for name in names]
         times = [at_s for at_s, _ in outcomes if at_s is not None]
         stuck = [behind for at_s, behind in outcomes if at_s is None]
         highest = height_m if outcomes[0][0] is not None and height_m > highest else highest
-        warned = sum(results[variants[height_m, number].name].summary["status"] != "ok" for number in range(STARTS))
+        warned = sum(results[name].summary["status"] != "ok" for name in names)
         rows.append([f"{100 * height_m:.0f}", f"{len(times)} of {STARTS}",
                      f"{min(times):.1f} to {max(times):.1f}" if times else "",
                      f"{outcomes[0][0]:.1f}" if outcomes[0][0] is not None else "never",
                      f"{min(stuck)} to {max(stuck)}" if stuck else "", str(warned)])
-    values = {
-        "walls": table(["wall cm", "over it", "after s", "unperturbed: after s",
-                        "else: segments behind it in the end", "runs with a warning"], rows),
-        "highest": f"{100 * highest:.0f}",
+    return table(["wall cm", "over it", "after s", "unperturbed: after s",
+                  "else: segments behind it in the end", "runs with a warning"], rows), highest
+
+
+def page(taut):
+    started = time.monotonic()
+    variants = [variant(kind, height_m, number) for kind, heights_m in KINDS.items()
+                for height_m in heights_m for number in range(STARTS)]
+    results = taut.run(variants)
+    values = {}
+    for kind in KINDS:
+        values[kind], highest = walls(taut, kind, results)
+        values[kind + "_highest"] = f"{100 * highest:.0f}"
+    values |= {
         "starts": str(STARTS - 1),
         "duration": str(DURATION_S),
         "version": taut("--version").split()[-1],

@@ -312,8 +312,7 @@ void Keys(Io& io, Cable& c) {
      "What the cable does not pass through, but comes to lie against, without friction: edges of "
      "boxes, height fields and meshes of the `terrain`; `rods` of bodies that move, but for those "
      "on which it ends; or `all` of them. Only of a cable that runs from node to node.");
-  io("radius_m", c.radius_m, kLater, Bound::kNonNegative,
-     "Half its thickness; goes with `touches`.");
+  io("radius_m", c.radius_m, kLater, Bound::kNonNegative, "Half its thickness, with `touches`.");
   if constexpr (Io::kResolved) {
     io("actuator", c.actuator);
   } else {

@@ -15,9 +15,23 @@ template <class W>
 MaskOf<W> MayTouchRods(const View& m, const Rows<W>& s, const Scratch<W>& work,
                        const TouchTable& touch, const V3<W>& from, const V3<W>& to,
                        MaskOf<W> free) noexcept {
-  const W zero = W::Splat(0.0);
+  const W zero = W::Splat(0.0), half = W::Splat(0.5);
   auto touches = MaskOf<W>::Splat(false);
+  const V3<W> way = to - from, middle = half * (from + to);
+  const W half_way = half * Sqrt(Dot(way, way)) + W::Splat(touch.radius_m);
+  int body = -1;
+  bool near_body = false;
   for (int i = touch.first_rod; i < touch.first_rod + touch.rod_count; ++i) {
+    if (m.touch_rods[i].body != body) {
+      body = m.touch_rods[i].body;
+      const V3<W> apart = s.pos[body] - middle;
+      const W reach = half_way + W::Splat(m.bound_m[body]);
+      near_body = Any(free & (Dot(apart, apart) < reach * reach));
+    }
+    if (!near_body) {
+      s.touch_side[i] = Select(free, zero, s.touch_side[i]);
+      continue;
+    }
     const TouchRodTable& rod = m.touch_rods[i];
     const M3<W>& R = work.bodies[rod.body].R;
     const Crossing<V3<W>> x =
