@@ -79,6 +79,25 @@ double Coupling(const Tables& t, const std::vector<Pull>& a, const std::vector<P
   return sum;
 }
 
+/// The most that a cable's tension may do to itself by a rod that it comes to lie against: back to
+/// where it came from, at an end of the rod. Its pulls have no torque about the rod's axis.
+double RodCoupling(const Tables& t, const TouchTable& touch) {
+  double most = 0;
+  for (int i = touch.first_rod; i < touch.first_rod + touch.rod_count; ++i) {
+    const TouchRodTable& rod = t.touch_rods[static_cast<std::size_t>(i)];
+    const Vec3 center{rod.center_P[0], rod.center_P[1], rod.center_P[2]};
+    const Vec3 axis{rod.axis_P[0], rod.axis_P[1], rod.axis_P[2]};
+    for (const double half_m : {-rod.half_m, rod.half_m}) {
+      for (const Vec3& force : {Vec3{2, 0, 0}, Vec3{0, 2, 0}, Vec3{0, 0, 2}}) {
+        const Vec3 across = force - Dot(force, axis) * axis;
+        const std::vector<Pull> pull{{rod.body, across, Cross(center + half_m * axis, across)}};
+        most = std::max(most, Coupling(t, pull, pull));
+      }
+    }
+  }
+  return most;
+}
+
 /// A row of a symmetric matrix: its columns, rising, and what stands there.
 using SparseRow = std::vector<std::pair<std::size_t, double>>;
 
@@ -133,6 +152,13 @@ void CoupleCables(Tables& tables) {
     }
   }
   tables.largest_coupling = LargestEigenvalue(matrix);
+  double by_rods = 0;
+  for (const TouchTable& touch : tables.touches) {
+    const double more = RodCoupling(tables, touch);
+    tables.coupling[static_cast<std::size_t>(touch.cable)] += more;
+    by_rods = std::max(by_rods, more);
+  }
+  tables.largest_coupling += by_rods;
 }
 
 }  // namespace taut::sim

@@ -246,16 +246,35 @@ TEST(Touch, ARodWindsUpAndUnwindsAnyNumberOfTurns) {
   const Vec3 from{-far, 0, 0};
   Batch world = MakeBatch(OverARod(from, {far, 0, 0.01}, radius, 1e-4));
   const double tangent = std::sqrt(far * far - radius * radius);
-  for (int i = 0; i <= 800; ++i) {
+  for (int i = 0; i <= 810; ++i) {
     // Downwards, and three turns and a half round, and back.
-    const double turn = 0.02 - 0.06 * (i <= 400 ? i : 800 - i);
+    const double turn = 0.5 - 0.06 * (i <= 400 ? i : 800 - i);
     const Vec3 to{far * std::cos(turn), 0, far * std::sin(turn)};
     Lead(world, 1, to);
+    world.Step(kStep);
+    Lead(world, 1, world.Body(0, 1).position_m);
     world.Step(kStep);
     const double theta = std::acos(-1.0) - turn - 2 * std::acos(radius / far);
     const double expected = theta > 0 ? 2 * tangent + radius * theta : Distance(from, to);
     ASSERT_NEAR(world.Cable(0, 0).length_m, expected, 1e-12) << i;
   }
+}
+
+/// On a rod that flies and turns: the rate that sensors see, against a difference of lengths.
+TEST(Touch, TheRateIsThatOfTheLength) {
+  Batch world = MakeBatch(OverARod({-0.3, 0.1, -0.02}, {0.4, 0.05, 0.03}, 0.02, 1e-3));
+  BodyState rod = world.Body(0, 2);
+  rod.velocity_m_per_s = {0.3, -0.2, 0.4};
+  rod.angular_velocity_rad_per_s = {2, 1, -3};
+  world.SetBodyState(0, 2, rod);
+  world.Step(1e-6);
+  ASSERT_EQ(world.CableBends(0, 0), 1);
+  const CableState before = world.Cable(0, 0);
+  world.Step(1e-6);
+  const CableState behind = world.Cable(0, 0);
+  EXPECT_NEAR(0.5 * (before.rate_m_per_s + behind.rate_m_per_s),
+              1e6 * (behind.length_m - before.length_m), 1e-7);
+  EXPECT_GT(std::fabs(behind.rate_m_per_s), 0.05);
 }
 
 /// NTRT's MuscleNP, where momentum falls to 0.86 of what it was.
