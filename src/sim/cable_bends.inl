@@ -112,10 +112,11 @@ class LaneBends {
   double Key(int k) const noexcept { return s_.bend[first_ + k].key[lane_]; }
   double LastTheta(int k) const noexcept { return s_.bend[first_ + k].theta[lane_]; }
   double Half(int k) const noexcept { return s_.bend[first_ + k].half[lane_]; }
+  double Most(int k) const noexcept { return s_.bend[first_ + k].most[lane_]; }
 
   void Remove(int k) noexcept {
     for (; k + 1 < count_; ++k) Copy(s_.bend[first_ + k + 1], s_.bend[first_ + k]);
-    Put(s_.bend[first_ + --count_], {kNoKey, 0, 0, 0, 0, 0, {}, {}});
+    Put(s_.bend[first_ + --count_], {kNoKey, 0, 0, 0, 0, 0, 0, {}, {}});
   }
   /// False if there is no room.
   bool Insert(int k, const BendFound& found) noexcept {
@@ -128,6 +129,7 @@ class LaneBends {
                               static_cast<double>(place.body),
                               found.side * kPi,
                               1.0,
+                              place.most_rad,
                               place.half_m,
                               place.radius_m,
                               {c.x, c.y, c.z},
@@ -156,8 +158,9 @@ class LaneBends {
 };
 
 /// Changes a lane's bends once, if the path as it is laid says so: what it has left is dropped, or
-/// where it is longer than its edge; an edge that a straight part is below is added. What it has
-/// just left stays for a step, which may have begun with it. Returns whether something has changed.
+/// where it would be beside an edge's end or through what is below it; an edge that a straight part
+/// is below is added. What it has just left stays for a step, which may have begun with it. Returns
+/// whether something has changed.
 template <class W>
 bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchTable& touch,
                  int used, int lane, bool first_look) noexcept {
@@ -170,7 +173,8 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
     const Vec3 middle =
         0.5 * (PlaceOf(ends[1 + 2 * k].p, lane) + PlaceOf(ends[2 + 2 * k].p, lane)) -
         PlaceOf(wheels[k].center, lane);
-    const bool beyond = !(Abs(Dot(middle, PlaceOf(wheels[k].axis, lane))) < bends.Half(k));
+    const bool beyond = !(Abs(Dot(middle, PlaceOf(wheels[k].axis, lane))) < bends.Half(k)) ||
+                        !(Abs(wheels[k].angle[lane]) < bends.Most(k));
     if (on ? beyond : first_look && !(bends.LastTheta(k) > 0.0)) bends.Remove(k);
   }
   if (bends.count() < before) return true;

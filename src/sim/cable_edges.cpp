@@ -7,7 +7,7 @@ namespace taut::sim {
 bool CanLieOn(const BendPlace& place, const FreeSpan& span, double side) noexcept {
   const Wheel<Vec3> wheel{place.center, place.axis, place.radius_m, side * kPi, 1, 0.0, 0.0, 0.0};
   const Tangents<Vec3> lies = LayOn(wheel, span.from, span.to);
-  if (!(lies.theta > 0.0)) return false;
+  if (!(lies.theta > 0.0) || !(Abs(lies.angle) < place.most_rad)) return false;
   const Vec3 middle = 0.5 * (lies.a + lies.b) - place.center;
   return Abs(Dot(middle, place.axis)) < place.half_m;
 }
@@ -145,7 +145,7 @@ class BoxSearch {
       out = out + 0.70710678118654752 * normal;
     }
     TerrainEdge edge{{first_key_ + (6 * f + g), search_.world(), center, AxisOf(box_, along),
-                      box_.half_m[along], 0.0},
+                      1.5 * kPi, box_.half_m[along] - kCornerRadii * search_.radius_m(), 0.0},
                      out};
     search_.Offer(edge, depth_m);
   }
@@ -166,12 +166,15 @@ void OfferEdge(const SurfaceEdge& edge, double key, double reach_m, Search& sear
   const Vec3 along = edge.to - edge.from;
   const double length_m = Norm(along);
   const Vec3 axis = Unit(along), center = 0.5 * (edge.from + edge.to);
-  Vec3 in{0.0, 0.0, 0.0};
+  Vec3 side[2];
   for (int i = 0; i < 2; ++i) {
-    const Vec3 side = edge.apex[i] - edge.from;
-    in = in + Unit(side - Dot(side, axis) * axis);
+    const Vec3 to_apex = edge.apex[i] - edge.from;
+    side[i] = Unit(to_apex - Dot(to_apex, axis) * axis);
   }
-  TerrainEdge found{{key, search.world(), center, axis, 0.5 * length_m, 0.0}, -1.0 * Unit(in)};
+  const Vec3 across_solid = Cross(side[0], side[1]);
+  const double solid = Atan2(Norm(across_solid), Dot(side[0], side[1]));
+  TerrainEdge found{{key, search.world(), center, axis, 2.0 * kPi - solid, 0.5 * length_m, 0.0},
+                    -1.0 * Unit(side[0] + side[1])};
   const FreeSpan& span = search.span();
   const Vec3 across = Cross(span.to - span.from, axis);
   const double across2 = Dot(across, across);

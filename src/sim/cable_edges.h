@@ -16,9 +16,14 @@ struct BendPlace {
   double key;         ///< Which one: the same number is the same edge or rod of a model.
   int body;           ///< Or the world; in whose frame P
   Vec3 center, axis;  ///< these are; a unit vector [m], [1].
+  double most_rad;    ///< The greatest angle about it that does not lead through the solid.
   double half_m;      ///< Half its length.
   double radius_m;    ///< To the middle of a cable on it.
 };
+
+/// A cable that comes nearer to an edge's end, in radii, slips off: where edges meet in a corner
+/// they would have no two cylinders apart.
+inline constexpr double kCornerRadii = 3.0;
 
 /// An edge that sticks out.
 struct TerrainEdge {

@@ -50,6 +50,9 @@ MaskOf<W> MayTouchRods(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return touches;
 }
 
+/// Round a rod a cable may be wound up.
+inline constexpr double kAnyTurns = 1e300;
+
 /// Key of a rod, which no edge of the terrain has.
 TAUT_INLINE double KeyOf(const TouchRodTable& rod) noexcept { return kEdgesOfShape * rod.shape; }
 
@@ -94,14 +97,20 @@ bool FindRod(const View& m, const Rows<W>& s, const Scratch<W>& work, const Touc
     const double depth = rod.radius_m + (through ? off : -off);
     if ((any || is_new) && !(depth > found->depth_m)) continue;
     const double around = through ? side : -side;  // against the side that it was on
-    if (!CanLieOn({0.0, 0, center, axis, rod.half_m, rod.radius_m}, span, around)) continue;
+    if (!CanLieOn({0.0, 0, center, axis, kAnyTurns, rod.half_m, rod.radius_m}, span, around))
+      continue;
     is_new = true;
     const double* const c = rod.center_P;
     const double* const u = rod.axis_P;
-    *found = {
-        {KeyOf(rod), rod.body, {c[0], c[1], c[2]}, {u[0], u[1], u[2]}, rod.half_m, rod.radius_m},
-        depth,
-        around};
+    *found = {{KeyOf(rod),
+               rod.body,
+               {c[0], c[1], c[2]},
+               {u[0], u[1], u[2]},
+               kAnyTurns,
+               rod.half_m,
+               rod.radius_m},
+              depth,
+              around};
   }
   return is_new;
 }
