@@ -28,11 +28,12 @@ std::vector<double> FrameNumbers(const Frame& frame) {
   out[kFramePushCount] = static_cast<double>(frame.pushes.size());
   out[kFrameValueCount] = static_cast<double>(frame.values.size());
   out[kFrameGhostCount] = static_cast<double>(frame.ghosts.size());
+  out[kFrameBendCount] = static_cast<double>(frame.bends.size());
   out.reserve(out.size() + frame.bodies.size() * kFrameBodiesValues +
               frame.cables.size() * kFrameCablesValues +
               frame.contacts.size() * kFrameContactsValues +
               frame.pushes.size() * kFramePushesValues + frame.values.size() +
-              frame.ghosts.size() * kFrameGhostsValues);
+              frame.ghosts.size() * kFrameGhostsValues + frame.bends.size() * kFrameBendsValues);
   const auto put = [&](const Vec3& v) { out.insert(out.end(), {v.x, v.y, v.z}); };
   const auto put_bodies = [&](const std::vector<Frame::Body>& bodies) {
     for (const Frame::Body& body : bodies) {
@@ -55,6 +56,10 @@ std::vector<double> FrameNumbers(const Frame& frame) {
   }
   out.insert(out.end(), frame.values.begin(), frame.values.end());
   put_bodies(frame.ghosts);
+  for (const Frame::Bend& bend : frame.bends) {
+    out.push_back(bend.cable);
+    put(bend.point_m);
+  }
   return out;
 }
 

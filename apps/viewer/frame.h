@@ -25,6 +25,10 @@ struct Frame {
   struct Contact {
     Vec3 point_m, force_n;
   };
+  struct Bend {
+    int cable = -1;  ///< Ghosts' are behind the scene's.
+    Vec3 point_m{kUnknown, kUnknown, kUnknown};
+  };
 
   double time_s = 0;
   double now_s = 0;  ///< Of the run; later than `time_s` while its past is looked at.
@@ -40,6 +44,7 @@ struct Frame {
   std::vector<OutsideForce> pushes;
   std::vector<double> values;  ///< Of channels of a program's own (taut/page.h).
   std::vector<Body> ghosts;    ///< Of compared runs; NaN while a run has no row.
+  std::vector<Bend> bends;     ///< Of cables that lie against what they come to, along each.
 };
 
 /// Every number of the frame in the order of the definition.

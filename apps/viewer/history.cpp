@@ -94,6 +94,7 @@ void History::Clear() {
   for (auto& column : columns_) column.clear();
   contacts_ = {};
   pushes_ = {};
+  bends_ = {};
 }
 
 void History::Take(const Frame& frame, const std::vector<double>& row) {
@@ -119,8 +120,10 @@ void History::Take(const Frame& frame, const std::vector<double>& row) {
   for (const std::size_t place : recorded_) put(row[place]);
   contacts_.Add(frame.contacts);
   pushes_.Add(frame.pushes);
+  bends_.Add(frame.bends);
   const std::size_t row_bytes = (1 + columns_.size()) * sizeof(double);
-  if (size() * row_bytes + contacts_.bytes() + pushes_.bytes() > max_bytes_) Thin();
+  const std::size_t list_bytes = contacts_.bytes() + pushes_.bytes() + bends_.bytes();
+  if (size() * row_bytes + list_bytes > max_bytes_) Thin();
 }
 
 void History::Thin() {
@@ -129,6 +132,7 @@ void History::Thin() {
   for (auto& column : columns_) KeepEverySecond(column);
   contacts_.Thin();
   pushes_.Thin();
+  bends_.Thin();
   period_s_ *= 2;
   due_s_ = time_s_.back() + period_s_ * (1 - 1e-9);
 }
@@ -174,6 +178,7 @@ void History::Show(std::size_t row, Frame& frame) const {
   }
   frame.contacts = contacts_.Get(row);
   frame.pushes = pushes_.Get(row);
+  frame.bends = bends_.Get(row);
 }
 
 std::vector<double> History::Row(std::size_t row) const {

@@ -75,6 +75,7 @@ class History {
   NodeChannels nodes_;
   Lists<Frame::Contact> contacts_;
   Lists<OutsideForce> pushes_;
+  Lists<Frame::Bend> bends_;
 };
 
 }  // namespace taut::viewer

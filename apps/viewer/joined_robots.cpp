@@ -141,6 +141,7 @@ void JoinedRobots::Set(int robot, const RobotMoment& moment) {
   CheckLength(moment.length_m, cables, "length_m", robot);
   CheckLength(moment.rest_length_m, cables, "rest_length_m", robot);
   CheckLength(moment.set_point_n, cables, "set_point_n", robot);
+  CheckLength(moment.bends_m, cables, "bends_m", robot);
   CheckLength(moment.node_force_n, own.def.nodes.size(), "node_force_n", robot);
   own.moment = moment;
 }
@@ -156,6 +157,10 @@ std::vector<bool> JoinedRobots::HasSetPoint() const {
 void JoinedRobots::FillCables(const Robot& robot, Frame& frame) const {
   const RobotMoment& now = robot.moment;
   for (std::size_t c = 0; c < robot.def.cables.size(); ++c) {
+    for (std::size_t i = 0; !now.bends_m.empty() && i < now.bends_m[c].size(); ++i) {
+      frame.bends.push_back(
+          {static_cast<int>(frame.cables.size()), Plus(now.bends_m[c][i], robot.at_m)});
+    }
     frame.cables.push_back({At(now.tension_n, c), At(now.length_m, c), At(now.rest_length_m, c),
                             At(now.set_point_n, c)});
   }
@@ -164,6 +169,7 @@ void JoinedRobots::FillCables(const Robot& robot, Frame& frame) const {
 void JoinedRobots::Fill(Frame& frame) const {
   frame.bodies.clear();
   frame.cables.clear();
+  frame.bends.clear();
   frame.contacts.clear();
   frame.pushes.clear();
   frame.energy = {};

@@ -298,9 +298,13 @@ void LiveSession::Fill(Frame& frame) const {
     frame.bodies.push_back({body.position_m, body.orientation});
   }
   frame.cables.clear();
+  frame.bends.clear();
   for (int c = 0; c < static_cast<int>(def.cables.size()); ++c) {
     const CableState cable = now.Cable(c);
     const auto place = static_cast<std::size_t>(c);
+    if (world != nullptr && def.cables[place].touches != CableTouches::kNone) {
+      for (const Vec3& bend : world->CableBendPlaces(0, c)) frame.bends.push_back({c, bend});
+    }
     frame.cables.push_back(
         {cable.tension_n, cable.length_m, cable.rest_length_m,
          has_set_point_[place] ? run_->commands().set_point_n[place] : Frame::kUnknown});

@@ -25,6 +25,7 @@ RobotMoment MomentOf(const Batch& batch, int world) {
     moment.tension_n.push_back(cable.tension_n);
     moment.length_m.push_back(cable.length_m);
     moment.rest_length_m.push_back(cable.rest_length_m);
+    moment.bends_m.push_back(batch.CableBendPlaces(world, c));
   }
   for (int n = 0; n < static_cast<int>(def.nodes.size()); ++n) {
     moment.node_force_n.push_back(batch.NodeForce(world, n));

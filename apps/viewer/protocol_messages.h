@@ -3,7 +3,7 @@
 
 namespace taut::viewer {
 
-inline constexpr int kProtocolVersion = 7;
+inline constexpr int kProtocolVersion = 8;
 
 /// How a field of a message is written in JSON.
 enum class FieldKind { kString, kNumber, kInteger, kBoolean, kVec3, kChoice };
@@ -73,6 +73,7 @@ enum FrameHeader {
   kFramePushCount,
   kFrameValueCount,
   kFrameGhostCount,
+  kFrameBendCount,
   kFrameHeaderSize,
 };
 inline constexpr int kFrameBodiesValues = 7;
@@ -81,5 +82,6 @@ inline constexpr int kFrameContactsValues = 6;
 inline constexpr int kFramePushesValues = 4;
 inline constexpr int kFrameValuesValues = 1;
 inline constexpr int kFrameGhostsValues = 7;
+inline constexpr int kFrameBendsValues = 4;
 
 }  // namespace taut::viewer

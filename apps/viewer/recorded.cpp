@@ -148,7 +148,14 @@ void Recorded::FindColumns() {
     for (int i = 0; i < 4; ++i) {
       columns.values[i] = Column("cable/" + cable["name"].get<std::string>() + "/" + kCable[i]);
     }
-    cables_.push_back(columns);
+    for (int i = 1; i <= cable.value("most_bends", 0); ++i) {
+      static const char* const kPlace[] = {"x_m", "y_m", "z_m"};
+      const std::vector<double>* place[3];
+      const std::string name = cable["name"].get<std::string>();
+      if (!FindAll(fmt::format("cable/{}/bend_{}_", name, i), kPlace, place)) break;
+      columns.bends.insert(columns.bends.end(), std::begin(place), std::end(place));
+    }
+    cables_.push_back(std::move(columns));
   }
   energy_[0] = Column("system/kinetic_j");
   energy_[1] = Column("system/gravity_j");
@@ -237,19 +244,32 @@ Json Recorded::ComparedRun() const {
   return run;
 }
 
-void Recorded::AddGhost(double time_s, std::vector<Frame::Body>& ghosts) const {
-  if (!has_poses()) return;
+void Recorded::AddBends(std::size_t row, int first, std::vector<Frame::Bend>& bends) const {
+  for (std::size_t c = 0; c < cables_.size(); ++c) {
+    const auto& columns = cables_[c].bends;
+    for (std::size_t i = 0; i < columns.size(); i += 3) {
+      const Vec3 place{(*columns[i])[row], (*columns[i + 1])[row], (*columns[i + 2])[row]};
+      if (std::isnan(place.x)) break;
+      bends.push_back({first + static_cast<int>(c), place});
+    }
+  }
+}
+
+void Recorded::AddGhost(double time_s, int first_cable, Frame& frame) const {
   const std::vector<double>& times = trace_.time_s;
   // A row holds until the next would come; a row that is one of both runs may differ by a rounding.
   constexpr double kRoundingS = 1e-9;
   const double row_s =
       times.size() < 2 ? 0 : (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-  std::vector<Frame::Body> poses = PosesOf(RowAt(time_s + kRoundingS));
+  const std::size_t row = RowAt(time_s + kRoundingS);
+  std::vector<Frame::Body> poses = PosesOf(row);
   if (time_s < times.front() - kRoundingS || time_s > times.back() + row_s + kRoundingS) {
     constexpr double kNo = Frame::kUnknown;
     std::fill(poses.begin(), poses.end(), Frame::Body{{kNo, kNo, kNo}, {kNo, kNo, kNo, kNo}});
+  } else {
+    AddBends(row, first_cable, frame.bends);
   }
-  ghosts.insert(ghosts.end(), poses.begin(), poses.end());
+  frame.ghosts.insert(frame.ghosts.end(), poses.begin(), poses.end());
 }
 
 std::vector<Frame::Body> Recorded::PosesOf(std::size_t row) const {
@@ -273,7 +293,13 @@ Frame Recorded::FrameOf(std::size_t row) const {
   frame.energy = {ValueAt(energy_[0], row), ValueAt(energy_[1], row), ValueAt(energy_[2], row)};
   frame.contact_count = ValueAt(contact_count_, row);
   frame.bodies = PosesOf(row);
-  for (const auto& run : compared_) run->AddGhost(frame.time_s, frame.ghosts);
+  AddBends(row, 0, frame.bends);
+  auto cables = static_cast<int>(cables_.size());
+  for (const auto& run : compared_) {
+    if (!run->has_poses()) continue;  // it has no ghost
+    run->AddGhost(frame.time_s, cables, frame);
+    cables += static_cast<int>(run->cables_.size());
+  }
   for (const CableColumns& cable : cables_) {
     frame.cables.push_back({ValueAt(cable.values[0], row), ValueAt(cable.values[1], row),
                             ValueAt(cable.values[2], row), ValueAt(cable.values[3], row)});

@@ -60,8 +60,10 @@ class Recorded {
                const std::vector<double>* (&columns)[count]) const;
   bool has_poses() const;
   std::vector<Frame::Body> PosesOf(std::size_t row) const;
-  /// Those of its ghost at a time of another run: NaN where it has no row.
-  void AddGhost(double time_s, std::vector<Frame::Body>& ghosts) const;
+  /// The bends in a row, of cables whose numbers begin at `first`.
+  void AddBends(std::size_t row, int first, std::vector<Frame::Bend>& bends) const;
+  /// Adds its ghost at a time of another run: NaN where it has no row. `first_cable`: its number.
+  void AddGhost(double time_s, int first_cable, Frame& frame) const;
   Json ComparedRun() const;
   /// The column of a channel, or null.
   const std::vector<double>* Column(const std::string& name) const;
@@ -81,6 +83,7 @@ class Recorded {
   };
   struct CableColumns {
     const std::vector<double>* values[4];
+    std::vector<const std::vector<double>*> bends;  ///< x, y, z of each; empty: drawn straight.
   };
   struct ForceColumn {
     int node = 0;

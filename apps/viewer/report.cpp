@@ -36,10 +36,14 @@ std::string Base64(const std::string& bytes) {
   return text;
 }
 
-/// What a report plots. How bodies turn and the contacts are in its frames; velocities would only
-/// make it larger.
+/// What a report plots. How bodies turn, contacts and the places of bends are in its frames;
+/// velocities would only make it larger.
 bool IsPlotted(const ChannelInfo& channel) {
   if (channel.name.starts_with("contact/")) return false;
+  if (channel.name.starts_with("cable/") &&
+      channel.name.substr(channel.name.rfind('/')).starts_with("/bend_")) {
+    return false;
+  }
   return !channel.name.starts_with("body/") || channel.name.find("/position_") != std::string::npos;
 }
 
@@ -90,20 +94,22 @@ void AddFrames(const Recorded& recorded, Json& report) {
       std::clamp<std::size_t>(static_cast<std::size_t>(std::min(span_s * kFramesPerS, 1e9)) + 1, 1,
                               std::min(kMaxFrames, times.size()));
   std::vector<Frame> all;
-  std::size_t pushes = 0, contacts = 0;
+  std::size_t pushes = 0, contacts = 0, bends = 0;
   for (std::size_t i = 0; i < frames; ++i) {
     const double share = frames == 1 ? 0 : static_cast<double>(i) / static_cast<double>(frames - 1);
     // Times near a row may lie a rounding before it.
     all.push_back(recorded.FrameOf(recorded.RowAt(times.front() + share * span_s + 1e-9)));
     pushes = std::max(pushes, all.back().pushes.size());
     contacts = std::max(contacts, all.back().contacts.size());
+    bends = std::max(bends, all.back().bends.size());
   }
   std::string bytes;
   std::size_t values = 0;
   for (Frame& frame : all) {
-    // all frames have one size; what was added has no force
+    // all frames have one size; what was added has no force, or is of no cable
     frame.pushes.resize(pushes);
     frame.contacts.resize(contacts);
+    frame.bends.resize(bends);
     frame.run = 1;
     frame.now_s = frame.time_s;
     const std::vector<double> numbers = FrameNumbers(frame);

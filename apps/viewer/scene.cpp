@@ -76,6 +76,7 @@ Json Cables(const ModelDef& def) {
                       {"attachments", attachments},
                       {"stiffness_n_per_m", cable.stiffness_n_per_m},
                       {"actuated", cable.actuator.kind != ActuatorDef::Kind::kNone}});
+    if (cable.touches != CableTouches::kNone) cables.back()["most_bends"] = CableDef::kMostBends;
   }
   return cables;
 }

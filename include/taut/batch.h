@@ -243,6 +243,8 @@ class Batch {
   double WheelAngle(int world, int cable, int wheel) const noexcept;
   /// Against how many edges and rods a cable lies that touches what it comes to.
   int CableBends(int world, int cable) const;
+  /// Where it is bent by them, from its first end on: the middle of each arc [m], in W.
+  std::vector<Vec3> CableBendPlaces(int world, int cable) const;
   /// Where a cable is held, and where it arrives at wheels, edges and rods, and leaves them: what
   /// pulls at bodies.
   std::vector<CablePoint> CablePath(int world, int cable) const;

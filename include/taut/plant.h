@@ -109,6 +109,7 @@ class World : public Bodies {
   virtual double CableFrictionLoss(int lane, int cable) const = 0;
   virtual double WheelAngle(int lane, int cable, int wheel) const = 0;
   virtual std::vector<CablePoint> CablePath(int lane, int cable) const = 0;
+  virtual std::vector<Vec3> CableBendPlaces(int lane, int cable) const = 0;
   virtual JointState Joint(int lane, int joint) const = 0;
   virtual MotionState Motion(int lane, int motion) const = 0;
   virtual WorldStatus Status(int lane) const = 0;

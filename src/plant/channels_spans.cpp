@@ -15,13 +15,10 @@ void AddBendChannels(const std::string& prefix, int cable, Recorder& recorder) {
     for (const char* axis : {"x_m", "y_m", "z_m"}) names.push_back({bend + axis, "m"});
   }
   recorder.Add(prefix, names, [=](const RecordSource& s, double* out) {
-    const std::vector<CablePoint> path = s.world->CablePath(0, cable);
-    const std::size_t bends = path.size() / 2 - 1;
-    *out++ = static_cast<double>(bends);
+    const std::vector<Vec3> bends = s.world->CableBendPlaces(0, cable);
+    *out++ = static_cast<double>(bends.size());
     std::fill_n(out, 3 * CableDef::kMostBends, std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t i = 0; i < bends; ++i) {
-      Put(0.5 * (path[2 * i + 1].position_m + path[2 * i + 2].position_m), out + 3 * i);
-    }
+    for (std::size_t i = 0; i < bends.size(); ++i) Put(bends[i], out + 3 * i);
   });
 }
 

@@ -86,6 +86,9 @@ class SimulatedPlant final : public Plant, public World {
   std::vector<CablePoint> CablePath(int lane, int cable) const override {
     return batch_.CablePath(lane, cable);
   }
+  std::vector<Vec3> CableBendPlaces(int lane, int cable) const override {
+    return batch_.CableBendPlaces(lane, cable);
+  }
   JointState Joint(int lane, int joint) const override { return batch_.Joint(lane, joint); }
   MotionState Motion(int lane, int motion) const override { return batch_.Motion(lane, motion); }
   WorldStatus Status(int lane) const override { return batch_.Status(lane); }

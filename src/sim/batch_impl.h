@@ -97,6 +97,9 @@ struct Batch::Impl {
   }
   /// Where a cable lies against edges, along it.
   std::vector<sim::BendNumbers<double>> Bends(int world, int cable) const;
+  /// A cable on what it lies against, without what it has left.
+  struct LaidCable;
+  LaidCable Lay(int world, int cable) const;
   Vec3 vec(int world, int row) const noexcept {
     return {at(world, row), at(world, row + 1), at(world, row + 2)};
   }

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "math/cable_wheel.h"
+#include "math/elementary.h"
 #include "sim/batch_impl.h"
 
 namespace taut {
@@ -73,31 +74,34 @@ int Batch::CableBends(int world, int cable) const {
              : static_cast<int>(CablePath(world, cable).size()) / 2 - 1;
 }
 
-std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
-  const Impl& d = *impl_;
-  d.CheckCable(__func__, world, cable);
-  d.Sense(world);
-  const sim::CableTable& table = d.view.cables[cable];
+struct Batch::Impl::LaidCable {
+  std::vector<PathPoint<Vec3>> points;
+  std::vector<int> bodies;  ///< By point; the world is behind the last one.
+  std::vector<Wheel<Vec3>> wheels;
+};
+
+Batch::Impl::LaidCable Batch::Impl::Lay(int world, int cable) const {
+  Sense(world);
+  const sim::CableTable& table = view.cables[cable];
   const auto place = [&](const sim::AttachmentTable& at) {
     const Vec3 p{at.p_P[0], at.p_P[1], at.p_P[2]};
-    if (at.body == d.view.body_count) return p;
-    return d.vec(world, d.layout.pos + 3 * at.body) + Rotate(d.quat(world, at.body), p);
+    if (at.body == view.body_count) return p;
+    return vec(world, layout.pos + 3 * at.body) + Rotate(quat(world, at.body), p);
   };
-  std::vector<PathPoint<Vec3>> points;
-  std::vector<int> bodies;
+  LaidCable laid;
+  auto& [points, bodies, wheels] = laid;
   for (int i = 0; i < table.attachment_count; ++i) {
-    const sim::AttachmentTable& at = d.view.attachments[table.first_attachment + i];
+    const sim::AttachmentTable& at = view.attachments[table.first_attachment + i];
     points.push_back({place(at), {}, {}, {}});
     bodies.push_back(at.body);
   }
-  std::vector<Wheel<Vec3>> wheels;
-  for (const sim::BendNumbers<double>& bend : d.Bends(world, cable)) {
+  for (const sim::BendNumbers<double>& bend : Bends(world, cable)) {
     const int at = 1 + 2 * static_cast<int>(wheels.size()), body = static_cast<int>(bend.body);
     Vec3 center{bend.center[0], bend.center[1], bend.center[2]};
     Vec3 axis{bend.axis[0], bend.axis[1], bend.axis[2]};
-    if (body < d.view.body_count) {
-      const Quat q = d.quat(world, body);
-      center = d.vec(world, d.layout.pos + 3 * body) + Rotate(q, center);
+    if (body < view.body_count) {
+      const Quat q = quat(world, body);
+      center = vec(world, layout.pos + 3 * body) + Rotate(q, center);
       axis = Rotate(q, axis);
     }
     wheels.push_back({center, axis, bend.radius, bend.angle, at, 0, 0, 0});
@@ -105,10 +109,10 @@ std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
     bodies.insert(bodies.begin() + at, 2, body);
   }
   for (int k = 0; k < table.wheel_count; ++k) {
-    const sim::WheelTable& wheel = d.view.wheels[table.first_wheel + k];
-    const Vec3 center = place(d.view.spots[wheel.center_spot]);
-    wheels.push_back({center, place(d.view.spots[wheel.axis_spot]) - center, wheel.radius_m,
-                      WheelAngle(world, cable, k), wheel.at, 0, 0, 0});
+    const sim::WheelTable& wheel = view.wheels[table.first_wheel + k];
+    const Vec3 center = place(view.spots[wheel.center_spot]);
+    wheels.push_back({center, place(view.spots[wheel.axis_spot]) - center, wheel.radius_m,
+                      at(world, layout.wheel_angle + table.first_wheel + k), wheel.at, 0, 0, 0});
   }
   LayOnWheels(points.data(), static_cast<int>(wheels.size()), wheels.data());
   // What a cable that touches has left by now is no part of its path.
@@ -119,6 +123,14 @@ std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
     for (std::size_t i = k + 1; i < wheels.size(); ++i) wheels[i].at -= 2;
     wheels.erase(wheels.begin() + static_cast<std::ptrdiff_t>(k));
   }
+  return laid;
+}
+
+std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
+  const Impl& d = *impl_;
+  d.CheckCable(__func__, world, cable);
+  const sim::CableTable& table = d.view.cables[cable];
+  auto [points, bodies, wheels] = d.Lay(world, cable);
   const int count = static_cast<int>(points.size());
   MeasurePath(count, points.data(), static_cast<int>(wheels.size()), wheels.data());
   std::vector<CablePoint> path;
@@ -138,6 +150,24 @@ std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
     path.push_back(point);
   }
   return path;
+}
+
+std::vector<Vec3> Batch::CableBendPlaces(int world, int cable) const {
+  const Impl& d = *impl_;
+  d.CheckCable(__func__, world, cable);
+  std::vector<Vec3> places;
+  if (d.view.cables[cable].touch < 0) return places;
+  const Impl::LaidCable laid = d.Lay(world, cable);
+  for (const Wheel<Vec3>& wheel : laid.wheels) {
+    const Vec3 arrives = laid.points[static_cast<std::size_t>(wheel.at)].p - wheel.center;
+    const Vec3 leaves = laid.points[static_cast<std::size_t>(wheel.at) + 1].p - wheel.center;
+    const double z = Dot(arrives, wheel.axis);
+    const Vec3 out = arrives - z * wheel.axis;
+    const double half = (wheel.angle < 0 ? -0.5 : 0.5) * wheel.theta;
+    places.push_back(wheel.center + 0.5 * (z + Dot(leaves, wheel.axis)) * wheel.axis +
+                     math::Cos(half) * out + math::Sin(half) * Cross(wheel.axis, out));
+  }
+  return places;
 }
 
 double Batch::CableFrictionLoss(int world, int cable) const noexcept {

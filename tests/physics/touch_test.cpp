@@ -72,6 +72,10 @@ TEST(Touch, ACableAcrossAWallLiesOverItsTwoEdges) {
     EXPECT_EQ(world.CableBends(0, 0), 2);
     EXPECT_NEAR(world.Cable(0, 0).length_m, OverTheWall(from, to, radius), 1e-14);
     EXPECT_EQ(world.CablePath(0, 0).size(), 6u);
+    const std::vector<Vec3> bends = world.CableBendPlaces(0, 0);
+    ASSERT_EQ(bends.size(), 2u);
+    EXPECT_LT(std::hypot(bends[0].x, bends[0].z - 0.06), 1.001 * radius);
+    EXPECT_LT(std::hypot(bends[1].x - 0.1, bends[1].z - 0.06), 1.001 * radius);
   }
 }
 
@@ -257,6 +261,12 @@ TEST(Touch, ARodWindsUpAndUnwindsAnyNumberOfTurns) {
     const double theta = std::acos(-1.0) - turn - 2 * std::acos(radius / far);
     const double expected = theta > 0 ? 2 * tangent + radius * theta : Distance(from, to);
     ASSERT_NEAR(world.Cable(0, 0).length_m, expected, 1e-12) << i;
+    const std::vector<Vec3> bends = world.CableBendPlaces(0, 0);
+    ASSERT_EQ(bends.size(), theta > 0 ? 1u : 0u) << i;
+    if (bends.empty()) continue;
+    const double middle = 0.5 * (std::acos(-1.0) + turn);  // between the ends, on the side it winds
+    const Vec3 expected_m{radius * std::cos(middle), 0, radius * std::sin(middle)};
+    ASSERT_LT(Distance(bends[0], expected_m), 1e-12) << i;
   }
 }
 

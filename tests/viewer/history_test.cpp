@@ -25,7 +25,7 @@ History HistoryOfOneOfEach(std::size_t max_bytes = 128u << 20) {
   return {OneOfEach(), {true}, 0.01, {}, max_bytes};
 }
 
-/// A frame whose numbers all follow from its place; every third has a push, every fourth contacts.
+/// A frame whose numbers all follow from its place; some have pushes, contacts, bends.
 Frame Moment(int i) {
   Frame frame;
   frame.time_s = 0.01 * i;
@@ -36,6 +36,7 @@ Frame Moment(int i) {
   for (int k = 0; k < i % 4; ++k) frame.contacts.push_back({{1.0 * k, 0, 0}, {0, 0, 1.0 * i}});
   frame.contact_count = i % 4;
   if (i % 3 == 0) frame.pushes = {{7, {1.0 * i, 0, 0}}};
+  for (int k = 0; k < i % 5; ++k) frame.bends.push_back({0, {0.01 * i, 1.0 * k, 0}});
   return frame;
 }
 

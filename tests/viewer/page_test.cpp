@@ -189,6 +189,10 @@ TEST_F(PageTest, ARobotThatNobodySimulatesHasWhatIsKnown) {
     moment.set_point_n.push_back(7.0);
   }
   page->Set(robot, moment);
+  RobotMoment beside;
+  beside.bends_m.resize(def.cables.size());
+  beside.bends_m[2] = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}};
+  page->Set(page->Add(def, "beside", {0, 0, 1}), beside);
   page->Show(0.25);
   Client browser = Browser(*page, page->url());
   const ReceivedFrame frame = browser.AwaitFrame([](const auto& f) { return HasTime(f, 0.25); });
@@ -198,6 +202,10 @@ TEST_F(PageTest, ARobotThatNobodySimulatesHasWhatIsKnown) {
   EXPECT_TRUE(std::isnan(frame.numbers[frame.cables() + 5]));
   EXPECT_EQ(frame.numbers[frame.cables() + 7], 7.0);
   EXPECT_TRUE(std::isnan(frame[FrameHeader::kFrameKineticJ]));
+  ASSERT_EQ(frame[FrameHeader::kFrameBendCount], 2);
+  const auto cable = static_cast<double>(def.cables.size() + 2);
+  const std::vector<double> bends = {cable, 0.1, 0.2, 1.3, cable, 0.4, 0.5, 1.6};
+  EXPECT_EQ(std::vector<double>(frame.numbers.end() - 8, frame.numbers.end()), bends);
 }
 
 /// Shows moments of a robot until it is told to end: at 0, 0.1, 0.2 ... s, with 10 times that

@@ -43,6 +43,8 @@ export function frameOfScene(scene: Scene): Frame {
   frame.values = new Float64Array(scene.values.length).fill(NaN);
   frame.ghost_count = scene.compared.reduce((sum, { bodies }) => sum + bodies.length, 0);
   frame.ghosts = new Float64Array(frame.ghost_count * VALUES.ghosts).fill(NaN);
+  frame.bend_count = 0;
+  frame.bends = new Float64Array(0);
   return frame;
 }
 

@@ -20,6 +20,7 @@ export const FRAME = {
     "push_count", // Pushes and drags that act.
     "value_count", // Channels of a program's own: Scene.values.
     "ghost_count", // Bodies of all ghosts: the same in every frame of a scene.
+    "bend_count", // Of cables that lie against what they come to: the middles of their arcs, along each cable. Of ghosts the cables are behind those of the scene, in their order; -1: of none.
   ],
   sections: [
     { name: "bodies", count: "body_count", fields: ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"] },
@@ -28,8 +29,9 @@ export const FRAME = {
     { name: "pushes", count: "push_count", fields: ["node", "force_x_n", "force_y_n", "force_z_n"] },
     { name: "values", count: "value_count", fields: ["value"] },
     { name: "ghosts", count: "ghost_count", fields: ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"] },
+    { name: "bends", count: "bend_count", fields: ["cable", "x_m", "y_m", "z_m"] },
   ],
 } as const;
 
 /** Numbers of one entry of a section. */
-export const VALUES = { bodies: 7, cables: 4, contacts: 6, pushes: 4, values: 1, ghosts: 7 } as const;
+export const VALUES = { bodies: 7, cables: 4, contacts: 6, pushes: 4, values: 1, ghosts: 7, bends: 4 } as const;

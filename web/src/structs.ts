@@ -73,6 +73,8 @@ export interface Cable {
   /** 0 where it is not known */
   stiffness_n_per_m: number;
   actuated: boolean;
+  /** It lies against what it comes to: frames hold its bends, so many at most. */
+  most_bends?: number;
 }
 
 /** Holds a part of one body's motion against another's; a support is a joint with the world. */
@@ -226,7 +228,7 @@ export interface Report {
   frame_count: number;
   /** Numbers a frame. */
   frame_values: number;
-  /** Float64, little endian: frames as defined below, one after the other. Each has as many contacts and pushes as the one with the most; what does not act has no force. */
+  /** Float64, little endian: frames as defined below, one after the other. Each has as many contacts, pushes and bends as the one with the most; what does not act has no force, and what is no bend is of no cable. */
   frames_base64: string;
 }
 

@@ -1,9 +1,14 @@
-// Cables that go round wheels are drawn where the physics has them; how often round, their length says.
+// Cables that go round wheels are drawn where the physics has them; how often round, their length says. Those
+// that lie against what they come to are drawn over the bends that their channels have.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { closeBrowser, openPage, PAGE, untilTime } from "./browser.mjs";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, afterEach, before, test } from "node:test";
+import { closeBrowser, drawn as shown, openPage, PAGE, picture, untilTime } from "./browser.mjs";
 import { cables } from "./fixture.mjs";
 import { MockServer } from "./mock_server.mjs";
+import { csvOf, options, stop, taut, view } from "./real_server.mjs";
 
 // The fixture's cable 0 has a length of 0.3 m. Its ends hang 0.1 m below the sides of a wheel.
 const TURNS = 1;
@@ -18,11 +23,15 @@ const over = (angle_rad) => [fixed(place(-R, -0.1)), fixed(CENTER, { wheel: whee
 const past = [fixed([0, 0.3, 0.6]), fixed([0.1, 0.3, 0.66], { wheel: wheel(0.1 - Math.PI) }), fixed([0.31, 0.3, 0.6])];
 const with_wheels = cables.map((cable, i) => ({ ...cable, attachments: [over(once), past][i] ?? cable.attachments }));
 let server;
+let folder;
 
 before(async () => {
+  folder = mkdtempSync(join(tmpdir(), "taut-cables-"));
   server = await new MockServer(PAGE, { mode: "replay", more: { cables: with_wheels } }).start();
 });
+afterEach(stop);
 after(async () => {
+  rmSync(folder, { recursive: true });
   await closeBrowser();
   await server.stop();
 });
@@ -57,4 +66,78 @@ test("ACableGoesRoundItsWheelAsOftenAsItIsLong", async (t) => {
 test("WhatItDoesNotTouchItPassesStraight", async (t) => {
   const points = await drawn(t, 1);
   for (const [, y, z] of points) near([y, z], [0.3, 0.6]);
+});
+
+const OVER_WALL = "docs/tutorial_cables/over_wall.yaml";
+const AXES = ["x", "y", "z"];
+
+/** The rope over the wall: its first ball, its bends, its last ball; as the row at a time has them. */
+function rope(run, time_s) {
+  const place = (name) => AXES.map((axis) => run.value(`${name}${axis}_m`, time_s + 1e-9));
+  const bends = Array.from({ length: run.value("cable/rope/bends", time_s + 1e-9) }, (_, i) => place(`cable/rope/bend_${i + 1}_`));
+  return [place("body/left/position_"), ...bends, place("body/right/position_")];
+}
+
+/** The corners of the lines that are drawn: of the rope, and of those of ghosts. */
+const corners = (page) => page.evaluate(() => {
+  const { cables: own, ghosts } = window.taut.view.world;
+  const { geometry } = own.lines[0];
+  const { array } = geometry.getAttribute("instanceStart").data;
+  const triples = (values) => Array.from({ length: values.length / 3 }, (_, k) => Array.from(values.slice(3 * k, 3 * k + 3)));
+  return {
+    time_s: window.taut.app.frame.value.time_s,
+    rope: triples(array.slice(0, 6 * geometry.instanceCount)),
+    ghosts: ghosts.ghosts.map(({ lines }) => triples(lines.geometry.getAttribute("position").array.slice(0, 3 * lines.geometry.drawRange.count))),
+  };
+});
+
+/** Each part of a line from corner to corner. */
+function along(parts, places, what) {
+  assert.equal(parts.length, 2 * (places.length - 1), what);
+  parts.forEach((corner, k) => near(corner, places[(k + 1) >> 1]));
+}
+
+test("ARopeIsDrawnOverTheEdgesThatItLiesOn", options, async (t) => {
+  const runs = ["a", "b"].map((name) => join(folder, name));
+  taut("run", OVER_WALL, "--duration_s", "1", "--csv", "--quiet", "--out", runs[0]);
+  taut("run", OVER_WALL, "--duration_s", "1", "--csv", "--quiet", "--out", runs[1], "--set", "wall_height_m=0.2");
+  const [run, other] = runs.map(csvOf);
+  const traces = [join(runs[0], "trace.h5"), "--compare", join(runs[1], "trace.h5")];
+  const file = join(runs[0], "both.html");
+  taut("report", ...traces, "--out", file);
+  const report = await openPage(`file://${file}`, { width: 1300, height: 900 });
+  const replay = await openPage(await view(...traces, "--port", "0"));
+  t.after(() => Promise.all([report, replay].map((page) => page.context().close())));
+  for (const page of [report, replay]) {
+    const bends = [];
+    for (const time_s of [2 / 30, 4 / 30, 0.9]) {
+      await page.evaluate((wanted) => window.taut.app.seek(wanted), time_s);
+      await untilTime(page, time_s, 0.02); // a report has a frame each 33 ms
+      const seen = await corners(page);
+      along(seen.rope, rope(run, seen.time_s), `at ${seen.time_s} s`);
+      along(seen.ghosts[0], rope(other, seen.time_s), `ghost at ${seen.time_s} s`);
+      bends.push([seen.rope.length, seen.ghosts[0].length].map((count) => count / 2 - 1));
+    }
+    assert.deepEqual(bends, [[0, 0], [2, 0], [2, 2]]);
+  }
+  await picture(report, "rope-over-wall");
+});
+
+test("ALiveRopeLiesOnEdgesNowAndInItsPast", options, async (t) => {
+  const out = join(folder, "live");
+  taut("run", OVER_WALL, "--duration_s", "1", "--csv", "--quiet", "--out", out);
+  const run = csvOf(out);
+  const page = await openPage(await view(OVER_WALL, "--paused", "--port", "0"));
+  t.after(() => page.context().close());
+  await page.evaluate(() => window.taut.app.send({ type: "step", count: 900 }));
+  for (const [time_s, bends] of [[0.9, 2], [0.3, 2], [0.05, 0]]) {
+    if (time_s < 0.9) await page.evaluate((wanted) => window.taut.app.seek(wanted), time_s);
+    await page.waitForFunction((wanted) => Math.abs(window.taut.app.frame.value.time_s - wanted) < 1e-6, time_s);
+    await shown(page);
+    const seen = await corners(page);
+    assert.equal(seen.rope.length, 2 * (bends + 1), `at ${time_s} s`);
+    along(seen.rope, rope(run, time_s), `at ${time_s} s`);
+  }
+  const channels = await page.evaluate(() => window.taut.app.scene.value.channels.map(({ name }) => name));
+  assert.ok(channels.includes("cable/rope/bends"));
 });

@@ -1,7 +1,9 @@
-// Where a cable runs that goes round wheels: the shortest path, as docs/theory/cables.md, section 4 has it.
-// How often it goes round is known from its length.
+// Where a cable runs: over the bends that a frame says it has, or round wheels by the shortest path, as
+// docs/theory/cables.md, section 4 has it. How often it goes round is known from its length.
 import { Quaternion, Vector3 } from "three";
-import type { Attachment, Wheel } from "../protocol";
+import type { Frame } from "../frame";
+import { VALUES } from "../layout";
+import type { Attachment, Cable, Wheel } from "../protocol";
 import { type Poses, worldPoint } from "./poses";
 
 /** Into so many parts an arc is drawn. */
@@ -21,13 +23,28 @@ interface Laid {
   leaves: Vector3;
 }
 
-/** How many points a path is drawn with. */
-export function pointCount(attachments: readonly Attachment[]): number {
-  return attachments.reduce((sum, { wheel }) => sum + (wheel ? ARC_PARTS + 1 : 1), 0);
+/** How many points a path is drawn with, or at most. */
+export function pointCount({ attachments, most_bends = 0 }: Cable): number {
+  return attachments.reduce((sum, { wheel }) => sum + (wheel ? ARC_PARTS + 1 : 1), most_bends);
 }
 
-/** The path in W into `out`, which has pointCount() places. `length_m`: what is known of it, or NaN. */
-export function layCable(poses: Poses, attachments: readonly Attachment[], length_m: number, out: readonly Vector3[]): void {
+/** The path in W into `out`, which has pointCount() places; of a cable that bends as many as it takes. `number`: its own among bends; `length_m`: what is known of it, or NaN. */
+export function layCable(frame: Frame, poses: Poses, cable: Cable, number: number, length_m: number, out: Vector3[]): void {
+  if (cable.most_bends === undefined) return layOnWheels(poses, cable.attachments, length_m, out);
+  const ends = cable.attachments.map((at) => worldPoint(poses, at.body, at.position_m, new Vector3()));
+  out.splice(0, out.length, ...ends.slice(0, 1), ...bendsOf(frame, number).slice(0, cable.most_bends), ...ends.slice(1));
+}
+
+/** Where a cable bends that lies against what it comes to, from its first end on. */
+function bendsOf({ bends }: Frame, cable: number): Vector3[] {
+  const places: Vector3[] = [];
+  for (let at = 0; at < bends.length; at += VALUES.bends) {
+    if (bends[at] === cable) places.push(new Vector3(bends[at + 1], bends[at + 2], bends[at + 3]));
+  }
+  return places;
+}
+
+function layOnWheels(poses: Poses, attachments: readonly Attachment[], length_m: number, out: readonly Vector3[]): void {
   const places = attachments.map((at) => worldPoint(poses, at.body, at.position_m, new Vector3()));
   const wheels = attachments.map((at, i) => (at.wheel ? laid(poses, at, places[i]!) : null));
   let length = lay(places, wheels);

@@ -24,7 +24,7 @@ export class Cables implements Part {
   private frame: Frame | null = null;
 
   constructor(private readonly scene: Scene, size_m: number) {
-    this.points = scene.cables.map((cable) => Array.from({ length: pointCount(cable.attachments) }, () => new Vector3()));
+    this.points = scene.cables.map((cable) => Array.from({ length: pointCount(cable) }, () => new Vector3()));
     this.lines = scene.cables.map((cable) => this.line(cable, size_m));
   }
 
@@ -34,7 +34,7 @@ export class Cables implements Part {
       const line = this.lines[i];
       if (!line) return;
       const points = this.points[i]!;
-      layCable(frame, cable.attachments, cableState(frame, i).length_m, points);
+      layCable(frame, frame, cable, i, cableState(frame, i).length_m, points);
       moveLine(line, points);
       this.colour(i);
     });
@@ -84,7 +84,7 @@ export class Cables implements Part {
   private line(cable: Cable, size_m: number): Line2 | null {
     if (cable.attachments.length < 2) return null;
     const geometry = new LineGeometry();
-    geometry.setPositions(new Float32Array(3 * pointCount(cable.attachments)));
+    geometry.setPositions(new Float32Array(3 * pointCount(cable)));
     const material = new LineMaterial({ dashSize: 0.02 * size_m, gapSize: 0.015 * size_m });
     const line = new Line2(geometry, material);
     line.frustumCulled = false; // its bounds are those of the start
@@ -102,4 +102,5 @@ function moveLine(line: Line2, points: readonly Vector3[]): void {
     points[k + 1]!.toArray(buffer.array, 6 * k + 3);
   }
   buffer.needsUpdate = true;
+  line.geometry.instanceCount = points.length - 1; // it may have room for more bends
 }

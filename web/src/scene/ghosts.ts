@@ -23,9 +23,11 @@ export class Ghosts implements Part {
 
   constructor(scene: Scene) {
     let from = 0;
+    let cables = scene.cables.length;
     this.ghosts = scene.compared.map((run, k) => {
-      const ghost = new Ghost(run, k + 1, from);
+      const ghost = new Ghost(run, k + 1, from, cables);
       from += run.bodies.length;
+      cables += run.cables.length;
       this.object.add(ghost.object);
       return ghost;
     });
@@ -60,7 +62,8 @@ export class Ghost {
   private readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
   private readonly cables: readonly Cable[];
 
-  constructor(run: ComparedRun, private readonly number: number, private readonly from: number) {
+  /** `from`, `from_cable`: the numbers of its first body and cable in frames. */
+  constructor(run: ComparedRun, private readonly number: number, private readonly from: number, private readonly from_cable: number) {
     this.bodies = run.bodies;
     this.cables = run.cables;
     this.groups = run.bodies.map((body) => {
@@ -69,7 +72,7 @@ export class Ghost {
       this.object.add(group);
       return group;
     });
-    const parts = run.cables.reduce((sum, { attachments }) => sum + Math.max(pointCount(attachments) - 1, 0), 0);
+    const parts = run.cables.reduce((sum, cable) => sum + Math.max(pointCount(cable) - 1, 0), 0);
     const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(6 * parts), 3));
     this.lines = new LineSegments(geometry, this.thread);
     this.lines.frustumCulled = false; // its bounds are those of the start
@@ -97,7 +100,7 @@ export class Ghost {
       group.position.set(b[0]!, b[1]!, b[2]!);
       group.quaternion.set(b[4]!, b[5]!, b[6]!, b[3]!);
     });
-    this.moveCables();
+    this.moveCables(frame);
   }
 
   paint(theme: Theme): void {
@@ -105,18 +108,19 @@ export class Ghost {
     this.thread.color.set(runColourIn(theme, this.number));
   }
 
-  private moveCables(): void {
+  private moveCables(frame: Frame): void {
     const positions = this.lines.geometry.getAttribute("position") as BufferAttribute;
     let at = 0;
-    for (const { attachments } of this.cables) {
-      if (attachments.length < 2) continue;
-      const points = Array.from({ length: pointCount(attachments) }, () => new Vector3());
-      layCable(this.poses, attachments, NaN, points); // its length is not in the frame
+    this.cables.forEach((cable, i) => {
+      if (cable.attachments.length < 2) return;
+      const points = Array.from({ length: pointCount(cable) }, () => new Vector3());
+      layCable(frame, this.poses, cable, this.from_cable + i, NaN, points); // its length is not in the frame
       points.forEach((point, k) => {
         if (k > 0) at = write(point, positions, at);
         if (k + 1 < points.length) at = write(point, positions, at);
       });
-    }
+    });
+    this.lines.geometry.setDrawRange(0, at);
     positions.needsUpdate = true;
   }
 }
