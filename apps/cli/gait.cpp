@@ -126,11 +126,12 @@ void AddGait(CLI::App& app, int& exit_code) {
       "commands.csv");
   export_->callback([args, &exit_code] { exit_code = Export(*args); });
 
-  CLI::App* import_ =
-      gait->add_subcommand("import", "A gait of NTRT's three-segment spine as a gait file.");
+  CLI::App* import_ = gait->add_subcommand("import", "A gait of NTRT's spines as a gait file.");
   import_
-      ->add_option("path", args->input,
-                   "Folder with bestParameters-*.nnw, or the hand-tuned controlVars.json")
+      ->add_option(
+          "path", args->input,
+          "Folder with bestParameters-*.nnw, the hand-tuned controlVars.json, or the .json of a "
+          "controller with feedback")
       ->required();
   AddChoice(*import_, "--order", args->order, kOrders,
             "Order of NTRT's cables when it learned (default: paper2015)");

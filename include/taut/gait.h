@@ -172,9 +172,9 @@ enum class NtrtCableOrder {
   kSince2016,  ///< Pair by pair.
 };
 
-/// A gait of NTRT's three-segment spine. `path` is a folder with a set of learned parameters
-/// (bestParameters-9_node-0.nnw and ..._edge-0.nnw to 56) or the controlVars.json of the hand-tuned
-/// sine waves. Nothing if there was any error.
+/// A gait of NTRT's spines. `path`: a folder with bestParameters-9_node-0.nnw, ..._edge-0.nnw to
+/// 56; controlVars.json of the hand-tuned sines; or the .json of a controller with feedback, with
+/// the networks that it names where it says. Nothing if there was any error.
 std::optional<GaitSpec> ImportNtrtGait(const std::string& path, NtrtCableOrder order,
                                        Diagnostics& out);
 

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "base/input_file.h"
+#include "description/gait_import.h"
 #include "description/gait_parts.h"
 #include "description/reader.h"
 
@@ -77,22 +78,6 @@ std::optional<std::string> FindSet(const std::string& folder, Diagnostics& out) 
   return std::nullopt;
 }
 
-/// What `FindCouplings` calls the groups of six roles by index, in the order in which
-/// BaseSpineCPGControl::scaleEdgeActions fills its table.
-std::vector<std::string> IndexGroups() {
-  std::vector<std::string> names;
-  for (int rp = 0; rp < 3; ++rp) {
-    for (int j = 0; j < 6; ++j) {
-      for (int k = j; k < 6; ++k) {
-        if (rp == 1 && j == k) continue;
-        names.push_back("rp" + std::to_string(rp) + "." + std::to_string(j) + "." +
-                        std::to_string(k));
-      }
-    }
-  }
-  return names;
-}
-
 std::optional<GaitSpec> ImportLearned(const std::string& folder, NtrtCableOrder order,
                                       Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
@@ -109,7 +94,7 @@ std::optional<GaitSpec> ImportLearned(const std::string& folder, NtrtCableOrder 
   for (const int node : kInverted) {
     cpg.inverted.push_back({cpg.order[static_cast<std::size_t>(node)]});
   }
-  const std::vector<std::string> names = IndexGroups();
+  const std::vector<std::string> names = IndexGroups(6);
   for (int i = 0; i < kEdges; ++i) {
     // actions are taken from the back: the last file fills the first entry
     const std::string file = *set + "_edge-" + std::to_string(kEdges - 1 - i) + ".nnw";
@@ -125,14 +110,16 @@ std::optional<GaitSpec> ImportLearned(const std::string& folder, NtrtCableOrder 
   return gait;
 }
 
-/// htSpineSine's numbers: V0 = A cos(2 pi f t + phi) - A, and one A for left and right.
-std::optional<GaitSpec> ImportHandTuned(const std::string& path, Diagnostics& out) {
+/// A .json: htSpineSine's numbers, or a controller with feedback. Of the former
+/// V0 = A cos(2 pi f t + phi) - A, and one A for left and right.
+std::optional<GaitSpec> ImportJson(const std::string& path, Diagnostics& out) {
   auto text = base::ReadInputFile(path, kMaxFileBytes, "", out);
   if (!text) return std::nullopt;
   std::replace(text->begin(), text->end(), '\t', ' ');  // JSON's, which YAML does not indent with
   const std::size_t errors_before = out.items().size();
   const ValuePtr root = ParseYaml(*text, path, out);
   if (!root) return std::nullopt;
+  if (root->Find("nodeVals")) return ImportFeedback(*root, path, out);
   const NameTable no_names;
   const Scope scope{no_names, out};
   std::vector<std::string> keys;
@@ -170,6 +157,21 @@ std::optional<GaitSpec> ImportHandTuned(const std::string& path, Diagnostics& ou
 }
 
 }  // namespace
+
+std::vector<std::string> IndexGroups(int roles) {
+  std::vector<std::string> names;
+  for (int rp = 0; rp < 3; ++rp) {
+    for (int j = 0; j < roles; ++j) {
+      for (int k = j; k < roles; ++k) {
+        if (rp == 1 && j == k) continue;
+        names.push_back("rp" + std::to_string(rp) + "." + std::to_string(j) + "." +
+                        std::to_string(k));
+      }
+    }
+  }
+  return names;
+}
+
 }  // namespace description
 
 std::optional<GaitSpec> ImportNtrtGait(const std::string& path, NtrtCableOrder order,
@@ -177,8 +179,7 @@ std::optional<GaitSpec> ImportNtrtGait(const std::string& path, NtrtCableOrder o
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored))
     return description::ImportLearned(path, order, out);
-  if (std::filesystem::is_regular_file(path, ignored))
-    return description::ImportHandTuned(path, out);
+  if (std::filesystem::is_regular_file(path, ignored)) return description::ImportJson(path, out);
   out.Error({path, 0, 0}, "there is no such file or folder");
   return std::nullopt;
 }
