@@ -210,6 +210,9 @@ void Keys(Io& io, Like<StartNoise> auto& n) {
   io("goal_rad", n.goal_rad, LaterThan{0.0}, Bound::kNonNegative,
      "The `goal` is turned about the vertical through the world's origin by up to this either "
      "way.");
+  io("any_pose", n.any_pose, kLater,
+     "The robot is turned about its centre of mass to a pose drawn evenly from all: it must be "
+     "placed so high that no pose reaches into the ground, and it falls.");
 }
 
 template <class Io, Either<GoalSpec, GoalText> Goal>
