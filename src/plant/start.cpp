@@ -159,7 +159,7 @@ bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& o
   if (!CheckOverlaps(robot, batch, terrain, false, out)) return false;
   if (!FindStart(experiment, batch, out, go_on, settled)) return false;
   const StartNoise& noise = experiment.start_noise;
-  const bool noisy = noise.position_m > 0 || noise.heading_rad > 0;
+  const bool noisy = noise.position_m > 0 || noise.heading_rad > 0 || noise.any_pose;
   if (noisy) Disturb(experiment, batch);
   if (!noisy && experiment.start == StartKind::kAsDescribed) return true;
   return CheckOverlaps(robot, batch, true, false, out);
