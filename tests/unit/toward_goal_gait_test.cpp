@@ -14,8 +14,8 @@
 namespace taut::test {
 namespace {
 
-/// Three rods, each along an axis, and two cables: the middle of `one` is at (0, 1, 0), that of
-/// `two` at (0, -1, 0), when the robot is placed as described.
+/// Three rods, each along an axis, and two cables: the middle of `one` is at (0, 1.25, 0), that of
+/// `two` at (0, -1.25, 0), when the robot is placed as described.
 constexpr const char* kJack = R"(taut: 1
 kind: model
 name: jack
@@ -27,8 +27,8 @@ nodes:
   b1: [0, 1, 1]
   c0: [0, 3, -1]
   c1: [0, 3, 0.5]
-  d0: [-1, 2, -0.2]
-  d1: [1, -2, -0.2]
+  d0: [-1, 2.5, -0.2]
+  d1: [1, -2.5, -0.2]
 pairs:
   - {name: a, nodes: [a0, a1], tags: [rod]}
   - {name: b, nodes: [b0, b1], tags: [rod]}
@@ -196,8 +196,8 @@ double Polynomial(double a, double z, double strength) {
                      0.07 * a * a * a + 0.04 * a * a * z - 0.06 * a * z * z + 0.08 * z * z * z);
 }
 
-// The middles of the cables are 1 from their mean, which is the robot's radius: a turned robot's
-// are where the turn puts (0, 1, 0) and (0, -1, 0).
+// The middles of the cables are 1.25 m from their mean, which is the radius: in radii a turned
+// robot's are where the turn puts (0, 1, 0) and (0, -1, 0).
 TEST_F(TowardGoalGaits, ACablesPlaceIsThatOfTheTurnedRobot) {
   ASSERT_EQ(PlayedComplaints(kGait, kGoal), "");
   const ExperimentSpec experiment = Load();
