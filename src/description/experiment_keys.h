@@ -219,7 +219,8 @@ template <class Io, Either<GoalSpec, GoalText> Goal>
 void Keys(Io& io, Goal& g) {
   io.Map("goal", "goal",
          "Where the robot is to go, and how it senses in which direction that is. Gaits with a "
-         "`goal_network` hear it; the measure `nearer` of a study's objective scores it.",
+         "`goal_network` and gaits `toward_goal` hear it; the measure `nearer` of a study's "
+         "objective scores it.",
          R"({"at_m": [3.5, 0, 0], "body": "segment_2"})");
   io("at_m", g.at_m, kNeeded, "A point. Its height does not count.");
   if constexpr (Io::kResolved) {
