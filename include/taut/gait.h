@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "taut/diagnostics.h"
+#include "taut/types.h"
 
 namespace taut {
 
@@ -145,7 +146,21 @@ struct FeedbackCpgGait {
   SourceRef at;
 };
 
-/// A gait. Exactly one of the four is present.
+/// Cables whose signals follow from where they are on the way to the goal: a polynomial in `ahead`
+/// and `up`, places from the centre of the robot in its radii (docs/theory/gaits.md, eq. G.24). All
+/// coefficients are [m/s], or [m]; `ahead2_up` is that of ahead^2 up.
+struct TowardGoalGait {
+  CableMatch cables;
+  double offset = 0.0;
+  double ahead = 0.0, up = 0.0;
+  double ahead2 = 0.0, ahead_up = 0.0, up2 = 0.0;
+  double ahead3 = 0.0, ahead2_up = 0.0, ahead_up2 = 0.0, up3 = 0.0;
+  double beat = 0.0;     ///< All but the offset grows and shrinks by this share, in turn,
+  double beat_hz = 0.5;  ///< so often; >= 0.
+  SourceRef at;
+};
+
+/// A gait. Exactly one of the five is present.
 struct GaitSpec {
   std::string name;
   std::string description;
@@ -154,6 +169,7 @@ struct GaitSpec {
   std::optional<CpgGait> cpg;
   std::optional<TableGait> table;
   std::optional<FeedbackCpgGait> feedback_cpg;
+  std::optional<TowardGoalGait> toward_goal;
   std::vector<std::string> files;  ///< That were read, the gait first.
 };
 
@@ -235,6 +251,13 @@ struct ResolvedGait {
   std::vector<int> joint;              ///< Cables whose names end in the same number share one.
   std::vector<double> place;           ///< Of each joint: 1 at the front, -1 at the rear.
   std::vector<double> most_tension_n;  ///< That its actuator can pull with.
+  // Of one that goes toward a goal, in W as the robot is described:
+  struct Strut {
+    int body = 0;
+    Vec3 along;  ///< Unit vector.
+  };
+  std::vector<Strut> struts;      ///< Whose directions are sensed; they span all directions.
+  std::vector<Vec3> from_center;  ///< Per cable: of its middle, from the centre, in radii.
 };
 
 /// Finds the gait's cables in a robot and checks that its groups are the robot's. Nothing if there

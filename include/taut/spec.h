@@ -219,6 +219,7 @@ struct StartNoise {
   double position_m = 0.0;   ///< Each body by up to this along x and y, and upwards.
   double heading_rad = 0.0;  ///< The whole robot about the vertical, by up to this either way.
   double goal_rad = 0.0;     ///< The goal about the vertical through W's origin, likewise.
+  bool any_pose = false;     ///< The whole robot turned about its centre of mass, anyhow.
 };
 
 /// In which frame the way to the goal is sensed.

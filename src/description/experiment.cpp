@@ -43,13 +43,13 @@ LoadedModel LoadItsModel(const ExperimentText& text, const OverrideSet& of_user,
 }
 
 /// Complains about a start that would tear the robot off what it is joined to.
-void CheckHeading(const ModelDef& def, const Value* noise, const Scope& scope) {
+void CheckTurns(const ModelDef& def, const char* key, const Value* noise, const Scope& scope) {
   for (const JointDef& joint : def.joints) {
     if (!base::IsFixed(def, joint.body_a) && !base::IsFixed(def, joint.body_b)) continue;
-    scope.out.Error(
-        noise->at,
-        "start_noise.heading_rad: the joint \"" + joint.name + "\" holds the robot in the world",
-        "start_noise.position_m moves what is not tied to the world");
+    scope.out.Error(noise->at,
+                    "start_noise." + std::string(key) + ": the joint \"" + joint.name +
+                        "\" holds the robot in the world",
+                    "start_noise.position_m moves what is not tied to the world");
     return;
   }
 }
@@ -78,7 +78,9 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   if (text.start_noise.goal_rad > 0 && !text.goal_text) {
     scope.out.Error(root.Find("start_noise")->at, "start_noise.goal_rad: there is no `goal`");
   }
-  if (text.start_noise.heading_rad > 0) CheckHeading(def, root.Find("start_noise"), scope);
+  const StartNoise& noise = text.start_noise;
+  if (noise.heading_rad > 0) CheckTurns(def, "heading_rad", root.Find("start_noise"), scope);
+  if (noise.any_pose) CheckTurns(def, "any_pose", root.Find("start_noise"), scope);
   AddMotions(text.motions, model.good, scope, text.robot);
   if (scope.out.ok()) CheckMotions(text.motions, text, scope);
   if (scope.out.ok()) CheckPositions(text.robot, scope.out, text.place ? &text.place->at : nullptr);

@@ -19,17 +19,38 @@ std::optional<GoalSpec> ToGoal(const GoalText& text, const RobotSpec* robot, con
   return goal;
 }
 
+namespace {
+
+constexpr const char* kSayWhere =
+    "say where it is and whose way there is sensed: goal: {at_m: [3.5, 0, 0], body: ...}";
+
+/// What hears the goal: a network hears it in any frame, a law that sets it beside the vertical and
+/// the struts' directions in the world's.
+void CheckGoalIsSensed(const ExperimentSpec& experiment, const GaitSpec& gait, Diagnostics& out) {
+  if (gait.feedback_cpg && gait.feedback_cpg->goal_network && !experiment.goal) {
+    out.Error(gait.feedback_cpg->goal_network->at,
+              "gait " + gait.name + " has a goal_network, but the experiment has no `goal`",
+              kSayWhere);
+  }
+  if (!gait.toward_goal) return;
+  if (!experiment.goal) {
+    out.Error(gait.toward_goal->at,
+              "gait " + gait.name + " goes toward a goal, but the experiment has no `goal`",
+              kSayWhere);
+  } else if (experiment.goal->frame != GoalFrame::kOfWorld) {
+    out.Error(gait.toward_goal->at,
+              "gait " + gait.name + " needs the way to the goal in the frame of the world",
+              "goal: {frame: world, ...}: a body that rolls has no ahead");
+  }
+}
+
+}  // namespace
+
 void CheckGoalIsSensed(const ExperimentSpec& experiment, Diagnostics& out) {
-  if (experiment.goal) return;
   for (const ControllerSpec& controller : experiment.controllers) {
     const GaitInputSpec* input = GaitInputOf(controller);
     for (std::size_t g = 0; input != nullptr && g <= input->others.size(); ++g) {
-      const GaitSpec& gait = GaitOf(*input, g);
-      if (!gait.feedback_cpg || !gait.feedback_cpg->goal_network) continue;
-      out.Error(
-          gait.feedback_cpg->goal_network->at,
-          "gait " + gait.name + " has a goal_network, but the experiment has no `goal`",
-          "say where it is and whose way there is sensed: goal: {at_m: [3.5, 0, 0], body: ...}");
+      CheckGoalIsSensed(experiment, GaitOf(*input, g), out);
     }
   }
 }

@@ -210,13 +210,17 @@ void Keys(Io& io, Like<StartNoise> auto& n) {
   io("goal_rad", n.goal_rad, LaterThan{0.0}, Bound::kNonNegative,
      "The `goal` is turned about the vertical through the world's origin by up to this either "
      "way.");
+  io("any_pose", n.any_pose, kLater,
+     "The robot is turned about its centre of mass to a pose drawn evenly from all: it must be "
+     "placed so high that no pose reaches into the ground, and it falls.");
 }
 
 template <class Io, Either<GoalSpec, GoalText> Goal>
 void Keys(Io& io, Goal& g) {
   io.Map("goal", "goal",
          "Where the robot is to go, and how it senses in which direction that is. Gaits with a "
-         "`goal_network` hear it; the measure `nearer` of a study's objective scores it.",
+         "`goal_network` and gaits `toward_goal` hear it; the measure `nearer` of a study's "
+         "objective scores it.",
          R"({"at_m": [3.5, 0, 0], "body": "segment_2"})");
   io("at_m", g.at_m, kNeeded, "A point. Its height does not count.");
   if constexpr (Io::kResolved) {

@@ -21,6 +21,7 @@
 #include "description/gait_feedback_cpg.h"
 #include "description/gait_sine.h"
 #include "description/gait_table.h"
+#include "description/gait_toward_goal.h"
 
 namespace taut::description {
 
@@ -38,6 +39,7 @@ inline constexpr std::tuple kGaitKinds{
     GaitKind<CpgGait>{"cpg", &GaitSpec::cpg},
     GaitKind<TableGait, TableText>{"table", &GaitSpec::table},
     GaitKind<FeedbackCpgGait>{"feedback_cpg", &GaitSpec::feedback_cpg},
+    GaitKind<TowardGoalGait>{"toward_goal", &GaitSpec::toward_goal},
 };
 
 /// visit(kind, its number as a constant), in the order of the list.

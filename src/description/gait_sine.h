@@ -29,7 +29,7 @@ template <class Io>
 void Keys(Io& io, Like<SineGait> auto& s) {
   io.Map("sine", "sine",
          "Sine waves: signal = offset + amplitude cos(2 pi f t + phase). One of `sine`, `cpg`, "
-         "`table` and `feedback_cpg` must be there.");
+         "`table`, `feedback_cpg` and `toward_goal` must be there.");
   io("frequency_hz", s.frequency_hz, kNeeded, Bound::kNonNegative,
      "f of all waves that have none of their own.");
   io("waves", s.waves, kNeeded,

@@ -129,7 +129,7 @@ void Read(const Value& value, const std::string& what, const Scope& scope, T& ou
 /// Its numbers must be what a gait file's would have to be.
 void CheckGait(const GaitSpec& gait, const SourceRef& at, Diagnostics& out) {
   if (CountKinds(gait) != 1) {
-    out.Error(at, "a gait is one of sine, cpg, table and feedback_cpg");
+    out.Error(at, "a gait is one of sine, cpg, table, feedback_cpg and toward_goal");
     return;
   }
   ForEachGaitKind([&](const auto& kind, auto) {

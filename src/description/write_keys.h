@@ -79,6 +79,9 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
       if (key.limit && std::isinf(value)) return;
       if (value == key.before) return;
     }
+    if constexpr (std::same_as<T, bool>) {
+      if (key.later && !value) return;  // what is said by a key that came later is that it is so
+    }
     if constexpr (requires { value.empty(); }) {
       if ((!kOfResolved || key.later) && value.empty()) return;
     }

@@ -123,6 +123,7 @@ std::vector<RolloutWorld> CandidateWorlds(const StudySpec& study, const std::vec
     world.start_noise.position_m += spec.start.position_m;
     world.start_noise.heading_rad += spec.start.heading_rad;
     world.start_noise.goal_rad += spec.start.goal_rad;
+    world.start_noise.any_pose |= spec.start.any_pose;
     math::Random random = RandomOf(study, kWorldScales, evaluation, w);
     using Quantity = ScaleSpec::Quantity;
     for (const auto& [quantity, share] :

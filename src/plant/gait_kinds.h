@@ -71,8 +71,10 @@ std::unique_ptr<GaitPlayer> MakeSine(const GaitSetup&);
 std::unique_ptr<GaitPlayer> MakeCpg(const GaitSetup&);
 std::unique_ptr<GaitPlayer> MakeTable(const GaitSetup&);
 std::unique_ptr<GaitPlayer> MakeFeedbackCpg(const GaitSetup&);
+std::unique_ptr<GaitPlayer> MakeTowardGoal(const GaitSetup&);
 
-inline constexpr MakeGaitPlayer kGaitKinds[] = {MakeSine, MakeCpg, MakeTable, MakeFeedbackCpg};
+inline constexpr MakeGaitPlayer kGaitKinds[] = {MakeSine, MakeCpg, MakeTable, MakeFeedbackCpg,
+                                                MakeTowardGoal};
 
 inline std::unique_ptr<GaitPlayer> PlayerOf(const GaitSetup& setup) {
   for (const MakeGaitPlayer make : kGaitKinds) {

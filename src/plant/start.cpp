@@ -1,5 +1,7 @@
 #include "plant/start.h"
 
+#include <cmath>
+
 #include "base/fixed.h"
 #include "base/union_find.h"
 #include "math/elementary.h"
@@ -61,6 +63,26 @@ std::vector<int> JointedTo(const ModelDef& def) {
   return first;
 }
 
+/// How the whole robot is turned. Of poses each is as likely: normal numbers have no direction of
+/// their own in any number of dimensions, and turns lie evenly on the sphere of unit quaternions.
+Quat TurnOf(const StartNoise& noise, std::uint64_t seed) {
+  Quat turn;
+  if (noise.any_pose) {
+    math::Random random(seed, kStartPose, 0);
+    const double w = random.Normal(), x = random.Normal(), y = random.Normal();
+    const double z = random.Normal();
+    const double size = std::sqrt(w * w + x * x + y * y + z * z);
+    if (size > 0) turn = {w / size, x / size, y / size, z / size};
+  }
+  if (noise.heading_rad > 0) {
+    math::Random random(seed, kStartHeading, 0);
+    const double half_rad = 0.5 * random.Uniform(-noise.heading_rad, noise.heading_rad);
+    const Quat heading{math::Cos(half_rad), 0, 0, math::Sin(half_rad)};
+    turn = noise.any_pose ? heading * turn : heading;
+  }
+  return turn;
+}
+
 /// Bodies a little off, upwards rather than into the ground; then the whole robot turned.
 void Disturb(const ExperimentSpec& experiment, Batch& batch) {
   const StartNoise& noise = experiment.start_noise;
@@ -83,11 +105,9 @@ void Disturb(const ExperimentSpec& experiment, Batch& batch) {
     center = center + m * state.position_m;
     mass += m;
   }
-  if (!(noise.heading_rad > 0) || !(mass > 0)) return;
+  if (!(noise.heading_rad > 0 || noise.any_pose) || !(mass > 0)) return;
   center = (1 / mass) * center;
-  math::Random random(experiment.seed, kStartHeading, 0);
-  const double half_rad = 0.5 * random.Uniform(-noise.heading_rad, noise.heading_rad);
-  const Quat turn{math::Cos(half_rad), 0, 0, math::Sin(half_rad)};
+  const Quat turn = TurnOf(noise, experiment.seed);
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     if (def.bodies[b].fixed) continue;
     BodyState state = batch.Body(kTheWorld, static_cast<int>(b));
@@ -139,7 +159,7 @@ bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& o
   if (!CheckOverlaps(robot, batch, terrain, false, out)) return false;
   if (!FindStart(experiment, batch, out, go_on, settled)) return false;
   const StartNoise& noise = experiment.start_noise;
-  const bool noisy = noise.position_m > 0 || noise.heading_rad > 0;
+  const bool noisy = noise.position_m > 0 || noise.heading_rad > 0 || noise.any_pose;
   if (noisy) Disturb(experiment, batch);
   if (!noisy && experiment.start == StartKind::kAsDescribed) return true;
   return CheckOverlaps(robot, batch, true, false, out);

@@ -16,6 +16,7 @@ enum Stream : std::uint32_t {
   kEncoderZero = 8,    ///< Index: cable.
   kEncoderGain = 9,    ///< Index: cable.
   kGoal = 10,          ///< Index: 0.
+  kStartPose = 11,     ///< Index: 0.
   // 100: blocks that lie about, by a seed of their own (description/terrain_boxes.cpp).
 };
 

@@ -1,6 +1,9 @@
 // The gaits that are shipped as learned still travel.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "taut/rollout.h"
 
 namespace taut {
@@ -39,6 +42,56 @@ TEST(LearnedGait, TwelveSegmentsTravelMoreThanAMetre) {
 // The study's aim was 5 m in 60 s; docs/validation/rolling.md counts the turns.
 TEST(LearnedGait, ASixStrutRobotRollsFiveMetres) {
   EXPECT_GT(LeastDistance("roll_six_strut"), 5.0);
+}
+
+/// How far from the goal the robot's centre of mass was at the nearest.
+class Nearest final : public Score {
+ public:
+  explicit Nearest(const ControlSetup& setup)
+      : goal_m_(setup.experiment.goal->at_m),
+        bodies_(setup.experiment.robot.def.bodies.size()),
+        least_m_(setup.lanes.size(), 1e9) {}
+  void Take(const Observation&, const Commands&, const World& world, const double*) override {
+    for (std::size_t j = 0; j < least_m_.size(); ++j) {
+      double x = 0, y = 0;  // all bodies have the same mass
+      for (std::size_t b = 0; b < bodies_; ++b) {
+        const Vec3 at = world.Body(static_cast<int>(j), static_cast<int>(b)).position_m;
+        x += at.x / static_cast<double>(bodies_), y += at.y / static_cast<double>(bodies_);
+      }
+      least_m_[j] = std::min(least_m_[j], std::hypot(x - goal_m_.x, y - goal_m_.y));
+    }
+  }
+  double Result(int lane) const override { return -least_m_[static_cast<std::size_t>(lane)]; }
+
+ private:
+  Vec3 goal_m_;
+  std::size_t bodies_;
+  std::vector<double> least_m_;
+};
+
+/// Of eight starts in any pose, how many come within half a metre of the goal in 30 s.
+int Arrivals(const std::string& name) {
+  Diagnostics out;
+  auto experiment =
+      LoadExperiment(std::string(TAUT_SOURCE_DIR) + "/experiments/" + name + ".yaml", {}, out);
+  if (!experiment) throw std::runtime_error(out.Format());
+  experiment->duration_s = 30;
+  std::vector<RolloutWorld> worlds(8, WorldOf(*experiment));
+  for (std::size_t i = 0; i < worlds.size(); ++i) worlds[i].seed = 1000 + i;
+  RolloutOptions options;
+  options.score = [](const ControlSetup& setup) { return std::make_unique<Nearest>(setup); };
+  int arrived = 0;
+  for (const RolloutResult& r : Rollouts::Create(*experiment, {}, options, out)->Run(worlds)) {
+    EXPECT_EQ(r.failed, "");
+    arrived += -r.score <= 0.5;
+  }
+  return arrived;
+}
+
+// docs/validation/roll_to_goal.md: nearly all of fifty arrive on each.
+TEST(LearnedGait, ASixStrutRobotRollsToAGoal) {
+  EXPECT_GE(Arrivals("roll_to_goal"), 7);
+  EXPECT_GE(Arrivals("roll_to_goal_hills"), 7);
 }
 
 }  // namespace

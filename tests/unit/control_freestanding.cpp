@@ -12,6 +12,7 @@
 #include "taut/control/rate.h"
 #include "taut/control/real.h"
 #include "taut/control/sine.h"
+#include "taut/control/toward_goal.h"
 
 namespace control = taut::control;
 
@@ -88,6 +89,20 @@ extern "C" float SpeedFromNetwork(control::FeedbackCpgState<float>* state, float
   return control::FeedbackCpgSignal(law, *state);
 }
 
+// A cable of a robot that rolls, from the directions of its struts.
+extern "C" float LengthTowardGoal(const control::Direction<float>* struts_now,
+                                  const control::Direction<float>* goal, float t_s) {
+  const control::Direction<float> struts[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const control::StrutFrame<float> frame{1, 1, 1, 0, 0, 0};
+  const control::Direction<float> place{0.5f, -0.5f, 0.7f}, up{0, 0, 1};
+  const auto in_robot = [&](const control::Direction<float>& v) {
+    return control::Along(control::InRobot(frame, struts, struts_now, 3, v), place);
+  };
+  const control::TowardGoal<float> law{0, -0.3f, 0.1f, 0, 0, 0, 0, 0, 0, 0};
+  return control::TowardGoalSignal(law, in_robot(*goal), in_robot(up),
+                                   control::BeatStrength(0.3f, control::ClockTurns(0.4f, t_s)));
+}
+
 extern "C" int64_t NextTick(float t_s) {
   const control::Clock<float> clock{0.001f, 0.0f};
   const int64_t tick = control::TickAtOrAfter(clock, t_s);
@@ -103,8 +118,9 @@ int main() {
       SpeedFromTension(&tension, 10.0f, 12.0f) + SpeedFromPosition(&position, rest_length_m, 2.0f);
   control::CpgState<float> oscillators[] = {control::StartCpg<float>(), control::StartCpg<float>()};
   control::FeedbackCpgState<float> hearing = control::StartFeedbackCpg(0.0f, 0.5f);
+  const control::Direction<float> axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const float gait = SpeedFromNetwork(&hearing, 20.0f) + SpeedFromSine(0.25f) +
-                     SpeedFromOscillators(oscillators, 12.0f);
+                     SpeedFromOscillators(oscillators, 12.0f) + LengthTowardGoal(axes, axes, 0.5f);
   return speed < 0.0f && gait < 1.0f && NextTick(0.5f) > 0 ? 0 : 1;
 }
 

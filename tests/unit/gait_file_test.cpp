@@ -212,7 +212,7 @@ TEST_F(Gait, WrongKeysAndValuesAreErrors) {
   Expect(kCpg, "right.left,", "left.right,",
          "10:7: error: there are two groups left.right (the first is in line 9)");
   Expect(kCpg, "cpg:", "cgp:",
-         "1:1: error: the file needs one of sine, cpg, table, feedback_cpg\n"
+         "1:1: error: the file needs one of sine, cpg, table, feedback_cpg, toward_goal\n"
          "4:1: error: unknown key \"cgp\" (did you mean \"cpg\"?)");
 }
 

@@ -338,6 +338,10 @@ TEST_F(JointedStart, NoiseMovesWhatIsJoinedTogether) {
         "taut: 1\nkind: experiment\nname: trial\nmodel: leg.yaml\nduration_s: 1\n"
         "start_noise: {heading_rad: 0.1}\n");
   EXPECT_THAT(Complaints(), HasSubstr("the joint \"hip\" holds the robot in the world"));
+  Write("trial.yaml",
+        "taut: 1\nkind: experiment\nname: trial\nmodel: leg.yaml\nduration_s: 1\n"
+        "start_noise: {any_pose: true}\n");
+  EXPECT_THAT(Complaints(), HasSubstr("start_noise.any_pose: the joint \"hip\" holds"));
 }
 
 }  // namespace
