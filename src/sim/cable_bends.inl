@@ -110,13 +110,12 @@ class LaneBends {
   }
   int count() const noexcept { return count_; }
   double Key(int k) const noexcept { return s_.bend[first_ + k].key[lane_]; }
-  double LastTheta(int k) const noexcept { return s_.bend[first_ + k].theta[lane_]; }
   double Half(int k) const noexcept { return s_.bend[first_ + k].half[lane_]; }
   double Most(int k) const noexcept { return s_.bend[first_ + k].most[lane_]; }
 
   void Remove(int k) noexcept {
     for (; k + 1 < count_; ++k) Copy(s_.bend[first_ + k + 1], s_.bend[first_ + k]);
-    Put(s_.bend[first_ + --count_], {kNoKey, 0, 0, 0, 0, 0, 0, {}, {}});
+    Put(s_.bend[first_ + --count_], {kNoKey, 0, 0, 0, 0, 0, {}, {}});
   }
   /// False if there is no room.
   bool Insert(int k, const BendFound& found) noexcept {
@@ -124,11 +123,9 @@ class LaneBends {
     for (int i = count_++; i > k; --i) Copy(s_.bend[first_ + i - 1], s_.bend[first_ + i]);
     const BendPlace& place = found.place;
     const Vec3 &c = place.center, &u = place.axis;
-    // Its last angle is to be known, and not to be dropped at once.
     Put(s_.bend[first_ + k], {place.key,
                               static_cast<double>(place.body),
                               found.side * kPi,
-                              1.0,
                               place.most_rad,
                               place.half_m,
                               place.radius_m,
@@ -159,23 +156,21 @@ class LaneBends {
 
 /// Changes a lane's bends once, if the path as it is laid says so: what it has left is dropped, or
 /// where it would be beside an edge's end or through what is below it; an edge that a straight part
-/// is below is added. What it has just left stays for a step, which may have begun with it. Returns
-/// whether something has changed.
+/// is below is added. Returns whether something has changed.
 template <class W>
 bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchTable& touch,
-                 int used, int lane, bool first_look) noexcept {
+                 int used, int lane) noexcept {
   const AttachmentWork<W>* const ends = work.attachments;
   const Wheel<V3<W>>* const wheels = work.wheels;
   LaneBends<W> bends(s, touch, lane);
   const int before = bends.count();
   for (int k = before - 1; k >= 0; --k) {
-    const bool on = wheels[k].theta[lane] > 0.0;
     const Vec3 middle =
         0.5 * (PlaceOf(ends[1 + 2 * k].p, lane) + PlaceOf(ends[2 + 2 * k].p, lane)) -
         PlaceOf(wheels[k].center, lane);
     const bool beyond = !(Abs(Dot(middle, PlaceOf(wheels[k].axis, lane))) < bends.Half(k)) ||
                         !(Abs(wheels[k].angle[lane]) < bends.Most(k));
-    if (on ? beyond : first_look && !(bends.LastTheta(k) > 0.0)) bends.Remove(k);
+    if (beyond || !(wheels[k].theta[lane] > 0.0)) bends.Remove(k);
   }
   if (bends.count() < before) return true;
   double taken[kMostBends];
@@ -237,7 +232,7 @@ template <class W>
     ends[2 * used + 1].p = last;
     LayOverBends(m, s, touch, used, ends, work.wheels, PoseNow(s, work));
     for (int lane = 0; lane < W::kLanes; ++lane) {
-      if (busy[lane]) busy.Set(lane, ChangeBends(m, s, work, touch, used, lane, round == 0));
+      if (busy[lane]) busy.Set(lane, ChangeBends(m, s, work, touch, used, lane));
     }
     if (Any(busy)) used = BendsInUse(s, touch);
   }
@@ -245,7 +240,6 @@ template <class W>
     BendNumbers<W>& bend = s.bend[touch.first_bend + k];
     const auto live = !(bend.key == W::Splat(kNoKey));
     bend.angle = Select(live, work.wheels[k].angle, bend.angle);
-    bend.theta = Select(live, work.wheels[k].theta, bend.theta);
   }
   for (int lane = 0; lane < W::kLanes; ++lane) {
     if (!look[lane]) continue;

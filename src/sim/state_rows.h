@@ -66,7 +66,6 @@ struct BendNumbers {
   Num key;                 ///< Which one (cable_edges.h), or kNoKey. Those in use come first.
   Num body;                ///< Whose number, or that of the world.
   Num angle;               ///< From point to point about it [rad].
-  Num theta;               ///< Over which the cable lay on in the last step, if it did [rad].
   Num most;                ///< The greatest angle that is not through what it belongs to [rad].
   Num half, radius;        ///< Half its length; to the middle of the cable [m].
   Num center[3], axis[3];  ///< In P [m], [1].
