@@ -1,5 +1,7 @@
-"""A spine of tetrahedra goes to a goal, from a hundred random starts on each of three terrains."""
+"""A spine of tetrahedra goes to a goal, from a hundred random starts on each of three terrains; NTRT's own controller."""
 
+import csv
+import math
 import pathlib
 import shutil
 import sqlite3
@@ -7,12 +9,26 @@ import statistics
 import time
 
 from validation.push import machine
-from validation.runs import Problem, fill, keep_picture, table
+from validation.runs import Problem, Variant, fill, keep_picture, table
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 TERRAINS = {"flat ground": "goal_trials", "hills": "goal_trials_hills", "blocks": "goal_trials_blocks"}
 COLOURS = ("#2471a3", "#1e8449", "#c0392b")
 WANTED_M, ASKED_M = 2.0, 1.5
+HEADINGS = 9
+# NTRT's impedance control of these cables (TC_goal, contactCables at commit f0c52e93), on lengths as described.
+NTRT = """controllers:
+  - name: motion
+    period_s: 0.001
+    velocity_input: {{gait: ../../../gaits/ntrt_feedback.yaml, period_s: 0.01}}
+    impedance:
+      gains: [{{cables: cable, position_gain_n_per_m: 1000, velocity_gain_n_s_per_m: 200}}]
+      set_points:
+        - {{cables: outer, tension_n: 0, length_m: 0.115}}
+        - {{cables: inner, tension_n: 0, length_m: 0.217313}}
+place: {{at_m: [0.2875, 0, drop_m], rotate: {{axis: z, angle_rad: {heading}}}}}
+record: {{rate_hz: 1, channels: ['body/segment_5/position_x_m', 'body/segment_5/position_y_m']}}
+"""
 
 
 def trials(taut, study):
@@ -25,6 +41,24 @@ def trials(taut, study):
     if any(score is None for score, *_ in rows):
         raise Problem(f"{study}: a world failed")
     return sorted(row[0] for row in rows), statistics.median(row[1] for row in rows), max(row[2] for row in rows)
+
+
+def ntrts_own(taut):
+    """How far NTRT's controller gets on each terrain, from some headings: a row each."""
+    bases = {"flat ground": "goal_flat", "hills": "goal_hills", "blocks": "goal_blocks"}
+    variants = {(name, i): Variant(f"ntrt_{base}_{i}", base, NTRT.format(heading=2 * math.pi * i / HEADINGS),
+                                   full_trace=True, any_status=True)
+                for name, base in bases.items() for i in range(HEADINGS)}
+    taut.run(variants.values())
+    rows = []
+    for name in bases:
+        way = []
+        for i in range(HEADINGS):
+            with open(taut.folder / variants[name, i].name / "trace.csv", newline="") as file:
+                places = [[float(row[f"body/segment_5/position_{axis}_m"]) for axis in "xy"] for row in csv.DictReader(file)]
+            way.append(math.dist(places[0], places[-1]))
+        rows.append([name, *(f"{value:.2f}" for value in (min(way), statistics.median(way), max(way)))])
+    return rows
 
 
 def share(scores, least):
@@ -75,9 +109,10 @@ def page(taut):
     keep_picture(taut, "docs/validation/goal.svg", picture(outcomes))
     version = taut("--version").split()[-1]
     return fill(TEMPLATE.read_text(), {
-        "made_by": f"This page was made by `script/validate goal` with taut {version}: 303 runs of 60 s took "
+        "made_by": f"This page was made by `script/validate goal` with taut {version}: {303 + 3 * HEADINGS} runs of 60 s took "
                    f"{time.monotonic() - started:.0f} s on {machine()}.",
         "starts": table(["", "least m", "5 % m", "10 % m", "25 % m", "median m", "most m", "at least 1.5 m",
                          "at least 2 m", "winding J", "largest tension N"],
                         [row(name, outcome) for name, outcome in outcomes.items()]),
+        "ntrts_own": table(["", "least m", "median m", "most m"], ntrts_own(taut)),
     })

@@ -108,6 +108,44 @@ TEST(Touch, LengthsAreThoseOfThePathWhereverItGoes) {
   EXPECT_GT(changes, 5);
 }
 
+TEST(Touch, OverAHeapOfBoxesItLiesOverAllOfTheirEdgesThatStickOut) {
+  const double radius = 1e-3;
+  const Vec3 from{-0.3, 0, 0.01}, to{0.4, 0.1, 0.005};
+  ModelDef def;
+  def.gravity_m_per_s2 = {};
+  def.bodies = {Ball(1, from), Ball(1, to)};
+  def.terrain_boxes = {Box({-0.1, -1, -1}, {0, 1, 0.045}), Box({0, -1, -1}, {0.1, 1, 0.06}),
+                       Box({0.1, -1, -1}, {0.2, 1, 0.045})};
+  def.cables = {Cable({0, from}, {1, to}, 1e-9, 0.1, radius)};
+  Batch world = MakeBatch(def);
+  world.Step(kStep);
+  EXPECT_EQ(world.CableBends(0, 0), 4);
+  CableDef path = def.cables[0];
+  path.attachments = {{kWorld, from},
+                      Round({-0.1, 0, 0.045}, radius),
+                      Round({0, 0, 0.06}, radius),
+                      Round({0.1, 0, 0.06}, radius),
+                      Round({0.2, 0, 0.045}, radius),
+                      {kWorld, to}};
+  EXPECT_NEAR(world.Cable(0, 0).length_m, math::DescribedPath(path).length_m(), 1e-12);
+}
+
+TEST(Touch, ABarIsPassedOnTheSideToWhichItTakesLess) {
+  const auto middle_of = [](const Vec3& from, const Vec3& to) {
+    ModelDef def;
+    def.gravity_m_per_s2 = {};
+    def.bodies = {Ball(1, from), Ball(1, to)};
+    def.terrain_boxes = {Box({0, -1, 0}, {0.1, 1, 0.06})};
+    def.cables = {Cable({0, from}, {1, to}, 1e-9, 0.1, 1e-3)};
+    Batch world = MakeBatch(def);
+    world.Step(kStep);
+    return world.CableBendPlaces(0, 0).at(0);
+  };
+  // In 25 mm below its top and out 5 mm above its bottom, and the other way up.
+  EXPECT_LT(Distance(middle_of({-0.3, 0, 0.125}, {0.4, 0, -0.085}), {0, 0, 0}), 2e-3);
+  EXPECT_LT(Distance(middle_of({-0.3, 0, -0.065}, {0.4, 0, 0.145}), {0, 0, 0.06}), 2e-3);
+}
+
 /// A ridge of a height field, whose edge is cut into pieces, and a mesh that is a box.
 TEST(Touch, RidgesOfFieldsAndMeshesAreEdges) {
   const double radius = 1e-3, height = 0.06;
