@@ -37,10 +37,10 @@ class Watch final : public TraceWriter {
   std::string none_;
 };
 
-void ExpectOver(const std::string& height_m, double within_s) {
+void ExpectOver(const std::string& height_m, double within_s, const std::string& name = "wall") {
   Diagnostics out;
-  auto experiment =
-      LoadExperiment(TAUT_SOURCE_DIR "/experiments/wall.yaml", {{"wall_height_m", height_m}}, out);
+  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/experiments/" + name + ".yaml",
+                                   {{"wall_height_m", height_m}}, out);
   ASSERT_TRUE(experiment) << out.Format();
   experiment->duration_s = within_s;
   experiment->record.rate_hz = 4;
@@ -58,6 +58,7 @@ void ExpectOver(const std::string& height_m, double within_s) {
 
 TEST(Wall, TwelveSegmentsCrawlOverAWallAsHighAsNtrts) { ExpectOver("0.02", 40); }
 TEST(Wall, AndOverOneThreeTimesAsHigh) { ExpectOver("0.06", 52); }
+TEST(Wall, AlsoIfItsCablesLieOverTheEdges) { ExpectOver("0.04", 48, "wall_touching"); }
 
 }  // namespace
 }  // namespace taut
