@@ -116,7 +116,7 @@ TEST(History, KeepsTheWholeRunMoreCoarselyTheLongerItLasts) {
     Frame frame;
     frame.real_time_factor = 1;
     history.Show(row, frame);
-    const int i = static_cast<int>(history.time_s(row) / 0.01 + 0.5);
+    const int i = static_cast<int>(std::lround(history.time_s(row) / 0.01));
     EXPECT_EQ(Numbers(frame), Numbers(Moment(i)));
   }
   history.Clear();
