@@ -85,7 +85,6 @@ void Check(const MapReader& map, CableText& cable) {
   }
   cable.own_damping_law = map.Has("damping_law");
   if (map.Has("ends")) cable.ends_at = map.Find("ends")->at;
-  if (map.Has("touches")) cable.touches_at = map.Find("touches")->at;
   const bool touches = cable.touches != CableTouches::kNone;
   if (touches && cable.radius_m == 0) {
     map.Error("touches", map.Path("touches") + ": a cable that touches needs a `radius_m` above 0",

@@ -179,7 +179,7 @@ struct CableText : CableDef {
   SourceRef rest_at;
   bool own_damping_law = false;
   bool ends_on_surface = false;
-  SourceRef ends_at, touches_at;
+  SourceRef ends_at;
   std::optional<ActuatorText> actuator_text;
 };
 struct AnchorText {};

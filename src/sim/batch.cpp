@@ -203,7 +203,7 @@ void Batch::Impl::Moved(int world) noexcept {
 void Batch::Impl::ForgetBends(int world) noexcept {
   for (int i = 0; i < view.touch_rod_count; ++i) at(world, layout.touch_side + i) = 0.0;
   for (int i = 0; i < view.Count(sim::Per::kBend); ++i) {
-    set(world, layout.bend + sim::kWidthBend * i, sim::start_of::NoBend(*model, i));
+    set(world, layout.bend + sim::kWidthBend * i, sim::kNoBend);
   }
 }
 
@@ -302,8 +302,7 @@ void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
   const auto first = static_cast<std::size_t>(4 * body);
   const double* q0 = d.model->q_WP0.data() + first;
   const Quat q = state.orientation * Quat{q0[0], q0[1], q0[2], q0[3]};
-  const BodyState before = Body(world, body);
-  if (!SamePlace(before, state)) d.ForgetBends(world);
+  if (d.view.touch_count > 0 && !SamePlace(Body(world, body), state)) d.ForgetBends(world);
   d.set(world, d.layout.pos + 3 * body, state.position_m);
   d.set(world, d.layout.vel + 3 * body, state.velocity_m_per_s);
   d.set(world, d.layout.old_vel + 3 * body, state.velocity_m_per_s);

@@ -115,7 +115,7 @@ class LaneBends {
 
   void Remove(int k) noexcept {
     for (; k + 1 < count_; ++k) Copy(s_.bend[first_ + k + 1], s_.bend[first_ + k]);
-    Put(s_.bend[first_ + --count_], {kNoKey, 0, 0, 0, 0, 0, {}, {}});
+    Put(s_.bend[first_ + --count_], kNoBend);
   }
   /// False if there is no room.
   bool Insert(int k, const BendFound& found) noexcept {
@@ -210,26 +210,71 @@ TAUT_INLINE MaskOf<W> MayTouch(const Rows<W>& s, int touch, const V3<W>& p,
   return !(moved2 < free * free);
 }
 
-/// At the middle of the step: what a cable lies against from here on.
+/// On rods, the points of a path have velocities and arms.
 template <class W>
-[[gnu::noinline]] void FollowBends(const View& m, const Rows<W>& s, Scratch<W>& work,
-                                   const CableTable& cable) noexcept {
+void MoveWithRods(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
+                  int used, AttachmentWork<W>* ends) noexcept {
+  for (int i = 1; i <= 2 * used; ++i) {
+    const BendNumbers<W>& bend = s.bend[touch.first_bend + (i - 1) / 2];
+    for (int lane = 0; lane < W::kLanes; ++lane) {
+      const int body = BodyOfBend(m, bend, lane);
+      if (body == m.body_count) continue;
+      const BodyWork<W>& b = work.bodies[body];
+      const Vec3 arm = PlaceOf(ends[i].p, lane) - PlaceOf(s.pos[body], lane);
+      SetPlace(ends[i].arm, arm, lane);
+      SetPlace(ends[i].v, PlaceOf(b.v_mid, lane) + Cross(PlaceOf(b.w_mid, lane), arm), lane);
+    }
+  }
+}
+
+/// Length and rate of a path that is laid.
+template <class W>
+PathLength<V3<W>> MeasureLaid(const View& m, const Rows<W>& s, const TouchTable& touch, int used,
+                              Scratch<W>& work, AttachmentWork<W>* ends) noexcept {
+  work.bends_used = used;
+  if (used == 0) return MeasurePath(2, ends);
+  StandOnEdges(used, ends);
+  if (touch.rod_count > 0) MoveWithRods(m, s, work, touch, used, ends);
+  return MeasureOverBends(used, ends, work.wheels);
+}
+
+/// Length and rate of such a cable. `ends` has its two, and afterwards all points of its path;
+/// work.bends_used says how many.
+template <class W>
+[[gnu::noinline]] PathLength<V3<W>> MeasureTouching(const View& m, const Rows<W>& s,
+                                                    const CableTable& cable, Scratch<W>& work,
+                                                    AttachmentWork<W>* ends) noexcept {
+  const TouchTable& touch = m.touches[cable.touch];
+  const int used = BendsInUse(s, touch);
+  if (used > 0) {
+    ends[2 * used + 1] = ends[1];
+    LayOverBends(m, s, touch, used, ends, work.wheels, PoseNow(s, work));
+  }
+  return MeasureLaid(m, s, touch, used, work, ends);
+}
+
+/// At the middle of the step: what a cable lies against from here on. Measures it; returns its
+/// length.
+template <class W>
+[[gnu::noinline]] W FollowBends(const View& m, const Rows<W>& s, Scratch<W>& work,
+                                const CableTable& cable) noexcept {
   constexpr int kMostRounds = 4 * kMostBends;
   constexpr double kEnoughM = 0.05;
   const TouchTable& touch = m.touches[cable.touch];
   int used = BendsInUse(s, touch);
   AttachmentWork<W>* const ends = work.attachments;
-  const V3<W> first = work.spots[m.attachments[cable.first_attachment].spot].p;
-  const V3<W> last = work.spots[m.attachments[cable.first_attachment + 1].spot].p;
+  const AttachmentWork<W> start = Attachment(m.attachments[cable.first_attachment], work);
+  const AttachmentWork<W> end = Attachment(m.attachments[cable.first_attachment + 1], work);
+  const V3<W>&first = start.p, &last = end.p;
+  ends[0] = start, ends[1] = end;
   const auto free = s.bend[touch.first_bend].key == W::Splat(kNoKey);
   auto look = (!free) | MayTouchRods(m, s, work, touch, first, last, free);
   if (touch.terrain) look = look | MayTouch(s, cable.touch, first, last);
   look = look & (s.halted[0] == W::Splat(0.0));
-  if (!Any(look)) return;
+  if (!Any(look)) return MeasureTouching(m, s, cable, work, ends).l;
   auto busy = look;
   for (int round = 0; round < kMostRounds && Any(busy); ++round) {
-    ends[0].p = first;
-    ends[2 * used + 1].p = last;
+    ends[2 * used + 1] = end;
     LayOverBends(m, s, touch, used, ends, work.wheels, PoseNow(s, work));
     for (int lane = 0; lane < W::kLanes; ++lane) {
       if (busy[lane]) busy.Set(lane, ChangeBends(m, s, work, touch, used, lane));
@@ -253,39 +298,9 @@ template <class W>
     SetPlace(s.touch_from[cable.touch], span.from, lane);
     SetPlace(s.touch_to[cable.touch], span.to, lane);
   }
-}
-
-/// On rods, the points of a path have velocities and arms.
-template <class W>
-void MoveWithRods(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
-                  int used, AttachmentWork<W>* ends) noexcept {
-  for (int i = 1; i <= 2 * used; ++i) {
-    const BendNumbers<W>& bend = s.bend[touch.first_bend + (i - 1) / 2];
-    for (int lane = 0; lane < W::kLanes; ++lane) {
-      const int body = BodyOfBend(m, bend, lane);
-      if (body == m.body_count) continue;
-      const BodyWork<W>& b = work.bodies[body];
-      const Vec3 arm = PlaceOf(ends[i].p, lane) - PlaceOf(s.pos[body], lane);
-      SetPlace(ends[i].arm, arm, lane);
-      SetPlace(ends[i].v, PlaceOf(b.v_mid, lane) + Cross(PlaceOf(b.w_mid, lane), arm), lane);
-    }
-  }
-}
-
-/// Length and rate of such a cable. `ends` has its two, and afterwards all points of its path;
-/// work.bends_used says how many.
-template <class W>
-[[gnu::noinline]] PathLength<V3<W>> MeasureTouching(const View& m, const Rows<W>& s,
-                                                    const CableTable& cable, Scratch<W>& work,
-                                                    AttachmentWork<W>* ends) noexcept {
-  const TouchTable& touch = m.touches[cable.touch];
-  const int used = work.bends_used = BendsInUse(s, touch);
-  if (used == 0) return MeasurePath(2, ends);
-  ends[2 * used + 1] = ends[1];
-  LayOverBends(m, s, touch, used, ends, work.wheels, PoseNow(s, work));
-  StandOnEdges(used, ends);
-  if (touch.rod_count > 0) MoveWithRods(m, s, work, touch, used, ends);
-  return MeasureOverBends(used, ends, work.wheels);
+  if (!Any(busy)) return MeasureLaid(m, s, touch, used, work, ends).l;
+  ends[1] = end;
+  return MeasureTouching(m, s, cable, work, ends).l;
 }
 
 /// What the tension does to rods: one link a body, in the order of their numbers, whatever each

@@ -29,20 +29,16 @@ class Search {
 
   bool found() const noexcept { return is_new_; }
 
-  /// False if it cannot lift the span.
-  bool Offer(TerrainEdge& edge, double depth_m) noexcept {
+  void Offer(TerrainEdge& edge, double depth_m) noexcept {
     BendPlace& place = edge.place;
-    for (int i = 0; i < taken_count_; ++i) {
-      if (taken_[i] == place.key) return false;
-    }
+    if (IsTaken(place.key, taken_, taken_count_)) return;
     place.radius_m = radius_m_;
     const Vec3 way = span_.to - span_.from;
     const double side = Dot(way, Cross(place.axis, edge.out)) < 0.0 ? -1.0 : 1.0;
-    if (!CanLieOn(place, span_, side)) return false;
-    if (any_ && !(depth_m > found_->depth_m)) return true;
+    if (!CanLieOn(place, span_, side)) return;
+    if (any_ && !(depth_m > found_->depth_m)) return;
     any_ = is_new_ = true;
     *found_ = {place, depth_m, side};
-    return true;
   }
 
   int world() const noexcept { return world_; }

@@ -37,6 +37,13 @@ struct FreeSpan {
   bool starts, ends;  ///< Whether those are ends of the cable.
 };
 
+TAUT_INLINE bool IsTaken(double key, const double* taken, int count) noexcept {
+  for (int i = 0; i < count; ++i) {
+    if (taken[i] == key) return true;
+  }
+  return false;
+}
+
 /// What a span has come to lie against. `side`: the sign of the angle by which it goes round it.
 struct BendFound {
   BendPlace place;

@@ -56,19 +56,24 @@ inline constexpr double kAnyTurns = 1e300;
 /// Key of a rod, which no edge of the terrain has.
 TAUT_INLINE double KeyOf(const TouchRodTable& rod) noexcept { return kEdgesOfShape * rod.shape; }
 
-TAUT_INLINE bool IsTaken(double key, const double* taken, int count) noexcept {
-  for (int i = 0; i < count; ++i) {
-    if (taken[i] == key) return true;
-  }
-  return false;
-}
-
 template <class W>
 TAUT_INLINE Vec3 TurnedBy(const M3<W>& R, const double* p, int lane) noexcept {
   const auto row = [&](const V3<W>& r) {
     return r.x[lane] * p[0] + r.y[lane] * p[1] + r.z[lane] * p[2];
   };
   return {row(R.r0), row(R.r1), row(R.r2)};
+}
+
+/// A rod's middle and axis in one lane.
+struct RodInLane {
+  Vec3 center, axis;
+};
+template <class W>
+TAUT_INLINE RodInLane RodAt(const Rows<W>& s, const Scratch<W>& work, const TouchRodTable& rod,
+                            int lane) noexcept {
+  const M3<W>& R = work.bodies[rod.body].R;
+  return {PlaceOf(s.pos[rod.body], lane) + TurnedBy(R, rod.center_P, lane),
+          TurnedBy(R, rod.axis_P, lane)};
 }
 
 /// The rod into which a span has come deepest in one lane, as FindEdge finds edges.
@@ -82,12 +87,10 @@ bool FindRod(const View& m, const Rows<W>& s, const Scratch<W>& work, const Touc
   for (int i = touch.first_rod; i < touch.first_rod + touch.rod_count; ++i) {
     const TouchRodTable& rod = m.touch_rods[i];
     if (IsTaken(KeyOf(rod), taken, taken_count)) continue;
-    const M3<W>& R = work.bodies[rod.body].R;
-    const Vec3 center = PlaceOf(s.pos[rod.body], lane) + TurnedBy(R, rod.center_P, lane);
+    const auto [center, axis] = RodAt(s, work, rod, lane);
     const Vec3 apart = middle - center;
     const double reach = half + rod.half_m + rod.radius_m;
     if (!(Dot(apart, apart) < reach * reach)) continue;
-    const Vec3 axis = TurnedBy(R, rod.axis_P, lane);
     const Crossing<Vec3> x = CrossingOf(span.from, span.to, center, axis);
     const double side = SideOf(x, rod.half_m), was = s.touch_side[i][lane];
     if (side == 0.0) continue;
@@ -121,9 +124,7 @@ void KeepSides(const View& m, const Rows<W>& s, const Scratch<W>& work, const To
                int used, int lane) noexcept {
   for (int i = touch.first_rod; i < touch.first_rod + touch.rod_count; ++i) {
     const TouchRodTable& rod = m.touch_rods[i];
-    const M3<W>& R = work.bodies[rod.body].R;
-    const Vec3 center = PlaceOf(s.pos[rod.body], lane) + TurnedBy(R, rod.center_P, lane);
-    const Vec3 axis = TurnedBy(R, rod.axis_P, lane);
+    const auto [center, axis] = RodAt(s, work, rod, lane);
     double side = 0.0;
     Vec3 from = PlaceOf(work.attachments[0].p, lane);
     for (int k = 0; k <= used; ++k) {

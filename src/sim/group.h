@@ -19,6 +19,7 @@ struct LaneStatus {
 
 /// The key of a slot or of a memory that holds nothing. Others: see Tables.
 inline constexpr double kNoKey = -1.0;
+inline constexpr BendNumbers<double> kNoBend{kNoKey, 0, 0, 0, 0, 0, {}, {}};
 /// What a contact remembers of having slid (1) or stuck (0) where it did not press.
 inline constexpr double kSlipUnknown = -1.0;
 

@@ -69,9 +69,7 @@ std::vector<sim::BendNumbers<double>> Batch::Impl::Bends(int world, int cable) c
 }
 
 int Batch::CableBends(int world, int cable) const {
-  return impl_->view.cables[cable].touch < 0
-             ? 0
-             : static_cast<int>(CablePath(world, cable).size()) / 2 - 1;
+  return static_cast<int>(CableBendPlaces(world, cable).size());
 }
 
 struct Batch::Impl::LaidCable {
@@ -83,11 +81,15 @@ struct Batch::Impl::LaidCable {
 Batch::Impl::LaidCable Batch::Impl::Lay(int world, int cable) const {
   Sense(world);
   const sim::CableTable& table = view.cables[cable];
-  const auto place = [&](const sim::AttachmentTable& at) {
-    const Vec3 p{at.p_P[0], at.p_P[1], at.p_P[2]};
-    if (at.body == view.body_count) return p;
-    return vec(world, layout.pos + 3 * at.body) + Rotate(quat(world, at.body), p);
+  const auto turned = [&](int body, const double* p) {
+    const Vec3 in_P{p[0], p[1], p[2]};
+    return body == view.body_count ? in_P : Rotate(quat(world, body), in_P);
   };
+  const auto in_W = [&](int body, const double* p) {
+    const Vec3 arm = turned(body, p);
+    return body == view.body_count ? arm : vec(world, layout.pos + 3 * body) + arm;
+  };
+  const auto place = [&](const sim::AttachmentTable& at) { return in_W(at.body, at.p_P); };
   LaidCable laid;
   auto& [points, bodies, wheels] = laid;
   for (int i = 0; i < table.attachment_count; ++i) {
@@ -97,14 +99,8 @@ Batch::Impl::LaidCable Batch::Impl::Lay(int world, int cable) const {
   }
   for (const sim::BendNumbers<double>& bend : Bends(world, cable)) {
     const int at = 1 + 2 * static_cast<int>(wheels.size()), body = static_cast<int>(bend.body);
-    Vec3 center{bend.center[0], bend.center[1], bend.center[2]};
-    Vec3 axis{bend.axis[0], bend.axis[1], bend.axis[2]};
-    if (body < view.body_count) {
-      const Quat q = quat(world, body);
-      center = vec(world, layout.pos + 3 * body) + Rotate(q, center);
-      axis = Rotate(q, axis);
-    }
-    wheels.push_back({center, axis, bend.radius, bend.angle, at, 0, 0, 0});
+    wheels.push_back(
+        {in_W(body, bend.center), turned(body, bend.axis), bend.radius, bend.angle, at, 0, 0, 0});
     points.insert(points.begin() + at, 2, PathPoint<Vec3>{});
     bodies.insert(bodies.begin() + at, 2, body);
   }

@@ -105,6 +105,22 @@ TAUT_INLINE void AddLink(const Rows<W>& s, CableWork<W>& row, int body, const V3
   link.ang[0] = Cross(arm, direction);
 }
 
+/// Adds a pull to the link of its body.
+template <class W>
+TAUT_INLINE void AddPull(const View& m, const Rows<W>& s, CableWork<W>& row, int body,
+                         const V3<W>& direction, const V3<W>& arm) noexcept {
+  if (body == m.body_count) return;
+  Link<W, 1>* link = row.links;
+  Link<W, 1>* const end = link + row.link_count;
+  while (link != end && link->body != body) ++link;
+  if (link == end) {
+    AddLink(s, row, body, direction, arm);
+  } else {
+    link->lin[0] += direction;
+    link->ang[0] += Cross(arm, direction);
+  }
+}
+
 /// The links of a cable: one a body, with the pulls of all its attachments there. `kTwo`, here and
 /// below: that it joins two bodies (CableTable::joins_two) is known to the compiler, which keeps
 /// them in registers.
@@ -119,24 +135,16 @@ TAUT_INLINE void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work,
     AddLink(s, row, tables[0].body, ends[1].u, ends[0].arm);
     AddLink(s, row, tables[1].body, -ends[1].u, ends[1].arm);
   } else {
-    const bool touches = cable.touch >= 0;
-    const int point_count = touches ? 2 + 2 * work.bends_used : cable.attachment_count;
-    for (int i = 0; i < point_count; i += touches ? point_count - 1 : 1) {
-      const int body = tables[touches && i > 0 ? 1 : i].body;
-      if (body == m.body_count) continue;
-      const V3<W> direction = PullAt(point_count, ends, i);
-      Link<W, 1>* link = row.links;
-      Link<W, 1>* const end = link + row.link_count;
-      while (link != end && link->body != body) ++link;
-      if (link == end) {
-        AddLink(s, row, body, direction, ends[i].arm);
-      } else {
-        link->lin[0] += direction;
-        link->ang[0] += Cross(ends[i].arm, direction);
+    const int last = cable.attachment_count - 1;
+    if (cable.touch >= 0) {
+      const int count = 2 + 2 * work.bends_used;
+      AddPull(m, s, row, tables[0].body, PullAt(count, ends, 0), ends[0].arm);
+      AddPull(m, s, row, tables[last].body, PullAt(count, ends, count - 1), ends[count - 1].arm);
+      if (m.touches[cable.touch].rod_count > 0) LinkRods(m, s, work, cable, ends, row);
+    } else {
+      for (int i = 0; i <= last; ++i) {
+        AddPull(m, s, row, tables[i].body, PullAt(last + 1, ends, i), ends[i].arm);
       }
-    }
-    if (touches && m.touches[cable.touch].rod_count > 0) {
-      LinkRods(m, s, work, cable, ends, row);
     }
   }
   work.link_count += row.link_count;
@@ -242,8 +250,9 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
     l = MeasureCable<true>(m, s, cable, 2, work, ends).l;
     LinkCable<true>(m, s, work, cable, ends, row);
   } else {
-    if (cable.touch >= 0) FollowBends(m, s, work, cable);
-    l = MeasureCable<false>(m, s, cable, cable.attachment_count, work, work.attachments).l;
+    l = cable.touch >= 0
+            ? FollowBends(m, s, work, cable)
+            : MeasureCable<false>(m, s, cable, cable.attachment_count, work, work.attachments).l;
     KeepWheels(s, cable, work);
     LinkCable<false>(m, s, work, cable, work.attachments, row);
   }

@@ -130,7 +130,7 @@ inline double TouchSide(const Tables& t, int i) noexcept {
                            CentreOfMass(t, rod.body) + in_W(rod.center_P), in_W(rod.axis_P)),
                 rod.half_m);
 }
-inline Bend NoBend(const Tables&, int) noexcept { return {kNoKey, 0, 0, 0, 0, 0, {}, {}}; }
+inline Bend NoBend(const Tables&, int) noexcept { return kNoBend; }
 inline Orders FollowTarget(const Tables&, int) noexcept { return {0.0, 0.0, 1.0}; }
 inline Vec3 Gravity(const Tables& t, int) noexcept { return t.def().gravity_m_per_s2; }
 

@@ -21,12 +21,12 @@
 namespace taut {
 namespace control {
 
+/// A strut's is a unit vector from its start to its end in W, as the robot is described.
 template <class Real>
 struct Direction {
   Real x, y, z;
 };
 
-/// A strut's direction, a unit vector from its start to its end in W, as the robot is described.
 template <class Real>
 constexpr Real Along(const Direction<Real>& a, const Direction<Real>& b) noexcept {
   return a.x * b.x + a.y * b.y + a.z * b.z;
