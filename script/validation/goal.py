@@ -8,8 +8,10 @@ import sqlite3
 import statistics
 import time
 
+from validation import shares
 from validation.push import machine
 from validation.runs import Problem, Variant, fill, keep_picture, table
+from validation.shares import HEIGHT, LEFT, TOP, WIDTH
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 TERRAINS = {"flat ground": "goal_trials", "hills": "goal_trials_hills", "blocks": "goal_trials_blocks"}
@@ -74,33 +76,18 @@ def row(name, outcome):
 
 def picture(outcomes):
     """Shares of the starts that came at least so much nearer."""
-    left, top, width, height, least, most = 60, 20, 640, 300, -1.0, 3.5
+    least, most = -1.0, 3.5
 
     def x_of(score):
-        return left + width * (max(score, least) - least) / (most - least)
+        return LEFT + WIDTH * (max(score, least) - least) / (most - least)
 
-    out = ['<svg xmlns="http://www.w3.org/2000/svg" width="740" height="400" viewBox="0 0 740 400" '
-           'font-family="sans-serif" font-size="11">', '<rect width="740" height="400" fill="white"/>',
-           f'<rect x="{left}" y="{top}" width="{width}" height="{height}" fill="none" stroke="#999"/>']
-    for i in range(10):
-        x = left + width * i / 9
-        out.append(f'<text x="{x:.1f}" y="{top + height + 16}" text-anchor="middle">{least + 0.5 * i:.1f}</text>')
-    for i in range(5):
-        y = top + height * (1 - i / 4)
-        out.append(f'<text x="{left - 6}" y="{y + 4:.1f}" text-anchor="end">{25 * i} %</text>')
-    for at in (ASKED_M, WANTED_M):
-        out.append(f'<line x1="{x_of(at):.1f}" y1="{top}" x2="{x_of(at):.1f}" y2="{top + height}" stroke="#ddd"/>')
-    out.append(f'<text x="{left + width / 2}" y="{top + height + 34}" text-anchor="middle">'
-               'came nearer to the goal by at least [m]</text>')
-    for i, ((name, (scores, *_)), colour) in enumerate(zip(outcomes.items(), COLOURS)):
-        points, count = [f"{left},{top}"], len(scores)
-        for k, score in enumerate(scores):
-            for part in (k, k + 1):
-                points.append(f"{x_of(score):.1f},{top + height * part / count:.1f}")
-        out.append(f'<polyline points="{" ".join(points)}" fill="none" stroke="{colour}" stroke-width="1.6"/>')
-        out.append(f'<rect x="{left + 200 * i}" y="375" width="18" height="8" fill="{colour}"/>')
-        out.append(f'<text x="{left + 24 + 200 * i}" y="383">{name}</text>')
-    return "\n".join(out + ["</svg>", ""])
+    guides = [f'<line x1="{x_of(at):.1f}" y1="{TOP}" x2="{x_of(at):.1f}" y2="{TOP + HEIGHT}" stroke="#ddd"/>'
+              for at in (ASKED_M, WANTED_M)]
+    curves = {name: [f"{LEFT},{TOP}"] + [f"{x_of(score):.1f},{TOP + HEIGHT * part / len(scores):.1f}"
+                                         for k, score in enumerate(scores) for part in (k, k + 1)]
+              for name, (scores, *_) in outcomes.items()}
+    return shares.picture("came nearer to the goal by at least [m]", [f"{least + 0.5 * i:.1f}" for i in range(10)],
+                          guides, curves, COLOURS, 200)
 
 
 def page(taut):

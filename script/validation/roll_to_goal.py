@@ -6,13 +6,16 @@ import random
 import statistics
 import time
 
+from validation import shares
 from validation.push import machine
 from validation.rolling import CHANNELS, Run
 from validation.runs import Variant, fill, keep_picture, table
+from validation.shares import HEIGHT, LEFT, TOP, WIDTH
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 STARTS, GOAL_M, LIMIT_S = 50, 3.0, 60
 WITHIN_M = (0.5, 0.25)
+COLOURS = ("#2471a3", "#1e8449", "#b9770e", "#c0392b")
 TERRAINS = {  # experiment, parameters
     "flat ground": ("roll_to_goal", {}),
     "NTRT's hills": ("roll_to_goal_hills", {"times": 1}),
@@ -22,7 +25,6 @@ TERRAINS = {  # experiment, parameters
 FRICTIONS = (0.25, 1.0)
 OTHER = "models/six_strut.yaml"
 FAR = 12   # starts towards a goal that is too far to arrive at
-COLOURS = ("#2471a3", "#1e8449", "#b9770e", "#c0392b")
 
 
 def bearing(number):
@@ -106,30 +108,18 @@ FAR_HEAD = ["", "way m", "path m", "turns", "path a turn m", "ends slide, % of p
 
 def picture(outcomes):
     """Shares of the starts that have arrived, over time."""
-    left, top, width, height = 60, 20, 640, 300
-    out = ['<svg xmlns="http://www.w3.org/2000/svg" width="740" height="400" viewBox="0 0 740 400" '
-           'font-family="sans-serif" font-size="11">', '<rect width="740" height="400" fill="white"/>',
-           f'<rect x="{left}" y="{top}" width="{width}" height="{height}" fill="none" stroke="#999"/>']
-    for i in range(7):
-        x = left + width * i / 6
-        out.append(f'<text x="{x:.1f}" y="{top + height + 16}" text-anchor="middle">{10 * i}</text>')
-    for i in range(5):
-        y = top + height * (1 - i / 4)
-        out.append(f'<text x="{left - 6}" y="{y + 4:.1f}" text-anchor="end">{25 * i} %</text>')
-    out.append(f'<path d="M{left} {top + 0.1 * height}h{width}" stroke="#ddd"/>')
-    out.append(f'<text x="{left + width / 2}" y="{top + height + 34}" text-anchor="middle">'
-               'half a metre from the goal or less, after [s]</text>')
-    for i, ((name, runs), colour) in enumerate(zip(outcomes.items(), COLOURS)):
-        points, count = [f"{left},{top + height}"], 0
+    curves = {}
+    for name, runs in outcomes.items():
+        points, count = [f"{LEFT},{TOP + HEIGHT}"], 0
         for at in times(runs, WITHIN_M[0]):
             for step in (0, 1):
                 count += step
-                points.append(f"{left + width * at / LIMIT_S:.1f},{top + height * (1 - count / len(runs)):.1f}")
-        points.append(f"{left + width},{top + height * (1 - count / len(runs)):.1f}")
-        out.append(f'<polyline points="{" ".join(points)}" fill="none" stroke="{colour}" stroke-width="1.6"/>')
-        out.append(f'<rect x="{left + 160 * i}" y="375" width="18" height="8" fill="{colour}"/>')
-        out.append(f'<text x="{left + 24 + 160 * i}" y="383">{name}</text>')
-    return "\n".join(out + ["</svg>", ""])
+                points.append(f"{LEFT + WIDTH * at / LIMIT_S:.1f},{TOP + HEIGHT * (1 - count / len(runs)):.1f}")
+        points.append(f"{LEFT + WIDTH},{TOP + HEIGHT * (1 - count / len(runs)):.1f}")
+        curves[name] = points
+    return shares.picture("half a metre from the goal or less, after [s]", [f"{10 * i}" for i in range(7)],
+                          [f'<path d="M{LEFT} {TOP + 0.1 * HEIGHT}h{WIDTH}" stroke="#ddd"/>'], curves,
+                          COLOURS, 160)
 
 
 def page(taut):
