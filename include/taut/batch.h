@@ -233,9 +233,14 @@ class Batch {
 
   // --- observation -------------------------------------------------------------------------
   CableState Cable(int world, int cable) const noexcept;
-  /// How many spans with tensions of their own a cable has: those between places with friction.
+  /// How many spans with tensions of their own a cable has: those between places with friction. Of
+  /// one that has friction where it touches: the most, and all numbers of those that it does not
+  /// have now, behind the first CableBends() + 1, are 0.
   int CableSpans(int cable) const noexcept;
   CableSpanState CableSpan(int world, int cable, int span) const noexcept;
+  /// Of the spans that it has now, from its first end on: one more than CableBendPlaces(), or than
+  /// places with friction on its way [N].
+  std::vector<double> CableSpanTensions(int world, int cable) const;
   /// What friction along a cable has taken since the start [J].
   double CableFrictionLoss(int world, int cable) const noexcept;
   /// The angle about a cable's wheel, the first of which is 0, from the point before it to that
@@ -245,6 +250,8 @@ class Batch {
   int CableBends(int world, int cable) const;
   /// Where it is bent by them, from its first end on: the middle of each arc [m], in W.
   std::vector<Vec3> CableBendPlaces(int world, int cable) const;
+  /// The angle over which it lies on wheels, edges and rods, of all together [rad].
+  double CableWrap(int world, int cable) const;
   /// Where a cable is held, and where it arrives at wheels, edges and rods, and leaves them: what
   /// pulls at bodies.
   std::vector<CablePoint> CablePath(int world, int cable) const;

@@ -167,7 +167,12 @@ struct CableDef {
   ActuatorDef actuator;
   CableTouches touches = CableTouches::kNone;  ///< Others only with two plain attachments,
   double radius_m = 0.0;                       ///< and with a radius > 0.
+  double touch_friction = 0.0;  ///< mu where it touches, along the cable and across it, >= 0; not
+                                ///< of one that a direct-current motor winds.
 };
+
+/// Whether friction parts it into spans.
+bool HasFriction(const CableDef& cable);
 
 /// A half space: the ground, a slope. The solid side is opposite to `normal`.
 struct PlaneDef {

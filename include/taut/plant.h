@@ -105,11 +105,12 @@ class World : public Bodies {
   virtual Energy TotalEnergy(int lane) const = 0;
   virtual MotorState Motor(int lane, int cable) const = 0;  ///< Of a cable with a `dc_motor`.
   virtual std::vector<ContactState> Contacts(int lane) const = 0;
-  virtual CableSpanState CableSpan(int lane, int cable, int span) const = 0;  ///< As `Batch`:
-  virtual double CableFrictionLoss(int lane, int cable) const = 0;
+  virtual double CableFrictionLoss(int lane, int cable) const = 0;  ///< As `Batch`:
+  virtual std::vector<double> CableSpanTensions(int lane, int cable) const = 0;
   virtual double WheelAngle(int lane, int cable, int wheel) const = 0;
   virtual std::vector<CablePoint> CablePath(int lane, int cable) const = 0;
   virtual std::vector<Vec3> CableBendPlaces(int lane, int cable) const = 0;
+  virtual double CableWrap(int lane, int cable) const = 0;
   virtual JointState Joint(int lane, int joint) const = 0;
   virtual MotionState Motion(int lane, int motion) const = 0;
   virtual WorldStatus Status(int lane) const = 0;

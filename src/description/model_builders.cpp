@@ -93,7 +93,16 @@ void Check(const MapReader& map, CableText& cable) {
     map.Error("radius_m", map.Path("radius_m") + ": goes with `touches`",
               "terrain, rods or all; a cable that touches nothing has no thickness");
   }
+  if (!touches && map.Has("touch_friction")) {
+    map.Error("touch_friction", map.Path("touch_friction") + ": goes with `touches`",
+              "terrain, rods or all; at eyelets and pulleys it is the `friction` of the route");
+  }
   if (cable.actuator_text) cable.actuator = *cable.actuator_text;
+  if (cable.touch_friction > 0 && cable.actuator.kind == ActuatorDef::Kind::kDcMotor) {
+    map.Error("touch_friction",
+              map.Path("touch_friction") + ": a direct-current motor does not wind such a cable",
+              "ideal and limited actuators do");
+  }
 }
 
 void Check(const MapReader& map, JointText& joint) {

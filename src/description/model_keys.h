@@ -309,10 +309,10 @@ void Keys(Io& io, Cable& c) {
      "a tension that is never negative. `clamped`: b dl/dt limited to the elastic force, as NTRT "
      "does.");
   io("touches", c.touches, kCableTouches, kLater,
-     "What the cable does not pass through, but comes to lie against, without friction: edges of "
-     "boxes, height fields and meshes of the `terrain`; `rods` of bodies that move, but for those "
-     "on which it ends; or `all` of them. Only of a cable that runs from node to node.");
+     "What the cable lies against in place of passing through: edges of `terrain`, `rods` of "
+     "bodies that move, but for those on which it ends, or `all`. Only from node to node.");
   io("radius_m", c.radius_m, kLater, Bound::kNonNegative, "Half its thickness, with `touches`.");
+  io("touch_friction", c.touch_friction, LaterThan{0.0}, Bound::kNonNegative, "mu there.");
   if constexpr (Io::kResolved) {
     io("actuator", c.actuator);
   } else {

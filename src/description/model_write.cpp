@@ -213,6 +213,8 @@ class Writer {
       for (const auto& [name, touches] : kCableTouches) {
         if (touches != cable.touches || touches == CableTouches::kNone) continue;
         kind += ", touches: " + name + ", radius_m: " + Shown(cable.radius_m);
+        if (cable.touch_friction == 0) continue;
+        kind += ", touch_friction: " + Shown(cable.touch_friction);
       }
       if (cable.actuator.kind == ActuatorDef::Kind::kNone) return kind;
       return kind + ", actuator: " + ActuatorText(cable.actuator);

@@ -210,7 +210,8 @@ class Comparison {
       if (!near_(x.rest_length_m, y.rest_length_m, 0)) Differs("cable", x.name, "rest length");
       if (x.stiffness_n_per_m != y.stiffness_n_per_m ||
           x.damping_n_s_per_m != y.damping_n_s_per_m || x.damping_law != y.damping_law ||
-          x.touches != y.touches || x.radius_m != y.radius_m) {
+          x.touches != y.touches || x.radius_m != y.radius_m ||
+          x.touch_friction != y.touch_friction) {
         Differs("cable", x.name, "stiffness or damper");
       }
       if (!Same(x.actuator, y.actuator)) Differs("cable", x.name, "actuator");

@@ -30,14 +30,37 @@ TAUT_INLINE V Pick(M which, const V& yes, const V& no) noexcept {
 /// Where a cable from `p` to `q` arrives at a wheel, and where it leaves it.
 template <class V>
 struct Tangents {
+  using S = typename Wheel<V>::S;
   V a, b;
-  typename Wheel<V>::S angle, theta, arc;
+  S angle, theta, arc;
+  S zp, zq, lp, around, lq;  ///< Places along the axis, and ways across it: to, on and from it [m].
 };
 
-/// A straight line on the cylinder when that is unrolled. Points within it are taken to be on it.
-template <class V>
-TAUT_INLINE Tangents<V> LayOn(const Wheel<V>& wheel, const V& p, const V& q) noexcept {
-  using S = typename Wheel<V>::S;
+/// Where nothing holds the middle of an arc along the axis.
+inline constexpr double kNotHeld = 1e300;
+
+/// How steeply a cable goes along a wheel's axis, per way across it. Where friction holds the arc's
+/// middle at `along` it is bent twice; the arc has the mean of what is before and behind it.
+template <class S>
+struct Rises {
+  S before, on, behind;
+};
+template <class V, class S = typename Wheel<V>::S>
+TAUT_INLINE Rises<S> RisesAt(const Tangents<V>& way, S along) noexcept {
+  using C = Constant<S>;
+  constexpr double kShortestM = 1e-9;
+  const S half = C::Of(0.5), one = C::Of(1.0), w = half * way.around;
+  const S lp = Max(way.lp, C::Of(kShortestM)), lq = Max(way.lq, C::Of(kShortestM));
+  const S mean = half * ((along - way.zp) / lp + (way.zq - along) / lq);
+  const S on = mean / (one + half * w * (one / lp + one / lq));
+  return {(along - on * w - way.zp) / lp, on, (way.zq - along - on * w) / lq};
+}
+
+/// A straight line on the cylinder when that is unrolled, unless it is held at `along`, if that is
+/// not null. Points within it are taken to be on it.
+template <class V, class S = typename Wheel<V>::S>
+TAUT_INLINE Tangents<V> LayOn(const Wheel<V>& wheel, const V& p, const V& q,
+                              const S* along = nullptr) noexcept {
   using C = Constant<S>;
   const S zero = C::Of(0.0), one = C::Of(1.0), tiny = C::Of(1e-300), R = wheel.radius;
   const V to_p = p - wheel.center, to_q = q - wheel.center;
@@ -52,12 +75,18 @@ TAUT_INLINE Tangents<V> LayOn(const Wheel<V>& wheel, const V& p, const V& q) noe
   found.theta = Abs(found.angle) - Atan2(lp, R) - Atan2(lq, R);
   const S side = Select(found.angle < zero, zero - one, one);
   const S around = R * Max(found.theta, zero);
-  const S rise = (zq - zp) / Max(lp + around + lq, tiny);
+  S rise = (zq - zp) / Max(lp + around + lq, tiny);
+  S za = zp + rise * lp, zb = zq - rise * lq;
+  found.zp = zp, found.zq = zq, found.lp = lp, found.around = around, found.lq = lq;
+  if (along != nullptr) {
+    const auto held = *along < C::Of(kNotHeld);
+    const Rises<S> bent = RisesAt(found, Select(held, *along, zero));
+    rise = Select(held, bent.on, rise);
+    za = Select(held, zp + bent.before * lp, za), zb = Select(held, zq - bent.behind * lq, zb);
+  }
   found.arc = around * Sqrt(one + rise * rise);
-  found.a =
-      wheel.center + (zp + rise * lp) * wheel.axis + (R / sp2) * (R * rp + (side * lp) * across_p);
-  found.b =
-      wheel.center + (zq - rise * lq) * wheel.axis + (R / sq2) * (R * rq - (side * lq) * across_q);
+  found.a = wheel.center + za * wheel.axis + (R / sp2) * (R * rp + (side * lp) * across_p);
+  found.b = wheel.center + zb * wheel.axis + (R / sq2) * (R * rq - (side * lq) * across_q);
   return found;
 }
 
@@ -72,9 +101,9 @@ TAUT_INLINE V Behind(const PathPoint<V>* points, const Wheel<V>* wheels, int k, 
 }
 
 /// Lays wheels first..last-1, which follow one another, between the points before and behind them.
-template <class V>
-void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last) noexcept {
-  using S = typename Wheel<V>::S;
+template <class V, class S = typename Wheel<V>::S>
+void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last,
+                     const S* along) noexcept {
   using C = Constant<S>;
   constexpr int kMostRounds = 200;
   constexpr double kStill = 1e-15;  ///< Of the distances between them.
@@ -93,7 +122,7 @@ void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last
         p = Pick(wheels[i].theta > zero, points[wheels[i].at + 1].p, p);
       }
       const V q = Behind(points, wheels, k, last, to);
-      const Tangents<V> now = LayOn(wheels[k], p, q);
+      const Tangents<V> now = LayOn(wheels[k], p, q, along == nullptr ? nullptr : along + k);
       V& a = points[wheels[k].at].p;
       V& b = points[wheels[k].at + 1].p;
       const V way_a = now.a - a, way_b = now.b - b, all = q - p;
@@ -120,14 +149,16 @@ void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last
 }
 
 /// Puts the points where the cable arrives at wheels and leaves them; the others are where they
-/// are. A path neither starts nor ends at a wheel.
-template <class V>
-void LayOnWheels(PathPoint<V>* points, int wheel_count, Wheel<V>* wheels) noexcept {
+/// are. A path neither starts nor ends at a wheel. `along`, if it is not null: per wheel, where
+/// along the axis from its centre the middle of the arc is held [m], or kNotHeld.
+template <class V, class S = typename Wheel<V>::S>
+void LayOnWheels(PathPoint<V>* points, int wheel_count, Wheel<V>* wheels,
+                 const S* along = nullptr) noexcept {
   int first = 0;
   while (first < wheel_count) {
     int last = first + 1;
     while (last < wheel_count && wheels[last].at == wheels[last - 1].at + 2) ++last;
-    LayOnNeighbours(points, wheels, first, last);
+    LayOnNeighbours(points, wheels, first, last, along);
     first = last;
   }
 }

@@ -40,13 +40,23 @@ void AddSpanChannels(const ExperimentSpec& experiment, Recorder& recorder) {
           [=](const RecordSource& s, double* out) { *out = s.world->WheelAngle(0, cable, i); });
     }
     if (cables[c].touches != CableTouches::kNone) AddBendChannels(prefix, cable, recorder);
-    if (slips == 0) continue;
-    for (int i = 0; i <= slips; ++i) {
-      recorder.Add(prefix, {{"span_" + std::to_string(i + 1) + "_tension_n", "N"}},
-                   [=](const RecordSource& s, double* out) {
-                     *out = s.world->CableSpan(0, cable, i).tension_n;
-                   });
+    if (wheels > 0 || cables[c].touches != CableTouches::kNone) {
+      recorder.Add(prefix, {{"wrap_rad", "rad"}}, [=](const RecordSource& s, double* out) {
+        *out = s.world->CableWrap(0, cable);
+      });
     }
+    if (cables[c].touch_friction > 0) slips = CableDef::kMostBends;
+    if (slips == 0) continue;
+    std::vector<ChannelInfo> spans;
+    for (int i = 0; i <= slips; ++i) {
+      spans.push_back({"span_" + std::to_string(i + 1) + "_tension_n", "N"});
+    }
+    recorder.Add(prefix, spans, [=](const RecordSource& s, double* out) {
+      const std::vector<double> tensions = s.world->CableSpanTensions(0, cable);
+      std::fill_n(std::copy(tensions.begin(), tensions.end(), out),
+                  slips + 1 - static_cast<int>(tensions.size()),
+                  std::numeric_limits<double>::quiet_NaN());
+    });
     recorder.Add(prefix, {{"friction_loss_j", "J"}}, [=](const RecordSource& s, double* out) {
       *out = s.world->CableFrictionLoss(0, cable);
     });

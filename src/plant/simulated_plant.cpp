@@ -74,8 +74,8 @@ class SimulatedPlant final : public Plant, public World {
   Energy TotalEnergy(int lane) const override { return batch_.TotalEnergy(lane); }
   MotorState Motor(int lane, int cable) const override { return batch_.Motor(lane, cable); }
   std::vector<ContactState> Contacts(int lane) const override { return batch_.Contacts(lane); }
-  CableSpanState CableSpan(int lane, int cable, int span) const override {
-    return batch_.CableSpan(lane, cable, span);
+  std::vector<double> CableSpanTensions(int lane, int cable) const override {
+    return batch_.CableSpanTensions(lane, cable);
   }
   double CableFrictionLoss(int lane, int cable) const override {
     return batch_.CableFrictionLoss(lane, cable);
@@ -89,6 +89,7 @@ class SimulatedPlant final : public Plant, public World {
   std::vector<Vec3> CableBendPlaces(int lane, int cable) const override {
     return batch_.CableBendPlaces(lane, cable);
   }
+  double CableWrap(int lane, int cable) const override { return batch_.CableWrap(lane, cable); }
   JointState Joint(int lane, int joint) const override { return batch_.Joint(lane, joint); }
   MotionState Motion(int lane, int motion) const override { return batch_.Motion(lane, motion); }
   WorldStatus Status(int lane) const override { return batch_.Status(lane); }

@@ -200,13 +200,6 @@ void Batch::Impl::Moved(int world) noexcept {
   group(world).sensed = false;
 }
 
-void Batch::Impl::ForgetBends(int world) noexcept {
-  for (int i = 0; i < view.touch_rod_count; ++i) at(world, layout.touch_side + i) = 0.0;
-  for (int i = 0; i < view.Count(sim::Per::kBend); ++i) {
-    set(world, layout.bend + sim::kWidthBend * i, sim::kNoBend);
-  }
-}
-
 void Batch::Impl::Sense(int world) const noexcept {
   sim::Group& g = group(world);
   // Several threads may read at once: one senses, the others wait for it. Whoever comes later in
@@ -275,12 +268,6 @@ double Batch::Time(int world) const noexcept {
   return impl_->at(world, impl_->layout.time);
 }
 
-void Batch::SetRestLengthTarget(int world, int cable, double rest_length_m) noexcept {
-  impl_->CheckCable(__func__, world, cable);
-  impl_->at(world, impl_->layout.target + cable) = rest_length_m;
-  const int motor = impl_->view.cables[cable].motor;
-  if (motor >= 0) impl_->Order(world, motor, &sim::MotorOrders<double>::by_duty, 0.0);
-}
 double Batch::RestLengthTarget(int world, int cable) const noexcept {
   impl_->CheckCable(__func__, world, cable);
   return impl_->at(world, impl_->layout.target + cable);
@@ -320,21 +307,6 @@ void Batch::SetTime(int world, double time_s) noexcept {
   impl_->CheckWorld(__func__, world);
   impl_->at(world, impl_->layout.time) = time_s;
   impl_->PlaceMotions(world);
-}
-
-void Batch::SetRestLength(int world, int cable, double rest_length_m) noexcept {
-  Impl& d = *impl_;
-  d.CheckCable(__func__, world, cable);
-  const sim::CableTable& table = d.view.cables[cable];
-  for (int i = 0; i < table.span_count; ++i) {
-    d.at(world, d.layout.span_rest + table.first_span + i) *=
-        rest_length_m / d.at(world, d.layout.rest + cable);
-  }
-  d.at(world, d.layout.rest + cable) = rest_length_m;
-  d.at(world, d.layout.target + cable) = rest_length_m;
-  d.at(world, d.layout.rest_rate + cable) = 0.0;
-  d.StopMotor(world, cable);
-  d.group(world).sensed = false;
 }
 
 int Batch::Impl::ParameterRow(const char* function, int world, Parameter parameter,

@@ -27,7 +27,7 @@ TAUT_INLINE int BendsInUse(const Rows<W>& s, const TouchTable& touch) noexcept {
 }
 
 /// A path from ends[0] over bends to ends[2 used + 1], on work.wheels. What a lane does not have is
-/// passed by. `pose(body)`: where that is.
+/// passed by. `pose(body)`: where that is. Friction holds it along their axes, where there is some.
 template <class W, class Pose>
 void LayOverBends(const View& m, const Rows<W>& s, const TouchTable& touch, int used,
                   AttachmentWork<W>* ends, Wheel<V3<W>>* wheels, const Pose& pose) noexcept {
@@ -52,7 +52,8 @@ void LayOverBends(const View& m, const Rows<W>& s, const TouchTable& touch, int 
       SetPlace(wheel.axis, PlaceOf(at.arm, lane), lane);
     }
   }
-  LayOnWheels(ends, used, wheels);
+  LayOnWheels(ends, used, wheels,
+              touch.friction > 0 ? &s.slip_along[FirstSlip(m, touch)] : nullptr);
 }
 
 /// Where bodies are in the middle of a step, for LayOverBends.
@@ -104,8 +105,8 @@ PathLength<V3<W>> MeasureOverBends(int used, AttachmentWork<W>* ends,
 template <class W>
 class LaneBends {
  public:
-  LaneBends(const Rows<W>& s, const TouchTable& touch, int lane) noexcept
-      : s_(s), first_(touch.first_bend), lane_(lane) {
+  LaneBends(const View& m, const Rows<W>& s, const TouchTable& touch, int lane) noexcept
+      : s_(s), spans_(m, s, touch, lane), first_(touch.first_bend), lane_(lane) {
     while (count_ < kMostBends && s.bend[first_ + count_].key[lane] != kNoKey) ++count_;
   }
   int count() const noexcept { return count_; }
@@ -114,12 +115,14 @@ class LaneBends {
   double Most(int k) const noexcept { return s_.bend[first_ + k].most[lane_]; }
 
   void Remove(int k) noexcept {
+    spans_.Merge(k, count_);
     for (; k + 1 < count_; ++k) Copy(s_.bend[first_ + k + 1], s_.bend[first_ + k]);
     Put(s_.bend[first_ + --count_], kNoBend);
   }
-  /// False if there is no room.
-  bool Insert(int k, const BendFound& found) noexcept {
+  /// False if there is no room. `share`: of the cable's part there, what is before it.
+  bool Insert(int k, const BendFound& found, double share) noexcept {
     if (count_ == kMostBends) return false;
+    spans_.Split(k, count_, share);
     for (int i = count_++; i > k; --i) Copy(s_.bend[first_ + i - 1], s_.bend[first_ + i]);
     const BendPlace& place = found.place;
     const Vec3 &c = place.center, &u = place.axis;
@@ -151,6 +154,7 @@ class LaneBends {
   }
 
   const Rows<W>& s_;
+  const LaneSpans<W> spans_;
   int first_, lane_, count_ = 0;
 };
 
@@ -162,7 +166,7 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
                  int used, int lane) noexcept {
   const AttachmentWork<W>* const ends = work.attachments;
   const Wheel<V3<W>>* const wheels = work.wheels;
-  LaneBends<W> bends(s, touch, lane);
+  LaneBends<W> bends(m, s, touch, lane);
   const int before = bends.count();
   for (int k = before - 1; k >= 0; --k) {
     const Vec3 middle =
@@ -178,6 +182,13 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
   FreeSpan span{PlaceOf(ends[0].p, lane), {}, true, false};
   BendFound deepest;
   int place = -1, from = 0;
+  double share = 0.5;
+  const auto take = [&] {
+    place = from;
+    const double arc_before = from > 0 ? wheels[from - 1].arc[lane] : 0.0;
+    const double arc_behind = from < bends.count() ? wheels[from].arc[lane] : 0.0;
+    share = ShareBefore(m, s, work, deepest.place, span, 0.5 * arc_before, 0.5 * arc_behind, lane);
+  };
   for (int k = 0; k <= bends.count(); ++k) {
     const bool end = k == bends.count();
     if (!end && !(wheels[k].theta[lane] > 0.0)) continue;
@@ -185,18 +196,16 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
     span.ends = end;
     if (touch.terrain &&
         FindEdge(m, span, touch.radius_m, taken, bends.count(), place >= 0, &deepest)) {
-      place = from;
+      take();
     }
-    if (FindRod(m, s, work, touch, span, lane, taken, bends.count(), place >= 0, &deepest)) {
-      place = from;
-    }
+    if (FindRod(m, s, work, touch, span, lane, taken, bends.count(), place >= 0, &deepest)) take();
     if (end) break;
     span.from = PlaceOf(ends[2 + 2 * k].p, lane);
     span.starts = false;
     from = k + 1;
   }
   if (place < 0) return false;
-  if (bends.Insert(place, deepest)) return true;
+  if (bends.Insert(place, deepest, share)) return true;
   work.no_room |= 1u << lane;
   return false;
 }
@@ -271,7 +280,7 @@ template <class W>
   auto look = (!free) | MayTouchRods(m, s, work, touch, first, last, free);
   if (touch.terrain) look = look | MayTouch(s, cable.touch, first, last);
   look = look & (s.halted[0] == W::Splat(0.0));
-  if (!Any(look)) return MeasureTouching(m, s, cable, work, ends).l;
+  if (!Any(look)) return MeasureTouching(m, s, cable, work, ends).l;  // nothing is bent
   auto busy = look;
   for (int round = 0; round < kMostRounds && Any(busy); ++round) {
     ends[2 * used + 1] = end;
@@ -281,6 +290,7 @@ template <class W>
     }
     if (Any(busy)) used = BendsInUse(s, touch);
   }
+  if (touch.friction > 0 && used > 0) SlideAcross(m, s, work, touch, used, ends);
   for (int k = 0; k < used; ++k) {
     BendNumbers<W>& bend = s.bend[touch.first_bend + k];
     const auto live = !(bend.key == W::Splat(kNoKey));

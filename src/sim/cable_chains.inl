@@ -6,18 +6,15 @@ namespace taut::sim {
 /// Material that a wheel has carried along since the step before goes from span to span. `length`:
 /// of the spans. `keep`: it is done with.
 template <class W>
-void CarryOver(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
-               const Spot<W>* spots, const SlipTable& slip, int number, int span,
-               const AttachmentWork<W>* ends, const W* length, bool keep, W* rest) noexcept {
+TAUT_INLINE void CarryOver(const Wheel<V3<W>>& wheel, const V3<W>& mark, int span,
+                           const AttachmentWork<W>* ends, const W* length, bool keep, W& place,
+                           W* rest) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0), half = W::Splat(0.5);
-  const Wheel<V3<W>>& wheel = work.wheels[slip.wheel - cable.first_wheel];
-  const WheelTable& table = m.wheels[slip.wheel];
-  const V3<W> mark = spots[table.mark_spot].p - wheel.center;
   const W middle = MiddleOf(wheel, mark, ends);
   const W side = Select(wheel.angle < zero, zero - one, one);
-  const W turned = middle - s.slip_place[number];
+  const W turned = middle - place;
   const W shift = turned - W::Splat(2 * kPi) * Round(W::Splat(0.5 / kPi) * turned);
-  if (keep) s.slip_place[number] = s.slip_place[number] + shift;
+  if (keep) place = place + shift;
   // Forward along the cable the middle has gone by this, on the cable that lies there.
   const auto on = wheel.theta > zero;
   const W way = Select(on, side * shift * (wheel.arc / Max(wheel.theta, W::Splat(1e-300))), zero);
@@ -28,13 +25,28 @@ void CarryOver(const View& m, const Rows<W>& s, const CableTable& cable, const S
   rest[span + 1] -= moves;
 }
 
-/// A cable's spans as it lies: lengths and ratios; and links, if `links` is not null.
+/// The same at all wheels with friction of a cable.
 template <class W>
-void MeasureSpans(const View& m, const CableTable& cable, const Scratch<W>& work,
+void CarryOverAll(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
+                  const AttachmentWork<W>* ends, const W* length, bool keep, W* rest) noexcept {
+  if (cable.touch >= 0) return CarryOverGrips(m, s, cable, work, ends, length, keep, rest);
+  for (int i = 0; i + 1 < cable.span_count; ++i) {
+    const SlipTable& slip = m.slips[cable.first_slip + i];
+    if (slip.wheel < 0) continue;
+    const Wheel<V3<W>>& wheel = work.wheels[slip.wheel - cable.first_wheel];
+    const V3<W> mark = work.spots[m.wheels[slip.wheel].mark_spot].p - wheel.center;
+    CarryOver(wheel, mark, i, ends, length, keep, s.slip_place[cable.first_slip + i], rest);
+  }
+}
+
+/// A cable's spans as it lies: lengths and ratios.
+template <class W>
+void MeasureSpans(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
                   const AttachmentWork<W>* ends, W* length, W* ratio) noexcept {
   const W zero = W::Splat(0.0), half = W::Splat(0.5);
   int span = 0, slip = cable.first_slip, wheel = 0;
   for (int i = 0; i < cable.span_count; ++i) length[i] = zero;
+  if (cable.touch >= 0) return MeasureGrips(m, s, cable, work, ends, length, ratio);
   for (int i = 1; i < cable.attachment_count; ++i) {
     if (wheel < cable.wheel_count && i == work.wheels[wheel].at + 1) {
       const W arc = work.wheels[wheel].arc;
@@ -60,10 +72,7 @@ void MeasureSpans(const View& m, const CableTable& cable, const Scratch<W>& work
       ++slip, ++span;
     }
   }
-  constexpr double kMostMuTheta = 40.0;
-  for (int i = 0; i + 1 < cable.span_count; ++i) {
-    ratio[i] = W::Splat(1.0) + ExpLess1(Min(ratio[i], W::Splat(kMostMuTheta)));
-  }
+  for (int i = 0; i + 1 < cable.span_count; ++i) ratio[i] = RatioOf(ratio[i]);
   ratio[cable.span_count - 1] = W::Splat(1.0);
 }
 
@@ -71,6 +80,7 @@ void MeasureSpans(const View& m, const CableTable& cable, const Scratch<W>& work
 template <class W>
 int LinkSpans(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
               const AttachmentWork<W>* ends, RowLink<W>* links) noexcept {
+  if (cable.touch >= 0) return LinkGrips(m, s, cable, work, ends, links);
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
   int span = 0, first = 0, count = 0;
   int slip = cable.first_slip;
@@ -114,16 +124,17 @@ int LinkSpans(const View& m, const Rows<W>& s, const CableTable& cable, const Sc
 }
 
 /// What an actuator winds comes from the first span, or from the next where that has no more.
-template <class W>
-void WindFirstSpan(const CableTable& cable, W wound, W* rest) noexcept {
+template <class S>
+TAUT_INLINE void WindFirstSpan(int span_count, S wound, S* rest) noexcept {
+  using C = Constant<S>;
   constexpr double kLeast = 1e-3;  ///< Of the mean.
-  const W zero = W::Splat(0.0);
-  W all = zero;
+  const S zero = C::Of(0.0);
+  S all = zero;
   rest[0] += wound;
-  for (int i = 0; i < cable.span_count; ++i) all += rest[i];
-  const W least = W::Splat(kLeast / cable.span_count) * all;
-  for (int i = 0; i + 1 < cable.span_count; ++i) {
-    const W missing = Max(least - rest[i], zero);
+  for (int i = 0; i < span_count; ++i) all += rest[i];
+  const S least = C::Of(kLeast / span_count) * all;
+  for (int i = 0; i + 1 < span_count; ++i) {
+    const S missing = Max(least - rest[i], zero);
     rest[i] += missing;
     rest[i + 1] -= missing;
   }
@@ -136,7 +147,9 @@ template <class W>
   const W half = W::Splat(0.5), quarter = W::Splat(0.25);
   const CableTable& cable = m.cables[c];
   AttachmentWork<W>* const ends = work.attachments;
-  const W l = MeasureCable<false>(m, s, cable, cable.attachment_count, work, ends).l;
+  const W l = cable.touch >= 0
+                  ? FollowBends(m, s, work, cable)
+                  : MeasureCable<false>(m, s, cable, cable.attachment_count, work, ends).l;
   KeepWheels(s, cable, work);
   const W before = s.rest[c], k = s.stiffness[c];
   W rest = before, rate = s.rest_rate[c];
@@ -144,18 +157,17 @@ template <class W>
   s.rest[c] = rest;
   s.rest_rate[c] = rate;
   W length[kMostSpans], ratio[kMostSpans], rests[kMostSpans];
-  MeasureSpans(m, cable, work, ends, length, ratio);
+  MeasureSpans(m, s, cable, work, ends, length, ratio);
   for (int i = 0; i < cable.span_count; ++i) rests[i] = s.span_rest[cable.first_span + i];
-  for (int i = 0; i + 1 < cable.span_count; ++i) {
-    const SlipTable& slip = m.slips[cable.first_slip + i];
-    if (slip.wheel < 0) continue;
-    CarryOver(m, s, cable, work, work.spots, slip, cable.first_slip + i, i, ends, length, true,
-              rests);
-  }
+  CarryOverAll(m, s, cable, work, ends, length, true, rests);
   // The spans' stiffness follows from that of the cable: all in a row they have that.
   const W area = k * before;
-  WindFirstSpan(cable, rest - before, rests);
-  RowLink<W>* const links = work.chain_links + 2 * cable.first_attachment;
+  if (cable.touch >= 0) {
+    WindGrips(m, s, cable, rest - before, rests);
+  } else {
+    WindFirstSpan(cable.span_count, rest - before, rests);
+  }
+  RowLink<W>* const links = work.chain_links + cable.first_link;
   work.chain_link_count[c] = LinkSpans(m, s, cable, work, ends, links);
   W rate0[kMostSpans];
   for (int i = 0; i < cable.span_count; ++i) rate0[i] = W::Splat(0.0);
@@ -185,15 +197,15 @@ template <class W>
 
 /// A lane's chain without its links. `spans`: where its spans may be put.
 template <class L, class W>
-CableChain<L> ChainOfLane(const CableTable& cable, const Scratch<W>& work, ChainSpan<L>* spans,
-                          int lane, L h) noexcept {
+CableChain<L> ChainOfLane(const View& m, const Rows<W>& s, const CableTable& cable,
+                          const Scratch<W>& work, ChainSpan<L>* spans, int lane, L h) noexcept {
   CableChain<L> chain;
-  chain.rows = cable.span_count;
+  chain.rows = SpansIn(m, s, cable, lane);
   chain.h = h;
   chain.spans = spans;
   chain.link_count = 0;
   chain.links = nullptr;
-  for (int i = 0; i < cable.span_count; ++i) {
+  for (int i = 0; i < chain.rows; ++i) {
     const ChainSpan<W>& from = work.spans[cable.first_span + i];
     spans[i] = {OfLane<L>(from.stretch, lane),   OfLane<L>(from.rate, lane),
                 OfLane<L>(from.stiffness, lane), OfLane<L>(from.slip_stiffness, lane),
@@ -206,10 +218,9 @@ CableChain<L> ChainOfLane(const CableTable& cable, const Scratch<W>& work, Chain
 /// What a lane's cable slips: rest lengths and losses of `rest` and `loss`, which are those of its
 /// spans and places. No span gives more than most of what it has.
 template <class W, class Tag>
-void Slip(const CableTable& cable, const Capstan<Tag>& found, double area_n, int lane, W* rest,
-          W* loss) noexcept {
+void Slip(const Capstan<Tag>& found, double area_n, int lane, W* rest, W* loss) noexcept {
   constexpr double kMost = 0.8;
-  const int n = cable.span_count;
+  const int n = found.count;
   const auto gets = [&](int i) {
     return (i > 0 ? found.slip[i - 1] : 0.0) - (i + 1 < n ? found.slip[i] : 0.0);
   };
@@ -233,15 +244,10 @@ template <class W>
   const CableTable& cable = m.cables[c];
   const AttachmentWork<W>* const ends = work.attachments;
   W length[kMostSpans], ratio[kMostSpans], rests[kMostSpans], loss[kMostSpans];
-  MeasureSpans(m, cable, work, ends, length, ratio);
+  MeasureSpans(m, s, cable, work, ends, length, ratio);
   for (int i = 0; i < cable.span_count; ++i) rests[i] = s.span_rest[cable.first_span + i];
-  for (int i = 0; i + 1 < cable.span_count; ++i) {
-    const SlipTable& slip = m.slips[cable.first_slip + i];
-    loss[i] = s.slip_loss[cable.first_slip + i];
-    if (slip.wheel < 0) continue;
-    CarryOver(m, s, cable, work, work.spots, slip, cable.first_slip + i, i, ends, length, false,
-              rests);
-  }
+  for (int i = 0; i + 1 < cable.span_count; ++i) loss[i] = s.slip_loss[cable.first_slip + i];
+  CarryOverAll(m, s, cable, work, ends, length, false, rests);
   // What slips in is much where a span is short: then its stiffness has changed.
   constexpr int kRounds = 4;
   W elastic = W::Splat(0.0);
@@ -249,15 +255,15 @@ template <class W>
     const double area_n = s.stiffness[c][lane] * s.rest[c][lane];
     for (int round = 0; round < kRounds; ++round) {
       Capstan<simd::Lane<W>> law;
-      law.count = cable.span_count;
-      for (int i = 0; i < cable.span_count; ++i) {
+      law.count = SpansIn(m, s, cable, lane);
+      for (int i = 0; i < law.count; ++i) {
         const double L = rests[i][lane], l = length[i][lane];
         const double slips = area_n / L * (l > L ? l / L : 1.0);
         law.spans[i] = {area_n / L * (l - L) / slips, l - L, 1.0 / slips, 1.0 / slips};
         law.ratio[i] = ratio[i][lane];
       }
       law.Solve();
-      Slip(cable, law, area_n, lane, rests, loss);
+      Slip(law, area_n, lane, rests, loss);
       elastic.Set(lane, law.tension[0]);
     }
   }
@@ -280,11 +286,13 @@ void FinishChains(const View& m, const Rows<W>& s, const Scratch<W>& work, doubl
     if (cable.span_count == 0) continue;
     W u[kMostSpans];
     for (int i = 0; i < cable.span_count; ++i) u[i] = zero;
-    const RowLink<W>* const links = work.chain_links + 2 * cable.first_attachment;
+    const RowLink<W>* const links = work.chain_links + cable.first_link;
     for (int j = 0; j < work.chain_link_count[c]; ++j) {
       const BodyWork<W>& body = work.bodies[links[j].body];
       AddVelocity(links[j], body.v, body.w, u);
-      s.mom[links[j].body] += work.spans[cable.first_span + links[j].row].l * links[j].ang[0];
+      const V3<W> turn = work.spans[cable.first_span + links[j].row].l * links[j].ang[0];
+      V3<W>& mom = s.mom[links[j].body];
+      mom = cable.touch < 0 ? mom + turn : Pick(Pulls(links[j]), mom + turn, mom);
     }
     for (int i = 0; i < cable.span_count; ++i) {
       s.span_tension[cable.first_span + i] = inv_h * work.spans[cable.first_span + i].l;
@@ -294,11 +302,11 @@ void FinishChains(const View& m, const Rows<W>& s, const Scratch<W>& work, doubl
       if (s.halted[0][lane] > 0) continue;
       ChainSpan<L> spans[kMostSpans];
       L rates[kMostSpans];
-      const CableChain<L> chain = ChainOfLane<L>(cable, work, spans, lane, L::Splat(step_s));
-      for (int i = 0; i < cable.span_count; ++i) rates[i] = OfLane<L>(u[i], lane);
+      const CableChain<L> chain = ChainOfLane<L>(m, s, cable, work, spans, lane, L::Splat(step_s));
+      for (int i = 0; i < chain.rows; ++i) rates[i] = OfLane<L>(u[i], lane);
       const auto found = chain.BranchOf(rates, rates);
-      Slip(cable, found.law, s.stiffness[c][lane] * s.rest[c][lane], lane,
-           &s.span_rest[cable.first_span], &s.slip_loss[cable.first_slip]);
+      Slip(found.law, s.stiffness[c][lane] * s.rest[c][lane], lane, &s.span_rest[cable.first_span],
+           &s.slip_loss[cable.first_slip]);
     }
   }
 }

@@ -1,6 +1,7 @@
 /// Cables, laid out for stepping (docs/theory/cables.md).
 #pragma once
 
+#include "math/cable_wheel.h"
 #include "taut/model_def.h"
 
 namespace taut::sim {
@@ -17,6 +18,7 @@ struct CableTable {
   int first_wheel = 0, wheel_count = 0;
   int first_span = 0, span_count = 0;  ///< Of one with friction; without, it has none.
   int first_slip = 0;                  ///< Places between the spans.
+  int first_link = 0, link_room = 0;   ///< For what its spans do to bodies.
   bool clamped_damping = false;
   bool joins_two = false;  ///< Two bodies that are not the world, and no more.
   int motor = -1;          ///< Which one winds it; -1: none.
@@ -36,10 +38,10 @@ struct WheelTable {
 
 /// Where a cable with friction may slip.
 struct SlipTable {
-  int at = 0;      ///< Point of its path; of a wheel, where the cable arrives.
+  int at = 0;      ///< Point of its path; of a wheel, where the cable arrives; of a bend none.
   int wheel = -1;  ///< Among all wheels; -1: an eyelet.
   double friction = 0;
-  double start_place = 0;  ///< (cable_chains.inl) [rad]
+  double start_place = kNotHeld;  ///< (cable_chains.inl) [rad]; of a bend none.
 };
 
 /// A cable that comes to lie against edges of the terrain or rods (cable_bends.inl). It has two
@@ -49,6 +51,7 @@ struct TouchTable {
   int first_bend = 0;  ///< Of kMostBends.
   double radius_m = 0;
   bool terrain = false;              ///< Edges of it.
+  double friction = 0;               ///< With some it has spans, kMostBends + 1 at most.
   int first_rod = 0, rod_count = 0;  ///< Those that it may come to.
 };
 

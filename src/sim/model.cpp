@@ -41,7 +41,7 @@ class Compiler {
     Shapes();
     Points();
     sim::LayOutPairs(t_, shapes_of_, ground_);
-    sim::LayOutTree(t_), sim::LayOutTouchRods(t_);
+    sim::LayOutTree(t_), sim::LayOutTouchRods(t_), sim::LayOutChainLinks(t_);
     sim::JoinBoxes(t_);
     sim::LayOutMotors(t_);
     sim::LayOutFriction(t_), sim::LayOutFloor(t_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/assert.h"
 #include "math/described_path.h"
@@ -125,9 +126,24 @@ class CableCompiler {
     table.touch = static_cast<int>(t_.touches.size());
     const bool terrain = cable.touches != CableTouches::kRods;
     t_.touches.push_back({static_cast<int>(t_.cables.size()), kMostBends * table.touch,
-                          cable.radius_m, terrain, 0, 0});
+                          cable.radius_m, terrain, cable.touch_friction, 0, 0});
+    if (cable.touch_friction > 0) AddOwnSpans(cable, table);
     t_.max_attachments = std::max(t_.max_attachments, 2 + 2 * kMostBends);
     t_.max_wheels = std::max(t_.max_wheels, kMostBends);
+  }
+
+  /// Room for spans that come and go with what the cable touches. At the start it has one.
+  void AddOwnSpans(const CableDef& cable, CableTable& table) {
+    table.first_slip = static_cast<int>(t_.slips.size());
+    table.first_span = t_.span_count;
+    table.span_count = kMostBends + 1;
+    SlipTable slip;
+    slip.friction = cable.touch_friction;
+    t_.slips.insert(t_.slips.end(), kMostBends, slip);
+    t_.span_rest_m.push_back(cable.rest_length_m);
+    t_.span_count += table.span_count;
+    t_.span_rest_m.resize(static_cast<std::size_t>(t_.span_count));
+    ++t_.chain_count;
   }
 
   Tables& t_;
@@ -168,8 +184,38 @@ void LayOutTouchRods(Tables& t) {
   }
 }
 
+void LayOutChainLinks(Tables& t) {
+  constexpr int kMostLinksOfSpan = 16;  // two in each of eight lanes
+  for (CableTable& cable : t.cables) {
+    if (cable.span_count == 0) continue;
+    cable.first_link = t.chain_link_count;
+    cable.link_room = 2 * cable.attachment_count;
+    if (cable.touch >= 0) {
+      // In each lane two a span at most, and no more than there are bodies to pull at.
+      const TouchTable& touch = t.touches[static_cast<std::size_t>(cable.touch)];
+      std::set<int> bodies;
+      for (int i = 0; i < touch.rod_count; ++i) {
+        bodies.insert(t.touch_rods[static_cast<std::size_t>(touch.first_rod + i)].body);
+      }
+      const int most = std::min(static_cast<int>(bodies.size()) + 2, kMostLinksOfSpan);
+      cable.link_room = cable.span_count * most;
+    }
+    t.chain_link_count += cable.link_room;
+  }
+}
+
 void LayOutCables(Tables& tables, const std::vector<Frame>& frames) {
   CableCompiler(tables, frames).Run();
 }
 
 }  // namespace taut::sim
+
+namespace taut {
+
+bool HasFriction(const CableDef& cable) {
+  const auto slips = [](const AttachmentDef& at) { return at.friction > 0; };
+  return cable.touch_friction > 0 ||
+         std::any_of(cable.attachments.begin(), cable.attachments.end(), slips);
+}
+
+}  // namespace taut

@@ -156,7 +156,8 @@ void CheckRoute(const CableDef& c, const std::string& name, Checker& check) {
   }
   check.Require(spans <= kMostSpans, name + " has friction at more than " +
                                          std::to_string(kMostSpans - 1) + " attachments");
-  check.Require(spans == 1 || c.actuator.kind != ActuatorDef::Kind::kDcMotor,
+  const bool slips = spans > 1 || c.touch_friction > 0;
+  check.Require(!slips || c.actuator.kind != ActuatorDef::Kind::kDcMotor,
                 name +
                     " has friction along it and a motor: only ideal and limited actuators wind "
                     "such a cable");
@@ -179,6 +180,7 @@ void CheckCables(const ModelDef& def, Checker& check) {
       check.Require(c.attachments.size() == 2,
                     name + " touches the terrain: it must have two attachments and no more");
       check.Positive(c.radius_m, name + ": radius");
+      check.NonNegative(c.touch_friction, name + ": friction where it touches");
     }
     check.Positive(c.stiffness_n_per_m, name + ": stiffness");
     check.NonNegative(c.damping_n_s_per_m, name + ": damping");

@@ -69,6 +69,7 @@ Energy Batch::TotalEnergy(int world) const noexcept {
       const double area_n = cable.stiffness_n_per_m * cable.rest_length_m;
       for (int i = 0; i < d.view.cables[c].span_count; ++i) {
         const CableSpanState span = CableSpan(world, c, i);
+        if (span.rest_length_m == 0) continue;  // where it does not touch now
         const double longer = std::max(span.length_m - span.rest_length_m, 0.0);
         e.elastic_j += 0.5 * area_n / span.rest_length_m * longer * longer;
       }

@@ -49,6 +49,34 @@ CableSpanState Batch::CableSpan(int world, int cable, int span) const noexcept {
           d.at(world, d.layout.sense_span_rest + row), d.at(world, d.layout.span_tension + row)};
 }
 
+struct Batch::Impl::LaidCable {
+  std::vector<PathPoint<Vec3>> points;
+  std::vector<int> bodies;  ///< By point; the world is behind the last one.
+  std::vector<int> spans;   ///< By point: which one comes there; the next point's leaves it.
+  std::vector<Wheel<Vec3>> wheels;
+};
+
+std::vector<double> Batch::CableSpanTensions(int world, int cable) const {
+  const Impl& d = *impl_;
+  d.CheckCable(__func__, world, cable);
+  const sim::CableTable& table = d.view.cables[cable];
+  std::vector<double> tensions;
+  if (table.touch < 0 || table.span_count == 0) {
+    for (int i = 0; i < CableSpans(cable); ++i) {
+      tensions.push_back(CableSpan(world, cable, i).tension_n);
+    }
+    return tensions;
+  }
+  // What it has left by now parts nothing.
+  const Impl::LaidCable laid = d.Lay(world, cable);
+  for (const Wheel<Vec3>& wheel : laid.wheels) {
+    const int span = laid.spans[static_cast<std::size_t>(wheel.at)];
+    tensions.push_back(CableSpan(world, cable, span).tension_n);
+  }
+  tensions.push_back(CableSpan(world, cable, laid.spans.back()).tension_n);
+  return tensions;
+}
+
 double Batch::WheelAngle(int world, int cable, int wheel) const noexcept {
   const Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
@@ -72,12 +100,6 @@ int Batch::CableBends(int world, int cable) const {
   return static_cast<int>(CableBendPlaces(world, cable).size());
 }
 
-struct Batch::Impl::LaidCable {
-  std::vector<PathPoint<Vec3>> points;
-  std::vector<int> bodies;  ///< By point; the world is behind the last one.
-  std::vector<Wheel<Vec3>> wheels;
-};
-
 Batch::Impl::LaidCable Batch::Impl::Lay(int world, int cable) const {
   Sense(world);
   const sim::CableTable& table = view.cables[cable];
@@ -91,18 +113,28 @@ Batch::Impl::LaidCable Batch::Impl::Lay(int world, int cable) const {
   };
   const auto place = [&](const sim::AttachmentTable& at) { return in_W(at.body, at.p_P); };
   LaidCable laid;
-  auto& [points, bodies, wheels] = laid;
+  auto& [points, bodies, spans, wheels] = laid;
+  int slip = table.first_slip;
   for (int i = 0; i < table.attachment_count; ++i) {
     const sim::AttachmentTable& at = view.attachments[table.first_attachment + i];
     points.push_back({place(at), {}, {}, {}});
     bodies.push_back(at.body);
+    spans.push_back(slip - table.first_slip);
+    const bool parts = table.touch < 0 && slip + 1 < table.first_slip + table.span_count;
+    if (parts && i == view.slips[slip].at) ++slip;
   }
+  std::vector<double> along;
   for (const sim::BendNumbers<double>& bend : Bends(world, cable)) {
-    const int at = 1 + 2 * static_cast<int>(wheels.size()), body = static_cast<int>(bend.body);
-    wheels.push_back(
-        {in_W(body, bend.center), turned(body, bend.axis), bend.radius, bend.angle, at, 0, 0, 0});
-    points.insert(points.begin() + at, 2, PathPoint<Vec3>{});
-    bodies.insert(bodies.begin() + at, 2, body);
+    const int number = static_cast<int>(wheels.size());
+    const int first = 1 + 2 * number, body = static_cast<int>(bend.body);
+    wheels.push_back({in_W(body, bend.center), turned(body, bend.axis), bend.radius, bend.angle,
+                      first, 0, 0, 0});
+    points.insert(points.begin() + first, 2, PathPoint<Vec3>{});
+    bodies.insert(bodies.begin() + first, 2, body);
+    spans.insert(spans.begin() + first, {number, number + 1});
+    spans.back() = number + 1;
+    along.push_back(table.span_count > 0 ? at(world, layout.slip_along + table.first_slip + number)
+                                         : kNotHeld);
   }
   for (int k = 0; k < table.wheel_count; ++k) {
     const sim::WheelTable& wheel = view.wheels[table.first_wheel + k];
@@ -110,12 +142,14 @@ Batch::Impl::LaidCable Batch::Impl::Lay(int world, int cable) const {
     wheels.push_back({center, place(view.spots[wheel.axis_spot]) - center, wheel.radius_m,
                       at(world, layout.wheel_angle + table.first_wheel + k), wheel.at, 0, 0, 0});
   }
-  LayOnWheels(points.data(), static_cast<int>(wheels.size()), wheels.data());
+  LayOnWheels(points.data(), static_cast<int>(wheels.size()), wheels.data(),
+              along.empty() ? nullptr : along.data());
   // What a cable that touches has left by now is no part of its path.
   for (std::size_t k = wheels.size(); table.touch >= 0 && k-- > 0;) {
     if (wheels[k].theta > 0) continue;
     points.erase(points.begin() + wheels[k].at, points.begin() + wheels[k].at + 2);
     bodies.erase(bodies.begin() + wheels[k].at, bodies.begin() + wheels[k].at + 2);
+    spans.erase(spans.begin() + wheels[k].at, spans.begin() + wheels[k].at + 2);
     for (std::size_t i = k + 1; i < wheels.size(); ++i) wheels[i].at -= 2;
     wheels.erase(wheels.begin() + static_cast<std::ptrdiff_t>(k));
   }
@@ -126,23 +160,19 @@ std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
   const Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
   const sim::CableTable& table = d.view.cables[cable];
-  auto [points, bodies, wheels] = d.Lay(world, cable);
+  auto [points, bodies, spans, wheels] = d.Lay(world, cable);
   const int count = static_cast<int>(points.size());
   MeasurePath(count, points.data(), static_cast<int>(wheels.size()), wheels.data());
   std::vector<CablePoint> path;
-  int span = 0;
-  const auto tension = [&] {
+  const auto tension = [&](int span) {
     return table.span_count > 0 ? CableSpan(world, cable, span).tension_n
                                 : Cable(world, cable).tension_n;
   };
   for (int i = 0; i < count; ++i) {
     const int body = bodies[static_cast<std::size_t>(i)];
     CablePoint point{body == d.view.body_count ? kWorld : body, points[i].p, {}};
-    if (i > 0) point.force_n = point.force_n - tension() * points[i].u;
-    const sim::SlipTable* const slip =
-        span + 1 < table.span_count ? d.view.slips + table.first_slip + span : nullptr;
-    if (slip != nullptr && i == slip->at) ++span;
-    if (i + 1 < count) point.force_n = point.force_n + tension() * points[i + 1].u;
+    if (i > 0) point.force_n = point.force_n - tension(spans[i]) * points[i].u;
+    if (i + 1 < count) point.force_n = point.force_n + tension(spans[i + 1]) * points[i + 1].u;
     path.push_back(point);
   }
   return path;
@@ -164,6 +194,14 @@ std::vector<Vec3> Batch::CableBendPlaces(int world, int cable) const {
                      math::Cos(half) * out + math::Sin(half) * Cross(wheel.axis, out));
   }
   return places;
+}
+
+double Batch::CableWrap(int world, int cable) const {
+  const Impl& d = *impl_;
+  d.CheckCable(__func__, world, cable);
+  double sum_rad = 0;
+  for (const Wheel<Vec3>& wheel : d.Lay(world, cable).wheels) sum_rad += std::max(wheel.theta, 0.0);
+  return sum_rad;
 }
 
 double Batch::CableFrictionLoss(int world, int cable) const noexcept {

@@ -165,7 +165,7 @@ struct Scratch {
   StiffCable<W>* stiff;
   Link<W, 1>* links;        ///< Of all cables.
   ChainSpan<W>* spans;      ///< Of all cables with friction.
-  RowLink<W>* chain_links;  ///< Those of a cable from twice its first attachment on,
+  RowLink<W>* chain_links;  ///< Those of a cable from its first_link on,
   int* chain_link_count;    ///< and how many; per cable.
   HeldRow<W>* joints;       ///< Rows of all joints.
   Twist<W>* joint_guess;    ///< Per body and the world: guessed velocities of the step's end.
@@ -206,7 +206,7 @@ struct Scratch {
     links = room_.Take<Link<W, 1>>(m.attachment_count + (m.touch_rod_count > 0 ? W::kLanes : 0) *
                                                             kMostBends * m.touch_count);
     spans = room_.Take<ChainSpan<W>>(m.span_count);
-    chain_links = room_.Take<RowLink<W>>(m.chain_count > 0 ? 2 * m.attachment_count : 0);
+    chain_links = room_.Take<RowLink<W>>(m.chain_link_count);
     chain_link_count = room_.Take<int>(m.chain_count > 0 ? m.cable_count : 0);
     joints = room_.Take<HeldRow<W>>(m.joint_row_count);
     joint_guess = room_.Take<Twist<W>>(m.joint_count > 0 ? bodies_count : 0);

@@ -92,6 +92,7 @@ inline double SpanRest(const Tables& t, int i) noexcept {
 inline double SlipPlace(const Tables& t, int i) noexcept {
   return t.slips[static_cast<std::size_t>(i)].start_place;
 }
+inline double NotHeld(const Tables&, int) noexcept { return kNotHeld; }
 inline double RestLength(const Tables& t, int i) noexcept { return CableOf(t, i).rest_length_m; }
 inline double Stiffness(const Tables& t, int i) noexcept { return CableOf(t, i).stiffness_n_per_m; }
 inline double Damping(const Tables& t, int i) noexcept { return CableOf(t, i).damping_n_s_per_m; }
@@ -108,7 +109,7 @@ inline double SpanTension(const Tables& t, int i) noexcept {
     return i >= table.first_span + table.span_count;
   };
   while (behind()) ++cable;
-  return Tension(t, cable);
+  return t.span_rest_m[static_cast<std::size_t>(i)] > 0 ? Tension(t, cable) : 0;
 }
 inline Motor MotorAtRest(const Tables& t, int i) noexcept {
   const MotorTable& table = t.motors[static_cast<std::size_t>(i)];

@@ -99,6 +99,7 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(span_tension,   Number, kSpan,     kState,     kZero,     SpanTension)      /* mean over the last step [N] */ \
   ROW(slip_place,     Number, kSlip,     kState,     kGoesBack, SlipPlace)        /* middle of a wheel's arc, on the wheel [rad] */ \
   ROW(slip_loss,      Number, kSlip,     kState,     kGoesBack, Zero)             /* energy that friction took [J] */ \
+  ROW(slip_along,     Number, kSlip,     kState,     kGoesBack, NotHeld)          /* middle of a bend's arc, along its axis [m], or kNotHeld */ \
   ROW(touch_side,     Number, kTouchRod, kState,     kZero,     TouchSide)        /* of the rod, of a cable that crosses it: -1 or 1 (cable_rods.inl) */ \
   ROW(bend,           Bend,   kBend,     kState,     kForgets,  NoBend)           /* see there */ \
   ROW(motor,          Motor,  kMotor,    kState,     kGoesBack, MotorAtRest) \

@@ -38,6 +38,7 @@ View Tables::View() const noexcept {
           chain_count,
           span_count,
           static_cast<int>(slips.size()),
+          chain_link_count,
           slips.data(),
           along_slip,
           !surfaces.empty(),

@@ -184,7 +184,7 @@ struct View {
   int pair_capacity, max_attachments, attachment_count, spot_count;
   int wheel_count, max_wheels;
   const WheelTable* wheels;
-  int chain_count, span_count, slip_count;
+  int chain_count, span_count, slip_count, chain_link_count;
   const SlipTable* slips;
   bool along_slip;
   bool has_ground;  ///< Height fields or meshes.
@@ -290,6 +290,7 @@ class Tables final : public Model {
   std::vector<WheelTable> wheels;       ///< Cable after cable.
   int max_wheels = 0;                   ///< Of one cable.
   int chain_count = 0, span_count = 0;  ///< Cables with friction, and their spans.
+  int chain_link_count = 0;             ///< Room for what those do to bodies.
   std::vector<double> span_rest_m;      ///< Of the spans, at the start.
   std::vector<SlipTable> slips;
   std::vector<TouchTable> touches;
@@ -368,6 +369,9 @@ void LayOutCables(Tables& tables, const std::vector<Frame>& frames);
 
 /// Fills touch_rods. After the shapes.
 void LayOutTouchRods(Tables& tables);
+
+/// Room for what cables with friction do. After touch_rods.
+void LayOutChainLinks(Tables& tables);
 
 /// Fills all that is of joints. `frames`: of the bodies and the world.
 void LayOutJoints(Tables& tables, const std::vector<Frame>& frames);

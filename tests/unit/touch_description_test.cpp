@@ -28,6 +28,9 @@ TEST(TouchingCable, IsAsItSays) {
   const CableDef terrain = Good(Rope(", touches: terrain, radius_m: 0.001")).def.cables[0];
   EXPECT_EQ(terrain.touches, CableTouches::kTerrain);
   EXPECT_EQ(terrain.radius_m, 0.001);
+  EXPECT_EQ(terrain.touch_friction, 0);
+  const std::string rough = Rope(", touches: all, radius_m: 0.001, touch_friction: 0.3");
+  EXPECT_EQ(Good(rough).def.cables[0].touch_friction, 0.3);
   EXPECT_EQ(Good(Rope(", touches: rods, radius_m: 0.001")).def.cables[0].touches,
             CableTouches::kRods);
   EXPECT_EQ(Good(Rope(", touches: all, radius_m: 0.001")).def.cables[0].touches,
@@ -45,6 +48,15 @@ TEST(TouchingCable, WhatCannotBeIsSaidWithItsLine) {
   EXPECT_EQ(Errors(Rope(", radius_m: 0.001")),
             "robot.yaml:12:67: error: cable.radius_m: goes with `touches` (terrain, rods or all; a "
             "cable that touches nothing has no thickness)\n");
+  EXPECT_EQ(Errors(Rope(", touch_friction: 0.3")),
+            "robot.yaml:12:67: error: cable.touch_friction: goes with `touches` (terrain, rods or "
+            "all; at eyelets and pulleys it is the `friction` of the route)\n");
+  EXPECT_EQ(Errors(Rope(", touches: terrain, radius_m: 0.001, touch_friction: -1")),
+            "robot.yaml:12:118: error: cable.touch_friction must not be negative, got -1\n");
+  EXPECT_EQ(Errors(Rope(", touches: terrain, radius_m: 0.001, touch_friction: 0.1, "
+                        "actuator: {dc_motor: {}}")),
+            "robot.yaml:12:102: error: cable.touch_friction: a direct-current motor does not wind "
+            "such a cable (ideal and limited actuators do)\n");
   EXPECT_EQ(Errors(Rope(", touches: terrain, radius_m: -1")),
             "robot.yaml:12:95: error: cable.radius_m must not be negative, got -1\n");
   EXPECT_EQ(

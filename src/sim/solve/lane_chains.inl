@@ -9,6 +9,16 @@ void LaneSolve<W>::EachChain(const F& f) const noexcept {
   if (m_.chain_count == 0 || displaces_) return;
   for (int c = 0; c < m_.cable_count; ++c) {
     const CableTable& cable = m_.cables[c];
+    if (cable.span_count > 0 && cable.touch >= 0) {
+      const RowLink<W>* const links = work_.chain_links + cable.first_link;
+      for (int i = 0; i < work_.chain_link_count[c]; ++i) {
+        if (!Moves(links[i].body) || !Pulls(links[i], lane_)) continue;
+        for (int k = 0; k < i; ++k) {
+          if (Moves(links[k].body) && Pulls(links[k], lane_)) f(c, links[i].body, links[k].body);
+        }
+      }
+      continue;
+    }
     const AttachmentTable* const at = m_.attachments + cable.first_attachment;
     for (int i = 0; cable.span_count > 0 && i < cable.attachment_count; ++i) {
       for (int k = 0; k < i; ++k) {
@@ -25,15 +35,16 @@ void LaneSolve<W>::GatherChains(Pool<CableChain<L>>& pool) noexcept {
   for (int c = 0; m_.chain_count > 0 && !displaces_ && c < m_.cable_count; ++c) {
     const CableTable& cable = m_.cables[c];
     if (cable.span_count == 0) continue;
-    const RowLink<W>* const from = work_.chain_links + 2 * cable.first_attachment;
-    RowLink<L>* const links = mem_.chain_links + 2 * cable.first_attachment;
+    const RowLink<W>* const from = work_.chain_links + cable.first_link;
+    RowLink<L>* const links = mem_.chain_links + cable.first_link;
     CableChain<L>& to = pool.items[pool.count];
-    to = ChainOfLane<L>(cable, work_, mem_.spans + cable.first_span, lane_, h_);
+    to = ChainOfLane<L>(m_, s_, cable, work_, mem_.spans + cable.first_span, lane_, h_);
     to.links = links;
     bool pulls = false;
     for (int k = 0; k < work_.chain_link_count[c]; ++k) {
       const bool mine = Moves(from[k].body) && mem_.root[from[k].body] == island_root_;
       if (!mine && !m_.HasMotion(from[k].body)) continue;
+      if (cable.touch >= 0 && !Pulls(from[k], lane_)) continue;
       pulls = pulls || mine;
       GatherLink(from[k], links[to.link_count]);
       links[to.link_count++].row = from[k].row;

@@ -44,7 +44,7 @@ struct LaneMemory {
   int block_capacity;
   Island<Num, StepPools<Num>> island;
   Link<Num, 1>* links;
-  RowLink<Num>* chain_links;  ///< Those of a cable from twice its first attachment on.
+  RowLink<Num>* chain_links;  ///< Those of a cable from its first_link on.
   ChainSpan<Num>* spans;
 
   void Take(const View& m, Room& room) noexcept {
@@ -61,7 +61,7 @@ struct LaneMemory {
     source = room.Take<int>(contacts + single + m.chain_count);
     graph.bits = room.Take<uint64_t>(n * BodyGraph::WordsFor(m.body_count));
     links = room.Take<Link<Num, 1>>(m.attachment_count);
-    chain_links = room.Take<RowLink<Num>>(m.chain_count > 0 ? 2 * m.attachment_count : 0);
+    chain_links = room.Take<RowLink<Num>>(m.chain_link_count);
     spans = room.Take<ChainSpan<Num>>(m.span_count);
     island.bodies = room.Take<Unknown<Num>>(n);
     island.pattern.slot = room.Take<int>(n * n);

@@ -82,7 +82,7 @@ V3<simd::Lane<W>> LaneSolve<W>::Pending(int body) const noexcept {
   }
   for (int c = 0; m_.chain_count > 0 && c < m_.cable_count; ++c) {
     const CableTable& cable = m_.cables[c];
-    const RowLink<W>* const links = work_.chain_links + 2 * cable.first_attachment;
+    const RowLink<W>* const links = work_.chain_links + cable.first_link;
     for (int k = 0; cable.span_count > 0 && k < work_.chain_link_count[c]; ++k) {
       if (links[k].body != body) continue;
       sum += OfLane<L>(work_.spans[cable.first_span + links[k].row].l * links[k].ang[0], lane_);

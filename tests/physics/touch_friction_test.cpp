@@ -1,0 +1,277 @@
+/// Cables that touch with friction (docs/theory/cables.md, section 7).
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "math/described_path.h"
+#include "tests/physics/lanes_alike.h"
+#include "tests/physics/touch_scenes.h"
+
+namespace taut::test {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846, kG = 9.81;
+
+/// The spans' rest lengths are those of the whole cable.
+void ExpectNothingLost(const Batch& world) {
+  double sum = 0;
+  for (int i = 0; i < world.CableSpans(0); ++i) sum += world.CableSpan(0, 0, i).rest_length_m;
+  ASSERT_NEAR(sum, world.Cable(0, 0).rest_length_m, 1e-12);
+}
+
+/// Two bodies come down from above, beside what their cable then lies over, and rest there.
+void Lower(Batch& world, const Vec3& from, const Vec3& to) {
+  constexpr double kAbove = 0.2, kBeside = 0.3;
+  for (int i = 1; i <= 100; ++i) {
+    const double left = 1 - i / 100.0;
+    const auto on_the_way = [&](const Vec3& p, double side) {
+      return Vec3{p.x + side * kBeside * left, p.y, p.z + (kAbove - p.z) * left};
+    };
+    Lead(world, 0, on_the_way(from, -1)), Lead(world, 1, on_the_way(to, 1));
+    world.Step(kStep);
+  }
+  for (int b = 0; b < static_cast<int>(world.model().def().bodies.size()); ++b) {
+    BodyState state = world.Body(0, b);
+    state.velocity_m_per_s = state.angular_velocity_rad_per_s = {};
+    world.SetBodyState(0, b, state);
+  }
+}
+
+/// Two masses on a cable over the two edges of a wall: half a turn in all.
+Batch Atwood(double m1, double m2, double friction, double damping,
+             ActuatorDef::Kind actuator = ActuatorDef::Kind::kNone) {
+  const double radius = 1e-3;
+  const Vec3 from{-radius, 0, -1}, to{0.1 + radius, 0, -1};
+  ModelDef def;
+  def.bodies = {Ball(m1, {-0.3, 0, 0.2}), Ball(m2, {0.4, 0, 0.2})};
+  def.terrain_boxes = {Box({0, -5, -3}, {0.1, 5, 0})};
+  CableDef path = Cable({kWorld, from}, {kWorld, to}, 1, 1, radius);
+  for (const double x : {0.0, 0.1}) {
+    path.attachments.insert(path.attachments.end() - 1,
+                            {kWorld, {x, 0, 0}, 0.0, WheelDef{{0, 1, 0}, radius, true, 0}});
+  }
+  const double length = math::DescribedPath(path).length_m();
+  def.cables = {Cable({0, def.bodies[0].com_m}, {1, def.bodies[1].com_m}, 1e5,
+                      length - m2 * kG / 1e5, radius)};
+  def.cables[0].touch_friction = friction;
+  def.cables[0].damping_n_s_per_m = damping;
+  def.cables[0].actuator.kind = actuator;
+  Batch world = MakeBatch(def);
+  Lower(world, from, to);
+  return world;
+}
+
+double AccelerationOf(Batch& world, int body, double time_s) {
+  const int steps = StepsIn(time_s, 1e-3);
+  world.Step(1e-3, steps / 2);
+  const double t0 = world.Time(0), v0 = world.Body(0, body).velocity_m_per_s.z;
+  world.Step(1e-3, steps - steps / 2);
+  return (world.Body(0, body).velocity_m_per_s.z - v0) / (world.Time(0) - t0);
+}
+
+TEST(TouchFriction, AtwoodsMachineOverAWallSlipsAsEytelweinSays) {
+  const double c = std::exp(0.2 * kPi);
+  for (const double m2 : {0.4, 0.5, 0.53}) {
+    Batch world = Atwood(1, m2, 0.2, 20);
+    const double a = (1 - c * m2) / (1 + c * m2) * kG;
+    EXPECT_NEAR(-AccelerationOf(world, 0, 0.6), a, 1e-3) << m2;
+    ASSERT_EQ(world.CableBends(0, 0), 2);
+    EXPECT_NEAR(world.CableSpan(0, 0, 0).tension_n / world.CableSpan(0, 0, 2).tension_n, c, 1e-8);
+    ExpectNothingLost(world);
+  }
+}
+
+TEST(TouchFriction, WithinTheRatioItDoesNotCreep) {
+  for (const double m2 : {0.54, 0.7, 0.9}) {
+    Batch world = Atwood(1, m2, 0.2, 200);
+    world.Step(1e-3, 4000);
+    const double z = world.Body(0, 0).position_m.z;
+    world.Step(1e-3, 4000);
+    EXPECT_NEAR(world.Body(0, 0).position_m.z, z, 1e-9 * 4) << m2;
+    EXPECT_NEAR(world.CableSpan(0, 0, 0).tension_n, kG, 1e-7);
+    EXPECT_NEAR(world.CableSpan(0, 0, 2).tension_n, m2 * kG, 1e-7);
+  }
+}
+
+TEST(TouchFriction, WhatItTakesIsWhatIsMissing) {
+  Batch world = Atwood(1, 0.4, 0.2, 0);
+  const double before = EnergyOf(world) + world.CableFrictionLoss(0, 0);
+  world.Step(1e-3, 900);
+  const double loss = world.CableFrictionLoss(0, 0);
+  EXPECT_GT(loss, 1.0);
+  EXPECT_NEAR(EnergyOf(world) + loss, before, 1e-3 * loss);
+}
+
+TEST(TouchFriction, WhatIsWoundComesFromTheFirstSpan) {
+  Batch world = Atwood(1, 0.7, 0.2, 200, ActuatorDef::Kind::kIdeal);
+  world.Step(1e-3, 2000);
+  const double left = world.Body(0, 0).position_m.z, right = world.Body(0, 1).position_m.z;
+  const double rest = world.Cable(0, 0).rest_length_m;
+  for (int i = 1; i <= 1000; ++i) {
+    world.SetRestLengthTarget(0, 0, rest - 5e-6 * i);
+    world.Step(1e-3);
+  }
+  world.Step(1e-3, 2000);
+  EXPECT_NEAR(world.Body(0, 0).position_m.z - left, 5e-3, 1e-6);
+  EXPECT_NEAR(world.Body(0, 1).position_m.z, right, 1e-6);
+  ExpectNothingLost(world);
+}
+
+/// Whoever is put elsewhere has a cable that lies against nothing until it comes to it.
+TEST(TouchFriction, PutElsewhereItHasOneSpan) {
+  Batch world = Atwood(1, 0.4, 0.2, 20);
+  world.Step(1e-3, 100);
+  ASSERT_EQ(world.CableSpanTensions(0, 0).size(), 3u);
+  for (int b = 0; b < 2; ++b) {
+    BodyState state = world.Body(0, b);
+    state.position_m.z = 0.5;
+    world.SetBodyState(0, b, state);
+  }
+  EXPECT_EQ(world.CableSpanTensions(0, 0).size(), 1u);
+  ExpectNothingLost(world);
+  EXPECT_EQ(world.CableSpan(0, 0, 0).rest_length_m, world.Cable(0, 0).rest_length_m);
+  world.Step(1e-3, 10);
+  ExpectNothingLost(world);
+}
+
+/// A rod on an axle, to which a cable comes from above, with so much friction that it does not
+/// slip.
+TEST(TouchFriction, ARodThatTurnsCarriesTheCableAlong) {
+  const double radius = 0.05, inertia = 0.002, m2 = 0.7;
+  const Vec3 from{-radius, 0, -1}, to{radius, 0, -1};
+  ModelDef def;
+  def.bodies = {Ball(1, {-0.3, 0, 0.2}), Ball(m2, {0.3, 0, 0.2})};
+  AddRod(def, {}, 0.3, radius - 1e-3, 1);
+  def.bodies[2].inertia_kg_m2 = {1, inertia, 1, 0, 0, 0};
+  const double length = 2 + kPi * radius;
+  def.cables = {Cable({0, {-0.3, 0, 0.2}}, {1, {0.3, 0, 0.2}}, 1e5, length - 0.8 * kG / 1e5, 1e-3)};
+  def.cables[0].touches = CableTouches::kRods;
+  def.cables[0].touch_friction = 1;
+  def.cables[0].damping_n_s_per_m = 20;
+  JointDef axle;
+  axle.name = "axle";
+  axle.kind = JointKind::kHinge;
+  axle.body_a = kWorld;
+  axle.body_b = 2;
+  axle.axis = {0, 1, 0};
+  def.joints.push_back(axle);
+  Batch world = MakeBatch(def);
+  Lower(world, from, to);
+  ASSERT_EQ(world.CableBends(0, 0), 1);
+  const double a = (1 - m2) * kG / (1 + m2 + inertia / (radius * radius));
+  EXPECT_NEAR(-AccelerationOf(world, 0, 0.6), a, 1e-3);
+  EXPECT_NEAR(world.Body(0, 2).angular_velocity_rad_per_s.y * radius,
+              world.Body(0, 0).velocity_m_per_s.z, 1e-3);
+  ExpectNothingLost(world);
+}
+
+/// A ridge along y, and a cable over it whose ends, too heavy to be stopped, go along that.
+struct Across {
+  static constexpr double kSpeed = 0.05, kRadius = 1e-4, kFriction = 0.3;
+  const Vec3 from{-0.2, 0, -0.1}, to{0.2, 0, -0.1};
+  /// How far they are from the ridge, and how far round it the cable goes.
+  const double far_m = std::sqrt(0.2 * 0.2 + 0.1 * 0.1 - kRadius * kRadius);
+  const double theta = 2 * kPi - 2 * std::atan2(0.2, 0.1) - 2 * std::atan2(far_m, kRadius);
+  const double trails_m = far_m * std::tan(std::asin(0.5 * kFriction * theta));
+  ModelDef def;
+
+  Across() {
+    def.gravity_m_per_s2 = {};
+    def.bodies = {Ball(1e13, from, {0, kSpeed, 0}), Ball(1e13, to, {0, kSpeed, 0})};
+    TerrainBoxDef ridge = Box({-1, -9, -1 - std::sqrt(2.0)}, {1, 9, 1 - std::sqrt(2.0)});
+    ridge.orientation = {std::cos(kPi / 8), 0, std::sin(kPi / 8), 0};
+    def.terrain_boxes = {ridge};
+    def.cables = {Cable({0, from}, {1, to}, 1000, 0.4, kRadius)};
+    def.cables[0].touch_friction = kFriction;
+  }
+};
+
+/// Both parts pull at it with T sin b along the ridge, against mu T theta.
+TEST(TouchFriction, AcrossItSticksAndThenTrailsBehind) {
+  const Across across;
+  Batch world = MakeBatch(across.def);
+  const auto at_middle = [&] { return world.Body(0, 0).position_m.y - 0.5e-3 * Across::kSpeed; };
+  const auto bend_y = [&] {
+    const std::vector<Vec3> places = world.CableBendPlaces(0, 0);
+    return places.size() == 1 ? places[0].y : 1e300;
+  };
+  world.Step(1e-3);
+  const double first = bend_y();
+  EXPECT_NEAR(first, at_middle(), 1e-12);
+  while (at_middle() < first + 0.99 * across.trails_m) world.Step(1e-3);
+  EXPECT_NEAR(bend_y(), first, 1e-12);
+  const double tension = world.CableSpan(0, 0, 0).tension_n;
+  while (at_middle() < first + 1.1 * across.trails_m) world.Step(1e-3);
+  const double loss = world.CableFrictionLoss(0, 0), went = at_middle();
+  while (at_middle() < first + 3 * across.trails_m) {
+    world.Step(1e-3);
+    ASSERT_NEAR(at_middle() - bend_y(), across.trails_m, 1e-9);
+  }
+  EXPECT_NEAR(world.CableWrap(0, 0), across.theta, 1e-9);
+  EXPECT_NEAR(world.CableSpan(0, 0, 1).tension_n, world.CableSpan(0, 0, 0).tension_n, 1e-9);
+  EXPECT_NEAR(world.CableSpan(0, 0, 0).tension_n, tension, 2e-3 * tension);
+  const double force = Across::kFriction * across.theta * world.CableSpan(0, 0, 0).tension_n;
+  EXPECT_NEAR((world.CableFrictionLoss(0, 0) - loss) / (at_middle() - went), force, 1e-3 * force);
+}
+
+/// Friction does not work in two directions at once.
+TEST(TouchFriction, ACableThatSlipsAlongIsNotHeldAcross) {
+  Across across;
+  across.def.bodies[0].velocity_m_per_s = {0.04, 0.001, 0.02};
+  across.def.bodies[1].velocity_m_per_s = {0.04, 0.001, -0.02};
+  Batch world = MakeBatch(across.def);
+  world.Step(1e-3, 1000);
+  const double c = std::exp(Across::kFriction * across.theta);
+  EXPECT_NEAR(world.CableSpan(0, 0, 1).tension_n / world.CableSpan(0, 0, 0).tension_n, c, 0.05);
+  ASSERT_EQ(world.CableBends(0, 0), 1);
+  const std::vector<CablePoint> path = world.CablePath(0, 0);
+  ASSERT_EQ(path.size(), 4u);
+  // What pulls at the ridge does not pull along it.
+  EXPECT_NEAR(path[1].force_n.y + path[2].force_n.y, 0, 0.01);
+}
+
+TEST(TouchFriction, AFlightKeepsMomentaAndEnergyOnlyFalls) {
+  ModelDef def = Flight();
+  def.cables[0].touch_friction = 0.3;
+  Batch world = MakeBatch(def);
+  const double energy = EnergyOf(world);
+  const Vec3 momentum = world.Momentum(0), angular = world.AngularMomentum(0);
+  int touched = 0;
+  for (int i = 0; i < 10000; ++i) {
+    world.Step(1e-3);
+    touched += world.CableBends(0, 0);
+    ASSERT_LT(Distance(world.Momentum(0), momentum), 1e-12) << i;
+    ASSERT_LT(Distance(world.AngularMomentum(0), angular), 1e-10) << i;
+    ASSERT_NEAR(EnergyOf(world) + world.CableFrictionLoss(0, 0), energy, 2e-4 * energy) << i;
+    ExpectNothingLost(world);
+  }
+  EXPECT_GT(touched, 100);
+  EXPECT_GT(world.CableFrictionLoss(0, 0), 3e-4);
+}
+
+TEST(TouchFriction, HardlyAnyIsNone) {
+  ModelDef def = Flight();
+  Batch without = MakeBatch(def);
+  def.cables[0].touch_friction = 1e-12;
+  Batch with = MakeBatch(def);
+  without.Step(1e-3, 4000), with.Step(1e-3, 4000);
+  EXPECT_LT(Distance(without.Body(0, 2).position_m, with.Body(0, 2).position_m), 1e-4);
+  EXPECT_GT(Distance(without.Body(0, 2).position_m, def.bodies[2].com_m), 0.05);
+}
+
+TEST(TouchFriction, LanesAreLikeWorldsAlone) {
+  ModelDef flight = Flight();
+  flight.cables[0].touch_friction = 0.3;
+  ExpectLanesLikeWorldsAlone(flight, {0.02, 0.01, 0.03}, 2000);
+  ModelDef wall;
+  const Vec3 from{-0.3, 0, 0.1}, to{0.4, 0.1, 0.07};
+  wall.bodies = {Ball(1, from), Ball(1, to)};
+  wall.terrain_boxes = {Box({0, -1, -1}, {0.1, 1, 0.06})};
+  wall.cables = {Cable({0, from}, {1, to}, 1000, Distance(from, to), 1e-3)};
+  wall.cables[0].touch_friction = 0.2;
+  ExpectLanesLikeWorldsAlone(wall, {0.01, 0.01, 0.02}, 300);
+}
+
+}  // namespace
+}  // namespace taut::test
