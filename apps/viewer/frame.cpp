@@ -29,11 +29,13 @@ std::vector<double> FrameNumbers(const Frame& frame) {
   out[kFrameValueCount] = static_cast<double>(frame.values.size());
   out[kFrameGhostCount] = static_cast<double>(frame.ghosts.size());
   out[kFrameBendCount] = static_cast<double>(frame.bends.size());
+  out[kFrameSpanCount] = static_cast<double>(frame.spans.size());
   out.reserve(out.size() + frame.bodies.size() * kFrameBodiesValues +
               frame.cables.size() * kFrameCablesValues +
               frame.contacts.size() * kFrameContactsValues +
               frame.pushes.size() * kFramePushesValues + frame.values.size() +
-              frame.ghosts.size() * kFrameGhostsValues + frame.bends.size() * kFrameBendsValues);
+              frame.ghosts.size() * kFrameGhostsValues + frame.bends.size() * kFrameBendsValues +
+              frame.spans.size() * kFrameSpansValues);
   const auto put = [&](const Vec3& v) { out.insert(out.end(), {v.x, v.y, v.z}); };
   const auto put_bodies = [&](const std::vector<Frame::Body>& bodies) {
     for (const Frame::Body& body : bodies) {
@@ -59,6 +61,9 @@ std::vector<double> FrameNumbers(const Frame& frame) {
   for (const Frame::Bend& bend : frame.bends) {
     out.push_back(bend.cable);
     put(bend.point_m);
+  }
+  for (const Frame::Span& span : frame.spans) {
+    out.insert(out.end(), {static_cast<double>(span.cable), span.tension_n});
   }
   return out;
 }

@@ -30,6 +30,11 @@ struct Frame {
     Vec3 point_m{kUnknown, kUnknown, kUnknown};
   };
 
+  struct Span {
+    int cable = -1;
+    double tension_n = kUnknown;
+  };
+
   double time_s = 0;
   double now_s = 0;  ///< Of the run; later than `time_s` while its past is looked at.
   double real_time_factor = 0, speed = 1;
@@ -45,6 +50,7 @@ struct Frame {
   std::vector<double> values;  ///< Of channels of a program's own (taut/page.h).
   std::vector<Body> ghosts;    ///< Of compared runs; NaN while a run has no row.
   std::vector<Bend> bends;     ///< Of cables that lie against what they come to, along each.
+  std::vector<Span> spans;     ///< Of cables with friction, along each; not of ghosts.
 };
 
 /// Every number of the frame in the order of the definition.

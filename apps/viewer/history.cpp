@@ -95,6 +95,7 @@ void History::Clear() {
   contacts_ = {};
   pushes_ = {};
   bends_ = {};
+  spans_ = {};
 }
 
 void History::Take(const Frame& frame, const std::vector<double>& row) {
@@ -121,8 +122,10 @@ void History::Take(const Frame& frame, const std::vector<double>& row) {
   contacts_.Add(frame.contacts);
   pushes_.Add(frame.pushes);
   bends_.Add(frame.bends);
+  spans_.Add(frame.spans);
   const std::size_t row_bytes = (1 + columns_.size()) * sizeof(double);
-  const std::size_t list_bytes = contacts_.bytes() + pushes_.bytes() + bends_.bytes();
+  const std::size_t list_bytes =
+      contacts_.bytes() + pushes_.bytes() + bends_.bytes() + spans_.bytes();
   if (size() * row_bytes + list_bytes > max_bytes_) Thin();
 }
 
@@ -133,6 +136,7 @@ void History::Thin() {
   contacts_.Thin();
   pushes_.Thin();
   bends_.Thin();
+  spans_.Thin();
   period_s_ *= 2;
   due_s_ = time_s_.back() + period_s_ * (1 - 1e-9);
 }
@@ -179,6 +183,7 @@ void History::Show(std::size_t row, Frame& frame) const {
   frame.contacts = contacts_.Get(row);
   frame.pushes = pushes_.Get(row);
   frame.bends = bends_.Get(row);
+  frame.spans = spans_.Get(row);
 }
 
 std::vector<double> History::Row(std::size_t row) const {

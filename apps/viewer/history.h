@@ -76,6 +76,7 @@ class History {
   Lists<Frame::Contact> contacts_;
   Lists<OutsideForce> pushes_;
   Lists<Frame::Bend> bends_;
+  Lists<Frame::Span> spans_;
 };
 
 }  // namespace taut::viewer

@@ -142,6 +142,7 @@ void JoinedRobots::Set(int robot, const RobotMoment& moment) {
   CheckLength(moment.rest_length_m, cables, "rest_length_m", robot);
   CheckLength(moment.set_point_n, cables, "set_point_n", robot);
   CheckLength(moment.bends_m, cables, "bends_m", robot);
+  CheckLength(moment.span_tension_n, cables, "span_tension_n", robot);
   CheckLength(moment.node_force_n, own.def.nodes.size(), "node_force_n", robot);
   own.moment = moment;
 }
@@ -161,6 +162,9 @@ void JoinedRobots::FillCables(const Robot& robot, Frame& frame) const {
       frame.bends.push_back(
           {static_cast<int>(frame.cables.size()), Plus(now.bends_m[c][i], robot.at_m)});
     }
+    for (std::size_t i = 0; !now.span_tension_n.empty() && i < now.span_tension_n[c].size(); ++i) {
+      frame.spans.push_back({static_cast<int>(frame.cables.size()), now.span_tension_n[c][i]});
+    }
     frame.cables.push_back({At(now.tension_n, c), At(now.length_m, c), At(now.rest_length_m, c),
                             At(now.set_point_n, c)});
   }
@@ -170,6 +174,7 @@ void JoinedRobots::Fill(Frame& frame) const {
   frame.bodies.clear();
   frame.cables.clear();
   frame.bends.clear();
+  frame.spans.clear();
   frame.contacts.clear();
   frame.pushes.clear();
   frame.energy = {};

@@ -299,11 +299,17 @@ void LiveSession::Fill(Frame& frame) const {
   }
   frame.cables.clear();
   frame.bends.clear();
+  frame.spans.clear();
   for (int c = 0; c < static_cast<int>(def.cables.size()); ++c) {
     const CableState cable = now.Cable(c);
     const auto place = static_cast<std::size_t>(c);
     if (world != nullptr && def.cables[place].touches != CableTouches::kNone) {
       for (const Vec3& bend : world->CableBendPlaces(0, c)) frame.bends.push_back({c, bend});
+    }
+    if (world != nullptr && HasFriction(def.cables[place])) {
+      for (const double tension_n : world->CableSpanTensions(0, c)) {
+        frame.spans.push_back({c, tension_n});
+      }
     }
     frame.cables.push_back(
         {cable.tension_n, cable.length_m, cable.rest_length_m,

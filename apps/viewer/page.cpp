@@ -26,6 +26,9 @@ RobotMoment MomentOf(const Batch& batch, int world) {
     moment.length_m.push_back(cable.length_m);
     moment.rest_length_m.push_back(cable.rest_length_m);
     moment.bends_m.push_back(batch.CableBendPlaces(world, c));
+    const bool parted = HasFriction(def.cables[static_cast<std::size_t>(c)]);
+    moment.span_tension_n.push_back(parted ? batch.CableSpanTensions(world, c)
+                                           : std::vector<double>{});
   }
   for (int n = 0; n < static_cast<int>(def.nodes.size()); ++n) {
     moment.node_force_n.push_back(batch.NodeForce(world, n));

@@ -3,7 +3,7 @@
 
 namespace taut::viewer {
 
-inline constexpr int kProtocolVersion = 8;
+inline constexpr int kProtocolVersion = 9;
 
 /// How a field of a message is written in JSON.
 enum class FieldKind { kString, kNumber, kInteger, kBoolean, kVec3, kChoice };
@@ -74,6 +74,7 @@ enum FrameHeader {
   kFrameValueCount,
   kFrameGhostCount,
   kFrameBendCount,
+  kFrameSpanCount,
   kFrameHeaderSize,
 };
 inline constexpr int kFrameBodiesValues = 7;
@@ -83,5 +84,6 @@ inline constexpr int kFramePushesValues = 4;
 inline constexpr int kFrameValuesValues = 1;
 inline constexpr int kFrameGhostsValues = 7;
 inline constexpr int kFrameBendsValues = 4;
+inline constexpr int kFrameSpansValues = 2;
 
 }  // namespace taut::viewer

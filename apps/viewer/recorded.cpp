@@ -155,6 +155,12 @@ void Recorded::FindColumns() {
       if (!FindAll(fmt::format("cable/{}/bend_{}_", name, i), kPlace, place)) break;
       columns.bends.insert(columns.bends.end(), std::begin(place), std::end(place));
     }
+    for (int i = 1;; ++i) {
+      const auto* const tension =
+          Column(fmt::format("cable/{}/span_{}_tension_n", cable["name"].get<std::string>(), i));
+      if (tension == nullptr) break;
+      columns.spans.push_back(tension);
+    }
     cables_.push_back(std::move(columns));
   }
   energy_[0] = Column("system/kinetic_j");
@@ -294,6 +300,12 @@ Frame Recorded::FrameOf(std::size_t row) const {
   frame.contact_count = ValueAt(contact_count_, row);
   frame.bodies = PosesOf(row);
   AddBends(row, 0, frame.bends);
+  for (std::size_t c = 0; c < cables_.size(); ++c) {
+    for (const auto* const tension : cables_[c].spans) {
+      if (std::isnan((*tension)[row])) break;  // not so many now
+      frame.spans.push_back({static_cast<int>(c), (*tension)[row]});
+    }
+  }
   auto cables = static_cast<int>(cables_.size());
   for (const auto& run : compared_) {
     if (!run->has_poses()) continue;  // it has no ghost

@@ -84,6 +84,7 @@ class Recorded {
   struct CableColumns {
     const std::vector<double>* values[4];
     std::vector<const std::vector<double>*> bends;  ///< x, y, z of each; empty: drawn straight.
+    std::vector<const std::vector<double>*> spans;  ///< Tensions; empty: it has one.
   };
   struct ForceColumn {
     int node = 0;

@@ -94,7 +94,7 @@ void AddFrames(const Recorded& recorded, Json& report) {
       std::clamp<std::size_t>(static_cast<std::size_t>(std::min(span_s * kFramesPerS, 1e9)) + 1, 1,
                               std::min(kMaxFrames, times.size()));
   std::vector<Frame> all;
-  std::size_t pushes = 0, contacts = 0, bends = 0;
+  std::size_t pushes = 0, contacts = 0, bends = 0, spans = 0;
   for (std::size_t i = 0; i < frames; ++i) {
     const double share = frames == 1 ? 0 : static_cast<double>(i) / static_cast<double>(frames - 1);
     // Times near a row may lie a rounding before it.
@@ -102,6 +102,7 @@ void AddFrames(const Recorded& recorded, Json& report) {
     pushes = std::max(pushes, all.back().pushes.size());
     contacts = std::max(contacts, all.back().contacts.size());
     bends = std::max(bends, all.back().bends.size());
+    spans = std::max(spans, all.back().spans.size());
   }
   std::string bytes;
   std::size_t values = 0;
@@ -110,6 +111,7 @@ void AddFrames(const Recorded& recorded, Json& report) {
     frame.pushes.resize(pushes);
     frame.contacts.resize(contacts);
     frame.bends.resize(bends);
+    frame.spans.resize(spans);
     frame.run = 1;
     frame.now_s = frame.time_s;
     const std::vector<double> numbers = FrameNumbers(frame);

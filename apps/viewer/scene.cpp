@@ -70,6 +70,7 @@ Json Cables(const ModelDef& def) {
                         {"radius_m", at.wheel->radius_m},
                         {"angle_rad", WheelStartAngle(cable, i)}};
       }
+      if (at.friction > 0) one["parts"] = true;
       attachments.push_back(std::move(one));
     }
     cables.push_back({{"name", cable.name},
@@ -77,6 +78,7 @@ Json Cables(const ModelDef& def) {
                       {"stiffness_n_per_m", cable.stiffness_n_per_m},
                       {"actuated", cable.actuator.kind != ActuatorDef::Kind::kNone}});
     if (cable.touches != CableTouches::kNone) cables.back()["most_bends"] = CableDef::kMostBends;
+    if (HasFriction(cable)) cables.back()["parted"] = true;
   }
   return cables;
 }

@@ -51,6 +51,8 @@ struct RobotMoment {
   std::vector<double> tension_n, length_m, rest_length_m, set_point_n;  ///< By cable.
   /// By cable: where it is bent, along it, in W; of those alone that touch what they come to.
   std::vector<std::vector<Vec3>> bends_m;
+  /// By cable: of its spans, along it; of those alone that have friction.
+  std::vector<std::vector<double>> span_tension_n;
   std::vector<Vec3> node_force_n;  ///< By node, in W: what pushes from outside.
   /// Of any length; points and forces are drawn. Where it is not known, it is as if there were
   /// none.

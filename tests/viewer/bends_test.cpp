@@ -93,5 +93,31 @@ TEST_F(Bends, ATraceWithoutThemIsDrawnStraightAndSaysNothing) {
   EXPECT_EQ(recorded->notice(), "");
 }
 
+TEST_F(Bends, PartACableWithFrictionIntoSpans) {
+  Diagnostics found;
+  ExperimentSpec rough = experiment_;
+  rough.robot.def.cables[0].touch_friction = 0.2;
+  rough.robot.def.bodies[1].mass_kg *= 1.5;
+  const std::string path = RecordIn("rough", rough);
+  const auto recorded = Load(path, {});
+  const Trace file = *ReadTrace(path, found);
+  std::size_t parted = 0;
+  for (std::size_t row = 0; row < file.time_s.size(); ++row) {
+    const auto value = [&](const std::string& name) {
+      return file.values[*file.Find("cable/rope/" + name)][row];
+    };
+    const std::vector<viewer::Frame::Span> spans = recorded->FrameOf(row).spans;
+    ASSERT_EQ(static_cast<double>(spans.size()), value("bends") + 1) << row;
+    for (std::size_t i = 0; i < spans.size(); ++i) {
+      EXPECT_EQ(spans[i].cable, 0);
+      EXPECT_EQ(spans[i].tension_n, value("span_" + std::to_string(i + 1) + "_tension_n"));
+    }
+    EXPECT_TRUE(std::isnan(value("span_9_tension_n")));
+    parted += spans.size() == 3 && spans[2].tension_n > 1.2 * spans[0].tension_n;
+  }
+  EXPECT_GT(parted, 10u);
+  EXPECT_GT(viewer::ReportOf(*recorded)["frame_values"], 0);
+}
+
 }  // namespace
 }  // namespace taut::test

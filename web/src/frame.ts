@@ -45,6 +45,8 @@ export function frameOfScene(scene: Scene): Frame {
   frame.ghosts = new Float64Array(frame.ghost_count * VALUES.ghosts).fill(NaN);
   frame.bend_count = 0;
   frame.bends = new Float64Array(0);
+  frame.span_count = 0;
+  frame.spans = new Float64Array(0);
   return frame;
 }
 

@@ -21,6 +21,7 @@ export const FRAME = {
     "value_count", // Channels of a program's own: Scene.values.
     "ghost_count", // Bodies of all ghosts: the same in every frame of a scene.
     "bend_count", // Of cables that lie against what they come to: the middles of their arcs, along each cable. Of ghosts the cables are behind those of the scene, in their order; -1: of none.
+    "span_count", // Of cables with friction, along each: those between its places with friction, or between its bends. -1: of none.
   ],
   sections: [
     { name: "bodies", count: "body_count", fields: ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"] },
@@ -30,8 +31,9 @@ export const FRAME = {
     { name: "values", count: "value_count", fields: ["value"] },
     { name: "ghosts", count: "ghost_count", fields: ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"] },
     { name: "bends", count: "bend_count", fields: ["cable", "x_m", "y_m", "z_m"] },
+    { name: "spans", count: "span_count", fields: ["cable", "tension_n"] },
   ],
 } as const;
 
 /** Numbers of one entry of a section. */
-export const VALUES = { bodies: 7, cables: 4, contacts: 6, pushes: 4, values: 1, ghosts: 7, bends: 4 } as const;
+export const VALUES = { bodies: 7, cables: 4, contacts: 6, pushes: 4, values: 1, ghosts: 7, bends: 4, spans: 2 } as const;

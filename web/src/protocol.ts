@@ -4,7 +4,7 @@
 import type { RobotStatus, Scene, SeriesData, Vec3 } from "./structs";
 export type * from "./structs";
 
-export const PROTOCOL_VERSION = 8;
+export const PROTOCOL_VERSION = 9;
 
 /** The first message. */
 export interface HelloMessage {

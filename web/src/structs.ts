@@ -53,6 +53,8 @@ export interface Attachment {
   position_m: Vec3;
   /** The cable goes round it: the place is its middle. */
   wheel?: Wheel;
+  /** Friction parts the cable here: true or absent. */
+  parts?: boolean;
 }
 
 /** A cylinder that a cable goes round, of an attachment's body. */
@@ -75,6 +77,8 @@ export interface Cable {
   actuated: boolean;
   /** It lies against what it comes to: frames hold its bends, so many at most. */
   most_bends?: number;
+  /** Friction parts it: frames hold its spans. True or absent. */
+  parted?: boolean;
 }
 
 /** Holds a part of one body's motion against another's; a support is a joint with the world. */
@@ -228,7 +232,7 @@ export interface Report {
   frame_count: number;
   /** Numbers a frame. */
   frame_values: number;
-  /** Float64, little endian: frames as defined below, one after the other. Each has as many contacts, pushes and bends as the one with the most; what does not act has no force, and what is no bend is of no cable. */
+  /** Float64, little endian: frames as defined below, one after the other. Each has as many contacts, pushes, bends and spans as the one with the most; what does not act has no force, and what is no bend or span is of no cable. */
   frames_base64: string;
 }
 

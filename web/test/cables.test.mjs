@@ -1,5 +1,5 @@
 // Cables that go round wheels are drawn where the physics has them; how often round, their length says. Those
-// that lie against what they come to are drawn over the bends that their channels have.
+// that lie against what they come to are drawn over the bends that their channels have, each span in the colour of its tension.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -121,6 +121,45 @@ test("ARopeIsDrawnOverTheEdgesThatItLiesOn", options, async (t) => {
     assert.deepEqual(bends, [[0, 0], [2, 0], [2, 2]]);
   }
   await picture(report, "rope-over-wall");
+});
+
+test("EachSpanHasTheColourOfItsTension", options, async (t) => {
+  const out = join(folder, "friction");
+  taut("run", OVER_WALL, "--duration_s", "1", "--csv", "--quiet", "--out", out, "--set", "friction=0.2", "--set", "right_kg=0.3");
+  const run = csvOf(out);
+  const file = join(folder, "friction.html");
+  taut("report", join(out, "trace.h5"), "--out", file);
+  const pages = [`file://${file}`, await view(join(out, "trace.h5"), "--port", "0")];
+  pages.push(await view(OVER_WALL, "--set", "friction=0.2", "--set", "right_kg=0.3", "--paused", "--port", "0"));
+  for (const url of pages) {
+    const page = await openPage(url, { width: 1300, height: 900 });
+    t.after(() => page.context().close());
+    const live = await page.evaluate(() => window.taut.app.scene.value.mode === "live" || window.taut.app.frame.value.now_s === 0);
+    if (live) await page.evaluate(() => window.taut.app.send({ type: "step", count: 900 }));
+    else await page.evaluate((wanted) => window.taut.app.seek(wanted), 0.9);
+    await untilTime(page, 0.9, 0.02);
+    await shown(page);
+    const seen = await page.evaluate(() => {
+      const { cables } = window.taut.view.world;
+      const { geometry } = cables.lines[0];
+      return {
+        time_s: window.taut.app.frame.value.time_s,
+        scale_n: cables.scale_n,
+        colours: Array.from(geometry.getAttribute("instanceColorStart").data.array.slice(0, 6 * geometry.instanceCount)),
+      };
+    });
+    const tensions = [1, 2, 3].map((span) => run.value(`cable/rope/span_${span}_tension_n`, seen.time_s + 1e-9));
+    assert.ok(Number.isNaN(run.value("cable/rope/span_4_tension_n", seen.time_s + 1e-9)));
+    assert.ok(tensions[2] > 1.3 * tensions[0] && tensions[1] > tensions[0], `${tensions} N`);
+    const expected = await page.evaluate((shares) => shares.map((share) => window.taut.view.world.cables.tensionColour(share).toArray()), tensions.map((n) => n / seen.scale_n));
+    assert.equal(seen.colours.length, 18);
+    expected.forEach((colour, k) => {
+      near(seen.colours.slice(6 * k, 6 * k + 3), colour);
+      near(seen.colours.slice(6 * k + 3, 6 * k + 6), colour);
+    });
+    assert.ok(Math.hypot(...expected[0].map((x, k) => x - expected[2][k])) > 0.01);
+    await picture(page, "rope-with-friction");
+  }
 });
 
 test("ALiveRopeLiesOnEdgesNowAndInItsPast", options, async (t) => {

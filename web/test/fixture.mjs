@@ -120,7 +120,7 @@ export function frameValues(time_s, more = {}) {
   const header = {
     time_s, now_s: time_s, real_time_factor: 1, speed: 1, paused: 0, driver: 1, kinetic_j: 0.1 * time_s, gravity_j: 2, elastic_j: 3,
     run: 0, body_count: 3, cable_count: CABLE_COUNT, contact_count: contactCount(time_s), contact_rows: contacts.length, push_count: pushes.length,
-    value_count: 0, ghost_count: ghosts.length, bend_count: 0,
+    value_count: 0, ghost_count: ghosts.length, bend_count: 0, span_count: 0,
     ...more.header,
   };
   return [

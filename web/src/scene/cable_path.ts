@@ -44,6 +44,26 @@ function bendsOf({ bends }: Frame, cable: number): Vector3[] {
   return places;
 }
 
+/** The tensions of a cable's spans, from its first end on; none where friction does not part it [N]. */
+export function spanTensions({ spans }: Frame, cable: number): number[] {
+  const tensions: number[] = [];
+  for (let at = 0; at < spans.length; at += VALUES.spans) if (spans[at] === cable) tensions.push(spans[at + 1]!);
+  return tensions;
+}
+
+/** Of each straight part of the path that is drawn with so many points, the span that it is of. */
+export function spansOfParts(cable: Cable, points: number): number[] {
+  if (cable.most_bends !== undefined) return Array.from({ length: points - 1 }, (_, k) => k);
+  const parts: number[] = [];
+  let span = 0;
+  cable.attachments.forEach(({ wheel, parts: friction }, i) => {
+    if (i > 0) parts.push(span);
+    for (let k = 0; wheel && k < ARC_PARTS; ++k) parts.push(friction && k >= ARC_PARTS / 2 ? span + 1 : span);
+    if (friction) ++span;
+  });
+  return parts;
+}
+
 function layOnWheels(poses: Poses, attachments: readonly Attachment[], length_m: number, out: readonly Vector3[]): void {
   const places = attachments.map((at) => worldPoint(poses, at.body, at.position_m, new Vector3()));
   const wheels = attachments.map((at, i) => (at.wheel ? laid(poses, at, places[i]!) : null));

@@ -7,7 +7,7 @@ import type { Theme } from "../app";
 import { palette, tensionColour } from "../colours";
 import { cableState, type Frame, isSlack } from "../frame";
 import type { Cable, Scene } from "../protocol";
-import { layCable, pointCount } from "./cable_path";
+import { layCable, pointCount, spansOfParts, spanTensions } from "./cable_path";
 import { type Part, release } from "./part";
 
 export const THINNEST_PX = 1.5;
@@ -62,7 +62,9 @@ export class Cables implements Part {
     const line = this.lines[i];
     if (!line || !this.frame) return;
     const state = cableState(this.frame, i);
-    const share = Number.isFinite(state.tension_n) ? state.tension_n / this.scale_n : 0;
+    const spans = spanTensions(this.frame, i);
+    if (spans.length > 0) state.tension_n = Math.max(...spans);
+    const share = this.share(state.tension_n);
     const slack = isSlack(state);
     const material = line.material;
     if (material.dashed !== slack) {
@@ -77,20 +79,47 @@ export class Cables implements Part {
     } else if (slack) {
       material.color.set(palette(this.theme).slack);
     } else {
-      material.color.copy(new Color().setRGB(...tensionColour(share, this.theme), "srgb"));
+      material.color.copy(this.tensionColour(share));
     }
+    if (!this.scene.cables[i]!.parted) return;
+    const one = material.color.clone();
+    const plain = slack || i === this.marked || spans.length < 2;
+    const colours = spans.map((tension_n) => (plain ? one : this.tensionColour(this.share(tension_n))));
+    const points = this.points[i]!.length;
+    paintParts(line, spansOfParts(this.scene.cables[i]!, points).map((span) => colours[span] ?? one));
+    material.color.set("white"); // what the parts' colours are times of
+  }
+
+  private share(tension_n: number): number {
+    return Number.isFinite(tension_n) ? tension_n / this.scale_n : 0;
+  }
+
+  private tensionColour(share: number): Color {
+    return new Color().setRGB(...tensionColour(share, this.theme), "srgb");
   }
 
   private line(cable: Cable, size_m: number): Line2 | null {
     if (cable.attachments.length < 2) return null;
     const geometry = new LineGeometry();
     geometry.setPositions(new Float32Array(3 * pointCount(cable)));
-    const material = new LineMaterial({ dashSize: 0.02 * size_m, gapSize: 0.015 * size_m });
+    if (cable.parted) geometry.setColors(new Float32Array(3 * pointCount(cable)));
+    const vertexColors = cable.parted === true;
+    const material = new LineMaterial({ dashSize: 0.02 * size_m, gapSize: 0.015 * size_m, vertexColors });
     const line = new Line2(geometry, material);
     line.frustumCulled = false; // its bounds are those of the start
     this.object.add(line);
     return line;
   }
+}
+
+/** A colour for each straight part. */
+function paintParts(line: Line2, colours: readonly Color[]): void {
+  const start = line.geometry.getAttribute("instanceColorStart") as unknown as { data: InstancedInterleavedBuffer };
+  colours.forEach((colour, k) => {
+    colour.toArray(start.data.array, 6 * k);
+    colour.toArray(start.data.array, 6 * k + 3);
+  });
+  start.data.needsUpdate = true;
 }
 
 /** Writes into the buffer that the line has; setPositions would make a new one each frame. */
