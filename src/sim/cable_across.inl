@@ -36,9 +36,11 @@ TAUT_INLINE double SlideTo(const Tangents<Vec3>& way, double from, double goal) 
 
 /// Of one lane's bend: slides if it has to. Returns how far [m].
 template <class W>
-double SlideBend(const Rows<W>& s, const CableTable& cable, const Scratch<W>& work, double friction,
+double SlideBend(const Rows<W>& s, const CableTable& cable, Scratch<W>& work, double friction,
                  const Vec3& p, const Vec3& q, int k, int lane) noexcept {
+  constexpr double kSteepest = 0.995;  ///< Of what can hold it: what drifts is still some slip.
   W& along = s.slip_along[cable.first_slip + k];
+  AcrossWork<W>& across = work.across[cable.first_slip + k];
   const Wheel<V3<W>>& from = work.wheels[k];
   const Wheel<Vec3> wheel{PlaceOf(from.center, lane),
                           PlaceOf(from.axis, lane),
@@ -56,19 +58,41 @@ double SlideBend(const Rows<W>& s, const CableTable& cable, const Scratch<W>& wo
   const double low = Min(before_n, behind_n), high = Max(before_n, behind_n), old = along[lane];
   if (!(old < kNotHeld) || !(low > 0.0)) {
     along.Set(lane, straight);
+    across.aside.Set(lane, 0.0), across.drift.Set(lane, 0.0);
     return old < kNotHeld ? Abs(straight - old) : 0.0;
   }
-  // What holds it along the cable does not hold it across.
-  const double mu_theta = friction * Max(way.theta, 0.0), most = (RatioOf(mu_theta) - 1.0) * low;
-  const double used = most > high - low ? (high - low) / most : 1.0;
-  const double hold = mu_theta * Sqrt(1.0 - used * used);
-  const double aside = AsideAt(way, old);
-  if (Abs(aside) <= hold) return 0.0;
-  const double now = SlideTo(way, old, aside > 0.0 ? hold : -hold), moved = Abs(now - old);
-  along.Set(lane, now);
-  W& loss = s.slip_loss[cable.first_slip + k];
-  loss.Set(lane, loss[lane] + 0.25 * (low + high) * (Abs(aside) + hold) * moved);
-  return moved;
+  const double hold = friction * Max(way.theta, 0.0), aside = AsideAt(way, old);
+  double now = old;
+  if (Abs(aside) > hold) {
+    now = SlideTo(way, old, aside > 0.0 ? hold : -hold);
+    along.Set(lane, now);
+    W& loss = s.slip_loss[cable.first_slip + k];
+    loss.Set(lane, loss[lane] + 0.25 * (low + high) * (Abs(aside) + hold) * Abs(now - old));
+  }
+  const double left = Max(Min(aside, hold), -hold);
+  const double part = hold > 0.0 ? Max(Min(left / hold, kSteepest), -kSteepest) : 0.0;
+  across.aside.Set(lane, left);
+  across.drift.Set(lane, part / Sqrt(1.0 - part * part));
+  across.far.Set(lane, straight - now);
+  return Abs(now - old);
+}
+
+/// What slips along the cable takes the bend along with it, in the direction against which friction
+/// acts, until it is straight.
+template <class W, class Tag>
+void DriftAcross(const Rows<W>& s, const Scratch<W>& work, const CableTable& cable,
+                 const Capstan<Tag>& found, double area_n, int lane) noexcept {
+  for (int i = 0; i + 1 < found.count; ++i) {
+    const int slip = cable.first_slip + i;
+    const AcrossWork<W>& across = work.across[slip];
+    const double tension = 0.5 * (found.tension[i] + found.tension[i + 1]);
+    const double way = across.drift[lane] * Abs(found.slip[i]) * (1.0 + tension / area_n);
+    if (way == 0.0) continue;
+    const double far = across.far[lane], moves = Abs(way) < Abs(far) ? way : far;
+    s.slip_along[slip].Set(lane, s.slip_along[slip][lane] + moves);
+    const double work_j = tension * Abs(across.aside[lane] * moves);
+    s.slip_loss[slip].Set(lane, s.slip_loss[slip][lane] + work_j);
+  }
 }
 
 /// All bends of a cable that is laid slide as far as they have to, and it is laid there.
@@ -79,7 +103,9 @@ template <class W>
   constexpr int kMostRounds = 20;
   constexpr double kStillM = 1e-13;
   const CableTable& cable = m.cables[touch.cable];
-  auto slides = s.halted[0] == W::Splat(0.0);
+  const W zero = W::Splat(0.0);
+  for (int k = 0; k < kMostBends; ++k) work.across[cable.first_slip + k] = {zero, zero, zero};
+  auto slides = s.halted[0] == zero;
   for (int round = 0; round < kMostRounds && Any(slides); ++round) {
     for (int lane = 0; lane < W::kLanes; ++lane) {
       if (!slides[lane]) continue;

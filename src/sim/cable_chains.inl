@@ -307,6 +307,8 @@ void FinishChains(const View& m, const Rows<W>& s, const Scratch<W>& work, doubl
       const auto found = chain.BranchOf(rates, rates);
       Slip(found.law, s.stiffness[c][lane] * s.rest[c][lane], lane, &s.span_rest[cable.first_span],
            &s.slip_loss[cable.first_slip]);
+      if (cable.touch < 0) continue;
+      DriftAcross(s, work, cable, found.law, s.stiffness[c][lane] * s.rest[c][lane], lane);
     }
   }
 }

@@ -94,6 +94,14 @@ struct Spot {
 template <class W>
 using AttachmentWork = PathPoint<V3<W>>;
 
+/// How a bend turns aside from the straight line on what it lies against (cable_across.inl).
+template <class W>
+struct AcrossWork {
+  W aside;  ///< Its pull along the axis per tension, positive along that [1].
+  W drift;  ///< Way along the axis per way that slips along the cable [1].
+  W far;    ///< To where it would be straight, along the axis [m].
+};
+
 /// A cable while the tensions of soft ones are found. From `links` on: only in worlds with dampers
 /// or stiff cables.
 template <class W>
@@ -165,6 +173,7 @@ struct Scratch {
   StiffCable<W>* stiff;
   Link<W, 1>* links;        ///< Of all cables.
   ChainSpan<W>* spans;      ///< Of all cables with friction.
+  AcrossWork<W>* across;    ///< Of all places where they slip.
   RowLink<W>* chain_links;  ///< Those of a cable from its first_link on,
   int* chain_link_count;    ///< and how many; per cable.
   HeldRow<W>* joints;       ///< Rows of all joints.
@@ -206,6 +215,7 @@ struct Scratch {
     links = room_.Take<Link<W, 1>>(m.attachment_count + (m.touch_rod_count > 0 ? W::kLanes : 0) *
                                                             kMostBends * m.touch_count);
     spans = room_.Take<ChainSpan<W>>(m.span_count);
+    across = room_.Take<AcrossWork<W>>(m.slip_count);
     chain_links = room_.Take<RowLink<W>>(m.chain_link_count);
     chain_link_count = room_.Take<int>(m.chain_count > 0 ? m.cable_count : 0);
     joints = room_.Take<HeldRow<W>>(m.joint_row_count);

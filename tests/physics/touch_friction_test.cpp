@@ -215,20 +215,76 @@ TEST(TouchFriction, AcrossItSticksAndThenTrailsBehind) {
   EXPECT_NEAR((world.CableFrictionLoss(0, 0) - loss) / (at_middle() - went), force, 1e-3 * force);
 }
 
-/// Friction does not work in two directions at once.
-TEST(TouchFriction, ACableThatSlipsAlongIsNotHeldAcross) {
+/// A cable goes askew over both edges of a wall; then one end goes up, until it is off the first
+/// edge, and down again: the second edge still has it where it had it.
+TEST(TouchFriction, WhatIsHeldStaysWhereOtherBendsComeAndGo) {
+  for (const bool first : {true, false}) {
+    const Vec3 from{-0.3, 0, -0.1}, to{0.4, 0, -0.1};
+    ModelDef def;
+    def.gravity_m_per_s2 = {};
+    def.bodies = {Ball(1e13, from), Ball(1e13, to)};
+    def.terrain_boxes = {Box({0, -5, -3}, {0.1, 5, 0})};
+    def.cables = {Cable({0, from}, {1, to}, 1000, 0.6, 1e-3)};
+    def.cables[0].touch_friction = 0.5;
+    Batch world = MakeBatch(def);
+    const auto go = [&](int body, const Vec3& velocity, int steps, int* fewest) {
+      BodyState state = world.Body(0, body);
+      state.velocity_m_per_s = velocity;
+      world.SetBodyState(0, body, state);
+      const auto there = [&] {
+        const std::vector<Vec3> places = world.CableBendPlaces(0, 0);
+        return first ? places.front() : places.back();
+      };
+      Vec3 last = there();
+      for (int i = 0; i < steps; ++i) {
+        world.Step(1e-3);
+        ASSERT_LT(std::fabs(there().y - last.y), 1e-3) << i;
+        last = there();
+        *fewest = std::min(*fewest, world.CableBends(0, 0));
+        ExpectNothingLost(world);
+      }
+      state = world.Body(0, body);
+      state.velocity_m_per_s = {};
+      world.SetBodyState(0, body, state);
+    };
+    world.Step(1e-3);
+    int fewest = 2;
+    const int moves = first ? 1 : 0;  // beyond the edge that is left
+    go(moves, {0, first ? -0.1 : 0.1, 0}, 2000, &fewest);
+    ASSERT_EQ(fewest, 2);
+    const std::vector<Vec3> askew = world.CableBendPlaces(0, 0);
+    EXPECT_GT(std::fabs(askew[1].y - askew[0].y), 0.01);
+    go(moves, {0, 0, 0.2}, 1000, &fewest);
+    EXPECT_EQ(fewest, 1);
+    go(moves, {0, 0, -0.2}, 1000, &fewest);
+    EXPECT_EQ(world.CableBends(0, 0), 2);
+  }
+}
+
+/// A cable that runs over the edge, and a little along it: so does what friction pulls.
+TEST(TouchFriction, ACableThatSlipsAlongIsHardlyHeldAcross) {
   Across across;
-  across.def.bodies[0].velocity_m_per_s = {0.04, 0.001, 0.02};
-  across.def.bodies[1].velocity_m_per_s = {0.04, 0.001, -0.02};
+  const double runs = 0.04, aside = 0.004, far = std::hypot(0.2, 0.1);
+  across.def.bodies[0].velocity_m_per_s = {0.2 / far * runs, aside, 0.1 / far * runs};
+  across.def.bodies[1].velocity_m_per_s = {0.2 / far * runs, aside, -0.1 / far * runs};
   Batch world = MakeBatch(across.def);
-  world.Step(1e-3, 1000);
-  const double c = std::exp(Across::kFriction * across.theta);
-  EXPECT_NEAR(world.CableSpan(0, 0, 1).tension_n / world.CableSpan(0, 0, 0).tension_n, c, 0.05);
+  world.Step(1e-3, 2000);
   ASSERT_EQ(world.CableBends(0, 0), 1);
+  const double c = std::exp(Across::kFriction * across.theta);
+  const double before = world.CableSpan(0, 0, 0).tension_n;
+  const double behind = world.CableSpan(0, 0, 1).tension_n;
+  EXPECT_NEAR(behind / before, c, 1e-3);
   const std::vector<CablePoint> path = world.CablePath(0, 0);
   ASSERT_EQ(path.size(), 4u);
-  // What pulls at the ridge does not pull along it.
-  EXPECT_NEAR(path[1].force_n.y + path[2].force_n.y, 0, 0.01);
+  // What pulls at the edge along it, but for what friction along the cable has there.
+  const auto rise = [&](std::size_t i) {
+    const Vec3 way = path[i].position_m - path[i - 1].position_m;
+    return way.y / std::sqrt(Dot(way, way));
+  };
+  const double force = 0.5 * (before + behind) * (rise(3) - rise(1));
+  const double expected = Across::kFriction * across.theta * 0.5 * (before + behind) *
+                          std::sin(std::atan(aside / runs));
+  EXPECT_NEAR(force, expected, 0.05 * expected);
 }
 
 TEST(TouchFriction, AFlightKeepsMomentaAndEnergyOnlyFalls) {
@@ -248,6 +304,27 @@ TEST(TouchFriction, AFlightKeepsMomentaAndEnergyOnlyFalls) {
   }
   EXPECT_GT(touched, 100);
   EXPECT_GT(world.CableFrictionLoss(0, 0), 3e-4);
+}
+
+/// Also on what is thick: askew over a rod, as a wheel has it.
+TEST(TouchFriction, WithHardlyAnyItLiesAsWithout) {
+  const Vec3 from{-0.3, -0.1, -0.2}, to{0.4, 0.25, -0.1}, up{0, 0, 1};
+  double length[2];
+  for (const double friction : {0.0, 1e-12}) {
+    ModelDef def = OverARod(from + up, to + up, 0.1, 0.001);
+    def.cables[0].touch_friction = friction;
+    Batch world = MakeBatch(def);
+    for (int i = 0; i <= 100; ++i) {
+      Lead(world, 0, from + (1 - 0.01 * i) * up);
+      Lead(world, 1, to + (1 - 0.01 * i) * up);
+      world.Step(kStep);
+    }
+    Lead(world, 0, from), Lead(world, 1, to);
+    world.Step(kStep);
+    ASSERT_EQ(world.CableBends(0, 0), 1);
+    length[friction > 0] = world.Cable(0, 0).length_m;
+  }
+  EXPECT_NEAR(length[0], length[1], 1e-12);
 }
 
 TEST(TouchFriction, HardlyAnyIsNone) {

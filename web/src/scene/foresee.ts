@@ -12,9 +12,9 @@ const POINTS = 5000;
 export function foresee(app: App, store: SeriesStore, view: View): void {
   app.scene.watch((scene) => {
     if (!scene || app.live) return;
-    for (const { name } of scene.cables) {
-      const channel = `cable/${name}/tension_n`;
-      if (!store.has(channel, 0)) continue;
+    const tensions = /^cable\/[^/]*\/(span_\d+_)?tension_n$/;
+    for (const { name: channel } of scene.channels) {
+      if (!tensions.test(channel) || !store.has(channel, 0)) continue;
       store.want(channel, 0, scene.first_s, scene.duration_s, 2, ({ max }) => {
         if (view.world?.scene !== scene) return;
         const largest_n = Math.max(...max.map((value) => value ?? 0));

@@ -5,6 +5,7 @@ import { cableState, type Frame, frameOfScene } from "../frame";
 import type { Scene } from "../protocol";
 import { niceAbove } from "../util";
 import { Bodies } from "./bodies";
+import { spanTensions } from "./cable_path";
 import { Cables } from "./cables";
 import { Forces } from "./forces";
 import { Ghosts } from "./ghosts";
@@ -45,8 +46,9 @@ export class World {
   update(frame: Frame): void {
     let largest_n = this.cables.scale_n;
     for (let i = 0; i < this.scene.cables.length; ++i) {
-      const { tension_n } = cableState(frame, i);
-      if (tension_n > largest_n) largest_n = tension_n;
+      for (const tension_n of [cableState(frame, i).tension_n, ...spanTensions(frame, i)]) {
+        if (tension_n > largest_n) largest_n = tension_n;
+      }
     }
     this.cables.scale_n = niceAbove(largest_n);
     for (const part of this.parts) part.update(frame);
