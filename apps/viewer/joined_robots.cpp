@@ -93,7 +93,8 @@ int JoinedRobots::Add(const ModelDef& robot, const std::string& name, const Vec3
   for (CableDef cable : robot.cables) {
     cable.name = prefix + cable.name;
     for (AttachmentDef& at : cable.attachments) {
-      at = {moved(at.body), Plus(at.position_m, at_m)};
+      at.body = moved(at.body);
+      at.position_m = Plus(at.position_m, at_m);
     }
     joined_.cables.push_back(std::move(cable));
   }

@@ -1,4 +1,5 @@
-"""Twelve segments over walls: how high, and how often, with cables that pass through them and that do not."""
+"""Twelve segments over walls: how high, and how often, with cables that pass through them and that do not,
+and with a gait that feels them."""
 
 import csv
 import pathlib
@@ -15,6 +16,7 @@ DURATION_S = 70
 FAR_SIDE_M = 1.20   # of the wall
 REACH_M = 0.25      # no point of a segment is further from its centre of mass
 SEGMENTS = 12
+ROBOT_CM = 33.0     # how high it stands
 SIDE_M = 2.5        # the wall reaches 3 m to either side
 
 
@@ -32,7 +34,8 @@ def start(number):
 
 
 # Heights per experiment.
-KINDS = {"wall": HEIGHTS_M, "wall_touching": HEIGHTS_M}
+KINDS = {"wall": HEIGHTS_M, "wall_touching": HEIGHTS_M,
+         "wall_sensing_high": (0.02, 0.06, 0.10, 0.12, 0.14, 0.16, 0.18)}
 
 
 def variant(kind, height_m, number):
@@ -85,6 +88,7 @@ def page(taut):
         values[kind], highest = walls(taut, kind, results)
         values[kind + "_highest"] = f"{100 * highest:.0f}"
     values |= {
+        "wall_sensing_high_share": f"{float(values['wall_sensing_high_highest']) / ROBOT_CM * 100:.0f}",
         "starts": str(STARTS - 1),
         "duration": str(DURATION_S),
         "version": taut("--version").split()[-1],

@@ -2,12 +2,9 @@
 #include "taut/page.h"
 
 #include <atomic>
-#include <filesystem>
-#include <fstream>
 
 #include "apps/viewer/pace.h"
-#include "taut/spec.h"
-#include "tests/viewer/client.h"
+#include "tests/viewer/page_fixture.h"
 
 namespace taut::test {
 namespace {
@@ -16,90 +13,6 @@ using viewer::FrameHeader;
 using viewer::Pace;
 
 constexpr double kStepS = 0.001;
-
-/// A prism above a plane.
-ModelDef Prism() {
-  Diagnostics found;
-  auto robot = LoadRobot(TAUT_SOURCE_DIR "/models/prism3.yaml", {}, found);
-  EXPECT_TRUE(robot) << found.Format();
-  robot->def.planes.emplace_back().name = "ground";
-  return robot->def;
-}
-
-class PageTest : public testing::Test {
- protected:
-  PageTest() {
-    std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ + "/index.html") << "<p>the page";
-    options_.web_folder = folder_;
-    options_.speed = 0;
-  }
-
-  std::unique_ptr<Page> Open() {
-    Diagnostics out;
-    auto page = Page::Open(options_, out);
-    EXPECT_TRUE(page) << out.Format();
-    return page;
-  }
-
-  static std::uint16_t Port(const Page& page) {
-    const std::size_t colon = page.url().rfind(':');
-    return static_cast<std::uint16_t>(std::stoi(page.url().substr(colon + 1)));
-  }
-  /// A browser at an address.
-  static Client Browser(const Page& page, const std::string& url) {
-    return Client(Port(page), "/ws?token=" + url.substr(url.rfind('=') + 1));
-  }
-
-  const std::string folder_ = testing::TempDir() + "taut_page_test";
-  PageOptions options_;
-};
-
-bool HasTime(const ReceivedFrame& frame, double time_s) {
-  return frame[FrameHeader::kFrameTimeS] == time_s && frame[FrameHeader::kFrameRun] > 0;
-}
-
-std::vector<std::string> Names(const Json& list) {
-  std::vector<std::string> names;
-  for (const Json& part : list) names.push_back(part["name"]);
-  return names;
-}
-
-TEST_F(PageTest, JointsAreWhereTheyHoldTheirBodies) {
-  Diagnostics found;
-  const auto leg = LoadRobot(TAUT_SOURCE_DIR "/docs/tutorial_joints/leg.yaml", {}, found);
-  ASSERT_TRUE(leg) << found.Format();
-  const auto page = Open();
-  page->Add(leg->def, "a");
-  page->Add(leg->def, "b", {0, 2, 0});
-  page->Show(0);
-  Client browser = Browser(*page, page->url());
-  const Json scene = browser.Await("scene")["scene"];
-  const Json& joints = scene["joints"];
-  EXPECT_EQ(Names(joints), (std::vector<std::string>{"a/knee", "a/hip", "b/knee", "b/hip"}));
-  const auto place = [&](int joint, const char* body, const char* point) {
-    Json at = joints[joint][point];
-    if (joints[joint][body] == -1) return at;
-    const Json origin = scene["bodies"][joints[joint][body].get<int>()]["position_m"];
-    for (int k = 0; k < 3; ++k) at[k] = at[k].get<double>() + origin[k].get<double>();
-    return at;
-  };
-  for (const int robot : {0, 1}) {
-    const int knee = 2 * robot, hip = knee + 1;
-    EXPECT_EQ(joints[knee]["kind"], "hinge");
-    EXPECT_EQ(joints[knee]["axis"], Json({0.0, 1.0, 0.0}));
-    EXPECT_EQ(joints[knee]["body_a"], 2 * robot);
-    EXPECT_EQ(joints[knee]["body_b"], 2 * robot + 1);
-    EXPECT_EQ(joints[hip]["body_a"], -1);
-    EXPECT_EQ(joints[hip]["from_m"], Json({0.0, 2.0 * robot, 0.6}));
-    for (const auto& [body, point] : {std::pair("body_a", "from_m"), std::pair("body_b", "to_m")}) {
-      const Json at = place(knee, body, point);
-      EXPECT_NEAR(at[0].get<double>(), 0.1, 1e-15);
-      EXPECT_NEAR(at[1].get<double>(), 2.0 * robot, 1e-15);
-      EXPECT_NEAR(at[2].get<double>(), 0.35, 1e-15);
-    }
-  }
-}
 
 TEST_F(PageTest, ShowsTwoWorldsBesideEachOtherAsTheyAre) {
   const auto model = [] {
