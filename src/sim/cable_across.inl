@@ -55,8 +55,9 @@ double SlideBend(const Rows<W>& s, const CableTable& cable, Scratch<W>& work, do
                                                         Max(way.lp + way.around + way.lq, 1e-300));
   const double before_n = s.span_tension[cable.first_span + k][lane];
   const double behind_n = s.span_tension[cable.first_span + k + 1][lane];
-  const double low = Min(before_n, behind_n), high = Max(before_n, behind_n), old = along[lane];
-  if (!(old < kNotHeld) || !(low > 0.0)) {
+  const double mean_n = 0.5 * (before_n + behind_n), old = along[lane];
+  const bool taut = before_n > 0.0 && behind_n > 0.0;
+  if (!(old < kNotHeld) || !taut) {
     along.Set(lane, straight);
     across.aside.Set(lane, 0.0), across.drift.Set(lane, 0.0);
     return old < kNotHeld ? Abs(straight - old) : 0.0;
@@ -67,7 +68,7 @@ double SlideBend(const Rows<W>& s, const CableTable& cable, Scratch<W>& work, do
     now = SlideTo(way, old, aside > 0.0 ? hold : -hold);
     along.Set(lane, now);
     W& loss = s.slip_loss[cable.first_slip + k];
-    loss.Set(lane, loss[lane] + 0.25 * (low + high) * (Abs(aside) + hold) * Abs(now - old));
+    loss.Set(lane, loss[lane] + 0.5 * mean_n * (Abs(aside) + hold) * Abs(now - old));
   }
   const double left = Max(Min(aside, hold), -hold);
   const double part = hold > 0.0 ? Max(Min(left / hold, kSteepest), -kSteepest) : 0.0;

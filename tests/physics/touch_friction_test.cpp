@@ -62,14 +62,6 @@ Batch Atwood(double m1, double m2, double friction, double damping,
   return world;
 }
 
-double AccelerationOf(Batch& world, int body, double time_s) {
-  const int steps = StepsIn(time_s, 1e-3);
-  world.Step(1e-3, steps / 2);
-  const double t0 = world.Time(0), v0 = world.Body(0, body).velocity_m_per_s.z;
-  world.Step(1e-3, steps - steps / 2);
-  return (world.Body(0, body).velocity_m_per_s.z - v0) / (world.Time(0) - t0);
-}
-
 TEST(TouchFriction, AtwoodsMachineOverAWallSlipsAsEytelweinSays) {
   const double c = std::exp(0.2 * kPi);
   for (const double m2 : {0.4, 0.5, 0.53}) {

@@ -48,4 +48,13 @@ inline double EnergyOf(const Batch& world) {
 inline double Norm(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 inline double Distance(const Vec3& a, const Vec3& b) { return Norm(a - b); }
 
+/// Of a body, upwards, in the second half of a time, when the start has died away [m/s^2].
+inline double AccelerationOf(Batch& world, int body, double time_s) {
+  const int steps = StepsIn(time_s, 1e-3);
+  world.Step(1e-3, steps / 2);
+  const double t0 = world.Time(0), v0 = world.Body(0, body).velocity_m_per_s.z;
+  world.Step(1e-3, steps - steps / 2);
+  return (world.Body(0, body).velocity_m_per_s.z - v0) / (world.Time(0) - t0);
+}
+
 }  // namespace taut::test

@@ -59,6 +59,7 @@ void ExpectOver(const std::string& height_m, double within_s, const std::string&
 TEST(Wall, TwelveSegmentsCrawlOverAWallAsHighAsNtrts) { ExpectOver("0.02", 40); }
 TEST(Wall, AndOverOneThreeTimesAsHigh) { ExpectOver("0.06", 52); }
 TEST(Wall, AlsoIfItsCablesLieOverTheEdges) { ExpectOver("0.04", 48, "wall_touching"); }
+TEST(Wall, AndOverHalfItsHeightByWhatTheyFeel) { ExpectOver("0.16", 48, "wall_sensing_high"); }
 
 }  // namespace
 }  // namespace taut
