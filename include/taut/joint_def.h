@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "taut/member_def.h"
 #include "taut/types.h"
 
 namespace taut {
@@ -50,7 +51,13 @@ struct JointDef {
   double friction = 0.0;                  ///< Largest dry friction, >= 0.
   double stiffness = 0.0, damping = 0.0;  ///< Of a spring and a damper, >= 0.
   double rest = 0.0;                      ///< Where the spring is at rest; of a ball 0.
+  MemberDef member = {};                  ///< Of a bar.
 };
+
+/// Whether it is an elastic bar: a distance with a spring, which pulls and pushes.
+inline bool IsBar(const JointDef& j) noexcept {
+  return j.kind == JointKind::kDistance && j.stiffness > 0.0;
+}
 
 /// Whether a distance joint holds its length: if nothing else says what that may be.
 inline bool HoldsLength(const JointDef& j) noexcept {

@@ -15,6 +15,7 @@
 
 #include "taut/dc_motor.h"
 #include "taut/joint_def.h"
+#include "taut/member_def.h"
 #include "taut/motion_def.h"
 #include "taut/types.h"
 
@@ -73,6 +74,7 @@ struct CapsuleDef {
   double radius_m = 0.0;  ///< > 0.
   Material material;
   bool collides = true;
+  MemberDef member = {};  ///< As a strut.
 };
 
 struct BoxDef {
@@ -169,6 +171,7 @@ struct CableDef {
   double radius_m = 0.0;                       ///< and with a radius > 0.
   double touch_friction = 0.0;  ///< mu where it touches, along the cable and across it, >= 0; not
                                 ///< of one that a direct-current motor winds.
+  MemberDef member = {};
 };
 
 /// Whether friction parts it into spans.

@@ -282,6 +282,27 @@ struct SensorSpec {
   bool length_from_tension = false;
 };
 
+/// Loads that stand still, for `taut/analysis.h`.
+struct LoadCaseSpec {
+  struct NodeForce {
+    int node = 0;
+    Vec3 force_n;  ///< In W.
+  };
+  struct Settlement {
+    int joint = 0;  ///< A support: its point in the world moves.
+    Vec3 by_m;      ///< In W.
+  };
+  struct Lengthening {
+    int index = 0;  ///< A cable, or of `bars` a joint that is one.
+    double by_m = 0.0;
+  };
+  std::string name;
+  bool weight = true;  ///< Whether gravity acts.
+  std::vector<NodeForce> forces;
+  std::vector<Settlement> settlements;
+  std::vector<Lengthening> cables, bars;  ///< What rest lengths gain; by warmth, too.
+};
+
 struct RecordSpec {
   double rate_hz = 100.0;                  ///< Rows a second; 0: every step.
   std::vector<std::string> channels;       ///< Name patterns with `*`; empty: all that are not
@@ -326,6 +347,7 @@ struct ExperimentSpec {
   std::vector<DragSpec> drags;
   std::vector<PhaseSpec> phases;
   RecordSpec record;
+  std::vector<LoadCaseSpec> load_cases;
   std::optional<std::string> compare_with;  ///< A trace to set the result beside.
   std::vector<ReferenceSpec> references;
   std::map<std::string, double> parameters;  ///< The experiment's own, as resolved.
