@@ -1,0 +1,43 @@
+#include <algorithm>
+#include <cmath>
+
+#include "fit/problem.h"
+#include "math/random.h"
+
+namespace taut {
+namespace {
+
+constexpr std::uint32_t kStream = 0x0066'6974;  // "fit": starts are this stream's only use
+
+/// A normal distribution, cut off at the bounds: drawn until it lies between them.
+double DrawNormal(const FitParameter& p, math::Random& random) {
+  double value = fit::PriorMean(p);
+  for (int attempt = 0; attempt < 64; ++attempt) {
+    value = fit::PriorMean(p) + p.prior_sd * random.Normal();
+    if (value >= p.low && value <= p.high) return value;
+  }
+  return std::clamp(value, p.low, p.high);  // a prior far out of its bounds
+}
+
+}  // namespace
+
+std::vector<double> DrawFitStart(const FitProblem& problem, std::uint64_t seed,
+                                 std::uint64_t number) {
+  std::vector<double> values;
+  math::Random random(seed, kStream, number);
+  for (const FitParameter& p : problem.parameters) {
+    if (number == 0) {
+      values.push_back(p.start);
+    } else if (fit::HasPrior(p)) {
+      values.push_back(DrawNormal(p, random));
+    } else {
+      const double reach = 4.0 * FitScale(p);
+      const bool bounded = std::isfinite(p.low) && std::isfinite(p.high);
+      values.push_back(random.Uniform(bounded ? p.low : std::max(p.low, p.start - reach),
+                                      bounded ? p.high : std::min(p.high, p.start + reach)));
+    }
+  }
+  return values;
+}
+
+}  // namespace taut
