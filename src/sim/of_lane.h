@@ -10,30 +10,46 @@ using simd::S3;
 using simd::V3;
 
 template <class L, class W>
+struct OneLane {
+  static L Of(W x, int lane) noexcept { return L::Splat(x[lane]); }
+  static void Set(W& to, L from, int lane) noexcept { to.Set(lane, from[0]); }
+};
+/// A number of one lane is what it is, with all that belongs to it (simd/dual.h).
+template <class L>
+struct OneLane<L, L> {
+  static L Of(L x, int) noexcept { return x; }
+  static void Set(L& to, L from, int) noexcept { to = from; }
+};
+
+template <class L, class W>
 TAUT_INLINE L OfLane(W x, int lane) noexcept {
-  return L::Splat(x[lane]);
+  return OneLane<L, W>::Of(x, lane);
 }
 template <class L, class W>
 TAUT_INLINE V3<L> OfLane(const V3<W>& a, int lane) noexcept {
-  return {L::Splat(a.x[lane]), L::Splat(a.y[lane]), L::Splat(a.z[lane])};
+  return {OfLane<L>(a.x, lane), OfLane<L>(a.y, lane), OfLane<L>(a.z, lane)};
 }
 template <class L, class W>
 TAUT_INLINE S3<L> OfLane(const S3<W>& a, int lane) noexcept {
-  return {L::Splat(a.xx[lane]), L::Splat(a.yy[lane]), L::Splat(a.zz[lane]),
-          L::Splat(a.xy[lane]), L::Splat(a.xz[lane]), L::Splat(a.yz[lane])};
+  return {OfLane<L>(a.xx, lane), OfLane<L>(a.yy, lane), OfLane<L>(a.zz, lane),
+          OfLane<L>(a.xy, lane), OfLane<L>(a.xz, lane), OfLane<L>(a.yz, lane)};
+}
+template <class L, class W>
+TAUT_INLINE void SetLane(W& to, L from, int lane) noexcept {
+  OneLane<L, W>::Set(to, from, lane);
 }
 template <class L, class W>
 TAUT_INLINE void SetLane(V3<W>& to, const V3<L>& from, int lane) noexcept {
-  to.x.Set(lane, from.x[0]);
-  to.y.Set(lane, from.y[0]);
-  to.z.Set(lane, from.z[0]);
+  SetLane(to.x, from.x, lane);
+  SetLane(to.y, from.y, lane);
+  SetLane(to.z, from.z, lane);
 }
 template <class L, class W>
 TAUT_INLINE void SetLane(Q4<W>& to, const Q4<L>& from, int lane) noexcept {
-  to.w.Set(lane, from.w[0]);
-  to.x.Set(lane, from.x[0]);
-  to.y.Set(lane, from.y[0]);
-  to.z.Set(lane, from.z[0]);
+  SetLane(to.w, from.w, lane);
+  SetLane(to.x, from.x, lane);
+  SetLane(to.y, from.y, lane);
+  SetLane(to.z, from.z, lane);
 }
 
 }  // namespace taut::sim

@@ -342,7 +342,7 @@ class LaneSolve {
       const int from = mem_.source[i];
       for (int k = 0; k < 3; ++k) {
         if (from < m_.slot_count) {
-          work_.contacts[from].l[k].Set(lane_, l[0][0]);
+          SetLane(work_.contacts[from].l[k], l[0], lane_);
         } else {
           mem_.pairs[from - m_.slot_count].l[k] = l[0];
         }
@@ -351,22 +351,22 @@ class LaneSolve {
     }
     const Pool<CableRow<L>>& cables = island.pools;
     for (int i = 0; i < cables.count; ++i) {
-      work_.stiff[cable_source_[i]].l[0].Set(lane_, (l++)->v);
+      SetLane(work_.stiff[cable_source_[i]].l[0], *l++, lane_);
     }
     const Pool<JointRow<L>>& joints = island.pools;
     for (int i = 0; i < joints.count; ++i) {
-      work_.joints[joint_source_[i]].l[0].Set(lane_, (l++)->v);
+      SetLane(work_.joints[joint_source_[i]].l[0], *l++, lane_);
     }
     const Pool<TurnFriction<L>>& frictions = island.pools;
     for (int i = 0; i < frictions.count; ++i) {
       for (int k = 0; k < 3; ++k) {
-        work_.joints[friction_source_[i] + k].l[0].Set(lane_, (l++)->v);
+        SetLane(work_.joints[friction_source_[i] + k].l[0], *l++, lane_);
       }
     }
     const Pool<CableChain<L>>& chains = island.pools;
     for (int i = 0; i < chains.count; ++i) {
       ChainSpan<W>* const spans = work_.spans + m_.cables[chain_source_[i]].first_span;
-      for (int k = 0; k < chains.items[i].rows; ++k) spans[k].l.Set(lane_, (l++)->v);
+      for (int k = 0; k < chains.items[i].rows; ++k) SetLane(spans[k].l, *l++, lane_);
     }
     for (int b = 0; b < count_; ++b) {
       const Twist<L> t = island.Load(island.m.v + kDofs * b);
