@@ -8,6 +8,7 @@
 #include "description/build.h"
 #include "description/follow_route.h"
 #include "description/once.h"
+#include "math/angle.h"
 #include "math/cable_path.h"
 #include "math/vec.h"
 #include "taut/statics.h"
@@ -157,6 +158,16 @@ class CableMaker {
     return true;
   }
 
+  /// By the turns that its route gives it: no way of its bodies makes it shorter.
+  static double WoundLength(const PlacedPair& pair) {
+    double wound = 0.0;
+    for (const RouteText& element : pair.route) {
+      if (!element.is_pulley() && !element.is_drum()) continue;
+      wound += 2 * kPi * element.radius_m * element.turns;
+    }
+    return wound;
+  }
+
   void SetRestLength(const PlacedPair& pair, const CableText& builder, CableDef& cable) {
     const double length = CableLength(cable);
     if (builder.prestress_n) {
@@ -171,6 +182,14 @@ class CableMaker {
       }
     } else if (builder.rest_length_ratio) {
       cable.rest_length_m = *builder.rest_length_ratio * length;
+    }
+    const double wound = WoundLength(pair);
+    if (cable.rest_length_m > 0.0 && cable.rest_length_m < wound) {
+      once_(builder.rest_at,
+            "the cable \"" + pair.name + "\" starts with a rest length of " +
+                Number(cable.rest_length_m) + " m, below the " + Number(wound) +
+                " m that are wound round its pulleys and drums",
+            "with all that is between them it is " + Number(length) + " m long");
     }
     if (cable.rest_length_m > 0.0 && cable.rest_length_m < cable.actuator.min_rest_length_m) {
       once_(builder.rest_at, "the cable \"" + pair.name + "\" starts with a rest length of " +

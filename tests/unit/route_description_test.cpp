@@ -55,6 +55,16 @@ TEST(Route, APulleyIsOnTheSideThatItSays) {
   EXPECT_NEAR(cable.rest_length_m, 1.371238898 - 1e-4, 5e-10);
 }
 
+TEST(Route, WhatIsWoundUpIsNotShorterThanItsRestLength) {
+  // 0.5 m to b, 0.4 m to the drum, and two and a half turns of 0.2 pi.
+  EXPECT_EQ(
+      Errors(Posts("[a, b, " + Drum("side: left, turns: 2.5") + "]", "rest_length_m: 1.57")),
+      "robot.yaml:11:66: error: the cable \"rope\" starts with a rest length of 1.57 m, below the "
+      "1.5708 m that are wound round its pulleys and drums (with all that is between them it "
+      "is 2.4708 m long)\n");
+  Good(Posts("[a, b, " + Drum("side: left, turns: 2.5") + "]", "rest_length_m: 1.58"));
+}
+
 TEST(Route, ADrumHasWhatIsWoundUpAtEitherEnd) {
   // Left or right is as one goes along the cable.
   const double straight = std::sqrt(0.5 * 0.5), wound = 2 * kPi * 2.25 * 0.1;
