@@ -4,6 +4,7 @@
 
 #include "base/fixed.h"
 #include "math/vec.h"
+#include "mechanics/held_rows.h"
 #include "taut/statics.h"
 
 namespace taut {
@@ -40,10 +41,6 @@ class Factors {
   std::vector<double> a_;
 };
 
-/// A force at a joint's point and a torque, on its body b; on a the opposite.
-struct Wrench {
-  Vec3 force, torque;
-};
 /// The same as it acts on a body: about its centre of mass.
 Wrench On(const BodyDef& body, const Wrench& w, const Vec3& point, double sign) {
   return {sign * w.force, sign * (w.torque + Cross(point - body.com_m, w.force))};
@@ -115,20 +112,7 @@ class Reactions {
   };
 
   void AddRows(const JointDef& j, std::size_t number) {
-    const HeldMotions held = HeldBy(j.kind);
-    const Vec3 n = j.axis, other = std::fabs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    Vec3 s = other - Dot(other, n) * n;
-    s = (1 / std::sqrt(Dot(s, s))) * s;
-    const Vec3 t = Cross(n, s), apart = j.to_m - j.from_m;
-    const auto add = [&](bool has, const Wrench& unit) {
-      if (has) AddRow(j, number, unit);
-    };
-    add(held.along, {n, {}});
-    add(held.across, {s, {}}), add(held.across, {t, {}});
-    add(held.swing, {{}, s}), add(held.swing, {{}, t});
-    add(held.twist, {{}, n});
-    if (j.kind != JointKind::kDistance || !HoldsLength(j)) return;
-    add(true, {(1 / std::sqrt(Dot(apart, apart))) * apart, {}});
+    for (const HeldRow row : HeldRowsOf(j)) AddRow(j, number, UnitOf(j, row));
   }
   void AddRow(const JointDef& j, std::size_t number, const Wrench& unit) {
     Row row{number, unit, {}};

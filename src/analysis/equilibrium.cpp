@@ -1,0 +1,252 @@
+// Static equilibrium: what Minimise finds, in the words of taut/analysis.h.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "analysis/minimum.h"
+#include "math/vec.h"
+#include "taut/analysis.h"
+
+namespace taut {
+namespace analysis {
+namespace {
+
+std::string Number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+std::string Text(const Vec3& a) {
+  return "(" + Number(a.x) + ", " + Number(a.y) + ", " + Number(a.z) + ")";
+}
+
+LoadCaseSpec Share(const LoadCaseSpec& loads, double share) {
+  LoadCaseSpec part = loads;
+  for (auto& force : part.forces) force.force_n = share * force.force_n;
+  for (auto& settled : part.settlements) settled.by_m = share * settled.by_m;
+  for (auto& longer : part.cables) longer.by_m *= share;
+  for (auto& longer : part.bars) longer.by_m *= share;
+  return part;
+}
+
+class Finder {
+ public:
+  Finder(ModelDef def, const LoadCaseSpec& loads, const EquilibriumOptions& options)
+      : def_(std::move(def)),
+        loads_(loads),
+        options_(options),
+        structure_(def_, loads_, options.contact) {
+    limits_.tolerance = options.tolerance;
+    limits_.most_iterations = options.most_iterations;
+  }
+
+  Equilibrium Run() {
+    Begin();
+    const std::string impossible = Impossible();
+    if (impossible.empty()) Find();
+    Equilibrium e = Found();
+    if (!impossible.empty()) e.why = impossible;
+    e.found = e.why.empty();
+    return e;
+  }
+
+ private:
+  void Begin() {
+    search_.at = structure_.start;
+    search_.holding.rows = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(structure_.rows.size()));
+    search_.holding.touches =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(structure_.touches.size()));
+    if (!options_.from) return;
+    for (std::size_t b = 0; b < structure_.bodies.size(); ++b) {
+      const BodyState& body = options_.from->bodies[static_cast<std::size_t>(structure_.bodies[b])];
+      search_.at.center_m[b] = body.position_m;
+      search_.at.turn[b] = body.orientation;
+    }
+  }
+
+  /// What no pose can balance.
+  std::string Impossible() const {
+    Vec3 sum;
+    double largest = 0;
+    const auto add = [&](const Vec3& force) {
+      sum = sum + force;
+      largest = std::max(largest, std::sqrt(Dot(force, force)));
+    };
+    for (const Vec3& weight : structure_.weight_n) add(weight);
+    for (const Structure::Load& load : structure_.loads) add(load.force_n);
+    if (structure_.held_by_world) return "";
+    const double least = 1e-9 * largest, size = std::sqrt(Dot(sum, sum));
+    if (size <= least) return "";
+    const std::string resultant = "weight and loads have the resultant " + Text(sum) + " N, and ";
+    if (structure_.touches.empty()) return resultant + "nothing holds the robot in the world";
+    if (def_.planes.size() > 1) return "";
+    const Vec3& n = def_.planes[0].normal;
+    const double into = -Dot(n, sum);
+    if (into <= least) return resultant + "the plane can only push the other way";
+    const Vec3 along = sum + into * n;
+    if (std::sqrt(Dot(along, along)) > std::max(least, 1e-9 * into)) {
+      return resultant + "along the plane nothing holds the robot: statics knows no friction";
+    }
+    return "";
+  }
+
+  void Find() {
+    const Search begin = search_;
+    Minimise(structure_, limits_, search_);
+    if (search_.balanced || search_.runs_away) return;
+    const Search first = search_;
+    way_ = EquilibriumWay::kLoadSteps;
+    search_ = begin;
+    InSteps();
+    if (search_.balanced) return;
+    way_ = EquilibriumWay::kRelaxation;
+    const int used = search_.iterations;
+    search_ = begin;
+    Relax(structure_, kRelaxationSteps, search_);
+    search_.iterations = used;
+    Again();
+    if (search_.balanced) return;
+    way_ = EquilibriumWay::kNewton;
+    search_ = first;
+  }
+
+  /// With as many linear systems as at first.
+  void Again() {
+    SearchLimits limits = limits_;
+    limits.most_iterations += search_.iterations;
+    Minimise(structure_, limits, search_);
+  }
+
+  /// Loads, settlements and lengthenings little by little; half as much where that fails.
+  void InSteps() {
+    double done = 0, by = 0.1;
+    Search last = search_;
+    while (done < 1 && by > 1e-3) {
+      const double share = std::min(1.0, done + by);
+      const LoadCaseSpec part = Share(loads_, share);
+      const Structure structure(def_, part, options_.contact);
+      Search next = last;
+      SearchLimits limits = limits_;
+      limits.most_iterations += last.iterations;
+      Minimise(structure, limits, next);
+      last.iterations = next.iterations;
+      if (next.balanced) {
+        last = next, done = share, by *= 1.5;
+      } else {
+        by *= 0.5;
+      }
+    }
+    search_ = last;
+    search_.balanced = done >= 1;
+  }
+
+  Equilibrium Found() {
+    Equilibrium e;
+    e.left_out = structure_.left_out;
+    e.iterations = search_.iterations;
+    e.way = way_;
+    e.residual_n = search_.left_n;
+    for (const BodyDef& body : def_.bodies) e.pose.bodies.push_back({body.com_m, {}, {}, {}});
+    for (std::size_t b = 0; b < structure_.bodies.size(); ++b) {
+      BodyState& body = e.pose.bodies[static_cast<std::size_t>(structure_.bodies[b])];
+      body.position_m = search_.at.center_m[b];
+      body.orientation = search_.at.turn[b];
+    }
+    for (const Structure::Cable& cable : structure_.cables) {
+      e.pose.rest_lengths_m.push_back(cable.rest_m);
+      e.cable_tension_n.push_back(
+          structure_.Tension(cable, cable.path.At(search_.at, false).value));
+    }
+    AddJoints(e);
+    AddContacts(e);
+    if (!search_.balanced) e.why = Why();
+    return e;
+  }
+
+  void AddJoints(Equilibrium& e) const {
+    for (const PlacedJoint& joint : structure_.joints) {
+      double force = 0;
+      if (IsBar(joint.def)) {
+        force = joint.def.stiffness * (DistanceAt(joint, search_.at).value - joint.def.rest);
+      }
+      e.bar_force_n.push_back(force);
+      e.joint_loads.emplace_back();
+      if (joint.def.stiffness > 0) {
+        AddLoad(joint, SpringEnergyAt(joint, search_.at), -1, e.joint_loads.back());
+      }
+    }
+    for (std::size_t r = 0; r < structure_.rows.size(); ++r) {
+      const std::size_t j = structure_.rows[r].joint;
+      AddLoad(structure_.joints[j], structure_.RowAt(r, search_.at),
+              -search_.holding.rows[static_cast<Eigen::Index>(r)], e.joint_loads[j]);
+    }
+  }
+  void AddLoad(const PlacedJoint& joint, const Coordinate& c, double force, JointLoad& sum) const {
+    const Wrench load = LoadOf(joint, c, force, search_.at);
+    sum.force_n = sum.force_n + load.force;
+    sum.torque_n_m = sum.torque_n_m + load.torque;
+  }
+
+  void AddContacts(Equilibrium& e) const {
+    for (std::size_t t = 0; t < structure_.touches.size(); ++t) {
+      const double push = search_.holding.touches[static_cast<Eigen::Index>(t)];
+      if (push <= 0) continue;
+      const Structure::Touch& touch = structure_.touches[t];
+      const Vec3 place = PlaceOf(touch.point, search_.at) - touch.radius_m * touch.normal;
+      e.contacts.push_back({structure_.bodies[static_cast<std::size_t>(touch.point.body)], kWorld,
+                            place, touch.normal, push * touch.normal,
+                            structure_.GapAt(t, search_.at).value});
+    }
+  }
+
+  std::string Why() const {
+    if (search_.runs_away) return "the robot moves away without end: nothing stops it";
+    Eigen::VectorXd gradient;
+    structure_.Energy(search_.at, gradient, nullptr);
+    structure_.AddReactions(search_.at, search_.holding, gradient, nullptr);
+    std::size_t worst = 0;
+    double most = -1;
+    for (std::size_t b = 0; b < structure_.bodies.size(); ++b) {
+      const double left = gradient.segment<3>(6 * static_cast<Eigen::Index>(b)).norm();
+      if (left > most) most = left, worst = b;
+    }
+    std::string text = "no equilibrium was found";
+    if (most >= 0) {
+      const std::size_t body = static_cast<std::size_t>(structure_.bodies[worst]);
+      text += ": after " + std::to_string(search_.iterations) + " linear systems body \"" +
+              def_.bodies[body].name + "\" has " + Number(most) + " N left";
+    }
+    return text;
+  }
+
+  static constexpr int kRelaxationSteps = 4000;
+  const ModelDef def_;
+  const LoadCaseSpec& loads_;
+  const EquilibriumOptions& options_;
+  Structure structure_;
+  SearchLimits limits_;
+  Search search_;
+  EquilibriumWay way_ = EquilibriumWay::kNewton;
+};
+
+}  // namespace
+}  // namespace analysis
+
+Equilibrium FindEquilibrium(const ModelDef& def, const LoadCaseSpec& loads,
+                            const EquilibriumOptions& options) {
+  ModelDef with = def;
+  if (options.from) {
+    for (std::size_t c = 0; c < with.cables.size(); ++c) {
+      with.cables[c].rest_length_m = options.from->rest_lengths_m[c];
+    }
+  }
+  return analysis::Finder(std::move(with), loads, options).Run();
+}
+
+ModelDef ModelAt(const ModelDef& def, const Pose& pose) {
+  RobotSpec robot;
+  robot.def = def;
+  return RobotAt(robot, pose).def;
+}
+
+}  // namespace taut

@@ -1,0 +1,166 @@
+// Modes: K v = omega^2 M v in what is free to move (docs/theory/statics.md, section 5).
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/rigid.h"
+#include "analysis/tangent.h"
+#include "math/angle.h"
+#include "math/vec.h"
+
+namespace taut {
+namespace analysis {
+
+Eigen::MatrixXd RigidMotions(const Structure& s) {
+  Vec3 middle;
+  for (const Vec3& center : s.start.center_m) {
+    middle = middle + (1.0 / static_cast<double>(s.bodies.size())) * center;
+  }
+  Eigen::MatrixXd rigid = Eigen::MatrixXd::Zero(s.motions(), 6);
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const Eigen::Index at = 6 * static_cast<Eigen::Index>(b);
+    rigid.block<3, 3>(at, 0) = Eigen::Matrix3d::Identity();
+    rigid.block<3, 3>(at, 3) = -CrossMatrix(s.start.center_m[b] - middle);
+    rigid.block<3, 3>(at + 3, 3) = Eigen::Matrix3d::Identity();
+  }
+  return rigid;
+}
+
+Eigen::MatrixXd Nothing(const Eigen::MatrixXd& rows, double limit) {
+  if (rows.rows() == 0) return Eigen::MatrixXd::Identity(rows.cols(), rows.cols());
+  if (rows.cols() == 0) return Eigen::MatrixXd(0, 0);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeFullV);
+  Eigen::Index rank = 0;
+  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > limit) ++rank;
+  return svd.matrixV().rightCols(rows.cols() - rank);
+}
+
+namespace {
+
+/// A basis of what is free to move, rigid motions first.
+struct Free {
+  Eigen::MatrixXd basis;
+  Eigen::Index rigid = 0;
+};
+
+/// Motions that count (lengths all), that nothing holds; of them the rigid ones that nothing
+/// resists, then what is across them by mass.
+Free FreeMotions(const Structure& s, const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& mass,
+                 const Eigen::MatrixXd& held) {
+  const Eigen::MatrixXd effective = s.Effective(s.start, true);
+  const Eigen::MatrixXd unheld =
+      effective * Nothing(held.transpose() * effective, 1e-9 / std::max(1.0, s.size_m));
+  Free out;
+  if (unheld.cols() == 0) return {unheld, 0};
+  // Turns that count for nothing are left out of a rigid motion, too.
+  const Eigen::MatrixXd rigid =
+      effective *
+      (effective.transpose() * effective).ldlt().solve(effective.transpose() * RigidMotions(s));
+  Eigen::MatrixXd scaled = rigid;
+  scaled.rightCols<3>() /= s.size_m;
+  scaled = SpanOf(scaled);  // of points in a row, or of a single one, some turns are nothing
+  const double most = (unheld.transpose() * stiffness * unheld).cwiseAbs().maxCoeff();
+  Eigen::MatrixXd resisted(held.cols() + s.motions(), scaled.cols());
+  resisted << held.transpose() * scaled,
+      (most > 0 ? 1 / most : 1.0) * (effective * (effective.transpose() * stiffness * scaled));
+  const Eigen::MatrixXd whole = scaled * Nothing(resisted, 1e-11);
+  out.rigid = whole.cols();
+  if (out.rigid == 0) return {unheld, 0};
+  // Across them by mass: what of `unheld` has no momentum along them.
+  const Eigen::MatrixXd momenta = whole.transpose() * mass * unheld;
+  const Eigen::MatrixXd rest = unheld * Nothing(momenta, 1e-12 * momenta.norm());
+  out.basis.resize(s.motions(), whole.cols() + rest.cols());
+  out.basis << whole, rest;
+  return out;
+}
+
+Mode ModeOf(const ModelDef& def, const Structure& s, Eigen::VectorXd shape, double eigenvalue) {
+  Mode mode;
+  mode.eigenvalue_per_s2 = eigenvalue;
+  double most = 0;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const Eigen::Index at = 6 * static_cast<Eigen::Index>(b);
+    most = std::max(
+        {most, shape.segment<3>(at).norm(), s.reach_m[b] * shape.segment<3>(at + 3).norm()});
+  }
+  if (most > 0) shape /= most;
+  mode.translation_m.resize(def.bodies.size());
+  mode.turn_rad.resize(def.bodies.size());
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const Eigen::Index at = 6 * static_cast<Eigen::Index>(b);
+    const std::size_t body = static_cast<std::size_t>(s.bodies[b]);
+    mode.translation_m[body] = To(shape.segment<3>(at));
+    mode.turn_rad[body] = To(shape.segment<3>(at + 3));
+  }
+  return mode;
+}
+
+/// What is not rigid: its eigenvalues, zeros told from others by the gap.
+void AddVibrations(const ModelDef& def, const Structure& s, const Eigen::MatrixXd& basis,
+                   const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& mass, Modes& out) {
+  constexpr double kZero = 1e-12;  ///< Of the largest eigenvalue.
+  if (basis.cols() == 0) return;
+  const Eigen::LLT<Eigen::MatrixXd> root(basis.transpose() * mass * basis);
+  if (root.info() != Eigen::Success) {
+    out.why =
+        "the mass of a motion is not positive: members' own masses are more than their bodies";
+    return;
+  }
+  const Eigen::MatrixXd lower = root.matrixL();
+  const auto solve = [&](const Eigen::MatrixXd& m) {
+    return Eigen::MatrixXd(lower.triangularView<Eigen::Lower>().solve(m));
+  };
+  const Eigen::MatrixXd half = solve(basis.transpose() * stiffness * basis);
+  Eigen::MatrixXd all = solve(half.transpose());
+  all = 0.5 * (all + all.transpose()).eval();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(all);
+  const double most = solver.eigenvalues().cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < solver.eigenvalues().size(); ++i) {
+    const double value = solver.eigenvalues()[i], size = std::fabs(value);
+    const Eigen::VectorXd shape = basis * lower.transpose().triangularView<Eigen::Upper>().solve(
+                                              solver.eigenvectors().col(i));
+    Mode mode = ModeOf(def, s, shape, value);
+    if (size <= kZero * most) {
+      mode.kind = Mode::Kind::kMechanism;
+      mode.eigenvalue_per_s2 = 0;
+      out.largest_dropped = std::max(out.largest_dropped, size);
+      ++out.mechanisms;
+    } else {
+      if (value < 0) mode.kind = Mode::Kind::kUnstable, ++out.unstable;
+      mode.frequency_hz = std::copysign(std::sqrt(size) / (2 * kPi), value);
+      if (out.smallest_kept == 0 || size < out.smallest_kept) out.smallest_kept = size;
+    }
+    out.modes.push_back(mode);
+  }
+}
+
+}  // namespace
+}  // namespace analysis
+
+Modes FindModes(const ModelDef& def, const LoadCaseSpec& loads) {
+  using namespace analysis;
+  const Structure s(def, loads, true);
+  Modes out;
+  if (s.bodies.empty()) {
+    out.why = "no body moves";
+    return out;
+  }
+  const Reactions holding = ReactionsAsDescribed(s, kNearPlane * s.size_m);
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd stiffness;
+  s.Energy(s.start, gradient, &stiffness);
+  s.AddReactions(s.start, holding, gradient, &stiffness);
+  const Eigen::MatrixXd mass = MassMatrix(def, s);
+  const Free free = FreeMotions(s, stiffness, mass, HeldDirections(s, holding));
+  for (Eigen::Index i = 0; i < free.rigid; ++i) {
+    out.modes.push_back(ModeOf(def, s, free.basis.col(i), 0));
+    out.modes.back().kind = Mode::Kind::kRigid;
+  }
+  out.rigid = static_cast<int>(free.rigid);
+  AddVibrations(def, s, free.basis.rightCols(free.basis.cols() - free.rigid), stiffness, mass, out);
+  return out;
+}
+
+}  // namespace taut
