@@ -107,6 +107,7 @@ struct FitTrack {
   double damping = 0;          ///< Marquardt's lambda.
   std::vector<double> weight;  ///< His D, one a parameter.
   int iterations = 0;
+  int rejected = 0;                             ///< Iterations since it last moved.
   std::int64_t failed = 0;                      ///< Trial points that could not be computed,
   std::map<std::string, std::int64_t> reasons;  ///< and why, with how many of each.
 };

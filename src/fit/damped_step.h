@@ -1,0 +1,37 @@
+/// One step of Levenberg's and Marquardt's method within a box. Equations (F.3) to (F.5) of
+/// docs/theory/identification.md.
+#pragma once
+
+#include <vector>
+
+#include "fit/problem.h"
+
+namespace taut::fit {
+
+/// |R d + q|^2 / 2, up to a constant: a system, with no more rows than columns.
+struct Quadratic {
+  Matrix R;
+  Vector q;
+  Vector gradient() const { return R.transpose() * q; }
+  /// By how much d lowers it.
+  double Reduction(const Vector& d) const {
+    return -gradient().dot(d) - 0.5 * (R * d).squaredNorm();
+  }
+};
+
+/// By orthogonal transformation, which keeps the columns' angles to rounding (normal equations
+/// square the condition).
+Quadratic Reduce(const System& system);
+
+/// Bounds of a step in scales, and parameters that do not move.
+struct StepBox {
+  Vector low, high;
+  std::vector<bool> held;
+};
+
+/// argmin |R d + q|^2 + damping |D d|^2 with D = diag(weight) and d in the box: parameters that the
+/// free minimum has beyond a bound are put onto it one after the other, the worst first.
+Vector DampedStep(const Quadratic& quadratic, const Vector& weight, double damping,
+                  const StepBox& box);
+
+}  // namespace taut::fit
