@@ -1,0 +1,171 @@
+// What forces may be: bounds of cables, friction cones by planes; and where a body touches planes.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/force_balance.h"
+#include "analysis/quadratic_program.h"
+#include "base/fixed.h"
+#include "math/vec.h"
+#include "sim/combine.h"
+
+namespace taut::analysis {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using Kind = HoldingUnknown::Kind;
+
+bool IsUnit(const Vec3& a) { return std::fabs(Dot(a, a) - 1) < 1e-6; }
+
+/// NaN fails, too.
+bool IsBound(double least, double most) { return least >= 0 && std::isfinite(least) && most >= 0; }
+
+}  // namespace
+
+void ForceLimits::Add(const VectorXd& row, double bound) {
+  rows.conservativeResize(rows.rows() + 1, row.size());
+  rows.row(rows.rows() - 1) = row.transpose();
+  at_least.conservativeResize(rows.rows());
+  at_least[rows.rows() - 1] = bound;
+}
+
+void LimitCables(const ForceBalance& balance, const std::vector<CableBounds>& bounds,
+                 ForceLimits& limits) {
+  for (Index i = 0; i < balance.size(); ++i) {
+    const HoldingUnknown& unknown = balance.unknowns[static_cast<std::size_t>(i)];
+    if (unknown.kind != Kind::kCable) continue;
+    const CableBounds bound = bounds.empty() ? CableBounds{} : bounds[unknown.index];
+    const double length = balance.cable_length_m[unknown.index];
+    const double least = std::max(bound.at_least_n, bound.at_least_n_per_m * length);
+    const double most = std::min(bound.at_most_n, bound.at_most_n_per_m * length);
+    const VectorXd row = VectorXd::Unit(balance.size(), i);
+    limits.Add(row, least);
+    if (std::isfinite(most)) limits.Add(-row, -most);
+  }
+}
+
+std::vector<std::vector<double>> EvenAngles(std::size_t touches, int count) {
+  std::vector<double> angles;
+  for (int i = 0; i < count; ++i) angles.push_back(2 * std::numbers::pi * i / count);
+  return std::vector<std::vector<double>>(touches, angles);
+}
+
+void LimitTouches(const ForceBalance& balance, const std::vector<TouchDef>& touches,
+                  const std::vector<std::vector<double>>& angles_rad, ConeSide side,
+                  ForceLimits& limits) {
+  for (std::size_t t = 0; t < touches.size(); ++t) {
+    const Index first = balance.TouchColumn(t);
+    VectorXd row = VectorXd::Unit(balance.size(), first);
+    limits.Add(row, 0);
+    if (!(touches[t].friction > 0)) continue;
+    std::vector<double> angles = angles_rad[t];
+    std::sort(angles.begin(), angles.end());
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+      const double next = i + 1 < angles.size() ? angles[i + 1] : angles[0] + 2 * std::numbers::pi;
+      const double half = 0.5 * (next - angles[i]);
+      if (side == ConeSide::kInner && half < 1e-12) continue;
+      const double angle = side == ConeSide::kInner ? angles[i] + half : angles[i];
+      row[first] = touches[t].friction * (side == ConeSide::kInner ? std::cos(half) : 1.0);
+      row[first + 1] = -std::cos(angle), row[first + 2] = -std::sin(angle);
+      limits.Add(row, 0);
+    }
+  }
+}
+
+VectorXd Nearest(const ForceBalance& balance, const ForceLimits& limits) {
+  QuadraticProgram program;
+  const double scale = balance.LargestLoad();
+  program.hessian = balance.columns.transpose() * balance.columns;
+  program.gradient = -balance.columns.transpose() * balance.load / scale;
+  program.inequalities = limits.rows;
+  program.at_least = limits.at_least / scale;
+  return scale * taut::analysis::Solve(program).x;
+}
+
+void CheckHolding(const ModelDef& def, const LoadCaseSpec& loads,
+                  const std::vector<TouchDef>& touches, const std::vector<CableBounds>& bounds,
+                  Diagnostics& out) {
+  const int bodies = static_cast<int>(def.bodies.size());
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const TouchDef& touch = touches[i];
+    const std::string what = "touch " + std::to_string(i);
+    const auto is_body = [&](int body) { return body >= kWorld && body < bodies; };
+    if (!is_body(touch.body) || !is_body(touch.other) || touch.body == touch.other) {
+      out.Error({}, what + " is not between two bodies, or a body and the world");
+    }
+    if (!IsUnit(touch.normal)) out.Error({}, "the normal of " + what + " is no unit vector");
+    if (!(touch.friction >= 0) || !std::isfinite(touch.friction)) {
+      out.Error({}, "the friction of " + what + " must be a number of at least 0");
+    }
+  }
+  if (!bounds.empty() && bounds.size() != def.cables.size()) {
+    out.Error({}, "there are " + std::to_string(bounds.size()) + " bounds for " +
+                      std::to_string(def.cables.size()) + " cables");
+  } else {
+    for (std::size_t i = 0; i < bounds.size(); ++i) {
+      const CableBounds& b = bounds[i];
+      const std::string& name = def.cables[i].name;
+      if (!IsBound(b.at_least_n, b.at_most_n) || !IsBound(b.at_least_n_per_m, b.at_most_n_per_m)) {
+        out.Error({}, "the bounds of cable " + name + " must be numbers of at least 0");
+        continue;
+      }
+      const double length = CableLength(def.cables[i]);
+      const double least = std::max(b.at_least_n, b.at_least_n_per_m * length);
+      const double most = std::min(b.at_most_n, b.at_most_n_per_m * length);
+      if (least > most) {
+        out.Error({}, "cable " + name + " is to have at least " + std::to_string(least) +
+                          " N and at most " + std::to_string(most) + " N");
+      }
+    }
+  }
+  if (!loads.settlements.empty()) {
+    out.Error({}, "load case " + loads.name + " moves supports, but the pose is given",
+              "describe the pose that they have then");
+  }
+  for (const LoadCaseSpec::NodeForce& force : loads.forces) {
+    if (force.node < 0 || force.node >= static_cast<int>(def.nodes.size())) {
+      out.Error({}, "load case " + loads.name + " has a force on no node of the model");
+    }
+  }
+}
+
+}  // namespace taut::analysis
+
+namespace taut {
+
+std::vector<TouchDef> FindTouches(const ModelDef& def, double within_m) {
+  std::vector<TouchDef> touches;
+  const auto add = [&](int body, const Vec3& place, double radius, const Material& material) {
+    if (base::IsFixed(def, body)) return;
+    for (const PlaneDef& plane : def.planes) {
+      const double gap = Dot(plane.normal, place - plane.point_m) - radius;
+      if (gap > within_m) continue;
+      const double friction = sim::Combined(def, material, plane.material).static_friction;
+      touches.push_back(
+          {body, kWorld, place - (radius + gap) * plane.normal, plane.normal, friction});
+    }
+  };
+  for (const SphereDef& s : def.spheres) {
+    if (s.collides) add(s.body, s.center_m, s.radius_m, s.material);
+  }
+  for (const CapsuleDef& c : def.capsules) {
+    if (!c.collides) continue;
+    add(c.body, c.from_m, c.radius_m, c.material);
+    add(c.body, c.to_m, c.radius_m, c.material);
+  }
+  for (const BoxDef& box : def.boxes) {
+    for (int corner = 0; box.collides && corner < 8; ++corner) {
+      const Vec3& h = box.half_extents_m;
+      const Vec3 out{corner & 1 ? h.x : -h.x, corner & 2 ? h.y : -h.y, corner & 4 ? h.z : -h.z};
+      add(box.body, box.center_m + Rotate(box.orientation, out), 0, box.material);
+    }
+  }
+  for (const HullDef& hull : def.hulls) {
+    if (!hull.collides) continue;
+    for (const Vec3& corner : hull.corners_m) add(hull.body, corner, 0, hull.material);
+  }
+  return touches;
+}
+
+}  // namespace taut
