@@ -132,4 +132,68 @@ struct Modes {
 /// what `FindEquilibrium` gives): K v = omega^2 M v in what joints and bearing planes leave free.
 Modes FindModes(const ModelDef& def, const LoadCaseSpec& loads = {});
 
+/// What can carry a force: a span of a cable between places with friction (or all of it), a bar, a
+/// direction that a joint holds, a point that touches a plane.
+struct StaticMember {
+  enum class Kind { kCable, kBar, kHeld, kContact };
+  Kind kind = Kind::kCable;
+  int index = 0;  ///< Of the cable; of the joint; of a contact the plane.
+  int part = 0;   ///< Of a cable the span, of a joint which of its directions, of a contact the
+                  ///< body.
+  double length_m = 0;  ///< Of cables and bars.
+  double force_n = 0;  ///< As described: tension > 0; of contacts, how hard it pushes. [N] or [N m]
+};
+
+/// Forces that members have among themselves, without loads.
+struct SelfStress {
+  bool feasible = false;                    ///< All cables in tension, no contact that pulls.
+  std::vector<double> force_n;              ///< Per member; tension > 0.
+  std::vector<double> density_n_per_m;      ///< Force by length, of cables and bars; else 0.
+  std::vector<double> rod_density_n_per_m;  ///< Per rod of `ClassicalCount`, if there is one.
+};
+
+/// How surely a rank is known: singular values next to where it is cut.
+struct RankGap {
+  int rank = 0;
+  double smallest_kept = 0, largest_dropped = 0;
+  /// Whether they are a thousandfold apart.
+  bool clear() const { return largest_dropped * 1e3 <= smallest_kept; }
+};
+
+/// The same in the words of the literature, where it has words for it: every moving body is a point
+/// or a rod between two points, which counts as a member; three unknowns a point.
+struct ClassicalCount {
+  int nodes = 0, members = 0;  ///< Nodes of what moves.
+  RankGap rank;
+  int self_stresses = 0, mechanisms = 0, rigid = 0;
+  std::vector<int> rods;  ///< Bodies that count as members.
+};
+
+/// What a structure carries by itself, and how it can move without any member changing its length.
+struct ForceAnalysis {
+  std::vector<StaticMember> members;
+  /// A row a motion of `Tangent::effective`, a column a member: matrix * forces = loads; its
+  /// transpose says how fast members get longer [1], [m].
+  Matrix matrix;
+  RankGap rank;
+  int unknowns = 0;    ///< Motions that count,
+  int free_turns = 0;  ///< and those that are left out because nothing could resist them.
+  int rigid = 0;       ///< Ways to move as a whole, which no member resists.
+  /// Independent; a feasible one first, if there is any: densities of a cable up to 1 N/m.
+  std::vector<SelfStress> self_stress;
+  std::vector<Mode> mechanisms;  ///< Without those as a whole.
+  /// What the first feasible self-stress gives mechanisms to resist with, as an eigenvalue over the
+  /// squared displacements of all points at which something acts [N/m], ascending: in units of the
+  /// largest density of a cable. All positive: it is stable by prestress. Empty: no feasible state.
+  std::vector<double> mechanism_stiffness;
+  /// The least eigenvalue, but for motions as a whole, of the stiffness as described, over the same
+  /// displacements [N/m]; nothing without moving bodies.
+  std::optional<double> lowest_stiffness;
+  std::optional<ClassicalCount> classical;
+  std::vector<std::string> left_out;  ///< What of the model takes no part, in words.
+};
+
+/// As described. Points that touch planes are members, too, if `contact`.
+ForceAnalysis AnalyseForces(const ModelDef& def, bool contact = true);
+
 }  // namespace taut

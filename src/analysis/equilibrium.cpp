@@ -159,8 +159,54 @@ class Finder {
     }
     AddJoints(e);
     AddContacts(e);
-    if (!search_.balanced) e.why = Why();
+    e.why = search_.balanced ? Entered(e.pose) : Why();
     return e;
+  }
+
+  /// What is in each other there, deeper than as described, and would push: only planes do, here.
+  std::string Entered(const Pose& pose) const {
+    if (!options_.contact) return "";
+    constexpr double kDeeper_m = 1e-6;
+    const auto overlaps = [](const ModelDef& def) {
+      Diagnostics out;
+      const auto model = Model::Compile(def, out);
+      return model == nullptr ? std::vector<Overlap>() : Batch(model, {}).Overlaps(0);
+    };
+    const std::vector<Overlap> before = overlaps(def_);
+    for (const Overlap& now : overlaps(ModelAt(def_, pose))) {
+      if (now.b.list == ShapeRef::List::kPlanes) continue;
+      double depth = kDeeper_m;
+      for (const Overlap& was : before) {
+        if (was.body_a == now.body_a && was.body_b == now.body_b) depth += was.depth_m;
+      }
+      if (now.depth_m <= depth) continue;
+      return "\"" + NameOf(now.a) + "\" and \"" + NameOf(now.b) + "\" are in each other by " +
+             Number(now.depth_m) + " m there: of what may touch, statics knows planes only";
+    }
+    return "";
+  }
+  const std::string& NameOf(const ShapeRef& shape) const {
+    const std::size_t i = static_cast<std::size_t>(shape.index);
+    using List = ShapeRef::List;
+    switch (shape.list) {
+      case List::kSpheres:
+        return def_.spheres[i].name;
+      case List::kCapsules:
+        return def_.capsules[i].name;
+      case List::kBoxes:
+        return def_.boxes[i].name;
+      case List::kHulls:
+        return def_.hulls[i].name;
+      case List::kTerrainBoxes:
+        return def_.terrain_boxes[i].name;
+      case List::kHeightFields:
+        return def_.height_fields[i].name;
+      case List::kTerrainMeshes:
+        return def_.terrain_meshes[i].name;
+      case List::kPlanes:
+        break;
+    }
+    return def_.planes[i].name;
   }
 
   void AddJoints(Equilibrium& e) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/members.h"
 #include "analysis/rigid.h"
 #include "analysis/tangent.h"
 #include "math/angle.h"
@@ -35,6 +36,26 @@ Eigen::MatrixXd Nothing(const Eigen::MatrixXd& rows, double limit) {
   Eigen::Index rank = 0;
   while (rank < svd.singularValues().size() && svd.singularValues()[rank] > limit) ++rank;
   return svd.matrixV().rightCols(rows.cols() - rank);
+}
+
+Mode ShapeOf(const ModelDef& def, const Structure& s, Eigen::VectorXd shape) {
+  Mode mode;
+  double most = 0;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const Eigen::Index at = 6 * static_cast<Eigen::Index>(b);
+    most = std::max(
+        {most, shape.segment<3>(at).norm(), s.reach_m[b] * shape.segment<3>(at + 3).norm()});
+  }
+  if (most > 0) shape /= most;
+  mode.translation_m.resize(def.bodies.size());
+  mode.turn_rad.resize(def.bodies.size());
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const Eigen::Index at = 6 * static_cast<Eigen::Index>(b);
+    const std::size_t body = static_cast<std::size_t>(s.bodies[b]);
+    mode.translation_m[body] = To(shape.segment<3>(at));
+    mode.turn_rad[body] = To(shape.segment<3>(at + 3));
+  }
+  return mode;
 }
 
 namespace {
@@ -76,27 +97,6 @@ Free FreeMotions(const Structure& s, const Eigen::MatrixXd& stiffness, const Eig
   return out;
 }
 
-Mode ModeOf(const ModelDef& def, const Structure& s, Eigen::VectorXd shape, double eigenvalue) {
-  Mode mode;
-  mode.eigenvalue_per_s2 = eigenvalue;
-  double most = 0;
-  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-    const Eigen::Index at = 6 * static_cast<Eigen::Index>(b);
-    most = std::max(
-        {most, shape.segment<3>(at).norm(), s.reach_m[b] * shape.segment<3>(at + 3).norm()});
-  }
-  if (most > 0) shape /= most;
-  mode.translation_m.resize(def.bodies.size());
-  mode.turn_rad.resize(def.bodies.size());
-  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-    const Eigen::Index at = 6 * static_cast<Eigen::Index>(b);
-    const std::size_t body = static_cast<std::size_t>(s.bodies[b]);
-    mode.translation_m[body] = To(shape.segment<3>(at));
-    mode.turn_rad[body] = To(shape.segment<3>(at + 3));
-  }
-  return mode;
-}
-
 /// What is not rigid: its eigenvalues, zeros told from others by the gap.
 void AddVibrations(const ModelDef& def, const Structure& s, const Eigen::MatrixXd& basis,
                    const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& mass, Modes& out) {
@@ -121,7 +121,8 @@ void AddVibrations(const ModelDef& def, const Structure& s, const Eigen::MatrixX
     const double value = solver.eigenvalues()[i], size = std::fabs(value);
     const Eigen::VectorXd shape = basis * lower.transpose().triangularView<Eigen::Upper>().solve(
                                               solver.eigenvectors().col(i));
-    Mode mode = ModeOf(def, s, shape, value);
+    Mode mode = ShapeOf(def, s, shape);
+    mode.eigenvalue_per_s2 = value;
     if (size <= kZero * most) {
       mode.kind = Mode::Kind::kMechanism;
       mode.eigenvalue_per_s2 = 0;
@@ -155,7 +156,7 @@ Modes FindModes(const ModelDef& def, const LoadCaseSpec& loads) {
   const Eigen::MatrixXd mass = MassMatrix(def, s);
   const Free free = FreeMotions(s, stiffness, mass, HeldDirections(s, holding));
   for (Eigen::Index i = 0; i < free.rigid; ++i) {
-    out.modes.push_back(ModeOf(def, s, free.basis.col(i), 0));
+    out.modes.push_back(ShapeOf(def, s, free.basis.col(i)));
     out.modes.back().kind = Mode::Kind::kRigid;
   }
   out.rigid = static_cast<int>(free.rigid);

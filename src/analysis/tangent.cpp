@@ -1,5 +1,7 @@
 #include "analysis/tangent.h"
 
+#include "analysis/members.h"
+
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -114,9 +116,6 @@ Eigen::MatrixXd GeometricStiffness(const Structure& s, const Reactions& holding)
   return stiffness;
 }
 
-namespace {
-
-/// Of a point, from a body's motions to its own: 3 x 6 n.
 Eigen::MatrixXd MovesOf(const Structure& s, const Anchor& point) {
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(3, s.motions());
   if (point.body < 0) return m;
@@ -124,6 +123,8 @@ Eigen::MatrixXd MovesOf(const Structure& s, const Anchor& point) {
   m.block<3, 3>(0, 6 * point.body + 3) = -CrossMatrix(ArmOf(point, s.start));
   return m;
 }
+
+namespace {
 
 /// Eq. 16: takes halves out of the ends, puts a bar's consistent mass along the spans.
 void Spread(const Structure& s, double mass_kg, const std::vector<Anchor>& points,

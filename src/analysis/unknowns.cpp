@@ -11,12 +11,13 @@ namespace taut::analysis {
 // A turn w moves a point at a by w x a, in all by w (sum of |a|^2 - a a^T) w: where that is
 // nothing, nothing resists it.
 Eigen::MatrixXd Structure::FreeTurns(std::size_t b, const Placement& at) const {
-  constexpr double kOnAxis = 1e-8;  ///< Of the whole structure's size.
+  constexpr double kOnAxis = 1e-7;  ///< Of the structure's size: some rounding of its square.
   const Eigen::Matrix3d all = arms_[b] + size_m * size_m * resisted_[b];
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(all);
   Eigen::MatrixXd turns(3, 0);
   for (int i = 0; i < 3; ++i) {
-    if (solver.eigenvalues()[i] > kOnAxis * kOnAxis * size_m * size_m) continue;
+    const double square = std::max(size_m * size_m, arms_[b].trace());
+    if (solver.eigenvalues()[i] > kOnAxis * kOnAxis * square) continue;
     turns.conservativeResize(3, turns.cols() + 1);
     turns.col(turns.cols() - 1) = Of(Rotate(at.turn[b], To(solver.eigenvectors().col(i))));
   }
