@@ -25,6 +25,7 @@ enum class Determined {
   kPrior,      ///< The prior holds it: the data alone would not.
   kAtBound,    ///< At a bound, and the data would have it beyond.
   kDead,       ///< No residual depends on it, to first order.
+  kWeak,       ///< Nothing was known before, and the data do not know it to half its scale.
   kTraded,     ///< Alone it would be determined; others can take its place.
 };
 
@@ -39,8 +40,8 @@ struct ParameterVerdict {
   double sd_ratio = 0;  ///< se over the prior's sd, or the scale.
   double pull = 0;      ///< (value - prior mean) / prior sd; 0 without a prior.
   bool kink = false;    ///< See FitColumn.
-  /// The direction that nearly changes nothing, if traded: (parameter, change in its unit), the
-  /// parameter itself first, in steps that together move all residuals by `trade_residual`.
+  /// What moves with it and takes its place, if traded: (parameter, change in its unit), the
+  /// parameter itself first; all residuals together move by `trade_residual` only.
   std::vector<std::pair<std::size_t, double>> trade;
   double trade_residual = 0;
   std::string sentence;
@@ -52,16 +53,19 @@ struct ParameterVerdict {
 struct FitDirection {
   double singular = 0;            ///< Residuals a unit step of the direction.
   bool null = false;              ///< Indistinguishable from none by the derivatives' own error.
-  bool fixed = false;             ///< The data at least halve its prior sd: singular >= sqrt(3).
+  bool fixed = false;             ///< singular >= sqrt(3), no null: a prior sd is halved.
   std::vector<double> direction;  ///< Unit vector, one a parameter, in scales.
 };
 
 struct Identifiability {
   std::vector<ParameterVerdict> parameters;
-  std::vector<FitDirection> directions;  ///< Strongest first, one a parameter.
+  std::vector<FitDirection> directions;  ///< Strongest first, one a parameter
+                                         ///< that is not at a bound.
   double condition = 0;             ///< Largest over smallest singular value; infinite if null.
   int fixed = 0;                    ///< Directions that the data fix.
-  double effective = 0;             ///< Parameters that the data determine, trace of H.
+  int endless = 0;                  ///< Null directions that no prior holds either.
+  double effective = 0;             ///< Parameters that the data determine, trace of H,
+  double effective_square = 0;      ///< and of H^2.
   std::vector<double> correlation;  ///< n x n, row by row; 0 with what has no finite error.
   std::vector<double> covariance;   ///< n x n in the parameters' units; infinite where they are.
 };
@@ -146,7 +150,7 @@ struct FitProfile {
 };
 
 struct ProfileOptions {
-  int points = 11;           ///< A side and more if the interval is wider than expected.
+  int points = 6;            ///< A side; as many more each time that is not far enough.
   double confidence = 0.95;  ///< 0 < confidence < 1.
   double reach = 3;          ///< In standard errors; without a finite one, in scales.
   FitOptions fit;            ///< Of each point's search over the others.
@@ -192,7 +196,9 @@ enum class FitJudgement {
 };
 
 struct ChiSquare {
-  double value = 0, freedom = 0, p = 1;
+  double value = 0;
+  double freedom = 0;  ///< What a linear model leads to expect of it.
+  double p = 1;        ///< The probability of that much and more; 1 where nothing can be said.
 };
 
 struct VerdictOptions {

@@ -1,0 +1,274 @@
+#include <algorithm>
+#include <cmath>
+
+#include "fit/linear.h"
+#include "fit/words.h"
+#include "taut/fit_verdict.h"
+
+namespace taut {
+namespace {
+
+using fit::Brief;
+using fit::Change;
+using fit::Matrix;
+using fit::Vector;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+/// A column below this, in residuals a scale, is dead.
+constexpr double kDead = 1e-6;
+/// Above this correlation an estimate is said to go with another.
+constexpr double kTogether = 0.95;
+/// What takes at least this share of the largest part of a trade is named.
+constexpr double kNamed = 0.2;
+/// Known to this share of its prior sd or scale, it is estimated; a direction that is has a
+/// singular value of sqrt(1 / share^2 - 1) at least.
+constexpr double kShare = 0.5;
+
+/// What all the functions below work on: the parameters that no bound holds, in scales.
+struct Local {
+  const FitProblem& problem;
+  const FitDerivatives& derivatives;
+  std::vector<Eigen::Index> free;
+  Matrix data;             ///< The data's Jacobian.
+  std::vector<bool> null;  ///< A direction of it.
+  fit::Singular svd;       ///< Of it.
+  fit::Spread spread;      ///< With the priors, and null directions gone.
+
+  const FitParameter& parameter(std::size_t k) const {
+    return problem.parameters[static_cast<std::size_t>(free[k])];
+  }
+};
+
+/// By how much the derivatives' own errors may change a direction's singular value.
+double DirectionError(const Local& local, Eigen::Index direction) {
+  double sum = 0;
+  for (std::size_t k = 0; k < local.free.size(); ++k) {
+    sum += std::fabs(local.svd.V(static_cast<Eigen::Index>(k), direction)) *
+           local.derivatives.columns[static_cast<std::size_t>(local.free[k])].error;
+  }
+  return sum;
+}
+
+Local MakeLocal(const FitProblem& problem, const std::vector<double>& values,
+                const FitDerivatives& derivatives) {
+  const fit::System system = fit::SystemOf(problem, {}, values, derivatives);
+  Local local{problem, derivatives, fit::FreeOf(problem, values, system), {}, {}, {}, {}};
+  const Matrix all = fit::Columns(system.jacobian, local.free);
+  local.data = all.topRows(system.data_rows);
+  const auto n = static_cast<Eigen::Index>(local.free.size());
+  if (n == 0) return local;
+  local.svd = fit::Decompose(local.data);
+  // What remains of the data is diag(s) V^T without the null directions.
+  Matrix stacked = Matrix::Zero(n + all.rows() - system.data_rows, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double s = local.svd.value[k];
+    const double least = std::max(fit::kNullShare * local.svd.value[0], DirectionError(local, k));
+    local.null.push_back(s <= least);
+    if (!local.null.back()) stacked.row(k) = s * local.svd.V.col(k).transpose();
+  }
+  stacked.bottomRows(all.rows() - system.data_rows) = all.bottomRows(all.rows() - system.data_rows);
+  local.spread = fit::SpreadOf(stacked);
+  return local;
+}
+
+std::vector<FitDirection> Directions(const Local& local) {
+  std::vector<FitDirection> directions;
+  for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(local.null.size()); ++k) {
+    FitDirection direction;
+    direction.singular = local.svd.value[k];
+    direction.null = local.null[static_cast<std::size_t>(k)];
+    direction.fixed = !direction.null && direction.singular >= std::sqrt(3.0);
+    direction.direction.assign(local.problem.parameters.size(), 0.0);
+    for (std::size_t j = 0; j < local.free.size(); ++j) {
+      direction.direction[static_cast<std::size_t>(local.free[j])] =
+          local.svd.V(static_cast<Eigen::Index>(j), k);
+    }
+    directions.push_back(std::move(direction));
+  }
+  return directions;
+}
+
+/// How the others move if free parameter k moves by a scale and all is fitted anew: along the null
+/// directions, else by the covariance.
+Vector Trade(const Local& local, std::size_t k) {
+  const auto i = static_cast<Eigen::Index>(k);
+  Vector d = local.spread.covariance.col(i);
+  if (local.spread.endless[k]) d = local.spread.null * local.spread.null.row(i).transpose();
+  return d / d[i];
+}
+
+double ScaleIn(const FitParameter& p) { return fit::HasPrior(p) ? p.prior_sd : FitScale(p); }
+
+void Classify(const Local& local, std::size_t k, ParameterVerdict& verdict) {
+  const FitParameter& p = local.parameter(k);
+  const auto i = static_cast<Eigen::Index>(k);
+  const double scale = FitScale(p), column = local.data.col(i).norm();
+  const double prior = fit::HasPrior(p) ? scale / p.prior_sd : 0.0;
+  verdict.se_alone = scale / std::sqrt(column * column + prior * prior);
+  verdict.se =
+      local.spread.endless[k] ? kInfinite : scale * std::sqrt(local.spread.covariance(i, i));
+  verdict.sd_ratio = verdict.se / ScaleIn(p);
+  if (column <= kDead) {
+    verdict.kind = Determined::kDead;
+  } else if (verdict.sd_ratio <= kShare) {
+    verdict.kind = Determined::kEstimated;
+  } else if (verdict.se_alone <= kShare * ScaleIn(p)) {
+    verdict.kind = Determined::kTraded;
+  } else {
+    verdict.kind = fit::HasPrior(p) ? Determined::kPrior : Determined::kWeak;
+  }
+  if (verdict.kind != Determined::kTraded) return;
+  const Vector d = Trade(local, k);
+  verdict.trade_residual = (local.data * d).norm();
+  double largest = 0;
+  for (Eigen::Index j = 0; j < d.size(); ++j) {
+    if (j != i) largest = std::max(largest, std::fabs(d[j]));
+  }
+  verdict.trade.emplace_back(local.free[k], scale);
+  for (Eigen::Index j = 0; j < d.size(); ++j) {
+    if (j == i || std::fabs(d[j]) < kNamed * largest) continue;
+    const auto other = static_cast<std::size_t>(j);
+    verdict.trade.emplace_back(local.free[other], d[j] * FitScale(local.parameter(other)));
+  }
+}
+
+std::string With(const FitProblem& problem,
+                 const std::vector<std::pair<std::size_t, double>>& trade) {
+  std::vector<std::string> parts;
+  for (std::size_t k = 1; k < trade.size(); ++k) {
+    const FitParameter& p = problem.parameters[trade[k].first];
+    parts.push_back(p.name + " " + Change(trade[k].second, p.unit));
+  }
+  return fit::List(parts);
+}
+
+std::string Against(const FitProblem& problem,
+                    const std::vector<std::pair<std::size_t, double>>& trade) {
+  std::vector<std::string> names;
+  for (std::size_t k = 1; k < trade.size(); ++k) {
+    names.push_back(problem.parameters[trade[k].first].name);
+  }
+  return fit::List(names);
+}
+
+/// Those that an estimate is tied to.
+std::string Together(const FitProblem& problem, const Identifiability& all, std::size_t j) {
+  const std::size_t n = problem.parameters.size();
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double r = all.correlation[j * n + i];
+    if (i != j && std::fabs(r) > kTogether) {
+      names.push_back(problem.parameters[i].name + " (correlation " + Brief(r) + ")");
+    }
+  }
+  return names.empty() ? "" : "; it goes with " + fit::List(names);
+}
+
+std::string Sentence(const FitProblem& problem, const Identifiability& all, std::size_t j,
+                     const FitColumn& column) {
+  const FitParameter& p = problem.parameters[j];
+  const ParameterVerdict& v = all.parameters[j];
+  const std::string value = p.name + " = " + Brief(v.value, p.unit);
+  const std::string error = " +- " + Brief(v.se, p.unit);
+  std::string text;
+  switch (v.kind) {
+    case Determined::kEstimated:
+      text = value + error + ": estimated" + Together(problem, all, j);
+      break;
+    case Determined::kPrior:
+      text = value + error + ": held by its prior; the data leave " + Brief(100 * v.sd_ratio) +
+             " % of its standard deviation";
+      break;
+    case Determined::kAtBound:
+      text = value + ": at its " + (v.value <= p.low ? "lower" : "upper") +
+             " bound, and the data would have it beyond";
+      break;
+    case Determined::kDead:
+      text = p.name + ": dead; no residual depends on it";
+      if (column.curved > kDead) text = p.name + ": dead here; it acts by its square only";
+      break;
+    case Determined::kWeak:
+      text = value + error + ": the data say too little, even if all others were known (+- " +
+             Brief(v.se_alone, p.unit) + ")";
+      if (v.sd_ratio < kInfinite && v.se_alone < 0.9 * v.se) text += Together(problem, all, j);
+      break;
+    case Determined::kTraded:
+      text = value + error + ": traded against " + Against(problem, v.trade) + "; " +
+             Change(v.trade[0].second, p.unit) + " with " + With(problem, v.trade) +
+             " moves all residuals together by " + Brief(v.trade_residual) +
+             " standard deviations (alone it would be known to +- " + Brief(v.se_alone, p.unit) +
+             ")";
+      break;
+  }
+  if (column.kink) {
+    text += "; its derivative depends on the step by " + Brief(100 * column.kink_share) +
+            " %: a kink, or a step too long, so errors are not to be trusted";
+  }
+  if (!column.failed.empty()) text += "; points beside it could not be computed: " + column.failed;
+  return text;
+}
+
+void Correlate(const Local& local, Identifiability& all) {
+  const std::size_t n = local.problem.parameters.size();
+  all.correlation.assign(n * n, 0.0);
+  all.covariance.assign(n * n, 0.0);
+  for (std::size_t k = 0; k < local.free.size(); ++k) {
+    for (std::size_t m = 0; m < local.free.size(); ++m) {
+      const auto i = static_cast<std::size_t>(local.free[k]);
+      const auto j = static_cast<std::size_t>(local.free[m]);
+      const auto& C = local.spread.covariance;
+      const auto ki = static_cast<Eigen::Index>(k), mi = static_cast<Eigen::Index>(m);
+      const bool endless = local.spread.endless[k] || local.spread.endless[m];
+      const double variance = C(ki, ki) * C(mi, mi);
+      if (!endless && variance > 0) all.correlation[i * n + j] = C(ki, mi) / std::sqrt(variance);
+      if (!endless) {
+        all.covariance[i * n + j] =
+            C(ki, mi) * FitScale(local.parameter(k)) * FitScale(local.parameter(m));
+      } else if (k == m) {
+        all.covariance[i * n + j] = kInfinite;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Identifiability Identify(const FitProblem& problem, const std::vector<double>& values,
+                         const FitDerivatives& derivatives) {
+  const std::size_t n = problem.parameters.size();
+  Identifiability all;
+  const Local local = MakeLocal(problem, values, derivatives);
+  all.parameters.resize(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    const FitParameter& p = problem.parameters[j];
+    ParameterVerdict& verdict = all.parameters[j];
+    verdict.kind = Determined::kAtBound;  // those that are free are looked at below
+    verdict.value = values[j];
+    verdict.kink = derivatives.columns[j].kink;
+    if (fit::HasPrior(p)) verdict.pull = (values[j] - fit::PriorMean(p)) / p.prior_sd;
+  }
+  for (std::size_t k = 0; k < local.free.size(); ++k) {
+    Classify(local, k, all.parameters[static_cast<std::size_t>(local.free[k])]);
+  }
+  all.directions = Directions(local);
+  for (const FitDirection& direction : all.directions) {
+    all.fixed += direction.fixed ? 1 : 0;
+    if (direction.null) all.condition = kInfinite;
+  }
+  if (!all.directions.empty() && all.condition == 0) {
+    all.condition = all.directions.front().singular / all.directions.back().singular;
+  }
+  if (!local.free.empty()) {
+    const Matrix H = local.spread.covariance * (local.data.transpose() * local.data);
+    all.effective = H.trace();
+    all.effective_square = (H * H).trace();
+    all.endless = static_cast<int>(local.spread.null.cols());
+  }
+  Correlate(local, all);
+  for (std::size_t j = 0; j < n; ++j) {
+    all.parameters[j].sentence = Sentence(problem, all, j, derivatives.columns[j]);
+  }
+  return all;
+}
+
+}  // namespace taut
