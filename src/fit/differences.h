@@ -1,5 +1,5 @@
 /// Derivatives by differences: which points they need, and what follows from the answers. Equations
-/// (F.7) to (F.9) of docs/theory/identification.md.
+/// (F.6) to (F.9) of docs/theory/identification.md.
 #pragma once
 
 #include <span>

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "fit/problem.h"
 #include "fit/words.h"
@@ -10,6 +11,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kExtensions = 4;    ///< Of a side that does not reach the level: each twice as far.
+constexpr double kLower = 1e-6;   ///< Less than that is the searches' tolerance.
 constexpr double kBetter = 0.01;  ///< A chi-square this much lower is another fit.
 
 /// A profile under way: `points` grow outwards on both sides of the fit.
@@ -46,18 +48,24 @@ class Profile {
     return Run(jobs);
   }
 
-  /// Once more from each neighbour's result: another minimum beside, which a kink may hide.
+  /// From each neighbour's result once more, and on from what that lowers: another minimum beside,
+  /// which a kink may hide, is handed on from point to point.
   bool Again() {
-    std::vector<FitJob> jobs;
-    for (std::size_t k = 0; k < points_.size(); ++k) {
-      for (const std::size_t other : {k - 1, k + 1}) {
-        if (other >= points_.size() || !points_[other].failed.empty()) continue;
-        if (points_[k].value == centre()) continue;
-        jobs.push_back({points_[other].values, held_, {}});
-        jobs.back().start[parameter_] = points_[k].value;
+    for (const ProfilePoint& point : points_) lowered_.insert(point.value);
+    for (std::size_t pass = 0; pass < points_.size() && !lowered_.empty(); ++pass) {
+      std::vector<FitJob> jobs;
+      for (std::size_t k = 0; k < points_.size(); ++k) {
+        for (const std::size_t other : {k - 1, k + 1}) {  // before the first: beyond the last, too
+          if (other >= points_.size() || lowered_.count(points_[other].value) == 0) continue;
+          if (!points_[other].failed.empty()) continue;
+          jobs.push_back({points_[other].values, held_, {}});
+          jobs.back().start[parameter_] = points_[k].value;
+        }
       }
+      lowered_.clear();
+      if (!Run(jobs)) return false;
     }
-    return Run(jobs);
+    return true;
   }
 
   bool AtBound(bool low) const {
@@ -76,8 +84,6 @@ class Profile {
   const std::string& why() const { return why_; }
 
  private:
-  double centre() const { return centre_.value_or(points_.front().value); }
-
   /// The outermost of a side that could be computed.
   const ProfilePoint& Computed(bool low) const {
     std::size_t k = low ? 0 : points_.size() - 1;
@@ -98,7 +104,6 @@ class Profile {
   }
 
   bool Run(const std::vector<FitJob>& jobs) {
-    if (!centre_) centre_ = points_.front().value;
     if (jobs.empty()) return true;
     const FitState state = RunFitJobs(problem_, jobs, options_.fit);
     if (state.tracks.empty()) {
@@ -128,7 +133,8 @@ class Profile {
                          [](const ProfilePoint& p, double value) { return p.value < value; });
     if (at == points_.end() || at->value != point.value) {
       points_.insert(at, std::move(point));
-    } else if (point.rise < at->rise) {
+    } else if (point.rise < at->rise - kLower) {
+      lowered_.insert(point.value);
       *at = std::move(point);
     }
   }
@@ -138,7 +144,7 @@ class Profile {
   std::size_t parameter_;
   std::vector<bool> held_;
   double cost_ = 0;
-  std::optional<double> centre_;
+  std::set<double> lowered_;  ///< Values whose points the last run lowered.
   std::vector<ProfilePoint> points_;
   std::string why_;
 };

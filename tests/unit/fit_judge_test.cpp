@@ -149,6 +149,25 @@ TEST(FitJudge, OfALinearModelChiSquareHasItsDistribution) {
   EXPECT_NEAR(prior_value, prior_freedom, 3 * std::sqrt(2 * prior_freedom / runs));
 }
 
+TEST(FitJudge, OfOneDirectionThePartsAreExact) {
+  // x ~ N(0, 1), y = x + N(0, 1) = b: x^ = b / 2; the datum's and the prior's pull are b / 2, each
+  // of variance 1 / 2, so both have p = P(|b / 2| and more) = erfc(b / 2); the whole has erfc(b /
+  // 2), too.
+  FitParameter x = Parameter("x", 0, 0);
+  x.prior_sd = 1;
+  for (const double b : {0.3, 1.0, 4.0}) {
+    const auto problem = MakeProblem({x}, 1, [b](const std::vector<double>& v) {
+      return Residuals{{v[0] - b}, ""};
+    });
+    const FitVerdict of = JudgeFit(problem, Fit(problem, {}), {});
+    EXPECT_NEAR(of.data.value, b * b / 4, 1e-7);  // a step of 1e-8 ends the search
+    EXPECT_NEAR(of.data.freedom, 0.5, 1e-9);
+    for (const ChiSquare& part : {of.data, of.prior, of.total}) {
+      EXPECT_NEAR(part.p / std::erfc(b / 2), 1, 1e-7);
+    }
+  }
+}
+
 TEST(FitJudge, APriorThatTheDataContradictIsNamed) {
   FitParameter push = Parameter("push", 22, 0);
   push.prior_sd = 3;

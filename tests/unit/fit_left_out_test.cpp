@@ -203,6 +203,29 @@ TEST(FitProfile, AnAliasIsOpenOnBothSides) {
   EXPECT_NE(profile.sentence.find("open on both sides"), std::string::npos) << profile.sentence;
 }
 
+TEST(FitProfile, AnotherMinimumIsHandedOnFromWhereItIsFound) {
+  // Two ways for z, near -1 and near +1; from x = 0, z = -1 the other one is found only far out,
+  // where the first ends, and is the lower one already for x > 0.
+  const auto problem =
+      MakeProblem({Parameter("x", 0), Parameter("z", -1)}, 3, [](const std::vector<double>& v) {
+        return Residuals{{2 * (v[1] * v[1] - 1), v[1] - v[0], v[0]}, ""};
+      });
+  ProfileOptions options;
+  options.points = 10;
+  options.reach = 5;
+  const std::vector<double> fitted = Fit(problem, {}).values;
+  ASSERT_LT(fitted[1], 0);
+  const FitProfile profile = ProfileParameter(problem, fitted, 0, 1, options);
+  int checked = 0;
+  for (const ProfilePoint& point : profile.points) {
+    // The lower of both ways: the same equation mirrored, so z has the sign of x.
+    if (std::fabs(point.value) < 0.3) continue;
+    EXPECT_GT(point.values[1] * point.value, 0) << point.value;
+    ++checked;
+  }
+  EXPECT_GT(checked, 15);
+}
+
 TEST(FitProfile, ABoundEndsItAndALowerMinimumIsTold) {
   FitParameter p = Parameter("x", -1);
   p.low = -1.1;
