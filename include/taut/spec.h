@@ -57,6 +57,7 @@ struct RobotSpec {
   ModelDef def;
   std::vector<Tags> cable_tags;          ///< Per cable of `def`; includes the cable's name.
   std::vector<Tags> node_tags;           ///< Per node of `def`; includes the node's name.
+  std::vector<Tags> joint_tags;          ///< Per joint of `def`: its pair's or node's, with names.
   std::vector<SourceRef> cable_sources;  ///< Per cable: the pair that it came from.
   std::vector<SourceRef> body_sources;   ///< Per body.
   std::vector<SourceRef> node_sources;   ///< Per node.

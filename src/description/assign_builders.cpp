@@ -72,6 +72,7 @@ Assignment AssignBuilders(const ModelText& model, const Assembly& assembly, Diag
   Assignment assignment;
   assignment.of_pair.assign(assembly.pairs.size(), -1);
   assignment.of_node.resize(assembly.nodes.size());
+  assignment.lump_kg.assign(assembly.nodes.size(), 0.0);
   std::set<std::pair<int, int>> clashes;  // one complaint for two builders, not one a node
   const auto clash = [&](int first, int second, const std::string& name) {
     if (!clashes.insert({first, second}).second) return;

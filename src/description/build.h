@@ -13,6 +13,8 @@ namespace taut::description {
 struct Assignment {
   std::vector<int> of_pair;               ///< Per pair; -1: none.
   std::vector<std::vector<int>> of_node;  ///< Per node: at most one of each kind.
+  std::vector<double>
+      lump_kg;  ///< Per node: half of what the bars and cables that end there weigh.
 };
 
 /// Complains about builders that match nothing, about two for the same, about pairs without one.

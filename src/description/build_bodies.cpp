@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "description/beam_axes.h"
 #include "description/build.h"
 #include "description/once.h"
 #include "description/welds.h"
@@ -25,22 +26,6 @@ struct Solids {
   Bounds bounds;
   bool complete = true;  ///< False: one of its rods was complained about and is not in `parts`.
 };
-
-/// Of a beam along the unit vector u of its part: x along it, y level, z up; a beam along z has
-/// its y along the part's y.
-Quat BeamOrientation(const Vec3& u) {
-  // Turn x to u's direction in the level plane (about z), then up to u (about the new y). Of the
-  // half angle's sine and cosine the larger is a root, the other a quotient: a root of a difference
-  // would lose half of the digits of a small angle, or be one of a negative number.
-  const double level = std::sqrt(u.x * u.x + u.y * u.y);
-  const double c = level > 1e-12 ? u.x / level : 1.0, s = level > 1e-12 ? u.y / level : 0.0;
-  const double larger = std::sqrt(0.5 * (1.0 + std::fabs(c))),
-               smaller = std::fabs(s) / (2 * larger);
-  const double half_c = c >= 0.0 ? larger : smaller;
-  const double half_s = std::copysign(c >= 0.0 ? smaller : larger, s);
-  const double pitch_c = std::sqrt(0.5 * (1.0 + level)), pitch_s = -u.z / (2 * pitch_c);
-  return Quat{half_c, 0.0, 0.0, half_s} * Quat{pitch_c, 0.0, pitch_s, 0.0};
-}
 
 class BodyBuilder {
  public:
@@ -134,6 +119,12 @@ class BodyBuilder {
   void ReportBodiless(const Weld& weld) {
     const PlacedNode& node = assembly_.nodes[weld.nodes[0]];
     if (!model_.builders_complete || !assembly_.complete) return;
+    if (weld.ends_bar) {
+      bodiless_(node.at, "the node \"" + node.name + "\" has no mass",
+                "give a bar or a cable that ends there density_kg_per_m3 and area_m2, or mass_kg; "
+                "or the node a point_mass, or an anchor");
+      return;
+    }
     bodiless_(node.at, "node \"" + node.name + "\" belongs to no body",
               "a rod, box, sphere or point_mass makes a body of it, fixed_to joins it to another "
               "node's, an anchor fixes it in the world");
@@ -161,6 +152,9 @@ class BodyBuilder {
           Add(robot_.def.capsules, *builder.rod, placed.name, body, TurnOf(placed.instance));
       def.from_m = from;
       def.to_m = to;
+      if (def.member.second_moment_m4 > 0 && def.member.buckling_length_m == 0) {
+        def.member.buckling_length_m = length;
+      }
     } else if (builder.box) {
       const BoxText& box = *builder.box;
       const Quat q_WPart = TurnOf(placed.instance);
@@ -173,7 +167,14 @@ class BodyBuilder {
 
   void AddNode(const Weld& weld, Solids& solids, int node, int body) {
     const PlacedNode& placed = assembly_.nodes[node];
-    for (const int b : assignment_.of_node[node]) {
+    const std::vector<int>& builders = assignment_.of_node[node];
+    const bool is_point = weld.nodes.size() == 1 && weld.pairs.empty() &&
+                          std::none_of(builders.begin(), builders.end(), [&](int b) {
+                            const BuilderText& builder = model_.builders[b];
+                            return builder.sphere || builder.box || builder.convex;
+                          });
+    double point_radius_m = is_point ? kPointRadius_m : 0.0;
+    for (const int b : builders) {
       const BuilderText& builder = model_.builders[b];
       if (builder.sphere) {
         const double r = builder.sphere->radius_m;
@@ -185,9 +186,9 @@ class BodyBuilder {
             .center_m = placed.position_m;
       } else if (builder.point_mass) {
         const PointMassText& mass = *builder.point_mass;
-        const bool lone = weld.nodes.size() == 1 && assignment_.of_node[node].size() == 1;
-        const double r = lone && mass.radius_m == 0.0 ? kPointRadius_m : mass.radius_m;
+        const double r = mass.radius_m > 0.0 ? mass.radius_m : point_radius_m;
         solids.parts.push_back(SolidSphere(placed.position_m, r, mass.mass_kg));
+        if (is_point) point_radius_m = r;
         robot_.solids->point_masses.push_back({node, mass.mass_kg, mass.radius_m});
       } else if (builder.box) {
         const BoxText& box = *builder.box;
@@ -198,6 +199,10 @@ class BodyBuilder {
       } else if (builder.convex) {
         AddConvex(solids, *builder.convex, placed, body);
       }
+    }
+    const double lump_kg = assignment_.lump_kg[node];
+    if (lump_kg != 0.0) {
+      solids.parts.push_back(SolidSphere(placed.position_m, point_radius_m, lump_kg));
     }
   }
 

@@ -6,21 +6,15 @@
 #include "base/fixed.h"
 #include "base/union_find.h"
 #include "description/build.h"
-#include "description/follow_route.h"
+#include "description/cable_shape.h"
+#include "description/members.h"
 #include "description/once.h"
 #include "math/angle.h"
-#include "math/cable_path.h"
 #include "math/vec.h"
 #include "taut/statics.h"
 
 namespace taut::description {
 namespace {
-
-constexpr double kShortest_m = 1e-9;  ///< A shorter leg has no direction.
-
-double LengthBetween(const AttachmentDef& a, const AttachmentDef& b) {
-  return MeasureThrough<Vec3>(2, [&](int i) { return (i == 0 ? a : b).position_m; }).l;
-}
 
 std::string Number(double value) {
   char text[32];
@@ -53,11 +47,7 @@ class CableMaker {
     CableDef cable = builder;
     cable.name = pair.name;
     if (!builder.own_damping_law) cable.damping_law = model_.damping_law;
-    for (const int node : pair.nodes) {
-      cable.attachments.push_back({body_of_node_[node], assembly_.nodes[node].position_m});
-    }
-    if (builder.ends_on_surface) MoveEndsToSurface(pair, builder, cable);
-    if (!pair.route.empty()) FollowRoute(pair, assembly_, cable, once_);
+    ShapeCable({model_, assembly_, assignment_, &body_of_node_}, pair, builder, cable, once_);
     if (cable.touches == CableTouches::kRods || cable.touches == CableTouches::kAll) {
       CheckEnds(pair, cable);
     }
@@ -91,42 +81,6 @@ class CableMaker {
     }
   }
 
-  /// The radius of a node's sphere. In the world there is none and the end stays at the node.
-  double SurfaceRadius(int node, const PlacedPair& pair, const CableText& builder) {
-    for (const int b : assignment_.of_node[node]) {
-      if (model_.builders[b].sphere) return model_.builders[b].sphere->radius_m;
-    }
-    if (body_of_node_[node] != kWorld) {
-      once_(builder.ends_at,
-            "cable.ends: the node \"" + assembly_.nodes[node].name + "\" of the cable \"" +
-                pair.name + "\" has no sphere",
-            "give the node a sphere, or write `ends: node`");
-    }
-    return 0.0;
-  }
-
-  void MoveEndsToSurface(const PlacedPair& pair, const CableText& builder, CableDef& cable) {
-    const std::vector<AttachmentDef> nodes = cable.attachments;
-    const std::size_t last = nodes.size() - 1;
-    const auto move = [&](std::size_t end, std::size_t next) {
-      const Vec3 leg = nodes[next].position_m - nodes[end].position_m;
-      const double length = LengthBetween(nodes[end], nodes[next]);
-      const double radius = SurfaceRadius(pair.nodes[end], pair, builder);
-      if (length < kShortest_m) return radius;
-      cable.attachments[end].position_m = nodes[end].position_m + (radius / length) * leg;
-      return radius;
-    };
-    const auto ends_here = [&](std::size_t end) {
-      return pair.route.empty() || !pair.route[end].is_drum();
-    };
-    const double first_radius = ends_here(0) ? move(0, 1) : 0.0;
-    const double last_radius = ends_here(last) ? move(last, last - 1) : 0.0;
-    if (last == 1 && LengthBetween(nodes[0], nodes[1]) < first_radius + last_radius) {
-      once_(pair.at, "the spheres at the ends of the cable \"" + pair.name + "\" overlap",
-            "nothing is left for the cable between their surfaces");
-    }
-  }
-
   /// False if there is no sensible length.
   bool CheckPath(const PlacedPair& pair, const CableText&, const CableDef& cable) {
     for (std::size_t i = 1; i < pair.nodes.size(); ++i) {
@@ -135,7 +89,7 @@ class CableMaker {
       const Vec3 leg = to.position_m - from.position_m;
       const double length = std::sqrt(Dot(leg, leg));
       if (std::isnan(length)) return false;
-      if (length >= kShortest_m) continue;
+      if (length >= kShortestLeg_m) continue;
       once_(pair.at,
             "the cable \"" + pair.name + "\" has no length between \"" + from.name + "\" and \"" +
                 to.name + "\"",
@@ -170,18 +124,16 @@ class CableMaker {
 
   void SetRestLength(const PlacedPair& pair, const CableText& builder, CableDef& cable) {
     const double length = CableLength(cable);
-    if (builder.prestress_n) {
-      cable.rest_length_m = length - *builder.prestress_n / builder.stiffness_n_per_m;
-      if (cable.rest_length_m <= 0.0) {
-        once_(builder.rest_at,
-              "cable.prestress_n: " + Number(*builder.prestress_n) +
-                  " N would stretch the cable \"" + pair.name + "\" to more than its length of " +
-                  Number(length) + " m",
-              "at " + Number(builder.stiffness_n_per_m) + " N/m at most " +
-                  Number(builder.stiffness_n_per_m * length) + " N");
-      }
-    } else if (builder.rest_length_ratio) {
-      cable.rest_length_m = *builder.rest_length_ratio * length;
+    const Elastic elastic = ElasticOf(builder, length);
+    cable.rest_length_m = elastic.rest_length_m;
+    cable.stiffness_n_per_m = elastic.stiffness_n_per_m;
+    cable.member.mass_kg = elastic.mass_kg;
+    if (builder.prestress_n && cable.rest_length_m <= 0.0) {
+      once_(builder.rest_at,
+            "cable.prestress_n: " + Number(*builder.prestress_n) + " N would stretch the cable \"" +
+                pair.name + "\" to more than its length of " + Number(length) + " m",
+            "at " + Number(builder.stiffness_n_per_m) + " N/m at most " +
+                Number(builder.stiffness_n_per_m * length) + " N");
     }
     const double wound = WoundLength(pair);
     if (cable.rest_length_m > 0.0 && cable.rest_length_m < wound) {

@@ -7,6 +7,7 @@
 #include "base/union_find.h"
 #include "description/build.h"
 #include "description/laws.h"
+#include "description/members.h"
 #include "description/once.h"
 #include "math/joint_turn.h"
 #include "math/vec.h"
@@ -31,11 +32,15 @@ class JointMaker {
         once_(out) {}
 
   void Run() {
+    robot_.joint_tags.resize(robot_.def.joints.size());
     for (const JointDef& pin : robot_.def.joints) names_.insert(pin.name);
     for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
       const int b = assignment_.of_pair[pair];
-      if (b >= 0 && model_.builders[b].joint)
-        Between(assembly_.pairs[pair], *model_.builders[b].joint);
+      if (b < 0) continue;
+      const BuilderText& builder = model_.builders[b];
+      if (builder.joint)
+        Between(assembly_.pairs[pair], "joint", In(assembly_.pairs[pair].instance, *builder.joint));
+      if (builder.bar) Bar(assembly_.pairs[pair], *builder.bar);
     }
     for (std::size_t node = 0; node < assembly_.nodes.size(); ++node) {
       for (const int b : assignment_.of_node[node]) {
@@ -61,13 +66,42 @@ class JointMaker {
   }
   bool IsFixed(int body) const { return base::IsFixed(robot_.def, body); }
 
-  void Between(const PlacedPair& pair, const JointText& text) {
+  /// A distance with a spring. What it joins touches each other as if it were not there.
+  void Bar(const PlacedPair& pair, const BarText& text) {
+    const auto at = [&](int node) { return assembly_.nodes[node].position_m; };
+    const Vec3 along = at(pair.nodes.back()) - at(pair.nodes.front());
+    const double length_m = std::sqrt(Dot(along, along));
+    const Elastic elastic = ElasticOf(text, length_m);
+    const bool has_length = elastic.rest_length_m > 0 && std::isfinite(elastic.rest_length_m);
+    if (text.prestress_n && !has_length && length_m > 0 && !std::isnan(elastic.rest_length_m)) {
+      once_(text.rest_at,
+            "bar.prestress_n: " + base::Brief(*text.prestress_n) + " N would " +
+                (*text.prestress_n > 0 ? "stretch" : "press") + " the bar \"" + pair.name +
+                (*text.prestress_n > 0
+                     ? "\" to more than its length of " + base::Brief(length_m) + " m"
+                     : "\" to nothing"),
+            "is its stiffness right?");
+      return;
+    }
+    JointDef joint;
+    joint.kind = JointKind::kDistance;
+    joint.collides = true;
+    joint.stiffness = elastic.stiffness_n_per_m, joint.damping = text.damping_n_s_per_m;
+    joint.rest = elastic.rest_length_m;
+    joint.member = text.member;
+    joint.member.mass_kg = elastic.mass_kg;
+    if (joint.member.second_moment_m4 > 0 && joint.member.buckling_length_m == 0) {
+      joint.member.buckling_length_m = joint.rest;
+    }
+    Between(pair, "bar", std::move(joint));
+  }
+
+  void Between(const PlacedPair& pair, const char* kind, JointDef joint) {
     if (pair.nodes.size() != 2) {
-      once_(pair.at, "a joint has two nodes, \"" + pair.name + "\" has " +
+      once_(pair.at, std::string("a ") + kind + " has two nodes, \"" + pair.name + "\" has " +
                          std::to_string(pair.nodes.size()));
       return;
     }
-    JointDef joint = In(pair.instance, text);
     joint.name = pair.name;
     const auto set = [&](int node, int& body, Vec3& point) {
       body = body_of_node_[node];
@@ -79,7 +113,7 @@ class JointMaker {
       std::swap(joint.body_a, joint.body_b);
       std::swap(joint.from_m, joint.to_m);
     }
-    Add(pair.at, std::move(joint));
+    Add(pair.at, kind, pair.tags, std::move(joint));
   }
 
   void Support(int node, const JointText& text) {
@@ -93,10 +127,11 @@ class JointMaker {
             "join the node to one in the world: a pair with a joint");
       return;
     }
-    Add(placed.at, std::move(joint));
+    Add(placed.at, "joint", placed.tags, std::move(joint));
   }
 
-  void Add(const SourceRef& at, JointDef joint) {
+  void Add(const SourceRef& at, const std::string& kind, const Tags& tags, JointDef joint) {
+    const std::string called = "the " + kind + " \"" + joint.name + "\"";
     const bool known = model_.builders_complete && assembly_.complete;
     const auto told = [&](const Diagnostic& other) {
       return other.at.line == at.line && other.at.column == at.column;
@@ -104,37 +139,36 @@ class JointMaker {
     if (joint.body_b == kWorld && std::any_of(out_.items().begin(), out_.items().end(), told)) {
       return;  // that its node belongs to no body
     }
+    if (kind == "bar" && joint.body_b == kWorld && !out_.ok()) return;  // that it has no mass
     if (known && joint.body_a == joint.body_b) {
       once_(at,
-            "the joint \"" + joint.name + "\" joins the body \"" +
+            called + " joins the body \"" +
                 (joint.body_b == kWorld ? "world" : robot_.def.bodies[joint.body_b].name) +
                 "\" to itself",
             "each of its nodes belongs to a body of its own; nodes that solids share weld them");
       return;
     }
     if (known && IsFixed(joint.body_a) && IsFixed(joint.body_b)) {
-      once_(at, "the joint \"" + joint.name + "\" joins two things that do not move",
-            "leave it out, or an anchor");
+      once_(at, called + " joins two things that do not move", "leave it out, or an anchor");
       return;
     }
     const double gap = HeldGap(joint);
     if (gap > JointDef::kClosed_m) {
       char text[32];
       std::snprintf(text, sizeof text, "%.3g m", gap);
-      once_(at,
-            "the nodes of the joint \"" + joint.name + "\" are " + text +
-                " apart where it holds them together",
+      once_(at, "the nodes of " + called + " are " + text + " apart where it holds them together",
             joint.kind == JointKind::kBall ? "put them in one place" : "see its kind and axis");
       return;
     }
     const Vec3 apart = joint.to_m - joint.from_m;
     if (joint.kind == JointKind::kDistance && Dot(apart, apart) == 0) {
-      once_(at, "the nodes of the joint \"" + joint.name + "\" are in one place",
-            "a distance has a direction; a ball holds two nodes in one place");
+      once_(at, "the nodes of " + called + " are in one place",
+            kind == "bar" ? "a bar has a length"
+                          : "a distance has a direction; a ball holds two nodes in one place");
       return;
     }
     if (math::HeldTurn(joint) > math::kClosedTurn_rad) {
-      once_(at, "the joint \"" + joint.name + "\" holds its bodies as `turned` does not have them",
+      once_(at, called + " holds its bodies as `turned` does not have them",
             "a hinge, a cylindrical and a planar joint let them turn about the axis alone, a weld "
             "and a prismatic joint not at all");
       return;
@@ -145,6 +179,7 @@ class JointMaker {
       return;
     }
     sources_.push_back(at);
+    robot_.joint_tags.push_back(tags);
     robot_.def.joints.push_back(std::move(joint));
   }
 

@@ -66,6 +66,7 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   text.scales = ToScales(text.scale_texts, known, scope);
   text.controllers = ToControllers(text.controller_texts, known, model.good, scope);
   AddTimeline(text.timeline, known, scope, text);
+  text.load_cases = ToLoadCases(text.load_case_texts, known, scope);
   text.references = ToReferences(text.reference_texts, known, text.phases, scope);
 
   if (model.robot) text.robot = std::move(*model.robot);

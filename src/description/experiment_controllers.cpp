@@ -20,14 +20,6 @@ std::string CableNames(const RobotSpec& robot, const std::vector<int>& cables) {
   return out;
 }
 
-/// A selector as a user would write it: [inner, top].
-std::string Written(const Value& selector) {
-  if (selector.kind != Value::Kind::kSequence) return selector.text;
-  std::string out;
-  for (const ValuePtr& item : selector.items) out += (out.empty() ? "" : ", ") + Written(*item);
-  return "[" + out + "]";
-}
-
 /// What (gains, set points ...) some cables were given, and where; complains about a cable that
 /// gets it twice.
 template <class T>
@@ -181,6 +173,28 @@ void CheckDriven(const std::vector<ControllerSpec>& controllers,
 
 }  // namespace
 
+std::string Written(const Value& selector) {
+  if (selector.kind != Value::Kind::kSequence) return selector.text;
+  std::string out;
+  for (const ValuePtr& item : selector.items) out += (out.empty() ? "" : ", ") + Written(*item);
+  return "[" + out + "]";
+}
+
+std::string UnknownWord(const std::vector<std::vector<std::string>>& match,
+                        std::vector<std::string> words, const std::string& kind) {
+  std::sort(words.begin(), words.end());
+  words.erase(std::unique(words.begin(), words.end()), words.end());
+  if (words.empty()) return "the robot has no " + kind + "s";
+  std::string hint = "no " + kind + " has all of these tags";
+  for (const auto& set : match) {
+    for (const std::string& word : set) {
+      if (std::binary_search(words.begin(), words.end(), word)) continue;
+      hint = "no " + kind + " is called or tagged \"" + word + "\"; " + DidYouMean(word, words);
+    }
+  }
+  return hint;
+}
+
 std::vector<int> SelectCables(const Value& value, std::string_view what, const RobotSpec* robot,
                               const Scope& scope) {
   const auto match = ReadMatch(value, what, scope);
@@ -193,16 +207,8 @@ std::vector<int> SelectCables(const Value& value, std::string_view what, const R
     words.insert(words.end(), tags.begin(), tags.end());
   }
   if (!cables.empty()) return cables;
-  std::sort(words.begin(), words.end());
-  words.erase(std::unique(words.begin(), words.end()), words.end());
-  std::string hint = words.empty() ? "the robot has no cables" : "no cable has all of these tags";
-  for (const auto& set : match) {
-    for (const std::string& word : set) {
-      if (words.empty() || std::binary_search(words.begin(), words.end(), word)) continue;
-      hint = "no cable is called or tagged \"" + word + "\"; " + DidYouMean(word, words);
-    }
-  }
-  scope.out.Error(value.at, std::string(what) + ": no cable matches " + Written(value), hint);
+  scope.out.Error(value.at, std::string(what) + ": no cable matches " + Written(value),
+                  UnknownWord(match, std::move(words), "cable"));
   return cables;
 }
 

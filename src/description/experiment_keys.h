@@ -3,6 +3,7 @@
 
 #include "description/control_keys.h"
 #include "description/experiment_text.h"
+#include "description/load_keys.h"
 #include "description/model_keys.h"
 #include "description/sensor_keys.h"
 
@@ -336,6 +337,7 @@ void Keys(Io& io, Experiment& e) {
     io("pushes", e.pushes);
     io("drags", e.drags);
     io("scale", e.scales, kLater);
+    io("load_cases", e.load_cases, kLater);
   } else {
     io("record", e.record_text);
     io("compare_with", e.compare_file,
@@ -348,6 +350,7 @@ void Keys(Io& io, Experiment& e) {
     io("scale", e.scale_texts,
        "Factors on the model's numbers, to see what changes if they are not quite right. Several "
        "that meet multiply.");
+    io("load_cases", e.load_case_texts, "Loads that stand still, for `taut analyze`.");
   }
   io("start_noise", e.start_noise, kLater);
   if constexpr (Io::kResolved) {

@@ -18,6 +18,17 @@ namespace taut::description {
 std::vector<int> SelectCables(const Value& value, std::string_view what, const RobotSpec* robot,
                               const Scope& scope);
 
+/// A selector as a user would write it: [inner, top].
+std::string Written(const Value& selector);
+/// The hint for a selector that matches no `kind` ("cable"), whose tags are `words`: the word that
+/// none of them has.
+std::string UnknownWord(const std::vector<std::vector<std::string>>& match,
+                        std::vector<std::string> words, const std::string& kind);
+
+/// Complains about names that are not there, and about members that nobody knows to expand.
+std::vector<LoadCaseSpec> ToLoadCases(const std::vector<LoadCaseText>& texts,
+                                      const RobotSpec* robot, const Scope& scope);
+
 /// `actuators_known`: false if the model has errors, so that an actuator may just be misspelt.
 std::vector<ControllerSpec> ToControllers(std::vector<ControllerText>& texts,
                                           const RobotSpec* robot, bool actuators_known,

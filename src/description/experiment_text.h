@@ -168,6 +168,33 @@ struct ReferenceText : ReferenceSpec {
   Named<double> cables_n;
 };
 
+// loads that stand still
+
+struct NodeForceText : LoadCaseSpec::NodeForce {
+  Placed node_name;
+};
+struct SettlementText : LoadCaseSpec::Settlement {
+  Placed support;
+};
+struct RestLengthText {
+  Raw<SelectorForm> members;
+  std::optional<double> by_m, by_ratio;
+  SourceRef at;
+};
+struct TemperatureText {
+  Raw<SelectorForm> members;
+  double by_k = 0.0;
+  SourceRef at;
+};
+struct LoadCaseText {
+  Placed name;
+  bool weight = true;
+  std::vector<NodeForceText> forces;
+  std::vector<SettlementText> settlements;
+  std::vector<RestLengthText> rest_lengths;
+  std::vector<TemperatureText> temperatures;
+};
+
 struct ExperimentForm {
   static constexpr const char* kSchema = R"("const": "experiment")";
 };
@@ -188,6 +215,7 @@ struct ExperimentText : ExperimentSpec {
   RecordText record_text;
   Raw<FileForm> compare_file;
   std::vector<ReferenceText> reference_texts;
+  std::vector<LoadCaseText> load_case_texts;
 };
 
 }  // namespace taut::description

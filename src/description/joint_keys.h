@@ -2,6 +2,7 @@
 #pragma once
 
 #include "description/keys.h"
+#include "description/member_keys.h"
 #include "description/model_text.h"
 
 namespace taut::description {
@@ -62,6 +63,7 @@ void Keys(Io& io, Joint& j) {
      "Of a damper.");
   io(Coordinate("rest_rad", "rest_m"), j.rest, "Where the spring is at rest. Not of a ball.");
   io("collides", j.collides, "Whether its bodies touch each other.");
+  if constexpr (Io::kResolved) MemberKeys(io, j.member, MemberOf::kBar);
 }
 
 void Check(const MapReader& map, JointText& joint);

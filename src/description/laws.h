@@ -44,6 +44,8 @@ inline const Choices<CableTouches> kCableTouches{{"none", CableTouches::kNone},
                                                  {"terrain", CableTouches::kTerrain},
                                                  {"rods", CableTouches::kRods},
                                                  {"all", CableTouches::kAll}};
+inline const Choices<MemberMass> kMemberMasses{{"lumped", MemberMass::kLumped},
+                                               {"consistent", MemberMass::kConsistent}};
 inline const Choices<bool> kSides{{"left", true}, {"right", false}};
 inline const Choices<bool> kCableEnds{{"node", false}, {"surface", true}};
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "description/build.h"
+#include "description/members.h"
 #include "description/model_keys.h"
 #include "description/plausible.h"
 #include "description/read_keys.h"
@@ -68,7 +69,8 @@ LoadedModel BuildModel(const MergedFile& file, std::size_t errors_before, Diagno
   robot.solids.emplace().bounding_box_inertia = model.inertia == InertiaLaw::kBoundingBox;
   const std::size_t errors_in_text = errors();
   const Assembly assembly = Assemble(model, out);
-  const Assignment assignment = AssignBuilders(model, assembly, out);
+  Assignment assignment = AssignBuilders(model, assembly, out);
+  LumpMembers(model, assembly, assignment);
   const bool complete = errors() == errors_in_text && model.nodes_complete &&
                         model.pairs_complete && model.builders_complete;
   const BodyOfNode body_of_node = BuildBodies(model, assembly, assignment, robot, out);

@@ -11,6 +11,7 @@ ActuatorText::ActuatorText() {
 
 void Check(const MapReader& map, RodText& rod) {
   rod.material = ToMaterial(map, rod.surface, true);
+  CheckSection(map, MemberOf::kRod);
   if (rod.pins && !rod.class_k) {
     map.Error("pins", map.Path("pins") + ": only rods of class k turn in their nodes",
               "class_k: true, or leave out `pins`");
@@ -83,6 +84,9 @@ void Check(const MapReader& map, CableText& cable) {
   for (const char* key : {"prestress_n", "rest_length_m", "rest_length_ratio"}) {
     if (map.Has(key)) cable.rest_at = map.Find(key)->at;
   }
+  CheckStiffness(map);
+  CheckSection(map, MemberOf::kCable);
+  CheckOwnMass(map, cable.member, cable.density_kg_per_m3);
   cable.own_damping_law = map.Has("damping_law");
   if (map.Has("ends")) cable.ends_at = map.Find("ends")->at;
   const bool touches = cable.touches != CableTouches::kNone;
@@ -147,8 +151,8 @@ void Check(const MapReader& map, JointText& joint) {
 
 void Check(const MapReader& map, BuilderText& builder) {
   if (map.Has("match")) builder.match_at = map.Find("match")->at;
-  for (const char* kind :
-       {"rod", "sphere", "point_mass", "box", "convex", "cable", "anchor", "joint", "support"}) {
+  for (const char* kind : {"rod", "sphere", "point_mass", "box", "convex", "cable", "bar", "anchor",
+                           "joint", "support"}) {
     if (!map.Has(kind)) continue;
     builder.kind = builder.kind.empty() ? kind : "several";
   }

@@ -172,15 +172,25 @@ struct ActuatorText : ActuatorDef {
   ActuatorText();  ///< Without limits.
   bool ideal = false;
 };
-/// Its rest length is one of three, none after a complaint; NaN stands for one that is wrong.
+/// Its rest length is one of three, none after a complaint; NaN stands for one that is wrong. So it
+/// does for a stiffness that follows from the section.
 struct CableText : CableDef {
-  CableText() { rest_length_m = NAN; }
-  std::optional<double> prestress_n, rest_length_ratio;
+  CableText() { rest_length_m = stiffness_n_per_m = NAN; }
+  std::optional<double> prestress_n, rest_length_ratio, density_kg_per_m3;
   SourceRef rest_at;
   bool own_damping_law = false;
   bool ends_on_surface = false;
   SourceRef ends_at;
   std::optional<ActuatorText> actuator_text;
+};
+/// At most one of the three says how long it is without stress: as long as described if none.
+struct BarText {
+  std::optional<double> stiffness_n_per_m;
+  double damping_n_s_per_m = 0.0;
+  std::optional<double> rest_length_m, rest_length_ratio, prestress_n;
+  std::optional<double> density_kg_per_m3;
+  MemberDef member;
+  SourceRef rest_at;
 };
 struct AnchorText {};
 /// Between the bodies of a pair's nodes, the axis in the part's frame; or, as a support, between
@@ -202,11 +212,12 @@ struct BuilderText {
   std::optional<BoxText> box;
   std::optional<ConvexText> convex;
   std::optional<CableText> cable;
+  std::optional<BarText> bar;
   std::optional<AnchorText> anchor;
   std::optional<JointText> joint, support;
 
   /// True for what goes on pairs, false for what goes on nodes.
-  bool on_pairs() const { return rod || cable || joint || (box && box->along_pair); }
+  bool on_pairs() const { return rod || cable || bar || joint || (box && box->along_pair); }
 };
 
 /// Laws of the model that an experiment may replace.

@@ -216,6 +216,7 @@ class Writer {
         if (cable.touch_friction == 0) continue;
         kind += ", touch_friction: " + Shown(cable.touch_friction);
       }
+      kind += MemberText(cable.member);
       if (cable.actuator.kind == ActuatorDef::Kind::kNone) return kind;
       return kind + ", actuator: " + ActuatorText(cable.actuator);
     };

@@ -59,8 +59,13 @@ struct PairName {
 };
 PairName NameOf(const WrittenModel& model, const WrittenPair& pair);
 
-/// Joints, supports and what does not touch each other: the last pairs, and builders. What rods of
-/// `class_k` bring along is left out.
+/// A member's keys, those that say something, with ", " before each.
+std::string MemberText(const MemberDef& member);
+/// What of the body is half of bars and cables that end on it [kg].
+double LumpedOn(const ModelDef& def, int body);
+
+/// Joints, bars, supports and what does not touch each other: the last pairs, and builders. What
+/// rods of `class_k` bring along is left out.
 void TakeJoints(const RobotSpec& robot, WrittenModel& model, Diagnostics& out);
 
 /// Complains about what a model file cannot say; what comes back is whole if there was nothing.

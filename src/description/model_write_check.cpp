@@ -83,6 +83,12 @@ bool Same(const JointDef& a, const JointDef& b, const Nearness& near) {
          a.restitution == b.restitution && a.friction == b.friction && a.stiffness == b.stiffness &&
          a.damping == b.damping && a.rest == b.rest && a.collides == b.collides;
 }
+bool Same(const MemberDef& a, const MemberDef& b) {
+  return a.area_m2 == b.area_m2 && a.young_pa == b.young_pa &&
+         a.second_moment_m4 == b.second_moment_m4 && a.buckling_length_m == b.buckling_length_m &&
+         a.yield_pa == b.yield_pa && a.strength_n == b.strength_n &&
+         a.expansion_per_k == b.expansion_per_k && a.mass_kg == b.mass_kg && a.mass == b.mass;
+}
 bool Same(Tags a, Tags b) {
   std::sort(a.begin(), a.end());
   std::sort(b.begin(), b.end());
@@ -171,6 +177,12 @@ class Comparison {
     }
   }
 
+  template <class Shape>
+  static bool SameMember(const Shape& x, const Shape& y) {
+    if constexpr (requires { x.member; }) return Same(x.member, y.member);
+    return true;
+  }
+
   template <class Shape, class F>
   void Shapes(const char* kind, const std::vector<Shape>& a, const std::vector<Shape>& b, F same) {
     if (!SameCount(kind, a, b)) return;
@@ -180,6 +192,8 @@ class Comparison {
         Differs(kind, x.name, "body");
       } else if (!same(x, y)) {
         Differs(kind, x.name, "place");
+      } else if (!SameMember(x, y)) {
+        Differs(kind, x.name, "section or limit");
       } else if (!Same(x.material, y.material, near_) || x.collides != y.collides) {
         Differs(kind, x.name, "surface");
       }
@@ -214,6 +228,7 @@ class Comparison {
           x.touch_friction != y.touch_friction) {
         Differs("cable", x.name, "stiffness or damper");
       }
+      if (!Same(x.member, y.member)) Differs("cable", x.name, "section, mass or limit");
       if (!Same(x.actuator, y.actuator)) Differs("cable", x.name, "actuator");
       if (!Same(robot_.cable_tags[i], read_.cable_tags[k])) {
         Differs("cable", x.name, "list of tags");
@@ -232,6 +247,8 @@ class Comparison {
         Differs("joint", x.name, "place");
       } else if (!Same(x, y, near_)) {
         Differs("joint", x.name, "kind, axis or force");
+      } else if (!Same(x.member, y.member)) {
+        Differs("joint", x.name, "section, mass or limit");
       }
     });
     const auto apart = [&](const ModelDef& def) {

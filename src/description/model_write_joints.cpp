@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "description/member_keys.h"
 #include "description/model_write.h"
 #include "description/write_keys.h"
 #include "math/vec.h"
@@ -17,11 +18,12 @@ bool IsOne(const Quat& q) { return q.w == 1 && q.x == 0 && q.y == 0 && q.z == 0;
 class JointTaker {
  public:
   JointTaker(const RobotSpec& robot, WrittenModel& model, Diagnostics& out)
-      : def_(robot.def), m_(model), out_(out) {}
+      : robot_(robot), def_(robot.def), m_(model), out_(out) {}
 
   void Run() {
     for (std::size_t j = 0; j < def_.joints.size(); ++j) {
-      if (!m_.pins.contains(static_cast<int>(j))) Take(def_.joints[j]);
+      if (m_.pins.contains(static_cast<int>(j))) continue;
+      Take(def_.joints[j], j < robot_.joint_tags.size() ? robot_.joint_tags[j] : Tags{});
     }
     Apart();
   }
@@ -29,7 +31,7 @@ class JointTaker {
  private:
   const WrittenNode& Node(int n) const { return m_.nodes[static_cast<std::size_t>(n)]; }
 
-  void Take(const JointDef& joint) {
+  void Take(const JointDef& joint, const Tags& tags) {
     const int on = NodeAt(m_, joint.body_b, joint.to_m);
     const Vec3 slide = joint.to_m - joint.from_m;
     const bool is_support = on >= 0 && joint.body_a == kWorld && Node(on).name == joint.name;
@@ -44,7 +46,16 @@ class JointTaker {
                   "give each of its bodies a node where it holds it");
       return;
     }
-    m_.pairs.push_back({joint.name, {}, {from, on}, {}, {}, false});
+    const bool is_bar = IsBar(joint) && joint.collides && !MemberText(joint.member).empty();
+    m_.pairs.push_back({joint.name, is_bar ? tags : Tags{}, {from, on}, {}, {}, false});
+    if (is_bar) {
+      Build(m_.on_pairs,
+            "bar: {stiffness_n_per_m: " + Shown(joint.stiffness) +
+                ", damping_n_s_per_m: " + Shown(joint.damping) +
+                ", rest_length_m: " + Shown(joint.rest) + MemberText(joint.member) + "}",
+            static_cast<int>(m_.pairs.size()) - 1);
+      return;
+    }
     Build(m_.on_pairs, "joint: " + Text(joint, NameOf(m_, m_.pairs.back()).placement),
           static_cast<int>(m_.pairs.size()) - 1);
   }
@@ -122,12 +133,31 @@ class JointTaker {
     }
   }
 
+  const RobotSpec& robot_;
   const ModelDef& def_;
   WrittenModel& m_;
   Diagnostics& out_;
 };
 
 }  // namespace
+
+std::string MemberText(const MemberDef& member) {
+  FlowWriter<true> writer;
+  MemberKeys(writer, member, MemberOf::kBar);
+  return writer.text().empty() ? "" : ", " + writer.text();
+}
+
+double LumpedOn(const ModelDef& def, int body) {
+  double lumps_kg = 0;
+  const auto add = [&](const MemberDef& member, int a, int b) {
+    lumps_kg += 0.5 * member.mass_kg * ((a == body) + (b == body));
+  };
+  for (const JointDef& bar : def.joints) add(bar.member, bar.body_a, bar.body_b);
+  for (const CableDef& cable : def.cables) {
+    add(cable.member, cable.attachments.front().body, cable.attachments.back().body);
+  }
+  return lumps_kg;
+}
 
 void TakeJoints(const RobotSpec& robot, WrittenModel& model, Diagnostics& out) {
   JointTaker(robot, model, out).Run();

@@ -95,7 +95,8 @@ class Taker {
       Refuse("it is not known what the parts of the body \"" + BodyName(body) + "\" weigh",
              "inputs.yaml has bodies only as a whole; take the experiment that it was made from");
     }
-    return {SolidMass::Per::kWhole, def_.bodies[static_cast<std::size_t>(body)].mass_kg};
+    return {SolidMass::Per::kWhole,
+            def_.bodies[static_cast<std::size_t>(body)].mass_kg - LumpedOn(def_, body)};
   }
 
   /// The tags of a pair that becomes a solid are not kept when it is built.
@@ -119,7 +120,7 @@ class Taker {
       Build(m_.on_pairs,
             "rod: {radius_m: " + Shown(rod.radius_m) + (turns ? ", class_k: true, " : ", ") +
                 MassText(MassOf(&SolidsSpec::capsules, i, rod.body)) +
-                SurfaceText(rod.material, rod.collides) + "}",
+                SurfaceText(rod.material, rod.collides) + MemberText(rod.member) + "}",
             pair);
     }
   }
@@ -257,7 +258,9 @@ class Taker {
         Refuse("no node is at the centre of the body \"" + body.name + "\", which has no shape");
         continue;
       }
-      add(node, body.mass_kg, std::sqrt(2.5 * body.inertia_kg_m2.xx / body.mass_kg));
+      const double own_kg = body.mass_kg - LumpedOn(def_, static_cast<int>(b));
+      if (own_kg < 1e-12 * body.mass_kg) continue;  // bars and cables make a point of it
+      add(node, own_kg, std::sqrt(2.5 * body.inertia_kg_m2.xx / body.mass_kg));
     }
   }
 

@@ -55,6 +55,7 @@ void Keys(Io& io, Like<RobotSpec> auto& r) {
   io("cables", r.def.cables);
   io("cable_tags", r.cable_tags);
   io("joints", r.def.joints, kLater);
+  io("joint_tags", r.joint_tags, kLater);
   io("apart", r.def.apart, kLater);
   io("motions", r.def.motions, kLater);
   io("planes", r.def.planes);

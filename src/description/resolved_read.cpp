@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -98,6 +99,17 @@ class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
     scope.spelling = spelling;
     Read(*value, map_.Path(key.name), scope, out);
   }
+  /// What a joint is of says what its numbers are called.
+  template <class OfName>
+  void Spell(const Spellings& spellings, const OfName& of_name) {
+    const char* const right = spellings.names[std::max(0, spelling.index)];
+    for (const char* name : spellings.names) {
+      if (name != right && map_.Has(name)) {
+        map_.Error(name, map_.Path(name) + " is of another quantity");
+      }
+    }
+    of_name(right);
+  }
   template <class E>
   void On(const Key& key, E& out, const Choices<E>& choices) {
     const Value* value = key.later ? map_.Find(key.name) : map_.Require(key.name);
@@ -116,6 +128,9 @@ void ReadStruct(const Value& value, const std::string& what, std::vector<std::st
   known.spelling = scope.spelling;
   Keys(known, out);
   known.names.insert(known.names.end(), more_keys.begin(), more_keys.end());
+  for (std::string& name : known.other_spellings) {  // `ResolvedReader` has more to say about these
+    if (value.Find(name)) known.names.push_back(std::move(name));
+  }
   const MapReader map(value, what, known.names, scope);
   ResolvedReader reader(map);
   Keys(reader, out);
@@ -175,7 +190,7 @@ void CheckNames(const ExperimentSpec& experiment, const SourceRef& at, Diagnosti
   check_all(def.planes), check_all(def.terrain_boxes), check_all(def.motions);
   check_all(def.height_fields), check_all(def.terrain_meshes);
   check_all(experiment.controllers), check_all(experiment.pushes), check_all(experiment.drags);
-  check_all(experiment.phases);
+  check_all(experiment.phases), check_all(experiment.load_cases);
 }
 
 /// What `Model::Compile` does not look at.
@@ -217,6 +232,13 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
     const std::size_t count = of_bodies ? robot.def.bodies.size() : robot.def.cables.size();
     for (const int index : scale.index) check(index, count, of_bodies ? "body" : "cable");
   }
+  for (const LoadCaseSpec& loads : experiment.load_cases) {
+    const std::size_t joints = robot.def.joints.size();
+    for (const auto& force : loads.forces) check(force.node, robot.def.nodes.size(), "node");
+    for (const auto& settlement : loads.settlements) check(settlement.joint, joints, "joint");
+    for (const auto& cable : loads.cables) check(cable.index, robot.def.cables.size(), "cable");
+    for (const auto& bar : loads.bars) check(bar.index, joints, "joint");
+  }
   if (experiment.goal) check(experiment.goal->body, robot.def.bodies.size(), "body");
   CheckGoalIsSensed(experiment, out);
   for (const PushSpec& push : experiment.pushes) check(push.node, robot.def.nodes.size(), "node");
@@ -224,6 +246,10 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
   if (robot.node_tags.size() != robot.def.nodes.size() ||
       robot.cable_tags.size() != robot.def.cables.size()) {
     out.Error(at, "every node and every cable needs its tags");
+  }
+  const std::size_t joint_tags = robot.joint_tags.size();  // earlier versions did not write any
+  if (joint_tags != 0 && joint_tags != robot.def.joints.size()) {
+    out.Error(at, "every joint needs its tags");
   }
 }
 
@@ -246,6 +272,9 @@ std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Overri
   if (out.items().size() != errors_before) return std::nullopt;
   const SourceRef at{path, 0, 0};
   RobotSpec& robot = experiment.robot;
+  for (std::size_t j = robot.joint_tags.size(); j < robot.def.joints.size(); ++j) {
+    robot.joint_tags.push_back({robot.def.joints[j].name});
+  }
   robot.cable_sources.resize(robot.def.cables.size(), at);
   robot.body_sources.resize(robot.def.bodies.size(), at);
   robot.node_sources.resize(robot.def.nodes.size(), at);

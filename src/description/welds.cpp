@@ -96,6 +96,17 @@ class WeldFinder {
       weld.pairs.push_back(static_cast<int>(pair));
       weld.has_solid = true;
     }
+    for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
+      if (!Builder(pair) || !Builder(pair)->bar) continue;
+      for (const int node : assembly_.pairs[pair].nodes) weld_of(node).ends_bar = true;
+    }
+    // Where a member ends on an anchor alone, the world takes its half.
+    for (Weld& weld : out_.welds) {
+      for (const int node : weld.nodes) {
+        const double lump_kg = assignment_.lump_kg[static_cast<std::size_t>(node)];
+        weld.has_solid = weld.has_solid || (lump_kg != 0 && !weld.anchored);
+      }
+    }
   }
 
   const ModelText& model_;
@@ -107,7 +118,9 @@ class WeldFinder {
 
 }  // namespace
 
-bool IsSolid(const BuilderText& builder) { return !builder.cable && !builder.joint; }
+bool IsSolid(const BuilderText& builder) {
+  return !builder.cable && !builder.bar && !builder.joint;
+}
 
 Welds FindWelds(const ModelText& model, const Assembly& assembly, const Assignment& assignment) {
   return WeldFinder(model, assembly, assignment).Run();

@@ -12,7 +12,8 @@ namespace taut::description {
 struct Weld {
   std::vector<int> nodes, pairs;  ///< `pairs`: its rods and beams.
   bool anchored = false;
-  bool has_solid = false;
+  bool has_solid = false;  ///< Or a bar or a cable with mass ends there.
+  bool ends_bar = false;
 };
 
 /// A rod that turns in a node which goes with another body.
@@ -25,7 +26,7 @@ struct Welds {
   std::vector<Pin> pins;
 };
 
-/// A rod or a beam, not a cable or a joint.
+/// A rod or a beam, not a cable, a bar or a joint.
 bool IsSolid(const BuilderText& builder);
 
 Welds FindWelds(const ModelText& model, const Assembly& assembly, const Assignment& assignment);

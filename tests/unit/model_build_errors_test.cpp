@@ -42,8 +42,10 @@ TEST(ModelBuildErrors, BuildersAreWellFormed) {
           "{at: 1}}\n")),
       "robot.yaml:12:5: error: builder needs the key \"match\"\n"
       "robot.yaml:13:5: error: builder needs one of rod, sphere, point_mass, box, convex, cable, "
+      "bar, "
       "anchor, joint, support\n"
       "robot.yaml:14:5: error: builder needs one of rod, sphere, point_mass, box, convex, cable, "
+      "bar, "
       "anchor, joint, support\n"
       "robot.yaml:14:18: error: unknown key \"rods\" in builder (did you mean \"rod\"?)\n"
       "robot.yaml:15:50: error: builder has both rod and cable (only one of them may be there)\n"

@@ -1,0 +1,26 @@
+/// How a beam along a pair is turned.
+#pragma once
+
+#include <cmath>
+
+#include "math/vec.h"
+
+namespace taut::description {
+
+/// Of a beam along the unit vector u of its part: x along it, y level, z up; a beam along z has
+/// its y along the part's y.
+inline Quat BeamOrientation(const Vec3& u) {
+  // Turn x to u's direction in the level plane (about z), then up to u (about the new y). Of the
+  // half angle's sine and cosine the larger is a root, the other a quotient: a root of a difference
+  // would lose half of the digits of a small angle, or be one of a negative number.
+  const double level = std::sqrt(u.x * u.x + u.y * u.y);
+  const double c = level > 1e-12 ? u.x / level : 1.0, s = level > 1e-12 ? u.y / level : 0.0;
+  const double larger = std::sqrt(0.5 * (1.0 + std::fabs(c))),
+               smaller = std::fabs(s) / (2 * larger);
+  const double half_c = c >= 0.0 ? larger : smaller;
+  const double half_s = std::copysign(c >= 0.0 ? smaller : larger, s);
+  const double pitch_c = std::sqrt(0.5 * (1.0 + level)), pitch_s = -u.z / (2 * pitch_c);
+  return Quat{half_c, 0.0, 0.0, half_s} * Quat{pitch_c, 0.0, pitch_s, 0.0};
+}
+
+}  // namespace taut::description
