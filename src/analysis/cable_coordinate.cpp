@@ -66,9 +66,9 @@ Eigen::VectorXd CableCoordinate::Gradient(const Path& path) const {
   return gradient;
 }
 
-// Eq. 6: of each span what is across it, and of each point what its body's turns make of it. Spans
+// Eq. 9: of each span what is across it, and of each point what its body's turns make of it. Spans
 // have no second derivatives with each other; with one tension in all, their first ones add up
-// before they are squared, which is where clustered cables get their cross terms (eq. 8).
+// before they are squared, which is where clustered cables get their cross terms (eq. 10).
 Eigen::MatrixXd CableCoordinate::ExactHessian(const Path& path) const {
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(bodies_.size());
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);

@@ -78,7 +78,12 @@ class Finder {
     const double least = 1e-9 * largest, size = std::sqrt(Dot(sum, sum));
     if (size <= least) return "";
     const std::string resultant = "weight and loads have the resultant " + Text(sum) + " N, and ";
-    if (structure_.touches.empty()) return resultant + "nothing holds the robot in the world";
+    if (structure_.touches.empty()) {
+      const bool other_ground = !def_.terrain_boxes.empty() || !def_.height_fields.empty() ||
+                                !def_.terrain_meshes.empty();
+      return resultant + "nothing holds the robot in the world" +
+             (other_ground ? ": of terrain, statics knows planes only" : "");
+    }
     if (def_.planes.size() > 1) return "";
     const Vec3& n = def_.planes[0].normal;
     const double into = -Dot(n, sum);
@@ -242,6 +247,10 @@ class Finder {
       e.contacts.push_back({structure_.bodies[static_cast<std::size_t>(touch.point.body)], kWorld,
                             place, touch.normal, push * touch.normal,
                             structure_.GapAt(t, search_.at).value});
+    }
+    if (!e.contacts.empty()) {
+      e.left_out.emplace_back(
+          "friction on the ground: with it, forces there may be shared in many ways");
     }
   }
 

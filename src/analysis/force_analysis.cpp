@@ -91,7 +91,7 @@ class Analysis {
     return density;
   }
 
-  /// The self-stress nearest to none in which cables have a density of 1 N/m or more: eq. 15.
+  /// The self-stress nearest to none in which cables have a density of 1 N/m or more: eq. 7.
   Eigen::VectorXd Feasible(const Eigen::MatrixXd& null) const {
     QuadraticProgram program;
     Eigen::MatrixXd densities(null.rows(), null.cols());

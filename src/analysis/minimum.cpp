@@ -8,7 +8,7 @@ namespace taut::analysis {
 namespace {
 
 /// The energy with what holds as springs that are shifted until they are at rest where they should
-/// be: eq. 11.
+/// be: eq. 13.
 class Augmented {
  public:
   Augmented(const Structure& structure, Reactions& holding)
@@ -142,23 +142,27 @@ class Inner {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd hessian;
     double now = energy_.Energy(search_.at, gradient, &hessian);
+    bool last = false;
     while (search_.iterations < limits_.most_iterations) {
       const Eigen::MatrixXd basis = s_.Effective(search_.at, true);
       const Eigen::VectorXd slope = basis.transpose() * gradient;
       search_.left_n = slope.size() == 0 ? 0 : slope.cwiseAbs().maxCoeff();
-      if (search_.left_n <= goal_n) return;
+      if (search_.left_n <= kFine * goal_n || (search_.left_n <= goal_n && last)) return;
+      last = search_.left_n <= goal_n;  // good enough; one more makes it as good as digits allow
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(basis.transpose() * hessian *
                                                                   basis);
       const Spectrum spectrum{solver.eigenvalues(), solver.eigenvectors().transpose() * slope,
                               solver.eigenvectors()};
-      if (!Step(basis, spectrum, goal_n, now, gradient, hessian)) return;
+      if (!Step(basis, spectrum, last ? kFine * goal_n : goal_n, last, now, gradient, hessian))
+        return;
       if (Left()) return;
     }
   }
 
  private:
-  bool Step(const Eigen::MatrixXd& basis, const Spectrum& spectrum, double goal_n, double& now,
-            Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) {
+  static constexpr double kFine = 1e-3;
+  bool Step(const Eigen::MatrixXd& basis, const Spectrum& spectrum, double goal_n, bool once,
+            double& now, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) {
     constexpr double kRounding = 1e-13;
     while (search_.iterations < limits_.most_iterations && radius_ > 1e-15 * s_.size_m) {
       ++search_.iterations;
@@ -181,7 +185,10 @@ class Inner {
       const double gain = fine ? (left < search_.left_n ? 1 : -1) : (now - then) / promised;
       if (gain > 0.75 && length > 0.8 * radius_) radius_ = std::min(2 * radius_, 4 * s_.size_m);
       if (gain < 0.25) radius_ = 0.25 * std::min(length, radius_);
-      if (!(gain > 1e-4)) continue;
+      if (!(gain > 1e-4)) {
+        if (once) return false;
+        continue;
+      }
       search_.at = to, now = then, gradient = gradient_to, hessian = hessian_to;
       search_.left_n = left;
       return true;

@@ -14,7 +14,7 @@
 
 namespace taut::analysis {
 
-/// What holds: forces of held rows and of touching points. A row's is that of eq. 9; a point's is
+/// What holds: forces of held rows and of touching points. A row's is that of eq. 2; a point's is
 /// how hard the plane pushes, >= 0.
 struct Reactions {
   Eigen::VectorXd rows, touches;

@@ -77,13 +77,6 @@ Eigen::MatrixXd SpanOf(const Eigen::MatrixXd& columns) {
   return svd.matrixU().leftCols(rank);
 }
 
-Eigen::MatrixXd AcrossOf(const Eigen::MatrixXd& columns, Eigen::Index size) {
-  if (columns.cols() == 0) return Eigen::MatrixXd::Identity(size, size);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(size, size);
-  return q.rightCols(size - columns.cols());
-}
-
 Eigen::MatrixXd HeldDirections(const Structure& s, const Reactions& holding) {
   std::vector<Eigen::VectorXd> columns;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
@@ -126,7 +119,7 @@ Eigen::MatrixXd MovesOf(const Structure& s, const Anchor& point) {
 
 namespace {
 
-/// Eq. 16: takes halves out of the ends, puts a bar's consistent mass along the spans.
+/// Eq. 12: takes halves out of the ends, puts a bar's consistent mass along the spans.
 void Spread(const Structure& s, double mass_kg, const std::vector<Anchor>& points,
             Eigen::MatrixXd& mass) {
   std::vector<Eigen::MatrixXd> moves;

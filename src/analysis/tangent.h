@@ -26,9 +26,6 @@ inline constexpr double kNearPlane = 1e-7;
 /// An orthonormal basis of the columns' span, and how sharp it is cut: singular values above 1e-9
 /// of the largest count.
 Eigen::MatrixXd SpanOf(const Eigen::MatrixXd& columns);
-/// Of what is across all columns of an orthonormal basis: as many as are missing.
-Eigen::MatrixXd AcrossOf(const Eigen::MatrixXd& columns, Eigen::Index size);
-
 Matrix PlainOf(const Eigen::MatrixXd& m);
 Eigen::MatrixXd EigenOf(const Matrix& m);
 
