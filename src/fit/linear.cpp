@@ -8,6 +8,7 @@ namespace taut::fit {
 
 Singular Decompose(const Matrix& jacobian) {
   const Eigen::Index n = jacobian.cols();
+  if (n == 0) return {Vector(0), Matrix(0, 0)};  // all parameters are at bounds
   Matrix square = Matrix::Zero(n, n);
   if (jacobian.rows() <= n) {
     square.topRows(jacobian.rows()) = jacobian;

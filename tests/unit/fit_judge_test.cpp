@@ -183,6 +183,38 @@ TEST(FitJudge, APriorThatTheDataContradictIsNamed) {
       << verdict.sentences[0];
 }
 
+TEST(FitJudge, WhereAllIsAtItsBoundThereIsStillAVerdict) {
+  FitParameter p = Parameter("mass", 1);
+  p.high = 1;
+  auto problem = MakeProblem({p}, 3, [](const std::vector<double>& v) -> Residuals {
+    return {{v[0] - 2, v[0] - 3, v[0] - 2}, ""};
+  });
+  for (int i = 0; i < 3; ++i) problem.rows[static_cast<std::size_t>(i)].group = i;
+  VerdictOptions options;
+  options.folds = 0;
+  const FitVerdict verdict = JudgeFit(problem, Fit(problem, {}), options);
+  EXPECT_EQ(verdict.judgement, FitJudgement::kUnidentifiable);
+  EXPECT_EQ(verdict.identifiability.parameters[0].kind, Determined::kAtBound);
+  EXPECT_NEAR(verdict.total.freedom, 3, 1e-12);
+  EXPECT_TRUE(verdict.identifiability.directions.empty());
+}
+
+TEST(FitJudge, SixDataOfNineteenParametersFixSixCombinationsAtMost) {
+  const test::Linear linear = test::RandomLinear(6, 19, 8);
+  std::vector<FitParameter> p;
+  for (int j = 0; j < 19; ++j) {
+    p.push_back(Parameter(std::to_string(j), 0, 0));
+    p.back().prior_sd = 1;
+  }
+  const auto problem = MakeProblem(p, 6, linear);
+  const FitVerdict verdict = JudgeFit(problem, Fit(problem, {}), {});
+  EXPECT_EQ(verdict.judgement, FitJudgement::kUnidentifiable);
+  EXPECT_EQ(verdict.identifiability.fixed, 6);
+  EXPECT_EQ(verdict.identifiability.endless, 0);
+  EXPECT_TRUE(std::isinf(verdict.identifiability.condition));
+  EXPECT_NEAR(verdict.total.freedom, 6, 1e-12);
+}
+
 TEST(FitJudge, WorseOnTheHoldOutIsSaid) {
   const Twin twin = MakeTwin(3);
   FitProblem test = twin.problem;  // another robot: the untuned values fit it
