@@ -36,11 +36,10 @@ std::optional<TimeWindow> ParsePhase(const std::string& text) {
 }
 
 std::optional<Trace> Load(const std::string& path, const std::string& map, Diagnostics& out) {
-  auto trace = ReadTraceOfRun(path, out);
-  if (map.empty()) return trace;
+  if (map.empty()) return ReadTraceOfRun(path, out);
   const auto mapping = LoadMapping(map, out);
-  if (!trace || !mapping) return std::nullopt;
-  return ApplyMapping(*mapping, std::move(*trace), path, out);
+  if (!mapping) return std::nullopt;
+  return ReadMapped(path, *mapping, map, out);
 }
 
 int RunCompare(const CompareArguments& given) {

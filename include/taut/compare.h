@@ -22,7 +22,8 @@ struct Mapping {
     double scale = 1.0;   ///< result = scale * value + offset
     double offset = 0.0;  ///< In the unit of the result.
   };
-  std::vector<Rule> rules;  ///< In order; vectors and quaternions are resolved to these.
+  std::vector<Rule> rules;           ///< In order; vectors and quaternions are resolved to these.
+  std::optional<TableLayout> table;  ///< Of a file that is no trace, only a table.
 };
 
 /// Reads a mapping file (JSON). Nothing and diagnostics if it has errors.
@@ -32,6 +33,12 @@ std::optional<Mapping> LoadMapping(const std::string& path, Diagnostics& out);
 /// diagnostic if two channels would get one name. `path` is named in diagnostics only.
 std::optional<Trace> ApplyMapping(const Mapping& mapping, Trace trace, const std::string& path,
                                   Diagnostics& out);
+
+/// Reads a file as the mapping says: as a table, if it says how one is laid out, else as a trace
+/// (`ReadTraceOfRun`), and applies the mapping. `mapping_path` is named in diagnostics: of rules
+/// that fit no column of a table.
+std::optional<Trace> ReadMapped(const std::string& path, const Mapping& mapping,
+                                const std::string& mapping_path, Diagnostics& out);
 
 /// A named span of time, ends included.
 struct TimeWindow {

@@ -88,4 +88,32 @@ struct Trace {
 /// refused (docs/formats/trace.md).
 std::optional<Trace> ReadTrace(const std::string& path, Diagnostics& out);
 
+/// A table of another program, as text, that is not laid out as a trace (docs/formats/mapping.md).
+struct TableLayout {
+  int skip_lines = 0;                ///< Before the header, or before the rows if there is none.
+  bool header = true;                ///< Whether a line names the columns.
+  std::vector<std::string> columns;  ///< Their names, if not those of the header.
+  char separator = ',';              ///< A blank stands for any number of them.
+  std::vector<std::string> ignore;   ///< Columns that are not read, as patterns with `*`.
+
+  // The clock is a column, of which `unit_s` is one [s] and `zero`, in that unit, is 0 s: nothing:
+  // its first value. Or there is none, and rows are `row_s` apart.
+  std::string time_column;
+  double unit_s = 1.0;
+  std::optional<double> zero = 0.0;
+  double offset_s = 0.0;  ///< Comes on top.
+  std::optional<double> row_s;
+
+  // Of a table with one value a row, as some programs write theirs: which columns make the name of
+  // the channel, joined by `_`, and which has its value.
+  std::vector<std::string> name_columns;
+  std::string value_column;
+};
+
+/// Reads such a table (.csv, .csv.gz or any other name); channels are called as its columns are and
+/// have the unit 1. A cell that is empty, `nan` or `NA` is NaN. Nothing and diagnostics, with file,
+/// line and column, if there are errors: cells that are no numbers, times that do not rise.
+std::optional<Trace> ReadTable(const std::string& path, const TableLayout& layout,
+                               Diagnostics& out);
+
 }  // namespace taut

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/input_file.h"
-#include "base/pattern.h"
+#include "compare/foreign_units.h"
 #include "taut/compare.h"
 
 namespace taut {
@@ -74,8 +74,9 @@ class MappingReader {
   }
 
   void Root(const Json& root) {
-    if (!IsObject(root, "",
-                  {"version", "description", "axes", "channels", "vectors", "quaternions"})) {
+    if (!IsObject(
+            root, "",
+            {"version", "description", "table", "axes", "channels", "vectors", "quaternions"})) {
       return;
     }
     if (root.value("version", Json()) != 1) {
@@ -84,10 +85,11 @@ class MappingReader {
     if (root.contains("description") && !root["description"].is_string()) {
       Error("description", "is not a text");
     }
+    if (root.contains("table")) Table(root["table"]);
     ReadAxes(root);
-    ForEach(root, "channels", {"from", "to", "unit", "scale", "offset"},
+    ForEach(root, "channels", {"from", "to", "from_unit", "unit", "scale", "offset"},
             [&](const Json& rule, const std::string& at) { Channel(rule, at); });
-    ForEach(root, "vectors", {"from", "to", "unit", "scale", "offset"},
+    ForEach(root, "vectors", {"from", "to", "from_unit", "unit", "scale", "offset"},
             [&](const Json& rule, const std::string& at) { Vector(rule, at); });
     ForEach(root, "quaternions", {"from", "to"},
             [&](const Json& rule, const std::string& at) { Quaternion(rule, at); });
@@ -117,6 +119,7 @@ class MappingReader {
   void Channel(const Json& rule, const std::string& at) {
     Mapping::Rule result{Pattern(rule, "from", at), Pattern(rule, "to", at), Unit(rule, at),
                          Number(rule, "scale", at, 1.0), Number(rule, "offset", at, 0.0)};
+    result.scale *= FromUnit(rule, result, at);
     if (StarsDiffer(result)) Error(at, "one of \"from\" and \"to\" has a `*`, the other not");
     mapping_.rules.push_back(std::move(result));
   }
@@ -133,7 +136,115 @@ class MappingReader {
       }
       for (std::size_t i = 0; i < 3; ++i) offset[i] = given[i];
     }
-    if (good_) AddComponents(whole, Number(rule, "scale", at, 1.0), offset);
+    const double scale = Number(rule, "scale", at, 1.0) * FromUnit(rule, whole, at);
+    if (good_) AddComponents(whole, scale, offset);
+  }
+
+  /// How many of the result's unit one of `from_unit` is.
+  double FromUnit(const Json& rule, const Mapping::Rule& whole, const std::string& at) {
+    if (!rule.contains("from_unit")) return 1.0;
+    const std::string name = Text(rule, "from_unit", at);
+    if (name.empty()) return 1.0;
+    std::string to = whole.to;
+    if (const std::size_t mark = to.find(kAxisMark); mark != to.npos) to = WithAxis(to, "x");
+    const std::string wanted = whole.unit.empty() ? UnitOfName(to) : whole.unit;
+    return UnitIn(name, wanted, at + ".from_unit");
+  }
+
+  double UnitIn(const std::string& name, const std::string& wanted, const std::string& at) {
+    const auto unit = FindUnit(name);
+    if (!unit) {
+      Error(at, fmt::format("is \"{}\", which is no unit that taut knows", name),
+            DidYouMean(name, UnitNames()));
+    } else if (unit->si != wanted) {
+      Error(at, fmt::format("is {}, and the result is in {}", name, wanted));
+    }
+    return unit ? unit->factor : 1.0;
+  }
+
+  void Table(const Json& json) {
+    TableLayout& table = mapping_.table.emplace();
+    if (!IsObject(
+            json, "table",
+            {"skip_lines", "header", "columns", "separator", "ignore", "time", "names", "value"})) {
+      return;
+    }
+    const double skip = Number(json, "skip_lines", "table", 0.0);
+    if (!(skip >= 0 && skip <= 1e6 && skip == static_cast<int>(skip))) {
+      Error("table.skip_lines", "is not a whole number of lines");
+    } else {
+      table.skip_lines = static_cast<int>(skip);
+    }
+    if (json.contains("header") && !json["header"].is_boolean()) {
+      Error("table.header", "is neither true nor false");
+    } else {
+      table.header = json.value("header", true);
+    }
+    if (json.contains("separator")) {
+      const std::string text = Separator(json["separator"]);
+      if (text.size() == 1) table.separator = text[0];
+    }
+    table.columns = Texts(json, "columns");
+    table.ignore = Texts(json, "ignore");
+    table.name_columns = Texts(json, "names");
+    if (json.contains("value")) table.value_column = Text(json, "value", "table");
+    if (json.contains("names") != json.contains("value")) {
+      Error("table", "has one of \"names\" and \"value\", the other not",
+            "they say where the channel and its number are, one a row");
+    }
+    if (!table.header && table.columns.empty()) {
+      Error("table.columns", "is missing", "where no header names the columns, the mapping does");
+    }
+    if (!json.contains("time")) {
+      Error("table.time", "is missing", "{\"column\": \"t\", \"unit\": \"ms\"} or {\"row_s\": 1}");
+    } else if (IsObject(json["time"], "table.time",
+                        {"column", "unit", "zero", "offset_s", "row_s"})) {
+      Clock(json["time"], table);
+    }
+  }
+
+  std::string Separator(const Json& json) {
+    const std::string text = json.is_string() ? json.get<std::string>() : "";
+    if (text == "," || text == ";" || text == "\t" || text == " " || text == "|") return text;
+    Error("table.separator", "is none of \",\", \";\", \"|\", \"\\t\" and \" \"");
+    return {};
+  }
+
+  std::vector<std::string> Texts(const Json& json, const std::string& key) {
+    if (!json.contains(key)) return {};
+    const Json& list = json[key];
+    if (!list.is_array() || list.empty() ||
+        !std::all_of(list.begin(), list.end(), [](const Json& j) { return j.is_string(); })) {
+      Error("table." + key, "is not a list of texts");
+      return {};
+    }
+    return list.get<std::vector<std::string>>();
+  }
+
+  void Clock(const Json& json, TableLayout& table) {
+    table.offset_s = Number(json, "offset_s", "table.time", 0.0);
+    if (json.contains("row_s")) {
+      table.row_s = Number(json, "row_s", "table.time", 1.0);
+      if (!(*table.row_s > 0)) Error("table.time.row_s", "is not above 0");
+      for (const char* other : {"column", "unit", "zero"}) {
+        if (json.contains(other)) Error("table.time", fmt::format("has both row_s and {}", other));
+      }
+      return;
+    }
+    table.time_column = Text(json, "column", "table.time");
+    if (json.contains("unit")) {
+      const std::string unit = Text(json, "unit", "table.time");
+      if (!unit.empty()) table.unit_s = UnitIn(unit, "s", "table.time.unit");
+    }
+    if (json.contains("zero") && json["zero"] == "first") {
+      table.zero.reset();
+    } else if (json.contains("zero")) {
+      if (!json["zero"].is_number()) {
+        Error("table.time.zero", "is neither a number nor \"first\"");
+        return;
+      }
+      table.zero = json["zero"];
+    }
   }
 
   /// A rotation's vector part turns with the axes, its scalar part stays.
@@ -241,32 +352,6 @@ class MappingReader {
 
 std::optional<Mapping> LoadMapping(const std::string& path, Diagnostics& out) {
   return MappingReader(path, out).Read();
-}
-
-std::optional<Trace> ApplyMapping(const Mapping& mapping, Trace trace, const std::string& path,
-                                  Diagnostics& out) {
-  std::set<std::string> names;
-  bool good = true;
-  for (std::size_t i = 0; i < trace.channels.size(); ++i) {
-    ChannelInfo& channel = trace.channels[i];
-    for (const Mapping::Rule& rule : mapping.rules) {
-      const auto wildcard = base::Wildcard(rule.from, channel.name);
-      if (!wildcard) continue;
-      std::string name = rule.to;
-      if (const std::size_t star = name.find('*'); star != name.npos) {
-        name.replace(star, 1, *wildcard);
-      }
-      channel = {name, rule.unit.empty() ? UnitOfName(name) : rule.unit};
-      for (double& value : trace.values[i]) value = rule.scale * value + rule.offset;
-      break;
-    }
-    if (!names.insert(channel.name).second) {
-      out.Error({path}, fmt::format("the mapping makes two channels {}", channel.name));
-      good = false;
-    }
-  }
-  if (!good) return std::nullopt;
-  return trace;
 }
 
 }  // namespace taut

@@ -1,0 +1,76 @@
+#include "compare/foreign_units.h"
+
+namespace taut {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kPound_kg = 0.45359237, kGravity_m_per_s2 = 9.80665, kInch_m = 0.0254;
+constexpr double kPoundForce_n = kPound_kg * kGravity_m_per_s2;
+
+/// By definition (The International System of Units, 9th edition; the international yard and pound
+/// of 1959).
+const std::vector<ForeignUnit>& Units() {
+  static const std::vector<ForeignUnit> units{
+      {"s", "s", 1},
+      {"ms", "s", 1e-3},
+      {"us", "s", 1e-6},
+      {"ns", "s", 1e-9},
+      {"min", "s", 60},
+      {"h", "s", 3600},
+      {"m", "m", 1},
+      {"cm", "m", 1e-2},
+      {"mm", "m", 1e-3},
+      {"um", "m", 1e-6},
+      {"in", "m", kInch_m},
+      {"ft", "m", 12 * kInch_m},
+      {"m/s", "m/s", 1},
+      {"cm/s", "m/s", 1e-2},
+      {"mm/s", "m/s", 1e-3},
+      {"rad", "rad", 1},
+      {"deg", "rad", kPi / 180},
+      {"turn", "rad", 2 * kPi},
+      {"rad/s", "rad/s", 1},
+      {"deg/s", "rad/s", kPi / 180},
+      {"rpm", "rad/s", kPi / 30},
+      {"N", "N", 1},
+      {"kN", "N", 1e3},
+      {"mN", "N", 1e-3},
+      {"lbf", "N", kPoundForce_n},
+      {"kgf", "N", kGravity_m_per_s2},
+      {"gf", "N", 1e-3 * kGravity_m_per_s2},
+      {"N m", "N m", 1},
+      {"N mm", "N m", 1e-3},
+      {"N cm", "N m", 1e-2},
+      {"N/m", "N/m", 1},
+      {"N/mm", "N/m", 1e3},
+      {"lbf/in", "N/m", kPoundForce_n / kInch_m},
+      {"kg", "kg", 1},
+      {"g", "kg", 1e-3},
+      {"lb", "kg", kPound_kg},
+      {"Pa", "Pa", 1},
+      {"kPa", "Pa", 1e3},
+      {"MPa", "Pa", 1e6},
+      {"V", "V", 1},
+      {"mV", "V", 1e-3},
+      {"A", "A", 1},
+      {"mA", "A", 1e-3},
+  };
+  return units;
+}
+
+}  // namespace
+
+std::optional<ForeignUnit> FindUnit(std::string_view name) {
+  for (const ForeignUnit& unit : Units()) {
+    if (unit.name == name) return unit;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> UnitNames() {
+  std::vector<std::string> names;
+  for (const ForeignUnit& unit : Units()) names.push_back(unit.name);
+  return names;
+}
+
+}  // namespace taut

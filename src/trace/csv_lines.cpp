@@ -1,0 +1,88 @@
+// zlib reads plain files as they are, so compressed or not is one path.
+#include "trace/csv_lines.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <zlib.h>
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
+#include "trace/unpack_limit.h"
+
+namespace taut::trace {
+namespace {
+
+constexpr std::size_t kMaxLineBytes = 8 << 20;
+
+/// Why no more can be unpacked; empty at the end of the file.
+std::string WhyItEnds(gzFile file, const std::string& path) {
+  int code = 0;
+  std::string_view why = gzerror(file, &code);
+  if (code == Z_OK || code == Z_STREAM_END) return {};
+  if (code == Z_ERRNO) return fmt::format("cannot be read: {}", std::strerror(errno));
+  if (code == Z_BUF_ERROR) return "is cut off after this line: its packed data goes on";
+  if (why.starts_with(path + ": ")) why.remove_prefix(path.size() + 2);
+  return fmt::format("is damaged after this line: {}", why);
+}
+
+bool ReadLines(gzFile file, double file_bytes, CsvTail tail,
+               const std::function<bool(std::string_view)>& use, const std::string& path,
+               Diagnostics& out) {
+  int lines = 0;
+  std::string text;
+  double unpacked_bytes = 0;
+  char block[1 << 16];
+  for (;;) {
+    const int count = gzread(file, block, sizeof block);
+    if (count <= 0) {
+      const std::string why = WhyItEnds(file, path);
+      if (why.empty()) {
+        if (tail == CsvTail::kLine && !text.empty()) use(text);
+        return true;
+      }
+      out.Error({path, lines}, why, "`zcat` into a .csv keeps what is there");
+      return false;
+    }
+    unpacked_bytes += count;
+    if (unpacked_bytes > MostUnpackedBytes(file_bytes)) {
+      out.Error({path}, fmt::format("unpacks to {}", kUnpackLimit),
+                "if it is what it should be, unpack it with `gunzip` first");
+      return false;
+    }
+    text.append(block, static_cast<std::size_t>(count));
+    std::size_t from = 0;
+    for (std::size_t to; (to = text.find('\n', from)) != text.npos; from = to + 1) {
+      ++lines;
+      if (!use(std::string_view(text).substr(from, to - from))) return true;
+    }
+    text.erase(0, from);
+    if (text.size() > kMaxLineBytes) {
+      out.Error({path}, "is not a CSV file: no line end in 8 MB");
+      return false;
+    }
+  }
+}
+
+}  // namespace
+
+std::string_view Trim(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+bool ReadCsvLines(const std::string& path, CsvTail tail,
+                  const std::function<bool(std::string_view)>& use, Diagnostics& out) {
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+  if (file == nullptr) {
+    out.Error({path}, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    return false;
+  }
+  struct stat info {};
+  const double bytes = stat(path.c_str(), &info) == 0 ? static_cast<double>(info.st_size) : 0.0;
+  return ReadLines(file.get(), bytes, tail, use, path, out);
+}
+
+}  // namespace taut::trace

@@ -1,0 +1,244 @@
+// Tables of other programs, as a mapping says they are laid out.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string_view>
+
+#include "base/pattern.h"
+#include "trace/csv_lines.h"
+#include "trace/readers.h"
+
+namespace taut::trace {
+namespace {
+
+constexpr std::size_t kMaxErrors = 20;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDay_s = 86400.0;
+
+struct Cell {
+  std::string text;
+  int column;  ///< Byte of the line, from 1.
+};
+
+class TableParser {
+ public:
+  TableParser(const std::string& path, const TableLayout& layout, Diagnostics& out)
+      : path_(path), layout_(layout), out_(out) {}
+
+  bool Line(std::string_view line) {
+    ++line_;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+    if (line_ <= layout_.skip_lines) return true;
+    if (columns_.empty()) {
+      std::vector<Cell> header;
+      if (layout_.header) header = Cells(line);
+      if (!Columns(header)) return false;
+      if (layout_.header) return true;
+    }
+    if (Trim(line).empty()) return true;
+    Row(Cells(line));
+    return errors_ < kMaxErrors;
+  }
+
+  std::optional<Trace> Take() {
+    if (errors_ == 0 && columns_.empty()) {
+      Error(std::max(line_, 1), 0, "ends before the rows begin",
+            fmt::format("the mapping skips {} lines", layout_.skip_lines));
+    }
+    if (errors_ == 0 && rows_ == 0) Error(line_, 0, "has no rows");
+    if (errors_ > 0) return std::nullopt;
+    if (is_long()) Spread();
+    return std::move(trace_);
+  }
+
+ private:
+  enum class Use { kNothing, kTime, kChannel, kName, kValue };
+  bool is_long() const { return !layout_.value_column.empty(); }
+
+  std::vector<Cell> Cells(std::string_view line) const {
+    std::vector<Cell> cells;
+    for (std::size_t at = 0; at <= line.size();) {
+      while (layout_.separator == ' ' && at < line.size() && line[at] == ' ') ++at;
+      if (layout_.separator == ' ' && at == line.size()) break;
+      const std::size_t from = at;
+      std::string text;
+      bool quoted = false;
+      for (; at < line.size() && (quoted || line[at] != layout_.separator); ++at) {
+        if (line[at] != '"') {
+          text += line[at];
+        } else if (quoted && at + 1 < line.size() && line[at + 1] == '"') {
+          text += line[at++];
+        } else {
+          quoted = !quoted;
+        }
+      }
+      cells.push_back({std::string(Trim(text)), static_cast<int>(from) + 1});
+      ++at;
+    }
+    return cells;
+  }
+
+  bool Columns(const std::vector<Cell>& header) {
+    std::vector<std::string> names = layout_.columns;
+    if (names.empty()) {
+      for (const Cell& cell : header) names.push_back(cell.text);
+    }
+    const int line = layout_.header ? line_ : 0;
+    const auto index = [&](const std::string& name) {
+      const auto found = std::find(names.begin(), names.end(), name);
+      if (found == names.end()) {
+        Error(line, 0, fmt::format("has no column \"{}\"", name), DidYouMean(name, names));
+      } else if (std::find(found + 1, names.end(), name) != names.end()) {
+        Error(line, 0, fmt::format("has two columns \"{}\"", name),
+              "give them names: `columns` of the mapping");
+      }
+      return static_cast<std::size_t>(found - names.begin());
+    };
+    columns_.assign(names.size() + 1, Use::kNothing);
+    columns_.back() = Use::kNothing;
+    if (!layout_.row_s) columns_[index(layout_.time_column)] = Use::kTime;
+    if (is_long()) {
+      for (const std::string& name : layout_.name_columns) columns_[index(name)] = Use::kName;
+      columns_[index(layout_.value_column)] = Use::kValue;
+    }
+    columns_.resize(names.size());
+    for (std::size_t i = 0; i < names.size() && !is_long(); ++i) {
+      const bool ignored =
+          std::any_of(layout_.ignore.begin(), layout_.ignore.end(),
+                      [&](const std::string& pattern) { return base::Fits(pattern, names[i]); });
+      if (columns_[i] == Use::kTime || ignored || names[i].empty()) continue;
+      columns_[i] = Use::kChannel;
+      trace_.channels.push_back({names[i], "1"});
+    }
+    trace_.values.resize(trace_.channels.size());
+    return errors_ == 0;
+  }
+
+  /// NaN for a gap.
+  double Number(const Cell& cell) {
+    std::string_view text = cell.text;
+    if (text.empty() || text == "NA" || text == "NaN" || text == "nan") return kNan;
+    if (text.front() == '+') text.remove_prefix(1);
+    double number = kNan;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (failure != std::errc() || end != text.data() + text.size()) {
+      Error(
+          line_, cell.column, fmt::format("\"{}\" is not a number", cell.text),
+          "of lines before the rows: `skip_lines` of the mapping; of a column of texts: `ignore`");
+      return kNan;
+    }
+    return number;
+  }
+
+  void Row(const std::vector<Cell>& cells) {
+    const std::size_t errors_before = errors_;
+    if (cells.size() != columns_.size()) {
+      Error(line_, 0,
+            fmt::format("{} values where there are {} columns", cells.size(), columns_.size()));
+      return;
+    }
+    double time_s = layout_.row_s ? *layout_.row_s * static_cast<double>(rows_) : kNan;
+    int time_at = 0;
+    std::vector<double> values;
+    std::string name;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      switch (columns_[i]) {
+        case Use::kNothing:
+          break;
+        case Use::kTime: {
+          const double read = Number(cells[i]);
+          if (rows_ == 0) zero_ = layout_.zero.value_or(read);
+          time_s = (read - zero_) * layout_.unit_s;
+          time_at = cells[i].column;
+          break;
+        }
+        case Use::kName:
+          name += (name.empty() ? "" : "_") + cells[i].text;
+          break;
+        case Use::kChannel:
+        case Use::kValue:
+          values.push_back(Number(cells[i]));
+          break;
+      }
+    }
+    if (errors_ != errors_before) return;
+    ++rows_;
+    time_s += layout_.offset_s;
+    auto& last = last_[name];
+    if (!std::isfinite(time_s)) {
+      Error(line_, time_at, "the time is not a number", "a row without a time is to be left out");
+    } else if (last.line > 0 && !(time_s > last.time_s)) {
+      const bool midnight = last.time_s - time_s > 0.5 * kDay_s;
+      Error(line_, time_at,
+            fmt::format("the time {} s {} {} s in line {}", time_s,
+                        time_s == last.time_s ? "is again that of" : "comes before", last.time_s,
+                        last.line),
+            midnight ? "has the clock passed midnight?" : "times must rise");
+    } else if (is_long()) {
+      long_[name].emplace_back(time_s, values[0]);
+    } else {
+      trace_.time_s.push_back(time_s);
+      for (std::size_t i = 0; i < values.size(); ++i) trace_.values[i].push_back(values[i]);
+    }
+    last = {time_s, line_};
+  }
+
+  /// One row a time that any channel has.
+  void Spread() {
+    std::map<double, std::size_t> rows;
+    for (const auto& [name, points] : long_) {
+      for (const auto& point : points) rows.emplace(point.first, 0);
+    }
+    for (auto& [time_s, row] : rows) {
+      row = trace_.time_s.size();
+      trace_.time_s.push_back(time_s);
+    }
+    for (const auto& [name, points] : long_) {
+      trace_.channels.push_back({name, "1"});
+      std::vector<double>& values = trace_.values.emplace_back(rows.size(), kNan);
+      for (const auto& [time_s, value] : points) values[rows.at(time_s)] = value;
+    }
+  }
+
+  void Error(int line, int column, std::string what, std::string hint = {}) {
+    if (++errors_ <= kMaxErrors) {
+      out_.Error({path_, line, column}, std::move(what), std::move(hint));
+    }
+  }
+
+  struct Before {
+    double time_s = 0;
+    int line = 0;
+  };
+  const std::string& path_;
+  const TableLayout& layout_;
+  Diagnostics& out_;
+  std::vector<Use> columns_;
+  std::map<std::string, Before> last_;  ///< By channel, if a row has one value.
+  std::map<std::string, std::vector<std::pair<double, double>>> long_;
+  double zero_ = 0;
+  std::size_t rows_ = 0;
+  Trace trace_;
+  int line_ = 0;
+  std::size_t errors_ = 0;
+};
+
+}  // namespace
+}  // namespace taut::trace
+
+namespace taut {
+
+std::optional<Trace> ReadTable(const std::string& path, const TableLayout& layout,
+                               Diagnostics& out) {
+  trace::TableParser parser(path, layout, out);
+  const auto line = [&](std::string_view text) { return parser.Line(text); };
+  if (!trace::ReadCsvLines(path, trace::CsvTail::kLine, line, out)) return std::nullopt;
+  return parser.Take();
+}
+
+}  // namespace taut
