@@ -10,7 +10,7 @@
 
 namespace taut {
 
-/// "model", "experiment", "gait", "study", "faults" and "calibration".
+/// "model", "experiment", "gait", "study", "fit", "faults" and "calibration".
 const std::vector<std::string>& FormatNames();
 
 /// The JSON schema (2020-12) of a format: all of its keys with their types, ranges, defaults and

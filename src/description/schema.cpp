@@ -9,6 +9,7 @@
 #include "description/calibration_keys.h"
 #include "description/experiment_keys.h"
 #include "description/fault_keys.h"
+#include "description/fit_keys.h"
 #include "description/gait_keys.h"
 #include "description/model_keys.h"
 #include "description/read_keys.h"
@@ -326,7 +327,7 @@ std::string Schema() {
 
 const std::vector<std::string>& FormatNames() {
   static const std::vector<std::string> names{"model", "experiment", "gait",
-                                              "study", "faults",     "calibration"};
+                                              "study", "fit",        "faults", "calibration"};
   return names;
 }
 
@@ -335,6 +336,7 @@ std::optional<std::string> FormatSchema(std::string_view format) {
   if (format == "experiment") return description::Schema<description::ExperimentText>();
   if (format == "gait") return description::Schema<description::GaitText>();
   if (format == "study") return description::Schema<description::StudyFileText>();
+  if (format == "fit") return description::Schema<description::FitFileText>();
   if (format == "faults") return description::Schema<description::FaultFileText>();
   if (format == "calibration") return description::Schema<description::CalibrationFileText>();
   return std::nullopt;
