@@ -18,6 +18,7 @@ enum Exit : int {
 void AddCheck(CLI::App& app, int& exit_code);
 void AddRun(CLI::App& app, int& exit_code);
 void AddCompare(CLI::App& app, int& exit_code);
+void AddFit(CLI::App& app, int& exit_code);
 void AddGait(CLI::App& app, int& exit_code);
 void AddHelp(CLI::App& app, int& exit_code);
 void AddLearn(CLI::App& app, int& exit_code);

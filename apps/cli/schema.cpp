@@ -14,7 +14,8 @@ void AddSchema(CLI::App& app, int& exit_code) {
   auto format = std::make_shared<std::string>();
   CLI::App* schema =
       app.add_subcommand("schema", "Print what a kind of file may hold, for editors.");
-  schema->add_option("format", *format, "model, experiment, gait, study, faults or calibration")
+  schema
+      ->add_option("format", *format, "model, experiment, gait, study, fit, faults or calibration")
       ->required()
       ->option_text(Alternatives(FormatNames()))
       ->check(OneOf(FormatNames()));

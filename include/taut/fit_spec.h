@@ -28,14 +28,14 @@ enum class FitForward {
 struct FitExperiment {
   std::string name;
   std::string experiment_file;
-  std::string data_file;                  ///< A trace; empty: only the experiment's references.
-  std::string map_file;                   ///< Gives the data the names of taut; empty: none.
-  std::string setpoints_file;             ///< Times of set points on the data's clock; empty: the
-                                          ///< experiment's own.
-  bool train = true;                      ///< Else it is held out, for a verdict.
+  std::string data_file;       ///< A trace; empty: only the experiment's references.
+  std::string map_file;        ///< Gives the data the names of taut; empty: none.
+  std::string setpoints_file;  ///< Times of set points on the data's clock; empty: the
+                               ///< experiment's own.
+  bool train = true;           ///< Else it is held out, for a verdict.
   FitForward forward = FitForward::kDynamic;
-  Overrides set;                          ///< As `set:` says, the user's `--set` behind it.
-  ExperimentSpec experiment;              ///< With `set`, before anything is fitted.
+  Overrides set;              ///< As `set:` says, the user's `--set` behind it.
+  ExperimentSpec experiment;  ///< With `set`, before anything is fitted.
   SourceRef at, data_at, setpoints_at;
 };
 
@@ -71,13 +71,13 @@ enum class RobustLoss { kSquares, kHuber, kCauchy };
 
 /// What is compared: channels of the data, or the references of the experiments.
 struct FitResidual {
-  std::string channels;                                 ///< Pattern; empty: references.
-  std::optional<ReferenceSpec::Statistic> references;   ///< Which; nothing: all.
-  double sd = 1.0;                                      ///< What it is known to, in its unit.
-  double relative_sd = 0.0;                             ///< More of it: this share of the value.
+  std::string channels;                                ///< Pattern; empty: references.
+  std::optional<ReferenceSpec::Statistic> references;  ///< Which; nothing: all.
+  double sd = 1.0;                                     ///< What it is known to, in its unit.
+  double relative_sd = 0.0;                            ///< More of it: this share of the value.
   FitStatistic statistic = FitStatistic::kMean;
-  std::optional<std::string> phase;                     ///< A window by the timeline's name,
-  std::optional<std::pair<double, double>> span_s;      ///< on the experiment's clock,
+  std::optional<std::string> phase;                           ///< A window by the timeline's name,
+  std::optional<std::pair<double, double>> span_s;            ///< on the experiment's clock,
   std::optional<std::pair<double, double>> after_setpoint_s;  ///< or after each set point.
   std::vector<std::size_t> experiments;
   RobustLoss loss = RobustLoss::kSquares;

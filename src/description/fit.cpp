@@ -73,7 +73,8 @@ void ReadExperiments(const std::vector<FitExperimentText>& texts, const Override
     one.map_file = FindFile(text.map.value, "experiments.map", scope).value_or("");
     one.setpoints_file =
         FindFile(text.setpoints.value, "experiments.setpoints", scope).value_or("");
-    if (known.back() && one.forward == FitForward::kLoadCases && one.experiment.load_cases.empty()) {
+    if (known.back() && one.forward == FitForward::kLoadCases &&
+        one.experiment.load_cases.empty()) {
       scope.out.Error(one.at, "experiments: " + one.name + " has no load cases",
                       "forward: load_cases needs `load_cases` in the experiment");
     }
@@ -103,8 +104,8 @@ FitSpec ReadFit(const Value& root, const OverrideSet& overrides, const Scope& sc
   fit.estimates = ToEstimates(text.estimate, fit.experiments, known, scope);
   fit.residuals = ToResiduals(text.residuals, fit.experiments, known, false, scope);
   for (const FitCandidateText& candidate : text.design) {
-    fit.design.push_back({candidate.name, ToResiduals(candidate.residuals, fit.experiments, known,
-                                                      true, scope)});
+    fit.design.push_back(
+        {candidate.name, ToResiduals(candidate.residuals, fit.experiments, known, true, scope)});
   }
   for (const char* key : {"estimate", "residuals"}) {
     const Value* items = root.Find(key);
@@ -144,9 +145,9 @@ std::vector<std::size_t> NamedExperiments(const std::vector<Placed>& names, cons
   for (const Placed& name : names) {
     const auto at = std::find(all.begin(), all.end(), name.text);
     if (at == all.end()) {
-      scope.out.Error(name.at, std::string(what) + ".experiments: there is none called \"" +
-                                   name.text + "\"",
-                      NameHint(name.text, all));
+      scope.out.Error(
+          name.at, std::string(what) + ".experiments: there is none called \"" + name.text + "\"",
+          NameHint(name.text, all));
     } else {
       found.push_back(static_cast<std::size_t>(at - all.begin()));
     }

@@ -58,8 +58,7 @@ void CheckRange(const std::string& what, const SourceRef& at, bool starts, FitRa
     range.scale = 0.05 * std::fabs(range.start);
   }
   if (range.scale == 0) {
-    wrong(": nobody can tell how far it may move",
-          "give bounds, a prior with `sd`, or a `scale`");
+    wrong(": nobody can tell how far it may move", "give bounds, a prior with `sd`, or a `scale`");
   }
 }
 
@@ -90,7 +89,8 @@ FitEstimate OfNuisance(const Made& made, FitEstimate::Kind kind, double neutral,
   }
   double start = n.mean.value_or(neutral);
   // A delay that can only be positive begins in the middle of what it may be.
-  if (kind == FitEstimate::Kind::kDelay && !n.sd && n.low && n.high) start = 0.5 * (*n.low + *n.high);
+  if (kind == FitEstimate::Kind::kDelay && !n.sd && n.low && n.high)
+    start = 0.5 * (*n.low + *n.high);
   range.start = n.start.value_or(start);
   range.scale = n.scale.value_or(0.0);
   CheckRange("estimate: " + out.name, out.at, true, range, scope);

@@ -21,8 +21,8 @@ inline const Choices<FitStatistic> kFitStatistics{{"mean", FitStatistic::kMean},
                                                   {"min", FitStatistic::kMin},
                                                   {"rows", FitStatistic::kRows}};
 inline const Choices<RobustLoss> kLosses{{"squares", RobustLoss::kSquares},
-                                      {"huber", RobustLoss::kHuber},
-                                      {"cauchy", RobustLoss::kCauchy}};
+                                         {"huber", RobustLoss::kHuber},
+                                         {"cauchy", RobustLoss::kCauchy}};
 inline const Choices<FitGroups> kGroupings{{"experiment", FitGroups::kExperiment},
                                            {"channel", FitGroups::kChannel},
                                            {"window", FitGroups::kWindow}};
@@ -62,10 +62,11 @@ void Keys(Io& io, Like<FitExperimentText> auto& e) {
      Example{R"("map.json")"});
   io("setpoints", e.setpoints,
      "A trace whose times, on the data's clock, are those at which the experiment's set points "
-     "were commanded, one after the other. Without it they are those of the experiment.",
+     "were commanded, one after the other. Without it they are those of the experiment. A column "
+     "`experiment_s` says which of the experiment's moments they are; else these are its set "
+     "points.",
      Example{R"("test0_setpoints.csv")"});
-  io("use", e.train, kUses,
-     "Whether numbers are found from it, or it is held out to judge them.");
+  io("use", e.train, kUses, "Whether numbers are found from it, or it is held out to judge them.");
   io("forward", e.forward, kForwards,
      "`dynamic`: the experiment is run. `static`: the rest that the robot comes to at each set "
      "point of its position programs and pushes, from one to the next. `load_cases`: the rest "

@@ -18,8 +18,9 @@ void CheckForward(const FitResidual& residual, const FitResidualText& text,
       return !residual.references || r.statistic == *residual.references;
     });
     if (!any) {
-      wrong(one.name + " has no such `references`",
-            "numbers of others in the experiment; `experiments:` says which residuals are of which");
+      wrong(
+          one.name + " has no such `references`",
+          "numbers of others in the experiment; `experiments:` says which residuals are of which");
     }
     return;
   }
@@ -47,8 +48,9 @@ void Check(const MapReader& map, FitWindowText& window) {
   const int kinds = int{map.Has("phase")} + int{map.Has("from_s") || map.Has("to_s")} +
                     int{map.Has("after_setpoint_s")};
   if (kinds != 1 && map.is_map()) {
-    map.scope().out.Error(map.at(), "residuals.window needs one of `phase`, `from_s` with `to_s`, "
-                                    "`after_setpoint_s`");
+    map.scope().out.Error(map.at(),
+                          "residuals.window needs one of `phase`, `from_s` with `to_s`, "
+                          "`after_setpoint_s`");
   }
   if (map.Has("from_s") != map.Has("to_s")) {
     map.scope().out.Error(map.at(), "residuals.window: from_s and to_s go together");

@@ -41,9 +41,8 @@ std::string FitText(const FitSpec& fit) {
   for (const FitExperiment& one : fit.experiments) {
     std::string set;
     for (const auto& [name, value] : one.set) set += " " + name + "=" + value;
-    out += Line("experiment " + one.name,
-                std::string(one.train ? "train" : "test") + " forward " +
-                    std::to_string(static_cast<int>(one.forward)) + set);
+    out += Line("experiment " + one.name, std::string(one.train ? "train" : "test") + " forward " +
+                                              std::to_string(static_cast<int>(one.forward)) + set);
   }
   for (const FitEstimate& e : fit.estimates) {
     const FitRange& r = e.range;

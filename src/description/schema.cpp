@@ -326,8 +326,8 @@ std::string Schema() {
 }  // namespace description
 
 const std::vector<std::string>& FormatNames() {
-  static const std::vector<std::string> names{"model", "experiment", "gait",
-                                              "study", "fit",        "faults", "calibration"};
+  static const std::vector<std::string> names{"model", "experiment", "gait",       "study",
+                                              "fit",   "faults",     "calibration"};
   return names;
 }
 

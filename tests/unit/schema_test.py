@@ -27,7 +27,7 @@ sys.dont_write_bytecode = True
 loader.exec_module(docs)
 
 KINDS = {"model": "models", "experiment": "experiments", "gait": "gaits", "study": "studies",
-         "faults": "faults"}
+         "fit": "fits", "faults": "faults"}
 PROBE = ""
 
 
@@ -130,6 +130,8 @@ def test_SchemasRefuseWhatTheReaderRefuses():
     spine = (ROOT / "models" / "tetraspine3.yaml").read_text()
     study = (ROOT / "studies" / "sidewinder3.yaml").read_text()
     study = study.replace("../experiments/", str(ROOT / "experiments") + "/")
+    fit = (ROOT / "fits" / "tetraspine3_push.yaml").read_text()
+    fit = fit.replace("../experiments/", str(ROOT / "experiments") + "/")
     learned = (ROOT / "gaits" / "cpg_learned.yaml").read_text()
     noise = (ROOT / "faults" / "noisy_bus.yaml").read_text()
     waves = (ROOT / "gaits" / "hand_tuned_sine.yaml").read_text()
@@ -161,6 +163,11 @@ def test_SchemasRefuseWhatTheReaderRefuses():
         ("study", study, "method: monte_carlo", "method: magic"),
         ("study", study, "evaluations: 256, ", ""),
         ("study", study, "experiment: ", "# experiment: "),
+        ("fit", fit, "high: 80", "hihg: 80"),
+        ("fit", fit, "sd: 3", "mean: 20"),
+        ("fit", fit, "reference: maxima", "reference: most"),
+        ("fit", fit, "parameter: push_n", "channel: a, parameter: push_n"),
+        ("fit", fit, "starts: 2", "starts: 0"),
         ("faults", noise, "at_s: 2.5", "at: 2.5"),
         ("faults", noise, "line: data", "line: sda"),
         ("faults", noise, "kind: bus_error, ", ""),

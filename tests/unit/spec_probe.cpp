@@ -1,4 +1,4 @@
-// Loads model, experiment, gait, study and fault files and prints what is wrong with them, for
+// Loads model, experiment, gait, study, fit and fault files and prints what is wrong with them, for
 // tests in other languages: spec_probe [--set name=value]... [--resolved] [--schema FORMAT] FILE...
 // Exit status 1 if anything is wrong.
 #include <cstdio>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "taut/faults.h"
+#include "taut/fit_spec.h"
 #include "taut/schema.h"
 #include "taut/spec.h"
 #include "taut/study.h"
@@ -58,6 +59,8 @@ int main(int argc, char** argv) {
       taut::LoadGait(argument, out);
     } else if (IsOfKind("study", argument)) {
       taut::LoadStudy(argument, overrides, out);
+    } else if (IsOfKind("fit", argument)) {
+      taut::LoadFit(argument, overrides, out);
     } else if (IsOfKind("faults", argument)) {
       taut::LoadFaults(argument, CablesOfTetraspine3(), out);
     } else if (const auto experiment = taut::LoadExperiment(argument, overrides, out)) {

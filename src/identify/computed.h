@@ -1,0 +1,46 @@
+/// What an experiment gives: its channels against time, or at rest.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "taut/fit_spec.h"
+#include "taut/plant.h"
+#include "taut/run.h"
+#include "taut/trace.h"
+
+namespace taut::identify {
+
+struct Computed {
+  std::string failed;  ///< Why there is nothing; else empty.
+  bool stopped = false;
+  std::vector<double> time_s;               ///< Of a rest: of its set points; of load cases 1, 2...
+  std::vector<std::vector<double>> values;  ///< [channel as asked][row].
+  std::optional<RunSummary> summary;        ///< Of a run.
+};
+
+/// Runs it. `channels` as of `DynamicChannels`.
+Computed Run(const ExperimentSpec& experiment, const std::vector<std::string>& channels,
+             const std::atomic<bool>* stop);
+/// What a run can give: all that it can record, and `body/<name>/rotation_{x,y,z}_rad`, the turn
+/// from where it was described as a vector along its axis.
+std::vector<ChannelInfo> DynamicChannels(const ExperimentSpec& experiment);
+
+/// The rests at moments, which rise, each from the one before; or those of load cases.
+Computed Rest(const ExperimentSpec& experiment, FitForward forward,
+              const std::vector<double>& moments_s, const std::vector<std::string>& channels,
+              const std::atomic<bool>* stop);
+std::vector<ChannelInfo> RestChannels(const ExperimentSpec& experiment);
+/// Why an experiment has no rests that its set points alone tell; empty if it has.
+std::string WhyNoRest(const ExperimentSpec& experiment);
+
+/// When programs of rest lengths and pushes have come to another value: the ends of their ramps.
+std::vector<double> SetPoints(const ExperimentSpec& experiment);
+
+/// The turn of a unit quaternion as a vector along its axis, no longer than pi [rad].
+Vec3 TurnOf(const Quat& q);
+
+}  // namespace taut::identify

@@ -1,0 +1,361 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/hash.h"
+#include "base/pattern.h"
+#include "description/reader.h"
+#include "identify/memory.h"
+#include "identify/models.h"
+#include "identify/rows.h"
+#include "taut/version.h"
+
+namespace taut {
+namespace identify {
+namespace {
+
+/// A row with what acts on it.
+struct Tied {
+  Row row;
+  std::size_t model = 0, channel = 0;
+  std::vector<std::size_t> gains, offsets, delays;  ///< Estimates of the fit.
+};
+
+/// Rows of a problem, in its order.
+struct Set {
+  std::string name;
+  std::vector<Tied> rows;
+  std::vector<FitPoint> points;
+  std::set<std::size_t> models;
+  FitProblem problem;
+};
+
+FitLoss ToLoss(RobustLoss loss) {
+  if (loss == RobustLoss::kHuber) return FitLoss::kHuber;
+  return loss == RobustLoss::kCauchy ? FitLoss::kCauchy : FitLoss::kSquare;
+}
+
+class Made : public Identification {
+ public:
+  Made(const FitSpec& spec, const IdentifyOptions& options)
+      : spec_(spec), options_(options), models_(spec_, options.threads, options.stop) {}
+
+  bool Begin(Diagnostics& out);
+
+  const FitSpec& spec() const override { return spec_; }
+  const std::vector<std::size_t>& estimates() const override { return estimates_; }
+  const FitProblem& train() const override { return train_.problem; }
+  const FitProblem* test() const override { return test_.rows.empty() ? nullptr : &test_.problem; }
+  const std::vector<FitProblem>& design() const override { return designs_; }
+  const std::vector<std::vector<FitPoint>>& design_points() const override {
+    return design_points_;
+  }
+  const std::vector<FitPoint>& train_points() const override { return train_.points; }
+  const std::vector<FitPoint>& test_points() const override { return test_.points; }
+  IdentifyCounts counts() const override {
+    return {models_.computed(), memory_->remembered(), memory_->damaged()};
+  }
+  std::string memory_error() const override { return memory_->error(); }
+
+ private:
+  void AddRows(const FitResidual& residual, std::size_t experiment, const Measured* measured,
+               Set& set, Diagnostics& out);
+  void CheckActing(Diagnostics& out);
+  void ChooseEstimates();
+  void MakeProblem(Set& set);
+  int GroupOf(const Row& row, std::map<std::string, int>& known, FitProblem& problem) const;
+  std::vector<Residuals> Answer(const Set& set, std::span<const std::vector<double>> points);
+  Residuals Compose(const Set& set, const std::vector<double>& all,
+                    const std::map<std::size_t, Models::Answer>& computed) const;
+  std::vector<double> All(const std::vector<double>& values) const;
+  bool OpenMemory(Diagnostics& out);
+
+  const FitSpec spec_;
+  IdentifyOptions options_;
+  Models models_;
+  std::unique_ptr<PointMemory> memory_;
+  std::vector<std::vector<ChannelInfo>> channels_;  ///< Per experiment: what can be computed.
+  std::vector<std::size_t> estimates_;
+  Set train_, test_;
+  std::vector<Set> design_sets_;
+  std::vector<FitProblem> designs_;
+  std::vector<std::vector<FitPoint>> design_points_;
+};
+
+void Made::AddRows(const FitResidual& residual, std::size_t experiment, const Measured* measured,
+                   Set& set, Diagnostics& out) {
+  for (Row& row : MakeRows(spec_, residual, experiment, measured, channels_[experiment], out)) {
+    Tied& tied = set.rows.emplace_back();
+    tied.model = models_.ModelOf(experiment);
+    if (row.how == Row::How::kRest) models_.NeedMoment(tied.model, row.from_s);
+    if (row.how != Row::How::kReference) tied.channel = models_.Need(tied.model, row.channel);
+    for (std::size_t i = 0; i < spec_.estimates.size(); ++i) {
+      const FitEstimate& e = spec_.estimates[i];
+      if (std::find(e.experiments.begin(), e.experiments.end(), experiment) ==
+          e.experiments.end()) {
+        continue;
+      }
+      const bool fits = !e.channels.empty() && base::Fits(e.channels, row.channel);
+      if (e.kind == FitEstimate::Kind::kGain && fits) tied.gains.push_back(i);
+      if (e.kind == FitEstimate::Kind::kOffset && fits) tied.offsets.push_back(i);
+      if (e.kind == FitEstimate::Kind::kDelay) tied.delays.push_back(i);
+    }
+    set.points.push_back(row.point);
+    set.models.insert(tied.model);
+    set.problem.rows.push_back(
+        {0, ToLoss(residual.loss), residual.loss_sd > 0 ? residual.loss_sd : 1.345});
+    tied.row = std::move(row);
+  }
+}
+
+/// Offsets and gains of channels that nothing compares are mistakes.
+void Made::CheckActing(Diagnostics& out) {
+  std::vector<bool> acts(spec_.estimates.size());
+  std::set<std::string> names;
+  for (const Set* set : {&train_, &test_}) {
+    for (const Tied& tied : set->rows) {
+      names.insert(tied.row.channel);
+      for (const auto* list : {&tied.gains, &tied.offsets, &tied.delays}) {
+        for (const std::size_t i : *list) acts[i] = true;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < spec_.estimates.size(); ++i) {
+    const FitEstimate& e = spec_.estimates[i];
+    if (acts[i] || e.kind == FitEstimate::Kind::kParameter) continue;
+    out.Error(e.at, "estimate: nothing that is compared has anything of " + e.name,
+              e.channels.empty() ? "" : DidYouMean(e.channels, {names.begin(), names.end()}));
+  }
+}
+
+/// Those that act on nothing that is trained on stay where they start.
+void Made::ChooseEstimates() {
+  for (std::size_t i = 0; i < spec_.estimates.size(); ++i) {
+    const auto& on = spec_.estimates[i].experiments;
+    const bool trained = std::any_of(on.begin(), on.end(),
+                                     [&](std::size_t e) { return spec_.experiments[e].train; });
+    if (trained) estimates_.push_back(i);
+  }
+}
+
+int Made::GroupOf(const Row& row, std::map<std::string, int>& known, FitProblem& problem) const {
+  const std::string& one = spec_.experiments[row.experiment].name;
+  std::string name = one;
+  if (spec_.groups == FitGroups::kChannel) name = row.channel;
+  if (spec_.groups == FitGroups::kWindow) name = one + " " + row.point.where;
+  const auto [at, fresh] = known.emplace(name, static_cast<int>(known.size()));
+  if (fresh) problem.group_names.push_back(name);
+  return at->second;
+}
+
+void Made::MakeProblem(Set& set) {
+  FitProblem& problem = set.problem;
+  for (const std::size_t i : estimates_) {
+    const FitEstimate& e = spec_.estimates[i];
+    FitParameter& p = problem.parameters.emplace_back();
+    p.name = e.name, p.unit = e.unit == "1" ? "" : e.unit;
+    p.start = e.range.start, p.low = e.range.low, p.high = e.range.high;
+    if (e.range.sd) p.prior_sd = *e.range.sd;
+    p.prior_mean = e.range.mean;
+    p.scale = e.range.scale;
+    p.step = spec_.search.step;
+    p.nuisance = e.kind != FitEstimate::Kind::kParameter;
+  }
+  std::map<std::string, int> groups;
+  for (std::size_t i = 0; i < set.rows.size(); ++i) {
+    problem.rows[i].group = GroupOf(set.rows[i].row, groups, problem);
+  }
+  problem.forward = [this, &set](std::span<const std::vector<double>> points) {
+    return Answer(set, points);
+  };
+}
+
+std::vector<double> Made::All(const std::vector<double>& values) const {
+  std::vector<double> all;
+  for (const FitEstimate& e : spec_.estimates) all.push_back(e.range.start);
+  for (std::size_t i = 0; i < estimates_.size(); ++i) all[estimates_[i]] = values[i];
+  return all;
+}
+
+Residuals Made::Compose(const Set& set, const std::vector<double>& all,
+                        const std::map<std::size_t, Models::Answer>& computed) const {
+  Residuals out;
+  const auto sum = [&](const std::vector<std::size_t>& which) {
+    double total = 0;
+    for (const std::size_t i : which) total += all[i];
+    return total;
+  };
+  for (const Tied& tied : set.rows) {
+    const FitExperiment& one = spec_.experiments[tied.row.experiment];
+    const Computed& model = *computed.at(tied.model);
+    if (!model.failed.empty()) return {{}, one.name + ": " + model.failed};
+    const auto value = ValueOf(tied.row, model, tied.channel, sum(tied.delays), one.experiment);
+    if (!value || !std::isfinite(*value)) {
+      return {{}, one.name + ": no number for " + tied.row.channel + ", " + tied.row.point.where};
+    }
+    double x = *value;
+    for (const std::size_t i : tied.gains) x *= all[i];
+    x += sum(tied.offsets);
+    out.value.push_back((x - tied.row.point.measured) / tied.row.point.sd);
+  }
+  return out;
+}
+
+std::vector<Residuals> Made::Answer(const Set& set, std::span<const std::vector<double>> points) {
+  std::vector<std::string> keys;
+  std::vector<std::vector<double>> missing;
+  std::vector<std::string> missing_keys;
+  for (const std::vector<double>& point : points) {
+    keys.push_back(PointMemory::Key(set.name, point));
+    if (memory_->Find(keys.back())) continue;
+    if (std::find(missing_keys.begin(), missing_keys.end(), keys.back()) != missing_keys.end()) {
+      continue;
+    }
+    missing.push_back(All(point));
+    missing_keys.push_back(keys.back());
+  }
+  // In parts, so that what is stopped or killed has lost little.
+  const std::size_t part = 4 * static_cast<std::size_t>(std::max(1, options_.threads)) + 4;
+  for (std::size_t from = 0; from < missing.size(); from += part) {
+    const std::size_t to = std::min(from + part, missing.size());
+    const auto at = [&](std::size_t i) { return missing.begin() + static_cast<std::ptrdiff_t>(i); };
+    const auto answers = models_.Compute({at(from), at(to)}, set.models);
+    if (answers.empty()) break;
+    std::vector<std::pair<std::string, Residuals>> made;
+    for (std::size_t i = from; i < to; ++i) {
+      made.emplace_back(missing_keys[i], Compose(set, missing[i], answers[i - from]));
+    }
+    memory_->Add(made);
+  }
+  std::vector<Residuals> out;
+  for (const std::string& key : keys) {
+    const Residuals* known = memory_->Find(key);
+    if (!known) break;
+    out.push_back(*known);
+  }
+  return out;
+}
+
+bool Made::OpenMemory(Diagnostics& out) {
+  if (options_.memory_file.empty()) {
+    memory_ = std::make_unique<PointMemory>();
+    return true;
+  }
+  base::Fnv1a sum;
+  for (const Set* set : {&train_, &test_}) {
+    for (const FitPoint& p : set->points) {
+      sum.AddText(p.channel), sum.AddText(p.where);
+      sum.AddNumber(p.measured), sum.AddNumber(p.sd), sum.AddNumber(p.time_s);
+    }
+  }
+  std::uint64_t experiments = 0;
+  for (const FitExperiment& one : spec_.experiments) {
+    experiments = experiments * 31 + one.experiment.input_hash;
+  }
+  memory_ = PointMemory::Open(options_.memory_file,
+                              {{"version", kVersion},
+                               {"fit", FitText(spec_)},
+                               {"data", base::HashText(sum.value())},
+                               {"experiments", base::HashText(experiments)}},
+                              out);
+  return memory_ != nullptr;
+}
+
+bool Made::Begin(Diagnostics& out) {
+  const std::size_t errors_before = out.items().size();
+  train_.name = "train", test_.name = "test";
+  std::vector<std::optional<Measured>> measured;
+  for (const FitExperiment& one : spec_.experiments) {
+    channels_.push_back(one.forward == FitForward::kDynamic ? DynamicChannels(one.experiment)
+                                                            : RestChannels(one.experiment));
+    measured.push_back(ReadMeasured(one, out));
+    if (one.forward != FitForward::kStatic) continue;
+    const std::string why = WhyNoRest(one.experiment);
+    if (!why.empty()) {
+      out.Error(one.at, "experiments: " + one.name + " has no rest at its set points: " + why,
+                "forward: dynamic");
+    } else if (SetPoints(one.experiment).empty()) {
+      out.Error(one.at, "experiments: " + one.name + " has no set points",
+                "where a program of rest lengths or a push comes to another value");
+    }
+  }
+  for (const FitResidual& residual : spec_.residuals) {
+    for (const std::size_t e : residual.experiments) {
+      if (!measured[e]) continue;
+      AddRows(residual, e, &*measured[e], spec_.experiments[e].train ? train_ : test_, out);
+    }
+  }
+  if (out.items().size() != errors_before) return false;
+  design_sets_.resize(spec_.design.size());
+  for (std::size_t i = 0; i < spec_.design.size(); ++i) {
+    design_sets_[i].name = "design " + spec_.design[i].name;
+    for (FitResidual residual : spec_.design[i].residuals) {
+      for (const std::size_t e : residual.experiments) {
+        AddRows(residual, e, nullptr, design_sets_[i], out);
+      }
+    }
+  }
+  CheckActing(out);
+  ChooseEstimates();
+  std::size_t known = train_.rows.size();
+  for (const std::size_t i : estimates_) known += spec_.estimates[i].range.sd ? 1 : 0;
+  if (known < estimates_.size()) {
+    out.Error({spec_.files[0]},
+              fmt::format("{} numbers are to be found from {} data and priors together",
+                          estimates_.size(), known),
+              "priors with `sd`, more data, or fewer numbers");
+  }
+  if (out.items().size() != errors_before || !OpenMemory(out)) return false;
+  MakeProblem(train_);
+  MakeProblem(test_);
+  for (Set& set : design_sets_) {
+    MakeProblem(set);
+    designs_.push_back(set.problem);
+    design_points_.push_back(set.points);
+  }
+  return true;
+}
+
+}  // namespace
+}  // namespace identify
+
+std::unique_ptr<Identification> Identification::Make(const FitSpec& spec,
+                                                     const IdentifyOptions& options,
+                                                     Diagnostics& out) {
+  auto made = std::make_unique<identify::Made>(spec, options);
+  if (!made->Begin(out)) return nullptr;
+  return made;
+}
+
+std::string FittedExperimentYaml(const Identification& fit, std::size_t experiment,
+                                 const std::vector<double>& values, const std::string& folder) {
+  const FitExperiment& one = fit.spec().experiments[experiment];
+  std::map<std::string, std::string> own, of_model;
+  const auto put = [&](const std::string& name, const std::string& value) {
+    (one.experiment.parameters.count(name) ? own : of_model)[name] = value;
+  };
+  for (const auto& [name, value] : one.set) put(name, value);
+  for (std::size_t i = 0; i < fit.estimates().size(); ++i) {
+    const FitEstimate& e = fit.spec().estimates[fit.estimates()[i]];
+    const bool acts =
+        std::find(e.experiments.begin(), e.experiments.end(), experiment) != e.experiments.end();
+    if (acts && e.kind == FitEstimate::Kind::kParameter) {
+      put(e.parameter, description::Shown(values[i]));
+    }
+  }
+  std::error_code ignored;
+  const auto base = std::filesystem::relative(one.experiment_file, folder, ignored);
+  std::string out = "# " + one.name + " with what the fit " + fit.spec().name + " found\n";
+  out += "taut: 1\nkind: experiment\nname: " + fit.spec().name + "_" + one.name + "\n";
+  out += "base: " + (base.empty() ? one.experiment_file : base.string()) + "\n";
+  for (const auto& [key, numbers] : {std::pair("parameters", &own), {"set", &of_model}}) {
+    if (numbers->empty()) continue;
+    out += std::string(key) + ":\n";
+    for (const auto& [name, value] : *numbers) out += "  " + name + ": " + value + "\n";
+  }
+  return out;
+}
+
+}  // namespace taut

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "identify/rows.h"
+#include "taut/compare.h"
+#include "taut/run_folder.h"
+
+namespace taut::identify {
+namespace {
+
+/// A file of set points may say which of the experiment's moments each row is.
+constexpr const char* kOurClock = "experiment_s";
+
+bool Rises(const std::vector<double>& times) {
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (!(times[i] > times[i - 1])) return false;
+  }
+  return !times.empty() && std::isfinite(times.front()) && std::isfinite(times.back());
+}
+
+std::optional<Trace> Read(const FitExperiment& one, Diagnostics& out) {
+  auto trace = ReadTraceOfRun(one.data_file, out);
+  if (!trace) return std::nullopt;
+  if (one.map_file.empty()) return trace;
+  const auto mapping = LoadMapping(one.map_file, out);
+  if (!mapping) return std::nullopt;
+  return ApplyMapping(*mapping, std::move(*trace), one.data_file, out);
+}
+
+}  // namespace
+
+std::optional<Measured> ReadMeasured(const FitExperiment& one, Diagnostics& out) {
+  Measured measured;
+  measured.ours_s = measured.setpoint_s = SetPoints(one.experiment);
+  if (one.data_file.empty()) return measured;
+  auto trace = Read(one, out);
+  if (trace) measured.trace = std::move(*trace);
+  if (trace && measured.trace.time_s.empty()) {
+    out.Error({one.data_file}, "has no rows");
+    trace.reset();
+  }
+  if (one.forward == FitForward::kLoadCases && trace &&
+      measured.trace.time_s.size() != one.experiment.load_cases.size()) {
+    out.Error(one.data_at,
+              fmt::format("experiments: {} has {} load cases, its data {} rows", one.name,
+                          one.experiment.load_cases.size(), measured.trace.time_s.size()),
+              "row i of the data is that of load case i");
+    trace.reset();
+  }
+  if (one.setpoints_file.empty()) return trace ? std::optional(measured) : std::nullopt;
+  const auto times = ReadTraceOfRun(one.setpoints_file, out);
+  const auto ours = times ? times->Find(kOurClock) : std::nullopt;
+  if (ours) {
+    measured.ours_s = times->values[*ours];
+    if (!Rises(measured.ours_s)) {
+      out.Error({one.setpoints_file}, std::string(kOurClock) + " does not rise");
+      return std::nullopt;
+    }
+  } else if (times && times->time_s.size() != measured.setpoint_s.size()) {
+    out.Error(one.setpoints_at,
+              fmt::format("experiments: {} has {} set points, its file of them {} rows", one.name,
+                          measured.setpoint_s.size(), times->time_s.size()),
+              std::string("a set point is where a program of rest lengths or a push comes to "
+                          "another value; a column ") +
+                  kOurClock + " says otherwise");
+    return std::nullopt;
+  }
+  if (!trace || !times) return std::nullopt;
+  measured.setpoint_s = times->time_s;
+  return measured;
+}
+
+}  // namespace taut::identify

@@ -1,0 +1,133 @@
+#include "identify/memory.h"
+
+#include <bit>
+#include <charconv>
+
+#include "base/hash.h"
+
+namespace taut::identify {
+namespace {
+
+using learn::Row;
+using learn::Statement;
+
+constexpr std::size_t kDigits = 16;
+
+std::string Bits(const std::vector<double>& numbers) {
+  std::string out;
+  for (const double x : numbers) out += base::HashText(std::bit_cast<std::uint64_t>(x));
+  return out;
+}
+
+bool NumbersOf(const std::string& bits, std::vector<double>& out) {
+  if (bits.size() % kDigits != 0) return false;
+  for (std::size_t i = 0; i < bits.size(); i += kDigits) {
+    std::uint64_t x = 0;
+    const char* const end = bits.data() + i + kDigits;
+    const auto read = std::from_chars(bits.data() + i, end, x, 16);
+    if (read.ec != std::errc() || read.ptr != end) return false;
+    out.push_back(std::bit_cast<double>(x));
+  }
+  return true;
+}
+
+std::string SumOf(const std::string& key, const std::string& failed, const std::string& bits) {
+  base::Fnv1a sum;
+  sum.AddText(key), sum.AddText(failed), sum.AddText(bits);
+  return base::HashText(sum.value());
+}
+
+}  // namespace
+
+std::string PointMemory::Key(const std::string& problem, const std::vector<double>& values) {
+  return problem + ":" + Bits(values);
+}
+
+std::unique_ptr<PointMemory> PointMemory::Open(const std::string& path,
+                                               const std::map<std::string, std::string>& facts,
+                                               Diagnostics& out) {
+  auto memory = std::make_unique<PointMemory>();
+  memory->database_ = std::make_unique<learn::Database>(path, learn::Database::Open::kOrMake);
+  if (!memory->Begin(path, facts, out)) return nullptr;
+  return memory;
+}
+
+bool PointMemory::Begin(const std::string& path, const std::map<std::string, std::string>& facts,
+                        Diagnostics& out) {
+  const bool made =
+      database_->good() &&
+      database_->Execute(
+          "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;"
+          "CREATE TABLE IF NOT EXISTS fact (name TEXT PRIMARY KEY, value TEXT NOT NULL);"
+          "CREATE TABLE IF NOT EXISTS point (key TEXT PRIMARY KEY, failed TEXT NOT NULL, "
+          "value TEXT NOT NULL, sum TEXT NOT NULL);");
+  std::map<std::string, std::string> known;
+  const bool read = made && Statement(*database_, "SELECT name, value FROM fact").Run([&](Row& r) {
+    const std::string name = r.Text(0);
+    known[name] = r.Text(1);
+  });
+  if (!read) {
+    out.Error({path}, "is not the memory of a fit, or cannot be written: " + database_->TakeError(),
+              "give another folder with --out");
+    return false;
+  }
+  if (!known.empty() && known != facts) {
+    std::string which;
+    for (const auto& [name, value] : facts) {
+      if (known[name] != value) which += (which.empty() ? "" : ", ") + name;
+    }
+    out.Error({path}, "holds another fit: it differs in " + which,
+              "give another folder with --out, or remove this one");
+    return false;
+  }
+  for (const auto& [name, value] : facts) {
+    if (!known.empty()) break;
+    Statement put(*database_, "INSERT INTO fact VALUES (?, ?)");
+    if (!put.Bind(name).Bind(value).Run()) {
+      out.Error({path}, "cannot be written: " + database_->TakeError());
+      return false;
+    }
+  }
+  if (ReadPoints()) return true;
+  out.Error({path}, "cannot be read: " + database_->TakeError());
+  return false;
+}
+
+bool PointMemory::ReadPoints() {
+  Statement get(*database_, "SELECT key, failed, value, sum FROM point");
+  const bool good = get.Run([&](Row& row) {
+    const std::string key = row.Text(0), failed = row.Text(1), bits = row.Text(2);
+    Residuals point{{}, failed};
+    if (row.Text(3) == SumOf(key, failed, bits) && NumbersOf(bits, point.value)) {
+      points_.emplace(key, std::move(point));
+    } else {
+      ++damaged_;
+    }
+  });
+  remembered_ = static_cast<std::int64_t>(points_.size());
+  return good;
+}
+
+const Residuals* PointMemory::Find(const std::string& key) const {
+  const auto at = points_.find(key);
+  return at == points_.end() ? nullptr : &at->second;
+}
+
+bool PointMemory::Add(const std::vector<std::pair<std::string, Residuals>>& points) {
+  for (const auto& [key, point] : points) points_.insert_or_assign(key, point);
+  if (!database_ || !error_.empty()) return error_.empty();
+  bool good = database_->Execute("BEGIN IMMEDIATE");
+  for (const auto& [key, point] : points) {
+    if (!good) break;
+    const std::string bits = Bits(point.value);
+    Statement put(*database_, "INSERT OR REPLACE INTO point VALUES (?, ?, ?, ?)");
+    good = put.Bind(key).Bind(point.failed).Bind(bits).Bind(SumOf(key, point.failed, bits)).Run();
+  }
+  if (good && database_->Execute("COMMIT")) return true;
+  error_ = database_->TakeError();
+  database_->Execute("ROLLBACK");
+  database_->TakeError();
+  return false;
+}
+
+}  // namespace taut::identify

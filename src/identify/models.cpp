@@ -1,0 +1,125 @@
+#include "identify/models.h"
+
+#include <algorithm>
+
+#include "description/reader.h"
+
+namespace taut::identify {
+namespace {
+
+/// So many answers are kept: columns that move offsets alone compute nothing anew.
+constexpr std::size_t kMostKept = 256;
+
+bool ActsOn(const FitEstimate& e, std::size_t experiment) {
+  return e.kind == FitEstimate::Kind::kParameter &&
+         std::find(e.experiments.begin(), e.experiments.end(), experiment) != e.experiments.end();
+}
+
+std::string Text(const Overrides& overrides) {
+  std::string out;
+  for (const auto& [name, value] : overrides) out += name + "=" + value + "\n";
+  return out;
+}
+
+}  // namespace
+
+Models::Models(const FitSpec& spec, int threads, const std::atomic<bool>* stop)
+    : spec_(spec), stop_(stop), pool_(threads) {
+  std::map<std::string, std::size_t> known;
+  for (std::size_t e = 0; e < spec.experiments.size(); ++e) {
+    const FitExperiment& one = spec.experiments[e];
+    Model model{e, {}, {}, {}};
+    std::string key = one.experiment_file + "\n" + std::to_string(static_cast<int>(one.forward)) +
+                      "\n" + Text(one.set);
+    for (std::size_t i = 0; i < spec.estimates.size(); ++i) {
+      if (!ActsOn(spec.estimates[i], e)) continue;
+      model.parameters.push_back(i);
+      key += std::to_string(i) + " ";
+    }
+    const auto [at, fresh] = known.emplace(key, models_.size());
+    if (fresh) models_.push_back(std::move(model));
+    of_.push_back(at->second);
+  }
+}
+
+std::size_t Models::Need(std::size_t model, const std::string& channel) {
+  std::vector<std::string>& channels = models_[model].channels;
+  const auto at = std::find(channels.begin(), channels.end(), channel);
+  if (at != channels.end()) return static_cast<std::size_t>(at - channels.begin());
+  channels.push_back(channel);
+  return channels.size() - 1;
+}
+
+void Models::NeedMoment(std::size_t model, double time_s) {
+  std::vector<double>& moments_s = models_[model].moments_s;
+  const auto at = std::lower_bound(moments_s.begin(), moments_s.end(), time_s - 1e-9);
+  if (at == moments_s.end() || *at > time_s + 1e-9) moments_s.insert(at, time_s);
+}
+
+Overrides Models::At(const Model& model, const std::vector<double>& point) const {
+  Overrides out = spec_.experiments[model.experiment].set;
+  for (const std::size_t i : model.parameters) {
+    out.emplace_back(spec_.estimates[i].parameter, description::Shown(point[i]));
+  }
+  return out;
+}
+
+Models::Answer Models::ComputeOne(const Job& job) const {
+  const Model& model = models_[job.first];
+  const FitExperiment& one = spec_.experiments[model.experiment];
+  Diagnostics found;
+  const auto experiment = LoadExperiment(one.experiment_file, job.second, found);
+  if (!experiment) {
+    Computed out;
+    out.failed = found.items().empty() ? "it cannot be read" : found.items()[0].what;
+    return std::make_shared<const Computed>(std::move(out));
+  }
+  return std::make_shared<const Computed>(
+      one.forward == FitForward::kDynamic
+          ? Run(*experiment, model.channels, stop_)
+          : Rest(*experiment, one.forward, model.moments_s, model.channels, stop_));
+}
+
+void Models::Remember(const std::string& key, const Answer& answer) {
+  if (!lately_.emplace(key, answer).second) return;
+  order_.push_back(key);
+  if (order_.size() <= kMostKept) return;
+  lately_.erase(order_.front());
+  order_.pop_front();
+}
+
+std::vector<std::map<std::size_t, Models::Answer>> Models::Compute(
+    const std::vector<std::vector<double>>& points, const std::set<std::size_t>& models) {
+  std::map<std::string, Answer> answers;
+  std::vector<std::pair<std::string, Job>> jobs;
+  std::vector<std::map<std::size_t, std::string>> keys(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    for (const std::size_t m : models) {
+      Job job{m, At(models_[m], points[p])};
+      const std::string key = std::to_string(m) + "\n" + Text(job.second);
+      keys[p][m] = key;
+      const auto known = lately_.find(key);
+      const bool fresh =
+          answers.emplace(key, known == lately_.end() ? nullptr : known->second).second;
+      if (fresh && known == lately_.end()) jobs.emplace_back(key, std::move(job));
+    }
+  }
+  std::vector<Answer> made(jobs.size());
+  auto work = [&](int, std::size_t i) {
+    if (!stop_ || !*stop_) made[i] = ComputeOne(jobs[i].second);
+  };
+  if (!jobs.empty()) pool_.ForEach(jobs.size(), work);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (!made[i] || made[i]->stopped) return {};
+    ++computed_;
+    answers[jobs[i].first] = made[i];
+    Remember(jobs[i].first, made[i]);
+  }
+  std::vector<std::map<std::size_t, Answer>> out(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    for (const auto& [m, key] : keys[p]) out[p][m] = answers[key];
+  }
+  return out;
+}
+
+}  // namespace taut::identify

@@ -1,0 +1,62 @@
+/// The experiments of a fit, computed for any values of its parameters.
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/thread_pool.h"
+#include "identify/computed.h"
+#include "taut/fit_spec.h"
+
+namespace taut::identify {
+
+/// One thread at a time. Experiments that have a file, a way and parameters in common are computed
+/// once for all of them.
+class Models {
+ public:
+  Models(const FitSpec& spec, int threads, const std::atomic<bool>* stop);
+
+  /// Which model an experiment is of.
+  std::size_t ModelOf(std::size_t experiment) const { return of_[experiment]; }
+  /// Asks for a channel; its place among those of the model. Before anything is computed.
+  std::size_t Need(std::size_t model, const std::string& channel);
+  /// Asks for the rest at a moment; likewise.
+  void NeedMoment(std::size_t model, double time_s);
+
+  using Answer = std::shared_ptr<const Computed>;
+  /// Of points, in all estimates of the fit, one map model -> answer each; `models`: those wanted.
+  /// Side by side. Those that were computed lately are remembered. Empty: it was stopped.
+  std::vector<std::map<std::size_t, Answer>> Compute(const std::vector<std::vector<double>>& points,
+                                                     const std::set<std::size_t>& models);
+
+  std::int64_t computed() const { return computed_; }
+
+ private:
+  struct Model {
+    std::size_t experiment = 0;           ///< One of those it stands for.
+    std::vector<std::size_t> parameters;  ///< Estimates that act on it.
+    std::vector<std::string> channels;
+    std::vector<double> moments_s;  ///< Rising.
+  };
+  using Job = std::pair<std::size_t, Overrides>;
+  Overrides At(const Model& model, const std::vector<double>& point) const;
+  Answer ComputeOne(const Job& job) const;
+  void Remember(const std::string& key, const Answer& answer);
+
+  const FitSpec& spec_;
+  const std::atomic<bool>* stop_;
+  base::ThreadPool pool_;
+  std::vector<Model> models_;
+  std::vector<std::size_t> of_;  ///< Per experiment.
+  std::map<std::string, Answer> lately_;
+  std::deque<std::string> order_;  ///< Of `lately_`, the oldest first.
+  std::int64_t computed_ = 0;
+};
+
+}  // namespace taut::identify

@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/pattern.h"
+#include "taut/identify.h"
+
+namespace taut {
+namespace {
+
+/// At one point: nothing if it could not be computed.
+std::vector<double> At(const FitProblem& problem, const std::vector<double>& values) {
+  const std::vector<std::vector<double>> points{values};
+  const auto answers = problem.forward(points);
+  return answers.empty() ? std::vector<double>() : answers[0].value;
+}
+
+std::vector<double> Starts(const FitProblem& problem) {
+  std::vector<double> out;
+  for (const FitParameter& p : problem.parameters) out.push_back(p.start);
+  return out;
+}
+
+BeforeAfter Both(const FitProblem& problem, const std::vector<double>& values) {
+  return {At(problem, Starts(problem)), At(problem, values)};
+}
+
+bool AtRest(const FitSpec& spec) {
+  return std::all_of(spec.experiments.begin(), spec.experiments.end(),
+                     [](const auto& one) { return one.forward != FitForward::kDynamic; });
+}
+
+/// What rows of a problem with their sds tell, as design wants it.
+DesignCandidate CandidateOf(const std::string& name, const FitProblem& problem,
+                            const std::vector<FitPoint>& points, bool scaled,
+                            const std::vector<double>& values) {
+  DesignCandidate out;
+  out.name = name;
+  const FitDerivatives d = Differentiate(problem, values);
+  if (!d.done) return out;
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    // A residual is in sds: its slope times the sd is the channel's.
+    out.sd.push_back(scaled ? points[row].sd : 1.0);
+    for (const FitColumn& column : d.columns) {
+      const double slope = column.failed.empty() ? column.slope[row] : NAN;
+      out.jacobian.push_back(scaled ? slope * points[row].sd : slope);
+    }
+  }
+  return out;
+}
+
+DesignRanking Rank(const Identification& fit, const std::vector<double>& values) {
+  const DesignCandidate base =
+      CandidateOf("measured", fit.train(), fit.train_points(), false, values);
+  std::vector<DesignCandidate> candidates;
+  for (std::size_t i = 0; i < fit.design().size(); ++i) {
+    candidates.push_back(CandidateOf(fit.spec().design[i].name, fit.design()[i],
+                                     fit.design_points()[i], true, values));
+  }
+  return RankDesigns(fit.train().parameters, base, candidates);
+}
+
+}  // namespace
+
+bool CheckDependence(const Identification& fit, Diagnostics& out) {
+  const FitProblem& problem = fit.train();
+  const FitDerivatives d = Differentiate(problem, Starts(problem));
+  const std::string& file = fit.spec().files[0];
+  if (!d.done) {
+    out.Error({file}, "where the search starts nothing can be computed: " + d.why);
+    return false;
+  }
+  bool good = true;
+  for (std::size_t i = 0; i < d.columns.size(); ++i) {
+    const FitColumn& column = d.columns[i];
+    if (!column.failed.empty() || column.curved != 0) continue;
+    if (std::any_of(column.slope.begin(), column.slope.end(), [](double x) { return x != 0; })) {
+      continue;
+    }
+    const FitEstimate& e = fit.spec().estimates[fit.estimates()[i]];
+    out.Error(e.at, "estimate: nothing that is compared depends on " + e.name,
+              "the experiment does not use it, or not for what is compared");
+    good = false;
+  }
+  return good;
+}
+
+FitOutcome RunFit(const Identification& fit, const OutcomeOptions& options) {
+  const FitSpec& spec = fit.spec();
+  const FitProblem& problem = fit.train();
+  FitOutcome out;
+  IdentifyProgress now{"searching", 0, 0, 0};
+  FitOptions search;
+  search.starts = spec.search.starts;
+  search.seed = spec.search.seed;
+  search.most_iterations = spec.search.iterations;
+  search.cost_tolerance = spec.search.tolerance;
+  search.stop = options.stop;
+  search.progress = [&](const FitState& state) {
+    now.iterations = 0;
+    double best = INFINITY;
+    for (const FitTrack& track : state.tracks) {
+      now.iterations += track.iterations;
+      best = std::min(best, track.cost);
+    }
+    now.chi2 = 2 * best;
+    now.computed = fit.counts().computed;
+    if (options.progress) options.progress(now);
+    return !options.stop || !*options.stop;
+  };
+  const auto stopped = [&] { return options.stop && *options.stop; };
+  out.fit = Fit(problem, search);
+  if (stopped() || out.fit.end == FitEnd::kInterrupted) {
+    out.interrupted = true;
+    return out;
+  }
+  if (out.fit.end == FitEnd::kFailed || out.fit.end == FitEnd::kRefused || !out.fit.best) {
+    out.why = out.fit.why.empty() ? "no start could be computed" : out.fit.why;
+    return out;
+  }
+  now.what = "judging";
+  VerdictOptions judge;
+  judge.fit = search;
+  judge.jackknife = AtRest(spec) ? Jackknife::kRefit : Jackknife::kStep;
+  if (spec.search.folds > 0) judge.folds = spec.search.folds;
+  out.verdict = JudgeFit(problem, out.fit, judge, fit.test());
+  out.train = Both(problem, out.fit.values);
+  if (fit.test()) out.test = Both(*fit.test(), out.fit.values);
+  now.what = "profile";
+  for (std::size_t i = 0; i < problem.parameters.size() && !stopped(); ++i) {
+    if (options.profiles.empty() || !base::FitsAny(options.profiles, problem.parameters[i].name)) {
+      continue;
+    }
+    ProfileOptions profile;
+    profile.fit = search;
+    const double se = out.verdict.identifiability.parameters[i].error();
+    out.profiles.push_back(ProfileParameter(problem, out.fit.values, i, se, profile));
+  }
+  if (options.design && !stopped()) out.design = Rank(fit, out.fit.values);
+  out.interrupted = stopped();
+  return out;
+}
+
+std::vector<ChannelErrors> ErrorsByChannel(const std::vector<FitPoint>& points,
+                                           const BeforeAfter& residuals) {
+  std::vector<ChannelErrors> out;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const FitPoint& p = points[i];
+    auto at = std::find_if(out.begin(), out.end(),
+                           [&](const ChannelErrors& e) { return e.channel == p.channel; });
+    if (at == out.end()) at = out.insert(at, {p.channel, p.unit});
+    const auto error = [&](const std::vector<double>& of) {
+      return i < of.size() ? of[i] * p.sd : NAN;
+    };
+    const double before = error(residuals.untuned), after = error(residuals.fitted);
+    ++at->count;
+    at->untuned += before * before;
+    at->fitted += after * after;
+    at->fitted_bias += after;
+  }
+  for (ChannelErrors& e : out) {
+    const auto n = static_cast<double>(e.count);
+    e.untuned = std::sqrt(e.untuned / n);
+    e.fitted = std::sqrt(e.fitted / n);
+    e.fitted_bias /= n;
+  }
+  return out;
+}
+
+}  // namespace taut

@@ -1,0 +1,173 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "identify/words.h"
+#include "taut/version.h"
+
+namespace taut {
+namespace {
+
+using namespace identify;
+using Json = nlohmann::ordered_json;
+
+Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+Json Numbers(const std::vector<double>& xs) {
+  Json out = Json::array();
+  for (const double x : xs) out.push_back(Number(x));
+  return out;
+}
+
+Json Parameters(const Identification& fit, const FitOutcome& outcome) {
+  Json out = Json::array();
+  const FitProblem& problem = fit.train();
+  for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
+    const FitParameter& p = problem.parameters[i];
+    const ParameterVerdict& v = outcome.verdict.identifiability.parameters[i];
+    Json trade = Json::object();
+    for (const auto& [which, change] : v.trade) {
+      trade[problem.parameters[which].name] = Number(change);
+    }
+    out.push_back({{"name", p.name},
+                   {"unit", p.unit},
+                   {"start", p.start},
+                   {"low", Number(p.low)},
+                   {"high", Number(p.high)},
+                   {"prior_sd", Number(p.prior_sd)},
+                   {"value", v.value},
+                   {"se", Number(v.se)},
+                   {"se_jackknife", v.se_jackknife ? Number(*v.se_jackknife) : Json(nullptr)},
+                   {"verdict", WordOf(v.kind)},
+                   {"pull", Number(v.pull)},
+                   {"kink", v.kink},
+                   {"trade", trade},
+                   {"sentence", v.sentence}});
+  }
+  return out;
+}
+
+Json Errors(const std::vector<FitPoint>& points, const BeforeAfter& residuals) {
+  Json out = Json::array();
+  for (const ChannelErrors& e : ErrorsByChannel(points, residuals)) {
+    out.push_back({{"channel", e.channel},
+                   {"unit", e.unit},
+                   {"data", e.count},
+                   {"untuned_rms", Number(e.untuned)},
+                   {"fitted_rms", Number(e.fitted)},
+                   {"fitted_bias", Number(e.fitted_bias)}});
+  }
+  return out;
+}
+
+Json Points(const Identification& fit, const std::vector<FitPoint>& points,
+            const BeforeAfter& residuals) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const FitPoint& p = points[i];
+    const auto computed = [&](const std::vector<double>& of) {
+      return i < of.size() ? Number(p.measured + of[i] * p.sd) : Json(nullptr);
+    };
+    out.push_back({{"experiment", fit.spec().experiments[p.experiment].name},
+                   {"channel", p.channel},
+                   {"where", p.where},
+                   {"time_s", p.time_s},
+                   {"measured", p.measured},
+                   {"sd", p.sd},
+                   {"untuned", computed(residuals.untuned)},
+                   {"fitted", computed(residuals.fitted)}});
+  }
+  return out;
+}
+
+Json Of(const FitErrors& e) {
+  return {{"data", e.count},
+          {"untuned_rms_sd", Number(e.untuned)},
+          {"fitted_rms_sd", Number(e.fitted)},
+          {"failed", e.failed}};
+}
+
+Json Of(const ChiSquare& chi2) {
+  return {{"value", Number(chi2.value)}, {"freedom", Number(chi2.freedom)}, {"p", Number(chi2.p)}};
+}
+
+Json Of(const DesignWorth& worth) {
+  return {{"name", worth.name},
+          {"fixed", worth.fixed},
+          {"information_nats", Number(worth.information)},
+          {"sd_ratio", Numbers(worth.sd_ratio)}};
+}
+
+Json Profiles(const Identification& fit, const FitOutcome& outcome) {
+  Json out = Json::array();
+  for (const FitProfile& p : outcome.profiles) {
+    Json points = Json::array();
+    for (const ProfilePoint& point : p.points) {
+      points.push_back({{"value", point.value},
+                        {"rise", Number(point.rise)},
+                        {"values", Numbers(point.values)},
+                        {"failed", point.failed}});
+    }
+    out.push_back({{"parameter", fit.train().parameters[p.parameter].name},
+                   {"low", Number(p.low)},
+                   {"high", Number(p.high)},
+                   {"low_open", p.low_open},
+                   {"high_open", p.high_open},
+                   {"sentence", p.why.empty() ? p.sentence : p.why},
+                   {"points", points}});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string OutcomeJson(const Identification& fit, const FitOutcome& outcome) {
+  const FitVerdict& v = outcome.verdict;
+  Json directions = Json::array();
+  for (const FitDirection& d : v.identifiability.directions) {
+    directions.push_back({{"singular", Number(d.singular)},
+                          {"null", d.null},
+                          {"fixed", d.fixed},
+                          {"direction", Numbers(d.direction)}});
+  }
+  Json out{{"fit", fit.spec().name},
+           {"taut_version", kVersion},
+           {"judgement", WordOf(v.judgement)},
+           {"rejected", v.rejected},
+           {"unidentifiable", v.unidentifiable},
+           {"worse_on_hold_out", v.worse},
+           {"sentences", v.sentences},
+           {"chi2", {{"data", Of(v.data)}, {"prior", Of(v.prior)}, {"total", Of(v.total)}}},
+           {"parameters", Parameters(fit, outcome)},
+           {"condition", Number(v.identifiability.condition)},
+           {"combinations_fixed", v.identifiability.fixed},
+           {"directions", directions},
+           {"correlation", Numbers(v.identifiability.correlation)},
+           {"train", Errors(fit.train_points(), outcome.train)}};
+  if (v.hold_out) {
+    out["held_out"] = Errors(fit.test_points(), outcome.test);
+    out["hold_out"] = Of(*v.hold_out);
+  }
+  if (v.cross_validation.why.empty() && !v.cross_validation.folds.empty()) {
+    out["cross_validation"] = Of(v.cross_validation.all);
+  }
+  Json groups = Json::array();
+  for (const GroupEffect& g : v.jackknife.groups) {
+    groups.push_back({{"without", fit.train().group_names[static_cast<std::size_t>(g.group)]},
+                      {"values", Numbers(g.values)}});
+  }
+  out["jackknife"] = groups;
+  if (!outcome.profiles.empty()) out["profiles"] = Profiles(fit, outcome);
+  if (outcome.design) {
+    Json alone = Json::array(), greedy = Json::array();
+    for (const DesignWorth& w : outcome.design->alone) alone.push_back(Of(w));
+    for (const DesignWorth& w : outcome.design->greedy) greedy.push_back(Of(w));
+    out["design"] = {{"now", Of(outcome.design->now)},
+                     {"alone", alone},
+                     {"greedy", greedy},
+                     {"sentences", outcome.design->sentences}};
+  }
+  out["points"] = {{"train", Points(fit, fit.train_points(), outcome.train)},
+                   {"test", Points(fit, fit.test_points(), outcome.test)}};
+  return out.dump(1) + "\n";
+}
+
+}  // namespace taut

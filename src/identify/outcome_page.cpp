@@ -1,0 +1,236 @@
+// The outcome of a fit as one page.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "identify/plot.h"
+#include "identify/words.h"
+#include "taut/version.h"
+
+namespace taut {
+namespace {
+
+using namespace identify;
+
+constexpr const char* kStyle = R"(
+body{font:15px/1.45 system-ui,sans-serif;color:#1c2430;background:#fff;max-width:1000px;margin:24px auto;padding:0 16px}
+h1{font-size:24px;margin:0 0 4px}h2{font-size:18px;margin:28px 0 8px}
+table{border-collapse:collapse;margin:8px 0}td,th{padding:3px 10px;border-bottom:1px solid #dde2e8;text-align:right;white-space:nowrap}
+td:first-child,th:first-child,td.word{text-align:left}th{font-weight:600;color:#46525f}
+.verdict{padding:10px 14px;border-left:5px solid;margin:12px 0}.good{border-color:#2a8a4a;background:#eef7f0}.bad{border-color:#c0392b;background:#fbeeec}
+.note{color:#5b6774}svg{margin:4px 8px 4px 0}svg text{font:11px system-ui,sans-serif;fill:#46525f}svg text.title{font-size:12px;font-weight:600;fill:#1c2430}
+.grid{stroke:#e6eaee}.level{stroke:#8a96a3;stroke-dasharray:4 3}circle.untuned{fill:#b4bcc6}circle.fitted{fill:#1f6fb2}circle.held{fill:#d9822b}
+polyline{fill:none;stroke-width:1.5}polyline.fitted{stroke:#1f6fb2}.key span{display:inline-block;margin-right:18px}.dot{width:9px;height:9px;border-radius:50%;display:inline-block;margin-right:5px}
+.wide{overflow-x:auto}
+)";
+
+std::string Row(const std::vector<std::string>& cells, const char* tag = "td") {
+  std::string out = "<tr>";
+  for (const std::string& cell : cells) {
+    out += std::string("<") + tag + ">" + Escaped(cell) + "</" + tag + ">";
+  }
+  return out + "</tr>\n";
+}
+
+std::string Table(const std::vector<std::vector<std::string>>& rows) {
+  std::string out = "<div class=\"wide\"><table>\n";
+  for (std::size_t i = 0; i < rows.size(); ++i) out += Row(rows[i], i == 0 ? "th" : "td");
+  return out + "</table></div>\n";
+}
+
+std::string G(double x) { return std::isfinite(x) ? fmt::format("{:.5g}", x) : "-"; }
+
+std::string Parameters(const Identification& fit, const FitOutcome& outcome) {
+  std::vector<std::vector<std::string>> rows{
+      {"parameter", "start", "fitted", "se", "jackknife", "prior sd", "pull", "verdict"}};
+  std::string sentences;
+  const auto& parameters = fit.train().parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const FitParameter& p = parameters[i];
+    const ParameterVerdict& v = outcome.verdict.identifiability.parameters[i];
+    rows.push_back({WithUnit(p.name, p.unit), G(p.start), G(v.value), ErrorText(v.se),
+                    v.se_jackknife ? ErrorText(*v.se_jackknife) : "-", G(p.prior_sd),
+                    std::isfinite(p.prior_sd) ? G(v.pull) : "-",
+                    std::string(WordOf(v.kind)) + (v.kink ? ", kink" : "")});
+    sentences += "<li>" + Escaped(v.sentence) + "</li>\n";
+  }
+  return "<h2>Parameters</h2>\n" + Table(rows) + "<ul>\n" + sentences + "</ul>\n";
+}
+
+std::string Errors(const char* title, const std::vector<FitPoint>& points,
+                   const BeforeAfter& residuals) {
+  if (points.empty()) return {};
+  std::vector<std::vector<std::string>> rows{
+      {title, "data", "untuned rms", "fitted rms", "fitted bias"}};
+  for (const ChannelErrors& e : ErrorsByChannel(points, residuals)) {
+    rows.push_back({WithUnit(e.channel, e.unit), std::to_string(e.count), G(e.untuned), G(e.fitted),
+                    G(e.fitted_bias)});
+  }
+  return Table(rows);
+}
+
+/// Computed less measured, by channel, in its unit.
+std::string ResidualPlots(const Identification& fit, const FitOutcome& outcome) {
+  std::vector<std::string> order;
+  std::map<std::string, Plot> plots;
+  const auto add = [&](const std::vector<FitPoint>& points, const BeforeAfter& residuals,
+                       bool held) {
+    for (std::size_t i = 0; i < points.size() && i < residuals.fitted.size(); ++i) {
+      const FitPoint& p = points[i];
+      auto [at, fresh] = plots.try_emplace(p.channel);
+      Plot& plot = at->second;
+      if (fresh) {
+        order.push_back(p.channel);
+        const bool cases = fit.spec().experiments[p.experiment].forward == FitForward::kLoadCases;
+        plot = {WithUnit(p.channel, p.unit),
+                cases ? "load case" : "time [s]",
+                "computed less measured",
+                {{"untuned", {}}, {"fitted", {}}, {"held", {}}},
+                {0},
+                {}};
+      }
+      if (i < residuals.untuned.size()) {
+        plot.series[0].points.emplace_back(p.time_s, residuals.untuned[i] * p.sd);
+      }
+      plot.series[held ? 2 : 1].points.emplace_back(p.time_s, residuals.fitted[i] * p.sd);
+    }
+  };
+  add(fit.train_points(), outcome.train, false);
+  add(fit.test_points(), outcome.test, true);
+  std::string out =
+      "<h2>Residuals</h2>\n<p class=\"key\"><span><i class=\"dot\" "
+      "style=\"background:#b4bcc6\"></i>"
+      "untuned</span><span><i class=\"dot\" style=\"background:#1f6fb2\"></i>fitted, trained on"
+      "</span><span><i class=\"dot\" style=\"background:#d9822b\"></i>fitted, held "
+      "out</span></p>\n";
+  constexpr std::size_t kMost = 24;
+  for (std::size_t i = 0; i < std::min(order.size(), kMost); ++i) out += Svg(plots[order[i]]);
+  if (order.size() > kMost) {
+    out += fmt::format("<p class=\"note\">... and {} channels more, in summary.json</p>\n",
+                       order.size() - kMost);
+  }
+  return out;
+}
+
+std::string Profiles(const Identification& fit, const FitOutcome& outcome) {
+  if (outcome.profiles.empty()) return {};
+  std::string out =
+      "<h2>Profiles</h2>\n<p class=\"note\">Rise of chi-square where one parameter is held and all "
+      "others are fitted anew; the line is where a 95 % interval ends.</p>\n";
+  for (const FitProfile& profile : outcome.profiles) {
+    const FitParameter& p = fit.train().parameters[profile.parameter];
+    Plot plot{p.name,
+              WithUnit(p.name, p.unit),
+              "rise of chi-square",
+              {{"fitted", {}, true}},
+              {profile.level},
+              {outcome.fit.values[profile.parameter]}};
+    for (const ProfilePoint& point : profile.points) {
+      if (point.failed.empty()) plot.series[0].points.emplace_back(point.value, point.rise);
+    }
+    out += Svg(plot) + "<p>" + Escaped(profile.why.empty() ? profile.sentence : profile.why) +
+           "</p>\n";
+  }
+  return out;
+}
+
+std::string Correlations(const Identification& fit, const FitOutcome& outcome) {
+  const auto& parameters = fit.train().parameters;
+  const Identifiability& id = outcome.verdict.identifiability;
+  const std::size_t n = parameters.size();
+  if (n < 2 || id.correlation.size() != n * n) return {};
+  std::string out = "<h2>Correlations</h2>\n<div class=\"wide\"><table>\n<tr><th></th>";
+  for (std::size_t i = 0; i < n; ++i) out += fmt::format("<th>{}</th>", i + 1);
+  out += "</tr>\n";
+  for (std::size_t i = 0; i < n; ++i) {
+    out += fmt::format("<tr><td>{} {}</td>", i + 1, Escaped(parameters[i].name));
+    for (std::size_t j = 0; j < n; ++j) {
+      const double c = id.correlation[i * n + j];
+      const char* colour = c < 0 ? "192,57,43" : "31,111,178";
+      out += fmt::format("<td style=\"background:rgba({},{:.2f})\">{:.2f}</td>", colour,
+                         i == j ? 0.0 : 0.6 * std::min(1.0, std::fabs(c)), c);
+    }
+    out += "</tr>\n";
+  }
+  out +=
+      "</table></div>\n<p class=\"note\">What the data say of combinations, in each parameter's "
+      "scale: a singular value above 1.7 halves what was unknown.</p>\n";
+  std::vector<std::vector<std::string>> rows{
+      {"singular value", "fixed by the data", "combination"}};
+  for (const FitDirection& d : id.directions) {
+    std::vector<std::size_t> by_size(n);
+    for (std::size_t i = 0; i < n; ++i) by_size[i] = i;
+    std::sort(by_size.begin(), by_size.end(), [&](std::size_t a, std::size_t b) {
+      return std::fabs(d.direction[a]) > std::fabs(d.direction[b]);
+    });
+    std::string text;
+    for (std::size_t k = 0; k < std::min<std::size_t>(n, 4); ++k) {
+      const double x = d.direction[by_size[k]];
+      if (k > 0 && std::fabs(x) < 0.15) break;
+      text += fmt::format("{}{:.2f} {}",
+                          k == 0  ? ""
+                          : x < 0 ? " "
+                                  : " + ",
+                          x, parameters[by_size[k]].name);
+    }
+    rows.push_back({d.null ? "none" : G(d.singular), d.fixed ? "yes" : "no", text});
+  }
+  return out + Table(rows);
+}
+
+std::string Jackknifed(const Identification& fit, const FitOutcome& outcome) {
+  const JackknifeResult& j = outcome.verdict.jackknife;
+  if (j.groups.empty()) return {};
+  constexpr std::size_t kMost = 40;
+  std::vector<std::vector<std::string>> rows{{"without"}};
+  for (const FitParameter& p : fit.train().parameters) rows[0].push_back(p.name);
+  for (std::size_t i = 0; i < std::min(j.groups.size(), kMost); ++i) {
+    auto& row = rows.emplace_back();
+    row.push_back(fit.train().group_names[static_cast<std::size_t>(j.groups[i].group)]);
+    for (const double x : j.groups[i].values) row.push_back(G(x));
+  }
+  return "<h2>Leaving groups out</h2>\n" + Table(rows);
+}
+
+std::string Design(const FitOutcome& outcome, std::size_t parameters) {
+  if (!outcome.design || !outcome.design->wrong.empty()) return {};
+  const DesignRanking& design = *outcome.design;
+  std::vector<std::vector<std::string>> rows{{"measured", "bits more", "combinations fixed"}};
+  const auto add = [&](const std::string& name, const DesignWorth& worth) {
+    rows.push_back({name, G((worth.information - design.now.information) / std::log(2.0)),
+                    fmt::format("{} of {}", worth.fixed, parameters)});
+  };
+  add("what there is", design.now);
+  for (const DesignWorth& worth : design.alone) add("with " + worth.name, worth);
+  for (const DesignWorth& worth : design.greedy) add("and then " + worth.name, worth);
+  return "<h2>What to measure next</h2>\n" + Table(rows);
+}
+
+}  // namespace
+
+std::string OutcomePage(const Identification& fit, const FitOutcome& outcome) {
+  const FitVerdict& v = outcome.verdict;
+  const FitProblem& problem = fit.train();
+  std::string out = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>" +
+                    Escaped(fit.spec().name) + ", fitted</title>\n<style>" + kStyle +
+                    "</style></head><body>\n<h1>" + Escaped(fit.spec().name) + "</h1>\n<p>" +
+                    Escaped(fit.spec().description) + "</p>\n";
+  out += fmt::format(
+      "<p class=\"note\">{} numbers from {} data in {} groups, {} data held out; taut {}</p>\n",
+      problem.parameters.size(), problem.rows.size(), problem.group_names.size(),
+      fit.test_points().size(), kVersion);
+  out += std::string("<div class=\"verdict ") +
+         (v.judgement == FitJudgement::kGood ? "good" : "bad") + "\">";
+  for (const std::string& sentence : v.sentences) out += Escaped(sentence) + "<br>\n";
+  out += "</div>\n";
+  out += Parameters(fit, outcome);
+  out += "<h2>Errors</h2>\n" + Errors("trained on", fit.train_points(), outcome.train) +
+         Errors("held out", fit.test_points(), outcome.test);
+  out += ResidualPlots(fit, outcome) + Profiles(fit, outcome) + Correlations(fit, outcome) +
+         Jackknifed(fit, outcome) + Design(outcome, problem.parameters.size());
+  return out + "</body></html>\n";
+}
+
+}  // namespace taut

@@ -1,0 +1,123 @@
+#include "identify/plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace taut::identify {
+namespace {
+
+constexpr double kWidth = 460, kHeight = 260;
+constexpr double kLeft = 62, kRight = 12, kTop = 28, kBottom = 42;
+
+struct Axis {
+  double low = INFINITY, high = -INFINITY;
+  double from = 0, to = 1;  ///< On the page.
+
+  void Take(double x) { low = std::min(low, x), high = std::max(high, x); }
+  void Widen(double share) {
+    const double room = high > low ? share * (high - low) : std::max(1e-12, 0.1 * std::fabs(high));
+    low -= room, high += room;
+  }
+  double At(double x) const { return from + (x - low) / (high - low) * (to - from); }
+};
+
+}  // namespace
+
+std::string Escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '&':
+        out += "&amp;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::vector<double> Ticks(double low, double high) {
+  if (!(high > low)) return {low};
+  const double rough = (high - low) / 5, ten = std::pow(10.0, std::floor(std::log10(rough)));
+  double step = 10 * ten;
+  for (const double nice : {1.0, 2.0, 5.0}) {
+    if (nice * ten >= rough) {
+      step = nice * ten;
+      break;
+    }
+  }
+  std::vector<double> out;
+  for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
+    out.push_back(k * step);
+  }
+  return out;
+}
+
+std::string Svg(const Plot& plot) {
+  Axis x, y;
+  const auto good = [](const std::pair<double, double>& p) {
+    return std::isfinite(p.first) && std::isfinite(p.second);
+  };
+  for (const Series& s : plot.series) {
+    for (const auto& p : s.points) {
+      if (good(p)) x.Take(p.first), y.Take(p.second);
+    }
+  }
+  if (!(x.low <= x.high)) return {};
+  for (const double level : plot.levels) y.Take(level);
+  for (const double mark : plot.marks) x.Take(mark);
+  x.Widen(0.03), y.Widen(0.06);
+  x.from = kLeft, x.to = kWidth - kRight, y.from = kHeight - kBottom, y.to = kTop;
+  std::string out = fmt::format(
+      R"(<svg viewBox="0 0 {0} {1}" width="{0}" height="{1}" role="img" aria-label="{2}">)", kWidth,
+      kHeight, Escaped(plot.title));
+  out += fmt::format(R"(<text class="title" x="{}" y="16">{}</text>)", kLeft, Escaped(plot.title));
+  const auto line = [&](const char* style, double x1, double y1, double x2, double y2) {
+    out += fmt::format(R"(<line class="{}" x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}"/>)",
+                       style, x1, y1, x2, y2);
+  };
+  for (const double t : Ticks(x.low, x.high)) {
+    line("grid", x.At(t), y.from, x.At(t), y.to);
+    out += fmt::format(
+        R"(<text class="tick" x="{:.1f}" y="{:.1f}" text-anchor="middle">{:.4g}</text>)", x.At(t),
+        y.from + 14, t);
+  }
+  for (const double t : Ticks(y.low, y.high)) {
+    line("grid", x.from, y.At(t), x.to, y.At(t));
+    out +=
+        fmt::format(R"(<text class="tick" x="{:.1f}" y="{:.1f}" text-anchor="end">{:.4g}</text>)",
+                    x.from - 5, y.At(t) + 4, t);
+  }
+  for (const double level : plot.levels) line("level", x.from, y.At(level), x.to, y.At(level));
+  for (const double mark : plot.marks) line("level", x.At(mark), y.from, x.At(mark), y.to);
+  for (const Series& s : plot.series) {
+    std::string path;
+    for (const auto& p : s.points) {
+      if (!good(p)) continue;
+      if (s.line) path += fmt::format("{:.1f},{:.1f} ", x.At(p.first), y.At(p.second));
+      out += fmt::format(R"(<circle class="{}" cx="{:.1f}" cy="{:.1f}" r="2.2"/>)", s.style,
+                         x.At(p.first), y.At(p.second));
+    }
+    if (s.line) out += fmt::format(R"(<polyline class="{}" points="{}"/>)", s.style, path);
+  }
+  out += fmt::format(R"(<text class="tick" x="{:.1f}" y="{:.1f}" text-anchor="middle">{}</text>)",
+                     0.5 * (x.from + x.to), kHeight - 8, Escaped(plot.x));
+  out += fmt::format(
+      R"svg(<text class="tick" transform="translate(13 {:.1f}) rotate(-90)" text-anchor="middle">{}</text>)svg",
+      0.5 * (y.from + y.to), Escaped(plot.y));
+  return out + "</svg>\n";
+}
+
+}  // namespace taut::identify

@@ -1,0 +1,330 @@
+#include "identify/rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/pattern.h"
+#include "report/reference.h"
+
+namespace taut::identify {
+namespace {
+
+/// A span of both clocks.
+struct Window {
+  std::string where;
+  double data_from_s = 0, data_to_s = 0;
+  double from_s = 0, to_s = 0;  ///< On the experiment's clock, were the data's not late.
+  std::size_t number = 0;
+  double moment_s = 0;  ///< Of its set point, on the experiment's clock.
+};
+
+std::vector<Window> Windows(const FitSpec& spec, const FitResidual& residual,
+                            std::size_t experiment, const Measured* measured) {
+  const FitExperiment& one = spec.experiments[experiment];
+  const double late_s = StartDelay(spec, experiment), duration_s = one.experiment.duration_s;
+  std::vector<Window> out;
+  if (residual.after_setpoint_s) {
+    const std::vector<double> ours = measured ? measured->ours_s : SetPoints(one.experiment);
+    const std::vector<double>& theirs = measured ? measured->setpoint_s : ours;
+    const auto [after_s, until_s] = *residual.after_setpoint_s;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      out.push_back({fmt::format("set point {}", i + 1), theirs[i] + after_s, theirs[i] + until_s,
+                     ours[i] + after_s, ours[i] + until_s, i, ours[i]});
+    }
+    return out;
+  }
+  Window window{"all", late_s, duration_s + late_s, late_s, duration_s + late_s, 0, 0};
+  std::optional<std::pair<double, double>> span = residual.span_s;
+  if (span) window.where = fmt::format("{:g}..{:g} s", span->first, span->second);
+  if (residual.phase) {
+    for (const PhaseSpec& phase : one.experiment.phases) {
+      if (phase.name == *residual.phase) span = {phase.from_s, phase.to_s};
+    }
+    window.where = *residual.phase;
+  }
+  if (span) {
+    window.from_s = window.data_from_s = span->first + late_s;
+    window.to_s = window.data_to_s = span->second + late_s;
+  }
+  if (!span && measured) {
+    const std::vector<double>& times = measured->trace.time_s;
+    window.from_s = window.data_from_s = std::max(window.data_from_s, times.front());
+    window.to_s = window.data_to_s = std::min(window.data_to_s, times.back());
+  }
+  return {window};
+}
+
+/// Of the rows in a window: their numbers.
+std::vector<std::size_t> Inside(const Measured& measured, const Window& window,
+                                const std::vector<double>& values) {
+  std::vector<std::size_t> out;
+  const std::vector<double>& times = measured.trace.time_s;
+  const auto first = std::lower_bound(times.begin(), times.end(), window.data_from_s - 1e-9);
+  for (auto t = first; t != times.end() && *t <= window.data_to_s + 1e-9; ++t) {
+    const auto row = static_cast<std::size_t>(t - times.begin());
+    if (std::isfinite(values[row])) out.push_back(row);
+  }
+  return out;
+}
+
+double Of(FitStatistic statistic, const std::vector<double>& values,
+          const std::vector<std::size_t>& rows) {
+  double sum = 0, least = INFINITY, most = -INFINITY;
+  for (const std::size_t row : rows) {
+    sum += values[row];
+    least = std::min(least, values[row]);
+    most = std::max(most, values[row]);
+  }
+  if (statistic == FitStatistic::kMax) return most;
+  if (statistic == FitStatistic::kMin) return least;
+  return sum / static_cast<double>(rows.size());
+}
+
+Row::How HowOf(FitStatistic statistic) {
+  if (statistic == FitStatistic::kMax) return Row::How::kMax;
+  return statistic == FitStatistic::kMin ? Row::How::kMin : Row::How::kMean;
+}
+
+/// Makes the rows of one residual and one experiment.
+class Maker {
+ public:
+  Maker(const FitSpec& spec, const FitResidual& residual, std::size_t experiment,
+        const Measured* measured)
+      : residual_(residual),
+        one_(spec.experiments[experiment]),
+        experiment_(experiment),
+        measured_(measured),
+        windows_(Windows(spec, residual, experiment, measured)),
+        late_s_(StartDelay(spec, experiment)) {}
+
+  void Channel(const ChannelInfo& channel, const std::vector<double>* values) {
+    if (one_.forward == FitForward::kLoadCases) {
+      for (std::size_t i = 0; i < one_.experiment.load_cases.size(); ++i) {
+        if (values && !std::isfinite((*values)[i])) continue;
+        Row row = Begin(channel, "load case " + one_.experiment.load_cases[i].name, i);
+        row.row = i;
+        row.point.time_s = static_cast<double>(i + 1);
+        Add(std::move(row), values ? (*values)[i] : 0.0);
+      }
+      return;
+    }
+    for (const Window& window : windows_) {
+      ++asked;
+      if (one_.forward == FitForward::kDynamic && Beyond(window)) continue;
+      std::vector<std::size_t> inside;
+      if (values) {
+        inside = Inside(*measured_, window, *values);
+        if (inside.empty()) continue;
+      }
+      ++met;
+      OfWindow(channel, window, values, inside);
+    }
+  }
+  std::vector<Row> rows;
+  std::size_t asked = 0, met = 0;  ///< Windows.
+
+ private:
+  bool Beyond(const Window& window) const {
+    return window.from_s - late_s_ < -1e-9 || window.to_s < window.from_s ||
+           window.to_s - late_s_ > one_.experiment.duration_s + 1e-9;
+  }
+  Row Begin(const ChannelInfo& channel, const std::string& where, std::size_t window) const {
+    Row row;
+    row.experiment = row.point.experiment = experiment_;
+    row.channel = row.point.channel = channel.name;
+    row.point.unit = channel.unit;
+    row.point.where = where;
+    row.window = window;
+    return row;
+  }
+  void Add(Row row, double measured) {
+    row.point.measured = measured;
+    row.point.sd = std::max(residual_.sd, residual_.relative_sd * std::fabs(measured));
+    rows.push_back(std::move(row));
+  }
+  void OfWindow(const ChannelInfo& channel, const Window& window, const std::vector<double>* values,
+                const std::vector<std::size_t>& inside) {
+    Row row = Begin(channel, window.where, window.number);
+    row.from_s = window.from_s, row.to_s = window.to_s;
+    row.point.time_s = 0.5 * (window.from_s + window.to_s) - late_s_;
+    const bool rest = one_.forward == FitForward::kStatic;
+    const double moment_s = window.moment_s;
+    if (residual_.statistic != FitStatistic::kRows) {
+      row.how = rest ? Row::How::kRest : HowOf(residual_.statistic);
+      if (rest) row.from_s = row.point.time_s = moment_s;
+      Add(std::move(row), values ? Of(residual_.statistic, *values, inside) : 0.0);
+      return;
+    }
+    for (const std::size_t i : inside) {
+      Row each = row;
+      each.how = rest ? Row::How::kRest : Row::How::kAt;
+      each.from_s = each.to_s = measured_->trace.time_s[i] - window.data_from_s + window.from_s;
+      each.point.time_s = each.from_s - late_s_;
+      if (rest) each.from_s = moment_s;
+      each.point.where = fmt::format("at {:g} s", each.point.time_s);
+      Add(std::move(each), (*values)[i]);
+    }
+  }
+
+  const FitResidual& residual_;
+  const FitExperiment& one_;
+  std::size_t experiment_;
+  const Measured* measured_;
+  std::vector<Window> windows_;
+  double late_s_;
+};
+
+std::vector<Row> OfReferences(const FitExperiment& one, const FitResidual& residual,
+                              std::size_t experiment) {
+  std::vector<Row> out;
+  const auto& references = one.experiment.references;
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const ReferenceSpec& reference = references[i];
+    if (residual.references && reference.statistic != *residual.references) continue;
+    for (const ReferenceSpec::Value& value : reference.values) {
+      Row& row = out.emplace_back();
+      row.how = Row::How::kReference;
+      row.experiment = row.point.experiment = experiment;
+      row.reference = i;
+      row.cable = value.cable;
+      const std::string& cable =
+          one.experiment.robot.def.cables[static_cast<std::size_t>(value.cable)].name;
+      row.channel = "cable/" + cable + "/" + report::QuantityName(reference) + "_n";
+      row.point.channel = row.channel;
+      row.point.unit = "N";
+      row.point.where = report::StatisticName(reference) + " of " +
+                        (reference.phase.empty() ? "the run" : reference.phase);
+      row.point.measured = value.force_n;
+      row.point.sd = std::max(residual.sd, residual.relative_sd * std::fabs(value.force_n));
+    }
+  }
+  return out;
+}
+
+std::vector<std::string> Names(const std::vector<ChannelInfo>& channels) {
+  std::vector<std::string> out;
+  for (const ChannelInfo& channel : channels) out.push_back(channel.name);
+  return out;
+}
+
+/// The closest, or nothing: channels are too many to be listed.
+std::string Hint(const std::string& name, const std::vector<ChannelInfo>& channels) {
+  const auto names = Names(channels);
+  const std::string_view close = ClosestMatch(name, names);
+  if (!close.empty()) return "did you mean \"" + std::string(close) + "\"?";
+  std::string hint = "there are";
+  for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 4); ++i) {
+    hint += (i == 0 ? " " : ", ") + names[i];
+  }
+  return names.empty() ? "there are none" : names.size() > 4 ? hint + ", ..." : hint;
+}
+
+}  // namespace
+
+double StartDelay(const FitSpec& spec, std::size_t experiment) {
+  for (const FitEstimate& e : spec.estimates) {
+    if (e.kind != FitEstimate::Kind::kDelay) continue;
+    if (std::find(e.experiments.begin(), e.experiments.end(), experiment) != e.experiments.end()) {
+      return e.range.start;
+    }
+  }
+  return 0.0;
+}
+
+std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std::size_t experiment,
+                          const Measured* measured, const std::vector<ChannelInfo>& channels,
+                          Diagnostics& out) {
+  const FitExperiment& one = spec.experiments[experiment];
+  if (residual.channels.empty()) return OfReferences(one, residual, experiment);
+  Maker maker(spec, residual, experiment, measured);
+  const std::vector<ChannelInfo>& offered = measured ? measured->trace.channels : channels;
+  const auto wrong = [&](const std::string& what, const std::string& hint) {
+    out.Error(residual.at, "residuals: " + what, hint);
+  };
+  bool any = false, good = true;
+  for (std::size_t c = 0; c < offered.size(); ++c) {
+    if (!base::Fits(residual.channels, offered[c].name)) continue;
+    any = true;
+    const auto ours = std::find_if(channels.begin(), channels.end(),
+                                   [&](const ChannelInfo& x) { return x.name == offered[c].name; });
+    if (ours == channels.end()) {
+      wrong("nothing computes \"" + offered[c].name + "\" of " + one.name,
+            Hint(offered[c].name, channels));
+      good = false;
+    } else if (ours->unit != offered[c].unit) {
+      wrong(fmt::format("\"{}\" of {} is in {} in its data, in {} here", offered[c].name, one.name,
+                        offered[c].unit, ours->unit),
+            "a mapping can have `unit` and `scale`");
+      good = false;
+    } else {
+      maker.Channel(offered[c], measured ? &measured->trace.values[c] : nullptr);
+    }
+  }
+  if (!any) {
+    wrong("the data of " + one.name + " has no channel \"" + residual.channels + "\"",
+          Hint(residual.channels, offered) + "; `map` translates names");
+  } else if (good && maker.rows.empty()) {
+    const std::string of_data =
+        measured ? fmt::format("the data of {} is of {:g}..{:g} s", one.name,
+                               measured->trace.time_s.front(), measured->trace.time_s.back())
+                 : one.name;
+    wrong(fmt::format("no window of \"{}\" meets data of {}", residual.channels, one.name),
+          fmt::format("{}, the experiment of 0..{:g} s: another clock? `clock`, `setpoints` and "
+                      "`window` say how they go together",
+                      of_data, one.experiment.duration_s));
+  } else if (good && maker.met < maker.asked) {
+    out.Warning(residual.at,
+                fmt::format("residuals: {} of {} windows of \"{}\" have no data in {}",
+                            maker.asked - maker.met, maker.asked, residual.channels, one.name));
+  }
+  return std::move(maker.rows);
+}
+
+std::optional<double> ValueOf(const Row& row, const Computed& computed, std::size_t channel,
+                              double delay_s, const ExperimentSpec& experiment) {
+  if (row.how == Row::How::kReference) {
+    if (!computed.summary) return std::nullopt;
+    return report::OurValue(*computed.summary, experiment.references[row.reference], row.cable);
+  }
+  const std::vector<double>& values = computed.values[channel];
+  if (row.how == Row::How::kRow) {
+    return row.row < values.size() ? std::optional(values[row.row]) : std::nullopt;
+  }
+  const std::vector<double>& times = computed.time_s;
+  if (times.empty()) return std::nullopt;
+  if (row.how == Row::How::kRest) {
+    const auto moment = std::lower_bound(times.begin(), times.end(), row.from_s - 1e-9);
+    if (moment == times.end()) return std::nullopt;
+    return values[static_cast<std::size_t>(moment - times.begin())];
+  }
+  const auto at = [&](double t) {
+    const auto after = std::upper_bound(times.begin(), times.end(), t);
+    if (after == times.begin()) return values.front();
+    if (after == times.end()) return values.back();
+    const auto i = static_cast<std::size_t>(after - times.begin());
+    const double share = (t - times[i - 1]) / (times[i] - times[i - 1]);
+    return values[i - 1] + share * (values[i] - values[i - 1]);
+  };
+  const double from_s = std::clamp(row.from_s - delay_s, times.front(), times.back());
+  const double to_s = std::clamp(row.to_s - delay_s, times.front(), times.back());
+  double before_s = from_s, before = at(from_s);
+  if (row.how == Row::How::kAt || !(to_s > from_s)) return before;
+  // Straight lines between rows, so that a window that moves changes all smoothly.
+  double area = 0, least = before, most = before;
+  const auto add = [&](double t, double x) {
+    area += 0.5 * (t - before_s) * (before + x);
+    least = std::min(least, x), most = std::max(most, x);
+    before_s = t, before = x;
+  };
+  const auto first = std::upper_bound(times.begin(), times.end(), from_s);
+  for (auto t = first; t != times.end() && *t < to_s; ++t) {
+    add(*t, values[static_cast<std::size_t>(t - times.begin())]);
+  }
+  add(to_s, at(to_s));
+  if (row.how == Row::How::kMax) return most;
+  return row.how == Row::How::kMin ? least : area / (to_s - from_s);
+}
+
+}  // namespace taut::identify

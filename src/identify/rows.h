@@ -1,0 +1,54 @@
+/// Which numbers of what is computed are set beside which of what was measured.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "identify/computed.h"
+#include "taut/fit_spec.h"
+#include "taut/identify.h"
+
+namespace taut::identify {
+
+/// What was measured, on its own clock.
+struct Measured {
+  Trace trace;                     ///< With the names of taut.
+  std::vector<double> setpoint_s;  ///< When each set point was commanded, on that clock,
+  std::vector<double> ours_s;      ///< and on the experiment's.
+};
+
+/// Nothing and diagnostics if files cannot be read or do not go together. An experiment without
+/// data has an empty trace.
+std::optional<Measured> ReadMeasured(const FitExperiment& one, Diagnostics& out);
+
+/// One residual's part of what is computed.
+struct Row {
+  enum class How { kRow, kRest, kAt, kMean, kMax, kMin, kReference };
+  std::size_t experiment = 0;
+  std::string channel;
+  How how = How::kRow;
+  std::size_t row = 0;          ///< kRow: of `Computed`.
+  double from_s = 0, to_s = 0;  ///< A window, or kAt and kRest a moment, on the experiment's clock
+                                ///< if the data's is not late.
+  std::size_t reference = 0;    ///< Of the experiment,
+  int cable = 0;                ///< and whose.
+  std::size_t window = 0;       ///< Which, for groups.
+  FitPoint point;
+};
+
+/// How late the data's clock is where a search begins.
+double StartDelay(const FitSpec& spec, std::size_t experiment);
+
+/// The rows of one residual and one experiment. `measured` null: of a design, for which nothing is
+/// measured. `channels`: what can be computed of the experiment.
+std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std::size_t experiment,
+                          const Measured* measured, const std::vector<ChannelInfo>& channels,
+                          Diagnostics& out);
+
+/// What a row asks for; `channel`: its channel's place among those that were computed. Nothing if
+/// there is none.
+std::optional<double> ValueOf(const Row& row, const Computed& computed, std::size_t channel,
+                              double delay_s, const ExperimentSpec& experiment);
+
+}  // namespace taut::identify

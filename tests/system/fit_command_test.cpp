@@ -1,0 +1,161 @@
+// `taut fit`: twins with a known truth, verdicts as exit statuses, accidents.
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+
+#include "tests/system/command.h"
+
+namespace taut::test {
+namespace {
+
+const std::string kModel = R"(taut: 1
+kind: model
+name: hanging
+parameters: {k_n_per_m: 100, mass_kg: 0.5, radius_m: 0.01}
+nodes: {top: [0, 0, 1], ball: [0, 0, 0]}
+pairs: [{name: c, nodes: [top, ball], tags: [cable]}]
+builders:
+  - {match: top, anchor: {}}
+  - {match: ball, point_mass: {mass_kg: mass_kg, radius_m: radius_m}}
+  - {match: cable, cable: {stiffness_n_per_m: k_n_per_m, damping_n_s_per_m: 8, rest_length_m: 0.9, actuator: {ideal: true}}}
+)";
+const std::string kExperiment = R"(taut: 1
+kind: experiment
+name: pull
+model: model.yaml
+gravity_m_per_s2: [0, 0, -10]
+duration_s: 20
+controllers:
+  - {name: play, period_s: 0.01, position: {programs: [{cables: c, change_m: [[0, 0], [1, -0.01], [2, -0.02], [3, -0.03], [4, -0.04], [5, -0.05], [6, -0.06], [7, -0.07], [8, -0.08], [9, -0.09], [10, -0.1]]}]}}
+)";
+const std::string kFit = R"(taut: 1
+kind: fit
+name: f
+experiments:
+  - {name: a, experiment: experiment.yaml, data: a.csv, forward: static}
+  - {name: b, experiment: experiment.yaml, data: b.csv, forward: static, use: test}
+estimate:
+  - {parameter: k_n_per_m, prior: {sd: 20}}
+residuals:
+  - {channel: node/ball/position_z_m, sd: 0.001, window: {after_setpoint_s: [-0.1, 0.1]}}
+groups: window
+)";
+
+class FitCommand : public CommandTest {
+ protected:
+  FitCommand() {
+    Write("model.yaml", kModel);
+    Write("experiment.yaml", kExperiment);
+    WriteData("a.csv", 110, 0.001, 1);
+    WriteData("b.csv", 110, 0.001, 2);
+  }
+  /// Where the mass hangs, 1 - (L + m g / k), and noise.
+  void WriteData(const std::string& name, double k_n_per_m, double sd_m, unsigned seed) const {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0, sd_m);
+    std::string text = "time_s,node/ball/position_z_m\n";
+    for (int i = 1; i <= 10; ++i) {
+      const double z_m = 1 - (0.9 - 0.01 * i + 0.5 * 10 / k_n_per_m) + noise(random);
+      text += std::to_string(i) + "," + std::to_string(z_m) + "\n";
+    }
+    Write(name, text);
+  }
+  CommandResult Fit(const std::string& text, std::vector<std::string> more = {}) const {
+    Write("fit.yaml", text);
+    more.insert(more.begin(), {"fit", "fit.yaml", "--out", "out"});
+    return End(Start(more));
+  }
+  nlohmann::json Summary() const { return nlohmann::json::parse(Read(Path("out/summary.json"))); }
+  static std::string Replaced(std::string text, const std::string& old, const std::string& by) {
+    const std::size_t at = text.find(old);
+    EXPECT_NE(at, text.npos) << old;
+    return text.replace(at, old.size(), by);
+  }
+};
+
+TEST_F(FitCommand, FindsWhatATwinWasMadeWith) {
+  const CommandResult done = Fit(kFit, {"--profile", "k_n_per_m"});
+  EXPECT_EQ(done.status, 0) << done.output << done.errors;
+  const auto summary = Summary();
+  const auto& k = summary["parameters"][0];
+  EXPECT_EQ(k["verdict"], "estimated");
+  // z falls by m g / k^2 a unit of k: ten data of 1 mm tell it to 1e-3 / sqrt(10) k^2 / 5
+  const double se = 1e-3 / std::sqrt(10.0) * 110 * 110 / 5;
+  EXPECT_NEAR(k["se"], se, 0.05 * se);
+  EXPECT_NEAR(k["value"], 110, 3 * se);
+  EXPECT_LT(summary["hold_out"]["fitted_rms_sd"],
+            0.5 * summary["hold_out"]["untuned_rms_sd"].get<double>());
+  EXPECT_NEAR(
+      summary["profiles"][0]["high"].get<double>() - summary["profiles"][0]["low"].get<double>(),
+      2 * 1.96 * se, 0.1 * se);
+  // What was found, as an experiment to go on with.
+  EXPECT_EQ(End(Start({"check", "out/fitted_a.yaml", "--quiet"})).status, 0);
+  EXPECT_NE(Read(Path("out/fitted_a.yaml")).find("k_n_per_m: 1"), std::string::npos);
+  EXPECT_NE(Read(Path("out/report.html")).find("<svg"), std::string::npos);
+}
+
+TEST_F(FitCommand, AnAliasIsNamedAndNoGoodFit) {
+  // Only m / k can be seen at rest.
+  const CommandResult done =
+      Fit(Replaced(kFit, "{parameter: k_n_per_m, prior: {sd: 20}}",
+                   "{parameter: k_n_per_m, scale: 20}\n  - {parameter: mass_kg, scale: 0.1}"));
+  EXPECT_EQ(done.status, 1) << done.output << done.errors;
+  const auto summary = Summary();
+  EXPECT_TRUE(summary["unidentifiable"]);
+  EXPECT_EQ(summary["parameters"][0]["verdict"], "traded");
+  EXPECT_TRUE(summary["parameters"][0]["trade"].contains("mass_kg")) << summary["parameters"][0];
+}
+
+TEST_F(FitCommand, AModelThatTheDataContradictIsRejected) {
+  WriteData("a.csv", 110, 0.01, 1);  // ten times the noise that is said
+  EXPECT_EQ(Fit(kFit).status, 1);
+  EXPECT_TRUE(Summary()["rejected"]);
+}
+
+TEST_F(FitCommand, AParameterThatNothingReadsIsAMistake) {
+  // A point's size moves nothing at rest.
+  const CommandResult done =
+      Fit(Replaced(kFit, "k_n_per_m, prior: {sd: 20}", "radius_m, prior: {sd: 0.001}"));
+  EXPECT_EQ(done.status, 3) << done.output;
+  EXPECT_EQ(done.errors,
+            "fit.yaml:8:5: error: estimate: nothing that is compared depends on radius_m (the "
+            "experiment does not use it, or not for what is compared)\n");
+}
+
+TEST_F(FitCommand, ChecksWithoutFitting) {
+  const CommandResult done = Fit(kFit, {"--check"});
+  EXPECT_EQ(done.status, 0) << done.errors;
+  EXPECT_NE(done.output.find("f: 1 numbers from 10 data in 10 groups, 10 data held out"),
+            std::string::npos)
+      << done.output;
+  EXPECT_FALSE(std::filesystem::exists(Path("out")));
+}
+
+TEST_F(FitCommand, GoesOnFromWhatItKnowsToTheSameBits) {
+  EXPECT_EQ(Fit(kFit, {"--resume"}).status, 3);  // nothing there
+  ASSERT_EQ(Fit(kFit).status, 0);
+  const std::string first = Read(Path("out/summary.json"));
+  ASSERT_EQ(Fit(kFit, {"--resume", "--threads", "1"}).status, 0);
+  EXPECT_EQ(Read(Path("out/summary.json")), first);
+  const CommandResult other = Fit(Replaced(kFit, "sd: 0.001", "sd: 0.002"));
+  EXPECT_EQ(other.status, 3);
+  EXPECT_NE(other.errors.find("holds another fit: it differs in data, fit"), std::string::npos)
+      << other.errors;
+}
+
+TEST_F(FitCommand, KilledAgainAndAgainItComesToTheSameEnd) {
+  ASSERT_EQ(Fit(Replaced(kFit, "forward: static", "forward: dynamic")).status, 0);
+  const std::string whole = Read(Path("out/summary.json"));
+  for (double wait_s = 0.03;; wait_s *= 1.3) {  // grows, so that it ends on any machine
+    const pid_t pid = Start({"fit", "fit.yaml", "--out", "killed", "--quiet"});
+    std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
+    kill(pid, SIGKILL);
+    if (End(pid).status == 0) break;
+  }
+  EXPECT_EQ(Read(Path("killed/summary.json")), whole);
+}
+
+}  // namespace
+}  // namespace taut::test
