@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "analysis/minimum.h"
+#include "base/fixed.h"
 #include "math/vec.h"
 #include "taut/analysis.h"
 
@@ -27,6 +28,38 @@ LoadCaseSpec Share(const LoadCaseSpec& loads, double share) {
   for (auto& longer : part.cables) longer.by_m *= share;
   for (auto& longer : part.bars) longer.by_m *= share;
   return part;
+}
+
+/// What of the question has no meaning for the model; empty if all has.
+std::string WrongWith(const ModelDef& def, const LoadCaseSpec& loads,
+                      const EquilibriumOptions& options) {
+  const auto outside = [](int index, std::size_t count) {
+    return index < 0 || static_cast<std::size_t>(index) >= count;
+  };
+  for (const auto& force : loads.forces) {
+    if (outside(force.node, def.nodes.size())) return "a load is on a node that is not there";
+  }
+  for (const auto& longer : loads.cables) {
+    if (outside(longer.index, def.cables.size())) return "a cable that gets longer is not there";
+  }
+  for (const auto& longer : loads.bars) {
+    if (outside(longer.index, def.joints.size())) return "a bar that gets longer is not there";
+    const JointDef& joint = def.joints[static_cast<std::size_t>(longer.index)];
+    if (!IsBar(joint)) return "joint \"" + joint.name + "\", which gets longer, is no bar";
+  }
+  for (const auto& settled : loads.settlements) {
+    if (outside(settled.joint, def.joints.size())) return "a support that settles is not there";
+    const JointDef& joint = def.joints[static_cast<std::size_t>(settled.joint)];
+    if (!base::IsFixed(def, joint.body_a) && !base::IsFixed(def, joint.body_b)) {
+      return "joint \"" + joint.name + "\", which settles, is no support";
+    }
+  }
+  if (!options.from) return "";
+  if (options.from->bodies.size() != def.bodies.size() ||
+      options.from->rest_lengths_m.size() != def.cables.size()) {
+    return "the pose to begin with is that of another model";
+  }
+  return "";
 }
 
 class Finder {
@@ -289,6 +322,9 @@ class Finder {
 
 Equilibrium FindEquilibrium(const ModelDef& def, const LoadCaseSpec& loads,
                             const EquilibriumOptions& options) {
+  Equilibrium refused;
+  refused.why = analysis::WrongWith(def, loads, options);
+  if (!refused.why.empty()) return refused;
   ModelDef with = def;
   if (options.from) {
     for (std::size_t c = 0; c < with.cables.size(); ++c) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/assert.h"
 #include "math/vec.h"
 
 namespace taut::analysis {
@@ -66,6 +67,7 @@ void Structure::AddCables(const LoadCaseSpec& load_case) {
     stiffness_n_per_m = std::max(stiffness_n_per_m, cable.stiffness_n_per_m);
   }
   for (const LoadCaseSpec::Lengthening& longer : load_case.cables) {
+    TAUT_ASSERT(longer.index >= 0 && longer.index < static_cast<int>(cables.size()));
     cables[static_cast<std::size_t>(longer.index)].rest_m += longer.by_m;
   }
 }
@@ -89,9 +91,11 @@ void Structure::AddJoints(const LoadCaseSpec& load_case) {
     joints.push_back(placed);
   }
   for (const LoadCaseSpec::Lengthening& longer : load_case.bars) {
+    TAUT_ASSERT(longer.index >= 0 && longer.index < static_cast<int>(joints.size()));
     joints[static_cast<std::size_t>(longer.index)].def.rest += longer.by_m;
   }
   for (const LoadCaseSpec::Settlement& settled : load_case.settlements) {
+    TAUT_ASSERT(settled.joint >= 0 && settled.joint < static_cast<int>(joints.size()));
     PlacedJoint& joint = joints[static_cast<std::size_t>(settled.joint)];
     Anchor& in_world = joint.a.body < 0 ? joint.a : joint.b;
     in_world.at_m = in_world.at_m + settled.by_m;
@@ -104,6 +108,7 @@ void Structure::AddLoads(const LoadCaseSpec& load_case) {
     weight_n.push_back((load_case.weight ? b.mass_kg : 0.0) * def_.gravity_m_per_s2);
   }
   for (const LoadCaseSpec::NodeForce& force : load_case.forces) {
+    TAUT_ASSERT(force.node >= 0 && force.node < static_cast<int>(def_.nodes.size()));
     const NodeDef& node = def_.nodes[static_cast<std::size_t>(force.node)];
     const Anchor at = AnchorAt(node.body, node.position_m);
     if (at.body < 0) continue;

@@ -256,6 +256,46 @@ TEST(Equilibrium, RelaxationComesNearWhatNewtonFinds) {
   EXPECT_NEAR(-search.at.center_m[0].z, Sag(400, 0.9, 9.81), 1e-4);
 }
 
+TEST(Equilibrium, QuestionsWithoutAMeaningAreAnswered) {
+  ModelDef def = Rope(1, 400, 0.9);
+  AddPoint(def, "other", {0, 1, 0}, 1);
+  AddJoint(def, JointKind::kBall, 0, {0, 0, 0}, 1, {0, 0, 0});
+  const auto why = [&](const auto& change) {
+    LoadCaseSpec loads;
+    EquilibriumOptions options;
+    change(loads, options);
+    const Equilibrium e = FindEquilibrium(def, loads, options);
+    EXPECT_FALSE(e.found);
+    return e.why;
+  };
+  EXPECT_EQ(why([](auto& l, auto&) {
+              l.forces.push_back({7, {}});
+            }),
+            "a load is on a node that is not there");
+  EXPECT_EQ(why([](auto& l, auto&) {
+              l.cables.push_back({-1, 0});
+            }),
+            "a cable that gets longer is not there");
+  EXPECT_EQ(why([](auto& l, auto&) {
+              l.bars.push_back({1, 0});
+            }),
+            "a bar that gets longer is not there");
+  EXPECT_EQ(why([](auto& l, auto&) {
+              l.bars.push_back({0, 0});
+            }),
+            "joint \"joint0\", which gets longer, is no bar");
+  EXPECT_EQ(why([](auto& l, auto&) {
+              l.settlements.push_back({2, {}});
+            }),
+            "a support that settles is not there");
+  EXPECT_EQ(why([](auto& l, auto&) {
+              l.settlements.push_back({0, {}});
+            }),
+            "joint \"joint0\", which settles, is no support");
+  EXPECT_EQ(why([](auto&, auto& o) { o.from = Pose(); }),
+            "the pose to begin with is that of another model");
+}
+
 // What takes no part is said, by name.
 TEST(Equilibrium, WhatIsLeftOutIsNamed) {
   ModelDef def = Rope(1, 400, 0.9);
