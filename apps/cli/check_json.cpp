@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "check_report.h"
-#include "taut/statics.h"
+#include "taut/loads.h"
 
 namespace taut::cli {
 namespace {
@@ -81,6 +81,27 @@ Json JointsJson(const ModelDef& def) {
   return joints;
 }
 
+Json RodsJson(const ModelDef& def, const std::vector<BodyForce>& forces) {
+  Json rods = Json::array();
+  for (const StrutForce& strut : StrutForces(def, forces)) {
+    rods.push_back({{"body", def.bodies[static_cast<std::size_t>(strut.body)].name},
+                    {"axial_n", strut.axial.middle_n},
+                    {"axial_least_n", strut.axial.least_n},
+                    {"axial_greatest_n", strut.axial.greatest_n}});
+  }
+  return rods;
+}
+
+Json AnchorsJson(const ModelDef& def, const std::vector<BodyForce>& forces) {
+  Json anchors = Json::array();
+  for (const Reaction& anchor : AnchorReactions(def, forces)) {
+    anchors.push_back({{"body", def.bodies[static_cast<std::size_t>(anchor.body)].name},
+                       {"force_n", ToJson(anchor.force_n)},
+                       {"torque_n_m", ToJson(anchor.torque_n_m)}});
+  }
+  return anchors;
+}
+
 /// `kind`: the key of what each says.
 Json ToJson(const std::vector<Diagnostic>& found, const char* kind) {
   Json list = Json::array();
@@ -133,6 +154,9 @@ std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment,
   json["bodies"] = BodiesJson(robot.def);
   json["cables"] = CablesJson(robot);
   if (!robot.def.joints.empty()) json["joints"] = JointsJson(robot.def);
+  const std::vector<BodyForce> forces = StartForces(robot.def, StartJointLoads(robot.def));
+  json["struts"] = RodsJson(robot.def, forces);
+  json["anchors"] = AnchorsJson(robot.def, forces);
   json["nodes"] = std::move(nodes);
   return Dump(json);
 }

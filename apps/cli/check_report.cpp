@@ -6,56 +6,16 @@
 #include <cmath>
 #include <vector>
 
-#include "taut/statics.h"
+#include "table.h"
+#include "taut/loads.h"
 
 namespace taut::cli {
 namespace {
 
-constexpr std::size_t kMostRows = 60;  ///< A longer table ends with how many rows are missing.
-constexpr int kMostCollisions = 20;    ///< A longer list of what may collide says nothing.
-
-/// Columns as wide as their widest cell; the first one to the left, the others to the right.
-class Table {
- public:
-  explicit Table(std::vector<std::string> head) { rows_.push_back(std::move(head)); }
-
-  void Add(std::vector<std::string> row) {
-    ++added_;
-    if (added_ <= kMostRows) rows_.push_back(std::move(row));
-  }
-
-  std::string Text() const {
-    std::vector<std::size_t> width(rows_[0].size(), 0);
-    for (const auto& row : rows_) {
-      for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
-    }
-    std::string text;
-    for (const auto& row : rows_) {
-      std::string line = fmt::format("  {:<{}}", row[0], width[0]);
-      for (std::size_t i = 1; i < row.size(); ++i)
-        line += fmt::format("  {:>{}}", row[i], width[i]);
-      text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-    }
-    if (added_ > kMostRows) text += fmt::format("  ... and {} more\n", added_ - kMostRows);
-    return text;
-  }
-
- private:
-  std::vector<std::vector<std::string>> rows_;
-  std::size_t added_ = 0;
-};
+constexpr int kMostCollisions = 20;  ///< A longer list of what may collide says nothing.
 
 std::string Counted(long long count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
-/// Numbers that are nothing but round-off are shown as 0.
-double Clean(double x) { return std::fabs(x) < 5e-10 ? 0.0 : x; }
-
-std::string Fixed(double x, int digits) {
-  std::string text = fmt::format("{:.{}f}", Clean(x), digits);
-  return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1)
-                                                                              : text;
 }
 
 std::string ActuatorText(const ActuatorDef& actuator) {
@@ -166,6 +126,36 @@ std::string Joints(const ModelDef& def) {
          left.Text();
 }
 
+/// What rods carry along them and what anchored bodies are held with, if there are any.
+std::string RodsAndAnchors(const ModelDef& def) {
+  const std::vector<BodyForce> forces = StartForces(def, StartJointLoads(def));
+  std::string text;
+  const std::vector<StrutForce> struts = StrutForces(def, forces);
+  if (!struts.empty()) {
+    Table table({"rod", "middle", "least", "greatest"});
+    table.Add({"", "N", "N", "N"});
+    for (const StrutForce& strut : struts) {
+      table.Add({def.bodies[strut.body].name, Fixed(strut.axial.middle_n, 3),
+                 Fixed(strut.axial.least_n, 3), Fixed(strut.axial.greatest_n, 3)});
+    }
+    text +=
+        "\nForce along rods at the start, tension positive: in the middle, least and greatest\n" +
+        table.Text();
+  }
+  const std::vector<Reaction> anchors = AnchorReactions(def, forces);
+  if (!anchors.empty()) {
+    Table table({"anchor", "force x", "y", "z", "torque x", "y", "z"});
+    table.Add({"", "N", "N", "N", "N m", "N m", "N m"});
+    for (const Reaction& anchor : anchors) {
+      const Vec3 f = anchor.force_n, t = anchor.torque_n_m;
+      table.Add({def.bodies[anchor.body].name, Fixed(f.x, 3), Fixed(f.y, 3), Fixed(f.z, 3),
+                 Fixed(t.x, 4), Fixed(t.y, 4), Fixed(t.z, 4)});
+    }
+    text += "\nWhat holds anchored bodies at the start, their weights included\n" + table.Text();
+  }
+  return text;
+}
+
 std::string Collisions(const ModelDef& def) {
   const std::vector<ShapeCount> shapes = CollidingShapes(def);
   const auto apart = KeptApart(def);
@@ -219,6 +209,7 @@ std::string RobotTables(const RobotSpec& robot) {
         "its spring\n" +
         Joints(def);
   }
+  text += RodsAndAnchors(def);
   return text + "\n" + Collisions(def);
 }
 

@@ -15,6 +15,7 @@ enum Exit : int {
 };
 
 /// Each adds one subcommand to `app`; when it ran, `exit_code` holds its status.
+void AddAnalyze(CLI::App& app, int& exit_code);
 void AddCheck(CLI::App& app, int& exit_code);
 void AddRun(CLI::App& app, int& exit_code);
 void AddCompare(CLI::App& app, int& exit_code);
@@ -27,6 +28,7 @@ void AddNew(CLI::App& app, int& exit_code);
 void AddReport(CLI::App& app, int& exit_code);
 void AddRobot(CLI::App& app, int& exit_code);
 void AddSchema(CLI::App& app, int& exit_code);
+void AddSize(CLI::App& app, int& exit_code);
 void AddView(CLI::App& app, int& exit_code);
 
 }  // namespace taut::cli

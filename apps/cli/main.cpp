@@ -61,6 +61,7 @@ int Run(int argc, char** argv) {
       "`taut help COMMAND` tells more.\n"
       "Exit status: 0 good, 1 failed, 2 bad usage, 3 bad input, 130 interrupted.");
   int exit_code = kOk;
+  AddAnalyze(app, exit_code);
   AddCheck(app, exit_code);
   AddRun(app, exit_code);
   AddCompare(app, exit_code);
@@ -72,6 +73,7 @@ int Run(int argc, char** argv) {
   AddReport(app, exit_code);
   AddRobot(app, exit_code);
   AddSchema(app, exit_code);
+  AddSize(app, exit_code);
   AddView(app, exit_code);
   AddHelp(app, exit_code);
   SetUpCommands(app);

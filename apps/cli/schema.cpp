@@ -15,7 +15,9 @@ void AddSchema(CLI::App& app, int& exit_code) {
   CLI::App* schema =
       app.add_subcommand("schema", "Print what a kind of file may hold, for editors.");
   schema
-      ->add_option("format", *format, "model, experiment, gait, study, fit, faults or calibration")
+      ->add_option("format", *format,
+                   "model, experiment, gait, study, fit, faults, calibration or "
+                   "catalogue")
       ->required()
       ->option_text(Alternatives(FormatNames()))
       ->check(OneOf(FormatNames()));

@@ -51,6 +51,20 @@ struct CableSummary {
   std::optional<MotorSummary> motor;  ///< If it is a `dc_motor` of a simulation.
 };
 
+/// Of a body that is one straight rod (`StrutForces`), over the rows of the trace and all along it:
+/// positive in tension.
+struct StrutSummary {
+  std::string name;
+  double least_n = 0;     ///< Its largest compression, if < 0.
+  double greatest_n = 0;  ///< Its largest tension, if > 0.
+};
+
+/// What an anchored body is held with, over the rows of the trace.
+struct AnchorSummary {
+  std::string name;
+  double max_force_n = 0, max_torque_n_m = 0;  ///< Largest lengths; the torque about its place.
+};
+
 struct DragSummary {
   std::string name;
   Range force_n;  ///< Along the drag's direction, over its second half.
@@ -72,6 +86,8 @@ struct RunSummary {
   std::optional<StartChange> start;  ///< What settling did, if the experiment begins with it.
   std::vector<PhaseSpec> phases;
   std::vector<CableSummary> cables;
+  std::vector<StrutSummary> struts;    ///< Of simulations.
+  std::vector<AnchorSummary> anchors;  ///< The same.
   std::vector<DragSummary> drags;
   std::vector<ReferenceSpec> references;  ///< The experiment's.
   double system_max_tension_n = 0;        ///< Largest `tension` of any cable, whole run.

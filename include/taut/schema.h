@@ -10,7 +10,8 @@
 
 namespace taut {
 
-/// "model", "experiment", "gait", "study", "fit", "faults" and "calibration".
+/// "model", "experiment", "gait", "study", "fit", "faults", "calibration"
+/// and "catalogue".
 const std::vector<std::string>& FormatNames();
 
 /// The JSON schema (2020-12) of a format: all of its keys with their types, ranges, defaults and

@@ -7,6 +7,7 @@
 
 #include "base/name_unit.h"
 #include "description/calibration_keys.h"
+#include "description/catalogue_keys.h"
 #include "description/experiment_keys.h"
 #include "description/fault_keys.h"
 #include "description/fit_keys.h"
@@ -326,8 +327,8 @@ std::string Schema() {
 }  // namespace description
 
 const std::vector<std::string>& FormatNames() {
-  static const std::vector<std::string> names{"model", "experiment", "gait",       "study",
-                                              "fit",   "faults",     "calibration"};
+  static const std::vector<std::string> names{"model", "experiment", "gait",        "study",
+                                              "fit",   "faults",     "calibration", "catalogue"};
   return names;
 }
 
@@ -339,6 +340,7 @@ std::optional<std::string> FormatSchema(std::string_view format) {
   if (format == "fit") return description::Schema<description::FitFileText>();
   if (format == "faults") return description::Schema<description::FaultFileText>();
   if (format == "calibration") return description::Schema<description::CalibrationFileText>();
+  if (format == "catalogue") return description::Schema<description::CatalogueFileText>();
   return std::nullopt;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mechanics/strut.h"
+
 namespace taut::plant {
 
 BodyForces::BodyForces(const ModelDef& def) : body_count_(def.bodies.size()) {
@@ -19,6 +21,14 @@ BodyForces::BodyForces(const ModelDef& def) : body_count_(def.bodies.size()) {
     }
   }
   for (const NodeDef& node : def.nodes) bodies_of_nodes_.push_back(node.body);
+  const auto arm = [&](int body, const Vec3& point_m) {
+    return body == kWorld ? point_m : point_m - def.bodies[static_cast<std::size_t>(body)].com_m;
+  };
+  joints_ = def.joints;
+  for (JointDef& joint : joints_) {
+    joint.from_m = arm(joint.body_a, joint.from_m);
+    joint.to_m = arm(joint.body_b, joint.to_m);
+  }
 }
 
 const std::vector<BodyForce>& BodyForces::Gather(const Observation& exact, const World& world) {
@@ -28,7 +38,7 @@ const std::vector<BodyForce>& BodyForces::Gather(const Observation& exact, const
     states_.push_back(world.Body(0, static_cast<int>(b)));
   }
   const auto add = [&](int body, const Vec3& point_m, const Vec3& force_n) {
-    if (body != kWorld) forces_.push_back({body, point_m, force_n});
+    if (body != kWorld) forces_.push_back({body, point_m, force_n, {}});
   };
   for (std::size_t c = 0; c < cables_.size(); ++c) {
     if (cables_[c].empty()) {
@@ -58,6 +68,18 @@ const std::vector<BodyForce>& BodyForces::Gather(const Observation& exact, const
     const Vec3 force_n = world.NodeForce(0, static_cast<int>(n));
     if (Dot(force_n, force_n) == 0) continue;
     add(bodies_of_nodes_[n], world.NodePosition(0, static_cast<int>(n)), force_n);
+  }
+  const auto place = [&](int body, const Vec3& arm_m) {
+    return body == kWorld ? arm_m : PlaceOf({body, arm_m}, states_[static_cast<std::size_t>(body)]);
+  };
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const JointDef& joint = joints_[j];
+    const JointState now = world.Joint(0, static_cast<int>(j));
+    for (const BodyForce& force : mechanics::JointForces(joint, {now.force_n, now.torque_n_m},
+                                                         place(joint.body_a, joint.from_m),
+                                                         place(joint.body_b, joint.to_m))) {
+      if (force.body != kWorld) forces_.push_back(force);
+    }
   }
   for (const ContactState& contact : world.Contacts(0)) {
     add(contact.body_a, contact.point_m, contact.force_n);

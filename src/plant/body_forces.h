@@ -5,15 +5,11 @@
 
 #include "math/cable_path.h"
 #include "math/vec.h"
+#include "mechanics/strut.h"
+#include "taut/loads.h"
 #include "taut/plant.h"
 
 namespace taut::plant {
-
-/// A force on a body at a point, both in W.
-struct BodyForce {
-  int body = 0;
-  Vec3 point_m, force_n;
-};
 
 /// A point of a body, by its arm from the centre of mass at t = 0 (in W), or of the world.
 struct BodyPoint {
@@ -24,8 +20,13 @@ inline Vec3 PlaceOf(const BodyPoint& point, const BodyState& state) {
   return state.position_m + Rotate(state.orientation, point.arm_m);
 }
 
+inline mechanics::BodyMoment MomentOf(const World& world, int body) {
+  const BodyState now = world.Body(0, body);
+  return {now.position_m, now.orientation, now.angular_velocity_rad_per_s};
+}
+
 /// Gathers the forces of lane 0: of cables with the tensions that are read (docs/theory/loads.md,
-/// eq. 1), of contacts and at nodes as means over the last step.
+/// eq. 1), of contacts, joints and at nodes as means over the last step.
 class BodyForces {
  public:
   explicit BodyForces(const ModelDef& def);
@@ -36,6 +37,8 @@ class BodyForces {
  private:
   std::vector<std::vector<BodyPoint>> cables_;  ///< Empty: their path must be asked for.
   std::vector<int> bodies_of_nodes_;
+  /// A joint whose `from_m` and `to_m` are arms of its bodies.
+  std::vector<JointDef> joints_;
   std::size_t body_count_;
   std::vector<BodyState> states_;
   std::vector<PathPoint<Vec3>> path_;

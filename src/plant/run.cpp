@@ -121,6 +121,9 @@ class Runner {
         recorder_.Row({&loop_.exact(), &loop_.seen(), &loop_.commands(), loop_.plant().world(),
                        &loop_.timeline()});
     ++rows;
+    if (const World* const world = loop_.plant().world()) {
+      statistics_.TakeLoads(loop_.exact(), *world);
+    }
     for (TraceWriter* trace : options_.traces) {
       if (!Wrote(trace->Append(loop_.time_s(), row.data()), *trace, out)) return false;
     }

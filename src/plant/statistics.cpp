@@ -32,11 +32,18 @@ Range Statistics::Sum::range() const {
 
 Statistics::Statistics(const ExperimentSpec& experiment)
     : experiment_(experiment),
+      forces_(experiment.robot.def),
       cables_(experiment.robot.def.cables.size()),
       drags_(experiment.drags.size()) {
   for (Cable& cable : cables_) {
     cable.tension.phases.resize(experiment.phases.size());
     cable.elastic.phases.resize(experiment.phases.size());
+  }
+  const ModelDef& def = experiment.robot.def;
+  for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) {
+    const BodyDef& body = def.bodies[static_cast<std::size_t>(b)];
+    if (const auto strut = mechanics::StrutOf(def, b)) struts_.push_back({*strut, 0, 0});
+    if (body.fixed) anchors_.push_back({b, body.mass_kg * def.gravity_m_per_s2, 0, 0});
   }
 }
 
@@ -58,6 +65,26 @@ void Statistics::Take(std::optional<MotorSummary>& sum, const MotorState& motor)
   sum->max_current_a = std::max(sum->max_current_a, std::fabs(motor.current_a));
   sum->max_winding_temperature_c =
       std::max(sum->max_winding_temperature_c, motor.winding_temperature_c);
+}
+
+void Statistics::TakeLoads(const Observation& now, const World& world) {
+  if (struts_.empty() && anchors_.empty()) return;
+  const std::vector<BodyForce>& forces = forces_.Gather(now, world);
+  for (StrutSum& sum : struts_) {
+    const int body = sum.strut.body;
+    const AxialForce axial =
+        mechanics::AxialForceOf(sum.strut, world.BodyMass(0, body), MomentOf(world, body), forces);
+    sum.least_n = has_loads_ ? std::min(sum.least_n, axial.least_n) : axial.least_n;
+    sum.greatest_n = has_loads_ ? std::max(sum.greatest_n, axial.greatest_n) : axial.greatest_n;
+  }
+  for (AnchorSum& sum : anchors_) {
+    const Reaction held =
+        mechanics::ReactionOf(sum.body, world.Body(0, sum.body).position_m, sum.weight_n, forces);
+    sum.max_force_n = std::max(sum.max_force_n, std::sqrt(Dot(held.force_n, held.force_n)));
+    sum.max_torque_n_m =
+        std::max(sum.max_torque_n_m, std::sqrt(Dot(held.torque_n_m, held.torque_n_m)));
+  }
+  has_loads_ = true;
 }
 
 void Statistics::Take(double time_s, double step_s, const Observation& now,
@@ -121,6 +148,16 @@ void Statistics::Fill(RunSummary& summary) const {
     summary.system_max_elastic_after_start_n =
         std::max(summary.system_max_elastic_after_start_n, out.elastic.max_after_start_n);
     summary.cables.push_back(std::move(out));
+  }
+  const auto name = [&](int body) {
+    return experiment_.robot.def.bodies[static_cast<std::size_t>(body)].name;
+  };
+  for (const StrutSum& sum : struts_) {
+    if (has_loads_) summary.struts.push_back({name(sum.strut.body), sum.least_n, sum.greatest_n});
+  }
+  for (const AnchorSum& sum : anchors_) {
+    if (!has_loads_) continue;
+    summary.anchors.push_back({name(sum.body), sum.max_force_n, sum.max_torque_n_m});
   }
   for (std::size_t i = 0; i < drags_.size(); ++i) {
     summary.drags.push_back({experiment_.drags[i].name, drags_[i].range()});

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "plant/body_forces.h"
 #include "taut/plant.h"
 #include "taut/run.h"
 
@@ -17,6 +18,10 @@ class Statistics {
   /// whose motors to look at; null where there is no simulation.
   void Take(double time_s, double step_s, const Observation& now, const std::vector<double>& drag_n,
             const World* world);
+
+  /// Takes in what struts and anchors bear at the moment of a row: at every step it would be half
+  /// of a run's time.
+  void TakeLoads(const Observation& now, const World& world);
 
   /// Cables, drags and maxima; the rest of the summary is the runner's.
   void Fill(RunSummary& summary) const;
@@ -42,7 +47,20 @@ class Statistics {
   void Take(Quantity& quantity, double time_s, double force_n) const;
   static void Take(std::optional<MotorSummary>& sum, const MotorState& motor);
 
+  struct StrutSum {
+    mechanics::Strut strut;
+    double least_n = 0, greatest_n = 0;
+  };
+  struct AnchorSum {
+    int body = 0;
+    Vec3 weight_n;
+    double max_force_n = 0, max_torque_n_m = 0;
+  };
   const ExperimentSpec& experiment_;
+  BodyForces forces_;
+  std::vector<StrutSum> struts_;
+  std::vector<AnchorSum> anchors_;
+  bool has_loads_ = false;  ///< Whether struts and anchors were looked at.
   std::vector<Cable> cables_;
   std::vector<Sum> drags_;
 };

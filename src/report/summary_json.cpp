@@ -104,6 +104,18 @@ std::string SummaryJson(const RunSummary& summary) {
   }
   json["cables"] = Json::array();
   for (const CableSummary& cable : summary.cables) json["cables"].push_back(ToJson(cable, summary));
+  json["struts"] = Json::array();
+  for (const StrutSummary& strut : summary.struts) {
+    json["struts"].push_back({{"name", strut.name},
+                              {"axial_least_n", strut.least_n},
+                              {"axial_greatest_n", strut.greatest_n}});
+  }
+  json["anchors"] = Json::array();
+  for (const AnchorSummary& anchor : summary.anchors) {
+    json["anchors"].push_back({{"name", anchor.name},
+                               {"max_force_n", anchor.max_force_n},
+                               {"max_torque_n_m", anchor.max_torque_n_m}});
+  }
   json["drags"] = Json::array();
   for (const DragSummary& drag : summary.drags) {
     json["drags"].push_back({{"name", drag.name}, {"force", ToJson(drag.force_n)}});

@@ -89,6 +89,35 @@ std::string SystemLines(const RunSummary& run) {
   return out + "\n";
 }
 
+/// What rods bore, and what anchored bodies were held with.
+std::string LoadTables(const RunSummary& run) {
+  std::string out;
+  if (!run.struts.empty()) {
+    const std::size_t name_width = NameWidth(run.struts);
+    out += fmt::format("\n{:<{}} {:>12}{:>12}\n", "rod [N]", name_width, "compression", "tension");
+    double size = 0;
+    for (const StrutSummary& strut : run.struts) {
+      size = std::max({size, -strut.least_n, strut.greatest_n});
+    }
+    for (const StrutSummary& strut : run.struts) {
+      out += fmt::format("{:<{}} {}{}\n", strut.name, name_width,
+                         Cell(std::max(0.0, -strut.least_n), DecimalsFor(size), 12),
+                         Cell(std::max(0.0, strut.greatest_n), DecimalsFor(size), 12));
+    }
+  }
+  if (!run.anchors.empty()) {
+    const std::size_t name_width = NameWidth(run.anchors);
+    out += fmt::format("\n{:<{}} {:>12}{:>16}\n", "anchor", name_width, "max force N",
+                       "max torque N m");
+    for (const AnchorSummary& anchor : run.anchors) {
+      out += fmt::format("{:<{}} {}{}\n", anchor.name, name_width,
+                         Cell(anchor.max_force_n, DecimalsFor(anchor.max_force_n), 12),
+                         Cell(anchor.max_torque_n_m, DecimalsFor(anchor.max_torque_n_m), 16));
+    }
+  }
+  return out;
+}
+
 std::string DragTable(const RunSummary& run) {
   if (run.drags.empty()) return {};
   const std::size_t name_width = NameWidth(run.drags);
@@ -160,8 +189,8 @@ std::string SummaryTable(const RunSummary& summary) {
     }
     out += SystemLines(summary);
   }
-  return out + DragTable(summary) + ActuatorTable(summary) + MotorTable(summary) +
-         report::ReferenceLines(summary);
+  return out + LoadTables(summary) + DragTable(summary) + ActuatorTable(summary) +
+         MotorTable(summary) + report::ReferenceLines(summary);
 }
 
 }  // namespace taut

@@ -116,7 +116,7 @@ TEST(RecordedStrut, ThePrismsSelfStressIsThatOfStatics) {
   experiment.robot.def.gravity_m_per_s2 = {};
   const ModelDef& def = experiment.robot.def;
   const Recording run(experiment);
-  ASSERT_EQ(run.trace.channels.size(), 3u);
+  ASSERT_EQ(run.trace.channels.size(), 9u);
   double per_length = 0;
   for (const CableDef& cable : def.cables) {
     if (cable.name.find("side") != std::string::npos) {
@@ -126,7 +126,10 @@ TEST(RecordedStrut, ThePrismsSelfStressIsThatOfStatics) {
   ASSERT_GT(per_length, 0);
   for (std::size_t b = 0; b < 3; ++b) {
     const Vec3 d = def.capsules[b].to_m - def.capsules[b].from_m;
-    EXPECT_NEAR(run.trace.values[b][0], -per_length * std::sqrt(Dot(d, d)), 1e-9);
+    const double pressed_n = per_length * std::sqrt(Dot(d, d));
+    EXPECT_NEAR(run.trace.values[3 * b][0], -pressed_n, 1e-9);      // in the middle
+    EXPECT_NEAR(run.trace.values[3 * b + 1][0], -pressed_n, 1e-9);  // where it is least,
+    EXPECT_NEAR(run.trace.values[3 * b + 2][0], -pressed_n, 1e-9);  // and greatest
     EXPECT_NEAR(Dot(StartLoads(def)[b].cable_force_n, d), 0, 1e-9);
   }
 }
@@ -223,6 +226,52 @@ TEST(RecordedStrut, TheAccelerationIsThatOfTheStep) {
     largest = std::max(largest, other.acceleration.z);
   }
   EXPECT_GT(largest, 500) << "an impact";
+}
+
+/// A rod that swings on a ball joint from the beam: the joint pulls at its end, and the beam.
+TEST(RecordedStrut, AJointPullsAtIt) {
+  ModelDef def = Rod({0, 0, 0.8}, {0, 0, -1});  // its start is up
+  def.bodies.push_back(BodyDef{});
+  BodyDef& beam = def.bodies.back();
+  beam.name = "beam", beam.mass_kg = 2, beam.com_m = {0, 0, 1.1}, beam.fixed = true;
+  JointDef pin;
+  pin.name = "pin", pin.kind = JointKind::kBall, pin.body_a = 1, pin.body_b = 0;
+  pin.from_m = pin.to_m = {0, 0, 1};
+  def.joints.push_back(pin);
+  const Recording run(ExperimentWith(def, 0.05, {"*"}));
+  EXPECT_NEAR(run.Last("strut/rod/axial_n"), 0.15 * kG, 1e-6);
+  EXPECT_NEAR(run.Last("strut/rod/axial_greatest_n"), 0.3 * kG, 1e-6);
+  EXPECT_NEAR(run.Last("strut/rod/axial_least_n"), 0, 1e-9);
+  EXPECT_NEAR(run.Last("anchor/beam/force_z_n"), 2.3 * kG, 1e-6);
+}
+
+/// The summary has the extremes of all rows of a run that records every step.
+TEST(RecordedStrut, TheSummaryHasTheExtremesOfTheRun) {
+  ModelDef def = Rod({0, 0, 0.4}, {0, 0.6, 0.8}, 0.05, 0.12);
+  scenes::AddGround(def, {0.6, 0.6, 0.3});
+  def.bodies[0].angular_velocity_rad_per_s = {3, -4, 5};
+  BodyDef beam;
+  beam.name = "beam", beam.mass_kg = 2, beam.com_m = {0, 0, 1.5}, beam.fixed = true;
+  def.bodies.push_back(beam);
+  def.cables.push_back(SoftCable("up", {{0, def.capsules[0].to_m}, {1, {0, 0, 1.5}}}, 5, 0.4));
+  const Recording run(ExperimentWith(def, 0.5, {"*"}));
+  double least = 0, greatest = 0, held = 0;
+  for (std::size_t row = 0; row < run.rows(); ++row) {
+    least = std::min(least, run.At("strut/rod/axial_least_n", row));
+    greatest = std::max(greatest, run.At("strut/rod/axial_greatest_n", row));
+    const Vec3 force = run.VectorAt("anchor/beam/force_", "_n", row);
+    held = std::max(held, std::sqrt(Dot(force, force)));
+    EXPECT_LE(run.At("strut/rod/axial_least_n", row), run.At("strut/rod/axial_n", row) + 1e-12);
+    EXPECT_GE(run.At("strut/rod/axial_greatest_n", row), run.At("strut/rod/axial_n", row) - 1e-12);
+  }
+  ASSERT_EQ(run.summary.struts.size(), 1u);
+  EXPECT_EQ(run.summary.struts[0].name, "rod");
+  EXPECT_EQ(run.summary.struts[0].least_n, least);
+  EXPECT_EQ(run.summary.struts[0].greatest_n, greatest);
+  EXPECT_LT(least, -10);
+  EXPECT_GT(greatest, 1);
+  ASSERT_EQ(run.summary.anchors.size(), 1u);
+  EXPECT_EQ(run.summary.anchors[0].max_force_n, held);
 }
 
 TEST(RecordedStrut, OnlyBodiesThatAreOneRodHaveTheChannel) {

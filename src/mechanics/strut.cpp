@@ -1,9 +1,12 @@
-#include "plant/strut.h"
+#include "mechanics/strut.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
 
-namespace taut::plant {
+namespace taut::mechanics {
 namespace {
 
 constexpr double kRounding = 1e-9;  ///< What sums of a handful of solids may be off by, relatively.
@@ -93,8 +96,12 @@ std::optional<Strut> StrutOf(const ModelDef& def, int body) {
   if (!ends_only && std::max(masses->start, masses->end) > 10 * kRounding) return std::nullopt;
   Strut strut;
   strut.body = body;
-  strut.middle = {body, 0.5 * (rod->from_m + rod->to_m) - whole.com_m};
+  strut.middle_arm_m = 0.5 * (rod->from_m + rod->to_m) - whole.com_m;
   strut.along = along;
+  strut.length_m = length_m;
+  strut.rod = masses->rod;
+  strut.at_start = masses->start;
+  strut.at_end = masses->end;
   strut.lower = masses->rod / 2 + masses->start;
   strut.upper = masses->rod / 2 + masses->end;
   if (!(strut.lower > 0 && strut.upper > 0)) return std::nullopt;
@@ -103,11 +110,75 @@ std::optional<Strut> StrutOf(const ModelDef& def, int body) {
   return strut;
 }
 
-double AxialForce(const Strut& strut, double mass_kg, const BodyState& state,
-                  const std::vector<BodyForce>& forces) {
-  const Vec3 along = Rotate(state.orientation, strut.along);
-  const Vec3 middle_m = PlaceOf(strut.middle, state);
+namespace {
+
+/// A force on a strut: where along it, from the middle, and how much of it is along it.
+struct Pull {
+  double at_m, force_n;
+};
+
+/// The force in cuts of a strut (eq. 6).
+class Cuts {
+ public:
+  Cuts(const Strut& strut, double mass_kg, double spin2, double on_all_n)
+      : strut_(strut),
+        spin_n_per_m_(mass_kg * spin2),
+        on_all_n_(on_all_n),
+        center_m_(0.5 * strut.length_m * (strut.at_end - strut.at_start)) {}
+
+  /// At `x_m` from the middle, below forces of `above_n` together.
+  double At(double x_m, double above_n) const {
+    const double l = strut_.length_m;
+    const double share = strut_.rod * (0.5 - x_m / l) + strut_.at_end;
+    const double moment_m = strut_.rod * (l * l / 4 - x_m * x_m) / (2 * l) + strut_.at_end * l / 2;
+    return above_n - share * on_all_n_ + spin_n_per_m_ * (moment_m - share * center_m_);
+  }
+  /// Where it is largest between two forces, if that is there.
+  double Crest() const { return center_m_ + on_all_n_ / spin_n_per_m_; }
+  bool spins() const { return spin_n_per_m_ > 0; }
+
+ private:
+  const Strut& strut_;
+  double spin_n_per_m_, on_all_n_, center_m_;
+};
+
+/// From end to start: the cuts beside every force, and the crests between them.
+std::pair<double, double> LeastAndGreatest(const Cuts& cuts, double length_m,
+                                           std::vector<Pull>& pulls) {
+  std::sort(pulls.begin(), pulls.end(),
+            [](const Pull& a, const Pull& b) { return a.at_m > b.at_m; });
+  double least = std::numeric_limits<double>::infinity(), greatest = -least, above_n = 0;
+  const auto look = [&](double x_m) {
+    const double n = cuts.At(x_m, above_n);
+    least = std::min(least, n);
+    greatest = std::max(greatest, n);
+  };
+  const double end_m = 0.5 * length_m, same_m = kRounding * length_m;
+  double from_m = end_m;
+  std::size_t next = 0;
+  while (true) {
+    // What acts at or beyond an end acts there; at one place there is no cut between two forces.
+    while (next < pulls.size() && pulls[next].at_m >= from_m - same_m) {
+      above_n += pulls[next++].force_n;
+    }
+    double to_m = next < pulls.size() ? pulls[next].at_m : -end_m;
+    if (to_m <= same_m - end_m) to_m = -end_m;
+    look(from_m), look(to_m);
+    if (cuts.spins() && cuts.Crest() > to_m && cuts.Crest() < from_m) look(cuts.Crest());
+    if (to_m == -end_m) return {least, greatest};
+    from_m = to_m;
+  }
+}
+
+}  // namespace
+
+AxialForce AxialForceOf(const Strut& strut, double mass_kg, const BodyMoment& moment,
+                        const std::vector<BodyForce>& forces) {
+  const Vec3 along = Rotate(moment.orientation, strut.along);
+  const Vec3 middle_m = moment.position_m + Rotate(moment.orientation, strut.middle_arm_m);
   double on_lower_n = 0, on_upper_n = 0;
+  std::vector<Pull> pulls;
+  pulls.reserve(16);
   for (const BodyForce& force : forces) {
     if (force.body != strut.body) continue;
     const double ahead_m = Dot(force.point_m - middle_m, along);
@@ -117,11 +188,28 @@ double AxialForce(const Strut& strut, double mass_kg, const BodyState& state,
     const double share = between ? 0.5 : ahead_m > 0 ? 1 : 0;
     on_upper_n += share * pull_n;
     on_lower_n += (1 - share) * pull_n;
+    pulls.push_back({ahead_m, pull_n});
   }
-  const Vec3& w = state.angular_velocity_rad_per_s;
-  const double spin = Dot(w, along);
-  return strut.lower * on_upper_n - strut.upper * on_lower_n +
-         mass_kg * strut.lower * strut.upper * strut.apart_m * (Dot(w, w) - spin * spin);
+  const Vec3& w = moment.angular_velocity_rad_per_s;
+  const double spin = Dot(w, along), spin2 = Dot(w, w) - spin * spin;
+  AxialForce axial;
+  axial.middle_n = strut.lower * on_upper_n - strut.upper * on_lower_n +
+                   mass_kg * strut.lower * strut.upper * strut.apart_m * spin2;
+  const Cuts cuts(strut, mass_kg, spin2, on_lower_n + on_upper_n);
+  std::tie(axial.least_n, axial.greatest_n) = LeastAndGreatest(cuts, strut.length_m, pulls);
+  return axial;
 }
 
-}  // namespace taut::plant
+Reaction ReactionOf(int body, const Vec3& origin_m, const Vec3& weight_n,
+                    const std::vector<BodyForce>& forces) {
+  Reaction held{body, -1.0 * weight_n, {}};
+  for (const BodyForce& force : forces) {
+    if (force.body != body) continue;
+    held.force_n = held.force_n - force.force_n;
+    held.torque_n_m = held.torque_n_m - Cross(force.point_m - origin_m, force.force_n);
+    held.torque_n_m = held.torque_n_m - force.torque_n_m;
+  }
+  return held;
+}
+
+}  // namespace taut::mechanics

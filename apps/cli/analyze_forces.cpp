@@ -1,0 +1,106 @@
+// What `taut analyze` says of a structure by itself: what its members can carry without loads, and
+// how it can move without any of them changing its length.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analyze_names.h"
+#include "analyze_report.h"
+#include "table.h"
+
+namespace taut::cli {
+namespace {
+
+constexpr std::size_t kMostStates = 6;  ///< Columns of a table of self-stresses.
+
+std::string GapText(const RankGap& rank) {
+  return fmt::format("{} (singular values {:.3g} kept, {:.3g} dropped{})", rank.rank,
+                     rank.smallest_kept, rank.largest_dropped,
+                     rank.clear() ? "" : "; LESS THAN A THOUSANDFOLD APART: the rank is not sure");
+}
+
+std::string Counts(const ForceAnalysis& f) {
+  std::string text = fmt::format(
+      "  members: {}, motions: {}, rank: {}\n"
+      "  states of self-stress: {}, mechanisms: {}, motions as a whole: {}",
+      f.members.size(), f.unknowns, GapText(f.rank), f.self_stress.size(), f.mechanisms.size(),
+      f.rigid);
+  if (f.free_turns > 0) text += fmt::format(", turns that nothing resists: {}", f.free_turns);
+  text += "\n";
+  if (f.classical) {
+    const ClassicalCount& c = *f.classical;
+    text += fmt::format(
+        "  as pin-jointed: nodes: {}, members: {}, rank: {}\n"
+        "    states of self-stress: {}, mechanisms: {}, motions as a whole: {}\n",
+        c.nodes, c.members, GapText(c.rank), c.self_stresses, c.mechanisms, c.rigid);
+  }
+  return text;
+}
+
+std::string Prestress(const ForceAnalysis& f) {
+  std::string text;
+  const auto feasible = std::count_if(f.self_stress.begin(), f.self_stress.end(),
+                                      [](const SelfStress& s) { return s.feasible; });
+  if (feasible == 0) {
+    text += "  no state of self-stress with all cables in tension was found\n";
+  } else if (!f.mechanism_stiffness.empty()) {
+    const double least = f.mechanism_stiffness.front();
+    text += fmt::format(
+        "  {}: prestress resists the mechanisms with {:.4g} times a cable's largest force density "
+        "at least\n",
+        least > 0 ? "stable by prestress" : "NOT STABLE by prestress", least);
+  }
+  if (f.lowest_stiffness) {
+    text += fmt::format("  least stiffness as described: {:.6g} N/m\n", *f.lowest_stiffness);
+  }
+  return text;
+}
+
+/// Force densities, a column a state.
+std::string States(const ModelDef& def, const ForceAnalysis& f) {
+  const std::size_t shown = std::min(f.self_stress.size(), kMostStates);
+  if (shown == 0) return {};
+  std::vector<std::string> head{"force / length"}, kinds{"N/m"};
+  for (std::size_t s = 0; s < shown; ++s) {
+    head.push_back(fmt::format("state {}", s + 1));
+    kinds.push_back(f.self_stress[s].feasible ? "feasible" : "");
+  }
+  Table table(head);
+  table.Add(kinds);
+  for (std::size_t m = 0; m < f.members.size(); ++m) {
+    const StaticMember& member = f.members[m];
+    if (member.kind != StaticMember::Kind::kCable && member.kind != StaticMember::Kind::kBar) {
+      continue;
+    }
+    std::vector<std::string> row{StaticMemberName(def, member)};
+    for (std::size_t s = 0; s < shown; ++s) {
+      row.push_back(Fixed(f.self_stress[s].density_n_per_m[m], 6));
+    }
+    table.Add(row);
+  }
+  for (std::size_t r = 0; f.classical && r < f.classical->rods.size(); ++r) {
+    std::vector<std::string> row{BodyName(def, f.classical->rods[r])};
+    for (std::size_t s = 0; s < shown; ++s) {
+      const auto& rods = f.self_stress[s].rod_density_n_per_m;
+      row.push_back(r < rods.size() ? Fixed(rods[r], 6) : "-");
+    }
+    table.Add(row);
+  }
+  std::string text = table.Text();
+  if (shown < f.self_stress.size()) {
+    text += fmt::format("  ... and {} more states\n", f.self_stress.size() - shown);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ForceTables(const ModelDef& def, const ForceAnalysis& forces) {
+  std::string text = "\nAs described\n" + Counts(forces) + Prestress(forces);
+  for (const std::string& part : forces.left_out) text += "  takes no part: " + part + "\n";
+  const std::string states = States(def, forces);
+  return states.empty() ? text : text + "\n" + states;
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,155 @@
+// `taut analyze --inverse`: the forces that hold a robot in its pose and cost least.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "analyze_inverse.h"
+#include "analyze_names.h"
+#include "output.h"
+#include "table.h"
+
+namespace taut::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Answer {
+  LoadCaseSpec loads;
+  HoldingForces forces;
+};
+
+Json ToJson(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+
+HoldingOptions OptionsOf(const InverseArguments& args, const ModelDef& def) {
+  HoldingOptions options;
+  options.minimise = args.minimise;
+  options.bounds.assign(def.cables.size(), args.bounds);
+  options.touches = FindTouches(def, kTouch_m);
+  return options;
+}
+
+std::string Unbalance(const ModelDef& def, const HoldingForces& forces) {
+  std::string text;
+  for (const Unbalanced& left : forces.left) {
+    const Vec3 &f = left.force_n, &t = left.torque_n_m;
+    text += fmt::format(
+        "  body {} is left with ({:.4g}, {:.4g}, {:.4g}) N and ({:.4g}, {:.4g}, {:.4g}) N m\n",
+        BodyName(def, left.body), f.x, f.y, f.z, t.x, t.y, t.z);
+  }
+  return text;
+}
+
+std::string Text(const ModelDef& def, const Answer& answer) {
+  const HoldingForces& forces = answer.forces;
+  std::string text = fmt::format("\nLoad case {}{}\n", answer.loads.name,
+                                 answer.loads.weight ? "" : ", without weight");
+  for (const std::string& note : forces.notes) text += "  " + note + "\n";
+  if (!forces.found) {
+    return text + "  nothing holds this pose: " + forces.why + "\n" + Unbalance(def, forces);
+  }
+  text += fmt::format("  balanced to {:.2g} N; the sum that is least is {:.6g}\n",
+                      forces.residual_n, forces.cost);
+  Table cables({"cable", "tension", "tension / length", "rest length", "command", ""});
+  cables.Add({"", "N", "N/m", "m", "m", ""});
+  for (std::size_t c = 0; c < def.cables.size(); ++c) {
+    const auto& bound = forces.at_bound;
+    const bool at_bound = std::find(bound.begin(), bound.end(), static_cast<int>(c)) != bound.end();
+    cables.Add({def.cables[c].name, Fixed(forces.cable_tension_n[c], 3),
+                Fixed(forces.cable_force_density_n_per_m[c], 3), Fixed(forces.rest_length_m[c], 6),
+                Fixed(forces.command_m[c], 6), at_bound ? "at its bound" : ""});
+  }
+  if (!def.cables.empty()) text += "\n" + cables.Text();
+  Table bars({"bar", "force", "rest length"});
+  bars.Add({"", "N", "m"});
+  bool any = false;
+  for (std::size_t j = 0; j < def.joints.size(); ++j) {
+    if (!IsBar(def.joints[j])) continue;
+    any = true;
+    bars.Add({def.joints[j].name, Fixed(forces.bar_force_n[j], 3), Fixed(forces.bar_rest_m[j], 6)});
+  }
+  return any ? text + "\n" + bars.Text() : text;
+}
+
+Json CablesJson(const ModelDef& def, const HoldingForces& forces) {
+  Json cables = Json::array();
+  for (std::size_t c = 0; c < def.cables.size(); ++c) {
+    const auto& bound = forces.at_bound;
+    cables.push_back(
+        {{"name", def.cables[c].name},
+         {"tension_n", forces.cable_tension_n[c]},
+         {"force_density_n_per_m", forces.cable_force_density_n_per_m[c]},
+         {"rest_length_m", forces.rest_length_m[c]},
+         {"command_m", forces.command_m[c]},
+         {"at_bound", std::find(bound.begin(), bound.end(), static_cast<int>(c)) != bound.end()}});
+  }
+  return cables;
+}
+
+Json ToJson(const ModelDef& def, const Answer& answer) {
+  const HoldingForces& forces = answer.forces;
+  Json json{{"name", answer.loads.name},
+            {"weight", answer.loads.weight},
+            {"found", forces.found},
+            {"why", forces.found ? Json() : Json(forces.why)},
+            {"notes", forces.notes}};
+  if (!forces.found) {
+    json["left"] = Json::array();
+    for (const Unbalanced& left : forces.left) {
+      json["left"].push_back({{"body", BodyName(def, left.body)},
+                              {"force_n", ToJson(left.force_n)},
+                              {"torque_n_m", ToJson(left.torque_n_m)}});
+    }
+    return json;
+  }
+  json["residual_n"] = forces.residual_n;
+  json["cost"] = forces.cost;
+  json["cables"] = CablesJson(def, forces);
+  json["bars"] = Json::array();
+  for (std::size_t j = 0; j < def.joints.size(); ++j) {
+    if (!IsBar(def.joints[j])) continue;
+    json["bars"].push_back({{"name", def.joints[j].name},
+                            {"force_n", forces.bar_force_n[j]},
+                            {"rest_length_m", forces.bar_rest_m[j]}});
+  }
+  return json;
+}
+
+}  // namespace
+
+int Inverse(const std::string& file, const RobotSpec& robot, const std::vector<LoadCaseSpec>& cases,
+            const std::vector<std::string>& notes, const InverseArguments& args) {
+  const ModelDef& def = robot.def;
+  Diagnostics found;
+  std::vector<Answer> answers;
+  for (const LoadCaseSpec& loads : cases) {
+    answers.push_back({loads, FindHoldingForces(def, loads, OptionsOf(args, def), found)});
+  }
+  if (!found.ok()) return Fail(found, kBadInput);
+  const bool all =
+      std::all_of(answers.begin(), answers.end(), [](const Answer& a) { return a.forces.found; });
+  if (args.json) {
+    Json json{{"format_version", 1},
+              {"model", def.name},
+              {"file", file},
+              {"notes", notes},
+              {"minimise", HoldingCostName(args.minimise)}};
+    json["load_cases"] = Json::array();
+    for (const Answer& answer : answers) json["load_cases"].push_back(ToJson(def, answer));
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  } else {
+    fmt::print("Model {}: cables that hold it as described, least {}\n", def.name,
+               HoldingCostName(args.minimise));
+    for (const std::string& note : notes) fmt::print("  {}\n", note);
+    for (const Answer& answer : answers) fmt::print("{}", Text(def, answer));
+  }
+  for (const Answer& answer : answers) {
+    if (answer.forces.found) continue;
+    fmt::print(stderr, "error: load case {}: {}\n", answer.loads.name, answer.forces.why);
+  }
+  return all ? kOk : kFailed;
+}
+
+}  // namespace taut::cli

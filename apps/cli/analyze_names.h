@@ -1,0 +1,97 @@
+/// Words of what `taut analyze` prints.
+#pragma once
+
+#include <string>
+
+#include "taut/analysis.h"
+#include "taut/safety.h"
+
+namespace taut::cli {
+
+inline std::string BodyName(const ModelDef& def, int body) {
+  return body < 0 ? "world" : def.bodies[static_cast<std::size_t>(body)].name;
+}
+
+inline const char* ModeKindName(Mode::Kind kind) {
+  switch (kind) {
+    case Mode::Kind::kRigid:
+      return "rigid";
+    case Mode::Kind::kMechanism:
+      return "mechanism";
+    case Mode::Kind::kElastic:
+      return "elastic";
+    case Mode::Kind::kUnstable:
+      return "unstable";
+  }
+  return "";
+}
+
+inline const char* MemberKindName(MemberKind kind) {
+  switch (kind) {
+    case MemberKind::kCable:
+      return "cable";
+    case MemberKind::kBar:
+      return "bar";
+    case MemberKind::kRod:
+      return "rod";
+  }
+  return "";
+}
+
+inline const char* StaticMemberKindName(StaticMember::Kind kind) {
+  switch (kind) {
+    case StaticMember::Kind::kCable:
+      return "cable";
+    case StaticMember::Kind::kBar:
+      return "bar";
+    case StaticMember::Kind::kHeld:
+      return "joint";
+    case StaticMember::Kind::kContact:
+      return "ground";
+  }
+  return "";
+}
+
+/// With the number of its part, where it has several.
+inline std::string StaticMemberName(const ModelDef& def, const StaticMember& member) {
+  const auto at = static_cast<std::size_t>(member.index);
+  const std::string part = " " + std::to_string(member.part + 1);
+  switch (member.kind) {
+    case StaticMember::Kind::kCable:
+      return def.cables[at].name + (HasFriction(def.cables[at]) ? part : "");
+    case StaticMember::Kind::kBar:
+      return def.joints[at].name;
+    case StaticMember::Kind::kHeld:
+      return def.joints[at].name + part;
+    case StaticMember::Kind::kContact:
+      return BodyName(def, member.part) + " on " + def.planes[at].name;
+  }
+  return "";
+}
+
+/// How an equilibrium was found, where it was not the plain way.
+inline const char* WayText(EquilibriumWay way) {
+  switch (way) {
+    case EquilibriumWay::kNewton:
+      return "";
+    case EquilibriumWay::kLoadSteps:
+      return ", loads in steps";
+    case EquilibriumWay::kRelaxation:
+      return ", by relaxation";
+  }
+  return "";
+}
+
+/// The body whose centre of mass moves farthest; -1 if none moves.
+inline int MovesMost(const Mode& mode) {
+  int most = -1;
+  double largest = 0;
+  for (std::size_t b = 0; b < mode.translation_m.size(); ++b) {
+    const Vec3& t = mode.translation_m[b];
+    const double size = t.x * t.x + t.y * t.y + t.z * t.z;
+    if (size > largest) largest = size, most = static_cast<int>(b);
+  }
+  return most;
+}
+
+}  // namespace taut::cli

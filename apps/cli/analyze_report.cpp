@@ -1,0 +1,155 @@
+#include "analyze_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analyze_names.h"
+#include "table.h"
+
+namespace taut::cli {
+namespace {
+
+std::string FactorCell(const std::optional<double>& factor) {
+  if (!factor) return "-";
+  return *factor < 1000 ? fmt::format("{:.2f}", *factor) : fmt::format("{:.3g}", *factor);
+}
+
+std::vector<std::string> Factors(const MemberLoad& load) {
+  return {FactorCell(load.buckling), FactorCell(load.yield), FactorCell(load.strength),
+          FactorCell(load.slackening)};
+}
+
+std::string Cables(const CaseResult& result) {
+  Table table({"cable", "length", "rest length", "tension", "tension / length", "yield", "strength",
+               "slack"});
+  table.Add({"", "m", "m", "N", "N/m", "factor", "factor", "factor"});
+  for (const MemberLoad& load : result.members) {
+    if (load.kind != MemberKind::kCable) continue;
+    const CableDef& cable = result.def.cables[static_cast<std::size_t>(load.index)];
+    const double length = CableLength(cable);
+    table.Add({load.name, Fixed(length, 6), Fixed(cable.rest_length_m, 6),
+               load.slack ? "slack" : Fixed(load.greatest_n, 3), Fixed(load.greatest_n / length, 3),
+               FactorCell(load.yield), FactorCell(load.strength), FactorCell(load.slackening)});
+  }
+  return table.Text();
+}
+
+std::string BarsAndRods(const CaseResult& result) {
+  Table table({"bar or rod", "least force", "greatest", "buckling", "yield", "strength"});
+  table.Add({"", "N", "N", "factor", "factor", "factor"});
+  for (const MemberLoad& load : result.members) {
+    if (load.kind == MemberKind::kCable) continue;
+    const std::vector<std::string> factors = Factors(load);
+    table.Add({load.name, Fixed(load.least_n, 3), Fixed(load.greatest_n, 3), factors[0], factors[1],
+               factors[2]});
+  }
+  return table.Text();
+}
+
+void AddCells(const Vec3& f, const Vec3& t, std::vector<std::string>& row) {
+  for (const double x : {f.x, f.y, f.z}) row.push_back(Fixed(x, 3));
+  for (const double x : {t.x, t.y, t.z}) row.push_back(Fixed(x, 4));
+}
+
+/// What holds the robot in the world: supports, anchors, ground.
+std::string Reactions(const CaseResult& result) {
+  Table table({"held by", "force x", "y", "z", "torque x", "y", "z"});
+  table.Add({"", "N", "N", "N", "N m", "N m", "N m"});
+  std::size_t count = 0;
+  const auto add = [&](const std::string& name, const Vec3& force, const Vec3& torque) {
+    std::vector<std::string> row{name};
+    AddCells(force, torque, row);
+    table.Add(row);
+    ++count;
+  };
+  for (std::size_t j = 0; j < result.def.joints.size(); ++j) {
+    const JointDef& joint = result.def.joints[j];
+    if (!IsSupport(result.def, joint)) continue;
+    const JointLoad& load = result.at.joint_loads[j];
+    add("support " + joint.name, load.force_n, load.torque_n_m);
+  }
+  for (const Reaction& anchor : result.anchors) {
+    add("anchor " + BodyName(result.def, anchor.body), anchor.force_n, anchor.torque_n_m);
+  }
+  for (const CaseResult::End& end : result.ends) add("node " + end.name, end.force_n, {});
+  for (const ContactState& contact : result.at.contacts) {
+    add("ground at " + BodyName(result.def, contact.body_a), contact.force_n, {});
+  }
+  return count == 0 ? std::string() : table.Text();
+}
+
+std::string ModeTable(const CaseResult& result, int most) {
+  const Modes& modes = *result.modes;
+  if (!modes.why.empty()) return "  none: " + modes.why + "\n";
+  std::string text = fmt::format("  as a whole: {}, mechanisms: {}, unstable: {}\n", modes.rigid,
+                                 modes.mechanisms, modes.unstable);
+  Table table({"mode", "frequency", "what", "moves most"});
+  table.Add({"", "Hz", "", ""});
+  int number = 0;
+  for (const Mode& mode : modes.modes) {
+    if (mode.kind == Mode::Kind::kRigid) continue;
+    if (++number > most) break;
+    table.Add({fmt::format("{}", number), fmt::format("{:.7g}", mode.frequency_hz),
+               ModeKindName(mode.kind), BodyName(result.def, MovesMost(mode))});
+  }
+  return text + (number == 0 ? "" : table.Text());
+}
+
+/// The members that are nearest to what they bear, and the slack ones.
+std::string Verdict(const CaseResult& result) {
+  std::string slack;
+  const MemberLoad* least = nullptr;
+  for (const MemberLoad& load : result.members) {
+    if (load.slack) slack += (slack.empty() ? "" : ", ") + load.name;
+    if (load.Least() && (!least || *load.Least() < *least->Least())) least = &load;
+  }
+  std::string text = "  slack: " + (slack.empty() ? std::string("none") : slack) + "\n";
+  if (least != nullptr) {
+    text += fmt::format("  least factor: {} of {} in {}\n", FactorCell(least->Least()),
+                        least->LeastOf(), least->name);
+  }
+  return text;
+}
+
+std::string CaseText(const CaseResult& result, int most_modes) {
+  std::string text = fmt::format("\nLoad case {}", result.loads.name);
+  if (!result.loads.weight) text += ", without weight";
+  if (!result.at.found) return text + "\n  no equilibrium: " + result.at.why + "\n";
+  text += fmt::format("\n  in equilibrium to {:.2g} N after {} linear systems{}\n",
+                      result.at.residual_n, result.at.iterations, WayText(result.at.way));
+  text += Verdict(result);
+  for (const std::string& part : result.at.left_out) text += "  takes no part: " + part + "\n";
+  const bool others = std::any_of(result.members.begin(), result.members.end(),
+                                  [](const MemberLoad& m) { return m.kind != MemberKind::kCable; });
+  if (!result.def.cables.empty()) text += "\n" + Cables(result);
+  if (others) text += "\n" + BarsAndRods(result);
+  const std::string reactions = Reactions(result);
+  if (!reactions.empty()) text += "\n" + reactions;
+  if (result.modes) text += "\nModes about it\n" + ModeTable(result, most_modes);
+  return text;
+}
+
+}  // namespace
+
+bool AnalysisResult::Found() const {
+  return std::all_of(cases.begin(), cases.end(), [](const CaseResult& c) { return c.at.found; });
+}
+
+bool IsSupport(const ModelDef& def, const JointDef& joint) {
+  const auto fixed = [&](int body) {
+    return body == kWorld || def.bodies[static_cast<std::size_t>(body)].fixed;
+  };
+  return fixed(joint.body_a);
+}
+
+std::string AnalysisTables(const AnalysisResult& result, int most_modes) {
+  std::string text = fmt::format("Model {}\n", result.robot.def.name);
+  for (const std::string& note : result.notes) text += "  " + note + "\n";
+  text += ForceTables(result.robot.def, result.forces);
+  for (const CaseResult& one : result.cases) text += CaseText(one, most_modes);
+  return text;
+}
+
+}  // namespace taut::cli

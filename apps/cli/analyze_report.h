@@ -1,0 +1,50 @@
+/// What `taut analyze` has found, and how it prints it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "taut/analysis.h"
+#include "taut/safety.h"
+#include "taut/spec.h"
+
+namespace taut::cli {
+
+/// A load case: where the robot stands under it, what its members carry there.
+struct CaseResult {
+  LoadCaseSpec loads;
+  Equilibrium at;
+  ModelDef def;  ///< As it stands.
+  std::vector<MemberLoad> members;
+  std::vector<Reaction> anchors;
+  /// What holds cables that end in the world, a place each.
+  struct End {
+    std::string name;  ///< Of the node there.
+    Vec3 point_m, force_n;
+  };
+  std::vector<End> ends;
+  std::optional<Modes> modes;
+};
+
+struct AnalysisResult {
+  std::string file;
+  RobotSpec robot;
+  std::vector<std::string> notes;  ///< Of what a reader should know, in sentences.
+  ForceAnalysis forces;            ///< As described.
+  std::vector<CaseResult> cases;
+  bool Found() const;  ///< Whether every case has an equilibrium.
+};
+
+/// What members can carry by themselves.
+std::string ForceTables(const ModelDef& def, const ForceAnalysis& forces);
+
+/// `most_modes`: of each case at most so many rows.
+std::string AnalysisTables(const AnalysisResult& result, int most_modes);
+/// All of it, in full precision.
+std::string AnalysisJson(const AnalysisResult& result, int most_modes);
+
+/// Joints that hold the robot in the world: of them the loads are reactions.
+bool IsSupport(const ModelDef& def, const JointDef& joint);
+
+}  // namespace taut::cli

@@ -1,0 +1,264 @@
+// `taut size`: what a run asks of motors and springs, and which of a catalogue bear it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "output.h"
+#include "overrides.h"
+#include "table.h"
+#include "taut/sizing.h"
+
+namespace taut::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SizeArguments {
+  std::string folder, catalogue;
+  std::optional<double> spool_radius_m;
+  bool json = false, strict = false;
+};
+
+/// Which of the catalogue go with a cable, in the catalogue's order.
+struct Choice {
+  const CableDemand* cable;
+  std::vector<Fit> motors, springs;
+};
+
+std::vector<Choice> Choices(const RunDemand& run, const Catalogue& catalogue,
+                            const std::optional<double>& spool_radius_m) {
+  std::vector<Choice> choices;
+  for (const CableDemand& cable : run.cables) {
+    Choice choice{&cable, {}, {}};
+    for (const CatalogueMotor& motor : catalogue.motors) {
+      if (!cable.actuated) break;
+      const double radius_m = spool_radius_m ? *spool_radius_m : *motor.spool_radius_m;
+      choice.motors.push_back(FitOf(motor, radius_m, catalogue.factor, cable));
+    }
+    for (const CatalogueSpring& spring : catalogue.springs) {
+      choice.springs.push_back(
+          FitOf(spring, catalogue.factor, catalogue.stiffness_tolerance, cable));
+    }
+    choices.push_back(std::move(choice));
+  }
+  return choices;
+}
+
+std::string FactorText(double factor) {
+  return std::isfinite(factor) ? fmt::format("{:.2f}", factor) : "-";
+}
+
+std::string DemandTable(const RunDemand& run) {
+  Table table({"cable", "force peak", "rms", "speed peak", "rms", "power peak", "rms",
+               "energy gross", "net", "wound", "stretch"});
+  table.Add({"", "N", "N", "m/s", "m/s", "W", "W", "J", "J", "m", "m"});
+  for (const CableDemand& d : run.cables) {
+    std::vector<std::string> row{d.cable, Fixed(d.peak_force_n, 2), Fixed(d.rms_force_n, 2)};
+    if (d.actuated) {
+      for (const double x : {d.peak_speed_m_per_s, d.rms_speed_m_per_s}) row.push_back(Fixed(x, 4));
+      for (const double x : {d.peak_power_w, d.rms_power_w}) row.push_back(Fixed(x, 3));
+      for (const double x : {d.gross_energy_j, d.net_energy_j}) row.push_back(Fixed(x, 3));
+      row.push_back(Fixed(d.wound_m, 4));
+    } else {
+      row.insert(row.end(), 7, "-");
+    }
+    row.push_back(Fixed(d.stretch_m, 5));
+    table.Add(row);
+  }
+  return table.Text();
+}
+
+/// A column each, with the smallest factor and what it is of.
+std::string FitTable(const std::vector<Choice>& choices, std::vector<Fit> Choice::*fits) {
+  std::vector<std::string> head{"cable"};
+  for (const Choice& choice : choices) {
+    if (head.size() > 1) break;
+    for (const Fit& fit : choice.*fits) head.push_back(fit.name);
+  }
+  Table table(head);
+  for (const Choice& choice : choices) {
+    if ((choice.*fits).empty()) continue;
+    std::vector<std::string> row{choice.cable->cable};
+    for (const Fit& fit : choice.*fits) {
+      std::string text = FactorText(fit.least.factor) + " " + fit.least.of;
+      if (fits == &Choice::springs) text += fmt::format(" {:+.0f} %", 100 * fit.stiffness_off);
+      row.push_back((fit.fits ? "" : "no: ") + text);
+    }
+    table.Add(row);
+  }
+  return table.Text();
+}
+
+/// Names of what fits every cable that asks for one.
+std::vector<std::string> FitAll(const std::vector<Choice>& choices, std::vector<Fit> Choice::*fits,
+                                std::size_t count) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::string name;
+    bool all = true;
+    for (const Choice& choice : choices) {
+      if ((choice.*fits).empty()) continue;
+      name = (choice.*fits)[i].name;
+      all = all && (choice.*fits)[i].fits;
+    }
+    if (all && !name.empty()) names.push_back(name);
+  }
+  return names;
+}
+
+/// Cables that something of the catalogue is for, and for which nothing of it will do.
+std::vector<std::string> Without(const std::vector<Choice>& choices,
+                                 std::vector<Fit> Choice::*fits) {
+  std::vector<std::string> names;
+  for (const Choice& choice : choices) {
+    const auto& all = choice.*fits;
+    if (all.empty() || std::any_of(all.begin(), all.end(), [](const Fit& f) { return f.fits; })) {
+      continue;
+    }
+    names.push_back(choice.cable->cable);
+  }
+  return names;
+}
+
+std::string Joined(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+Json FactorJson(double factor) { return std::isfinite(factor) ? Json(factor) : Json(); }
+
+Json FitsJson(const std::vector<Fit>& fits, bool springs) {
+  Json list = Json::array();
+  for (const Fit& fit : fits) {
+    Json factors = Json::object();
+    for (const Margin& margin : fit.margins) factors[margin.of] = FactorJson(margin.factor);
+    Json one{{"name", fit.name}, {"fits", fit.fits}, {"factors", factors}};
+    if (springs) {
+      one["stiffness_off"] = fit.stiffness_off;
+    } else {
+      one["spool_turns"] = fit.spool_turns;
+    }
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+std::string SizeJson(const RunDemand& run, const Catalogue* catalogue,
+                     const std::vector<Choice>& choices) {
+  Json json{{"format_version", 1},
+            {"experiment", run.experiment},
+            {"from_s", run.from_s},
+            {"to_s", run.to_s},
+            {"rows", run.rows},
+            {"peaks_of_every_step", run.every_step},
+            {"catalogue", catalogue ? Json(catalogue->name) : Json()},
+            {"factor", catalogue ? Json(catalogue->factor) : Json()}};
+  json["cables"] = Json::array();
+  for (const Choice& choice : choices) {
+    const CableDemand& d = *choice.cable;
+    json["cables"].push_back({{"name", d.cable},
+                              {"actuated", d.actuated},
+                              {"peak_force_n", d.peak_force_n},
+                              {"rms_force_n", d.rms_force_n},
+                              {"peak_speed_m_per_s", d.peak_speed_m_per_s},
+                              {"rms_speed_m_per_s", d.rms_speed_m_per_s},
+                              {"peak_power_w", d.peak_power_w},
+                              {"rms_power_w", d.rms_power_w},
+                              {"gross_energy_j", d.gross_energy_j},
+                              {"net_energy_j", d.net_energy_j},
+                              {"wound_m", d.wound_m},
+                              {"stiffness_n_per_m", d.stiffness_n_per_m},
+                              {"stretch_m", d.stretch_m},
+                              {"motors", FitsJson(choice.motors, false)},
+                              {"springs", FitsJson(choice.springs, true)}});
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+/// That every motor has a spool.
+bool HaveSpools(const SizeArguments& args, const Catalogue& catalogue, Diagnostics& out) {
+  if (args.spool_radius_m) return true;
+  for (const CatalogueMotor& motor : catalogue.motors) {
+    if (motor.spool_radius_m) continue;
+    out.Error({args.catalogue, 0, 0}, "motor " + motor.name + " has no spool_radius_m",
+              "give it one, or all: --spool_radius_m");
+  }
+  return out.ok();
+}
+
+int Size(const SizeArguments& args) {
+  Diagnostics found;
+  std::optional<Catalogue> catalogue;
+  if (!args.catalogue.empty()) {
+    catalogue = LoadCatalogue(args.catalogue, found);
+    if (catalogue) HaveSpools(args, *catalogue, found);
+  }
+  const auto run = DemandOfRun(args.folder, found);
+  if (!Pass(found, args.strict)) return Fail(found, kBadInput);
+  if (catalogue) {
+    // Who fits is named lightest first.
+    std::stable_sort(catalogue->motors.begin(), catalogue->motors.end(),
+                     [](const CatalogueMotor& a, const CatalogueMotor& b) {
+                       return a.mass_kg.value_or(INFINITY) < b.mass_kg.value_or(INFINITY);
+                     });
+  }
+  const Catalogue nothing;
+  const Catalogue& of = catalogue ? *catalogue : nothing;
+  const std::vector<Choice> choices = Choices(*run, of, args.spool_radius_m);
+  const auto no_motor = Without(choices, &Choice::motors),
+             no_spring = Without(choices, &Choice::springs);
+  const int exit = no_motor.empty() && no_spring.empty() ? kOk : kFailed;
+  if (args.json) {
+    fmt::print("{}\n", SizeJson(*run, catalogue ? &*catalogue : nullptr, choices));
+    return exit;
+  }
+  fmt::print("{}: {:g} to {:g} s, {} rows; peaks and energies of {}\n\n{}", run->experiment,
+             run->from_s, run->to_s, run->rows, run->every_step ? "every step" : "rows alone",
+             DemandTable(*run));
+  if (!of.motors.empty()) {
+    fmt::print("\nMotors: the smallest of what there is over what is needed; {:g} is asked for\n{}",
+               of.factor, FitTable(choices, &Choice::motors));
+    fmt::print("  for all: {}\n", Joined(FitAll(choices, &Choice::motors, of.motors.size())));
+    if (!no_motor.empty()) fmt::print("  no motor for: {}\n", Joined(no_motor));
+  }
+  if (!of.springs.empty()) {
+    fmt::print("\nSprings: the same, and how far their stiffness is from the cable's\n{}",
+               FitTable(choices, &Choice::springs));
+    fmt::print("  for all: {}\n", Joined(FitAll(choices, &Choice::springs, of.springs.size())));
+    if (!no_spring.empty()) fmt::print("  no spring for: {}\n", Joined(no_spring));
+  }
+  return exit;
+}
+
+}  // namespace
+
+void AddSize(CLI::App& app, int& exit_code) {
+  auto args = std::make_shared<SizeArguments>();
+  CLI::App* size = app.add_subcommand(
+      "size", "Say what a run asks of motors and springs, and which of a catalogue bear it.");
+  size->add_option("run", args->folder, "Folder of the run, with trace.h5 and inputs.yaml")
+      ->required();
+  size->add_option("--catalogue", args->catalogue, "Motors and springs (YAML)")
+      ->option_text("FILE");
+  size->add_option("--spool_radius_m", args->spool_radius_m,
+                   "Radius of all spools, whatever the catalogue says")
+      ->option_text("NUMBER")
+      ->check(NumberWithin(1e-6, 1e3));
+  size->add_flag("--json", args->json, "JSON instead of tables");
+  size->add_flag("--strict", args->strict, kStrictHelp);
+  size->footer(
+      "Examples:\n"
+      "  taut size runs/sine_hand_tuned\n"
+      "  taut size runs/sine_hand_tuned --catalogue examples/winches.yaml\n"
+      "  taut size runs/sine_hand_tuned --catalogue examples/winches.yaml --spool_radius_m 0.012\n"
+      "Exit status: 0 every cable has what fits, 1 some have not, 2 bad usage, 3 bad input.");
+  size->callback([args, &exit_code] { exit_code = Size(*args); });
+}
+
+}  // namespace taut::cli

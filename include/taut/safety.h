@@ -1,0 +1,54 @@
+/// How far members are from what they bear: Euler's load, yield, strength, slack
+/// (docs/theory/loads.md, section 4).
+///
+/// Threads: any number may call these functions at once.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "taut/model_def.h"
+#include "taut/loads.h"
+
+namespace taut {
+
+enum class MemberKind {
+  kCable,
+  kBar,  ///< A joint that is one (`IsBar`).
+  kRod,  ///< A body that is one straight rod (`StrutForces`).
+};
+
+/// What members carry, tension positive.
+struct MemberForces {
+  std::vector<double> cable_tension_n;  ///< Per cable.
+  std::vector<double> bar_force_n;      ///< Per joint; of those that are no bars 0.
+  std::vector<StrutForce> struts;
+};
+
+/// What a member bears over what it carries: above 1 it holds. Nothing where a figure for it is not
+/// known or nothing of the kind is carried.
+struct MemberLoad {
+  MemberKind kind = MemberKind::kCable;
+  int index = 0;  ///< The cable, the joint or the body.
+  std::string name;
+  double least_n = 0, greatest_n = 0;  ///< Along a rod; else the same.
+  bool slack = false;                  ///< A cable without tension.
+  std::optional<double> buckling;      ///< pi^2 E I / Lb^2 over its compression; Lb is its length
+                                       ///< where the model says none.
+  std::optional<double> yield;         ///< Yield stress times area over the larger force.
+  std::optional<double> strength;      ///< Over its tension.
+  /// Of a cable that has less tension than unloaded: how many times the load until it is slack,
+  /// if tension falls in proportion.
+  std::optional<double> slackening;
+  /// The smallest of those there are, and its name; nothing if there are none.
+  std::optional<double> Least() const;
+  std::string LeastOf() const;
+};
+
+/// Cables first, then bars, then rods. `def`: as it stands under these forces. `unloaded`: the same
+/// members without the load, if that is known.
+std::vector<MemberLoad> MemberLoads(const ModelDef& def, const MemberForces& now,
+                                    const MemberForces* unloaded = nullptr);
+
+}  // namespace taut
