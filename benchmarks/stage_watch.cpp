@@ -1,7 +1,5 @@
 #include "benchmarks/stage_watch.h"
 
-#include "sim/batch_impl.h"
-
 namespace taut {
 
 namespace sim {

@@ -4,18 +4,9 @@
 
 #include <cstdint>
 
-#include "sim/group.h"
+#include "sim/batch_inside.h"
 
 namespace taut {
-
-class Batch;
-
-/// What a measurement needs of a batch's inside.
-struct BatchInside {
-  /// From now on the batch steps with the watch.
-  static void Watch(Batch& batch);
-};
-
 namespace sim {
 
 inline constexpr int kStages = 8;

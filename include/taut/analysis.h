@@ -16,31 +16,13 @@
 #include <vector>
 
 #include "taut/batch.h"
+#include "taut/matrix.h"
 #include "taut/model_def.h"
 #include "taut/spec.h"
 #include "taut/start.h"
 #include "taut/statics.h"
 
 namespace taut {
-
-/// A matrix, row after row.
-struct Matrix {
-  int rows = 0, columns = 0;
-  std::vector<double> values;
-  Matrix() = default;
-  Matrix(int row_count, int column_count)
-      : rows(row_count),
-        columns(column_count),
-        values(static_cast<std::size_t>(row_count) * static_cast<std::size_t>(column_count)) {}
-  double& operator()(int row, int column) { return values[Index(row, column)]; }
-  double operator()(int row, int column) const { return values[Index(row, column)]; }
-
- private:
-  std::size_t Index(int row, int column) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
-           static_cast<std::size_t>(column);
-  }
-};
 
 struct EquilibriumOptions {
   /// What a body may have left, as a share of the largest force on any (of 1 N, if that is less).

@@ -1,0 +1,29 @@
+/// A matrix of numbers. Nothing of an algebra: libraries bring their own.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace taut {
+
+/// Row after row. An index that is out of range is a mistake of the program that calls.
+struct Matrix {
+  int rows = 0, columns = 0;
+  std::vector<double> values;
+
+  Matrix() = default;
+  Matrix(int row_count, int column_count)
+      : rows(row_count),
+        columns(column_count),
+        values(static_cast<std::size_t>(row_count) * static_cast<std::size_t>(column_count)) {}
+  double& operator()(int row, int column) { return values[Index(row, column)]; }
+  double operator()(int row, int column) const { return values[Index(row, column)]; }
+
+ private:
+  std::size_t Index(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(column);
+  }
+};
+
+}  // namespace taut

@@ -1,0 +1,15 @@
+#include "linear/step_dual.h"
+
+#include "simd/dual.h"
+// The very text that simulates; it must find the numbers above.
+#include "sim/kernel.inl"
+
+namespace taut::linear {
+
+const sim::Kernel kKernelDual = {2, sim::ScratchBytes<simd::Dual>,
+                                 sim::StepGroup<simd::Dual, sim::NoWatch>,
+                                 sim::SenseGroup<simd::Dual>};
+
+const double kStiffFrom = sim::kSoftSpring;
+
+}  // namespace taut::linear

@@ -1,0 +1,71 @@
+/// A number and its derivative by one other number, in the place of a wide number: a step compiled
+/// for it gives, beside what a single world's step gives, how that changes with what it starts
+/// from (forward differentiation: sum, product and chain rule for every operation).
+///
+/// Comparisons, and what chooses by them, go by the number alone: the derivative is that of the
+/// branch that is taken. In memory it is two doubles, as the same number of two lanes.
+#pragma once
+
+#include "simd/angle.h"
+
+namespace taut::simd {
+
+struct DualMask {
+  bool v;
+  bool operator[](int) const noexcept { return v; }
+  void Set(int, bool x) noexcept { v = x; }
+  static DualMask Splat(bool x) noexcept { return {x}; }
+};
+
+struct Dual {
+  static constexpr int kLanes = 1;
+  double v, d;
+  static Dual Splat(double x) noexcept { return {x, 0.0}; }
+  double operator[](int) const noexcept { return v; }
+  void Set(int, double x) noexcept { v = x, d = 0.0; }
+};
+
+template <>
+struct LaneOf<Dual> {
+  using Type = Dual;
+};
+
+/// What no derivative goes through stays so where a factor is infinite: guards like 1e300 may
+/// overflow, and what they guard is not chosen.
+TAUT_INLINE double DualPart(double derivative, double factor) noexcept {
+  return derivative == 0.0 ? 0.0 : derivative * factor;
+}
+
+TAUT_INLINE Dual operator+(Dual a, Dual b) noexcept { return {a.v + b.v, a.d + b.d}; }
+TAUT_INLINE Dual operator-(Dual a, Dual b) noexcept { return {a.v - b.v, a.d - b.d}; }
+TAUT_INLINE Dual operator-(Dual a) noexcept { return {-a.v, -a.d}; }
+TAUT_INLINE Dual operator*(Dual a, Dual b) noexcept {
+  return {a.v * b.v, DualPart(a.d, b.v) + DualPart(b.d, a.v)};
+}
+TAUT_INLINE Dual operator/(Dual a, Dual b) noexcept {
+  const double quotient = a.v / b.v;
+  return {quotient, DualPart(a.d - DualPart(b.d, quotient), 1.0 / b.v)};
+}
+TAUT_INLINE DualMask operator<(Dual a, Dual b) noexcept { return {a.v < b.v}; }
+TAUT_INLINE DualMask operator>(Dual a, Dual b) noexcept { return {a.v > b.v}; }
+TAUT_INLINE DualMask operator==(Dual a, Dual b) noexcept { return {a.v == b.v}; }
+TAUT_INLINE DualMask operator&(DualMask a, DualMask b) noexcept { return {a.v && b.v}; }
+TAUT_INLINE DualMask operator|(DualMask a, DualMask b) noexcept { return {a.v || b.v}; }
+TAUT_INLINE DualMask operator!(DualMask a) noexcept { return {!a.v}; }
+TAUT_INLINE Dual Select(DualMask m, Dual yes, Dual no) noexcept { return m.v ? yes : no; }
+TAUT_INLINE bool Any(DualMask m) noexcept { return m.v; }
+TAUT_INLINE Dual Max(Dual a, Dual b) noexcept { return a.v > b.v ? a : b; }
+TAUT_INLINE Dual Min(Dual a, Dual b) noexcept { return a.v < b.v ? a : b; }
+TAUT_INLINE Dual Abs(Dual a) noexcept { return Max(a, -a); }
+/// At 0, where it has none, the derivative is taken as 0: roots of what is nothing are not chosen.
+TAUT_INLINE Dual Sqrt(Dual a) noexcept {
+  const double root = __builtin_sqrt(a.v);
+  return {root, a.v > 0.0 ? DualPart(a.d, 0.5 / root) : 0.0};
+}
+/// Between its jumps it does not change.
+TAUT_INLINE Dual Round(Dual a) noexcept { return {taut::Round(a.v), 0.0}; }
+TAUT_INLINE Dual& operator+=(Dual& a, Dual b) noexcept { return a = a + b; }
+TAUT_INLINE Dual& operator-=(Dual& a, Dual b) noexcept { return a = a - b; }
+TAUT_INLINE Dual& operator*=(Dual& a, Dual b) noexcept { return a = a * b; }
+
+}  // namespace taut::simd
