@@ -1,0 +1,174 @@
+"""The BEST laboratory's two-dimensional spine: what five tests tell of its model."""
+
+import itertools
+import math
+import pathlib
+import statistics
+import time
+
+from validation import fits
+from validation.push import machine
+from validation.runs import ROOT, fill, table
+
+TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
+DATA = ROOT / "tests" / "data" / "best_2d_spine"
+TESTS = (0, 2, 4, 6, 8)
+AFTER_S = (2.1, 3.4)         # of a set point: when the pose that belongs to it is held
+UP = (40, 118)               # set points of the way up; the last one's pose was not recorded to its end
+X, Z, TURN = "node/v.o/position_x_m", "node/v.o/position_z_m", "body/v/rotation_y_rad"
+UNITS = {X: 1e3, Z: 1e3, TURN: 180 / math.pi}   # mm, mm, degrees
+SD = {X: 0.00074, Z: 0.0008, TURN: math.radians(0.62)}  # how far the five tests are apart
+CAMERA = [f"{{channel: {X}, offset: {{sd: 0.002}}}}", f"{{channel: {Z}, offset: {{sd: 0.002}}}}",
+          f"{{channel: {TURN}, offset: {{sd: 0.01}}}}"]
+WOUND = "{parameter: wound, prior: {sd: 0.01}}"
+MASS = "{parameter: mass_kg, low: 0.3, high: 2, scale: 0.03}"
+MASS_PRIOR = "{parameter: mass_kg, prior: {sd: 0.033}}"
+POSE = ["{parameter: calibrated_x_m, scale: 0.001}", "{parameter: calibrated_z_m, scale: 0.001}",
+        "{parameter: calibrated_rad, scale: 0.01}"]
+STIFFNESS = ["{parameter: k12_n_per_m, scale: 42}", "{parameter: k34_n_per_m, scale: 222}"]
+
+
+class Data:
+    """The five tests with the names of taut, whole and in halves of the stroke."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        commands = fits.rows_of(DATA / "commands.csv", 5)
+        heights = [row[8] for row in commands]
+        middle = statistics.median(heights[1:UP[1] + 1])
+        for test in TESTS:
+            poses = fits.rows_of(DATA / f"test{test}_measured_pose.csv", 2)
+            rows, last = [], -math.inf
+            for time_ms, x_cm, y_cm, turn in poses:
+                if time_ms > last:   # a camera's row may come twice
+                    rows.append([time_ms * 1e-3, x_cm * 1e-2, y_cm * 1e-2, -math.radians(turn)])
+                    last = time_ms
+            head = ["time_s", X, Z, TURN]
+            sent = [row[0] * 1e-3 for row in fits.rows_of(DATA / f"test{test}_setpoints.csv", 2)]
+            fits.write_rows(folder / f"test{test}.csv", head, rows)
+            fits.write_rows(folder / f"test{test}_setpoints.csv", ["time_s", "experiment_s"],
+                            [[t, 2.0 * (i + 1)] for i, t in enumerate(sent)])
+            for half, below in (("lower", True), ("upper", False)):
+                spans = [(t + AFTER_S[0], t + AFTER_S[1]) for i, t in enumerate(sent[:UP[1]])
+                         if (heights[i + 1] < middle) == below]
+                kept = [row for row in rows if any(a <= row[0] <= b for a, b in spans)]
+                fits.write_rows(folder / f"test{test}_{half}.csv", head, kept)
+
+    def text(self, estimate, train, test, halves=("", "")):
+        """`train`, `test`: which tests; `halves`: of the stroke, of each."""
+        entries = []
+        for use, which, half in (("train", train, halves[0]), ("test", test, halves[1])):
+            for number in which:
+                entries.append(f"  - {{name: t{number}{half}, experiment: {self._beside('experiments/best_2d_spine.yaml')}, "
+                               f"data: ../test{number}{half}.csv, setpoints: ../test{number}_setpoints.csv, "
+                               f"forward: static, use: {use}}}\n")
+        residuals = [f"  - {{channel: {c}, sd: {sd}, window: {{after_setpoint_s: [{AFTER_S[0]}, {AFTER_S[1]}]}}}}\n"
+                     for c, sd in SD.items()]
+        return ("experiments:\n" + "".join(entries) + "estimate:\n" + "".join(f"  - {e}\n" for e in estimate) +
+                "residuals:\n" + "".join(residuals) + "search: {iterations: 40}\n")
+
+    def _beside(self, path):
+        return fits.beside(self.folder / "any", path)
+
+
+def pooled(points, key):
+    return [fits.rms(points, channel, key) * scale for channel, scale in UNITS.items()]
+
+
+def errors(three):
+    return [f"{three[0]:.2f}", f"{three[1]:.2f}", f"{three[2]:.2f}"]
+
+
+def number(point):
+    return int(point["where"].split()[-1])
+
+
+class Repeated:
+    """What was measured, in all five tests: how far they are apart, and what the mean of three says of two others."""
+
+    def __init__(self, points):
+        self.of = {(p["channel"], number(p), p["experiment"]): p["measured"] for p in points if number(p) <= UP[1]}
+
+    def _tests(self, channel, i):
+        return [self.of.get((channel, i, f"t{t}")) for t in TESTS]
+
+    def spread(self, channel):
+        rows = [self._tests(channel, i) for i in range(UP[0], UP[1] + 1)]
+        return math.sqrt(statistics.mean(statistics.variance(row) for row in rows if None not in row)) * UNITS[channel]
+
+    def floor(self, channel):
+        squares = []
+        for row in (self._tests(channel, i) for i in range(1, UP[1] + 1)):
+            if None in row:
+                continue
+            for three in itertools.combinations(range(len(TESTS)), 3):
+                mean = statistics.mean(row[i] for i in three)
+                squares += [(x - mean) ** 2 for i, x in enumerate(row) if i not in three]
+        return math.sqrt(statistics.mean(squares)) * UNITS[channel]
+
+
+class Splits:
+    """A model found from three tests, on the two others: all ten ways."""
+
+    def __init__(self, taut, data, name, estimate):
+        points, self.fits = [], []
+        for train in itertools.combinations(TESTS, 3):
+            test = [t for t in TESTS if t not in train]
+            fit = fits.run(taut, f"{name}_{''.join(map(str, train))}", data.text(estimate, train, test))
+            points += [p for p in fit.points() if number(p) <= UP[1]]
+            self.fits.append(fit)
+        self.fitted, self.untuned = pooled(points, "fitted"), pooled(points, "untuned")
+        self.poses = points
+
+
+def value(fit, name):
+    p = fit.parameters[name]
+    error = max(p["se"] or math.inf, p["se_jackknife"] or 0)
+    return f"{p['value']:.4g} +- {error:.2g}" if math.isfinite(error) else f"{p['value']:.4g}"
+
+
+def verdicts(fit):
+    return "<br>".join(f"{name}: {p['verdict']}" for name, p in fit.parameters.items())
+
+
+def page(taut):
+    started = time.monotonic()
+    data = Data(taut.folder.resolve())
+    camera = Splits(taut, data, "camera", CAMERA + [WOUND])
+    one = camera.fits[0]
+    repeated = Repeated(one.points("train") + one.points())
+    untuned_up = {}
+    for fit in camera.fits:
+        for p in fit.points("train") + fit.points():
+            if UP[0] <= number(p) <= UP[1]:
+                untuned_up[(p["experiment"], p["channel"], p["where"])] = p
+    models = {"camera and command scale": CAMERA + [WOUND],
+              "the same and the mass": CAMERA + [WOUND, MASS_PRIOR], "the mass alone": [MASS],
+              "calibrated pose and stiffness": POSE + STIFFNESS}
+    rows, halves = [], {}
+    for name, estimate in models.items():
+        fit = fits.run(taut, "half_" + name.replace(" ", "_"),
+                       data.text(estimate, TESTS, TESTS, ("_lower", "_upper")), *(["--profile", "*"] if name ==
+                       "camera and command scale" else []))
+        halves[name] = fit
+        rows.append([name, *errors(pooled(fit.points(), "fitted")),
+                     "; ".join(fit.judgements()) or "good", verdicts(fit)])
+    condition = halves["calibrated pose and stiffness"].summary["condition"]
+    mass = halves["the mass alone"].parameters["mass_kg"]["value"]
+    parameters = [[f"`{name}`", p["unit"], f"{p['start']:.4g}", value(one, name), p["verdict"]]
+                  for name, p in one.parameters.items()]
+    return fill(TEMPLATE.read_text(), {
+        "version": taut("--version").split()[-1],
+        "seconds": f"{time.monotonic() - started:.0f}", "machine": machine(),
+        "untuned": table(["", "x [mm]", "y [mm]", "turn [degrees]"], [
+            ["way up, five tests, untuned", *errors(pooled(list(untuned_up.values()), "untuned"))],
+            ["all, two tests, untuned", *errors(camera.untuned)],
+            ["all, two tests, fitted to the three others", *errors(camera.fitted)]]),
+        "spread": " / ".join(errors([repeated.spread(c) for c in UNITS])),
+        "floor": " / ".join(errors([repeated.floor(c) for c in UNITS])),
+        "parameters": table(["number", "unit", "assumed", "found", "verdict"], parameters),
+        "judgement": "; ".join(one.judgements()) or "good",
+        "halves": table(["found from the lower half", "x [mm]", "y [mm]", "turn [degrees]", "the fit is",
+                         "verdicts"], rows),
+        "mass": f"{mass / 0.655:.2f}", "condition": f"{condition:.0e}" if condition else "infinite",
+    })
