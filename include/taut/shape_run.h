@@ -23,14 +23,14 @@ struct Shape {
 };
 
 struct ShapeLook {
-  double size = 0.08;      ///< Largest way of a swing, as a share of the robot's size. > 0
-  double period_s = 2.0;   ///< Of a swing as it is shown. > 0
-  int periods = 2;         ///< >= 1
-  double rate_hz = 30.0;   ///< Rows a second. > 0
+  double size = 0.08;     ///< Largest way of a swing, as a share of the robot's size. > 0
+  double period_s = 2.0;  ///< Of a swing as it is shown. > 0
+  int periods = 2;        ///< >= 1
+  double rate_hz = 30.0;  ///< Rows a second. > 0
 };
 
-/// How far a robot reaches: the diagonal of the box that its nodes, centres of mass and ends of cables
-/// fill [m].
+/// How far a robot reaches: the diagonal of the box that its nodes, centres of mass and ends of
+/// cables fill [m].
 double SizeOf(const ModelDef& def);
 
 /// The robot as described, swung by `share` (-1..1) of a shape's amplitude, which is the shape
@@ -45,9 +45,8 @@ bool WriteShapeRun(const std::string& folder, const ExperimentSpec& experiment, 
 /// The same for each of some modes ("mode_1", ...), mechanisms ("mechanism_1", ...) and states of
 /// self-stress ("self_stress_1", ...), in folders of these names below `folder`, which are
 /// returned. Motions as a whole are left out.
-std::vector<std::string> WriteShapeRuns(const std::string& folder,
-                                        const ExperimentSpec& experiment, const Modes& modes,
-                                        const ForceAnalysis& forces, int most_modes,
-                                        const ShapeLook& look, Diagnostics& out);
+std::vector<std::string> WriteShapeRuns(const std::string& folder, const ExperimentSpec& experiment,
+                                        const Modes& modes, const ForceAnalysis& forces,
+                                        int most_modes, const ShapeLook& look, Diagnostics& out);
 
 }  // namespace taut

@@ -63,8 +63,7 @@ std::vector<double> RowAt(Batch& batch, const Pose& pose, const Shape& shape) {
     const BodyState& s = pose.bodies[b];
     batch.SetBodyState(0, static_cast<int>(b), s);
     const Quat& q = s.orientation;
-    row.insert(row.end(),
-               {s.position_m.x, s.position_m.y, s.position_m.z, q.w, q.x, q.y, q.z});
+    row.insert(row.end(), {s.position_m.x, s.position_m.y, s.position_m.z, q.w, q.x, q.y, q.z});
   }
   for (std::size_t c = 0; c < pose.rest_lengths_m.size(); ++c) {
     const CableState cable = batch.Cable(0, static_cast<int>(c));
@@ -156,10 +155,9 @@ bool WriteShapeRun(const std::string& path, const ExperimentSpec& experiment, co
   return folder->Finish(SummaryJson(summary), out);
 }
 
-std::vector<std::string> WriteShapeRuns(const std::string& folder,
-                                        const ExperimentSpec& experiment, const Modes& modes,
-                                        const ForceAnalysis& forces, int most_modes,
-                                        const ShapeLook& look, Diagnostics& out) {
+std::vector<std::string> WriteShapeRuns(const std::string& folder, const ExperimentSpec& experiment,
+                                        const Modes& modes, const ForceAnalysis& forces,
+                                        int most_modes, const ShapeLook& look, Diagnostics& out) {
   std::vector<std::string> written;
   const auto write = [&](const Shape& shape) {
     const std::string path = (std::filesystem::path(folder) / shape.name).string();

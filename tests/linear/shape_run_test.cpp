@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -16,7 +18,9 @@ namespace fs = std::filesystem;
 class ShapeRun : public testing::Test {
  protected:
   ShapeRun() {
-    experiment_ = ExperimentOf(LoadRobot(TAUT_SOURCE_DIR "/models/prism3.yaml", {}, out_)->def);
+    const auto robot = LoadRobot(TAUT_SOURCE_DIR "/models/prism3.yaml", {}, out_);
+    experiment_ = ExperimentOf(robot->def);
+    experiment_.robot = *robot;
     experiment_.robot.def.gravity_m_per_s2 = {};
     folder_ = fs::temp_directory_path() / ("taut_shapes_" + std::to_string(getpid()));
     fs::remove_all(folder_);
@@ -52,17 +56,16 @@ TEST_F(ShapeRun, SwingsAsTheModeAndIsReadLikeARun) {
   EXPECT_EQ(fs::path(written[2]).filename(), "mechanism_1");
   EXPECT_EQ(fs::path(written[3]).filename(), "self_stress_1");
 
-  const auto first = std::find_if(modes.modes.begin(), modes.modes.end(), [](const Mode& mode) {
-    return mode.kind != Mode::Kind::kRigid;
-  });
+  const auto first = std::find_if(modes.modes.begin(), modes.modes.end(),
+                                  [](const Mode& mode) { return mode.kind != Mode::Kind::kRigid; });
   const auto trace = ReadTraceOfRun(written[0] + "/trace.h5", out_);
   ASSERT_TRUE(trace) << out_.Format();
   ASSERT_EQ(trace->time_s.size(), 121u);
   double greatest_m = 0;
   for (const NodeDef& node : def.nodes) {
     const auto b = static_cast<std::size_t>(node.body);
-    const Vec3 way = first->translation_m[b] +
-                     Cross(first->turn_rad[b], node.position_m - def.bodies[b].com_m);
+    const Vec3 way =
+        first->translation_m[b] + Cross(first->turn_rad[b], node.position_m - def.bodies[b].com_m);
     greatest_m = std::max(greatest_m, std::sqrt(Dot(way, way)));
   }
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
