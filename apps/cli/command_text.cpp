@@ -110,7 +110,6 @@ std::string HelpText(const CommandText& command) {
 std::string OverviewText(const CommandText& taut) {
   return Wrapped(taut.what, 0, kWidth) + "\n\nCommands:\n" + CommandRows(taut) +
          "\nExamples:\n"
-         "  taut check models/tetraspine3.yaml\n"
          "  taut run experiments/push_20n.yaml --csv\n"
          "  taut view experiments/push_20n.yaml\n"
          "`taut help COMMAND` tells more.\n";

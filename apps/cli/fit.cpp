@@ -169,8 +169,8 @@ int Run(const FitArguments& args) {
 
 void AddFit(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<FitArguments>();
-  CLI::App* fit = app.add_subcommand(
-      "fit", "Find numbers of models and experiments from measurements, and say what these tell.");
+  CLI::App* fit =
+      app.add_subcommand("fit", "Find numbers of models and experiments from measurements.");
   fit->add_option("fit", args->path, "Fit file (YAML)")->required();
   fit->add_option("--set", args->set, "Parameter of the fit, its experiments or models")
       ->option_text("NAME=VALUE")

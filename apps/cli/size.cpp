@@ -240,8 +240,8 @@ int Size(const SizeArguments& args) {
 
 void AddSize(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<SizeArguments>();
-  CLI::App* size = app.add_subcommand(
-      "size", "Say what a run asks of motors and springs, and which of a catalogue bear it.");
+  CLI::App* size =
+      app.add_subcommand("size", "Say what a run asks of motors and springs, and what bears it.");
   size->add_option("run", args->folder, "Folder of the run, with trace.h5 and inputs.yaml")
       ->required();
   size->add_option("--catalogue", args->catalogue, "Motors and springs (YAML)")

@@ -21,7 +21,7 @@ struct Side {
   }
   /// Of the body, in W as described; turned by exp(theta), to the second order.
   JetVec Direction(const Vec3& described) const {
-    const JetVec now = JetVec::Of(ArmOf({anchor.body, described}, *at));
+    JetVec now = JetVec::Of(ArmOf({anchor.body, described}, *at));
     if (!moves()) return now;
     const JetVec swept = Cross(Turn(), now);
     return now + swept + 0.5 * Cross(Turn(), swept);

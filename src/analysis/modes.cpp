@@ -141,7 +141,7 @@ void AddVibrations(const ModelDef& def, const Structure& s, const Eigen::MatrixX
 }  // namespace analysis
 
 Modes FindModes(const ModelDef& def, const LoadCaseSpec& loads) {
-  using namespace analysis;
+  using namespace analysis;  // NOLINT(google-build-using-namespace): this function alone
   const Structure s(def, loads, true);
   Modes out;
   if (s.bodies.empty()) {

@@ -204,7 +204,7 @@ class MappingReader {
   }
 
   std::string Separator(const Json& json) {
-    const std::string text = json.is_string() ? json.get<std::string>() : "";
+    std::string text = json.is_string() ? json.get<std::string>() : "";
     if (text == "," || text == ";" || text == "\t" || text == " " || text == "|") return text;
     Error("table.separator", "is none of \",\", \";\", \"|\", \"\\t\" and \" \"");
     return {};

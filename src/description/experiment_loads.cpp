@@ -1,6 +1,7 @@
 // Load cases.
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "base/fixed.h"
 #include "description/experiment_parts.h"
@@ -73,7 +74,9 @@ class CaseReader {
   struct Key {
     bool is_bar;
     int index;
-    auto operator<=>(const Key&) const = default;
+    bool operator<(const Key& other) const {
+      return std::tie(is_bar, index) < std::tie(other.is_bar, other.index);
+    }
   };
   struct Member {
     const std::string& name;

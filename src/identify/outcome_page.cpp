@@ -12,7 +12,7 @@
 namespace taut {
 namespace {
 
-using namespace identify;
+using namespace identify;  // NOLINT(google-build-using-namespace): its parts, of this file
 
 constexpr const char* kStyle = R"(
 body{font:15px/1.45 system-ui,sans-serif;color:#1c2430;background:#fff;max-width:1000px;margin:24px auto;padding:0 16px}

@@ -16,6 +16,18 @@ BatchOptions OptionsOf(int worlds, Simd simd, double tolerance_m_per_s) {
   return options;
 }
 
+/// All that a group's step reads and writes.
+struct Kept {
+  std::vector<double> rows;
+  std::vector<int> slots_used;
+  int touches_used;
+
+  Kept(const sim::Group& group, int row_count, std::vector<int> slots)
+      : rows(group.rows, group.rows + 2 * row_count),
+        slots_used(std::move(slots)),
+        touches_used(group.touches_used) {}
+};
+
 }  // namespace
 
 template <>
@@ -78,19 +90,6 @@ void World<Plain>::Step(double step_s) {
   batch_.Step(step_s);
 }
 
-/// All that a group's step reads and writes.
-template <>
-struct World<Dual>::Kept {
-  std::vector<double> rows;
-  std::vector<int> slots_used;
-  int touches_used;
-
-  explicit Kept(const World<Dual>& w)
-      : rows(w.inside_->groups[0].rows, w.inside_->groups[0].rows + 2 * w.layout().rows),
-        slots_used(w.inside_->slots_used),
-        touches_used(w.inside_->groups[0].touches_used) {}
-};
-
 /// The solver is done once the laws hold to its tolerance; whether their derivatives do, it does
 /// not look at. One step of Newton's method from impulses near the solution makes both right where
 /// laws are straight lines, so it is made to take one: it begins a little off. What its compliances
@@ -108,10 +107,10 @@ void World<Dual>::Step(double step_s) {
       if (step_s * step_s * g.rows[2 * (l.stiff_k + c)] > kStiffFrom) f(l.tension + c);
     }
   };
-  const Kept before(*this);
+  const Kept before(g, l.rows, inside_->slots_used);
   each_impulse([&](int row) { g.rows[2 * row] *= kOff; });
   batch_.Step(step_s);
-  const Kept after(*this);
+  const Kept after(g, l.rows, inside_->slots_used);
   std::copy(before.rows.begin(), before.rows.end(), g.rows);
   // The memory of contacts belongs together: keys, forces, what slid.
   inside_->slots_used = after.slots_used;

@@ -45,7 +45,6 @@ class World {
   std::uint32_t status_bits() const { return batch_.Status(0).bits; }
 
  private:
-  struct Kept;
   Batch batch_;
   BatchInside::Impl* inside_;
   std::vector<std::uint8_t> snapshot_;
