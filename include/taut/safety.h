@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "taut/model_def.h"
 #include "taut/loads.h"
+#include "taut/model_def.h"
 
 namespace taut {
 

@@ -110,10 +110,10 @@ TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
 }
 
 TEST_F(Limits, AnUnknownCommandIsAnsweredByThoseThatThereAre) {
-  ExpectRefused(
-      {"simulate", "a.yaml"}, 2,
-      "error: there is no command \"simulate\" (one of: check, run, compare, gait, "
-      "learn, list, new, report, robot, schema, view, help)\n`taut --help` tells more.\n");
+  ExpectRefused({"simulate", "a.yaml"}, 2,
+                "error: there is no command \"simulate\" (one of: analyze, check, run, "
+                "compare, fit, gait, learn, list, new, report, robot, schema, ...)\n`taut --help` "
+                "tells more.\n");
 }
 
 TEST_F(Limits, StrictRunsAndSearchesRefuseWarnings) {
