@@ -1,7 +1,5 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -10,6 +8,7 @@
 #include "interrupt.h"
 #include "output.h"
 #include "overrides.h"
+#include "progress_line.h"
 #include "streams.h"
 #include "taut/files.h"
 #include "taut/identify.h"
@@ -26,30 +25,11 @@ struct FitArguments {
   bool check = false, resume = false, design = false, quiet = false, strict = false;
 };
 
-/// One line that is rewritten on a terminal, a line every ten seconds elsewhere.
-class FitLine {
- public:
-  explicit FitLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
-
-  void Show(const IdentifyProgress& p) {
-    const auto now = std::chrono::steady_clock::now();
-    const auto wait = std::chrono::milliseconds(terminal_ ? 200 : 10'000);
-    if (quiet_ || now - last_ < wait) return;
-    fmt::print(stderr, "{}{}: {} iterations  chi2 {:.6g}  {} experiments computed{}",
-               terminal_ ? "\r\033[K" : "", p.what, p.iterations, p.chi2, p.computed,
-               terminal_ ? "" : "\n");
-    std::fflush(stderr);
-    shown_ = true;
-    last_ = now;
-  }
-  void Clear() const {
-    if (shown_ && terminal_) fmt::print(stderr, "\r\033[K");
-  }
-
- private:
-  bool quiet_, terminal_, shown_ = false;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
+void Show(ProgressLine& line, const IdentifyProgress& p) {
+  if (!line.Due()) return;
+  line.Show(fmt::format("{}: {} iterations  chi2 {:.6g}  {} experiments computed", p.what,
+                        p.iterations, p.chi2, p.computed));
+}
 
 /// What `--check` says of a fit that has no mistakes.
 void PrintCheck(const Identification& fit) {
@@ -127,12 +107,12 @@ int Search(const FitArguments& args, const FitSpec& spec) {
     fmt::print(stderr, "warning: {}: {} damaged records, computed again\n", memory,
                fit->counts().damaged);
   }
-  FitLine line(args.quiet);
+  ProgressLine line(args.quiet, false);
   OutcomeOptions how;
   how.profiles = args.profiles;
   how.design = args.design;
   how.stop = &interrupt_asked;
-  how.progress = [&](const IdentifyProgress& p) { line.Show(p); };
+  how.progress = [&](const IdentifyProgress& p) { Show(line, p); };
   const FitOutcome outcome = RunFit(*fit, how);
   line.Clear();
   if (!fit->memory_error().empty()) {

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -12,6 +10,7 @@
 #include "learn_show.h"
 #include "output.h"
 #include "overrides.h"
+#include "progress_line.h"
 #include "streams.h"
 #include "taut/cluster.h"
 #include "taut/learn.h"
@@ -38,31 +37,13 @@ std::string Duration(double s) {
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-/// One line that is rewritten on a terminal, a line every ten seconds elsewhere.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
-
-  void Show(const LearnProgress& p) {
-    const auto now = std::chrono::steady_clock::now();
-    const auto wait = std::chrono::milliseconds(terminal_ ? 200 : 10'000);
-    if (quiet_ || (shown_ && now - last_ < wait)) return;
-    const std::string best = p.best_score ? fmt::format("{:.6g}", *p.best_score) : "none";
-    fmt::print(stderr, "{}{} of {}  best {}  {} failed  {:.0f} simulated s/s  {} left{}",
-               terminal_ ? "\r\033[K" : "", p.evaluations, p.budget, best, p.failed,
-               p.simulated_s_per_s, Duration(p.left_s), terminal_ ? "" : "\n");
-    std::fflush(stderr);
-    shown_ = true;
-    last_ = now;
-  }
-  void Clear() const {
-    if (shown_ && terminal_) fmt::print(stderr, "\r\033[K");
-  }
-
- private:
-  bool quiet_, terminal_, shown_ = false;
-  std::chrono::steady_clock::time_point last_;
-};
+void Show(ProgressLine& line, const LearnProgress& p) {
+  if (!line.Due()) return;
+  const std::string best = p.best_score ? fmt::format("{:.6g}", *p.best_score) : "none";
+  line.Show(fmt::format("{} of {}  best {}  {} failed  {:.0f} simulated s/s  {} left",
+                        p.evaluations, p.budget, best, p.failed, p.simulated_s_per_s,
+                        Duration(p.left_s)));
+}
 
 void PrintSummary(const LearnSummary& s, const StudySpec& study, const std::string& folder) {
   fmt::print("{}: {} evaluations, {} failed", study.name, s.evaluations, s.failed);
@@ -101,8 +82,8 @@ int SearchAlone(const StudySpec& study, const LearnArguments& args, Evaluator& e
   LearnOptions options;
   options.folder = args.out.empty() ? (fs::path("runs") / study.name).string() : args.out;
   options.stop = &interrupt_asked;
-  ProgressLine line(args.quiet);
-  options.progress = [&](const LearnProgress& p) { line.Show(p); };
+  ProgressLine line(args.quiet, true);
+  options.progress = [&](const LearnProgress& p) { Show(line, p); };
   options.skip_damaged = args.skip_damaged;
   const LearnSummary summary = RunStudy(study, evaluator, options, found);
   line.Clear();

@@ -60,7 +60,7 @@ std::vector<double> Ticks(double low, double high) {
   }
   std::vector<double> out;
   for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
-    out.push_back(k * step);
+    out.push_back(k * step + 0.0);  // 0 has no sign
   }
   return out;
 }
