@@ -17,7 +17,8 @@ struct Axis {
 
   void Take(double x) { low = std::min(low, x), high = std::max(high, x); }
   void Widen(double share) {
-    const double room = high > low ? share * (high - low) : std::max(1e-12, 0.1 * std::fabs(high));
+    const double size = std::fabs(high);
+    const double room = high > low ? share * (high - low) : size > 1e-12 ? 0.1 * size : 1.0;
     low -= room, high += room;
   }
   double At(double x) const { return from + (x - low) / (high - low) * (to - from); }
