@@ -51,6 +51,45 @@ TEST_F(AnalyzeCommand, FindsTheTensionsOfAWeightOnTwoRopes) {
   EXPECT_NEAR(held_z, 2 * 9.81, 1e-6);
 }
 
+TEST_F(AnalyzeCommand, TheLeastTensionsOfAPrismKeepItsRatio) {
+  const std::string prism = TAUT_SOURCE_DIR "/models/prism3.yaml";
+  const test::CommandResult shown =
+      Taut({"analyze", prism, "--inverse", "--at_least_n", "10", "--json"});
+  ASSERT_EQ(shown.status, 0) << shown.errors;
+  const json result = json::parse(shown.output);
+  const json& own = result["load_cases"].at(0);
+  ASSERT_TRUE(own["found"]);
+  // The one state of self-stress: force densities of sides are 2 sin(pi / 3) times those of bases,
+  // of which the tension is at its bound: bases are shorter.
+  const double base = 10 / (0.2 * std::sin(std::acos(-1.0) / 3));
+  for (const json& cable : own["cables"]) {
+    const bool side = cable["name"].get<std::string>().starts_with("side");
+    EXPECT_NEAR(cable["force_density_n_per_m"].get<double>(), side ? std::sqrt(3.0) * base : base,
+                1e-9 * base);
+    EXPECT_EQ(cable["at_bound"].get<bool>(), !side);
+  }
+}
+
+TEST_F(AnalyzeCommand, BoundsWithinWhichNothingHoldsThePoseAreSaid) {
+  const test::CommandResult shown = Taut({"analyze", TAUT_SOURCE_DIR "/models/prism3.yaml",
+                                          "--inverse", "--at_least_n", "10", "--at_most_n", "12"});
+  EXPECT_EQ(shown.status, 1);
+  EXPECT_NE(shown.errors.find("no forces within their bounds balance strut_"), std::string::npos)
+      << shown.errors;
+}
+
+TEST_F(AnalyzeCommand, TheFormOfSixStrutsIsAModelWithASelfStressAndAMechanism) {
+  const test::CommandResult formed = Taut({"analyze", TAUT_SOURCE_DIR "/models/six_strut.yaml",
+                                           "--form", "--tension_n", "20", "--out", "form.yaml"});
+  ASSERT_EQ(formed.status, 0) << formed.errors;
+  const test::CommandResult shown = Taut({"analyze", "form.yaml", "--modes", "0"});
+  ASSERT_EQ(shown.status, 0) << shown.errors;
+  // 30 members at 12 nodes: rank 29, so one self-stress and one mechanism (docs/theory/statics.md).
+  EXPECT_NE(shown.output.find("as pin-jointed: nodes: 12, members: 30, rank: 29 "),
+            std::string::npos)
+      << shown.output;
+}
+
 TEST_F(AnalyzeCommand, ARobotThatNothingHoldsIsAnalysedWithoutWeight) {
   const test::CommandResult shown =
       Taut({"analyze", TAUT_SOURCE_DIR "/models/prism3.yaml", "--modes", "6"});
