@@ -39,11 +39,13 @@ std::vector<link::Setting> BoardsPlant::Settings() const {
   };
   add(link::GainsFor(experiment_));
   const LoadCellOptions& cell = options_.robot.load_cell;
-  std::vector<link::ParameterValue> values{
-      {true, board::kNewtonsPerCount, static_cast<float>(cell.n_per_count)},
-      {true, board::kCountsAtZero, static_cast<float>(cell.zero_counts)}};
-  values.insert(values.end(), options_.settings.begin(), options_.settings.end());
-  for (const link::ParameterValue& value : values) add(ForAll(value, motors_.motor_count()));
+  const auto add_for_all = [&](const link::ParameterValue& value) {
+    add(ForAll(value, motors_.motor_count()));
+  };
+  add_for_all({true, board::kNewtonsPerCount, static_cast<float>(cell.n_per_count)});
+  add_for_all({true, board::kCountsAtZero, static_cast<float>(cell.zero_counts)});
+  if (options_.calibration) add(link::SettingsFor(*options_.calibration, experiment_.robot));
+  for (const link::ParameterValue& value : options_.settings) add_for_all(value);
   return all;
 }
 

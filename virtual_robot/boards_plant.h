@@ -4,8 +4,10 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "taut/calibration.h"
 #include "taut/link/robot_plant.h"
 #include "virtual_robot/motor_plant.h"
 #include "virtual_robot/robot.h"
@@ -15,8 +17,9 @@ namespace taut::virtual_robot {
 
 struct BoardsOptions {
   RobotOptions robot;
-  std::vector<link::ParameterValue> settings;  ///< Of all boards and motors, after what follows
-                                               ///< from model and experiment.
+  std::optional<Calibration> calibration;      ///< What the PC believes of cells, encoders and
+                                               ///< springs, in place of what is so.
+  std::vector<link::ParameterValue> settings;  ///< Of all boards and motors, after all of that.
   double recover_s = std::numeric_limits<double>::infinity();  ///< By the experiment's clock: when
                                                                ///< `Recover` is called.
 };

@@ -14,6 +14,7 @@
 #include <system_error>
 #include <vector>
 
+#include "taut/calibration.h"
 #include "taut/faults.h"
 #include "taut/version.h"
 #include "virtual_robot/load_host.h"
@@ -31,7 +32,7 @@ namespace {
 enum Exit : int { kOk = 0, kFailed = 1, kUsage = 2, kBadInput = 3 };
 
 struct Arguments {
-  std::string model, experiment, firmware, faults, link, truth, log;
+  std::string model, experiment, firmware, faults, calibration, link, truth, log;
   std::vector<std::string> set;
   std::vector<double> drift_ppm;
   std::uint64_t seed = 1;
@@ -41,7 +42,7 @@ struct Arguments {
   double noise_counts = LoadCellOptions().noise_counts;
   double usb_latency_s = ToSeconds(UsbIssOptions().request_latency);
   double slip_s = PacedOptions().slip_s;
-  bool frames = false, run = false, quiet = false, stand = false, with_parent = false;
+  bool frames = false, run = false, quiet = false, csv = false, stand = false, with_parent = false;
 };
 
 /// The firmware that came with this program: beside it where both were built, in share/taut where
@@ -171,6 +172,10 @@ int RunAnExperiment(const Arguments& arguments, const Overrides& overrides) {
       options.settings.push_back(*value);
     }
   }
+  if (!arguments.calibration.empty() && experiment) {
+    options.calibration =
+        LoadCalibration(arguments.calibration, link::MotorNames(experiment->robot), found);
+  }
   if (!arguments.faults.empty() && experiment) {
     const auto motors = MotorPlant::Make(experiment->robot, found);
     const auto script =
@@ -186,7 +191,8 @@ int RunAnExperiment(const Arguments& arguments, const Overrides& overrides) {
   options.robot.log = log.Sink();
   if (arguments.recover_s >= 0) options.recover_s = arguments.recover_s;
   if (arguments.duration_s >= 0) experiment->duration_s = arguments.duration_s;
-  return RunOnBoards(*experiment, options, {arguments.out, arguments.quiet}, stop_asked, found);
+  return RunOnBoards(*experiment, options, {arguments.out, arguments.quiet, arguments.csv},
+                     stop_asked, found);
 }
 
 /// By then boards answer: they take 4 ms to begin.
@@ -334,6 +340,13 @@ int Main(int argc, char** argv) {
                  "With --run: a parameter of all motors or boards (docs/hardware/parameters.md)")
       ->option_text("NAME=VALUE ...")
       ->needs(run);
+  app.add_option(
+         "--calibration", arguments.calibration,
+         "With --run: what the PC believes of load cells, encoders and springs, in place of "
+         "what is so (docs/formats/calibration.md)")
+      ->option_text("FILE")
+      ->needs(run);
+  app.add_flag("--csv", arguments.csv, "With --run: trace.csv and host.csv, too")->needs(run);
   app.add_flag("--quiet", arguments.quiet, "With --run: no table, no progress")->needs(run);
   app.add_option("--noise_counts", arguments.noise_counts, "Of load cells, standard deviation")
       ->option_text("NUMBER")
@@ -348,6 +361,8 @@ int Main(int argc, char** argv) {
       "  taut_virtual_robot --model robot.yaml --measure 5\n"
       "  taut_virtual_robot --experiment experiments/push_20n_motors.yaml --run --out "
       "runs/on_boards\n"
+      "  taut_virtual_robot --experiment experiments/push_20n_motors.yaml --run --csv "
+      "--calibration calibrations/as_assumed.yaml\n"
       "This program contains libsimavr and is under the GNU General Public License, version 3.\n"
       "Exit status: 0 good, 1 failed, 2 bad usage, 3 bad input.");
   try {

@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <memory>
+#include <vector>
 
 #include "taut/files.h"
 #include "taut/link/log.h"
@@ -84,6 +86,17 @@ BoardsOptions WithLogInto(Events& events, BoardsOptions options) {
   return options;
 }
 
+using Writers = std::vector<std::unique_ptr<TraceWriter>>;
+
+/// A trace in a run's folder: NAME.h5 and, if it is wanted, NAME.csv.
+Writers CreateTraces(const std::string& path, bool csv, const std::vector<ChannelInfo>& channels,
+                     const TraceMetadata& metadata, Diagnostics& out) {
+  Writers all;
+  all.push_back(CreateHdf5Trace(path + ".h5", channels, metadata, out));
+  if (csv) all.push_back(CreateCsvTrace(path + ".csv", channels, out));
+  return all;
+}
+
 /// boards.json: what a run says of boards and bus.
 bool WriteFigures(const std::string& path, BoardsPlant& plant, const TickTimes& times,
                   Diagnostics& out) {
@@ -131,26 +144,29 @@ int RunOnBoards(const ExperimentSpec& experiment, const BoardsOptions& options,
     events.Add(time_s, "pc", text);
   };
   const std::string path = run.out.empty() ? "runs/" + experiment.name + "_on_boards" : run.out;
-  const auto folder = RunFolder::Open(path, {"host.h5", "boards.json", "events.jsonl"}, out);
+  const auto folder =
+      RunFolder::Open(path, {"host.h5", "host.csv", "boards.json", "events.jsonl"}, out);
   if (!folder || !plant.Prepare(out)) return Fail(out, kFailed);
 
   TraceMetadata metadata = RunMetadata(experiment);
   metadata.emplace_back(kRunIdKey, folder->id());
   metadata.emplace_back("plant", "emulated boards");
-  const auto trace =
-      CreateHdf5Trace(folder->Path("trace.h5"), RunChannels(experiment, &plant), metadata, out);
+  const Writers traces =
+      CreateTraces(folder->Path("trace"), run.csv, RunChannels(experiment, &plant), metadata, out);
   link::RobotLog host(motors->cable_names());
-  const auto host_trace = CreateHdf5Trace(folder->Path("host.h5"), host.channels(), metadata, out);
+  const Writers host_traces =
+      CreateTraces(folder->Path("host"), run.csv, host.channels(), metadata, out);
   folder->Prepare(ResolvedYaml(experiment), out);
   if (!out.ok()) return Fail(out, kFailed);
   plant.driver().on_cycle = [&](const link::State& state) {
-    host_trace->Append(state.time_s - plant.started_s(), host.Row(state));
+    const double* const row = host.Row(state);
+    for (const auto& trace : host_traces) trace->Append(state.time_s - plant.started_s(), row);
   };
 
   TickTimes times(plant.robot());
   RunOptions how;
   how.plant = &plant;
-  how.traces = {trace.get()};
+  for (const auto& trace : traces) how.traces.push_back(trace.get());
   how.begin = [&](Diagnostics& found) { return folder->Begin(found); };
   const bool shown = !run.quiet && ::isatty(STDERR_FILENO) == 1;
   how.progress = [&](const RunProgress& progress) {
@@ -163,7 +179,9 @@ int RunOnBoards(const ExperimentSpec& experiment, const BoardsOptions& options,
   plant.driver().on_event = {};
   fmt::print(stderr, "{}", plant.recovery().Format());  // the run is what it is
   if (out.ok()) events.Write(folder->Path("events.jsonl"), plant.started_s(), out);
-  if (!host_trace->Finish()) out.Error({}, host_trace->error());
+  for (const auto& trace : host_traces) {
+    if (!trace->Finish()) out.Error({}, trace->error());
+  }
   if (!summary) return Fail(out, kFailed);
   summary->run = folder->id();
   if (out.ok()) WriteFigures(folder->Path("boards.json"), plant, times, out);

@@ -11,6 +11,7 @@ namespace taut::virtual_robot {
 struct ExperimentRun {
   std::string out;  ///< The run's folder; `runs/NAME_on_boards` if empty.
   bool quiet = false;
+  bool csv = false;  ///< Traces as text, too.
 };
 
 /// Exit status: 0 good, 1 failed, 3 bad input, 130 broken off.

@@ -41,11 +41,11 @@ class Fit:
 
 
 def run(taut, name, text, *flags):
-    """Writes a fit into the page's folder and runs it there."""
+    """Writes a fit into a folder within the page's and runs it there."""
     folder = taut.folder / name
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "fit.yaml"
-    path.write_text(f"taut: 1\nkind: fit\nname: {name}\n{text}")
+    path.write_text(f"taut: 1\nkind: fit\nname: {folder.name}\n{text}")
     for old in folder.glob("fit.sqlite*"):
         old.unlink()
     done = subprocess.run([str(taut.command), "fit", str(path), "--out", str(folder), "--quiet", *flags],

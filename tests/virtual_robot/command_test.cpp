@@ -21,6 +21,8 @@ TEST_F(VirtualRobot, WrongUsageIsStatusTwo) {
   EXPECT_EQ(Ask("--model robot.yaml --set nothing --measure 1").status, 2);
   EXPECT_EQ(Ask("--model robot.yaml --stand --measure 1").status, 2);
   EXPECT_EQ(Ask("--experiment e.yaml --truth truth --run").status, 2);
+  EXPECT_EQ(Ask("--experiment e.yaml --calibration c.yaml").status, 2);
+  EXPECT_EQ(Ask("--experiment e.yaml --csv").status, 2);
 }
 
 TEST_F(VirtualRobot, AllMistakesOfAllFilesAreSaidAtOnce) {
@@ -36,6 +38,25 @@ TEST_F(VirtualRobot, AllMistakesOfAllFilesAreSaidAtOnce) {
   const Done model = Ask("--model " TAUT_SOURCE_DIR "/models/tetraspine3.yaml --measure 1");
   EXPECT_EQ(model.status, 3);
   EXPECT_TRUE(Says(model, "is no motor")) << model.said;
+}
+
+TEST_F(VirtualRobot, ACalibrationIsReadAndWhatWasHeardIsText) {
+  const std::string run = "--experiment " TAUT_SOURCE_DIR
+                          "/experiments/push_20n_motors.yaml --run --quiet --duration_s 0.05 "
+                          "--csv --out run --calibration ";
+  std::ofstream(folder_ / "wrong.yaml")
+      << "taut: 1\nkind: calibration\nname: c\ncables:\n"
+         "  - {cable: outer_top_9, measured: 2026-01-01, load_cell_n_per_count: 0.2}\n";
+  const Done wrong = Ask(run + "wrong.yaml");
+  EXPECT_EQ(wrong.status, 3);
+  EXPECT_TRUE(Says(wrong, "wrong.yaml:5:")) << wrong.said;
+  const Done done = Ask(run + TAUT_SOURCE_DIR "/calibrations/as_assumed.yaml");
+  EXPECT_EQ(done.status, 0) << done.said;
+  for (const char* name : {"trace.csv", "host.csv"}) {
+    const std::string text = Text(folder_ / "run" / name);
+    EXPECT_EQ(text.rfind("time_s,", 0), 0U) << name;
+    EXPECT_GT(std::count(text.begin(), text.end(), '\n'), 3) << name;
+  }
 }
 
 TEST_F(VirtualRobot, MeasuresItsSpeedAndLogsWhatHappens) {

@@ -81,5 +81,22 @@ TEST(RunOnBoards, ParametersReachTheBoards) {
   }
 }
 
+TEST(RunOnBoards, WhatThePcBelievesOfACellIsWhatItHears) {
+  BoardsOptions options = Options();
+  CableCalibration cell{"inner_top_1", "2026-01-01", "believed"};
+  cell.load_cell_n_per_count = 0.1567 * 0.9;
+  options.calibration = Calibration{"believed", "", {cell}};
+  const Done done = RunPush(0.3, options);
+  const auto heard_n = [&](std::size_t m) { return done.heard.motors[m].tension_n; };
+  ASSERT_GT(done.tensions_n[5], 10.0);
+  // A count is 0.16 N, its noise 0.11 N before the filter.
+  EXPECT_NEAR(heard_n(5), 0.9 * done.tensions_n[5], 0.4) << "inner_top_1";
+  EXPECT_NEAR(heard_n(4), done.tensions_n[4], 0.4) << "inner_left_1 is believed to be what it is";
+  // Parameters of --board come last.
+  options.settings.push_back({true, board::kNewtonsPerCount, 0.1567f * 0.8f});
+  const Done all = RunPush(0.3, options);
+  EXPECT_NEAR(all.heard.motors[5].tension_n, 0.8 * all.tensions_n[5], 0.4);
+}
+
 }  // namespace
 }  // namespace taut::virtual_robot
