@@ -5,11 +5,13 @@
 #include <memory>
 
 #include "commands.h"
+#include "fit_runs.h"
 #include "interrupt.h"
 #include "output.h"
 #include "overrides.h"
 #include "progress_line.h"
 #include "streams.h"
+#include "taut/cluster.h"
 #include "taut/files.h"
 #include "taut/identify.h"
 
@@ -21,7 +23,7 @@ namespace fs = std::filesystem;
 struct FitArguments {
   std::string path, out;
   std::vector<std::string> set, profiles;
-  int threads = 0;
+  int threads = -1;
   bool check = false, resume = false, design = false, quiet = false, strict = false;
 };
 
@@ -43,7 +45,22 @@ void PrintCheck(const Identification& fit) {
   }
 }
 
-bool CheckProfiles(const Identification& fit, const std::vector<std::string>& asked) {
+std::string MemoryIn(const std::string& folder) {
+  return (fs::path(folder) / "fit.sqlite").string();
+}
+
+/// How to look at each experiment before and after.
+void PrintLooks(const Identification& fit, const std::string& folder) {
+  fmt::print("Before and after, side by side:\n");
+  for (const FitExperiment& one : fit.spec().experiments) {
+    const auto trace = [&](const char* which) {
+      return (fs::path(folder) / (which + one.name) / "trace.h5").string();
+    };
+    fmt::print("  taut view {} --compare {}\n", trace("fitted_"), trace("untuned_"));
+  }
+}
+
+bool CheckProfiles(const Identification& fit, const std::vector<std::string>& asked, bool say) {
   for (const std::string& name : asked) {
     bool known = name.find('*') != name.npos;
     std::string all;
@@ -52,13 +69,14 @@ bool CheckProfiles(const Identification& fit, const std::vector<std::string>& as
       all += (all.empty() ? "" : ", ") + p.name;
     }
     if (known) continue;
+    if (!say) return false;
     fmt::print(stderr, "error: --profile: nothing is called \"{}\" (there are {})\n", name, all);
     return false;
   }
   return true;
 }
 
-/// Every experiment with what was found, the page, and the summary last.
+/// Every experiment with what was found, runs to look at, the page, and the summary last.
 bool WriteOutcome(const Identification& fit, const FitOutcome& outcome, const fs::path& folder,
                   Diagnostics& out) {
   for (std::size_t e = 0; e < fit.spec().experiments.size(); ++e) {
@@ -68,7 +86,10 @@ bool WriteOutcome(const Identification& fit, const FitOutcome& outcome, const fs
       return false;
     }
   }
-  return WriteWholeFile((folder / "report.html").string(), OutcomePage(fit, outcome), out) &&
+  const auto looks = WriteBeforeAndAfter(fit, folder.string(), out);
+  return looks &&
+         WriteWholeFile((folder / "report.html").string(), OutcomePage(fit, outcome, *looks),
+                        out) &&
          WriteWholeFile((folder / "summary.json").string(), OutcomeJson(fit, outcome), out);
 }
 
@@ -76,36 +97,19 @@ int Judge(const FitVerdict& verdict) {
   return verdict.judgement == FitJudgement::kGood ? kOk : kFailed;
 }
 
-int Search(const FitArguments& args, const FitSpec& spec) {
-  const std::string folder = args.out.empty() ? (fs::path("runs") / spec.name).string() : args.out;
-  const std::string memory = (fs::path(folder) / "fit.sqlite").string();
+/// Of a fit that is ready: rank 0's part.
+int Search(const FitArguments& args, const Identification& fit, const std::string& folder) {
   Diagnostics found;
-  std::unique_ptr<FolderLock> lock;
-  std::error_code ignored;
-  if (args.resume && !fs::exists(memory, ignored)) {
-    found.Error({memory}, "there is nothing to go on from", "without --resume it begins");
-    return Fail(found, kBadInput);
-  }
-  if (!args.check) lock = FolderLock::Take(folder, found);
-  if (!args.check && !lock) return Fail(found, kFailed);
-  IdentifyOptions options;
-  options.threads = args.threads;
-  options.stop = &interrupt_asked;
-  if (!args.check) options.memory_file = memory;
-  CatchInterrupts();
-  const auto fit = Identification::Make(spec, options, found);
-  if (!fit || !Pass(found, args.strict)) return Fail(found, kBadInput);
-  if (!CheckProfiles(*fit, args.profiles)) return kUsage;
-  const bool depends = CheckDependence(*fit, found);
+  const bool depends = CheckDependence(fit, found);
   if (interrupt_asked) return kInterrupted;
   if (!depends) return Fail(found, kBadInput);
   if (args.check) {
-    if (!args.quiet) PrintCheck(*fit);
+    if (!args.quiet) PrintCheck(fit);
     return kOk;
   }
-  if (fit->counts().damaged > 0) {
-    fmt::print(stderr, "warning: {}: {} damaged records, computed again\n", memory,
-               fit->counts().damaged);
+  if (fit.counts().damaged > 0) {
+    fmt::print(stderr, "warning: {}: {} damaged records, computed again\n", MemoryIn(folder),
+               fit.counts().damaged);
   }
   ProgressLine line(args.quiet, false);
   OutcomeOptions how;
@@ -113,26 +117,66 @@ int Search(const FitArguments& args, const FitSpec& spec) {
   how.design = args.design;
   how.stop = &interrupt_asked;
   how.progress = [&](const IdentifyProgress& p) { Show(line, p); };
-  const FitOutcome outcome = RunFit(*fit, how);
+  const FitOutcome outcome = RunFit(fit, how);
   line.Clear();
-  if (!fit->memory_error().empty()) {
-    found.Error({memory}, "cannot be written: " + fit->memory_error());
+  if (!fit.memory_error().empty()) {
+    found.Error({MemoryIn(folder)}, "cannot be written: " + fit.memory_error());
     return Fail(found, kFailed);
   }
-  if (outcome.interrupted) {
-    fmt::print(stderr, "interrupted; the same command goes on from here\n");
-    return kInterrupted;
-  }
-  if (!outcome.why.empty()) {
+  if (!outcome.interrupted && !outcome.why.empty()) {
     fmt::print(stderr, "error: no fit: {}\n", outcome.why);
     return kFailed;
   }
-  if (!WriteOutcome(*fit, outcome, folder, found)) return Fail(found, kFailed);
+  const bool written = !outcome.interrupted && WriteOutcome(fit, outcome, folder, found);
+  if (outcome.interrupted || (!written && interrupt_asked)) {
+    fmt::print(stderr, "interrupted; the same command goes on from here\n");
+    return kInterrupted;
+  }
+  if (!written) return Fail(found, kFailed);
   if (!args.quiet) {
-    fmt::print("{}\nSummary, report and fitted experiments: {}\n", OutcomeText(*fit, outcome),
+    fmt::print("{}\nSummary, report and fitted experiments: {}\n", OutcomeText(fit, outcome),
                folder);
+    PrintLooks(fit, folder);
   }
   return Judge(outcome.verdict);
+}
+
+/// What rank 0 has before it begins: the folder, the memory, nothing asked that is not there.
+struct Ready {
+  std::unique_ptr<FolderLock> lock;
+  std::unique_ptr<Identification> fit;
+  int exit = kOk;  ///< Why it is not ready.
+};
+
+Ready Begin(const FitArguments& args, const FitSpec& spec, const std::string& folder, int threads,
+            bool first) {
+  Ready ready;
+  Diagnostics found;
+  std::error_code ignored;
+  const auto end = [&](int exit) {
+    if (first) Fail(found, kFailed);
+    ready.exit = exit;
+    ready.fit.reset();
+    return std::move(ready);
+  };
+  if (args.resume && !fs::exists(MemoryIn(folder), ignored)) {
+    found.Error({MemoryIn(folder)}, "there is nothing to go on from", "without --resume it begins");
+    return end(kBadInput);
+  }
+  if (first && !args.check) {
+    ready.lock = FolderLock::Take(folder, found);
+    if (!ready.lock) return end(kFailed);
+  }
+  IdentifyOptions options;
+  options.threads = threads;
+  options.stop = &interrupt_asked;
+  if (first && !args.check) options.memory_file = MemoryIn(folder);
+  ready.fit = Identification::Make(spec, options, found);
+  if (!ready.fit || !(first ? Pass(found, args.strict) : Passes(found, args.strict))) {
+    return end(kBadInput);
+  }
+  if (!CheckProfiles(*ready.fit, args.profiles, first)) return end(kUsage);
+  return ready;
 }
 
 int Run(const FitArguments& args) {
@@ -140,9 +184,39 @@ int Run(const FitArguments& args) {
   if (!overrides) return kUsage;
   OutputIsNews();
   Diagnostics found;
+  const auto cluster = Cluster::Join(found);
+  if (!cluster) return Fail(found, kFailed);
+  const bool first = cluster->rank() == 0;
+  // The processes of a cluster have a core each, unless told otherwise.
+  const int threads = args.threads < 0 ? (cluster->size() > 1 ? 1 : 0) : args.threads;
   const auto spec = LoadFit(args.path, *overrides, found);
-  if (!spec || !Pass(found, args.strict)) return Fail(found, kBadInput);
-  return Search(args, *spec);
+  const bool passed = first ? Pass(found, args.strict) : Passes(found, args.strict);
+  CatchInterrupts();
+  const bool read = spec && passed;
+  const std::string folder =
+      !read || !args.out.empty() ? args.out : (fs::path("runs") / spec->name).string();
+  Ready ready;
+  if (read) ready = Begin(args, *spec, folder, threads, first);
+  const auto local = [&](std::span<const std::string> pieces) { return ready.fit->Do(pieces); };
+  const bool agree = cluster->Agree(ready.fit ? ready.fit->Agreed() : "");
+  if (!read) return first ? Fail(found, kBadInput) : kBadInput;
+  if (!ready.fit) return ready.exit;
+  if (!agree) {
+    if (!first) return kFailed;  // rank 0 says why
+    found.Error({args.path}, "the processes of the cluster have read different fits",
+                "does every machine see the same files, and the same taut?");
+    return Fail(found, kFailed);
+  }
+  if (!first) {
+    cluster->Serve(local);
+    return kOk;
+  }
+  if (cluster->size() > 1) {
+    ready.fit->SpreadBy(cluster->Spread(local, &interrupt_asked), cluster->size());
+  }
+  const int exit = Search(args, *ready.fit, folder);
+  ready.fit.reset();  // the others go home before the cluster ends
+  return exit;
 }
 
 }  // namespace
@@ -157,7 +231,7 @@ void AddFit(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   fit->add_option("--out", args->out, "Folder to write into (default: runs/<fit>)")
       ->option_text("FOLDER");
-  fit->add_option("--threads", args->threads, "Threads, 0: one a core (default)")
+  fit->add_option("--threads", args->threads, "Threads, 0: one a core (default; 1 under mpirun)")
       ->option_text("N")
       ->check(WholeNumberWithin(0, 1024));
   fit->add_option("--profile", args->profiles,
@@ -176,6 +250,7 @@ void AddFit(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  taut fit fits/tetraspine3_push.yaml\n"
       "  taut fit fits/tetraspine3_push.yaml --profile push_n\n"
+      "  mpirun -np 8 taut fit fits/tetraspine3_push.yaml\n"
       "Stopped by Ctrl-C or killed, the same command goes on where it was, to the same result.\n"
       "Exit status: 0 good; 1 rejected, not identifiable, or worse than untuned on what was held\n"
       "out; 2 bad usage, 3 bad input.");

@@ -67,8 +67,8 @@ int List(const ListArguments& args) {
 void AddList(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<ListArguments>();
   CLI::App* list = app.add_subcommand(
-      "list", "List the models, experiments, gaits and studies that come along.");
-  list->add_option("kind", args->kind, "models, experiments, gaits or studies (default: all)")
+      "list", "List the models, experiments, gaits, studies and fits that come along.");
+  list->add_option("kind", args->kind, "models, experiments, gaits, studies or fits (default: all)")
       ->option_text(Alternatives(ShippedKinds()))
       ->check(OneOf(ShippedKinds()));
   list->add_flag("--json", args->json, "JSON instead of lines");

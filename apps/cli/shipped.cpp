@@ -8,7 +8,7 @@ namespace taut::cli {
 namespace fs = std::filesystem;
 
 const std::vector<std::string>& ShippedKinds() {
-  static const std::vector<std::string> kinds{"models", "experiments", "gaits", "studies"};
+  static const std::vector<std::string> kinds{"models", "experiments", "gaits", "studies", "fits"};
   return kinds;
 }
 

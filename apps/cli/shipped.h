@@ -1,4 +1,4 @@
-/// The files that come with taut: robots, experiments, gaits, studies.
+/// The files that come with taut: robots, experiments, gaits, studies, fits.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ struct ShippedFile {
   FileHead head;
 };
 
-/// "models", "experiments", "gaits", "studies": the folders.
+/// "models", "experiments", "gaits", "studies", "fits": the folders.
 const std::vector<std::string>& ShippedKinds();
 
 /// A folder of them beside the installed command (share/taut) or of the tree that the command was

@@ -1,10 +1,15 @@
-/// Processes that search together: `mpirun -np N taut learn study.yaml`. Rank 0 searches and keeps
-/// the log; all ranks try candidates. What is found does not depend on N.
+/// Processes that search together: `mpirun -np N taut learn study.yaml`, or `taut fit fit.yaml`.
+/// Rank 0 searches and keeps the log; all ranks try candidates. What is found does not depend on N.
+///
+/// Threads: all calls of one process come from the same thread.
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "taut/learn.h"
 
@@ -30,6 +35,15 @@ class Cluster {
   virtual std::unique_ptr<Evaluator> Spread(Evaluator& local, const std::atomic<bool>* stop) = 0;
   /// Other ranks: tries what rank 0 asks for until that has no more.
   virtual void Serve(Evaluator& local) = 0;
+
+  /// Work of any kind: pieces that know nothing of each other, as texts that may hold any bytes,
+  /// and what came of each, in their order. Fewer answers than pieces: it was stopped.
+  using Work = std::function<std::vector<std::string>(std::span<const std::string> pieces)>;
+  /// Rank 0: spreads pieces over all ranks, even shares in their order, `local` doing its own. The
+  /// other ranks go home when what is returned, and all copies of it, are gone. `stop` as above.
+  virtual Work Spread(Work local, const std::atomic<bool>* stop) = 0;
+  /// Other ranks: does what rank 0 asks for until that has no more.
+  virtual void Serve(const Work& local) = 0;
 };
 
 }  // namespace taut

@@ -102,6 +102,16 @@ struct FitCandidate {
   std::vector<FitResidual> residuals;
 };
 
+/// Whether data agree with themselves: bodies to which a load is applied, and which nothing holds
+/// but members whose forces are compared. What was measured of these is to carry what is applied.
+struct FitCarried {
+  std::string name;
+  std::vector<std::string> bodies;  ///< Patterns.
+  Vec3 direction;                   ///< Of the load, in W; a unit vector.
+  std::vector<std::size_t> experiments;
+  SourceRef at;
+};
+
 struct FitSpec {
   std::string name;
   std::string description;
@@ -109,6 +119,7 @@ struct FitSpec {
   std::vector<FitEstimate> estimates;
   std::vector<FitResidual> residuals;
   std::vector<FitCandidate> design;
+  std::vector<FitCarried> carried;
   FitGroups groups = FitGroups::kExperiment;
   FitSearch search;
   std::vector<std::string> files;  ///< That were read, the fit first.

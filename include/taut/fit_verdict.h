@@ -27,6 +27,7 @@ enum class Determined {
   kDead,       ///< No residual depends on it, to first order.
   kWeak,       ///< Nothing was known before, and the data do not know it to half its scale.
   kTraded,     ///< Alone it would be determined; others can take its place.
+  kScattered,  ///< Estimated by J^T J, but groups left out disagree, and by them it is not.
 };
 
 struct ParameterVerdict {
@@ -36,6 +37,9 @@ struct ParameterVerdict {
   /// By leaving out one group at a time. Nothing if there are fewer than three groups, or if
   /// without some group it is not determined at all, as an offset of that group's own.
   std::optional<double> se_jackknife;
+  /// The error by groups is more than twice that by J^T J, and by more than chance would have it
+  /// once in a thousand times with as many groups: residuals of a group hang together.
+  bool groups_apart = false;
   double se_alone = 0;  ///< By J^T J if all others were known.
   double sd_ratio = 0;  ///< se over the prior's sd, or the scale.
   double pull = 0;      ///< (value - prior mean) / prior sd; 0 without a prior.

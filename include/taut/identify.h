@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,10 +39,29 @@ struct IdentifyOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
+/// Computes pieces of a fit that know nothing of each other, as `Cluster::Work` spreads them over
+/// processes: what came of each, in their order. Fewer answers than pieces: it was stopped.
+using FitWork = std::function<std::vector<std::string>(std::span<const std::string> pieces)>;
+
 struct IdentifyCounts {
   std::int64_t computed = 0;    ///< Experiments that were run, or brought to rest.
   std::int64_t remembered = 0;  ///< Points that the file knew.
   std::int64_t damaged = 0;     ///< Of the file's, that were computed again.
+};
+
+/// Whether the measured forces of an experiment carry what is applied: see `FitCarried`. Both along
+/// its direction, where members stand as the experiment says before anything is fitted.
+struct CarriedLoad {
+  struct Row {
+    std::string where;     ///< As of `FitPoint`.
+    double applied_n = 0;  ///< On the bodies: loads and weight.
+    double carried_n = 0;  ///< By the members, as measured.
+    double sd_n = 0;       ///< Of that, by the sds of what is compared.
+  };
+  std::string name;  ///< Of the question.
+  std::size_t experiment = 0;
+  std::vector<Row> rows;
+  ProportionCheck check;  ///< Its `why` also if the rests could not be computed.
 };
 
 class Identification {
@@ -65,6 +85,19 @@ class Identification {
   virtual const std::vector<std::vector<FitPoint>>& design_points() const = 0;
   virtual const std::vector<FitPoint>& train_points() const = 0;  ///< A row of the problem each.
   virtual const std::vector<FitPoint>& test_points() const = 0;
+
+  /// When an experiment is looked at that is brought to rest at its set points [s], rising.
+  virtual const std::vector<double>& moments_s(std::size_t experiment) const = 0;
+  /// What `carried` of the fit asks, of each of its experiments. Brings these to rest.
+  virtual std::vector<CarriedLoad> Carried() const = 0;
+
+  /// Does pieces of a fit's work here: of this one, or of the same one on another process.
+  virtual std::vector<std::string> Do(std::span<const std::string> pieces) = 0;
+  /// From now on `spread` does all pieces, `processes` of which each do a share. Numbers keep their
+  /// bits.
+  virtual void SpreadBy(FitWork spread, int processes) = 0;
+  /// What processes must agree on before they share work: the fit, its data and its experiments.
+  virtual std::string Agreed() const = 0;
 
   virtual IdentifyCounts counts() const = 0;
   /// Why the memory can no longer be written; empty if it can.
@@ -100,6 +133,7 @@ struct FitOutcome {
   BeforeAfter train, test;
   std::vector<FitProfile> profiles;
   std::optional<DesignRanking> design;
+  std::vector<CarriedLoad> carried;
 };
 
 /// Of the estimates at the problem's start, those that nothing depends on: a mistake of the fit.
@@ -108,10 +142,13 @@ bool CheckDependence(const Identification& fit, Diagnostics& out);
 
 FitOutcome RunFit(const Identification& fit, const OutcomeOptions& options);
 
-/// The outcome for a terminal; as one JSON object; as one page that needs nothing else.
+/// The outcome for a terminal; as one JSON object; as one page that needs nothing else. `looks`:
+/// where each experiment can be looked at before and after, as paths from the page's folder; empty
+/// where it cannot, or all of them.
 std::string OutcomeText(const Identification& fit, const FitOutcome& outcome);
 std::string OutcomeJson(const Identification& fit, const FitOutcome& outcome);
-std::string OutcomePage(const Identification& fit, const FitOutcome& outcome);
+std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
+                        const std::vector<std::string>& looks = {});
 
 /// Of a channel, root mean squares of computed less measured, in its unit.
 struct ChannelErrors {
@@ -127,5 +164,11 @@ std::vector<ChannelErrors> ErrorsByChannel(const std::vector<FitPoint>& points,
 /// with: `base:`, `parameters:` and `set:`. `folder`: where it will be.
 std::string FittedExperimentYaml(const Identification& fit, std::size_t experiment,
                                  const std::vector<double>& values, const std::string& folder);
+
+/// Writes a folder as a run does, to be looked at: the rests that experiment `experiment` of the
+/// fit comes to where it is as `with` says. A row a rest; load case i is at i s. False and a
+/// complaint if one is not found or the folder cannot be written.
+bool WriteRests(const Identification& fit, std::size_t experiment, const ExperimentSpec& with,
+                const std::string& folder, Diagnostics& out);
 
 }  // namespace taut

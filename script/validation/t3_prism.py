@@ -11,11 +11,10 @@ TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 DATA = fits.REFERENCE / "feron_t3"
 TESTS = {"6a": 0.00075, "6b": 0.0047}   # by how much the struts were lengthened [m]
 STRUTS = ("S1", "S2", "S3")
-WINDOW = "window: {after_setpoint_s: [-0.1, 0.1]}"  # of a row: the load is the clock
 
 
 def prepare(folder, test):
-    """The measured rows with the names of taut, and the experiment that loads the prism as they say."""
+    """The measured rows with the names of taut, and the experiment whose load cases are theirs."""
     path = DATA / f"fig{test}_measured.csv"
     if not path.exists():
         raise Problem(f"there is no {path}: the data are not ours to pass on (docs/validation/t3_prism.md says where from)")
@@ -27,26 +26,18 @@ def prepare(folder, test):
     fits.write_rows(folder / f"{test}.csv", ["time_s", *head, *(f"node/n{n}/position_z_m" for n in (3, 4, 5))],
                     [[float(i), *(s * x for s, x in zip(signs, row[1:13])), *(h * 1e-3 for h in row[13:16])]
                      for i, row in enumerate(rows)])
-    fits.write_rows(folder / f"{test}_loads.csv", ["time_s", "experiment_s"],
-                    [[float(i), float(i)] for i in range(len(rows))])
-    course = ", ".join(f"[{i}, {1e3 * row[0]:g} * share]" for i, row in enumerate(rows))
-    pushes = "".join(f"    - push: {{name: load_{n}, node: n{n}, direction: [0, 0, -1], force_n: [{course}]}}\n"
-                     for n in (3, 4, 5))
+    cases = "".join(
+        f"  - name: load_{i}\n    forces:\n" +
+        "".join(f"      - {{node: n{n}, force_n: [0, 0, {-1e3 * row[0]:g} * share]}}\n" for n in (3, 4, 5))
+        for i, row in enumerate(rows))
     (folder / f"{test}.yaml").write_text(
         f"taut: 1\nkind: experiment\nname: t3_{test}\nmodel: {fits.beside(folder, 'models/t3_prism.yaml')}\n"
-        f"set: {{lengthening_m: {TESTS[test]}}}\nparameters: {{share: 1}}\nduration_s: {len(rows)}\n"
-        f"timeline:\n  events:\n{pushes}")
-    return rows
+        f"set: {{lengthening_m: {TESTS[test]}}}\nparameters: {{share: 1}}\nduration_s: 1\nload_cases:\n{cases}")
 
 
-def carried(rows):
-    """Share of the applied load that the measured forces carry up, at the top nodes, per row."""
-    shares = []
-    for row in rows:
-        height = sum(row[13:16]) / 3
-        up = (sum(row[1:4]) * height / 2999.8 - sum(row[4:7]) * height / 2045.0) / 3
-        shares.append(up / (row[0] + 0.0416))
-    return shares
+def carried(check):
+    """Share of the applied load that the measured forces carry at the top nodes, of each load."""
+    return [row["carried_n"] / row["applied_n"] for row in check["rows"][1:]]
 
 
 def forces(points, key):
@@ -62,18 +53,20 @@ def heights(points, key):
 
 def text(train, test, estimate, groups="window"):
     return ("experiments:\n" +
-            "".join(f"  - {{name: t{t}, experiment: ../{t}.yaml, data: ../{t}.csv, setpoints: ../{t}_loads.csv, "
-                    f"forward: static, use: {use}}}\n" for t, use in ((train, "train"), (test, "test"))) +
+            "".join(f"  - {{name: t{t}, experiment: ../{t}.yaml, data: ../{t}.csv, "
+                    f"forward: load_cases, use: {use}}}\n" for t, use in ((train, "train"), (test, "test"))) +
             "estimate:\n" + "".join(f"  - {e}\n" for e in estimate) +
-            f"residuals:\n  - {{channel: \"*_n\", sd: 25, relative_sd: 0.01, {WINDOW}}}\n"
-            f"  - {{channel: \"node/*/position_z_m\", sd: 0.001, {WINDOW}}}\ngroups: {groups}\nsearch: {{iterations: 30}}\n")
+            f"residuals:\n  - {{channel: \"*_n\", sd: 25, relative_sd: 0.01}}\n"
+            f"  - {{channel: \"node/*/position_z_m\", sd: 0.001}}\ngroups: {groups}\nsearch: {{iterations: 30}}\n"
+            "carried: [{name: top, bodies: [n3, n4, n5]}]\n")
 
 
 def page(taut):
     started = time.monotonic()
     folder = taut.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    measured = {test: prepare(folder, test) for test in TESTS}
+    for test in TESTS:
+        prepare(folder, test)
     share = "{parameter: share, low: 0.5, high: 1.2, scale: 0.05}"
     one = fits.run(taut, "share", text("6a", "6b", [share]), "--profile", "share")
     more = fits.run(taut, "lengths", text("6a", "6b", [
@@ -94,7 +87,9 @@ def page(taut):
                         "the fit is"], rows),
         "share": f"{p['value']:.4f}", "error": f"{max(p['se'], p['se_jackknife'] or 0):.4f}", "verdict": p["verdict"],
         "carried": table(["test", "least", "most", "mean"],
-                         [[t, f"{min(c):.3f}", f"{max(c):.3f}", f"{sum(c) / len(c):.3f}"]
-                          for t, c in ((t, carried(r)[1:]) for t, r in measured.items())]),
+                         [[c["experiment"][1:], *(f"{x:.3f}" for x in (min(carried(c)), max(carried(c)),
+                                                                       sum(carried(c)) / len(carried(c))))]
+                          for c in one.summary["carried"]]),
+        "says": "; ".join(c["sentence"] for c in one.summary["carried"]),
         "sentence": one.summary["sentences"][0],
     })

@@ -36,6 +36,8 @@ class Alone final : public Cluster {
     return std::make_unique<Same>(local);
   }
   void Serve(Evaluator&) override {}
+  Work Spread(Work local, const std::atomic<bool>*) override { return local; }
+  void Serve(const Work&) override {}
 };
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 
 using cluster::Bytes;
 
-constexpr int kTrialsTag = 1;
+constexpr int kAnswersTag = 1;
 /// How long rank 0 waits for the others once it was told to stop.
 constexpr auto kPatience = std::chrono::seconds(5);
 
@@ -26,7 +26,7 @@ void Broadcast(Bytes& bytes) {
   MPI_Bcast(bytes.data(), static_cast<int>(size), MPI_CHAR, 0, MPI_COMM_WORLD);
 }
 
-/// The candidates of a rank: even, contiguous shares, so that lanes are filled.
+/// What a rank has of candidates or pieces: even, contiguous shares, so that lanes are filled.
 std::pair<std::size_t, std::size_t> Share(std::size_t count, int rank, int size) {
   const auto at = [&](int r) {
     return count * static_cast<std::size_t>(r) / static_cast<std::size_t>(size);
@@ -44,48 +44,25 @@ std::vector<Evaluator::Trial> TryAll(std::span<const Evaluator::Candidate> candi
   return trials;
 }
 
-class Spreader final : public Evaluator {
+/// What rank 0 has of the others: hands out work, takes what came of it, sends them home at last.
+class Others {
  public:
-  Spreader(Evaluator& local, const std::atomic<bool>* stop, int size)
-      : local_(local), stop_(stop), size_(size) {}
-  ~Spreader() override {
-    Bytes nothing;  // tells the others to go home
+  Others(const std::atomic<bool>* stop, int size) : stop_(stop), size_(size) {}
+  ~Others() {
+    Bytes nothing;
     if (error_.empty()) Broadcast(nothing);
   }
+  Others(const Others&) = delete;
+  Others& operator=(const Others&) = delete;
 
-  bool Evaluate(std::span<const Candidate> candidates, const Done& done) override {
-    Bytes all = cluster::Pack(candidates);
-    Broadcast(all);
-    bool go_on = true, complete = true;
-    const auto take = [&](std::size_t i, const Trial& trial) {
-      if (trial.done) {
-        go_on = done(i, trial) && go_on;
-      } else {
-        complete = false;
-      }
-      return go_on;
-    };
-    const auto [first, last] = Share(candidates.size(), 0, size_);
-    const auto own = TryAll(candidates.subspan(first, last - first), local_, take);
-    for (const Trial& trial : own) complete = complete && trial.done;
-    for (int left = size_ - 1; left > 0; --left) {
-      int rank = 0;
-      const auto trials = Receive(rank);
-      if (!error_.empty()) return false;
-      const std::size_t from = Share(candidates.size(), rank, size_).first;
-      for (std::size_t i = 0; i < trials.size(); ++i) take(from + i, trials[i]);
-    }
-    return complete && go_on;
-  }
-  std::string error() const override { return error_; }
-
- private:
-  /// From whichever rank is ready. Looks rather than waits, so that it can be stopped.
-  std::vector<Trial> Receive(int& rank) {
+  void HandOut(Bytes work) const { Broadcast(work); }
+  /// From whichever rank is ready. Looks rather than waits, so that it can be stopped: then, after
+  /// some patience, there is an error.
+  Bytes Take(int& rank) {
     MPI_Status status;
     std::chrono::steady_clock::time_point told{};
     for (int there = 0;;) {
-      MPI_Iprobe(MPI_ANY_SOURCE, kTrialsTag, MPI_COMM_WORLD, &there, &status);
+      MPI_Iprobe(MPI_ANY_SOURCE, kAnswersTag, MPI_COMM_WORLD, &there, &status);
       if (there != 0) break;
       std::this_thread::sleep_for(std::chrono::microseconds(100));
       if (stop_ == nullptr || !stop_->load()) continue;
@@ -97,17 +74,80 @@ class Spreader final : public Evaluator {
     }
     int size = 0;
     MPI_Get_count(&status, MPI_CHAR, &size);
-    Bytes bytes(static_cast<std::size_t>(size));
+    Bytes bytes(static_cast<std::size_t>(size), '\0');
     rank = status.MPI_SOURCE;
-    MPI_Recv(bytes.data(), size, MPI_CHAR, rank, kTrialsTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    return cluster::UnpackTrials(bytes);
+    MPI_Recv(bytes.data(), size, MPI_CHAR, rank, kAnswersTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    return bytes;
   }
+  int size() const { return size_; }
+  const std::string& error() const { return error_; }
 
-  Evaluator& local_;
+ private:
   const std::atomic<bool>* stop_;
   int size_;
   std::string error_;
 };
+
+void Answer(const Bytes& bytes) {
+  MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_CHAR, 0, kAnswersTag, MPI_COMM_WORLD);
+}
+
+class Spreader final : public Evaluator {
+ public:
+  Spreader(Evaluator& local, const std::atomic<bool>* stop, int size)
+      : local_(local), others_(stop, size) {}
+
+  bool Evaluate(std::span<const Candidate> candidates, const Done& done) override {
+    others_.HandOut(cluster::Pack(candidates));
+    bool go_on = true, complete = true;
+    const auto take = [&](std::size_t i, const Trial& trial) {
+      if (trial.done) {
+        go_on = done(i, trial) && go_on;
+      } else {
+        complete = false;
+      }
+      return go_on;
+    };
+    const auto [first, last] = Share(candidates.size(), 0, others_.size());
+    const auto own = TryAll(candidates.subspan(first, last - first), local_, take);
+    for (const Trial& trial : own) complete = complete && trial.done;
+    for (int left = others_.size() - 1; left > 0; --left) {
+      int rank = 0;
+      const auto trials = cluster::UnpackTrials(others_.Take(rank));
+      if (!others_.error().empty()) return false;
+      const std::size_t from = Share(candidates.size(), rank, others_.size()).first;
+      for (std::size_t i = 0; i < trials.size(); ++i) take(from + i, trials[i]);
+    }
+    return complete && go_on;
+  }
+  std::string error() const override { return others_.error(); }
+
+ private:
+  Evaluator& local_;
+  Others others_;
+};
+
+std::vector<std::string> DoSpread(std::span<const std::string> pieces, const Cluster::Work& local,
+                                  Others& others) {
+  others.HandOut(cluster::PackTexts(pieces));
+  std::vector<std::string> answers(pieces.size());
+  std::size_t there = 0;
+  const auto put = [&](int rank, std::vector<std::string> part) {
+    const std::size_t from = Share(pieces.size(), rank, others.size()).first;
+    std::move(part.begin(), part.end(), answers.begin() + static_cast<std::ptrdiff_t>(from));
+    there += part.size();
+  };
+  const auto [first, last] = Share(pieces.size(), 0, others.size());
+  put(0, local(pieces.subspan(first, last - first)));
+  for (int left = others.size() - 1; left > 0; --left) {
+    int rank = 0;
+    const Bytes bytes = others.Take(rank);
+    if (!others.error().empty()) return {};
+    put(rank, cluster::UnpackTexts(bytes));
+  }
+  if (there < pieces.size()) return {};
+  return answers;
+}
 
 class MpiCluster final : public Cluster {
  public:
@@ -141,9 +181,24 @@ class MpiCluster final : public Cluster {
       const auto candidates = cluster::UnpackCandidates(work);
       const auto [first, last] = Share(candidates.size(), rank_, size_);
       const std::span<const Evaluator::Candidate> all(candidates);
-      const Bytes bytes = cluster::Pack(TryAll(all.subspan(first, last - first), local, {}));
-      MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_CHAR, 0, kTrialsTag,
-               MPI_COMM_WORLD);
+      Answer(cluster::Pack(TryAll(all.subspan(first, last - first), local, {})));
+    }
+  }
+
+  Work Spread(Work local, const std::atomic<bool>* stop) override {
+    const auto others = std::make_shared<Others>(stop, size_);
+    return [others, local = std::move(local)](std::span<const std::string> pieces) {
+      return DoSpread(pieces, local, *others);
+    };
+  }
+
+  void Serve(const Work& local) override {
+    for (Bytes work;;) {
+      Broadcast(work);
+      if (work.empty()) return;
+      const auto pieces = cluster::UnpackTexts(work);
+      const auto [first, last] = Share(pieces.size(), rank_, size_);
+      Answer(cluster::PackTexts(local(std::span(pieces).subspan(first, last - first))));
     }
   }
 

@@ -107,6 +107,7 @@ FitSpec ReadFit(const Value& root, const OverrideSet& overrides, const Scope& sc
     fit.design.push_back(
         {candidate.name, ToResiduals(candidate.residuals, fit.experiments, known, true, scope)});
   }
+  fit.carried = ToCarried(text.carried, fit.experiments, known, scope);
   for (const char* key : {"estimate", "residuals"}) {
     const Value* items = root.Find(key);
     if (items && items->kind == Value::Kind::kSequence && items->items.empty()) {

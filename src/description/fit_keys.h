@@ -236,6 +236,33 @@ void Keys(Io& io, Like<FitCandidateText> auto& d) {
   io("residuals", d.residuals, kNeeded, "What would be measured, and how well. No data is needed.");
 }
 
+/// An entry of `carried:`.
+struct FitCarriedText {
+  SourceRef at;
+  std::string name;
+  std::vector<Placed> bodies;
+  Vec3 direction{0, 0, -1};
+  std::vector<Placed> experiments;
+};
+template <class Io>
+void Keys(Io& io, Like<FitCarriedText> auto& c) {
+  io.Map("carried", "carried",
+         "A question to the data alone: do measured forces carry the load that was applied? Asked "
+         "of bodies that nothing holds but cables and bars whose forces are compared.",
+         R"({"name": "top", "bodies": ["n3", "n4", "n5"], "direction": [0, 0, -1]})");
+  io("name", c.name, kNeeded, kName, "Name of it, for the table.");
+  io("bodies", c.bodies, kNeeded,
+     "Patterns of the bodies to which the load is applied. All cables and bars between them and "
+     "the "
+     "rest have to be compared in `residuals`.",
+     Example{R"(["n3", "n4", "n5"])"});
+  io("direction", c.direction,
+     "In which direction the load is looked at, in the world's axes, of any length.");
+  io("experiments", c.experiments,
+     "Names of the measurements it is asked of, none of which is `dynamic`; all at rest if "
+     "absent.");
+}
+
 struct FitForm {
   static constexpr const char* kSchema = R"("const": "fit")";
 };
@@ -246,6 +273,7 @@ struct FitFileText {
   std::vector<FitEstimateText> estimate;
   std::vector<FitResidualText> residuals;
   std::vector<FitCandidateText> design;
+  std::vector<FitCarriedText> carried;
   FitGroups groups = FitGroups::kExperiment;
   std::optional<FitSearchText> search;
 };
@@ -272,6 +300,7 @@ void Keys(Io& io, Like<FitFileText> auto& f) {
      "hang together.");
   io("search", f.search);
   io("design", f.design, "What might be measured next, for `taut fit --design`.");
+  io("carried", f.carried, "Which measured forces ought to carry which load.");
 }
 
 }  // namespace taut::description

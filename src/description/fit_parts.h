@@ -17,6 +17,9 @@ std::vector<FitResidual> ToResiduals(const std::vector<FitResidualText>& texts,
                                      const std::vector<FitExperiment>& experiments,
                                      const std::vector<bool>& known, bool of_design,
                                      const Scope& scope);
+std::vector<FitCarried> ToCarried(const std::vector<FitCarriedText>& texts,
+                                  const std::vector<FitExperiment>& experiments,
+                                  const std::vector<bool>& known, const Scope& scope);
 /// Those of `names`, all if it is empty.
 std::vector<std::size_t> NamedExperiments(const std::vector<Placed>& names, const char* what,
                                           const std::vector<FitExperiment>& experiments,

@@ -20,9 +20,6 @@ constexpr double kDead = 1e-6;
 constexpr double kTogether = 0.95;
 /// What takes at least this share of the largest part of a trade is named.
 constexpr double kNamed = 0.2;
-/// Known to this share of its prior sd or scale, it is estimated; a direction that is has a
-/// singular value of sqrt(1 / share^2 - 1) at least.
-constexpr double kShare = 0.5;
 
 /// What all the functions below work on: the parameters that no bound holds, in scales.
 struct Local {
@@ -110,9 +107,9 @@ void Classify(const Local& local, std::size_t k, ParameterVerdict& verdict) {
   verdict.sd_ratio = verdict.se / ScaleIn(p);
   if (column <= kDead) {
     verdict.kind = Determined::kDead;
-  } else if (verdict.sd_ratio <= kShare) {
+  } else if (verdict.sd_ratio <= fit::kEstimatedShare) {
     verdict.kind = Determined::kEstimated;
-  } else if (verdict.se_alone <= kShare * ScaleIn(p)) {
+  } else if (verdict.se_alone <= fit::kEstimatedShare * ScaleIn(p)) {
     verdict.kind = Determined::kTraded;
   } else {
     verdict.kind = fit::HasPrior(p) ? Determined::kPrior : Determined::kWeak;
@@ -198,6 +195,8 @@ std::string Sentence(const FitProblem& problem, const Identifiability& all, std:
              " moves all residuals together by " + Brief(v.trade_residual) +
              " standard deviations (alone it would be known to +- " + Brief(v.se_alone, p.unit) +
              ")";
+      break;
+    case Determined::kScattered:  // is not yet known
       break;
   }
   if (column.kink) {

@@ -14,6 +14,8 @@ using fit::Brief;
 constexpr double kStrongPull = 3;
 /// Starts whose cost is this near to the best one's have come to the same minimum.
 constexpr double kSameCost = 1e-3;
+/// Errors by groups beyond this many times those by J^T J are told, if chance makes them seldomer.
+constexpr double kSeveral = 2, kByChance = 1e-3;
 
 /// A sum of squares of normal numbers with a covariance of this trace and trace of its square, as
 /// if it were a multiple of a chi-square with the same mean and variance (Satterthwaite; exact
@@ -103,6 +105,36 @@ std::string UnidentifiableSentence(const FitProblem& problem, const FitVerdict& 
          Brief(verdict.identifiability.condition) + ").";
 }
 
+/// Errors by groups beside those by J^T J. Were residuals independent, (G - 1) times the square of
+/// their ratio would be a chi-square with G - 1 degrees of freedom (F.14a).
+void CompareErrors(const FitProblem& problem, FitVerdict& verdict) {
+  const double freedom = static_cast<double>(verdict.jackknife.groups.size()) - 1;
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    ParameterVerdict& v = verdict.identifiability.parameters[j];
+    if (!std::isfinite(v.se)) continue;
+    v.se_jackknife = verdict.jackknife.se[j];
+    if (!v.se_jackknife) continue;
+    const FitParameter& p = problem.parameters[j];
+    const double ratio = v.se > 0 ? *v.se_jackknife / v.se : 0;
+    v.groups_apart =
+        ratio > kSeveral && ChiSquareTail(freedom * ratio * ratio, freedom) < kByChance;
+    const bool small = v.sd_ratio * ratio <= fit::kEstimatedShare;
+    if (!v.groups_apart || v.kind != Determined::kEstimated || small) {
+      v.sentence += "; leaving out groups: +- " + Brief(*v.se_jackknife, p.unit);
+      if (v.groups_apart) {
+        v.sentence += ", " + Brief(ratio) +
+                      " times J^T J's: residuals of a group hang together, and this is its error";
+      }
+      continue;
+    }
+    v.kind = Determined::kScattered;
+    v.sentence = p.name + " = " + Brief(v.value, p.unit) +
+                 " is not determined: without one group or another it is another number, +- " +
+                 Brief(*v.se_jackknife, p.unit) + " (J^T J, which knows no groups, says +- " +
+                 Brief(v.se, p.unit) + ")";
+  }
+}
+
 void Decide(const FitProblem& problem, const VerdictOptions& options, FitVerdict& verdict) {
   verdict.rejected = verdict.total.p < options.least_p || verdict.data.p < options.least_p ||
                      verdict.prior.p < options.least_p;
@@ -139,12 +171,7 @@ void SayJudgement(const FitProblem& problem, FitVerdict& verdict) {
 void SayWhy(const FitProblem& problem, const FitResult& fit, FitVerdict& verdict) {
   auto& say = verdict.sentences;
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
-    const ParameterVerdict& v = verdict.identifiability.parameters[j];
-    say.push_back(v.sentence);
-    if (v.se_jackknife) {
-      say.back() +=
-          "; leaving out groups: +- " + Brief(*v.se_jackknife, problem.parameters[j].unit);
-    }
+    say.push_back(verdict.identifiability.parameters[j].sentence);
   }
   say.push_back(Errors("on the data fitted", verdict.train));
   if (verdict.hold_out) {
@@ -186,10 +213,7 @@ FitVerdict JudgeFit(const FitProblem& problem, const FitResult& fit, const Verdi
   found = Identify(problem, fit.values, verdict.derivatives);
   verdict.jackknife =
       JackknifeGroups(problem, fit.values, verdict.derivatives, options.jackknife, options.fit);
-  for (std::size_t j = 0; j < found.parameters.size(); ++j) {
-    const bool finite = std::isfinite(found.parameters[j].se);
-    if (finite) found.parameters[j].se_jackknife = verdict.jackknife.se[j];
-  }
+  CompareErrors(problem, verdict);
   ChiSquares(problem, verdict);
   verdict.train = HoldOut(problem, fit.values);
   if (options.folds) {

@@ -14,6 +14,10 @@ namespace taut::fit {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
+/// Known to this share of its prior sd or scale, a parameter is estimated; a direction that is has
+/// a singular value of sqrt(1 / share^2 - 1) at least.
+inline constexpr double kEstimatedShare = 0.5;
+
 inline bool HasPrior(const FitParameter& parameter) {
   return parameter.prior_sd < std::numeric_limits<double>::infinity();
 }

@@ -2,14 +2,14 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "taut/analysis.h"
 #include "taut/fit_spec.h"
 #include "taut/plant.h"
-#include "taut/run.h"
 #include "taut/trace.h"
 
 namespace taut::identify {
@@ -19,8 +19,14 @@ struct Computed {
   bool stopped = false;
   std::vector<double> time_s;               ///< Of a rest: of its set points; of load cases 1, 2...
   std::vector<std::vector<double>> values;  ///< [channel as asked][row].
-  std::optional<RunSummary> summary;        ///< Of a run.
+  /// Of a run: its number for each value of each reference of the experiment [N]; NaN if it did not
+  /// get that far.
+  std::vector<std::vector<double>> references;
 };
+
+/// To the bit, for other processes of the same build.
+std::string Pack(const Computed& computed);
+Computed UnpackComputed(const std::string& bytes);
 
 /// Runs it. `channels` as of `DynamicChannels`.
 Computed Run(const ExperimentSpec& experiment, const std::vector<std::string>& channels,
@@ -29,7 +35,13 @@ Computed Run(const ExperimentSpec& experiment, const std::vector<std::string>& c
 /// from where it was described as a vector along its axis.
 std::vector<ChannelInfo> DynamicChannels(const ExperimentSpec& experiment);
 
-/// The rests at moments, which rise, each from the one before; or those of load cases.
+/// Rests one after the other: at moments, which rise, each from the one before; or of load cases,
+/// whose time is their number, from 1. `take` gets each with its loads; false ends it. Why one was
+/// not found; else empty.
+using RestTaker = std::function<bool(double time, const LoadCaseSpec&, const Equilibrium&)>;
+std::string EachRest(const ExperimentSpec& experiment, FitForward forward,
+                     const std::vector<double>& moments_s, const RestTaker& take);
+/// The channels of these rests.
 Computed Rest(const ExperimentSpec& experiment, FitForward forward,
               const std::vector<double>& moments_s, const std::vector<std::string>& channels,
               const std::atomic<bool>* stop);

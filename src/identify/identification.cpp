@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "base/hash.h"
 #include "base/pattern.h"
 #include "description/reader.h"
+#include "identify/carried.h"
 #include "identify/memory.h"
 #include "identify/models.h"
 #include "identify/rows.h"
@@ -54,6 +54,18 @@ class Made : public Identification {
   }
   const std::vector<FitPoint>& train_points() const override { return train_.points; }
   const std::vector<FitPoint>& test_points() const override { return test_.points; }
+  const std::vector<double>& moments_s(std::size_t experiment) const override {
+    return models_.Moments(models_.ModelOf(experiment));
+  }
+  std::vector<CarriedLoad> Carried() const override;
+  std::vector<std::string> Do(std::span<const std::string> pieces) override {
+    return models_.Do(pieces);
+  }
+  void SpreadBy(FitWork spread, int processes) override {
+    models_.SpreadBy(std::move(spread));
+    processes_ = processes;
+  }
+  std::string Agreed() const override;
   IdentifyCounts counts() const override {
     return {models_.computed(), memory_->remembered(), memory_->damaged()};
   }
@@ -63,6 +75,7 @@ class Made : public Identification {
   void AddRows(const FitResidual& residual, std::size_t experiment, const Measured* measured,
                Set& set, Diagnostics& out);
   void CheckActing(Diagnostics& out);
+  std::vector<MeasuredForces> ForcesOf(std::size_t experiment) const;
   void ChooseEstimates();
   void MakeProblem(Set& set);
   int GroupOf(const Row& row, std::map<std::string, int>& known, FitProblem& problem) const;
@@ -70,11 +83,14 @@ class Made : public Identification {
   Residuals Compose(const Set& set, const std::vector<double>& all,
                     const std::map<std::size_t, Models::Answer>& computed) const;
   std::vector<double> All(const std::vector<double>& values) const;
+  /// What makes points the same.
+  std::map<std::string, std::string> Facts() const;
   bool OpenMemory(Diagnostics& out);
 
   const FitSpec spec_;
   IdentifyOptions options_;
   Models models_;
+  int processes_ = 1;
   std::unique_ptr<PointMemory> memory_;
   std::vector<std::vector<ChannelInfo>> channels_;  ///< Per experiment: what can be computed.
   std::vector<std::size_t> estimates_;
@@ -128,6 +144,36 @@ void Made::CheckActing(Diagnostics& out) {
     out.Error(e.at, "estimate: nothing that is compared has anything of " + e.name,
               e.channels.empty() ? "" : DidYouMean(e.channels, {names.begin(), names.end()}));
   }
+}
+
+/// What is compared of an experiment at its rests, row by row.
+std::vector<MeasuredForces> Made::ForcesOf(std::size_t experiment) const {
+  std::vector<MeasuredForces> out;
+  for (const Set* set : {&train_, &test_}) {
+    for (const Tied& tied : set->rows) {
+      const FitPoint& point = tied.row.point;
+      if (point.experiment != experiment || tied.row.how == Row::How::kReference) continue;
+      const double time =
+          tied.row.how == Row::How::kRow ? static_cast<double>(tied.row.row + 1) : tied.row.from_s;
+      auto at = std::find_if(out.begin(), out.end(), [&](const MeasuredForces& m) {
+        return m.where == point.where && m.time == time;
+      });
+      if (at == out.end()) at = out.insert(at, {point.where, time, {}});
+      at->by_channel[point.channel] = {point.measured, point.sd};
+    }
+  }
+  return out;
+}
+
+std::vector<CarriedLoad> Made::Carried() const {
+  std::vector<CarriedLoad> out;
+  for (const FitCarried& asked : spec_.carried) {
+    for (const std::size_t e : asked.experiments) {
+      out.push_back(CarriedBy(asked, spec_.experiments[e], moments_s(e), ForcesOf(e)));
+      out.back().experiment = e;
+    }
+  }
+  return out;
 }
 
 /// Those that act on nothing that is trained on stay where they start.
@@ -191,7 +237,7 @@ Residuals Made::Compose(const Set& set, const std::vector<double>& all,
     const FitExperiment& one = spec_.experiments[tied.row.experiment];
     const Computed& model = *computed.at(tied.model);
     if (!model.failed.empty()) return {{}, one.name + ": " + model.failed};
-    const auto value = ValueOf(tied.row, model, tied.channel, sum(tied.delays), one.experiment);
+    const auto value = ValueOf(tied.row, model, tied.channel, sum(tied.delays));
     if (!value || !std::isfinite(*value)) {
       return {{}, one.name + ": no number for " + tied.row.channel + ", " + tied.row.point.where};
     }
@@ -217,7 +263,8 @@ std::vector<Residuals> Made::Answer(const Set& set, std::span<const std::vector<
     missing_keys.push_back(keys.back());
   }
   // In parts, so that what is stopped or killed has lost little.
-  const std::size_t part = 4 * static_cast<std::size_t>(std::max(1, options_.threads)) + 4;
+  const std::size_t part =
+      4 * static_cast<std::size_t>(models_.threads()) * static_cast<std::size_t>(processes_);
   for (std::size_t from = 0; from < missing.size(); from += part) {
     const std::size_t to = std::min(from + part, missing.size());
     const auto at = [&](std::size_t i) { return missing.begin() + static_cast<std::ptrdiff_t>(i); };
@@ -238,11 +285,7 @@ std::vector<Residuals> Made::Answer(const Set& set, std::span<const std::vector<
   return out;
 }
 
-bool Made::OpenMemory(Diagnostics& out) {
-  if (options_.memory_file.empty()) {
-    memory_ = std::make_unique<PointMemory>();
-    return true;
-  }
+std::map<std::string, std::string> Made::Facts() const {
   base::Fnv1a sum;
   for (const Set* set : {&train_, &test_}) {
     for (const FitPoint& p : set->points) {
@@ -254,12 +297,21 @@ bool Made::OpenMemory(Diagnostics& out) {
   for (const FitExperiment& one : spec_.experiments) {
     experiments = experiments * 31 + one.experiment.input_hash;
   }
-  memory_ = PointMemory::Open(options_.memory_file,
-                              {{"version", kVersion},
-                               {"fit", FitText(spec_)},
-                               {"data", base::HashText(sum.value())},
-                               {"experiments", base::HashText(experiments)}},
-                              out);
+  return {{"version", kVersion},
+          {"fit", FitText(spec_)},
+          {"data", base::HashText(sum.value())},
+          {"experiments", base::HashText(experiments)}};
+}
+
+std::string Made::Agreed() const {
+  std::string out;
+  for (const auto& [name, value] : Facts()) out += name + ": " + value + "\n";
+  return out + models_.Meaning();
+}
+
+bool Made::OpenMemory(Diagnostics& out) {
+  memory_ = options_.memory_file.empty() ? std::make_unique<PointMemory>()
+                                         : PointMemory::Open(options_.memory_file, Facts(), out);
   return memory_ != nullptr;
 }
 
@@ -298,6 +350,11 @@ bool Made::Begin(Diagnostics& out) {
     }
   }
   CheckActing(out);
+  for (const FitCarried& asked : spec_.carried) {
+    for (const std::size_t e : asked.experiments) {
+      CheckCut(asked, spec_.experiments[e], ForcesOf(e), out);
+    }
+  }
   ChooseEstimates();
   std::size_t known = train_.rows.size();
   for (const std::size_t i : estimates_) known += spec_.estimates[i].range.sd ? 1 : 0;
@@ -327,35 +384,6 @@ std::unique_ptr<Identification> Identification::Make(const FitSpec& spec,
   auto made = std::make_unique<identify::Made>(spec, options);
   if (!made->Begin(out)) return nullptr;
   return made;
-}
-
-std::string FittedExperimentYaml(const Identification& fit, std::size_t experiment,
-                                 const std::vector<double>& values, const std::string& folder) {
-  const FitExperiment& one = fit.spec().experiments[experiment];
-  std::map<std::string, std::string> own, of_model;
-  const auto put = [&](const std::string& name, const std::string& value) {
-    (one.experiment.parameters.count(name) ? own : of_model)[name] = value;
-  };
-  for (const auto& [name, value] : one.set) put(name, value);
-  for (std::size_t i = 0; i < fit.estimates().size(); ++i) {
-    const FitEstimate& e = fit.spec().estimates[fit.estimates()[i]];
-    const bool acts =
-        std::find(e.experiments.begin(), e.experiments.end(), experiment) != e.experiments.end();
-    if (acts && e.kind == FitEstimate::Kind::kParameter) {
-      put(e.parameter, description::Shown(values[i]));
-    }
-  }
-  std::error_code ignored;
-  const auto base = std::filesystem::relative(one.experiment_file, folder, ignored);
-  std::string out = "# " + one.name + " with what the fit " + fit.spec().name + " found\n";
-  out += "taut: 1\nkind: experiment\nname: " + fit.spec().name + "_" + one.name + "\n";
-  out += "base: " + (base.empty() ? one.experiment_file : base.string()) + "\n";
-  for (const auto& [key, numbers] : {std::pair("parameters", &own), {"set", &of_model}}) {
-    if (numbers->empty()) continue;
-    out += std::string(key) + ":\n";
-    for (const auto& [name, value] : *numbers) out += "  " + name + ": " + value + "\n";
-  }
-  return out;
 }
 
 }  // namespace taut

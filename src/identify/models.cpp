@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/bytes.h"
 #include "description/reader.h"
 
 namespace taut::identify {
@@ -13,6 +14,29 @@ constexpr std::size_t kMostKept = 256;
 bool ActsOn(const FitEstimate& e, std::size_t experiment) {
   return e.kind == FitEstimate::Kind::kParameter &&
          std::find(e.experiments.begin(), e.experiments.end(), experiment) != e.experiments.end();
+}
+
+std::string Pack(const std::pair<std::size_t, Overrides>& job) {
+  base::ByteWriter out;
+  out.Put(job.first);
+  out.Put(job.second.size());
+  for (const auto& [name, value] : job.second) {
+    out.Put(name);
+    out.Put(value);
+  }
+  return std::move(out.bytes);
+}
+
+std::pair<std::size_t, Overrides> UnpackJob(const std::string& piece) {
+  base::ByteReader in(piece);
+  std::pair<std::size_t, Overrides> job;
+  in.Get(job.first);
+  job.second.resize(in.Size());
+  for (auto& [name, value] : job.second) {
+    in.Get(name);
+    in.Get(value);
+  }
+  return job;
 }
 
 std::string Text(const Overrides& overrides) {
@@ -80,6 +104,50 @@ Models::Answer Models::ComputeOne(const Job& job) const {
           : Rest(*experiment, one.forward, model.moments_s, model.channels, stop_));
 }
 
+std::vector<Models::Answer> Models::ComputeAll(const std::vector<Job>& jobs) {
+  std::vector<Answer> made(jobs.size());
+  auto work = [&](int, std::size_t i) {
+    if (!stop_ || !*stop_) made[i] = ComputeOne(jobs[i]);
+  };
+  if (!jobs.empty()) pool_.ForEach(jobs.size(), work);
+  return made;
+}
+
+std::vector<Models::Answer> Models::ComputeSpread(const std::vector<Job>& jobs) const {
+  std::vector<std::string> pieces;
+  for (const Job& job : jobs) pieces.push_back(Pack(job));
+  std::vector<Answer> made(jobs.size());
+  if (jobs.empty()) return made;
+  const std::vector<std::string> answers = spread_(pieces);
+  if (answers.size() != jobs.size()) return made;  // stopped
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    made[i] = std::make_shared<const Computed>(UnpackComputed(answers[i]));
+  }
+  return made;
+}
+
+std::vector<std::string> Models::Do(std::span<const std::string> pieces) {
+  std::vector<Job> jobs;
+  for (const std::string& piece : pieces) jobs.push_back(UnpackJob(piece));
+  std::vector<std::string> answers;
+  for (const Answer& answer : ComputeAll(jobs)) {
+    if (!answer || answer->stopped) return {};
+    answers.push_back(Pack(*answer));
+  }
+  return answers;
+}
+
+std::string Models::Meaning() const {
+  std::string out;
+  for (const Model& model : models_) {
+    out += "model " + std::to_string(model.experiment) + "\n";
+    for (const std::size_t i : model.parameters) out += spec_.estimates[i].name + "\n";
+    for (const std::string& channel : model.channels) out += channel + "\n";
+    for (const double moment_s : model.moments_s) out += description::Shown(moment_s) + "\n";
+  }
+  return out;
+}
+
 void Models::Remember(const std::string& key, const Answer& answer) {
   if (!lately_.emplace(key, answer).second) return;
   order_.push_back(key);
@@ -104,11 +172,9 @@ std::vector<std::map<std::size_t, Models::Answer>> Models::Compute(
       if (fresh && known == lately_.end()) jobs.emplace_back(key, std::move(job));
     }
   }
-  std::vector<Answer> made(jobs.size());
-  auto work = [&](int, std::size_t i) {
-    if (!stop_ || !*stop_) made[i] = ComputeOne(jobs[i].second);
-  };
-  if (!jobs.empty()) pool_.ForEach(jobs.size(), work);
+  std::vector<Job> plain;
+  for (const auto& [key, job] : jobs) plain.push_back(job);
+  const std::vector<Answer> made = spread_ ? ComputeSpread(plain) : ComputeAll(plain);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (!made[i] || made[i]->stopped) return {};
     ++computed_;

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "base/thread_pool.h"
 #include "identify/computed.h"
 #include "taut/fit_spec.h"
+#include "taut/identify.h"
 
 namespace taut::identify {
 
@@ -29,13 +31,24 @@ class Models {
   /// Asks for the rest at a moment; likewise.
   void NeedMoment(std::size_t model, double time_s);
 
+  const std::vector<double>& Moments(std::size_t model) const { return models_[model].moments_s; }
+
   using Answer = std::shared_ptr<const Computed>;
   /// Of points, in all estimates of the fit, one map model -> answer each; `models`: those wanted.
   /// Side by side. Those that were computed lately are remembered. Empty: it was stopped.
   std::vector<std::map<std::size_t, Answer>> Compute(const std::vector<std::vector<double>>& points,
                                                      const std::set<std::size_t>& models);
 
+  /// What `Compute` needs anew, as pieces of work: which experiment with which values. `Do` does
+  /// them on this process's threads; `spread`, in its place, also on others', with the same
+  /// answers.
+  std::vector<std::string> Do(std::span<const std::string> pieces);
+  void SpreadBy(FitWork spread) { spread_ = std::move(spread); }
+  /// All that the pieces and their answers mean, for processes to compare.
+  std::string Meaning() const;
+
   std::int64_t computed() const { return computed_; }
+  int threads() const { return pool_.threads(); }
 
  private:
   struct Model {
@@ -47,11 +60,14 @@ class Models {
   using Job = std::pair<std::size_t, Overrides>;
   Overrides At(const Model& model, const std::vector<double>& point) const;
   Answer ComputeOne(const Job& job) const;
+  std::vector<Answer> ComputeAll(const std::vector<Job>& jobs);
+  std::vector<Answer> ComputeSpread(const std::vector<Job>& jobs) const;
   void Remember(const std::string& key, const Answer& answer);
 
   const FitSpec& spec_;
   const std::atomic<bool>* stop_;
   base::ThreadPool pool_;
+  FitWork spread_;
   std::vector<Model> models_;
   std::vector<std::size_t> of_;  ///< Per experiment.
   std::map<std::string, Answer> lately_;

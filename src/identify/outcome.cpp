@@ -124,6 +124,7 @@ FitOutcome RunFit(const Identification& fit, const OutcomeOptions& options) {
   judge.fit = search;
   judge.jackknife = AtRest(spec) ? Jackknife::kRefit : Jackknife::kStep;
   if (spec.search.folds > 0) judge.folds = spec.search.folds;
+  out.carried = fit.Carried();
   out.verdict = JudgeFit(problem, out.fit, judge, fit.test());
   out.train = Both(problem, out.fit.values);
   if (fit.test()) out.test = Both(*fit.test(), out.fit.values);

@@ -36,6 +36,7 @@ Json Parameters(const Identification& fit, const FitOutcome& outcome) {
                    {"value", v.value},
                    {"se", Number(v.se)},
                    {"se_jackknife", v.se_jackknife ? Number(*v.se_jackknife) : Json(nullptr)},
+                   {"groups_apart", v.groups_apart},
                    {"verdict", WordOf(v.kind)},
                    {"pull", Number(v.pull)},
                    {"kink", v.kink},
@@ -117,6 +118,27 @@ Json Profiles(const Identification& fit, const FitOutcome& outcome) {
   return out;
 }
 
+Json Of(const CarriedLoad& carried, const Identification& fit) {
+  const ProportionCheck& check = carried.check;
+  Json rows = Json::array();
+  for (const CarriedLoad::Row& row : carried.rows) {
+    rows.push_back({{"where", row.where},
+                    {"applied_n", row.applied_n},
+                    {"carried_n", row.carried_n},
+                    {"sd_n", row.sd_n}});
+  }
+  const bool there = check.why.empty();
+  return {{"name", carried.name},
+          {"experiment", fit.spec().experiments[carried.experiment].name},
+          {"share", there ? Number(check.slope) : Json(nullptr)},
+          {"se", there ? Number(check.se) : Json(nullptr)},
+          {"chi2", there ? Number(check.chi2) : Json(nullptr)},
+          {"p", there ? Number(check.p) : Json(nullptr)},
+          {"consistent", there ? Json(check.consistent) : Json(nullptr)},
+          {"sentence", there ? check.sentence : check.why},
+          {"rows", rows}};
+}
+
 }  // namespace
 
 std::string OutcomeJson(const Identification& fit, const FitOutcome& outcome) {
@@ -148,6 +170,10 @@ std::string OutcomeJson(const Identification& fit, const FitOutcome& outcome) {
   }
   if (v.cross_validation.why.empty() && !v.cross_validation.folds.empty()) {
     out["cross_validation"] = Of(v.cross_validation.all);
+  }
+  if (!outcome.carried.empty()) {
+    out["carried"] = Json::array();
+    for (const CarriedLoad& carried : outcome.carried) out["carried"].push_back(Of(carried, fit));
   }
   Json groups = Json::array();
   for (const GroupEffect& g : v.jackknife.groups) {

@@ -71,6 +71,45 @@ std::string Errors(const char* title, const std::vector<FitPoint>& points,
   return Table(rows);
 }
 
+/// Where experiments can be looked at before and after.
+std::string Looks(const Identification& fit, const std::vector<std::string>& looks) {
+  std::string list;
+  for (std::size_t e = 0; e < looks.size(); ++e) {
+    if (looks[e].empty()) continue;
+    const FitExperiment& one = fit.spec().experiments[e];
+    list += "<li><a href=\"" + Escaped(looks[e]) + "\">" + Escaped(one.name) + "</a>" +
+            (one.train ? "" : ", held out") + "</li>\n";
+  }
+  if (list.empty()) return {};
+  return "<h2>Before and after</h2>\n<p class=\"note\">The robot as fitted, beside it the ghost of "
+         "the untuned one; the links lead to files beside this page.</p>\n<ul>\n" +
+         list + "</ul>\n";
+}
+
+/// What measured forces carry of the load, against the load.
+std::string Carried(const Identification& fit, const FitOutcome& outcome) {
+  if (outcome.carried.empty()) return {};
+  std::string out =
+      "<h2>Do the data agree with themselves?</h2>\n<p class=\"note\">What measured forces carry, "
+      "as "
+      "a share of the load that was applied: 1 if all of it goes through what was measured.</p>\n";
+  for (const CarriedLoad& carried : outcome.carried) {
+    Plot plot{carried.name + " of " + fit.spec().experiments[carried.experiment].name,
+              "applied [N]",
+              "carried as a share",
+              {{carried.check.consistent ? "fitted" : "held", {}}},
+              {1},
+              {}};
+    for (const CarriedLoad::Row& row : carried.rows) {
+      if (row.applied_n == 0) continue;
+      plot.series[0].points.emplace_back(row.applied_n, row.carried_n / row.applied_n);
+    }
+    if (!plot.series[0].points.empty()) out += Svg(plot);
+    out += "<p>" + Escaped(CarriedText(fit, carried)) + "</p>\n";
+  }
+  return out;
+}
+
 /// Computed less measured, by channel, in its unit.
 std::string ResidualPlots(const Identification& fit, const FitOutcome& outcome) {
   std::vector<std::string> order;
@@ -210,7 +249,8 @@ std::string Design(const FitOutcome& outcome, std::size_t parameters) {
 
 }  // namespace
 
-std::string OutcomePage(const Identification& fit, const FitOutcome& outcome) {
+std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
+                        const std::vector<std::string>& looks) {
   const FitVerdict& v = outcome.verdict;
   const FitProblem& problem = fit.train();
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>" +
@@ -228,6 +268,7 @@ std::string OutcomePage(const Identification& fit, const FitOutcome& outcome) {
   out += Parameters(fit, outcome);
   out += "<h2>Errors</h2>\n" + Errors("trained on", fit.train_points(), outcome.train) +
          Errors("held out", fit.test_points(), outcome.test);
+  out += Looks(fit, looks) + Carried(fit, outcome);
   out += ResidualPlots(fit, outcome) + Profiles(fit, outcome) + Correlations(fit, outcome) +
          Jackknifed(fit, outcome) + Design(outcome, problem.parameters.size());
   return out + "</body></html>\n";

@@ -20,6 +20,8 @@ const char* WordOf(Determined kind) {
       return "dead";
     case Determined::kWeak:
       return "hardly told";
+    case Determined::kScattered:
+      return "scattered";
     case Determined::kTraded:
       break;
   }
@@ -47,6 +49,12 @@ std::string WithUnit(const std::string& name, const std::string& unit) {
 }
 
 std::string ErrorText(double se) { return std::isfinite(se) ? fmt::format("{:.3g}", se) : "any"; }
+
+std::string CarriedText(const Identification& fit, const CarriedLoad& carried) {
+  if (carried.check.why.empty()) return carried.check.sentence;
+  return carried.name + " of " + fit.spec().experiments[carried.experiment].name +
+         ": what is carried cannot be told: " + carried.check.why;
+}
 
 }  // namespace identify
 
@@ -129,6 +137,8 @@ std::string OutcomeText(const Identification& fit, const FitOutcome& outcome) {
   }
   out += ErrorTable("trained on", fit.train_points(), outcome.train);
   out += ErrorTable("held out", fit.test_points(), outcome.test);
+  if (!outcome.carried.empty()) out += "\n";
+  for (const CarriedLoad& carried : outcome.carried) out += CarriedText(fit, carried) + "\n";
   for (const FitProfile& profile : outcome.profiles) {
     const std::string& name = problem.parameters[profile.parameter].name;
     out += "\nprofile of " + name + ": " + (profile.why.empty() ? profile.sentence : profile.why) +

@@ -7,7 +7,6 @@
 #include "base/assert.h"
 #include "identify/computed.h"
 #include "math/vec.h"
-#include "taut/analysis.h"
 
 namespace taut::identify {
 namespace {
@@ -153,28 +152,16 @@ std::string WhyNoRest(const ExperimentSpec& experiment) {
   return {};
 }
 
-Computed Rest(const ExperimentSpec& experiment, FitForward forward,
-              const std::vector<double>& moments_s, const std::vector<std::string>& channels,
-              const std::atomic<bool>* stop) {
-  Computed out;
-  const Picker pick(experiment, channels);
-  if (!pick.missing.empty()) {
-    out.failed = "it has no channel " + pick.missing;
-    return out;
-  }
+std::string EachRest(const ExperimentSpec& experiment, FitForward forward,
+                     const std::vector<double>& moments_s, const RestTaker& take) {
   const ModelDef& def = experiment.robot.def;
   EquilibriumOptions options;
-  const auto add = [&](double time, const std::string& what, const LoadCaseSpec& loads) {
+  std::string why;
+  const auto go_on = [&](double time, const std::string& what, const LoadCaseSpec& loads) {
     const Equilibrium rest = FindEquilibrium(def, loads, options);
-    if (!rest.found) {
-      out.failed = "no rest " + what + ": " + rest.why;
-      return false;
-    }
-    pick.Add(Values(def, rest), out);
-    out.time_s.push_back(time);
+    if (!rest.found) why = "no rest " + what + ": " + rest.why;
     options.from = rest.pose;
-    out.stopped = stop && *stop;
-    return !out.stopped;
+    return rest.found && take(time, loads, rest);
   };
   if (forward == FitForward::kLoadCases) {
     double number = 0;
@@ -184,9 +171,9 @@ Computed Rest(const ExperimentSpec& experiment, FitForward forward,
           options.from->rest_lengths_m[i] = def.cables[i].rest_length_m;
         }
       }
-      if (!add(++number, "under load case " + loads.name, loads)) break;
+      if (!go_on(++number, "under load case " + loads.name, loads)) break;
     }
-    return out;
+    return why;
   }
   Pose pose;
   for (const BodyDef& body : def.bodies) pose.bodies.push_back({body.com_m, {}, {}, {}});
@@ -195,8 +182,27 @@ Computed Rest(const ExperimentSpec& experiment, FitForward forward,
   LoadCaseSpec loads;
   for (const double time_s : moments_s) {
     SetMoment(experiment, time_s, options.from->rest_lengths_m, loads);
-    if (!add(time_s, "at its set point of " + fmt::format("{:g}", time_s) + " s", loads)) break;
+    if (!go_on(time_s, "at its set point of " + fmt::format("{:g}", time_s) + " s", loads)) break;
   }
+  return why;
+}
+
+Computed Rest(const ExperimentSpec& experiment, FitForward forward,
+              const std::vector<double>& moments_s, const std::vector<std::string>& channels,
+              const std::atomic<bool>* stop) {
+  Computed out;
+  const Picker pick(experiment, channels);
+  if (!pick.missing.empty()) {
+    out.failed = "it has no channel " + pick.missing;
+    return out;
+  }
+  out.failed = EachRest(experiment, forward, moments_s,
+                        [&](double time, const LoadCaseSpec&, const Equilibrium& rest) {
+                          pick.Add(Values(experiment.robot.def, rest), out);
+                          out.time_s.push_back(time);
+                          out.stopped = stop && *stop;
+                          return !out.stopped;
+                        });
   return out;
 }
 

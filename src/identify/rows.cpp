@@ -183,12 +183,13 @@ std::vector<Row> OfReferences(const FitExperiment& one, const FitResidual& resid
   for (std::size_t i = 0; i < references.size(); ++i) {
     const ReferenceSpec& reference = references[i];
     if (residual.references && reference.statistic != *residual.references) continue;
-    for (const ReferenceSpec::Value& value : reference.values) {
+    for (std::size_t v = 0; v < reference.values.size(); ++v) {
+      const ReferenceSpec::Value& value = reference.values[v];
       Row& row = out.emplace_back();
       row.how = Row::How::kReference;
       row.experiment = row.point.experiment = experiment;
       row.reference = i;
-      row.cable = value.cable;
+      row.value = v;
       const std::string& cable =
           one.experiment.robot.def.cables[static_cast<std::size_t>(value.cable)].name;
       row.channel = "cable/" + cable + "/" + report::QuantityName(reference) + "_n";
@@ -283,10 +284,10 @@ std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std:
 }
 
 std::optional<double> ValueOf(const Row& row, const Computed& computed, std::size_t channel,
-                              double delay_s, const ExperimentSpec& experiment) {
+                              double delay_s) {
   if (row.how == Row::How::kReference) {
-    if (!computed.summary) return std::nullopt;
-    return report::OurValue(*computed.summary, experiment.references[row.reference], row.cable);
+    if (row.reference >= computed.references.size()) return std::nullopt;
+    return computed.references[row.reference][row.value];
   }
   const std::vector<double>& values = computed.values[channel];
   if (row.how == Row::How::kRow) {

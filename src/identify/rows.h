@@ -32,7 +32,7 @@ struct Row {
   double from_s = 0, to_s = 0;  ///< A window, or kAt and kRest a moment, on the experiment's clock
                                 ///< if the data's is not late.
   std::size_t reference = 0;    ///< Of the experiment,
-  int cable = 0;                ///< and whose.
+  std::size_t value = 0;        ///< and which of its values.
   std::size_t window = 0;       ///< Which, for groups.
   FitPoint point;
 };
@@ -49,6 +49,6 @@ std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std:
 /// What a row asks for; `channel`: its channel's place among those that were computed. Nothing if
 /// there is none.
 std::optional<double> ValueOf(const Row& row, const Computed& computed, std::size_t channel,
-                              double delay_s, const ExperimentSpec& experiment);
+                              double delay_s);
 
 }  // namespace taut::identify

@@ -1,7 +1,10 @@
 // An experiment as it runs.
 #include <algorithm>
+#include <optional>
 
 #include "identify/computed.h"
+#include "report/reference.h"
+#include "taut/run.h"
 
 namespace taut::identify {
 namespace {
@@ -91,15 +94,21 @@ Computed Run(const ExperimentSpec& given, const std::vector<std::string>& channe
   options.traces = {&memory};
   options.progress = [&](const RunProgress&) { return !stop || !*stop; };
   Diagnostics found;
-  out.summary = RunExperiment(experiment, options, found);
+  const auto summary = RunExperiment(experiment, options, found);
   if (stop && *stop) {
     out.stopped = true;
-  } else if (!out.summary) {
+  } else if (!summary) {
     out.failed = found.items().empty() ? "it does not start" : found.items()[0].what;
-  } else if (!out.summary->status_text.empty()) {
-    out.failed = out.summary->status_text;
+  } else if (!summary->status_text.empty()) {
+    out.failed = summary->status_text;
   }
   if (!out.failed.empty() || out.stopped) return out;
+  for (const ReferenceSpec& reference : experiment.references) {
+    auto& values = out.references.emplace_back();
+    for (const auto& value : reference.values) {
+      values.push_back(report::OurValue(*summary, reference, value.cable));
+    }
+  }
   out.time_s = memory.trace.time_s;
   for (const std::string& channel : channels) {
     const auto at = memory.trace.Find(channel);

@@ -11,6 +11,8 @@ const char* WordOf(Determined kind);
 const char* WordOf(FitJudgement judgement);
 /// "push_n [N]".
 std::string WithUnit(const std::string& name, const std::string& unit);
+/// What a question about carried loads came to, in a sentence.
+std::string CarriedText(const Identification& fit, const CarriedLoad& carried);
 /// "any" if it is infinite.
 std::string ErrorText(double se);
 

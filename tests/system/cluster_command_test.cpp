@@ -1,11 +1,10 @@
 // `taut learn` in several processes: the same result, and what happens when one dies.
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <thread>
 
 #include "taut/learn.h"
-#include "tests/system/command.h"
+#include "tests/system/ranks.h"
 
 namespace taut::test {
 namespace {
@@ -33,30 +32,17 @@ search:
          std::to_string(evaluations) + "}\n";
 }
 
-class Mpi : public CommandTest {
+class Mpi : public RanksTest {
  protected:
   void SetUp() override {
-    if (std::strcmp(TAUT_MPIRUN, "") == 0) GTEST_SKIP() << "built without MPI, or no mpirun";
     Write("experiment.yaml", kExperiment);
     Write("study.yaml", Study(20));
+    RanksTest::SetUp();
   }
 
-  /// Of `taut learn` on this many processes; its group is its own, so that it can be found.
+  /// Of `taut learn`.
   pid_t StartRanks(int ranks, const std::string& out, const std::string& study = "study.yaml") {
-    const pid_t pid = fork();
-    if (pid != 0) return pid;
-    if (chdir(folder_.c_str()) != 0) _exit(99);
-    for (const auto& [name, to] :
-         {std::pair("out.txt", STDOUT_FILENO), {"err.txt", STDERR_FILENO}}) {
-      const int file = open(name, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-      if (file < 0 || dup2(file, to) < 0) _exit(98);
-    }
-    setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
-    setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
-    const std::string count = std::to_string(ranks);
-    execl(TAUT_MPIRUN, TAUT_MPIRUN, "--oversubscribe", "-np", count.c_str(), TAUT_COMMAND, "learn",
-          study.c_str(), "--out", out.c_str(), "--quiet", static_cast<char*>(nullptr));
-    _exit(97);
+    return RanksTest::StartRanks(ranks, {"learn", study, "--out", out, "--quiet"});
   }
 
   std::vector<Evaluation> Evaluations(const std::string& out) {

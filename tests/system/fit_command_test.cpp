@@ -62,9 +62,10 @@ class FitCommand : public CommandTest {
     }
     Write(name, text);
   }
-  CommandResult Fit(const std::string& text, std::vector<std::string> more = {}) const {
+  CommandResult Fit(const std::string& text, std::vector<std::string> more = {},
+                    const std::string& out = "out") const {
     Write("fit.yaml", text);
-    more.insert(more.begin(), {"fit", "fit.yaml", "--out", "out"});
+    more.insert(more.begin(), {"fit", "fit.yaml", "--out", out});
     return End(Start(more));
   }
   nlohmann::json Summary() const { return nlohmann::json::parse(Read(Path("out/summary.json"))); }
@@ -94,6 +95,75 @@ TEST_F(FitCommand, FindsWhatATwinWasMadeWith) {
   EXPECT_EQ(End(Start({"check", "out/fitted_a.yaml", "--quiet"})).status, 0);
   EXPECT_NE(Read(Path("out/fitted_a.yaml")).find("k_n_per_m: 1"), std::string::npos);
   EXPECT_NE(Read(Path("out/report.html")).find("<svg"), std::string::npos);
+}
+
+TEST_F(FitCommand, LeavesEachExperimentBeforeAndAfter) {
+  for (const char* forward : {"static", "dynamic"}) {
+    std::string text = kFit;
+    for (int i = 0; i < 2; ++i)
+      text = Replaced(text, "forward: static", std::string("forward:  ") + forward);
+    const CommandResult done = Fit(text, {}, std::string("of_") + forward);
+    ASSERT_EQ(done.status, 0) << done.output << done.errors;
+    const std::string of = std::string("of_") + forward + "/";
+    const auto summary = nlohmann::json::parse(Read(Path(of + "summary.json")));
+    const double k_n_per_m = summary["parameters"][0]["value"];
+    const CommandResult compared =
+        Taut({"compare", of + "fitted_a/trace.h5", of + "untuned_a/trace.h5", "--from_s", "1",
+              "--json", "--channels", "body/hanging/position_z_m"});
+    ASSERT_EQ(compared.status, 0) << compared.errors;
+    const auto json = nlohmann::json::parse(compared.output);
+    // It hangs m g / k lower than the untuned one, whose k is 100 N/m.
+    EXPECT_NEAR(json["channels"][0]["bias"].get<double>(), 5.0 / 100 - 5.0 / k_n_per_m,
+                forward[0] == 's' ? 1e-8 : 1e-4)
+        << json;
+    EXPECT_NE(done.output.find("taut view " + of + "fitted_a/trace.h5 --compare " + of +
+                               "untuned_a/trace.h5\n"),
+              std::string::npos)
+        << done.output;
+    if (forward[0] == 's') {  // at rest the cable bears the weight, and the summary says so
+      const auto rests = nlohmann::json::parse(Read(Path(of + "fitted_a/summary.json")));
+      EXPECT_NEAR(rests["system_max_tension_n"].get<double>(), 5, 1e-6) << rests;
+    }
+    for (const char* run : {"untuned_a", "fitted_a", "untuned_b", "fitted_b"}) {
+      EXPECT_TRUE(std::filesystem::exists(Path(of + run + "/summary.json"))) << run;
+    }
+    // The page leads to what there is.
+    EXPECT_EQ(
+        Read(Path(of + "report.html")).find("href=\"fitted_a/report.html\"") != std::string::npos,
+        std::filesystem::exists(Path(of + "fitted_a/report.html")));
+  }
+}
+
+TEST_F(FitCommand, SaysWhetherMeasuredForcesCarryTheLoad) {
+  std::string data = "time_s,node/ball/position_z_m,cable/c/tension_n\n";
+  for (int i = 1; i <= 10; ++i) {
+    data += std::to_string(i) + "," + std::to_string(0.05 - 0.045 + 0.01 * i) + ",4.5\n";
+  }
+  Write("a.csv", data);
+  const std::string tension =
+      "residuals:\n  - {channel: cable/c/tension_n, sd: 0.1, experiments: [a], window: "
+      "{after_setpoint_s: [-0.1, 0.1]}}\ncarried: [{name: ball, bodies: [hanging], experiments: "
+      "[a]}]\n";
+  std::string text = Replaced(kFit, "residuals:\n", "");
+  text = Replaced(text, "  - {channel: node/ball", "  - {channel: \"node/ball");
+  text = Replaced(text, "position_z_m,", "position_z_m\",");
+  const std::size_t at = text.find("  - {channel: \"node");
+  const std::string position = text.substr(at, text.find('\n', at) + 1 - at);
+  text = text.substr(0, at) + tension.substr(0, tension.find("carried")) + position +
+         text.substr(at + position.size()) + tension.substr(tension.find("carried"));
+  const CommandResult done = Fit(text);
+  EXPECT_LE(done.status, 1) << done.errors;
+  // 4.5 N of 5 N, each to 0.1 N: 90 % to 2 % / sqrt(10)
+  EXPECT_NE(done.output.find("ball of a: measured forces carry 90 +- 0.6325 % of what is expected: "
+                             "they miss 100 % by 15.81 standard errors"),
+            std::string::npos)
+      << done.output << done.errors;
+  const auto carried = Summary()["carried"];
+  ASSERT_EQ(carried.size(), 1u);
+  EXPECT_FALSE(carried[0]["consistent"]);
+  EXPECT_NEAR(carried[0]["share"], 0.9, 1e-9);
+  EXPECT_NE(Read(Path("out/report.html")).find("Do the data agree with themselves?"),
+            std::string::npos);
 }
 
 TEST_F(FitCommand, AnAliasIsNamedAndNoGoodFit) {

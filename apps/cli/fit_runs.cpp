@@ -1,0 +1,54 @@
+#include "fit_runs.h"
+
+#include <filesystem>
+
+#include "apps/viewer/report.h"
+#include "interrupt.h"
+#include "output.h"
+#include "taut/run.h"
+#include "taut/spec.h"
+
+namespace taut::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Writes one of the two. A run that fails, as one that blows up, is there to be looked at, too.
+bool WriteOne(const Identification& fit, std::size_t e, const ExperimentSpec& experiment,
+              const std::string& folder, Diagnostics& out) {
+  if (fit.spec().experiments[e].forward != FitForward::kDynamic) {
+    return WriteRests(fit, e, experiment, folder, out);
+  }
+  const auto run = RunFolder::Open(folder, {}, out);
+  if (!run) return false;
+  RunOptions options;
+  options.progress = [](const RunProgress&) { return !interrupt_asked; };
+  return RunInto(*run, experiment, options, false, out) && out.ok() && !interrupt_asked;
+}
+
+}  // namespace
+
+std::optional<std::vector<std::string>> WriteBeforeAndAfter(const Identification& fit,
+                                                            const std::string& folder,
+                                                            Diagnostics& out) {
+  std::vector<std::string> reports;
+  for (std::size_t e = 0; e < fit.spec().experiments.size(); ++e) {
+    const FitExperiment& one = fit.spec().experiments[e];
+    const fs::path untuned = fs::path(folder) / ("untuned_" + one.name);
+    const fs::path fitted = fs::path(folder) / ("fitted_" + one.name);
+    const auto with = LoadExperiment(fitted.string() + ".yaml", {}, out);
+    if (!with || !WriteOne(fit, e, one.experiment, untuned.string(), out) ||
+        !WriteOne(fit, e, *with, fitted.string(), out)) {
+      return std::nullopt;
+    }
+    Diagnostics
+        no_pages;  // without them there is no report, and the runs can be viewed all the same
+    const bool report =
+        viewer::WriteReport((fitted / "trace.h5").string(), {(untuned / "trace.h5").string()},
+                            (fitted / "report.html").string(), no_pages);
+    reports.push_back(report ? "fitted_" + one.name + "/report.html" : "");
+  }
+  return reports;
+}
+
+}  // namespace taut::cli
