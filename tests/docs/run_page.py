@@ -107,6 +107,10 @@ def prepare(page, folder, taut):
         for name in SHOWN_FOLDERS:
             (work / name).symlink_to(ROOT / name)
     environment = dict(os.environ, MPLBACKEND="Agg", MPLCONFIGDIR=str(folder), LC_ALL="C.UTF-8")
+    module = taut.parent / "python"
+    if module.is_dir():
+        environment["PYTHONPATH"] = str(module)
+        sys.path.insert(0, str(module))  # for missing_module
     environment["PATH"] = f"{programs}{os.pathsep}{environment['PATH']}"
     return work, environment
 

@@ -1,0 +1,381 @@
+// Many worlds of one model. Whatever takes long lets other Python threads run; a lock a batch keeps
+// them out of each other's way.
+#include "taut/batch.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "text.h"
+
+namespace taut::python {
+namespace {
+
+const std::pair<const char*, Simd> kSimd[] = {{"scalar", Simd::kScalar},
+                                              {"sse2", Simd::kSse2},
+                                              {"neon", Simd::kNeon},
+                                              {"avx2", Simd::kAvx2},
+                                              {"avx512", Simd::kAvx512}};
+
+std::optional<Simd> SimdOf(const std::optional<std::string>& name) {
+  if (!name) return std::nullopt;
+  for (const auto& [known, simd] : kSimd) {
+    if (*name == known) return simd;
+  }
+  throw py::value_error("simd: \"" + *name + "\"; there are scalar, sse2, neon, avx2 and avx512");
+}
+
+const std::pair<const char*, Parameter> kParameters[] = {
+    {"body_mass_kg", Parameter::kBodyMass},
+    {"cable_stiffness_n_per_m", Parameter::kCableStiffness},
+    {"cable_damping_n_s_per_m", Parameter::kCableDamping},
+    {"friction_scale", Parameter::kFrictionScale},
+    {"gravity_x_m_per_s2", Parameter::kGravityX},
+    {"gravity_y_m_per_s2", Parameter::kGravityY},
+    {"gravity_z_m_per_s2", Parameter::kGravityZ}};
+
+class Worlds {
+ public:
+  Worlds(const ModelDef& def, int worlds, int threads, const std::optional<std::string>& simd) {
+    if (worlds < 1) throw py::value_error(fmt::format("worlds: {}; at least 1", worlds));
+    if (threads < 0) throw py::value_error(fmt::format("threads: {}; 0 is one a core", threads));
+    BatchOptions options;
+    options.worlds = worlds;
+    options.threads = threads;
+    options.simd = SimdOf(simd);
+    Diagnostics said;
+    std::shared_ptr<const Model> model;
+    {
+      const py::gil_scoped_release others;
+      model = Model::Compile(def, said);
+      if (model) batch_ = std::make_unique<Batch>(std::move(model), options);
+    }
+    if (!batch_) Refuse(said);
+    Tell(said);
+  }
+
+  /// f(batch) with the batch for itself, while other Python threads go on.
+  template <class F>
+  auto With(F f) {
+    // A forked child has none of the threads, and whatever they held would be held for ever.
+    if (getpid() != pid_) {
+      throw std::runtime_error(
+          "this batch was made before fork(): make it anew in the child, or start workers with "
+          "multiprocessing's \"spawn\"");
+    }
+    const py::gil_scoped_release others;
+    const std::lock_guard<std::mutex> alone(mutex_);
+    return f(*batch_);
+  }
+
+  const ModelDef& def() const { return batch_->model().def(); }
+  int worlds() const { return batch_->worlds(); }
+  int lanes() const { return batch_->lanes(); }
+  int World(py::ssize_t world) const { return Index(world, worlds(), "world"); }
+  py::ssize_t bodies() const { return static_cast<py::ssize_t>(def().bodies.size()); }
+  py::ssize_t cables() const { return static_cast<py::ssize_t>(def().cables.size()); }
+  py::ssize_t nodes() const { return static_cast<py::ssize_t>(def().nodes.size()); }
+
+  /// An array (worlds, count, width), or (worlds, count) if the width is 1: put(batch, world,
+  /// index, numbers).
+  template <class Put>
+  py::array_t<double> Read(const py::object& out, py::ssize_t count, py::ssize_t width, Put put) {
+    std::vector<py::ssize_t> shape{worlds(), count};
+    if (width > 1) shape.push_back(width);
+    py::array_t<double> a = Output(out, shape);
+    double* to = a.mutable_data();
+    With([&](Batch& batch) {
+      for (int w = 0; w < batch.worlds(); ++w) {
+        for (int i = 0; i < static_cast<int>(count); ++i, to += width) put(batch, w, i, to);
+      }
+    });
+    return a;
+  }
+
+ private:
+  std::unique_ptr<Batch> batch_;
+  std::mutex mutex_;
+  const pid_t pid_ = getpid();
+};
+
+void Put(const Vec3& v, double* to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
+
+double Positive(double value, const char* what) {
+  if (!(value > 0) || !std::isfinite(value)) {
+    throw py::value_error(fmt::format("{}: {}; a positive number", what, value));
+  }
+  return value;
+}
+
+void Step(Worlds& worlds, double step_s, int count, const py::object& targets) {
+  Positive(step_s, "step_s");
+  if (count < 0) throw py::value_error(fmt::format("count: {}; 0 or more", count));
+  if (targets.is_none()) {
+    worlds.With([&](Batch& batch) { batch.Step(step_s, count); });
+    return;
+  }
+  const Array a = Shaped(targets, {worlds.worlds(), worlds.cables()}, "rest_length_target_m");
+  const std::span<const double> rows(a.data(), static_cast<std::size_t>(a.size()));
+  worlds.With([&](Batch& batch) { batch.Step(step_s, count, rows); });
+}
+
+void AddStates(py::class_<Worlds, std::shared_ptr<Worlds>>& type) {
+  // One a line: name, how many, width, what is put there, its words.
+  const auto bodies = [&](const char* name, py::ssize_t width, auto put, const char* words) {
+    type.def(
+        name,
+        [=](Worlds& worlds, const py::object& out) {
+          return worlds.Read(out, worlds.bodies(), width,
+                             [=](Batch& b, int w, int i, double* to) { put(b.Body(w, i), to); });
+        },
+        py::arg("out") = py::none(), words);
+  };
+  bodies(
+      "body_position_m", 3, [](const BodyState& s, double* to) { Put(s.position_m, to); },
+      "(worlds, bodies, 3) float64: centres of mass in W [m]. `out`: an array to write into.");
+  bodies(
+      "body_orientation", 4,
+      [](const BodyState& s, double* to) {
+        const Quat& q = s.orientation;
+        to[0] = q.w, to[1] = q.x, to[2] = q.y, to[3] = q.z;
+      },
+      "(worlds, bodies, 4) float64: unit quaternions w, x, y, z from the orientation at the start, "
+      "in W.");
+  bodies(
+      "body_velocity_m_per_s", 3,
+      [](const BodyState& s, double* to) { Put(s.velocity_m_per_s, to); },
+      "(worlds, bodies, 3) float64: of the centres of mass, in W [m/s].");
+  bodies(
+      "body_angular_velocity_rad_per_s", 3,
+      [](const BodyState& s, double* to) { Put(s.angular_velocity_rad_per_s, to); },
+      "(worlds, bodies, 3) float64, in W [rad/s].");
+
+  const auto cables = [&](const char* name, double CableState::*field, const char* words) {
+    type.def(
+        name,
+        [=](Worlds& worlds, const py::object& out) {
+          return worlds.Read(out, worlds.cables(), 1, [=](Batch& b, int w, int i, double* to) {
+            *to = b.Cable(w, i).*field;
+          });
+        },
+        py::arg("out") = py::none(), words);
+  };
+  cables("cable_length_m", &CableState::length_m,
+         "(worlds, cables) float64: between the ends, along all attachments [m].");
+  cables("cable_rate_m_per_s", &CableState::rate_m_per_s,
+         "(worlds, cables) float64: of the length.");
+  cables("rest_length_m", &CableState::rest_length_m, "(worlds, cables) float64 [m].");
+  cables("tension_n", &CableState::tension_n,
+         "(worlds, cables) float64: what a load cell feels, spring and damper [N].");
+  cables("elastic_n", &CableState::elastic_n,
+         "(worlds, cables) float64: max(0, k (l - L)) alone [N].");
+  type.def(
+      "rest_length_target_m",
+      [](Worlds& worlds, const py::object& out) {
+        return worlds.Read(out, worlds.cables(), 1, [](Batch& b, int w, int i, double* to) {
+          *to = b.RestLengthTarget(w, i);
+        });
+      },
+      py::arg("out") = py::none(), "(worlds, cables) float64: the actuators' targets [m].");
+  const auto nodes = [&](const char* name, Vec3 (Batch::*read)(int, int) const, const char* words) {
+    type.def(
+        name,
+        [=](Worlds& worlds, const py::object& out) {
+          return worlds.Read(out, worlds.nodes(), 3,
+                             [=](Batch& b, int w, int i, double* to) { Put((b.*read)(w, i), to); });
+        },
+        py::arg("out") = py::none(), words);
+  };
+  nodes("node_position_m", &Batch::NodePosition, "(worlds, nodes, 3) float64, in W [m].");
+  nodes("node_velocity_m_per_s", &Batch::NodeVelocity, "(worlds, nodes, 3) float64, in W [m/s].");
+  type.def(
+      "time_s",
+      [](Worlds& worlds) {
+        py::array_t<double> a(worlds.worlds());
+        double* to = a.mutable_data();
+        worlds.With([&](Batch& b) {
+          for (int w = 0; w < b.worlds(); ++w) to[w] = b.Time(w);
+        });
+        return a;
+      },
+      "(worlds,) float64: simulated time [s].");
+}
+
+void AddCommands(py::class_<Worlds, std::shared_ptr<Worlds>>& type) {
+  type.def(
+      "set_rest_length_target",
+      [](Worlds& worlds, const py::object& rest_length_m, std::optional<py::ssize_t> world) {
+        std::vector<py::ssize_t> shape{worlds.cables()};
+        if (!world) shape.insert(shape.begin(), worlds.worlds());
+        const Array a = Shaped(rest_length_m, shape, "rest_length_m");
+        const int first = world ? worlds.World(*world) : 0,
+                  last = world ? first + 1 : worlds.worlds();
+        const double* from = a.data();
+        worlds.With([&](Batch& b) {
+          for (int w = first; w < last; ++w) {
+            for (int c = 0; c < static_cast<int>(worlds.cables()); ++c) {
+              b.SetRestLengthTarget(w, c, *from++);
+            }
+          }
+        });
+      },
+      py::arg("rest_length_m"), py::arg("world") = py::none(),
+      "The actuators' targets from here on: (worlds, cables), or (cables,) of one world [m].");
+  type.def(
+      "set_node_force",
+      [](Worlds& worlds, py::ssize_t world, py::ssize_t node, const py::object& force_n) {
+        const int w = worlds.World(world),
+                  n = Index(node, static_cast<int>(worlds.nodes()), "node");
+        const Array f = Shaped(force_n, {3}, "force_n");
+        const Vec3 force{f.at(0), f.at(1), f.at(2)};
+        worlds.With([&](Batch& b) { b.SetNodeForce(w, n, force); });
+      },
+      py::arg("world"), py::arg("node"), py::arg("force_n"),
+      "A force on a node for all following steps: (3,) in W [N].");
+  type.def(
+      "set_parameter",
+      [](Worlds& worlds, const std::string& name, const py::object& values, py::ssize_t index) {
+        for (const auto& [known, parameter] : kParameters) {
+          if (name != known) continue;
+          const int count =
+              parameter == Parameter::kBodyMass ? static_cast<int>(worlds.bodies())
+              : parameter == Parameter::kCableStiffness || parameter == Parameter::kCableDamping
+                  ? static_cast<int>(worlds.cables())
+                  : 1;
+          const int i = Index(index, count, "index");
+          const Array a = Shaped(values, {worlds.worlds()}, "values");
+          const double* from = a.data();
+          worlds.With([&, p = parameter](Batch& b) {
+            for (int w = 0; w < b.worlds(); ++w) b.SetParameter(w, p, i, from[w]);
+          });
+          return;
+        }
+        std::string all;
+        for (const auto& [known, parameter] : kParameters) all += std::string(" ") + known;
+        throw py::value_error("parameter \"" + name + "\"; there are" + all);
+      },
+      py::arg("name"), py::arg("values"), py::arg("index") = 0,
+      "A number of the model for each world, (worlds,): body_mass_kg (index: of the body; its "
+      "inertia scales with it), cable_stiffness_n_per_m, cable_damping_n_s_per_m (index: of the "
+      "cable), friction_scale, gravity_x_m_per_s2, gravity_y_m_per_s2, gravity_z_m_per_s2.");
+  type.def(
+      "step", &Step, py::arg("step_s"), py::arg("count") = 1,
+      py::arg("rest_length_target_m") = py::none(),
+      "Advances every world by `count` steps of `step_s`, under new targets for the rest lengths, "
+      "(worlds, cables) [m], if they are given. Other Python threads go on meanwhile.");
+}
+
+void AddSnapshots(py::class_<Worlds, std::shared_ptr<Worlds>>& type) {
+  type.def(
+      "save",
+      [](Worlds& worlds, py::ssize_t world) {
+        const int w = worlds.World(world);
+        const auto bytes = worlds.With([&](Batch& b) { return b.Save(w); });
+        return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      },
+      py::arg("world") = 0, "All that determines a world's future, as bytes.");
+  type.def(
+      "restore",
+      [](Worlds& worlds, const std::string& snapshot, py::ssize_t world) {
+        const int w = worlds.World(world);
+        const std::vector<std::uint8_t> bytes(snapshot.begin(), snapshot.end());
+        if (!worlds.With([&](Batch& b) { return b.Restore(w, bytes); })) {
+          throw py::value_error("snapshot: not one of this model");
+        }
+      },
+      py::arg("snapshot"), py::arg("world") = 0,
+      "Puts a world where `save` was called, to the bit. ValueError if it is of another model.");
+  type.def(
+      "hash",
+      [](Worlds& worlds, py::ssize_t world) {
+        const int w = worlds.World(world);
+        return worlds.With([&](Batch& b) { return b.Hash(w); });
+      },
+      py::arg("world") = 0, "Of a world's state: the same bits, the same number.");
+  type.def(
+      "status",
+      [](Worlds& worlds) {
+        py::array_t<std::uint32_t> a(worlds.worlds());
+        std::uint32_t* to = a.mutable_data();
+        worlds.With([&](Batch& b) {
+          for (int w = 0; w < b.worlds(); ++w) to[w] = b.Status(w).bits;
+        });
+        return a;
+      },
+      "(worlds,) uint32: 0 is good; else bits of taut.Status.");
+  type.def(
+      "contacts",
+      [](Worlds& worlds, py::ssize_t world) {
+        const int w = worlds.World(world);
+        const auto touching = worlds.With([&](Batch& b) { return b.Contacts(w); });
+        const auto n = static_cast<py::ssize_t>(touching.size());
+        py::array_t<int> bodies({n, py::ssize_t{2}});
+        py::array_t<double> points({n, py::ssize_t{3}}), normals({n, py::ssize_t{3}});
+        py::array_t<double> forces({n, py::ssize_t{3}}), gaps(n);
+        for (py::ssize_t i = 0; i < n; ++i) {
+          const ContactState& c = touching[static_cast<std::size_t>(i)];
+          bodies.mutable_at(i, 0) = c.body_a, bodies.mutable_at(i, 1) = c.body_b;
+          Put(c.point_m, points.mutable_data(i, 0));
+          Put(c.normal, normals.mutable_data(i, 0));
+          Put(c.force_n, forces.mutable_data(i, 0));
+          gaps.mutable_at(i) = c.gap_m;
+        }
+        py::dict all;
+        all["bodies"] = bodies, all["point_m"] = points, all["normal"] = normals;
+        all["force_n"] = forces, all["gap_m"] = gaps;
+        return all;
+      },
+      py::arg("world") = 0,
+      "What touched in the last step: a dict of arrays, a row a point: bodies (n, 2), -1 the "
+      "world; "
+      "point_m, normal (from the second body to the first), force_n on the first (n, 3), in W; "
+      "gap_m (n,).");
+}
+
+}  // namespace
+
+void AddBatch(py::module_& module) {
+  py::class_<Worlds, std::shared_ptr<Worlds>> type(
+      module, "Batch",
+      "Many worlds of one model, stepped together, as described at first. Arrays are copies, made "
+      "in "
+      "one pass; `out=` writes into one that is there. The same bits on any number of threads and "
+      "lanes. Several Python threads may use one batch: they wait for each other.");
+  type.def(py::init([](const RobotSpec& robot, int worlds, int threads,
+                       const std::optional<std::string>& simd) {
+             return std::make_shared<Worlds>(robot.def, worlds, threads, simd);
+           }),
+           py::arg("robot"), py::arg("worlds") = 1, py::arg("threads") = 1,
+           py::arg("simd") = py::none(),
+           "Of a `Robot`. `threads`: 0 is one a core. `simd`: scalar, sse2, neon, avx2 or avx512; "
+           "None is the "
+           "widest that this machine has, or scalar for one world.");
+  type.def(py::init([](const ExperimentSpec& experiment, int worlds, int threads,
+                       const std::optional<std::string>& simd) {
+             return std::make_shared<Worlds>(experiment.robot.def, worlds, threads, simd);
+           }),
+           py::arg("experiment"), py::arg("worlds") = 1, py::arg("threads") = 1,
+           py::arg("simd") = py::none(),
+           "Of an `Experiment`'s robot on its ground, without its controllers and timeline.");
+  type.def_property_readonly("worlds", &Worlds::worlds);
+  type.def_property_readonly("lanes", &Worlds::lanes, "Worlds that share a register.");
+  AddStates(type);
+  AddCommands(type);
+  AddSnapshots(type);
+  py::dict status;
+  status["NOT_FINITE"] = static_cast<int>(kStatusNonFinite);
+  status["NOT_CONVERGED"] = static_cast<int>(kStatusNotConverged);
+  status["CONTACT_OVERFLOW"] = static_cast<int>(kStatusContactOverflow);
+  status["STEP_TOO_LONG"] = static_cast<int>(kStatusStepTooLong);
+  status["FELL_OFF"] = static_cast<int>(kStatusFellOff);
+  module.attr("status_bits") = status;
+}
+
+}  // namespace taut::python

@@ -1,0 +1,175 @@
+// Running experiments, and traces in memory.
+#include "taut/run.h"
+
+#include <pybind11/functional.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "taut/trace.h"
+#include "text.h"
+
+namespace taut::python {
+namespace {
+
+/// Keeps every row.
+class InMemory : public TraceWriter {
+ public:
+  explicit InMemory(Trace& trace) : trace_(trace) { trace.values.resize(trace.channels.size()); }
+  bool Append(double time_s, const double* values) override {
+    trace_.time_s.push_back(time_s);
+    for (auto& channel : trace_.values) channel.push_back(*values++);
+    return true;
+  }
+  bool FlushOld() override { return true; }
+  bool Finish() override { return true; }
+  const std::string& error() const override { return none_; }
+
+ private:
+  Trace& trace_;
+  const std::string none_;
+};
+
+using SharedTrace = std::shared_ptr<Trace>;
+
+struct Ran {
+  SharedTrace trace;
+  RunSummary summary;
+};
+
+Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progress) {
+  if (threads < 0) throw py::value_error("threads: 0 is one a core");
+  Diagnostics said;
+  Ran ran{std::make_shared<Trace>(), {}};
+  std::optional<RunSummary> summary;
+  bool stopped = false;  // by an exception of Python's, Ctrl-C for one
+  if (CheckRecord(experiment, said)) {
+    const py::gil_scoped_release others;
+    ran.trace->channels = RunChannels(experiment);
+    ran.trace->metadata = RunMetadata(experiment);
+    InMemory writer(*ran.trace);
+    RunOptions options;
+    options.threads = threads;
+    options.traces = {&writer};
+    options.progress = [&](const RunProgress& now) {
+      const py::gil_scoped_acquire mine;
+      if (PyErr_CheckSignals() != 0) return !(stopped = true);
+      if (progress.is_none()) return true;
+      try {
+        progress(now.time_s, now.duration_s);
+      } catch (py::error_already_set& error) {
+        error.restore();
+        stopped = true;
+      }
+      return !stopped;
+    };
+    summary = RunExperiment(experiment, options, said);
+  }
+  if (stopped) throw py::error_already_set();
+  if (!summary) Refuse(said);
+  Tell(said);
+  ran.summary = std::move(*summary);
+  return ran;
+}
+
+SharedTrace Read(const std::string& path) {
+  Diagnostics said;
+  std::optional<Trace> trace;
+  {
+    const py::gil_scoped_release others;
+    trace = ReadTrace(path, said);
+  }
+  if (!trace) Refuse(said);
+  Tell(said);
+  return std::make_shared<Trace>(std::move(*trace));
+}
+
+/// A view of numbers that a trace has; it keeps the trace alive and cannot be written.
+py::array View(const std::vector<double>& numbers, const py::object& owner) {
+  py::array_t<double> a(static_cast<py::ssize_t>(numbers.size()), numbers.data(), owner);
+  a.attr("setflags")(py::arg("write") = false);
+  return a;
+}
+
+std::size_t ChannelOf(const Trace& trace, const std::string& name) {
+  if (const auto found = trace.Find(name)) return *found;
+  std::vector<std::string> names;
+  for (const ChannelInfo& c : trace.channels) names.push_back(c.name);
+  const std::string_view close = ClosestMatch(name, names);
+  throw py::key_error("no channel \"" + name + "\"" +
+                      (close.empty() ? "" : "; did you mean \"" + std::string(close) + "\"?"));
+}
+
+}  // namespace
+
+void AddRuns(py::module_& module) {
+  py::class_<Trace, SharedTrace>(module, "Trace",
+                                 "Channels against time, as a run records them: `trace[\"cable/a/"
+                                 "tension_n\"]`. `to_pandas()` and `to_xarray()` for more.")
+      .def_property_readonly(
+          "channels",
+          [](const Trace& t) {
+            std::vector<std::string> names;
+            for (const ChannelInfo& c : t.channels) names.push_back(c.name);
+            return names;
+          },
+          "Names, which end with quantity and unit.")
+      .def_property_readonly(
+          "units",
+          [](const Trace& t) {
+            py::dict units;
+            for (const ChannelInfo& c : t.channels) units[py::str(c.name)] = c.unit;
+            return units;
+          },
+          "By channel: \"N\", \"m\", ...")
+      .def_property_readonly(
+          "metadata",
+          [](const Trace& t) {
+            py::dict all;
+            for (const auto& [key, value] : t.metadata) all[py::str(key)] = value;
+            return all;
+          },
+          "How it came to be: version, step, seed, hash of the inputs ...")
+      .def_property_readonly(
+          "time_s", [](const py::object& self) { return View(self.cast<Trace&>().time_s, self); },
+          "(rows,) float64 [s]; not a copy, read only.")
+      .def_readonly("unfinished", &Trace::unfinished)
+      .def("__getitem__",
+           [](const py::object& self, const std::string& name) {
+             const Trace& t = self.cast<Trace&>();
+             return View(t.values[ChannelOf(t, name)], self);
+           })
+      .def("__contains__",
+           [](const Trace& t, const std::string& name) { return t.Find(name).has_value(); })
+      .def("__len__", [](const Trace& t) { return t.time_s.size(); });
+
+  py::class_<Ran>(module, "Run", "What `taut.run` gives.")
+      .def_readonly("trace", &Ran::trace)
+      .def_property_readonly(
+          "state_hash", [](const Ran& r) { return r.summary.state_hash; },
+          "Of the world at the end: what `taut run` prints.")
+      .def_property_readonly("simulated_s", [](const Ran& r) { return r.summary.simulated_s; })
+      .def_property_readonly(
+          "status", [](const Ran& r) { return r.summary.status_text; },
+          "Empty if all went well; else what failed.")
+      .def_property_readonly(
+          "max_tension_n",
+          [](const Ran& r) {
+            py::dict all;
+            for (const CableSummary& c : r.summary.cables) all[py::str(c.name)] = c.tension.max_n;
+            return all;
+          },
+          "By cable: the largest over every step, not only recorded rows [N].");
+
+  module.def(
+      "run", &Run, py::arg("experiment"), py::arg("threads") = 1, py::arg("progress") = py::none(),
+      "Runs an experiment from start to end, as `taut run` does, to the same bits. "
+      "`progress(time_s, duration_s)` is called a few times a second. Ctrl-C ends it. Raises "
+      "`taut.InputError` if it cannot start.");
+  module.def("read_trace", &Read, py::arg("path"),
+             "Reads a trace that was recorded: .h5, .csv or .csv.gz.");
+}
+
+}  // namespace taut::python

@@ -1,0 +1,99 @@
+#include "text.h"
+
+#include <fmt/format.h>
+
+namespace taut::python {
+namespace {
+
+py::list Items(const std::vector<Diagnostic>& said) {
+  const py::object item = py::module_::import("taut._errors").attr("Complaint");
+  py::list items;
+  for (const Diagnostic& d : Sorted(said)) {
+    items.append(item(d.at.file, d.at.line, d.at.column, d.what, d.hint));
+  }
+  return items;
+}
+
+std::string TextOf(const std::vector<py::ssize_t>& shape, const char* format) {
+  return fmt::format("{} of shape {}", format, ShapeText(shape));
+}
+
+std::string TextOf(const py::array& a) {
+  return TextOf({a.shape(), a.shape() + a.ndim()}, py::str(a.dtype()).cast<std::string>().c_str());
+}
+
+}  // namespace
+
+void Tell(const Diagnostics& said) {
+  if (!said.ok()) Refuse(said);
+  if (said.warnings().empty()) return;
+  const py::object warn = py::module_::import("taut._errors").attr("warn");
+  for (const py::handle item : Items(said.warnings())) warn(item);
+}
+
+void Refuse(const Diagnostics& said) {
+  const py::object error = py::module_::import("taut._errors").attr("InputError");
+  const py::object raised = error(Items(said.items()));
+  PyErr_SetObject(error.ptr(), raised.ptr());
+  throw py::error_already_set();
+}
+
+Overrides OverridesOf(const py::kwargs& values) {
+  Overrides overrides;
+  for (const auto& [name, value] : values) {
+    const bool text = py::isinstance<py::str>(value);
+    overrides.emplace_back(name.cast<std::string>(), text
+                                                         ? value.cast<std::string>()
+                                                         : fmt::format("{}", value.cast<double>()));
+  }
+  return overrides;
+}
+
+int Index(py::ssize_t index, int count, const char* what) {
+  const py::ssize_t from_start = index < 0 ? index + count : index;
+  if (from_start < 0 || from_start >= count) {
+    throw py::index_error(fmt::format("{} {} is not there: there are {}", what, index, count));
+  }
+  return static_cast<int>(from_start);
+}
+
+std::string ShapeText(const std::vector<py::ssize_t>& shape) {
+  std::string text = "(";
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    text += fmt::format("{}{}", i > 0 ? ", " : "", shape[i]);
+  }
+  return text + (shape.size() == 1 ? ",)" : ")");
+}
+
+Array Shaped(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what) {
+  const Array a = Array::ensure(given);
+  if (!a) {
+    PyErr_Clear();
+    throw py::value_error(
+        fmt::format("{}: not numbers; expected {}", what, TextOf(shape, "float64")));
+  }
+  const std::vector<py::ssize_t> has(a.shape(), a.shape() + a.ndim());
+  if (has != shape) {
+    throw py::value_error(
+        fmt::format("{}: {}; expected {}", what, TextOf(a), TextOf(shape, "float64")));
+  }
+  return a;
+}
+
+py::array_t<double> Output(const py::object& out, const std::vector<py::ssize_t>& shape) {
+  if (out.is_none()) return py::array_t<double>(shape);
+  const std::string expected = TextOf(shape, "contiguous, writeable float64");
+  if (!py::isinstance<py::array>(out)) {
+    throw py::value_error(fmt::format("out: no array; expected {}", expected));
+  }
+  const py::array a = py::reinterpret_borrow<py::array>(out);
+  const std::vector<py::ssize_t> has(a.shape(), a.shape() + a.ndim());
+  if (!py::isinstance<py::array_t<double>>(out) || has != shape || !a.writeable() ||
+      !(a.flags() & py::array::c_style)) {
+    throw py::value_error(fmt::format("out: {}{}; expected {}", TextOf(a),
+                                      a.writeable() ? "" : ", not writeable", expected));
+  }
+  return py::reinterpret_borrow<py::array_t<double>>(out);
+}
+
+}  // namespace taut::python
