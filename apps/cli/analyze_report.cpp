@@ -92,8 +92,12 @@ std::string OpenForces(const CaseResult& result) {
   if (!open.forces.found) return text + "  no limits: " + open.forces.why + "\n";
   Table table({"force", "at least", "at most"});
   table.Add({"", "N", "N"});
+  std::size_t rows = 0;
   const auto add = [&](const std::string& name, const ForceInterval& limits) {
+    const double most_n = std::max(std::fabs(limits.low_n), std::fabs(limits.high_n));
+    if (limits.high_n - limits.low_n <= 1e-6 * most_n + 2 * limits.uncertain_n) return;
     table.Add({name, Limit(limits.low_n), Limit(limits.high_n)});
+    ++rows;
   };
   for (std::size_t t = 0; t < open.touches.size(); ++t) {
     add("ground at " + BodyName(result.def, open.touches[t].body), open.forces.touch[t]);
@@ -105,7 +109,7 @@ std::string OpenForces(const CaseResult& result) {
     add(name + ", y", open.forces.joint_y[j]);
     add(name + ", z", open.forces.joint_z[j]);
   }
-  return text + table.Text();
+  return text + (rows > 0 ? table.Text() : "  along the ground alone: what it pushes up is sure\n");
 }
 
 std::string ModeTable(const CaseResult& result, int most) {

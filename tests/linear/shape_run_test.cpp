@@ -111,6 +111,10 @@ TEST_F(ShapeRun, SelfStressIsShownAsTensions) {
     of = q;
   }
   EXPECT_NEAR(density[1] / density[0], 2 * std::sin(kPi / 3), 1e-9);
+  // In per cent, so that colours tell; equal cables have equal numbers.
+  EXPECT_EQ(At(*trace, "cable/side_1/tension_n", 0), 100);
+  EXPECT_EQ(At(*trace, "cable/side_2/tension_n", 0), 100);
+  EXPECT_EQ(At(*trace, "cable/lower_1/tension_n", 0), At(*trace, "cable/upper_2/tension_n", 0));
   EXPECT_EQ(At(*trace, "cable/" + def.cables[0].name + "/tension_n", 0),
             At(*trace, "cable/" + def.cables[0].name + "/tension_n", 30));
 }

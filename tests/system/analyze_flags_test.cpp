@@ -182,6 +182,13 @@ TEST_F(AnalyzeFlags, ShapesAreRuns) {
     EXPECT_EQ(Taut({"compare", folder + "/trace.h5", folder + "/trace.h5"}).status, 0) << name;
   }
   EXPECT_FALSE(std::filesystem::exists(Path("shapes/mode_3")));
+  const json stress = json::parse(Read(Path("shapes/self_stress_1/summary.json")));
+  EXPECT_EQ(stress["system_max_tension_n"], 100);
+  for (const json& cable : stress["cables"]) {
+    const bool side = cable["name"].get<std::string>().starts_with("side");
+    EXPECT_EQ(cable["tension"]["max_n"] == 100, side) << cable;
+    EXPECT_GT(cable["tension"]["max_n"], 0);
+  }
   const json silent = Json({"analyze", kPrism, "--modes", "1", "--out", "again", "--json"});
   EXPECT_EQ(silent["format_version"], 1) << "what is written is told on stderr";
 }
@@ -236,6 +243,31 @@ TEST_F(AnalyzeFlags, ForcesThatSupportsLeaveOpenHaveLimits) {
   // Its turn on the ground is one of its motions as a whole, and no mode by itself.
   EXPECT_EQ(own["modes"]["rigid"], 3);
   EXPECT_EQ(own["modes"]["mechanisms"], 0);
+}
+
+/// A rod that lies on both its ends: they may push it along against each other, but what each bears
+/// is sure. Where cables hold rods that stand on one end each, nothing is open.
+TEST_F(AnalyzeFlags, OnTwoEndsOnlyFrictionIsOpen) {
+  Write("rod.yaml",
+        "taut: 1\nkind: model\nname: rod\nnodes:\n  a: [0, 0, 0.01]\n  b: [0.4, 0, 0.01]\n"
+        "pairs: [{name: rod, nodes: [a, b]}]\n"
+        "builders:\n  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1, friction: 0.5}}\n");
+  Write("lies.yaml",
+        "taut: 1\nkind: experiment\nname: lies\nmodel: rod.yaml\nduration_s: 1\nterrain:\n"
+        "  - {name: ground, plane: {height_m: 0, friction: 0.5}}\n");
+  const json open =
+      Json({"analyze", "lies.yaml", "--modes", "0", "--json"})["load_cases"][0]["open_forces"];
+  ASSERT_EQ(open["ground"].size(), 2u);
+  EXPECT_EQ(open["undetermined"], 1);
+  for (const json& end : open["ground"]) {
+    EXPECT_NEAR(end["normal_force_n"]["low_n"].get<double>(), kGravity / 2, 1e-6);
+    EXPECT_NEAR(end["normal_force_n"]["high_n"].get<double>(), kGravity / 2, 1e-6);
+  }
+  EXPECT_NE(Taut({"analyze", "lies.yaml", "--modes", "0"}).output.find("along the ground alone"),
+            std::string::npos);
+  const std::string six = TAUT_SOURCE_DIR "/experiments/drop_six_strut.yaml";
+  EXPECT_TRUE(
+      Json({"analyze", six, "--modes", "0", "--json"})["load_cases"][0]["open_forces"].is_null());
 }
 
 TEST_F(AnalyzeFlags, ForcesThatNothingLeavesOpenHaveNone) {

@@ -63,6 +63,34 @@ TEST(ForceIntervals, FourFeetOfATableShareInManyWays) {
   ExpectInterval(aside.touch[1], 0, kWeight / 4);
 }
 
+/// Bodies that no unknown force joins are looked at one by one; a cable of known tension is none.
+TEST(ForceIntervals, EachPartByItselfIsAsInTheWhole) {
+  ModelDef def = Table({0, 0, 0.3});
+  def.bodies.push_back(Body("other", 1, {10, 0, 0.3}));
+  def.bodies.push_back(Body("still", 1, {20, 0, 0.3}));
+  def.bodies.back().fixed = true;
+  IntervalOptions options;
+  options.touches = Feet({{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}}, 0);
+  for (TouchDef foot : Feet({{11, 1, 0}, {9, 1, 0}, {9, -1, 0}, {11, -1, 0}}, 0.5)) {
+    foot.body = 1;
+    options.touches.push_back(foot);
+  }
+  const ForceIntervals both = Find(def, options);
+  ASSERT_TRUE(both.found) << both.why;
+  EXPECT_EQ(both.undetermined, 1 + 6);
+  ASSERT_EQ(both.touch.size(), 8u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    ExpectInterval(both.touch[i], 0, kWeight / 2);
+    ExpectInterval(both.touch[4 + i], 0, kWeight / 4);
+  }
+  // Of one that does not balance it is said, whichever it is.
+  options.touches.resize(5);
+  const ForceIntervals tips = Find(def, options);
+  EXPECT_FALSE(tips.found);
+  EXPECT_NE(tips.why.find("other"), std::string::npos) << tips.why;
+  EXPECT_TRUE(tips.touch.empty());
+}
+
 // Friction does not move what the feet bear: all of it acts in one plane.
 TEST(ForceIntervals, ThreeFeetAreDeterminateWithFrictionToo) {
   IntervalOptions options;
