@@ -145,6 +145,27 @@ TEST_F(AnalyzeLinear, AFileThatCannotBeWrittenIsAnError) {
           "nowhere/x.h5: error: cannot be written");
 }
 
+/// A box may lie anywhere on the ground: where a recording has it, it is looked at.
+TEST_F(AnalyzeLinear, ThePoseOfARecordingIsWhereItRests) {
+  Write("box.yaml",
+        "taut: 1\nkind: model\nname: box\nnodes:\n  box: [0, 0, 0.05]\nbuilders:\n"
+        "  - {match: box, box: {size_m: [0.2, 0.2, 0.1], mass_kg: 1, friction: 0.5}}\n");
+  Write("lies.yaml",
+        "taut: 1\nkind: experiment\nname: lies\nmodel: box.yaml\nduration_s: 1\nstart: settled\n"
+        "terrain:\n  - {name: ground, plane: {height_m: 0, friction: 0.5}}\n");
+  Write("seen.csv",
+        "time_s,body/box/position_x_m,body/box/position_y_m,body/box/position_z_m,"
+        "body/box/orientation_w,body/box/orientation_x,body/box/orientation_y,"
+        "body/box/orientation_z\n0,0.7,0,0.05,1,0,0,0\n");
+  const test::CommandResult shown =
+      Taut({"analyze", "lies.yaml", "--pose", "seen.csv", "--linear", "x.h5", "--json"});
+  ASSERT_EQ(shown.status, 0) << shown.errors;
+  const json result = json::parse(shown.output);
+  ASSERT_EQ(result["states"][0]["name"], "body/box/position_x");
+  EXPECT_NEAR(result["states"][0]["at"].get<double>(), 0.7, 1e-6);
+  EXPECT_TRUE(std::filesystem::exists(Path("x.h5")));
+}
+
 /// A box that a cord pulls over the ground until friction holds it: then that bears all it can.
 TEST_F(AnalyzeLinear, WhatIsAboutToSlipIsRefusedWithWhatMayHelp) {
   Write("pulled.yaml",
