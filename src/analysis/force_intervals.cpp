@@ -31,7 +31,7 @@ constexpr double kOnCone = 1e-8;
 
 class Intervals {
  public:
-  /// `largest_n`: what counts as the largest load, if that of the whole is more.
+  /// `largest_n`: what counts as the largest load, if it is more than what has to be balanced.
   Intervals(const ModelDef& def, const LoadCaseSpec& loads, const IntervalOptions& options,
             double largest_n)
       : def_(def),
@@ -234,6 +234,23 @@ class Islands {
   std::vector<int> first_;
 };
 
+/// The largest of the forces that are known by themselves: where they balance, what is left of them
+/// is round-off.
+double LargestForce(const ModelDef& def, const LoadCaseSpec& loads) {
+  double largest_n = 0;
+  const auto note = [&](double force_n) { largest_n = std::max(largest_n, std::fabs(force_n)); };
+  const double gravity =
+      loads.weight ? std::sqrt(Dot(def.gravity_m_per_s2, def.gravity_m_per_s2)) : 0;
+  for (const BodyDef& body : def.bodies) {
+    if (!body.fixed) note(body.mass_kg * gravity);
+  }
+  for (const CableDef& cable : def.cables) note(CableTension(cable));
+  for (const LoadCaseSpec::NodeForce& load : loads.forces) {
+    note(std::sqrt(Dot(load.force_n, load.force_n)));
+  }
+  return largest_n;
+}
+
 /// Each island by itself, all else held: programs grow faster than their size.
 class InParts {
  public:
@@ -242,11 +259,11 @@ class InParts {
         loads_(loads),
         options_(options),
         islands_(def, options),
-        largest_n_(ForceBalance(def, loads, {}, options.known_tensions).LargestLoad()) {}
+        largest_n_(LargestForce(def, loads)) {}
 
   ForceIntervals Run() {
     const std::vector<int> all = islands_.All();
-    if (all.size() < 2) return Intervals(def_, loads_, options_, 0).Run();
+    if (all.size() < 2) return Intervals(def_, loads_, options_, largest_n_).Run();
     ForceIntervals out;
     out.notes = analysis::WhatIsLeftOut(def_);
     out.found = true;

@@ -104,6 +104,29 @@ TEST_F(AnalyzeCases, TheGroundPushesThroughARodThatStands) {
   EXPECT_NEAR(held_n, 9.81, 1e-6);
 }
 
+/// What holds an anchored rod bears its weight, too, if there is any.
+TEST_F(AnalyzeCases, AnAnchorBearsItsOwnWeightOnlyWhereItHasOne) {
+  Write("post.yaml",
+        "taut: 1\nkind: model\nname: post\n"
+        "nodes:\n  a: [0, 0, 2]\n  b: {at_m: [0, 0, 1.5], tags: [post]}\n  ball: [0, 0, 1]\n"
+        "pairs:\n  - {name: beam, nodes: [a, b]}\n  - {name: rope, nodes: [b, ball]}\n"
+        "builders:\n  - {match: beam, rod: {radius_m: 0.01, mass_kg: 2}}\n"
+        "  - {match: post, anchor: {}}\n  - {match: ball, point_mass: {mass_kg: 1}}\n"
+        "  - {match: rope, cable: {stiffness_n_per_m: 1000, rest_length_m: 0.49}}\n");
+  Write("both.yaml",
+        "taut: 1\nkind: experiment\nname: both\nmodel: post.yaml\nduration_s: 1\nload_cases:\n"
+        "  - {name: own, weight: true}\n"
+        "  - {name: pulled, weight: false, forces: [{node: ball, force_n: [0, 0, -10]}]}\n");
+  const auto held_z = [&](const std::string& name) {
+    const json own = Case("both.yaml", name);
+    double sum_n = 0;
+    for (const json& one : own["reactions"]) sum_n += one["force_n"][2].get<double>();
+    return sum_n;
+  };
+  EXPECT_NEAR(held_z("own"), 3 * 9.81, 1e-6);
+  EXPECT_NEAR(held_z("pulled"), 10, 1e-6);
+}
+
 /// Two ropes of 0.5 m and 1 m, one behind the other, hold a ball: T1 + T2 = m g, and the sum that
 /// is least says how they share it.
 TEST_F(AnalyzeCases, WhatIsLeastSaysHowRopesShare) {

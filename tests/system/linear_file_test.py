@@ -170,5 +170,22 @@ def NamesUnitsAndTheRestAreThere(command):
     in_folder(act)
 
 
+def TheRestIsHowBodiesAreTurned(command):
+    """A box that floats stays as a recording has it turned."""
+
+    def act(folder):
+        (folder / "box.yaml").write_text("taut: 1\nkind: model\nname: box\nnodes:\n  box: [0, 0, 0]\nbuilders:\n"
+                                         "  - {match: box, box: {size_m: [0.1, 0.2, 0.3], mass_kg: 1}}\n")
+        turn = np.array([0.2, 0.4, 0.4, 0.8])
+        names = [f"body/box/position_{axis}_m" for axis in "xyz"] + [f"body/box/orientation_{axis}" for axis in "wxyz"]
+        (folder / "seen.csv").write_text("time_s," + ",".join(names) + "\n0,1,2,3," + ",".join(map(str, turn)) + "\n")
+        taut(command, folder, "analyze", "box.yaml", "--pose", "seen.csv", "--linear", "box.h5")
+        system = System(folder / "box.h5")
+        assert np.allclose(system.place_m[0], [1, 2, 3], atol=1e-7), system.place_m
+        assert np.allclose(system.turn[0], turn, atol=1e-9), system.turn
+
+    in_folder(act)
+
+
 if __name__ == "__main__":
     globals()[sys.argv[1]](pathlib.Path(sys.argv[2]).resolve())
