@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -10,7 +9,10 @@
 
 #include "analyze_form.h"
 #include "analyze_inverse.h"
+#include "analyze_linear.h"
+#include "analyze_pose.h"
 #include "analyze_report.h"
+#include "analyze_shapes.h"
 #include "commands.h"
 #include "output.h"
 #include "overrides.h"
@@ -23,9 +25,11 @@ struct AnalyzeArguments {
   std::string path;
   std::vector<std::string> set, load_cases;
   int modes = 10;
-  bool strict = false, backwards = false, form = false;
-  InverseArguments inverse;  ///< Of `--inverse`; its `json` of all.
-  FormArguments forms;       ///< Of `--form`.
+  bool strict = false, backwards = false, form = false, linear = false;
+  PoseArguments pose;
+  InverseArguments inverse;       ///< Of `--inverse`; its `json` of all.
+  FormArguments forms;            ///< Of `--form`; its `out` of shapes, too.
+  LinearArguments linear_system;  ///< Of `--linear` and `--response`.
 };
 
 const std::map<std::string, HoldingCost> kCosts{{"force_density", HoldingCost::kForceDensity},
@@ -33,8 +37,12 @@ const std::map<std::string, HoldingCost> kCosts{{"force_density", HoldingCost::k
                                                 {"energy", HoldingCost::kEnergy}};
 
 struct Loaded {
-  RobotSpec robot;
+  ExperimentSpec experiment;  ///< Of a model alone: its robot and little else.
   std::vector<LoadCaseSpec> cases;
+  bool model = false;
+  /// Of `--pose`, in which the robot then is, and the rest lengths it has in the file.
+  std::optional<Pose> pose;
+  std::vector<double> file_rest_m;
 };
 
 /// A model or an experiment, checked as `taut check` does.
@@ -42,23 +50,36 @@ std::optional<Loaded> Load(const AnalyzeArguments& args, const Overrides& overri
                            Diagnostics& out) {
   const std::optional<std::string> kind = FileKind(args.path, out);
   if (!kind) return std::nullopt;
-  if (*kind == "gait") {
-    out.Error({args.path, 0, 0}, "is a gait", "analyze takes a model or an experiment");
+  if (*kind != "model" && *kind != "experiment") {
+    out.Error({args.path, 0, 0}, "is a " + *kind, "analyze takes a model or an experiment");
     return std::nullopt;
   }
   Loaded loaded;
-  if (*kind == "experiment") {
-    const auto experiment = LoadExperiment(args.path, overrides, out);
-    if (!experiment) return std::nullopt;
-    loaded.robot = experiment->robot;
-    loaded.cases = experiment->load_cases;
-  } else {
+  ExperimentSpec& experiment = loaded.experiment;
+  loaded.model = *kind == "model";
+  if (loaded.model) {
     auto robot = LoadRobot(args.path, overrides, out);
     if (!robot) return std::nullopt;
-    loaded.robot = std::move(*robot);
+    experiment.robot = std::move(*robot);
+    experiment.name = experiment.robot.def.name;
+    experiment.files = experiment.robot.files;
+    experiment.start = StartKind::kSettled;
+  } else {
+    auto whole = LoadExperiment(args.path, overrides, out);
+    if (!whole) return std::nullopt;
+    experiment = std::move(*whole);
+    loaded.cases = experiment.load_cases;
+  }
+  for (const CableDef& cable : experiment.robot.def.cables) {
+    loaded.file_rest_m.push_back(cable.rest_length_m);
+  }
+  if (!args.pose.file.empty()) {
+    loaded.pose = ReadPose(args.pose, experiment.robot, out);
+    if (!loaded.pose) return std::nullopt;
   }
   // What is in each other is statics' business only where it stands.
-  if (!CheckStart(loaded.robot, StartKind::kSettled, out)) return std::nullopt;
+  const RobotSpec there = loaded.pose ? RobotAt(experiment.robot, *loaded.pose) : experiment.robot;
+  if (!CheckStart(there, StartKind::kSettled, out)) return std::nullopt;
   return loaded;
 }
 
@@ -84,7 +105,7 @@ bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::
                  Diagnostics& out) {
   if (loaded.cases.empty() && args.load_cases.empty()) {
     LoadCaseSpec own;
-    own.weight = IsHeld(loaded.robot.def);
+    own.weight = IsHeld(loaded.experiment.robot.def);
     own.name = own.weight ? "own_weight" : "unloaded";
     if (!own.weight) notes.push_back("nothing holds the robot in the world: without weight");
     loaded.cases.push_back(own);
@@ -106,63 +127,24 @@ bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::
   return out.ok();
 }
 
-MemberForces Forces(const ModelDef& def, const LoadCaseSpec& loads, const Equilibrium& at,
-                    std::vector<Reaction>& anchors) {
-  std::vector<BodyForce> forces = ForcesUnder(def, at.cable_tension_n, at.joint_loads);
-  for (const ContactState& contact : at.contacts) {
-    forces.push_back({contact.body_a, contact.point_m, contact.force_n, {}});
+/// What holds a structure up, as tables or JSON, and shapes to look at.
+int Statics(const AnalyzeArguments& args, const Loaded& loaded, AnalysisResult result) {
+  result.forces = AnalyseForces(result.robot.def);
+  result.cases = SolveCases(result.robot.def, loaded.cases, args.modes > 0);
+  const bool json = args.inverse.json;
+  fmt::print("{}",
+             json ? AnalysisJson(result, args.modes) + "\n" : AnalysisTables(result, args.modes));
+  for (const CaseResult& one : result.cases) {
+    if (one.at.found) continue;
+    fmt::print(stderr, "error: load case {}: {}\n", one.loads.name, one.at.why);
   }
-  for (const LoadCaseSpec::NodeForce& load : loads.forces) {
-    const NodeDef& node = def.nodes[static_cast<std::size_t>(load.node)];
-    if (node.body != kWorld) forces.push_back({node.body, node.position_m, load.force_n, {}});
+  int exit = kOk;
+  if (!args.forms.out.empty()) {
+    ExperimentSpec there = loaded.experiment;
+    there.robot = result.robot;
+    exit = WriteShapes(args.forms.out, there, result, args.modes, json);
   }
-  ModelDef weighed = def;
-  if (!loads.weight) weighed.gravity_m_per_s2 = {};
-  anchors = AnchorReactions(weighed, forces);
-  return {at.cable_tension_n, at.bar_force_n, StrutForces(weighed, forces)};
-}
-
-/// Against the cables that end in the world.
-std::vector<CaseResult::End> Ends(const ModelDef& def, const Equilibrium& at) {
-  const auto same = [](const Vec3& a, const Vec3& b) {
-    return std::fabs(a.x - b.x) + std::fabs(a.y - b.y) + std::fabs(a.z - b.z) < 1e-9;
-  };
-  std::vector<CaseResult::End> ends;
-  for (const BodyForce& force : ForcesUnder(def, at.cable_tension_n, {})) {
-    if (force.body != kWorld) continue;
-    auto end = std::find_if(ends.begin(), ends.end(), [&](const CaseResult::End& e) {
-      return same(e.point_m, force.point_m);
-    });
-    if (end == ends.end()) {
-      const auto node = std::find_if(def.nodes.begin(), def.nodes.end(), [&](const NodeDef& n) {
-        return n.body == kWorld && same(n.position_m, force.point_m);
-      });
-      ends.push_back({node == def.nodes.end() ? "world" : node->name, force.point_m, {}});
-      end = ends.end() - 1;
-    }
-    end->force_n.x -= force.force_n.x;
-    end->force_n.y -= force.force_n.y;
-    end->force_n.z -= force.force_n.z;
-  }
-  return ends;
-}
-
-CaseResult Solve(const ModelDef& def, const LoadCaseSpec& loads, const MemberForces* unloaded,
-                 bool with_modes) {
-  CaseResult result;
-  result.loads = loads;
-  result.at = FindEquilibrium(def, loads);
-  result.def = ModelAt(def, result.at.pose);
-  if (!result.at.found) return result;
-  const MemberForces forces = Forces(result.def, loads, result.at, result.anchors);
-  result.ends = Ends(result.def, result.at);
-  result.members = MemberLoads(result.def, forces, unloaded);
-  if (with_modes) {
-    LoadCaseSpec there = loads;
-    there.cables.clear();  // the pose has these rest lengths
-    result.modes = FindModes(result.def, there);
-  }
-  return result;
+  return result.Found() ? exit : kFailed;
 }
 
 int Analyze(const AnalyzeArguments& args) {
@@ -173,33 +155,26 @@ int Analyze(const AnalyzeArguments& args) {
   AnalysisResult result;
   if (loaded) ChooseCases(args, *loaded, result.notes, found);
   if (!Pass(found, args.strict)) return Fail(found, kBadInput);
+  ExperimentSpec& experiment = loaded->experiment;
+  if (args.linear) {
+    // A model that nothing holds is looked at without weight, as in statics.
+    if (loaded->model && !IsHeld(experiment.robot.def)) {
+      experiment.robot.def.gravity_m_per_s2 = {};
+    }
+    return Linear(args.path, experiment, loaded->pose, result.notes, args.modes, args.inverse.json,
+                  args.linear_system);
+  }
   result.file = args.path;
-  result.robot = loaded->robot;
-  const ModelDef& def = loaded->robot.def;
+  result.robot = loaded->pose ? RobotAt(experiment.robot, *loaded->pose) : experiment.robot;
   if (args.form) {
-    return FindFormOf(args.path, loaded->robot, loaded->cases.front().weight, args.forms);
+    return FindFormOf(args.path, result.robot, loaded->cases.front().weight, args.forms);
   }
   if (args.backwards) {
-    return Inverse(args.path, loaded->robot, loaded->cases, result.notes, args.inverse);
+    InverseArguments inverse = args.inverse;
+    if (loaded->pose) inverse.calibration_rest_m = loaded->file_rest_m;
+    return Inverse(args.path, result.robot, loaded->cases, result.notes, inverse);
   }
-
-  result.forces = AnalyseForces(def);
-  LoadCaseSpec nothing;
-  nothing.weight = false;
-  const CaseResult unloaded = Solve(def, nothing, nullptr, false);
-  std::vector<Reaction> ignored;
-  std::optional<MemberForces> before;
-  if (unloaded.at.found) before = Forces(unloaded.def, nothing, unloaded.at, ignored);
-  for (const LoadCaseSpec& loads : loaded->cases) {
-    result.cases.push_back(Solve(def, loads, before ? &*before : nullptr, args.modes > 0));
-  }
-  fmt::print("{}", args.inverse.json ? AnalysisJson(result, args.modes) + "\n"
-                                     : AnalysisTables(result, args.modes));
-  for (const CaseResult& one : result.cases) {
-    if (one.at.found) continue;
-    fmt::print(stderr, "error: load case {}: {}\n", one.loads.name, one.at.why);
-  }
-  return result.Found() ? kOk : kFailed;
+  return Statics(args, *loaded, std::move(result));
 }
 
 void AddInverse(CLI::App& analyze, AnalyzeArguments& args) {
@@ -240,9 +215,56 @@ void AddForm(CLI::App& analyze, AnalyzeArguments& args) {
   of_all("--force_density_n_per_m", args.forms.force_density_n_per_m,
          "With --form: tension by length of every cable")
       ->excludes(tension);
-  analyze.add_option("--out", args.forms.out, "With --form: write it as a model file")
-      ->option_text("FILE")
-      ->needs(form);
+}
+
+void AddLinear(CLI::App& analyze, AnalyzeArguments& args) {
+  LinearArguments& linear = args.linear_system;
+  const auto file = [&args](const std::string& path) {
+    args.linear = true, args.linear_system.file = path;
+  };
+  auto* const whole =
+      analyze
+          .add_option_function<std::string>(
+              "--linear", file,
+              "What small changes do, about the rest: write A, B, C, D into this HDF5 file")
+          ->option_text("FILE");
+  using Pairs = std::vector<std::pair<std::string, std::string>>;
+  const auto pairs = [&args](const Pairs& all) {
+    args.linear = true, args.linear_system.responses = all;
+  };
+  auto* const response =
+      analyze
+          .add_option_function<Pairs>("--response", pairs,
+                                      "How an output answers a sine of an input about the rest: "
+                                      "gain and phase by frequency")
+          ->option_text("INPUT OUTPUT")
+          ->allow_extra_args(false);
+  for (CLI::Option* const one : {whole, response}) {
+    for (const char* const other : {"--inverse", "--form", "--load_case", "--out"}) {
+      one->excludes(analyze.get_option(other));
+    }
+  }
+  analyze
+      .add_option("--from_hz", linear.from_hz,
+                  "With --response: the first frequency (default: 0.1)")
+      ->option_text("NUMBER")
+      ->check(NumberWithin(1e-9, 1e9))
+      ->needs(response);
+  analyze
+      .add_option("--to_hz", linear.to_hz,
+                  "With --response: the last frequency (default: half the controllers' or steps')")
+      ->option_text("NUMBER")
+      ->check(NumberWithin(1e-9, 1e9))
+      ->needs(response);
+  analyze
+      .add_option("--points", linear.points,
+                  "With --response: how many frequencies, by equal factors (default: 40)")
+      ->option_text("NUMBER")
+      ->check(WholeNumberWithin(1, 1000000))
+      ->needs(response);
+  analyze.add_flag("--csv", linear.csv, "With --response: CSV instead of tables")
+      ->needs(response)
+      ->excludes(analyze.get_option("--json"));
 }
 
 }  // namespace
@@ -260,12 +282,27 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
                    "Only this load case of the experiment; may be repeated")
       ->option_text("NAME")
       ->allow_extra_args(false);
+  analyze
+      ->add_option("--pose", args->pose.file,
+                   "The robot as this recording shows it, not as described (.h5, .csv, .csv.gz)")
+      ->option_text("FILE");
+  analyze->add_option("--at_s", args->pose.at_s, "With --pose: at this time (default: at its end)")
+      ->option_text("NUMBER")
+      ->check(NumberWithin(-1e12, 1e12))
+      ->needs(analyze->get_option("--pose"));
   analyze->add_option("--modes", args->modes, "How many modes to show (default: 10)")
       ->option_text("NUMBER")
       ->check(WholeNumberWithin(0, 100000));
   analyze->add_flag("--json", args->inverse.json, "JSON instead of tables");
   AddInverse(*analyze, *args);
   AddForm(*analyze, *args);
+  analyze
+      ->add_option("--out", args->forms.out,
+                   "Folder for modes, mechanisms and self-stresses as runs to look at; with --form "
+                   "a model file")
+      ->option_text("PATH")
+      ->excludes(analyze->get_option("--inverse"));
+  AddLinear(*analyze, *args);
   analyze->add_flag("--strict", args->strict, kStrictHelp);
   analyze->footer(
       "Examples:\n"
@@ -273,7 +310,12 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
       "  taut analyze models/six_strut.yaml --modes 20 --json\n"
       "  taut analyze models/prism3.yaml --inverse --minimise energy --at_least_n 5\n"
       "  taut analyze models/prism3.yaml --form --tension_n 20 --out form.yaml\n"
-      "Statics alone: it depends on no step, and on masses as weights only.\n"
+      "  taut analyze models/prism3.yaml --out shapes && taut view shapes/mode_1/trace.h5\n"
+      "  taut analyze experiments/drop_six_strut.yaml --pose runs/drop_six_strut/trace.h5\n"
+      "  taut analyze models/prism3.yaml --linear prism.h5\n"
+      "  taut analyze models/hanging_mass.yaml --response node/mass/force_z node/mass/position_z\n"
+      "But for --linear and --response it is statics alone: it depends on no step, and on masses "
+      "as weights only.\n"
       "Exit status: 0 good, 1 a load case has no equilibrium, 2 bad usage, 3 the file has errors.");
   analyze->callback([args, &exit_code] { exit_code = Analyze(*args); });
 }

@@ -38,13 +38,22 @@ std::string Counts(const ForceAnalysis& f) {
   return text;
 }
 
+bool HasCables(const ForceAnalysis& f) {
+  return std::any_of(f.members.begin(), f.members.end(), [](const StaticMember& member) {
+    return member.kind == StaticMember::Kind::kCable;
+  });
+}
+
 std::string Prestress(const ForceAnalysis& f) {
   std::string text;
   const auto feasible = std::count_if(f.self_stress.begin(), f.self_stress.end(),
                                       [](const SelfStress& s) { return s.feasible; });
-  if (feasible == 0) {
-    text += "  no state of self-stress with all cables in tension was found\n";
-  } else if (!f.mechanism_stiffness.empty()) {
+  if (feasible == 0 && HasCables(f)) {
+    text += "  no state of self-stress with all cables in tension was found";
+    text += f.rigid == 6 && HasCables(f)
+                ? " (--form --tension_n 10 looks for a form that has one)\n"
+                : "\n";
+  } else if (feasible > 0 && !f.mechanism_stiffness.empty()) {
     const double least = f.mechanism_stiffness.front();
     text += fmt::format(
         "  {}: prestress resists the mechanisms with {:.4g} times a cable's largest force density "

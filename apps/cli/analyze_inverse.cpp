@@ -28,6 +28,7 @@ HoldingOptions OptionsOf(const InverseArguments& args, const ModelDef& def) {
   options.minimise = args.minimise;
   options.bounds.assign(def.cables.size(), args.bounds);
   options.touches = FindTouches(def, kTouch_m);
+  options.calibration_rest_m = args.calibration_rest_m;
   return options;
 }
 

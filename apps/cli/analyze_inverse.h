@@ -16,6 +16,7 @@ struct InverseArguments {
   HoldingCost minimise = HoldingCost::kForceDensity;
   CableBounds bounds;  ///< Of every cable.
   bool json = false;
+  std::vector<double> calibration_rest_m;  ///< Per cable, or empty: as described.
 };
 
 inline const char* HoldingCostName(HoldingCost cost) {

@@ -134,6 +134,37 @@ Json ReactionsJson(const CaseResult& result) {
   return list;
 }
 
+Json IntervalJson(const ForceInterval& limits) {
+  return {{"low_n", limits.low_n}, {"high_n", limits.high_n}, {"uncertain_n", limits.uncertain_n}};
+}
+
+/// Infinite ends are null.
+Json OpenJson(const CaseResult& result) {
+  const CaseResult::Open& open = *result.open;
+  Json json{{"undetermined", open.forces.undetermined},
+            {"found", open.forces.found},
+            {"why", open.forces.found ? Json() : Json(open.forces.why)},
+            {"ground", Json::array()},
+            {"joints", Json::array()}};
+  if (!open.forces.found) return json;
+  for (std::size_t t = 0; t < open.touches.size(); ++t) {
+    const TouchDef& touch = open.touches[t];
+    json["ground"].push_back({{"name", BodyName(result.def, touch.body)},
+                              {"point_m", ToJson(touch.point_m)},
+                              {"normal", ToJson(touch.normal)},
+                              {"friction", touch.friction},
+                              {"normal_force_n", IntervalJson(open.forces.touch[t])}});
+  }
+  for (std::size_t j = 0; j < result.def.joints.size(); ++j) {
+    if (IsBar(result.def.joints[j])) continue;
+    json["joints"].push_back({{"name", result.def.joints[j].name},
+                              {"force_x_n", IntervalJson(open.forces.joint_x[j])},
+                              {"force_y_n", IntervalJson(open.forces.joint_y[j])},
+                              {"force_z_n", IntervalJson(open.forces.joint_z[j])}});
+  }
+  return json;
+}
+
 Json ModesJson(const CaseResult& result, int most) {
   const Modes& modes = *result.modes;
   Json json{{"why_none", modes.why.empty() ? Json() : Json(modes.why)},
@@ -164,6 +195,7 @@ Json CaseJson(const CaseResult& result, int most_modes) {
   json["bodies"] = PoseJson(result);
   json["members"] = MembersJson(result);
   json["reactions"] = ReactionsJson(result);
+  json["open_forces"] = result.open ? OpenJson(result) : Json();
   if (result.modes) json["modes"] = ModesJson(result, most_modes);
   return json;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "taut/analysis.h"
 #include "taut/safety.h"
@@ -82,16 +83,19 @@ inline const char* WayText(EquilibriumWay way) {
   return "";
 }
 
-/// The body whose centre of mass moves farthest; -1 if none moves.
+/// The body whose centre of mass moves farthest; where all stay, the one that turns most. -1: none.
 inline int MovesMost(const Mode& mode) {
-  int most = -1;
-  double largest = 0;
-  for (std::size_t b = 0; b < mode.translation_m.size(); ++b) {
-    const Vec3& t = mode.translation_m[b];
-    const double size = t.x * t.x + t.y * t.y + t.z * t.z;
-    if (size > largest) largest = size, most = static_cast<int>(b);
+  for (const std::vector<Vec3>* const way : {&mode.translation_m, &mode.turn_rad}) {
+    int most = -1;
+    double largest = 1e-18;  // squared; of round-off
+    for (std::size_t b = 0; b < way->size(); ++b) {
+      const Vec3& t = (*way)[b];
+      const double size = t.x * t.x + t.y * t.y + t.z * t.z;
+      if (size > largest) largest = size, most = static_cast<int>(b);
+    }
+    if (most >= 0) return most;
   }
-  return most;
+  return -1;
 }
 
 }  // namespace taut::cli

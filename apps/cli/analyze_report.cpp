@@ -80,6 +80,38 @@ std::string Reactions(const CaseResult& result) {
   return count == 0 ? std::string() : table.Text();
 }
 
+std::string Limit(double force_n) {
+  return std::isfinite(force_n) ? Fixed(force_n, 3) : "no limit";
+}
+
+/// Forces that friction and redundant supports leave open: each by itself between its limits.
+std::string OpenForces(const CaseResult& result) {
+  const CaseResult::Open& open = *result.open;
+  std::string text = fmt::format("\nFriction and supports leave {} forces open; each by itself\n",
+                                 open.forces.undetermined);
+  if (!open.forces.found) return text + "  no limits: " + open.forces.why + "\n";
+  Table table({"force", "at least", "at most"});
+  table.Add({"", "N", "N"});
+  std::size_t rows = 0;
+  const auto add = [&](const std::string& name, const ForceInterval& limits) {
+    const double most_n = std::max(std::fabs(limits.low_n), std::fabs(limits.high_n));
+    if (limits.high_n - limits.low_n <= 1e-6 * most_n + 2 * limits.uncertain_n) return;
+    table.Add({name, Limit(limits.low_n), Limit(limits.high_n)});
+    ++rows;
+  };
+  for (std::size_t t = 0; t < open.touches.size(); ++t) {
+    add("ground at " + BodyName(result.def, open.touches[t].body), open.forces.touch[t]);
+  }
+  for (std::size_t j = 0; j < result.def.joints.size(); ++j) {
+    const std::string& name = result.def.joints[j].name;
+    if (IsBar(result.def.joints[j])) continue;  // its rest length says what it carries
+    add(name + ", x", open.forces.joint_x[j]);
+    add(name + ", y", open.forces.joint_y[j]);
+    add(name + ", z", open.forces.joint_z[j]);
+  }
+  return text + (rows > 0 ? table.Text() : "  along the ground alone: what it pushes up is sure\n");
+}
+
 std::string ModeTable(const CaseResult& result, int most) {
   const Modes& modes = *result.modes;
   if (!modes.why.empty()) return "  none: " + modes.why + "\n";
@@ -127,6 +159,7 @@ std::string CaseText(const CaseResult& result, int most_modes) {
   if (others) text += "\n" + BarsAndRods(result);
   const std::string reactions = Reactions(result);
   if (!reactions.empty()) text += "\n" + reactions;
+  if (result.open) text += OpenForces(result);
   if (result.modes) text += "\nModes about it\n" + ModeTable(result, most_modes);
   return text;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "taut/analysis.h"
+#include "taut/inverse_statics.h"
 #include "taut/safety.h"
 #include "taut/spec.h"
 
@@ -24,8 +25,18 @@ struct CaseResult {
     Vec3 point_m, force_n;
   };
   std::vector<End> ends;
+  /// Forces that friction and redundant supports leave open there.
+  struct Open {
+    std::vector<TouchDef> touches;
+    ForceIntervals forces;
+  };
+  std::optional<Open> open;
   std::optional<Modes> modes;
 };
+
+/// Each of the cases by itself.
+std::vector<CaseResult> SolveCases(const ModelDef& def, const std::vector<LoadCaseSpec>& cases,
+                                   bool with_modes);
 
 struct AnalysisResult {
   std::string file;

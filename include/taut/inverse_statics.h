@@ -29,7 +29,8 @@ struct TouchDef {
 };
 
 /// Where spheres, rods, boxes and convex bodies that collide are within `within_m` of the terrain's
-/// planes, or in them. A rod has two such places, a box up to eight.
+/// planes, or in them. A rod has two such places, a box up to eight; those of a body's parts that
+/// are at the same place are one.
 std::vector<TouchDef> FindTouches(const ModelDef& def, double within_m);
 
 /// Of a cable, all that hold.

@@ -49,22 +49,26 @@ struct LinearSignal {
 
 struct StateSpace {
   bool found = false;
-  std::string why;                   ///< If not.
+  std::string why;                   ///< If not,
+  std::string hint;                  ///< and what may help.
   std::vector<std::string> remarks;  ///< What is left out, and why differences had to do.
   Derivatives derivatives = Derivatives::kExact;
   /// The largest difference of an entry from the other way of finding it, as a share of the largest
   /// entry of its kind (velocities by turns, tensions by positions, ...).
   double disagreement = 0;
   double period_s = 0;  ///< Of a tick: the controllers', or a step.
+  double step_s = 0;    ///< Of the steps that a tick is made of.
   std::vector<LinearSignal> states, inputs, outputs;
   Matrix A, B, C, D;
-  Pose pose;  ///< At the equilibrium.
+  Pose pose;                                ///< At the equilibrium.
+  std::vector<std::string> bodies, cables;  ///< Names in the pose's order.
 };
 
-/// Not found, with `why`: a robot that does not come to rest, a cable that is at the edge of going
-/// slack, a contact at the edge of slipping or opening, controllers with periods of their own each,
-/// bodies that programs move. Left out, with remarks: pushes, drags, gaits, sensors' errors, start
-/// noise. Diagnostics, as from `RunExperiment`, if the experiment cannot start at all.
+/// Not found, with `why` and `hint`: a robot that does not come to rest, a cable that is at the
+/// edge of going slack, a contact at the edge of slipping or opening, controllers with periods of
+/// their own each, bodies that programs move. Left out, with remarks: pushes, drags, gaits,
+/// sensors' errors, start noise. Diagnostics, as from `RunExperiment`, if the experiment cannot
+/// start at all.
 StateSpace FindStateSpace(const ExperimentSpec& experiment, const LinearOptions& options,
                           Diagnostics& out);
 

@@ -8,6 +8,7 @@
 
 #include "analysis/force_balance.h"
 #include "analysis/quadratic_program.h"
+#include "base/fixed.h"
 #include "math/vec.h"
 #include "taut/inverse_statics.h"
 
@@ -30,12 +31,14 @@ constexpr double kOnCone = 1e-8;
 
 class Intervals {
  public:
-  Intervals(const ModelDef& def, const LoadCaseSpec& loads, const IntervalOptions& options)
+  /// `largest_n`: what counts as the largest load, if it is more than what has to be balanced.
+  Intervals(const ModelDef& def, const LoadCaseSpec& loads, const IntervalOptions& options,
+            double largest_n)
       : def_(def),
         options_(options),
         balance_(def, loads, options.touches, options.known_tensions),
         all_(balance_.Solve()),
-        load_(balance_.LargestLoad()),
+        load_(std::max(largest_n, balance_.LargestLoad())),
         angles_(analysis::EvenAngles(options.touches.size(), kFirstPlanes)) {}
 
   ForceIntervals Run() {
@@ -137,6 +140,10 @@ class Intervals {
   }
 
   ForceInterval Of(const VectorXd& goal, double known) {
+    if ((all_.free.transpose() * goal).norm() <= 1e-12 * goal.norm()) {
+      const double force_n = known + goal.dot(all_.particular);
+      return {force_n, force_n, 0};
+    }
     double inner_low = 0, inner_high = 0;
     ForceInterval interval;
     interval.low_n = known + LeastOf(goal, &inner_low).value_or(0);
@@ -189,6 +196,138 @@ class Intervals {
   Angles angles_;
 };
 
+/// Bodies that unknown forces join; per body the first of its island, -1 of those that stand still.
+class Islands {
+ public:
+  Islands(const ModelDef& def, const IntervalOptions& options) {
+    for (std::size_t b = 0; b < def.bodies.size(); ++b) {
+      first_.push_back(base::IsFixed(def, static_cast<int>(b)) ? -1 : static_cast<int>(b));
+    }
+    for (const JointDef& joint : def.joints) Join(joint.body_a, joint.body_b);
+    for (const TouchDef& touch : options.touches) Join(touch.body, touch.other);
+    for (const CableDef& cable : def.cables) {
+      for (const AttachmentDef& at : cable.attachments) {
+        if (!options.known_tensions) Join(cable.attachments.front().body, at.body);
+      }
+    }
+  }
+  /// The first body of each.
+  std::vector<int> All() const {
+    std::vector<int> all;
+    for (std::size_t b = 0; b < first_.size(); ++b) {
+      if (Of(static_cast<int>(b)) == static_cast<int>(b)) all.push_back(static_cast<int>(b));
+    }
+    return all;
+  }
+  int Of(int body) const {
+    while (body >= 0 && first_[static_cast<std::size_t>(body)] != body) {
+      body = first_[static_cast<std::size_t>(body)];
+    }
+    return body;
+  }
+
+ private:
+  void Join(int a, int b) {
+    a = Of(a), b = Of(b);
+    if (a >= 0 && b >= 0) first_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+  std::vector<int> first_;
+};
+
+/// The largest of the forces that are known by themselves: where they balance, what is left of them
+/// is round-off.
+double LargestForce(const ModelDef& def, const LoadCaseSpec& loads) {
+  double largest_n = 0;
+  const auto note = [&](double force_n) { largest_n = std::max(largest_n, std::fabs(force_n)); };
+  const double gravity =
+      loads.weight ? std::sqrt(Dot(def.gravity_m_per_s2, def.gravity_m_per_s2)) : 0;
+  for (const BodyDef& body : def.bodies) {
+    if (!body.fixed) note(body.mass_kg * gravity);
+  }
+  for (const CableDef& cable : def.cables) note(CableTension(cable));
+  for (const LoadCaseSpec::NodeForce& load : loads.forces) {
+    note(std::sqrt(Dot(load.force_n, load.force_n)));
+  }
+  return largest_n;
+}
+
+/// Each island by itself, all else held: programs grow faster than their size.
+class InParts {
+ public:
+  InParts(const ModelDef& def, const LoadCaseSpec& loads, const IntervalOptions& options)
+      : def_(def),
+        loads_(loads),
+        options_(options),
+        islands_(def, options),
+        largest_n_(LargestForce(def, loads)) {}
+
+  ForceIntervals Run() {
+    const std::vector<int> all = islands_.All();
+    if (all.size() < 2) return Intervals(def_, loads_, options_, largest_n_).Run();
+    ForceIntervals out;
+    out.notes = analysis::WhatIsLeftOut(def_);
+    out.found = true;
+    out.touch.resize(options_.touches.size());
+    out.joint_x.resize(def_.joints.size());
+    out.joint_y = out.joint_z = out.joint_x;
+    for (const int island : all) Add(island, out);
+    if (out.found) return out;
+    ForceIntervals none;
+    none.notes = out.notes, none.why = out.why, none.left = out.left;
+    none.undetermined = out.undetermined;
+    return none;
+  }
+
+ private:
+  void Add(int island, ForceIntervals& out) const {
+    ModelDef def = def_;
+    for (std::size_t b = 0; b < def.bodies.size(); ++b) {
+      if (islands_.Of(static_cast<int>(b)) != island) def.bodies[b].fixed = true;
+    }
+    IntervalOptions options = options_;
+    options.touches.clear();
+    std::vector<std::size_t> touches, joints;
+    for (std::size_t t = 0; t < options_.touches.size(); ++t) {
+      const TouchDef& touch = options_.touches[t];
+      if (islands_.Of(touch.body) != island && islands_.Of(touch.other) != island) continue;
+      touches.push_back(t), options.touches.push_back(touch);
+    }
+    LoadCaseSpec loads = loads_;
+    def.joints.clear(), loads.bars.clear();
+    for (std::size_t j = 0; j < def_.joints.size(); ++j) {
+      const JointDef& joint = def_.joints[j];
+      if (islands_.Of(joint.body_a) != island && islands_.Of(joint.body_b) != island) continue;
+      for (LoadCaseSpec::Lengthening longer : loads_.bars) {
+        if (longer.index != static_cast<int>(j)) continue;
+        longer.index = static_cast<int>(joints.size());
+        loads.bars.push_back(longer);
+      }
+      joints.push_back(j), def.joints.push_back(joint);
+    }
+    const ForceIntervals one = Intervals(def, loads, options, largest_n_).Run();
+    out.undetermined += one.undetermined;
+    out.left.insert(out.left.end(), one.left.begin(), one.left.end());
+    if (!one.found) {
+      if (out.found) out.why = one.why;
+      out.found = false;
+      return;
+    }
+    out.cable = one.cable;  // known ones
+    for (std::size_t i = 0; i < touches.size(); ++i) out.touch[touches[i]] = one.touch[i];
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      out.joint_x[joints[i]] = one.joint_x[i];
+      out.joint_y[joints[i]] = one.joint_y[i];
+      out.joint_z[joints[i]] = one.joint_z[i];
+    }
+  }
+
+  const ModelDef& def_;
+  const LoadCaseSpec& loads_;
+  const IntervalOptions& options_;
+  Islands islands_;
+  double largest_n_;
+};
+
 }  // namespace
 
 ForceIntervals FindForceIntervals(const ModelDef& def, const LoadCaseSpec& loads,
@@ -201,7 +340,7 @@ ForceIntervals FindForceIntervals(const ModelDef& def, const LoadCaseSpec& loads
     none.why = "the options are wrong";
     return none;
   }
-  return Intervals(def, loads, options).Run();
+  return InParts(def, loads, options).Run();
 }
 
 }  // namespace taut

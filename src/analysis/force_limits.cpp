@@ -142,8 +142,16 @@ std::vector<TouchDef> FindTouches(const ModelDef& def, double within_m) {
       const double gap = Dot(plane.normal, place - plane.point_m) - radius;
       if (gap > within_m) continue;
       const double friction = sim::Combined(def, material, plane.material).static_friction;
-      touches.push_back(
-          {body, kWorld, place - (radius + gap) * plane.normal, plane.normal, friction});
+      const TouchDef touch{body, kWorld, place - (radius + gap) * plane.normal, plane.normal,
+                           friction};
+      // Rods of a body that end in the same place touch there once.
+      constexpr double kSamePlaceM = 1e-9;
+      const auto same = [&touch](const TouchDef& t) {
+        const Vec3 away = t.point_m - touch.point_m, turned = t.normal - touch.normal;
+        return t.body == touch.body && t.friction == touch.friction && Dot(turned, turned) == 0 &&
+               Dot(away, away) < kSamePlaceM * kSamePlaceM;
+      };
+      if (std::none_of(touches.begin(), touches.end(), same)) touches.push_back(touch);
     }
   };
   for (const SphereDef& s : def.spheres) {

@@ -83,9 +83,11 @@ Free FreeMotions(const Structure& s, const Eigen::MatrixXd& stiffness, const Eig
   scaled.rightCols<3>() /= s.size_m;
   scaled = SpanOf(scaled);  // of points in a row, or of a single one, some turns are nothing
   const double most = (unheld.transpose() * stiffness * unheld).cwiseAbs().maxCoeff();
+  // Where nothing resists, there is round-off of what holds.
+  const bool resists = most > 1e-12 * stiffness.cwiseAbs().maxCoeff();
   Eigen::MatrixXd resisted(held.cols() + s.motions(), scaled.cols());
   resisted << held.transpose() * scaled,
-      (most > 0 ? 1 / most : 1.0) * (effective * (effective.transpose() * stiffness * scaled));
+      (resists ? 1 / most : 0.0) * (effective * (effective.transpose() * stiffness * scaled));
   const Eigen::MatrixXd whole = scaled * Nothing(resisted, 1e-11);
   out.rigid = whole.cols();
   if (out.rigid == 0) return {unheld, 0};

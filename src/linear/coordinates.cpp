@@ -61,14 +61,14 @@ void Coordinates::AddBodies(const World<Plain>& at) {
     const V3<Plain> x = GetV3(at, l.pos + 3 * b);
     movers_.push_back({b, {x.x.v, x.y.v, x.z.v}, {q.w.v, q.x.v, q.y.v, q.z.v}});
     for (int k = 0; k < 3; ++k) {
-      Coordinate& c =
-          State(name + "position_" + kAxes[k], "m", SignalKind::kPlace, touches ? 1e-8 : 3e-7);
+      Coordinate& c = State(name + "position_" + kAxes[k], "m", SignalKind::kPlace,
+                            touches ? 1e-8 : Less(3e-6));
       c.rows = {{l.pos + 3 * b + k, 1.0}};
       c.signal.at = at.Get(l.pos + 3 * b + k).v;
     }
     for (int k = 0; k < 3; ++k) {  // q <- q + (0, e / 2) q
       Coordinate& c =
-          State(name + "turn_" + kAxes[k], "rad", SignalKind::kTurn, touches ? 4e-8 : 3e-6);
+          State(name + "turn_" + kAxes[k], "rad", SignalKind::kTurn, touches ? 4e-8 : Less(3e-5));
       const Vec3 e{k == 0 ? 0.5 : 0.0, k == 1 ? 0.5 : 0.0, k == 2 ? 0.5 : 0.0};
       const Vec3 v{q.x.v, q.y.v, q.z.v}, by = q.w.v * e + Cross(e, v);
       const int row = l.quat + 4 * b;
@@ -122,7 +122,7 @@ void Coordinates::AddRows(const World<Plain>& at) {
   for (int c = 0; c < at.view().cable_count; ++c) {
     const sim::CableTable& table = at.view().cables[c];
     const std::string name = "cable/" + def.cables[static_cast<std::size_t>(c)].name + "/";
-    add(name + "rest_length", "m", SignalKind::kLength, l.rest + c, 3e-6);
+    add(name + "rest_length", "m", SignalKind::kLength, l.rest + c, Less(3e-6));
     add(name + "rest_length_rate", "m/s", SignalKind::kRate, l.rest_rate + c, 1e-3);
     add(name + "tension_before", "N", SignalKind::kForce, l.tension + c, 1e-3);
     if (table.motor >= 0) {
@@ -177,7 +177,7 @@ void Coordinates::AddInputs(const World<Plain>& at, const Tick<Plain>& tick) {
     if (def.cables[c].actuator.kind == ActuatorDef::Kind::kNone) continue;
     const int row = at.layout().target + static_cast<int>(c);
     Coordinate& input = add("cable/" + def.cables[c].name + "/rest_length_target", "m",
-                            SignalKind::kLength, at.Get(row).v, 3e-6);
+                            SignalKind::kLength, at.Get(row).v, Less(3e-6));
     input.of = Coordinate::Of::kTarget;
     input.index = static_cast<int>(c);
   }
@@ -222,6 +222,10 @@ void Coordinates::AddOutputs(const World<Plain>& at) {
 }
 
 Coordinates::Coordinates(const World<Plain>& at, const Tick<Plain>& tick) {
+  for (int c = 0; c < at.view().cable_count; ++c) {
+    const double by_m = at.Get(at.layout().sense_length + c).v - at.Get(at.layout().rest + c).v;
+    if (by_m > 0) stretch_m_ = std::min(stretch_m_, by_m);
+  }
   AddBodies(at);
   for (int n = 0; n < at.view().node_count; ++n) {
     for (const Mover& m : movers_) {

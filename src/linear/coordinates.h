@@ -1,6 +1,7 @@
 /// The states, inputs and outputs of the linear system, and where in a world they are.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,6 +59,10 @@ class Coordinates {
   void AddOutputs(const World<Plain>& at);
   Coordinate& State(std::string name, std::string unit, SignalKind kind, double small);
 
+  /// Changes of lengths [m], turns [rad] by which no cable gets slack.
+  double Less(double small) const { return std::min(small, std::max(1e-8, 0.1 * stretch_m_)); }
+
+  double stretch_m_ = 1.0;  ///< The least of any cable that is taut.
   std::vector<Mover> movers_;
   std::vector<int> nodes_;  ///< That move.
   std::size_t first_row_state_ = 0;

@@ -40,11 +40,13 @@ bool DescribeTick(const ExperimentSpec& e, Rest& rest) {
     if (!c.impedance) continue;
     if (period_s > 0 && std::fabs(c.clock.period_s - period_s) > 1e-12) {
       rest.why = "its controllers have periods of their own each";
+      rest.hint = "give them one period";
       return false;
     }
     period_s = c.clock.period_s;
     if (c.clock.phase_s != 0) {
       rest.why = "controller " + c.name + " does not begin at 0: only one clock can be looked at";
+      rest.hint = "let it begin at 0";
       return false;
     }
     const ImpedanceSpec& spec = *c.impedance;
@@ -111,6 +113,7 @@ bool RunToRest(const ExperimentSpec& e, const LinearOptions& options, Rest& rest
     for (std::size_t i = 0; i < rest.step_s.size(); ++i) loop.Step();
     if (!loop.Goes()) {
       rest.why = "its simulation fails before it is at rest";
+      rest.hint = "a run says at what time, and why";
       return false;
     }
     const bool rests = loop.time_s() > from_s && GreatestSpeed(*rest.batch) < kAtRestMPerS;
@@ -118,6 +121,9 @@ bool RunToRest(const ExperimentSpec& e, const LinearOptions& options, Rest& rest
     if (loop.time_s() > from_s + options.most_s) {
       rest.why = fmt::format("it does not come to rest within {:g} s: then it moves at {:.2g} m/s",
                              options.most_s, GreatestSpeed(*rest.batch));
+      rest.hint =
+          "what trembles comes to rest with less velocity gain, a shorter period or a shorter "
+          "step; what swings, with more damping";
       return false;
     }
   }
@@ -156,6 +162,7 @@ bool CheckKinks(Rest& rest) {
     const double stretch_m = state.length_m - state.rest_length_m;
     if (std::fabs(stretch_m) < kShare * state.length_m) {
       rest.why = "cable " + cables[c].name + " is at the edge of going slack";
+      rest.hint = "wind it in to have it taut, out to have it slack";
       return false;
     }
     if (stretch_m < 0) rest.remarks.push_back("cable " + cables[c].name + " is slack");
@@ -195,6 +202,7 @@ bool CheckContacts(Rest& rest) {
     const std::vector<BodyDef>& bodies = rest.model->def().bodies;
     rest.why = "body " + bodies[static_cast<std::size_t>(c.body_a)].name +
                " is at the edge of slipping: friction bears all it can";
+    rest.hint = "give it or what it lies on more friction, or another start, so that it sticks";
     good = false;
   });
   return good;
@@ -207,6 +215,7 @@ Rest FindRest(const ExperimentSpec& experiment, const LinearOptions& options, Di
   const ExperimentSpec e = Unmoved(experiment, rest.remarks);
   if (!e.robot.def.motions.empty()) {
     rest.why = "programs move some of its bodies";
+    rest.hint = "leave their motion out";
     return rest;
   }
   if (!DescribeTick(e, rest)) return rest;
@@ -227,7 +236,10 @@ Rest FindRest(const ExperimentSpec& experiment, const LinearOptions& options, Di
     WindToTheEnd(e, *rest.batch);
     const double steps = std::min(1e9, options.most_s / e.step_s);
     found = Settle(*rest.batch, 0, e.step_s, options.go_on, static_cast<int>(steps));
-    if (!found) rest.why = "it does not settle to an equilibrium";
+    if (!found) {
+      rest.why = "it does not settle to an equilibrium";
+      rest.hint = "what falls or rolls needs ground, supports or cables that hold it";
+    }
   }
   if (!found || !CheckKinks(rest) || !CheckContacts(rest)) rest.batch.reset();
   return rest;

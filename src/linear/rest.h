@@ -16,7 +16,7 @@ struct Rest {
   std::unique_ptr<Batch> batch;  ///< Of one world; null if it does not come to rest.
   std::vector<DrivenCable> driven;
   std::vector<double> step_s;  ///< Of a tick.
-  std::string why;
+  std::string why, hint;
   std::vector<std::string> remarks;
 };
 

@@ -37,6 +37,15 @@ double GreatestWay(const ModelDef& def, const Shape& shape) {
   return most;
 }
 
+/// Of the largest: what a self-stress is in newtons is nobody's choice, and colours begin at some.
+/// Without round-off, by which equal cables would differ.
+void ToPerCent(std::vector<double>& tension_n) {
+  double largest = 0;
+  for (const double t : tension_n) largest = std::max(largest, std::fabs(t));
+  if (largest == 0) return;
+  for (double& t : tension_n) t = std::round(t / largest * 1e11) * 1e-9;
+}
+
 std::vector<ChannelInfo> Channels(const ModelDef& def) {
   static constexpr std::pair<const char*, const char*> kBody[] = {
       {"position_x_m", "m"},  {"position_y_m", "m"},  {"position_z_m", "m"}, {"orientation_w", "1"},
@@ -73,8 +82,20 @@ std::vector<double> RowAt(Batch& batch, const Pose& pose, const Shape& shape) {
   return row;
 }
 
+/// What the table of a run says of each cable, of a row more.
+void Note(const std::vector<double>& row, std::size_t cables, RunSummary& summary) {
+  for (std::size_t c = 0; c < cables; ++c) {
+    CableSummary& cable = summary.cables[c];
+    const double tension_n = row[row.size() - 3 * (cables - c)];
+    cable.tension.max_n = cable.elastic.max_n = std::max(cable.tension.max_n, tension_n);
+    if (tension_n <= summary.system_max_tension_n) continue;
+    summary.system_max_tension_n = summary.system_max_elastic_n = tension_n;
+    summary.system_max_tension_cable = cable.name;
+  }
+}
+
 bool Fill(const RunFolder& folder, const ExperimentSpec& e, const Shape& shape,
-          const ShapeLook& look, Diagnostics& out) {
+          const ShapeLook& look, RunSummary& summary, Diagnostics& out) {
   const ModelDef& def = e.robot.def;
   const auto model = Model::Compile(def, out);
   if (!model) return false;
@@ -92,6 +113,7 @@ bool Fill(const RunFolder& folder, const ExperimentSpec& e, const Shape& shape,
     const double time_s = i / look.rate_hz;
     const double share = std::sin(2 * kPi * time_s / look.period_s);
     const std::vector<double> row = RowAt(batch, SwungBy(def, shape, amplitude, share), shape);
+    Note(row, def.cables.size(), summary);
     good = trace->Append(time_s, row.data());
   }
   if (good && trace->Finish()) return true;
@@ -140,18 +162,15 @@ bool WriteShapeRun(const std::string& path, const ExperimentSpec& experiment, co
   e.start = StartKind::kAsDescribed;
   e.duration_s = shape.translation_m.empty() ? look.period_s : look.period_s * look.periods;
   const auto folder = RunFolder::Open(path, {}, out);
+  RunSummary summary;
+  for (const CableDef& cable : e.robot.def.cables) summary.cables.emplace_back().name = cable.name;
   if (!folder || !folder->Prepare(ResolvedYaml(e), out) || !folder->Begin(out) ||
-      !Fill(*folder, e, shape, look, out)) {
+      !Fill(*folder, e, shape, look, summary, out)) {
     return false;
   }
-  RunSummary summary;
   summary.experiment = e.name;
   summary.run = folder->id();
   summary.simulated_s = e.duration_s;
-  for (const CableDef& cable : e.robot.def.cables) {
-    CableSummary& row = summary.cables.emplace_back();
-    row.name = cable.name;
-  }
   return folder->Finish(SummaryJson(summary), out);
 }
 
@@ -186,14 +205,17 @@ std::vector<std::string> WriteShapeRuns(const std::string& folder, const Experim
   for (const SelfStress& state : forces.self_stress) {
     Shape shape;
     shape.name = fmt::format("self_stress_{}", ++number);
-    shape.description = state.feasible ? "Forces in balance without any load; all cables pull."
-                                       : "Forces in balance without any load; some cables push.";
+    shape.description =
+        state.feasible
+            ? "Forces in balance without any load, 100 N for the largest; all cables pull."
+            : "Forces in balance without any load, 100 N for the largest; some cables push.";
     shape.tension_n.assign(cables, 0.0);
     for (std::size_t i = 0; i < forces.members.size(); ++i) {
       const StaticMember& member = forces.members[i];
       if (member.kind != StaticMember::Kind::kCable) continue;
       shape.tension_n[static_cast<std::size_t>(member.index)] = state.force_n[i];
     }
+    ToPerCent(shape.tension_n);
     write(shape);
   }
   return written;

@@ -283,6 +283,7 @@ bool FindColumns(Finder& finder, const LinearOptions& options, StateSpace& out, 
     if (!(sizes.Share(all[j]->kind, apart[j], which) < kKink)) {
       out.why = "a contact or cable is at an edge: " + name_of(which) +
                 " goes differently with more and with less of " + all[j]->signal.name;
+      out.hint = "another start, other rest lengths or more friction take it from there";
       return false;
     }
     const double share = sizes.Share(all[j]->kind, Less(exact[j], rough[j]), which);
@@ -315,10 +316,13 @@ StateSpace FindStateSpace(const ExperimentSpec& experiment, const LinearOptions&
   StateSpace system;
   linear::Rest rest = linear::FindRest(experiment, options, out);
   system.remarks = std::move(rest.remarks);
-  system.why = rest.why;
+  system.why = rest.why, system.hint = rest.hint;
   if (!rest.batch) return system;
   system.pose = plant::PoseOf(*rest.batch);
   for (const double step_s : rest.step_s) system.period_s += step_s;
+  system.step_s = rest.step_s.front();
+  for (const BodyDef& body : rest.model->def().bodies) system.bodies.push_back(body.name);
+  for (const CableDef& cable : rest.model->def().cables) system.cables.push_back(cable.name);
   linear::Finder finder(rest);
   linear::Columns columns;
   if (!linear::FindColumns(finder, options, system, columns)) return system;

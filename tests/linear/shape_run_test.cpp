@@ -83,6 +83,11 @@ TEST_F(ShapeRun, SwingsAsTheModeAndIsReadLikeARun) {
       const Vec3 turn = amplitude * share * first->turn_rad[b];
       EXPECT_NEAR(2 * std::acos(std::min(1.0, At(*trace, "body/" + name + "/orientation_w", row))),
                   std::sqrt(Dot(turn, turn)), 1e-7);
+      // The way of the turn, too: of half an angle the sine.
+      const double half = std::sqrt(Dot(turn, turn)) / 2, by = half > 0 ? std::sin(half) / half : 1;
+      EXPECT_NEAR(At(*trace, "body/" + name + "/orientation_x", row), by * turn.x / 2, 1e-12);
+      EXPECT_NEAR(At(*trace, "body/" + name + "/orientation_y", row), by * turn.y / 2, 1e-12);
+      EXPECT_NEAR(At(*trace, "body/" + name + "/orientation_z", row), by * turn.z / 2, 1e-12);
     }
   }
   for (const std::string& path : written) {
@@ -111,6 +116,10 @@ TEST_F(ShapeRun, SelfStressIsShownAsTensions) {
     of = q;
   }
   EXPECT_NEAR(density[1] / density[0], 2 * std::sin(kPi / 3), 1e-9);
+  // In per cent, so that colours tell; equal cables have equal numbers.
+  EXPECT_EQ(At(*trace, "cable/side_1/tension_n", 0), 100);
+  EXPECT_EQ(At(*trace, "cable/side_2/tension_n", 0), 100);
+  EXPECT_EQ(At(*trace, "cable/lower_1/tension_n", 0), At(*trace, "cable/upper_2/tension_n", 0));
   EXPECT_EQ(At(*trace, "cable/" + def.cables[0].name + "/tension_n", 0),
             At(*trace, "cable/" + def.cables[0].name + "/tension_n", 30));
 }

@@ -63,6 +63,84 @@ TEST(ForceIntervals, FourFeetOfATableShareInManyWays) {
   ExpectInterval(aside.touch[1], 0, kWeight / 4);
 }
 
+/// Bodies that no unknown force joins are looked at one by one; a cable of known tension is none.
+TEST(ForceIntervals, EachPartByItselfIsAsInTheWhole) {
+  ModelDef def = Table({0, 0, 0.3});
+  def.bodies.push_back(Body("other", 1, {10, 0, 0.3}));
+  def.bodies.push_back(Body("still", 1, {20, 0, 0.3}));
+  def.bodies.back().fixed = true;
+  IntervalOptions options;
+  options.touches = Feet({{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}}, 0);
+  for (TouchDef foot : Feet({{11, 1, 0}, {9, 1, 0}, {9, -1, 0}, {11, -1, 0}}, 0.5)) {
+    foot.body = 1;
+    options.touches.push_back(foot);
+  }
+  const ForceIntervals both = Find(def, options);
+  ASSERT_TRUE(both.found) << both.why;
+  EXPECT_EQ(both.undetermined, 1 + 6);
+  ASSERT_EQ(both.touch.size(), 8u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    ExpectInterval(both.touch[i], 0, kWeight / 2);
+    ExpectInterval(both.touch[4 + i], 0, kWeight / 4);
+  }
+  // Of one that does not balance it is said, whichever it is.
+  options.touches.resize(5);
+  const ForceIntervals tips = Find(def, options);
+  EXPECT_FALSE(tips.found);
+  EXPECT_NE(tips.why.find("other"), std::string::npos) << tips.why;
+  EXPECT_TRUE(tips.touch.empty());
+}
+
+/// Bars that a load case lengthens are found in their parts, too.
+TEST(ForceIntervals, ABarThatIsLongerIsSoInItsPart) {
+  ModelDef def;
+  const double stretch_m = 9.81 / 1000;
+  for (const int b : {0, 1}) {
+    const double x = 5.0 * b, z = -(1 + stretch_m + 0.01 * b);
+    def.bodies.push_back(Body(b == 0 ? "as_long" : "longer", 1, {x, 0, z}));
+    JointDef bar;
+    bar.name = def.bodies.back().name + "_bar", bar.kind = JointKind::kDistance;
+    bar.body_b = b, bar.from_m = {x, 0, 0}, bar.to_m = {x, 0, z};
+    bar.stiffness = 1000, bar.rest = 1;
+    def.joints.push_back(bar);
+  }
+  LoadCaseSpec loads;
+  EXPECT_FALSE(Find(def, {}, loads).found) << "the longer one pulls too much";
+  loads.bars.push_back({1, 0.01});
+  const ForceIntervals found = Find(def, {}, loads);
+  ASSERT_TRUE(found.found) << found.why;
+  ExpectInterval(found.joint_z[0], 9.81, 9.81);
+  ExpectInterval(found.joint_z[1], 9.81, 9.81);
+}
+
+/// Two rods of a body that end in one place stand there once.
+TEST(ForceIntervals, WhatEndsInOnePlaceTouchesOnce) {
+  ModelDef def = Table({0, 0, 0.1});
+  def.planes = {test::Plane("ground", {0, 0, 1}, 0.5)};
+  for (const double x : {-1.0, 1.0}) {
+    CapsuleDef rod;
+    rod.body = 0, rod.radius_m = 0.1, rod.to_m = {0, 0, 0.1}, rod.from_m = {x, 0, 0.1};
+    def.capsules.push_back(rod);
+  }
+  EXPECT_EQ(FindTouches(def, 1e-6).size(), 3u);
+  def.capsules[1].to_m.x = 1e-3;
+  EXPECT_EQ(FindTouches(def, 1e-6).size(), 4u);
+}
+
+/// A cable whose tension is not known joins what it ties.
+TEST(ForceIntervals, ACableOfUnknownTensionJoinsItsBodies) {
+  ModelDef def;
+  def.bodies = {Body("upper", 2, {0, 0, 1}), Body("lower", 1, {0, 0, 0})};
+  def.cables = {CableTo("a", {0, 0, 2}, {0, 0, 1}), CableTo("b", {0, 0, 2}, {0, 0, 0})};
+  def.cables[1].attachments = {{0, {0, 0, 1}}, {1, {0, 0, 0}}};
+  IntervalOptions options;
+  options.known_tensions = false;
+  const ForceIntervals chain = Find(def, options);
+  ASSERT_TRUE(chain.found) << chain.why;
+  ExpectInterval(chain.cable[0], 3 * 9.81, 3 * 9.81);
+  ExpectInterval(chain.cable[1], 9.81, 9.81);
+}
+
 // Friction does not move what the feet bear: all of it acts in one plane.
 TEST(ForceIntervals, ThreeFeetAreDeterminateWithFrictionToo) {
   IntervalOptions options;

@@ -70,6 +70,20 @@ TEST(Sizing, ASineHasTheDemandsOfItsClosedForm) {
   EXPECT_FALSE(run->every_step);
 }
 
+/// Rows far apart: between them force and rest length go straight, and a mean is that of the lines.
+TEST(Sizing, BetweenRowsAllGoesStraight) {
+  Trace trace = Sine{}.Rows();
+  trace.time_s = {0, 2};
+  trace.values = {{0, 6}, {0, 6}, {1, 0.5}};
+  Diagnostics out;
+  const auto run = DemandOf(trace, Sine{}.Experiment(), "trace.h5", out);
+  ASSERT_TRUE(run) << out.Format();
+  const CableDemand& d = run->cables.at(0);
+  EXPECT_NEAR(d.rms_force_n, std::sqrt(12.0), 1e-12);  // of (6 s)^2, s from 0 to 1
+  EXPECT_NEAR(d.rms_power_w, 0.25 * std::sqrt(12.0), 1e-12);
+  EXPECT_NEAR(d.net_energy_j, 0.5 * 3, 1e-12);
+}
+
 TEST(Sizing, AMotorsFactorsAreWhatItHasOverWhatIsNeeded) {
   CatalogueMotor motor;
   motor.gear_ratio = 10, motor.gear_efficiency = 0.5;

@@ -398,3 +398,28 @@ test("AReportOpensFromDiskAndAsksNobody", options, async (t) => {
   await drawn(page);
   await picture(page, "push-report", { fullPage: true });
 });
+
+// Of a robot whose bodies are points, too, all is in the picture, and a mode is seen to swing.
+test("ShapesOfAnAnalysisFillTheViewAndMove", options, async (t) => {
+  const shapes = join(folder, "shapes");
+  taut("analyze", "models/t3_prism.yaml", "--modes", "1", "--out", shapes);
+  const page = await openPage(await view(join(shapes, "mode_1", "trace.h5"), "--port", "0"), { width: 1000, height: 700 });
+  t.after(() => page.context().close());
+  const seen = async (time_s) => {
+    await page.evaluate((at) => window.taut.app.send({ type: "seek", time_s: at }), time_s);
+    await untilTime(page, time_s, 0.02);
+    await drawn(page);
+    const places = await page.evaluate(() => window.taut.app.scene.value.nodes.map((_, i) => window.taut.view.nodeAt(i).toArray()));
+    const project = await projection(page);
+    return places.map((place) => project(place));
+  };
+  await page.evaluate(() => window.taut.app.send({ type: "pause" }));
+  const { clientWidth: width, clientHeight: height } = await page.evaluate(() => {
+    const { clientWidth, clientHeight } = window.taut.view.canvas;
+    return { clientWidth, clientHeight };
+  });
+  const still = await seen(0), to = await seen(0.5), back = await seen(1.5);
+  for (const { x, y } of still) assert.ok(x > 0 && x < width && y > 0 && y < height, `${x}, ${y} of ${width}, ${height}`);
+  const moved = Math.max(...to.map(({ x, y }, i) => Math.hypot(x - back[i].x, y - back[i].y)));
+  assert.ok(moved > 0.04 * width, `${moved} pixels of ${width}`);
+});

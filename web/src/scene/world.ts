@@ -12,6 +12,7 @@ import { Ghosts } from "./ghosts";
 import { Joints } from "./joints";
 import type { Part } from "./part";
 import { Path } from "./path";
+import { worldPoint } from "./poses";
 import { Ground } from "./terrain";
 import { Wheels } from "./wheels";
 
@@ -71,6 +72,11 @@ function boundsOf(scene: Scene): Box3 {
   world.object.updateMatrixWorld(true);
   for (const mesh of world.meshes) bounds.expandByObject(mesh);
   world.dispose();
+  const start = frameOfScene(scene);
+  for (const node of scene.nodes) { // a body that is a point is where its nodes are
+    if (node.body < 0 || scene.bodies[node.body]!.shapes.length > 0) continue;
+    bounds.expandByPoint(worldPoint(start, node.body, node.position_m, new Vector3()));
+  }
   for (const cable of scene.cables) {
     for (const end of cable.attachments) if (end.body < 0) bounds.expandByPoint(new Vector3(...end.position_m));
   }

@@ -1,0 +1,108 @@
+// Load cases of `taut analyze`: where the robot stands under each, and what its members carry
+// there.
+#include <algorithm>
+#include <cmath>
+
+#include "analyze_report.h"
+
+namespace taut::cli {
+namespace {
+
+constexpr double kBears_m = 1e-6;  ///< So near ground bears what it is found to bear.
+
+bool IsFixed(const ModelDef& def, int body) {
+  return body == kWorld || def.bodies[static_cast<std::size_t>(body)].fixed;
+}
+
+MemberForces Forces(const ModelDef& def, const LoadCaseSpec& loads, const Equilibrium& at,
+                    std::vector<Reaction>& anchors) {
+  std::vector<BodyForce> forces = ForcesUnder(def, at.cable_tension_n, at.joint_loads);
+  for (const ContactState& contact : at.contacts) {
+    forces.push_back({contact.body_a, contact.point_m, contact.force_n, {}});
+  }
+  for (const LoadCaseSpec::NodeForce& load : loads.forces) {
+    const NodeDef& node = def.nodes[static_cast<std::size_t>(load.node)];
+    if (node.body != kWorld) forces.push_back({node.body, node.position_m, load.force_n, {}});
+  }
+  ModelDef weighed = def;
+  if (!loads.weight) weighed.gravity_m_per_s2 = {};
+  anchors = AnchorReactions(weighed, forces);
+  return {at.cable_tension_n, at.bar_force_n, StrutForces(weighed, forces)};
+}
+
+/// Against the cables that end in the world.
+std::vector<CaseResult::End> Ends(const ModelDef& def, const Equilibrium& at) {
+  const auto same = [](const Vec3& a, const Vec3& b) {
+    return std::fabs(a.x - b.x) + std::fabs(a.y - b.y) + std::fabs(a.z - b.z) < 1e-9;
+  };
+  std::vector<CaseResult::End> ends;
+  for (const BodyForce& force : ForcesUnder(def, at.cable_tension_n, {})) {
+    if (force.body != kWorld) continue;
+    auto end = std::find_if(ends.begin(), ends.end(), [&](const CaseResult::End& e) {
+      return same(e.point_m, force.point_m);
+    });
+    if (end == ends.end()) {
+      const auto node = std::find_if(def.nodes.begin(), def.nodes.end(), [&](const NodeDef& n) {
+        return n.body == kWorld && same(n.position_m, force.point_m);
+      });
+      ends.push_back({node == def.nodes.end() ? "world" : node->name, force.point_m, {}});
+      end = ends.end() - 1;
+    }
+    end->force_n.x -= force.force_n.x;
+    end->force_n.y -= force.force_n.y;
+    end->force_n.z -= force.force_n.z;
+  }
+  return ends;
+}
+
+/// Between which limits forces lie that friction and redundant supports leave open; nothing where
+/// they leave none.
+std::optional<CaseResult::Open> OpenForces(ModelDef def, const LoadCaseSpec& loads) {
+  LoadCaseSpec there = loads;
+  there.cables.clear();  // the pose has these rest lengths
+  for (const LoadCaseSpec::Settlement& settled : loads.settlements) {
+    JointDef& joint = def.joints[static_cast<std::size_t>(settled.joint)];
+    Vec3& in_world = IsFixed(def, joint.body_a) ? joint.from_m : joint.to_m;
+    in_world = {in_world.x + settled.by_m.x, in_world.y + settled.by_m.y,
+                in_world.z + settled.by_m.z};
+  }
+  there.settlements.clear();
+  CaseResult::Open open;
+  IntervalOptions options;
+  options.touches = open.touches = FindTouches(def, kBears_m);
+  Diagnostics out;
+  open.forces = FindForceIntervals(def, there, options, out);
+  if (!out.ok() || open.forces.undetermined == 0) return std::nullopt;
+  return open;
+}
+
+}  // namespace
+
+std::vector<CaseResult> SolveCases(const ModelDef& def, const std::vector<LoadCaseSpec>& cases,
+                                   bool with_modes) {
+  LoadCaseSpec nothing;
+  nothing.weight = false;
+  std::optional<MemberForces> unloaded;
+  const Equilibrium at = FindEquilibrium(def, nothing);
+  std::vector<Reaction> ignored;
+  if (at.found) unloaded = Forces(ModelAt(def, at.pose), nothing, at, ignored);
+  std::vector<CaseResult> results;
+  for (const LoadCaseSpec& loads : cases) {
+    CaseResult& result = results.emplace_back();
+    result.loads = loads;
+    result.at = FindEquilibrium(def, loads);
+    result.def = ModelAt(def, result.at.pose);
+    if (!result.at.found) continue;
+    const MemberForces forces = Forces(result.def, loads, result.at, result.anchors);
+    result.ends = Ends(result.def, result.at);
+    result.members = MemberLoads(result.def, forces, unloaded ? &*unloaded : nullptr);
+    result.open = OpenForces(result.def, loads);
+    if (!with_modes) continue;
+    LoadCaseSpec there = loads;
+    there.cables.clear();  // the pose has these rest lengths
+    result.modes = FindModes(result.def, there);
+  }
+  return results;
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,104 @@
+#include "analyze_linear.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "output.h"
+#include "streams.h"
+
+namespace taut::cli {
+namespace {
+
+std::vector<std::string> NamesOf(const std::vector<LinearSignal>& signals) {
+  std::vector<std::string> names;
+  for (const LinearSignal& signal : signals) names.push_back(signal.name);
+  return names;
+}
+
+/// The number of a signal; nothing and a complaint if the system has none of that name.
+std::optional<int> Find(const std::vector<LinearSignal>& signals, const std::string& name,
+                        const char* kind, const std::string& file, Diagnostics& out) {
+  const std::optional<int> found = FindSignal(signals, name);
+  if (!found) {
+    const std::vector<std::string> names = NamesOf(signals);
+    const std::string_view closest = ClosestMatch(name, names);
+    out.Error(
+        {file, 0, 0}, fmt::format("there is no {} \"{}\"", kind, name),
+        closest.empty() && !names.empty()
+            ? fmt::format("one of {} is \"{}\"; --json lists all", names.size(), names.front())
+            : DidYouMean(name, names));
+  }
+  return found;
+}
+
+/// Evenly spaced by their logarithms.
+std::vector<double> Frequencies(double from_hz, double to_hz, int points) {
+  std::vector<double> all_hz;
+  for (int i = 0; i < points; ++i) {
+    const double share = points == 1 ? 0 : static_cast<double>(i) / (points - 1);
+    all_hz.push_back(i == 0            ? from_hz
+                     : i + 1 == points ? to_hz
+                                       : from_hz * std::pow(to_hz / from_hz, share));
+  }
+  return all_hz;
+}
+
+/// Of all pairs asked for; false and complaints about names.
+bool Respond(const LinearArguments& args, double to_hz, LinearResult& result, Diagnostics& out) {
+  const StateSpace& system = result.system;
+  const std::vector<double> all_hz = Frequencies(args.from_hz, to_hz, args.points);
+  for (const auto& [input, output] : args.responses) {
+    const auto in = Find(system.inputs, input, "input", result.file, out);
+    const auto seen = Find(system.outputs, output, "output", result.file, out);
+    if (!in || !seen) continue;
+    const std::string& over = system.inputs[static_cast<std::size_t>(*in)].unit;
+    const std::string& unit = system.outputs[static_cast<std::size_t>(*seen)].unit;
+    result.responses.push_back({input, output, unit == over ? "1" : unit + " / (" + over + ")",
+                                ResponseOf(system, *in, *seen, all_hz)});
+  }
+  return out.ok();
+}
+
+}  // namespace
+
+int Linear(const std::string& file, const ExperimentSpec& experiment,
+           const std::optional<Pose>& from, const std::vector<std::string>& notes, int most_modes,
+           bool json, const LinearArguments& args) {
+  Diagnostics found;
+  LinearResult result;
+  result.file = file, result.model = experiment.robot.def.name, result.notes = notes;
+  LinearOptions options;
+  options.at = from;
+  result.system = FindStateSpace(experiment, options, found);
+  if (!found.ok()) return Fail(found, kBadInput);
+  const StateSpace& system = result.system;
+  if (!system.found) {
+    fmt::print(stderr, "error: there is no linear system: {}{}\n", system.why,
+               system.hint.empty() ? "" : " (" + system.hint + ")");
+    return kFailed;
+  }
+  const double half_hz = 0.5 / system.period_s, to_hz = args.to_hz.value_or(half_hz);
+  if (!args.responses.empty() && (to_hz > half_hz * (1 + 1e-9) || args.from_hz > to_hz)) {
+    fmt::print(stderr,
+               "error: --from_hz {:g}, --to_hz {:g}: frequencies rise up to half the tick's, "
+               "{:g} Hz\n",
+               args.from_hz, to_hz, half_hz);
+    return kUsage;
+  }
+  if (!Respond(args, to_hz, result, found)) return Fail(found, kBadInput);
+  result.modes = ModesOf(system);
+  if (!args.file.empty() && !WriteStateSpace(system, args.file, found)) return Fail(found, kFailed);
+  if (json) {
+    fmt::print("{}\n", LinearJson(result));
+  } else if (args.csv) {
+    fmt::print("{}", ResponsesCsv(result));
+  } else {
+    fmt::print("{}", LinearTables(result, most_modes));
+    if (!args.file.empty()) fmt::print("\nLinear system: {}\n", args.file);
+  }
+  return kOk;
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,163 @@
+// How `taut analyze --linear`, `--response` print what they have found.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "analyze_linear.h"
+#include "table.h"
+
+namespace taut::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* DerivativesName(Derivatives derivatives) {
+  return derivatives == Derivatives::kExact ? "exact" : "differences";
+}
+
+/// "node/*/force_x" of all such signals: a robot has hundreds.
+std::string PatternOf(const std::string& name) {
+  const std::size_t first = name.find('/');
+  const std::size_t last = name.rfind('/');
+  return first == last ? name : name.substr(0, first + 1) + "*" + name.substr(last);
+}
+
+void AddSignals(const char* kind, const std::vector<LinearSignal>& signals, Table& table) {
+  std::vector<std::pair<std::string, std::string>> patterns;
+  std::vector<int> counts;
+  for (const LinearSignal& signal : signals) {
+    const std::pair<std::string, std::string> pattern{PatternOf(signal.name), signal.unit};
+    const auto found = std::find(patterns.begin(), patterns.end(), pattern);
+    if (found == patterns.end()) {
+      patterns.push_back(pattern), counts.push_back(1);
+    } else {
+      ++counts[static_cast<std::size_t>(found - patterns.begin())];
+    }
+  }
+  for (std::size_t i = 0; i < patterns.size(); ++i) {
+    table.Add(
+        {i == 0 ? kind : "", patterns[i].first, patterns[i].second, fmt::format("{}", counts[i])});
+  }
+}
+
+std::string Signals(const StateSpace& system) {
+  Table table({"signals", "name", "unit", "how many"});
+  AddSignals("states", system.states, table);
+  AddSignals("inputs", system.inputs, table);
+  AddSignals("outputs", system.outputs, table);
+  return table.Text();
+}
+
+/// What neither comes back nor goes away: a robot that may be anywhere. Round-off parts z = 1, 1
+/// into pairs that seem to swing.
+bool IsNeutral(const LinearMode& mode) { return std::abs(mode.z - 1.0) < 1e-6; }
+/// What creeps back, or is gone at once.
+bool Swings(const LinearMode& mode) { return mode.frequency_hz > 0 && mode.damping < 0.99; }
+
+std::string ModeTable(const LinearResult& result, int most) {
+  Table table({"swings", "frequency", "damping", "size after 1 s"});
+  table.Add({"", "Hz", "of critical", "times"});
+  int swings = 0, neutral = 0, grow = 0;
+  for (const LinearMode& mode : result.modes) {
+    // Of a pair that is conjugate only one is told.
+    if (IsNeutral(mode)) {
+      neutral += mode.z.imag() > 0 ? 2 : 1;
+      continue;
+    }
+    if (std::abs(mode.z) > 1 + 1e-6) ++grow;
+    if (!Swings(mode) || ++swings > most) continue;
+    table.Add({fmt::format("{}", swings), fmt::format("{:.7g}", mode.frequency_hz),
+               Fixed(mode.damping, 6),
+               fmt::format("{:.3g}", std::pow(std::abs(mode.z), 1 / result.system.period_s))});
+  }
+  if (most == 0) return {};
+  std::string text =
+      fmt::format("\nMotions by itself\n  that nothing brings back: {}, swings: {}, growing: {}\n",
+                  neutral, swings, grow);
+  if (swings > 0) text += table.Text();
+  if (swings > most) text += fmt::format("  ... and {} that swing faster\n", swings - most);
+  return text;
+}
+
+std::string ResponseTable(const LinearResult::Response& response) {
+  Table table({"frequency", "gain", "phase"});
+  table.Add({"Hz", response.unit, "rad"});
+  const FrequencyResponse& r = response.values;
+  for (std::size_t i = 0; i < r.frequency_hz.size(); ++i) {
+    table.Add({fmt::format("{:.6g}", r.frequency_hz[i]), fmt::format("{:.6g}", r.magnitude[i]),
+               Fixed(r.phase_rad[i], 4)});
+  }
+  return fmt::format("\nResponse of {} to {}\n", response.output, response.input) + table.Text();
+}
+
+Json SignalsJson(const std::vector<LinearSignal>& signals) {
+  Json json = Json::array();
+  for (const LinearSignal& signal : signals) {
+    json.push_back({{"name", signal.name}, {"unit", signal.unit}, {"at", signal.at}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string LinearTables(const LinearResult& result, int most_modes) {
+  const StateSpace& system = result.system;
+  std::string text = fmt::format("Model {}: what small changes do, about its rest\n", result.model);
+  for (const std::string& note : result.notes) text += "  " + note + "\n";
+  for (const std::string& remark : system.remarks) text += "  " + remark + "\n";
+  text += fmt::format("  a tick: {:g} s, in steps of {:g} s\n", system.period_s, system.step_s);
+  text += fmt::format("  derivatives: {}, at most {:.1e} off from {}\n\n",
+                      DerivativesName(system.derivatives), system.disagreement,
+                      system.derivatives == Derivatives::kExact ? "differences" : "exact ones");
+  text += Signals(system) + ModeTable(result, most_modes);
+  for (const LinearResult::Response& response : result.responses) text += ResponseTable(response);
+  return text;
+}
+
+std::string LinearJson(const LinearResult& result) {
+  const StateSpace& system = result.system;
+  Json json{{"format_version", 1},
+            {"model", result.model},
+            {"file", result.file},
+            {"notes", result.notes},
+            {"remarks", system.remarks},
+            {"period_s", system.period_s},
+            {"step_s", system.step_s},
+            {"derivatives", DerivativesName(system.derivatives)},
+            {"disagreement", system.disagreement},
+            {"states", SignalsJson(system.states)},
+            {"inputs", SignalsJson(system.inputs)},
+            {"outputs", SignalsJson(system.outputs)}};
+  json["modes"] = Json::array();
+  for (const LinearMode& mode : result.modes) {
+    json["modes"].push_back({{"frequency_hz", mode.frequency_hz},
+                             {"damping", mode.damping},
+                             {"z", Json::array({mode.z.real(), mode.z.imag()})}});
+  }
+  json["responses"] = Json::array();
+  for (const LinearResult::Response& response : result.responses) {
+    json["responses"].push_back({{"input", response.input},
+                                 {"output", response.output},
+                                 {"unit", response.unit},
+                                 {"frequency_hz", response.values.frequency_hz},
+                                 {"gain", response.values.magnitude},
+                                 {"phase_rad", response.values.phase_rad}});
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string ResponsesCsv(const LinearResult& result) {
+  std::string text = "input,output,unit,frequency_hz,gain,phase_rad\n";
+  for (const LinearResult::Response& response : result.responses) {
+    const FrequencyResponse& r = response.values;
+    for (std::size_t i = 0; i < r.frequency_hz.size(); ++i) {
+      text += fmt::format("{},{},{},{},{},{}\n", response.input, response.output, response.unit,
+                          r.frequency_hz[i], r.magnitude[i], r.phase_rad[i]);
+    }
+  }
+  return text;
+}
+
+}  // namespace taut::cli

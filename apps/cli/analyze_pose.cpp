@@ -1,0 +1,46 @@
+#include "analyze_pose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "taut/run_folder.h"
+#include "taut/trace_pose.h"
+
+namespace taut::cli {
+
+std::optional<Pose> ReadPose(const PoseArguments& args, const RobotSpec& robot, Diagnostics& out) {
+  const SourceRef at{args.file, 0, 0};
+  if (std::filesystem::is_directory(args.file)) {
+    out.Error(at, "is a folder", "its trace: " + args.file + "/trace.h5");
+    return std::nullopt;
+  }
+  if (args.file.ends_with(".yaml")) {
+    out.Error(
+        at, "is no recording",
+        "a pose is a row of a trace (.h5, .csv, .csv.gz); a model in another pose is analysed "
+        "by itself");
+    return std::nullopt;
+  }
+  const std::optional<Trace> trace = ReadTraceOfRun(args.file, out);
+  if (!trace) return std::nullopt;
+  const std::vector<double>& time_s = trace->time_s;
+  std::size_t row = time_s.empty() ? 0 : time_s.size() - 1;
+  if (args.at_s && !time_s.empty()) {
+    if (*args.at_s < time_s.front() || *args.at_s > time_s.back()) {
+      out.Error(at, fmt::format("has nothing at {:g} s", *args.at_s),
+                fmt::format("it goes from {:g} s to {:g} s", time_s.front(), time_s.back()));
+      return std::nullopt;
+    }
+    const auto nearer = [&](double a, double b) {
+      return std::fabs(a - *args.at_s) < std::fabs(b - *args.at_s);
+    };
+    row = static_cast<std::size_t>(std::min_element(time_s.begin(), time_s.end(), nearer) -
+                                   time_s.begin());
+  }
+  return PoseOfTrace(robot, *trace, row, at, out);
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,129 @@
+// The pose that a row of a recording shows.
+#include <array>
+#include <cmath>
+
+#include "base/brief.h"
+#include "taut/statics.h"
+#include "taut/trace_pose.h"
+
+namespace taut {
+namespace {
+
+constexpr double kUnit = 1e-3;        // by which a quaternion's length may be off
+constexpr double kSameLength = 1e-3;  // of a cable, by which recorded and computed may be apart
+
+class RowOfTrace {
+ public:
+  RowOfTrace(const Trace& trace, std::size_t row, const SourceRef& at, Diagnostics& out)
+      : trace_(trace), row_(row), at_(at), out_(out) {}
+
+  bool Has(const std::string& name) const { return trace_.Find(name).has_value(); }
+  /// Of channels that are all there and finite; complaints about the others.
+  template <std::size_t kCount>
+  bool Read(const std::string& before, const std::array<const char*, kCount>& names,
+            std::array<double, kCount>& values) const {
+    bool good = true;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const std::string name = before + names[i];
+      const auto channel = trace_.Find(name);
+      if (!channel) {
+        out_.Error(at_, "has no channel " + name, "a pose needs place and turn of every body");
+        good = false;
+        continue;
+      }
+      values[i] = trace_.values[*channel][row_];
+      if (std::isfinite(values[i])) continue;
+      out_.Error(
+          at_,
+          name + " is " + base::Brief(values[i]) + " at " + base::Brief(trace_.time_s[row_]) + " s",
+          "take another row");
+      good = false;
+    }
+    return good;
+  }
+
+  void ReadBody(const std::string& name, BodyState& state) const {
+    static constexpr std::array<const char*, 3> kPlace{"position_x_m", "position_y_m",
+                                                       "position_z_m"};
+    static constexpr std::array<const char*, 4> kTurn{"orientation_w", "orientation_x",
+                                                      "orientation_y", "orientation_z"};
+    const std::string before = "body/" + name + "/";
+    std::array<double, 3> x{};
+    std::array<double, 4> q{};
+    const bool placed = Read(before, kPlace, x), turned = Read(before, kTurn, q);
+    if (placed) state.position_m = {x[0], x[1], x[2]};
+    if (!turned) return;
+    const double size = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (std::fabs(size - 1) > kUnit) {
+      out_.Error(at_, "the orientation of body " + name + " has the length " + base::Brief(size),
+                 "a turn is a quaternion of length 1: w, x, y, z");
+      return;
+    }
+    state.orientation = {q[0] / size, q[1] / size, q[2] / size, q[3] / size};
+  }
+
+  void ReadRestLength(const std::string& name, double& rest_m) const {
+    const std::string channel = "cable/" + name + "/rest_length_m";
+    std::array<double, 1> value{};
+    if (!Has(channel) || !Read<1>("", {channel.c_str()}, value)) return;
+    if (value[0] > 0) {
+      rest_m = value[0];
+    } else {
+      out_.Error(at_, channel + " is " + base::Brief(value[0]), "it must be above 0");
+    }
+  }
+
+  /// Where a recording says how long cables are, and they are not: it is of another robot, or of
+  /// one that begins elsewhere.
+  void CompareLengths(const ModelDef& there) const {
+    for (const CableDef& cable : there.cables) {
+      if (cable.touches != CableTouches::kNone) continue;  // they bend where they touch
+      const auto channel = trace_.Find("cable/" + cable.name + "/length_m");
+      if (!channel) continue;
+      const double recorded_m = trace_.values[*channel][row_], length_m = CableLength(cable);
+      if (!(std::fabs(recorded_m - length_m) > kSameLength * length_m)) continue;
+      out_.Warning(at_,
+                   "cable " + cable.name + " is " + base::Brief(length_m) +
+                       " m long in this pose, and " + base::Brief(recorded_m) +
+                       " m in the recording",
+                   "orientations count from the pose that the file describes: take the experiment "
+                   "that was recorded");
+    }
+  }
+
+ private:
+  const Trace& trace_;
+  std::size_t row_;
+  const SourceRef& at_;
+  Diagnostics& out_;
+};
+
+}  // namespace
+
+std::optional<Pose> PoseOfTrace(const RobotSpec& robot, const Trace& trace, std::size_t row,
+                                const SourceRef& at, Diagnostics& out) {
+  const ModelDef& def = robot.def;
+  if (row >= trace.time_s.size()) {
+    out.Error(at, "has no row to take a pose from");
+    return std::nullopt;
+  }
+  const std::size_t before = out.items().size();
+  const RowOfTrace from(trace, row, at, out);
+  Pose pose;
+  for (const BodyDef& body : def.bodies) {
+    BodyState& state = pose.bodies.emplace_back();
+    state.position_m = body.com_m;
+    // What stands still need not be recorded.
+    if (body.fixed && !from.Has("body/" + body.name + "/position_x_m")) continue;
+    from.ReadBody(body.name, state);
+  }
+  for (const CableDef& cable : def.cables) {
+    pose.rest_lengths_m.push_back(cable.rest_length_m);
+    from.ReadRestLength(cable.name, pose.rest_lengths_m.back());
+  }
+  if (out.items().size() > before) return std::nullopt;
+  from.CompareLengths(RobotAt(robot, pose).def);
+  return pose;
+}
+
+}  // namespace taut

@@ -1,0 +1,107 @@
+// Rests from which the solver has nothing to do: the laws hold at once with the impulses of the
+// step before, and their derivatives still have to come out.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/linear/linear_robots.h"
+
+namespace taut::test {
+namespace {
+
+/// A ball on a rope from the ceiling.
+ExperimentSpec OnARope(double stiffness_n_per_m) {
+  ModelDef def;
+  BodyDef body;
+  body.name = "weight", body.mass_kg = 0.5, body.inertia_kg_m2 = {1e-3, 1e-3, 1e-3, 0, 0, 0};
+  def.bodies.push_back(body);
+  def.gravity_m_per_s2 = {0, 0, -9.81};
+  CableDef cable;
+  cable.name = "rope", cable.stiffness_n_per_m = stiffness_n_per_m, cable.rest_length_m = 1;
+  cable.attachments = {{kWorld, {0, 0, 1}}, {0, {0, 0, 0}}};
+  def.cables.push_back(cable);
+  return ExperimentOf(def);
+}
+
+/// A rod on a hinge, its centre half a metre below.
+ExperimentSpec OnAHinge() {
+  ExperimentSpec e = OnARope(1);
+  ModelDef& def = e.robot.def;
+  def.cables.clear();
+  JointDef hinge;
+  hinge.name = "hinge", hinge.kind = JointKind::kHinge, hinge.body_a = kWorld, hinge.body_b = 0;
+  hinge.from_m = hinge.to_m = {0, 0, 0.5};
+  hinge.axis = {0, 1, 0};
+  def.joints.push_back(hinge);
+  return e;
+}
+
+StateSpace Find(const ExperimentSpec& experiment) {
+  Diagnostics out;
+  StateSpace system = FindStateSpace(experiment, {}, out);
+  EXPECT_TRUE(out.ok()) << out.Format();
+  EXPECT_TRUE(system.found) << system.why;
+  for (const std::string& remark : system.remarks) ADD_FAILURE() << remark;
+  return system;
+}
+
+std::vector<double> Swings(const StateSpace& system) {
+  std::vector<double> all_hz;
+  for (const LinearMode& mode : ModesOf(system)) {
+    if (mode.frequency_hz > 0.01 && std::fabs(mode.damping) < 0.5)
+      all_hz.push_back(mode.frequency_hz);
+  }
+  return all_hz;
+}
+
+TEST(ExactRest, AStiffRope) {
+  const StateSpace system = Find(OnARope(4e6));
+  EXPECT_EQ(system.derivatives, Derivatives::kExact);
+  EXPECT_LT(system.disagreement, 2e-6);
+  // As a pendulum it swings to both sides, its length is that of the rope under the weight.
+  const std::vector<double> swings_hz = Swings(system);
+  const double pendulum_hz = std::sqrt(9.81 / (1 + 0.5 * 9.81 / 4e6)) / (2 * kPi);
+  ASSERT_GE(swings_hz.size(), 2u);
+  EXPECT_NEAR(swings_hz[0], pendulum_hz, 1e-5 * pendulum_hz);
+  EXPECT_NEAR(swings_hz[1], pendulum_hz, 1e-5 * pendulum_hz);
+}
+
+TEST(ExactRest, AHinge) {
+  const StateSpace system = Find(OnAHinge());
+  EXPECT_EQ(system.derivatives, Derivatives::kExact);
+  EXPECT_LT(system.disagreement, 2e-6);
+  const double own_hz = std::sqrt(0.5 * 9.81 * 0.5 / (1e-3 + 0.5 * 0.25)) / (2 * kPi);
+  const std::vector<double> swings_hz = Swings(system);
+  ASSERT_EQ(swings_hz.size(), 1u);
+  EXPECT_NEAR(swings_hz[0], own_hz, 1e-5 * own_hz);
+}
+
+/// A ball that lies on the ground: pushed, it rolls at once.
+TEST(ExactRest, ABallOnTheGround) {
+  ExperimentSpec e = OnARope(1);
+  ModelDef& def = e.robot.def;
+  def.cables.clear();
+  SphereDef sphere;
+  sphere.body = 0, sphere.radius_m = 0.1, sphere.material = {0.5, 0.5, 0};
+  def.spheres.push_back(sphere);
+  PlaneDef ground;
+  ground.name = "ground", ground.point_m = {0, 0, -0.1}, ground.normal = {0, 0, 1};
+  ground.material = {0.5, 0.5, 0};
+  def.planes.push_back(ground);
+  const StateSpace system = Find(e);
+  EXPECT_EQ(system.derivatives, Derivatives::kExact);
+  const auto entry = [&](const char* row, const char* column) {
+    const auto i = FindSignal(system.states, row), j = FindSignal(system.states, column);
+    EXPECT_TRUE(i && j) << row << column;
+    return i && j ? system.A(*i, *j) : NAN;
+  };
+  // An impulse P at the ground stops the slip v - r w of a ball that slides: with J = I / r,
+  // v' = v - P / m, w' = w + r P / I, v' = r w' (by w = spin_y).
+  const double m = 0.5, I = 1e-3, r = 0.1, kept = m * r * r / (I + m * r * r);
+  EXPECT_NEAR(entry("body/weight/velocity_x", "body/weight/velocity_x"), kept, 1e-9);
+  EXPECT_NEAR(entry("body/weight/spin_y", "body/weight/velocity_x"), kept / r, 1e-8);
+}
+
+}  // namespace
+}  // namespace taut::test
