@@ -10,6 +10,7 @@
 #include "output.h"
 #include "overrides.h"
 #include "streams.h"
+#include "taut/env.h"
 #include "taut/run.h"
 #include "taut/spec.h"
 #include "taut/start.h"
@@ -125,6 +126,7 @@ int Check(const CheckArguments& args) {
   const ExperimentSpec to_settle = settles ? ToSettle(*robot, of) : ExperimentSpec{};
   if (!CheckStart(*robot, settles ? to_settle.start : described, found)) return Bad(args, found);
   if (experiment) CheckRecord(*experiment, found);
+  if (experiment && experiment->environment) CheckEnvironment(*experiment, found);
   std::optional<SettledStart> settled;
   if (settles && found.ok()) settled = FindSettledStart(to_settle, found);
   const Diagnostics all = found;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "table.h"
+#include "taut/env.h"
 #include "taut/loads.h"
 
 namespace taut::cli {
@@ -240,7 +241,15 @@ std::string ExperimentTables(const ExperimentSpec& experiment) {
   for (const PhaseSpec& phase : experiment.phases) {
     table.Add({"phase", phase.name, "", fmt::format("{:g} to {:g} s", phase.from_s, phase.to_s)});
   }
-  return text + table.Text();
+  text += table.Text();
+  if (experiment.environment) {
+    const double period_s = experiment.environment->period_s;
+    text += fmt::format("Environment: {} and {} every {:g} s, {:.0f} an episode\n",
+                        Counted(experiment.environment->actions.size(), "action"),
+                        Counted(ObservedChannels(experiment).size(), "observation"), period_s,
+                        experiment.duration_s / period_s);
+  }
+  return text;
 }
 
 }  // namespace taut::cli

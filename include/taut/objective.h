@@ -1,4 +1,4 @@
-/// What a study wants more of.
+/// What a study or a learner wants more of.
 #pragma once
 
 #include <optional>
@@ -14,6 +14,7 @@ enum class Measure {
   kDistancePerEnergy,  ///< Distance by the motors' work [m/J]: tension times winding in.
   kNearer,             ///< How much nearer to the goal the watched body is than at `from_s` [m].
   kTracking,           ///< Minus the root mean square of tension less set point [N].
+  kNone,               ///< 0: only penalties count, or what a program says.
 };
 
 /// Takes `penalty_per_n` for every newton by which the largest tension of the world exceeds a

@@ -15,8 +15,10 @@
 #include <vector>
 
 #include "taut/diagnostics.h"
+#include "taut/environment.h"
 #include "taut/gait.h"
 #include "taut/model_def.h"
+#include "taut/variation.h"
 
 namespace taut {
 
@@ -207,22 +209,6 @@ enum class StartKind {
   kSettledFloating,  ///< Static equilibrium of cables alone: no gravity, no ground.
 };
 
-/// A factor on a parameter of the model as compiled, for what is not known for sure.
-struct ScaleSpec {
-  enum class Quantity { kFriction, kMass, kStiffness, kDamping };
-  Quantity quantity = Quantity::kFriction;
-  std::vector<int> index;  ///< Bodies or cables; empty: all.
-  double factor = 1.0;     ///< > 0.
-};
-
-/// How far the start is from what is described; drawn from the seed, evenly.
-struct StartNoise {
-  double position_m = 0.0;   ///< Each body by up to this along x and y, and upwards.
-  double heading_rad = 0.0;  ///< The whole robot about the vertical, by up to this either way.
-  double goal_rad = 0.0;     ///< The goal about the vertical through W's origin, likewise.
-  bool any_pose = false;     ///< The whole robot turned about its centre of mass, anyhow.
-};
-
 /// In which frame the way to the goal is sensed.
 enum class GoalFrame {
   kOfBody,   ///< x where the watched body looks, y to its left: a camera on a beacon.
@@ -351,8 +337,9 @@ struct ExperimentSpec {
   std::vector<LoadCaseSpec> load_cases;
   std::optional<std::string> compare_with;  ///< A trace to set the result beside.
   std::vector<ReferenceSpec> references;
-  std::map<std::string, double> parameters;  ///< The experiment's own, as resolved.
-  std::vector<std::string> files;            ///< Every file that was read, the experiment first.
+  std::optional<EnvironmentSpec> environment;  ///< For learners (taut/env.h); a run ignores it.
+  std::map<std::string, double> parameters;    ///< The experiment's own, as resolved.
+  std::vector<std::string> files;              ///< Every file that was read, the experiment first.
   std::uint64_t input_hash = 0;  ///< FNV-1a of the bytes of `files` and of the overrides.
 };
 

@@ -39,10 +39,8 @@ struct StudyParameter {
 };
 
 /// How worlds differ that judge one candidate. The first is never perturbed.
-struct PerturbationSpec {
+struct PerturbationSpec : VariationSpec {
   int worlds = 1;
-  double friction = 0, mass = 0, stiffness = 0, damping = 0;  ///< Factors within 1 +- this.
-  StartNoise start;
   bool redraw = false;  ///< Other worlds for each candidate; else all meet the same.
   bool worst = false;   ///< The score is that of the worst world; else their mean.
 };

@@ -64,7 +64,9 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   text.record = text.record_text;
   text.compare_with = FindFile(text.compare_file.value, "compare_with", scope);
   text.scales = ToScales(text.scale_texts, known, scope);
+  const std::size_t errors_before_controllers = scope.out.items().size();
   text.controllers = ToControllers(text.controller_texts, known, model.good, scope);
+  const bool drivers_known = model.good && scope.out.items().size() == errors_before_controllers;
   AddTimeline(text.timeline, known, scope, text);
   text.load_cases = ToLoadCases(text.load_case_texts, known, scope);
   text.references = ToReferences(text.reference_texts, known, text.phases, scope);
@@ -82,6 +84,10 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   const StartNoise& noise = text.start_noise;
   if (noise.heading_rad > 0) CheckTurns(def, "heading_rad", root.Find("start_noise"), scope);
   if (noise.any_pose) CheckTurns(def, "any_pose", root.Find("start_noise"), scope);
+  if (text.environment_text) {
+    text.environment = ToEnvironment(*text.environment_text, *root.Find("environment"),
+                                     known ? &text.robot : nullptr, drivers_known, text, scope);
+  }
   AddMotions(text.motions, model.good, scope, text.robot);
   if (scope.out.ok()) CheckMotions(text.motions, text, scope);
   if (scope.out.ok()) CheckPositions(text.robot, scope.out, text.place ? &text.place->at : nullptr);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "description/control_keys.h"
+#include "description/environment_keys.h"
 #include "description/experiment_text.h"
 #include "description/load_keys.h"
 #include "description/model_keys.h"
@@ -338,6 +339,7 @@ void Keys(Io& io, Experiment& e) {
     io("drags", e.drags);
     io("scale", e.scales, kLater);
     io("load_cases", e.load_cases, kLater);
+    io("environment", e.environment, kLater);
   } else {
     io("record", e.record_text);
     io("compare_with", e.compare_file,
@@ -351,6 +353,7 @@ void Keys(Io& io, Experiment& e) {
        "Factors on the model's numbers, to see what changes if they are not quite right. Several "
        "that meet multiply.");
     io("load_cases", e.load_case_texts, "Loads that stand still, for `taut analyze`.");
+    io("environment", e.environment_text);
   }
   io("start_noise", e.start_noise, kLater);
   if constexpr (Io::kResolved) {

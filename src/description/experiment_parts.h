@@ -88,6 +88,12 @@ std::optional<GoalSpec> ToGoal(const GoalText& text, const RobotSpec* robot, con
 /// Complains about gaits that hear of a goal where there is none.
 void CheckGoalIsSensed(const ExperimentSpec& experiment, Diagnostics& out);
 
+/// What learners may do and see. `experiment` has everything else already; `drivers_known`: false
+/// if the model or its controllers have errors, so that what drives a cable may just be misspelt.
+EnvironmentSpec ToEnvironment(const EnvironmentText& text, const Value& block,
+                              const RobotSpec* robot, bool drivers_known,
+                              const ExperimentSpec& experiment, const Scope& scope);
+
 /// Planes and boxes, stairs and scattered blocks, appended to what `robot` has.
 void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, RobotSpec& robot);
 

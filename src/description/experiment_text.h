@@ -195,6 +195,16 @@ struct LoadCaseText {
   std::vector<TemperatureText> temperatures;
 };
 
+// for learners
+
+struct EnvironmentActionText : EnvironmentAction {
+  Raw<SelectorForm> cables;
+};
+struct EnvironmentText : EnvironmentSpec {
+  std::vector<EnvironmentActionText> action_texts;
+  std::vector<Placed> observation_texts;
+};
+
 struct ExperimentForm {
   static constexpr const char* kSchema = R"("const": "experiment")";
 };
@@ -216,6 +226,7 @@ struct ExperimentText : ExperimentSpec {
   Raw<FileForm> compare_file;
   std::vector<ReferenceText> reference_texts;
   std::vector<LoadCaseText> load_case_texts;
+  std::optional<EnvironmentText> environment_text;
 };
 
 }  // namespace taut::description

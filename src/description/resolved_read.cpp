@@ -240,6 +240,11 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
     for (const auto& bar : loads.bars) check(bar.index, joints, "joint");
   }
   if (experiment.goal) check(experiment.goal->body, robot.def.bodies.size(), "body");
+  if (experiment.environment) {
+    for (const EnvironmentAction& action : experiment.environment->actions) {
+      check(action.cable, robot.def.cables.size(), "cable");
+    }
+  }
   CheckGoalIsSensed(experiment, out);
   for (const PushSpec& push : experiment.pushes) check(push.node, robot.def.nodes.size(), "node");
   for (const DragSpec& drag : experiment.drags) check(drag.node, robot.def.nodes.size(), "node");

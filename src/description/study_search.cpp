@@ -69,19 +69,10 @@ void Check(const MapReader& map, SearchText& search) {
   if (map.Has("algorithm")) search.algorithm_at = map.Find("algorithm")->at;
 }
 
-void Check(const MapReader& map, FallSpec& fall) {
-  if (fall.min_height_m && fall.max_height_m && *fall.min_height_m >= *fall.max_height_m) {
-    map.Error("min_height_m", "objective.fall: min_height_m " + Shown(*fall.min_height_m) +
-                                  " is not below max_height_m " + Shown(*fall.max_height_m));
-  }
-}
-
 void Check(const MapReader& map, ObjectiveText& objective) {
   objective.from_at = map.KeyAt("from_s");
   objective.measure_at = map.KeyAt("measure");
-  if (!map.Has("direction") && objective.measure == Measure::kHeading) {
-    map.Error("measure", "objective: heading needs the key \"direction\"", "such as [1, 0, 0]");
-  }
+  CheckObjective(map, objective);
 }
 
 std::vector<SearchSpec> ToSearches(const Value* list, const std::vector<SearchText>& texts,

@@ -29,7 +29,8 @@ std::string SearchLine(const SearchSpec& search) {
 }
 
 std::string ObjectiveText(const ObjectiveSpec& objective) {
-  const char* const names[] = {"distance", "heading", "distance_per_energy", "nearer", "tracking"};
+  const char* const names[] = {"distance", "heading",  "distance_per_energy",
+                               "nearer",   "tracking", "none"};
   const Vec3& d = objective.direction;
   std::string out = Line("objective measure", names[static_cast<int>(objective.measure)]) +
                     Line("objective direction", Shown(d.x) + " " + Shown(d.y) + " " + Shown(d.z)) +

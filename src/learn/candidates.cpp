@@ -6,6 +6,7 @@
 
 #include "math/elementary.h"
 #include "math/random.h"
+#include "rollout/vary.h"
 #include "taut/learn.h"
 
 namespace taut {
@@ -120,19 +121,7 @@ std::vector<RolloutWorld> CandidateWorlds(const StudySpec& study, const std::vec
     RolloutWorld& world = worlds.emplace_back(nominal);
     if (w == 0) continue;
     world.seed = RandomOf(study, kWorldSeed, evaluation, w).Bits() >> 1;
-    world.start_noise.position_m += spec.start.position_m;
-    world.start_noise.heading_rad += spec.start.heading_rad;
-    world.start_noise.goal_rad += spec.start.goal_rad;
-    world.start_noise.any_pose |= spec.start.any_pose;
-    math::Random random = RandomOf(study, kWorldScales, evaluation, w);
-    using Quantity = ScaleSpec::Quantity;
-    for (const auto& [quantity, share] :
-         {std::pair{Quantity::kFriction, spec.friction}, std::pair{Quantity::kMass, spec.mass},
-          std::pair{Quantity::kStiffness, spec.stiffness},
-          std::pair{Quantity::kDamping, spec.damping}}) {
-      const double factor = random.Uniform(1.0 - share, 1.0 + share);
-      if (share > 0) world.scales.push_back({quantity, {}, factor});
-    }
+    rollout::Vary(spec, RandomOf(study, kWorldScales, evaluation, w), world);
   }
   return worlds;
 }

@@ -31,23 +31,24 @@ BodyForces::BodyForces(const ModelDef& def) : body_count_(def.bodies.size()) {
   }
 }
 
-const std::vector<BodyForce>& BodyForces::Gather(const Observation& exact, const World& world) {
+const std::vector<BodyForce>& BodyForces::Gather(const Observation& exact, const World& world,
+                                                 int lane) {
   forces_.clear();
   states_.clear();
   for (std::size_t b = 0; b < body_count_; ++b) {
-    states_.push_back(world.Body(0, static_cast<int>(b)));
+    states_.push_back(world.Body(lane, static_cast<int>(b)));
   }
   const auto add = [&](int body, const Vec3& point_m, const Vec3& force_n) {
     if (body != kWorld) forces_.push_back({body, point_m, force_n, {}});
   };
   for (std::size_t c = 0; c < cables_.size(); ++c) {
     if (cables_[c].empty()) {
-      for (const CablePoint& point : world.CablePath(0, static_cast<int>(c))) {
+      for (const CablePoint& point : world.CablePath(lane, static_cast<int>(c))) {
         add(point.body, point.position_m, point.force_n);
       }
       continue;
     }
-    const double tension_n = exact.Cable(static_cast<int>(c)).tension_n;
+    const double tension_n = exact.Cable(static_cast<int>(c), lane).tension_n;
     if (tension_n == 0) continue;
     path_.clear();
     for (const BodyPoint& point : cables_[c]) {
@@ -65,23 +66,23 @@ const std::vector<BodyForce>& BodyForces::Gather(const Observation& exact, const
   }
   for (std::size_t n = 0; n < bodies_of_nodes_.size(); ++n) {
     if (bodies_of_nodes_[n] == kWorld) continue;
-    const Vec3 force_n = world.NodeForce(0, static_cast<int>(n));
+    const Vec3 force_n = world.NodeForce(lane, static_cast<int>(n));
     if (Dot(force_n, force_n) == 0) continue;
-    add(bodies_of_nodes_[n], world.NodePosition(0, static_cast<int>(n)), force_n);
+    add(bodies_of_nodes_[n], world.NodePosition(lane, static_cast<int>(n)), force_n);
   }
   const auto place = [&](int body, const Vec3& arm_m) {
     return body == kWorld ? arm_m : PlaceOf({body, arm_m}, states_[static_cast<std::size_t>(body)]);
   };
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const JointDef& joint = joints_[j];
-    const JointState now = world.Joint(0, static_cast<int>(j));
+    const JointState now = world.Joint(lane, static_cast<int>(j));
     for (const BodyForce& force : mechanics::JointForces(joint, {now.force_n, now.torque_n_m},
                                                          place(joint.body_a, joint.from_m),
                                                          place(joint.body_b, joint.to_m))) {
       if (force.body != kWorld) forces_.push_back(force);
     }
   }
-  for (const ContactState& contact : world.Contacts(0)) {
+  for (const ContactState& contact : world.Contacts(lane)) {
     add(contact.body_a, contact.point_m, contact.force_n);
     add(contact.body_b, contact.point_m, -1.0 * contact.force_n);
   }

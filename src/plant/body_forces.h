@@ -20,19 +20,19 @@ inline Vec3 PlaceOf(const BodyPoint& point, const BodyState& state) {
   return state.position_m + Rotate(state.orientation, point.arm_m);
 }
 
-inline mechanics::BodyMoment MomentOf(const World& world, int body) {
-  const BodyState now = world.Body(0, body);
+inline mechanics::BodyMoment MomentOf(const World& world, int body, int lane = 0) {
+  const BodyState now = world.Body(lane, body);
   return {now.position_m, now.orientation, now.angular_velocity_rad_per_s};
 }
 
-/// Gathers the forces of lane 0: of cables with the tensions that are read (docs/theory/loads.md,
+/// Gathers the forces of a lane: of cables with the tensions that are read (docs/theory/loads.md,
 /// eq. 1), of contacts, joints and at nodes as means over the last step.
 class BodyForces {
  public:
   explicit BodyForces(const ModelDef& def);
 
   /// In a fixed order; valid until the next call.
-  const std::vector<BodyForce>& Gather(const Observation& exact, const World& world);
+  const std::vector<BodyForce>& Gather(const Observation& exact, const World& world, int lane = 0);
 
  private:
   std::vector<std::vector<BodyPoint>> cables_;  ///< Empty: their path must be asked for.

@@ -47,7 +47,7 @@ void AddContactChannels(const ExperimentSpec& experiment, Recorder& recorder) {
   const auto room = static_cast<std::size_t>(slots);
   recorder.AddAsked("contact/", NamesOf(slots),
                     [room, &recorder](const RecordSource& s, double* out) {
-                      std::vector<ContactState> contacts = s.world->Contacts(0);
+                      std::vector<ContactState> contacts = s.world->Contacts(s.lane);
                       recorder.CountContacts(contacts.size(), room);
                       LeaveLargest(contacts, room);
                       for (const ContactState& contact : contacts) {

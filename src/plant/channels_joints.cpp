@@ -16,7 +16,7 @@ void AddJointChannels(const ExperimentSpec& experiment, Recorder& recorder) {
                   {"torque_y_n_m", "N m"},
                   {"torque_z_n_m", "N m"}},
                  [joint = static_cast<int>(j)](const RecordSource& s, double* out) {
-                   const JointState now = s.world->Joint(0, joint);
+                   const JointState now = s.world->Joint(s.lane, joint);
                    out[0] = now.coordinate;
                    out[1] = now.rate;
                    Put(now.force_n, out + 2);

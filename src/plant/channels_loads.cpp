@@ -40,17 +40,19 @@ void AddLoadChannels(const ExperimentSpec& experiment, Recorder& recorder) {
   recorder.Add(
       "", names,
       [struts, anchors, forces = BodyForces(def)](const RecordSource& s, double* out) mutable {
-        const auto& gathered = forces.Gather(*s.exact, *s.world);
+        const auto& gathered = forces.Gather(*s.exact, *s.world, s.lane);
         for (const mechanics::Strut& strut : struts) {
-          const AxialForce axial = mechanics::AxialForceOf(
-              strut, s.world->BodyMass(0, strut.body), MomentOf(*s.world, strut.body), gathered);
+          const AxialForce axial =
+              mechanics::AxialForceOf(strut, s.world->BodyMass(s.lane, strut.body),
+                                      MomentOf(*s.world, strut.body, s.lane), gathered);
           *out++ = axial.middle_n;
           *out++ = axial.least_n;
           *out++ = axial.greatest_n;
         }
         for (const Anchor& anchor : anchors) {
-          const Reaction held = mechanics::ReactionOf(
-              anchor.body, s.world->Body(0, anchor.body).position_m, anchor.weight_n, gathered);
+          const Reaction held =
+              mechanics::ReactionOf(anchor.body, s.world->Body(s.lane, anchor.body).position_m,
+                                    anchor.weight_n, gathered);
           Put(held.force_n, out);
           Put(held.torque_n_m, out + 3);
           out += 6;

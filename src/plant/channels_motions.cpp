@@ -18,7 +18,7 @@ void AddMotionChannels(const ExperimentSpec& experiment, Recorder& recorder) {
                   {"torque_z_n_m", "N m"},
                   {"work_j", "J"}},
                  [motion = static_cast<int>(i)](const RecordSource& s, double* out) {
-                   const MotionState now = s.world->Motion(0, motion);
+                   const MotionState now = s.world->Motion(s.lane, motion);
                    out[0] = now.slide_m;
                    out[1] = now.slide_rate_m_per_s;
                    out[2] = now.turn_rad;

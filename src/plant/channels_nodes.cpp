@@ -13,8 +13,8 @@ void AddNodeChannels(const ExperimentSpec& experiment, Recorder& recorder) {
                   {"velocity_y_m_per_s", "m/s"},
                   {"velocity_z_m_per_s", "m/s"}},
                  [node = static_cast<int>(n)](const RecordSource& s, double* out) {
-                   Put(s.exact->bodies->NodePosition(0, node), out);
-                   Put(s.exact->bodies->NodeVelocity(0, node), out + 3);
+                   Put(s.exact->bodies->NodePosition(s.lane, node), out);
+                   Put(s.exact->bodies->NodeVelocity(s.lane, node), out + 3);
                  });
   }
 }

@@ -15,7 +15,7 @@ void AddBendChannels(const std::string& prefix, int cable, Recorder& recorder) {
     for (const char* axis : {"x_m", "y_m", "z_m"}) names.push_back({bend + axis, "m"});
   }
   recorder.Add(prefix, names, [=](const RecordSource& s, double* out) {
-    const std::vector<Vec3> bends = s.world->CableBendPlaces(0, cable);
+    const std::vector<Vec3> bends = s.world->CableBendPlaces(s.lane, cable);
     *out++ = static_cast<double>(bends.size());
     std::fill_n(out, 3 * CableDef::kMostBends, std::numeric_limits<double>::quiet_NaN());
     for (std::size_t i = 0; i < bends.size(); ++i) Put(bends[i], out + 3 * i);
@@ -35,14 +35,15 @@ void AddSpanChannels(const ExperimentSpec& experiment, Recorder& recorder) {
     const std::string prefix = "cable/" + cables[c].name + "/";
     const int cable = static_cast<int>(c);
     for (int i = 0; i < wheels; ++i) {
-      recorder.Add(
-          prefix, {{"wheel_" + std::to_string(i + 1) + "_angle_rad", "rad"}},
-          [=](const RecordSource& s, double* out) { *out = s.world->WheelAngle(0, cable, i); });
+      recorder.Add(prefix, {{"wheel_" + std::to_string(i + 1) + "_angle_rad", "rad"}},
+                   [=](const RecordSource& s, double* out) {
+                     *out = s.world->WheelAngle(s.lane, cable, i);
+                   });
     }
     if (cables[c].touches != CableTouches::kNone) AddBendChannels(prefix, cable, recorder);
     if (wheels > 0 || cables[c].touches != CableTouches::kNone) {
       recorder.Add(prefix, {{"wrap_rad", "rad"}}, [=](const RecordSource& s, double* out) {
-        *out = s.world->CableWrap(0, cable);
+        *out = s.world->CableWrap(s.lane, cable);
       });
     }
     if (cables[c].touch_friction > 0) slips = CableDef::kMostBends;
@@ -52,13 +53,13 @@ void AddSpanChannels(const ExperimentSpec& experiment, Recorder& recorder) {
       spans.push_back({"span_" + std::to_string(i + 1) + "_tension_n", "N"});
     }
     recorder.Add(prefix, spans, [=](const RecordSource& s, double* out) {
-      const std::vector<double> tensions = s.world->CableSpanTensions(0, cable);
+      const std::vector<double> tensions = s.world->CableSpanTensions(s.lane, cable);
       std::fill_n(std::copy(tensions.begin(), tensions.end(), out),
                   slips + 1 - static_cast<int>(tensions.size()),
                   std::numeric_limits<double>::quiet_NaN());
     });
     recorder.Add(prefix, {{"friction_loss_j", "J"}}, [=](const RecordSource& s, double* out) {
-      *out = s.world->CableFrictionLoss(0, cable);
+      *out = s.world->CableFrictionLoss(s.lane, cable);
     });
   }
 }

@@ -13,6 +13,7 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
            Plant& plant, const Brought& brought)
     : experiment_(experiment),
       plant_(plant),
+      many_(dynamic_cast<ManySteps*>(&plant)),
       count_(static_cast<int>(lanes.size())),
       plant_lanes_(plant.Observe().lanes),
       schedules_(1, Schedule(experiment.step_s, experiment.duration_s)),
@@ -41,17 +42,19 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
   }
 }
 
-void Loop::Prepare() {
+Lanes Loop::AtBoundary() const {
+  if (schedules_.size() == 1) return schedules_[0].AtBoundary() ? AllLanes(plant_lanes_) : 0;
   Lanes at_boundary = 0;
-  if (schedules_.size() == 1) {
-    if (!schedules_[0].AtBoundary()) return;
-    at_boundary = AllLanes(plant_lanes_);
-  } else {
-    for (int j = 0; j < plant_lanes_; ++j) {
-      if (ScheduleOf(j).AtBoundary()) at_boundary |= Lanes{1} << j;
-    }
-    if (at_boundary == 0) return;
+  for (int j = 0; j < plant_lanes_; ++j) {
+    if (ScheduleOf(j).AtBoundary()) at_boundary |= Lanes{1} << j;
   }
+  return at_boundary;
+}
+
+void Loop::Sense() {
+  if (sensors_.empty()) return;
+  const Lanes at_boundary = AtBoundary();
+  if (at_boundary == 0) return;
   const Observation* seen = &plant_.Observe();
   const double* const time_s = seen->time_s;
   for (Sensor& sensor : sensors_) {
@@ -62,10 +65,17 @@ void Loop::Prepare() {
     }
     seen = &sensor.model->seen();
   }
+}
+
+void Loop::Prepare() {
+  const Lanes at_boundary = AtBoundary();
+  if (at_boundary == 0) return;
+  Sense();
+  const double* const time_s = plant_.Observe().time_s;
   for (Law& law : laws_) {
     const Tick tick = law.clock.Due(time_s, at_boundary);
     if (tick.due == 0) continue;
-    law.controller->Act(tick, *seen, plant_.commands());
+    law.controller->Act(tick, seen(), plant_.commands());
     law.clock.Advance(tick.due);
   }
   for (std::size_t j = 0; j < schedules_.size(); ++j) {
@@ -75,10 +85,10 @@ void Loop::Prepare() {
   }
 }
 
-void Loop::Step() {
-  Prepare();
-  if (!timelines_[0].idle()) Push();  // all lanes have the same events, and hands are in the first
-  for (Schedule& schedule : schedules_) schedule.Advance();
+void Loop::AdvanceSchedules(int count) {
+  for (Schedule& schedule : schedules_) {
+    for (int i = 0; i < count; ++i) schedule.Advance();
+  }
   if (schedules_.size() == 1) {
     const double step_s = schedules_[0].step_s(), to_s = schedules_[0].time_s();
     for (std::size_t j = 0; j < step_s_.size(); ++j) step_s_[j] = step_s, to_s_[j] = to_s;
@@ -88,7 +98,29 @@ void Loop::Step() {
       to_s_[j] = schedules_[j].time_s();
     }
   }
+}
+
+void Loop::Step() {
+  Prepare();
+  if (!timelines_[0].idle()) Push();  // all lanes have the same events, and hands are in the first
+  AdvanceSchedules(1);
   plant_.Advance(step_s_.data(), to_s_.data());
+}
+
+int Loop::Steps(int most) {
+  Prepare();
+  std::int64_t count = many_ != nullptr && timelines_[0].idle() ? most : 1;
+  for (const Schedule& schedule : schedules_) {
+    const bool alike = schedule.step_s() == schedules_[0].step_s();
+    count = alike ? std::min(count, schedule.left()) : 1;
+  }
+  if (count < 2) {
+    Step();
+    return 1;
+  }
+  AdvanceSchedules(static_cast<int>(count));
+  many_->AdvanceMany(step_s_[0], static_cast<int>(count), to_s_.data());
+  return static_cast<int>(count);
 }
 
 void Loop::Push() {

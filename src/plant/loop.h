@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "plant/lane_clock.h"
+#include "plant/many_steps.h"
 #include "plant/schedule.h"
 #include "plant/timeline.h"
 #include "taut/plant.h"
@@ -25,6 +26,9 @@ class Loop {
   Loop(const ExperimentSpec& experiment, Plant& plant, const Brought& brought = {})
       : Loop(experiment, plant, brought, WorldOf(experiment)) {}
 
+  /// Lets sensors sample where they are due, before their controllers act: what is seen is of now.
+  void Sense();
+
   /// Lets sensors and controllers act where they are due. The next Step does so, too; a row that is
   /// recorded at the start wants their first commands.
   void Prepare();
@@ -32,6 +36,9 @@ class Loop {
   /// One step of each lane. Steps land on the ticks of sensors and controllers, the corners of the
   /// timeline and the experiment's end, and go on after it.
   void Step();
+
+  /// One step or, where nobody acts or pushes in between, several: `most` at most. How many.
+  int Steps(int most);
 
   /// A lane begins anew as this variant; the plant has been brought to its start there.
   void Restart(int lane, const RolloutWorld& world);
@@ -77,12 +84,15 @@ class Loop {
   const Schedule& ScheduleOf(int lane) const noexcept {
     return schedules_[schedules_.size() == 1 ? 0 : static_cast<std::size_t>(lane)];
   }
+  Lanes AtBoundary() const;
+  void AdvanceSchedules(int count);
   void Push();
   double NextBoundary(int lane) const;
 
   const ExperimentSpec& experiment_;
   Plant& plant_;
-  int count_;  ///< Lanes that somebody looks at.
+  ManySteps* many_;  ///< The plant; null if it takes one step at a time.
+  int count_;        ///< Lanes that somebody looks at.
   int plant_lanes_;
   std::vector<Schedule> schedules_;  ///< One for all, until a lane begins anew: then one a lane.
   std::vector<Timeline> timelines_;

@@ -15,14 +15,11 @@ namespace taut::plant {
 
 namespace {
 
-void FillSystem(const World& world, std::size_t body_count, double* out) {
-  const Energy e = world.TotalEnergy(0);
+void FillEnergies(const RecordSource& s, double* out) {
+  const Energy e = s.world->TotalEnergy(s.lane);
   out[0] = e.kinetic_j;
   out[1] = e.gravity_j;
   out[2] = e.elastic_j;
-  out[3] = static_cast<double>(world.Contacts(0).size());
-  out[4] = world.Status(0).residual_m_per_s;
-  Put(CenterOfMass(world, 0, body_count), out + 5);
 }
 
 }  // namespace
@@ -43,8 +40,9 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
     }
     Add("cable/" + def.cables[c].name + "/", names,
         [c, count = names.size()](const RecordSource& s, double* out) {
-          const CableState r = s.exact->Cable(static_cast<int>(c));
-          const std::size_t at = c * static_cast<std::size_t>(s.commands->lanes);
+          const CableState r = s.exact->Cable(static_cast<int>(c), s.lane);
+          const std::size_t at =
+              c * static_cast<std::size_t>(s.commands->lanes) + static_cast<std::size_t>(s.lane);
           const double values[] = {r.tension_n,
                                    r.elastic_n,
                                    r.length_m,
@@ -66,7 +64,7 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
   for (std::size_t b = 0; has_bodies && b < def.bodies.size(); ++b) {
     Add("body/" + def.bodies[b].name + "/", BodyChannels(),
         [b](const RecordSource& s, double* out) {
-          PutBody(s.exact->bodies->Body(0, static_cast<int>(b)), out);
+          PutBody(s.exact->bodies->Body(s.lane, static_cast<int>(b)), out);
         });
   }
   if (is_world) AddSpanChannels(experiment, *this);
@@ -92,7 +90,7 @@ void Recorder::AddSensor(const SensorSpec& sensors, const std::string& prefix, i
   Add(prefix,
       {{"tension_n", "N"}, {"length_m", "m"}, {"rate_m_per_s", "m/s"}, {"rest_length_m", "m"}},
       [cable](const RecordSource& s, double* out) {
-        const CableState r = s.seen->Cable(cable);
+        const CableState r = s.seen->Cable(cable, s.lane);
         const double values[] = {r.tension_n, r.length_m, r.rate_m_per_s, r.rest_length_m};
         std::copy(std::begin(values), std::end(values), out);
       });
@@ -102,13 +100,13 @@ void Recorder::AddSensor(const SensorSpec& sensors, const std::string& prefix, i
     Add(prefix, {{"tension_count", "1"}},
         [cable, gain = counts.gain_n_per_count, offset = counts.offset_n](const RecordSource& s,
                                                                           double* out) {
-          *out = std::round((s.seen->Cable(cable).tension_n - offset) / gain);
+          *out = std::round((s.seen->Cable(cable, s.lane).tension_n - offset) / gain);
         });
   }
   if (sensors.encoder && sensors.encoder->quantum_m > 0) {
     Add(prefix, {{"encoder_count", "1"}},
         [cable, quantum = sensors.encoder->quantum_m](const RecordSource& s, double* out) {
-          *out = std::round(s.seen->Cable(cable).rest_length_m / quantum);
+          *out = std::round(s.seen->Cable(cable, s.lane).rest_length_m / quantum);
         });
   }
 }
@@ -124,7 +122,7 @@ void Recorder::AddMotor(const std::string& prefix, int cable) {
        {"energy_from_supply_j", "J"},
        {"energy_to_cable_j", "J"}},
       [cable](const RecordSource& s, double* out) {
-        const MotorState m = s.world->Motor(0, cable);
+        const MotorState m = s.world->Motor(s.lane, cable);
         const double values[] = {m.duty,
                                  m.current_a,
                                  m.supply_voltage_v,
@@ -138,17 +136,16 @@ void Recorder::AddMotor(const std::string& prefix, int cable) {
 }
 
 void Recorder::AddSystem(const ModelDef& def) {
-  Add("system/",
-      {{"kinetic_j", "J"},
-       {"gravity_j", "J"},
-       {"elastic_j", "J"},
-       {"contact_count", "1"},
-       {"residual_m_per_s", "m/s"},
-       {"com_x_m", "m"},
-       {"com_y_m", "m"},
-       {"com_z_m", "m"}},
+  // Each by itself: who observes the centre of mass does not want all contacts gathered.
+  Add("system/", {{"kinetic_j", "J"}, {"gravity_j", "J"}, {"elastic_j", "J"}}, FillEnergies);
+  Add("system/", {{"contact_count", "1"}}, [](const RecordSource& s, double* out) {
+    *out = static_cast<double>(s.world->Contacts(s.lane).size());
+  });
+  Add("system/", {{"residual_m_per_s", "m/s"}},
+      [](const RecordSource& s, double* out) { *out = s.world->Status(s.lane).residual_m_per_s; });
+  Add("system/", {{"com_x_m", "m"}, {"com_y_m", "m"}, {"com_z_m", "m"}},
       [count = def.bodies.size()](const RecordSource& s, double* out) {
-        FillSystem(*s.world, count, out);
+        Put(CenterOfMass(*s.world, s.lane, count), out);
       });
 }
 
@@ -199,17 +196,10 @@ const std::vector<double>& Recorder::Row(const RecordSource& source) {
   return row_;
 }
 
-}  // namespace taut::plant
-
-namespace taut {
-
-std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment, Plant* plant) {
-  return plant::Recorder(experiment, plant).channels();
-}
-
-bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out) {
-  const RecordSpec& record = experiment.record;
-  if (record.channels.empty()) return true;
+bool CheckChannels(const ExperimentSpec& experiment, const std::vector<std::string>& patterns,
+                   const std::vector<SourceRef>& places, const std::string& what,
+                   Diagnostics& out) {
+  if (patterns.empty()) return true;
   ExperimentSpec all = experiment;
   all.record.channels = {"*"};
   std::vector<std::string> names, known;
@@ -222,18 +212,32 @@ bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out) {
   }
   known.insert(known.end(), names.begin(), names.end());
   bool good = true;
-  for (std::size_t i = 0; i < record.channels.size(); ++i) {
-    const std::string& pattern = record.channels[i];
+  for (std::size_t i = 0; i < patterns.size(); ++i) {
+    const std::string& pattern = patterns[i];
     const auto fits = [&](const std::string& name) { return base::Fits(pattern, name); };
     if (std::any_of(names.begin(), names.end(), fits)) continue;
     good = false;
-    const bool contact = record.contacts == 0 && pattern.starts_with("contact/");
-    out.Error(i < record.channel_sources.size() ? record.channel_sources[i] : SourceRef{},
-              "record.channels: no channel fits \"" + pattern + "\"",
+    const bool contact = experiment.record.contacts == 0 && pattern.starts_with("contact/");
+    out.Error(i < places.size() ? places[i] : SourceRef{},
+              what + ": no channel fits \"" + pattern + "\"",
               contact ? "record.contacts says how many contacts have channels, and is 0"
                       : DidYouMean(pattern, known));
   }
   return good;
+}
+
+}  // namespace taut::plant
+
+namespace taut {
+
+std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment, Plant* plant) {
+  return plant::Recorder(experiment, plant).channels();
+}
+
+bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out) {
+  const RecordSpec& record = experiment.record;
+  return plant::CheckChannels(experiment, record.channels, record.channel_sources,
+                              "record.channels", out);
 }
 
 }  // namespace taut

@@ -12,14 +12,20 @@
 
 namespace taut::plant {
 
-/// What a row is filled from: lane 0 of a plant.
+/// What a row is filled from: a lane of a plant.
 struct RecordSource {
   const Observation* exact = nullptr;
   const Observation* seen = nullptr;  ///< By the controllers.
   const Commands* commands = nullptr;
   const World* world = nullptr;
-  const Timeline* timeline = nullptr;
+  const Timeline* timeline = nullptr;  ///< The lane's.
+  int lane = 0;
 };
+
+/// A complaint for each of `patterns`, named `what`, that fits no channel of a run of this
+/// experiment; false if there was one. `places`: where they stand; may be empty.
+bool CheckChannels(const ExperimentSpec& experiment, const std::vector<std::string>& patterns,
+                   const std::vector<SourceRef>& places, const std::string& what, Diagnostics& out);
 
 class Recorder {
  public:

@@ -19,6 +19,7 @@ class Schedule {
   double time_s() const noexcept { return time_s_; }
   double step_s() const noexcept { return step_s_; }  ///< Of the steps up to the next boundary.
   bool AtBoundary() const noexcept { return done_ >= steps_; }
+  std::int64_t left() const noexcept { return steps_ - done_; }  ///< Steps up to there.
 
   /// At a boundary: `next_s` is the next of all ticks and corners; infinity if there is none.
   void Aim(double next_s) {

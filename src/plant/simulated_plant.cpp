@@ -3,12 +3,13 @@
 
 #include "base/assert.h"
 #include "plant/command_rows.h"
+#include "plant/many_steps.h"
 #include "taut/plant.h"
 
 namespace taut {
 namespace {
 
-class SimulatedPlant final : public Plant, public World {
+class SimulatedPlant final : public Plant, public World, public plant::ManySteps {
  public:
   explicit SimulatedPlant(Batch& batch)
       : batch_(batch),
@@ -51,6 +52,13 @@ class SimulatedPlant final : public Plant, public World {
     }
     if (!alike) return StepByLength(step_s);
     if (step_s[0] > 0) batch_.Step(step_s[0]);
+  }
+
+  void AdvanceMany(double step_s, int count, const double* to_s) override {
+    Switch();
+    Hold();
+    std::copy_n(to_s, lanes_, time_s_.begin());
+    batch_.Step(step_s, count);
   }
 
   void Restart(int lane) override {

@@ -17,6 +17,11 @@ enum Stream : std::uint32_t {
   kEncoderGain = 9,    ///< Index: cable.
   kGoal = 10,          ///< Index: 0.
   kStartPose = 11,     ///< Index: 0.
+  // Of an environment (src/env/):
+  kEpisodeScales = 12,  ///< Index: 0.
+  kEpisodeSlope = 13,   ///< Index: 0.
+  kEpisodeDelays = 14,  ///< Index: 0.
+  kFollowingSeed = 15,  ///< Index: 0; the seed after this one.
   // 100: blocks that lie about, by a seed of their own (description/terrain_boxes.cpp).
 };
 

@@ -1,6 +1,5 @@
 #include "rollout/scorer.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +8,7 @@
 #include "plant/center_of_mass.h"
 #include "plant/goal.h"
 #include "plant/set_points.h"
+#include "rollout/look.h"
 
 namespace taut::rollout {
 namespace {
@@ -45,6 +45,7 @@ Scorer::Scorer(const ControlSetup& setup, const ObjectiveSpec& objective, const 
   start_m_.resize(lanes);
   fell_s_.resize(lanes);
   failed_.resize(lanes);
+  states_.resize(def.bodies.size());
   const double* rest = loop.exact().cables.rest_length_m;
   rest_before_m_.assign(rest, rest + def.cables.size() * lanes);
   if (experiment_.goal) {
@@ -96,24 +97,21 @@ void Scorer::LookAround() {
       }
       continue;
     }
-    bool tilted = false;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const BodyState body = world_.Body(j, static_cast<int>(b));
-      const double speed = std::sqrt(Dot(body.velocity_m_per_s, body.velocity_m_per_s));
-      if (!(speed <= objective_.max_speed_m_per_s)) {
-        failed_[lane] = "body " + bodies[b].name + " is faster than " +
-                        std::to_string(static_cast<int>(objective_.max_speed_m_per_s)) +
-                        " m/s at t = " + Seconds(loop_.time_s()) + " s";
-      }
-      const Quat& q = body.orientation;
-      tilted = tilted || 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < cos_max_tilt_;
+      states_[b] = world_.Body(j, static_cast<int>(b));
+    }
+    const int fast = TooFast(states_, objective_.max_speed_m_per_s);
+    if (fast != kWorld) {
+      failed_[lane] = "body " + bodies[static_cast<std::size_t>(fast)].name + " is faster than " +
+                      std::to_string(static_cast<int>(objective_.max_speed_m_per_s)) +
+                      " m/s at t = " + Seconds(loop_.time_s()) + " s";
     }
     if (!objective_.fall || fell_s_[lane]) continue;
     const FallSpec& fall = *objective_.fall;
     const double height = fall.min_height_m || fall.max_height_m ? CenterOfMass(j).z : 0.0;
-    const bool low = fall.min_height_m && height < *fall.min_height_m;
-    const bool high = fall.max_height_m && height > *fall.max_height_m;
-    if (tilted || low || high) fell_s_[lane] = loop_.time_s();
+    if (AnyTilted(states_, cos_max_tilt_) || BeyondHeights(fall, height)) {
+      fell_s_[lane] = loop_.time_s();
+    }
   }
 }
 
@@ -149,7 +147,7 @@ RolloutResult Scorer::Result(int j) const {
   const double time_s = loop_.time_s();
   out.tracking_n = time_s > 0 ? std::sqrt(error_n2_s_[lane] / time_s) : 0.0;
   const Vec3 way = start_m_[lane] ? CenterOfMass(j) - *start_m_[lane] : Vec3{};
-  out.distance_m = std::sqrt(way.x * way.x + way.y * way.y);
+  out.distance_m = DistanceOf(way);
   out.along_m = Dot(way, objective_.direction);
   switch (objective_.measure) {
     case Measure::kDistance:
@@ -167,11 +165,13 @@ RolloutResult Scorer::Result(int j) const {
     case Measure::kTracking:
       out.score = -out.tracking_n;
       break;
+    case Measure::kNone:
+      out.score = 0.0;
+      break;
   }
   if (own_) out.score = own_->Result(j);
   if (objective_.tension_limit) {
-    const TensionLimit& limit = *objective_.tension_limit;
-    out.score -= limit.penalty_per_n * std::max(out.max_tension_n - limit.limit_n, 0.0);
+    out.score -= TensionPenalty(*objective_.tension_limit, out.max_tension_n);
   }
   if (objective_.fall && out.fell_s) out.score -= objective_.fall->penalty;
   if (!std::isfinite(out.score)) {

@@ -47,6 +47,7 @@ class Scorer {
   std::vector<double> goal_start_m_;          ///< Distance to it at `from_s`.
   std::vector<std::optional<double>> fell_s_;
   std::vector<std::string> failed_;
+  std::vector<BodyState> states_;  ///< Of the lane that is looked at.
   std::int64_t looks_ = 0;
 };
 

@@ -1,50 +1,9 @@
-/// A step allocates nothing. This program replaces the allocation functions with ones that count.
+/// A step allocates nothing.
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-
+#include "tests/determinism/count_allocations.h"
 #include "tests/determinism/variety.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define TAUT_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define TAUT_SANITIZED
-#endif
-#endif
-
-namespace {
-std::atomic<long> allocations{0};  ///< By all threads, of all kinds.
-}
-
-#ifndef TAUT_SANITIZED
-// glibc's own entry points; the C++ operators below and everything else come through these.
-extern "C" {
-void* __libc_malloc(std::size_t);
-void* __libc_calloc(std::size_t, std::size_t);
-void* __libc_realloc(void*, std::size_t);
-void* __libc_memalign(std::size_t, std::size_t);
-
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) {
-  ++allocations;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* p, std::size_t size) {
-  ++allocations;
-  return __libc_realloc(p, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  ++allocations;
-  return __libc_memalign(alignment, size);
-}
-}
-#endif
 
 namespace taut::test {
 namespace {

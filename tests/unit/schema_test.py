@@ -50,7 +50,7 @@ def probe(path, *options):
 
 UNIT_OF_SUFFIX = {
     "_n_m_s_per_rad": "N m s/rad", "_n_m_per_rad": "N m/rad", "_n_m_per_a": "N m/A", "_n_m": "N m", "_n_per_s": "N/s",
-    "gain_per_m": "1/m", "damping_s_per_m": "s/m", "friction_s_per_m": "s/m", "_rad_per_n_s": "rad/(N s)", "convergence_per_s": "1/s", "weight_per_m": "1/m",
+    "alive_per_s": "1/s", "_per_j": "1/J", "gain_per_m": "1/m", "damping_s_per_m": "s/m", "friction_s_per_m": "s/m", "_rad_per_n_s": "rad/(N s)", "convergence_per_s": "1/s", "weight_per_m": "1/m",
     "weight_per_m_s": "1/(m s)", "_n_s_per_m": "N s/m", "_n_per_m": "N/m",
     "_kg_per_m3": "kg/m^3", "_kg_per_m": "kg/m",
     "_rad_per_s": "rad/s", "_m_per_s2_n": "m/(s^2 N)", "_m_per_s_n": "m/(s N)",

@@ -1,0 +1,70 @@
+#include "env/actions.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace taut::env {
+
+Actions::Actions(const Plan& plan)
+    : plan_(plan),
+      count_(plan.action_count()),
+      lanes_(static_cast<std::size_t>(plan.lanes)),
+      slots_(static_cast<std::size_t>(plan.most_action_delay) + 1),
+      ring_(slots_ * count_ * lanes_),
+      delay_(lanes_),
+      command_m_(count_ * lanes_) {}
+
+void Actions::Begin(int lane, const Commands& commands, int delay) {
+  const auto j = static_cast<std::size_t>(lane);
+  delay_[j] = static_cast<std::size_t>(delay);
+  for (std::size_t i = 0; i < count_; ++i) {
+    for (std::size_t slot = 0; slot < slots_; ++slot) At(slot, i, j) = 0.0;
+    const auto cable = static_cast<std::size_t>(plan_.spec.actions[i].cable);
+    command_m_[i * lanes_ + j] = commands.rest_length_m[cable * lanes_ + j];
+  }
+}
+
+template <class T>
+bool Actions::Read(int lane, const T* action) {
+  const auto j = static_cast<std::size_t>(lane);
+  bool finite = true;
+  for (std::size_t i = 0; i < count_; ++i) {
+    double x = action == nullptr ? 0.0 : static_cast<double>(action[i]);
+    if (!std::isfinite(x)) {
+      finite = false;
+      x = 0.0;
+    }
+    At(next_, i, j) = std::clamp(x, -1.0, 1.0);
+  }
+  return finite;
+}
+template bool Actions::Read(int lane, const float* action);
+template bool Actions::Read(int lane, const double* action);
+
+void Actions::Apply(Commands& commands) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    const EnvironmentAction& action = plan_.spec.actions[i];
+    const std::size_t row = static_cast<std::size_t>(action.cable) * lanes_;
+    double* const base_m = &command_m_[i * lanes_];
+    for (std::size_t j = 0; j < lanes_; ++j) {
+      const double x = At((next_ + slots_ - delay_[j]) % slots_, i, j);
+      if (action.velocity_input_m_per_s) {
+        commands.signal[row + j] = *action.velocity_input_m_per_s * x;
+        continue;
+      }
+      if (action.rest_length_m) {
+        commands.rest_length_m[row + j] = std::max(base_m[j] + *action.rest_length_m * x, 0.0);
+        continue;
+      }
+      if (x == 0.0) continue;  // also of a start below what the actuator would wind in to
+      const ActuatorDef& actuator =
+          plan_.experiment.robot.def.cables[static_cast<std::size_t>(action.cable)].actuator;
+      base_m[j] = std::max(base_m[j] + *action.rest_length_rate_m_per_s * plan_.spec.period_s * x,
+                           actuator.min_rest_length_m);
+      commands.rest_length_m[row + j] = base_m[j];
+    }
+  }
+  next_ = (next_ + 1) % slots_;
+}
+
+}  // namespace taut::env

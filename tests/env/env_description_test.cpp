@@ -1,0 +1,190 @@
+// What a file says of an environment, and what is wrong with it: all at once, with its place.
+#include "env/env_fixture.h"
+#include "unit/experiment_fixture.h"
+
+namespace taut::test {
+namespace {
+
+/// On the fixture's experiment, whose controller holds `left` and `right`, from line 22 on.
+constexpr const char* kEnvironment = R"(environment:
+  period_s: 0.02
+  actions:
+    - {cables: driven, velocity_input_m_per_s: 0.1}
+  observations: [cable/*/tension_n, "body/a/*"]
+  reward: {measure: heading, direction: [0, 3, 4], fall: {max_tilt_rad: 1, penalty: 2}}
+  max_tension_n: 90
+  randomise: {mass: 0.1, slope_rad: pi / 50, action_delay_s: 0.04, starts: 12}
+)";
+
+class EnvDescription : public ExperimentErrors {
+ protected:
+  /// The complaints of reading it with one text in place of another; "good" if there are none.
+  std::string Wrong(const std::string& old_text, const std::string& new_text) {
+    return Complained(old_text, new_text, false);
+  }
+  /// The same, and of `CheckEnvironment`.
+  std::string Unfit(const std::string& old_text, const std::string& new_text) {
+    return Complained(old_text, new_text, true);
+  }
+
+ private:
+  std::string Complained(const std::string& old_text, const std::string& new_text, bool fit) {
+    std::string text = std::string(kExperiment) + kEnvironment;
+    const std::size_t at = text.find(old_text);
+    EXPECT_NE(at, std::string::npos) << old_text;
+    Write("env.yaml", text.replace(at, old_text.size(), new_text));
+    Diagnostics out;
+    const auto experiment = LoadExperiment(Path("env.yaml"), {}, out);
+    if (experiment && fit) CheckEnvironment(*experiment, out);
+    if (out.ok()) return "good";
+    return Without(Path("env.yaml") + ":", ErrorsOf(out));
+  }
+};
+
+TEST_F(EnvDescription, IsWhatTheFileSays) {
+  Write("env.yaml", std::string(kExperiment) + kEnvironment);
+  ExperimentSpec experiment = Load("env.yaml");
+  for (int pass = 0; pass < 2; ++pass) {  // as written, and as resolved
+    ASSERT_TRUE(experiment.environment);
+    const EnvironmentSpec& spec = *experiment.environment;
+    EXPECT_EQ(spec.period_s, 0.02);
+    ASSERT_EQ(spec.actions.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(spec.actions[i].cable, static_cast<int>(i));
+      EXPECT_EQ(spec.actions[i].velocity_input_m_per_s, 0.1);
+      EXPECT_FALSE(spec.actions[i].rest_length_m || spec.actions[i].rest_length_rate_m_per_s);
+    }
+    EXPECT_EQ(spec.observations, (std::vector<std::string>{"cable/*/tension_n", "body/a/*"}));
+    EXPECT_EQ(spec.reward.measure, Measure::kHeading);
+    EXPECT_EQ(spec.reward.direction.y, 0.6);
+    EXPECT_EQ(spec.reward.fall->max_tilt_rad, 1);
+    EXPECT_EQ(spec.reward.fall->penalty, 2);
+    EXPECT_EQ(spec.max_tension_n, 90);
+    EXPECT_EQ(spec.randomise.mass, 0.1);
+    EXPECT_NEAR(spec.randomise.slope_rad, 0.0628318530717958, 1e-15);
+    EXPECT_EQ(spec.randomise.action_delay_s, 0.04);
+    EXPECT_EQ(spec.randomise.starts, 12);
+    Diagnostics out;
+    EXPECT_TRUE(CheckEnvironment(experiment, out)) << out.Format();
+    Write("resolved.yaml", ResolvedYaml(experiment));
+    experiment = Load("resolved.yaml");
+  }
+}
+
+TEST_F(EnvDescription, ARunDoesNotLookAtIt) {
+  EXPECT_FALSE(Load().environment);
+  EXPECT_EQ(ResolvedYaml(Load()).find("environment"), std::string::npos);
+}
+
+TEST_F(EnvDescription, EveryMistakeIsNamedAtOnce) {
+  EXPECT_EQ(
+      Wrong(kEnvironment, R"(environment:
+  period_s: -1
+  acts: 3
+  observations: []
+  reward: {measure: nearest, from_s: 20, alive_per_s: -1}
+  randomise: {friction: 1, starts: 1.5, observation_delay_s: 0.015}
+)"),
+      R"(23:3: error: environment needs the key "actions"
+)"
+      R"(23:13: error: environment.period_s must be positive, got -1
+)"
+      R"(24:3: error: unknown key "acts" in environment (one of: period_s, actions, observations, reward, max_tension_n, randomise)
+)"
+      R"(25:3: error: environment.observations is empty (a learner needs one at least)
+)"
+      R"(26:21: error: environment.reward.measure cannot be "nearest" (did you mean "nearer"?)
+)"
+      R"(26:30: error: environment.reward.from_s is not before the experiment's end (that is at 10 s)
+)"
+      R"(26:55: error: environment.reward.alive_per_s must not be negative, got -1
+)"
+      R"(27:25: error: environment.randomise.friction must be below 1, got 1 (0.2 means factors from 0.8 to 1.2)
+)"
+      R"(27:36: error: environment.randomise.starts must be a whole number within 0..100000, got 1.5
+)");
+}
+
+TEST_F(EnvDescription, ActionsMoveWhatTheyCan) {
+  EXPECT_EQ(
+      Wrong("cables: driven, velocity_input", "cables: drivn, velocity_input"),
+      R"(25:16: error: environment.actions.cables: no cable matches drivn (no cable is called or tagged "drivn"; did you mean "driven"?)
+)");
+  EXPECT_EQ(Wrong("cables: driven, velocity_input", "cables: passive, velocity_input"),
+            R"(25:16: error: environment.actions: no action can move loose (it has no actuator)
+)");
+  EXPECT_EQ(
+      Wrong("velocity_input_m_per_s: 0.1", "rest_length_m: 0.1"),
+      R"(25:16: error: environment.actions: no action can move left, right (controller hold drives it)
+)");
+  EXPECT_EQ(
+      Wrong("velocity_input_m_per_s: 0.1", "rest_length_m: 0.1, rest_length_rate_m_per_s: 1"),
+      R"(25:44: error: environment.actions has both rest_length_m and rest_length_rate_m_per_s (only one of them may be there)
+)");
+  EXPECT_EQ(
+      Wrong("velocity_input_m_per_s: 0.1}",
+            "velocity_input_m_per_s: 0.1}\n    - {cables: left, velocity_input_m_per_s: 1}"),
+      R"(26:16: error: environment.actions: no action can move left (it has an action already, in line 25)
+)");
+}
+
+TEST_F(EnvDescription, WhatBelongsTogetherIsThere) {
+  EXPECT_EQ(
+      Wrong(", direction: [0, 3, 4]", ""),
+      R"(27:12: error: environment.reward: heading needs the key "direction" (such as [1, 0, 0])
+)");
+  EXPECT_EQ(
+      Wrong("measure: heading, direction: [0, 3, 4]", "measure: nearer"),
+      R"(27:12: error: environment.reward.measure: nearer needs a goal (the experiment has no `goal`)
+)");
+  EXPECT_EQ(Wrong("{mass: 0.1", "{start: {goal_rad: 1}, mass: 0.1"),
+            R"(29:15: error: environment.randomise.start.goal_rad: the experiment has no `goal`
+)");
+  EXPECT_EQ(
+      Wrong("action_delay_s: 0.04", "action_delay_s: 21"),
+      R"(29:46: error: environment.randomise.action_delay_s must not be longer than 1000 periods (the period is 0.02 s)
+)");
+}
+
+TEST_F(EnvDescription, ChannelsAndClocksFit) {
+  EXPECT_EQ(
+      Unfit("cable/*/tension_n", "cable/*/tensions"),
+      R"(26:18: error: environment.observations: no channel fits "cable/*/tensions" (did you mean "cable/*/tension_n"?)
+)");
+  EXPECT_EQ(
+      Unfit("period_s: 0.02", "period_s: 0.0002"),
+      R"(23:3: error: environment.period_s must be a whole multiple of the period of controller hold, 0.001 s (so that each action meets the same ticks)
+)"
+      R"(23:3: error: environment.period_s must be a whole multiple of the step, got 0.2 steps (step_s is 0.001)
+)");
+  EXPECT_EQ(
+      Unfit("force_n: [[3, 0], [4, push_n]]", "force_n: [[3, 0], [4.00037, push_n]]"),
+      R"(23:3: error: environment: push tap has a corner that is no whole number of steps, 4.00037 s (step_s is 0.001; worlds whose steps differ cannot share a register)
+)");
+  EXPECT_EQ(
+      Unfit("- name: hold", "- name: hold\n    period_s: 0.003"),
+      R"(24:3: error: environment.period_s must be a whole multiple of the period of controller hold, 0.003 s (so that each action meets the same ticks)
+)");
+  EXPECT_EQ(
+      Unfit("duration_s: 10", "duration_s: 10.01"),
+      R"(23:3: error: environment.period_s must go into duration_s a whole number of times, got 500.5 (an episode lasts duration_s, 10.01 s)
+)");
+}
+
+TEST(EnvSpec, ShippedOnesFit) {
+  for (const char* const name : {"learn_spine", "learn_roll"}) {
+    Diagnostics out;
+    EXPECT_TRUE(CheckEnvironment(LoadFrom(name), out)) << out.Format();
+  }
+}
+
+TEST(EnvSpec, AnExperimentWithoutOneIsNone) {
+  Diagnostics out;
+  EXPECT_FALSE(Env::Create(LoadFrom("stand_still"), {}, out));
+  EXPECT_NE(out.Format().find("stand_still.yaml: error: the experiment has no `environment`"),
+            std::string::npos)
+      << out.Format();
+}
+
+}  // namespace
+}  // namespace taut::test
