@@ -12,7 +12,8 @@ Actions::Actions(const Plan& plan)
       slots_(static_cast<std::size_t>(plan.most_action_delay) + 1),
       ring_(slots_ * count_ * lanes_),
       delay_(lanes_),
-      command_m_(count_ * lanes_) {}
+      command_m_(count_ * lanes_),
+      now_(count_ * lanes_) {}
 
 void Actions::Begin(int lane, const Commands& commands, int delay) {
   const auto j = static_cast<std::size_t>(lane);
@@ -42,26 +43,33 @@ template bool Actions::Read(int lane, const float* action);
 template bool Actions::Read(int lane, const double* action);
 
 void Actions::Apply(Commands& commands) {
+  for (std::size_t j = 0; j < lanes_; ++j) {
+    const std::size_t slot = (next_ + slots_ - delay_[j]) % slots_;
+    for (std::size_t i = 0; i < count_; ++i) now_[i * lanes_ + j] = At(slot, i, j);
+  }
   for (std::size_t i = 0; i < count_; ++i) {
     const EnvironmentAction& action = plan_.spec.actions[i];
     const std::size_t row = static_cast<std::size_t>(action.cable) * lanes_;
+    const double* const x = &now_[i * lanes_];
     double* const base_m = &command_m_[i * lanes_];
-    for (std::size_t j = 0; j < lanes_; ++j) {
-      const double x = At((next_ + slots_ - delay_[j]) % slots_, i, j);
-      if (action.velocity_input_m_per_s) {
-        commands.signal[row + j] = *action.velocity_input_m_per_s * x;
-        continue;
+    double* const rest_m = commands.rest_length_m + row;
+    if (action.velocity_input_m_per_s) {
+      const double scale = *action.velocity_input_m_per_s;
+      for (std::size_t j = 0; j < lanes_; ++j) commands.signal[row + j] = scale * x[j];
+    } else if (action.rest_length_m) {
+      const double scale_m = *action.rest_length_m;
+      for (std::size_t j = 0; j < lanes_; ++j) {
+        rest_m[j] = std::max(base_m[j] + scale_m * x[j], 0.0);
       }
-      if (action.rest_length_m) {
-        commands.rest_length_m[row + j] = std::max(base_m[j] + *action.rest_length_m * x, 0.0);
-        continue;
-      }
-      if (x == 0.0) continue;  // also of a start below what the actuator would wind in to
+    } else {
+      const double scale_m = *action.rest_length_rate_m_per_s * plan_.spec.period_s;
       const ActuatorDef& actuator =
           plan_.experiment.robot.def.cables[static_cast<std::size_t>(action.cable)].actuator;
-      base_m[j] = std::max(base_m[j] + *action.rest_length_rate_m_per_s * plan_.spec.period_s * x,
-                           actuator.min_rest_length_m);
-      commands.rest_length_m[row + j] = base_m[j];
+      for (std::size_t j = 0; j < lanes_; ++j) {
+        if (x[j] == 0.0) continue;  // also of a start below what the actuator would wind in to
+        base_m[j] = std::max(base_m[j] + scale_m * x[j], actuator.min_rest_length_m);
+        rest_m[j] = base_m[j];
+      }
     }
   }
   next_ = (next_ + 1) % slots_;

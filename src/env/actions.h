@@ -34,6 +34,7 @@ class Actions {
   std::vector<double> ring_;        ///< Clamped actions of the last periods: a row each.
   std::vector<std::size_t> delay_;  ///< Per lane.
   std::vector<double> command_m_;   ///< A row an action: rest length without it, or at a rate.
+  std::vector<double> now_;         ///< A row an action: what acts now.
 };
 
 }  // namespace taut::env

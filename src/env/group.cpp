@@ -109,7 +109,7 @@ void Group::Step(const GroupRows<T>& rows, Starts& starts, Place& place) {
   const std::size_t width = plan_.action_count();
   for (int j = 0; j < plan_.lanes; ++j) {
     Slot& own = worlds_[Index(j)];
-    const bool acts = j < count_ && !own.waits && own.now.end == EpisodeEnd::kNone;
+    const bool acts = j < count_ && own.now.end == EpisodeEnd::kNone;
     own.good_action = actions_.Read(j, acts ? rows.actions + Index(j) * width : nullptr);
   }
   actions_.Apply(plant_->commands());
@@ -119,9 +119,9 @@ void Group::Step(const GroupRows<T>& rows, Starts& starts, Place& place) {
   bool begins = false;
   for (int j = 0; j < count_; ++j) {
     Slot& own = worlds_[Index(j)];
-    const bool acted = !own.waits && own.now.end == EpisodeEnd::kNone;
+    const bool acted = own.now.end == EpisodeEnd::kNone;
     rows.stepped[j] = acted ? 1 : 0;
-    rows.begun[j] = own.waits ? 1 : 0;
+    rows.begun[j] = 0;
     rows.rewards[j] = 0;
     ReadBodies(j);
     if (acted) {

@@ -25,7 +25,7 @@ struct GroupRows {
   double* rewards = nullptr;
   std::uint8_t *terminated = nullptr, *truncated = nullptr;
   std::uint8_t* stepped = nullptr;  ///< Whether the world took its action.
-  std::uint8_t* begun = nullptr;    ///< Whether its row is the first of an episode.
+  std::uint8_t* begun = nullptr;    ///< Whether `Finish` began an episode, whose first row it is.
 };
 
 class Group {

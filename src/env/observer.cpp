@@ -82,9 +82,19 @@ void Observer::Take(Lanes lanes, int count, std::span<const BodyState> bodies) {
   const auto put = [&](std::size_t column, std::size_t lane, double value) {
     now[column * lanes_ + lane] = std::isfinite(value) ? value : 0.0;
   };
+  const bool all = lanes == AllLanes(count);
+  for (std::size_t i = 0; all && i < rows_.size(); ++i) {  // lanes behind the last world, too
+    double* const to = now + rows_[i].column * lanes_;
+    for (std::size_t j = 0; j < lanes_; ++j) {
+      const double x = rows_[i].lanes[j];
+      to[j] = x - x == 0.0 ? x : 0.0;
+    }
+  }
   for (std::size_t j = 0; j < static_cast<std::size_t>(count); ++j) {
     if (!Has(lanes, static_cast<int>(j))) continue;
-    for (const Row& row : rows_) put(row.column, j, row.lanes[j]);
+    for (std::size_t i = 0; !all && i < rows_.size(); ++i) {
+      put(rows_[i].column, j, rows_[i].lanes[j]);
+    }
     plant::BodyNumbers values;
     std::size_t filled = body_count;  // none
     for (const OfBody& of : of_bodies_) {

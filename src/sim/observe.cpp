@@ -273,6 +273,14 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
     }
     d.EachMemory(world, i, [&](double& x) { x = Read<double>(at); });
   }
+  // What only reports was of the world that was here before.
+#define TAUT_ROW(name, type, per, role, halted, start)                    \
+  if constexpr (sim::Role::role == sim::Role::kDerived) {                 \
+    const int count = sim::kWidth##type * d.view.Count(sim::Per::per);    \
+    for (int i = 0; i < count; ++i) d.at(world, d.layout.name + i) = 0.0; \
+  }
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
   d.Moved(world);
   return true;
 }

@@ -163,5 +163,18 @@ TEST(Snapshot, TheHashSeesEveryPartOfAWorld) {
   }));
 }
 
+TEST(Snapshot, WhatARestoredWorldReportsIsNotOfTheOneBefore) {
+  Batch batch = MakeBatch(scenes::Jumble().Def());
+  const std::vector<std::uint8_t> fresh = batch.Save(0);
+  batch.Step(1e-3, 700);
+  ASSERT_GT(batch.Contacts(0).size(), 0u);
+  ASSERT_GT(batch.Status(0).linear_solves, 0);
+  ASSERT_GT(batch.Status(0).residual_m_per_s, 0);
+  ASSERT_TRUE(batch.Restore(0, fresh));
+  EXPECT_EQ(batch.Contacts(0).size(), 0u);
+  EXPECT_EQ(batch.Status(0).linear_solves, 0);
+  EXPECT_EQ(batch.Status(0).residual_m_per_s, 0);
+}
+
 }  // namespace
 }  // namespace taut::test

@@ -65,10 +65,64 @@ TEST(EnvBits, WithoutActionsAWorldIsTheRun) {
 }
 
 TEST(EnvBits, SoItIsWithControllersSensorsAndPushes) {
-  const ExperimentSpec experiment = Controlled(0.4);
-  const auto env = MakeEnv(experiment, {.worlds = 3, .seed = experiment.seed});
-  RunOut(*env);
-  EXPECT_EQ(env->Hash(0), HashOfRun(experiment));
+  ExperimentSpec experiment = Controlled(0.4);
+  for (const bool measured : {true, false}) {  // after every step, or several steps at once
+    if (!measured) experiment.environment->reward = {};
+    for (const bool controlled : {true, false}) {
+      ExperimentSpec own = experiment;
+      if (!controlled) {
+        own.controllers.clear();
+        own.sensors.reset();
+        own.environment->actions.clear();
+        own.environment->observations = {"push/*"};
+      } else if (!measured) {  // ticks alone stand between steps
+        own.pushes.clear();
+        own.environment->observations = {"sensor/*"};
+      }
+      const auto env = MakeEnv(own, {.worlds = 3, .seed = own.seed});
+      RunOut(*env);
+      EXPECT_EQ(env->Hash(0), HashOfRun(own)) << measured << controlled;
+    }
+  }
+}
+
+TEST(EnvBits, AnEpisodeKnowsNothingOfTheOneBefore) {
+  ExperimentSpec experiment = Controlled(0.4);
+  experiment.environment->randomise = Everything();
+  const std::vector<std::uint64_t> seeds{5, 6, 7, 8, 9};
+  const auto env = MakeEnv(experiment, {.worlds = 5}), fresh = MakeEnv(experiment, {.worlds = 5});
+  Arrays<> arrays(*env), others(*fresh);
+  for (int step = 0; step < 7; ++step) {
+    Wiggle(arrays, 3 * step);
+    arrays.Step(*env);
+  }
+  EXPECT_TRUE(arrays.Reset(*env, seeds));
+  EXPECT_TRUE(others.Reset(*fresh, seeds));
+  for (std::size_t i = 0; i < arrays.observations.size(); ++i) {
+    ASSERT_EQ(arrays.observations[i], others.observations[i])
+        << env->observation_channels()[i % arrays.width].name;
+  }
+  for (int step = 0; step < 8; ++step) {
+    Wiggle(arrays, step);
+    others.actions = arrays.actions;
+    arrays.Step(*env);
+    others.Step(*fresh);
+    ASSERT_EQ(arrays.observations, others.observations) << step;
+    ASSERT_EQ(arrays.rewards, others.rewards) << step;
+  }
+}
+
+TEST(EnvBits, TheFirstObservationIsOfSensorsThatHaveSampled) {
+  ExperimentSpec experiment = Controlled(0.4);
+  experiment.sensors->load_cell.reset();
+  experiment.environment->observations = {"cable/*/tension_n", "sensor/*/tension_n"};
+  const auto env = MakeEnv(experiment, {.worlds = 2});
+  Arrays<> arrays(*env);
+  EXPECT_TRUE(arrays.Reset(*env));
+  for (std::size_t i = 0; i < arrays.width / 2; ++i) {
+    EXPECT_EQ(arrays.Row(1)[i], arrays.Row(1)[i + arrays.width / 2]);
+  }
+  EXPECT_GT(arrays.Row(1)[0], 0);
 }
 
 TEST(EnvBits, EveryEpisodeIsTheRunOfItsExperiment) {

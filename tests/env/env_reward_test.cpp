@@ -115,6 +115,16 @@ std::int64_t PeriodAfter(double fall_s) {
   return static_cast<std::int64_t>(std::floor(fall_s / 0.01)) + 1;
 }
 
+TEST(EnvReward, AContactThatIsNotThereIsSeenAsZeros) {
+  ExperimentSpec experiment = Falling(0.1);
+  experiment.record.contacts = 2;
+  experiment.environment->observations = {"contact/*"};
+  const auto env = MakeEnv(experiment, {.worlds = 2});
+  Arrays<> arrays(*env);
+  arrays.Step(*env);
+  EXPECT_EQ(arrays.observations, std::vector<double>(2 * 2 * 9, 0.0));
+}
+
 TEST(EnvReward, AFallEndsAnEpisodeWhenTheClosedFormSaysSo) {
   ExperimentSpec experiment = Falling(1);
   EnvironmentReward& reward = experiment.environment->reward;
