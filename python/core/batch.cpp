@@ -3,34 +3,19 @@
 #include "taut/batch.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "owner.h"
 #include "text.h"
 
 namespace taut::python {
 namespace {
-
-const std::pair<const char*, Simd> kSimd[] = {{"scalar", Simd::kScalar},
-                                              {"sse2", Simd::kSse2},
-                                              {"neon", Simd::kNeon},
-                                              {"avx2", Simd::kAvx2},
-                                              {"avx512", Simd::kAvx512}};
-
-std::optional<Simd> SimdOf(const std::optional<std::string>& name) {
-  if (!name) return std::nullopt;
-  for (const auto& [known, simd] : kSimd) {
-    if (*name == known) return simd;
-  }
-  throw py::value_error("simd: \"" + *name + "\"; there are scalar, sse2, neon, avx2 and avx512");
-}
 
 const std::pair<const char*, Parameter> kParameters[] = {
     {"body_mass_kg", Parameter::kBodyMass},
@@ -51,33 +36,26 @@ class Worlds {
     options.threads = threads;
     options.simd = SimdOf(simd);
     Diagnostics said;
-    std::shared_ptr<const Model> model;
+    std::unique_ptr<Batch> batch;
     {
       const py::gil_scoped_release others;
-      model = Model::Compile(def, said);
-      if (model) batch_ = std::make_unique<Batch>(std::move(model), options);
+      if (auto model = Model::Compile(def, said)) {
+        batch = std::make_unique<Batch>(std::move(model), options);
+      }
     }
-    if (!batch_) Refuse(said);
+    if (!batch) Refuse(said);
     Tell(said);
+    owned_ = std::make_unique<Owner<Batch>>(std::move(batch), "this batch was");
   }
 
-  /// f(batch) with the batch for itself, while other Python threads go on.
   template <class F>
   auto With(F f) {
-    // A forked child has none of the threads, and whatever they held would be held for ever.
-    if (getpid() != pid_) {
-      throw std::runtime_error(
-          "this batch was made before fork(): make it anew in the child, or start workers with "
-          "multiprocessing's \"spawn\"");
-    }
-    const py::gil_scoped_release others;
-    const std::lock_guard<std::mutex> alone(mutex_);
-    return f(*batch_);
+    return owned_->With(f);
   }
 
-  const ModelDef& def() const { return batch_->model().def(); }
-  int worlds() const { return batch_->worlds(); }
-  int lanes() const { return batch_->lanes(); }
+  const ModelDef& def() const { return owned_->peek().model().def(); }
+  int worlds() const { return owned_->peek().worlds(); }
+  int lanes() const { return owned_->peek().lanes(); }
   int World(py::ssize_t world) const { return Index(world, worlds(), "world"); }
   py::ssize_t bodies() const { return static_cast<py::ssize_t>(def().bodies.size()); }
   py::ssize_t cables() const { return static_cast<py::ssize_t>(def().cables.size()); }
@@ -100,9 +78,7 @@ class Worlds {
   }
 
  private:
-  std::unique_ptr<Batch> batch_;
-  std::mutex mutex_;
-  const pid_t pid_ = getpid();
+  std::unique_ptr<Owner<Batch>> owned_;
 };
 
 void Put(const Vec3& v, double* to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }

@@ -8,4 +8,5 @@ PYBIND11_MODULE(_core, module) {
   taut::python::AddDescriptions(module);
   taut::python::AddBatch(module);
   taut::python::AddRuns(module);
+  taut::python::AddEnvironments(module);
 }

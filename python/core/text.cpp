@@ -22,7 +22,21 @@ std::string TextOf(const py::array& a) {
   return TextOf({a.shape(), a.shape() + a.ndim()}, py::str(a.dtype()).cast<std::string>().c_str());
 }
 
+const std::pair<const char*, Simd> kSimd[] = {{"scalar", Simd::kScalar},
+                                              {"sse2", Simd::kSse2},
+                                              {"neon", Simd::kNeon},
+                                              {"avx2", Simd::kAvx2},
+                                              {"avx512", Simd::kAvx512}};
+
 }  // namespace
+
+std::optional<Simd> SimdOf(const std::optional<std::string>& name) {
+  if (!name) return std::nullopt;
+  for (const auto& [known, simd] : kSimd) {
+    if (*name == known) return simd;
+  }
+  throw py::value_error("simd: \"" + *name + "\"; there are scalar, sse2, neon, avx2 and avx512");
+}
 
 void Tell(const Diagnostics& said) {
   if (!said.ok()) Refuse(said);

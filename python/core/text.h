@@ -5,10 +5,12 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "taut/batch.h"
 #include "taut/diagnostics.h"
 #include "taut/spec.h"
 
@@ -20,6 +22,7 @@ namespace py = pybind11;
 void AddDescriptions(py::module_& module);
 void AddBatch(py::module_& module);
 void AddRuns(py::module_& module);
+void AddEnvironments(py::module_& module);
 
 /// Raises `taut.InputError` with all that is wrong, if anything is; tells warnings by
 /// `warnings.warn` as `taut.InputWarning`. The GIL must be held.
@@ -30,6 +33,9 @@ void Tell(const Diagnostics& said);
 
 /// Python's keyword arguments as overrides: `edge_m=0.3`, `tau="2 * pi"`.
 Overrides OverridesOf(const py::kwargs& values);
+
+/// An instruction set by its name, nothing for None; else ValueError.
+std::optional<Simd> SimdOf(const std::optional<std::string>& name);
 
 /// An index that is less than `count`, those below 0 counted from the end; else IndexError, which
 /// names `what`.

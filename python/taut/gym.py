@@ -1,0 +1,279 @@
+"""Environments as people who train policies expect them: Gymnasium's interface, with or without it.
+
+    envs = taut.gym.make_vec("experiments/learn_spine.yaml", num_envs=256, threads=0)
+    observations, infos = envs.reset(seed=1)
+    observations, rewards, terminated, truncated, infos = envs.step(actions)
+
+Where gymnasium is installed, these are its VectorEnv and Env, with its spaces; else classes of the same
+methods and attributes. The experiment's `environment` says what actions, observations and rewards are
+(docs/environments.md). Worlds give the same bits for the same seed and actions, whatever runs beside them.
+"""
+
+import enum as _enum
+
+import numpy as _np
+
+from taut import _core
+
+try:
+    import gymnasium as _gymnasium
+    from gymnasium.spaces import Box
+    from gymnasium.vector import AutoresetMode
+    from gymnasium.vector.utils import batch_space as _batch_space
+
+    _VectorBase, _EnvBase = _gymnasium.vector.VectorEnv, _gymnasium.Env
+except ImportError:
+    _VectorBase = _EnvBase = object
+
+    class AutoresetMode(_enum.Enum):
+        """When a world whose episode is over begins its next one."""
+
+        NEXT_STEP = "NextStep"
+        SAME_STEP = "SameStep"
+        DISABLED = "Disabled"
+
+    class Box:
+        """Numbers between bounds: what of Gymnasium's Box people use."""
+
+        def __init__(self, low, high, shape=None, dtype=_np.float32, seed=None):
+            self.shape = tuple(shape) if shape is not None else _np.shape(low)
+            self.dtype = _np.dtype(dtype)
+            self.low = _np.full(self.shape, low, self.dtype) if _np.ndim(low) == 0 else _np.asarray(low, self.dtype)
+            self.high = _np.full(self.shape, high, self.dtype) if _np.ndim(high) == 0 else _np.asarray(high, self.dtype)
+            self._random = _np.random.default_rng(seed)
+
+        def seed(self, seed=None):
+            self._random = _np.random.default_rng(seed)
+
+        def contains(self, x):
+            x = _np.asarray(x)
+            return bool(x.shape == self.shape and (x >= self.low).all() and (x <= self.high).all())
+
+        def sample(self):
+            """Evenly between the bounds; normal where there are none."""
+            bounded = _np.isfinite(self.low) & _np.isfinite(self.high)
+            low, high = _np.where(bounded, self.low, 0.0), _np.where(bounded, self.high, 1.0)
+            drawn = _np.where(bounded, self._random.uniform(low, high), self._random.normal(size=self.shape))
+            return drawn.astype(self.dtype)
+
+        def __eq__(self, other):
+            return (isinstance(other, Box) and self.shape == other.shape and self.dtype == other.dtype
+                    and (self.low == other.low).all() and (self.high == other.high).all())
+
+        def __repr__(self):
+            return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
+
+    def _batch_space(space, n):
+        return Box(_np.tile(space.low, (n, 1)), _np.tile(space.high, (n, 1)), dtype=space.dtype)
+
+
+EpisodeEnd = _enum.IntEnum("EpisodeEnd", [(name.upper(), value) for name, value in _core.episode_ends])
+EpisodeEnd.__doc__ = "Why an episode is over: time and none end nothing badly; see docs/environments.md."
+
+_AUTORESET = {AutoresetMode.NEXT_STEP: "next_step", AutoresetMode.SAME_STEP: "same_step",
+              AutoresetMode.DISABLED: "disabled"}
+
+
+def _experiment(experiment, set_):
+    if isinstance(experiment, _core.Experiment):
+        if set_:
+            raise ValueError("set: only of an experiment that is given as a path")
+        return experiment
+    loaded = _core.load(str(experiment), **(set_ or {}))
+    if not isinstance(loaded, _core.Experiment):
+        raise ValueError(f"{experiment}: a model; environments are made of experiments")
+    return loaded
+
+
+class VectorEnv(_VectorBase):
+    """Many worlds, an episode each. Arrays are (num_envs, n); actions are -1..1.
+
+    `copy=False`: `step` and `reset` return the same arrays again and again, which saves their making.
+    Callbacks see all worlds at once, as views that are void afterwards: `observe(rows, observations)` fills
+    the last `own_observations` columns; `judge(rows, observations, actions, rewards, terminated)` changes the
+    last two. Rows of worlds whose `rows` is 0 are not to be looked at.
+    Threads: one at a time.
+    """
+
+    render_mode = None
+    spec = None
+
+    def __init__(self, experiment, num_envs=1, *, threads=1, simd=None, dtype=_np.float32, copy=True,
+                 autoreset_mode=AutoresetMode.NEXT_STEP, randomise=True, seed=None, set=None,
+                 own_observations=0, observe=None, judge=None):
+        dtype = _np.dtype(dtype)
+        if dtype not in (_np.float32, _np.float64):
+            raise ValueError(f"dtype: {dtype}; float32 or float64")
+        if not isinstance(autoreset_mode, AutoresetMode):
+            autoreset_mode = AutoresetMode(autoreset_mode)
+        self._core = _core.Environments(
+            _experiment(experiment, set), num_envs, threads, simd, _AUTORESET[autoreset_mode], randomise, seed,
+            own_observations, observe, judge)
+        self.num_envs = num_envs
+        self.metadata = {"autoreset_mode": autoreset_mode, "render_modes": []}
+        self.closed = False
+        self._dtype, self._copy, self._mode = dtype, copy, autoreset_mode
+        self._reset = self._core.reset_f32 if dtype == _np.float32 else self._core.reset_f64
+        self._step = self._core.step_f32 if dtype == _np.float32 else self._core.step_f64
+        actions, seen = len(self.action_channels), len(self.observation_channels)
+        self.single_action_space = Box(-1.0, 1.0, (actions,), dtype)
+        self.single_observation_space = Box(-_np.inf, _np.inf, (seen,), dtype)
+        self.action_space = _batch_space(self.single_action_space, num_envs)
+        self.observation_space = _batch_space(self.single_observation_space, num_envs)
+        self._observations = _np.zeros((num_envs, seen), dtype)
+        self._final = _np.zeros((num_envs, seen), dtype) if self._mode is AutoresetMode.SAME_STEP else None
+        self._rewards = _np.zeros(num_envs)
+        self._terminated = _np.zeros(num_envs, _np.uint8)
+        self._truncated = _np.zeros(num_envs, _np.uint8)
+
+    @property
+    def action_channels(self):
+        """What 1 stands for, with its unit in its name: cable/NAME/rest_length_m."""
+        return self._core.action_channels
+
+    @property
+    def action_scales(self):
+        """How much of it, by number of the action."""
+        return self._core.action_scales
+
+    @property
+    def observation_channels(self):
+        """Names of trace channels, then own/0, own/1 ..."""
+        return self._core.observation_channels
+
+    @property
+    def period_s(self):
+        """From action to action."""
+        return self._core.period_s
+
+    @property
+    def episode_steps(self):
+        """After which an episode is truncated."""
+        return self._core.episode_steps
+
+    def reset(self, *, seed=None, options=None):
+        """All episodes anew, or those of `options={"reset_mask": bool[num_envs]}`. World i gets seed + i, or
+        seed[i]; None: each goes on with the seed that follows from its last."""
+        self._open()
+        options = dict(options or {})
+        mask = options.pop("reset_mask", None)
+        if options:
+            raise ValueError(f"options: there is no {', '.join(sorted(options))}; only reset_mask")
+        seeds = None
+        if seed is not None:
+            if _np.ndim(seed) == 0:
+                if seed < 0:
+                    raise ValueError(f"seed: {seed}; 0 or more")
+                seeds = _np.uint64(seed) + _np.arange(self.num_envs, dtype=_np.uint64)
+            else:
+                seeds = _np.ascontiguousarray(seed, dtype=_np.uint64)
+        if mask is not None:
+            mask = _np.ascontiguousarray(_np.asarray(mask, bool).astype(_np.uint8))
+        observations = self._fresh(self._observations)
+        self._reset(seeds, mask, observations)
+        self._observations = observations
+        return observations, {}
+
+    def step(self, actions):
+        """One period of all worlds: observations, rewards, terminated, truncated, infos."""
+        self._open()
+        actions = _np.ascontiguousarray(actions, dtype=self._dtype)
+        observations, rewards = self._fresh(self._observations), self._fresh(self._rewards)
+        final = self._fresh(self._final) if self._final is not None else None
+        self._step(actions, observations, rewards, self._terminated, self._truncated, final)
+        self._observations = observations
+        over, cut = self._terminated.view(bool), self._truncated.view(bool)
+        if self._copy:
+            over, cut = over.copy(), cut.copy()
+        return observations, rewards, over, cut, self._infos(over, cut, final)
+
+    def _infos(self, over, cut, final):
+        ended = over | cut
+        if not ended.any():
+            return {}
+        _, steps, returns, ends = self._core.episodes(self._mode is AutoresetMode.SAME_STEP)
+        of_episode = {"end": ends, "_end": ended, "episode_return": returns, "_episode_return": ended,
+                      "episode_steps": steps, "_episode_steps": ended}
+        if final is None:
+            return of_episode
+        return {"final_obs": final, "_final_obs": ended, "final_info": of_episode, "_final_info": ended}
+
+    def experiment(self, world):
+        """The present episode of a world as an experiment: `taut.run` of it goes through the same bits, without
+        actions."""
+        return self._core.experiment(world)
+
+    def hash(self, world=0):
+        """Of a world's state."""
+        return self._core.hash(world)
+
+    def time_s(self, world=0):
+        """Of a world's episode."""
+        return self._core.time_s(world)
+
+    def render(self):
+        raise NotImplementedError("taut draws nothing here: run `experiment(world)` and look at it with `taut view`")
+
+    def close(self, **kwargs):
+        self.closed = True
+
+    def _open(self):
+        if self.closed:
+            raise RuntimeError("these environments are closed")
+
+    def _fresh(self, array):
+        return array.copy() if self._copy else array
+
+
+class Env(_EnvBase):
+    """One world, as a gymnasium.Env. For training take `make_vec`: it is many times as fast."""
+
+    metadata = {"render_modes": []}
+    render_mode = None
+    spec = None
+
+    def __init__(self, experiment, **how):
+        how["autoreset_mode"] = AutoresetMode.DISABLED
+        self._one = VectorEnv(experiment, 1, **how)
+        self.action_space = self._one.single_action_space
+        self.observation_space = self._one.single_observation_space
+
+    def reset(self, *, seed=None, options=None):
+        """A new episode: observation and infos."""
+        if _EnvBase is not object:
+            super().reset(seed=seed)
+        if options:
+            raise ValueError(f"options: there is no {', '.join(sorted(options))}")
+        observations, _ = self._one.reset(seed=seed)
+        return observations[0], {}
+
+    def step(self, action):
+        """One period: observation, reward, terminated, truncated, infos."""
+        observations, rewards, over, cut, infos = self._one.step(_np.asarray(action)[None])
+        infos = {key: value[0] for key, value in infos.items() if not key.startswith("_")}
+        return observations[0], float(rewards[0]), bool(over[0]), bool(cut[0]), infos
+
+    def experiment(self):
+        """The present episode as an experiment."""
+        return self._one.experiment(0)
+
+    def hash(self):
+        """Of the state."""
+        return self._one.hash(0)
+
+    def render(self):
+        return self._one.render()
+
+    def close(self):
+        self._one.close()
+
+
+def make_vec(experiment, num_envs=1, **how):
+    """A `VectorEnv` of an experiment, which is a path or what `taut.load` gave; see there for more."""
+    return VectorEnv(experiment, num_envs, **how)
+
+
+for _public in (Box, AutoresetMode):
+    if _public.__module__ == __name__:
+        _public.__module__ = "taut.gym"
+del _public

@@ -1,0 +1,251 @@
+"""taut.gym: Gymnasium's contract, written out, and the bits of the command; with Gymnasium its own checker."""
+
+import math
+import os
+import pathlib
+import sys
+import unittest
+import warnings
+
+import numpy as np
+
+import taut
+import taut.gym
+from taut.gym import AutoresetMode, EpisodeEnd
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SPINE = str(ROOT / "experiments" / "learn_spine.yaml")
+ROLL = str(ROOT / "experiments" / "learn_roll.yaml")
+
+
+def short(seconds=0.05):
+    """Episodes of five steps."""
+    experiment = taut.load(SPINE)
+    experiment.duration_s = seconds
+    return experiment
+
+
+def actions_of(envs, steps, seed=0):
+    return np.random.default_rng(seed).uniform(-1, 1, (steps, *envs.action_space.shape)).astype(np.float32)
+
+
+class Contract(unittest.TestCase):
+    def test_spaces_and_arrays_are_what_is_said(self):
+        envs = taut.gym.make_vec(SPINE, 5)
+        self.assertEqual(envs.single_action_space.shape, (12,))
+        self.assertEqual(envs.action_space.shape, (5, 12))
+        self.assertEqual(envs.observation_space.shape, (5, len(envs.observation_channels)))
+        self.assertEqual(envs.metadata["autoreset_mode"], AutoresetMode.NEXT_STEP)
+        self.assertEqual(len(envs.action_channels), len(envs.action_scales))
+        self.assertEqual(envs.episode_steps, 1000)
+        observations, infos = envs.reset(seed=3)
+        self.assertEqual((observations.dtype, infos), (np.float32, {}))
+        self.assertTrue(envs.observation_space.contains(observations))
+        observations, rewards, over, cut, infos = envs.step(envs.action_space.sample())
+        self.assertTrue(envs.observation_space.contains(observations))
+        self.assertEqual((rewards.dtype, rewards.shape), (np.float64, (5,)))
+        self.assertEqual((over.dtype, cut.dtype), (bool, bool))
+
+    def test_arrays_are_fresh_or_the_same(self):
+        for copy in (True, False):
+            envs = taut.gym.make_vec(SPINE, 2, copy=copy)
+            first, _ = envs.reset(seed=0)
+            second = envs.step(np.zeros((2, 12)))[0]
+            self.assertEqual(first is second, not copy)
+
+    def test_world_i_has_the_seed_plus_i_and_none_goes_on(self):
+        envs, alone = taut.gym.make_vec(SPINE, 4), taut.gym.make_vec(SPINE, 1)
+        together, _ = envs.reset(seed=7)
+        for i in range(4):
+            np.testing.assert_array_equal(alone.reset(seed=7 + i)[0][0], together[i])
+        again, _ = envs.reset(seed=[7, 8, 9, 10])
+        np.testing.assert_array_equal(again, together)
+        self.assertFalse((envs.reset()[0] == together).all(axis=1).any())
+
+    def test_a_masked_reset_leaves_all_others(self):
+        envs, other = taut.gym.make_vec(SPINE, 3), taut.gym.make_vec(SPINE, 3)
+        for e in (envs, other):
+            e.reset(seed=1)
+            e.step(np.ones((3, 12)))
+        envs.reset(seed=50, options={"reset_mask": np.array([False, True, False])})
+        self.assertEqual([envs.hash(w) == other.hash(w) for w in range(3)], [True, False, True])
+        self.assertEqual((envs.time_s(0), envs.time_s(1)), (0.01, 0.0))
+
+    def test_next_step(self):
+        envs = taut.gym.make_vec(short(), 2)
+        envs.reset(seed=0)
+        for _ in range(4):
+            self.assertFalse(envs.step(np.zeros((2, 12)))[3].any())
+        _, _, over, cut, infos = envs.step(np.zeros((2, 12)))
+        self.assertTrue(cut.all() and not over.any())
+        self.assertEqual(list(infos["end"]), [EpisodeEnd.TIME] * 2)
+        self.assertEqual(list(infos["episode_steps"]), [5, 5])
+        _, rewards, over, cut, _ = envs.step(np.ones((2, 12)))
+        self.assertFalse(rewards.any() or over.any() or cut.any())
+        self.assertEqual(envs.time_s(0), 0.0)
+
+    def test_same_step(self):
+        envs = taut.gym.make_vec(short(), 2, autoreset_mode=AutoresetMode.SAME_STEP)
+        plain = taut.gym.make_vec(short(), 2, autoreset_mode="Disabled")
+        for e in (envs, plain):
+            e.reset(seed=0)
+        total = np.zeros(2)
+        for _ in range(5):
+            observations, rewards, _, cut, infos = envs.step(np.zeros((2, 12)))
+            last, same, _, same_cut, _ = plain.step(np.zeros((2, 12)))
+            np.testing.assert_array_equal(rewards, same)
+            total += rewards
+        self.assertTrue(cut.all() and same_cut.all())
+        np.testing.assert_array_equal(infos["final_obs"], last)
+        self.assertTrue(infos["_final_obs"].all())
+        np.testing.assert_allclose(infos["final_info"]["episode_return"], total, rtol=1e-12, atol=1e-15)
+        self.assertFalse((observations == last).all())
+        self.assertEqual(envs.time_s(0), 0.0)
+
+    def test_disabled(self):
+        envs = taut.gym.make_vec(short(), 1, autoreset_mode=AutoresetMode.DISABLED)
+        envs.reset(seed=0)
+        for _ in range(7):
+            _, rewards, _, cut, _ = envs.step(np.zeros((1, 12)))
+        self.assertEqual((rewards[0], bool(cut[0])), (0.0, True))
+
+    def test_what_is_not_finite_ends_an_episode_and_is_never_returned(self):
+        envs = taut.gym.make_vec(SPINE, 2)
+        envs.reset(seed=0)
+        actions = np.zeros((2, 12))
+        actions[1, 3] = math.nan
+        observations, rewards, over, _, infos = envs.step(actions)
+        self.assertEqual(list(over), [False, True])
+        self.assertEqual(infos["end"][1], EpisodeEnd.WRONG_ACTION)
+        self.assertTrue(np.isfinite(observations).all() and np.isfinite(rewards).all())
+
+    def test_one_environment(self):
+        env, vector = taut.gym.Env(SPINE), taut.gym.make_vec(SPINE, 1)
+        first, infos = env.reset(seed=5)
+        np.testing.assert_array_equal(first, vector.reset(seed=5)[0][0])
+        action = env.action_space.sample()
+        observation, reward, over, cut, _ = env.step(action)
+        seen, rewards, *_ = vector.step(action[None])
+        np.testing.assert_array_equal(observation, seen[0])
+        self.assertEqual((reward, over, cut, infos), (rewards[0], False, False, {}))
+        self.assertIsInstance(reward, float)
+
+
+class Bits(unittest.TestCase):
+    def test_without_actions_it_is_the_run_of_the_episode(self):
+        envs = taut.gym.make_vec(SPINE, 3)
+        envs.reset(seed=11)
+        for _ in range(20):
+            envs.step(np.zeros((3, 12)))
+        for world in (0, 2):
+            episode = envs.experiment(world)
+            episode.duration_s = 0.2
+            self.assertEqual(taut.run(episode).state_hash, envs.hash(world))
+
+    def test_threads_lanes_numbers_and_company_do_not_matter(self):
+        def hashes(n, **how):
+            envs = taut.gym.make_vec(SPINE, n, **how)
+            envs.reset(seed=2)
+            for action in actions_of(taut.gym.make_vec(SPINE, 9), 12):
+                envs.step(action[:n])
+            return [envs.hash(w) for w in range(n)]
+
+        all_of_them = hashes(9)
+        self.assertEqual(hashes(9, threads=2), all_of_them)
+        self.assertEqual(hashes(9, simd="scalar"), all_of_them)
+        self.assertEqual(hashes(9, dtype=np.float64), all_of_them)
+        self.assertEqual(hashes(2), all_of_them[:2])
+
+
+class Callbacks(unittest.TestCase):
+    def test_rewards_and_observations_of_ones_own(self):
+        seen = []
+
+        def observe(rows, observations):
+            observations[rows != 0, -1] = 42
+
+        def judge(rows, observations, actions, rewards, terminated):
+            seen.append(actions.copy())
+            rewards += 1
+            terminated[0] = 1
+
+        envs = taut.gym.make_vec(SPINE, 2, own_observations=1, observe=observe, judge=judge)
+        plain = taut.gym.make_vec(SPINE, 2)
+        self.assertTrue((envs.reset(seed=0)[0][:, -1] == 42).all())
+        plain.reset(seed=0)
+        observations, rewards, over, _, infos = envs.step(np.full((2, 12), 0.5))
+        np.testing.assert_allclose(rewards, plain.step(np.full((2, 12), 0.5))[1] + 1, rtol=1e-12)
+        self.assertEqual(list(over), [True, False])
+        self.assertEqual(infos["end"][0], EpisodeEnd.CALLED)
+        self.assertTrue((observations[:, -1] == 42).all() and (seen[0] == 0.5).all())
+
+    def test_what_a_callback_raises_comes_out_of_step(self):
+        def judge(*_):
+            raise KeyError("mine")
+
+        envs = taut.gym.make_vec(SPINE, 2, judge=judge)
+        envs.reset(seed=0)
+        for _ in range(2):
+            with self.assertRaisesRegex(KeyError, "mine"):
+                envs.step(np.zeros((2, 12)))
+
+
+class WrongCalls(unittest.TestCase):
+    def test_are_named(self):
+        envs = taut.gym.make_vec(SPINE, 2)
+        envs.reset(seed=0)
+        for call, why in ((lambda: envs.step(np.zeros((2, 11))), r"actions.*\(2, 11\).*\(2, 12\)"),
+                          (lambda: envs.reset(seed=[1]), r"seeds.*\(2,\)"),
+                          (lambda: envs.reset(seed=-1), "0 or more"),
+                          (lambda: envs.reset(options={"mask": 1}), "reset_mask"),
+                          (lambda: envs.reset(options={"reset_mask": [True]}), "mask"),
+                          (lambda: taut.gym.make_vec(SPINE, 0), "at least 1"),
+                          (lambda: taut.gym.make_vec(SPINE, 1, dtype=np.int32), "float32 or float64"),
+                          (lambda: taut.gym.make_vec(SPINE, 1, autoreset_mode="never"), "never"),
+                          (lambda: taut.gym.make_vec(str(ROOT / "models/prism3.yaml"), 1), "a model"),
+                          (lambda: taut.gym.make_vec(str(ROOT / "experiments/push_20n.yaml"), 1), "environment")):
+            with self.assertRaisesRegex(ValueError, why):
+                call()
+        self.assertRaises(IndexError, lambda: envs.hash(2))
+        envs.close()
+        self.assertRaisesRegex(RuntimeError, "closed", lambda: envs.step(np.zeros((2, 12))))
+
+    def test_a_forked_child_is_told(self):
+        envs = taut.gym.make_vec(SPINE, 16, threads=2)
+        envs.reset(seed=0)
+        child = os.fork()
+        if child == 0:
+            try:
+                envs.step(np.zeros((16, 12)))
+            except RuntimeError as error:
+                os._exit(0 if "fork" in str(error) else 1)
+            os._exit(2)
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
+
+
+class WithGymnasium(unittest.TestCase):
+    def setUp(self):
+        try:
+            import gymnasium  # noqa: F401
+        except ImportError:
+            self.skipTest("no gymnasium")
+
+    def test_its_checker_finds_nothing(self):
+        from gymnasium.utils.env_checker import check_env
+        check_env(taut.gym.Env(short()), skip_render_check=True)
+
+    def test_many_are_as_its_own_vectors_of_single_ones(self):
+        import gymnasium
+        for mode in (AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP):
+            single = gymnasium.vector.SyncVectorEnv([lambda: taut.gym.Env(short())] * 3, autoreset_mode=mode)
+            many = taut.gym.make_vec(short(), 3, autoreset_mode=mode)
+            np.testing.assert_array_equal(single.reset(seed=4)[0], many.reset(seed=4)[0])
+            for action in actions_of(many, 12):
+                for one, other in zip(single.step(action)[:4], many.step(action)[:4]):
+                    np.testing.assert_array_equal(one, other)
+
+
+if __name__ == "__main__":
+    sys.argv.pop(1)
+    warnings.simplefilter("error")
+    unittest.main()
