@@ -89,12 +89,23 @@ class Finder {
     search_.holding.rows = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(structure_.rows.size()));
     search_.holding.touches =
         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(structure_.touches.size()));
-    if (!options_.from) return;
-    for (std::size_t b = 0; b < structure_.bodies.size(); ++b) {
+    for (std::size_t b = 0; options_.from && b < structure_.bodies.size(); ++b) {
       const BodyState& body = options_.from->bodies[static_cast<std::size_t>(structure_.bodies[b])];
       search_.at.center_m[b] = body.position_m;
       search_.at.turn[b] = body.orientation;
     }
+    Lower();
+  }
+
+  /// What nothing holds in the air is put down: how far it falls is no matter of statics.
+  void Lower() {
+    if (structure_.held_by_world || def_.planes.size() != 1 || structure_.touches.empty()) return;
+    double least_m = structure_.GapAt(0, search_.at).value;
+    for (std::size_t t = 1; t < structure_.touches.size(); ++t) {
+      least_m = std::min(least_m, structure_.GapAt(t, search_.at).value);
+    }
+    if (least_m <= 0) return;
+    for (Vec3& center : search_.at.center_m) center = center - least_m * def_.planes[0].normal;
   }
 
   /// What no pose can balance.

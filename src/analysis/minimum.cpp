@@ -137,13 +137,14 @@ class Inner {
   Inner(const Structure& s, const Augmented& energy, const SearchLimits& limits, Search& search)
       : s_(s), energy_(energy), limits_(limits), search_(search), radius_(0.1 * s.size_m) {}
 
-  /// Until what is left is below `goal_n`, or nothing gets better.
-  void Run(double goal_n) {
+  /// Until what is left is below `goal_n`, or nothing gets better, or `most` linear systems.
+  void Run(double goal_n, int most) {
+    most = std::min(limits_.most_iterations, search_.iterations + most);
     Eigen::VectorXd gradient;
     Eigen::MatrixXd hessian;
     double now = energy_.Energy(search_.at, gradient, &hessian);
     bool last = false;
-    while (search_.iterations < limits_.most_iterations) {
+    while (search_.iterations < most) {
       const Eigen::MatrixXd basis = s_.Effective(search_.at, true);
       const Eigen::VectorXd slope = basis.transpose() * gradient;
       search_.left_n = slope.size() == 0 ? 0 : slope.cwiseAbs().maxCoeff();
@@ -215,16 +216,19 @@ class Inner {
 }  // namespace
 
 void Minimise(const Structure& s, const SearchLimits& limits, Search& search) {
-  constexpr int kMostShifts = 60;
+  constexpr int kMostInVain = 60;
+  // Where a robot rolls or slides far, it gets on faster if what holds it is known by the way.
+  constexpr int kLong = 25;
   constexpr double kClosed = 1e-12;  ///< Of the structure's size.
   Augmented energy(s, search.holding);
   search.balanced = search.runs_away = false;
   const bool held = !s.rows.empty() || !s.touches.empty();
-  for (int shift = 0; shift < kMostShifts; ++shift) {
+  for (int in_vain = 0; in_vain < kMostInVain;) {
+    const int before = search.iterations;
     search.largest_n = std::max({1.0, LargestForce(s, search.at), energy.LargestForce()});
     const double goal = limits.tolerance * search.largest_n;
     Inner inner(s, energy, limits, search);
-    inner.Run(goal);
+    inner.Run(goal, held ? kLong : limits.most_iterations);
     if (search.runs_away) return;
     search.apart_m = energy.Shift(search.at);
     search.largest_n = std::max({1.0, LargestForce(s, search.at), energy.LargestForce()});
@@ -232,6 +236,7 @@ void Minimise(const Structure& s, const SearchLimits& limits, Search& search) {
     search.balanced = at_rest && (!held || search.apart_m <= kClosed * s.size_m);
     if (search.balanced || search.iterations >= limits.most_iterations) return;
     if (!at_rest && !held) return;
+    in_vain += search.iterations - before < kLong;
   }
 }
 

@@ -53,6 +53,16 @@ class Checker {
             what + ": the axis of friction must not be zero; only rods have one of their own");
     Require(cone_, what + ": friction by direction needs FrictionLaw::kCone");
   }
+  void Member(const MemberDef& m, const std::string& what) {
+    NonNegative(m.area_m2, what + ": area");
+    NonNegative(m.young_pa, what + ": Young's modulus");
+    NonNegative(m.second_moment_m4, what + ": second moment of area");
+    NonNegative(m.buckling_length_m, what + ": buckling length");
+    NonNegative(m.yield_pa, what + ": yield stress");
+    NonNegative(m.strength_n, what + ": strength");
+    Require(std::isfinite(m.expansion_per_k), what + ": thermal expansion must be finite");
+    NonNegative(m.mass_kg, what + ": mass of its own");
+  }
 
  private:
   Diagnostics& out_;

@@ -81,6 +81,7 @@ void CheckJoints(const ModelDef& def, Checker& check) {
     check.Require(std::fabs(Dot(j.axis, j.axis) - 1) < 1e-9,
                   name + ": the axis must be a unit vector");
     CheckCoordinate(j, name, check);
+    check.Member(j.member, name);
     if (!known(j.body_a) || !known(j.body_b)) continue;
     check.Require(j.body_b != kWorld, name + ": its second body must not be the world");
     check.Require(j.body_a != j.body_b, name + ": both of its bodies are the same");

@@ -42,6 +42,7 @@ void CheckShapes(const ModelDef& def, Checker& check) {
     check.Finite(c.from_m, "rod " + c.name + ": end");
     check.Finite(c.to_m, "rod " + c.name + ": end");
     check.Positive(c.radius_m, "rod " + c.name + ": radius");
+    check.Member(c.member, "rod " + c.name);
     const Vec3 d{c.to_m.x - c.from_m.x, c.to_m.y - c.from_m.y, c.to_m.z - c.from_m.z};
     check.Surface(c.material, "rod " + c.name, d.x != 0 || d.y != 0 || d.z != 0);
   }
@@ -185,6 +186,7 @@ void CheckCables(const ModelDef& def, Checker& check) {
     check.Positive(c.stiffness_n_per_m, name + ": stiffness");
     check.NonNegative(c.damping_n_s_per_m, name + ": damping");
     check.Positive(c.rest_length_m, name + ": rest length");
+    check.Member(c.member, name);
     if (c.actuator.kind == ActuatorDef::Kind::kDcMotor) {
       check.NonNegative(c.actuator.min_rest_length_m, name + ": least rest length");
       check.Require(c.actuator.dc_motor.has_value(), name + ": its motor has no figures");

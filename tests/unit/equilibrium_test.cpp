@@ -176,6 +176,26 @@ TEST(Equilibrium, WhatStandsOnAPlaneStandsAsItSettlesInASimulation) {
   }
 }
 
+TEST(Equilibrium, WhatIsInTheAirAndAslantIsPutDownAndTipsUntilItStandsAsUpright) {
+  Diagnostics out;
+  const auto aslant =
+      LoadExperiment(TAUT_SOURCE_DIR "/examples/my_first_experiment.yaml", {}, out);
+  auto upright = LoadRobot(TAUT_SOURCE_DIR "/examples/my_first_robot.yaml", {}, out);
+  ASSERT_TRUE(aslant && upright) << out.Format();
+  upright->def.planes = aslant->robot.def.planes;
+  const Equilibrium tipped = FindEquilibrium(aslant->robot.def);
+  const Equilibrium stands = FindEquilibrium(upright->def);
+  ASSERT_TRUE(tipped.found && stands.found) << tipped.why << stands.why;
+  EXPECT_EQ(tipped.contacts.size(), 3u);
+  for (std::size_t c = 0; c < stands.cable_tension_n.size(); ++c) {
+    EXPECT_NEAR(tipped.cable_tension_n[c], stands.cable_tension_n[c], 1e-6);
+  }
+  for (const ContactState& c : tipped.contacts) {
+    EXPECT_NEAR(c.force_n.z, 9.81 * TotalMass(upright->def) / 3, 1e-8);
+    EXPECT_NEAR(c.point_m.z, 0, 1e-9);
+  }
+}
+
 TEST(Equilibrium, WhatNothingHoldsIsSaidWithItsResultant) {
   ModelDef def;
   scenes::AddRod(def, "rod", 2, 0.01, {0, 0, 0}, {1, 0, 0}, {});
