@@ -178,8 +178,7 @@ TEST(Equilibrium, WhatStandsOnAPlaneStandsAsItSettlesInASimulation) {
 
 TEST(Equilibrium, WhatIsInTheAirAndAslantIsPutDownAndTipsUntilItStandsAsUpright) {
   Diagnostics out;
-  const auto aslant =
-      LoadExperiment(TAUT_SOURCE_DIR "/examples/my_first_experiment.yaml", {}, out);
+  const auto aslant = LoadExperiment(TAUT_SOURCE_DIR "/examples/my_first_experiment.yaml", {}, out);
   auto upright = LoadRobot(TAUT_SOURCE_DIR "/examples/my_first_robot.yaml", {}, out);
   ASSERT_TRUE(aslant && upright) << out.Format();
   upright->def.planes = aslant->robot.def.planes;

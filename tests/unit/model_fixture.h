@@ -22,9 +22,9 @@ struct Read {
 
 /// Reads a model that starts with these three lines; `yaml` starts in line 4.
 inline Read ReadModel(const std::string& yaml, const Overrides& overrides = {}) {
-  const std::string path = ::testing::TempDir() +
-                           ::testing::UnitTest::GetInstance()->current_test_info()->name() +
-                           ".yaml";
+  const ::testing::TestInfo& test = *::testing::UnitTest::GetInstance()->current_test_info();
+  const std::string path =
+      ::testing::TempDir() + test.test_suite_name() + "." + test.name() + ".yaml";
   std::ofstream(path) << "taut: 1\nkind: model\nname: robot\n" << yaml;
   Diagnostics out;
   auto robot = LoadRobot(path, overrides, out);
