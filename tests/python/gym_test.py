@@ -38,6 +38,7 @@ class Contract(unittest.TestCase):
         self.assertEqual(envs.metadata["autoreset_mode"], AutoresetMode.NEXT_STEP)
         self.assertEqual(len(envs.action_channels), len(envs.action_scales))
         self.assertEqual(envs.episode_steps, 1000)
+        self.assertEqual((envs.action_space.low.min(), envs.action_space.high.max()), (-1, 1))
         observations, infos = envs.reset(seed=3)
         self.assertEqual((observations.dtype, infos), (np.float32, {}))
         self.assertTrue(envs.observation_space.contains(observations))
@@ -52,6 +53,10 @@ class Contract(unittest.TestCase):
             first, _ = envs.reset(seed=0)
             second = envs.step(np.zeros((2, 12)))[0]
             self.assertEqual(first is second, not copy)
+        envs = taut.gym.make_vec(short(), 1)
+        envs.reset(seed=0)
+        results = [envs.step(np.zeros((1, 12)))[2:4] for _ in range(5)]
+        self.assertEqual([bool(cut[0]) for _, cut in results], [False] * 4 + [True])
 
     def test_world_i_has_the_seed_plus_i_and_none_goes_on(self):
         envs, alone = taut.gym.make_vec(SPINE, 4), taut.gym.make_vec(SPINE, 1)
@@ -64,6 +69,11 @@ class Contract(unittest.TestCase):
 
     def test_a_masked_reset_leaves_all_others(self):
         envs, other = taut.gym.make_vec(SPINE, 3), taut.gym.make_vec(SPINE, 3)
+        for e in (envs, other):
+            e.reset(seed=1)
+            e.step(np.ones((3, 12)))
+        before, _ = other.reset(seed=1)
+        np.testing.assert_array_equal(other.reset(options={"reset_mask": [False, False, True]})[0][:2], before[:2])
         for e in (envs, other):
             e.reset(seed=1)
             e.step(np.ones((3, 12)))
@@ -129,6 +139,9 @@ class Contract(unittest.TestCase):
         np.testing.assert_array_equal(observation, seen[0])
         self.assertEqual((reward, over, cut, infos), (rewards[0], False, False, {}))
         self.assertIsInstance(reward, float)
+        env = taut.gym.Env(short())
+        env.reset(seed=0)
+        self.assertEqual([env.step(0 * action)[3] for _ in range(7)], [False] * 4 + [True] * 3)
 
 
 class Bits(unittest.TestCase):
