@@ -15,7 +15,7 @@ from taut import _tables
 from taut._core import Batch, Experiment, Robot, Run, Trace, load, read_trace, run
 from taut._errors import Complaint, InputError, InputWarning
 
-Status = _enum.IntFlag("Status", _core.status_bits)
+Status = _enum.IntFlag("Status", _core.status_bits)  # type: ignore[misc]
 Status.__doc__ = "What a world has to say for itself; 0 is good."
 
 __version__ = _core.version

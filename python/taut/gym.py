@@ -10,11 +10,14 @@ methods and attributes. The experiment's `environment` says what actions, observ
 """
 
 import enum as _enum
+from typing import Any as _Any
 
 import numpy as _np
 
 from taut import _core
 
+_VectorBase: _Any = object
+_EnvBase: _Any = object
 try:
     import gymnasium as _gymnasium
     from gymnasium.spaces import Box
@@ -23,51 +26,10 @@ try:
 
     _VectorBase, _EnvBase = _gymnasium.vector.VectorEnv, _gymnasium.Env
 except ImportError:
-    _VectorBase = _EnvBase = object
+    from taut._spaces import AutoresetMode, Box, batch_space as _batch_space
 
-    class AutoresetMode(_enum.Enum):
-        """When a world whose episode is over begins its next one."""
-
-        NEXT_STEP = "NextStep"
-        SAME_STEP = "SameStep"
-        DISABLED = "Disabled"
-
-    class Box:
-        """Numbers between bounds: what of Gymnasium's Box people use."""
-
-        def __init__(self, low, high, shape=None, dtype=_np.float32, seed=None):
-            self.shape = tuple(shape) if shape is not None else _np.shape(low)
-            self.dtype = _np.dtype(dtype)
-            self.low = _np.full(self.shape, low, self.dtype) if _np.ndim(low) == 0 else _np.asarray(low, self.dtype)
-            self.high = _np.full(self.shape, high, self.dtype) if _np.ndim(high) == 0 else _np.asarray(high, self.dtype)
-            self._random = _np.random.default_rng(seed)
-
-        def seed(self, seed=None):
-            self._random = _np.random.default_rng(seed)
-
-        def contains(self, x):
-            x = _np.asarray(x)
-            return bool(x.shape == self.shape and (x >= self.low).all() and (x <= self.high).all())
-
-        def sample(self):
-            """Evenly between the bounds; normal where there are none."""
-            bounded = _np.isfinite(self.low) & _np.isfinite(self.high)
-            low, high = _np.where(bounded, self.low, 0.0), _np.where(bounded, self.high, 1.0)
-            drawn = _np.where(bounded, self._random.uniform(low, high), self._random.normal(size=self.shape))
-            return drawn.astype(self.dtype)
-
-        def __eq__(self, other):
-            return (isinstance(other, Box) and self.shape == other.shape and self.dtype == other.dtype
-                    and (self.low == other.low).all() and (self.high == other.high).all())
-
-        def __repr__(self):
-            return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
-
-    def _batch_space(space, n):
-        return Box(_np.tile(space.low, (n, 1)), _np.tile(space.high, (n, 1)), dtype=space.dtype)
-
-
-EpisodeEnd = _enum.IntEnum("EpisodeEnd", [(name.upper(), value) for name, value in _core.episode_ends])
+EpisodeEnd = _enum.IntEnum(  # type: ignore[misc]
+    "EpisodeEnd", [(name.upper(), value) for name, value in _core.episode_ends])
 EpisodeEnd.__doc__ = "Why an episode is over: time and none end nothing badly; see docs/environments.md."
 
 _AUTORESET = {AutoresetMode.NEXT_STEP: "next_step", AutoresetMode.SAME_STEP: "same_step",
@@ -228,7 +190,7 @@ class VectorEnv(_VectorBase):
 class Env(_EnvBase):
     """One world, as a gymnasium.Env. For training take `make_vec`: it is many times as fast."""
 
-    metadata = {"render_modes": []}
+    metadata: dict = {"render_modes": []}
     render_mode = None
     spec = None
 
@@ -271,9 +233,3 @@ class Env(_EnvBase):
 def make_vec(experiment, num_envs=1, **how):
     """A `VectorEnv` of an experiment, which is a path or what `taut.load` gave; see there for more."""
     return VectorEnv(experiment, num_envs, **how)
-
-
-for _public in (Box, AutoresetMode):
-    if _public.__module__ == __name__:
-        _public.__module__ = "taut.gym"
-del _public

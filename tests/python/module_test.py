@@ -3,6 +3,7 @@
 module_test.py TAUT [unittest's arguments]
 """
 
+import ast
 import json
 import math
 import os
@@ -276,6 +277,25 @@ class Batches(unittest.TestCase):
                 os._exit(0 if "fork" in str(error) else 1)
             os._exit(2)
         self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
+
+
+class Types(unittest.TestCase):
+    def test_stubs_name_what_there_is(self):
+        tree = ast.parse(pathlib.Path(taut.__file__).with_name("_core.pyi").read_text())
+
+        def named(body):
+            names = {node.name: node for node in body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+            return names | {node.target.id: node for node in body if isinstance(node, ast.AnnAssign)}
+
+        def public(thing):
+            return {name for name in vars(thing) if not name.startswith("_")}
+
+        stubs = named(tree.body)
+        self.assertEqual(set(stubs), public(taut._core))
+        for name, node in stubs.items():
+            if isinstance(node, ast.ClassDef):
+                has = {n for n in named(node.body) if not n.startswith("_")}
+                self.assertEqual(has, public(getattr(taut._core, name)), name)
 
 
 if __name__ == "__main__":
