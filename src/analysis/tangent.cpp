@@ -194,7 +194,7 @@ Eigen::MatrixXd EigenOf(const Matrix& m) {
 }  // namespace analysis
 
 Tangent FindTangent(const ModelDef& def, const LoadCaseSpec& loads) {
-  using namespace analysis;
+  using namespace analysis;  // NOLINT(google-build-using-namespace): this function alone
   const Structure s(def, loads, true);
   const Reactions holding = ReactionsAsDescribed(s, kNearPlane * s.size_m);
   Tangent out;
