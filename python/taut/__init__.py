@@ -10,7 +10,10 @@ the shape (worlds, ...).
 
 import enum as _enum
 
-from taut import _core
+try:
+    from taut import _core
+except ImportError as error:
+    raise ImportError(f"{error}\nIf taut is not built yet: script/build release taut_python") from None
 from taut import _tables
 from taut._core import Batch, Experiment, Robot, Run, Trace, load, read_trace, run
 from taut._errors import Complaint, InputError, InputWarning
