@@ -80,7 +80,7 @@ std::string ShapeText(const std::vector<py::ssize_t>& shape) {
 }
 
 Array Shaped(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what) {
-  const Array a = Array::ensure(given);
+  Array a = Array::ensure(given);
   if (!a) {
     PyErr_Clear();
     throw py::value_error(

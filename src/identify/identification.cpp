@@ -343,7 +343,7 @@ bool Made::Begin(Diagnostics& out) {
   design_sets_.resize(spec_.design.size());
   for (std::size_t i = 0; i < spec_.design.size(); ++i) {
     design_sets_[i].name = "design " + spec_.design[i].name;
-    for (FitResidual residual : spec_.design[i].residuals) {
+    for (const FitResidual& residual : spec_.design[i].residuals) {
       for (const std::size_t e : residual.experiments) {
         AddRows(residual, e, nullptr, design_sets_[i], out);
       }
