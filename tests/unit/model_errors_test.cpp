@@ -250,7 +250,7 @@ TEST(ModelErrors, BasesAreModelsThatExist) {
   EXPECT_EQ(Errors("base: /no/such/file.yaml\n"),
             "robot.yaml:4:7: error: base: there is no file /no/such/file.yaml (as seen from this "
             "file's folder)\n");
-  EXPECT_EQ(Errors("base: BasesAreModelsThatExist.yaml\n"),
+  EXPECT_EQ(Errors("base: ModelErrors.BasesAreModelsThatExist.yaml\n"),
             "robot.yaml:4:7: error: base files name each other in a circle: robot.yaml\n");
   EXPECT_NE(Errors("base: " TAUT_SOURCE_DIR "/experiments/push_20n.yaml\n")
                 .find("kind must be model, got experiment"),
