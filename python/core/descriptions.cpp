@@ -10,13 +10,6 @@
 namespace taut::python {
 namespace {
 
-template <class List>
-std::vector<std::string> NamesOf(const List& list) {
-  std::vector<std::string> names;
-  for (const auto& one : list) names.push_back(one.name);
-  return names;
-}
-
 std::string Representation(const std::string& kind, const std::string& name, const ModelDef& def) {
   return "<taut." + kind + " \"" + name + "\": " + std::to_string(def.bodies.size()) + " bodies, " +
          std::to_string(def.cables.size()) + " cables>";

@@ -16,8 +16,6 @@ namespace taut::python {
 namespace {
 
 using Bytes = py::array_t<std::uint8_t, py::array::c_style>;
-template <class T>
-using Rows = py::array_t<T, py::array::c_style>;
 
 const std::pair<const char*, Autoreset> kAutoresets[] = {{"next_step", Autoreset::kNextStep},
                                                          {"same_step", Autoreset::kSameStep},
@@ -29,23 +27,6 @@ const std::pair<const char*, EpisodeEnd> kEnds[] = {
     {"too_tense", EpisodeEnd::kTooTense}, {"wrong_action", EpisodeEnd::kWrongAction},
     {"called", EpisodeEnd::kCalled}};
 
-/// `given` as it is, if it is a contiguous array of this type and shape.
-template <class T>
-Rows<T> Exactly(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what,
-                bool written) {
-  const std::string expected = "expected contiguous " +
-                               py::str(py::dtype::of<T>()).template cast<std::string>() +
-                               " of shape " + ShapeText(shape);
-  if (!py::isinstance<Rows<T>>(given)) throw py::value_error(std::string(what) + ": " + expected);
-  auto a = py::reinterpret_borrow<Rows<T>>(given);
-  const std::vector<py::ssize_t> has(a.shape(), a.shape() + a.ndim());
-  if (has != shape || (written && !a.writeable())) {
-    throw py::value_error(std::string(what) + ": shape " + ShapeText(has) +
-                          (a.writeable() ? "" : ", not writeable") + "; " + expected);
-  }
-  return a;
-}
-
 template <class T>
 std::span<T> Span(Rows<T>& a) {
   return {a.mutable_data(), static_cast<std::size_t>(a.size())};
@@ -53,12 +34,6 @@ std::span<T> Span(Rows<T>& a) {
 template <class T>
 std::span<const T> ConstSpan(const Rows<T>& a) {
   return {a.data(), static_cast<std::size_t>(a.size())};
-}
-
-std::vector<std::string> NamesOf(const std::vector<ChannelInfo>& channels) {
-  std::vector<std::string> names;
-  for (const ChannelInfo& c : channels) names.push_back(c.name);
-  return names;
 }
 
 class Environments {
@@ -102,6 +77,7 @@ class Environments {
   Owner<Env>& owner() { return *owned_; }
   const Env& env() const { return owned_->peek(); }
   py::ssize_t worlds() const { return env().worlds(); }
+  int World(py::ssize_t world) const { return Index(world, env().worlds(), "world"); }
   py::ssize_t actions() const { return static_cast<py::ssize_t>(env().action_channels().size()); }
   py::ssize_t observations() const {
     return static_cast<py::ssize_t>(env().observation_channels().size());
@@ -237,16 +213,16 @@ void AddEnvironments(py::module_& module) {
   type.def("step_f64", &E::Step<double>);
   type.def("episodes", &E::Episodes, py::arg("last") = false);
   type.def("experiment", [](E& e, py::ssize_t world) {
-    const int w = Index(world, static_cast<int>(e.worlds()), "world");
+    const int w = e.World(world);
     return std::make_shared<ExperimentSpec>(
         e.owner().With([&](const Env& env) { return env.Experiment(w); }));
   });
   type.def("hash", [](E& e, py::ssize_t world) {
-    const int w = Index(world, static_cast<int>(e.worlds()), "world");
+    const int w = e.World(world);
     return e.owner().With([&](const Env& env) { return env.Hash(w); });
   });
   type.def("time_s", [](E& e, py::ssize_t world) {
-    const int w = Index(world, static_cast<int>(e.worlds()), "world");
+    const int w = e.World(world);
     return e.owner().With([&](const Env& env) { return env.Time(w); });
   });
   py::list ends;

@@ -95,8 +95,7 @@ py::array View(const std::vector<double>& numbers, const py::object& owner) {
 
 std::size_t ChannelOf(const Trace& trace, const std::string& name) {
   if (const auto found = trace.Find(name)) return *found;
-  std::vector<std::string> names;
-  for (const ChannelInfo& c : trace.channels) names.push_back(c.name);
+  const std::vector<std::string> names = NamesOf(trace.channels);
   const std::string_view close = ClosestMatch(name, names);
   throw py::key_error("no channel \"" + name + "\"" +
                       (close.empty() ? "" : "; did you mean \"" + std::string(close) + "\"?"));
@@ -109,12 +108,7 @@ void AddRuns(py::module_& module) {
                                  "Channels against time, as a run records them: `trace[\"cable/a/"
                                  "tension_n\"]`. `to_pandas()` and `to_xarray()` for more.")
       .def_property_readonly(
-          "channels",
-          [](const Trace& t) {
-            std::vector<std::string> names;
-            for (const ChannelInfo& c : t.channels) names.push_back(c.name);
-            return names;
-          },
+          "channels", [](const Trace& t) { return NamesOf(t.channels); },
           "Names, which end with quantity and unit.")
       .def_property_readonly(
           "units",

@@ -94,20 +94,21 @@ Array Shaped(const py::object& given, const std::vector<py::ssize_t>& shape, con
   return a;
 }
 
-py::array_t<double> Output(const py::object& out, const std::vector<py::ssize_t>& shape) {
-  if (out.is_none()) return py::array_t<double>(shape);
-  const std::string expected = TextOf(shape, "contiguous, writeable float64");
-  if (!py::isinstance<py::array>(out)) {
-    throw py::value_error(fmt::format("out: no array; expected {}", expected));
+void CheckArray(const py::object& given, const py::dtype& kind,
+                const std::vector<py::ssize_t>& shape, const char* what, bool written) {
+  const std::string expected = TextOf(shape, ((written ? "contiguous, writeable " : "contiguous ") +
+                                              py::str(py::object(kind)).cast<std::string>())
+                                                 .c_str());
+  if (!py::isinstance<py::array>(given)) {
+    throw py::value_error(fmt::format("{}: no array; expected {}", what, expected));
   }
-  const py::array a = py::reinterpret_borrow<py::array>(out);
+  const py::array a = py::reinterpret_borrow<py::array>(given);
   const std::vector<py::ssize_t> has(a.shape(), a.shape() + a.ndim());
-  if (!py::isinstance<py::array_t<double>>(out) || has != shape || !a.writeable() ||
-      !(a.flags() & py::array::c_style)) {
-    throw py::value_error(fmt::format("out: {}{}; expected {}", TextOf(a),
-                                      a.writeable() ? "" : ", not writeable", expected));
+  const bool frozen = written && !a.writeable();
+  if (!a.dtype().equal(kind) || has != shape || frozen || !(a.flags() & py::array::c_style)) {
+    throw py::value_error(fmt::format("{}: {}{}; expected {}", what, TextOf(a),
+                                      frozen ? ", not writeable" : "", expected));
   }
-  return py::reinterpret_borrow<py::array_t<double>>(out);
 }
 
 }  // namespace taut::python

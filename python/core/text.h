@@ -50,8 +50,34 @@ std::string ShapeText(const std::vector<py::ssize_t>& shape);
 /// what the caller calls it.
 Array Shaped(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what);
 
-/// `out` if it is given, and float64, contiguous, writeable and of this shape, else ValueError; a
-/// new array if it is None.
-py::array_t<double> Output(const py::object& out, const std::vector<py::ssize_t>& shape);
+/// ValueError, which names what is there and what is expected, unless `given` is an array of
+/// exactly this kind and shape, contiguous, and writeable if it is to be `written`. `what` is what
+/// the caller calls it.
+void CheckArray(const py::object& given, const py::dtype& kind,
+                const std::vector<py::ssize_t>& shape, const char* what, bool written);
+
+template <class T>
+using Rows = py::array_t<T, py::array::c_style>;
+
+/// `given` as it is, if it is as `CheckArray` asks.
+template <class T>
+Rows<T> Exactly(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what,
+                bool written) {
+  CheckArray(given, py::dtype::of<T>(), shape, what, written);
+  return py::reinterpret_borrow<Rows<T>>(given);
+}
+
+/// `out`, exactly a float64 array of this shape that can be written; a new one if it is None.
+inline Rows<double> Output(const py::object& out, const std::vector<py::ssize_t>& shape) {
+  return out.is_none() ? Rows<double>(shape) : Exactly<double>(out, shape, "out", true);
+}
+
+/// Of things that have names, in their order.
+template <class List>
+std::vector<std::string> NamesOf(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& one : list) names.push_back(one.name);
+  return names;
+}
 
 }  // namespace taut::python

@@ -1,6 +1,7 @@
 #include "taut/env.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <string>
@@ -175,11 +176,7 @@ class LaneEnv final : public Env {
     for (std::size_t w = 0; w < count; ++w) {
       if (begun_[w] != 0) EmitRow(w, observations.data());
     }
-    CallObserve(begun_, observations);
-    for (std::size_t w = 0; plan_->options.observe && w < count; ++w) {
-      if (begun_[w] == 0) continue;
-      for (T& x : observations.subspan(w * width(), width())) x = std::isfinite(x) ? x : 0;
-    }
+    ObserveBegun(observations);
     return good;
   }
 
@@ -222,12 +219,7 @@ class LaneEnv final : public Env {
       plan_->options.judge(view);
     }
     pool_.ForEach(groups_.size(), finish);
-    if (!same_step || !any_begun) return;
-    CallObserve(begun_, out.observations);
-    for (std::size_t w = 0; w < count; ++w) {
-      if (begun_[w] == 0) continue;
-      for (T& x : out.observations.subspan(w * width(), width())) x = std::isfinite(x) ? x : 0;
-    }
+    if (same_step && any_begun) ObserveBegun(out.observations);
   }
 
   void CheckWidth(const char* function, const char* what, std::size_t given,
@@ -269,6 +261,17 @@ class LaneEnv final : public Env {
   template <class T>
   void CallObserve(std::span<const std::uint8_t> rows, std::span<T> observations) const {
     if (plan_->options.observe) plan_->options.observe(ViewOf(rows, observations));
+  }
+
+  /// Of episodes that have begun, after which nobody looks at what the caller made of them.
+  template <class T>
+  void ObserveBegun(std::span<T> observations) const {
+    if (!plan_->options.observe) return;
+    CallObserve(begun_, observations);
+    for (std::size_t w = 0; w < begun_.size(); ++w) {
+      if (begun_[w] == 0) continue;
+      for (T& x : observations.subspan(w * width(), width())) x = std::isfinite(x) ? x : 0;
+    }
   }
 
   std::unique_ptr<const Plan> plan_;
