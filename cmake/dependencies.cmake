@@ -27,13 +27,13 @@ if(TAUT_BUILD_APPS)
   find_package(CLI11 REQUIRED)
 endif()
 find_package(Boost 1.74 REQUIRED)
+# Debian's python3 comes first: it is the one that script/setup gives modules to.
+find_program(TAUT_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_program(TAUT_PYTHON python3)
 # The Python module, where pybind11 is.
 option(TAUT_BUILD_PYTHON "Build the Python module, if pybind11 is installed" ${PROJECT_IS_TOP_LEVEL})
 if(TAUT_BUILD_PYTHON)
   if(NOT Python_EXECUTABLE)
-    # Debian's python3 comes first: it is the one that script/setup gives modules to.
-    find_program(TAUT_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
-    find_program(TAUT_PYTHON python3)
     set(Python_EXECUTABLE ${TAUT_PYTHON})
   endif()
   find_package(Python COMPONENTS Interpreter Development.Module QUIET)

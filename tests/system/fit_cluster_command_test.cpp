@@ -1,20 +1,10 @@
 // `taut fit` in several processes: the same bits, whatever their number.
 #include "tests/system/ranks.h"
+#include "tests/unit/hanging_model.h"
 
 namespace taut::test {
 namespace {
 
-const std::string kModel = R"(taut: 1
-kind: model
-name: hanging
-parameters: {k_n_per_m: 100, mass_kg: 0.5}
-nodes: {top: [0, 0, 1], ball: [0, 0, 0]}
-pairs: [{name: c, nodes: [top, ball], tags: [cable]}]
-builders:
-  - {match: top, anchor: {}}
-  - {match: ball, point_mass: {mass_kg: mass_kg, radius_m: 0.01}}
-  - {match: cable, cable: {stiffness_n_per_m: k_n_per_m, damping_n_s_per_m: 8, rest_length_m: 0.9}}
-)";
 /// Runs, rests and references at once; the clock is late, so that the same run counts differently.
 const std::string kExperiment = R"(taut: 1
 kind: experiment
