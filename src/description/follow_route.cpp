@@ -88,7 +88,8 @@ class RouteFollower {
         complain_(element.at,
                   "the node \"" + name + "\" is inside the " + what + " of the cable \"" +
                       pair_.name + "\"",
-                  "it is " + Shown(std::round(1e6 * beside) / 1e6) + " m from the axis; a smaller radius_m is needed");
+                  "it is " + Shown(std::round(1e6 * beside) / 1e6) +
+                      " m from the axis; a smaller radius_m is needed");
       }
       good = false;
     }
@@ -112,7 +113,7 @@ class RouteFollower {
               "the axis of the pulley of the cable \"" + pair_.name +
                   "\" is along the way from \"" + assembly_.nodes[pair_.nodes[i - 1]].name +
                   "\" to \"" + assembly_.nodes[pair_.nodes[i + 1]].name +
-                  "\": it is on neither side of it",
+                  "\", so that the wheel is on neither side",
               "an axis across the cable is needed, or whole `turns`");
     return false;
   }

@@ -100,9 +100,10 @@ TEST(Route, WhatCannotBeIsSaidWithItsLine) {
   EXPECT_EQ(
       error("[a, {eyelet: w, friction: 0.1, radius_m: 0.1}, b]"),
       "robot.yaml:7:56: error: pairs.route.radius_m is of pulleys and drums, not of eyelets\n");
-  EXPECT_EQ(error("[{eyelet: a, friction: 0.1}, w, b]"),
-            "robot.yaml:7:26: error: pairs.route: friction at an end, where the cable is fixed (leave "
-            "`friction` away there)\n");
+  EXPECT_EQ(
+      error("[{eyelet: a, friction: 0.1}, w, b]"),
+      "robot.yaml:7:26: error: pairs.route: friction at an end, where the cable is fixed (leave "
+      "`friction` away there)\n");
   EXPECT_EQ(
       error("[a, {pulley: w}, b]"),
       "robot.yaml:7:29: error: a pulley needs pairs.route.axis\nrobot.yaml:7:29: error: a pulley "
@@ -131,9 +132,10 @@ TEST(Route, WhatCannotBeIsSaidWithItsLine) {
   EXPECT_EQ(error("[a, 3, b]"),
             "robot.yaml:7:29: error: there is no node \"3\" (did you mean \"a\"?)\n");
   EXPECT_EQ(error("a"), "robot.yaml:7:25: error: pairs.route must be a list, got a text\n");
-  EXPECT_EQ(error("[a, {pulley: w, axis: [0, 1, 0], radius_m: 0.45, side: left}, b]"),
-            "robot.yaml:7:29: error: the node \"b\" is inside the pulley of the cable \"rope\" (it is "
-            "0.412311 m from the axis; a smaller radius_m is needed)\n");
+  EXPECT_EQ(
+      error("[a, {pulley: w, axis: [0, 1, 0], radius_m: 0.45, side: left}, b]"),
+      "robot.yaml:7:29: error: the node \"b\" is inside the pulley of the cable \"rope\" (it is "
+      "0.412311 m from the axis; a smaller radius_m is needed)\n");
   EXPECT_EQ(error("[a, {pulley: w, axis: [5, 0, 1], radius_m: 0.1, side: left}, b]"),
             "robot.yaml:7:29: error: the node \"a\" is on the axis of the pulley of the cable "
             "\"rope\" (an axis across the cable is needed)\n");
@@ -152,10 +154,11 @@ TEST(Route, AnAxisAlongTheWayHasNoSide) {
   const auto pulley = [](const std::string& axis, const std::string& more = "") {
     return Posts("[a, {pulley: w, axis: " + axis + ", radius_m: 0.1, side: left" + more + "}, b]");
   };
-  EXPECT_EQ(Errors(pulley("[-4, 0, 3]")),
-            "robot.yaml:7:29: error: the axis of the pulley of the cable \"rope\" is along the way "
-            "from \"a\" to \"b\": it is on neither side of it (an axis across the cable is needed, "
-            "or whole `turns`)\n");
+  EXPECT_EQ(
+      Errors(pulley("[-4, 0, 3]")),
+      "robot.yaml:7:29: error: the axis of the pulley of the cable \"rope\" is along the way "
+      "from \"a\" to \"b\", so that the wheel is on neither side (an axis across the cable is "
+      "needed, or whole `turns`)\n");
   Good(pulley("[-4, 0.001, 3]"));
   const CableDef wound = Good(pulley("[-4, 0, 3]", ", turns: 1")).def.cables[0];
   // Both ends are 0.38 m from the axis, and 0.5 m apart along it.
