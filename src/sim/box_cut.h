@@ -46,7 +46,7 @@ TAUT_INLINE BoxCut<V> CutBox(const BoxShape& box, const V& from, const V& to, do
   const V start = from - center, way = to - from;
   BoxCut<V> cut;
   cut.from = zero, cut.to = one, cut.in = cut.out = C::Of(-1.0);
-  M hits = !(zero < zero);
+  M hits = zero < one;
   for (int i = 0; i < 3; ++i) {
     const double* const a = box.axes + 3 * i;
     const V axis{C::Of(a[0]), C::Of(a[1]), C::Of(a[2])};
