@@ -57,10 +57,23 @@ class CableMaker {
                 "\" touches what it comes to, and runs over more than two " + "nodes",
             "cables that touch run from node to node; leave `touches` away or cut it in two");
     }
+    CheckMotor(pair, cable);
     if (CheckPath(pair, builder, cable)) SetRestLength(pair, builder, cable);
     robot_.def.cables.push_back(std::move(cable));
     robot_.cable_tags.push_back(pair.tags);
     robot_.cable_sources.push_back(pair.at);
+  }
+
+  /// Spans with tensions of their own are wound at an end by what has no dynamics of its own.
+  void CheckMotor(const PlacedPair& pair, const CableDef& cable) {
+    if (cable.actuator.kind != ActuatorDef::Kind::kDcMotor) return;
+    for (const RouteText& element : pair.route) {
+      if (element.friction == 0) continue;
+      once_(element.at,
+            "the cable \"" + pair.name +
+                "\" has friction there: a direct-current motor does not wind such a cable",
+            "ideal and limited actuators do");
+    }
   }
 
   /// A cable that rods stop does not begin inside of one of another body.
@@ -68,7 +81,7 @@ class CableMaker {
     for (const CapsuleDef& rod : robot_.def.capsules) {
       const Vec3 along = rod.to_m - rod.from_m;
       for (const AttachmentDef& at : cable.attachments) {
-        if (!rod.collides || at.body == rod.body || at.body == kWorld) continue;
+        if (!rod.collides || at.body == rod.body) continue;
         const double share = Dot(at.position_m - rod.from_m, along) / Dot(along, along);
         const Vec3 off = at.position_m - rod.from_m - std::clamp(share, 0.0, 1.0) * along;
         const double inside_m = rod.radius_m - std::sqrt(Dot(off, off));

@@ -2,11 +2,14 @@
 
 #include <cmath>
 
+#include "description/reader.h"
 #include "math/described_path.h"
 #include "math/elementary.h"
 
 namespace taut::description {
 namespace {
+
+constexpr double kSameDirection = 1e-6;  ///< Across by that share: it is what a text can say.
 
 double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 
@@ -82,12 +85,37 @@ class RouteFollower {
                       pair_.name + "\"",
                   "an axis across the cable is needed");
       } else {
-        complain_(element.at, "the node \"" + name + "\" is inside the " + what +
-                                  " of the cable \"" + pair_.name + "\"");
+        complain_(element.at,
+                  "the node \"" + name + "\" is inside the " + what + " of the cable \"" +
+                      pair_.name + "\"",
+                  "it is " + Shown(std::round(1e6 * beside) / 1e6) +
+                      " m from the axis; a smaller radius_m is needed");
       }
       good = false;
     }
-    return good;
+    return good && HasASide(i);
+  }
+
+  /// Whether `left` and `right` mean something: seen along the axis, the cable comes from somewhere
+  /// and goes somewhere else. Where it is wound round by whole turns, these say enough.
+  bool HasASide(std::size_t i) {
+    const RouteText& element = pair_.route[i];
+    if (i == 0 || i + 1 == pair_.route.size() || element.turns > 0) return true;
+    for (const std::size_t k : {i - 1, i + 1}) {
+      // Where it leaves another wheel is not known yet.
+      if (pair_.route[k].is_pulley() || pair_.route[k].is_drum()) return true;
+    }
+    const Vec3 from = cable_.attachments[i - 1].position_m;
+    const Vec3 to = cable_.attachments[i + 1].position_m;
+    const double across = Length(Cross(cable_.attachments[i].wheel->axis, to - from));
+    if (!(across < kSameDirection * Length(to - from))) return true;
+    complain_(element.at,
+              "the axis of the pulley of the cable \"" + pair_.name +
+                  "\" is along the way from \"" + assembly_.nodes[pair_.nodes[i - 1]].name +
+                  "\" to \"" + assembly_.nodes[pair_.nodes[i + 1]].name +
+                  "\", so that the wheel is on neither side",
+              "an axis across the cable is needed, or whole `turns`");
+    return false;
   }
 
   /// `end`: where among the attachments the one on the rim goes.

@@ -86,8 +86,9 @@ void CheckRoute(const MapReader& map, const PairsText& pairs) {
   if (value == nullptr || value->kind != Value::Kind::kSequence) return;
   const std::string what = map.Path("route");
   const std::vector<RouteText>& route = pairs.route;
-  if (route.size() < 2) {
-    map.Error("route", what + " must name 2 or more nodes, got " + std::to_string(route.size()));
+  if (value->items.size() < 2) {
+    map.Error("route",
+              what + " must name 2 or more nodes, got " + std::to_string(value->items.size()));
   }
   for (std::size_t i = 0; i < route.size(); ++i) {
     const bool end = i == 0 || i + 1 == route.size();
@@ -95,7 +96,8 @@ void CheckRoute(const MapReader& map, const PairsText& pairs) {
       scope.out.Error(route[i].at, what + " ends at a pulley",
                       "a cable ends at a node or on a drum");
     } else if (end && !route[i].is_drum() && route[i].friction > 0) {
-      scope.out.Error(route[i].at, what + ": friction at an end, where the cable is fixed");
+      scope.out.Error(route[i].at, what + ": friction at an end, where the cable is fixed",
+                      "leave `friction` away there");
     } else if (!end && route[i].is_drum()) {
       scope.out.Error(route[i].at, what + " has a drum on the way",
                       "a cable ends on a drum; what it runs over is a `pulley`");

@@ -16,6 +16,20 @@ TAUT_INLINE int BodyOfBend(const View& m, const BendNumbers<W>& bend, int lane) 
   return bend.key[lane] == kNoKey ? m.body_count : static_cast<int>(bend.body[lane]);
 }
 
+/// `use(body, lanes)`: the bodies on whose rods a bend is, each with the lanes in which it is
+/// there.
+template <class W, class Use>
+TAUT_INLINE void EachBody(const View& m, const BendNumbers<W>& bend, const Use& use) noexcept {
+  auto left = !((bend.key == W::Splat(kNoKey)) | (bend.body == W::Splat(m.body_count)));
+  for (int lane = 0; lane < W::kLanes && Any(left); ++lane) {
+    if (!left[lane]) continue;
+    const double body = bend.body[lane];
+    const auto lanes = left & (bend.body == W::Splat(body));
+    use(static_cast<int>(body), lanes);
+    left = left & !lanes;
+  }
+}
+
 /// How many places of a cable's room for bends are in use, in some lane.
 template <class W>
 TAUT_INLINE int BendsInUse(const Rows<W>& s, const TouchTable& touch) noexcept {
@@ -44,13 +58,12 @@ void LayOverBends(const View& m, const Rows<W>& s, const TouchTable& touch, int 
     wheel.before = Select(none, zero, bend.angle);
     wheel.at = 1 + 2 * k;
     if (touch.rod_count == 0) continue;
-    for (int lane = 0; lane < W::kLanes; ++lane) {
-      const int body = BodyOfBend(m, bend, lane);
-      if (body == m.body_count) continue;
-      const Spot<W> at = pose(body, wheel.center, wheel.axis);
-      SetPlace(wheel.center, PlaceOf(at.p, lane), lane);
-      SetPlace(wheel.axis, PlaceOf(at.arm, lane), lane);
-    }
+    const V3<W> center = wheel.center, axis = wheel.axis;
+    EachBody(m, bend, [&](int body, auto lanes) {
+      const Spot<W> at = pose(body, center, axis);
+      wheel.center = Pick(lanes, at.p, wheel.center);
+      wheel.axis = Pick(lanes, at.arm, wheel.axis);
+    });
   }
   LayOnWheels(ends, used, wheels,
               touch.friction > 0 ? &s.slip_along[FirstSlip(m, touch)] : nullptr);
@@ -198,7 +211,10 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
         FindEdge(m, span, touch.radius_m, taken, bends.count(), place >= 0, &deepest)) {
       take();
     }
-    if (FindRod(m, s, work, touch, span, lane, taken, bends.count(), place >= 0, &deepest)) take();
+    if (touch.rod_count > 0 &&
+        FindRod(m, s, work, touch, span, lane, taken, bends.count(), place >= 0, &deepest)) {
+      take();
+    }
     if (end) break;
     span.from = PlaceOf(ends[2 + 2 * k].p, lane);
     span.starts = false;
@@ -225,14 +241,12 @@ void MoveWithRods(const View& m, const Rows<W>& s, const Scratch<W>& work, const
                   int used, AttachmentWork<W>* ends) noexcept {
   for (int i = 1; i <= 2 * used; ++i) {
     const BendNumbers<W>& bend = s.bend[touch.first_bend + (i - 1) / 2];
-    for (int lane = 0; lane < W::kLanes; ++lane) {
-      const int body = BodyOfBend(m, bend, lane);
-      if (body == m.body_count) continue;
+    EachBody(m, bend, [&](int body, auto lanes) {
       const BodyWork<W>& b = work.bodies[body];
-      const Vec3 arm = PlaceOf(ends[i].p, lane) - PlaceOf(s.pos[body], lane);
-      SetPlace(ends[i].arm, arm, lane);
-      SetPlace(ends[i].v, PlaceOf(b.v_mid, lane) + Cross(PlaceOf(b.w_mid, lane), arm), lane);
-    }
+      const V3<W> arm = ends[i].p - s.pos[body];
+      ends[i].arm = Pick(lanes, arm, ends[i].arm);
+      ends[i].v = Pick(lanes, b.v_mid + Cross(b.w_mid, arm), ends[i].v);
+    });
   }
 }
 
@@ -285,6 +299,7 @@ template <class W>
   for (int round = 0; round < kMostRounds && Any(busy); ++round) {
     ends[2 * used + 1] = end;
     LayOverBends(m, s, touch, used, ends, work.wheels, PoseNow(s, work));
+    busy = busy & MayChangeBends(m, s, work, touch, used);
     for (int lane = 0; lane < W::kLanes; ++lane) {
       if (busy[lane]) busy.Set(lane, ChangeBends(m, s, work, touch, used, lane));
     }
@@ -296,17 +311,19 @@ template <class W>
     const auto live = !(bend.key == W::Splat(kNoKey));
     bend.angle = Select(live, work.wheels[k].angle, bend.angle);
   }
-  for (int lane = 0; lane < W::kLanes; ++lane) {
-    if (!look[lane]) continue;
-    if (touch.rod_count > 0) KeepSides(m, s, work, touch, used, lane);
-    if (!touch.terrain) continue;
+  KeepSides(m, s, work, touch, used, look);
+  if (touch.terrain) {
     // Of one that is free, how far it may go before it is looked at again.
-    const FreeSpan span{PlaceOf(first, lane), PlaceOf(last, lane), true, true};
-    const bool bent = s.bend[touch.first_bend].key[lane] != kNoKey;
-    s.touch_free[cable.touch].Set(lane,
-                                  bent ? 0.0 : FreeDistance(m, span, touch.radius_m, kEnoughM));
-    SetPlace(s.touch_from[cable.touch], span.from, lane);
-    SetPlace(s.touch_to[cable.touch], span.to, lane);
+    const auto bent = !(s.bend[touch.first_bend].key == W::Splat(kNoKey));
+    W& far = s.touch_free[cable.touch];
+    far = Select(look & bent, W::Splat(0.0), far);
+    s.touch_from[cable.touch] = Pick(look, first, s.touch_from[cable.touch]);
+    s.touch_to[cable.touch] = Pick(look, last, s.touch_to[cable.touch]);
+    for (int lane = 0; lane < W::kLanes; ++lane) {
+      if (!look[lane] || bent[lane]) continue;
+      const FreeSpan span{PlaceOf(first, lane), PlaceOf(last, lane), true, true};
+      far.Set(lane, FreeDistance(m, span, touch.radius_m, kEnoughM));
+    }
   }
   if (!Any(busy)) return MeasureLaid(m, s, touch, used, work, ends).l;
   ends[1] = end;
@@ -324,9 +341,7 @@ template <class W>
   for (int i = 1; i <= 2 * used; ++i) {
     const BendNumbers<W>& bend = s.bend[touch.first_bend + (i - 1) / 2];
     const V3<W> pull = PullAt(2 * used + 2, ends, i), turn = Cross(ends[i].arm, pull);
-    for (int lane = 0; lane < W::kLanes; ++lane) {
-      const int body = BodyOfBend(m, bend, lane);
-      if (body == m.body_count) continue;
+    EachBody(m, bend, [&](int body, auto lanes) {
       int k = 0;
       while (k < own && row.links[k].body != body) ++k;
       if (k == own) {
@@ -341,9 +356,9 @@ template <class W>
         }
       }
       Link<W, 1>& link = row.links[k];
-      SetPlace(link.lin[0], PlaceOf(link.lin[0], lane) + PlaceOf(pull, lane), lane);
-      SetPlace(link.ang[0], PlaceOf(link.ang[0], lane) + PlaceOf(turn, lane), lane);
-    }
+      link.lin[0] = Pick(lanes, link.lin[0] + pull, link.lin[0]);
+      link.ang[0] = Pick(lanes, link.ang[0] + turn, link.ang[0]);
+    });
   }
 }
 

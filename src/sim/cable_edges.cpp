@@ -1,5 +1,6 @@
 #include "sim/cable_edges.h"
 
+#include "sim/box_cut.h"
 #include "sim/surface_near.h"
 
 namespace taut::sim {
@@ -28,10 +29,11 @@ class Search {
         any_(any) {}
 
   bool found() const noexcept { return is_new_; }
+  bool IsTaken(double key) const noexcept { return sim::IsTaken(key, taken_, taken_count_); }
 
+  /// One that is not taken.
   void Offer(TerrainEdge& edge, double depth_m) noexcept {
     BendPlace& place = edge.place;
-    if (IsTaken(place.key, taken_, taken_count_)) return;
     place.radius_m = radius_m_;
     const Vec3 way = span_.to - span_.from;
     const double side = Dot(way, Cross(place.axis, edge.out)) < 0.0 ? -1.0 : 1.0;
@@ -55,84 +57,46 @@ class Search {
   bool any_, is_new_ = false;
 };
 
-/// A box and a span in its frame. Faces: 2 i for that against axis i, 2 i + 1 for that along it.
+/// A box, and where the span cuts it.
 class BoxSearch {
  public:
   BoxSearch(const BoxShape& box, double first_key, Search& search) noexcept
-      : box_(box), first_key_(first_key), search_(search) {
-    const Vec3 center = Load(box.center);
-    for (int i = 0; i < 3; ++i) {
-      const Vec3 axis = Load(box.axes + 3 * i);
-      p_[i] = Dot(axis, search.span().from - center);
-      d_[i] = Dot(axis, search.span().to - search.span().from);
-      h_[i] = box.half_m[i] + search.radius_m();
-    }
-  }
+      : box_(box), first_key_(first_key), search_(search) {}
 
   void Run() noexcept {
-    if (!Cut()) return;
-    if (in_ / 2 != out_ / 2) {
-      Offer(in_, out_, CornerDepth());
+    const FreeSpan& span = search_.span();
+    bool through;
+    cut_ = CutBox(box_, span.from, span.to, search_.radius_m(), span.starts, span.ends, &through);
+    if (!through) return;
+    const int in = static_cast<int>(cut_.in), out = static_cast<int>(cut_.out);
+    if (in / 2 != out / 2) {
+      Offer(in, out, CornerDepth(in, out));
       return;
     }
     // Through opposite faces: over that of the other four to which it is nearest.
     int over = -1;
     double least = 0.0;
     for (int face = 0; face < 6; ++face) {
-      if (face / 2 == in_ / 2) continue;
-      const double depth = Larger(Below(face, from_), Below(face, to_));
+      if (face / 2 == in / 2) continue;
+      const double depth = Larger(cut_.Below(face, cut_.from), cut_.Below(face, cut_.to));
       if (over < 0 || depth < least) over = face, least = depth;
     }
-    Offer(in_, over, Below(over, from_));
-    Offer(over, out_, Below(over, to_));
+    Offer(in, over, cut_.Below(over, cut_.from));
+    Offer(over, out, cut_.Below(over, cut_.to));
   }
 
  private:
-  double At(int axis, double share) const noexcept { return p_[axis] + share * d_[axis]; }
-  double Below(int face, double share) const noexcept {
-    const double x = At(face / 2, share);
-    return h_[face / 2] - (face % 2 == 1 ? x : -x);
-  }
-  int NearestFace(double share) const noexcept {
-    int nearest = 0;
-    for (int face = 1; face < 6; ++face) {
-      if (Below(face, share) < Below(nearest, share)) nearest = face;
-    }
-    return nearest;
-  }
-
-  /// Where it goes in and out; where a bend is inside, which is round, through the nearest face.
-  /// False if it passes by, or stays at one face.
-  bool Cut() noexcept {
-    from_ = 0.0, to_ = 1.0;
-    in_ = out_ = -1;
-    for (int i = 0; i < 3; ++i) {
-      if (d_[i] == 0.0) {
-        if (!(Abs(p_[i]) < h_[i])) return false;
-        continue;
-      }
-      const bool rises = d_[i] > 0.0;
-      const double enters = ((rises ? -h_[i] : h_[i]) - p_[i]) / d_[i];
-      const double leaves = ((rises ? h_[i] : -h_[i]) - p_[i]) / d_[i];
-      if (enters > from_) from_ = enters, in_ = 2 * i + (rises ? 0 : 1);
-      if (leaves < to_) to_ = leaves, out_ = 2 * i + (rises ? 1 : 0);
-      if (!(from_ < to_)) return false;
-    }
-    if ((in_ < 0 && search_.span().starts) || (out_ < 0 && search_.span().ends)) return false;
-    if (in_ < 0) in_ = NearestFace(from_);
-    if (out_ < 0) out_ = NearestFace(to_);
-    return in_ != out_;
-  }
-
   /// Of the edge between the two faces, below which the span cuts off a corner.
-  double CornerDepth() const noexcept {
-    const double a = Below(out_, from_), b = Below(in_, to_);
+  double CornerDepth(int in, int out) const noexcept {
+    const double a = cut_.Below(out, cut_.from), b = cut_.Below(in, cut_.to);
     return a * b / Larger(Sqrt(a * a + b * b), 1e-300);
   }
 
   /// The edge between two faces.
   void Offer(int f, int g, double depth_m) noexcept {
     if (f > g) return Offer(g, f, depth_m);
+    const double key = first_key_ + NumberOfEdge<double>(f, g);
+    if (search_.IsTaken(key)) return;
     const int along = 3 - f / 2 - g / 2;
     Vec3 center = Load(box_.center), out{0.0, 0.0, 0.0};
     for (const int face : {f, g}) {
@@ -140,8 +104,8 @@ class BoxSearch {
       center = center + box_.half_m[face / 2] * normal;
       out = out + 0.70710678118654752 * normal;
     }
-    TerrainEdge edge{{first_key_ + (6 * f + g), search_.world(), center, AxisOf(box_, along),
-                      1.5 * kPi, box_.half_m[along] - kCornerRadii * search_.radius_m(), 0.0},
+    TerrainEdge edge{{key, search_.world(), center, AxisOf(box_, along), 1.5 * kPi,
+                      box_.half_m[along] - kCornerRadii * search_.radius_m(), 0.0},
                      out};
     search_.Offer(edge, depth_m);
   }
@@ -149,16 +113,14 @@ class BoxSearch {
   const BoxShape& box_;
   double first_key_;
   Search& search_;
-  double p_[3], d_[3], h_[3];
-  double from_ = 0.0, to_ = 1.0;  ///< Shares of the span.
-  int in_ = -1, out_ = -1;
+  BoxCut<Vec3> cut_;
 };
 
 Vec3 Unit(const Vec3& a) noexcept { return (1.0 / Larger(Norm(a), 1e-300)) * a; }
 
 /// Of a surface, which edge and how deep the span is below it.
 void OfferEdge(const SurfaceEdge& edge, double key, double reach_m, Search& search) noexcept {
-  if (edge.sides != 2) return;
+  if (edge.sides != 2 || search.IsTaken(key)) return;
   const Vec3 along = edge.to - edge.from;
   const double length_m = Norm(along);
   const Vec3 axis = Unit(along), center = 0.5 * (edge.from + edge.to);

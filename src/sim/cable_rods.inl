@@ -118,30 +118,4 @@ bool FindRod(const View& m, const Rows<W>& s, const Scratch<W>& work, const Touc
   return is_new;
 }
 
-/// On which side of all rods a lane's cable is, as its path lies now.
-template <class W>
-void KeepSides(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
-               int used, int lane) noexcept {
-  for (int i = touch.first_rod; i < touch.first_rod + touch.rod_count; ++i) {
-    const TouchRodTable& rod = m.touch_rods[i];
-    const auto [center, axis] = RodAt(s, work, rod, lane);
-    double side = 0.0;
-    Vec3 from = PlaceOf(work.attachments[0].p, lane);
-    for (int k = 0; k <= used; ++k) {
-      const bool end = k == used;
-      if (!end && s.bend[touch.first_bend + k].key[lane] == KeyOf(rod)) {
-        side = s.bend[touch.first_bend + k].angle[lane] < 0.0 ? 1.0 : -1.0;
-        break;
-      }
-      if (!end && !(work.wheels[k].theta[lane] > 0.0)) continue;
-      const Vec3 to = PlaceOf(work.attachments[end ? 2 * used + 1 : 1 + 2 * k].p, lane);
-      const Crossing<Vec3> x = CrossingOf(from, to, center, axis);
-      const double now = SideOf(x, rod.half_m);
-      if (now != 0.0) side = now;
-      if (!end) from = PlaceOf(work.attachments[2 + 2 * k].p, lane);
-    }
-    s.touch_side[i].Set(lane, side);
-  }
-}
-
 }  // namespace taut::sim

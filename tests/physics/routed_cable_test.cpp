@@ -62,6 +62,25 @@ TEST(RoutedCable, AMassOnACableHangsWhereTheAnglesAreEqualBetweenEyeletsOfDiffer
   HangsStill(0.6, -0.7);
 }
 
+/// 1.0 m of cable, supports 0.8 m apart: 3-4-5 triangles, whatever their heights.
+TEST(RoutedCable, AHeavyRingHangsOnOneMetreOfCable) {
+  const double k = 1e6, tension = 9.81 / (2 * 0.6);
+  EXPECT_NEAR(tension, 8.175, 1e-12);
+  for (const double rise : {0.0, 0.2}) {
+    const double left = (1.0 - rise / 0.6) / 2;  // 1/2, or 1/3
+    const Vec3 p{0.8 * left, 0, -0.6 * left};
+    ModelDef def;
+    def.bodies.push_back(PointMass("ring", 1.0, p));
+    def.cables.push_back(
+        Cable({{kWorld, {0, 0, 0}}, {0, p}, {kWorld, {0.8, 0, rise}}}, k, 1.0 - tension / k));
+    Batch world = MakeBatch(def);
+    world.Step(1e-3, 2000);
+    EXPECT_NEAR(world.Cable(0, 0).tension_n, 8.175, 1e-6) << rise;
+    EXPECT_NEAR(Norm(world.Body(0, 0).position_m), left, 1e-9) << rise;
+    EXPECT_NEAR(Distance(world.Body(0, 0).position_m, {0.8, 0, rise}), 1.0 - left, 1e-9) << rise;
+  }
+}
+
 TEST(RoutedCable, AMassOnACableThroughTwoFixedEyeletsIsTheLeapfrogsOscillator) {
   // The mass hangs vertically; what the cable does before the last eyelet only adds to its length.
   const double m = 0.5, k = 400, rest = 2.0, h = 1e-3, a = 0.004;

@@ -69,7 +69,47 @@ inline ModelDef OverARod(const Vec3& from, const Vec3& to, double radius_m, doub
   return def;
 }
 
-/// NTRT's MuscleNP, where momentum falls to 0.86 of what it was.
+/// A massive rod, whose axis is a unit vector.
+inline BodyDef RodOf(double mass_kg, const Vec3& center, const Vec3& axis, double half_m,
+                     double radius_m) {
+  BodyDef body = Ball(mass_kg, center);
+  const double along = 0.5 * mass_kg * radius_m * radius_m;
+  const double across = 0.5 * along + mass_kg * half_m * half_m / 3, more = along - across;
+  const Vec3& u = axis;
+  body.inertia_kg_m2 = {across + more * u.x * u.x, across + more * u.y * u.y,
+                        across + more * u.z * u.z, more * u.x * u.y,
+                        more * u.x * u.z,          more * u.y * u.z};
+  return body;
+}
+
+/// NTRT's MuscleNP as it stands there, all turned by 45 degrees about y: a rod and a box fly with a
+/// cable of 8 m between them into a third rod. Its momentum falls to 0.86 of what it was there.
+inline ModelDef MuscleNp() {
+  const double share = std::sqrt(0.5), rod_kg = 0.3927, box_kg = 0.5, side_m = 0.5, long_m = 2;
+  const Vec3 across{share, 0, -share}, ahead{share, 0, share}, up{0, 1, 0};
+  ModelDef def;
+  def.gravity_m_per_s2 = {};
+  BodyDef box = Ball(box_kg, {0, 13, 0});
+  const double wide = box_kg * (side_m * side_m + long_m * long_m) / 12;
+  box.inertia_kg_m2 = {wide, box_kg * side_m * side_m / 6, wide, 0, 0, 0};
+  def.bodies = {RodOf(rod_kg, {0, 3, 0}, up, 1, 0.25), box,
+                RodOf(rod_kg, 5.0 * ahead + 8.0 * up, across, 1, 0.25)};
+  const double push_n_s = std::sqrt(0.32);  // 0.4 along x and along z
+  def.bodies[0].velocity_m_per_s = (push_n_s / rod_kg) * ahead;
+  def.bodies[1].velocity_m_per_s = (push_n_s / box_kg) * ahead;
+  CapsuleDef rod;
+  rod.name = "rod";
+  rod.body = 2;
+  rod.from_m = def.bodies[2].com_m - across;
+  rod.to_m = def.bodies[2].com_m + across;
+  rod.radius_m = 0.25;
+  def.capsules = {rod};
+  def.cables = {Cable({0, {0, 4, 0}}, {1, {0, 12, 0}}, 1000, 8, 0.001)};
+  def.cables[0].touches = CableTouches::kRods;
+  return def;
+}
+
+/// Likewise, askew.
 inline ModelDef Flight() {
   ModelDef def;
   def.gravity_m_per_s2 = {};

@@ -100,8 +100,10 @@ TEST(Route, WhatCannotBeIsSaidWithItsLine) {
   EXPECT_EQ(
       error("[a, {eyelet: w, friction: 0.1, radius_m: 0.1}, b]"),
       "robot.yaml:7:56: error: pairs.route.radius_m is of pulleys and drums, not of eyelets\n");
-  EXPECT_EQ(error("[{eyelet: a, friction: 0.1}, w, b]"),
-            "robot.yaml:7:26: error: pairs.route: friction at an end, where the cable is fixed\n");
+  EXPECT_EQ(
+      error("[{eyelet: a, friction: 0.1}, w, b]"),
+      "robot.yaml:7:26: error: pairs.route: friction at an end, where the cable is fixed (leave "
+      "`friction` away there)\n");
   EXPECT_EQ(
       error("[a, {pulley: w}, b]"),
       "robot.yaml:7:29: error: a pulley needs pairs.route.axis\nrobot.yaml:7:29: error: a pulley "
@@ -130,8 +132,10 @@ TEST(Route, WhatCannotBeIsSaidWithItsLine) {
   EXPECT_EQ(error("[a, 3, b]"),
             "robot.yaml:7:29: error: there is no node \"3\" (did you mean \"a\"?)\n");
   EXPECT_EQ(error("a"), "robot.yaml:7:25: error: pairs.route must be a list, got a text\n");
-  EXPECT_EQ(error("[a, {pulley: w, axis: [0, 1, 0], radius_m: 0.45, side: left}, b]"),
-            "robot.yaml:7:29: error: the node \"b\" is inside the pulley of the cable \"rope\"\n");
+  EXPECT_EQ(
+      error("[a, {pulley: w, axis: [0, 1, 0], radius_m: 0.45, side: left}, b]"),
+      "robot.yaml:7:29: error: the node \"b\" is inside the pulley of the cable \"rope\" (it is "
+      "0.412311 m from the axis; a smaller radius_m is needed)\n");
   EXPECT_EQ(error("[a, {pulley: w, axis: [5, 0, 1], radius_m: 0.1, side: left}, b]"),
             "robot.yaml:7:29: error: the node \"a\" is on the axis of the pulley of the cable "
             "\"rope\" (an axis across the cable is needed)\n");
@@ -140,6 +144,38 @@ TEST(Route, WhatCannotBeIsSaidWithItsLine) {
             "direction)\nrobot.yaml:7:68: error: pairs.route.radius_m must be positive, got 0\n");
   EXPECT_EQ(error("[a, {eyelet: w, friction: -0.1}, b]"),
             "robot.yaml:7:51: error: pairs.route.friction must not be negative, got -0.1\n");
+  EXPECT_EQ(error("[a, w, b], nodes: [a, b]"),
+            "robot.yaml:7:18: error: pairs has both nodes and route (only one of them may be "
+            "there)\n");
+}
+
+/// From a to b is (0.4, 0, -0.3).
+TEST(Route, AnAxisAlongTheWayHasNoSide) {
+  const auto pulley = [](const std::string& axis, const std::string& more = "") {
+    return Posts("[a, {pulley: w, axis: " + axis + ", radius_m: 0.1, side: left" + more + "}, b]");
+  };
+  EXPECT_EQ(
+      Errors(pulley("[-4, 0, 3]")),
+      "robot.yaml:7:29: error: the axis of the pulley of the cable \"rope\" is along the way "
+      "from \"a\" to \"b\", so that the wheel is on neither side (an axis across the cable is "
+      "needed, or whole `turns`)\n");
+  Good(pulley("[-4, 0.001, 3]"));
+  const CableDef wound = Good(pulley("[-4, 0, 3]", ", turns: 1")).def.cables[0];
+  // Both ends are 0.38 m from the axis, and 0.5 m apart along it.
+  const double from_axis = 0.38, tangent = std::sqrt(from_axis * from_axis - 0.01);
+  const double across = 2 * tangent + 0.1 * (2 * kPi - 2 * std::acos(0.1 / from_axis));
+  EXPECT_NEAR(math::DescribedPath(wound).length_m(), std::hypot(across, 0.5), 1e-12);
+}
+
+TEST(Route, WithFrictionADirectCurrentMotorDoesNotWindIt) {
+  const std::string motor = "prestress_n: 1, actuator: {dc_motor: {}}";
+  for (const std::string& element :
+       {Pulley("side: left, friction: 0.3"), std::string("{eyelet: w, friction: 0.3}")}) {
+    EXPECT_EQ(Errors(Posts("[a, " + element + ", b]", motor)),
+              "robot.yaml:7:29: error: the cable \"rope\" has friction there: a direct-current "
+              "motor does not wind such a cable (ideal and limited actuators do)\n");
+  }
+  Good(Posts("[a, w, b]", motor));
 }
 
 }  // namespace

@@ -64,6 +64,11 @@ TEST(TouchingCable, WhatCannotBeIsSaidWithItsLine) {
       "robot.yaml:6:5: error: the cable \"rope\" touches what it comes to, and runs over more "
       "than two nodes (cables that touch run from node to node; leave `touches` away or cut it "
       "in two)\n");
+  std::string anchored = Rope(", touches: rods, radius_m: 0.001");
+  anchored.replace(anchored.find("a: [0, 0, 1]"), 12, "a: [0.5, 0, 1.195]");
+  EXPECT_EQ(Errors(anchored),
+            "robot.yaml:6:5: error: the cable \"rope\" touches rods and ends 5 mm inside the rod "
+            "\"rod\" of another body (move one of them)\n");
   std::string inside = Rope(", touches: rods, radius_m: 0.001");
   inside.replace(inside.find("b: [1, 0, 1]"), 12, "b: [0.5, 0, 1.195]");
   EXPECT_EQ(Errors(inside),
