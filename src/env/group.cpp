@@ -137,6 +137,7 @@ void Group::Advance(Place& place) {
     left -= loop_.Steps(judge_.measures() ? 1 : static_cast<int>(left));
     if (judge_.measures()) judge_.Measure();
   }
+  if (observer_.senses()) loop_.exact();
 }
 
 template <class T>

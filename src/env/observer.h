@@ -25,6 +25,9 @@ class Observer {
            const std::vector<ChannelInfo>& channels, plant::Loop& loop, const LaneBodies& bodies);
 
   void Next();  ///< A period is over: all lanes are to be seen anew.
+  /// Whether `Take` looks at cables as they are, which are then best read while the step's memory
+  /// is still near.
+  bool senses() const noexcept { return senses_; }
   /// Sees some of the first `count` lanes. What is not finite, as a place of a contact that is not
   /// there, is seen as 0.
   void Take(Lanes lanes, int count);
