@@ -73,15 +73,23 @@ ExperimentSpec Of(const std::string& name, const std::string& number, double by)
   return experiment;
 }
 
+/// Whose rest lengths are so far from what they were at the start.
+ExperimentSpec ByLength() {
+  ExperimentSpec experiment = LoadFrom("learn_spine", 0.4);
+  const std::vector<EnvironmentAction> actions = experiment.environment->actions;
+  experiment.environment = Environment();
+  experiment.environment->actions = actions;
+  return experiment;
+}
+
 /// Whose rest lengths go on from where they are.
 ExperimentSpec ByRate() {
-  ExperimentSpec experiment = LoadFrom("learn_spine", 0.4);
+  ExperimentSpec experiment = ByLength();
   std::vector<EnvironmentAction> actions = experiment.environment->actions;
   for (EnvironmentAction& action : actions) {
     action.rest_length_m.reset();
     action.rest_length_rate_m_per_s = 0.05;
   }
-  experiment.environment = Environment();
   experiment.environment->actions = actions;
   return experiment;
 }
@@ -102,6 +110,7 @@ std::vector<Named> All() {
   return {{"pushed", Pushed()},
           {"waving", Waving()},
           {"by rate", ByRate()},
+          {"by length", ByLength()},
           {"cpg", Of("cpg_learned", "impedance.cpg.frequency_hz", 1)},
           {"change", changing},
           {"blend", blended},
@@ -143,7 +152,7 @@ Trail Follow(Env& env, std::size_t world, int from, int steps) {
 
 TEST(EnvSnapshot, WhatIsRestoredGoesOnAsItWouldHave) {
   for (const Named& of : All()) {
-    for (const int before : {1, 7}) {
+    for (const int before : {1, 7, 20}) {  // that is where the episode is over
       const auto env = MakeEnv(of.experiment, {.worlds = 5, .threads = 2, .seed = 3});
       Follow(*env, 2, 0, before);
       const std::vector<std::uint8_t> saved = env->Save(2);
@@ -160,6 +169,19 @@ TEST(EnvSnapshot, WhatIsRestoredGoesOnAsItWouldHave) {
       ASSERT_TRUE(env->Restore(4, saved, out)) << of.name;
       EXPECT_EQ(Follow(*env, 4, before, 25), expected) << of.name << ", once more";
     }
+  }
+}
+
+TEST(EnvSnapshot, WithWhateverDelaysItHas) {
+  const ExperimentSpec experiment = Waving();
+  for (std::size_t world = 0; world < 8; ++world) {
+    const auto env = MakeEnv(experiment, {.worlds = 8, .seed = 20});
+    Follow(*env, world, 0, 5);
+    const std::vector<std::uint8_t> saved = env->Save(static_cast<int>(world));
+    const Trail expected = Follow(*env, world, 5, 8);
+    Diagnostics out;
+    ASSERT_TRUE(env->Restore(static_cast<int>((world + 3) % 8), saved, out)) << out.Format();
+    EXPECT_EQ(Follow(*env, (world + 3) % 8, 5, 8), expected) << world;
   }
 }
 

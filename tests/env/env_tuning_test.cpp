@@ -195,6 +195,55 @@ TEST(EnvTuning, NeitherThreadsNorLanesNorCompanyMatter) {
   }
 }
 
+TEST(EnvTuning, ANewEpisodeKnowsNothingOfWhatTheLastOneWasToldOrSaid) {
+  for (const auto& [name, number] : {std::pair{"sine_hand_tuned", "impedance.sine.frequency_hz"},
+                                     {"cpg_learned", "impedance.cpg.frequency_hz"},
+                                     {"roll_to_goal", "motion.toward_goal.beat_hz"}}) {
+    const ExperimentSpec experiment = With(name, 1, {Moves({number}, 0.1)});
+    const auto env = MakeEnv(experiment, {.worlds = 3}), fresh = MakeEnv(experiment, {.worlds = 3});
+    Arrays<> arrays(*env), others(*fresh);
+    for (int step = 0; step < 7; ++step) {
+      Wiggle(arrays, 3 * step);
+      arrays.Step(*env);
+    }
+    const std::vector<std::uint64_t> seeds{5, 6, 7};
+    EXPECT_TRUE(arrays.Reset(*env, seeds));
+    EXPECT_TRUE(others.Reset(*fresh, seeds));
+    for (int step = 0; step < 6; ++step) {
+      Wiggle(arrays, step);
+      others.actions = arrays.actions;
+      arrays.Step(*env);
+      others.Step(*fresh);
+      ASSERT_EQ(arrays.observations, others.observations) << name << step;
+    }
+  }
+}
+
+/// Phases, amplitudes and what was heard go on: a number that changes by next to nothing changes
+/// next to nothing.
+TEST(EnvTuning, WhatAGaitRemembersStays) {
+  for (const auto& [name, number] : {std::pair{"sine_hand_tuned", "impedance.sine.frequency_hz"},
+                                     {"cpg_learned", "impedance.cpg.amplitude_m_per_s"},
+                                     {"goal_flat", "motion.feedback_cpg.phase_gain_rad_per_s"},
+                                     {"roll_to_goal", "motion.toward_goal.beat_hz"}}) {
+    const ExperimentSpec experiment = With(name, 1, {Moves({number}, 1e-9)});
+    const auto env = MakeEnv(experiment, {.worlds = 2});
+    Arrays<> arrays(*env);
+    EXPECT_TRUE(arrays.Reset(*env, std::vector<std::uint64_t>{5, 5}));
+    for (int step = 0; step < 16; ++step) {
+      arrays.actions = {0.0, step < 10 ? 0.0 : 1.0};
+      arrays.Step(*env);
+    }
+    double most = 0, apart = 0;
+    for (std::size_t i = 0; i < arrays.width; ++i) {
+      apart = std::max(apart, std::fabs(arrays.Row(0)[i] - arrays.Row(1)[i]));
+      most = std::max(most, std::fabs(arrays.Row(0)[i]));
+    }
+    EXPECT_LT(apart, 1e-5) << name;  // a contact makes 1e4 times as much of a difference
+    EXPECT_GT(most, 0.01) << name;
+  }
+}
+
 TEST(EnvTuning, WhatNoActionCanMoveIsSaid) {
   for (const char* const number : {"motion.nothing", "model.friction",
                                    "motion.feedback_cpg.frequency_hz"}) {  // that at the start
