@@ -136,7 +136,7 @@ Trail Follow(Env& env, std::size_t world, int from, int steps) {
     Wiggle(arrays, step);
     for (std::size_t i = 0; i < arrays.action_width; ++i) {
       arrays.actions[world * arrays.action_width + i] =
-          (7 * step + 3 * static_cast<int>(i)) % 9 / 4.0 - 1;
+          (7 * step + 3 * static_cast<int>(i)) % 8 / 4.0 - 0.75;
     }
     arrays.Step(env);
     trail.rows.push_back(arrays.Row(world));
