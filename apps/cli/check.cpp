@@ -113,7 +113,7 @@ int Check(const CheckArguments& args) {
   std::optional<ExperimentSpec> experiment;
   std::optional<RobotSpec> robot;
   if (*kind == "experiment") {
-    experiment = LoadExperiment(args.path, *overrides, found);
+    experiment = LoadExperimentAndChannels(args.path, *overrides, found);
     if (experiment) robot = experiment->robot;
   } else {
     robot = LoadRobot(args.path, *overrides, found);
@@ -124,9 +124,9 @@ int Check(const CheckArguments& args) {
   const StartKind described = of ? of->start : StartKind::kAsDescribed;
   const bool settles = (args.settled || described != StartKind::kAsDescribed) && !args.couplings;
   const ExperimentSpec to_settle = settles ? ToSettle(*robot, of) : ExperimentSpec{};
-  if (!CheckStart(*robot, settles ? to_settle.start : described, found)) return Bad(args, found);
   if (experiment) CheckRecord(*experiment, found);
   if (experiment && experiment->environment) CheckEnvironment(*experiment, found);
+  if (!CheckStart(*robot, settles ? to_settle.start : described, found)) return Bad(args, found);
   std::optional<SettledStart> settled;
   if (settles && found.ok()) settled = FindSettledStart(to_settle, found);
   const Diagnostics all = found;

@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "taut/batch.h"
@@ -103,6 +104,13 @@ struct EnvStep {
 /// happens that happens.
 bool CheckEnvironment(const ExperimentSpec& experiment, Diagnostics& out);
 
+/// `LoadExperiment`. If something is wrong, channels that `record` and `environment` name and that
+/// do not exist are told with it, where the rest is clear enough to know. (If nothing is, that is
+/// for `CheckRecord` and `CheckEnvironment`.)
+std::optional<ExperimentSpec> LoadExperimentAndChannels(const std::string& path,
+                                                        const Overrides& overrides,
+                                                        Diagnostics& out);
+
 /// The channels that an experiment's environment observes, in order; its experiment is good.
 std::vector<ChannelInfo> ObservedChannels(const ExperimentSpec& experiment);
 
@@ -143,6 +151,15 @@ class Env {
   /// again).
   virtual void Step(std::span<const float> actions, const EnvStep<float>& out) = 0;
   virtual void Step(std::span<const double> actions, const EnvStep<double>& out) = 0;
+
+  /// A world with its episode: state, clocks, what controllers, sensors and rewards remember,
+  /// actions and observations that are under way. For who tries several futures from one present.
+  virtual std::vector<std::uint8_t> Save(int world) = 0;
+  /// Goes on from there, in any world of this environment or of another one of the same experiment
+  /// and options (worlds, threads, registers and seeds may differ), through the bits that would
+  /// have followed. False and a complaint, and nothing has changed, if the snapshot is of something
+  /// else or damaged.
+  virtual bool Restore(int world, std::span<const std::uint8_t> snapshot, Diagnostics& out) = 0;
 
   virtual EpisodeState Episode(int world) const = 0;  ///< Now.
   virtual EpisodeState Last(int world) const = 0;     ///< The one before; 0 steps: there was none.

@@ -16,12 +16,17 @@ namespace taut {
 /// One number of an action, -1..1, and what it moves. 0 is what the experiment does without a
 /// learner.
 struct EnvironmentAction {
-  int cable = 0;
+  int cable = 0;  ///< kWorld: it is of no cable.
   // What 1 stands for, > 0: one of them is there.
   std::optional<double> rest_length_m = {};  ///< Added to the commanded rest length of the start.
   std::optional<double> rest_length_rate_m_per_s = {};  ///< The command goes on from where it is.
   std::optional<double> velocity_input_m_per_s =
       {};  ///< Added to V0 of the cable's impedance control.
+  /// Added to each of `numbers`, in their unit; the sum stays within what makes sense of them.
+  std::optional<double> by = {};
+  /// Of controllers and their gaits, by the names of `FindTunables` (taut/study.h).
+  std::vector<std::string> numbers = {};
+  std::string name = {};  ///< Of such an action.
 };
 
 /// What a step is worth. The rewards of an episode that does not end early add up to the score that

@@ -212,6 +212,7 @@ struct GaitValue {
   std::string unit;  ///< "m/s", "m", "rad", "Hz", "1/m", "1/(m s)", "1/s", "N", "rad/(N s)".
   double* value;     ///< Into the gait, as long as that is neither moved nor resized.
   double min, max;   ///< Beyond these the gait makes no sense or repeats itself; may be infinite.
+  bool at_start = false;  ///< It says where the gait begins: a change later changes nothing.
 };
 
 /// Every number of the gait that shapes the motion; none of a table.
@@ -238,9 +239,8 @@ std::optional<CouplingGraph> FindCouplings(const RobotSpec& robot, CpgSymmetry s
 /// A gait whose cables were found in a robot: what a controller plays.
 struct ResolvedGait {
   struct Wave {
-    int cable = 0;
-    double frequency_hz = 0.0, phase_rad = 0.0;
-    double amplitude = 0.0, offset = 0.0;  ///< [m/s], or [m].
+    int wave = 0;            ///< Into `SineGait::waves`.
+    int segments_ahead = 0;  ///< How often it gets `phase_per_segment_rad`.
   };
   std::vector<int> cables;   ///< That it drives, by index.
   std::vector<Wave> waves;   ///< Of a sine: in the order of `cables`.

@@ -24,6 +24,10 @@
 
 namespace taut {
 
+namespace plant {
+class LaneState;
+}
+
 /// Some lanes: lane j is bit j.
 using Lanes = std::uint32_t;
 
@@ -134,6 +138,9 @@ class Plant {
   /// where: whoever calls has put it there.)
   virtual void Restart(int lane) = 0;
 
+  /// A lane's clock and its commands, as a controller's `Carry`; its state is for who asks.
+  virtual void Carry(plant::LaneState& state) { (void)state; }
+
   /// False: this lane goes on no more. Its state is not finite, its log is over, nobody answers.
   virtual bool Goes(int lane) const = 0;
 
@@ -178,6 +185,13 @@ class Controller {
   virtual void Act(const Tick& tick, const Observation& seen, Commands& commands) = 0;
   /// A lane begins anew, as this variant. Its next tick is its first.
   virtual void Restart(int lane, const RolloutWorld& world) { (void)lane, (void)world; }
+  /// A lane goes on under other numbers of these controllers, which are the experiment's otherwise:
+  /// what it remembers stays, phases go on without a jump. Called before a tick; allocates nothing.
+  virtual void Retune(int lane, const std::vector<ControllerSpec>& controllers) {
+    (void)lane, (void)controllers;
+  }
+  /// What a lane remembers, for environments that save and restore theirs. (taut's own do.)
+  virtual void Carry(plant::LaneState& state) { (void)state; }
 
   // --- what a person may change while it runs, in lane 0; a law that has none of it leaves it ---
   /// The gains of a cable, if it has such.
@@ -198,6 +212,7 @@ class SensorModel {
   /// What the controllers see; valid until the next sample.
   virtual const Observation& seen() const = 0;
   virtual void Restart(int lane, const RolloutWorld& world) { (void)lane, (void)world; }
+  virtual void Carry(plant::LaneState& state) { (void)state; }  ///< As a controller's.
 };
 
 /// Controllers that act after the experiment's own, in this order, and may overrule them; sensors

@@ -19,6 +19,7 @@ struct Tunable {
   std::string unit;
   double* value = nullptr;
   double min = 0, max = 0;  ///< Beyond these it makes no sense; may be infinite.
+  bool at_start = false;    ///< Of a gait: it says where that begins, and nothing later.
 };
 
 /// Factors on the model that studies may vary, all 1: friction, and masses, stiffnesses and

@@ -15,6 +15,9 @@ struct ScaleSpec {
 
 /// How far the start is from what is described; drawn from the seed, evenly.
 struct StartNoise {
+  /// The whole robot by up to this along x and along y, either way, and as much upwards or
+  /// downwards as the highest of what is below it; a goal goes along.
+  double place_m = 0.0;
   double position_m = 0.0;   ///< Each body by up to this along x and y, and upwards.
   double heading_rad = 0.0;  ///< The whole robot about the vertical, by up to this either way.
   double goal_rad = 0.0;     ///< The goal about the vertical through W's origin, likewise.

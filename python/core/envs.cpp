@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -221,6 +222,24 @@ void AddEnvironments(py::module_& module) {
     const int w = e.World(world);
     return e.owner().With([&](const Env& env) { return env.Hash(w); });
   });
+  type.def(
+      "save",
+      [](E& e, py::ssize_t world) {
+        const int w = e.World(world);
+        const auto saved = e.owner().With([&](Env& env) { return env.Save(w); });
+        return py::bytes(reinterpret_cast<const char*>(saved.data()), saved.size());
+      },
+      py::arg("world") = 0);
+  type.def(
+      "restore",
+      [](E& e, const py::bytes& snapshot, py::ssize_t world) {
+        const int w = e.World(world);
+        const auto text = static_cast<std::string_view>(snapshot);
+        const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+        Diagnostics said;
+        if (!e.owner().With([&](Env& env) { return env.Restore(w, bytes, said); })) Refuse(said);
+      },
+      py::arg("snapshot"), py::arg("world") = 0);
   type.def("time_s", [](E& e, py::ssize_t world) {
     const int w = e.World(world);
     return e.owner().With([&](const Env& env) { return env.Time(w); });

@@ -140,7 +140,7 @@ class VectorEnv(_VectorBase):
         """One period of all worlds: observations, rewards, terminated, truncated, infos."""
         self._open()
         actions = _np.ascontiguousarray(actions, dtype=self._dtype)
-        observations, rewards = self._fresh(self._observations), self._fresh(self._rewards)
+        observations, rewards = self._new(self._observations), self._new(self._rewards)
         final = self._fresh(self._final) if self._final is not None else None
         self._step(actions, observations, rewards, self._terminated, self._truncated, final)
         self._observations = observations
@@ -173,6 +173,17 @@ class VectorEnv(_VectorBase):
         """Of a world's episode."""
         return self._core.time_s(world)
 
+    def save(self, world=0):
+        """A world with its episode, as bytes: for searches that try several futures from one present."""
+        self._open()
+        return self._core.save(world)
+
+    def restore(self, snapshot, world=0):
+        """Goes on from where `save` was called, in any world of environments of the same experiment and options,
+        through the bits that would have followed. `taut.InputError` if the bytes are something else."""
+        self._open()
+        self._core.restore(snapshot, world)
+
     def render(self):
         raise NotImplementedError("taut draws nothing here: run `experiment(world)` and look at it with `taut view`")
 
@@ -185,6 +196,9 @@ class VectorEnv(_VectorBase):
 
     def _fresh(self, array):
         return array.copy() if self._copy else array
+
+    def _new(self, array):  # all of which is going to be written
+        return _np.empty_like(array) if self._copy else array
 
 
 class Env(_EnvBase):
@@ -222,6 +236,14 @@ class Env(_EnvBase):
     def hash(self):
         """Of the state."""
         return self._one.hash(0)
+
+    def save(self):
+        """The world with its episode, as bytes."""
+        return self._one.save(0)
+
+    def restore(self, snapshot):
+        """Goes on from where `save` was called, in environments of the same experiment."""
+        self._one.restore(snapshot, 0)
 
     def render(self):
         return self._one.render()

@@ -4,6 +4,7 @@
 
 #include "description/environment_keys.h"
 #include "description/experiment_parts.h"
+#include "description/study_parts.h"
 
 namespace taut::description {
 namespace {
@@ -52,16 +53,33 @@ class Actions {
       : robot_(robot),
         drivers_known_(drivers_known),
         drivers_(DriversOf(experiment, robot)),
-        scope_(scope) {}
+        controllers_(experiment.controllers),
+        scope_(scope) {
+    std::vector<ScaleSpec> none;
+    if (drivers_known) tunables_ = FindTunables(controllers_, none, robot);
+  }
 
   void Add(const EnvironmentActionText& text) {
-    if (!text.cables.value) return;
-    const Value& selector = *text.cables.value;
+    if (text.cables.value) AddCables(text, *text.cables.value);
+    if (text.each.value) AddNumbers(text, *text.each.value, "environment.actions.each");
+    if (text.all.value) AddNumbers(text, *text.all.value, "environment.actions.all");
+  }
+
+  std::vector<EnvironmentAction> Take() {
+    std::sort(of_cables_.begin(), of_cables_.end(), [](const auto& a, const auto& b) {
+      return a.cable < b.cable;  // of those given twice nobody asks any more
+    });
+    of_cables_.insert(of_cables_.end(), of_numbers_.begin(), of_numbers_.end());
+    return std::move(of_cables_);
+  }
+
+ private:
+  void AddCables(const EnvironmentActionText& text, const Value& selector) {
     std::map<std::string, std::string> refused;  // why, and which: one complaint each
     for (const int cable : SelectCables(selector, "environment.actions.cables", &robot_, scope_)) {
       const auto index = static_cast<std::size_t>(cable);
       const CableDef& def = robot_.def.cables[index];
-      EnvironmentAction& action = actions_.emplace_back(text);
+      EnvironmentAction& action = of_cables_.emplace_back(text);
       action.cable = cable;
       std::string why = drivers_known_ ? Obstacle(action, def, drivers_[index]) : "";
       const auto [first, fresh] = given_.emplace(cable, selector.at.line);
@@ -75,20 +93,50 @@ class Actions {
     }
   }
 
-  std::vector<EnvironmentAction> Take() {
-    std::sort(actions_.begin(), actions_.end(), [](const auto& a, const auto& b) {
-      return a.cable < b.cable;  // of those given twice nobody asks any more
-    });
-    return std::move(actions_);
+  void AddNumbers(const EnvironmentActionText& text, const Value& patterns,
+                  const std::string& what) {
+    if (!drivers_known_) return;
+    const std::size_t errors_before = scope_.out.items().size();
+    EnvironmentAction action = text;
+    action.cable = kWorld;
+    for (const std::size_t i : MatchTunables(patterns, what, tunables_, scope_)) {
+      const Tunable& tunable = tunables_[i];
+      const auto [first, fresh] = taken_.emplace(tunable.name, patterns.at.line);
+      if (!fresh) {
+        scope_.out.Error(patterns.at, "environment.actions: two actions move " + tunable.name,
+                         "the first is in line " + std::to_string(first->second));
+      } else if (tunable.at_start) {
+        scope_.out.Error(patterns.at, "environment.actions: no action can move " + tunable.name,
+                         "a gait looks at it when it begins, and not again");
+      }
+      action.numbers.push_back(tunable.name);
+      if (text.all.value) continue;
+      of_numbers_.push_back(action);
+      action.numbers.clear();
+    }
+    if (!text.all.value || action.numbers.empty()) return;
+    if (action.name.empty()) action.name = action.numbers[0];
+    const auto named = [&](const auto& other) { return NameOf(other) == action.name; };
+    if (scope_.out.items().size() == errors_before &&
+        std::any_of(of_numbers_.begin(), of_numbers_.end(), named)) {
+      scope_.out.Error(text.name_at.line > 0 ? text.name_at : patterns.at,
+                       "environment.actions: two actions are called " + action.name);
+    }
+    of_numbers_.push_back(std::move(action));
+  }
+  static const std::string& NameOf(const EnvironmentAction& action) {
+    return action.name.empty() ? action.numbers[0] : action.name;
   }
 
- private:
   const RobotSpec& robot_;
   bool drivers_known_;
   std::vector<Driver> drivers_;
+  std::vector<ControllerSpec> controllers_;
+  std::vector<Tunable> tunables_;  ///< Of `controllers_`.
   const Scope& scope_;
-  std::vector<EnvironmentAction> actions_;
-  std::map<int, int> given_;  ///< Cable, line.
+  std::vector<EnvironmentAction> of_cables_, of_numbers_;
+  std::map<int, int> given_;          ///< Cable, line.
+  std::map<std::string, int> taken_;  ///< Number, line.
 };
 
 /// Where a key of a part of the block stands.
@@ -114,6 +162,23 @@ void CheckDelay(const Value& block, const char* key, double delay_s, double peri
 }
 
 }  // namespace
+
+void Check(const MapReader& map, EnvironmentActionText& action) {
+  action.name_at = map.KeyAt("name");
+  const auto only = [&](const char* key, const char* with) {
+    if (map.Has(key)) map.Error(key, map.Path(key) + " goes with " + with + " only");
+  };
+  if (action.cables.value) {
+    only("by", "`each` or `all`");
+    only("name", "`all`");
+  } else if (action.each.value || action.all.value) {
+    for (const char* const key :
+         {"rest_length_m", "rest_length_rate_m_per_s", "velocity_input_m_per_s"}) {
+      only(key, "`cables`");
+    }
+    if (action.each.value) only("name", "`all`");
+  }
+}
 
 void Check(const MapReader& map, EnvironmentReward& reward) { CheckObjective(map, reward); }
 

@@ -14,14 +14,19 @@ inline const Choices<Measure> kRewardMeasures{{"none", Measure::kNone},
 template <class Io, Either<EnvironmentAction, EnvironmentActionText> Action>
 void Keys(Io& io, Action& a) {
   io.Map("", "environment.actions",
-         "Some cables, each with a number of its own in the action, -1 to 1. 0 is what the "
-         "experiment does without a learner.");
+         "Some cables, or some numbers of controllers and gaits, each with a number of its own in "
+         "the action, -1 to 1. 0 is what the experiment does without a learner.");
   if constexpr (Io::kResolved) {
     io("cable", a.cable);
   } else {
-    io("cables", a.cables, kNeeded, "Which. An action has them in the order of the model's cables.",
+    io.OneOf({"cables", "each", "all"});
+    io.OneOf({"rest_length_m", "rest_length_rate_m_per_s", "velocity_input_m_per_s", "by"});
+    io.Rule(R"("if": {"required": ["cables"]}, )"
+            R"("then": {"not": {"anyOf": [{"required": ["by"]}, {"required": ["name"]}]}}, )"
+            R"("else": {"required": ["by"]})");
+    io("cables", a.cables,
+       "Which cables. An action has them in the order of the model's cables, before all others.",
        Example{R"("driven")"});
-    io.OneOf({"rest_length_m", "rest_length_rate_m_per_s", "velocity_input_m_per_s"});
   }
   io("rest_length_m", a.rest_length_m, Bound::kPositive,
      "What 1 adds to the rest length that is commanded at the start. For cables that no controller "
@@ -31,7 +36,24 @@ void Keys(Io& io, Action& a) {
   io("velocity_input_m_per_s", a.velocity_input_m_per_s, Bound::kPositive,
      "What 1 adds to V0 of impedance control. For cables of a controller with `impedance` and "
      "without `velocity_input`.");
+  if constexpr (Io::kResolved) {
+    io("numbers", a.numbers, kLater);
+  } else {
+    io("each", a.each,
+       "Numbers of the controllers and their gaits, by the names that a study's `vary` has for "
+       "them, `*` for any letters: set points and gains of impedance control, frequencies, "
+       "amplitudes and phases of a gait. Each that fits has an action of its own.",
+       Example{R"("hold.*.tension_offset_n")"});
+    io("all", a.all, "The same, with one action for all that fit together.",
+       Example{R"("hold.sine.*.amplitude_m_per_s")"});
+  }
+  io("by", a.by, Bound::kPositive,
+     "What 1 adds to the number, in its unit. The sum stays within the bounds that the number has "
+     "anywhere: no tension below 0. A frequency that changes does so without a jump of the phase.");
+  io("name", a.name, kName, kLater,
+     "Of an action on `all` of some numbers. That of the first of them if absent.");
 }
+void Check(const MapReader& map, EnvironmentActionText& action);
 
 template <class Io>
 void Keys(Io& io, Like<EnvironmentReward> auto& r) {

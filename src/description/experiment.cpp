@@ -1,9 +1,11 @@
 #include <cmath>
+#include <functional>
 
 #include "base/fixed.h"
 #include "description/experiment_keys.h"
 #include "description/experiment_parts.h"
 #include "description/hash.h"
+#include "description/look_at.h"
 #include "description/merged_file.h"
 #include "description/model.h"
 #include "description/plausible.h"
@@ -55,7 +57,9 @@ void CheckTurns(const ModelDef& def, const char* key, const Value* noise, const 
 }
 
 /// Whatever could be read; the caller looks at the diagnostics.
-ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, const Scope& scope) {
+ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, const Scope& scope,
+                              const std::function<void(const ExperimentSpec&)>& look) {
+  const std::size_t errors_before = scope.out.items().size();
   ExperimentText text;
   ReadMapping(root, "", scope, text);
   LoadedModel model = LoadItsModel(text, overrides, scope);
@@ -82,6 +86,7 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
     scope.out.Error(root.Find("start_noise")->at, "start_noise.goal_rad: there is no `goal`");
   }
   const StartNoise& noise = text.start_noise;
+  if (noise.place_m > 0) CheckTurns(def, "place_m", root.Find("start_noise"), scope);
   if (noise.heading_rad > 0) CheckTurns(def, "heading_rad", root.Find("start_noise"), scope);
   if (noise.any_pose) CheckTurns(def, "any_pose", root.Find("start_noise"), scope);
   if (text.environment_text) {
@@ -91,6 +96,7 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   AddMotions(text.motions, model.good, scope, text.robot);
   if (scope.out.ok()) CheckMotions(text.motions, text, scope);
   if (scope.out.ok()) CheckPositions(text.robot, scope.out, text.place ? &text.place->at : nullptr);
+  if (look && drivers_known && scope.out.items().size() != errors_before) look(text);
   return text;
 }
 
@@ -115,6 +121,12 @@ void Check(const MapReader&, RecordText& record) {
 
 std::optional<ExperimentSpec> LoadExperiment(const std::string& path, const Overrides& overrides,
                                              Diagnostics& out) {
+  return description::LoadOrLook(path, overrides, out, {});
+}
+
+std::optional<ExperimentSpec> description::LoadOrLook(
+    const std::string& path, const Overrides& overrides, Diagnostics& out,
+    const std::function<void(const ExperimentSpec&)>& look) {
   const std::size_t errors_before = out.items().size();
   std::optional<ExperimentSpec> experiment;
   if (description::IsResolved(path)) {
@@ -126,7 +138,7 @@ std::optional<ExperimentSpec> LoadExperiment(const std::string& path, const Over
     set.Apply(file.parameters);
     const description::NameTable names = description::ResolveParameters(file.parameters, out);
     description::NameSet used;
-    experiment = description::ReadExperiment(*file.root, set, {names, out, &used});
+    experiment = description::ReadExperiment(*file.root, set, {names, out, &used}, look);
     if (out.items().size() == errors_before) {
       description::WarnOfUnused(file.parameters, std::move(used), file.files, out);
     }

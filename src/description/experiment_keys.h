@@ -204,6 +204,11 @@ template <class Io>
 void Keys(Io& io, Like<StartNoise> auto& n) {
   io.Map("", "start_noise",
          "How far the start may be from what is described, drawn evenly from the seed.");
+  io("place_m", n.place_m, LaterThan{0.0}, Bound::kNonNegative,
+     "The whole robot is moved by up to this along x and along y, either way, and up or down with "
+     "the ground: on a terrain larger than the robot each start then has ground of its own. "
+     "Nothing of it comes nearer to what is below it than it was; with `start: settled` it settles "
+     "there. A `goal` goes along.");
   io("position_m", n.position_m, Bound::kNonNegative,
      "Each body is moved by up to this along x and y, and upwards. Bodies that joints tie to each "
      "other are moved together; those that are tied to the world stay.");

@@ -199,6 +199,8 @@ struct LoadCaseText {
 
 struct EnvironmentActionText : EnvironmentAction {
   Raw<SelectorForm> cables;
+  Raw<PatternsForm> each, all;
+  SourceRef name_at;  ///< Of its key.
 };
 struct EnvironmentText : EnvironmentSpec {
   std::vector<EnvironmentActionText> action_texts;

@@ -36,7 +36,7 @@ void Keys(Io& io, Like<FeedbackOscillator> auto& o) {
      "such lists.");
   io(Driven("amplitude_m_per_s", "amplitude_m"), o.amplitude, kNeeded, Bound::kNonNegative,
      "Amplitude R of an oscillator that nothing acts on.");
-  io("phase_rad", o.phase_rad, "Phase at the start.");
+  io("phase_rad", o.phase_rad, kAtStart, "Phase at the start.");
   io(Driven("offset_m_per_s", "offset_m"), o.offset, "Constant part of the signal.");
 }
 template <class Io>
@@ -45,7 +45,8 @@ void Keys(Io& io, Like<FeedbackCpgGait> auto& c) {
       "feedback_cpg", "feedback_cpg",
       "Oscillators that sensors act on. What a network hears of a cable, and what another hears "
       "of the goal of the experiment, changes their frequency, their amplitude and their phase.");
-  io("frequency_hz", c.frequency_hz, kNeeded, "Frequency of each oscillator at the start.");
+  io("frequency_hz", c.frequency_hz, kNeeded, kAtStart,
+     "Frequency of each oscillator at the start.");
   io("convergence_per_s", c.convergence_per_s, Bound::kPositive,
      "How fast amplitudes go where they tend to: a.");
   io("frequency_gain_hz_per_s", c.frequency_gain_hz_per_s,

@@ -27,13 +27,9 @@ void Resolve(const SineGait& sine, const RobotSpec& robot, ResolvedGait& resolve
             "wave " + wave.name + ": phase_per_segment_rad needs a number at the end of " + name,
             "such as outer_top_2");
       }
-      const double phase_rad =
-          wave.phase_rad + (place ? place->number - 1 : 0) * wave.phase_per_segment_rad;
+      const int index = static_cast<int>(&wave - sine.waves.data());
       const auto [other, fresh] =
-          by_cable.insert({cable,
-                           {{cable, wave.frequency_hz.value_or(sine.frequency_hz), phase_rad,
-                             wave.amplitude, wave.offset},
-                            &wave}});
+          by_cable.insert({cable, {{index, place ? place->number - 1 : 0}, &wave}});
       if (!fresh && twice.empty()) {
         twice = name + " has a wave already, " + other->second.second->name;
       }

@@ -54,6 +54,7 @@ struct Inherited {};
 struct Limit {};
 struct Fixed {};
 struct Varied {};
+struct AtStart {};
 }  // namespace note
 /// Earlier versions of taut did not write it and meant this number.
 struct LaterThan {
@@ -72,7 +73,8 @@ inline constexpr note::IsDirection kDirection;  ///< A vector of any length but 
 inline constexpr note::Inherited kInherited;    ///< If absent, something else says what it is.
 inline constexpr note::Limit kLimit;            ///< If absent, infinite.
 inline constexpr note::Fixed kFixed;            ///< Not a number that studies vary.
-inline constexpr note::Varied kVaried;  ///< A list whose numbers studies vary, as key_1, key_2.
+inline constexpr note::Varied kVaried;    ///< A list whose numbers studies vary, as key_1, key_2.
+inline constexpr note::AtStart kAtStart;  ///< A number that says where something begins.
 
 /// The names of one key where another key of the file chooses which of them it has: the amplitude
 /// of a gait is amplitude_m_per_s or amplitude_m. `when` says where, to readers of the reference.
@@ -88,7 +90,7 @@ struct Key {
   const char* meaning = "";  ///< Sentences, without range and unit.
   Bound bound{};
   bool needed = false, later = false, is_name = false, is_direction = false, inherited = false;
-  bool limit = false, fixed = false, varied = false;
+  bool limit = false, fixed = false, varied = false, at_start = false;
   const char* example = nullptr;
   double before =
       std::numeric_limits<double>::quiet_NaN();  ///< Not written: what `LaterThan` says.
@@ -105,6 +107,7 @@ struct Key {
   void Note(note::Limit) { limit = true; }
   void Note(note::Fixed) { fixed = true; }
   void Note(note::Varied) { varied = true; }
+  void Note(note::AtStart) { at_start = true; }
   void Note(Example note) { example = note.json; }
   template <class E>
   void Note(const Choices<E>&) {}

@@ -48,7 +48,8 @@ class NumberList : public KeyVisitor<NumberList<Number>, true> {
     const std::string unit = base::UnitAtEnd(key.name).Text();
     double least = key.bound.least, most = key.bound.most;
     if (unit == "rad" && std::isinf(least) && std::isinf(most)) least = -kPi, most = kPi;
-    numbers.push_back({prefix_ + name, unit, &field, least, most});
+    Number& number = numbers.emplace_back(Number{prefix_ + name, unit, &field, least, most});
+    if constexpr (requires { number.at_start; }) number.at_start = key.at_start;
   }
   template <class T>
   void Inside(const std::string& name, T& field) {

@@ -2,6 +2,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "description/experiment_parts.h"
 #include "description/parameters.h"
@@ -9,6 +10,7 @@
 #include "description/read_keys.h"
 #include "description/resolved.h"
 #include "description/resolved_keys.h"
+#include "taut/study.h"
 
 namespace taut::description {
 namespace {
@@ -241,8 +243,16 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
   }
   if (experiment.goal) check(experiment.goal->body, robot.def.bodies.size(), "body");
   if (experiment.environment) {
+    std::vector<ControllerSpec> controllers = experiment.controllers;
+    std::vector<ScaleSpec> none;
+    std::set<std::string> known;
+    for (const Tunable& number : FindTunables(controllers, none, robot)) known.insert(number.name);
     for (const EnvironmentAction& action : experiment.environment->actions) {
-      check(action.cable, robot.def.cables.size(), "cable");
+      if (!action.by) check(action.cable, robot.def.cables.size(), "cable");
+      if (action.by && action.numbers.empty()) out.Error(at, "an action that moves no number");
+      for (const std::string& name : action.numbers) {
+        if (known.count(name) == 0) out.Error(at, "there is no number called \"" + name + '"');
+      }
     }
   }
   CheckGoalIsSensed(experiment, out);

@@ -67,10 +67,12 @@ std::string StudyText(const StudySpec& study) {
   out += Line(
       "worlds friction mass stiffness damping",
       Shown(w.friction) + " " + Shown(w.mass) + " " + Shown(w.stiffness) + " " + Shown(w.damping));
-  out += Line("worlds start",
-              Shown(w.start.position_m) + " m, " + Shown(w.start.heading_rad) + " rad" +
-                  (w.start.goal_rad > 0 ? ", goal " + Shown(w.start.goal_rad) + " rad" : "") +
-                  (w.start.any_pose ? ", any pose" : ""));
+  out +=
+      Line("worlds start",
+           Shown(w.start.position_m) + " m, " + Shown(w.start.heading_rad) + " rad" +
+               (w.start.goal_rad > 0 ? ", goal " + Shown(w.start.goal_rad) + " rad" : "") +
+               (w.start.any_pose ? ", any pose" : "") +
+               (w.start.place_m > 0 ? ", anywhere within " + Shown(w.start.place_m) + " m" : ""));
   for (std::size_t i = 0; i < study.searches.size(); ++i) {
     out += Line("search " + std::to_string(i), SearchLine(study.searches[i]));
     // how long all but the last go on shapes what follows

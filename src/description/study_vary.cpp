@@ -6,11 +6,7 @@
 #include "description/study_parts.h"
 
 namespace taut::description {
-namespace {
 
-constexpr std::size_t kMostParameters = 1000;
-
-/// Which tunables patterns stand for. Empty after a complaint.
 std::vector<std::size_t> MatchTunables(const Value& value, const std::string& what,
                                        const std::vector<Tunable>& tunables, const Scope& scope) {
   std::vector<const Value*> patterns;
@@ -38,6 +34,10 @@ std::vector<std::size_t> MatchTunables(const Value& value, const std::string& wh
   }
   return {found.begin(), found.end()};
 }
+
+namespace {
+
+constexpr std::size_t kMostParameters = 1000;
 
 /// Whether there is room between the bounds; a complaint if not.
 bool HasRoom(const VaryText& vary, const Scope& scope) {

@@ -22,7 +22,8 @@ void AddGains(ControllerSpec& controller, const RobotSpec& robot, std::vector<Tu
 
 void AddGait(const std::string& prefix, GaitSpec& gait, std::vector<Tunable>& out) {
   for (const GaitValue& value : GaitValues(gait)) {
-    out.push_back({prefix + value.name, value.unit, value.value, value.min, value.max});
+    out.push_back(
+        {prefix + value.name, value.unit, value.value, value.min, value.max, value.at_start});
   }
 }
 

@@ -1,9 +1,13 @@
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <string>
 
+#include "description/look_at.h"
 #include "env/plan.h"
 #include "plant/recorder.h"
+#include "taut/run.h"
+#include "taut/study.h"
 
 namespace taut {
 namespace {
@@ -84,10 +88,42 @@ class Clocks {
   Diagnostics& out_;
 };
 
+/// Of those that no file has checked: a program may have made the experiment.
+void CheckNumbers(const ExperimentSpec& experiment, Diagnostics& out) {
+  const EnvironmentSpec& spec = *experiment.environment;
+  std::vector<ControllerSpec> controllers = experiment.controllers;
+  std::vector<ScaleSpec> none;
+  std::set<std::string> known;
+  for (const Tunable& number : FindTunables(controllers, none, experiment.robot)) {
+    if (!number.at_start) known.insert(number.name);
+  }
+  const auto error = [&](const std::string& what) {
+    out.Error(spec.at, "environment.actions: " + what);
+  };
+  for (const EnvironmentAction& action : spec.actions) {
+    if (action.by && action.numbers.empty()) error("one with `by` and no number");
+    for (const std::string& name : action.numbers) {
+      if (known.count(name) == 0) error("no action can move a number called \"" + name + '"');
+    }
+  }
+}
+
 }  // namespace
 
 std::int64_t env::Times(double whole_s, double part_s) noexcept {
   return static_cast<std::int64_t>(std::floor(whole_s / part_s + 0.5));
+}
+
+std::optional<ExperimentSpec> LoadExperimentAndChannels(const std::string& path,
+                                                        const Overrides& overrides,
+                                                        Diagnostics& out) {
+  return description::LoadOrLook(path, overrides, out, [&](const ExperimentSpec& read) {
+    CheckRecord(read, out);
+    if (!read.environment) return;
+    const EnvironmentSpec& spec = *read.environment;
+    plant::CheckChannels(read, spec.observations, spec.observation_sources,
+                         "environment.observations", out);
+  });
 }
 
 bool CheckEnvironment(const ExperimentSpec& experiment, Diagnostics& out) {
@@ -103,6 +139,7 @@ bool CheckEnvironment(const ExperimentSpec& experiment, Diagnostics& out) {
   plant::CheckChannels(experiment, spec.observations, spec.observation_sources,
                        "environment.observations", out);
   Clocks(experiment, out).Check();
+  CheckNumbers(experiment, out);
   return out.items().size() == before;
 }
 

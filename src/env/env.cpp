@@ -9,8 +9,10 @@
 
 #include "base/thread_pool.h"
 #include "env/group.h"
+#include "env/snapshot.h"
 #include "plant/recorder.h"
 #include "sim/check_index.h"
+#include "taut/study.h"
 
 namespace taut {
 namespace {
@@ -19,7 +21,16 @@ using env::Group;
 using env::GroupRows;
 using env::Plan;
 
-ChannelInfo ActionChannel(const EnvironmentAction& action, const ModelDef& def) {
+ChannelInfo ActionChannel(const EnvironmentAction& action, const Plan& plan) {
+  if (action.by) {
+    std::vector<ControllerSpec> controllers = plan.experiment.controllers;
+    std::vector<ScaleSpec> none;
+    for (const Tunable& number : FindTunables(controllers, none, plan.experiment.robot)) {
+      if (number.name != action.numbers[0]) continue;
+      return {action.name.empty() ? number.name : action.name, number.unit};
+    }
+  }
+  const ModelDef& def = plan.experiment.robot.def;
   const std::string of = "cable/" + def.cables[static_cast<std::size_t>(action.cable)].name + "/";
   if (action.rest_length_m) return {of + "rest_length_m", "m"};
   if (action.rest_length_rate_m_per_s) return {of + "rest_length_rate_m_per_s", "m/s"};
@@ -27,6 +38,7 @@ ChannelInfo ActionChannel(const EnvironmentAction& action, const ModelDef& def) 
 }
 
 double ScaleOf(const EnvironmentAction& action) {
+  if (action.by) return *action.by;
   if (action.rest_length_m) return *action.rest_length_m;
   if (action.rest_length_rate_m_per_s) return *action.rest_length_rate_m_per_s;
   return *action.velocity_input_m_per_s;
@@ -46,7 +58,7 @@ class LaneEnv final : public Env {
       observation_channels_.push_back({"own/" + std::to_string(i), "1"});
     }
     for (const EnvironmentAction& action : plan_->spec.actions) {
-      action_channels_.push_back(ActionChannel(action, plan_->experiment.robot.def));
+      action_channels_.push_back(ActionChannel(action, *plan_));
       action_scales_.push_back(ScaleOf(action));
     }
     const int worlds = plan_->options.worlds, lanes = plan_->lanes;
@@ -89,6 +101,18 @@ class LaneEnv final : public Env {
     StepAll(actions, out);
   }
 
+  std::vector<std::uint8_t> Save(int world) override {
+    return env::Sealed(Kind(), GroupOf(__func__, world).Save(LaneOf(world)));
+  }
+  bool Restore(int world, std::span<const std::uint8_t> snapshot, Diagnostics& out) override {
+    Group& group = GroupOf(__func__, world);
+    const auto saved = env::Unsealed(Kind(), snapshot, out);
+    if (!saved) return false;
+    if (group.Restore(LaneOf(world), *saved)) return true;
+    out.Error({}, "the snapshot's state is not one of this model");
+    return false;
+  }
+
   EpisodeState Episode(int world) const override {
     return GroupOf(__func__, world).state(LaneOf(world));
   }
@@ -124,9 +148,14 @@ class LaneEnv final : public Env {
   }
 
  private:
-  const Group& GroupOf(const char* function, int world) const {
+  Group& GroupOf(const char* function, int world) const {
     sim::CheckIndex(function, "world", world, worlds());
     return *groups_[static_cast<std::size_t>(world / plan_->lanes)];
+  }
+  /// What snapshots of environments must have in common.
+  std::uint64_t Kind() {
+    if (kind_ == 0) kind_ = env::KindOf(*plan_);
+    return kind_;
   }
   int LaneOf(int world) const noexcept { return world % plan_->lanes; }
   std::size_t width() const noexcept { return observation_channels_.size(); }
@@ -278,6 +307,7 @@ class LaneEnv final : public Env {
   const ExperimentSpec observed_;
   std::vector<ChannelInfo> action_channels_, observation_channels_;
   std::vector<double> action_scales_;
+  std::uint64_t kind_ = 0;  ///< 0: nobody has asked yet.
   env::Starts starts_;
   base::ThreadPool pool_;
   std::vector<env::Place> places_;  ///< A thread.
@@ -286,7 +316,7 @@ class LaneEnv final : public Env {
 };
 
 bool Any(const StartNoise& noise) {
-  return noise.position_m > 0 || noise.heading_rad > 0 || noise.any_pose;
+  return noise.place_m > 0 || noise.position_m > 0 || noise.heading_rad > 0 || noise.any_pose;
 }
 
 std::unique_ptr<Plan> PlanOf(const ExperimentSpec& experiment, const EnvOptions& options,

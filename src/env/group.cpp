@@ -25,22 +25,11 @@ Group::Group(const Plan& plan, const ExperimentSpec& observed,
       batch_(plan.model, {.worlds = plan.lanes, .threads = 1, .simd = plan.simd}),
       plant_(PlantOf(batch_)),
       loop_(plan.experiment, AllAs(WorldOf(plan.experiment), plan.lanes), *plant_, {}),
+      bodies_(batch_),
       actions_(plan),
-      judge_(plan, loop_),
-      observer_(plan, observed, channels, loop_),
-      worlds_(static_cast<std::size_t>(plan.lanes)),
-      bodies_(plan.body_count() * worlds_.size()) {}
-
-std::span<const BodyState> Group::BodiesOf(int lane) const {
-  return std::span(bodies_).subspan(Index(lane) * plan_.body_count(), plan_.body_count());
-}
-
-void Group::ReadBodies(int lane) {
-  BodyState* body = bodies_.data() + Index(lane) * plan_.body_count();
-  for (std::size_t b = 0; b < plan_.body_count(); ++b) {
-    *body++ = batch_.Body(lane, static_cast<int>(b));
-  }
-}
+      judge_(plan, loop_, bodies_),
+      observer_(plan, observed, channels, loop_, bodies_),
+      worlds_(static_cast<std::size_t>(plan.lanes)) {}
 
 bool Group::Begin(int lane, std::uint64_t raw_seed, Starts& starts, Place& place,
                   std::string& failed) {
@@ -67,21 +56,67 @@ bool Group::Begin(int lane, std::uint64_t raw_seed, Starts& starts, Place& place
 
 void Group::Settle() {
   loop_.Sense();
+  bodies_.Read();
   Lanes begun = 0;
   for (int j = 0; j < plan_.lanes; ++j) {
     Slot& own = worlds_[Index(j)];
     if (!own.begins) continue;
     own.begins = false;
     const Slot& like = worlds_[Index(j < count_ ? j : 0)];
-    ReadBodies(j);
     actions_.Begin(j, loop_.commands(), like.episode.action_delay);
-    judge_.Begin(j, like.episode.world, BodiesOf(j));
+    judge_.Begin(j, like.episode.world);
     if (j < count_) begun |= Lanes{1} << j;
   }
-  observer_.Take(begun, count_, bodies_);
+  observer_.Take(begun, count_);
   for (int j = 0; j < count_; ++j) {
     if (Has(begun, j)) observer_.Begin(j, worlds_[Index(j)].episode.observation_delay);
   }
+}
+
+void Group::Carry(plant::LaneState& state) {
+  Slot& own = worlds_[Index(state.lane())];
+  state.Value(own.waits);
+  for (EpisodeState* episode : {&own.now, &own.last}) {
+    state.Values(episode->seed, episode->steps, episode->reward, episode->end);
+  }
+  actions_.Carry(state, loop_);  // controllers have their numbers before what they remember
+  loop_.Carry(state);
+  judge_.Carry(state);
+  observer_.Carry(state);
+}
+
+std::vector<std::uint8_t> Group::Save(int lane) {
+  std::vector<std::uint8_t> saved;
+  plant::LaneState state(lane, plan_.lanes, saved);
+  state.Value(worlds_[Index(lane)].episode.raw_seed);
+  const std::vector<std::uint8_t> world = batch_.Save(lane);
+  std::uint64_t size = world.size();
+  state.Value(size);
+  saved.insert(saved.end(), world.begin(), world.end());
+  Carry(state);
+  return saved;
+}
+
+bool Group::Restore(int lane, std::span<const std::uint8_t> saved) {
+  plant::LaneState head(lane, plan_.lanes, saved);
+  std::uint64_t raw_seed = 0, size = 0;
+  head.Values(raw_seed, size);
+  constexpr std::size_t kHead = 2 * sizeof(std::uint64_t);
+  if (saved.size() < kHead || size > saved.size() - kHead) return false;
+  const auto world = saved.subspan(kHead, static_cast<std::size_t>(size));
+  if (!batch_.Restore(lane, {world.begin(), world.end()})) return false;
+  Slot& own = worlds_[Index(lane)];
+  own.episode = DrawEpisode(plan_, raw_seed);
+  own.begins = false;
+  loop_.Restart(lane, own.episode.world);
+  bodies_.Read();
+  actions_.Begin(lane, loop_.commands(), own.episode.action_delay);
+  judge_.Begin(lane, own.episode.world);
+  observer_.Begin(lane, own.episode.observation_delay);
+  plant::LaneState state(lane, plan_.lanes, saved.subspan(kHead + world.size()));
+  Carry(state);
+  TAUT_ASSERT(state.at_end());
+  return true;
 }
 
 void Group::BeginNext(int lane, Starts& starts, Place& place) {
@@ -102,6 +137,7 @@ void Group::Advance(Place& place) {
     left -= loop_.Steps(judge_.measures() ? 1 : static_cast<int>(left));
     if (judge_.measures()) judge_.Measure();
   }
+  if (observer_.senses()) loop_.exact();
 }
 
 template <class T>
@@ -112,9 +148,10 @@ void Group::Step(const GroupRows<T>& rows, Starts& starts, Place& place) {
     const bool acts = j < count_ && own.now.end == EpisodeEnd::kNone;
     own.good_action = actions_.Read(j, acts ? rows.actions + Index(j) * width : nullptr);
   }
-  actions_.Apply(plant_->commands());
+  actions_.Apply(loop_);
   Advance(place);
   loop_.Sense();
+  bodies_.Read();
   observer_.Next();
   bool begins = false;
   for (int j = 0; j < count_; ++j) {
@@ -123,9 +160,8 @@ void Group::Step(const GroupRows<T>& rows, Starts& starts, Place& place) {
     rows.stepped[j] = acted ? 1 : 0;
     rows.begun[j] = 0;
     rows.rewards[j] = 0;
-    ReadBodies(j);
     if (acted) {
-      const auto verdict = judge_.Look(j, ++own.now.steps, own.good_action, BodiesOf(j));
+      const auto verdict = judge_.Look(j, ++own.now.steps, own.good_action);
       rows.rewards[j] = verdict.reward;
       own.now.end = verdict.end;
     }
@@ -136,7 +172,7 @@ void Group::Step(const GroupRows<T>& rows, Starts& starts, Place& place) {
     rows.truncated[j] = own.now.end == EpisodeEnd::kTime ? 1 : 0;
     rows.terminated[j] = own.now.end > EpisodeEnd::kTime ? 1 : 0;
   }
-  observer_.Take(AllLanes(count_), count_, bodies_);
+  observer_.Take(AllLanes(count_), count_);
   if (begins) Settle();
   for (int j = 0; j < count_; ++j) Emit(j, rows.observations + Index(j) * Index(width_));
 }

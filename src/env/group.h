@@ -11,6 +11,7 @@
 #include "env/actions.h"
 #include "env/episode.h"
 #include "env/judge.h"
+#include "env/lane_bodies.h"
 #include "env/observer.h"
 #include "env/place.h"
 
@@ -54,6 +55,11 @@ class Group {
     observer_.Emit(lane, row);
   }
 
+  /// A world with its episode.
+  std::vector<std::uint8_t> Save(int lane);
+  /// False, and nothing has changed, if the state in it is not one of the model.
+  bool Restore(int lane, std::span<const std::uint8_t> saved);
+
   const EpisodeState& state(int lane) const { return worlds_[Index(lane)].now; }
   const EpisodeState& last(int lane) const { return worlds_[Index(lane)].last; }
   const Episode& episode(int lane) const { return worlds_[Index(lane)].episode; }
@@ -70,9 +76,10 @@ class Group {
     bool begins = false;      ///< `Settle` has to know it.
   };
 
+  /// All but the state of the batch.
+  void Carry(plant::LaneState& state);
+
   static std::size_t Index(int lane) noexcept { return static_cast<std::size_t>(lane); }
-  std::span<const BodyState> BodiesOf(int lane) const;
-  void ReadBodies(int lane);
   void Advance(Place& place);
   void BeginNext(int lane, Starts& starts, Place& place);
 
@@ -81,11 +88,11 @@ class Group {
   Batch batch_;
   std::unique_ptr<Plant> plant_;
   plant::Loop loop_;
+  LaneBodies bodies_;
   Actions actions_;
   Judge judge_;
   Observer observer_;
   std::vector<Slot> worlds_;
-  std::vector<BodyState> bodies_;  ///< [lane][body]
 };
 
 }  // namespace taut::env

@@ -8,10 +8,11 @@
 
 namespace taut::env {
 
-Judge::Judge(const Plan& plan, const plant::Loop& loop)
+Judge::Judge(const Plan& plan, const plant::Loop& loop, const LaneBodies& bodies)
     : plan_(plan),
       reward_(plan.spec.reward),
       loop_(loop),
+      bodies_(bodies),
       world_(*loop.plant().world()),
       kernel_(plant::LaneKernelOf(plan.lanes)),
       measures_(reward_.tension_limit || reward_.work_penalty_per_j > 0 || plan.spec.max_tension_n),
@@ -28,15 +29,15 @@ Judge::Judge(const Plan& plan, const plant::Loop& loop)
   mass_kg_.resize(plan.body_count() * lanes);
 }
 
-void Judge::Begin(int lane, const RolloutWorld& world, std::span<const BodyState> bodies) {
+void Judge::Begin(int lane, const RolloutWorld& world) {
   const auto j = static_cast<std::size_t>(lane), lanes = accounts_.size();
   wound_j_[j] = max_tension_n_[j] = 0;
   const double* const rest_m = loop_.exact().cables.rest_length_m;
   for (std::size_t c = 0; c < motor_.size(); ++c) {
     rest_before_m_[c * lanes + j] = rest_m[c * lanes + j];
   }
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    mass_kg_[j * bodies.size() + b] = world_.BodyMass(lane, static_cast<int>(b));
+  for (std::size_t b = 0; b < bodies_.count(); ++b) {
+    mass_kg_[j * bodies_.count() + b] = world_.BodyMass(lane, static_cast<int>(b));
   }
   Account& own = accounts_[j];
   own = {};
@@ -44,8 +45,15 @@ void Judge::Begin(int lane, const RolloutWorld& world, std::span<const BodyState
     own.goal_m = plant::GoalOf(*plan_.experiment.goal, world.start_noise, world.seed);
   }
   own.started = reward_.from_s <= 0;
-  own.start_m = Center(j, bodies);
-  if (reward_.measure == Measure::kNearer) own.start_to_goal_m = -Progress(j, bodies, own.start_m);
+  own.start_m = Center(j);
+  if (reward_.measure == Measure::kNearer) own.start_to_goal_m = -Progress(j, own.start_m);
+}
+
+void Judge::Carry(plant::LaneState& state) {
+  for (std::vector<double>* row : {&rest_before_m_, &wound_j_, &max_tension_n_}) state.Row(*row);
+  Account& own = accounts_[static_cast<std::size_t>(state.lane())];
+  state.Values(own.started, own.start_m, own.goal_m, own.start_to_goal_m, own.progress_m,
+               own.tension_penalty, own.work_j);
 }
 
 void Judge::Measure() {
@@ -54,14 +62,13 @@ void Judge::Measure() {
                   {rest_before_m_.data(), wound_j_.data(), max_tension_n_.data(), unused_.data()});
 }
 
-Vec3 Judge::Center(std::size_t lane, std::span<const BodyState> bodies) const {
+Vec3 Judge::Center(std::size_t lane) const {
   return plant::CenterOfMass(
-      bodies.size(), [&](std::size_t b) { return mass_kg_[lane * bodies.size() + b]; },
-      [&](std::size_t b) { return bodies[b].position_m; });
+      bodies_.count(), [&](std::size_t b) { return mass_kg_[lane * bodies_.count() + b]; },
+      [&](std::size_t b) { return bodies_.position_m(lane, b); });
 }
 
-double Judge::Progress(std::size_t lane, std::span<const BodyState> bodies,
-                       const Vec3& center_m) const {
+double Judge::Progress(std::size_t lane, const Vec3& center_m) const {
   const Account& own = accounts_[lane];
   const Vec3 way = center_m - own.start_m;
   switch (reward_.measure) {
@@ -71,7 +78,8 @@ double Judge::Progress(std::size_t lane, std::span<const BodyState> bodies,
       return Dot(way, reward_.direction);
     case Measure::kNearer: {
       const auto watched = static_cast<std::size_t>(plan_.experiment.goal->body);
-      return own.start_to_goal_m - plant::DistanceToGoal(own.goal_m, bodies[watched].position_m);
+      return own.start_to_goal_m -
+             plant::DistanceToGoal(own.goal_m, bodies_.position_m(lane, watched));
     }
     default:
       return 0;
@@ -79,28 +87,31 @@ double Judge::Progress(std::size_t lane, std::span<const BodyState> bodies,
 }
 
 EpisodeEnd Judge::EndOf(std::size_t lane, std::int64_t number, bool good_action,
-                        std::span<const BodyState> bodies, const Vec3& center_m) const {
+                        const Vec3& center_m) const {
   const std::uint32_t bits = world_.Status(static_cast<int>(lane)).bits;
   if ((bits & kStatusNonFinite) != 0) return EpisodeEnd::kNotFinite;
   if ((bits & kStatusFellOff) != 0) return EpisodeEnd::kFellOff;
-  if (rollout::TooFast(bodies, reward_.max_speed_m_per_s) != kWorld) return EpisodeEnd::kTooFast;
+  const auto velocity = [&](std::size_t b) { return bodies_.velocity_m_per_s(lane, b); };
+  if (rollout::TooFast(bodies_.count(), velocity, reward_.max_speed_m_per_s) != kWorld) {
+    return EpisodeEnd::kTooFast;
+  }
   if (plan_.spec.max_tension_n && max_tension_n_[lane] > *plan_.spec.max_tension_n) {
     return EpisodeEnd::kTooTense;
   }
   if (!good_action) return EpisodeEnd::kWrongAction;
-  if (reward_.fall && (rollout::AnyTilted(bodies, cos_max_tilt_) ||
+  const auto orientation = [&](std::size_t b) { return bodies_.orientation(lane, b); };
+  if (reward_.fall && (rollout::AnyTilted(bodies_.count(), orientation, cos_max_tilt_) ||
                        rollout::BeyondHeights(*reward_.fall, center_m.z))) {
     return EpisodeEnd::kFell;
   }
   return number >= plan_.episode_steps ? EpisodeEnd::kTime : EpisodeEnd::kNone;
 }
 
-Judge::Verdict Judge::Look(int lane, std::int64_t number, bool good_action,
-                           std::span<const BodyState> bodies) {
+Judge::Verdict Judge::Look(int lane, std::int64_t number, bool good_action) {
   const auto j = static_cast<std::size_t>(lane);
-  const Vec3 center_m = needs_center_ ? Center(j, bodies) : Vec3{};
+  const Vec3 center_m = needs_center_ ? Center(j) : Vec3{};
   Verdict verdict;
-  verdict.end = EndOf(j, number, good_action, bodies, center_m);
+  verdict.end = EndOf(j, number, good_action, center_m);
   if (Failed(verdict.end)) {  // how far a robot flies that blows up is worth nothing
     verdict.reward = -reward_.failure_penalty;
     return verdict;
@@ -108,7 +119,7 @@ Judge::Verdict Judge::Look(int lane, std::int64_t number, bool good_action,
   Account& own = accounts_[j];
   const double time_s = static_cast<double>(number) * plan_.spec.period_s;
   if (own.started) {
-    const double progress_m = Progress(j, bodies, center_m);
+    const double progress_m = Progress(j, center_m);
     verdict.reward = progress_m - own.progress_m;
     own.progress_m = progress_m;
   } else if (time_s >= reward_.from_s - plant::kTimeToleranceS) {
@@ -116,7 +127,7 @@ Judge::Verdict Judge::Look(int lane, std::int64_t number, bool good_action,
     own.start_m = center_m;
     own.start_to_goal_m = 0;
     if (reward_.measure == Measure::kNearer) {
-      own.start_to_goal_m = -Progress(j, bodies, center_m);
+      own.start_to_goal_m = -Progress(j, center_m);
     }
   }
   if (reward_.tension_limit) {

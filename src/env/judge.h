@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
+#include "env/lane_bodies.h"
 #include "env/plan.h"
 #include "plant/lane_kernel.h"
 #include "plant/loop.h"
@@ -13,10 +13,14 @@ namespace taut::env {
 
 class Judge {
  public:
-  Judge(const Plan& plan, const plant::Loop& loop);
+  /// `bodies`: read before `Begin` and before `Look`.
+  Judge(const Plan& plan, const plant::Loop& loop, const LaneBodies& bodies);
 
-  /// An episode begins: the lane's world is at its start. `bodies` as for `Look`.
-  void Begin(int lane, const RolloutWorld& world, std::span<const BodyState> bodies);
+  /// An episode begins: the lane's world is at its start.
+  void Begin(int lane, const RolloutWorld& world);
+
+  /// What an episode came to so far, as a controller's `Carry`. Into a lane that has begun it.
+  void Carry(plant::LaneState& state);
 
   /// Whether it wants to see every step: `Measure` after each, of all lanes.
   bool measures() const noexcept { return measures_; }
@@ -26,14 +30,14 @@ class Judge {
     double reward = 0;
     EpisodeEnd end = EpisodeEnd::kNone;
   };
-  /// After the period with this number, from 1 on, of a lane. `bodies`: as they are now.
-  Verdict Look(int lane, std::int64_t number, bool good_action, std::span<const BodyState> bodies);
+  /// After the period with this number, from 1 on, of a lane.
+  Verdict Look(int lane, std::int64_t number, bool good_action);
 
  private:
   EpisodeEnd EndOf(std::size_t lane, std::int64_t number, bool good_action,
-                   std::span<const BodyState> bodies, const Vec3& center_m) const;
-  double Progress(std::size_t lane, std::span<const BodyState> bodies, const Vec3& center_m) const;
-  Vec3 Center(std::size_t lane, std::span<const BodyState> bodies) const;
+                   const Vec3& center_m) const;
+  double Progress(std::size_t lane, const Vec3& center_m) const;
+  Vec3 Center(std::size_t lane) const;
 
   /// What a lane's episode came to so far.
   struct Account {
@@ -46,6 +50,7 @@ class Judge {
   const Plan& plan_;
   const EnvironmentReward& reward_;
   const plant::Loop& loop_;
+  const LaneBodies& bodies_;
   const World& world_;
   const plant::LaneKernel& kernel_;
   bool measures_, needs_center_;

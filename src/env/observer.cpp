@@ -1,6 +1,6 @@
 #include "env/observer.h"
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
 #include <map>
 
@@ -39,16 +39,21 @@ ExperimentSpec Observed(const ExperimentSpec& experiment) {
 }
 
 Observer::Observer(const Plan& plan, const ExperimentSpec& observed,
-                   const std::vector<ChannelInfo>& channels, plant::Loop& loop)
+                   const std::vector<ChannelInfo>& channels, plant::Loop& loop,
+                   const LaneBodies& bodies)
     : plan_(plan),
       loop_(loop),
       count_(channels.size()),
       lanes_(static_cast<std::size_t>(plan.lanes)),
       slots_(static_cast<std::size_t>(plan.most_observation_delay) + 1),
+      kernel_(plant::LaneKernelOf(plan.lanes)),
+      rows_(count_),
       ring_(slots_ * count_ * lanes_),
+      fresh_(count_ * lanes_),
+      in_float_(slots_),
       delay_(lanes_) {
   const ModelDef& def = plan.experiment.robot.def;
-  const auto cables = IndexOf(def.cables), bodies = IndexOf(def.bodies),
+  const auto cables = IndexOf(def.cables), of_bodies = IndexOf(def.bodies),
              components = IndexOf(plant::BodyChannels());
   const auto rows = CableRowsOf(loop);
   ExperimentSpec rest = observed;
@@ -59,55 +64,47 @@ Observer::Observer(const Plan& plan, const ExperimentSpec& observed,
     const std::string group = name.substr(0, first);
     const std::string whose = first < last ? name.substr(first + 1, last - first - 1) : "";
     const std::string what = name.substr(last + 1);
-    const auto cable = cables.find(whose), body = bodies.find(whose);
+    const auto cable = cables.find(whose), body = of_bodies.find(whose);
     const auto row = rows.find(what);
     const auto component = components.find(what);
     if (group == "cable" && cable != cables.end() && row != rows.end()) {
-      rows_.push_back({i, row->second + cable->second * lanes_});
-    } else if (group == "body" && body != bodies.end() && component != components.end()) {
-      of_bodies_.push_back({i, body->second, component->second});
+      rows_[i] = row->second + cable->second * lanes_;
+      senses_ = true;
+    } else if (group == "body" && body != of_bodies.end() && component != components.end()) {
+      rows_[i] = bodies.Row(body->second, component->second);
     } else {
       rest.record.channels.push_back(name);
-      others_.push_back(i);
+      other_columns_.push_back(i);
     }
   }
-  if (!others_.empty()) recorder_ = std::make_unique<plant::Recorder>(rest);
+  others_.resize(other_columns_.size() * lanes_);
+  for (std::size_t i = 0; i < other_columns_.size(); ++i) {
+    rows_[other_columns_[i]] = &others_[i * lanes_];
+  }
+  senses_ = senses_ || !other_columns_.empty();
+  if (!other_columns_.empty()) recorder_ = std::make_unique<plant::Recorder>(rest);
 }
 
 void Observer::Next() { now_ = (now_ + 1) % slots_; }
 
-void Observer::Take(Lanes lanes, int count, std::span<const BodyState> bodies) {
-  const std::size_t body_count = plan_.body_count();
-  double* const now = &ring_[now_ * count_ * lanes_];
-  const auto put = [&](std::size_t column, std::size_t lane, double value) {
-    now[column * lanes_ + lane] = std::isfinite(value) ? value : 0.0;
-  };
-  const bool all = lanes == AllLanes(count);
-  for (std::size_t i = 0; all && i < rows_.size(); ++i) {  // lanes behind the last world, too
-    double* const to = now + rows_[i].column * lanes_;
-    for (std::size_t j = 0; j < lanes_; ++j) {
-      const double x = rows_[i].lanes[j];
-      to[j] = x - x == 0.0 ? x : 0.0;
+void Observer::Take(Lanes lanes, int count) {
+  const Observation* const exact = senses_ ? &loop_.exact() : nullptr;  // rows of cables are of now
+  for (int j = 0; recorder_ && j < count; ++j) {
+    if (!Has(lanes, j)) continue;
+    const std::vector<double>& row = recorder_->Row(
+        {exact, &loop_.seen(), &loop_.commands(), loop_.plant().world(), &loop_.timeline(j), j});
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      others_[i * lanes_ + static_cast<std::size_t>(j)] = row[i];
     }
   }
-  for (std::size_t j = 0; j < static_cast<std::size_t>(count); ++j) {
+  double* const now = &ring_[now_ * count_ * lanes_];
+  const bool all = lanes == AllLanes(count);  // lanes behind the last world, too
+  double* const to = all ? now : fresh_.data();
+  const bool in_float = kernel_.collect(rows_.data(), static_cast<int>(count_), to);
+  in_float_[now_] = in_float && (all || in_float_[now_] != 0) ? 1 : 0;
+  for (std::size_t j = 0; !all && j < lanes_; ++j) {
     if (!Has(lanes, static_cast<int>(j))) continue;
-    for (std::size_t i = 0; !all && i < rows_.size(); ++i) {
-      put(rows_[i].column, j, rows_[i].lanes[j]);
-    }
-    plant::BodyNumbers values;
-    std::size_t filled = body_count;  // none
-    for (const OfBody& of : of_bodies_) {
-      if (of.body != filled) plant::PutBody(bodies[j * body_count + of.body], values.data());
-      filled = of.body;
-      put(of.column, j, values[of.component]);
-    }
-    if (!recorder_) continue;
-    const int lane = static_cast<int>(j);
-    const std::vector<double>& row =
-        recorder_->Row({&loop_.exact(), &loop_.seen(), &loop_.commands(), loop_.plant().world(),
-                        &loop_.timeline(lane), lane});
-    for (std::size_t i = 0; i < row.size(); ++i) put(others_[i], j, row[i]);
+    for (std::size_t i = 0; i < count_; ++i) now[i * lanes_ + j] = to[i * lanes_ + j];
   }
 }
 
@@ -116,7 +113,17 @@ void Observer::Begin(int lane, int delay) {
   delay_[j] = static_cast<std::size_t>(delay);
   for (std::size_t slot = 0; slot < slots_; ++slot) {
     for (std::size_t i = 0; i < count_; ++i) At(slot, i, j) = At(now_, i, j);
+    in_float_[slot] = in_float_[slot] & in_float_[now_];
   }
+}
+
+void Observer::Carry(plant::LaneState& state) {
+  for (std::size_t age = 0; age < slots_; ++age) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      state.Value(At((now_ + slots_ - age) % slots_, i, static_cast<std::size_t>(state.lane())));
+    }
+  }
+  if (state.reads()) std::fill(in_float_.begin(), in_float_.end(), 0);  // nobody has looked
 }
 
 namespace {
@@ -133,8 +140,13 @@ T Number(double x) {
 template <class T>
 void Observer::Emit(int lane, T* row) const {
   const auto j = static_cast<std::size_t>(lane);
-  const double* const from = &ring_[(now_ + slots_ - delay_[j]) % slots_ * count_ * lanes_];
-  for (std::size_t i = 0; i < count_; ++i) row[i] = Number<T>(from[i * lanes_ + j]);
+  const std::size_t slot = (now_ + slots_ - delay_[j]) % slots_, lanes = lanes_, count = count_;
+  const double* const from = ring_.data() + slot * count * lanes + j;
+  if (in_float_[slot] != 0) {
+    for (std::size_t i = 0; i < count; ++i) row[i] = static_cast<T>(from[i * lanes]);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) row[i] = Number<T>(from[i * lanes]);
+  }
 }
 template void Observer::Emit(int lane, float* row) const;
 template void Observer::Emit(int lane, double* row) const;

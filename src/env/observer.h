@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "env/lane_bodies.h"
 #include "env/plan.h"
 #include "plant/loop.h"
 #include "plant/recorder.h"
@@ -18,16 +19,23 @@ ExperimentSpec Observed(const ExperimentSpec& experiment);
 
 class Observer {
  public:
-  /// `channels`: of a recorder of `observed`. Both outlive it, and so does the loop.
+  /// `channels`: of a recorder of `observed`. Both outlive it, and so do the loop and `bodies`,
+  /// which have been read before `Take`.
   Observer(const Plan& plan, const ExperimentSpec& observed,
-           const std::vector<ChannelInfo>& channels, plant::Loop& loop);
+           const std::vector<ChannelInfo>& channels, plant::Loop& loop, const LaneBodies& bodies);
 
   void Next();  ///< A period is over: all lanes are to be seen anew.
+  /// Whether `Take` looks at cables as they are, which are then best read while the step's memory
+  /// is still near.
+  bool senses() const noexcept { return senses_; }
   /// Sees some of the first `count` lanes. What is not finite, as a place of a contact that is not
-  /// there, is seen as 0. `bodies`: [lane][body].
-  void Take(Lanes lanes, int count, std::span<const BodyState> bodies);
+  /// there, is seen as 0.
+  void Take(Lanes lanes, int count);
   /// An episode begins with what `Take` has seen of it; observations come `delay` periods later.
   void Begin(int lane, int delay);
+
+  /// What was seen in the last periods, as a controller's `Carry`. Into a lane that has begun.
+  void Carry(plant::LaneState& state);
 
   template <class T>
   void Emit(int lane, T* row) const;
@@ -37,23 +45,20 @@ class Observer {
     return ring_[(slot * count_ + i) * lanes_ + lane];
   }
 
-  struct Row {  ///< A number that stands in a row of the plant.
-    std::size_t column;
-    const double* lanes;
-  };
-  struct OfBody {
-    std::size_t column, body, component;
-  };
-
   const Plan& plan_;
   plant::Loop& loop_;
   std::size_t count_, lanes_, slots_, now_ = 0;
-  std::vector<Row> rows_;
-  std::vector<OfBody> of_bodies_;
-  std::vector<std::size_t> others_;            ///< Columns of what `recorder_` has.
+  const plant::LaneKernel& kernel_;
+  /// Per column, where its row stands: of the plant, of the bodies, or of `others_`.
+  std::vector<const double*> rows_;
+  std::vector<std::size_t> other_columns_;     ///< Of what `recorder_` has.
+  std::vector<double> others_;                 ///< Its rows.
   std::unique_ptr<plant::Recorder> recorder_;  ///< Null: nothing else is observed.
-  std::vector<double> ring_;
-  std::vector<std::size_t> delay_;  ///< Per lane.
+  bool senses_ =
+      false;  ///< Something is observed of which nobody else makes sure that it is of now.
+  std::vector<double> ring_, fresh_;
+  std::vector<std::uint8_t> in_float_;  ///< A slot: all its numbers are within those of a float.
+  std::vector<std::size_t> delay_;      ///< Per lane.
 };
 
 }  // namespace taut::env

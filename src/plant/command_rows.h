@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "plant/lane_state.h"
 #include "taut/plant.h"
 
 namespace taut::plant {
@@ -37,6 +38,15 @@ class CommandRows {
       set_point_n_[i] = velocity_input_m_per_s_[i] = signal_[i] = 0;
       mode_[i] = CommandMode::kRestLength;
     }
+  }
+
+  /// All but the rest lengths.
+  void Carry(LaneState& state) {
+    for (std::vector<double>* row : {&set_point_n_, &velocity_input_m_per_s_, &signal_}) {
+      state.Row(*row);
+    }
+    state.Row(mode_);
+    state.Row(gait_);
   }
 
   const std::vector<CommandMode>& mode() const noexcept { return mode_; }

@@ -19,7 +19,11 @@ double ShareAt(double part) {
 class GaitController final : public Controller {
  public:
   GaitController(const ControlSetup& setup, std::size_t index)
-      : index_(index), robot_(setup.experiment.robot), lanes_(setup.lanes.size()) {
+      : index_(index),
+        lanes_(setup.lanes.size()),
+        number_(lanes_.size()),
+        time_s_(lanes_.size()),
+        since_s_(lanes_.size()) {
     const GaitInputSpec& input = *GaitInputOf(setup.lanes[0]->controllers[index]);
     clock_ = input.clock;
     blend_s_ = input.blend_s;
@@ -28,8 +32,10 @@ class GaitController final : public Controller {
       gaits.period_s = clock_.period_s;
       for (const RolloutWorld* lane : setup.lanes) {
         gaits.gaits.push_back(&GaitOf(*GaitInputOf(lane->controllers[index]), g));
-        gaits.resolved.push_back(Resolved(*gaits.gaits.back()));
       }
+      Diagnostics heard_before;
+      gaits.resolved = ResolveGait(*gaits.gaits[0], setup.experiment.robot, heard_before)
+                           .value_or(ResolvedGait{});
       players_.push_back(PlayerOf(gaits));
     }
     for (std::size_t j = 0; j < lanes_.size(); ++j) {
@@ -42,12 +48,23 @@ class GaitController final : public Controller {
   void Restart(int lane, const RolloutWorld& world) override {
     const GaitInputSpec& input = *GaitInputOf(world.controllers[index_]);
     for (std::size_t g = 0; g < players_.size(); ++g) {
-      const GaitSpec& gait = GaitOf(input, g);
-      players_[g]->Restart(lane, gait, Resolved(gait));
+      players_[g]->Restart(lane, GaitOf(input, g));
     }
     Lane& own = lanes_[static_cast<std::size_t>(lane)];
     own = Lane{};
     own.changes = input.changes;
+  }
+
+  void Retune(int lane, const std::vector<ControllerSpec>& controllers) override {
+    const GaitInputSpec& input = *GaitInputOf(controllers[index_]);
+    for (std::size_t g = 0; g < players_.size(); ++g) players_[g]->Retune(lane, GaitOf(input, g));
+  }
+
+  void Carry(LaneState& state) override {
+    for (const auto& player : players_) player->Carry(state);
+    Lane& own = lanes_[static_cast<std::size_t>(state.lane())];
+    for (Part* part : {&own.now, &own.before}) state.Values(part->gait, part->from_tick);
+    state.Value(own.blend_from_s);
   }
 
   void Act(const Tick& tick, const Observation& seen, Commands& commands) override {
@@ -72,11 +89,6 @@ class GaitController final : public Controller {
     Part now, before;  ///< `before`: while it is blended away.
     double blend_from_s = 0;
   };
-
-  ResolvedGait Resolved(const GaitSpec& gait) const {
-    Diagnostics heard_before;
-    return ResolveGait(gait, robot_, heard_before).value_or(ResolvedGait{});
-  }
 
   double TimeOf(std::int64_t tick) const {
     return control::TickTime(control::Clock<double>{clock_.period_s, clock_.phase_s}, tick);
@@ -107,9 +119,6 @@ class GaitController final : public Controller {
 
   void Play(int gait, const Tick& tick, const Observation& seen) {
     Lanes playing = 0;
-    number_.resize(lanes_.size());
-    time_s_.resize(lanes_.size());
-    since_s_.resize(lanes_.size());
     for (std::size_t j = 0; j < lanes_.size(); ++j) {
       const Lane& lane = lanes_[j];
       const Part* part = lane.now.gait == gait ? &lane.now : nullptr;
@@ -164,7 +173,6 @@ class GaitController final : public Controller {
   }
 
   std::size_t index_;
-  const RobotSpec& robot_;
   ClockSpec clock_;
   double blend_s_ = 0;
   std::vector<std::unique_ptr<GaitPlayer>> players_;  ///< Per gait of the input.

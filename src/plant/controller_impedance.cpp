@@ -2,6 +2,7 @@
 
 #include "plant/controller_kinds.h"
 #include "plant/lane_kernel.h"
+#include "plant/lane_state.h"
 #include "plant/other_lanes.h"
 
 namespace taut::plant {
@@ -35,14 +36,23 @@ class ImpedanceController final : public Controller {
           &velocity_offset_, &error_before_, &integral_, &length_before_m_}) {
       row->resize(cables_.size() * setup.lanes.size());
     }
+    kept_.Reserve(3 + 3 * cables_.size(), 6 * integral_.size());
     for (int j = 0; j < lanes_; ++j) Restart(j, *setup.lanes[static_cast<std::size_t>(j)]);
   }
 
   ClockSpec clock() const override { return clock_; }
 
-  void Restart(int lane, const RolloutWorld& world) override {
-    const std::vector<ImpedanceGains>& gains = world.controllers[index_].impedance->cables;
+  void Restart(int lane, const RolloutWorld& world) override { Retune(lane, world.controllers); }
+
+  void Retune(int lane, const std::vector<ControllerSpec>& controllers) override {
+    const std::vector<ImpedanceGains>& gains = controllers[index_].impedance->cables;
     for (std::size_t i = 0; i < cables_.size(); ++i) Set(i, lane, gains[i]);
+  }
+
+  void Carry(LaneState& state) override {
+    for (std::vector<double>* memory : {&error_before_, &integral_, &length_before_m_}) {
+      state.Row(*memory);
+    }
   }
 
   void Act(const Tick& tick, const Observation& seen, Commands& commands) override {
@@ -87,7 +97,7 @@ class ImpedanceController final : public Controller {
   }
 
   void Act(Lanes due, bool first, const Observation& seen, Commands& commands) {
-    OtherLanes others(due, lanes_);
+    OtherLanes others(due, lanes_, kept_);
     if (!others.none()) KeepAll(others, commands);
     law_.first_tick = first;
     const ImpedanceRows rows{
@@ -123,6 +133,7 @@ class ImpedanceController final : public Controller {
   std::vector<double> tension_offset_n_, length_offset_m_, position_gain_, velocity_gain_,
       velocity_offset_;
   std::vector<double> error_before_, integral_, length_before_m_;
+  KeptRows kept_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "plant/controller_kinds.h"
+#include "plant/lane_state.h"
 #include "taut/control/position.h"
 
 namespace taut::plant {
@@ -44,6 +45,14 @@ class PositionController final : public Controller {
   void Act(const Tick& tick, const Observation& seen, Commands& commands) override {
     for (std::size_t j = 0; j < lanes_.size(); ++j) {
       if (Has(tick.due, static_cast<int>(j))) ActIn(j, tick.number[j] == 0, seen, commands);
+    }
+  }
+
+  /// Of lengths that cables without a program had at their first tick; a program that somebody has
+  /// held in place stays held.
+  void Carry(LaneState& state) override {
+    for (double& length_m : lanes_[static_cast<std::size_t>(state.lane())].start_m) {
+      state.Value(length_m);
     }
   }
 

@@ -18,10 +18,11 @@ class CpgPlayer final : public GaitPlayer {
       : GaitPlayer(setup),
         kernel_(LaneKernelOf(lanes())),
         count_(static_cast<int>(cables().size())),
-        sign_(setup.resolved[0].sign) {
-    for (const CouplingGraph::Coupling& link : setup.resolved[0].graph.couplings) {
+        sign_(setup.resolved.sign) {
+    for (const CouplingGraph::Coupling& link : setup.resolved.graph.couplings) {
       to_.push_back(static_cast<unsigned short>(link.to));
       from_.push_back(static_cast<unsigned short>(link.from));
+      group_.push_back(static_cast<std::size_t>(link.group));
     }
     for (std::vector<double>* row : {&frequency_hz_, &amplitude_, &convergence_per_s_, &gain_,
                                      &reference_n_, &signal_rad_per_s_}) {
@@ -36,25 +37,33 @@ class CpgPlayer final : public GaitPlayer {
     const std::size_t bytes = (kernel_.cpg_bytes(count_, couplings()) + 63) / 64 * 64;
     memory_.reset(std::aligned_alloc(64, bytes));
     if (!memory_) throw std::bad_alloc();
-    for (int j = 0; j < lanes(); ++j) {
-      const auto lane = static_cast<std::size_t>(j);
-      SetNumbers(j, *setup.gaits[lane], setup.resolved[lane]);
-    }
+    kept_.Reserve(2, (kStateNumbers + 1) * signal_.size());
+    for (int j = 0; j < lanes(); ++j) SetNumbers(j, *setup.gaits[static_cast<std::size_t>(j)]);
     kernel_.cpg_start(Rows(), memory_.get());
   }
 
-  void Restart(int lane, const GaitSpec& gait, const ResolvedGait& resolved) override {
-    SetNumbers(lane, gait, resolved);
-    OtherLanes others(Lanes{1} << lane, lanes());
-    others.Keep(States(), kStateNumbers * cables().size());
-    kernel_.cpg_start(Rows(), memory_.get());
-    others.PutBack();
+  void Restart(int lane, const GaitSpec& gait) override {
+    SetNumbers(lane, gait);
+    for (std::size_t i = 0; i < cables().size(); ++i) signal_rad_per_s_[At(i, lane)] = 0.0;
+    Start(Lanes{1} << lane);
+  }
+
+  void Retune(int lane, const GaitSpec& gait) override {
+    SetNumbers(lane, gait);
+    retuned_ |= Lanes{1} << lane;
+  }
+
+  void Carry(LaneState& state) override {
+    GaitPlayer::Carry(state);
+    state.Row(States(), kStateNumbers * cables().size());
+    state.Row(signal_rad_per_s_);
   }
 
   /// The oscillators start at the first tick, and go from tick to tick under the signal that they
   /// had at the tick before.
   void Tick(const GaitTick& tick, const Observation& seen) override {
     const Lanes due = tick.due;
+    if (retuned_ != 0) Start(0);
     Lanes first = 0;
     for (int j = 0; j < lanes(); ++j) {
       if (Has(due, j) && tick.number[j] == 0) first |= Lanes{1} << j;
@@ -107,7 +116,7 @@ class CpgPlayer final : public GaitPlayer {
             phase_turns_.data()};
   }
 
-  void SetNumbers(int lane, const GaitSpec& gait, const ResolvedGait& resolved) {
+  void SetNumbers(int lane, const GaitSpec& gait) {
     const CpgGait& cpg = *gait.cpg;
     const CpgFeedback feedback = cpg.feedback.value_or(CpgFeedback{});
     wants_tensions_ = wants_tensions_ || feedback.gain_rad_per_n_s != 0.0;
@@ -118,18 +127,25 @@ class CpgPlayer final : public GaitPlayer {
       convergence_per_s_[at] = cpg.convergence_per_s;
       gain_[at] = feedback.gain_rad_per_n_s;
       reference_n_[at] = feedback.reference_n;
-      signal_rad_per_s_[at] = 0.0;
     }
     for (std::size_t k = 0; k < to_.size(); ++k) {
-      const CouplingGroup& group =
-          cpg.groups[static_cast<std::size_t>(resolved.graph.couplings[k].group)];
+      const CouplingGroup& group = cpg.groups[group_[k]];
       weight_[At(k, lane)] = group.weight;
       phase_turns_[At(k, lane)] = control::WrapTurns(group.phase_rad * control::kTurnsPerRad);
     }
   }
 
+  /// The kernel gets the numbers of all lanes; oscillators of those that begin are at their start.
+  void Start(Lanes begin) {
+    retuned_ = 0;
+    OtherLanes others(begin, lanes(), kept_);
+    others.Keep(States(), kStateNumbers * cables().size());
+    kernel_.cpg_start(Rows(), memory_.get());
+    others.PutBack();
+  }
+
   void Go(Lanes due, int steps) {
-    OtherLanes others(due, lanes());
+    OtherLanes others(due, lanes(), kept_);
     others.Keep(States(), kStateNumbers * cables().size());
     others.Keep(signal_.data(), cables().size());
     kernel_.cpg_tick(count_, couplings(), memory_.get(),
@@ -142,9 +158,12 @@ class CpgPlayer final : public GaitPlayer {
   int count_;
   std::vector<double> sign_;
   std::vector<unsigned short> to_, from_;
+  std::vector<std::size_t> group_;  ///< Of each coupling: into `CpgGait::groups`.
   std::vector<double> frequency_hz_, amplitude_, convergence_per_s_, weight_, phase_turns_;
   std::vector<double> gain_, reference_n_, signal_rad_per_s_;
   bool wants_tensions_ = false;
+  Lanes retuned_ = 0;  ///< Whose numbers the kernel has not got yet.
+  KeptRows kept_;
   std::unique_ptr<void, Free> memory_;
   int steps_a_tick_ = 0;
   double integrator_step_s_ = 0;

@@ -73,7 +73,7 @@ class FeedbackCpgPlayer final : public GaitPlayer {
       : GaitPlayer(setup),
         kernel_(LaneKernelOf(lanes())),
         count_(static_cast<int>(cables().size())),
-        found_(setup.resolved[0]) {
+        found_(setup.resolved) {
     const FeedbackCpgGait& cpg = *setup.gaits[0]->feedback_cpg;
     for (const CouplingGraph::Coupling& link : found_.graph.couplings) {
       to_.push_back(static_cast<unsigned short>(link.to));
@@ -101,21 +101,33 @@ class FeedbackCpgPlayer final : public GaitPlayer {
     const std::size_t bytes = (kernel_.feedback_cpg_bytes(count_, couplings()) + 63) / 64 * 64;
     memory_.reset(std::aligned_alloc(64, bytes));
     if (!memory_) throw std::bad_alloc();
+    kept_.Reserve(2, (kStateNumbers + 1) * signal_.size());
     for (int j = 0; j < lanes(); ++j) SetNumbers(j, *setup.gaits[static_cast<std::size_t>(j)]);
     kernel_.feedback_cpg_start(Rows(), memory_.get());
   }
 
-  void Restart(int lane, const GaitSpec& gait, const ResolvedGait&) override {
+  void Restart(int lane, const GaitSpec& gait) override {
     SetNumbers(lane, gait);
-    OtherLanes others(Lanes{1} << lane, lanes());
-    others.Keep(States(), kStateNumbers * cables().size());
-    kernel_.feedback_cpg_start(Rows(), memory_.get());
-    others.PutBack();
+    for (std::size_t k = 0; k < kSaid * cables().size(); ++k) feedback_[At(k, lane)] = 0.0;
+    Start(Lanes{1} << lane);
+  }
+
+  void Retune(int lane, const GaitSpec& gait) override {
+    SetNumbers(lane, gait);
+    retuned_ |= Lanes{1} << lane;
+  }
+
+  void Carry(LaneState& state) override {
+    GaitPlayer::Carry(state);
+    state.Row(States(), kStateNumbers * cables().size());
+    state.Row(first_length_m_);
+    state.Row(feedback_);
   }
 
   /// The oscillators start at the first tick, and go from tick to tick under what they heard at the
   /// tick before.
   void Tick(const GaitTick& tick, const Observation& seen) override {
+    if (retuned_ != 0) Start(0);
     Lanes first = 0;
     for (int j = 0; j < lanes(); ++j) {
       if (Has(tick.due, j) && tick.number[j] == 0) first |= Lanes{1} << j;
@@ -166,7 +178,6 @@ class FeedbackCpgPlayer final : public GaitPlayer {
       frequency_gain_[at] = cpg.frequency_gain_hz_per_s;
       amplitude_gain_[at] = cpg.amplitude_gain;
       phase_gain_[at] = cpg.phase_gain_rad_per_s * control::kTurnsPerRad;
-      for (std::size_t said = 0; said < kSaid; ++said) Feedback(i, said, lane) = 0.0;
     }
     for (std::size_t k = 0; k < to_.size(); ++k) {
       const CouplingGroup& group =
@@ -246,8 +257,17 @@ class FeedbackCpgPlayer final : public GaitPlayer {
     }
   }
 
+  /// The kernel gets the numbers of all lanes; oscillators of those that begin are at their start.
+  void Start(Lanes begin) {
+    retuned_ = 0;
+    OtherLanes others(begin, lanes(), kept_);
+    others.Keep(States(), kStateNumbers * cables().size());
+    kernel_.feedback_cpg_start(Rows(), memory_.get());
+    others.PutBack();
+  }
+
   void Go(Lanes due, int steps) {
-    OtherLanes others(due, lanes());
+    OtherLanes others(due, lanes(), kept_);
     others.Keep(States(), kStateNumbers * cables().size());
     others.Keep(signal_.data(), cables().size());
     kernel_.feedback_cpg_tick(count_, couplings(), memory_.get(), feedback_.data(),
@@ -265,6 +285,8 @@ class FeedbackCpgPlayer final : public GaitPlayer {
   std::vector<double> first_length_m_;
   std::vector<double> feedback_;  ///< Row kSaid * i + said.
   std::unique_ptr<void, Free> memory_;
+  Lanes retuned_ = 0;  ///< Whose numbers the kernel has not got yet.
+  KeptRows kept_;
   int steps_a_tick_ = 0;
   double integrator_step_s_ = 0;
 };

@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "base/assert.h"
+#include "plant/lane_state.h"
 #include "taut/gait.h"
 #include "taut/plant.h"
 
 namespace taut::plant {
 
-/// The lanes' gaits, which differ in numbers only; `resolved[j]` is what `ResolveGait` made of
-/// `gaits[j]`.
+/// The lanes' gaits, which differ in numbers only, so that `ResolveGait` makes the same of all.
 struct GaitSetup {
   std::vector<const GaitSpec*> gaits;
-  std::vector<ResolvedGait> resolved;
+  ResolvedGait resolved;
   double period_s = 0.01;
 };
 
@@ -32,7 +32,7 @@ class GaitPlayer {
  public:
   explicit GaitPlayer(const GaitSetup& setup)
       : lanes_(static_cast<int>(setup.gaits.size())),
-        cables_(setup.resolved[0].cables),
+        cables_(setup.resolved.cables),
         signal_(cables_.size() * setup.gaits.size()) {}
   virtual ~GaitPlayer() = default;
 
@@ -44,7 +44,12 @@ class GaitPlayer {
   /// To the next tick, in the lanes that are due.
   virtual void Tick(const GaitTick& tick, const Observation& seen) = 0;
   /// A lane gets other numbers, and plays from the beginning.
-  virtual void Restart(int lane, const GaitSpec& gait, const ResolvedGait& resolved) = 0;
+  virtual void Restart(int lane, const GaitSpec& gait) = 0;
+  /// A lane gets other numbers, and plays on: from its next tick, without a jump of a phase.
+  /// Allocates nothing.
+  virtual void Retune(int lane, const GaitSpec& gait) = 0;
+  /// What the next ticks of a lane need to know of those before.
+  virtual void Carry(LaneState& state) { state.Row(signal_); }
   /// Goes on in a lane from where another gait is, without a jump. False if there is no such way.
   virtual bool GoOnFrom(const GaitPlayer& before, int lane) {
     return (void)before, (void)lane, false;

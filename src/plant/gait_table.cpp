@@ -39,9 +39,10 @@ class TablePlayer final : public GaitPlayer {
     }
   }
 
-  void Restart(int lane, const GaitSpec& gait, const ResolvedGait&) override {
+  void Restart(int lane, const GaitSpec& gait) override {
     tables_[static_cast<std::size_t>(lane)] = *gait.table;
   }
+  void Retune(int, const GaitSpec&) override {}  // none of its numbers is one that varies
 
  private:
   static double TimeIn(const TableGait& table, double time_s) {

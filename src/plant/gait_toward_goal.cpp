@@ -28,7 +28,7 @@ control::StrutFrame<double> FrameOf(const std::vector<Axis>& struts) {
 class TowardGoalPlayer final : public GaitPlayer {
  public:
   explicit TowardGoalPlayer(const GaitSetup& setup) : GaitPlayer(setup), laws_(setup.gaits.size()) {
-    const ResolvedGait& found = setup.resolved[0];
+    const ResolvedGait& found = setup.resolved;
     for (const ResolvedGait::Strut& strut : found.struts) {
       bodies_.push_back(strut.body);
       along_.push_back(strut.along);
@@ -37,7 +37,7 @@ class TowardGoalPlayer final : public GaitPlayer {
     for (const Vec3& place : found.from_center) places_.push_back(AxisOf(place));
     now_.resize(bodies_.size());
     frame_ = FrameOf(described_);
-    for (int j = 0; j < lanes(); ++j) SetNumbers(j, *setup.gaits[static_cast<std::size_t>(j)]);
+    for (int j = 0; j < lanes(); ++j) Restart(j, *setup.gaits[static_cast<std::size_t>(j)]);
   }
 
   void Tick(const GaitTick& tick, const Observation& seen) override {
@@ -46,23 +46,35 @@ class TowardGoalPlayer final : public GaitPlayer {
     }
   }
 
-  void Restart(int lane, const GaitSpec& gait, const ResolvedGait&) override {
-    SetNumbers(lane, gait);
+  void Restart(int lane, const GaitSpec& gait) override {
+    Retune(lane, gait);
+    Law& own = laws_[static_cast<std::size_t>(lane)];
+    own.beat_hz = own.wanted_hz;
+    own.shift_turns = 0;
+  }
+
+  void Retune(int lane, const GaitSpec& gait) override {
+    const TowardGoalGait& g = *gait.toward_goal;
+    Law& own = laws_[static_cast<std::size_t>(lane)];
+    own.gains = {g.offset, g.ahead,  g.up,        g.ahead2,    g.ahead_up,
+                 g.up2,    g.ahead3, g.ahead2_up, g.ahead_up2, g.up3};
+    own.beat = g.beat;
+    own.wanted_hz = g.beat_hz;
+  }
+
+  void Carry(LaneState& state) override {
+    GaitPlayer::Carry(state);
+    Law& own = laws_[static_cast<std::size_t>(state.lane())];
+    state.Values(own.beat_hz, own.shift_turns);
   }
 
  private:
   struct Law {
-    control::TowardGoal<double> gains;
-    double beat, beat_hz;
+    control::TowardGoal<double> gains{};
+    double beat = 0, beat_hz = 0;
+    /// A frequency that changes does so at a tick, and the beat turns on from there.
+    double wanted_hz = 0, shift_turns = 0;
   };
-
-  void SetNumbers(int lane, const GaitSpec& gait) {
-    const TowardGoalGait& g = *gait.toward_goal;
-    laws_[static_cast<std::size_t>(lane)] = {{g.offset, g.ahead, g.up, g.ahead2, g.ahead_up, g.up2,
-                                              g.ahead3, g.ahead2_up, g.ahead_up2, g.up3},
-                                             g.beat,
-                                             g.beat_hz};
-  }
 
   /// Who does not know how the robot lies says the offset; who senses no goal hears of none: (0,
   /// 0).
@@ -77,9 +89,15 @@ class TowardGoalPlayer final : public GaitPlayer {
       ahead = InRobot(goal);
       up = InRobot({0, 0, 1});
     }
-    const Law& own = laws_[static_cast<std::size_t>(lane)];
-    const double strength =
-        control::BeatStrength(own.beat, control::ClockTurns(own.beat_hz, since_s));
+    Law& own = laws_[static_cast<std::size_t>(lane)];
+    if (own.wanted_hz != own.beat_hz) {
+      own.shift_turns =
+          control::WrapTurns(own.shift_turns + (own.beat_hz - own.wanted_hz) * since_s);
+      own.beat_hz = own.wanted_hz;
+    }
+    const double turns = control::ClockTurns(own.beat_hz, since_s);
+    const double strength = control::BeatStrength(
+        own.beat, own.shift_turns == 0.0 ? turns : control::WrapTurns(turns + own.shift_turns));
     for (std::size_t i = 0; i < places_.size(); ++i) {
       signal_[At(i, lane)] = control::TowardGoalSignal(own.gains, control::Along(ahead, places_[i]),
                                                        control::Along(up, places_[i]), strength);

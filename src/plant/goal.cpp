@@ -22,12 +22,22 @@ Horizontal Direction(double x, double y) {
 
 }  // namespace
 
+Vec3 PlaceOf(const StartNoise& noise, std::uint64_t seed) {
+  if (!(noise.place_m > 0)) return {};
+  math::Random random(seed, kStartPlace, 0);
+  const double x_m = random.Uniform(-noise.place_m, noise.place_m);
+  return {x_m, random.Uniform(-noise.place_m, noise.place_m), 0};
+}
+
 Vec3 GoalOf(const GoalSpec& goal, const StartNoise& noise, std::uint64_t seed) {
-  if (!(noise.goal_rad > 0)) return goal.at_m;
+  const Vec3 moved = PlaceOf(noise, seed);
+  if (!(noise.goal_rad > 0)) return goal.at_m + moved;
   math::Random random(seed, kGoal, 0);
   const double turn_rad = random.Uniform(-noise.goal_rad, noise.goal_rad);
   const double c = math::Cos(turn_rad), s = math::Sin(turn_rad);
-  return {c * goal.at_m.x - s * goal.at_m.y, s * goal.at_m.x + c * goal.at_m.y, goal.at_m.z};
+  const Vec3 turned{c * goal.at_m.x - s * goal.at_m.y, s * goal.at_m.x + c * goal.at_m.y,
+                    goal.at_m.z};
+  return turned + moved;
 }
 
 double DistanceToGoal(const Vec3& goal_m, const Vec3& body_m) {

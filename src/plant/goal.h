@@ -4,9 +4,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "plant/lane_state.h"
 #include "taut/plant.h"
 
 namespace taut::plant {
+
+/// By how much a start of this seed is beside the one described, horizontally [m].
+Vec3 PlaceOf(const StartNoise& noise, std::uint64_t seed);
 
 /// The goal in W, with the noise of a start of this seed.
 Vec3 GoalOf(const GoalSpec& goal, const StartNoise& noise, std::uint64_t seed);
@@ -25,6 +29,7 @@ class GoalSensor final : public SensorModel {
   void Sample(const Tick& tick, const Observation& exact) override;
   const Observation& seen() const override { return shown_; }
   void Restart(int lane, const RolloutWorld& world) override;
+  void Carry(LaneState& state) override { state.Row(rows_); }
 
  private:
   GoalSpec goal_;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "plant/lane_state.h"
 #include "taut/control/clock.h"
 #include "taut/plant.h"
 
@@ -40,6 +41,8 @@ class LaneClock {
     ticks_[static_cast<std::size_t>(lane)] = 0;
     together_ = ticks_.size() == 1;
   }
+  /// Into a lane that has begun anew.
+  void Carry(LaneState& state) { state.Row(ticks_); }
 
  private:
   control::Clock<double> clock_;

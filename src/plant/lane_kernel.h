@@ -69,6 +69,15 @@ struct FeedbackCpgRows {
   const double *weight_per_m = nullptr, *coupling_turns = nullptr;  ///< Per coupling.
 };
 
+/// Bodies of a group as the step has them (src/sim/state_rows.h).
+struct BodyRows {
+  int count = 0;
+  /// Rows of a body: 3, 4 (principal frame in W), 3, 3 (angular momentum in W), 3.
+  const double *position_m = nullptr, *turn = nullptr, *velocity_m_per_s = nullptr, *spin = nullptr,
+               *inverse_inertia = nullptr;
+  const double* start_turn = nullptr;  ///< Four numbers a body: `turn` as described; all lanes.
+};
+
 struct LaneKernel {
   int lanes;
   /// A tick of impedance control.
@@ -97,6 +106,11 @@ struct LaneKernel {
   double* (*feedback_cpg_states)(int count, int coupling_count, void* memory);
   void (*feedback_cpg_tick)(int count, int coupling_count, void* memory, const double* feedback,
                             double step_s, int steps, const double* offset, double* signal);
+  /// Thirteen rows a body, in the order of `BodyChannels`.
+  void (*bodies)(const BodyRows&, double* out);
+  /// Puts rows one behind the other; what is not finite becomes 0. Whether all is within what a
+  /// float can be.
+  bool (*collect)(const double* const* rows, int count, double* to);
 };
 
 extern const LaneKernel kLanesScalar;

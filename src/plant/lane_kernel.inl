@@ -172,15 +172,16 @@ void TickCpg(int count, int coupling_count, void* memory, const double* feedback
 }  // namespace taut::plant
 
 #include "plant/lane_feedback_cpg.inl"
+#include "plant/lane_gather.inl"
 
 namespace taut::plant {
 
 template <class W>
 constexpr LaneKernel MakeLaneKernel() {
-  return {W::kLanes,         ActImpedance<W>,     Measure<W>,          TickSine<W>,
-          CpgBytes<W>,       StartCpg<W>,         CpgStates<W>,        TickCpg<W>,
-          SayNetwork<W>,     FeedbackCpgBytes<W>, StartFeedbackCpg<W>, FeedbackCpgStates<W>,
-          TickFeedbackCpg<W>};
+  return {W::kLanes,          ActImpedance<W>,     Measure<W>,          TickSine<W>,
+          CpgBytes<W>,        StartCpg<W>,         CpgStates<W>,        TickCpg<W>,
+          SayNetwork<W>,      FeedbackCpgBytes<W>, StartFeedbackCpg<W>, FeedbackCpgStates<W>,
+          TickFeedbackCpg<W>, SeeBodies<W>,        Collect<W>};
 }
 
 }  // namespace taut::plant

@@ -147,6 +147,25 @@ void Loop::Restart(int lane, const RolloutWorld& world) {
   plant_.Restart(lane);
 }
 
+void Loop::Retune(int lane, const std::vector<ControllerSpec>& controllers) {
+  for (Law& law : laws_) law.controller->Retune(lane, controllers);
+}
+
+void Loop::Carry(LaneState& state) {
+  const auto lane = static_cast<std::size_t>(state.lane());
+  schedules_[schedules_.size() == 1 ? 0 : lane].Carry(state);
+  timelines_[lane].Carry(state);
+  for (Sensor& sensor : sensors_) {
+    sensor.model->Carry(state);
+    sensor.clock.Carry(state);
+  }
+  for (Law& law : laws_) {
+    law.controller->Carry(state);
+    law.clock.Carry(state);
+  }
+  plant_.Carry(state);
+}
+
 /// The next tick or corner.
 double Loop::NextBoundary(int lane) const {
   const auto timeline = static_cast<std::size_t>(lane < count_ ? lane : 0);

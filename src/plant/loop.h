@@ -43,6 +43,14 @@ class Loop {
   /// A lane begins anew as this variant; the plant has been brought to its start there.
   void Restart(int lane, const RolloutWorld& world);
 
+  /// The controllers of a lane go on with these numbers.
+  void Retune(int lane, const std::vector<ControllerSpec>& controllers);
+
+  /// All that a lane remembers, controllers, sensors, clocks and the plant's commands. Into a lane
+  /// that has been restarted, and retuned if it was, as it was when it was written; the plant has
+  /// been brought to its state.
+  void Carry(LaneState& state);
+
   double time_s(int lane = 0) const noexcept { return ScheduleOf(lane).time_s(); }
   /// Of the last step.
   const double* step_s() const noexcept { return step_s_.data(); }

@@ -1,6 +1,7 @@
 /// Rows are worked on for all lanes at once; lanes that are not due get back what they had.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -8,10 +9,33 @@
 
 namespace taut::plant {
 
+/// Memory for what is kept, so that nobody asks for some while he acts.
+class KeptRows {
+ public:
+  /// Room for so many rows, of so many numbers together, in all lanes.
+  void Reserve(std::size_t rows, std::size_t numbers) {
+    rows_.reserve(rows);
+    was_.reserve(numbers);
+  }
+
+ private:
+  friend class OtherLanes;
+  struct Row {
+    double* at;
+    std::size_t size;
+  };
+  std::vector<Row> rows_;
+  std::vector<double> was_;  ///< All rows, one after the other.
+};
+
 class OtherLanes {
  public:
-  /// Nothing is kept while all lanes are due.
-  OtherLanes(Lanes due, int lanes) : due_(due), lanes_(lanes), all_(due == AllLanes(lanes)) {}
+  /// Nothing is kept while all lanes are due. One at a time in a `memory`, which outlives it.
+  OtherLanes(Lanes due, int lanes, KeptRows& memory)
+      : due_(due), lanes_(lanes), all_(due == AllLanes(lanes)), kept_(memory) {
+    kept_.rows_.clear();
+    kept_.was_.clear();
+  }
 
   /// Whether there is nothing to keep.
   bool none() const noexcept { return all_; }
@@ -20,27 +44,26 @@ class OtherLanes {
   void Keep(double* row, std::size_t count) {
     if (all_) return;
     const std::size_t size = count * static_cast<std::size_t>(lanes_);
-    kept_.push_back({row, std::vector<double>(row, row + size)});
+    kept_.rows_.push_back({row, size});
+    kept_.was_.insert(kept_.was_.end(), row, row + size);
   }
 
   void PutBack() const {
     const auto lanes = static_cast<std::size_t>(lanes_);
-    for (const Row& row : kept_) {
-      for (std::size_t i = 0; i < row.was.size(); ++i) {
-        if (!Has(due_, static_cast<int>(i % lanes))) row.at[i] = row.was[i];
+    const double* was = kept_.was_.data();
+    for (const KeptRows::Row& row : kept_.rows_) {
+      for (std::size_t i = 0; i < row.size; ++i) {
+        if (!Has(due_, static_cast<int>(i % lanes))) row.at[i] = was[i];
       }
+      was += row.size;
     }
   }
 
  private:
-  struct Row {
-    double* at;
-    std::vector<double> was;
-  };
   Lanes due_;
   int lanes_;
   bool all_;
-  std::vector<Row> kept_;
+  KeptRows& kept_;
 };
 
 }  // namespace taut::plant

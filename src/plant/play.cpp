@@ -21,7 +21,7 @@ std::optional<TableGait> PlayGait(const GaitSpec& gait, const RobotSpec& robot, 
     deaf.feedback_cpg->goal_network.reset();
   }
   const double period_s = 1.0 / rate_hz;
-  const auto player = plant::PlayerOf({{&deaf}, {std::move(*resolved)}, period_s});
+  const auto player = plant::PlayerOf({{&deaf}, std::move(*resolved), period_s});
   const auto rows = static_cast<std::int64_t>(std::floor(duration_s * rate_hz + 1e-9)) + 1;
   for (std::int64_t row = 0; row < rows; ++row) {
     const double time_s = static_cast<double>(row) * period_s;

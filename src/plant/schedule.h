@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "plant/lane_state.h"
+
 namespace taut::plant {
 
 /// Times are sums of steps: two that are no further apart are one.
@@ -36,6 +38,8 @@ class Schedule {
     // "n steps" that differ from the step asked for by rounding only are that step.
     if (std::fabs(step_s_ - wanted_s_) < 1e-9 * wanted_s_) step_s_ = wanted_s_;
   }
+
+  void Carry(LaneState& state) { state.Values(time_s_, step_s_, from_s_, until_s_, steps_, done_); }
 
   /// A step was done.
   void Advance() {

@@ -54,6 +54,19 @@ void Sensors::Restart(int lane, const RolloutWorld& world) {
   DrawErrors(j);
 }
 
+/// Slots are counted from the lane's first tick: they mean the same in every lane.
+void Sensors::Carry(LaneState& state) {
+  tension_delay_.Carry(state);
+  rest_delay_.Carry(state);
+  for (std::size_t i = static_cast<std::size_t>(state.lane()); i < errors_.size();
+       i += seeds_.size()) {
+    Errors& of = errors_[i];
+    state.Values(of.bias_n, of.gain, of.drift_n_per_s, of.zero_m, of.encoder_gain, of.start_m,
+                 of.index_passed);
+  }
+  EachReading([&state](std::vector<double>& row) { state.Row(row); }, seen_);
+}
+
 void Sensors::Sample(const Tick& tick, const Observation& exact) {
   shown_.lanes = exact.lanes;
   shown_.time_s = exact.time_s;

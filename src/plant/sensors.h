@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "plant/lane_state.h"
 #include "taut/plant.h"
 
 namespace taut::plant {
@@ -19,6 +20,7 @@ class Sensors final : public SensorModel {
   /// The last sample, as late as the sensors are.
   const Observation& seen() const override { return shown_; }
   void Restart(int lane, const RolloutWorld& world) override;
+  void Carry(LaneState& state) override;
 
  private:
   /// What was sampled d ticks ago; before that, the first sample. Of each lane at its own tick.
@@ -29,6 +31,7 @@ class Sensors final : public SensorModel {
     double Oldest(std::size_t i, std::int64_t tick) noexcept {
       return Slot(i, tick < delay_ ? 0 : tick - delay_);
     }
+    void Carry(LaneState& state) { state.Row(ring_); }
 
    private:
     double& Slot(std::size_t i, std::int64_t tick) noexcept {

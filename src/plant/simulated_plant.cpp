@@ -66,6 +66,13 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     rows_.Restart(lane);
   }
 
+  /// Rest lengths and whether motors are on are part of the batch's own snapshots.
+  void Carry(plant::LaneState& state) override {
+    state.Row(time_s_);
+    rows_.Carry(state);
+    state.Row(off_);
+  }
+
   bool Goes(int lane) const override { return (batch_.Status(lane).bits & kStatusNonFinite) == 0; }
   World* world() noexcept override { return this; }
 

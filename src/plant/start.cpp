@@ -1,13 +1,16 @@
 #include "plant/start.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/fixed.h"
 #include "base/union_find.h"
 #include "math/elementary.h"
 #include "math/random.h"
 #include "math/vec.h"
+#include "plant/goal.h"
 #include "plant/streams.h"
+#include "sim/ground_height.h"
 #include "taut/start.h"
 
 namespace taut::plant {
@@ -83,6 +86,67 @@ Quat TurnOf(const StartNoise& noise, std::uint64_t seed) {
   return turn;
 }
 
+/// Points of the robot as described, no further apart along its rods than these are thick, by
+/// which it stands over the ground.
+std::vector<Vec3> PointsOf(const ModelDef& def) {
+  constexpr double kMostOfARod = 100;
+  std::vector<Vec3> points;
+  for (const NodeDef& node : def.nodes) {
+    if (node.body != kWorld) points.push_back(node.position_m);
+  }
+  for (const SphereDef& sphere : def.spheres) points.push_back(sphere.center_m);
+  for (const CapsuleDef& rod : def.capsules) {
+    const Vec3 along = rod.to_m - rod.from_m;
+    const double radii = std::sqrt(Dot(along, along)) / rod.radius_m;
+    const int parts = static_cast<int>(std::fmin(std::ceil(radii), kMostOfARod));
+    for (int i = 0; i <= parts; ++i) {
+      points.push_back(rod.from_m + (parts > 0 ? 1.0 * i / parts : 0.0) * along);
+    }
+  }
+  for (const BoxDef& box : def.boxes) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto side = [&](int k) { return (corner >> k & 1) != 0 ? 1.0 : -1.0; };
+      const Vec3& half = box.half_extents_m;
+      points.push_back(box.center_m + Rotate(box.orientation, {side(0) * half.x, side(1) * half.y,
+                                                               side(2) * half.z}));
+    }
+  }
+  for (const HullDef& hull : def.hulls) {
+    points.insert(points.end(), hull.corners_m.begin(), hull.corners_m.end());
+  }
+  return points;
+}
+
+/// Where the noise puts the robot: no point of it comes nearer to the ground below it. Nothing, and
+/// a complaint, where there is no ground.
+std::optional<Vec3> PlacedBy(const ExperimentSpec& experiment, const Model& model,
+                             Diagnostics& out) {
+  Vec3 by = PlaceOf(experiment.start_noise, experiment.seed);
+  double up_m = -std::numeric_limits<double>::infinity();
+  for (const Vec3& p : PointsOf(experiment.robot.def)) {
+    const double was_m = sim::GroundHeight(model, p.x, p.y);
+    const double is_m = sim::GroundHeight(model, p.x + by.x, p.y + by.y);
+    if (std::isinf(is_m) && is_m != was_m) {
+      out.Error({}, "start_noise.place_m puts the robot beyond its terrain",
+                "smaller, or a larger terrain");
+      return std::nullopt;
+    }
+    if (!std::isinf(is_m)) up_m = std::fmax(up_m, is_m - (std::isinf(was_m) ? p.z : was_m));
+  }
+  if (!std::isinf(up_m)) by.z = up_m;
+  return by;
+}
+
+/// Moves all bodies that move.
+void MoveBy(const Vec3& by, const ModelDef& def, Batch& batch) {
+  for (std::size_t b = 0; b < def.bodies.size(); ++b) {
+    if (def.bodies[b].fixed) continue;
+    BodyState state = batch.Body(kTheWorld, static_cast<int>(b));
+    state.position_m = state.position_m + by;
+    batch.SetBodyState(kTheWorld, static_cast<int>(b), state);
+  }
+}
+
 /// Bodies a little off, upwards rather than into the ground; then the whole robot turned.
 void Disturb(const ExperimentSpec& experiment, Batch& batch) {
   const StartNoise& noise = experiment.start_noise;
@@ -155,11 +219,18 @@ bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& o
                   const std::function<bool()>& go_on, std::optional<SettledStart>* settled) {
   ApplyScales(experiment.scales, batch, kTheWorld);
   const RobotSpec& robot = experiment.robot;
+  const StartNoise& noise = experiment.start_noise;
   const bool terrain = experiment.start != StartKind::kSettledFloating;
+  std::optional<Vec3> placed;
+  if (noise.place_m > 0) {
+    placed = PlacedBy(experiment, batch.model(), out);
+    if (!placed) return false;
+    if (terrain) MoveBy(*placed, robot.def, batch);
+  }
   if (!CheckOverlaps(robot, batch, terrain, false, out)) return false;
   if (!FindStart(experiment, batch, out, go_on, settled)) return false;
-  const StartNoise& noise = experiment.start_noise;
-  const bool noisy = noise.position_m > 0 || noise.heading_rad > 0 || noise.any_pose;
+  if (placed && !terrain) MoveBy(*placed, robot.def, batch);
+  const bool noisy = placed || noise.position_m > 0 || noise.heading_rad > 0 || noise.any_pose;
   if (noisy) Disturb(experiment, batch);
   if (!noisy && experiment.start == StartKind::kAsDescribed) return true;
   return CheckOverlaps(robot, batch, true, false, out);

@@ -55,8 +55,8 @@ Vec3 Timeline::DragForce(const Bodies& bodies, int lane, std::size_t drag, doubl
   drag_n_[drag] = 0;
   if (time_s < spec.from_s || time_s > spec.to_s) return {};
   const Vec3 node = bodies.NodePosition(lane, spec.node);
-  if (!dragging_[drag]) {
-    dragging_[drag] = true;
+  if (dragging_[drag] == 0) {
+    dragging_[drag] = 1;
     drag_start_m_[drag] = node;
   }
   const Vec3 hand = drag_start_m_[drag] + (time_s - spec.from_s) * spec.velocity_m_per_s;
@@ -94,9 +94,16 @@ void Timeline::Apply(World& world, int lane, double time_s, double step_s) {
 void Timeline::Restart() {
   std::fill(push_n_.begin(), push_n_.end(), 0.0);
   std::fill(drag_n_.begin(), drag_n_.end(), 0.0);
-  dragging_.assign(dragging_.size(), false);
+  dragging_.assign(dragging_.size(), 0);
   hand_.clear();
   set_n_.assign(nodes_.size(), kNothingYet);
+}
+
+void Timeline::Carry(LaneState& state) {
+  const auto all = [&state](auto& list) {
+    for (auto& x : list) state.Value(x);
+  };
+  all(set_n_), all(push_n_), all(drag_n_), all(drag_start_m_), all(dragging_);
 }
 
 void Timeline::SetHandForces(std::vector<NodeForce> forces) {

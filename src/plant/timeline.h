@@ -1,8 +1,10 @@
 /// What happens to the robot from outside: pushes and drags.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
+#include "plant/lane_state.h"
 #include "taut/plant.h"
 
 namespace taut::plant {
@@ -33,6 +35,8 @@ class Timeline {
 
   /// From the beginning; no hand holds anything.
   void Restart();
+  /// What has happened so far, without hands.
+  void Carry(LaneState& state);
 
   /// Forces that the experiment does not know of, until changed: a person's hand. They add to its
   /// pushes and drags.
@@ -52,7 +56,7 @@ class Timeline {
   std::vector<double> push_n_, drag_n_;
   std::vector<NodeForce> hand_;
   std::vector<Vec3> drag_start_m_;
-  std::vector<bool> dragging_;
+  std::vector<std::uint8_t> dragging_;
 };
 
 }  // namespace taut::plant

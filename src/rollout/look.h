@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <span>
 
 #include "math/vec.h"
@@ -12,13 +13,18 @@
 namespace taut::rollout {
 
 /// Whether the angle between a body's own vertical and the world's is beyond the limit.
-inline bool AnyTilted(std::span<const BodyState> bodies, double cos_max_tilt) {
+template <class OrientationOf>
+bool AnyTilted(std::size_t count, const OrientationOf& orientation_of, double cos_max_tilt) {
   bool tilted = false;
-  for (const BodyState& body : bodies) {
-    const Quat& q = body.orientation;
+  for (std::size_t b = 0; b < count; ++b) {
+    const Quat q = orientation_of(b);
     tilted = tilted || 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < cos_max_tilt;
   }
   return tilted;
+}
+inline bool AnyTilted(std::span<const BodyState> bodies, double cos_max_tilt) {
+  return AnyTilted(
+      bodies.size(), [&](std::size_t b) { return bodies[b].orientation; }, cos_max_tilt);
 }
 
 /// Of the centre of mass.
@@ -28,13 +34,18 @@ inline bool BeyondHeights(const FallSpec& fall, double height_m) {
 }
 
 /// The last body that is faster, or not a number; kWorld: none.
-inline int TooFast(std::span<const BodyState> bodies, double max_speed_m_per_s) {
+template <class VelocityOf>
+int TooFast(std::size_t count, const VelocityOf& velocity_of, double max_speed_m_per_s) {
   int found = kWorld;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const Vec3& v = bodies[b].velocity_m_per_s;
+  for (std::size_t b = 0; b < count; ++b) {
+    const Vec3 v = velocity_of(b);
     if (!(std::sqrt(Dot(v, v)) <= max_speed_m_per_s)) found = static_cast<int>(b);
   }
   return found;
+}
+inline int TooFast(std::span<const BodyState> bodies, double max_speed_m_per_s) {
+  return TooFast(
+      bodies.size(), [&](std::size_t b) { return bodies[b].velocity_m_per_s; }, max_speed_m_per_s);
 }
 
 /// The part of a way that counts as distance [m].

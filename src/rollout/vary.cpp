@@ -5,6 +5,7 @@
 namespace taut::rollout {
 
 void Vary(const VariationSpec& by, math::Random random, RolloutWorld& world) {
+  world.start_noise.place_m += by.start.place_m;
   world.start_noise.position_m += by.start.position_m;
   world.start_noise.heading_rad += by.start.heading_rad;
   world.start_noise.goal_rad += by.start.goal_rad;

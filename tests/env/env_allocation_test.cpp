@@ -14,16 +14,23 @@ class EnvAllocation : public testing::Test {
   }
 };
 
+/// Of steps from the first one of an episode on, in which worlds begin at different times.
 long OfSteps(const ExperimentSpec& experiment, int threads, int steps) {
   const auto env = MakeEnv(experiment, {.worlds = 37, .threads = threads});
   Arrays<float> arrays(*env);
-  for (int i = 0; i < 2; ++i) arrays.Step(*env);  // controllers have had their first ticks
-  const long before = allocations;
+  long made = 0;
   for (int i = 0; i < steps; ++i) {
+    if (i == 3) {
+      std::vector<std::uint8_t> mask(arrays.worlds);
+      for (std::size_t w = 0; w < mask.size(); w += 3) mask[w] = 1;
+      EXPECT_TRUE(arrays.Reset(*env, {}, mask));
+    }
     Wiggle(arrays, i);
+    const long before = allocations;
     arrays.Step(*env);
+    made += allocations - before;
   }
-  return allocations - before;
+  return made;
 }
 
 TEST_F(EnvAllocation, AStepInWhichNoEpisodeBeginsMakesNone) {
@@ -38,8 +45,26 @@ TEST_F(EnvAllocation, AStepInWhichNoEpisodeBeginsMakesNone) {
   held.environment->observations = {"sensor/*", "cable/*/setpoint_n"};
   held.environment->actions.push_back({.cable = 2, .velocity_input_m_per_s = 0.1});
   for (const int threads : {1, 2}) {
-    EXPECT_EQ(OfSteps(spine, threads, 50), 0);
-    EXPECT_EQ(OfSteps(held, threads, 50), 0);
+    EXPECT_EQ(OfSteps(spine, threads, 30), 0);
+    EXPECT_EQ(OfSteps(held, threads, 30), 0);
+  }
+}
+
+TEST_F(EnvAllocation, NorDoFirstTicksOfGaitsWhoseNumbersActionsMove) {
+  for (const auto& [name, number] : {std::pair{"sine_hand_tuned", "impedance.sine.frequency_hz"},
+                                     {"cpg_learned", "impedance.cpg.frequency_hz"},
+                                     {"rest_length_sine", "motion.sine.left.amplitude_m"},
+                                     {"goal_flat", "motion.feedback_cpg.phase_gain_rad_per_s"},
+                                     {"roll_to_goal", "motion.toward_goal.up_m"}}) {
+    ExperimentSpec experiment = LoadFrom(name, 1);
+    EnvironmentSpec& spec = experiment.environment.emplace();
+    spec.period_s = 0.01;
+    spec.observations = {"body/*/position_*"};
+    EnvironmentAction& action = spec.actions.emplace_back();
+    action.cable = kWorld;
+    action.numbers = {number};
+    action.by = 0.1;
+    EXPECT_EQ(OfSteps(experiment, 1, 8), 0) << name;
   }
 }
 

@@ -209,6 +209,50 @@ TEST(EnvBits, AWorldAmongManyIsAsItIsAlone) {
   }
 }
 
+TEST(EnvBits, WhatIsObservedIsOfNow) {
+  for (const bool measured : {true, false}) {
+    ExperimentSpec experiment = LoadFrom("learn_spine", 1);
+    EnvironmentSpec& spec = *experiment.environment;
+    spec.observations = {"cable/*/length_m", "cable/*/tension_n", "body/*"};
+    if (!measured) {
+      spec.reward.work_penalty_per_j = 0;
+      spec.max_tension_n.reset();
+    }
+    spec.randomise.observation_delay_s = 0;
+    const auto env = MakeEnv(experiment, {.worlds = 11});
+    Arrays<> arrays(*env);
+    const auto look = [&] {
+      for (int w = 0; w < env->worlds(); ++w) {
+        const std::vector<double> row = arrays.Row(static_cast<std::size_t>(w));
+        std::size_t i = 0;
+        for (int c = 0; c < 12; ++c) {
+          const CableState cable = env->Cable(w, c);
+          ASSERT_EQ(row[i++], cable.tension_n) << measured << c;
+          ASSERT_EQ(row[i++], cable.length_m) << measured << c;
+        }
+        for (int b = 0; b < 3; ++b) {
+          const BodyState body = env->Body(w, b);
+          const Vec3 &p = body.position_m, &v = body.velocity_m_per_s,
+                     &turn = body.angular_velocity_rad_per_s;
+          const Quat& q = body.orientation;
+          for (const double x :
+               {p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, turn.x, turn.y, turn.z}) {
+            ASSERT_EQ(row[i++], x) << measured << b;
+          }
+        }
+        ASSERT_EQ(i, row.size());
+      }
+    };
+    EXPECT_TRUE(arrays.Reset(*env));
+    look();
+    for (int step = 0; step < 4; ++step) {
+      Wiggle(arrays, step);
+      arrays.Step(*env);
+      look();
+    }
+  }
+}
+
 TEST(EnvBits, ActionsDoSomething) {
   const ExperimentSpec experiment = Controlled(0.2);
   const auto env = MakeEnv(experiment, {.worlds = 2, .randomise = false});

@@ -128,6 +128,85 @@ TEST_F(EnvDescription, ActionsMoveWhatTheyCan) {
 )");
 }
 
+TEST_F(EnvDescription, ActionsOnNumbersAreWhatTheFileSays) {
+  std::string text = std::string(kExperiment) + kEnvironment;
+  const std::string old_text = "    - {cables: driven, velocity_input_m_per_s: 0.1}\n";
+  text.replace(text.find(old_text), old_text.size(), R"(    - {each: hold.*.tension_offset_n, by: 5}
+    - {all: [hold.left.length_offset_m, hold.right.length_offset_m], by: 2 / 100, name: reach}
+    - {all: hold.right.velocity_*, by: 1}
+    - {cables: right, velocity_input_m_per_s: 0.1}
+)");
+  Write("env.yaml", text);
+  ExperimentSpec experiment = Load("env.yaml");
+  for (int pass = 0; pass < 2; ++pass) {  // as written, and as resolved
+    ASSERT_TRUE(experiment.environment);
+    const std::vector<EnvironmentAction>& actions = experiment.environment->actions;
+    ASSERT_EQ(actions.size(), 5u);
+    EXPECT_EQ(actions[0].cable, 1);
+    EXPECT_EQ(actions[0].velocity_input_m_per_s, 0.1);
+    EXPECT_FALSE(actions[0].by);
+    const std::vector<std::string> numbers[] = {
+        {},
+        {"hold.left.tension_offset_n"},
+        {"hold.right.tension_offset_n"},
+        {"hold.left.length_offset_m", "hold.right.length_offset_m"},
+        {"hold.right.velocity_gain_n_s_per_m", "hold.right.velocity_offset_m_per_s"}};
+    const double by[] = {0, 5, 5, 0.02, 1};
+    const char* const names[] = {"", "", "", "reach", "hold.right.velocity_gain_n_s_per_m"};
+    for (std::size_t i = 1; i < 5; ++i) {
+      EXPECT_EQ(actions[i].cable, kWorld);
+      EXPECT_EQ(actions[i].numbers, numbers[i]);
+      EXPECT_EQ(actions[i].by, by[i]);
+      EXPECT_EQ(actions[i].name, names[i]);
+    }
+    Diagnostics out;
+    EXPECT_TRUE(CheckEnvironment(experiment, out)) << out.Format();
+    Write("resolved.yaml", ResolvedYaml(experiment));
+    experiment = Load("resolved.yaml");
+  }
+}
+
+TEST_F(EnvDescription, ActionsOnNumbersMoveWhatTheyCan) {
+  const std::string old_text = "{cables: driven, velocity_input_m_per_s: 0.1}";
+  EXPECT_EQ(
+      Wrong(old_text, "{each: hold.*.tension_n, by: 5}"),
+      R"(25:14: error: environment.actions.each: nothing is called "hold.*.tension_n" (`taut learn --parameters EXPERIMENT` lists them all)
+)");
+  EXPECT_EQ(
+      Wrong(old_text, "{each: hold.left.tension_offset_n}"),
+      R"(25:7: error: environment.actions needs one of rest_length_m, rest_length_rate_m_per_s, velocity_input_m_per_s, by
+)");
+  EXPECT_EQ(Wrong(old_text, "{each: hold.left.tension_offset_n, rest_length_m: 1, name: x}"),
+            R"(25:42: error: environment.actions.rest_length_m goes with `cables` only
+)"
+            R"(25:60: error: environment.actions.name goes with `all` only
+)");
+  EXPECT_EQ(Wrong(old_text, "{cables: driven, by: 1, name: x}"),
+            R"(25:24: error: environment.actions.by goes with `each` or `all` only
+)"
+            R"(25:31: error: environment.actions.name goes with `all` only
+)");
+  EXPECT_EQ(
+      Wrong(old_text, "{all: hold.*.tension_offset_n, each: x, by: 1}"),
+      R"(25:8: error: environment.actions has both each and all (only one of them may be there)
+)");
+  EXPECT_EQ(Wrong(old_text, "{by: 1}"),
+            R"(25:7: error: environment.actions needs one of cables, each, all
+)");
+  EXPECT_EQ(Wrong(old_text, "{each: hold.left.tension_offset_n, by: 0}"),
+            R"(25:46: error: environment.actions.by must be positive, got 0
+)");
+  EXPECT_EQ(
+      Wrong(old_text, "{each: hold.*.tension_offset_n, by: 5}\n    - {all: hold.left.*, by: 1}"),
+      R"(26:13: error: environment.actions: two actions move hold.left.tension_offset_n (the first is in line 25)
+)");
+  EXPECT_EQ(Wrong(old_text,
+                  "{all: hold.left.t*, by: 5, name: a}\n"
+                  "    - {all: hold.right.t*, by: 1, name: a}"),
+            R"(26:35: error: environment.actions: two actions are called a
+)");
+}
+
 TEST_F(EnvDescription, WhatBelongsTogetherIsThere) {
   EXPECT_EQ(
       Wrong(", direction: [0, 3, 4]", ""),
@@ -169,6 +248,31 @@ TEST_F(EnvDescription, ChannelsAndClocksFit) {
       Unfit("duration_s: 10", "duration_s: 10.01"),
       R"(23:3: error: environment.period_s must go into duration_s a whole number of times, got 500.5 (an episode lasts duration_s, 10.01 s)
 )");
+}
+
+TEST_F(EnvDescription, AWrongChannelIsToldWithWhatElseIsWrong) {
+  std::string text = std::string(kExperiment) + kEnvironment;
+  const auto change = [&text](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  change("cable/*/tension_n", "cable/*/tensions");
+  change("starts: 12", "starts: -1");
+  change("rate_hz: 50", "rate_hz: 50, channels: [body/*/position]");
+  Write("env.yaml", text);
+  Diagnostics out;
+  EXPECT_FALSE(LoadExperimentAndChannels(Path("env.yaml"), {}, out));
+  EXPECT_EQ(
+      Without(Path("env.yaml") + ":", ErrorsOf(out)),
+      R"(21:34: error: record.channels: no channel fits "body/*/position" (did you mean "body/*/position_x_m"?)
+)"
+      R"(26:18: error: environment.observations: no channel fits "cable/*/tensions" (did you mean "cable/*/tension_n"?)
+)"
+      R"(29:76: error: environment.randomise.starts must be a whole number within 0..100000, got -1
+)");
+  change("starts: -1", "starts: 12");
+  Write("env.yaml", text);
+  EXPECT_TRUE(LoadExperimentAndChannels(Path("env.yaml"), {}, out = {}));  // for others to say
+  EXPECT_TRUE(out.ok());
 }
 
 TEST(EnvSpec, ShippedOnesFit) {

@@ -4,6 +4,7 @@ import math
 import os
 import pathlib
 import sys
+import tempfile
 import unittest
 import warnings
 
@@ -66,6 +67,53 @@ class Contract(unittest.TestCase):
         again, _ = envs.reset(seed=[7, 8, 9, 10])
         np.testing.assert_array_equal(again, together)
         self.assertFalse((envs.reset()[0] == together).all(axis=1).any())
+
+    def test_a_restored_world_goes_on_as_it_would_have(self):
+        envs, other = taut.gym.make_vec(short(), 3), taut.gym.make_vec(short(), 1, simd="scalar", seed=90)
+        envs.reset(seed=5)
+        acts = actions_of(envs, 9)
+        envs.step(acts[0])
+        saved = envs.save(2)
+        self.assertIsInstance(saved, bytes)
+        expected = [envs.step(a) for a in acts[1:]]  # through the end of the episode
+        other.restore(saved)
+        for step, a in zip(expected, acts[1:]):
+            observations, rewards, over, cut, _ = other.step(a[2:])
+            np.testing.assert_array_equal(observations[0], step[0][2])
+            self.assertEqual((rewards[0], over[0], cut[0]), (step[1][2], step[2][2], step[3][2]))
+        self.assertEqual(other.hash(0), envs.hash(2))
+        alone = taut.gym.Env(SPINE)
+        state = alone.save()
+        first = alone.step(acts[0][0])[0]
+        alone.restore(state)
+        np.testing.assert_array_equal(alone.step(acts[0][0])[0], first)
+        for wrong, world in ((saved[:-1], 0), (b"nothing", 0), (alone.save(), 0)):
+            with self.assertRaises(taut.InputError):
+                other.restore(wrong, world)
+        with self.assertRaises(IndexError):
+            envs.save(3)
+
+    def test_actions_may_move_what_controllers_know(self):
+        text = pathlib.Path(ROOT / "experiments" / "sine_hand_tuned.yaml").read_text()
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "wave.yaml"
+            path.write_text(text.replace("../", f"{ROOT}/") + """
+environment:
+  period_s: 0.02
+  actions:
+    - {each: impedance.inner_*.tension_offset_n, by: 5}
+    - {all: impedance.sine.*.amplitude_m_per_s, by: 0.02, name: amplitude}
+  observations: [cable/*/setpoint_n]
+""")
+            envs = taut.gym.make_vec(str(path), 2)
+        self.assertEqual(len(envs.action_channels), 7)
+        self.assertIn("impedance.inner_top_1.tension_offset_n", envs.action_channels[:6])
+        self.assertEqual((envs.action_channels[6], envs.action_scales[6]), ("amplitude", 0.02))
+        envs.reset(seed=0)
+        actions = np.zeros(envs.action_space.shape, np.float32)
+        actions[1] = 1
+        observations = envs.step(actions)[0]
+        self.assertGreater(np.abs(observations[1] - observations[0]).max(), 1)
 
     def test_a_masked_reset_leaves_all_others(self):
         envs, other = taut.gym.make_vec(SPINE, 3), taut.gym.make_vec(SPINE, 3)

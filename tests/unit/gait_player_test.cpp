@@ -32,7 +32,7 @@ struct Player {
     Diagnostics out;
     const auto resolved = ResolveGait(gait, Spine(), out);
     EXPECT_TRUE(resolved) << out.Format();
-    player = plant::PlayerOf({{&gait}, {resolved.value_or(ResolvedGait{})}, on.period_s});
+    player = plant::PlayerOf({{&gait}, resolved.value_or(ResolvedGait{}), on.period_s});
   }
 
   const std::vector<int>& cables() const { return player->cables(); }
