@@ -58,7 +58,7 @@ int ExportShape(const ShapeArguments& args) {
     triangles += mesh.triangles.size();
     cables += mesh.kind == ShapeMesh::Kind::kCable || mesh.kind == ShapeMesh::Kind::kSlackCable;
   }
-  fmt::print("{}: {} shapes and {} cables, {} triangles\n", args.out, shapes.size() - cables,
+  fmt::print("{}: shapes: {}, cables: {}, triangles: {}\n", args.out, shapes.size() - cables,
              cables, triangles);
   return kOk;
 }

@@ -168,8 +168,8 @@ std::string TableOf(const ModelDef& def, const PinJointed& s) {
                  Fixed(m.force_n, 3), Fixed(m.force_density_n_per_m, 3)});
   }
   const std::size_t strings = s.members.size() - static_cast<std::size_t>(s.bars);
-  return fmt::format("Model {}: {} nodes, {} bars, {} strings of {} cables\n\n{}", def.name,
-                     s.nodes.size(), s.bars, strings,
+  return fmt::format("Model {}: nodes: {}, bars: {}, strings: {}, their clusters: {}\n\n{}",
+                     def.name, s.nodes.size(), s.bars, strings,
                      s.clusters.size() - static_cast<std::size_t>(s.bars), members.Text());
 }
 

@@ -76,7 +76,7 @@ int Convert(const ConvertArguments& args) {
     return kInterrupted;
   }
   if (!args.quiet) {
-    fmt::print("{}: {} rows of {} channels\n", args.out, trace->time_s.size(),
+    fmt::print("{}: rows: {}, channels: {}\n", args.out, trace->time_s.size(),
                trace->channels.size());
   }
   return kOk;

@@ -23,7 +23,7 @@ struct PinNode {
   bool on_ground = false;        ///< What a plane of the terrain touches: that pushes on it.
   double mass_kg = 0;  ///< Of the bodies that it belongs to: their mass and centre of mass are
                        ///< kept, their inertia is not.
-  Vec3 load_n;  ///< Weight.
+  Vec3 load_n;         ///< Weight.
   /// What has to act on it besides its load and its members, so that it is at rest: from what pins
   /// it and from the ground. Of other nodes it is what does not balance.
   Vec3 left_n;
@@ -73,8 +73,8 @@ bool IsHeldInWorld(const ModelDef& def);
 /// the ground best (in least squares; of several that do the smallest forces).
 /// A body that is more than one rod becomes a truss that is as rigid as it is: braces, and where
 /// its points are on a line or in a plane, further nodes beside that.
-/// Without `weight`, or where no node is pinned or on the ground, there are no loads: what falls has
-/// no weight for its members.
+/// Without `weight`, or where no node is pinned or on the ground, there are no loads: what falls
+/// has no weight for its members.
 PinJointed PinJointedOf(const ModelDef& def, bool weight = true);
 
 // As matrices: N (3 x nodes); C (members x nodes: -1 where a member begins, 1 where it ends), of

@@ -116,7 +116,7 @@ def TheIndexLeadsToEveryMessage(taut, folder):
     records = seen["records"]
     assert records["DataEnd"] == records["Header"] == records["Footer"] == records["Statistics"] == 1
     assert records["SummaryOffset"] == 5 and records["MetadataIndex"] == records["Metadata"] == 1
-    assert seen["footer"]["summaryCrc"] != 0
+    assert seen["footer"]["summaryCrc"] != 0 and seen["data_crc"] != 0
     # Sought for, a part of it comes, and no more.
     low, high = ns(time_s[20]), ns(time_s[40])
     part = run.node("read_mcap.mjs", folder / "out.mcap", low, high, needs=NEEDS)["indexed"]
@@ -141,6 +141,17 @@ def vector(v):
     return np.array([v["x"], v["y"], v["z"]])
 
 
+def ATraceThatBeginsBeforeZeroBeginsAtZero(taut, folder):
+    (folder / "early.csv").write_text("time_s,depth_m,a/b_n,a/c_n\n-2.5,1,nan,3\n-2.25,4,5,-inf\n1e3,7,8,9\n")
+    seen = convert(taut, folder, "early.csv")
+    topics = by_topic(seen["indexed"])
+    assert [int(m["log_time"]) for m in topics["/a"]] == [0, 250_000_000, 1_002_500_000_000]
+    assert [m["data"] for m in topics["/a"]] == [{"c_n": 3}, {"b_n": 5}, {"b_n": 8, "c_n": 9}]
+    assert [m["data"] for m in topics["/values"]] == [{"depth_m": 1}, {"depth_m": 4}, {"depth_m": 7}]
+    assert set(topics) == {"/a", "/values"}
+    assert int(seen["statistics"]["messageEndTime"]) == 1_002_500_000_000
+
+
 def FramesAndCablesAreWhereTheRobotIs(taut, folder):
     folder_of_run = record(taut, folder, "drop_six_strut")
     time_s, columns, _ = trace_of(folder_of_run / "trace.h5")
@@ -156,6 +167,10 @@ def FramesAndCablesAreWhereTheRobotIs(taut, folder):
     [line] = lines["lines"]
     points = [vector(p) for p in line["points"]]
     assert len(points) == 48 and line["type"] == 2
+    # Grey is what is slack: red and green are less apart than they are in the blue of the others.
+    slack = [values[row] <= 0 for name, values in columns.items() if name.endswith("/tension_n")]
+    grey = [abs(c["r"] - c["b"]) < 0.1 for c in line["colors"]]
+    assert grey[::2] == grey[1::2] == slack, (grey, slack)
     ends = []
     for name, frame in frames.items():
         assert frame["parent_frame_id"] == "world"

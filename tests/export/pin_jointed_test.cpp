@@ -63,6 +63,23 @@ TEST(PinJointed, AWeightOnTwoRopesPullsByItsWeight) {
   EXPECT_NEAR(PinJointedOf(def, false).nodes[0].load_n.z, 0, 0);
 }
 
+TEST(PinJointed, WhatFallsHasNoWeightForItsMembers) {
+  ModelDef def;
+  const int rod = AddRod(def, "rod", {0, 0, 1}, {1, 0, 1}, 1);
+  const int other = AddRod(def, "other", {0, 1, 1}, {1, 1, 1}, 1);
+  test::AddCable(def, {{rod, {0, 0, 1}}, {other, {1, 1, 1}}}, 100, 1);
+  def.planes.emplace_back();  // far below
+  for (const PinNode& node : PinJointedOf(def).nodes) EXPECT_EQ(node.load_n.z, 0);
+  // It lies on the ground: there it has.
+  def.planes[0].point_m.z = 0.99;
+  double weight = 0;
+  for (const PinNode& node : PinJointedOf(def).nodes) {
+    EXPECT_TRUE(node.on_ground);
+    weight += node.load_n.z;
+  }
+  EXPECT_NEAR(weight, -2 * 9.81, 1e-9);
+}
+
 TEST(PinJointed, ARodBetweenTwoCablesIsPressed) {
   ModelDef def;
   const int rod = AddRod(def, "rod", {0, 0, 0}, {1, 0, 0}, 1);

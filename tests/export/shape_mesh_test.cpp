@@ -133,6 +133,7 @@ TEST(ShapeMesh, CablesLieOnTheirWheels) {
   wheel.wheel = WheelDef{{0, 1, 0}, 0.1, false, 0};
   cable.attachments = {{kWorld, {-0.1, 0, -1}}, wheel, {kWorld, {0.1, 0, -1}}};
   def.cables.push_back(cable);
+  int over = 0;
   for (const bool other_way : {false, true}) {
     def.cables[0].attachments[1].wheel->counterclockwise = other_way;
     const ShapeMesh mesh = ShapesOf(def, {0.001}).front();
@@ -144,8 +145,12 @@ TEST(ShapeMesh, CablesLieOnTheirWheels) {
     EXPECT_LT(VolumeOf(mesh), kPi * 1e-6 * length_m * (1 + 1e-9));
     double highest = -2;
     for (const Vec3& corner : mesh.corners_m) highest = std::max(highest, corner.z);
-    EXPECT_NEAR(highest, length_m > 2.2 ? 0.1 : highest, 2e-3);
+    over += length_m > 2.2;
+    // Straight up, over it and down again; the other way round it does not touch.
+    EXPECT_NEAR(length_m, length_m > 2.2 ? 2 + 0.1 * kPi : 0.2, 1e-9);
+    EXPECT_NEAR(highest, length_m > 2.2 ? 0.1 : -1, 2e-3);
   }
+  EXPECT_EQ(over, 1);
 }
 
 TEST(ShapeMesh, EveryShippedModelIsClosedAndItsStlIsToo) {
