@@ -54,6 +54,12 @@ TEST_F(ConvertTrace, RowsOnAGridAreTaken) {
     EXPECT_DOUBLE_EQ(kept->time_s[i], 0.3 * static_cast<double>(i));
     EXPECT_EQ(kept->values[1][i], static_cast<double>(30 * i + 1));
   }
+  // One that rounding has put a little before its place on the grid is there.
+  Trace early = Rows(4, 0, 0.3);
+  early.time_s[2] = 0.6 - 1e-9;
+  const auto all = SelectFrom(early, {}, 0.3, "t", found_);
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->time_s, early.time_s);
   // Where there are none for a while, the next ones are, and the grid stays.
   Trace gap = Rows(10, 5, 0.1);
   gap.time_s = {5, 5.1, 5.2, 5.3, 7.05, 7.1, 7.25, 7.3, 7.6, 7.9};

@@ -180,7 +180,7 @@ TEST(PinJointed, CablesThroughEyeletsShareWhatTheyAreByLength) {
   EXPECT_EQ(Clustering(s).rows, 1);
   def.cables[0].attachments[1].friction = 0.1;
   s = PinJointedOf(def, false);
-  EXPECT_EQ(s.clusters.size(), 2u);
+  ASSERT_EQ(s.clusters.size(), 2u);
   EXPECT_EQ(s.clusters[1].name, "cable0_span_2");
 }
 

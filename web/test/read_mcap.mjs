@@ -43,16 +43,18 @@ stream.append(readFileSync(path));
 const known = new Map();
 const streamed = [];
 const records = {};
+const offsets = [];
 let dataCrc = 0;
 for (let record; (record = stream.nextRecord()); ) {
   records[record.type] = (records[record.type] ?? 0) + 1;
   if (record.type === "Channel") known.set(record.id, record);
+  if (record.type === "SummaryOffset") offsets.push([record.groupOpcode, record.groupStart, record.groupLength]);
   if (record.type === "DataEnd") dataCrc = record.dataSectionCrc;
   if (record.type === "Message") streamed.push(message(record, (id) => known.get(id)));
 }
 const { statistics, header, footer, chunkIndexes } = reader;
 console.log(JSON.stringify({
-  channels, indexed, streamed, metadata, records, header, footer, statistics, data_crc: dataCrc, done: stream.done(),
+  channels, indexed, streamed, metadata, records, header, footer, statistics, data_crc: dataCrc, offsets, done: stream.done(),
   chunks: chunkIndexes.map(({ messageStartTime, messageEndTime, compression }) => ({ messageStartTime, messageEndTime, compression })),
 }, (_, value) => (typeof value === "bigint" ? String(value) : value instanceof Map ? Object.fromEntries(value) : value)));
 await file.close();
