@@ -117,7 +117,7 @@ def WhatIsLeftIsWhatTautSaysIsLeft(taut, folder):
     assert s.pinned.T.tolist() == [[1, 0, 1], [1, 1, 1], [0, 0, 1], [0] * 3, [0] * 3, [0] * 3]
 
 
-def TensionsAndLengthsAreThoseOfAnalyze(taut, folder):
+def TensionsLengthsAndRodsAreAsTautSays(taut, folder):
     for name in ("prism3", "six_strut", "tetraspine3", "superball"):
         s = export(taut, folder, model(name))
         said = json.loads(run.taut(taut, folder, "check", model(name), "--json"))
