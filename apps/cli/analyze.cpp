@@ -16,6 +16,7 @@
 #include "commands.h"
 #include "output.h"
 #include "overrides.h"
+#include "taut/pin_jointed.h"
 #include "taut/start.h"
 
 namespace taut::cli {
@@ -83,29 +84,12 @@ std::optional<Loaded> Load(const AnalyzeArguments& args, const Overrides& overri
   return loaded;
 }
 
-/// Whether something keeps the robot in the world.
-bool IsHeld(const ModelDef& def) {
-  if (!def.planes.empty()) return true;
-  const auto fixed = [&](int body) {
-    return body == kWorld || def.bodies[static_cast<std::size_t>(body)].fixed;
-  };
-  for (const JointDef& joint : def.joints) {
-    if (fixed(joint.body_a) || fixed(joint.body_b)) return true;
-  }
-  for (const CableDef& cable : def.cables) {
-    for (const AttachmentDef& at : cable.attachments) {
-      if (fixed(at.body)) return true;
-    }
-  }
-  return false;
-}
-
 /// Those asked for; of a file without any, its own weight, or, where nothing holds the robot, none.
 bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::string>& notes,
                  Diagnostics& out) {
   if (loaded.cases.empty() && args.load_cases.empty()) {
     LoadCaseSpec own;
-    own.weight = IsHeld(loaded.experiment.robot.def);
+    own.weight = IsHeldInWorld(loaded.experiment.robot.def);
     own.name = own.weight ? "own_weight" : "unloaded";
     if (!own.weight) notes.push_back("nothing holds the robot in the world: without weight");
     loaded.cases.push_back(own);
@@ -158,7 +142,7 @@ int Analyze(const AnalyzeArguments& args) {
   ExperimentSpec& experiment = loaded->experiment;
   if (args.linear) {
     // A model that nothing holds is looked at without weight, as in statics.
-    if (loaded->model && !IsHeld(experiment.robot.def)) {
+    if (loaded->model && !IsHeldInWorld(experiment.robot.def)) {
       experiment.robot.def.gravity_m_per_s2 = {};
     }
     return Linear(args.path, experiment, loaded->pose, result.notes, args.modes, args.inverse.json,

@@ -109,10 +109,7 @@ std::string HelpText(const CommandText& command) {
 
 std::string OverviewText(const CommandText& taut) {
   return Wrapped(taut.what, 0, kWidth) + "\n\nCommands:\n" + CommandRows(taut) +
-         "\nExamples:\n"
-         "  taut run experiments/push_20n.yaml --csv\n"
-         "  taut view experiments/push_20n.yaml\n"
-         "`taut help COMMAND` tells more.\n";
+         "\n`taut run experiments/push_20n.yaml` runs one; `taut help COMMAND` tells more.\n";
 }
 
 std::string Wrapped(const std::string& text, std::size_t indent, std::size_t width) {

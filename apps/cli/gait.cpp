@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 
+#include "any_robot.h"
 #include "commands.h"
 #include "gait_report.h"
 #include "output.h"
@@ -38,17 +39,6 @@ int Write(const std::string& text, const std::string& path) {
     return kOk;
   }
   return WriteNamed(path, text);
-}
-
-/// The robot of a model file or of an experiment file.
-std::optional<RobotSpec> LoadAnyRobot(const std::string& path, const Overrides& overrides,
-                                      Diagnostics& out) {
-  const auto kind = FileKind(path, out);
-  if (!kind) return std::nullopt;
-  if (*kind == "model") return LoadRobot(path, overrides, out);
-  auto experiment = LoadExperiment(path, overrides, out);
-  if (!experiment) return std::nullopt;
-  return std::move(experiment->robot);
 }
 
 int Export(const GaitArguments& args) {

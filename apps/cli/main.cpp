@@ -14,8 +14,10 @@
 
 #include "command_text.h"
 #include "commands.h"
+#include "export.h"
 #include "streams.h"
 #include "taut/version.h"
+#include "trace.h"
 #include "usage.h"
 
 namespace taut::cli {
@@ -65,6 +67,7 @@ int Run(int argc, char** argv) {
   AddCheck(app, exit_code);
   AddRun(app, exit_code);
   AddCompare(app, exit_code);
+  AddExport(app, exit_code);
   AddFit(app, exit_code);
   AddGait(app, exit_code);
   AddLearn(app, exit_code);
@@ -74,6 +77,7 @@ int Run(int argc, char** argv) {
   AddRobot(app, exit_code);
   AddSchema(app, exit_code);
   AddSize(app, exit_code);
+  AddTrace(app, exit_code);
   AddView(app, exit_code);
   AddHelp(app, exit_code);
   SetUpCommands(app);

@@ -8,6 +8,7 @@
 #include "taut/trace.h"
 #include "trace/channel_names.h"
 #include "trace/flush_clock.h"
+#include "trace/whole_csv.h"
 
 namespace taut::trace {
 namespace {
@@ -16,8 +17,9 @@ constexpr std::size_t kBlockBytes = 1 << 18;
 
 class CsvWriter final : public TraceWriter {
  public:
-  CsvWriter(const std::string& path, std::size_t channel_count)
-      : path_(path), channel_count_(channel_count), file_(path) {}
+  /// `whole`: the file is there once it is finished, not from its first row on.
+  CsvWriter(const std::string& path, std::size_t channel_count, bool whole)
+      : path_(path), channel_count_(channel_count), whole_(whole), file_(path) {}
 
   ~CsvWriter() override {
     if (file_.published()) Finish();
@@ -51,7 +53,7 @@ class CsvWriter final : public TraceWriter {
   bool Finish() override {
     if (!error_.empty()) return false;
     if (std::exchange(finished_, true)) return true;
-    return Flush() && (file_.Sync() || Fail(file_.why()));
+    return Flush() && ((file_.Sync() && file_.Publish()) || Fail(file_.why()));
   }
 
   const std::string& error() const override { return error_; }
@@ -66,7 +68,7 @@ class CsvWriter final : public TraceWriter {
   bool Flush() {
     if (!Write()) return false;
     clock_.Flushed();
-    return file_.Publish() || Fail(file_.why());
+    return whole_ || file_.Publish() || Fail(file_.why());
   }
 
   bool Write() {
@@ -82,13 +84,33 @@ class CsvWriter final : public TraceWriter {
 
   std::string path_, error_;
   std::size_t channel_count_;
+  bool whole_;
   NewFile file_;
   bool finished_ = false;
   std::string text_;  ///< Whole lines, not yet written.
   FlushClock clock_;
 };
 
+std::unique_ptr<TraceWriter> Create(const std::string& path,
+                                    const std::vector<ChannelInfo>& channels, bool whole,
+                                    Diagnostics& out) {
+  if (!CheckChannelNames(path, channels, out)) return nullptr;
+  auto writer = std::make_unique<CsvWriter>(path, channels.size(), whole);
+  if (!writer->Start(channels)) {
+    out.Error({}, writer->error());
+    return nullptr;
+  }
+  return writer;
+}
+
 }  // namespace
+
+std::unique_ptr<TraceWriter> CreateWholeCsvTrace(const std::string& path,
+                                                 const std::vector<ChannelInfo>& channels,
+                                                 Diagnostics& out) {
+  return Create(path, channels, true, out);
+}
+
 }  // namespace taut::trace
 
 namespace taut {
@@ -96,13 +118,7 @@ namespace taut {
 std::unique_ptr<TraceWriter> CreateCsvTrace(const std::string& path,
                                             const std::vector<ChannelInfo>& channels,
                                             Diagnostics& out) {
-  if (!trace::CheckChannelNames(path, channels, out)) return nullptr;
-  auto writer = std::make_unique<trace::CsvWriter>(path, channels.size());
-  if (!writer->Start(channels)) {
-    out.Error({}, writer->error());
-    return nullptr;
-  }
-  return writer;
+  return trace::Create(path, channels, false, out);
 }
 
 }  // namespace taut

@@ -32,7 +32,12 @@ class CliCommand : public test::CommandTest {
             {"list"},
             {"new"},
             {"report"},
+            {"export"},
+            {"export", "shape"},
+            {"export", "structure"},
             {"schema"},
+            {"trace"},
+            {"trace", "convert"},
             {"view"},
             {"help"}};
   }

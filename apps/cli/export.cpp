@@ -1,0 +1,19 @@
+// `taut export`: a robot for other programs.
+#include "export.h"
+
+namespace taut::cli {
+
+void AddExport(CLI::App& app, int& exit_code) {
+  CLI::App* group = app.add_subcommand("export", "A robot for other programs.");
+  group->require_subcommand(1);
+  AddExportShape(*group, exit_code);
+  AddExportStructure(*group, exit_code);
+  group->footer(
+      "Examples:\n"
+      "  taut export shape models/six_strut.yaml --out six_strut.glb\n"
+      "  taut export structure models/prism3.yaml --out prism3\n"
+      "`taut export COMMAND --help` tells more.\n"
+      "Exit status: 0 good, 1 a file cannot be written, 2 bad usage, 3 bad input.");
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,106 @@
+// `taut export shape`: what a robot looks like, for slides and printers.
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "any_robot.h"
+#include "export.h"
+#include "output.h"
+#include "overrides.h"
+#include "streams.h"
+#include "taut/shape_mesh.h"
+
+namespace taut::cli {
+namespace {
+
+enum class Format { kStl, kGltf };
+const std::map<std::string, Format> kFormats{{"stl", Format::kStl}, {"gltf", Format::kGltf}};
+
+struct ShapeArguments {
+  PlacedRobotArguments robot;
+  std::string out;
+  std::optional<Format> format;
+  double scale = 1.0;
+  ShapeOptions options;
+};
+
+/// What was asked for, or what the file's name says.
+std::optional<Format> FormatOf(const ShapeArguments& args) {
+  if (args.format) return args.format;
+  if (args.out.ends_with(".stl")) return Format::kStl;
+  if (args.out.ends_with(".glb")) return Format::kGltf;
+  return std::nullopt;
+}
+
+int ExportShape(const ShapeArguments& args) {
+  const auto format = FormatOf(args);
+  if (!format) {
+    fmt::print(stderr, "error: the name {} says no format: .stl or .glb; else --format is needed\n",
+               args.out);
+    return kUsage;
+  }
+  int exit = kOk;
+  const auto robot = LoadPlacedRobot(args.robot, exit);
+  if (!robot) return exit;
+  const std::vector<ShapeMesh> shapes = ShapesOf(robot->def, args.options);
+  if (shapes.empty()) {
+    fmt::print(stderr, "{}: error: has no shape and no cable to show\n", args.robot.path);
+    return kBadInput;
+  }
+  OutputIsNews();
+  exit = WriteNamed(args.out, *format == Format::kStl ? StlOf(robot->def, shapes, args.scale)
+                                                      : GlbOf(robot->def, shapes, args.scale));
+  if (exit != kOk) return exit;
+  std::size_t triangles = 0, cables = 0;
+  for (const ShapeMesh& mesh : shapes) {
+    triangles += mesh.triangles.size();
+    cables += mesh.kind == ShapeMesh::Kind::kCable || mesh.kind == ShapeMesh::Kind::kSlackCable;
+  }
+  fmt::print("{}: shapes: {}, cables: {}, triangles: {}\n", args.out, shapes.size() - cables,
+             cables, triangles);
+  return kOk;
+}
+
+}  // namespace
+
+void AddExportShape(CLI::App& group, int& exit_code) {
+  auto args = std::make_shared<ShapeArguments>();
+  CLI::App* command = group.add_subcommand(
+      "shape", "What a robot looks like: closed triangles as STL for printers, glTF for slides.");
+  AddPlacedRobot(*command, args->robot);
+  command->add_option("--out", args->out, "File to write: .stl or .glb")
+      ->option_text("FILE")
+      ->required();
+  command
+      ->add_option_function<std::string>(
+          "--format", [args](const std::string& word) { args->format = kFormats.at(word); },
+          "Its format, whatever its name")
+      ->option_text("stl|gltf")
+      ->check(OneOf({"stl", "gltf"}));
+  command
+      ->add_option("--cable_radius_m", args->options.cable_radius_m,
+                   "How thick cables are (default: 0.002); 0: without cables")
+      ->option_text("NUMBER")
+      ->check(NumberWithin(0, 1e3));
+  command
+      ->add_option("--scale", args->scale,
+                   "Times this all lengths; programs that print take what STL has for mm: 1000 for "
+                   "true size (default: 1)")
+      ->option_text("NUMBER")
+      ->check(NumberWithin(1e-6, 1e9));
+  command->footer(
+      "Examples:\n"
+      "  taut export shape models/six_strut.yaml --out six_strut.glb\n"
+      "  taut export shape models/prism3.yaml --out prism3.stl --scale 1000 --cable_radius_m "
+      "0.001\n"
+      "  taut export shape experiments/drop_six_strut.yaml --pose runs/drop_six_strut/trace.h5 \\\n"
+      "    --at_s 0.5 --out falling.glb\n"
+      "STL has one set of triangles; in glTF bodies, shapes and cables have their names.\n"
+      "Exit status: 0 good, 1 the file cannot be written or no start found, 2 bad usage, 3 bad "
+      "input.");
+  command->callback([args, &exit_code] { exit_code = ExportShape(*args); });
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,17 @@
+// `taut trace`: recordings.
+#include "trace.h"
+
+namespace taut::cli {
+
+void AddTrace(CLI::App& app, int& exit_code) {
+  CLI::App* group = app.add_subcommand("trace", "Recordings for other programs.");
+  group->require_subcommand(1);
+  AddTraceConvert(*group, exit_code);
+  group->footer(
+      "Example:\n"
+      "  taut trace convert runs/push_20n --out push_20n.mcap\n"
+      "Exit status: 0 good, 1 a file cannot be written, 2 bad usage, 3 bad input, 130 "
+      "interrupted.");
+}
+
+}  // namespace taut::cli

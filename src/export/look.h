@@ -1,0 +1,37 @@
+/// What shapes look like for other programs: the colours of the viewer's pages.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "taut/shape_mesh.h"
+
+namespace taut::exporting {
+
+struct Look {
+  ShapeMesh::Kind kind;
+  const char* name;
+  int rgb;  ///< As screens show it.
+
+  /// Of red, green, blue: 0..1.
+  double Screen(int which) const { return (rgb >> (16 - 8 * which) & 0xff) / 255.0; }
+  /// The light that this brightness of a screen is (IEC 61966-2-1).
+  double Light(int which) const {
+    const double x = Screen(which);
+    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+  }
+};
+inline constexpr Look kLooks[] = {{ShapeMesh::Kind::kRod, "rod", 0x39414b},
+                                  {ShapeMesh::Kind::kSphere, "sphere", 0x5c6773},
+                                  {ShapeMesh::Kind::kBox, "box", 0x8b97a3},
+                                  {ShapeMesh::Kind::kHull, "hull", 0x8b97a3},
+                                  {ShapeMesh::Kind::kCable, "cable", 0x3882cd},
+                                  {ShapeMesh::Kind::kSlackCable, "cable_slack", 0x6d7781}};
+
+inline const Look& LookOf(ShapeMesh::Kind kind) {
+  return *std::find_if(std::begin(kLooks), std::end(kLooks),
+                       [&](const Look& one) { return one.kind == kind; });
+}
+
+}  // namespace taut::exporting

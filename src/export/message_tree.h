@@ -1,0 +1,39 @@
+/// Channels of a trace as messages: JSON objects in each other, a level a part of their names.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "taut/trace.h"
+
+namespace taut::exporting {
+
+class MessageTree {
+ public:
+  /// `path`: what is left of the name of channel `channel`.
+  void Add(std::string_view path, std::size_t channel);
+
+  /// A row; what is not finite, which JSON has no word for, is left out.
+  void Write(const Trace& trace, std::size_t row, std::string& json) const;
+  /// The JSON schema of all that may be in it, with units.
+  std::string Schema(const Trace& trace) const;
+
+ private:
+  struct Field;
+  std::vector<Field> fields_;
+};
+
+struct MessageTree::Field {
+  std::string name;
+  std::string key;  ///< As JSON, with the colon.
+  std::size_t channel = 0;
+  std::unique_ptr<MessageTree> inner;  ///< Null: a channel.
+};
+
+/// The shortest digits that read back as the same number.
+void PutNumber(std::string& json, double x);
+
+}  // namespace taut::exporting
