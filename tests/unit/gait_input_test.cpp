@@ -25,8 +25,8 @@ TEST_F(VelocityInput, GoesWithImpedanceAndNamesAGait) {
   Change(hold, hold + "    velocity_input: {gait: model.yaml}\n");
   EXPECT_EQ(
       Complaints(),
-      "model.yaml:2:7: error: kind must be gait, got model (a file is a model, an experiment or "
-      "a gait)\n");
+      "model.yaml:2:7: error: kind must be gait, got model (of the kind model are files for "
+      "`taut check`)\n");
   Change("controllers:\n",
          "controllers:\n  - {name: p, velocity_input: {gait: g.yaml}, position: {programs: []}}\n");
   EXPECT_EQ(Without("trial.yaml:", Complaints()),
