@@ -16,6 +16,7 @@
 #include "commands.h"
 #include "output.h"
 #include "overrides.h"
+#include "taut/alone.h"
 #include "taut/start.h"
 
 namespace taut::cli {
@@ -60,10 +61,7 @@ std::optional<Loaded> Load(const AnalyzeArguments& args, const Overrides& overri
   if (loaded.model) {
     auto robot = LoadRobot(args.path, overrides, out);
     if (!robot) return std::nullopt;
-    experiment.robot = std::move(*robot);
-    experiment.name = experiment.robot.def.name;
-    experiment.files = experiment.robot.files;
-    experiment.start = StartKind::kSettled;
+    experiment = ExperimentWith(std::move(*robot));
   } else {
     auto whole = LoadExperiment(args.path, overrides, out);
     if (!whole) return std::nullopt;
@@ -83,30 +81,11 @@ std::optional<Loaded> Load(const AnalyzeArguments& args, const Overrides& overri
   return loaded;
 }
 
-/// Whether something keeps the robot in the world.
-bool IsHeld(const ModelDef& def) {
-  if (!def.planes.empty()) return true;
-  const auto fixed = [&](int body) {
-    return body == kWorld || def.bodies[static_cast<std::size_t>(body)].fixed;
-  };
-  for (const JointDef& joint : def.joints) {
-    if (fixed(joint.body_a) || fixed(joint.body_b)) return true;
-  }
-  for (const CableDef& cable : def.cables) {
-    for (const AttachmentDef& at : cable.attachments) {
-      if (fixed(at.body)) return true;
-    }
-  }
-  return false;
-}
-
 /// Those asked for; of a file without any, its own weight, or, where nothing holds the robot, none.
 bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::string>& notes,
                  Diagnostics& out) {
   if (loaded.cases.empty() && args.load_cases.empty()) {
-    LoadCaseSpec own;
-    own.weight = IsHeld(loaded.experiment.robot.def);
-    own.name = own.weight ? "own_weight" : "unloaded";
+    const LoadCaseSpec own = OwnWeight(loaded.experiment.robot.def);
     if (!own.weight) notes.push_back("nothing holds the robot in the world: without weight");
     loaded.cases.push_back(own);
   }
