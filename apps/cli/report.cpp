@@ -48,12 +48,14 @@ void AddReport(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<ReportArguments>();
   CLI::App* report =
       app.add_subcommand("report", "Write a run as one HTML file that opens anywhere.");
-  report->add_option("trace", args->trace, "Trace of the run (.h5, .csv, .csv.gz), or its folder")->required();
+  report->add_option("trace", args->trace, "Trace of the run (.h5, .csv, .csv.gz), or its folder")
+      ->required();
   report->add_option("--out", args->out, "File to write (default: report.html beside the trace)")
       ->option_text("FILE");
   report
       ->add_option("--compare", args->compare,
-                   "Traces or folders of other runs, 7 at most, drawn and tabulated beside this one (default: "
+                   "Traces or folders of other runs, 7 at most, drawn and tabulated beside this "
+                   "one (default: "
                    "what the experiment names)")
       ->option_text("TRACE");
   report->footer(

@@ -1,5 +1,5 @@
-// Rows of bodies, and where groups lie: what `Batch::Body` and `Batch::Cable` say, at the places that
-// the header names.
+// Rows of bodies, and where groups lie: what `Batch::Body` and `Batch::Cable` say, at the places
+// that the header names.
 #include "taut/body_rows.h"
 
 #include <gtest/gtest.h>

@@ -129,17 +129,20 @@ TEST_F(StudyFile, AnObjectiveAloneIsReadAsThatOfAStudy) {
   const auto study = Load(kGood);
   ASSERT_TRUE(study);
   Diagnostics out;
-  const auto same = ReadObjective("{\"measure\": \"heading\", \"direction\": [0, 2, 0], \"from_s\": 5}",
-                                  "text", study->experiment, out);
+  const auto same =
+      ReadObjective("{\"measure\": \"heading\", \"direction\": [0, 2, 0], \"from_s\": 5}", "text",
+                    study->experiment, out);
   ASSERT_TRUE(same) << out.Format();
   EXPECT_EQ(same->measure, study->objective.measure);
   EXPECT_EQ(same->direction.y, 1.0);
   EXPECT_EQ(same->from_s, 5.0);
-  EXPECT_FALSE(ReadObjective("{measure: nearer, from_s: 500, form: 1}", "text", study->experiment, out));
-  EXPECT_EQ(out.Format(),
-            "text:1:10: error: objective.measure: nearer needs a goal (the experiment has no `goal`)\n"
-            "text:1:18: error: objective.from_s is not before the experiment's end (that is at 60 s)\n"
-            "text:1:31: error: unknown key \"form\" in objective (did you mean \"from_s\"?)\n");
+  EXPECT_FALSE(
+      ReadObjective("{measure: nearer, from_s: 500, form: 1}", "text", study->experiment, out));
+  EXPECT_EQ(
+      out.Format(),
+      "text:1:10: error: objective.measure: nearer needs a goal (the experiment has no `goal`)\n"
+      "text:1:18: error: objective.from_s is not before the experiment's end (that is at 60 s)\n"
+      "text:1:31: error: unknown key \"form\" in objective (did you mean \"from_s\"?)\n");
   Diagnostics others;
   for (const char* text : {"", "[1]", "{measure: [}", "5"}) {
     const std::size_t before = others.items().size();
