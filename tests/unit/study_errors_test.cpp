@@ -140,9 +140,11 @@ TEST_F(StudyFile, AnObjectiveAloneIsReadAsThatOfAStudy) {
       ReadObjective("{measure: nearer, from_s: 500, form: 1}", "text", study->experiment, out));
   EXPECT_EQ(
       out.Format(),
-      "text:1:10: error: objective.measure: nearer needs a goal (the experiment has no `goal`)\n"
-      "text:1:18: error: objective.from_s is not before the experiment's end (that is at 60 s)\n"
-      "text:1:31: error: unknown key \"form\" in objective (did you mean \"from_s\"?)\n");
+      "text:1:2: error: objective.measure: nearer needs a goal (the experiment has no `goal`)\n"
+      "text:1:19: error: objective.from_s is not before the experiment's end (that is at 60 "
+      "s)\n"
+      "text:1:32: error: unknown key \"form\" in objective (one of: measure, direction, from_s, "
+      "tension_limit, fall, max_speed_m_per_s)\n");
   Diagnostics others;
   for (const char* text : {"", "[1]", "{measure: [}", "5"}) {
     const std::size_t before = others.items().size();
