@@ -15,6 +15,7 @@
 namespace taut::python {
 namespace {
 
+/// A fit that is done. `fit` computes no more: what could stop it is gone.
 struct Fitted {
   std::unique_ptr<Identification> fit;
   FitOutcome outcome;

@@ -12,8 +12,7 @@ std::string HintOfKind(std::string_view kind) {
   std::string all;
   for (const auto& known : kKinds) {
     if (known.kind == kind) {
-      return "of the kind " + std::string(kind) + " are files for `" + std::string(known.reader) +
-             "`";
+      return "files of this kind are for `" + std::string(known.reader) + "`";
     }
     all += (all.empty() ? "" : ", ") + std::string(known.kind);
   }

@@ -24,7 +24,7 @@ TEST_F(VelocityInput, GoesWithImpedanceAndNamesAGait) {
          "11:22: error: unknown key \"period\" in velocity_input (did you mean \"period_s\"?)");
   Change(hold, hold + "    velocity_input: {gait: model.yaml}\n");
   EXPECT_EQ(Complaints(),
-            "model.yaml:2:7: error: kind must be gait, got model (of the kind model are files for "
+            "model.yaml:2:7: error: kind must be gait, got model (files of this kind are for "
             "`taut check`)\n");
   Change("controllers:\n",
          "controllers:\n  - {name: p, velocity_input: {gait: g.yaml}, position: {programs: []}}\n");
