@@ -195,6 +195,17 @@ class Fits(InAFolder):
         self.assertEqual(fitted.experiment().robot.parameters["k_n_per_m"], fitted.values["k_n_per_m"])
         self.assertRaises(IndexError, lambda: fitted.experiment(2))
 
+    def test_what_two_numbers_share_makes_their_errors_large(self):
+        self.write("fit.yaml", FIT.replace("sd: 20}}", "sd: 20}}\n  - {parameter: mass_kg, prior: {sd: 0.05}}"))
+        fitted = taut.fit(self.fit)
+        for one in fitted.data["parameters"]:
+            larger = max(one["se"], one["se_jackknife"] or 0)
+            self.assertEqual(fitted.standard_errors[one["name"]], larger)
+        first = fitted.data["parameters"][0]
+        self.assertAlmostEqual(math.sqrt(fitted.covariance[0, 0]), first["se"], delta=1e-9)
+        self.assertGreater(first["se"], 3 * 0.001 / (5 / 110**2))  # alone it would be known much better
+        self.assertGreater(fitted.correlation[0, 1], 0.9)
+
     def test_a_folder_keeps_what_was_computed(self):
         first = taut.fit(self.fit, self.path("out"))
         again = taut.fit(self.fit, self.path("out"))
@@ -241,6 +252,7 @@ class Analyses(unittest.TestCase):
         np.testing.assert_allclose(np.abs(found.mode_translation_m[-1, mass]), [0, 0, 1], atol=1e-9)
         at = 6 * found.moving_bodies.index(mass)
         self.assertAlmostEqual(found.stiffness[at + 2, at + 2], 400, delta=1e-6)
+        self.assertAlmostEqual(found.stiffness[at, at], 0.5 * sideways**2, delta=1e-6)  # there, not as described
         self.assertAlmostEqual(found.mass[at, at], 0.5, delta=1e-12)
 
     def test_a_prism_has_one_state_of_self_stress(self):
@@ -271,6 +283,9 @@ class Analyses(unittest.TestCase):
         self.assertEqual(found.body_orientation.tolist(), [one["orientation"] for one in case["bodies"]])
         self.assertEqual(list(found.mode_frequency_hz), [one["frequency_hz"] for one in case["modes"]["modes"]])
         self.assertEqual(found.mode_kinds, [one["kind"] for one in case["modes"]["modes"]])
+        for name in ("translation_m", "turn_rad"):
+            self.assertEqual(getattr(found, "mode_" + name).tolist(),
+                             [[body[name] for body in one["shape"]] for one in case["modes"]["modes"]])
         self.assertEqual(found.residual_n, case["residual_n"])
         self.assertEqual(found.left_out, case["left_out"])
         held = taut.load(PUSH).robot
@@ -311,6 +326,8 @@ class LinearSystems(InAFolder):
         gain, phase = system.response("node/mass/force_z", "node/mass/position_z", [0.01, 100])
         self.assertAlmostEqual(gain[0], 1 / 400, delta=1e-5)
         self.assertAlmostEqual(gain[1] * 0.5 * (200 * math.pi) ** 2, 1, delta=0.05)
+        self.assertAlmostEqual(phase[0], 0, delta=1e-3)
+        self.assertAlmostEqual(abs(phase[1]), math.pi, delta=0.5)  # and about a tick's 0.63 rad
 
     def test_is_what_the_command_writes(self):
         try:
