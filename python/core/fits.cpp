@@ -26,7 +26,7 @@ std::shared_ptr<ExperimentSpec> ExperimentOf(const Fitted& f, py::ssize_t number
   const auto& all = f.fit->spec().experiments;
   const auto e =
       static_cast<std::size_t>(Index(number, static_cast<int>(all.size()), "experiment"));
-  Overrides set = all[e].set;
+  Overrides set = all[e].set;  // of two of a name the later one counts
   const FitProblem& problem = f.fit->train();
   for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
     const FitEstimate& estimate = f.fit->spec().estimates[f.fit->estimates()[i]];
@@ -35,8 +35,6 @@ std::shared_ptr<ExperimentSpec> ExperimentOf(const Fitted& f, py::ssize_t number
         std::find(on.begin(), on.end(), e) == on.end()) {
       continue;
     }
-    const auto said = [&](const auto& one) { return one.first == estimate.parameter; };
-    std::erase_if(set, said);
     set.emplace_back(estimate.parameter, fmt::format("{}", f.outcome.fit.values[i]));
   }
   Diagnostics said;
