@@ -16,7 +16,7 @@
 #include "commands.h"
 #include "output.h"
 #include "overrides.h"
-#include "taut/pin_jointed.h"
+#include "taut/alone.h"
 #include "taut/start.h"
 
 namespace taut::cli {
@@ -61,10 +61,7 @@ std::optional<Loaded> Load(const AnalyzeArguments& args, const Overrides& overri
   if (loaded.model) {
     auto robot = LoadRobot(args.path, overrides, out);
     if (!robot) return std::nullopt;
-    experiment.robot = std::move(*robot);
-    experiment.name = experiment.robot.def.name;
-    experiment.files = experiment.robot.files;
-    experiment.start = StartKind::kSettled;
+    experiment = ExperimentWith(std::move(*robot));
   } else {
     auto whole = LoadExperiment(args.path, overrides, out);
     if (!whole) return std::nullopt;
@@ -88,9 +85,7 @@ std::optional<Loaded> Load(const AnalyzeArguments& args, const Overrides& overri
 bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::string>& notes,
                  Diagnostics& out) {
   if (loaded.cases.empty() && args.load_cases.empty()) {
-    LoadCaseSpec own;
-    own.weight = IsHeldInWorld(loaded.experiment.robot.def);
-    own.name = own.weight ? "own_weight" : "unloaded";
+    const LoadCaseSpec own = OwnWeight(loaded.experiment.robot.def);
     if (!own.weight) notes.push_back("nothing holds the robot in the world: without weight");
     loaded.cases.push_back(own);
   }
@@ -142,7 +137,7 @@ int Analyze(const AnalyzeArguments& args) {
   ExperimentSpec& experiment = loaded->experiment;
   if (args.linear) {
     // A model that nothing holds is looked at without weight, as in statics.
-    if (loaded->model && !IsHeldInWorld(experiment.robot.def)) {
+    if (loaded->model && !IsHeld(experiment.robot.def)) {
       experiment.robot.def.gravity_m_per_s2 = {};
     }
     return Linear(args.path, experiment, loaded->pose, result.notes, args.modes, args.inverse.json,

@@ -12,6 +12,7 @@
 #include "output.h"
 #include "streams.h"
 #include "table.h"
+#include "taut/alone.h"
 #include "taut/analysis.h"
 #include "taut/pin_jointed.h"
 #include "taut/version.h"
@@ -197,7 +198,7 @@ int WriteFolder(const std::string& folder, const ModelDef& def, const PinJointed
 /// Brings it to the equilibrium that `taut analyze` finds from there.
 bool Rest(bool weightless, ModelDef& def) {
   LoadCaseSpec loads;
-  loads.weight = !weightless && IsHeldInWorld(def);
+  loads.weight = !weightless && IsHeld(def);
   const Equilibrium at = FindEquilibrium(def, loads);
   if (at.found) {
     def = ModelAt(def, at.pose);

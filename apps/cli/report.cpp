@@ -9,6 +9,7 @@
 #include "apps/viewer/web_files.h"
 #include "commands.h"
 #include "streams.h"
+#include "taut/run_folder.h"
 
 namespace taut::cli {
 namespace {
@@ -18,7 +19,9 @@ struct ReportArguments {
   std::vector<std::string> compare;
 };
 
-int Report(const ReportArguments& args) {
+int Report(ReportArguments args) {
+  args.trace = TraceOfRun(args.trace);
+  for (std::string& other : args.compare) other = TraceOfRun(other);
   std::string missing;
   if (!viewer::FindWebFolder(missing)) {
     fmt::print(stderr, "error: {}\n", missing);
@@ -45,19 +48,20 @@ void AddReport(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<ReportArguments>();
   CLI::App* report =
       app.add_subcommand("report", "Write a run as one HTML file that opens anywhere.");
-  report->add_option("trace", args->trace, "Trace of the run (.h5, .csv, .csv.gz)")->required();
+  report->add_option("trace", args->trace, "Trace of the run (.h5, .csv, .csv.gz), or its folder")
+      ->required();
   report->add_option("--out", args->out, "File to write (default: report.html beside the trace)")
       ->option_text("FILE");
   report
       ->add_option("--compare", args->compare,
-                   "Traces of other runs, 7 at most, drawn and tabulated beside this one (default: "
+                   "Traces or folders of other runs, 7 at most, drawn and tabulated beside this "
+                   "one (default: "
                    "what the experiment names)")
       ->option_text("TRACE");
   report->footer(
       "Examples:\n"
-      "  taut report runs/push_20n/trace.h5\n"
-      "  taut report runs/push_20n/trace.h5 --compare runs/a/trace.h5 runs/b/trace.h5 --out "
-      "all.html\n"
+      "  taut report runs/push_20n\n"
+      "  taut report runs/push_20n/trace.h5 --compare runs/a runs/b --out all.html\n"
       "The inputs and the summary are taken from the trace's folder. The file needs no network.");
   report->callback([args, &exit_code] { exit_code = Report(*args); });
 }

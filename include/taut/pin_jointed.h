@@ -64,10 +64,6 @@ struct PinJointed {
   std::vector<std::string> notes;
 };
 
-/// Whether something can keep the robot in the world: ground, a support, an anchored body, a cable
-/// that ends in the world. Where nothing can, statics leaves its weight out.
-bool IsHeldInWorld(const ModelDef& def);
-
 /// The robot as it is described. Strings have the tensions that follow from their rest lengths,
 /// elastic bars likewise; other bars those that balance the nodes that are neither pinned nor on
 /// the ground best (in least squares; of several that do the smallest forces).

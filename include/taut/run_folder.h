@@ -75,6 +75,10 @@ class RunFolder {
 /// `summary.json`, of `trace_2.h5` (a live run that was reset) `summary_2.json`.
 std::string BesideTrace(const std::string& trace, const std::string& name, const std::string& end);
 
+/// Where the trace of a run is: of a run's folder the one in it (`trace.h5`; without one, that in
+/// CSV), of anything else the path itself.
+std::string TraceOfRun(const std::string& path);
+
 /// As `ReadTrace`, and refuses a trace beside which there are inputs or a summary of another run. A
 /// trace in CSV has no id, so there only the other two are held against each other.
 std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out);

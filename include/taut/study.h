@@ -87,6 +87,11 @@ const std::vector<std::string>& NloptAlgorithms();
 std::optional<StudySpec> LoadStudy(const std::string& path, const Overrides& overrides,
                                    Diagnostics& out);
 
+/// Reads an objective alone, written as a study has it under `objective` (YAML or JSON), and checks
+/// it against the experiment that it is for. `name` is what complaints call the text.
+std::optional<ObjectiveSpec> ReadObjective(const std::string& text, const std::string& name,
+                                           const ExperimentSpec& experiment, Diagnostics& out);
+
 /// The study in numbers, a line each fact, without the experiment and without budgets: two studies
 /// with the same text and the same resolved experiment find the same.
 std::string StudyText(const StudySpec& study);

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "owner.h"
 #include "text.h"
+#include "worlds.h"
 
 namespace taut::python {
 namespace {
@@ -26,68 +26,21 @@ const std::pair<const char*, Parameter> kParameters[] = {
     {"gravity_y_m_per_s2", Parameter::kGravityY},
     {"gravity_z_m_per_s2", Parameter::kGravityZ}};
 
-class Worlds {
- public:
-  Worlds(const ModelDef& def, int worlds, int threads, const std::optional<std::string>& simd) {
-    if (worlds < 1) throw py::value_error(fmt::format("worlds: {}; at least 1", worlds));
-    if (threads < 0) throw py::value_error(fmt::format("threads: {}; 0 is one a core", threads));
-    BatchOptions options;
-    options.worlds = worlds;
-    options.threads = threads;
-    options.simd = SimdOf(simd);
-    Diagnostics said;
-    std::unique_ptr<Batch> batch;
-    {
-      const py::gil_scoped_release others;
-      if (auto model = Model::Compile(def, said)) {
-        batch = std::make_unique<Batch>(std::move(model), options);
-      }
-    }
-    if (!batch) Refuse(said);
-    Tell(said);
-    owned_ = std::make_unique<Owner<Batch>>(std::move(batch), "this batch was");
+/// A parameter by its name, and a place of it that there is; else ValueError or IndexError.
+std::pair<Parameter, int> ParameterOf(const Worlds& worlds, const std::string& name,
+                                      py::ssize_t index) {
+  std::string all;
+  for (const auto& [known, parameter] : kParameters) {
+    all += std::string(" ") + known;
+    if (name != known) continue;
+    const bool of_cables =
+        parameter == Parameter::kCableStiffness || parameter == Parameter::kCableDamping;
+    const py::ssize_t count = parameter == Parameter::kBodyMass ? worlds.bodies()
+                              : of_cables                       ? worlds.cables()
+                                                                : 1;
+    return {parameter, Index(index, static_cast<int>(count), "index")};
   }
-
-  template <class F>
-  auto With(F f) {
-    return owned_->With(f);
-  }
-
-  const ModelDef& def() const { return owned_->peek().model().def(); }
-  int worlds() const { return owned_->peek().worlds(); }
-  int lanes() const { return owned_->peek().lanes(); }
-  int World(py::ssize_t world) const { return Index(world, worlds(), "world"); }
-  py::ssize_t bodies() const { return static_cast<py::ssize_t>(def().bodies.size()); }
-  py::ssize_t cables() const { return static_cast<py::ssize_t>(def().cables.size()); }
-  py::ssize_t nodes() const { return static_cast<py::ssize_t>(def().nodes.size()); }
-
-  /// An array (worlds, count, width), or (worlds, count) if the width is 1: put(batch, world,
-  /// index, numbers).
-  template <class Put>
-  py::array_t<double> Read(const py::object& out, py::ssize_t count, py::ssize_t width, Put put) {
-    std::vector<py::ssize_t> shape{worlds(), count};
-    if (width > 1) shape.push_back(width);
-    py::array_t<double> a = Output(out, shape);
-    double* to = a.mutable_data();
-    With([&](Batch& batch) {
-      for (int w = 0; w < batch.worlds(); ++w) {
-        for (int i = 0; i < static_cast<int>(count); ++i, to += width) put(batch, w, i, to);
-      }
-    });
-    return a;
-  }
-
- private:
-  std::unique_ptr<Owner<Batch>> owned_;
-};
-
-void Put(const Vec3& v, double* to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
-
-double Positive(double value, const char* what) {
-  if (!(value > 0) || !std::isfinite(value)) {
-    throw py::value_error(fmt::format("{}: {}; a positive number", what, value));
-  }
-  return value;
+  throw py::value_error("parameter \"" + name + "\"; there are" + all);
 }
 
 void Step(Worlds& worlds, double step_s, int count, const py::object& targets) {
@@ -102,7 +55,7 @@ void Step(Worlds& worlds, double step_s, int count, const py::object& targets) {
   worlds.With([&](Batch& batch) { batch.Step(step_s, count, rows); });
 }
 
-void AddStates(py::class_<Worlds, std::shared_ptr<Worlds>>& type) {
+void AddStates(BatchType& type) {
   // One a line: name, how many, width, what is put there, its words.
   const auto bodies = [&](const char* name, py::ssize_t width, auto put, const char* words) {
     type.def(
@@ -184,7 +137,7 @@ void AddStates(py::class_<Worlds, std::shared_ptr<Worlds>>& type) {
       "(worlds,) float64: simulated time [s].");
 }
 
-void AddCommands(py::class_<Worlds, std::shared_ptr<Worlds>>& type) {
+void AddCommands(BatchType& type) {
   type.def(
       "set_rest_length_target",
       [](Worlds& worlds, const py::object& rest_length_m, std::optional<py::ssize_t> world) {
@@ -218,29 +171,29 @@ void AddCommands(py::class_<Worlds, std::shared_ptr<Worlds>>& type) {
   type.def(
       "set_parameter",
       [](Worlds& worlds, const std::string& name, const py::object& values, py::ssize_t index) {
-        for (const auto& [known, parameter] : kParameters) {
-          if (name != known) continue;
-          const int count =
-              parameter == Parameter::kBodyMass ? static_cast<int>(worlds.bodies())
-              : parameter == Parameter::kCableStiffness || parameter == Parameter::kCableDamping
-                  ? static_cast<int>(worlds.cables())
-                  : 1;
-          const int i = Index(index, count, "index");
-          const Array a = Shaped(values, {worlds.worlds()}, "values");
-          const double* from = a.data();
-          worlds.With([&, p = parameter](Batch& b) {
-            for (int w = 0; w < b.worlds(); ++w) b.SetParameter(w, p, i, from[w]);
-          });
-          return;
-        }
-        std::string all;
-        for (const auto& [known, parameter] : kParameters) all += std::string(" ") + known;
-        throw py::value_error("parameter \"" + name + "\"; there are" + all);
+        const auto [parameter, i] = ParameterOf(worlds, name, index);
+        const Array a = Shaped(values, {worlds.worlds()}, "values");
+        const double* from = a.data();
+        worlds.With([&, p = parameter, at = i](Batch& b) {
+          for (int w = 0; w < b.worlds(); ++w) b.SetParameter(w, p, at, from[w]);
+        });
       },
       py::arg("name"), py::arg("values"), py::arg("index") = 0,
       "A number of the model for each world, (worlds,): body_mass_kg (index: of the body; its "
       "inertia scales with it), cable_stiffness_n_per_m, cable_damping_n_s_per_m (index: of the "
       "cable), friction_scale, gravity_x_m_per_s2, gravity_y_m_per_s2, gravity_z_m_per_s2.");
+  type.def(
+      "parameter",
+      [](Worlds& worlds, const std::string& name, py::ssize_t index) {
+        const auto [parameter, i] = ParameterOf(worlds, name, index);
+        py::array_t<double> a(worlds.worlds());
+        double* to = a.mutable_data();
+        worlds.With([&, p = parameter, at = i](Batch& b) {
+          for (int w = 0; w < b.worlds(); ++w) to[w] = b.GetParameter(w, p, at);
+        });
+        return a;
+      },
+      py::arg("name"), py::arg("index") = 0, "What `set_parameter` sets: (worlds,) float64.");
   type.def(
       "step", &Step, py::arg("step_s"), py::arg("count") = 1,
       py::arg("rest_length_target_m") = py::none(),
@@ -248,7 +201,7 @@ void AddCommands(py::class_<Worlds, std::shared_ptr<Worlds>>& type) {
       "(worlds, cables) [m], if they are given. Other Python threads go on meanwhile.");
 }
 
-void AddSnapshots(py::class_<Worlds, std::shared_ptr<Worlds>>& type) {
+void AddSnapshots(BatchType& type) {
   type.def(
       "save",
       [](Worlds& worlds, py::ssize_t world) {
@@ -259,15 +212,22 @@ void AddSnapshots(py::class_<Worlds, std::shared_ptr<Worlds>>& type) {
       py::arg("world") = 0, "All that determines a world's future, as bytes.");
   type.def(
       "restore",
-      [](Worlds& worlds, const std::string& snapshot, py::ssize_t world) {
-        const int w = worlds.World(world);
-        const std::vector<std::uint8_t> bytes(snapshot.begin(), snapshot.end());
-        if (!worlds.With([&](Batch& b) { return b.Restore(w, bytes); })) {
-          throw py::value_error("snapshot: not one of this model");
-        }
+      [](Worlds& worlds, const py::bytes& snapshot, std::optional<py::ssize_t> world) {
+        const int first = world ? worlds.World(*world) : 0,
+                  last = world ? first + 1 : worlds.worlds();
+        const std::string_view text = snapshot;
+        const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+        const bool all = worlds.With([&](Batch& b) {
+          for (int w = first; w < last; ++w) {
+            if (!b.Restore(w, bytes)) return false;
+          }
+          return true;
+        });
+        if (!all) throw py::value_error("snapshot: not one of this model");
       },
       py::arg("snapshot"), py::arg("world") = 0,
-      "Puts a world where `save` was called, to the bit. ValueError if it is of another model.");
+      "Puts a world where `save` was called, to the bit; None: all worlds. ValueError if it is of "
+      "another model.");
   type.def(
       "hash",
       [](Worlds& worlds, py::ssize_t world) {
@@ -291,22 +251,7 @@ void AddSnapshots(py::class_<Worlds, std::shared_ptr<Worlds>>& type) {
       [](Worlds& worlds, py::ssize_t world) {
         const int w = worlds.World(world);
         const auto touching = worlds.With([&](Batch& b) { return b.Contacts(w); });
-        const auto n = static_cast<py::ssize_t>(touching.size());
-        py::array_t<int> bodies({n, py::ssize_t{2}});
-        py::array_t<double> points({n, py::ssize_t{3}}), normals({n, py::ssize_t{3}});
-        py::array_t<double> forces({n, py::ssize_t{3}}), gaps(n);
-        for (py::ssize_t i = 0; i < n; ++i) {
-          const ContactState& c = touching[static_cast<std::size_t>(i)];
-          bodies.mutable_at(i, 0) = c.body_a, bodies.mutable_at(i, 1) = c.body_b;
-          Put(c.point_m, points.mutable_data(i, 0));
-          Put(c.normal, normals.mutable_data(i, 0));
-          Put(c.force_n, forces.mutable_data(i, 0));
-          gaps.mutable_at(i) = c.gap_m;
-        }
-        py::dict all;
-        all["bodies"] = bodies, all["point_m"] = points, all["normal"] = normals;
-        all["force_n"] = forces, all["gap_m"] = gaps;
-        return all;
+        return ContactsOf(touching);
       },
       py::arg("world") = 0,
       "What touched in the last step: a dict of arrays, a row a point: bodies (n, 2), -1 the "
@@ -318,7 +263,7 @@ void AddSnapshots(py::class_<Worlds, std::shared_ptr<Worlds>>& type) {
 }  // namespace
 
 void AddBatch(py::module_& module) {
-  py::class_<Worlds, std::shared_ptr<Worlds>> type(
+  BatchType type(
       module, "Batch",
       "Many worlds of one model, stepped together, as described at first. Arrays are copies, made "
       "in "
@@ -345,6 +290,8 @@ void AddBatch(py::module_& module) {
   AddStates(type);
   AddCommands(type);
   AddSnapshots(type);
+  AddSequences(type);
+  AddRows(module, type);
   py::dict status;
   status["NOT_FINITE"] = static_cast<int>(kStatusNonFinite);
   status["NOT_CONVERGED"] = static_cast<int>(kStatusNotConverged);

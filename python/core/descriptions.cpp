@@ -79,6 +79,9 @@ void AddDescriptions(py::module_& module) {
           "parameters", [](const Experiment& e) { return e.parameters; },
           "The experiment's own named parameters as resolved (SI).")
       .def_property_readonly(
+          "load_cases", [](const Experiment& e) { return NamesOf(e.load_cases); },
+          "Names, for `taut.analyze`.")
+      .def_property_readonly(
           "files", [](const Experiment& e) { return e.files; },
           "Every file that was read, the experiment first.")
       .def_property_readonly(

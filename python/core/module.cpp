@@ -9,4 +9,9 @@ PYBIND11_MODULE(_core, module) {
   taut::python::AddBatch(module);
   taut::python::AddRuns(module);
   taut::python::AddEnvironments(module);
+  taut::python::AddRollouts(module);
+  taut::python::AddStudies(module);
+  taut::python::AddFits(module);
+  taut::python::AddAnalyses(module);
+  taut::python::AddLinear(module);
 }

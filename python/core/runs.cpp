@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/run_folder.h"
 #include "taut/trace.h"
 #include "text.h"
 
@@ -79,7 +80,7 @@ SharedTrace Read(const std::string& path) {
   std::optional<Trace> trace;
   {
     const py::gil_scoped_release others;
-    trace = ReadTrace(path, said);
+    trace = ReadTrace(TraceOfRun(path), said);
   }
   if (!trace) Refuse(said);
   Tell(said);
@@ -163,7 +164,7 @@ void AddRuns(py::module_& module) {
       "`progress(time_s, duration_s)` is called a few times a second. Ctrl-C ends it. Raises "
       "`taut.InputError` if it cannot start.");
   module.def("read_trace", &Read, py::arg("path"),
-             "Reads a trace that was recorded: .h5, .csv or .csv.gz.");
+             "Reads a trace that was recorded: .h5, .csv or .csv.gz, or that of a run's folder.");
 }
 
 }  // namespace taut::python

@@ -52,6 +52,25 @@ void Refuse(const Diagnostics& said) {
   throw py::error_already_set();
 }
 
+py::dict ContactsOf(const std::vector<ContactState>& touching) {
+  const auto n = static_cast<py::ssize_t>(touching.size());
+  py::array_t<int> bodies({n, py::ssize_t{2}});
+  py::array_t<double> points({n, py::ssize_t{3}}), normals({n, py::ssize_t{3}});
+  py::array_t<double> forces({n, py::ssize_t{3}}), gaps(n);
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const ContactState& c = touching[static_cast<std::size_t>(i)];
+    bodies.mutable_at(i, 0) = c.body_a, bodies.mutable_at(i, 1) = c.body_b;
+    Put(c.point_m, points.mutable_data(i, 0));
+    Put(c.normal, normals.mutable_data(i, 0));
+    Put(c.force_n, forces.mutable_data(i, 0));
+    gaps.mutable_at(i) = c.gap_m;
+  }
+  py::dict all;
+  all["bodies"] = bodies, all["point_m"] = points, all["normal"] = normals;
+  all["force_n"] = forces, all["gap_m"] = gaps;
+  return all;
+}
+
 Overrides OverridesOf(const py::kwargs& values) {
   Overrides overrides;
   for (const auto& [name, value] : values) {

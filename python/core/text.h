@@ -1,6 +1,7 @@
 /// What the parts of the Python module share.
 #pragma once
 
+#include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -12,6 +13,7 @@
 
 #include "taut/batch.h"
 #include "taut/diagnostics.h"
+#include "taut/matrix.h"
 #include "taut/spec.h"
 
 namespace taut::python {
@@ -23,6 +25,11 @@ void AddDescriptions(py::module_& module);
 void AddBatch(py::module_& module);
 void AddRuns(py::module_& module);
 void AddEnvironments(py::module_& module);
+void AddRollouts(py::module_& module);
+void AddStudies(py::module_& module);
+void AddFits(py::module_& module);
+void AddAnalyses(py::module_& module);
+void AddLinear(py::module_& module);
 
 /// Raises `taut.InputError` with all that is wrong, if anything is; tells warnings by
 /// `warnings.warn` as `taut.InputWarning`. The GIL must be held.
@@ -71,6 +78,27 @@ Rows<T> Exactly(const py::object& given, const std::vector<py::ssize_t>& shape, 
 inline Rows<double> Output(const py::object& out, const std::vector<py::ssize_t>& shape) {
   return out.is_none() ? Rows<double>(shape) : Exactly<double>(out, shape, "out", true);
 }
+
+inline void Put(const Vec3& v, double* to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
+
+/// A new array (count,).
+inline Rows<double> ArrayOf(const std::vector<double>& numbers) {
+  return Rows<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+}
+/// A new array (count, 3).
+inline Rows<double> ArrayOf(const std::vector<Vec3>& vectors) {
+  Rows<double> a({static_cast<py::ssize_t>(vectors.size()), py::ssize_t{3}});
+  double* to = a.mutable_data();
+  for (const Vec3& v : vectors) Put(v, to), to += 3;
+  return a;
+}
+/// A new array (rows, columns).
+inline Rows<double> ArrayOf(const Matrix& m) {
+  return Rows<double>({m.rows, m.columns}, m.values.data());
+}
+
+/// A dict of arrays, as `Batch.contacts` gives it.
+py::dict ContactsOf(const std::vector<ContactState>& touching);
 
 /// Of things that have names, in their order.
 template <class List>

@@ -14,19 +14,26 @@ try:
     from taut import _core
 except ImportError as error:
     raise ImportError(f"{error}\nIf taut is not built yet: script/build release taut_python") from None
-from taut import _tables
-from taut._core import Batch, Experiment, Robot, Run, Trace, load, read_trace, run
+from taut import _results, _tables
+from taut._core import (Analysis, Batch, Experiment, Fitted, LinearSystem, Robot, Rows, Run, Study, Trace, analyze, fit,
+                        learn, linear_system, load, read_study, read_trace, run)
+from taut._data import data_path
 from taut._errors import Complaint, InputError, InputWarning
+from taut._results import rollout, tunables
 
 Status = _enum.IntFlag("Status", _core.status_bits)  # type: ignore[misc]
 Status.__doc__ = "What a world has to say for itself; 0 is good."
 
 __version__ = _core.version
-__all__ = ["Batch", "Complaint", "Experiment", "InputError", "InputWarning", "Robot", "Run", "Status", "Trace",
-           "load", "read_trace", "run"]
+__all__ = ["Analysis", "Batch", "Complaint", "Experiment", "Fitted", "InputError", "InputWarning", "LinearSystem",
+           "Robot", "Rows", "Run", "Status", "Study", "Trace", "analyze", "data_path", "fit", "learn", "linear_system",
+           "load", "read_study", "read_trace", "rollout", "run", "tunables"]
 
 Trace.to_pandas = _tables.to_pandas
 Trace.to_xarray = _tables.to_xarray
-for _public in (Batch, Experiment, Robot, Run, Trace):
+Study.to_pandas = _results.study_to_pandas
+Fitted.data = property(_results.fit_data)  # type: ignore[assignment]
+Fitted.to_pandas = _results.fit_to_pandas
+for _public in (Analysis, Batch, Experiment, Fitted, LinearSystem, Robot, Rows, Run, Study, Trace):
     _public.__module__ = "taut"
 del _public

@@ -354,20 +354,6 @@ class Maker {
 
 }  // namespace
 
-bool IsHeldInWorld(const ModelDef& def) {
-  if (!def.planes.empty()) return true;
-  for (const JointDef& joint : def.joints) {
-    if (base::IsFixed(def, joint.body_a) || base::IsFixed(def, joint.body_b)) return true;
-  }
-  for (const CableDef& cable : def.cables) {
-    if (std::any_of(cable.attachments.begin(), cable.attachments.end(),
-                    [&](const AttachmentDef& at) { return base::IsFixed(def, at.body); })) {
-      return true;
-    }
-  }
-  return false;
-}
-
 PinJointed PinJointedOf(const ModelDef& def, bool weight) { return Maker(def, weight).Run(); }
 
 Matrix NodeMatrix(const PinJointed& structure) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "description/build.h"
+#include "description/kinds.h"
 #include "description/members.h"
 #include "description/model_keys.h"
 #include "description/plausible.h"
@@ -137,8 +138,13 @@ std::optional<std::string> FileKind(const std::string& path, Diagnostics& out) {
     if (kind && kind->text == known) return kind->text;
   }
   if (kind && kind->text == description::kResolvedKind) return "experiment";
-  out.Error(kind ? kind->at : root->at, "a file is of kind model, experiment or gait",
-            "write `kind: model`, `kind: experiment` or `kind: gait` at its top");
+  if (kind) {
+    out.Error(kind->at, "kind must be model, experiment or gait, got " + kind->text,
+              description::HintOfKind(kind->text));
+  } else {
+    out.Error(root->at, "a file is of kind model, experiment or gait",
+              "write `kind: model`, `kind: experiment` or `kind: gait` at its top");
+  }
   return std::nullopt;
 }
 

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "description/kinds.h"
+
 namespace taut::description {
 namespace {
 
@@ -300,7 +302,8 @@ bool CheckHeader(const Value& root, std::string_view kind, Diagnostics& out) {
     good = false;
   };
   check("taut", "1", "the version of the format; this taut reads version 1");
-  check("kind", kind, "a file is a model, an experiment or a gait");
+  const Value* const found = root.Find("kind");
+  check("kind", kind, HintOfKind(found ? found->text : ""));
   return good;
 }
 

@@ -29,6 +29,19 @@ bool LoadItsExperiment(const StudyFileText& text, const OverrideSet& of_user, co
   return true;
 }
 
+/// What an objective asks of its experiment.
+void CheckAgainst(const ExperimentSpec& experiment, const ObjectiveText& objective,
+                  Diagnostics& out) {
+  if (objective.from_s >= experiment.duration_s) {
+    out.Error(objective.from_at, "objective.from_s is not before the experiment's end",
+              "that is at " + Shown(experiment.duration_s) + " s");
+  }
+  if (objective.measure == Measure::kNearer && !experiment.goal) {
+    out.Error(objective.measure_at, "objective.measure: nearer needs a goal",
+              "the experiment has no `goal`");
+  }
+}
+
 /// Whatever could be read; the caller looks at the diagnostics.
 StudySpec ReadStudy(const Value& root, const OverrideSet& overrides, const Scope& scope) {
   StudyFileText text;
@@ -44,14 +57,7 @@ StudySpec ReadStudy(const Value& root, const OverrideSet& overrides, const Scope
   if (known) tunables = FindTunables(controllers, scales, study.experiment.robot);
   study.parameters = ToParameters(root.Find("vary"), text.vary, known ? &tunables : nullptr, scope);
   study.objective = text.objective;
-  if (known && study.objective.from_s >= study.experiment.duration_s) {
-    scope.out.Error(text.objective.from_at, "objective.from_s is not before the experiment's end",
-                    "that is at " + Shown(study.experiment.duration_s) + " s");
-  }
-  if (known && study.objective.measure == Measure::kNearer && !study.experiment.goal) {
-    scope.out.Error(text.objective.measure_at, "objective.measure: nearer needs a goal",
-                    "the experiment has no `goal`");
-  }
+  if (known) CheckAgainst(study.experiment, text.objective, scope.out);
   if (text.worlds) study.perturbation = *text.worlds;
   if (known && study.perturbation.start.goal_rad > 0 && !study.experiment.goal) {
     scope.out.Error(root.Find("worlds")->at, "worlds.start.goal_rad: the experiment has no `goal`");
@@ -81,6 +87,19 @@ std::optional<StudySpec> LoadStudy(const std::string& path, const Overrides& ove
   const std::vector<std::string>& more = study.experiment.files;
   study.files.insert(study.files.end(), more.begin(), more.end());
   return study;
+}
+
+std::optional<ObjectiveSpec> ReadObjective(const std::string& text, const std::string& name,
+                                           const ExperimentSpec& experiment, Diagnostics& out) {
+  const std::size_t errors_before = out.items().size();
+  const description::ValuePtr root = description::ParseYaml(text, name, out);
+  if (!root) return std::nullopt;
+  description::ObjectiveText objective;
+  const description::NameTable no_parameters;
+  description::ReadMapping(*root, "objective", {no_parameters, out}, objective);
+  description::CheckAgainst(experiment, objective, out);
+  if (out.items().size() != errors_before) return std::nullopt;
+  return objective;
 }
 
 }  // namespace taut

@@ -178,6 +178,16 @@ std::string BesideTrace(const std::string& trace, const std::string& name, const
   return (path.parent_path() / (name + suffix + end)).string();
 }
 
+std::string TraceOfRun(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return path;
+  const fs::path folder = (fs::path(path) / "").parent_path();  // without a slash at its end
+  for (const char* name : {"trace.h5", "trace.csv", "trace.csv.gz"}) {
+    if (fs::exists(folder / name, ignored)) return (folder / name).string();
+  }
+  return (folder / "trace.h5").string();
+}
+
 std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out) {
   auto trace = ReadTrace(path, out);
   if (!trace) return std::nullopt;

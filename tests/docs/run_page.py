@@ -8,14 +8,17 @@ In a page,
   ```console status=3   the block's last command ends with this exit status, not with 0
   ```yaml FILE          the block is that file, seen from the page's folder (any language)
   ```yaml in FILE       the block is some lines of that file, without a gap
+  ```python cell        a notebook's: all of a page run in order, in one session; a block ```text output
+                        right behind one is what it prints, and without that it prints nothing
 Blocks of other kinds are left alone. A page docs/x.md with a folder docs/x/ runs among copies of
 that folder's files, other pages among the folders of the project.
 
-With TAUT_BLESS=1 in the environment, what the commands print now is put into the page instead. Exit
-status 77: all is good, but some commands were left out for want of a Python module.
+With TAUT_BLESS=1 in the environment, what the commands print now is put into the page instead, and
+pictures that cells have written go to the page's images/, where the page shows them. Exit status 77: all is good, but some commands were left out for want of a Python module.
 """
 
 import importlib.util
+import json
 import os
 import pathlib
 import re
@@ -115,15 +118,18 @@ def prepare(page, folder, taut):
     return work, environment
 
 
-def missing_module(command, work):
-    """A module that a Python program of this command imports and this machine lacks."""
-    program = re.match(r"python3 (\S+)", command.text)
-    if program:
-        text = (work / program[1]).read_text()
-        for module in re.findall(r"^(?:import|from) (\w+)", text, re.MULTILINE):
-            if importlib.util.find_spec(module) is None:
-                return module
+def missing_import(text):
+    """A module that a Python program imports and this machine lacks."""
+    for module in re.findall(r"^(?:import|from) (\w+)", text, re.MULTILINE):
+        if importlib.util.find_spec(module) is None:
+            return module
     return None
+
+
+def missing_module(command, work):
+    """The same of the program that a command runs."""
+    program = re.match(r"python3 (\S+)", command.text)
+    return missing_import((work / program[1]).read_text()) if program else None
 
 
 def check_files(page):
@@ -143,6 +149,56 @@ def check_files(page):
         elif match[1] and "\n" + block.text not in "\n" + text:
             wrong.append(f"{page.name}:{block.line}: these lines are not in {match[2]}")
     return count, wrong
+
+
+def cells_of(page):
+    """[(block, the block of what it prints or None), ...]"""
+    found = []
+    for block in page.blocks:
+        if block.info == "python cell":
+            found.append((block, None))
+        elif block.info == "text output":
+            before = found[-1][0] if found else None
+            if not before or block.line != before.line + len(before.lines) + 3:
+                raise SystemExit(f"{page.name}:{block.line}: output, but right before it there is no cell")
+            found[-1] = (before, block)
+    return found
+
+
+def run_cells(page, work, environment, bless):
+    """The same as of `run`, of a notebook; what is to be replaced as (line, how many lines, lines)."""
+    cells = cells_of(page)
+    if not cells:
+        return 0, [], [], []
+    missing = missing_import("\n".join(block.text for block, _ in cells))
+    if missing:
+        return 0, [], [f"{page.name}: its cells need the Python module {missing} (Debian: python3-{missing})"], []
+    done = subprocess.run([sys.executable, pathlib.Path(__file__).with_name("cells.py")], cwd=work, env=environment,
+                          input=json.dumps([block.text for block, _ in cells]), capture_output=True, text=True)
+    if done.returncode != 0:
+        return 0, [f"{page.name}: its cells ended with status {done.returncode}:\n{done.stderr}"], [], []
+    said, wrong, replaced = json.loads(done.stdout), [], []
+    for (block, output), text in zip(cells, said["outputs"]):
+        printed = text.rstrip("\n").splitlines()
+        if same(output.lines if output else [], printed):
+            continue
+        end = block.line + len(block.lines) + 1  # the line behind the cell
+        if output and printed:
+            replaced.append((output.line - 1, len(output.lines), shortened(output.lines, printed)))
+        elif printed:
+            replaced.append((end - 1, 0, ["", "```text output", *printed, "```"]))
+        else:
+            replaced.append((end - 1, len(output.lines) + 3, []))
+        if not bless:
+            wrong.append(f"{page.name}:{block.line}: the cell prints\n{text}\nand the page says\n" +
+                         (output.text if output else "nothing"))
+    if not said["good"]:
+        wrong.append(f"{page.name}:{cells[len(said['outputs']) - 1][0].line}: the cell raises:\n{said['outputs'][-1]}")
+    elif bless:
+        for name in re.findall(r"\]\(images/(\w+\.png)\)", "\n".join(page.lines)):
+            if (work / name).is_file():
+                shutil.copyfile(work / name, page.path.parent / "images" / name)
+    return len(said["outputs"]), wrong, [], replaced
 
 
 def run(page, taut, bless):
@@ -175,6 +231,9 @@ def run(page, taut, bless):
                     if not bless:
                         wrong.append(f"{where}: `{command.text}` printed\n" + "\n".join(printed) +
                                      "\nand the page says\n" + "\n".join(command.output))
+        ran, more, without, cells = run_cells(page, work, environment, bless)
+    count, wrong, left_out = count + ran, wrong + more, left_out + without
+    replaced = sorted(replaced + cells)
     if bless and replaced:
         lines = list(page.lines)
         for first, length, output in reversed(replaced):

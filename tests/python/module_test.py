@@ -80,6 +80,7 @@ class Running(unittest.TestCase):
             subprocess.run([COMMAND, "run", PUSH, "--duration_s", "0.3", "--quiet", "--out", folder + "/run"], check=True)
             summary = json.loads(pathlib.Path(folder, "run", "summary.json").read_text())
             recorded = taut.read_trace(folder + "/run/trace.h5")
+            self.assertEqual(taut.read_trace(folder + "/run").metadata, recorded.metadata)
         ran = taut.run(short())
         self.assertEqual(f"{ran.state_hash:016x}", summary["state_hash"])
         self.assertEqual(ran.trace.channels, recorded.channels)
@@ -198,6 +199,11 @@ class Batches(unittest.TestCase):
     def test_parameters_of_each_world(self):
         batch = taut.Batch(taut.load(PRISM), worlds=3)
         batch.set_parameter("gravity_z_m_per_s2", [0, -1, -2])
+        np.testing.assert_array_equal(batch.parameter("gravity_z_m_per_s2"), [0, -1, -2])
+        stiffness = batch.parameter("cable_stiffness_n_per_m", -1)
+        batch.set_parameter("cable_stiffness_n_per_m", stiffness * [1, 2, 3], -1)
+        np.testing.assert_array_equal(batch.parameter("cable_stiffness_n_per_m", -1), stiffness * [1, 2, 3])
+        np.testing.assert_array_equal(batch.parameter("cable_stiffness_n_per_m", 0), stiffness)
         before = batch.body_position_m()
         batch.step(1e-3, 100)
         fallen = (before - batch.body_position_m())[:, :, 2].mean(axis=1)
@@ -211,6 +217,9 @@ class Batches(unittest.TestCase):
         self.assertNotEqual(batch.hash(1), hash_then)
         batch.restore(kept, 1)
         self.assertEqual(batch.hash(1), hash_then)
+        batch.step(1e-3, 5)
+        batch.restore(kept, None)
+        self.assertEqual([batch.hash(0), batch.hash(1)], [hash_then] * 2)
         with self.assertRaisesRegex(ValueError, "of this model"):
             batch.restore(b"nothing")
         with self.assertRaisesRegex(ValueError, "of this model"):
@@ -243,6 +252,8 @@ class Batches(unittest.TestCase):
         for call in (lambda: batch.hash(2), lambda: batch.hash(-3), lambda: batch.save(10**12),
                      lambda: batch.contacts(2), lambda: batch.set_node_force(0, 10**6, [0, 0, 0]),
                      lambda: batch.set_parameter("body_mass_kg", [1, 1], 99),
+                     lambda: batch.parameter("friction_scale", 1), lambda: batch.parameter("cable_damping_n_s_per_m", 12),
+                     lambda: batch.parameter("body_mass_kg", -4),
                      lambda: batch.set_rest_length_target(np.zeros(12), world=2)):
             self.assertRaises(IndexError, call)
         for call, why in ((lambda: batch.step(0), "positive"), (lambda: batch.step(math.nan), "positive"),
@@ -251,6 +262,7 @@ class Batches(unittest.TestCase):
                           (lambda: batch.set_rest_length_target(np.zeros(12)), r"\(12,\).*\(2, 12\)"),
                           (lambda: batch.set_rest_length_target("no"), "rest_length_m"),
                           (lambda: batch.set_parameter("mass", [1, 1]), "body_mass_kg"),
+                          (lambda: batch.parameter("mass"), "body_mass_kg"),
                           (lambda: taut.Batch(taut.load(PUSH), worlds=0), "at least 1"),
                           (lambda: taut.Batch(taut.load(PUSH), simd="wide"), "avx512")):
             self.assertRaisesRegex(ValueError, why, call)

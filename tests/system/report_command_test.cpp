@@ -55,6 +55,22 @@ TEST_F(ReportCommand, AReportComparesTwoTraces) {
   EXPECT_EQ(report["rows"][0]["channels"], report["rows"][1]["channels"]);
 }
 
+TEST_F(ReportCommand, ARunMayBeGivenAsItsFolder) {
+  Run({"run", kHang, "--quiet", "--out", "a"});
+  Run({"run", kHang, "--quiet", "--out", "b", "--csv", "--set", "mass_kg=0.6"});
+  std::filesystem::remove(Path("b/trace.h5"));
+  CommandResult result = Run({"report", "a/", "--compare", "b"});
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_EQ(result.output, "Report: a/report.html\n");
+  const Json report = DataOf(Read(Path("a/report.html")));
+  EXPECT_EQ(report["scene"]["run_name"], "hang (a/trace.h5)");
+  EXPECT_EQ(report["scene"]["compared"][0]["name"], "hang (b/trace.csv)");
+  std::filesystem::create_directory(Path("empty"));
+  result = Run({"report", "empty"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.errors.find("empty/trace.h5: error: "), std::string::npos) << result.errors;
+}
+
 TEST_F(ReportCommand, SeveralRunsAreNamedTogetherOrOneByOne) {
   for (const char* name : {"a", "b", "c", "d"}) Run({"run", kHang, "--quiet", "--out", name});
   for (const auto& words : std::vector<std::vector<std::string>>{

@@ -11,8 +11,8 @@ TEST_F(ExperimentErrors, HeaderAndKeysAreStrict) {
       "taut: 1", "taut: 2",
       "1:7: error: taut must be 1, got 2 (the version of the format; this taut reads version 1)");
   Expect("kind: experiment", "kind: model",
-         "2:7: error: kind must be experiment, got model (a file is a model, an experiment or a "
-         "gait)");
+         "2:7: error: kind must be experiment, got model (files of this kind are for "
+         "`taut check`)");
   Expect("record:", "recrod:", "21:1: error: unknown key \"recrod\" (did you mean \"record\"?)");
   Expect("record:", "duration_s: 3\nrecord:",
          "21:1: error: duplicate key \"duration_s\" (first in line 8)");
@@ -66,8 +66,8 @@ TEST_F(ExperimentErrors, FilesMustBeThere) {
   Expect("name: trial", "name: trial\nbase: [a]",
          "4:7: error: base must be the name of a file of kind experiment");
   Expect("name: trial", "name: trial\nbase: model.yaml",
-         "model.yaml:2:7: error: kind must be experiment, got model (a file is a model, an "
-         "experiment or a gait)");
+         "model.yaml:2:7: error: kind must be experiment, got model (files of this "
+         "kind are for `taut check`)");
 }
 
 TEST_F(ExperimentErrors, ReferencesNameWhatThereIs) {

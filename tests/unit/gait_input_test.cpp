@@ -23,10 +23,9 @@ TEST_F(VelocityInput, GoesWithImpedanceAndNamesAGait) {
          "11:21: error: velocity_input needs the key \"gait\"\n"
          "11:22: error: unknown key \"period\" in velocity_input (did you mean \"period_s\"?)");
   Change(hold, hold + "    velocity_input: {gait: model.yaml}\n");
-  EXPECT_EQ(
-      Complaints(),
-      "model.yaml:2:7: error: kind must be gait, got model (a file is a model, an experiment or "
-      "a gait)\n");
+  EXPECT_EQ(Complaints(),
+            "model.yaml:2:7: error: kind must be gait, got model (files of this kind are for "
+            "`taut check`)\n");
   Change("controllers:\n",
          "controllers:\n  - {name: p, velocity_input: {gait: g.yaml}, position: {programs: []}}\n");
   EXPECT_EQ(Without("trial.yaml:", Complaints()),

@@ -274,7 +274,7 @@ TEST(FileKind, IsWhatTheFileSays) {
   EXPECT_FALSE(FileKind(path, out));
   std::remove(path.c_str());
   EXPECT_EQ(out.items()[0].what, "cannot be opened: No such file or directory");
-  EXPECT_EQ(out.items()[1].what, "a file is of kind model, experiment or gait");
+  EXPECT_EQ(out.items()[1].what, "kind must be model, experiment or gait, got robot");
   EXPECT_EQ(out.items()[1].at.line, 2);
 }
 

@@ -338,8 +338,14 @@ TEST(Header, TautAndKindMustBeRight) {
             "f.yaml:1:7: error: taut must be 1, got 2 (the version of the format; this taut reads "
             "version 1)\n");
   EXPECT_EQ(errors("taut: 1\nkind: experiment\n"),
-            "f.yaml:2:7: error: kind must be model, got experiment (a file is a model, an "
-            "experiment or a gait)\n");
+            "f.yaml:2:7: error: kind must be model, got experiment (files of this "
+            "kind are for `taut run`)\n");
+  EXPECT_EQ(errors("taut: 1\nkind: study\n"),
+            "f.yaml:2:7: error: kind must be model, got study (files of this kind are for "
+            "`taut learn`)\n");
+  EXPECT_EQ(errors("taut: 1\nkind: robot\n"),
+            "f.yaml:2:7: error: kind must be model, got robot (there are the kinds model, "
+            "experiment, gait, study, fit, catalogue, calibration, faults)\n");
   EXPECT_EQ(errors("name: x\n"),
             "f.yaml:1:1: error: the file needs the key \"kind\" (write `kind: model`)\n"
             "f.yaml:1:1: error: the file needs the key \"taut\" (write `taut: 1`)\n");

@@ -125,6 +125,34 @@ TEST_F(StudyFile, AllErrorsAreSaidAtOnce) {
   }
 }
 
+TEST_F(StudyFile, AnObjectiveAloneIsReadAsThatOfAStudy) {
+  const auto study = Load(kGood);
+  ASSERT_TRUE(study);
+  Diagnostics out;
+  const auto same =
+      ReadObjective("{\"measure\": \"heading\", \"direction\": [0, 2, 0], \"from_s\": 5}", "text",
+                    study->experiment, out);
+  ASSERT_TRUE(same) << out.Format();
+  EXPECT_EQ(same->measure, study->objective.measure);
+  EXPECT_EQ(same->direction.y, 1.0);
+  EXPECT_EQ(same->from_s, 5.0);
+  EXPECT_FALSE(
+      ReadObjective("{measure: nearer, from_s: 500, form: 1}", "text", study->experiment, out));
+  EXPECT_EQ(
+      out.Format(),
+      "text:1:2: error: objective.measure: nearer needs a goal (the experiment has no `goal`)\n"
+      "text:1:19: error: objective.from_s is not before the experiment's end (that is at 60 "
+      "s)\n"
+      "text:1:32: error: unknown key \"form\" in objective (one of: measure, direction, from_s, "
+      "tension_limit, fall, max_speed_m_per_s)\n");
+  Diagnostics others;
+  for (const char* text : {"", "[1]", "{measure: [}", "5"}) {
+    const std::size_t before = others.items().size();
+    EXPECT_FALSE(ReadObjective(text, "text", study->experiment, others)) << text;
+    EXPECT_GT(others.items().size(), before) << text;
+  }
+}
+
 TEST_F(StudyFile, KeysOfOtherMethodsAreSaid) {
   EXPECT_EQ(Wrong("method: monte_carlo,", "method: monte_carlo, deviation: 0.1,"),
             "12: search.deviation has no effect here (it belongs to hill_climbing and cma_es)\n");

@@ -1,0 +1,57 @@
+#include "interruptible.h"
+
+#include <pybind11/pybind11.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+namespace taut::python {
+
+namespace py = pybind11;
+
+void Interruptible(const std::function<void(const std::atomic<bool>& stop)>& work,
+                   const std::function<void()>& look) {
+  std::atomic<bool> stop{false};
+  std::unique_ptr<py::error_already_set> raised;
+  std::exception_ptr failed;
+  {
+    const py::gil_scoped_release others;
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool done = false;
+    std::thread worker([&] {
+      try {
+        work(stop);
+      } catch (...) {
+        failed = std::current_exception();
+      }
+      const std::lock_guard lock(mutex);
+      done = true;
+      changed.notify_all();
+    });
+    for (;;) {
+      {
+        std::unique_lock lock(mutex);
+        if (changed.wait_for(lock, std::chrono::milliseconds(100), [&] { return done; })) break;
+      }
+      if (stop) continue;
+      const py::gil_scoped_acquire mine;
+      try {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        if (look) look();
+      } catch (py::error_already_set& error) {
+        raised = std::make_unique<py::error_already_set>(std::move(error));
+        stop = true;
+      }
+    }
+    worker.join();
+  }
+  if (raised) throw py::error_already_set(*raised);
+  if (failed) std::rethrow_exception(failed);
+}
+
+}  // namespace taut::python

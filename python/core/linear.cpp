@@ -1,0 +1,139 @@
+// The simulated robot as a linear system.
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "interruptible.h"
+#include "taut/alone.h"
+#include "taut/start.h"
+#include "taut/state_space.h"
+#include "text.h"
+
+namespace taut::python {
+namespace {
+
+using System = std::shared_ptr<StateSpace>;
+
+System Find(const ExperimentSpec& experiment, bool differences) {
+  Diagnostics said;
+  CheckStart(experiment.robot, StartKind::kSettled, said);
+  Tell(said);
+  auto system = std::make_shared<StateSpace>();
+  Diagnostics later;
+  Interruptible([&](const std::atomic<bool>& stop) {
+    LinearOptions options;
+    options.differences = differences;
+    options.go_on = [&] { return !stop; };
+    *system = FindStateSpace(experiment, options, later);
+  });
+  Tell(later);
+  if (!system->found) {
+    throw std::runtime_error("there is no linear system: " + system->why +
+                             (system->hint.empty() ? "" : " (" + system->hint + ")"));
+  }
+  return system;
+}
+
+py::list UnitsOf(const std::vector<LinearSignal>& signals) {
+  py::list units;
+  for (const LinearSignal& signal : signals) units.append(signal.unit);
+  return units;
+}
+
+Rows<double> ValuesOf(const std::vector<LinearSignal>& signals) {
+  std::vector<double> at;
+  for (const LinearSignal& signal : signals) at.push_back(signal.at);
+  return ArrayOf(at);
+}
+
+/// The number of a signal; KeyError, which names the closest, if there is none.
+int NumberOf(const std::vector<LinearSignal>& signals, const std::string& name, const char* kind) {
+  if (const auto found = FindSignal(signals, name)) return *found;
+  const std::vector<std::string> names = NamesOf(signals);
+  const std::string_view close = ClosestMatch(name, names);
+  throw py::key_error(std::string("no ") + kind + " \"" + name + "\"" +
+                      (close.empty() ? "" : "; did you mean \"" + std::string(close) + "\"?"));
+}
+
+py::tuple Respond(const StateSpace& s, const std::string& input, const std::string& output,
+                  const py::object& frequencies_hz) {
+  const int from = NumberOf(s.inputs, input, "input"), to = NumberOf(s.outputs, output, "output");
+  const Array given = Array::ensure(frequencies_hz);
+  if (!given || given.ndim() != 1) {
+    PyErr_Clear();
+    throw py::value_error("frequencies_hz: an array (n,) of numbers");
+  }
+  const std::vector<double> all(given.data(), given.data() + given.size());
+  for (const double f : all) {
+    if (!(f >= 0 && f <= 0.5 / s.period_s * (1 + 1e-9))) {
+      throw py::value_error(
+          fmt::format("frequencies_hz: {}; from 0 to half the tick's, {} Hz", f, 0.5 / s.period_s));
+    }
+  }
+  FrequencyResponse response;
+  {
+    const py::gil_scoped_release others;
+    response = ResponseOf(s, from, to, all);
+  }
+  return py::make_tuple(ArrayOf(response.magnitude), ArrayOf(response.phase_rad));
+}
+
+template <class Type>
+void AddSignals(Type& type, const char* name, std::vector<LinearSignal> StateSpace::*of,
+                const char* words) {
+  const std::string plural = name, one = plural.substr(0, plural.size() - 1);
+  type.def_property_readonly(
+      name, [of](const StateSpace& s) { return NamesOf(s.*of); }, words);
+  type.def_property_readonly((one + "_units").c_str(),
+                             [of](const StateSpace& s) { return UnitsOf(s.*of); });
+  type.def_property_readonly((one + "_at").c_str(),
+                             [of](const StateSpace& s) { return ValuesOf(s.*of); },
+                             "At the equilibrium, in their units; of small turns 0.");
+}
+
+}  // namespace
+
+void AddLinear(py::module_& module) {
+  py::class_<StateSpace, System> type(module, "LinearSystem",
+                                      "The robot about its rest, a tick at a time: x' = A x + B u, "
+                                      "y = C x + D u, of changes x, u, y "
+                                      "from their values there. SI units.");
+  const auto matrix = [&](const char* name, Matrix StateSpace::*of, const char* words) {
+    type.def_property_readonly(
+        name, [of](const StateSpace& s) { return ArrayOf(s.*of); }, words);
+  };
+  matrix("A", &StateSpace::A, "(states, states) float64.");
+  matrix("B", &StateSpace::B, "(states, inputs) float64.");
+  matrix("C", &StateSpace::C, "(outputs, states) float64.");
+  matrix("D", &StateSpace::D, "(outputs, inputs) float64.");
+  AddSignals(type, "states", &StateSpace::states, "Names.");
+  AddSignals(type, "inputs", &StateSpace::inputs, "Names: node/NAME/force_x ...");
+  AddSignals(type, "outputs", &StateSpace::outputs, "Names: node/NAME/position_x ...");
+  type.def_readonly("period_s", &StateSpace::period_s,
+                    "Of a tick: the controllers', or a step [s].");
+  type.def_readonly("remarks", &StateSpace::remarks, "What is left out, in sentences.");
+  type.def_readonly("disagreement", &StateSpace::disagreement,
+                    "The largest difference from the other way of finding it, as a share.");
+  type.def("response", &Respond, py::arg("input"), py::arg("output"), py::arg("frequencies_hz"),
+           "What a sine of an input does to an output: magnitude and phase [rad], an array each.");
+
+  const char* const words =
+      "The simulated robot as a linear system about the rest that it comes to under its "
+      "controllers, as `taut analyze --linear` writes it. `differences`: derivatives by "
+      "differences "
+      "of steps, not by the chain rule. RuntimeError says why where there is none. Ctrl-C ends it.";
+  module.def("linear_system", &Find, py::arg("experiment"), py::arg("differences") = false, words);
+  module.def(
+      "linear_system",
+      [](const RobotSpec& robot, bool differences) {
+        ExperimentSpec alone = ExperimentWith(robot);
+        // Nothing holds it: without weight, as in statics.
+        if (!IsHeld(robot.def)) alone.robot.def.gravity_m_per_s2 = {};
+        return Find(alone, differences);
+      },
+      py::arg("robot"), py::arg("differences") = false, words);
+}
+
+}  // namespace taut::python

@@ -1,0 +1,41 @@
+"""What several tests of the Python module need."""
+
+import os
+import pathlib
+import signal
+import sys
+import threading
+import unittest
+import warnings
+
+import taut
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PUSH = str(ROOT / "experiments" / "push_20n.yaml")
+MASS = str(ROOT / "models" / "hanging_mass.yaml")
+PRISM = str(ROOT / "models" / "prism3.yaml")
+GAIT = str(ROOT / "experiments" / "sidewinder3_start.yaml")
+FREQUENCY = "motion.sine.frequency_hz"
+COMMAND = sys.argv[1]
+
+
+def gait(seconds=0.3):
+    experiment = taut.load(GAIT)
+    experiment.duration_s = seconds
+    return experiment
+
+
+def interrupted(case, call):
+    """What `call` leaves behind when Ctrl-C comes while it is at work."""
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with case.assertRaises(KeyboardInterrupt):
+        call()
+    timer.join()
+
+
+def main():
+    """The tests of the program; the command's path is its first argument."""
+    del sys.argv[1]
+    warnings.simplefilter("error")
+    unittest.main()
