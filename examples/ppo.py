@@ -275,7 +275,7 @@ def main():
     torch.use_deterministic_algorithms(True)
     try:
         (play if args.play else learn)(args)
-    except OSError as error:  # a folder that cannot be written to, a full disk
+    except (OSError, taut.InputError) as error:  # a folder that cannot be written to, a time that does not fit
         print(error, file=sys.stderr)
         sys.exit(3)
 

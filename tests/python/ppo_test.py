@@ -24,9 +24,10 @@ import taut  # noqa: E402
 import taut.gym  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "examples"))
+sys.path[:0] = [str(ROOT / "examples"), str(ROOT / "script")]
 import ppo  # noqa: E402
 import ppo_play  # noqa: E402
+from validation import rolling  # noqa: E402
 
 PROGRAM = [sys.executable, str(ROOT / "examples" / "ppo.py")]
 FEW = ppo.Settings(worlds=8, periods=8)
@@ -37,7 +38,7 @@ class Aim:
     periods; those of odd worlds, which is what is seen second, fail then. What is best to do, and its worth, is known."""
 
     observation_channels, action_channels = ["it", "odd"], ["aim"]
-    period_s, episode_steps = 1.0, 4
+    period_s, episode_steps = 0.5, 4
 
     def __init__(self, worlds):
         self.num_envs, self.action_space = worlds, taut.gym.Box(-1, 1, (worlds, 1))
@@ -135,11 +136,24 @@ class Sums(unittest.TestCase):
             ppo.loss_of_policy(log_chance, torch.zeros(1), torch.tensor([advantage]), 0.2).backward()
             self.assertAlmostEqual(log_chance.grad.item(), slope, places=5)
 
+    def test_an_update_depends_on_advantages_beside_each_other_alone(self):
+        given = [torch.randn(64, 2), torch.randn(64, 1), torch.randn(64)]
+        advantage, worth, found = torch.randn(64), torch.randn(64), []
+        for changed in (advantage, 3 * advantage + 5):
+            torch.manual_seed(1)
+            policy = ppo.Policy(["a", "b"], 1, FEW)
+            optimizer = torch.optim.SGD(policy.parameters(), lr=1e-3)
+            found.append(ppo.update(policy, optimizer, *given, changed, worth, FEW))
+            found.append(policy.actor[0].weight.detach().numpy())
+        self.assertGreater(found[0], 0)
+        self.assertAlmostEqual(found[0], found[2], delta=1e-4 * found[0])
+        np.testing.assert_allclose(found[1], found[3], atol=1e-6)
+
 
 class Collecting(unittest.TestCase):
     def test_what_followed_an_end_is_the_last_of_its_own_episode_or_nothing(self):
         torch.manual_seed(1)
-        envs, policy = Aim(4), ppo.Policy(Aim.observation_channels, 1, FEW)
+        envs, policy = Aim(4), ppo.Policy(Aim.observation_channels, 2, FEW)  # which looks at the first alone
         steps = []
         true_step = envs.step
         envs.step = lambda actions: steps.append(true_step(actions)) or steps[-1]
@@ -177,6 +191,7 @@ class Learning(unittest.TestCase):
             worth = learner.policy.worth(learner.policy.scaled(seen)).reshape(2, 3).mean(1)
         np.testing.assert_allclose(means, [-0.6, 0, 0.6] * 2, atol=0.1)
         self.assertLess(said["deviation"], 0.25)
+        self.assertAlmostEqual(said["per_s"], (1 - said["deviation"] ** 2) / Aim.period_s, delta=0.05)
         # 1 + 1/2 + 1/4 ... for ever, or of four periods, and who sees it does not see which
         both = np.array([2, (1 + 1.5 + 1.75 + 1.875) / 4]) * (1 - said["deviation"] ** 2)
         np.testing.assert_allclose(worth, both, atol=0.1)
@@ -202,6 +217,38 @@ class Learning(unittest.TestCase):
         self.assertFalse(torch.equal(policy["actor.4.weight"], other["actor.4.weight"]))
         for before, after in zip(start, list(policy.values())[:len(start)]):
             self.assertFalse(torch.equal(before, after))
+
+
+class Keeping(unittest.TestCase):
+    def test_all_that_learning_goes_on_from_is_kept(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "policy.pt"
+            first = ppo.Learner(Aim(8), 5, FEW)
+            for said in first.learn(Aim(8)):
+                if said["update"] == 3:
+                    break
+            first.optimizer.param_groups[0]["lr"] = 1.25e-4
+            first.save(path)
+            found = []
+            for _ in range(2):
+                again = ppo.Learner(Aim(8), 5, FEW)
+                at_the_start = torch.get_rng_state()
+                again.load(path)
+                self.assertEqual(again.about(), first.about())
+                self.assertEqual((again.updates, again.about()["rate"]), (3, 1.25e-4))
+                self.assertFalse(torch.equal(torch.get_rng_state(), at_the_start))
+                for kept, own in zip(again.optimizer.state_dict()["state"].values(),
+                                     first.optimizer.state_dict()["state"].values()):
+                    self.assertTrue(torch.equal(kept["exp_avg_sq"], own["exp_avg_sq"]))
+                self.assertEqual(len(again.optimizer.state_dict()["state"]), 13)
+                self.assertEqual(next(again.learn(Aim(8)))["update"], 4)
+                found.append(again.policy.state_dict())
+            for name, value in found[0].items():
+                self.assertTrue(torch.equal(value, found[1][name]), name)
+            before = path.read_bytes()
+            with unittest.mock.patch("torch.save", side_effect=OSError("no space")), self.assertRaises(OSError):
+                again.save(path)
+            self.assertEqual(path.read_bytes(), before)
 
 
 class Program(unittest.TestCase):
@@ -263,9 +310,15 @@ class Program(unittest.TestCase):
         status, said = refused("--play")
         self.assertEqual((status, "policy.pt" in said), (3, True))
         (self.folder / "play").write_text("in the way")
-        ppo.Learner(taut.gym.make_vec(str(ppo.TASK)), 1, ppo.Settings()).save(self.folder / "policy.pt")
+        ppo.Learner(taut.gym.make_vec(str(ppo.TASK)), 4, ppo.Settings()).save(self.folder / "policy.pt")
         status, said = refused("--play")
         self.assertEqual((status, "play" in said), (3, True))
+        (self.folder / "play").unlink()
+        status, said = refused("--play", "--seconds", "0.0301")
+        self.assertEqual((status, "duration_s" in said), (3, True), said)
+        ppo.Learner(Aim(2), 1, ppo.Settings()).save(self.folder / "policy.pt")
+        status, said = refused("--play")
+        self.assertEqual((status, "other channels" in said), (3, True), said)
 
 
 class BesideTheSine(unittest.TestCase):
@@ -277,12 +330,21 @@ class BesideTheSine(unittest.TestCase):
         envs = taut.gym.make_vec(str(ppo.TASK))
         policy = ppo.Policy(envs.observation_channels, 24, FEW)
         with torch.no_grad():
-            policy.actor[4].weight.mul_(50)
+            policy.actor[4].weight.mul_(300)  # beyond -1..1 mostly
         way_m = ppo_play.roll(policy, ppo.TASK, 3, 5, self.folder)
         com = taut.run(taut.load(str(self.folder / "policy_3.yaml"))).trace
         again_m = math.hypot(*(com[f"system/com_{k}_m"][-1] - com[f"system/com_{k}_m"][0] for k in "xy"))
         self.assertAlmostEqual(way_m, again_m, delta=1e-6)
         self.assertGreater(way_m, 0.1)
+
+    def test_starts_are_those_of_the_page(self):
+        for number in range(4):
+            keys, parameters = rolling.start(number)
+            text = pathlib.Path(ppo_play.write_start(self.folder / "start.yaml", ppo_play.SINE, number, 60)).read_text()
+            self.assertIn(keys, text)
+            self.assertEqual("start_noise" in text, number > 0)
+            self.assertEqual(taut.load(str(self.folder / "start.yaml")).parameters["ground_friction"],
+                             float(parameters.get("ground_friction", 0.5)))
 
     def test_both_begin_alike_and_the_sine_is_the_one_of_the_page(self):
         traces = [taut.run(taut.load(ppo_play.write_start(self.folder / f"{base.stem}.yaml", base, 5, 0.1))).trace
