@@ -22,7 +22,7 @@ SINE, PLAIN = EXPERIMENTS / "roll_six_strut.yaml", EXPERIMENTS / "roll_six_strut
 
 def write_start(path, base, number, seconds, more=""):
     """An experiment that begins as run `number` of docs/validation/rolling.md does: the first is as described, the
-    others stand a little elsewhere, on ground of other friction."""
+    others stand a little elsewhere, on ground of other friction. `more`: other keys of it."""
     if number:
         more += (f"parameters: {{ground_friction: {random.Random(number).uniform(0.4, 0.6):.4f}}}\nseed: {number}\n"
                  "start_noise: {position_m: 0.01, heading_rad: 0.1}\n")
@@ -31,10 +31,10 @@ def write_start(path, base, number, seconds, more=""):
     return str(path)
 
 
-def roll(policy, task, number, seconds, folder):
+def roll(policy, task, number, seconds, folder, more=""):
     """How far a policy goes [m] that leaves nothing to chance; it writes an experiment that does the same by its clock."""
     name = f"policy_{number}"
-    envs = taut.gym.make_vec(write_start(folder / f"{name}.yaml", task, number, seconds), 1, randomise=False)
+    envs = taut.gym.make_vec(write_start(folder / f"{name}.yaml", task, number, seconds, more), 1, randomise=False)
     at, over, rows = [envs.observation_channels.index(f"system/com_{k}_m") for k in "xy"], False, []
     observations, _ = envs.reset(seed=number)
     start_m = observations[0, at]
@@ -50,12 +50,12 @@ def roll(policy, task, number, seconds, folder):
     (folder / f"{name}_gait.yaml").write_text(gait)
     clock = f"rest_length_input: {{gait: {name}_gait.yaml, period_s: {envs.period_s}}}"
     write_start(folder / f"{name}.yaml", PLAIN, number, seconds,
-                f"controllers: [{{name: motion, period_s: 0.001, {clock}}}]\n")
+                f"{more}controllers: [{{name: motion, period_s: 0.001, {clock}}}]\n")
     return math.hypot(*(observations[0, at] - start_m))
 
 
-def roll_by_sine(number, seconds, folder):
-    com = taut.run(taut.load(write_start(folder / f"sine_{number}.yaml", SINE, number, seconds))).trace
+def roll_by_sine(number, seconds, folder, more=""):
+    com = taut.run(taut.load(write_start(folder / f"sine_{number}.yaml", SINE, number, seconds, more))).trace
     return math.hypot(*(com[f"system/com_{k}_m"][-1] - com[f"system/com_{k}_m"][0] for k in "xy"))
 
 
