@@ -331,8 +331,12 @@ class BesideTheSine(unittest.TestCase):
         policy = ppo.Policy(envs.observation_channels, 24, FEW)
         with torch.no_grad():
             policy.actor[4].weight.mul_(300)  # beyond -1..1 mostly
-        way_m = ppo_play.roll(policy, ppo.TASK, 3, 5, self.folder)
-        com = taut.run(taut.load(str(self.folder / "policy_3.yaml"))).trace
+        make, made = taut.gym.make_vec, []
+        with unittest.mock.patch("taut.gym.make_vec", lambda *a, **how: made.append(make(*a, **how)) or made[-1]):
+            way_m = ppo_play.roll(policy, ppo.TASK, 3, 5, self.folder)
+        ran = taut.run(taut.load(str(self.folder / "policy_3.yaml")))
+        self.assertEqual(ran.state_hash, made[0].hash())
+        com = ran.trace
         again_m = math.hypot(*(com[f"system/com_{k}_m"][-1] - com[f"system/com_{k}_m"][0] for k in "xy"))
         self.assertAlmostEqual(way_m, again_m, delta=1e-6)
         self.assertGreater(way_m, 0.1)
