@@ -14,6 +14,7 @@
 
 #include "command_text.h"
 #include "commands.h"
+#include "import.h"
 #include "streams.h"
 #include "taut/version.h"
 #include "usage.h"
@@ -67,6 +68,7 @@ int Run(int argc, char** argv) {
   AddCompare(app, exit_code);
   AddFit(app, exit_code);
   AddGait(app, exit_code);
+  AddImport(app, exit_code);
   AddLearn(app, exit_code);
   AddList(app, exit_code);
   AddNew(app, exit_code);
