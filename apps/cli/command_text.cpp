@@ -109,9 +109,7 @@ std::string HelpText(const CommandText& command) {
 
 std::string OverviewText(const CommandText& taut) {
   return Wrapped(taut.what, 0, kWidth) + "\n\nCommands:\n" + CommandRows(taut) +
-         "\nExamples:\n"
-         "  taut run experiments/push_20n.yaml --csv\n"
-         "  taut view experiments/push_20n.yaml\n"
+         "\nExample: taut run experiments/push_20n.yaml --csv\n"
          "`taut help COMMAND` tells more.\n";
 }
 

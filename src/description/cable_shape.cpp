@@ -64,18 +64,15 @@ class CableShaper {
   void MoveEndsToSurface(const PlacedPair& pair, const CableText& builder, CableDef& cable) {
     const std::vector<AttachmentDef> nodes = cable.attachments;
     const std::size_t last = nodes.size() - 1;
-    // Its radius, if it is on a sphere.
     const auto move = [&](std::size_t end, std::size_t next) {
       const int node = pair.nodes[end];
       const double length = LengthBetween(nodes[end], nodes[next]);
       if (const SphereText* const sphere = SphereAt(node)) {
-        if (length < kShortestLeg_m) return sphere->radius_m;
+        if (length < kShortestLeg_m) return;
         const Vec3 leg = nodes[next].position_m - nodes[end].position_m;
         cable.attachments[end].position_m =
             nodes[end].position_m + (sphere->radius_m / length) * leg;
-        return sphere->radius_m;
-      }
-      if (const auto on_rod = OnRod(node, nodes[next].position_m)) {
+      } else if (const auto on_rod = OnRod(node, nodes[next].position_m)) {
         cable.attachments[end].position_m = *on_rod;
       } else if (BodyOf(node) != kWorld) {  // where there is no surface
         once_(builder.ends_at,
@@ -83,15 +80,16 @@ class CableShaper {
                   pair.name + "\" has no sphere, and no rod ends there",
               "give the node a sphere, or write `ends: node`");
       }
-      return 0.0;
     };
     const auto ends_here = [&](std::size_t end) {
       return pair.route.empty() || !pair.route[end].is_drum();
     };
-    const double first_radius = ends_here(0) ? move(0, 1) : 0.0;
-    const double last_radius = ends_here(last) ? move(last, last - 1) : 0.0;
-    if (last == 1 && LengthBetween(nodes[0], nodes[1]) < first_radius + last_radius) {
-      once_(pair.at, "the spheres at the ends of the cable \"" + pair.name + "\" overlap",
+    if (ends_here(0)) move(0, 1);
+    if (ends_here(last)) move(last, last - 1);
+    const Vec3 leg = nodes[last].position_m - nodes[0].position_m;
+    const Vec3 left = cable.attachments[last].position_m - cable.attachments[0].position_m;
+    if (last == 1 && LengthBetween(nodes[0], nodes[1]) >= kShortestLeg_m && Dot(leg, left) <= 0.0) {
+      once_(pair.at, "the solids at the ends of the cable \"" + pair.name + "\" overlap",
             "nothing is left for the cable between their surfaces");
     }
   }

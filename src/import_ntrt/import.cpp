@@ -31,6 +31,11 @@ bool IsDisconnected(const Built& built) {
   return false;
 }
 
+bool HasCompounds(const Built& built) {
+  return std::any_of(built.bodies_solids.begin(), built.bodies_solids.end(),
+                     [](int solids) { return solids > 1; });
+}
+
 double SizeOf(const Model& model) {
   double size = 0.0;
   for (const auto x : {&Vec3::x, &Vec3::y, &Vec3::z}) {
@@ -47,8 +52,6 @@ double SizeOf(const Model& model) {
 void SayLaws(const Model& model, const Built& built, const NtrtOptions& options,
              NtrtImport& import) {
   const NtrtCounts& counts = model.counts;
-  const bool compounds = std::any_of(built.bodies_solids.begin(), built.bodies_solids.end(),
-                                     [](int solids) { return solids > 1; });
   if (counts.cables > 0) {
     import.as_ntrt.emplace_back(
         "cables end on the surface of rods and spheres (ends: surface), dampers give no more than "
@@ -60,7 +63,7 @@ void SayLaws(const Model& model, const Built& built, const NtrtOptions& options,
         "the "
         "least lengths");
   }
-  if (compounds) {
+  if (HasCompounds(built)) {
     import.as_ntrt.emplace_back(
         "a body of several solids has the inertia of the box around it (inertia: bounding_box)");
   }
@@ -156,7 +159,7 @@ std::optional<NtrtImport> ImportNtrt(const std::string& path, const NtrtOptions&
   text += PartsText(*model, draft, options.length_unit_m) + BuildersText(draft) + "\n";
   text += "contact: {friction_combine: product, restitution_combine: product";
   text += options.like_ntrt ? ", friction_law: along_slip}\n" : "}\n";
-  text += "inertia: bounding_box\n";
+  if (HasCompounds(built)) text += "inertia: bounding_box\n";
   if (model->counts.cables > 0) text += "damping_law: clamped\n";
   if (IsDisconnected(built)) text += "allow_disconnected: true  # no cable joins all of it\n";
   return import;

@@ -186,7 +186,7 @@ TEST_F(NtrtYaml, WhatNtrtPassesOverIsSaid) {
   EXPECT_EQ(counts_.duplicate_pairs, 1);
   EXPECT_EQ(counts_.ignored_pairs, 1);
   EXPECT_EQ(warnings_,
-            "s.yaml:8:29: warning: another pair joins these two nodes already; as in NTRT both are "
+            "s.yaml:8:28: warning: another pair joins these two nodes already; as in NTRT both are "
             "built (leave one of them away)\n"
             "s.yaml:9:12: warning: no builder has the tag \"tendon\": NTRT leaves the pair away "
             "(tags with builders of their own are rod, string, box, sphere)\n");

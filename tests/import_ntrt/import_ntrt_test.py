@@ -1,7 +1,7 @@
 """Every structure of NTRT beside a second reader of them (ntrt_reader.py) and, where there is one, beside numbers that
 were made before taut could read them (expected.json).
 
-Usage: import_ntrt_test.py TAUT TEST
+Usage: import_ntrt_test.py TAUT TEST     TEST may be `table`, which prints what docs/from_ntrt.md has
 """
 
 import json
@@ -152,6 +152,55 @@ def models_have_the_numbers_expected_of_them():
                 same(rest, [UNIT * r for r in of["rest_lengths_sorted"]], what + "sorted")
         pretension = sum(c["tension_n"] for c in model["cables"])
         same(pretension * (10 if name == NO_REST else 1), UNIT * of["sum_pretension"], what + "pretension", 1e-9)
+
+
+def ten_seconds(file):
+    """What becomes of the model on level ground, 1 mm above it at the start: what it is, and what `taut run` says."""
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        done = taut("import", "ntrt", file, "--length_unit_m", UNIT, "--out", folder / "model.yaml")
+        if done.returncode != 0:
+            return None, "a file that it includes is missing"
+        bodies, cables = read(file)
+        low = min(end[1] - solid.get("radius", 0) for body in bodies for solid in body for end in solid["ends"])
+        (folder / "run.yaml").write_text(
+            "taut: 1\nkind: experiment\nname: run\nmodel: model.yaml\nduration_s: 10\n"
+            f"place: {{at_m: [0, 0, {0.001 - UNIT * low}]}}\n"
+            "terrain: [{name: ground, plane: {height_m: 0, friction: 0.5}}]\nrecord: {rate_hz: 10}\n")
+        done = taut("run", folder / "run.yaml", "--out", folder / "run")
+        what = (len(bodies), len(cables), sum(s["mass"] for b in bodies for s in b),
+                UNIT * max((c["pretension"] for c in cables), default=0))
+        summary = folder / "run/summary.json"
+        if done.returncode == 3:
+            return what, done.stderr.splitlines()[0].split("error: ")[1]
+        return what, json.loads(summary.read_text())["status"] if summary.exists() else done.stderr
+
+
+def runs(files):
+    for file in files:
+        what, said = ten_seconds(file)
+        if name_of(file) in (NO_FILE, NO_REST) or file.name == CROSSING:
+            assert said != "ok", file
+        else:
+            assert said == "ok", f"{file}: {said}"
+
+
+def some_run():
+    runs(ROOT / "resources/YamlStructures" / name for name in
+         ("BaseStructures/3Prism.yaml", "Spines/3PrismSpine.yaml", "Spines/TetrahedralSpine.yaml", "Double3Prism.yaml"))
+
+
+def all_run():
+    runs(FILES)
+
+
+def table():
+    print("| file | bodies | cables | kg | largest pretension [N] | 10 s |\n|---|---|---|---|---|---|")
+    for file in FILES:
+        what, said = ten_seconds(file)
+        name = name_of(file).replace("resources/YamlStructures/", "").replace("src/dev/", "")
+        numbers = f"{what[0]} | {what[1]} | {what[2]:.4g} | {what[3]:.4g}" if what else "| | |"
+        print(f"| `{name}` | {numbers} | {said} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -32,6 +32,8 @@ class CliCommand : public test::CommandTest {
             {"list"},
             {"new"},
             {"report"},
+            {"import"},
+            {"import", "ntrt"},
             {"schema"},
             {"view"},
             {"help"}};
