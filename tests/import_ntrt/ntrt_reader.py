@@ -150,8 +150,13 @@ class Reader:
         return found[0] if found else None
 
 
+def touching(solids, at):
+    ends = numpy.array([s["ends"] for s in solids])
+    return [solids[i] for i in numpy.nonzero((numpy.linalg.norm(ends - at, axis=2) < SAME).any(axis=1))[0]]
+
+
 def surface(solids, at, to, moves):
-    near = [s for s in solids if any(numpy.linalg.norm(at - end) < SAME for end in s["ends"])]
+    near = touching(solids, at)
     best = min(near, key=lambda s: round(numpy.linalg.norm(numpy.mean(s["ends"], axis=0) - at), 7))
     if not moves:
         return at, best
@@ -188,17 +193,19 @@ def read(path, like_ntrt=False):
             build(child)
 
     build(top)
-    bodies = []
+    for number, solid in enumerate(solids):
+        solid["body"] = number
     for solid in solids:  # what shares a point is one
-        touching = [body for body in bodies if any(numpy.linalg.norm(p - q) < SAME for other in body
-                                                   for p in other["ends"] for q in solid["ends"])]
-        bodies = [body for body in bodies if not any(body is t for t in touching)]
-        bodies.append(sum(touching, []) + [solid])
+        for end in solid["ends"]:
+            numbers = {other["body"] for other in touching(solids, end)}
+            for other in solids if len(numbers) > 1 else []:
+                other["body"] = min(numbers) if other["body"] in numbers else other["body"]
+    bodies = [[s for s in solids if s["body"] == number] for number in sorted({s["body"] for s in solids})]
     cables = []
     for a, b, is_ in strings:
         p, on_p = surface(solids, a, b, is_["moveCablePointAToEdge"])
         q, on_q = surface(solids, b, a, is_["moveCablePointBToEdge"])
-        if any(any(s is on_p for s in body) and any(s is on_q for s in body) for body in bodies):
+        if on_p["body"] == on_q["body"]:
             continue
         length = numpy.linalg.norm(p - q)
         cables.append({"from": p, "to": q, "length": length, "rest": length - is_["pretension"] / is_["stiffness"],
