@@ -96,6 +96,69 @@ TEST_F(NtrtYaml, AttributesOfASubstructureAddUp) {
   EXPECT_NE(text_.find("rotate: {axis: x, angle_rad: pi / 2}"), text_.npos) << text_;
 }
 
+// A builder's words are looked for among the tags of a pair and the name of its structure.
+TEST_F(NtrtYaml, PairsHaveTheNameOfTheirStructure) {
+  Write("part.yaml", kTwoRods);
+  const RobotSpec robot = Robot(
+      "substructures: {p/q: {path: part.yaml, offset: [0, 0, 10]}}\n"
+      "bond_groups: {string: {p/q/node_node: [[a, a]]}}\n"
+      "builders: {q rod: {class: tgRodInfo, parameters: {radius: 0.3}}}\n");
+  ASSERT_EQ(robot.def.capsules.size(), 4u);
+  int thick = 0;
+  for (const CapsuleDef& rod : robot.def.capsules) {
+    EXPECT_EQ(rod.radius_m > 0.04, rod.name.find("q.") == rod.name.npos) << rod.name;
+    thick += rod.radius_m > 0.04 ? 1 : 0;
+  }
+  EXPECT_EQ(thick, 2);
+}
+
+// What matches by tags of NTRT's alone would match more than one of taut's builders.
+TEST_F(NtrtYaml, TagsThatDoNotTellGetOthersBeside) {
+  std::string yaml = kTwoRods;
+  yaml.replace(yaml.find("rod: [[a, b], [c, d]]"), 21, "rod: [[a, b]]\n  rod thick: [[c, d]]");
+  const RobotSpec robot =
+      Robot(yaml + "builders: {thick: {class: tgRodInfo, parameters: {radius: 1}}}\n");
+  EXPECT_EQ(robot.def.capsules[0].radius_m, 0.05);
+  EXPECT_EQ(robot.def.capsules[1].radius_m, 0.1);
+  EXPECT_NE(text_.find("match: rod_1"), text_.npos) << text_;
+  EXPECT_NE(text_.find("match: thick"), text_.npos) << text_;
+}
+
+TEST_F(NtrtYaml, ItsOwnSumsAreThoseOfTheModel) {
+  const RobotSpec robot = Robot(
+      "nodes: {a: [0, 0, 0], b: [0, 4, 0], ball: [0, 4, 0], c: [3, 0, 0], d: [3, 5, 0]}\n"
+      "pair_groups: {rod: [[a, b]], box: [[c, d]], string: [[b, c]]}\n"
+      "builders:\n"
+      "  ball: {class: tgSphereInfo, parameters: {radius: 1.5, density: 3}}\n"
+      "  box: {class: tgBoxInfo, parameters: {width: 0.5, height: 0.25, density: 7}}\n"
+      "  string: {class: tgBasicActuatorInfo, parameters: {moveCablePointBToEdge: off}}\n");
+  double mass_kg = 0.0;
+  for (const BodyDef& body : robot.def.bodies) mass_kg += body.mass_kg;
+  EXPECT_NEAR(counts_.mass_kg, mass_kg, 1e-12 * mass_kg);
+  EXPECT_NEAR(counts_.size_m, 0.5, 1e-15);
+  EXPECT_EQ(counts_.bodies, 2);
+}
+
+// NTRT's normals within 1e-5 of each other count as the same: what leans by less goes on leaning.
+TEST_F(NtrtYaml, BondsLeaveSmallTiltsAlone) {
+  const auto part = [](const std::string& height) {
+    return "nodes: {a: [0, 0, 0], b: [4, " + height +
+           ", 0], c: [0, 0, 4], d: [0, 3, 0], e: [4, 3, 0], f: [0, 3, 4]}\n"
+           "pair_groups: {rod: [[a, d], [b, e], [c, f]], string: [[a, b], [b, c], [c, a]]}\n";
+  };
+  const std::string top =
+      "substructures: {p: {path: p.yaml}, q: {path: q.yaml}}\n"
+      "bond_groups: {string: {p/q/node_edge: [[d, a/b], [e, b/c], [f, c/a]]}}\n";
+  Write("p.yaml", part("0"));
+  for (const auto& [height, leans] : {std::pair("3.9e-5", true), std::pair("4.1e-5", false)}) {
+    Write("q.yaml", part(height));
+    const RobotSpec robot = Robot(top);
+    const Vec3 a = robot.def.nodes[6].position_m, b = robot.def.nodes[7].position_m;
+    ASSERT_EQ(robot.def.nodes[7].name, "q.b");
+    EXPECT_EQ(std::fabs(b.z - a.z) > 1e-6, leans) << height;
+  }
+}
+
 TEST_F(NtrtYaml, CablesMayEndAtNodesOnOneSideOnly) {
   const RobotSpec both = Robot(kTwoRods + kBuilders.substr(0, kBuilders.size() - 3) +
                                ", moveCablePointAToEdge: false, moveCablePointBToEdge: no}}\n");
