@@ -62,12 +62,15 @@ class Reader {
     return file;
   }
 
-  /// To YAML a line that begins with `%` is a directive, and a directive ends what was before.
+  /// To YAML a line that begins with `%` is a directive. At the head of a file it may be one; later
+  /// it ends what was before.
   int TreatPercent(const std::string& path, std::string& text) const {
     int count = 0, line = 1;
+    bool at_head = true;
     for (std::size_t begin = 0; begin < text.size(); ++line) {
       const std::size_t end = std::min(text.find('\n', begin), text.size());
-      if (text[begin] == '%') {
+      const std::size_t first = std::min(text.find_first_not_of(" \t\r", begin), end);
+      if (text[begin] == '%' && !at_head) {
         ++count;
         const bool cut = in_.options.like_ntrt;
         out_.Warning(
@@ -82,6 +85,8 @@ class Reader {
         }
         text[begin] = '#';
       }
+      const bool is_blank = first == end || text[first] == '#' || text[begin] == '%';
+      at_head = at_head && is_blank;
       begin = end + 1;
     }
     return count;

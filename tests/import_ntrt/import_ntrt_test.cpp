@@ -241,6 +241,14 @@ TEST_F(NtrtYaml, ALineWithPercentEndsTheFileForNtrtAlone) {
             "is lost (comments begin with #)\n");
 }
 
+TEST_F(NtrtYaml, ADirectiveAtTheHeadOfAFileIsOne) {
+  for (const bool like_ntrt : {false, true}) {
+    const RobotSpec robot = Robot("\n# YAML\n%YAML 1.2\n---\n" + kTwoRods, {0.1, like_ntrt, ""});
+    EXPECT_EQ(robot.def.bodies.size(), 2u);
+    EXPECT_EQ(warnings_, "");
+  }
+}
+
 TEST_F(NtrtYaml, WhatNtrtPassesOverIsSaid) {
   std::string yaml = kTwoRods + kBuilders;
   yaml.replace(yaml.find("[[a, c], [b, d]]"), 16, "[[a, c], [b, d], [c, a]]\n  tendon: [[a, d]]");
