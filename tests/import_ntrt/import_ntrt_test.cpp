@@ -159,6 +159,34 @@ TEST_F(NtrtYaml, BondsLeaveSmallTiltsAlone) {
   }
 }
 
+// The normals are opposite, and along x: half a turn about the line through the first two.
+TEST_F(NtrtYaml, BondsTurnPlanesOver) {
+  Write("part.yaml",
+        "nodes: {a: [0, 0, 0], b: [0, 4, 0], c: [0, 0, 4], d: [3, 0, 0], e: [3, 4, 0], f: [3, 0, "
+        "4]}\n"
+        "pair_groups: {rod: [[a, d], [b, e], [c, f]], string: [[a, b], [b, c], [c, a], [d, e]]}\n");
+  const RobotSpec robot = Robot(
+      "substructures: {p/q: {path: part.yaml}}\n"
+      "bond_groups: {string: {p/q/node_edge: [[d, a/b], [e, c/a], [f, b/c]]}}\n");
+  const auto rod = [&](const std::string& name) {
+    for (const CapsuleDef& is : robot.def.capsules) {
+      if (is.name == name) return is.to_m.y - is.from_m.y;  // NTRT's x
+    }
+    return 0.0;
+  };
+  EXPECT_NEAR(rod("p.a-d"), 0.3, 1e-12);
+  EXPECT_NEAR(rod("q.a-d"), -0.3, 1e-12);
+}
+
+// At a node of a short box and a long rod, a cable ends on the box.
+TEST_F(NtrtYaml, CablesEndOnWhatHasTheNearestCentre) {
+  const RobotSpec robot = Robot(
+      "nodes: {a: [0, 0, 0], b: [0, 2, 0], c: [0, 0, 4], d: [3, 0, 0], e: [3, 4, 0]}\n"
+      "pair_groups: {box: [[a, b]], rod: [[a, c], [d, e]], string: [[a, d]]}\n"
+      "builders: {box: {class: tgBoxInfo, parameters: {width: 0.25}}}\n");
+  EXPECT_NEAR(CableLength(robot.def.cables[0]), 0.3 - 0.025 - 0.05, 1e-12);
+}
+
 TEST_F(NtrtYaml, CablesMayEndAtNodesOnOneSideOnly) {
   const RobotSpec both = Robot(kTwoRods + kBuilders.substr(0, kBuilders.size() - 3) +
                                ", moveCablePointAToEdge: false, moveCablePointBToEdge: no}}\n");
