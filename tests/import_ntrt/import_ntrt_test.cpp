@@ -245,6 +245,15 @@ TEST_F(NtrtYaml, SolidsInOnePlaceAreOneBody) {
   EXPECT_EQ(counts_.spheres, 1);
 }
 
+TEST_F(NtrtYaml, WhatAlmostMeetsIsNotOneBody) {
+  for (const auto& [height, bodies] : {std::pair("4.000001", 2u), std::pair("4.000000001", 1u)}) {
+    const std::string c = height;
+    const RobotSpec robot = Robot("nodes: {a: [0, 0, 0], b: [0, 4, 0], c: [0, " + c +
+                                  ", 0], d: [4, 4, 0]}\npair_groups: {rod: [[a, b], [c, d]]}\n");
+    EXPECT_EQ(robot.def.bodies.size(), bodies) << c;
+  }
+}
+
 TEST_F(NtrtYaml, ABodyWithoutMassStandsStill) {
   std::string yaml = kTwoRods;
   yaml.replace(yaml.find("rod: [[a, b], [c, d]]"), 21, "rod: [[a, b]]\n  fixed: [[c, d]]");
