@@ -15,6 +15,7 @@
 #include "command_text.h"
 #include "commands.h"
 #include "export.h"
+#include "import.h"
 #include "streams.h"
 #include "taut/version.h"
 #include "trace.h"
@@ -70,6 +71,7 @@ int Run(int argc, char** argv) {
   AddExport(app, exit_code);
   AddFit(app, exit_code);
   AddGait(app, exit_code);
+  AddImport(app, exit_code);
   AddLearn(app, exit_code);
   AddList(app, exit_code);
   AddNew(app, exit_code);

@@ -101,7 +101,8 @@ class BodyBuilder {
                     ? assembly_.nodes[weld.nodes[0]].position_m
                     : whole.com_m;
     def.inertia_kg_m2 = whole.inertia_kg_m2;
-    if (model_.inertia == InertiaLaw::kBoundingBox && solids.bounds.low.x < solids.bounds.high.x) {
+    if (model_.inertia == InertiaLaw::kBoundingBox && solids.parts.size() > 1 &&
+        solids.bounds.low.x < solids.bounds.high.x) {
       def.inertia_kg_m2 = BoundingBoxInertia(solids.bounds, whole.mass_kg);
     }
     def.fixed = weld.anchored;

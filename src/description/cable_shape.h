@@ -16,8 +16,8 @@ struct CableSurroundings {
   const BodyOfNode* body_of_node;
 };
 
-/// Gives `cable` its attachments: at its nodes or on the spheres there, and along its route.
-/// Complains about ends that have no sphere to be on, and about routes.
+/// Gives `cable` its attachments: at its nodes or on the surfaces there, and along its route.
+/// Complains about ends that have nothing to be on, and about routes.
 void ShapeCable(const CableSurroundings& in, const PlacedPair& pair, const CableText& builder,
                 CableDef& cable, OncePerPlace& complain);
 

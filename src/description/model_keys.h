@@ -29,8 +29,8 @@ void Keys(Io& io, Like<ModelDef> auto& m) {
 }
 inline constexpr const char* kInertiaMeaning =
     "How a body's inertia follows from its parts. `exact`: the sum of the parts' own. "
-    "`bounding_box`: that of a solid box of the body's mass and of the size of its bounding box at "
-    "the start, as Bullet takes it for compounds.";
+    "`bounding_box`: of bodies of several parts, that of a solid box of the body's mass and of the "
+    "size of its bounding box at the start, as Bullet takes it for compounds.";
 inline constexpr const char* kDampingMeaning =
     "How the cables' dampers act. `exact`: b dl/dt, with a tension that is never negative. "
     "`clamped`: b dl/dt limited to the elastic force, as NTRT does.";

@@ -35,6 +35,8 @@ class CliCommand : public test::CommandTest {
             {"export"},
             {"export", "shape"},
             {"export", "structure"},
+            {"import"},
+            {"import", "ntrt"},
             {"schema"},
             {"trace"},
             {"trace", "convert"},

@@ -140,16 +140,25 @@ TEST(ModelBuildErrors, ACableOnOneBodyDoesNothing) {
             "nothing)\n");
 }
 
-TEST(ModelBuildErrors, SurfacesNeedSpheresThatDoNotOverlap) {
-  EXPECT_EQ(Errors(TwoRods("rest_length_m: 0.05, ends: surface")),
-            "robot.yaml:11:79: error: cable.ends: the node \"a\" of the cable \"a-c\" has no "
-            "sphere (give the node a "
-            "sphere, or write `ends: node`)\n");
+TEST(ModelBuildErrors, SurfacesAreThereAndDoNotOverlap) {
+  EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [0, 1, 0]}\n"
+                   "pairs: [{nodes: [a, b], tags: [rod]}, {nodes: [a, c], tags: [cable]}]\n"
+                   "builders:\n"
+                   "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
+                   "  - {match: c, point_mass: {mass_kg: 1}}\n"
+                   "  - {match: cable, cable: {stiffness_n_per_m: 1, prestress_n: 0.1, ends: "
+                   "surface}}\n"),
+            "robot.yaml:9:74: error: cable.ends: the node \"c\" of the cable \"a-c\" has no "
+            "sphere, and no rod ends there (give the node a sphere, or write `ends: node`)\n");
   EXPECT_EQ(Errors(TwoRods("rest_length_m: 0.05, ends: surface",
                            "  - {match: [[a], [c]], sphere: {radius_m: 0.06, mass_kg: 1}}\n")),
-            "robot.yaml:8:5: error: the spheres at the ends of the cable \"a-c\" overlap (nothing "
+            "robot.yaml:8:5: error: the solids at the ends of the cable \"a-c\" overlap (nothing "
             "is left for the "
             "cable between their surfaces)\n");
+  std::string thick = TwoRods("rest_length_m: 0.05, ends: surface");
+  thick.replace(thick.find("radius_m: 0.01"), 14, "radius_m: 0.06");
+  EXPECT_NE(Errors(thick).find("the solids at the ends of the cable \"a-c\" overlap"),
+            std::string::npos);
 }
 
 TEST(ModelBuildErrors, BodiesHaveInertia) {

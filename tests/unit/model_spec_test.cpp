@@ -48,6 +48,65 @@ TEST(Model, AnchorsFixNodesOrWholeBodies) {
   EXPECT_DOUBLE_EQ(hanging.def.cables[0].attachments[1].position_m.z, 0.1);
 }
 
+// As NTRT's rods have it: at right angles to the rod with the nearest centre.
+TEST(Model, CablesEndOnTheSurfaceOfRods) {
+  const std::string more = "  - {match: d, sphere: {radius_m: 0.02, mass_kg: 1}}\n";
+  const auto end = [&](const std::string& cable, std::size_t i, const std::string& spheres) {
+    std::string yaml =
+        "nodes: {a: [0, 0, 0], b: [0, 0, 1], e: [0, 0.4, 0], c: [1, 0, 0.5], d: [1, 0, 2]}\n"
+        "pairs:\n"
+        "  - {nodes: [a, b], tags: [long]}\n"
+        "  - {nodes: [e, a], tags: [short]}\n"
+        "  - {nodes: [c, d], tags: [long]}\n"
+        "  - {nodes: " +
+        cable +
+        ", tags: [cable]}\n"
+        "builders:\n"
+        "  - {match: long, rod: {radius_m: 0.1, mass_kg: 1}}\n"
+        "  - {match: short, rod: {radius_m: 0.05, mass_kg: 1}}\n"
+        "  - {match: cable, cable: {stiffness_n_per_m: 10, prestress_n: 1, ends: surface}}\n";
+    return Good(yaml + spheres).def.cables[0].attachments[i].position_m;
+  };
+  const double s = 1 / std::sqrt(1.25);
+  const Vec3 a = end("[a, c]", 0, "");  // e-a is shorter than a-b, and along y
+  EXPECT_NEAR(a.x, 0.05 * s, 1e-15);
+  EXPECT_EQ(a.y, 0.0);
+  EXPECT_NEAR(a.z, 0.05 * 0.5 * s, 1e-15);
+  const Vec3 c = end("[a, c]", 1, "");
+  EXPECT_NEAR(c.x, 0.9, 1e-15);
+  EXPECT_NEAR(c.z, 0.5, 1e-15);
+  // A sphere comes before rods, and then it goes straight to the next node.
+  const Vec3 d = end("[d, a]", 0, more);
+  EXPECT_NEAR(d.x, 1 - 0.02 / std::sqrt(5.0), 1e-15);
+  EXPECT_NEAR(d.z, 2 - 0.04 / std::sqrt(5.0), 1e-15);
+}
+
+// Along a rod there is no side to leave it on.
+TEST(Model, ACableAlongItsRodEndsAtTheNode) {
+  const RobotSpec robot = Good(
+      "nodes: {a: [0, 0, 0], b: [0, 0, 1], c: [0, 0, 2], d: [0, 1, 2]}\n"
+      "pairs: [{each: [[a, b], [c, d]], tags: [rod]}, {nodes: [b, c], tags: [cable]}]\n"
+      "builders:\n"
+      "  - {match: rod, rod: {radius_m: 0.1, mass_kg: 1}}\n"
+      "  - {match: cable, cable: {stiffness_n_per_m: 10, prestress_n: 1, ends: surface}}\n");
+  EXPECT_EQ(robot.def.cables[0].attachments[0].position_m.z, 1.0);
+  EXPECT_NEAR(robot.def.cables[0].attachments[1].position_m.z, 1.9, 1e-15);
+}
+
+// Bullet takes the box of a compound; what is one cylinder, it knows.
+TEST(Model, BoundingBoxesAreForBodiesOfSeveralParts) {
+  const std::string rod =
+      "nodes: {a: [0, 0, 0], b: [1, 1, 0]}\npairs: [{nodes: [a, b], tags: [rod]}]\n"
+      "builders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1}}";
+  const Inertia one = Good(rod + "]\ninertia: bounding_box\n").def.bodies[0].inertia_kg_m2;
+  EXPECT_EQ(one.xy, Good(rod + "]\n").def.bodies[0].inertia_kg_m2.xy);
+  EXPECT_LT(one.xy, -0.01);
+  const RobotSpec two = Good(rod +
+                             ", {match: b, sphere: {radius_m: 0.1, mass_kg: 1}}]\n"
+                             "inertia: bounding_box\n");
+  EXPECT_EQ(two.def.bodies[0].inertia_kg_m2.xy, 0.0);
+}
+
 TEST(Model, RestLengthFollowsFromPrestressLengthOrRatio) {
   EXPECT_DOUBLE_EQ(Good(TwoRods("prestress_n: 2")).def.cables[0].rest_length_m, 0.08);
   EXPECT_DOUBLE_EQ(Good(TwoRods("rest_length_m: 0.2")).def.cables[0].rest_length_m, 0.2);

@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "commands.h"
+#include "import.h"
+#include "output.h"
+#include "overrides.h"
+#include "streams.h"
+#include "taut/import_ntrt.h"
+
+namespace taut::cli {
+namespace {
+
+struct ImportNtrtArguments {
+  std::string path, out, name;
+  double length_unit_m = NAN;
+  bool like_ntrt = false, strict = false;
+};
+
+std::string Counted(int count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string Report(const NtrtImport& import, const std::string& out) {
+  const NtrtCounts& c = import.counts;
+  std::string text = fmt::format(
+      "Model: {}\n{} of {:.4g} kg and {}, {:.4g} m large\n  of {}: {}, {}; {}, {}, {}\n", out,
+      Counted(c.bodies, "body", "bodies"), c.mass_kg, Counted(c.cables, "cable", "cables"),
+      c.size_m, Counted(c.files, "file", "files"), Counted(c.nodes, "node", "nodes"),
+      Counted(c.pairs, "pair", "pairs"), Counted(c.rods, "rod", "rods"),
+      Counted(c.boxes, "box", "boxes"), Counted(c.spheres, "sphere", "spheres"));
+  const auto list = [&](const char* title, const std::vector<std::string>& lines) {
+    if (!lines.empty()) text += fmt::format("\n{}:\n", title);
+    for (const std::string& line : lines) text += fmt::format("  {}\n", line);
+  };
+  list("As NTRT", import.as_ntrt);
+  list("Not as NTRT", import.different);
+  list("Left away", import.dropped);
+  return text;
+}
+
+/// What files do not say, a person can tell from how large the robot would be.
+int AskForUnit(const ImportNtrtArguments& args) {
+  Diagnostics found;
+  const auto import = ImportNtrt(args.path, {1.0, args.like_ntrt, ""}, found);
+  std::string hint;
+  if (import) {
+    const double size = import->counts.size_m;
+    hint = fmt::format(
+        "\nAt 0.1, as in NTRT's resources and BuildModel (gravity 98.1), the robot is {:.3g} m "
+        "large; "
+        "at 0.01, as in its spines (gravity 981), {:.3g} m; at 1, {:.3g} m.",
+        0.1 * size, 0.01 * size, size);
+  }
+  fmt::print(stderr, "error: --length_unit_m is missing: NTRT's files do not say what 1 is{}\n",
+             hint);
+  return kUsage;
+}
+
+int Import(const ImportNtrtArguments& args) {
+  if (std::isnan(args.length_unit_m)) return AskForUnit(args);
+  Diagnostics found;
+  const auto import = ImportNtrt(args.path, {args.length_unit_m, args.like_ntrt, args.name}, found);
+  if (!import || !Pass(found, args.strict)) return Fail(found, kBadInput);
+  if (args.out.empty()) {
+    fmt::print("{}", import->model_yaml);
+    return kOk;
+  }
+  OutputIsNews();
+  const int exit = WriteNamed(args.out, import->model_yaml);
+  if (exit == kOk) fmt::print("{}", Report(*import, args.out));
+  return exit;
+}
+
+}  // namespace
+
+void AddImportNtrt(CLI::App& import, int& exit_code) {
+  auto args = std::make_shared<ImportNtrtArguments>();
+  CLI::App* ntrt = import.add_subcommand(
+      "ntrt", "A structure of NASA's NTRT, with all files that it includes, as a model.");
+  ntrt->add_option("file", args->path, "NTRT's structure (YAML)")->required();
+  ntrt->add_option("--length_unit_m", args->length_unit_m,
+                   "What 1 in the files is, which they do not say: 0.1, 0.01 ... [m]")
+      ->option_text("U")
+      ->check(NumberWithin(1e-9, 1e9));
+  ntrt->add_flag("--like_ntrt", args->like_ntrt,
+                 "As NTRT even where that is hardly meant: % ends a file, friction along the slip");
+  ntrt->add_option("--name", args->name, "Name of the model (default: that of the file)")
+      ->option_text("NAME")
+      ->check(CheckName);
+  ntrt->add_option("--out", args->out, "File to write (default: print)")->option_text("FILE");
+  ntrt->add_flag("--strict", args->strict, kStrictHelp);
+  ntrt->footer(
+      "Examples:\n"
+      "  taut import ntrt SuperBall.yaml --length_unit_m 0.1 --out superball.yaml\n"
+      "  taut check superball.yaml\n"
+      "What is called what, and what is different: docs/from_ntrt.md.");
+  ntrt->callback([args, &exit_code] { exit_code = Import(*args); });
+}
+
+}  // namespace taut::cli

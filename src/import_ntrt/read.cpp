@@ -1,0 +1,360 @@
+// NTRT's files and how they include each other; the rules are those of NTRT's TensegrityModel.cpp
+// at f0c52e93.
+#include "import_ntrt/read.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/input_file.h"
+#include "description/gait_parts.h"
+#include "description/reader.h"
+#include "import_ntrt/turn.h"
+
+namespace taut::import_ntrt {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kDeepest = 32;        // files in files
+constexpr double kFarthest = 1e12;  // in the files' unit
+constexpr std::size_t kMostStructures = 2000;
+
+const description::NameTable kNoNames;
+
+class Reader {
+ public:
+  Reader(const NtrtOptions& options, Model& model, Diagnostics& out)
+      : in_{options, model, out}, model_(model), out_(out) {}
+
+  void Run(const std::string& path) {
+    AddDefaultBuilders(model_);
+    Structure top;
+    top.file = path;
+    model_.structures.push_back(top);
+    Build(0, path);
+    model_.counts.files = static_cast<int>(files_.size());
+  }
+
+ private:
+  struct File {
+    ValuePtr root;
+    int percent_lines = 0;
+  };
+
+  /// Null after a complaint.
+  const File& Open(const std::string& path) {
+    const auto [found, fresh] = files_.emplace(path, File{});
+    File& file = found->second;
+    if (!fresh) return file;
+    auto text = base::ReadInputFile(path, description::kMaxFileBytes, "", out_);
+    if (!text) return file;
+    file.percent_lines = TreatPercent(path, *text);
+    file.root = description::ParseYaml(*text, path, out_);
+    if (!file.root) return file;
+    if (file.root->kind != Value::Kind::kMap) {
+      out_.Error(file.root->at, "an NTRT structure is a map, not " +
+                                    std::string(description::KindName(*file.root)));
+      file.root = nullptr;
+      return file;
+    }
+    OnlyKeys(*file.root, {"nodes", "pair_groups", "builders", "substructures", "bond_groups"},
+             out_);
+    return file;
+  }
+
+  /// To YAML a line that begins with `%` is a directive. At the head of a file it may be one; later
+  /// it ends what was before.
+  int TreatPercent(const std::string& path, std::string& text) const {
+    int count = 0, line = 1;
+    bool at_head = true;
+    for (std::size_t begin = 0; begin < text.size(); ++line) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      const std::size_t first = std::min(text.find_first_not_of(" \t\r", begin), end);
+      if (text[begin] == '%' && !at_head) {
+        ++count;
+        const bool cut = in_.options.like_ntrt;
+        out_.Warning(
+            {path, line, 1},
+            cut ? "a line that begins with % ends the file for NTRT: what follows is lost"
+                : "read as a comment; for NTRT a line that begins with % ends the file, "
+                  "and what follows is lost",
+            "comments begin with #" + std::string(cut ? "" : "; --like_ntrt loses it, too"));
+        if (cut) {
+          text.resize(begin);
+          return count;
+        }
+        text[begin] = '#';
+      }
+      const bool is_blank = first == end || text[first] == '#' || text[begin] == '%';
+      at_head = at_head && is_blank;
+      begin = end + 1;
+    }
+    return count;
+  }
+
+  void Build(int structure, const std::string& path) {
+    const File& file = Open(path);
+    model_.counts.lines_with_percent += file.percent_lines;
+    if (!file.root) return;
+    const Value& root = *file.root;
+    AddChildren(structure, path, root.Find("substructures"));
+    ReadBuilders(in_, root.Find("builders"));
+    AddNodes(structure, root.Find("nodes"));
+    for (const Entry& group : MapOf(root.Find("pair_groups"), "pair_groups", out_)) {
+      for (const ValuePtr& item : ListOf(group.value.get(), group.key, out_)) {
+        std::string a, b;
+        if (!ReadTwo(*item, a, b, out_)) continue;
+        const int from = NodeAt(in_, structure, a, item->at);
+        const int to = NodeAt(in_, structure, b, item->at);
+        if (from < 0 || to < 0) continue;
+        AddPair(in_, structure, from, to, Split(group.key), item->at);
+      }
+    }
+    ReadBonds(in_, structure, root.Find("bond_groups"));
+  }
+
+  void AddNodes(int structure, const Value* nodes) {
+    for (const Entry& entry : MapOf(nodes, "nodes", out_)) {
+      Node node;
+      node.tags = Split(entry.key);
+      node.at = entry.key_at;
+      node.structure = structure;
+      node.in_file = node.place = ReadPoint(*entry.value, entry.key, out_);
+      if (node.tags.empty()) {
+        out_.Error(entry.key_at, "a node needs a name");
+        continue;
+      }
+      if (model_.nodes.size() >= kMostItems) {
+        out_.Error(entry.key_at, "more than " + std::to_string(kMostItems) + " nodes");
+        return;
+      }
+      in_.structure(structure).nodes.push_back(static_cast<int>(model_.nodes.size()));
+      model_.nodes.push_back(std::move(node));
+    }
+  }
+
+  void AddChildren(int structure, const std::string& path, const Value* children) {
+    const std::vector<Entry>& entries = MapOf(children, "substructures", out_);
+    for (const Entry& entry : entries) {
+      MapOf(entry.value.get(), entry.key, out_);
+      OnlyKeys(*entry.value, {"path", "rotation", "translation", "scale", "offset"}, out_);
+      for (const std::string& name : AtSlashes(entry.key)) AddChild(structure, path, name, entry);
+    }
+    // Turned first, all of them; then each key's scale, offset and translation.
+    for (const Entry& entry : entries) {
+      ForNamed(structure, entry, [&](int child, int) {
+        if (const Value* turn = entry.value->Find("rotation")) Rotate(child, *turn);
+      });
+    }
+    for (const Entry& entry : entries) {
+      const Value* scale = entry.value->Find("scale");
+      const Value* offset = entry.value->Find("offset");
+      const Value* shift = entry.value->Find("translation");
+      const double factor = scale ? ReadPlain(*scale, "scale", out_) : 1.0;
+      if (scale && !(factor > 0) && !std::isnan(factor)) {
+        out_.Error(scale->at, "scale must be positive");
+      }
+      const Vec3 step = offset ? ReadPoint(*offset, "offset", out_) : Vec3{};
+      const Vec3 by = shift ? ReadPoint(*shift, "translation", out_) : Vec3{};
+      ForNamed(structure, entry, [&](int child, int index) {
+        if (scale) model_.Scale(child, factor);
+        if (offset) model_.Shift(child, static_cast<double>(index) * step);
+        if (shift) model_.Shift(child, by);
+      });
+    }
+  }
+
+  void AddChild(int parent, const std::string& parent_path, const std::string& name,
+                const Entry& entry) {
+    const Value* const path = entry.value->Find("path");
+    if (!path) return;
+    const auto file = description::FindFile(path, "path", {kNoNames, out_});
+    if (!file) return;
+    std::error_code ignored;
+    const std::string real = fs::weakly_canonical(*file, ignored).string();
+    if (open_.empty()) open_.push_back(fs::weakly_canonical(parent_path, ignored).string());
+    if (std::find(open_.begin(), open_.end(), real) != open_.end()) {
+      out_.Error(path->at, "the file includes itself");
+      return;
+    }
+    if (open_.size() >= kDeepest || model_.structures.size() >= kMostStructures) {
+      out_.Error(path->at,
+                 open_.size() >= kDeepest
+                     ? "files include files more than " + std::to_string(kDeepest) + " levels deep"
+                     : "more than " + std::to_string(kMostStructures) + " substructures");
+      return;
+    }
+    Structure child;
+    child.tags = Split(name);
+    child.parent = parent;
+    child.file = *file;
+    child.at = entry.key_at;
+    const int index = static_cast<int>(model_.structures.size());
+    model_.structures.push_back(child);
+    open_.push_back(real);
+    Build(index, *file);
+    open_.pop_back();
+    // Only now: NTRT hangs a child up when it is complete.
+    in_.structure(parent).children.push_back(index);
+  }
+
+  template <class F>
+  void ForNamed(int structure, const Entry& entry, const F& visit) {
+    int index = 0;
+    for (const std::string& name : AtSlashes(entry.key)) {
+      const int child = model_.FindChild(structure, name);
+      if (child >= 0) {
+        visit(child, index);
+      } else if (!entry.value->Find("path")) {  // a missing file has been complained about
+        out_.Error(entry.key_at, "there is no substructure \"" + name + "\"",
+                   "one of its entries needs a `path`");
+      }
+      ++index;
+    }
+  }
+
+  void Rotate(int child, const Value& rotation) {
+    if (MapOf(&rotation, "rotation", out_).empty()) return;
+    OnlyKeys(rotation, {"axis", "angle", "reference"}, out_);
+    const Value *axis = rotation.Find("axis"), *angle = rotation.Find("angle");
+    if (!axis || !angle) {
+      out_.Warning(rotation.at, "without axis and angle NTRT does not rotate",
+                   "give both, or leave `rotation` away");
+      return;
+    }
+    const Vec3 about = ReadPoint(*axis, "axis", out_);
+    const double degrees = ReadPlain(*angle, "angle", out_);
+    const Value* const reference = rotation.Find("reference");
+    const Vec3 fixed =
+        reference ? ReadPoint(*reference, "reference", out_) : model_.Centroid(child);
+    if (Dot(about, about) == 0.0) {
+      out_.Error(axis->at, "the axis of a rotation must not be zero");
+      return;
+    }
+    model_.Turn(child, fixed, About(about, degrees / 180.0 * std::acos(-1.0)));
+  }
+
+  Reading in_;
+  Model& model_;
+  Diagnostics& out_;
+  std::map<std::string, File> files_;
+  std::vector<std::string> open_;
+};
+
+}  // namespace
+
+double ReadPlain(const Value& value, std::string_view what, Diagnostics& out) {
+  double number = NAN;
+  const std::string text = value.text.starts_with('+') ? value.text.substr(1) : value.text;
+  if (value.kind != Value::Kind::kScalar || !description::ToNumber(text, number)) {
+    out.Error(value.at, std::string(what) + " must be a number" +
+                            (value.text.empty() ? "" : ", not \"" + value.text + "\""));
+    return NAN;
+  }
+  if (std::fabs(number) > kFarthest) {
+    out.Error(value.at, std::string(what) + " is too large: " + value.text);
+    return NAN;
+  }
+  return number;
+}
+
+Vec3 ReadPoint(const Value& value, std::string_view what, Diagnostics& out) {
+  if (value.kind != Value::Kind::kSequence || value.items.size() != 3) {
+    out.Error(value.at, std::string(what) + " must be [x, y, z]");
+    return {NAN, NAN, NAN};
+  }
+  return {ReadPlain(*value.items[0], what, out), ReadPlain(*value.items[1], what, out),
+          ReadPlain(*value.items[2], what, out)};
+}
+
+const std::vector<Entry>& MapOf(const Value* value, std::string_view what, Diagnostics& out) {
+  static const std::vector<Entry> kNone;
+  if (!value || value->kind == Value::Kind::kNull) return kNone;
+  if (value->kind == Value::Kind::kMap) return value->entries;
+  out.Error(value->at, std::string(what) + " must be a map, not " +
+                           std::string(description::KindName(*value)));
+  return kNone;
+}
+
+const std::vector<ValuePtr>& ListOf(const Value* value, std::string_view what, Diagnostics& out) {
+  static const std::vector<ValuePtr> kNone;
+  if (!value || value->kind == Value::Kind::kNull) return kNone;
+  if (value->kind == Value::Kind::kSequence) return value->items;
+  out.Error(value->at, std::string(what) + " must be a list, not " +
+                           std::string(description::KindName(*value)));
+  return kNone;
+}
+
+void OnlyKeys(const Value& map, const std::vector<std::string>& known, Diagnostics& out) {
+  for (const Entry& entry : map.entries) {
+    if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
+    out.Error(entry.key_at, "unknown key \"" + entry.key + "\"", DidYouMean(entry.key, known));
+  }
+}
+
+std::vector<std::string> AtSlashes(const std::string& text) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t slash; (slash = text.find('/', begin)) != text.npos; begin = slash + 1) {
+    parts.push_back(text.substr(begin, slash - begin));
+  }
+  parts.push_back(text.substr(begin));
+  return parts;
+}
+
+bool ReadTwo(const Value& value, std::string& a, std::string& b, Diagnostics& out) {
+  const bool two = value.kind == Value::Kind::kSequence && value.items.size() == 2 &&
+                   value.items[0]->kind == Value::Kind::kScalar &&
+                   value.items[1]->kind == Value::Kind::kScalar;
+  if (two) {
+    a = value.items[0]->text;
+    b = value.items[1]->text;
+  } else {
+    out.Error(value.at, "a pair must be two names, such as [bottom, top]");
+  }
+  return two;
+}
+
+int NodeAt(const Reading& in, int structure, const std::string& path, const SourceRef& at) {
+  std::string left = path;
+  for (std::size_t dot; (dot = left.find('.')) != left.npos; left = left.substr(dot + 1)) {
+    const std::string name = left.substr(0, dot);
+    structure = in.model.FindChild(structure, name);
+    if (structure >= 0) continue;
+    in.out.Error(at, "there is no substructure \"" + name + "\" for the node \"" + path + "\"");
+    return -1;
+  }
+  const int node = in.model.FindNode(structure, left);
+  if (node < 0) {
+    std::vector<std::string> names;
+    for (const int i : in.structure(structure).nodes) names.push_back(in.node(i).tags[0]);
+    in.out.Error(at, "there is no node \"" + path + "\"",
+                 names.empty() ? "" : DidYouMean(left, names));
+  }
+  return node;
+}
+
+void AddPair(const Reading& in, int structure, int from, int to, Words tags, const SourceRef& at) {
+  if (in.model.pairs.size() >= kMostItems) {
+    in.out.Error(at, "more than " + std::to_string(kMostItems) + " pairs");
+    return;
+  }
+  in.structure(structure).pairs.push_back(static_cast<int>(in.model.pairs.size()));
+  in.model.pairs.push_back({from, to, std::move(tags), at, structure});
+}
+
+std::optional<Model> ReadStructure(const std::string& path, const NtrtOptions& options,
+                                   Diagnostics& out) {
+  const std::size_t errors_before = out.items().size();
+  Model model;
+  Reader(options, model, out).Run(path);
+  if (out.items().size() != errors_before) return std::nullopt;
+  if (model.nodes.empty()) {
+    out.Error({path, 1, 1}, "describes no nodes",
+              "an NTRT structure has `nodes:`, or `substructures:` that have");
+    return std::nullopt;
+  }
+  return model;
+}
+
+}  // namespace taut::import_ntrt

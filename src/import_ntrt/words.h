@@ -1,0 +1,38 @@
+/// NTRT's tags: texts of words between blanks. What matches is a question of sets of words.
+#pragma once
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace taut::import_ntrt {
+
+using Words = std::vector<std::string>;
+
+inline bool Has(const Words& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+inline Words Split(const std::string& text) {
+  Words words;
+  std::istringstream in(text);
+  for (std::string word; in >> word;) {
+    if (!Has(words, word)) words.push_back(word);
+  }
+  return words;
+}
+
+inline bool HasAll(const Words& words, const Words& wanted) {
+  return std::all_of(wanted.begin(), wanted.end(), [&](const auto& w) { return Has(words, w); });
+}
+
+inline Words Without(const Words& words, const Words& gone) {
+  Words left;
+  for (const std::string& word : words) {
+    if (!Has(gone, word)) left.push_back(word);
+  }
+  return left;
+}
+
+}  // namespace taut::import_ntrt

@@ -1,0 +1,56 @@
+// `taut import ntrt` as a user types it.
+#include "system/command.h"
+
+namespace taut::test {
+namespace {
+
+const std::string kSuperBall = TAUT_SOURCE_DIR "/docs/from_ntrt/SuperBall.yaml";
+
+class ImportNtrtCommand : public CommandTest {};
+
+TEST_F(ImportNtrtCommand, TheModelGoesToTheFileOrIsPrinted) {
+  const CommandResult written =
+      Taut({"import", "ntrt", kSuperBall, "--length_unit_m", "0.1", "--out", "m.yaml"});
+  EXPECT_EQ(written.status, 0) << written.errors;
+  EXPECT_EQ(written.output.rfind("Model: m.yaml\n6 bodies of 20.99 kg and 24 cables", 0), 0u);
+  EXPECT_NE(written.output.find("\nLeft away:\n  history of superball_string"), std::string::npos);
+  const CommandResult printed = Taut({"import", "ntrt", kSuperBall, "--length_unit_m", "0.1"});
+  EXPECT_EQ(printed.output, Read(Path("m.yaml")));
+  EXPECT_EQ(Taut({"check", "m.yaml", "--strict", "--quiet"}).status, 0);
+  const CommandResult named =
+      Taut({"import", "ntrt", kSuperBall, "--length_unit_m", "1", "--name", "ball"});
+  EXPECT_NE(named.output.find("\nname: ball\n"), std::string::npos);
+}
+
+TEST_F(ImportNtrtCommand, WithoutAUnitItSaysHowLargeTheRobotWouldBe) {
+  const CommandResult asked = Taut({"import", "ntrt", kSuperBall});
+  EXPECT_EQ(asked.status, 2);
+  EXPECT_NE(asked.errors.find("the robot is 1.68 m large"), std::string::npos) << asked.errors;
+  for (const std::string unit : {"0", "-1", "nan", "dm", "1e10"}) {
+    EXPECT_EQ(Taut({"import", "ntrt", kSuperBall, "--length_unit_m", unit}).status, 2) << unit;
+  }
+}
+
+TEST_F(ImportNtrtCommand, BadInputIsRefused) {
+  const CommandResult none = Taut({"import", "ntrt", "none.yaml", "--length_unit_m", "1"});
+  EXPECT_EQ(none.status, 3);
+  EXPECT_EQ(none.errors, "none.yaml: error: cannot be opened: No such file or directory\n");
+  EXPECT_EQ(Taut({"import", "ntrt", ".", "--length_unit_m", "1"}).status, 3);
+  EXPECT_EQ(Taut({"import", "ntrt", "none.yaml"}).status, 2);
+  Write("s.yaml",
+        "nodes: {a: [0, 0, 0], b: [0, 1, 0]}\npair_groups: {rod: [[a, b]], wire: [[a, b]]}\n");
+  const CommandResult warned = Taut({"import", "ntrt", "s.yaml", "--length_unit_m", "1"});
+  EXPECT_EQ(warned.status, 0);
+  EXPECT_EQ(warned.errors.find("s.yaml:2:37: warning: another pair joins"), 0u) << warned.errors;
+  const CommandResult strict =
+      Taut({"import", "ntrt", "s.yaml", "--length_unit_m", "1", "--strict", "--out", "m.yaml"});
+  EXPECT_EQ(strict.status, 3);
+  EXPECT_FALSE(std::filesystem::exists(Path("m.yaml")));
+  EXPECT_EQ(Taut({"import", "ntrt", kSuperBall, "--length_unit_m", "1", "--out", "/nowhere/m.yaml"})
+                .status,
+            1);
+  EXPECT_EQ(Taut({"import"}).status, 2);
+}
+
+}  // namespace
+}  // namespace taut::test
