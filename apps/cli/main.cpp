@@ -65,8 +65,10 @@ int Run(int argc, char** argv) {
   AddCheck(app, exit_code);
   AddRun(app, exit_code);
   AddCompare(app, exit_code);
+  AddExport(app, exit_code);
   AddFit(app, exit_code);
   AddGait(app, exit_code);
+  AddImport(app, exit_code);
   AddLearn(app, exit_code);
   AddList(app, exit_code);
   AddNew(app, exit_code);
