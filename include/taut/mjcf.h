@@ -20,13 +20,13 @@ enum class MjcfSlack {
 };
 
 struct MjcfImport {
-  std::optional<double> length_unit_m, mass_unit_kg;  ///< What 1 in the file is; 1 if not given,
-                                                      ///< with a warning where that is unlikely.
+  /// What 1 in the file is; 1 if not given, with a warning where that is unlikely.
+  std::optional<double> length_unit_m = {}, mass_unit_kg = {};
   MjcfSlack slack = MjcfSlack::kTensionOnly;
   /// A key of the file by its name, or by its number from 0: where the robot is at the start, and
   /// its controls. Empty: as the bodies are described, controls 0.
-  std::string keyframe;
-  std::string name;  ///< Of the robot; empty: the file's `model`, else the file's name.
+  std::string keyframe = {};
+  std::string name = {};  ///< Of the robot; empty: the file's `model`, else the file's name.
 };
 
 struct ImportedMjcf {

@@ -200,6 +200,7 @@ std::optional<ImportedMjcf> BuildRobot(Scene& scene, const std::string& path,
   FindWhatCollides(b);
   FindRigids(b);
   BuildBodies(b);
+  if (out.items().size() != errors_before) return std::nullopt;
   NameBodies(b);
   BuildContacts(b);
   PutAt(key, b);

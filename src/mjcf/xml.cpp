@@ -55,7 +55,7 @@ class XmlReader {
       return "elements are nested too deeply";
     }
     if (document.ErrorID() == tinyxml2::XML_ERROR_PARSING_ATTRIBUTE) {
-      return "an attribute is not key=\"value\"";
+      return "an attribute is not key=\"value\", or is there twice";
     }
     return id.substr(id.rfind("ERROR_") == id.npos ? 0 : id.rfind("ERROR_") + 6);
   }
@@ -75,11 +75,7 @@ class XmlReader {
         out_.Error(at, to.name + "." + a->Name() + " has control characters");
         return false;
       }
-      if (to.Find(a->Name()) != nullptr) {
-        out_.Error(at, to.name + " has " + a->Name() + " twice");
-      } else {
-        to.attributes.push_back({a->Name(), value, at});
-      }
+      to.attributes.push_back({a->Name(), value, at});
     }
     for (const auto* c = from.FirstChildElement(); c != nullptr; c = c->NextSiblingElement()) {
       if (std::string_view(c->Name()) == "include") {
