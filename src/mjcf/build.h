@@ -15,7 +15,7 @@ namespace taut::mjcf {
 struct Rigid {
   int root = 0;           ///< Body of the scene.
   std::string placement;  ///< That its nodes are in; empty: none.
-  bool moves = false;
+  bool moves = false, called_as_robot = false;
   std::vector<int> sites, shapes;  ///< Of the scene; shapes that are terrain are not here.
   int body = kWorld;               ///< Of the robot.
 };

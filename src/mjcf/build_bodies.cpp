@@ -69,6 +69,8 @@ class BodyBuilder {
     const std::string name = b_.nodes.Take(InPlacement(raw, "node"));
     def_.nodes.push_back({name, rigid_.body, p});
     robot_.node_tags.push_back({name});
+    const std::size_t dot = name.rfind('.');
+    if (dot != name.npos) robot_.node_tags.back().push_back(name.substr(dot + 1));
     robot_.node_sources.push_back(at);
     return static_cast<int>(def_.nodes.size()) - 1;
   }
@@ -98,7 +100,8 @@ class BodyBuilder {
     const Shape& s = scene_.shapes[Scene::Index(index)];
     const double mass = own_masses_ ? s.mass : 0;
     const SolidMass solid{SolidMass::Per::kWhole, rigid_.moves ? mass : 0};
-    const std::string plain = rigid_.placement.empty() ? ToName(BodyName(), "body") : "";
+    const bool by_shape = rigid_.placement.empty() && !rigid_.called_as_robot;
+    const std::string plain = by_shape ? ToName(BodyName(), "body") : "";
     Material material;
     material.static_friction = material.kinetic_friction = s.friction;
     Building::Made& made = b_.made_of_shape[Scene::Index(index)];
@@ -230,8 +233,15 @@ void FindRigids(Building& b) {
       placements.Take(rigid.placement);
     }
   }
+  const auto bodies = std::count_if(by_root.begin(), by_root.end(), [](const auto& entry) {
+    return entry.second.moves || !entry.second.shapes.empty();
+  });
   for (auto& [root, rigid] : by_root) {
     if (!rigid.placement.empty() || (!rigid.moves && rigid.shapes.empty())) continue;
+    // The only body of a robot is called as that.
+    rigid.called_as_robot =
+        bodies == 1 && scene.bodies[Scene::Index(root)].name == b.def().name;
+    if (rigid.called_as_robot) continue;
     const auto rods = std::count_if(rigid.shapes.begin(), rigid.shapes.end(), [&](int shape) {
       return IsRod(scene.shapes[Scene::Index(shape)]);
     });

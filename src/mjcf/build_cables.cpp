@@ -135,6 +135,10 @@ class CableBuilder {
     }
     b_.def().cables.push_back(std::move(cable));
     Tags tags{name};
+    const std::size_t dot = name.rfind('.');
+    if (dot != name.npos && IsName(name.substr(dot + 1)) && name.find('.') == dot) {
+      tags.push_back(name.substr(dot + 1));
+    }
     const std::string tag = tendon.tag.empty() ? "" : ToName(tendon.tag, "");
     if (!tag.empty() && tag != name) tags.push_back(tag);
     b_.made.robot.cable_tags.push_back(std::move(tags));

@@ -170,7 +170,7 @@ void ReadEqualities(const Element& root, const Defaults& defaults, Scene& scene,
       // What is welded to something that stands still stands still.
       const int root_a = scene.bodies[Scene::Index(a)].root,
                 root_b = scene.bodies[Scene::Index(b)].root;
-      const int keep = !scene.Moves(a) ? root_a : root_b, lose = keep == root_a ? root_b : root_a;
+      const int keep = scene.Moves(b) ? root_a : root_b, lose = keep == root_a ? root_b : root_a;
       for (Body& body : scene.bodies) {
         if (body.root == lose) body.root = keep;
       }
