@@ -3,7 +3,7 @@
 PARTS = {
     "Begin": ["docs/tutorial.md", "docs/tutorial_ground.md", "docs/tutorial_joints.md", "docs/tutorial_cables.md", "docs/gallery.md", "report.md"],
     "Use": ["docs/cli.md", "docs/viewer.md", "docs/analyze.md", "docs/learning.md", "docs/environments.md", "docs/cluster.md", "docs/compare.md",
-            "docs/fit.md", "docs/environments.md", "docs/python.md", "docs/from_gymnasium.md", "docs/glossary.md"],
+            "docs/fit.md", "docs/environments.md", "docs/python.md", "docs/from_gymnasium.md", "docs/from_mujoco.md", "docs/glossary.md"],
     "Files": ["docs/formats/model.md", "docs/formats/experiment.md", "docs/formats/gait.md", "docs/formats/study.md",
               "docs/formats/"],
     "In C++": ["api/index.rst", "docs/plant.md"],

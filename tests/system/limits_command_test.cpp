@@ -112,7 +112,7 @@ TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
 TEST_F(Limits, AnUnknownCommandIsAnsweredByThoseThatThereAre) {
   ExpectRefused({"simulate", "a.yaml"}, 2,
                 "error: there is no command \"simulate\" (one of: analyze, check, run, "
-                "compare, fit, gait, learn, list, new, report, robot, schema, ...)\n`taut --help` "
+                "compare, export, fit, gait, import, learn, list, new, report, ...)\n`taut --help` "
                 "tells more.\n");
 }
 
