@@ -33,16 +33,14 @@ int Import(const Arguments& args) {
   if (!made || !Pass(found, args.strict)) return Fail(found, kBadInput);
   std::string heading = fmt::format("Made by taut {} from {}.", kVersion,
                                     std::filesystem::path(args.input).filename().string());
-  const std::size_t terrain =
-      made->robot.def.planes.size() + made->robot.def.terrain_boxes.size();
+  const std::size_t terrain = made->robot.def.planes.size() + made->robot.def.terrain_boxes.size();
   for (const std::string& note : made->notes) {
     fmt::print(stderr, "note: {}\n", note);
     heading += "\n" + note;
   }
   if (terrain > 0 && args.experiment.empty()) {
-    fmt::print(stderr,
-               "note: a model has no terrain: {} of the world {} for --experiment\n", terrain,
-               terrain == 1 ? "geom is" : "geoms are");
+    fmt::print(stderr, "note: a model has no terrain: {} of the world {} for --experiment\n",
+               terrain, terrain == 1 ? "geom is" : "geoms are");
   }
   const auto model = ModelYaml(made->robot, heading, found);
   if (!model) return Fail(found, kBadInput);
@@ -50,10 +48,8 @@ int Import(const Arguments& args) {
   if (wrote != kOk || args.experiment.empty()) return wrote;
   const std::filesystem::path folder =
       std::filesystem::absolute(args.experiment).parent_path().lexically_normal();
-  const std::string beside = std::filesystem::absolute(args.out)
-                                 .lexically_normal()
-                                 .lexically_relative(folder)
-                                 .string();
+  const std::string beside =
+      std::filesystem::absolute(args.out).lexically_normal().lexically_relative(folder).string();
   return WriteNamed(args.experiment, MjcfExperimentYaml(*made, beside));
 }
 
@@ -65,11 +61,13 @@ void AddImportMjcf(CLI::App& import, int& exit_code) {
       import.add_subcommand("mjcf", "A tensegrity robot of MuJoCo's language as a model file.");
   mjcf->add_option("file", args->input, "MJCF file (XML)")->required();
   const auto add_unit = [&](const char* flag, std::optional<double>& unit, const char* help) {
-    mjcf->add_option_function<double>(flag, [&unit](double value) { unit = value; }, help)
+    mjcf->add_option_function<double>(
+            flag, [&unit](double value) { unit = value; }, help)
         ->option_text("X")
         ->check(NumberWithin(1e-6, 1e6));
   };
-  add_unit("--length_unit_m", args->options.length_unit_m, "What 1 in the file is [m] (default: 1)");
+  add_unit("--length_unit_m", args->options.length_unit_m,
+           "What 1 in the file is [m] (default: 1)");
   add_unit("--mass_unit_kg", args->options.mass_unit_kg, "What 1 in the file is [kg] (default: 1)");
   AddChoice(*mjcf, "--slack", args->options.slack, kSlack,
             "What springs do that are shorter than at rest: nothing, as cables, or push, as bars "

@@ -178,8 +178,8 @@ class Taker {
       if (node >= 0) {
         const Quat in_part =
             Conjugate(TurnFor(PlacementOf(box.name), box.orientation)) * box.orientation;
-        if (std::sqrt(in_part.x * in_part.x + in_part.y * in_part.y + in_part.z * in_part.z) >
-            1e-14) {
+        const Vec3 turn{in_part.x, in_part.y, in_part.z};
+        if (Dot(turn, turn) > 1e-28) {
           more.insert(0, "rotate: {quaternion: " + FlowWriter<false>::Text(in_part) + "}, ");
         }
         Build(m_.on_nodes,
@@ -196,9 +196,9 @@ class Taker {
       }
       const std::string placement = PlacementOf(m_.nodes[static_cast<std::size_t>(from)].name);
       if (!Alike(TurnFor(placement, box.orientation), box.orientation)) {
-        Refuse("the boxes along pairs of one part are turned differently, as \"" + box.name +
-                   "\" is",
-               placement.empty() ? "put its nodes into a part" : "");
+        Refuse(
+            "the boxes along pairs of one part are turned differently, as \"" + box.name + "\" is",
+            placement.empty() ? "put its nodes into a part" : "");
       }
       Build(m_.on_pairs,
             "box: {width_m: " + Shown(2 * h.y) + ", height_m: " + Shown(2 * h.z) + ", " + more,
@@ -242,18 +242,14 @@ class Taker {
 
   /// In the axes of the node's part; three numbers where the rest is 0.
   std::string InertiaText(const Inertia& in_world, int node) const {
-    const auto turn =
-        m_.turns.find(PlacementOf(m_.nodes[static_cast<std::size_t>(node)].name));
-    const Inertia i =
-        turn == m_.turns.end() ? in_world : Turned(Conjugate(turn->second), in_world);
-    const bool diagonal = i.xy == 0 && i.xz == 0 && i.yz == 0;
-    return diagonal ? FlowWriter<false>::Text(std::vector{i.xx, i.yy, i.zz})
-                    : FlowWriter<false>::Text(i);
+    const auto turn = m_.turns.find(PlacementOf(m_.nodes[static_cast<std::size_t>(node)].name));
+    const Inertia i = turn == m_.turns.end() ? in_world : Turned(Conjugate(turn->second), in_world);
+    if (i.xy != 0 || i.xz != 0 || i.yz != 0) return FlowWriter<false>::Text(i);
+    return FlowWriter<false>::Text(std::vector{i.xx, i.yy, i.zz});
   }
 
   void PointMasses() {
-    const auto add = [&](int node, double mass_kg, double radius_m,
-                         const std::optional<Inertia>& own) {
+    const auto add = [&](int node, double mass_kg, double radius_m, std::optional<Inertia> own) {
       std::string text = "point_mass: {mass_kg: " + Shown(mass_kg);
       if (radius_m > 0) text += ", radius_m: " + Shown(radius_m);
       if (own) text += ", inertia_kg_m2: " + InertiaText(*own, node);

@@ -54,15 +54,14 @@ MassProperties SolidCylinder(const Vec3& from_m, const Vec3& to_m, double radius
   return {mass_kg, 0.5 * (from_m + to_m), AxiallySymmetric((1.0 / length) * axis, along, across)};
 }
 
-MassProperties SolidCapsule(const Vec3& from_m, const Vec3& to_m, double radius_m,
-                            double mass_kg) {
+MassProperties SolidCapsule(const Vec3& from_m, const Vec3& to_m, double radius_m, double mass_kg) {
   const Vec3 axis = to_m - from_m;
   const double l = std::sqrt(Dot(axis, axis)), r = radius_m;
   const double ends = mass_kg * 4.0 * r / (3.0 * l + 4.0 * r), middle = mass_kg - ends;
   const double along = 0.5 * middle * r * r + 0.4 * ends * r * r;
   // A half sphere's centre of mass is 3/8 r from its flat side.
-  const double across = middle / 12.0 * (3.0 * r * r + l * l) +
-                        ends * (0.4 * r * r + 0.25 * l * l + 0.375 * l * r);
+  const double across =
+      middle / 12.0 * (3.0 * r * r + l * l) + ends * (0.4 * r * r + 0.25 * l * l + 0.375 * l * r);
   return {mass_kg, 0.5 * (from_m + to_m), AxiallySymmetric((1.0 / l) * axis, along, across)};
 }
 

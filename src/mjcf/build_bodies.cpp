@@ -130,8 +130,8 @@ class BodyBuilder {
     } else {
       const NodeDef& node = FreeNodeFor(boxes_, s, NameFor(s, plain, "box"));
       made = {"box", def_.boxes.size()};
-      def_.boxes.push_back({node.name, rigid_.body, node.position_m, s.pose.q, s.half, material,
-                            s.collides});
+      def_.boxes.push_back(
+          {node.name, rigid_.body, node.position_m, s.pose.q, s.half, material, s.collides});
       robot_.solids->boxes.push_back(solid);
     }
   }
@@ -183,8 +183,8 @@ class BodyBuilder {
     const bool is_alone = rigid_.placement.empty() && rigid_.shapes.empty();
     const NodeDef& node = NodeFor(whole.com_m, is_alone ? BodyName() : raw, at);
     body.com_m = node.position_m;
-    robot_.solids->point_masses.push_back({static_cast<int>(&node - def_.nodes.data()),
-                                           whole.mass_kg, 0.0, whole.inertia_kg_m2});
+    robot_.solids->point_masses.push_back(
+        {static_cast<int>(&node - def_.nodes.data()), whole.mass_kg, 0.0, whole.inertia_kg_m2});
   }
 
   Building& b_;
@@ -239,18 +239,17 @@ void FindRigids(Building& b) {
   for (auto& [root, rigid] : by_root) {
     if (!rigid.placement.empty() || (!rigid.moves && rigid.shapes.empty())) continue;
     // The only body of a robot is called as that.
-    rigid.called_as_robot =
-        bodies == 1 && scene.bodies[Scene::Index(root)].name == b.def().name;
+    rigid.called_as_robot = bodies == 1 && scene.bodies[Scene::Index(root)].name == b.def().name;
     if (rigid.called_as_robot) continue;
     const auto rods = std::count_if(rigid.shapes.begin(), rigid.shapes.end(), [&](int shape) {
       return IsRod(scene.shapes[Scene::Index(shape)]);
     });
     // A body is called by its placement; where there is none by its rod, or its first node.
     const std::string& name = scene.bodies[Scene::Index(root)].name;
-    const bool by_node = rods == 0 && rigid.shapes.size() <= 1 &&
-                         (rigid.sites.empty() ||
-                          (rigid.sites.size() == 1 &&
-                           scene.sites[Scene::Index(rigid.sites[0])].name == name));
+    const bool by_node =
+        rods == 0 && rigid.shapes.size() <= 1 &&
+        (rigid.sites.empty() ||
+         (rigid.sites.size() == 1 && scene.sites[Scene::Index(rigid.sites[0])].name == name));
     if (rods != 1 && !by_node) rigid.placement = placements.Take(ToName(name, "body"));
   }
   // As a model file is read: what is outside of parts first, then part by part.

@@ -86,8 +86,9 @@ class CableBuilder {
     }
     if (tendon.has_limit) limits_.push_back(&tendon);
     if (!(law.k > 0)) {
-      b_.out.Error(tendon.at, called + (law.actuators > 0 ? " is pulled by a force, without stiffness"
-                                                          : " is a damper without stiffness"),
+      b_.out.Error(tendon.at,
+                   called + (law.actuators > 0 ? " is pulled by a force, without stiffness"
+                                               : " is a damper without stiffness"),
                    "a cable has a stiffness: of the tendon, or `biasprm` and `kp` of the actuator");
       return;
     }
@@ -213,10 +214,11 @@ class CableBuilder {
     note(other_, " u of MuJoCo: rest lengths by another scale, as of " + example_);
     note(several_, " of MuJoCo: several of a cable, whose rest length follows from their sum");
     if (bilateral_ > 0) {
-      b_.out.Warning({}, Count(static_cast<std::size_t>(bilateral_), "tendon") +
-                             " would push in MuJoCo when shorter than at rest; here cables only "
-                             "pull. " +
-                             std::to_string(pushing_) + " of them would do so at the start",
+      b_.out.Warning({},
+                     Count(static_cast<std::size_t>(bilateral_), "tendon") +
+                         " would push in MuJoCo when shorter than at rest; here cables only "
+                         "pull. " +
+                         std::to_string(pushing_) + " of them would do so at the start",
                      "--slack as_mujoco makes bars of them");
     }
     if (damped_ > 0) {

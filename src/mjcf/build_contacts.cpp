@@ -68,10 +68,11 @@ class ContactBuilder {
       }
     }
     if (finer == 0) return;
-    b_.out.Warning(example_at, Count(static_cast<std::size_t>(finer), "pair") +
-                                   " of geoms that do not touch each other in MuJoCo do here, as " +
-                                   example,
-                   "here shapes touch all or nothing, and pairs of bodies are kept apart as wholes");
+    b_.out.Warning(
+        example_at,
+        Count(static_cast<std::size_t>(finer), "pair") +
+            " of geoms that do not touch each other in MuJoCo do here, as " + example,
+        "here shapes touch all or nothing, and pairs of bodies are kept apart as wholes");
   }
 
   /// MuJoCo takes the larger friction of two geoms, or that of the one of higher priority.
@@ -146,8 +147,7 @@ class ContactBuilder {
       if (list == "sphere") return roles_->spheres[made.index];
       return mechanics::ContactRole{};
     };
-    const bool plane =
-        At(i).kind == Shape::Kind::kPlane || At(j).kind == Shape::Kind::kPlane;
+    const bool plane = At(i).kind == Shape::Kind::kPlane || At(j).kind == Shape::Kind::kPlane;
     return plane ? !role(i).meets_planes || !role(j).meets_planes
                  : !role(i).meets_bodies || !role(j).meets_bodies;
   }
@@ -173,7 +173,7 @@ class ContactBuilder {
         if (!MayMeet(i, j) || !Meet(i, j)) continue;
         const Shape &one = At(i), &two = At(j);
         const auto said = said_.find(std::minmax(i, j));
-        const double theirs = said != said_.end()          ? said->second->friction
+        const double theirs = said != said_.end()           ? said->second->friction
                               : one.priority > two.priority ? one.friction
                               : two.priority > one.priority ? two.friction
                                                             : std::max(one.friction, two.friction);
@@ -188,8 +188,9 @@ class ContactBuilder {
       }
     }
     if (other == 0) return;
-    b_.out.Warning(at, Count(static_cast<std::size_t>(other), "pair") +
-                           " of geoms have another friction here, as " + example,
+    b_.out.Warning(at,
+                   Count(static_cast<std::size_t>(other), "pair") +
+                       " of geoms have another friction here, as " + example,
                    "priorities and pairs of MJCF have no place in a model; change `friction`");
   }
 

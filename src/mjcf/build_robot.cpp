@@ -17,7 +17,9 @@ struct ToKey {
   std::vector<Pose> motions;  ///< Per body of the robot.
   std::vector<Vec3> coms;     ///< Where they were described.
   bool Moves(int body) const { return body != kWorld; }
-  Vec3 Moved(int body, const Vec3& p) const { return (motions[Scene::Index(body)] * Pose{p, {}}).p; }
+  Vec3 Moved(int body, const Vec3& p) const {
+    return (motions[Scene::Index(body)] * Pose{p, {}}).p;
+  }
   const Quat& Turned(int body) const { return motions[Scene::Index(body)].q; }
 };
 
@@ -54,7 +56,8 @@ void SetTotalMass(Scene& scene) {
 void TellWhatIsLeftOut(Building& b) {
   std::string text;
   for (const auto& [what, count] : b.scene.left_out) {
-    text += (text.empty() ? "" : ", ") + what + (count > 1 ? " (" + std::to_string(count) + ")" : "");
+    text +=
+        (text.empty() ? "" : ", ") + what + (count > 1 ? " (" + std::to_string(count) + ")" : "");
   }
   if (!text.empty()) b.Note("left out: " + text);
   if (b.scene.pictures > 0) {
@@ -121,8 +124,10 @@ void PutAt(const Key* key, Building& b) {
       if (mass.inertia_kg_m2) mass.inertia_kg_m2 = Turned(to.Turned(body), *mass.inertia_kg_m2);
     }
   }
-  const bool moving = std::any_of(key->qvel.begin(), key->qvel.end(), [](double n) { return n != 0; });
-  if (moving) b.out.Warning(key->at, "a model file has no velocities: those of the key are left out");
+  const bool moving =
+      std::any_of(key->qvel.begin(), key->qvel.end(), [](double n) { return n != 0; });
+  if (moving)
+    b.out.Warning(key->at, "a model file has no velocities: those of the key are left out");
 }
 
 void ScaleUnits(Building& b) {
@@ -164,7 +169,8 @@ void ScaleUnits(Building& b) {
   // What people build is smaller and lighter; files in other units look like giants.
   constexpr double kLong_m = 2, kHeavy_kg = 50, kEarth = 9.81;
   double longest = 0, heaviest = 0;
-  for (const CapsuleDef& rod : def.capsules) longest = std::max(longest, Length(rod.to_m - rod.from_m));
+  for (const CapsuleDef& rod : def.capsules)
+    longest = std::max(longest, Length(rod.to_m - rod.from_m));
   for (const BodyDef& body : def.bodies) heaviest = std::max(heaviest, body.mass_kg);
   char text[200];
   const double g = Length(def.gravity_m_per_s2);
@@ -173,12 +179,14 @@ void ScaleUnits(Building& b) {
     b.out.Warning({}, text, "--length_unit_m says what it is");
   }
   if (heaviest > kHeavy_kg && !b.options.mass_unit_kg) {
-    std::snprintf(text, sizeof text, "a body weighs %.4g kg: is 1 in this file a kilogram?", heaviest);
+    std::snprintf(text, sizeof text, "a body weighs %.4g kg: is 1 in this file a kilogram?",
+                  heaviest);
     b.out.Warning({}, text, "--mass_unit_kg says what it is");
   }
   if (l != 1 && g > 0 && std::fabs(g / kEarth - 1) > 0.02) {
     std::snprintf(text, sizeof text,
-                  "with this unit of length gravity is %.3g m/s^2, as MuJoCo has it for the file", g);
+                  "with this unit of length gravity is %.3g m/s^2, as MuJoCo has it for the file",
+                  g);
     b.out.Warning({}, text, "gravity_m_per_s2 of the model is where to change it");
   }
 }
@@ -189,7 +197,7 @@ std::optional<ImportedMjcf> BuildRobot(Scene& scene, const std::string& path,
   ImportedMjcf made;
   Building b{scene, options, made, out, {}, {}, {}, {""}, {}, {}, {}};
   const std::string stem = std::filesystem::path(path).stem().string();
-  made.robot.def.name = ToName(!options.name.empty() ? options.name
+  made.robot.def.name = ToName(!options.name.empty()  ? options.name
                                : !scene.model.empty() ? scene.model
                                                       : stem,
                                "robot");

@@ -34,8 +34,8 @@ struct Element {
   }
 };
 
-/// The file's root element. `files` becomes all that was read, the file itself first. Nothing, and a
-/// complaint, if one of them is no XML.
+/// The file's root element. `files` becomes all that was read, the file itself first. Nothing, and
+/// a complaint, if one of them is no XML.
 std::optional<Element> ReadXml(const std::string& path, std::vector<std::string>& files,
                                Diagnostics& out);
 

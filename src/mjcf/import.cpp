@@ -39,8 +39,8 @@ std::string MjcfExperimentYaml(const ImportedMjcf& imported, const std::string& 
   if (!def.planes.empty() || !def.terrain_boxes.empty()) text += "\nterrain:\n";
   for (const PlaneDef& p : def.planes) {
     text += "  - {name: " + PlainOrQuoted(p.name) + ", plane: {normal: " + list(p.normal) +
-            ", point_m: " + list(p.point_m) +
-            ", friction: " + Shown(p.material.kinetic_friction) + "}}\n";
+            ", point_m: " + list(p.point_m) + ", friction: " + Shown(p.material.kinetic_friction) +
+            "}}\n";
   }
   for (const TerrainBoxDef& box : def.terrain_boxes) {
     const Vec3& h = box.half_extents_m;

@@ -110,8 +110,9 @@ class BodyReader {
   }
 
   void ReadJoint(const Element& joint, int body, const std::string& cls) {
-    const std::string whose = " of " + (body == 0 ? "the world" : "body \"" +
-                              scene_.bodies[Scene::Index(body)].name + "\"");
+    const std::string whose =
+        " of " +
+        (body == 0 ? "the world" : "body \"" + scene_.bodies[Scene::Index(body)].name + "\"");
     if (body == 0) {
       out_.Error(joint.at, joint.Called() + whose + ": the world does not move");
       return;
@@ -120,10 +121,10 @@ class BodyReader {
     const Layers layers = Over(joint, cls);
     const std::string type = layers.Text("type", "hinge");
     if (type != "free") {
-      out_.Error(joint.at,
-                 joint.Called() + whose + " is of type " + type +
-                     ": only bodies that are free are read",
-                 "joints of taut's own are added to the model by hand: docs/theory/joints.md");
+      out_.Error(
+          joint.at,
+          joint.Called() + whose + " is of type " + type + ": only bodies that are free are read",
+          "joints of taut's own are added to the model by hand: docs/theory/joints.md");
       return;
     }
     if (layers.Number("frictionloss", 0) > 0) {
@@ -131,8 +132,8 @@ class BodyReader {
     }
     for (const char* key : {"damping", "stiffness", "armature"}) {
       if (layers.Numbers(key, {0}, 1, 3)[0] == 0) continue;
-      out_.Warning(layers.Find(key)->at, joint.Called() + whose + ": " + key +
-                                             " of a free joint is left out");
+      out_.Warning(layers.Find(key)->at,
+                   joint.Called() + whose + ": " + key + " of a free joint is left out");
     }
   }
 
@@ -142,8 +143,7 @@ class BodyReader {
     if (const auto line = layers.FromTo()) p = 0.5 * (line->first + line->second);
     const Attribute* const name = element.Find("name");
     Register(scene_.site_by_name, element, static_cast<int>(scene_.sites.size()), out_);
-    scene_.sites.push_back(
-        {name ? name->value : "", element.at, body, InWorld(frame, {p, {}}).p});
+    scene_.sites.push_back({name ? name->value : "", element.at, body, InWorld(frame, {p, {}}).p});
   }
 
   struct GeomAt {
@@ -249,8 +249,8 @@ void BodyReader::ReadGeom(const GeomAt& from, bool body_has_mass) {
                                                          {"plane", Shape::Kind::kPlane}};
   const Layers layers = Over(*from.element, from.cls);
   const std::string type = layers.Text("type", "sphere");
-  const bool touches = scene_.has_contacts && (layers.Whole("contype", 1) != 0 ||
-                                               layers.Whole("conaffinity", 1) != 0);
+  const bool touches = scene_.has_contacts &&
+                       (layers.Whole("contype", 1) != 0 || layers.Whole("conaffinity", 1) != 0);
   const auto kind = kKinds.find(type);
   if (kind == kKinds.end() || layers.Has("mesh") || layers.Has("hfield")) {
     const bool weighs = !body_has_mass && layers.Number("mass", 1) != 0 && from.body != 0;
@@ -298,14 +298,15 @@ void BodyReader::ReadSize(const Layers& layers, const Pose& frame, const std::st
   std::vector<double> needed{size[0]};
   if (line) {
     if (shape.kind == Shape::Kind::kSphere) layers.Error("fromto", "a sphere has no fromto");
-    const Vec3 from = InWorld(frame, {line->first, {}}).p, to = InWorld(frame, {line->second, {}}).p;
+    const Vec3 from = InWorld(frame, {line->first, {}}).p,
+               to = InWorld(frame, {line->second, {}}).p;
     shape.from = from, shape.to = to;
     const double length = std::sqrt(Dot(to - from, to - from));
     shape.half = {size[0], size[0], 0.5 * length};
     // As MuJoCo has it, the axes beside z follow from the direction from `to` to `from`, in the
     // body's frame.
-    shape.pose = InWorld(frame, {0.5 * (line->first + line->second),
-                                 FromZ(line->first - line->second)});
+    shape.pose =
+        InWorld(frame, {0.5 * (line->first + line->second), FromZ(line->first - line->second)});
   } else {
     const Vec3 half = size[1] * Rotate(shape.pose.q, {0, 0, 1});
     shape.from = shape.pose.p - half, shape.to = shape.pose.p + half;

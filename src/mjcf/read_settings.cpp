@@ -50,8 +50,8 @@ void ReadFlags(const Element& element, Scene& scene, Diagnostics& out) {
       if (a.name == "gravity") scene.gravity = {};
       if (a.name == "contact") scene.has_contacts = false;
       if (a.name == "clampctrl") scene.clamps_controls = false;
-      for (const char* whole : {"constraint", "passive", "spring", "damper", "actuation",
-                                "equality"}) {
+      for (const char* whole :
+           {"constraint", "passive", "spring", "damper", "actuation", "equality"}) {
         if (a.name == whole) out.Error(a.at, "flag." + a.name + "=\"disable\" is not read");
       }
     }
@@ -132,16 +132,14 @@ void ReadContacts(const Element& root, const Defaults& defaults, Scene& scene, D
         if (a < 0 || b < 0) continue;
         const Shape &one = scene.shapes[Scene::Index(a)], &two = scene.shapes[Scene::Index(b)];
         const double usual = std::max(one.friction, two.friction);
-        const double friction =
-            layers.Numbers("friction", {usual, usual, 0, 0, 0}, 1, 5)[0];
+        const double friction = layers.Numbers("friction", {usual, usual, 0, 0, 0}, 1, 5)[0];
         scene.pairs.push_back({e.at, a, b, layers.Whole("condim", 3) == 1 ? 0 : friction});
       }
     }
   }
 }
 
-void ReadEqualities(const Element& root, const Defaults& defaults, Scene& scene,
-                    Diagnostics& out) {
+void ReadEqualities(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out) {
   for (const Element* const section : Sections(root, "equality")) {
     for (const Element& e : section->children) {
       const Layers layers = defaults.Over(e, "", out);

@@ -42,7 +42,8 @@ struct Body {
   std::string name;
   SourceRef at;
   bool is_free = false;  ///< Has a free joint of its own.
-  int root = 0;  ///< The body that it is one rigid body with: itself, or what it is in or welded to.
+  int root =
+      0;  ///< The body that it is one rigid body with: itself, or what it is in or welded to.
   Pose frame = {};
   MassProperties mass = {};
   bool own_masses = true;  ///< Each of its shapes weighs what a solid of taut's weighs.

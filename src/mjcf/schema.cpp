@@ -51,8 +51,8 @@ class Checker {
 
   void Run(const Element& element, const std::string& kind) {
     const auto& rules = Rules();
-    const auto rule = std::find_if(rules.begin(), rules.end(),
-                                   [&](const Rule& r) { return kind == r.element; });
+    const auto rule =
+        std::find_if(rules.begin(), rules.end(), [&](const Rule& r) { return kind == r.element; });
     if (rule == rules.end()) return;
     if (std::string(rule->children) == "...") return;
     for (const Attribute& a : element.attributes) {
@@ -73,8 +73,8 @@ class Checker {
         out_.Error(child.at, child.Called() + " in " + element.name + " is not read");
       } else {
         out_.Error(child.at, element.name + " has no element \"" + child.name + "\" in MJCF",
-                   DidYouMean(child.name, Words(std::string(rule->children) + " " +
-                                                rule->children_left_out)));
+                   DidYouMean(child.name,
+                              Words(std::string(rule->children) + " " + rule->children_left_out)));
       }
     }
   }
@@ -105,12 +105,14 @@ const std::vector<Rule>& Rules() {
       kActuator + "dyntype gaintype biastype dynprm gainprm biasprm";
   static const std::string kPosition = kActuator + "kp kv dampratio timeconst inheritrange";
   static const std::string kVelocity = kActuator + "kv kp";
-  static const std::string kOthers = kActuatorLeftOut +
+  static const std::string kOthers =
+      kActuatorLeftOut +
       " kp kv gain bias area diameter timeconst range force scale lmin lmax vmax fpmax fvmax "
       "ctrlrange plugin instance dyntype dynprm inheritrange";
   static const char* const kActuatorOut = kActuatorLeftOut.c_str();
   static const std::vector<Rule> kRules{
-      {"mujoco", "model", "", "compiler option default worldbody contact equality tendon actuator keyframe",
+      {"mujoco", "model", "",
+       "compiler option default worldbody contact equality tendon actuator keyframe",
        "size statistic visual asset sensor custom", "extension deformable"},
       {"compiler",
        "angle coordinate eulerseq inertiafromgeom inertiagrouprange autolimits boundmass "
@@ -125,7 +127,8 @@ const std::vector<Rule>& Rules() {
        "sdf_iterations sdf_initpoints actuatorgroupdisable sleep_tolerance",
        "flag", "", ""},
       {"flag", "gravity contact constraint passive spring damper actuation equality clampctrl",
-       "frictionloss limit warmstart filterparent refsafe sensor override energy fwdinv invdiscrete "
+       "frictionloss limit warmstart filterparent refsafe sensor override energy fwdinv "
+       "invdiscrete "
        "multiccd island nativeccd eulerdamp midphase autoreset sensornoise sleep diagexact",
        "", "", ""},
       {"default", "class", "", kInDefaults.c_str(), "mesh material camera light pair", ""},
@@ -148,7 +151,8 @@ const std::vector<Rule>& Rules() {
       {"cylinder", kActuator.c_str(), kOthers.c_str(), "", "", ""},
       {"muscle", kActuator.c_str(), kOthers.c_str(), "", "", ""},
       {"adhesion", kActuator.c_str(), kOthers.c_str(), "", "", ""},
-      {"equality", "active", "class solref solimp", "weld connect joint tendon distance flex", "", ""},
+      {"equality", "active", "class solref solimp", "weld connect joint tendon distance flex", "",
+       ""},
       {"weld", "name class active body1 body2 site1 site2 relpose anchor",
        "solref solimp torquescale", "", "", ""},
       {"connect", "name class active body1 body2 site1 site2 anchor", "solref solimp", "", "", ""},

@@ -80,8 +80,9 @@ std::vector<double> Layers::Numbers(std::string_view name, std::vector<double> i
     if (!a) continue;
     const auto numbers = ToNumbers(a->value);
     if (!numbers || numbers->size() < least || numbers->size() > most) {
-      const std::string count = least == most ? std::to_string(most)
-                                              : std::to_string(least) + " to " + std::to_string(most);
+      const std::string count = least == most
+                                    ? std::to_string(most)
+                                    : std::to_string(least) + " to " + std::to_string(most);
       out_->Error(a->at, element().Called() + ": " + std::string(name) + " must be " + count +
                              (most == 1 ? " number" : " numbers") + ", not \"" + a->value + "\"");
       continue;
@@ -163,8 +164,8 @@ Quat Layers::ReadTurn(const CompilerSettings& settings) const {
       const char letter = settings.eulerseq[i];
       const bool fixed_axes = letter < 'a';  // capitals: about the axes of the parent
       const char axis = static_cast<char>(fixed_axes ? letter - 'A' + 'a' : letter);
-      const Quat turn = AboutAxis({axis == 'x' ? 1.0 : 0, axis == 'y' ? 1.0 : 0, axis == 'z' ? 1.0 : 0},
-                                  angle * n[i]);
+      const Quat turn = AboutAxis(
+          {axis == 'x' ? 1.0 : 0, axis == 'y' ? 1.0 : 0, axis == 'z' ? 1.0 : 0}, angle * n[i]);
       q = fixed_axes ? turn * q : q * turn;
     }
     return q;

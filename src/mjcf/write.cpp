@@ -109,9 +109,9 @@ class Writer {
       const HeightFieldDef& field = def_.height_fields[i];
       xml_ << "<hfield" << Key("name", geoms_.height_fields[i].name) << " nrow=\"" << field.rows
            << "\" ncol=\"" << field.columns << '"'
-           << Key("size",
-                  List({0.5 * (field.columns - 1) * field.cell_m,
-                           0.5 * (field.rows - 1) * field.cell_m, RiseOf(mechanics::HeightsOf(field)), kBase_m}))
+           << Key("size", List({0.5 * (field.columns - 1) * field.cell_m,
+                                0.5 * (field.rows - 1) * field.cell_m,
+                                RiseOf(mechanics::HeightsOf(field)), kBase_m}))
            << "/>\n";
     }
     xml_ << "</asset>\n";
@@ -158,7 +158,8 @@ class Writer {
       for (std::size_t i = 0; i < cable.attachments.size(); ++i) {
         const AttachmentDef& at = cable.attachments[i];
         std::size_t site = 0;
-        while (site < nodes && !(sites_[site].body == at.body && Same(sites_[site].p, at.position_m))) {
+        while (site < nodes &&
+               !(sites_[site].body == at.body && Same(sites_[site].p, at.position_m))) {
           ++site;
         }
         if (site == nodes) {
@@ -334,7 +335,9 @@ class Writer {
 
 }  // namespace
 
-double RiseOf(const mechanics::HeightRange& range) { return std::max(range.most_m - range.least_m, 1e-3); }
+double RiseOf(const mechanics::HeightRange& range) {
+  return std::max(range.most_m - range.least_m, 1e-3);
+}
 
 std::string Text(const ModelDef& def, const WriteOptions& options) {
   return Writer(def, options).Text();

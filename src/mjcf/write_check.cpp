@@ -39,8 +39,8 @@ class Refuser {
                           : "bars are written");
     }
     for (const MotionDef& motion : def_.motions) {
-      Refuse("the motion of the body \"" +
-             def_.bodies[static_cast<std::size_t>(motion.body)].name + "\"");
+      Refuse("the motion of the body \"" + def_.bodies[static_cast<std::size_t>(motion.body)].name +
+             "\"");
     }
     for (const TerrainMeshDef& mesh : def_.terrain_meshes) {
       Refuse("the terrain mesh \"" + mesh.name + "\"", "MuJoCo would fill its hollows");
@@ -121,9 +121,8 @@ void WarnOfWhatIsLeftOut(const ModelDef& def, const WriteOptions& options, Diagn
   }
   if (!options.keyframe) warn(speeds, "the velocity (a keyframe would have it)");
   if (options.cables == MjcfCables::kSpring) {
-    const auto damped = std::find_if(def.cables.begin(), def.cables.end(), [](const CableDef& c) {
-      return c.damping_n_s_per_m > 0;
-    });
+    const auto damped = std::find_if(def.cables.begin(), def.cables.end(),
+                                     [](const CableDef& c) { return c.damping_n_s_per_m > 0; });
     if (damped != def.cables.end()) {
       out.Warning({}, "MuJoCo's dampers of tendons act on slack cables, too, and push",
                   "cables as actuators do not push");

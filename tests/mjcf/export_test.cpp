@@ -100,7 +100,8 @@ TEST_P(Shipment, ComesBackAsTheSameRobot) {
   const auto each = [&](const auto& a, const auto& b, auto compare) {
     for (const auto& x : a) {
       SCOPED_TRACE(x.name);
-      const auto y = std::find_if(b.begin(), b.end(), [&](const auto& o) { return o.name == x.name; });
+      const auto y =
+          std::find_if(b.begin(), b.end(), [&](const auto& o) { return o.name == x.name; });
       ASSERT_TRUE(y != b.end());
       if constexpr (requires { x.body; }) {
         EXPECT_EQ(name_of(back, y->body), name_of(def, x.body));
@@ -108,9 +109,8 @@ TEST_P(Shipment, ComesBackAsTheSameRobot) {
       compare(x, *y);
     }
   };
-  each(def.nodes, back.nodes, [&](const NodeDef& x, const NodeDef& y) {
-    ExpectNear(y.position_m, x.position_m, kSame);
-  });
+  each(def.nodes, back.nodes,
+       [&](const NodeDef& x, const NodeDef& y) { ExpectNear(y.position_m, x.position_m, kSame); });
   EXPECT_EQ(back.spheres.size(), def.spheres.size());
   each(def.spheres, back.spheres, [&](const SphereDef& x, const SphereDef& y) {
     ExpectNear(y.center_m, x.center_m, kSame);
@@ -143,17 +143,31 @@ TEST(MjcfExport, SpringsHaveADeadBandFromZeroToTheRestLength) {
   EXPECT_EQ(text.find("<actuator>"), std::string::npos);
 }
 
-/// Every part that a model may have besides rods and spheres, on every ground but fields and meshes.
+/// Every part that a model may have besides rods and spheres, on every ground but fields and
+/// meshes.
 ModelDef Everything() {
   ModelDef def;
   def.name = "everything";
   const Inertia j{0.02, 0.03, 0.04, 0.001, 0.002, 0.003};
-  def.bodies = {{.name = "a", .mass_kg = 1, .com_m = {0.1, 0.2, 1}, .inertia_kg_m2 = j,
-                 .velocity_m_per_s = {1, 2, 3}, .angular_velocity_rad_per_s = {0.1, 0.2, 0.3}},
-                {.name = "b", .mass_kg = 2, .com_m = {0, 0, 2}, .inertia_kg_m2 = j,
-                 .velocity_m_per_s = {}, .angular_velocity_rad_per_s = {}},
-                {.name = "held", .mass_kg = 0, .com_m = {1, 0, 3}, .inertia_kg_m2 = {},
-                 .velocity_m_per_s = {}, .angular_velocity_rad_per_s = {}, .fixed = true}};
+  def.bodies = {{.name = "a",
+                 .mass_kg = 1,
+                 .com_m = {0.1, 0.2, 1},
+                 .inertia_kg_m2 = j,
+                 .velocity_m_per_s = {1, 2, 3},
+                 .angular_velocity_rad_per_s = {0.1, 0.2, 0.3}},
+                {.name = "b",
+                 .mass_kg = 2,
+                 .com_m = {0, 0, 2},
+                 .inertia_kg_m2 = j,
+                 .velocity_m_per_s = {},
+                 .angular_velocity_rad_per_s = {}},
+                {.name = "held",
+                 .mass_kg = 0,
+                 .com_m = {1, 0, 3},
+                 .inertia_kg_m2 = {},
+                 .velocity_m_per_s = {},
+                 .angular_velocity_rad_per_s = {},
+                 .fixed = true}};
   const auto rubbing = [](double mu) {
     Material m;
     m.static_friction = m.kinetic_friction = mu;
@@ -161,11 +175,20 @@ ModelDef Everything() {
   };
   const Quat q{0.5, 0.5, -0.5, 0.5};
   def.boxes = {{"ba", 0, {0.1, 0.2, 1.1}, q, {0.1, 0.2, 0.3}, rubbing(0.9), true}};
-  def.capsules = {{.name = "rb", .body = 1, .from_m = {0, 0, 2}, .to_m = {0.3, 0, 2},
-                   .radius_m = 0.01, .material = rubbing(0.3)},
-                  {.name = "rh", .body = 2, .from_m = {1, 0, 3}, .to_m = {1.3, 0, 3},
-                   .radius_m = 0.02, .material = rubbing(0.3)}};
-  def.hulls = {{"hb", 1, {{0, 0, 2}, {0.2, 0, 2}, {0, 0.3, 2}, {0.05, 0.1, 2.4}}, rubbing(0.5), true}};
+  def.capsules = {{.name = "rb",
+                   .body = 1,
+                   .from_m = {0, 0, 2},
+                   .to_m = {0.3, 0, 2},
+                   .radius_m = 0.01,
+                   .material = rubbing(0.3)},
+                  {.name = "rh",
+                   .body = 2,
+                   .from_m = {1, 0, 3},
+                   .to_m = {1.3, 0, 3},
+                   .radius_m = 0.02,
+                   .material = rubbing(0.3)}};
+  def.hulls = {
+      {"hb", 1, {{0, 0, 2}, {0.2, 0, 2}, {0, 0.3, 2}, {0.05, 0.1, 2.4}}, rubbing(0.5), true}};
   def.nodes = {{"n", 0, {0.1, 0.2, 1}}, {"m", 1, {0.3, 0, 2}}};
   CableDef& cable = def.cables.emplace_back();
   cable.name = "c";
@@ -189,7 +212,8 @@ TEST(MjcfExport, BoxesHullsBarsFixedBodiesAndTerrainAreThere) {
   theirs.Key(0);
   const auto geom = [&](const char* name) { return theirs.Id(mjOBJ_GEOM, name); };
   for (const auto& [name, center, q, half] :
-       {std::tuple{"ba", def.boxes[0].center_m, def.boxes[0].orientation, def.boxes[0].half_extents_m},
+       {std::tuple{"ba", def.boxes[0].center_m, def.boxes[0].orientation,
+                   def.boxes[0].half_extents_m},
         std::tuple{"step", def.terrain_boxes[0].center_m, def.terrain_boxes[0].orientation,
                    def.terrain_boxes[0].half_extents_m}}) {
     const int g = geom(name);
@@ -247,11 +271,14 @@ TEST(MjcfExport, EveryPairHasTautsFriction) {
     MujocoModel theirs(Exported(def));
     ASSERT_TRUE(theirs);
     const std::vector<std::pair<std::string, Material>> all{
-        {"ba", def.boxes[0].material},   {"rb", def.capsules[0].material},
-        {"rh", def.capsules[1].material}, {"slope", def.planes[0].material},
+        {"ba", def.boxes[0].material},
+        {"rb", def.capsules[0].material},
+        {"rh", def.capsules[1].material},
+        {"slope", def.planes[0].material},
         {"step", def.terrain_boxes[0].material}};
     for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {0, 3}, {0, 4}, {1, 2}, {1, 3}, {1, 4}}) {
-      SCOPED_TRACE(all[a].first + " " + all[b].first + " " + std::to_string(static_cast<int>(rule)));
+      SCOPED_TRACE(all[a].first + " " + all[b].first + " " +
+                   std::to_string(static_cast<int>(rule)));
       EXPECT_NEAR(Theirs(theirs, all[a].first, all[b].first),
                   sim::Combined(def, all[a].second, all[b].second).kinetic_friction, 1e-14);
     }
@@ -272,14 +299,20 @@ TEST(MjcfExport, WhatMjcfCannotSayIsRefusedByName) {
   def.cables[1].name = "rubs", def.cables[1].attachments[1].friction = 0.1;
   def.joints[0].kind = JointKind::kHinge;
   def.motions.emplace_back().body = 1;
-  def.height_fields.push_back({.name = "hills", .columns = 2, .rows = 2, .cell_m = 1, .origin_m = {},
-                               .height_m = {0, 0, 0, 0}, .material = {}});
+  def.height_fields.push_back({.name = "hills",
+                               .columns = 2,
+                               .rows = 2,
+                               .cell_m = 1,
+                               .origin_m = {},
+                               .height_m = {0, 0, 0, 0},
+                               .material = {}});
   def.terrain_meshes.push_back({.name = "rock", .corners_m = {}, .triangles = {}, .material = {}});
   const std::string why = Why(def);
-  for (const char* part :
-       {"the cable \"c\": it comes to lie against", "the cable \"c\": its damper has the law of NTRT",
-        "the cable \"rubs\": it has friction or runs over wheels", "the joint \"bar\"",
-        "the motion of the body \"b\"", "the height field \"hills\"", "the terrain mesh \"rock\""}) {
+  for (const char* part : {"the cable \"c\": it comes to lie against",
+                           "the cable \"c\": its damper has the law of NTRT",
+                           "the cable \"rubs\": it has friction or runs over wheels",
+                           "the joint \"bar\"", "the motion of the body \"b\"",
+                           "the height field \"hills\"", "the terrain mesh \"rock\""}) {
     EXPECT_NE(why.find(part), std::string::npos) << part << "\n" << why;
   }
   EXPECT_NE(Why(Everything(), {.cables = MjcfCables::kSpring, .keyframe = true})

@@ -1,7 +1,7 @@
 // Files in the styles in which people write tensegrity robots, each beside what MuJoCo 2.2.2 makes
 // of the same text.
-#include "mjcf/mujoco_model.h"
 #include "mjcf/mjcf_folder.h"
+#include "mjcf/mujoco_model.h"
 #include "taut/statics.h"
 
 namespace taut::test {
@@ -94,8 +94,8 @@ class MjcfImportTest : public MjcfFolder {
 /// `parts` in a free body that is turned and moved.
 std::string Turned(const std::string& parts, const std::string& more = "") {
   return "<mujoco model=\"one\">" + more +
-         "<worldbody><body name=\"one\" pos=\"0.3 -0.2 1\" euler=\"20 30 -40\"><freejoint/>" + parts +
-         "</body></worldbody></mujoco>";
+         "<worldbody><body name=\"one\" pos=\"0.3 -0.2 1\" euler=\"20 30 -40\"><freejoint/>" +
+         parts + "</body></worldbody></mujoco>";
 }
 
 TEST_F(MjcfImportTest, EveryShapeWeighsWhatItDoesInMujoco) {
@@ -136,10 +136,11 @@ TEST_F(MjcfImportTest, OrientationsFollowTheCompilersSettings) {
 
 TEST_F(MjcfImportTest, AnInertialCountsAsTheCompilerSays) {
   const std::string geom = R"(<geom type="capsule" size="0.02 0.3" mass="2"/>)";
-  for (const char* inertial :
-       {R"(<inertial pos="0.1 0 0" mass="0.5" diaginertia="0.02 0.03 0.04"/>)",
-        R"(<inertial pos="0.1 0 0" euler="30 40 50" mass="0.5" diaginertia="0.02 0.03 0.04"/>)",
-        R"(<inertial pos="0 0 0.1" mass="0.5" fullinertia="0.02 0.03 0.04 0.001 -0.002 0.003"/>)"}) {
+  for (
+      const char* inertial :
+      {R"(<inertial pos="0.1 0 0" mass="0.5" diaginertia="0.02 0.03 0.04"/>)",
+       R"(<inertial pos="0.1 0 0" euler="30 40 50" mass="0.5" diaginertia="0.02 0.03 0.04"/>)",
+       R"(<inertial pos="0 0 0.1" mass="0.5" fullinertia="0.02 0.03 0.04 0.001 -0.002 0.003"/>)"}) {
     for (const char* how : {"auto", "true", "false"}) {
       SCOPED_TRACE(std::string(inertial) + how);
       // Of a full matrix MuJoCo finds the principal axes to some 1e-9 only.
@@ -199,7 +200,8 @@ TEST_F(MjcfImportTest, ClassesGiveWhatAnElementDoesNotSay) {
 TEST_F(MjcfImportTest, FilesAreIncluded) {
   Write("parts.xml", R"(<mujoco><body name="a" pos="0 0 1"><freejoint/>
     <geom type="capsule" size="0.02 0.3"/></body></mujoco>)");
-  const auto made = Import(R"(<mujoco><worldbody><include file="parts.xml"/></worldbody></mujoco>)");
+  const auto made =
+      Import(R"(<mujoco><worldbody><include file="parts.xml"/></worldbody></mujoco>)");
   ASSERT_TRUE(made);
   EXPECT_EQ(made->robot.files.size(), 2u);
   EXPECT_NEAR(made->robot.def.bodies[0].com_m.z, 1, kSame);
@@ -207,11 +209,11 @@ TEST_F(MjcfImportTest, FilesAreIncluded) {
 
 /// A rod under a ceiling on two cables that are made in every way.
 std::string Hung(const std::string& tendon, const std::string& more = "") {
-  return "<mujoco model=\"rod\"><worldbody><site name=\"top\" pos=\"0 0 2\"/><body name=\"rod\" pos=\"0 0 1\">"
+  return "<mujoco model=\"rod\"><worldbody><site name=\"top\" pos=\"0 0 2\"/><body name=\"rod\" "
+         "pos=\"0 0 1\">"
          "<freejoint/><geom type=\"capsule\" size=\"0.02 0.3\"/><site name=\"s\" pos=\"0 0 0.3\"/>"
          "</body></worldbody><tendon><spatial name=\"c\" " +
-         tendon + "><site site=\"top\"/><site site=\"s\"/></spatial></tendon>" + more +
-         "</mujoco>";
+         tendon + "><site site=\"top\"/><site site=\"s\"/></spatial></tendon>" + more + "</mujoco>";
 }
 std::string Pulled(const std::string& tendon, const std::string& actuator,
                    const std::string& more = "") {
@@ -258,8 +260,8 @@ TEST_F(MjcfImportTest, WhatWouldPushIsCounted) {
             std::string::npos)
       << Said();
   EXPECT_NE(Said().find("1 damper of tendons would act in MuJoCo while slack"), std::string::npos);
-  const auto bar =
-      Import(Hung(R"(stiffness="100" springlength="0.9" damping="1")"), {.slack = MjcfSlack::kAsMujoco});
+  const auto bar = Import(Hung(R"(stiffness="100" springlength="0.9" damping="1")"),
+                          {.slack = MjcfSlack::kAsMujoco});
   ASSERT_TRUE(bar);
   ASSERT_EQ(bar->robot.def.joints.size(), 1u);
   EXPECT_TRUE(out_.warnings().empty()) << Said();
@@ -318,7 +320,8 @@ TEST_F(MjcfImportTest, AKeyframeSaysWhereTheRobotIs) {
   mjtNum velocity[6];
   mj_objectVelocity(&theirs.model(), &theirs.data(), mjOBJ_BODY, 1, velocity, 0);
   ExpectNear(made->robot.def.bodies[0].velocity_m_per_s, MujocoModel::Of(velocity + 3), kSame);
-  ExpectNear(made->robot.def.bodies[0].angular_velocity_rad_per_s, MujocoModel::Of(velocity), kSame);
+  ExpectNear(made->robot.def.bodies[0].angular_velocity_rad_per_s, MujocoModel::Of(velocity),
+             kSame);
   EXPECT_NE(Said().find("a model file has no velocities"), std::string::npos);
 }
 
@@ -347,75 +350,6 @@ TEST_F(MjcfImportTest, UnitsAreScaledAndAskedFor) {
   EXPECT_NEAR(def.cables[0].damping_n_s_per_m, 0.02, kSame);
   EXPECT_NEAR(def.cables[0].rest_length_m, 0.15, kSame);
   EXPECT_NEAR(CableLength(def.cables[0]), 0.2, kSame);
-}
-
-TEST_F(MjcfImportTest, WhatTouchesNothingDoesNotCollide) {
-  const auto made = Import(R"(<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1" friction="0.4" pos="0 0 -1" zaxis="0 1 1"/>
-    <geom name="step" type="box" size="0.1 0.2 0.3" euler="0 0 30" friction="0.7"/>
-    <body name="a" pos="0 0 1"><freejoint/><geom type="sphere" size="0.1" friction="0.4"/></body>
-    <body name="b" pos="0 0 2"><freejoint/><geom type="sphere" size="0.1" friction="0.4"/></body>
-    <body name="c" pos="0 0 3"><freejoint/><geom type="sphere" size="0.1" contype="0" conaffinity="0"/></body>
-    </worldbody><contact><exclude body1="a" body2="b"/></contact></mujoco>)");
-  ASSERT_TRUE(made);
-  const ModelDef& def = made->robot.def;
-  ASSERT_EQ(def.spheres.size(), 3u);
-  EXPECT_TRUE(def.spheres[0].collides && def.spheres[1].collides);
-  EXPECT_FALSE(def.spheres[2].collides);
-  ASSERT_EQ(def.apart.size(), 1u);
-  EXPECT_EQ(def.apart[0].body_a + def.apart[0].body_b, 1);
-  EXPECT_EQ(def.friction_combine, CombineRule::kMaximum);
-  ASSERT_EQ(def.planes.size(), 1u);
-  ExpectNear(def.planes[0].normal, {0, std::sqrt(0.5), std::sqrt(0.5)}, kSame);
-  EXPECT_EQ(def.planes[0].material.kinetic_friction, 0.4);
-  ASSERT_EQ(def.terrain_boxes.size(), 1u);
-  EXPECT_TRUE(out_.warnings().empty()) << Said();
-  Write("model.yaml", yaml_);
-  Write("on_ground.yaml", MjcfExperimentYaml(*made, "model.yaml"));
-  Diagnostics out;
-  const auto experiment = LoadExperiment(Path("on_ground.yaml"), {}, out);
-  ASSERT_TRUE(experiment) << out.Format();
-  EXPECT_EQ(experiment->step_s, 0.002);
-  const ModelDef& on = experiment->robot.def;
-  ExpectNear(on.planes[0].point_m, def.planes[0].point_m, kSame);
-  ExpectNear(on.planes[0].normal, def.planes[0].normal, kSame);
-  ExpectNear(on.terrain_boxes[0].half_extents_m, {0.1, 0.2, 0.3}, kSame);
-  ExpectNear(Rotate(on.terrain_boxes[0].orientation, {1, 0, 0}),
-             Rotate(def.terrain_boxes[0].orientation, {1, 0, 0}), kSame);
-  EXPECT_EQ(on.terrain_boxes[0].material.kinetic_friction, 0.7);
-}
-
-TEST_F(MjcfImportTest, AGroundOfHigherPrioritySaysTheFriction) {
-  const auto friction = [&](const char* floor) {
-    const auto made = Import(
-        "<mujoco><worldbody><geom name=\"floor\" type=\"plane\" size=\"1 1 1\" " + std::string(floor) +
-        "/><body name=\"a\" pos=\"0 0 1\"><freejoint/><geom type=\"sphere\" size=\"0.1\" "
-        "friction=\"0.4\"/></body></worldbody></mujoco>");
-    const ModelDef def = made ? made->robot.def : ModelDef{};
-    const double a = def.spheres[0].material.kinetic_friction,
-                 b = def.planes[0].material.kinetic_friction;
-    return def.friction_combine == CombineRule::kMaximum ? std::max(a, b) : std::sqrt(a * b);
-  };
-  EXPECT_NEAR(friction("friction=\"0.2\""), 0.4, kSame);
-  EXPECT_NEAR(friction("friction=\"0.2\" priority=\"1\""), 0.2, kSame);
-  EXPECT_NEAR(friction("friction=\"0.9\" priority=\"1\""), 0.9, kSame);
-  EXPECT_TRUE(out_.warnings().empty()) << Said();
-}
-
-TEST_F(MjcfImportTest, WhatIsLeftOutIsToldInALine) {
-  const auto made = Import(R"(<mujoco><visual><map znear="0.1"/></visual><asset><mesh name="m" file="no.stl"/></asset>
-    <worldbody><light pos="0 0 3"/><camera name="c"/><body name="a" pos="0 0 1"><freejoint/>
-    <geom type="sphere" size="0.1" rgba="1 0 0 1" solref="0.01 1"/>
-    <geom type="mesh" mesh="m" contype="0" conaffinity="0" mass="0"/><site name="s"/></body><site name="t"/></worldbody>
-    <tendon><spatial name="shown" width="0.01"><site site="s"/><site site="t"/></spatial></tendon>
-    <sensor><tendonpos tendon="shown"/></sensor></mujoco>)");
-  ASSERT_TRUE(made);
-  EXPECT_TRUE(made->robot.def.cables.empty());
-  ASSERT_GE(made->notes.size(), 2u);
-  EXPECT_EQ(made->notes[0],
-            "left out: asset, camera, geom of type mesh that only shows, geom.rgba, geom.solref, light, "
-            "sensor, spatial.width, visual");
-  EXPECT_EQ(made->notes[1],
-            "left out: 1 tendon without stiffness and actuator, which only show");
 }
 
 }  // namespace

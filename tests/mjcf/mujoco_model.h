@@ -44,7 +44,9 @@ class MujocoModel {
   explicit operator bool() const { return model_ != nullptr; }
   mjModel& model() { return *model_; }
   mjData& data() { return *data_; }
-  int Id(mjtObj kind, const std::string& name) const { return mj_name2id(model_, kind, name.c_str()); }
+  int Id(mjtObj kind, const std::string& name) const {
+    return mj_name2id(model_, kind, name.c_str());
+  }
   void Key(int key) {
     mj_resetDataKeyframe(model_, data_, key);
     mj_forward(model_, data_);

@@ -11,9 +11,11 @@ class MjcfRefusal : public MjcfFolder {};
 /// Line 3 is in a free body, line 6 among tendons, line 8 among actuators, line 10 beside these.
 std::string With(const std::string& in_body, const std::string& in_tendons = "",
                  const std::string& in_actuators = "", const std::string& beside = "") {
-  return "<mujoco><worldbody><site name=\"top\" pos=\"0 0 2\"/><body name=\"a\" pos=\"0 0 1\"><freejoint/>\n"
+  return "<mujoco><worldbody><site name=\"top\" pos=\"0 0 2\"/><body name=\"a\" pos=\"0 0 "
+         "1\"><freejoint/>\n"
          "<geom name=\"g\" type=\"sphere\" size=\"0.1\"/><site name=\"s\"/>\n" +
-         in_body + "\n</body></worldbody>\n<tendon><spatial name=\"c\" stiffness=\"9\" "
+         in_body +
+         "\n</body></worldbody>\n<tendon><spatial name=\"c\" stiffness=\"9\" "
          "springlength=\"0 1\"><site site=\"top\"/><site site=\"s\"/></spatial>\n" +
          in_tendons + "\n</tendon><actuator>\n" + in_actuators + "\n</actuator>\n" + beside +
          "\n</mujoco>\n";
@@ -28,23 +30,30 @@ TEST_F(MjcfRefusal, NamesEachWithItsLine) {
        "3: error: joint \"h\" of body \"b\" is of type hinge"},
       {"<body name=\"b\"><joint type=\"ball\"/><geom size=\"0.1\"/></body>", "", "", "",
        "3: error: joint of body \"b\" is of type ball"},
-      {"<body name=\"b\"><joint type=\"slide\"/><geom size=\"0.1\"/></body>", "", "", "", "type slide"},
+      {"<body name=\"b\"><joint type=\"slide\"/><geom size=\"0.1\"/></body>", "", "", "",
+       "type slide"},
       {"<body name=\"b\"><freejoint/><geom size=\"0.1\"/></body>", "", "", "",
        "3: error: freejoint: a body within another one has no free joint"},
       {"<geom name=\"m\" type=\"mesh\" mesh=\"x\"/>", "", "", "",
        "3: error: geom \"m\": geoms of type mesh are not read"},
-      {"<geom type=\"hfield\" hfield=\"x\"/>", "", "", "", "3: error: geom: geoms of type hfield are not read"},
-      {"<geom type=\"ellipsoid\" size=\"1 1 1\"/>", "", "", "", "geoms of type ellipsoid are not read"},
-      {"<geom type=\"balloon\" size=\"1\"/>", "", "", "", "3: error: geom: there is no type \"balloon\""},
-      {"<geom type=\"plane\" size=\"1 1 1\"/>", "", "", "", "3: error: geom: a plane in a body that moves"},
-      {"<geom type=\"box\" size=\"1 1\"/>", "", "", "", "3: error: geom: a box needs 3 positive sizes"},
+      {"<geom type=\"hfield\" hfield=\"x\"/>", "", "", "",
+       "3: error: geom: geoms of type hfield are not read"},
+      {"<geom type=\"ellipsoid\" size=\"1 1 1\"/>", "", "", "",
+       "geoms of type ellipsoid are not read"},
+      {"<geom type=\"balloon\" size=\"1\"/>", "", "", "",
+       "3: error: geom: there is no type \"balloon\""},
+      {"<geom type=\"plane\" size=\"1 1 1\"/>", "", "", "",
+       "3: error: geom: a plane in a body that moves"},
+      {"<geom type=\"box\" size=\"1 1\"/>", "", "", "",
+       "3: error: geom: a box needs 3 positive sizes"},
       {"<geom type=\"capsule\" size=\"0.1\"/>", "", "", "", "a capsule needs 2 positive sizes"},
       {"<geom size=\"0.1x\"/>", "", "", "",
        "3: error: geom: size must be 1 to 3 numbers, not \"0.1x\""},
       {"<geom size=\"nan\"/>", "", "", "", "size must be 1 to 3 numbers, not \"nan\""},
       {"<geom size=\"0.1\" mass=\"-1\"/>", "", "", "", "3: error: geom: its mass is negative"},
       {"<geom size=\"0.1\" collor=\"1\"/>", "", "", "", "3: error: geom has no \"collor\" in MJCF"},
-      {"<geom size=\"0.1\" size=\"0.2\"/>", "", "", "", "3: error: this is no XML: an attribute is not key=\"value\", or is there twice"},
+      {"<geom size=\"0.1\" size=\"0.2\"/>", "", "", "",
+       "3: error: this is no XML: an attribute is not key=\"value\", or is there twice"},
       {"<geom size=\"0.1\" class=\"x\"/>", "", "", "", "3: error: there is no default class \"x\""},
       {"<geom size=\"0.1\" quat=\"0 0 0 0\"/>", "", "", "", "3: error: geom: quat has no length"},
       {"<geom size=\"0.1\" quat=\"1 0 0 0\" euler=\"1 2 3\"/>", "", "", "",
@@ -57,7 +66,9 @@ TEST_F(MjcfRefusal, NamesEachWithItsLine) {
       {"", "<fixed name=\"f\"/>", "", "", "6: error: fixed \"f\" in tendon is not read"},
       {"", "<spatial name=\"d\"><site site=\"top\"/><geom geom=\"g\"/><site site=\"s\"/></spatial>",
        "", "", "6: error: geom in spatial is not read"},
-      {"", "<spatial name=\"d\"><site site=\"top\"/><pulley divisor=\"2\"/><site site=\"s\"/></spatial>",
+      {"",
+       "<spatial name=\"d\"><site site=\"top\"/><pulley divisor=\"2\"/><site "
+       "site=\"s\"/></spatial>",
        "", "", "6: error: pulley in spatial is not read"},
       {"", with("frictionloss=\"1\""), "", "",
        "6: error: spatial \"d\": frictionloss of a tendon is not read"},
@@ -79,8 +90,10 @@ TEST_F(MjcfRefusal, NamesEachWithItsLine) {
        "8: error: motor \"m\": an actuator on a joint is not read"},
       {"", "", "<general name=\"m\" tendon=\"c\" dyntype=\"user\"/>", "",
        "8: error: general \"m\": its dyntype is user"},
-      {"", "", "<general name=\"m\" tendon=\"c\" gaintype=\"affine\"/>", "", "its gaintype is affine"},
-      {"", "", "<general name=\"m\" tendon=\"c\" biastype=\"muscle\"/>", "", "its biastype is muscle"},
+      {"", "", "<general name=\"m\" tendon=\"c\" gaintype=\"affine\"/>", "",
+       "its gaintype is affine"},
+      {"", "", "<general name=\"m\" tendon=\"c\" biastype=\"muscle\"/>", "",
+       "its biastype is muscle"},
       {"", "", "<position name=\"m\" tendon=\"c\" dampratio=\"1\"/>", "", "dampratio is not read"},
       {"", "", "<motor name=\"m\" tendon=\"e\"/>", "", "8: error: there is no tendon \"e\""},
       {"", "<spatial name=\"d\">" + spatial, "<motor tendon=\"d\"/>", "",
@@ -97,16 +110,20 @@ TEST_F(MjcfRefusal, NamesEachWithItsLine) {
       {"", "", "", "<option density=\"1.2\"/>", "10: error: option: a fluid is not read"},
       {"", "", "", "<option><flag equality=\"disable\"/></option>",
        "10: error: flag.equality=\"disable\" is not read"},
-      {"", "", "", "<compiler angle=\"degrees\"/>", "10: error: compiler: angle is \"degrees\" (did you mean"},
+      {"", "", "", "<compiler angle=\"degrees\"/>",
+       "10: error: compiler: angle is \"degrees\" (did you mean"},
       {"", "", "", "<compiler eulerseq=\"xy\"/>", "eulerseq must be three of"},
-      {"", "", "", "<keyframe><key qpos=\"1 2\"/></keyframe>", "10: error: key: qpos must be 7 numbers"},
+      {"", "", "", "<keyframe><key qpos=\"1 2\"/></keyframe>",
+       "10: error: key: qpos must be 7 numbers"},
       {"", "", "", "<contact><exclude body1=\"a\" body2=\"z\"/></contact>",
        "10: error: there is no body \"z\""},
       {"", "", "", "<include file=\"gone.xml\"/>", "10: error: what it includes cannot be read"},
       {"", "", "", "<include file=\"model.xml\"/>", "10: error: \"model.xml\" is included twice"},
       {"", "", "", "<worldbody><body name=\"b\"><freejoint/></body></worldbody>",
        "10: error: the body \"b\" has no mass"},
-      {"", "", "", "<worldbody><body name=\"b\"><freejoint/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 5\"/></body></worldbody>",
+      {"", "", "",
+       "<worldbody><body name=\"b\"><freejoint/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 "
+       "1 5\"/></body></worldbody>",
        "10: error: the moments of inertia of the body \"b\" are those of no body"},
   };
   for (const auto& c : cases) {
@@ -125,11 +142,13 @@ TEST_F(MjcfRefusal, SaysAllAtOnce) {
 
 TEST_F(MjcfRefusal, SpringsThatAreNoBarsAreNamedWhereTheyAreToPush) {
   const MjcfImport push{.slack = MjcfSlack::kAsMujoco};
-  EXPECT_NE(Refused(With("", "<spatial name=\"d\" stiffness=\"1\" springlength=\"1\"><site site=\"top\"/>"
-                             "<site site=\"s\"/><site site=\"top\"/></spatial>"),
-                    push)
-                .find("6: error: tendon \"d\" pushes, and is no bar"),
-            std::string::npos)
+  EXPECT_NE(
+      Refused(With("",
+                   "<spatial name=\"d\" stiffness=\"1\" springlength=\"1\"><site site=\"top\"/>"
+                   "<site site=\"s\"/><site site=\"top\"/></spatial>"),
+              push)
+          .find("6: error: tendon \"d\" pushes, and is no bar"),
+      std::string::npos)
       << Said();
 }
 
@@ -140,12 +159,15 @@ TEST_F(MjcfRefusal, WhatIsNoXmlOrNotMjcfIsSaid) {
             std::string::npos)
       << Said();
   EXPECT_NE(Refused("taut: 1\nkind: model\n").find("this is no XML"), std::string::npos) << Said();
-  EXPECT_NE(Refused("<robot name=\"x\"/>").find("the root element is \"robot\", not mujoco (this is URDF"),
+  EXPECT_NE(Refused("<robot name=\"x\"/>")
+                .find("the root element is \"robot\", not mujoco (this is URDF"),
             std::string::npos)
       << Said();
-  EXPECT_NE(Refused("<mujoco/>").find("there is no body in this file"), std::string::npos) << Said();
+  EXPECT_NE(Refused("<mujoco/>").find("there is no body in this file"), std::string::npos)
+      << Said();
   EXPECT_NE(Refused("<mujoco/><mujoco/>").find("there is a second element"), std::string::npos);
-  EXPECT_NE(Refused("<mujoco model=\"&#27;[31m\"/>").find("has control characters"), std::string::npos)
+  EXPECT_NE(Refused("<mujoco model=\"&#27;[31m\"/>").find("has control characters"),
+            std::string::npos)
       << Said();
   EXPECT_NE(Refused(With("<site name=\"u\"/>"), {.keyframe = "z"}).find("there is no key \"z\""),
             std::string::npos);

@@ -9,10 +9,17 @@
 namespace taut::test {
 
 /// All that MJCF can say.
-inline constexpr const char* kExportable[] = {"hanging_mass",   "prism3",     "rod",
-                                              "six_strut",      "superball",  "superball_payload",
-                                              "superball_probe", "tetrahedral_complex",
-                                              "tetraspine12",   "tetraspine3", "tetraspine6_long"};
+inline constexpr const char* kExportable[] = {"hanging_mass",
+                                              "prism3",
+                                              "rod",
+                                              "six_strut",
+                                              "superball",
+                                              "superball_payload",
+                                              "superball_probe",
+                                              "tetrahedral_complex",
+                                              "tetraspine12",
+                                              "tetraspine3",
+                                              "tetraspine6_long"};
 
 inline RobotSpec Shipped(const std::string& name) {
   Diagnostics out;
