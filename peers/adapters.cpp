@@ -1,9 +1,9 @@
 #include "peers/adapters.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "math/vec.h"
+#include "mechanics/contact_roles.h"
 
 namespace taut::peers {
 namespace {
@@ -81,36 +81,29 @@ Inertia Turned(const Rotation& r, const Vec3& moments) {
 }
 
 std::vector<Shape> ShapesOf(const ModelDef& def) {
+  const mechanics::ContactRoles roles = mechanics::ContactRolesOf(def);
   std::vector<Shape> shapes;
-  for (const SphereDef& s : def.spheres) {
+  for (std::size_t i = 0; i < def.spheres.size(); ++i) {
+    const SphereDef& s = def.spheres[i];
     if (!s.collides) continue;
-    shapes.push_back(
-        {.body = s.body, .center_m = s.center_m - Com(def, s.body), .radius_m = s.radius_m});
+    shapes.push_back({.body = s.body,
+                      .center_m = s.center_m - Com(def, s.body),
+                      .radius_m = s.radius_m,
+                      .meets_bodies = roles.spheres[i].meets_bodies});
   }
-  const std::size_t spheres = shapes.size();
-  for (const CapsuleDef& c : def.capsules) {
+  for (std::size_t i = 0; i < def.capsules.size(); ++i) {
+    const CapsuleDef& c = def.capsules[i];
     if (!c.collides) continue;
     const Vec3 ends[2] = {c.from_m - Com(def, c.body), c.to_m - Com(def, c.body)};
     const Vec3 d = ends[1] - ends[0];
     const double length = std::sqrt(Dot(d, d));
-    bool covered[2] = {false, false};
-    for (std::size_t i = 0; i < spheres; ++i) {
-      Shape& sphere = shapes[i];
-      if (sphere.body != c.body) continue;
-      for (int end = 0; end < 2; ++end) {
-        const Vec3 apart = sphere.center_m - ends[end];
-        if (Dot(apart, apart) > 1e-18) continue;
-        if (sphere.radius_m >= c.radius_m) covered[end] = true;
-        if (sphere.radius_m <= c.radius_m) sphere.meets_bodies = false;
-      }
-    }
     shapes.push_back({.kind = Shape::Kind::kCapsule,
                       .body = c.body,
                       .center_m = 0.5 * (ends[0] + ends[1]),
                       .turn = RotationFromZ((1 / length) * d),
                       .half_length_m = 0.5 * length,
                       .radius_m = c.radius_m,
-                      .meets_planes = !(covered[0] && covered[1])});
+                      .meets_planes = roles.capsules[i].meets_planes});
   }
   for (const BoxDef& b : def.boxes) {
     if (!b.collides) continue;
@@ -121,11 +114,6 @@ std::vector<Shape> ShapesOf(const ModelDef& def) {
                       .half_extents_m = b.half_extents_m});
   }
   return shapes;
-}
-
-Range HeightsOf(const HeightFieldDef& field) {
-  const auto [least, most] = std::minmax_element(field.height_m.begin(), field.height_m.end());
-  return {*least, *most};
 }
 
 Springs::Springs(const ModelDef& def) {

@@ -22,12 +22,7 @@ Rotation RotationFromZ(const Vec3& axis);
 Inertia Turned(const Rotation& r, const Vec3& moments);
 
 /// A sphere, a capsule or a box, relative to its body's centre of mass in axes parallel to W at the
-/// start.
-///
-/// What a shape need not be tested with costs the engines time and adds contacts in the place of
-/// others: a rod whose ends carry spheres meets a plane with these alone, and a sphere no thicker
-/// than the rod that ends in it meets other bodies as part of the rod. taut leaves the same out.
-/// Hills come between the ends of rods, so a height field is met as a body is.
+/// start. What it need not be tested with, mechanics/contact_roles.h says.
 struct Shape {
   enum class Kind { kSphere, kCapsule, kBox };
   Kind kind = Kind::kSphere;
@@ -46,12 +41,6 @@ struct Contact {
 };
 Contact BetweenBodies(const ModelDef& def);
 Contact WithGround(const ModelDef& def, const Material& ground);
-
-/// What a height field reaches from and to, without its origin [m].
-struct Range {
-  double least_m = 0, most_m = 0;
-};
-Range HeightsOf(const HeightFieldDef& field);
 
 /// A body as the springs see it.
 struct Pose {

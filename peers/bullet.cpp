@@ -8,6 +8,7 @@
 
 #include "math/principal_axes.h"
 #include "math/vec.h"
+#include "mechanics/height_range.h"
 #include "peers/adapters.h"
 
 namespace taut::peers {
@@ -134,7 +135,7 @@ class Bullet final : public World {
   /// Bullet keeps no heights of its own, and puts the middle of their range at the body's place.
   void AddField(const ModelDef& def, const HeightFieldDef& field) {
     heights_ = field.height_m;
-    const Range range = HeightsOf(field);
+    const mechanics::HeightRange range = mechanics::HeightsOf(field);
     auto shape = std::make_unique<btHeightfieldTerrainShape>(
         field.columns, field.rows, heights_.data(), range.least_m, range.most_m, 2, true);
     shape->setLocalScaling({field.cell_m, field.cell_m, 1});

@@ -19,9 +19,11 @@ void AddAnalyze(CLI::App& app, int& exit_code);
 void AddCheck(CLI::App& app, int& exit_code);
 void AddRun(CLI::App& app, int& exit_code);
 void AddCompare(CLI::App& app, int& exit_code);
+void AddExport(CLI::App& app, int& exit_code);
 void AddFit(CLI::App& app, int& exit_code);
 void AddGait(CLI::App& app, int& exit_code);
 void AddHelp(CLI::App& app, int& exit_code);
+void AddImport(CLI::App& app, int& exit_code);
 void AddLearn(CLI::App& app, int& exit_code);
 void AddList(CLI::App& app, int& exit_code);
 void AddNew(CLI::App& app, int& exit_code);
@@ -29,6 +31,7 @@ void AddReport(CLI::App& app, int& exit_code);
 void AddRobot(CLI::App& app, int& exit_code);
 void AddSchema(CLI::App& app, int& exit_code);
 void AddSize(CLI::App& app, int& exit_code);
+void AddTrace(CLI::App& app, int& exit_code);
 void AddView(CLI::App& app, int& exit_code);
 
 }  // namespace taut::cli

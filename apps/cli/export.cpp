@@ -6,10 +6,12 @@ namespace taut::cli {
 void AddExport(CLI::App& app, int& exit_code) {
   CLI::App* group = app.add_subcommand("export", "A robot for other programs.");
   group->require_subcommand(1);
+  AddExportMjcf(*group, exit_code);
   AddExportShape(*group, exit_code);
   AddExportStructure(*group, exit_code);
   group->footer(
       "Examples:\n"
+      "  taut export mjcf models/six_strut.yaml --out six_strut.xml\n"
       "  taut export shape models/six_strut.yaml --out six_strut.glb\n"
       "  taut export structure models/prism3.yaml --out prism3\n"
       "`taut export COMMAND --help` tells more.\n"

@@ -1,12 +1,11 @@
-/// `taut export`, and what adds a command to it.
+/// The commands of `taut export`, each in its file, and a line in export.cpp.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "commands.h"
 
 namespace taut::cli {
 
-void AddExport(CLI::App& app, int& exit_code);
-
+void AddExportMjcf(CLI::App& group, int& exit_code);
 void AddExportShape(CLI::App& group, int& exit_code);
 void AddExportStructure(CLI::App& group, int& exit_code);
 

@@ -32,15 +32,6 @@ const std::map<std::string, NtrtCableOrder> kOrders{{"paper2015", NtrtCableOrder
 const std::map<std::string, GaitDrives> kDrives{{"velocity", GaitDrives::kVelocity},
                                                 {"rest_length", GaitDrives::kRestLength}};
 
-/// To the file that was asked for, or to standard output.
-int Write(const std::string& text, const std::string& path) {
-  if (path.empty()) {
-    fmt::print("{}", text);
-    return kOk;
-  }
-  return WriteNamed(path, text);
-}
-
 int Export(const GaitArguments& args) {
   const auto overrides = ParseOverrides(args.set);
   if (!overrides) return kUsage;
@@ -53,7 +44,7 @@ int Export(const GaitArguments& args) {
   if (gait->cpg && gait->cpg->feedback) {
     fmt::print(stderr, "warning: the gait has feedback; a table has none\n");
   }
-  return Write(GaitTableText(*table, gait->drives), args.out);
+  return WriteOrPrint(args.out, GaitTableText(*table, gait->drives));
 }
 
 int Import(const GaitArguments& args) {
@@ -61,7 +52,7 @@ int Import(const GaitArguments& args) {
   auto gait = ImportNtrtGait(args.input, args.order, found);
   if (!gait) return Fail(found, kBadInput);
   if (!args.name.empty()) gait->name = args.name;
-  return Write(GaitYaml(*gait), args.out);
+  return WriteOrPrint(args.out, GaitYaml(*gait));
 }
 
 int Create(const GaitArguments& args) {
@@ -73,7 +64,7 @@ int Create(const GaitArguments& args) {
   auto gait = NewCpgGait(*robot, args.symmetry, found, args.drives);
   if (!gait) return Fail(found, kBadInput);
   if (!args.name.empty()) gait->name = args.name;
-  return Write(GaitYaml(*gait), args.out);
+  return WriteOrPrint(args.out, GaitYaml(*gait));
 }
 
 int Values(const GaitArguments& args) {

@@ -1,13 +1,11 @@
-/// `taut import` and its subcommands: a file each, and a line in import.cpp.
+/// The commands of `taut import`, each in its file, and a line in import.cpp.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "commands.h"
 
 namespace taut::cli {
 
-void AddImport(CLI::App& app, int& exit_code);
-
-/// Adds `ntrt` to `import`; when it ran, `exit_code` holds its status.
-void AddImportNtrt(CLI::App& import, int& exit_code);
+void AddImportMjcf(CLI::App& group, int& exit_code);
+void AddImportNtrt(CLI::App& group, int& exit_code);
 
 }  // namespace taut::cli

@@ -14,11 +14,8 @@
 
 #include "command_text.h"
 #include "commands.h"
-#include "export.h"
-#include "import.h"
 #include "streams.h"
 #include "taut/version.h"
-#include "trace.h"
 #include "usage.h"
 
 namespace taut::cli {

@@ -35,6 +35,22 @@ int WriteNamed(const std::string& path, const std::string& text) {
   return WriteWholeFile(path, text, found) ? kOk : Fail(found, kFailed);
 }
 
+int WriteOrPrint(const std::string& path, const std::string& text) {
+  if (!path.empty()) return WriteNamed(path, text);
+  fmt::print("{}", text);
+  return kOk;
+}
+
+std::optional<RobotSpec> LoadAnyRobot(const std::string& path, const Overrides& overrides,
+                                      Diagnostics& out) {
+  const auto kind = FileKind(path, out);
+  if (!kind) return std::nullopt;
+  if (*kind == "model") return LoadRobot(path, overrides, out);
+  auto experiment = LoadExperiment(path, overrides, out);
+  if (!experiment) return std::nullopt;
+  return std::move(experiment->robot);
+}
+
 std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& experiment,
                                   RunOptions options, bool csv, Diagnostics& out,
                                   const TraceMetadata& more) {

@@ -1,11 +1,9 @@
-/// `taut trace`, and what adds a command to it.
+/// The commands of `taut trace`, each in its file, and a line in trace.cpp.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "commands.h"
 
 namespace taut::cli {
-
-void AddTrace(CLI::App& app, int& exit_code);
 
 void AddTraceConvert(CLI::App& group, int& exit_code);
 

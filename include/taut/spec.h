@@ -48,6 +48,7 @@ struct SolidsSpec {
   struct PointMass {
     int node = 0;
     double mass_kg = 0.0, radius_m = 0.0;
+    std::optional<Inertia> inertia_kg_m2 = {};  ///< Its own, about the node, in axes of W.
   };
   std::vector<SolidMass> spheres, capsules, boxes;  ///< Per shape of `def`.
   std::vector<PointMass> point_masses;

@@ -5,7 +5,7 @@ PARTS = {
               "docs/tutorial_python.md", "docs/gallery.md", "report.md"],
     "Use": ["docs/cli.md", "docs/viewer.md", "docs/analyze.md", "docs/export.md", "docs/learning.md", "docs/environments.md", "docs/cluster.md",
             "docs/compare.md", "docs/fit.md", "docs/python.md", "docs/glossary.md"],
-    "Coming from": ["docs/from_gymnasium.md", "docs/from_ntrt.md", "docs/from_matlab.md"],
+    "Coming from": ["docs/from_gymnasium.md", "docs/from_ntrt.md", "docs/from_mujoco.md", "docs/from_matlab.md"],
     "Files": ["docs/formats/model.md", "docs/formats/experiment.md", "docs/formats/gait.md", "docs/formats/study.md",
               "docs/formats/"],
     "In C++": ["api/index.rst", "docs/plant.md"],

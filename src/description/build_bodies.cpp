@@ -189,13 +189,19 @@ class BodyBuilder {
         const PointMassText& mass = *builder.point_mass;
         const double r = mass.radius_m > 0.0 ? mass.radius_m : point_radius_m;
         solids.parts.push_back(SolidSphere(placed.position_m, r, mass.mass_kg));
+        std::optional<Inertia> own;
+        if (!mass.inertia_kg_m2.empty()) {
+          const std::vector<double>& i = mass.inertia_kg_m2;
+          own = Turned(TurnOf(placed.instance), {i[0], i[1], i[2], i[3], i[4], i[5]});
+          solids.parts.back().inertia_kg_m2 = *own;
+        }
         if (is_point) point_radius_m = r;
-        robot_.solids->point_masses.push_back({node, mass.mass_kg, mass.radius_m});
+        robot_.solids->point_masses.push_back({node, mass.mass_kg, mass.radius_m, own});
       } else if (builder.box) {
         const BoxText& box = *builder.box;
         const Vec3 size = 2.0 * box.half_extents_m;
         const Quat q_WPart = TurnOf(placed.instance);
-        AddBox(solids, box, placed.name, body, q_WPart, placed.position_m, q_WPart,
+        AddBox(solids, box, placed.name, body, q_WPart, placed.position_m, q_WPart * box.rotate,
                box.half_extents_m, box.mass.Of(size.x * size.y * size.z, 0.0));
       } else if (builder.convex) {
         AddConvex(solids, *builder.convex, placed, body);

@@ -78,7 +78,7 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   if (model.robot) text.robot = std::move(*model.robot);
   ModelDef& def = text.robot.def;
   if (text.gravity_m_per_s2) def.gravity_m_per_s2 = *text.gravity_m_per_s2;
-  if (text.place) Place(*text.place, text.start, scope, def);
+  if (text.place) Place(*text.place, text.start, scope, text.robot);
   AddTerrain(text.terrain, scope, text.robot);
   if (text.goal_text) text.goal = ToGoal(*text.goal_text, known ? &text.robot : nullptr, scope);
   CheckGoalIsSensed(text, scope.out);

@@ -97,8 +97,8 @@ EnvironmentSpec ToEnvironment(const EnvironmentText& text, const Value& block,
 /// Planes and boxes, stairs and scattered blocks, appended to what `robot` has.
 void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, RobotSpec& robot);
 
-/// Moves the robot in `def` (but not the terrain) and gives it a velocity. `start` is for the
+/// Moves the robot (but not the terrain) and gives it a velocity. `start` is for the
 /// complaint about velocities that settling would take away.
-void Place(const PlaceText& place, StartKind start, const Scope& scope, ModelDef& def);
+void Place(const PlaceText& place, StartKind start, const Scope& scope, RobotSpec& robot);
 
 }  // namespace taut::description

@@ -35,7 +35,8 @@ struct Placing {
   const Quat& Turned(int) const { return q; }
 };
 
-void Move(const Placing& placing, ModelDef& def) {
+void Move(const Placing& placing, RobotSpec& robot) {
+  ModelDef& def = robot.def;
   for (BodyDef& body : def.bodies) {
     body.com_m = placing.Moved(kWorld, body.com_m);
     body.inertia_kg_m2 = Rotated(placing.q, body.inertia_kg_m2);
@@ -43,6 +44,10 @@ void Move(const Placing& placing, ModelDef& def) {
     body.angular_velocity_rad_per_s = Rotate(placing.q, body.angular_velocity_rad_per_s);
   }
   MoveParts(placing, def);
+  if (!robot.solids) return;
+  for (SolidsSpec::PointMass& mass : robot.solids->point_masses) {
+    if (mass.inertia_kg_m2) mass.inertia_kg_m2 = Rotated(placing.q, *mass.inertia_kg_m2);
+  }
 }
 
 /// Adds a motion of the whole robot: of its centre of mass, and about it.
@@ -167,7 +172,7 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
   }
 }
 
-void Place(const PlaceText& place, StartKind start, const Scope& scope, ModelDef& def) {
+void Place(const PlaceText& place, StartKind start, const Scope& scope, RobotSpec& robot) {
   const bool moving = place.velocity_at.line > 0, turning = place.angular_velocity_at.line > 0;
   const auto check = [&](bool given, const SourceRef& at, const char* key) {
     if (start == StartKind::kAsDescribed || !given) return;
@@ -177,9 +182,9 @@ void Place(const PlaceText& place, StartKind start, const Scope& scope, ModelDef
   check(moving, place.velocity_at, "velocity_m_per_s");
   check(turning, place.angular_velocity_at, "angular_velocity_rad_per_s");
   // Nothing is touched for nothing: a robot that is not placed keeps its numbers bit for bit.
-  if (place.moved) Move({place.at_m, place.rotate}, def);
+  if (place.moved) Move({place.at_m, place.rotate}, robot);
   if (moving || turning) {
-    AddVelocity(place.velocity_m_per_s, place.angular_velocity_rad_per_s, def);
+    AddVelocity(place.velocity_m_per_s, place.angular_velocity_rad_per_s, robot.def);
   }
 }
 

@@ -22,6 +22,21 @@ void Check(const MapReader& map, SphereText& sphere) {
   sphere.material = ToMaterial(map, sphere.surface);
 }
 
+void Check(const MapReader& map, PointMassText& mass) {
+  const std::size_t count = mass.inertia_kg_m2.size();
+  if (!map.Has("inertia_kg_m2")) return;
+  if (count != 3 && count != 6) {
+    map.Error("inertia_kg_m2", "point_mass.inertia_kg_m2 has " + std::to_string(count) + " numbers",
+              "three, [xx, yy, zz], or six, [xx, yy, zz, xy, xz, yz]");
+    mass.inertia_kg_m2.assign(6, NAN);
+  }
+  mass.inertia_kg_m2.resize(6, 0.0);
+  if (map.Has("radius_m")) {
+    map.Error("radius_m", "point_mass has both inertia_kg_m2 and radius_m",
+              "only one of them may be there");
+  }
+}
+
 void Check(const MapReader& map, BoxText& box) {
   box.material = ToMaterial(map, box.surface);
   box.along_pair = map.Has("width_m") || map.Has("height_m");
@@ -33,6 +48,10 @@ void Check(const MapReader& map, BoxText& box) {
       if (!map.Has(other)) continue;
       map.Error(other, "box has both width_m and " + std::string(other),
                 "width_m and height_m along a pair, size_m or half_extents_m at a node");
+    }
+    if (map.Has("rotate")) {
+      map.Error("rotate", "a box along a pair lies as its nodes say",
+                "size_m or half_extents_m at a node");
     }
     map.Require("width_m");
     map.Require("height_m");

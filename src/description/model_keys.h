@@ -210,7 +210,12 @@ void Keys(Io& io, Like<PointMassText> auto& p) {
   io("mass_kg", p.mass_kg, kNeeded, Bound::kPositive, "Its mass.");
   io("radius_m", p.radius_m, Bound::kNonNegative,
      "Radius of the solid sphere that gives it an inertia.");
+  io("inertia_kg_m2", p.inertia_kg_m2,
+     "Instead of `radius_m`: its moments of inertia about the node, [xx, yy, zz] along the part's "
+     "axes, or [xx, yy, zz, xy, xz, yz], entries of the matrix.",
+     Example{"[0.02, 0.02, 0.001]"});
 }
+void Check(const MapReader& map, PointMassText& mass);
 
 template <class Io, Either<BoxDef, BoxText> Box>
 void Keys(Io& io, Box& b) {
@@ -233,6 +238,7 @@ void Keys(Io& io, Box& b) {
   if constexpr (Io::kResolved) {
     io("material", b.material);
   } else {
+    io("rotate", b.rotate, "At a node: how it is turned in the part's frame.");
     io("width_m", b.width_m, Bound::kPositive, "Its width along a pair.");
     io("height_m", b.height_m, Bound::kPositive, "Its height along a pair.");
     MassKeys(io, b.mass, Along::kEither);

@@ -145,11 +145,15 @@ struct SphereText : SphereDef {
 struct PointMassText {
   double mass_kg = 0.0;
   double radius_m = 0.0;  ///< Of the solid sphere that gives it its inertia; touches nothing.
+  /// In place of that sphere's: about the node, in the part's axes. Empty, or xx, yy, zz, and xy,
+  /// xz, yz where they are not 0.
+  std::vector<double> inertia_kg_m2;
 };
 /// At a node, or along a pair.
 struct BoxText : BoxDef {
   Vec3 size_m;
   double width_m = NAN, height_m = NAN;  ///< Along a pair.
+  Quat rotate;                           ///< q_PartBox, at a node.
   MassText mass;
   SurfaceText surface;
   bool along_pair = false;

@@ -8,6 +8,7 @@
 #include "description/surface_keys.h"
 #include "description/write_keys.h"
 #include "math/vec.h"
+#include "mechanics/mass_properties.h"
 
 namespace taut::description {
 namespace {
@@ -170,40 +171,46 @@ class Taker {
       const BoxDef& box = def_.boxes[i];
       if (IsTerrain(def_, box.body)) continue;
       const SolidMass mass = MassOf(&SolidsSpec::boxes, i, box.body);
-      const std::string more = MassText(mass) + SurfaceText(box.material, box.collides) + "}";
+      std::string more = MassText(mass) + SurfaceText(box.material, box.collides) + "}";
       const Vec3 h = box.half_extents_m;
       const Vec3 arm = Rotate(box.orientation, {h.x, 0, 0});
       const int node = NodeCalled(box.name);
-      std::string placement;
       if (node >= 0) {
-        placement = PlacementOf(box.name);
+        const Quat in_part =
+            Conjugate(TurnFor(PlacementOf(box.name), box.orientation)) * box.orientation;
+        const Vec3 turn{in_part.x, in_part.y, in_part.z};
+        if (Dot(turn, turn) > 1e-28) {
+          more.insert(0, "rotate: {quaternion: " + FlowWriter<false>::Text(in_part) + "}, ");
+        }
         Build(m_.on_nodes,
               "box: {half_extents_m: [" + Shown(h.x) + ", " + Shown(h.y) + ", " + Shown(h.z) +
                   "], " + more,
               node);
-      } else {
-        const int from = NodeNear(box.body, box.center_m - arm),
-                  to = NodeNear(box.body, box.center_m + arm);
-        if (from < 0 || to < 0) {
-          Refuse("the box \"" + box.name + "\" is neither at a node nor along a pair");
-          continue;
-        }
-        placement = PlacementOf(m_.nodes[static_cast<std::size_t>(from)].name);
-        Build(m_.on_pairs,
-              "box: {width_m: " + Shown(2 * h.y) + ", height_m: " + Shown(2 * h.z) + ", " + more,
-              AddSolidPair(box.name, from, to));
+        continue;
       }
-      // Its axes are those of its part, which a placement may turn.
-      const auto [turn, fresh] = m_.turns.emplace(placement, box.orientation);
-      if (!fresh && !Alike(turn->second, box.orientation)) {
-        Refuse("the boxes of one part are turned differently, as \"" + box.name + "\" is");
+      const int from = NodeNear(box.body, box.center_m - arm),
+                to = NodeNear(box.body, box.center_m + arm);
+      if (from < 0 || to < 0) {
+        Refuse("the box \"" + box.name + "\" is neither at a node nor along a pair");
+        continue;
       }
+      const std::string placement = PlacementOf(m_.nodes[static_cast<std::size_t>(from)].name);
+      if (!Alike(TurnFor(placement, box.orientation), box.orientation)) {
+        Refuse(
+            "the boxes along pairs of one part are turned differently, as \"" + box.name + "\" is",
+            placement.empty() ? "put its nodes into a part" : "");
+      }
+      Build(m_.on_pairs,
+            "box: {width_m: " + Shown(2 * h.y) + ", height_m: " + Shown(2 * h.z) + ", " + more,
+            AddSolidPair(box.name, from, to));
     }
-    const auto loose = m_.turns.find("");
-    if (loose != m_.turns.end() && !Alike(loose->second, {})) {
-      Refuse("a box outside of placed parts is turned", "put its nodes into a part");
-    }
-    m_.turns.erase("");
+  }
+
+  /// How the part is turned in which a box is: as its first one that has to be. Nodes outside of
+  /// parts are not.
+  Quat TurnFor(const std::string& placement, const Quat& box) {
+    if (placement.empty()) return {};
+    return m_.turns.emplace(placement, box).first->second;
   }
 
   int NodeNear(int body, const Vec3& p) const {
@@ -233,15 +240,24 @@ class Taker {
     }
   }
 
+  /// In the axes of the node's part; three numbers where the rest is 0.
+  std::string InertiaText(const Inertia& in_world, int node) const {
+    const auto turn = m_.turns.find(PlacementOf(m_.nodes[static_cast<std::size_t>(node)].name));
+    const Inertia i = turn == m_.turns.end() ? in_world : Turned(Conjugate(turn->second), in_world);
+    if (i.xy != 0 || i.xz != 0 || i.yz != 0) return FlowWriter<false>::Text(i);
+    return FlowWriter<false>::Text(std::vector{i.xx, i.yy, i.zz});
+  }
+
   void PointMasses() {
-    const auto add = [&](int node, double mass_kg, double radius_m) {
+    const auto add = [&](int node, double mass_kg, double radius_m, std::optional<Inertia> own) {
       std::string text = "point_mass: {mass_kg: " + Shown(mass_kg);
       if (radius_m > 0) text += ", radius_m: " + Shown(radius_m);
+      if (own) text += ", inertia_kg_m2: " + InertiaText(*own, node);
       Build(m_.on_nodes, text + "}", node);
     };
     if (robot_.solids) {
       for (const SolidsSpec::PointMass& p : robot_.solids->point_masses) {
-        add(p.node, p.mass_kg, p.radius_m);
+        add(p.node, p.mass_kg, p.radius_m, p.inertia_kg_m2);
       }
       return;
     }
@@ -260,7 +276,7 @@ class Taker {
       }
       const double own_kg = body.mass_kg - LumpedOn(def_, static_cast<int>(b));
       if (own_kg < 1e-12 * body.mass_kg) continue;  // bars and cables make a point of it
-      add(node, own_kg, std::sqrt(2.5 * body.inertia_kg_m2.xx / body.mass_kg));
+      add(node, own_kg, std::sqrt(2.5 * body.inertia_kg_m2.xx / body.mass_kg), {});
     }
   }
 

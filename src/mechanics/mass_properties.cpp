@@ -54,6 +54,17 @@ MassProperties SolidCylinder(const Vec3& from_m, const Vec3& to_m, double radius
   return {mass_kg, 0.5 * (from_m + to_m), AxiallySymmetric((1.0 / length) * axis, along, across)};
 }
 
+MassProperties SolidCapsule(const Vec3& from_m, const Vec3& to_m, double radius_m, double mass_kg) {
+  const Vec3 axis = to_m - from_m;
+  const double l = std::sqrt(Dot(axis, axis)), r = radius_m;
+  const double ends = mass_kg * 4.0 * r / (3.0 * l + 4.0 * r), middle = mass_kg - ends;
+  const double along = 0.5 * middle * r * r + 0.4 * ends * r * r;
+  // A half sphere's centre of mass is 3/8 r from its flat side.
+  const double across =
+      middle / 12.0 * (3.0 * r * r + l * l) + ends * (0.4 * r * r + 0.25 * l * l + 0.375 * l * r);
+  return {mass_kg, 0.5 * (from_m + to_m), AxiallySymmetric((1.0 / l) * axis, along, across)};
+}
+
 MassProperties SolidSphere(const Vec3& center_m, double radius_m, double mass_kg) {
   const double moment = 0.4 * mass_kg * radius_m * radius_m;
   return {mass_kg, center_m, {moment, moment, moment, 0.0, 0.0, 0.0}};
@@ -98,6 +109,15 @@ MassProperties SolidMesh(const std::vector<Vec3>& corners_m, const math::Triangl
   const Inertia about_corner{d * (yy + zz), d * (xx + zz), d * (xx + yy),
                              -d * xy,       -d * xz,       -d * yz};
   return {mass_kg, from + com, about_corner + PointInertia(-mass_kg, com)};
+}
+
+Inertia Turned(const Quat& q, const Inertia& i) {
+  // The columns of I, turned; then the same once more with the rows of what came out.
+  const Vec3 x = Rotate(q, {i.xx, i.xy, i.xz}), y = Rotate(q, {i.xy, i.yy, i.yz}),
+             z = Rotate(q, {i.xz, i.yz, i.zz});
+  const Vec3 a = Rotate(q, {x.x, y.x, z.x}), b = Rotate(q, {x.y, y.y, z.y}),
+             c = Rotate(q, {x.z, y.z, z.z});
+  return {a.x, b.y, c.z, 0.5 * (a.y + b.x), 0.5 * (a.z + c.x), 0.5 * (b.z + c.y)};
 }
 
 MassProperties Combine(const std::vector<MassProperties>& parts) {

@@ -18,6 +18,8 @@ struct MassProperties {
 // Homogeneous solids.
 /// A straight cylinder with flat ends, its axis from..to (which differ).
 MassProperties SolidCylinder(const Vec3& from_m, const Vec3& to_m, double radius_m, double mass_kg);
+/// A cylinder whose ends are half spheres, its axis without those from..to.
+MassProperties SolidCapsule(const Vec3& from_m, const Vec3& to_m, double radius_m, double mass_kg);
 MassProperties SolidSphere(const Vec3& center_m, double radius_m, double mass_kg);
 MassProperties SolidBox(const Vec3& center_m, const Quat& q_WBox, const Vec3& half_extents_m,
                         double mass_kg);
@@ -26,6 +28,9 @@ MassProperties SolidBox(const Vec3& center_m, const Quat& q_WBox, const Vec3& ha
 /// for the 3-D tetrahedron inertia tensor": of tetrahedra from one point to every triangle.
 MassProperties SolidMesh(const std::vector<Vec3>& corners_m, const math::Triangles& triangles,
                          double density_kg_per_m3);
+
+/// Of what is turned by q: R I R^T.
+Inertia Turned(const Quat& q, const Inertia& inertia);
 
 /// The parts as one rigid body (parallel axes). No parts, or none with mass: all zero.
 MassProperties Combine(const std::vector<MassProperties>& parts);

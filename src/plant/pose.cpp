@@ -4,6 +4,7 @@
 
 #include "base/assert.h"
 #include "math/vec.h"
+#include "mechanics/mass_properties.h"
 #include "mechanics/placed_parts.h"
 #include "plant/start.h"
 #include "taut/start.h"
@@ -15,16 +16,6 @@ namespace {
 Quat Normalized(const Quat& q) {
   const double scale = 1.0 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   return {scale * q.w, scale * q.x, scale * q.y, scale * q.z};
-}
-
-/// R I R^T.
-Inertia Turned(const Quat& q, const Inertia& i) {
-  // The columns of I, turned; then the same once more with the rows of what came out.
-  const Vec3 x = Rotate(q, {i.xx, i.xy, i.xz}), y = Rotate(q, {i.xy, i.yy, i.yz}),
-             z = Rotate(q, {i.xz, i.yz, i.zz});
-  const Vec3 a = Rotate(q, {x.x, y.x, z.x}), b = Rotate(q, {x.y, y.y, z.y}),
-             c = Rotate(q, {x.z, y.z, z.z});
-  return {a.x, b.y, c.z, 0.5 * (a.y + b.x), 0.5 * (a.z + c.x), 0.5 * (b.z + c.y)};
 }
 
 /// From where bodies are described to where they have come.
@@ -68,6 +59,12 @@ RobotSpec RobotAt(const RobotSpec& robot, const Pose& pose) {
     if (!motion.Moves(static_cast<int>(b))) continue;
     body.com_m = pose.bodies[b].position_m;
     body.inertia_kg_m2 = Turned(motion.Turned(static_cast<int>(b)), body.inertia_kg_m2);
+  }
+  if (!moved.solids) return moved;
+  for (SolidsSpec::PointMass& mass : moved.solids->point_masses) {
+    const int body = def.nodes[static_cast<std::size_t>(mass.node)].body;
+    if (!mass.inertia_kg_m2 || !motion.Moves(body)) continue;
+    mass.inertia_kg_m2 = Turned(motion.Turned(body), *mass.inertia_kg_m2);
   }
   return moved;
 }

@@ -207,8 +207,7 @@ builders:
   - {match: b, sphere: {radius_m: 0.1, mass_kg: 1}}
   - {match: [a-b], cable: {stiffness_n_per_m: 100, prestress_n: 1}}
 )");
-  EXPECT_NE(Refused(Moved(box)).find("a box outside of placed parts is turned"), std::string::npos)
-      << Refused(Moved(box));
+  ExpectSame(Moved(box), Back(Moved(box)));  // a box at a node may be turned
 }
 
 }  // namespace

@@ -1,0 +1,18 @@
+/// Between which heights a height field lies.
+#pragma once
+
+#include <algorithm>
+
+#include "taut/model_def.h"
+
+namespace taut::mechanics {
+
+struct HeightRange {
+  double least_m = 0, most_m = 0;  ///< Without the field's origin.
+};
+inline HeightRange HeightsOf(const HeightFieldDef& field) {
+  const auto [least, most] = std::minmax_element(field.height_m.begin(), field.height_m.end());
+  return {*least, *most};
+}
+
+}  // namespace taut::mechanics

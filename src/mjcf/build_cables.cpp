@@ -1,0 +1,273 @@
+// Tendons, with all that pulls at them, as cables or bars.
+#include <algorithm>
+#include <cmath>
+
+#include "math/vec.h"
+#include "mjcf/build.h"
+
+namespace taut::mjcf {
+namespace {
+
+/// T = k l - c + b dl/dt: springs, dampers and actuators of a tendon together.
+struct Law {
+  double k = 0, b = 0, c = 0;
+  double gain = 0;       ///< By how much a unit of the control lessens c; of the only actuator.
+  double c_at_zero = 0;  ///< Where all controls are 0.
+  int actuators = 0;
+  bool pushes = false, damps_slack = false, has_most = false;
+};
+
+class CableBuilder {
+ public:
+  CableBuilder(const Key* key, Building& b) : b_(b), scene_(b.scene), key_(key) {}
+
+  void Run() {
+    for (std::size_t t = 0; t < scene_.tendons.size(); ++t) Build(static_cast<int>(t));
+    Tell();
+  }
+
+ private:
+  double Control(std::size_t actuator) const {
+    double u = key_ && !key_->ctrl.empty() ? key_->ctrl[actuator] : 0;
+    const auto& range = scene_.actuators[actuator].control_range;
+    if (range && scene_.clamps_controls) u = std::clamp(u, range->first, range->second);
+    return u;
+  }
+
+  /// At qpos0.
+  double Length(const Tendon& tendon) const {
+    double length = 0;
+    for (std::size_t i = 0; i + 1 < tendon.sites.size(); ++i) {
+      const Vec3 d = scene_.sites[Scene::Index(tendon.sites[i + 1])].p -
+                     scene_.sites[Scene::Index(tendon.sites[i])].p;
+      length += std::sqrt(Dot(d, d));
+    }
+    return length;
+  }
+
+  Law LawOf(int index) {
+    const Tendon& tendon = scene_.tendons[Scene::Index(index)];
+    Law law;
+    law.k = tendon.stiffness, law.b = tendon.damping;
+    law.damps_slack = tendon.damping > 0;
+    if (tendon.stiffness > 0) {
+      const double longest = tendon.springlength.back();
+      law.c = tendon.stiffness * (longest < 0 ? Length(tendon) : longest);
+      // With two numbers it pushes below the first.
+      law.pushes = tendon.springlength.size() < 2 || tendon.springlength[0] != 0;
+    }
+    law.c_at_zero = law.c;
+    for (std::size_t a = 0; a < scene_.actuators.size(); ++a) {
+      const Actuator& actuator = scene_.actuators[a];
+      if (actuator.tendon != index) continue;
+      ++law.actuators;
+      law.k -= actuator.bias[1], law.b -= actuator.bias[2];
+      law.c += actuator.bias[0] + actuator.gain * Control(a), law.c_at_zero += actuator.bias[0];
+      law.gain = actuator.gain;
+      const auto& range = actuator.force_range;
+      if (!range || range->second > 0) law.pushes = true;
+      if (range && range->first > -1e9) law.has_most = true;
+    }
+    return law;
+  }
+
+  void Build(int index) {
+    const Tendon& tendon = scene_.tendons[Scene::Index(index)];
+    const std::string called = "tendon \"" + tendon.name + "\"";
+    const Law law = LawOf(index);
+    if (law.k == 0 && law.b == 0 && law.actuators == 0) {
+      if (!tendon.has_limit) {
+        ++scene_.pictures;
+        return;
+      }
+      b_.out.Error(tendon.at, called + " has a limit of its length and no stiffness",
+                   "stiffness and springlength make a cable of it");
+      return;
+    }
+    if (tendon.has_limit) limits_.push_back(&tendon);
+    if (!(law.k > 0)) {
+      b_.out.Error(tendon.at,
+                   called + (law.actuators > 0 ? " is pulled by a force, without stiffness"
+                                               : " is a damper without stiffness"),
+                   "a cable has a stiffness: of the tendon, or `biasprm` and `kp` of the actuator");
+      return;
+    }
+    if (law.b < 0) {
+      b_.out.Error(tendon.at, called + " has a negative damping");
+      return;
+    }
+    const double rest = law.c / law.k;
+    if (!(rest > 0)) {
+      b_.out.Error(tendon.at, called + " has no rest length: at the start it is " + Shown(rest),
+                   law.actuators > 0 ? KeyHint() : "springlength");
+      return;
+    }
+    std::vector<AttachmentDef> ends;
+    for (const int site : tendon.sites) {
+      const NodeDef& node = b_.def().nodes[Scene::Index(b_.node_of_site[Scene::Index(site)])];
+      ends.push_back({node.body, node.position_m});
+    }
+    double length = 0;
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      const Vec3 d = ends[i + 1].position_m - ends[i].position_m;
+      if (Dot(d, d) == 0) {
+        b_.out.Error(tendon.at, called + ": two sites that follow each other are in one place");
+        return;
+      }
+      length += std::sqrt(Dot(d, d));
+    }
+    const std::string name = b_.pairs.Take(NameOf(tendon));
+    if (law.pushes && b_.options.slack == MjcfSlack::kAsMujoco) {
+      AddBar(tendon, law, rest, ends, name);
+      return;
+    }
+    bilateral_ += law.pushes;
+    pushing_ += law.pushes && length < rest;
+    damped_ += law.damps_slack;
+    summed_ += law.actuators > 0 && tendon.stiffness > 0 && !law.pushes;
+    if (law.has_most) capped_.push_back(&tendon);
+    CableDef cable;
+    cable.name = name, cable.attachments = std::move(ends);
+    cable.stiffness_n_per_m = law.k, cable.damping_n_s_per_m = law.b;
+    cable.rest_length_m = rest;
+    if (law.actuators > 0) {
+      cable.actuator.kind = ActuatorDef::Kind::kIdeal;
+      CountControl(law, cable);
+    }
+    b_.def().cables.push_back(std::move(cable));
+    Tags tags{name};
+    const std::size_t dot = name.rfind('.');
+    if (dot != name.npos && IsName(name.substr(dot + 1)) && name.find('.') == dot) {
+      tags.push_back(name.substr(dot + 1));
+    }
+    const std::string tag = tendon.tag.empty() ? "" : ToName(tendon.tag, "");
+    if (!tag.empty() && tag != name) tags.push_back(tag);
+    b_.made.robot.cable_tags.push_back(std::move(tags));
+    b_.made.robot.cable_sources.push_back(tendon.at);
+  }
+
+  /// As it is called, if a pair of a model may be called so.
+  std::string NameOf(const Tendon& tendon) const {
+    std::string by_nodes, shorter, placement;
+    bool inside = true;
+    for (const int site : tendon.sites) {
+      const std::string& node =
+          b_.def().nodes[Scene::Index(b_.node_of_site[Scene::Index(site)])].name;
+      const std::size_t dot = node.rfind('.');
+      const std::string its = dot == node.npos ? "" : node.substr(0, dot);
+      by_nodes += (by_nodes.empty() ? "" : "-") + node;
+      if (site == tendon.sites.front()) placement = its;
+      inside = inside && !its.empty() && its == placement;
+    }
+    const bool own = inside && tendon.name.starts_with(placement + ".") &&
+                     IsName(tendon.name.substr(placement.size() + 1));
+    return tendon.name == by_nodes || own ? tendon.name : ToName(tendon.name, "cable");
+  }
+
+  void AddBar(const Tendon& tendon, const Law& law, double rest,
+              const std::vector<AttachmentDef>& ends, const std::string& name) {
+    const bool dead_band = tendon.springlength.size() == 2 && tendon.stiffness > 0;
+    if (ends.size() != 2 || law.actuators > 0 || dead_band) {
+      b_.out.Error(tendon.at,
+                   "tendon \"" + tendon.name +
+                       "\" pushes, and is no bar: that has two sites, one springlength and no "
+                       "actuator",
+                   "--slack tension_only makes a cable of it");
+      return;
+    }
+    JointDef bar;
+    bar.name = name, bar.kind = JointKind::kDistance;
+    bar.body_a = ends[0].body, bar.from_m = ends[0].position_m;
+    bar.body_b = ends[1].body, bar.to_m = ends[1].position_m;
+    if (bar.body_b == kWorld) {
+      std::swap(bar.body_a, bar.body_b);
+      std::swap(bar.from_m, bar.to_m);
+    }
+    bar.stiffness = law.k, bar.damping = law.b, bar.rest = rest;
+    bar.collides = true;
+    b_.def().joints.push_back(bar);
+    b_.made.robot.joint_tags.push_back({name});
+  }
+
+  void CountControl(const Law& law, const CableDef& cable) {
+    const double per_control = law.gain / law.k, at_zero = law.c_at_zero / law.k;
+    if (law.actuators > 1) {
+      ++several_;
+    } else if (std::fabs(per_control - 1) < 1e-12) {
+      ++(law.c_at_zero == 0 ? absolute_ : relative_);
+    } else {
+      if (other_++ == 0) {
+        const double length = b_.options.length_unit_m.value_or(1);
+        example_ = "\"" + cable.name + "\": " + Shown(length * at_zero) + " m" +
+                   (per_control < 0 ? " - " : " + ") + Shown(length * std::fabs(per_control)) +
+                   " m u";
+      }
+    }
+  }
+
+  void Tell() {
+    const auto note = [&](int count, const std::string& text) {
+      if (count > 0) b_.Note(Count(static_cast<std::size_t>(count), "control") + text);
+    };
+    note(absolute_, " of MuJoCo: rest lengths of cables");
+    note(relative_, " of MuJoCo: changes of rest lengths of cables");
+    note(other_, " u of MuJoCo: rest lengths by another scale, as of " + example_);
+    note(several_, " of MuJoCo: several of a cable, whose rest length follows from their sum");
+    if (bilateral_ > 0) {
+      b_.out.Warning({},
+                     Count(static_cast<std::size_t>(bilateral_), "tendon") +
+                         " would push in MuJoCo when shorter than at rest; here cables only "
+                         "pull. " +
+                         std::to_string(pushing_) + " of them would do so at the start",
+                     "--slack as_mujoco makes bars of them");
+    }
+    if (damped_ > 0) {
+      b_.out.Warning({}, Count(static_cast<std::size_t>(damped_), "damper") +
+                             " of tendons would act in MuJoCo while slack, too; here only with "
+                             "tension");
+    }
+    if (summed_ > 0) {
+      b_.Note(Count(static_cast<std::size_t>(summed_), "cable") +
+              " with a spring and an actuator: one cable of both, which is slack where their sum "
+              "would push");
+    }
+    Some(capped_, " a largest tension (forcerange) that is left out");
+    Some(limits_, " a limit of length (range) that is left out");
+  }
+  void Some(const std::vector<const Tendon*>& tendons, const std::string& what) {
+    if (tendons.empty()) return;
+    const std::size_t more = tendons.size() - 1;
+    b_.out.Warning(tendons[0]->at,
+                   "tendon \"" + tendons[0]->name + "\"" +
+                       (more > 0 ? " and " + std::to_string(more) + " more have" : " has") + what);
+  }
+
+  std::string KeyHint() const {
+    const bool chosen = key_ && !key_->ctrl.empty();
+    for (const Key& key : scene_.keys) {
+      if (chosen || key.ctrl.empty()) continue;
+      const std::string name = key.name.empty() ? "0" : key.name;
+      return "its control is 0 there: --keyframe " + name + " has others";
+    }
+    return "its control says so";
+  }
+  static std::string Shown(double number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", number);
+    return text;
+  }
+
+  Building& b_;
+  Scene& scene_;
+  const Key* key_;
+  int bilateral_ = 0, pushing_ = 0, damped_ = 0, summed_ = 0;
+  int absolute_ = 0, relative_ = 0, other_ = 0, several_ = 0;
+  std::string example_;
+  std::vector<const Tendon*> capped_, limits_;
+};
+
+}  // namespace
+
+void BuildCables(const Key* key, Building& b) { CableBuilder(key, b).Run(); }
+
+}  // namespace taut::mjcf

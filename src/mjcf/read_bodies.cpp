@@ -1,0 +1,362 @@
+// The tree of bodies, laid out in W.
+#include <algorithm>
+#include <cmath>
+
+#include "math/principal_axes.h"
+#include "math/vec.h"
+#include "mjcf/scene.h"
+
+namespace taut::mjcf {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+class BodyReader {
+ public:
+  BodyReader(const Defaults& defaults, Scene& scene, Diagnostics& out)
+      : defaults_(defaults), scene_(scene), out_(out) {}
+
+  void World(const Element& world) {
+    defaults_.CheckClass(world, "childclass", out_);
+    Children(world, 0, {}, ClassOf(world, ""));
+  }
+
+ private:
+  static std::string ClassOf(const Element& element, const std::string& outer) {
+    const Attribute* const own = element.Find("childclass");
+    return own ? own->value : outer;
+  }
+  Layers Over(const Element& element, const std::string& cls) const {
+    return defaults_.Over(element, cls, out_);
+  }
+  /// In W, of what is given in `frame`.
+  Pose InWorld(const Pose& frame, const Pose& given) const {
+    return scene_.settings.global ? given : frame * given;
+  }
+
+  void Children(const Element& of, int body, const Pose& frame, const std::string& cls) {
+    for (const Element& child : of.children) {
+      if (child.name == "frame") {
+        defaults_.CheckClass(child, "childclass", out_);
+        const Layers layers = Over(child, cls);
+        Children(child, body, InWorld(frame, layers.ReadPose(scene_.settings)),
+                 ClassOf(child, cls));
+      } else if (child.name == "body") {
+        ReadBody(child, body, frame, cls);
+      } else if (child.name == "site") {
+        ReadSite(child, body, frame, cls);
+      } else if (child.name == "geom") {
+        geoms_.push_back({&child, body, frame, cls});
+      } else if (child.name == "joint" || child.name == "freejoint") {
+        ReadJoint(child, body, cls);
+      } else if (child.name == "inertial") {
+        inertial_ = {&child, frame};
+      }
+    }
+    if (of.name == "frame") return;
+    Mass(body);
+    for (const GeomAt& geom : geoms_) {
+      if (geom.body == body) ReadGeom(geom, has_mass_);
+    }
+    std::erase_if(geoms_, [&](const GeomAt& geom) { return geom.body == body; });
+    if (!has_mass_) SumOfShapes(body);
+    Bound(body);
+  }
+
+  void ReadBody(const Element& element, int parent, const Pose& frame, const std::string& outer) {
+    const int body = static_cast<int>(scene_.bodies.size());
+    Body& its = scene_.bodies.emplace_back();
+    const Attribute* const name = element.Find("name");
+    its.name = name ? name->value : "body_" + std::to_string(body);
+    its.at = element.at;
+    Register(scene_.body_by_name, element, body, out_);
+    defaults_.CheckClass(element, "childclass", out_);
+    const Layers layers({&element}, out_);
+    its.frame = InWorld(frame, layers.ReadPose(scene_.settings));
+    if (layers.Number("gravcomp", 0) != 0) layers.Error("gravcomp", "gravcomp is not read");
+    if (layers.Flag("mocap", false)) {
+      out_.Warning(element.at, element.Called() + " is moved by a program; here it stands still");
+    }
+    // What has no joint is part of what it is in; in the world it stands still by itself.
+    its.root = scene_.Moves(parent) ? scene_.bodies[Scene::Index(parent)].root : body;
+    const auto inertial_outside = inertial_;
+    const bool had_mass = has_mass_;
+    inertial_ = {};
+    const Pose own = its.frame;
+    parents_.push_back(parent);
+    FindFreeJoint(element, body, ClassOf(element, outer));
+    Children(element, body, own, ClassOf(element, outer));
+    parents_.pop_back();
+    inertial_ = inertial_outside;
+    has_mass_ = had_mass;
+  }
+
+  /// Before what is inside, which belongs to it only if it moves.
+  void FindFreeJoint(const Element& element, int body, const std::string& cls) {
+    for (const Element& child : element.children) {
+      if (child.name == "frame") FindFreeJoint(child, body, ClassOf(child, cls));
+      const bool is_free =
+          child.name == "freejoint" ||
+          (child.name == "joint" && Over(child, cls).Text("type", "hinge") == "free");
+      if (!is_free) continue;
+      Body& its = scene_.bodies[Scene::Index(body)];
+      if (its.is_free) out_.Error(child.at, "a body has one free joint, not two");
+      its.is_free = true;
+      its.root = body;
+      if (parents_.back() != 0) {
+        out_.Error(child.at, child.Called() + ": a body within another one has no free joint");
+      }
+    }
+  }
+
+  void ReadJoint(const Element& joint, int body, const std::string& cls) {
+    const std::string whose =
+        " of " +
+        (body == 0 ? "the world" : "body \"" + scene_.bodies[Scene::Index(body)].name + "\"");
+    if (body == 0) {
+      out_.Error(joint.at, joint.Called() + whose + ": the world does not move");
+      return;
+    }
+    if (joint.name == "freejoint") return;
+    const Layers layers = Over(joint, cls);
+    const std::string type = layers.Text("type", "hinge");
+    if (type != "free") {
+      out_.Error(
+          joint.at,
+          joint.Called() + whose + " is of type " + type + ": only bodies that are free are read",
+          "joints of taut's own are added to the model by hand: docs/theory/joints.md");
+      return;
+    }
+    if (layers.Number("frictionloss", 0) > 0) {
+      layers.Error("frictionloss", "frictionloss of a free joint is not read");
+    }
+    for (const char* key : {"damping", "stiffness", "armature"}) {
+      if (layers.Numbers(key, {0}, 1, 3)[0] == 0) continue;
+      out_.Warning(layers.Find(key)->at,
+                   joint.Called() + whose + ": " + key + " of a free joint is left out");
+    }
+  }
+
+  void ReadSite(const Element& element, int body, const Pose& frame, const std::string& cls) {
+    const Layers layers = Over(element, cls);
+    Vec3 p = layers.ReadPose(scene_.settings).p;
+    if (const auto line = layers.FromTo()) p = 0.5 * (line->first + line->second);
+    const Attribute* const name = element.Find("name");
+    Register(scene_.site_by_name, element, static_cast<int>(scene_.sites.size()), out_);
+    scene_.sites.push_back({name ? name->value : "", element.at, body, InWorld(frame, {p, {}}).p});
+  }
+
+  struct GeomAt {
+    const Element* element;
+    int body;
+    Pose frame;
+    std::string cls;
+  };
+
+  /// An inertial that counts.
+  void Mass(int body) {
+    using FromGeoms = CompilerSettings::FromGeoms;
+    const FromGeoms from_geoms = scene_.settings.from_geoms;
+    has_mass_ = from_geoms == FromGeoms::kFalse ||
+                (inertial_.first != nullptr && from_geoms == FromGeoms::kAuto);
+    if (body == 0 || inertial_.first == nullptr || !has_mass_) return;
+    const Layers layers({inertial_.first}, out_);
+    const Pose pose = InWorld(inertial_.second, layers.ReadPose(scene_.settings));
+    if (!layers.Has("mass")) layers.Error("mass", "it has no mass");
+    if (!layers.Has("pos") && !scene_.settings.global) layers.Error("pos", "it has no pos");
+    Body& its = scene_.bodies[Scene::Index(body)];
+    its.own_masses = false;
+    its.mass.mass_kg = layers.Number("mass", 0);
+    its.mass.com_m = pose.p;
+    Inertia own;
+    if (layers.Has("fullinertia")) {
+      const auto n = layers.Numbers("fullinertia", {1, 1, 1, 0, 0, 0}, 6, 6);
+      own = {n[0], n[1], n[2], n[3], n[4], n[5]};
+    } else {
+      const auto n = layers.Numbers("diaginertia", {0, 0, 0}, 3, 3);
+      own = {n[0], n[1], n[2], 0, 0, 0};
+    }
+    its.mass.inertia_kg_m2 = Turned(pose.q, own);
+    if (its.mass.mass_kg < 0) layers.Error("mass", "its mass is negative");
+  }
+
+  void SumOfShapes(int body) {
+    std::vector<MassProperties> parts;
+    Body& its = scene_.bodies[Scene::Index(body)];
+    for (const Shape& s : scene_.shapes) {
+      if (s.body != body || s.mass == 0) continue;
+      its.own_masses = its.own_masses && s.kind != Shape::Kind::kCapsule;
+      parts.push_back(SolidOf(s));
+    }
+    its.mass = Combine(parts);
+  }
+  static MassProperties SolidOf(const Shape& s) {
+    switch (s.kind) {
+      case Shape::Kind::kSphere:
+        return SolidSphere(s.pose.p, s.radius, s.mass);
+      case Shape::Kind::kCapsule:
+        return SolidCapsule(s.from, s.to, s.radius, s.mass);
+      case Shape::Kind::kCylinder:
+        return SolidCylinder(s.from, s.to, s.radius, s.mass);
+      default:
+        return SolidBox(s.pose.p, s.pose.q, s.half, s.mass);
+    }
+  }
+
+  /// `boundmass` and `boundinertia`: at least so much.
+  void Bound(int body) {
+    Body& its = scene_.bodies[Scene::Index(body)];
+    if (!scene_.Moves(body)) return;
+    if (its.mass.mass_kg < scene_.settings.boundmass) {
+      its.mass.mass_kg = scene_.settings.boundmass;
+      its.own_masses = false;
+    }
+    double r[9], moments[3];
+    PrincipalAxes(its.mass.inertia_kg_m2, r, moments);
+    const double bound = scene_.settings.boundinertia;
+    if (std::min({moments[0], moments[1], moments[2]}) >= bound) return;
+    its.own_masses = false;
+    Inertia& j = its.mass.inertia_kg_m2;
+    double m[3][3] = {};
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t x = 0; x < 3; ++x) {
+        for (std::size_t y = 0; y < 3; ++y) {
+          m[x][y] += r[3 * x + a] * std::max(moments[a], bound) * r[3 * y + a];
+        }
+      }
+    }
+    j = {m[0][0], m[1][1], m[2][2], m[0][1], m[0][2], m[1][2]};
+  }
+
+  void ReadGeom(const GeomAt& from, bool body_has_mass);
+  void ReadSize(const Layers& layers, const Pose& frame, const std::string& type, Shape& shape);
+  void ReadMass(const Layers& layers, Shape& shape);
+
+  const Defaults& defaults_;
+  Scene& scene_;
+  Diagnostics& out_;
+  std::vector<GeomAt> geoms_;
+  std::pair<const Element*, Pose> inertial_{};
+  std::vector<int> parents_;
+  bool has_mass_ = false;
+};
+
+void BodyReader::ReadGeom(const GeomAt& from, bool body_has_mass) {
+  static const std::map<std::string, Shape::Kind> kKinds{{"sphere", Shape::Kind::kSphere},
+                                                         {"capsule", Shape::Kind::kCapsule},
+                                                         {"cylinder", Shape::Kind::kCylinder},
+                                                         {"box", Shape::Kind::kBox},
+                                                         {"plane", Shape::Kind::kPlane}};
+  const Layers layers = Over(*from.element, from.cls);
+  const std::string type = layers.Text("type", "sphere");
+  const bool touches = scene_.has_contacts &&
+                       (layers.Whole("contype", 1) != 0 || layers.Whole("conaffinity", 1) != 0);
+  const auto kind = kKinds.find(type);
+  if (kind == kKinds.end() || layers.Has("mesh") || layers.Has("hfield")) {
+    const bool weighs = !body_has_mass && layers.Number("mass", 1) != 0 && from.body != 0;
+    if (!touches && !weighs) {
+      ++scene_.left_out["geom of type " + type + " that only shows"];
+      return;
+    }
+    const bool known = type == "mesh" || type == "hfield" || type == "ellipsoid" || type == "sdf";
+    layers.Error(known || kind != kKinds.end() ? "name" : "type",
+                 known || kind != kKinds.end()
+                     ? "geoms of type " + type + (kind == kKinds.end() ? "" : " from a mesh") +
+                           " are not read"
+                     : "there is no type \"" + type + "\"",
+                 "sphere, capsule, cylinder, box and plane are; what only shows, with contype and "
+                 "conaffinity 0 and without mass, is left out");
+    return;
+  }
+  const Attribute* const name = from.element->Find("name");
+  Shape shape{.kind = kind->second, .name = name ? name->value : "", .at = from.element->at};
+  shape.body = from.body;
+  shape.pose = InWorld(from.frame, layers.ReadPose(scene_.settings));
+  ReadSize(layers, from.frame, type, shape);
+  ReadMass(layers, shape);
+  shape.contype = scene_.has_contacts ? layers.Whole("contype", 1) : 0;
+  shape.conaffinity = scene_.has_contacts ? layers.Whole("conaffinity", 1) : 0;
+  shape.condim = layers.Whole("condim", 3);
+  shape.priority = layers.Whole("priority", 0);
+  const auto friction = layers.Numbers("friction", {1, 0.005, 0.0001}, 1, 3);
+  shape.friction = shape.condim == 1 ? 0 : friction[0];
+  if (friction[0] < 0) layers.Error("friction", "its friction is negative");
+  if (shape.condim > 3) ++scene_.left_out["friction against twisting and rolling (geom.condim)"];
+  Register(scene_.shape_by_name, *from.element, static_cast<int>(scene_.shapes.size()), out_);
+  scene_.shapes.push_back(shape);
+}
+
+void BodyReader::ReadSize(const Layers& layers, const Pose& frame, const std::string& type,
+                          Shape& shape) {
+  const auto size = layers.Numbers("size", {0, 0, 0}, 1, 3);
+  const auto line = layers.FromTo();
+  const bool is_long = shape.kind == Shape::Kind::kCapsule || shape.kind == Shape::Kind::kCylinder;
+  if (shape.kind == Shape::Kind::kPlane) {
+    if (scene_.Moves(shape.body)) layers.Error("type", "a plane in a body that moves");
+    return;
+  }
+  std::vector<double> needed{size[0]};
+  if (line) {
+    if (shape.kind == Shape::Kind::kSphere) layers.Error("fromto", "a sphere has no fromto");
+    const Vec3 from = InWorld(frame, {line->first, {}}).p,
+               to = InWorld(frame, {line->second, {}}).p;
+    shape.from = from, shape.to = to;
+    const double length = std::sqrt(Dot(to - from, to - from));
+    shape.half = {size[0], size[0], 0.5 * length};
+    // As MuJoCo has it, the axes beside z follow from the direction from `to` to `from`, in the
+    // body's frame.
+    shape.pose =
+        InWorld(frame, {0.5 * (line->first + line->second), FromZ(line->first - line->second)});
+  } else {
+    const Vec3 half = size[1] * Rotate(shape.pose.q, {0, 0, 1});
+    shape.from = shape.pose.p - half, shape.to = shape.pose.p + half;
+    shape.half = {size[0], size[1], size[2]};
+    if (is_long) needed.push_back(size[1]);
+    if (shape.kind == Shape::Kind::kBox) needed = size;
+  }
+  shape.radius = size[0];
+  if (std::any_of(needed.begin(), needed.end(), [](double n) { return !(n > 0); })) {
+    layers.Error("size", "a " + type + " needs " + std::to_string(needed.size()) +
+                             (needed.size() == 1 ? " positive size" : " positive sizes"));
+    shape.radius = 1, shape.half = {1, 1, 1};
+  }
+}
+
+void BodyReader::ReadMass(const Layers& layers, Shape& shape) {
+  const std::vector<double>& groups = scene_.settings.inertia_groups;
+  const int group = layers.Whole("group", 0);
+  if (layers.Flag("shellinertia", false)) layers.Error("shellinertia", "shells are not read");
+  const double r = shape.radius, l = std::sqrt(Dot(shape.to - shape.from, shape.to - shape.from));
+  double volume = 0;
+  switch (shape.kind) {
+    case Shape::Kind::kSphere:
+      volume = 4.0 / 3.0 * kPi * r * r * r;
+      break;
+    case Shape::Kind::kCapsule:
+      volume = kPi * r * r * l + 4.0 / 3.0 * kPi * r * r * r;
+      break;
+    case Shape::Kind::kCylinder:
+      volume = kPi * r * r * l;
+      break;
+    case Shape::Kind::kBox:
+      volume = 8 * shape.half.x * shape.half.y * shape.half.z;
+      break;
+    case Shape::Kind::kPlane:
+      return;
+  }
+  const double density = layers.Number("density", 1000);
+  shape.mass = layers.Has("mass") ? layers.Number("mass", 0) : density * volume;
+  if (shape.mass < 0) layers.Error(layers.Has("mass") ? "mass" : "density", "its mass is negative");
+  if (group < groups[0] || group > groups[1]) shape.mass = 0;
+}
+
+}  // namespace
+
+void ReadBodies(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out) {
+  scene.bodies.push_back({.name = "world", .at = root.at});
+  scene.body_by_name["world"] = 0;
+  BodyReader reader(defaults, scene, out);
+  for (const Element* const world : Sections(root, "worldbody")) reader.World(*world);
+}
+
+}  // namespace taut::mjcf

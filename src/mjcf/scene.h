@@ -1,0 +1,127 @@
+/// What a file of MJCF describes, in its own units, all places in W at qpos0. Nothing is left of
+/// frames, classes and ways to write an orientation.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mechanics/mass_properties.h"
+#include "mjcf/schema.h"
+#include "mjcf/values.h"
+#include "taut/mjcf.h"
+
+namespace taut::mjcf {
+
+struct Shape {
+  enum class Kind { kSphere, kCapsule, kCylinder, kBox, kPlane };
+  Kind kind = Kind::kSphere;
+  std::string name;  ///< May be empty.
+  SourceRef at;
+  int body = 0;
+  Pose pose = {};
+  Vec3 from = {}, to = {};  ///< Of a capsule or cylinder.
+  Vec3 half = {};           ///< Of a box.
+  double radius = 0;
+  double mass = 0;
+  double friction = 1;
+  int contype = 1, conaffinity = 1, condim = 3, priority = 0;
+  bool collides = true;  ///< With anything; known when all is read.
+};
+
+struct Site {
+  std::string name;
+  SourceRef at;
+  int body = 0;
+  Vec3 p;
+};
+
+/// One of the file. The first is the world.
+struct Body {
+  std::string name;
+  SourceRef at;
+  bool is_free = false;  ///< Has a free joint of its own.
+  int root =
+      0;  ///< The body that it is one rigid body with: itself, or what it is in or welded to.
+  Pose frame = {};
+  MassProperties mass = {};
+  bool own_masses = true;  ///< Each of its shapes weighs what a solid of taut's weighs.
+};
+
+struct Tendon {
+  std::string name = {}, tag = {};  ///< The tag: its default class, if it names one.
+  SourceRef at;
+  std::vector<int> sites = {};
+  double stiffness = 0, damping = 0;
+  std::vector<double> springlength = {};  ///< One or two; what is -1 is the length at qpos0.
+  bool has_limit = false;
+};
+
+/// p = gain ctrl + bias0 + bias1 l + bias2 dl/dt along a tendon, where positive pushes.
+struct Actuator {
+  std::string name;
+  SourceRef at;
+  int tendon = 0;
+  double gain = 0, bias[3] = {0, 0, 0};  ///< With the gear: of the tendon's own l.
+  std::optional<std::pair<double, double>> control_range = {}, force_range = {};  ///< Of p.
+};
+
+struct Key {
+  std::string name;
+  SourceRef at;
+  std::vector<double> qpos, qvel, ctrl;  ///< Empty if not said.
+};
+
+struct ContactPair {
+  SourceRef at;
+  int shape1 = 0, shape2 = 0;
+  double friction = 1;
+};
+
+struct Scene {
+  std::string model;
+  CompilerSettings settings;
+  Vec3 gravity{0, 0, -9.81};
+  double timestep = 0.002;
+  bool clamps_controls = true, has_contacts = true, only_pairs = false;
+  std::vector<Body> bodies;
+  std::vector<Shape> shapes;
+  std::vector<Site> sites;
+  std::vector<Tendon> tendons;
+  std::vector<Actuator> actuators;
+  std::vector<Key> keys;
+  std::vector<ContactPair> pairs;
+  std::vector<std::pair<int, int>> excludes;  ///< Of bodies.
+  std::map<std::string, int> site_by_name, body_by_name, shape_by_name, tendon_by_name;
+  LeftOut left_out;
+  int pictures = 0;  ///< Tendons that do nothing.
+
+  bool Moves(int body) const { return bodies[Index(bodies[Index(body)].root)].is_free; }
+  static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+};
+
+/// One name a kind: of the list that `by_name` counts. Complains about a second one.
+void Register(std::map<std::string, int>& by_name, const Element& element, int index,
+              Diagnostics& out);
+/// What the attribute names; -1 after a complaint.
+int Find(const std::map<std::string, int>& by_name, const Element& element,
+         std::string_view attribute, const char* kind, Diagnostics& out);
+
+// Each reads its section; all of the scene that stands above it in `Scene` is there.
+void ReadSettings(const Element& root, Scene& scene, Diagnostics& out);
+void ReadBodies(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out);
+void ReadTendons(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out);
+void ReadActuators(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out);
+void ReadContacts(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out);
+void ReadEqualities(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out);
+void ReadKeys(const Element& root, Scene& scene, Diagnostics& out);
+
+/// All sections of that name, one after the other.
+std::vector<const Element*> Sections(const Element& root, std::string_view name);
+
+/// The robot of the scene, in SI units.
+std::optional<ImportedMjcf> BuildRobot(Scene& scene, const std::string& path,
+                                       const MjcfImport& options, Diagnostics& out);
+
+}  // namespace taut::mjcf

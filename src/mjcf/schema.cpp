@@ -1,0 +1,178 @@
+#include "mjcf/schema.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace taut::mjcf {
+namespace {
+
+constexpr const char* kTurns = "pos quat axisangle xyaxes zaxis euler ";
+constexpr const char* kBodyParts = "inertial joint freejoint geom site body frame";
+constexpr const char* kPictures = "camera light";
+constexpr const char* kNotBodies = "composite flexcomp attach replicate plugin";
+constexpr const char* kActuators =
+    "general motor position velocity intvelocity damper cylinder muscle adhesion plugin dcmotor";
+const std::string kJoint =
+    "name class type pos axis damping stiffness armature frictionloss springdamper";
+const std::string kJointLeftOut =
+    "group range limited ref springref margin solreflimit solimplimit solreffriction "
+    "solimpfriction actuatorfrclimited actuatorfrcrange actuatorgravcomp user align";
+const std::string kGeom =
+    "name class type contype conaffinity condim group priority size mass density fromto friction "
+    "mesh hfield shellinertia ";
+const std::string kGeomLeftOut =
+    "material rgba solmix solref solimp margin gap fitscale user fluidshape fluidcoef hullvertices";
+const std::string kTendon =
+    "name class springlength stiffness damping armature frictionloss limited range "
+    "actuatorfrclimited actuatorfrcrange";
+const std::string kTendonLeftOut =
+    "group solreflimit solimplimit solreffriction solimpfriction margin width material rgba user";
+const std::string kActuator =
+    "name class tendon joint jointinparent site refsite body cranksite slidersite ctrllimited "
+    "ctrlrange forcelimited forcerange gear ";
+const std::string kActuatorLeftOut =
+    "group user lengthrange cranklength actlimited actrange actdim actearly nsample interp delay";
+
+bool Has(const char* list, const std::string& word) {
+  const std::string padded = std::string(" ") + list + " ";
+  return padded.find(" " + word + " ") != padded.npos;
+}
+
+std::vector<std::string> Words(const std::string& list) {
+  std::istringstream in(list);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+class Checker {
+ public:
+  Checker(LeftOut& left_out, Diagnostics& out) : left_out_(left_out), out_(out) {}
+
+  void Run(const Element& element, const std::string& kind) {
+    const auto& rules = Rules();
+    const auto rule =
+        std::find_if(rules.begin(), rules.end(), [&](const Rule& r) { return kind == r.element; });
+    if (rule == rules.end()) return;
+    if (std::string(rule->children) == "...") return;
+    for (const Attribute& a : element.attributes) {
+      if (Has(rule->read, a.name)) continue;
+      if (Has(rule->left_out, a.name)) {
+        ++left_out_[element.name + "." + a.name];
+        continue;
+      }
+      out_.Error(a.at, element.name + " has no \"" + a.name + "\" in MJCF",
+                 DidYouMean(a.name, Words(std::string(rule->read) + " " + rule->left_out)));
+    }
+    for (const Element& child : element.children) {
+      if (Has(rule->children, child.name)) {
+        Run(child, KindOf(kind, child.name));
+      } else if (Has(rule->children_left_out, child.name)) {
+        ++left_out_[child.name];
+      } else if (Has(rule->children_refused, child.name)) {
+        out_.Error(child.at, child.Called() + " in " + element.name + " is not read");
+      } else {
+        out_.Error(child.at, element.name + " has no element \"" + child.name + "\" in MJCF",
+                   DidYouMean(child.name,
+                              Words(std::string(rule->children) + " " + rule->children_left_out)));
+      }
+    }
+  }
+
+ private:
+  /// `site` within a tendon is another thing than in a body.
+  static std::string KindOf(const std::string& in, const std::string& name) {
+    if (in == "spatial") return "spatial/" + name;
+    if (name == "frame" || name == "worldbody") return "body";
+    return name;
+  }
+  LeftOut& left_out_;
+  Diagnostics& out_;
+};
+
+}  // namespace
+
+bool IsActuator(const std::string& element) { return Has(kActuators, element); }
+
+const std::vector<Rule>& Rules() {
+  static const std::string kBody = std::string("name childclass mocap gravcomp ") + kTurns;
+  static const std::string kGeomRead = kGeom + kTurns;
+  static const std::string kSite = std::string("name class fromto ") + kTurns;
+  static const std::string kInertial = std::string("mass diaginertia fullinertia ") + kTurns;
+  static const std::string kInDefaults =
+      std::string("default geom site joint tendon equality ") + kActuators;
+  static const std::string kGeneral =
+      kActuator + "dyntype gaintype biastype dynprm gainprm biasprm";
+  static const std::string kPosition = kActuator + "kp kv dampratio timeconst inheritrange";
+  static const std::string kVelocity = kActuator + "kv kp";
+  static const std::string kOthers =
+      kActuatorLeftOut +
+      " kp kv gain bias area diameter timeconst range force scale lmin lmax vmax fpmax fvmax "
+      "ctrlrange plugin instance dyntype dynprm inheritrange";
+  static const char* const kActuatorOut = kActuatorLeftOut.c_str();
+  static const std::vector<Rule> kRules{
+      {"mujoco", "model", "",
+       "compiler option default worldbody contact equality tendon actuator keyframe",
+       "size statistic visual asset sensor custom", "extension deformable"},
+      {"compiler",
+       "angle coordinate eulerseq inertiafromgeom inertiagrouprange autolimits boundmass "
+       "boundinertia settotalmass",
+       "balanceinertia strippath fitaabb fusestatic convexhull discardvisual usethread meshdir "
+       "texturedir assetdir exactmeshinertia alignfree saveinertial conflict",
+       "", "lengthrange LRopt", ""},
+      {"option", "gravity timestep density viscosity collision",
+       "wind magnetic integrator cone jacobian solver iterations tolerance ls_iterations "
+       "ls_tolerance noslip_iterations noslip_tolerance mpr_iterations mpr_tolerance "
+       "ccd_iterations ccd_tolerance impratio apirate o_margin o_solref o_solimp o_friction "
+       "sdf_iterations sdf_initpoints actuatorgroupdisable sleep_tolerance",
+       "flag", "", ""},
+      {"flag", "gravity contact constraint passive spring damper actuation equality clampctrl",
+       "frictionloss limit warmstart filterparent refsafe sensor override energy fwdinv "
+       "invdiscrete "
+       "multiccd island nativeccd eulerdamp midphase autoreset sensornoise sleep diagexact",
+       "", "", ""},
+      {"default", "class", "", kInDefaults.c_str(), "mesh material camera light pair", ""},
+      {"body", kBody.c_str(), "user sleep", kBodyParts, kPictures, kNotBodies},
+      {"inertial", kInertial.c_str(), "", "", "", ""},
+      {"joint", kJoint.c_str(), kJointLeftOut.c_str(), "", "", ""},
+      {"freejoint", "name", "group align", "", "", ""},
+      {"geom", kGeomRead.c_str(), kGeomLeftOut.c_str(), "", "", "plugin"},
+      {"site", kSite.c_str(), "type group size material rgba user", "", "", ""},
+      {"tendon", kTendon.c_str(), kTendonLeftOut.c_str(), "spatial", "", "fixed"},
+      {"spatial", kTendon.c_str(), kTendonLeftOut.c_str(), "site", "", "geom pulley"},
+      {"spatial/site", "site", "", "", "", ""},
+      {"actuator", "", "", kActuators, "", ""},
+      {"general", kGeneral.c_str(), kActuatorOut, "", "", "plugin"},
+      {"motor", kActuator.c_str(), kActuatorOut, "", "", ""},
+      {"position", kPosition.c_str(), kActuatorOut, "", "", ""},
+      {"velocity", kVelocity.c_str(), kActuatorOut, "", "", ""},
+      {"intvelocity", kActuator.c_str(), kOthers.c_str(), "", "", ""},
+      {"damper", kActuator.c_str(), kOthers.c_str(), "", "", ""},
+      {"cylinder", kActuator.c_str(), kOthers.c_str(), "", "", ""},
+      {"muscle", kActuator.c_str(), kOthers.c_str(), "", "", ""},
+      {"adhesion", kActuator.c_str(), kOthers.c_str(), "", "", ""},
+      {"equality", "active", "class solref solimp", "weld connect joint tendon distance flex", "",
+       ""},
+      {"weld", "name class active body1 body2 site1 site2 relpose anchor",
+       "solref solimp torquescale", "", "", ""},
+      {"connect", "name class active body1 body2 site1 site2 anchor", "solref solimp", "", "", ""},
+      {"contact", "", "", "pair exclude", "", ""},
+      {"pair", "name class geom1 geom2 condim friction",
+       "solref solreffriction solimp margin gap user", "", "", ""},
+      {"exclude", "name body1 body2", "", "", "", ""},
+      {"keyframe", "", "", "key", "", ""},
+      {"key", "name qpos qvel ctrl act", "time mpos mquat", "", "", ""},
+  };
+  return kRules;
+}
+
+void CheckSchema(const Element& root, LeftOut& left_out, Diagnostics& out) {
+  if (root.name != "mujoco") {
+    out.Error(root.at, "the root element is \"" + root.name + "\", not mujoco",
+              root.name == "robot" ? "this is URDF; MuJoCo's compile makes MJCF of it" : "");
+    return;
+  }
+  Checker(left_out, out).Run(root, "mujoco");
+}
+
+}  // namespace taut::mjcf

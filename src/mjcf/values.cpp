@@ -1,0 +1,246 @@
+#include "mjcf/values.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "math/rotation.h"
+#include "math/vec.h"
+#include "mjcf/schema.h"
+
+namespace taut::mjcf {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
+std::string KindOf(const std::string& name) {
+  if (IsActuator(name)) return "actuator";
+  if (name == "spatial") return "tendon";
+  if (name == "weld" || name == "connect") return "equality";
+  return name;
+}
+
+}  // namespace
+
+Pose operator*(const Pose& a, const Pose& b) { return {a.p + Rotate(a.q, b.p), a.q * b.q}; }
+
+std::optional<std::vector<double>> ToNumbers(const std::string& text) {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+  std::vector<double> numbers;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (true) {
+    while (at != end && is_blank(*at)) ++at;
+    if (at == end) return numbers;
+    if (*at == '+') ++at;
+    double number = 0;
+    const auto [next, status] = std::from_chars(at, end, number);
+    if (status != std::errc() || !std::isfinite(number)) return std::nullopt;
+    if (next != end && !is_blank(*next)) return std::nullopt;
+    numbers.push_back(number);
+    at = next;
+  }
+}
+
+Quat AboutAxis(const Vec3& axis, double angle_rad) {
+  const double s = std::sin(0.5 * angle_rad) / Length(axis);
+  return {std::cos(0.5 * angle_rad), s * axis.x, s * axis.y, s * axis.z};
+}
+
+Quat FromZ(const Vec3& v) {
+  const Vec3 axis = Cross({0, 0, 1}, v);
+  const double across = Length(axis);
+  const double angle = std::atan2(across, v.z);
+  return AboutAxis(across < 1e-10 ? Vec3{1, 0, 0} : axis, angle);
+}
+
+const Attribute* Layers::Find(std::string_view name) const {
+  for (auto layer = layers_.rbegin(); layer != layers_.rend(); ++layer) {
+    if (const Attribute* const found = (*layer)->Find(name)) return found;
+  }
+  return nullptr;
+}
+
+std::string Layers::Text(std::string_view name, const std::string& if_absent) const {
+  const Attribute* const found = Find(name);
+  return found ? found->value : if_absent;
+}
+
+void Layers::Error(std::string_view attribute, const std::string& what,
+                   const std::string& hint) const {
+  const Attribute* const found = Find(attribute);
+  out_->Error(found ? found->at : element().at, element().Called() + ": " + what, hint);
+}
+
+std::vector<double> Layers::Numbers(std::string_view name, std::vector<double> if_absent,
+                                    std::size_t least, std::size_t most) const {
+  for (const Element* const layer : layers_) {
+    const Attribute* const a = layer->Find(name);
+    if (!a) continue;
+    const auto numbers = ToNumbers(a->value);
+    if (!numbers || numbers->size() < least || numbers->size() > most) {
+      const std::string count = least == most
+                                    ? std::to_string(most)
+                                    : std::to_string(least) + " to " + std::to_string(most);
+      out_->Error(a->at, element().Called() + ": " + std::string(name) + " must be " + count +
+                             (most == 1 ? " number" : " numbers") + ", not \"" + a->value + "\"");
+      continue;
+    }
+    if (if_absent.size() < numbers->size()) if_absent.resize(numbers->size());
+    std::copy(numbers->begin(), numbers->end(), if_absent.begin());
+  }
+  return if_absent;
+}
+
+double Layers::Number(std::string_view name, double if_absent) const {
+  return Numbers(name, {if_absent}, 1, 1)[0];
+}
+
+int Layers::Whole(std::string_view name, int if_absent) const {
+  const double number = Number(name, if_absent);
+  if (number == std::floor(number) && std::fabs(number) < 2e9) return static_cast<int>(number);
+  Error(name, std::string(name) + " must be a whole number");
+  return if_absent;
+}
+
+bool Layers::Flag(std::string_view name, bool if_absent) const {
+  const std::string text = Text(name);
+  if (text == "true" || text == "false") return text == "true";
+  if (!text.empty()) Error(name, std::string(name) + " must be true or false, not \"" + text + '"');
+  return if_absent;
+}
+
+bool Layers::Limited(std::string_view name, std::string_view range,
+                     const CompilerSettings& settings) const {
+  const std::string text = Text(name, "auto");
+  if (text == "auto") return Has(range) && settings.autolimits;
+  return Flag(name, false);
+}
+
+std::optional<std::pair<Vec3, Vec3>> Layers::FromTo() const {
+  if (!Has("fromto")) return std::nullopt;
+  const std::vector<double> n = Numbers("fromto", {0, 0, 0, 0, 0, 1}, 6, 6);
+  const Vec3 from{n[0], n[1], n[2]}, to{n[3], n[4], n[5]};
+  if (Length(to - from) < 1e-14) {
+    Error("fromto", "its two points are one");
+    return std::pair(from, from + Vec3{0, 0, 1});
+  }
+  return std::pair(from, to);
+}
+
+Quat Layers::ReadTurn(const CompilerSettings& settings) const {
+  const auto unit = [&](const char* name, const Vec3& v) {
+    const double length = Length(v);
+    if (length > 1e-14) return (1 / length) * v;
+    Error(name, std::string(name) + " has no length");
+    return Vec3{0, 0, 1};
+  };
+  const double angle = settings.degrees ? kPi / 180 : 1;
+  int ways = 0;
+  for (const char* name : {"quat", "axisangle", "xyaxes", "zaxis", "euler"}) {
+    ways += element().Find(name) != nullptr;
+  }
+  if (ways > 1) Error("pos", "its orientation is given in several ways");
+  if (Has("axisangle")) {
+    const auto n = Numbers("axisangle", {0, 0, 1, 0}, 4, 4);
+    return AboutAxis(unit("axisangle", {n[0], n[1], n[2]}), angle * n[3]);
+  }
+  if (Has("xyaxes")) {
+    const auto n = Numbers("xyaxes", {1, 0, 0, 0, 1, 0}, 6, 6);
+    const Vec3 x = unit("xyaxes", {n[0], n[1], n[2]}), given{n[3], n[4], n[5]};
+    const Vec3 y = unit("xyaxes", given - Dot(x, given) * x), z = Cross(x, y);
+    const double r[9] = {x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z};
+    return QuatOf(r);
+  }
+  if (Has("zaxis")) {
+    const auto n = Numbers("zaxis", {0, 0, 1}, 3, 3);
+    return FromZ(unit("zaxis", {n[0], n[1], n[2]}));
+  }
+  if (Has("euler")) {
+    const auto n = Numbers("euler", {0, 0, 0}, 3, 3);
+    Quat q;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const char letter = settings.eulerseq[i];
+      const bool fixed_axes = letter < 'a';  // capitals: about the axes of the parent
+      const char axis = static_cast<char>(fixed_axes ? letter - 'A' + 'a' : letter);
+      const Quat turn = AboutAxis(
+          {axis == 'x' ? 1.0 : 0, axis == 'y' ? 1.0 : 0, axis == 'z' ? 1.0 : 0}, angle * n[i]);
+      q = fixed_axes ? turn * q : q * turn;
+    }
+    return q;
+  }
+  const auto n = Numbers("quat", {1, 0, 0, 0}, 4, 4);
+  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3]);
+  if (length < 1e-14) {
+    Error("quat", "quat has no length");
+    return {};
+  }
+  return {n[0] / length, n[1] / length, n[2] / length, n[3] / length};
+}
+
+Pose Layers::ReadPose(const CompilerSettings& settings) const {
+  const auto n = Numbers("pos", {0, 0, 0}, 3, 3);
+  return {{n[0], n[1], n[2]}, ReadTurn(settings)};
+}
+
+void Defaults::Add(const Element& element, Class* in, Diagnostics& out) {
+  const Attribute* const name = element.Find("class");
+  std::string called = name ? name->value : "";
+  if (in == nullptr) {
+    if (!called.empty() && classes_.empty()) main_ = called;
+    if (called.empty()) called = main_;
+  } else if (called.empty()) {
+    out.Error(element.at, "a default within another one has no class");
+    return;
+  }
+  const auto [entry, fresh] = classes_.try_emplace(called);
+  Class* const its = &entry->second;
+  if (fresh) its->in = in;
+  if (!fresh && (in != nullptr || called != main_)) {
+    out.Error(name->at, "there are two default classes \"" + called + "\"");
+    return;
+  }
+  for (const Element& child : element.children) {
+    if (child.name != "default") its->settings.push_back(&child);
+  }
+  for (const Element& child : element.children) {
+    if (child.name == "default") Add(child, its, out);
+  }
+}
+
+void Defaults::CheckClass(const Element& element, std::string_view attribute,
+                          Diagnostics& out) const {
+  const Attribute* const name = element.Find(attribute);
+  if (!name || classes_.contains(name->value) || name->value == main_) return;
+  std::vector<std::string> known;
+  for (const auto& [key, value] : classes_) known.push_back(key);
+  out.Error(name->at, "there is no default class \"" + name->value + "\"",
+            known.empty() ? "" : DidYouMean(name->value, known));
+}
+
+void Defaults::Collect(const Class* of, const std::string& kind,
+                       std::vector<const Element*>& found) {
+  if (of == nullptr) return;
+  Collect(of->in, kind, found);
+  for (const Element* const setting : of->settings) {
+    if (KindOf(setting->name) == kind) found.push_back(setting);
+  }
+}
+
+Layers Defaults::Over(const Element& element, const std::string& child_class,
+                      Diagnostics& out) const {
+  CheckClass(element, "class", out);
+  const Attribute* const own = element.Find("class");
+  const std::string& called = own ? own->value : child_class.empty() ? main_ : child_class;
+  std::vector<const Element*> layers;
+  const auto found = classes_.find(called);
+  // A freejoint has no defaults.
+  if (found != classes_.end() && element.name != "freejoint") {
+    Collect(&found->second, KindOf(element.name), layers);
+  }
+  layers.push_back(&element);
+  return {std::move(layers), out};
+}
+
+}  // namespace taut::mjcf

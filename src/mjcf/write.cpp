@@ -1,0 +1,360 @@
+// The text of MJCF. What taut's numbers mean there is in docs/from_mujoco.md.
+#include "mjcf/write.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "description/reader.h"
+#include "math/vec.h"
+#include "mjcf/unique_names.h"
+
+namespace taut::mjcf {
+namespace {
+
+using description::Shown;
+
+constexpr int kPlaneBit = 1, kBodyBit = 2;
+
+std::string List(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : " ") + Shown(value);
+  return text;
+}
+std::string Numbers(const Vec3& v) { return List({v.x, v.y, v.z}); }
+std::string Numbers(const Quat& q) { return List({q.w, q.x, q.y, q.z}); }
+/// ` key="value"`.
+std::string Key(const char* key, const std::string& value) {
+  return std::string(" ") + key + "=\"" + value + '"';
+}
+std::string TurnKey(const Quat& q) {
+  const bool turned = q.x != 0 || q.y != 0 || q.z != 0;
+  return turned ? Key("quat", Numbers(q)) : "";
+}
+
+class Writer {
+ public:
+  Writer(const ModelDef& def, const WriteOptions& options)
+      : def_(def),
+        options_(options),
+        geoms_(GeomsOf(def)),
+        friction_(FrictionsOf(def, geoms_)),
+        site_of_(def.cables.size()) {}
+
+  std::string Text() {
+    xml_ << "<mujoco" << Key("model", def_.name.empty() ? "unnamed" : def_.name) << ">\n"
+         << "<compiler angle=\"radian\" inertiafromgeom=\"false\" boundmass=\"0\" "
+            "boundinertia=\"0\"/>\n";
+    Settings();
+    Assets();
+    NameSites();
+    xml_ << "<worldbody>\n";
+    Grounds();
+    Sites(kWorld);
+    for (std::size_t b = 0; b < def_.bodies.size(); ++b) Body(static_cast<int>(b));
+    xml_ << "</worldbody>\n";
+    Contacts();
+    Tendons();
+    if (options_.cables == MjcfCables::kActuator) Actuators();
+    if (options_.keyframe) Start();
+    xml_ << "</mujoco>\n";
+    return xml_.str();
+  }
+
+ private:
+  Vec3 Com(int body) const {
+    return body == kWorld ? Vec3{} : def_.bodies[static_cast<std::size_t>(body)].com_m;
+  }
+
+  void Settings() {
+    xml_ << "<option" << (options_.elliptic ? Key("cone", "elliptic") : Key("cone", "pyramidal"))
+         << Key("gravity", Numbers(def_.gravity_m_per_s2));
+    if (options_.as_peer) {  // the defaults of MuJoCo 2, for versions that may have others
+      xml_ << Key("solver", "Newton") << Key("iterations", "100") << Key("tolerance", "1e-8")
+           << Key("integrator", "Euler");
+    } else {
+      xml_ << Key("timestep", "0.001");
+    }
+    xml_ << "/>\n";
+    if (options_.as_peer) {
+      // Bodies of many shapes, a disc on feet, need more; but its memory grows with the square.
+      const std::size_t usual = 12 * def_.bodies.size(),
+                        shapes = def_.capsules.size() + def_.spheres.size() + def_.boxes.size(),
+                        contacts = 100 + usual + 8 * (shapes > usual ? shapes - usual : 0);
+      xml_ << "<size nconmax=\"" << contacts << "\" njmax=\"" << 4 * contacts << "\"/>\n";
+    }
+    xml_ << "<default><geom condim=\"3\"" << FrictionKey(DefaultFriction()) << "/></default>\n";
+  }
+  static std::string FrictionKey(double friction) {
+    return Key("friction", Shown(friction) + " 0 0");
+  }
+  double DefaultFriction() const {
+    Material material;
+    material.kinetic_friction = friction_.shape;
+    return FrictionOf(def_, material, material);
+  }
+
+  void Assets() {
+    if (def_.hulls.empty() && def_.height_fields.empty()) return;
+    xml_ << "<asset>\n";
+    for (std::size_t i = 0; i < def_.hulls.size(); ++i) {
+      std::string corners;
+      for (const Vec3& p : def_.hulls[i].corners_m) {
+        corners += (corners.empty() ? "" : " ") + Numbers(p - Com(def_.hulls[i].body));
+      }
+      xml_ << "<mesh" << Key("name", geoms_.hulls[i].name) << Key("vertex", corners) << "/>\n";
+    }
+    for (std::size_t i = 0; i < def_.height_fields.size(); ++i) {
+      constexpr double kBase_m = 1;
+      const HeightFieldDef& field = def_.height_fields[i];
+      xml_ << "<hfield" << Key("name", geoms_.height_fields[i].name) << " nrow=\"" << field.rows
+           << "\" ncol=\"" << field.columns << '"'
+           << Key("size", List({0.5 * (field.columns - 1) * field.cell_m,
+                                0.5 * (field.rows - 1) * field.cell_m,
+                                RiseOf(mechanics::HeightsOf(field)), kBase_m}))
+           << "/>\n";
+    }
+    xml_ << "</asset>\n";
+  }
+
+  void Ground(const Geoms::Geom& geom, const std::string& shape) {
+    xml_ << "<geom" << Key("name", geom.name) << shape
+         << (friction_.grounds_rule ? Key("priority", "1") : "")
+         << Key("contype", std::to_string(geom.is_plane ? kPlaneBit : kBodyBit))
+         << Key("conaffinity", "0") << FrictionKey(OwnFriction(def_, friction_, geom)) << "/>\n";
+  }
+  void Grounds() {
+    for (std::size_t i = 0; i < def_.planes.size(); ++i) {
+      const PlaneDef& p = def_.planes[i];
+      const bool level = p.normal.x == 0 && p.normal.y == 0 && p.normal.z > 0;
+      Ground(geoms_.planes[i], Key("type", "plane") + Key("size", "1 1 1") +
+                                   Key("pos", Numbers(p.point_m)) +
+                                   (level ? "" : Key("zaxis", Numbers(p.normal))));
+    }
+    for (std::size_t i = 0; i < def_.terrain_boxes.size(); ++i) {
+      const TerrainBoxDef& b = def_.terrain_boxes[i];
+      Ground(geoms_.terrain_boxes[i], Key("type", "box") + Key("pos", Numbers(b.center_m)) +
+                                          TurnKey(b.orientation) +
+                                          Key("size", Numbers(b.half_extents_m)));
+    }
+    for (std::size_t i = 0; i < def_.height_fields.size(); ++i) {
+      const HeightFieldDef& f = def_.height_fields[i];
+      const std::string& name = geoms_.height_fields[i].name;
+      const Vec3 lowest = f.origin_m + Vec3{0, 0, mechanics::HeightsOf(f).least_m};
+      Ground(geoms_.height_fields[i],
+             Key("type", "hfield") + Key("hfield", name) + Key("pos", Numbers(lowest)));
+    }
+  }
+
+  /// A node's name for the cables that end there, else a site of the cable's own.
+  void NameSites() {
+    UniqueNames names;
+    for (const NodeDef& node : def_.nodes) {
+      sites_.push_back({names.Take(node.name), node.body, node.position_m});
+    }
+    const std::size_t nodes = sites_.size();
+    for (std::size_t c = 0; c < def_.cables.size(); ++c) {
+      const CableDef& cable = def_.cables[c];
+      for (std::size_t i = 0; i < cable.attachments.size(); ++i) {
+        const AttachmentDef& at = cable.attachments[i];
+        std::size_t site = 0;
+        while (site < nodes &&
+               !(sites_[site].body == at.body && Same(sites_[site].p, at.position_m))) {
+          ++site;
+        }
+        if (site == nodes) {
+          site = sites_.size();
+          sites_.push_back(
+              {names.Take(cable.name + "_" + std::to_string(i)), at.body, at.position_m});
+        }
+        site_of_[c].push_back(site);
+      }
+    }
+    for (const JointDef& bar : def_.joints) {
+      bar_sites_.push_back(sites_.size());
+      sites_.push_back({names.Take(bar.name + "_from"), bar.body_a, bar.from_m});
+      sites_.push_back({names.Take(bar.name + "_to"), bar.body_b, bar.to_m});
+    }
+  }
+  static bool Same(const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+  void Sites(int body) {
+    for (const Site& site : sites_) {
+      if (site.body != body) continue;
+      xml_ << "<site" << Key("name", site.name) << Key("pos", Numbers(site.p - Com(body)))
+           << "/>\n";
+    }
+  }
+
+  void Body(int b) {
+    const BodyDef& body = def_.bodies[static_cast<std::size_t>(b)];
+    xml_ << "<body" << Key("name", BodyName(b)) << Key("pos", Numbers(body.com_m)) << ">\n";
+    if (!body.fixed) {
+      const Inertia& j = body.inertia_kg_m2;
+      xml_ << "<freejoint/>\n<inertial pos=\"0 0 0\"" << Key("mass", Shown(body.mass_kg))
+           << Key("fullinertia", List({j.xx, j.yy, j.zz, j.xy, j.xz, j.yz})) << "/>\n";
+    }
+    Shapes(b);
+    Sites(b);
+    xml_ << "</body>\n";
+  }
+  std::string BodyName(int b) {
+    while (body_names_.size() <= static_cast<std::size_t>(b)) {
+      body_names_.push_back(unique_bodies_.Take(def_.bodies[body_names_.size()].name));
+    }
+    return body_names_[static_cast<std::size_t>(b)];
+  }
+
+  void Shapes(int body) {
+    const Vec3 com = Com(body);
+    for (std::size_t i = 0; i < def_.spheres.size(); ++i) {
+      const SphereDef& s = def_.spheres[i];
+      if (s.body != body) continue;
+      Geom(geoms_.spheres[i], Key("type", "sphere") + Key("pos", Numbers(s.center_m - com)) +
+                                  Key("size", Shown(s.radius_m)));
+    }
+    for (std::size_t i = 0; i < def_.capsules.size(); ++i) {
+      const CapsuleDef& c = def_.capsules[i];
+      if (c.body != body) continue;
+      Geom(geoms_.capsules[i],
+           Key("type", "capsule") +
+               Key("fromto", Numbers(c.from_m - com) + " " + Numbers(c.to_m - com)) +
+               Key("size", Shown(c.radius_m)));
+    }
+    for (std::size_t i = 0; i < def_.boxes.size(); ++i) {
+      const BoxDef& b = def_.boxes[i];
+      if (b.body != body) continue;
+      Geom(geoms_.boxes[i], Key("type", "box") + Key("pos", Numbers(b.center_m - com)) +
+                                TurnKey(b.orientation) + Key("size", Numbers(b.half_extents_m)));
+    }
+    for (std::size_t i = 0; i < def_.hulls.size(); ++i) {
+      if (def_.hulls[i].body != body) continue;
+      Geom(geoms_.hulls[i], Key("type", "mesh") + Key("mesh", geoms_.hulls[i].name));
+    }
+  }
+  void Geom(const Geoms::Geom& geom, const std::string& shape) {
+    const double friction = OwnFriction(def_, friction_, geom);
+    if (options_.as_peer && !geom.meets_planes && !geom.meets_bodies) return;
+    xml_ << "<geom" << Key("name", geom.name) << shape
+         << Key("contype", std::to_string(geom.meets_bodies ? kBodyBit : 0))
+         << Key("conaffinity", std::to_string((geom.meets_planes ? kPlaneBit : 0) +
+                                              (geom.meets_bodies ? kBodyBit : 0)))
+         << (friction == DefaultFriction() ? "" : FrictionKey(friction)) << "/>\n";
+  }
+
+  void Contacts() {
+    const auto apart = KeptApart(def_);
+    if (apart.empty() && friction_.pairs.empty()) return;
+    xml_ << "<contact>\n";
+    for (const Friction::Pair& pair : friction_.pairs) {
+      xml_ << "<pair" << Key("geom1", pair.geom1) << Key("geom2", pair.geom2) << " condim=\"3\""
+           << Key("friction", List({pair.friction, pair.friction, 0, 0, 0})) << "/>\n";
+    }
+    for (const auto& [a, b] : apart) {
+      if (a == kWorld || b == kWorld) continue;
+      xml_ << "<exclude" << Key("body1", BodyName(a)) << Key("body2", BodyName(b)) << "/>\n";
+    }
+    xml_ << "</contact>\n";
+  }
+
+  void Tendons() {
+    if (def_.cables.empty() && def_.joints.empty()) return;
+    UniqueNames names;
+    xml_ << "<tendon>\n";
+    for (std::size_t c = 0; c < def_.cables.size(); ++c) {
+      const CableDef& cable = def_.cables[c];
+      tendons_.push_back(names.Take(cable.name));
+      xml_ << "<spatial" << Key("name", tendons_.back());
+      if (options_.cables == MjcfCables::kSpring) {
+        xml_ << Key("springlength", "0 " + Shown(cable.rest_length_m))
+             << Key("stiffness", Shown(cable.stiffness_n_per_m))
+             << Key("damping", Shown(cable.damping_n_s_per_m));
+      }
+      xml_ << ">";
+      for (const std::size_t site : site_of_[c]) {
+        xml_ << "<site" << Key("site", sites_[site].name) << "/>";
+      }
+      xml_ << "</spatial>\n";
+    }
+    for (std::size_t j = 0; j < def_.joints.size(); ++j) {
+      const JointDef& bar = def_.joints[j];
+      xml_ << "<spatial" << Key("name", names.Take(bar.name))
+           << Key("springlength", Shown(bar.rest)) << Key("stiffness", Shown(bar.stiffness))
+           << Key("damping", Shown(bar.damping)) << "><site"
+           << Key("site", sites_[bar_sites_[j]].name) << "/><site"
+           << Key("site", sites_[bar_sites_[j] + 1].name) << "/></spatial>\n";
+    }
+    xml_ << "</tendon>\n";
+  }
+
+  /// The force k u - k l - b dl/dt, which pushes where it is positive, ends at 0.
+  void Actuators() {
+    if (def_.cables.empty()) return;
+    xml_ << "<actuator>\n";
+    for (std::size_t c = 0; c < def_.cables.size(); ++c) {
+      const CableDef& cable = def_.cables[c];
+      const double k = cable.stiffness_n_per_m, b = cable.damping_n_s_per_m,
+                   at_zero = options_.keyframe ? 0 : k * cable.rest_length_m;
+      xml_ << "<general" << Key("name", tendons_[c]) << Key("tendon", tendons_[c])
+           << Key("gainprm", Shown(k)) << Key("biastype", "affine")
+           << Key("biasprm", List({at_zero, -k, -b}))
+           << " ctrllimited=\"false\" forcelimited=\"true\" forcerange=\"-1e12 0\"/>\n";
+    }
+    xml_ << "</actuator>\n";
+  }
+
+  /// Speeds and rest lengths of the start. What is not named, the poses, is as in the bodies.
+  void Start() {
+    std::vector<double> speeds, controls;
+    for (const BodyDef& body : def_.bodies) {
+      if (body.fixed) continue;
+      const Vec3 &v = body.velocity_m_per_s, &w = body.angular_velocity_rad_per_s;
+      speeds.insert(speeds.end(), {v.x, v.y, v.z, w.x, w.y, w.z});
+    }
+    for (const CableDef& cable : def_.cables) controls.push_back(cable.rest_length_m);
+    xml_ << "<keyframe><key name=\"start\"" << (speeds.empty() ? "" : Key("qvel", List(speeds)))
+         << (controls.empty() ? "" : Key("ctrl", List(controls))) << "/></keyframe>\n";
+  }
+
+  struct Site {
+    std::string name;
+    int body;
+    Vec3 p;
+  };
+  const ModelDef& def_;
+  const WriteOptions& options_;
+  const Geoms geoms_;
+  const Friction friction_;
+  std::ostringstream xml_;
+  std::vector<Site> sites_;
+  std::vector<std::vector<std::size_t>> site_of_;  ///< Per attachment of a cable.
+  std::vector<std::size_t> bar_sites_;             ///< The first of two, per joint.
+  std::vector<std::string> tendons_, body_names_;
+  UniqueNames unique_bodies_;
+};
+
+}  // namespace
+
+double RiseOf(const mechanics::HeightRange& range) {
+  return std::max(range.most_m - range.least_m, 1e-3);
+}
+
+std::string Text(const ModelDef& def, const WriteOptions& options) {
+  return Writer(def, options).Text();
+}
+
+}  // namespace taut::mjcf
+
+namespace taut {
+
+std::optional<std::string> ExportMjcf(const ModelDef& def, const MjcfExport& options,
+                                      Diagnostics& out) {
+  const std::size_t errors_before = out.items().size();
+  const mjcf::WriteOptions all{options};
+  mjcf::RefuseWhatMjcfLacks(def, all, out);
+  if (out.items().size() != errors_before) return std::nullopt;
+  mjcf::WarnOfWhatIsLeftOut(def, all, out);
+  return mjcf::Text(def, all);
+}
+
+}  // namespace taut

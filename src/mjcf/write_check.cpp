@@ -1,0 +1,134 @@
+// What MJCF cannot say of a model, and what it leaves out.
+#include <algorithm>
+
+#include "mjcf/write.h"
+
+namespace taut::mjcf {
+namespace {
+
+bool IsSpecial(const Material& m) { return m.stribeck || m.directions; }
+
+/// Calls `f` with every shape and ground that collides: its name and material.
+template <class F>
+void ForMaterials(const ModelDef& def, F f) {
+  const auto all = [&](const auto& list) {
+    for (const auto& part : list) {
+      if constexpr (requires { part.collides; }) {
+        if (!part.collides) continue;
+      }
+      f(part.name, part.material);
+    }
+  };
+  all(def.capsules), all(def.spheres), all(def.boxes), all(def.hulls);
+  all(def.planes), all(def.terrain_boxes), all(def.height_fields);
+}
+
+class Refuser {
+ public:
+  Refuser(const ModelDef& def, const WriteOptions& options, Diagnostics& out)
+      : def_(def), options_(options), out_(out) {}
+
+  void Run() {
+    for (const CableDef& cable : def_.cables) LookAt(cable);
+    for (const JointDef& joint : def_.joints) {
+      if (IsBar(joint) && !joint.least && !joint.most && joint.friction == 0 && joint.rest > 0) {
+        continue;
+      }
+      Refuse("the joint \"" + joint.name + "\"",
+             IsBar(joint) ? "of bars, springs and dampers with a rest length are written"
+                          : "bars are written");
+    }
+    for (const MotionDef& motion : def_.motions) {
+      Refuse("the motion of the body \"" + def_.bodies[static_cast<std::size_t>(motion.body)].name +
+             "\"");
+    }
+    for (const TerrainMeshDef& mesh : def_.terrain_meshes) {
+      Refuse("the terrain mesh \"" + mesh.name + "\"", "MuJoCo would fill its hollows");
+    }
+    for (const HeightFieldDef& field : def_.height_fields) {
+      if (options_.as_peer) continue;
+      Refuse("the height field \"" + field.name + "\"", "MuJoCo 2.2.2 reads heights from a file");
+    }
+    if (options_.cables == MjcfCables::kSpring && options_.keyframe) {
+      out_.Error({}, "cables that are springs have no controls for a keyframe");
+    }
+  }
+
+ private:
+  void Refuse(const std::string& what, const std::string& hint = {}) {
+    out_.Error({}, "MJCF cannot say " + what, hint);
+  }
+
+  void LookAt(const CableDef& cable) {
+    const std::string name = "the cable \"" + cable.name + "\": ";
+    if (cable.touches != CableTouches::kNone) {
+      Refuse(name + "it comes to lie against what it touches");
+    }
+    for (const AttachmentDef& at : cable.attachments) {
+      if (!at.wheel && at.friction == 0) continue;
+      Refuse(name + "it has friction or runs over wheels");
+      break;
+    }
+    if (cable.damping_law != DampingLaw::kExact) {
+      Refuse(name + "its damper has the law of NTRT", "`damping_law: exact`");
+    }
+  }
+
+  const ModelDef& def_;
+  const WriteOptions& options_;
+  Diagnostics& out_;
+};
+
+/// "x" or "x and 3 more".
+std::string Some(const std::vector<std::string>& names) {
+  std::string text = "\"" + names.front() + "\"";
+  if (names.size() > 1) text += " and " + std::to_string(names.size() - 1) + " more";
+  return text;
+}
+
+}  // namespace
+
+void RefuseWhatMjcfLacks(const ModelDef& def, const WriteOptions& options, Diagnostics& out) {
+  Refuser(def, options, out).Run();
+}
+
+void WarnOfWhatIsLeftOut(const ModelDef& def, const WriteOptions& options, Diagnostics& out) {
+  const auto warn = [&](const std::vector<std::string>& names, const std::string& what) {
+    if (!names.empty()) out.Warning({}, "left out: " + what + " of " + Some(names));
+  };
+  std::vector<std::string> restitution, sticking, special, motors, speeds;
+  ForMaterials(def, [&](const std::string& name, const Material& m) {
+    if (m.restitution > 0) restitution.push_back(name);
+    if (m.static_friction != m.kinetic_friction) sticking.push_back(name);
+    if (IsSpecial(m)) special.push_back(name);
+  });
+  warn(restitution, "restitution");
+  warn(sticking, "friction at rest where it is more than while sliding,");
+  warn(special, "friction by speed or direction");
+  for (const CableDef& cable : def.cables) {
+    const ActuatorDef::Kind kind = cable.actuator.kind;
+    const bool moves = kind != ActuatorDef::Kind::kNone;
+    const bool ideal = kind == ActuatorDef::Kind::kIdeal;
+    if (options.cables == MjcfCables::kSpring ? moves : moves && !ideal) {
+      motors.push_back(cable.name);
+    }
+  }
+  warn(motors, options.cables == MjcfCables::kSpring ? "the motor" : "the motor's limits");
+  for (const BodyDef& body : def.bodies) {
+    const Vec3 &v = body.velocity_m_per_s, &w = body.angular_velocity_rad_per_s;
+    const bool moves = v.x != 0 || v.y != 0 || v.z != 0 || w.x != 0 || w.y != 0 || w.z != 0;
+    if (!body.fixed && moves) speeds.push_back(body.name);
+  }
+  if (!options.keyframe) warn(speeds, "the velocity (a keyframe would have it)");
+  if (options.cables == MjcfCables::kSpring) {
+    const auto damped = std::find_if(def.cables.begin(), def.cables.end(),
+                                     [](const CableDef& c) { return c.damping_n_s_per_m > 0; });
+    if (damped != def.cables.end()) {
+      out.Warning({}, "MuJoCo's dampers of tendons act on slack cables, too, and push",
+                  "cables as actuators do not push");
+    }
+  }
+  if (def.friction_law != FrictionLaw::kCone) out.Warning({}, "left out: friction along the slip");
+}
+
+}  // namespace taut::mjcf

@@ -1,0 +1,129 @@
+// Reading XML: the only place that knows the library.
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/input_file.h"
+#include "mjcf/element.h"
+
+namespace taut::mjcf {
+namespace {
+
+constexpr std::size_t kMostBytes = 64 << 20;
+constexpr std::size_t kMostElements = 500'000;
+constexpr int kMostFiles = 100;
+
+class XmlReader {
+ public:
+  XmlReader(const std::string& path, std::vector<std::string>& files, Diagnostics& out)
+      : folder_(std::filesystem::path(path).parent_path()), files_(files), out_(out) {}
+
+  std::optional<Element> Read(const std::string& path) {
+    const auto text = base::ReadInputFile(path, kMostBytes, "a model has less", out_);
+    if (!text) return std::nullopt;
+    files_.push_back(path);
+    if (std::any_of(text->begin(), text->end(), base::IsControl)) {
+      out_.Error({path}, "there are control characters in this file");
+      return std::nullopt;
+    }
+    tinyxml2::XMLDocument document;
+    if (document.Parse(text->data(), text->size()) != tinyxml2::XML_SUCCESS ||
+        document.RootElement() == nullptr) {
+      const bool empty = document.ErrorID() == tinyxml2::XML_ERROR_EMPTY_DOCUMENT;
+      out_.Error({path, empty ? 0 : document.ErrorLineNum()},
+                 empty ? "this file is empty" : "this is no XML: " + Why(document));
+      return std::nullopt;
+    }
+    if (document.RootElement()->NextSiblingElement() != nullptr) {
+      out_.Error({path, document.RootElement()->NextSiblingElement()->GetLineNum()},
+                 "there is a second element beside the root");
+      return std::nullopt;
+    }
+    Element root;
+    return Take(*document.RootElement(), path, root) ? std::optional(std::move(root))
+                                                     : std::nullopt;
+  }
+
+ private:
+  static std::string Why(const tinyxml2::XMLDocument& document) {
+    const std::string id = tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID());
+    if (document.ErrorID() == tinyxml2::XML_ERROR_MISMATCHED_ELEMENT) {
+      return "an element is closed by another name";
+    }
+    if (document.ErrorID() == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) {
+      return "elements are nested too deeply";
+    }
+    if (document.ErrorID() == tinyxml2::XML_ERROR_PARSING_ATTRIBUTE) {
+      return "an attribute is not key=\"value\", or is there twice";
+    }
+    return id.substr(id.rfind("ERROR_") == id.npos ? 0 : id.rfind("ERROR_") + 6);
+  }
+
+  bool Take(const tinyxml2::XMLElement& from, const std::string& path, Element& to) {
+    if (++elements_ > kMostElements) {
+      out_.Error({path, from.GetLineNum()},
+                 "there are more than " + std::to_string(kMostElements) + " elements");
+      return false;
+    }
+    to.name = from.Name();
+    to.at = {path, from.GetLineNum(), 0};
+    for (const auto* a = from.FirstAttribute(); a != nullptr; a = a->Next()) {
+      const SourceRef at{path, a->GetLineNum(), 0};
+      const std::string value = a->Value();
+      if (std::any_of(value.begin(), value.end(), base::IsControl)) {
+        out_.Error(at, to.name + "." + a->Name() + " has control characters");
+        return false;
+      }
+      to.attributes.push_back({a->Name(), value, at});
+    }
+    for (const auto* c = from.FirstChildElement(); c != nullptr; c = c->NextSiblingElement()) {
+      if (std::string_view(c->Name()) == "include") {
+        if (!Include(*c, path, to)) return false;
+      } else if (!Take(*c, path, to.children.emplace_back())) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// The children of the file's root, here.
+  bool Include(const tinyxml2::XMLElement& include, const std::string& path, Element& to) {
+    const SourceRef at{path, include.GetLineNum(), 0};
+    const char* const name = include.Attribute("file");
+    if (name == nullptr) {
+      out_.Error(at, "include has no file");
+      return false;
+    }
+    const std::string file = (folder_ / name).lexically_normal().string();
+    if (std::find(files_.begin(), files_.end(), file) != files_.end()) {
+      out_.Error(at, "\"" + file + "\" is included twice");
+      return false;
+    }
+    if (files_.size() >= static_cast<std::size_t>(kMostFiles)) {
+      out_.Error(at, "there are more than " + std::to_string(kMostFiles) + " files");
+      return false;
+    }
+    auto root = Read(file);
+    if (!root) {
+      out_.Error(at, "what it includes cannot be read");
+      return false;
+    }
+    for (Element& child : root->children) to.children.push_back(std::move(child));
+    return true;
+  }
+
+  const std::filesystem::path folder_;  ///< Of the first file: where all others are seen from.
+  std::vector<std::string>& files_;
+  Diagnostics& out_;
+  std::size_t elements_ = 0;
+};
+
+}  // namespace
+
+std::optional<Element> ReadXml(const std::string& path, std::vector<std::string>& files,
+                               Diagnostics& out) {
+  return XmlReader(path, files, out).Read(path);
+}
+
+}  // namespace taut::mjcf

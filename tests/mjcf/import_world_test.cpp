@@ -1,0 +1,88 @@
+// What stands around the robot, what touches what, and what nobody needs.
+#include <cmath>
+
+#include "math/vec.h"
+#include "mjcf/mjcf_folder.h"
+#include "mjcf/mujoco_model.h"
+
+namespace taut::test {
+namespace {
+
+constexpr double kSame = 1e-12;
+
+class MjcfWorld : public MjcfFolder {};
+
+TEST_F(MjcfWorld, WhatTouchesNothingDoesNotCollide) {
+  const auto made = Import(
+      R"(<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1" friction="0.4" pos="0 0 -1" zaxis="0 1 1"/>
+    <geom name="step" type="box" size="0.1 0.2 0.3" euler="0 0 30" friction="0.7"/>
+    <body name="a" pos="0 0 1"><freejoint/><geom type="sphere" size="0.1" friction="0.4"/></body>
+    <body name="b" pos="0 0 2"><freejoint/><geom type="sphere" size="0.1" friction="0.4"/></body>
+    <body name="c" pos="0 0 3"><freejoint/><geom type="sphere" size="0.1" contype="0" conaffinity="0"/></body>
+    </worldbody><contact><exclude body1="a" body2="b"/></contact></mujoco>)");
+  ASSERT_TRUE(made);
+  const ModelDef& def = made->robot.def;
+  ASSERT_EQ(def.spheres.size(), 3u);
+  EXPECT_TRUE(def.spheres[0].collides && def.spheres[1].collides);
+  EXPECT_FALSE(def.spheres[2].collides);
+  ASSERT_EQ(def.apart.size(), 1u);
+  EXPECT_EQ(def.apart[0].body_a + def.apart[0].body_b, 1);
+  EXPECT_EQ(def.friction_combine, CombineRule::kMaximum);
+  ASSERT_EQ(def.planes.size(), 1u);
+  ExpectNear(def.planes[0].normal, {0, std::sqrt(0.5), std::sqrt(0.5)}, kSame);
+  EXPECT_EQ(def.planes[0].material.kinetic_friction, 0.4);
+  ASSERT_EQ(def.terrain_boxes.size(), 1u);
+  EXPECT_TRUE(out_.warnings().empty()) << Said();
+  Write("model.yaml", yaml_);
+  Write("on_ground.yaml", MjcfExperimentYaml(*made, "model.yaml"));
+  Diagnostics out;
+  const auto experiment = LoadExperiment(Path("on_ground.yaml"), {}, out);
+  ASSERT_TRUE(experiment) << out.Format();
+  EXPECT_EQ(experiment->step_s, 0.002);
+  const ModelDef& on = experiment->robot.def;
+  ExpectNear(on.planes[0].point_m, def.planes[0].point_m, kSame);
+  ExpectNear(on.planes[0].normal, def.planes[0].normal, kSame);
+  ExpectNear(on.terrain_boxes[0].half_extents_m, {0.1, 0.2, 0.3}, kSame);
+  ExpectNear(Rotate(on.terrain_boxes[0].orientation, {1, 0, 0}),
+             Rotate(def.terrain_boxes[0].orientation, {1, 0, 0}), kSame);
+  EXPECT_EQ(on.terrain_boxes[0].material.kinetic_friction, 0.7);
+}
+
+TEST_F(MjcfWorld, AGroundOfHigherPrioritySaysTheFriction) {
+  const auto friction = [&](const char* floor) {
+    const auto made =
+        Import("<mujoco><worldbody><geom name=\"floor\" type=\"plane\" size=\"1 1 1\" " +
+               std::string(floor) +
+               "/><body name=\"a\" pos=\"0 0 1\"><freejoint/><geom type=\"sphere\" size=\"0.1\" "
+               "friction=\"0.4\"/></body></worldbody></mujoco>");
+    const ModelDef def = made ? made->robot.def : ModelDef{};
+    const double a = def.spheres[0].material.kinetic_friction,
+                 b = def.planes[0].material.kinetic_friction;
+    return def.friction_combine == CombineRule::kMaximum ? std::max(a, b) : std::sqrt(a * b);
+  };
+  EXPECT_NEAR(friction("friction=\"0.2\""), 0.4, kSame);
+  EXPECT_NEAR(friction("friction=\"0.2\" priority=\"1\""), 0.2, kSame);
+  EXPECT_NEAR(friction("friction=\"0.9\" priority=\"1\""), 0.9, kSame);
+  EXPECT_TRUE(out_.warnings().empty()) << Said();
+}
+
+TEST_F(MjcfWorld, WhatIsLeftOutIsToldInALine) {
+  const auto made = Import(
+      R"(<mujoco><visual><map znear="0.1"/></visual><asset><mesh name="m" file="no.stl"/></asset>
+    <worldbody><light pos="0 0 3"/><camera name="c"/><body name="a" pos="0 0 1"><freejoint/>
+    <geom type="sphere" size="0.1" rgba="1 0 0 1" solref="0.01 1"/>
+    <geom type="mesh" mesh="m" contype="0" conaffinity="0" mass="0"/><site name="s"/></body><site name="t"/></worldbody>
+    <tendon><spatial name="shown" width="0.01"><site site="s"/><site site="t"/></spatial></tendon>
+    <sensor><tendonpos tendon="shown"/></sensor></mujoco>)");
+  ASSERT_TRUE(made);
+  EXPECT_TRUE(made->robot.def.cables.empty());
+  ASSERT_GE(made->notes.size(), 2u);
+  EXPECT_EQ(
+      made->notes[0],
+      "left out: asset, camera, geom of type mesh that only shows, geom.rgba, geom.solref, light, "
+      "sensor, spatial.width, visual");
+  EXPECT_EQ(made->notes[1], "left out: 1 tendon without stiffness and actuator, which only show");
+}
+
+}  // namespace
+}  // namespace taut::test

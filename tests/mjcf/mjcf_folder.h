@@ -1,0 +1,49 @@
+/// Files of MJCF, and what taut makes of them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+
+#include "taut/mjcf.h"
+#include "unit/experiment_fixture.h"
+
+namespace taut::test {
+
+class MjcfFolder : public ExperimentFolder {
+ protected:
+  /// What becomes of the text. It is written as a model and read back, too: what comes back is
+  /// the same robot, or ModelYaml complains.
+  std::optional<ImportedMjcf> Import(const std::string& xml, MjcfImport options = {}) {
+    Write("model.xml", xml);
+    out_ = {};
+    auto made = ImportMjcf(Path("model.xml"), options, out_);
+    EXPECT_TRUE(made) << out_.Format();
+    if (!made) return made;
+    Diagnostics writing;
+    yaml_ = ModelYaml(made->robot, "", writing).value_or("");
+    EXPECT_TRUE(writing.ok()) << writing.Format();
+    return made;
+  }
+  /// The complaints about the text, without the folder's name.
+  std::string Refused(const std::string& xml, MjcfImport options = {}) {
+    Write("model.xml", xml);
+    out_ = {};
+    EXPECT_FALSE(ImportMjcf(Path("model.xml"), options, out_));
+    return Said();
+  }
+  std::string Said() const {
+    std::string text = out_.Format();
+    const std::string folder = Path("");
+    for (std::size_t at = text.find(folder); at != text.npos; at = text.find(folder)) {
+      text.erase(at, folder.size());
+    }
+    return text;
+  }
+
+  Diagnostics out_;
+  std::string yaml_;
+};
+
+}  // namespace taut::test

@@ -1,0 +1,180 @@
+// What is not read is refused by name and line, all of it at once.
+#include <array>
+
+#include "mjcf/mjcf_folder.h"
+
+namespace taut::test {
+namespace {
+
+class MjcfRefusal : public MjcfFolder {};
+
+/// Line 3 is in a free body, line 6 among tendons, line 8 among actuators, line 10 beside these.
+std::string With(const std::string& in_body, const std::string& in_tendons = "",
+                 const std::string& in_actuators = "", const std::string& beside = "") {
+  return "<mujoco><worldbody><site name=\"top\" pos=\"0 0 2\"/><body name=\"a\" pos=\"0 0 "
+         "1\"><freejoint/>\n"
+         "<geom name=\"g\" type=\"sphere\" size=\"0.1\"/><site name=\"s\"/>\n" +
+         in_body +
+         "\n</body></worldbody>\n<tendon><spatial name=\"c\" stiffness=\"9\" "
+         "springlength=\"0 1\"><site site=\"top\"/><site site=\"s\"/></spatial>\n" +
+         in_tendons + "\n</tendon><actuator>\n" + in_actuators + "\n</actuator>\n" + beside +
+         "\n</mujoco>\n";
+}
+
+TEST_F(MjcfRefusal, NamesEachWithItsLine) {
+  const std::string spatial = "<site site=\"top\"/><site site=\"s\"/></spatial>";
+  const std::string tendon = "<spatial name=\"d\" stiffness=\"9\" springlength=\"1\" ";
+  const auto with = [&](const std::string& keys) { return tendon + keys + ">" + spatial; };
+  const std::vector<std::array<std::string, 5>> cases{
+      {"<body name=\"b\"><joint name=\"h\" type=\"hinge\"/><geom size=\"0.1\"/></body>", "", "", "",
+       "3: error: joint \"h\" of body \"b\" is of type hinge"},
+      {"<body name=\"b\"><joint type=\"ball\"/><geom size=\"0.1\"/></body>", "", "", "",
+       "3: error: joint of body \"b\" is of type ball"},
+      {"<body name=\"b\"><joint type=\"slide\"/><geom size=\"0.1\"/></body>", "", "", "",
+       "type slide"},
+      {"<body name=\"b\"><freejoint/><geom size=\"0.1\"/></body>", "", "", "",
+       "3: error: freejoint: a body within another one has no free joint"},
+      {"<geom name=\"m\" type=\"mesh\" mesh=\"x\"/>", "", "", "",
+       "3: error: geom \"m\": geoms of type mesh are not read"},
+      {"<geom type=\"hfield\" hfield=\"x\"/>", "", "", "",
+       "3: error: geom: geoms of type hfield are not read"},
+      {"<geom type=\"ellipsoid\" size=\"1 1 1\"/>", "", "", "",
+       "geoms of type ellipsoid are not read"},
+      {"<geom type=\"balloon\" size=\"1\"/>", "", "", "",
+       "3: error: geom: there is no type \"balloon\""},
+      {"<geom type=\"plane\" size=\"1 1 1\"/>", "", "", "",
+       "3: error: geom: a plane in a body that moves"},
+      {"<geom type=\"box\" size=\"1 1\"/>", "", "", "",
+       "3: error: geom: a box needs 3 positive sizes"},
+      {"<geom type=\"capsule\" size=\"0.1\"/>", "", "", "", "a capsule needs 2 positive sizes"},
+      {"<geom size=\"0.1x\"/>", "", "", "",
+       "3: error: geom: size must be 1 to 3 numbers, not \"0.1x\""},
+      {"<geom size=\"nan\"/>", "", "", "", "size must be 1 to 3 numbers, not \"nan\""},
+      {"<geom size=\"0.1\" mass=\"-1\"/>", "", "", "", "3: error: geom: its mass is negative"},
+      {"<geom size=\"0.1\" collor=\"1\"/>", "", "", "", "3: error: geom has no \"collor\" in MJCF"},
+      {"<geom size=\"0.1\" size=\"0.2\"/>", "", "", "",
+       "3: error: this is no XML: an attribute is not key=\"value\", or is there twice"},
+      {"<geom size=\"0.1\" class=\"x\"/>", "", "", "", "3: error: there is no default class \"x\""},
+      {"<geom size=\"0.1\" quat=\"0 0 0 0\"/>", "", "", "", "3: error: geom: quat has no length"},
+      {"<geom size=\"0.1\" quat=\"1 0 0 0\" euler=\"1 2 3\"/>", "", "", "",
+       "its orientation is given in several ways"},
+      {"<composite type=\"cable\"/>", "", "", "", "3: error: composite in body is not read"},
+      {"<flexcomp/>", "", "", "", "3: error: flexcomp in body is not read"},
+      {"<replicate/>", "", "", "", "3: error: replicate in body is not read"},
+      {"<wheel/>", "", "", "", "3: error: body has no element \"wheel\" in MJCF"},
+      {"<site name=\"s\"/>", "", "", "", "3: error: there are two of site \"s\""},
+      {"", "<fixed name=\"f\"/>", "", "", "6: error: fixed \"f\" in tendon is not read"},
+      {"", "<spatial name=\"d\"><site site=\"top\"/><geom geom=\"g\"/><site site=\"s\"/></spatial>",
+       "", "", "6: error: geom in spatial is not read"},
+      {"",
+       "<spatial name=\"d\"><site site=\"top\"/><pulley divisor=\"2\"/><site "
+       "site=\"s\"/></spatial>",
+       "", "", "6: error: pulley in spatial is not read"},
+      {"", with("frictionloss=\"1\""), "", "",
+       "6: error: spatial \"d\": frictionloss of a tendon is not read"},
+      {"", with("armature=\"1\""), "", "", "armature of a tendon is not read"},
+      {"", with("damping=\"-1\""), "", "", "6: error: spatial \"d\": damping is negative"},
+      {"", "<spatial name=\"d\" damping=\"1\">" + spatial, "", "",
+       "6: error: tendon \"d\" is a damper without stiffness"},
+      {"", "<spatial name=\"d\" limited=\"true\" range=\"0 1\">" + spatial, "", "",
+       "6: error: tendon \"d\" has a limit of its length and no stiffness"},
+      {"", "<spatial name=\"d\" stiffness=\"1\" springlength=\"0\">" + spatial, "", "",
+       "6: error: tendon \"d\" has no rest length"},
+      {"", "<spatial name=\"d\" stiffness=\"1\"><site site=\"top\"/></spatial>", "", "",
+       "6: error: spatial \"d\" has fewer than two sites"},
+      {"", "<spatial name=\"d\"><site site=\"tip\"/><site site=\"s\"/></spatial>", "", "",
+       "6: error: there is no site \"tip\""},
+      {"", "", "<muscle name=\"m\" tendon=\"c\"/>", "",
+       "8: error: muscle \"m\": actuators of kind muscle are not read"},
+      {"", "", "<motor name=\"m\" joint=\"j\"/>", "",
+       "8: error: motor \"m\": an actuator on a joint is not read"},
+      {"", "", "<general name=\"m\" tendon=\"c\" dyntype=\"user\"/>", "",
+       "8: error: general \"m\": its dyntype is user"},
+      {"", "", "<general name=\"m\" tendon=\"c\" gaintype=\"affine\"/>", "",
+       "its gaintype is affine"},
+      {"", "", "<general name=\"m\" tendon=\"c\" biastype=\"muscle\"/>", "",
+       "its biastype is muscle"},
+      {"", "", "<position name=\"m\" tendon=\"c\" dampratio=\"1\"/>", "", "dampratio is not read"},
+      {"", "", "<motor name=\"m\" tendon=\"e\"/>", "", "8: error: there is no tendon \"e\""},
+      {"", "<spatial name=\"d\">" + spatial, "<motor tendon=\"d\"/>", "",
+       "6: error: tendon \"d\" is pulled by a force, without stiffness"},
+      {"", "<spatial name=\"d\">" + spatial, "<position tendon=\"d\" kp=\"5\"/>",
+       "<keyframe><key name=\"k\" ctrl=\"0.5\"/></keyframe>", "--keyframe k has others"},
+      {"", "", "", "<equality><connect name=\"e\" body1=\"a\" anchor=\"0 0 0\"/></equality>",
+       "10: error: the equality connect \"e\" is not read"},
+      {"", "", "", "<equality><weld body1=\"a\" relpose=\"0 0 1 1 0 0 0\"/></equality>",
+       "10: error: weld: a weld with a relpose is not read"},
+      {"", "", "", "<extension><plugin plugin=\"x\"/></extension>",
+       "10: error: extension in mujoco is not read"},
+      {"", "", "", "<deformable/>", "10: error: deformable in mujoco is not read"},
+      {"", "", "", "<option density=\"1.2\"/>", "10: error: option: a fluid is not read"},
+      {"", "", "", "<option><flag equality=\"disable\"/></option>",
+       "10: error: flag.equality=\"disable\" is not read"},
+      {"", "", "", "<compiler angle=\"degrees\"/>",
+       "10: error: compiler: angle is \"degrees\" (did you mean"},
+      {"", "", "", "<compiler eulerseq=\"xy\"/>", "eulerseq must be three of"},
+      {"", "", "", "<keyframe><key qpos=\"1 2\"/></keyframe>",
+       "10: error: key: qpos must be 7 numbers"},
+      {"", "", "", "<contact><exclude body1=\"a\" body2=\"z\"/></contact>",
+       "10: error: there is no body \"z\""},
+      {"", "", "", "<include file=\"gone.xml\"/>", "10: error: what it includes cannot be read"},
+      {"", "", "", "<include file=\"model.xml\"/>", "10: error: \"model.xml\" is included twice"},
+      {"", "", "", "<worldbody><body name=\"b\"><freejoint/></body></worldbody>",
+       "10: error: the body \"b\" has no mass"},
+      {"", "", "",
+       "<worldbody><body name=\"b\"><freejoint/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 "
+       "1 5\"/></body></worldbody>",
+       "10: error: the moments of inertia of the body \"b\" are those of no body"},
+  };
+  for (const auto& c : cases) {
+    const std::string said = Refused(With(c[0], c[1], c[2], c[3]));
+    EXPECT_NE(said.find(c[4]), std::string::npos) << c[4] << "\n" << said;
+  }
+}
+
+TEST_F(MjcfRefusal, SaysAllAtOnce) {
+  const std::string said = Refused(With("<geom type=\"mesh\" mesh=\"m\"/>", "<fixed name=\"f\"/>",
+                                        "<muscle tendon=\"c\"/>", "<deformable/>"));
+  for (const char* line : {"xml:3: ", "xml:6: ", "xml:8: ", "xml:10: "}) {
+    EXPECT_NE(said.find(line), std::string::npos) << said;
+  }
+}
+
+TEST_F(MjcfRefusal, SpringsThatAreNoBarsAreNamedWhereTheyAreToPush) {
+  const MjcfImport push{.slack = MjcfSlack::kAsMujoco};
+  EXPECT_NE(
+      Refused(With("",
+                   "<spatial name=\"d\" stiffness=\"1\" springlength=\"1\"><site site=\"top\"/>"
+                   "<site site=\"s\"/><site site=\"top\"/></spatial>"),
+              push)
+          .find("6: error: tendon \"d\" pushes, and is no bar"),
+      std::string::npos)
+      << Said();
+}
+
+TEST_F(MjcfRefusal, WhatIsNoXmlOrNotMjcfIsSaid) {
+  EXPECT_NE(Refused("").find("model.xml: error: this file is empty"), std::string::npos) << Said();
+  EXPECT_NE(Refused("<mujoco>\n<worldbody>\n</mujoco>")
+                .find("error: this is no XML: an element is closed by another name"),
+            std::string::npos)
+      << Said();
+  EXPECT_NE(Refused("taut: 1\nkind: model\n").find("this is no XML"), std::string::npos) << Said();
+  EXPECT_NE(Refused("<robot name=\"x\"/>")
+                .find("the root element is \"robot\", not mujoco (this is URDF"),
+            std::string::npos)
+      << Said();
+  EXPECT_NE(Refused("<mujoco/>").find("there is no body in this file"), std::string::npos)
+      << Said();
+  EXPECT_NE(Refused("<mujoco/><mujoco/>").find("there is a second element"), std::string::npos);
+  EXPECT_NE(Refused("<mujoco model=\"&#27;[31m\"/>").find("has control characters"),
+            std::string::npos)
+      << Said();
+  EXPECT_NE(Refused(With("<site name=\"u\"/>"), {.keyframe = "z"}).find("there is no key \"z\""),
+            std::string::npos);
+  std::string deep = "<mujoco><worldbody>";
+  for (int i = 0; i < 1000; ++i) deep += "<body>";
+  Refused(deep);
+}
+
+}  // namespace
+}  // namespace taut::test
