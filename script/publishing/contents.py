@@ -1,8 +1,8 @@
 """What stands where on the website: parts of its sidebar, and the pages of each in their order."""
 
 PARTS = {
-    "Begin": ["docs/tutorial.md", "docs/tutorial_ground.md", "docs/tutorial_joints.md", "docs/tutorial_cables.md", "docs/gallery.md", "report.md"],
-    "Use": ["docs/cli.md", "docs/viewer.md", "docs/analyze.md", "docs/learning.md", "docs/environments.md", "docs/cluster.md", "docs/compare.md",
+    "Begin": ["docs/tutorial.md", "docs/tutorial_ground.md", "docs/tutorial_joints.md", "docs/tutorial_cables.md", "docs/gallery.md", "report.md", "demo.md"],
+    "Use": ["docs/cli.md", "docs/viewer.md", "docs/browser.md", "docs/analyze.md", "docs/learning.md", "docs/environments.md", "docs/cluster.md", "docs/compare.md",
             "docs/fit.md", "docs/environments.md", "docs/python.md", "docs/from_gymnasium.md", "docs/glossary.md"],
     "Files": ["docs/formats/model.md", "docs/formats/experiment.md", "docs/formats/gait.md", "docs/formats/study.md",
               "docs/formats/"],
