@@ -45,7 +45,7 @@ test("EveryModelHasTheHashOfTheCommand", options, () => {
   assert.ok(models.length > 15);
   for (const model of models) {
     // in the place of a shipped one: a page has no other files
-    const text = `taut: 1\nkind: experiment\nname: it falls\nmodel: ../${model}\nduration_s: 5\n`;
+    const text = `taut: 1\nkind: experiment\nname: it_falls\nmodel: ../${model}\nduration_s: 5\n`;
     const path = "experiments/hang.yaml";
     put({ [path]: text });
     assert.deepEqual(runTo(core, path, [AT_S], { [path]: text }).marks, [native(path, AT_S)], model);
@@ -119,7 +119,7 @@ const mistakes = {
   "no text at all": ["experiments/push_20n.yaml", () => "\0\x01\xff"],
   "many at once": ["experiments/push_20n.yaml", (text) => text.replace(/duration_s: .*/, "duration_s: x\nseeed: 3").replace("name:", "nam:")],
   "two keys of one name": ["experiments/hang.yaml", (text) => `${text}\nduration_s: 3\n`],
-  "another kind": ["experiments/hang.yaml", (text) => text.replace("kind: experiment", "kind: gait")],
+  "another kind": ["experiments/hang.yaml", (text) => text.replace("kind: experiment", "kind: robot")],
 };
 for (const [what, [path, spoil]] of Object.entries(mistakes)) {
   test(`ComplaintsAreThoseOfTheCommand: ${what}`, options, () => {

@@ -113,7 +113,7 @@ test("AChangedModelRunsAndALinkHoldsIt", options, async () => {
 test("ADamagedLinkIsSaidAndSomethingIsShown", options, async () => {
   for (const [fragment, why] of [["#=AAAA", /damaged/], ["#models/nothing.yaml", /no file/], ["#=", /damaged/], ["#%", /./]]) {
     const page = await open(fragment);
-    await page.waitForFunction(({ source }) => new RegExp(source).test(document.querySelector(".notice").textContent), { source: why.source });
+    await page.waitForFunction(({ source }) => new RegExp(source).test(document.querySelector(".demo .about").textContent), { source: why.source });
     assert.equal(await page.locator(".demo .bar select").inputValue(), "experiments/push_20n.yaml");
     assert.deepEqual(page.complaints, []);
     await page.context().close();
@@ -126,7 +126,7 @@ test("AHandPullsANodeAndASliderTunes", options, async () => {
   await page.locator(".timeline .play").click();
   await drawn(page);
   const project = await projection(page);
-  const box = await page.locator(".view canvas").boundingBox();
+  const box = await page.locator(".view > canvas").boundingBox();
   const node = await page.evaluate(() => {
     const { scene, frame } = window.taut.app;
     const { body, position_m: p } = scene.value.nodes[0];

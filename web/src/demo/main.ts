@@ -71,7 +71,7 @@ async function start(root: HTMLElement): Promise<void> {
       await navigator.clipboard?.writeText(location.href);
       app.notice.value = navigator.clipboard ? "the link is copied, and in the address bar" : "the link is in the address bar";
     } catch (error) {
-      app.notice.value = error instanceof Error ? error.message : String(error);
+      app.notice.value = wordsOf(error);
     }
   }
 
@@ -97,8 +97,12 @@ async function start(root: HTMLElement): Promise<void> {
     const shared = await sharedBy(location.hash, files);
     await choose(shared?.path ?? START, shared?.edits);
   };
-  const orNotice = (error: unknown) => (app.notice.value = error instanceof Error ? error.message : String(error));
-  addEventListener("popstate", () => void fromAddress().catch(orNotice));
+  /** A link that says nothing: something is shown, and that stands above its text for good. */
+  const insteadOf = async (error: unknown) => {
+    await choose(START);
+    note.textContent = `The link could not be followed: ${wordsOf(error)}`;
+  };
+  addEventListener("popstate", () => void fromAddress().catch(insteadOf));
   document.addEventListener("keydown", (event) => {
     if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
     event.preventDefault();
@@ -107,11 +111,10 @@ async function start(root: HTMLElement): Promise<void> {
 
   buildPage(root, app, { beside, buttons: [toggle], advice: "Reload the page. Where that does not help: this needs WebAssembly with SIMD, which browsers have had since 2023." });
   Object.assign(window, { demo: { project, source, editor } });
-  await fromAddress().catch(async (error) => {
-    orNotice(error);
-    await choose(START);
-  });
+  await fromAddress().catch(insteadOf);
 }
+
+const wordsOf = (error: unknown) => (error instanceof Error ? error.message : String(error));
 
 /** What a file says that it is about. */
 function aboutOf(text: string): string {
