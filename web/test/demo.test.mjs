@@ -158,7 +158,8 @@ test("EverythingIsInSightOnAPhone", options, async () => {
   assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
   await picture(page, "demo-phone");
   await page.getByRole("button", { name: "show or hide the model's text" }).click();
-  assert.ok(await page.locator(".demo select").isVisible());
+  assert.ok((await page.locator(".demo textarea").boundingBox()).height > 200);
+  assert.ok((await page.locator(".view").boundingBox()).height > 200);
   await drawn(page);
   assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
   await picture(page, "demo-phone-text");

@@ -109,7 +109,7 @@ async function start(root: HTMLElement): Promise<void> {
     void run();
   });
 
-  buildPage(root, app, { beside, buttons: [toggle], advice: "Reload the page. Where that does not help: this needs WebAssembly with SIMD, which browsers have had since 2023." });
+  buildPage(root, app, { beside, buttons: [toggle], advice: "Reload the page. Where that does not help: browsers of 2023 and later run it." });
   Object.assign(window, { demo: { project, source, editor } });
   await fromAddress().catch(insteadOf);
 }
