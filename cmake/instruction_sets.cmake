@@ -2,7 +2,7 @@
 # chosen when a batch is made. The compiler says what it builds for: names of processors differ from
 # system to system, and in a cross build they are the wrong ones.
 include(CheckCXXSourceCompiles)
-foreach(target x86_64 aarch64)
+foreach(target x86_64 aarch64 wasm32)
   check_cxx_source_compiles("#ifndef __${target}__\n#error\n#endif\nint main() {}" TAUT_ON_${target})
 endforeach()
 set(known scalar)  # one world at a time, on any machine
@@ -10,8 +10,15 @@ if(TAUT_ON_x86_64)
   list(APPEND known sse2 avx2 avx512)
 elseif(TAUT_ON_aarch64)
   list(APPEND known neon)
+elseif(TAUT_ON_wasm32)
+  list(APPEND known simd128)
 endif()
-set(TAUT_INSTRUCTION_SETS ${known} CACHE STRING
+if(TAUT_BROWSER)
+  set(known_default scalar)  # a page steps one world
+else()
+  set(known_default ${known})
+endif()
+set(TAUT_INSTRUCTION_SETS ${known_default} CACHE STRING
   "What the step is compiled for; of these, the widest that a machine has runs there")
 foreach(set IN LISTS TAUT_INSTRUCTION_SETS)
   if(NOT set IN_LIST known)
@@ -25,6 +32,11 @@ endif()
 # For all that is part of the step. -fno-math-errno lets sqrt be one instruction; neither changes a
 # result.
 set(TAUT_STEP_FLAGS -fno-math-errno -fno-trapping-math)
+if(TAUT_BROWSER)
+  set(TAUT_STEP_LEVEL -Os CACHE STRING "How the step is optimised: small for a page, -O3 for speed")
+  list(APPEND TAUT_STEP_FLAGS ${TAUT_STEP_LEVEL})
+endif()
+set(TAUT_FLAGS_simd128 -msimd128)
 set(TAUT_FLAGS_avx2 -mavx2)
 set(TAUT_FLAGS_avx512 -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512)
 

@@ -20,6 +20,9 @@ inline constexpr InstructionSet kInstructionSets[] = {
 #ifdef TAUT_HAS_NEON
     {"neon", Simd::kNeon},
 #endif
+#ifdef TAUT_HAS_SIMD128
+    {"simd128", Simd::kSimd128},
+#endif
 #ifdef TAUT_HAS_SSE2
     {"sse2", Simd::kSse2},
 #endif

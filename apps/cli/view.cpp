@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/viewer/live_inputs.h"
 #include "apps/viewer/live_session.h"
+#include "apps/viewer/recording.h"
 #include "apps/viewer/replay_session.h"
 #include "apps/viewer/server.h"
 #include "apps/viewer/web_files.h"
@@ -41,21 +43,6 @@ bool IsTrace(const std::string& path) {
   return path.ends_with(".h5") || path.ends_with(".csv") || path.ends_with(".csv.gz");
 }
 
-/// A model by itself, without weight and ground; it moves only when it is dragged.
-std::optional<ExperimentSpec> ModelAlone(const ViewArguments& args, const Overrides& overrides,
-                                         Diagnostics& out) {
-  auto robot = LoadRobot(args.file, overrides, out);
-  if (!robot) return std::nullopt;
-  ExperimentSpec experiment;
-  experiment.robot = std::move(*robot);
-  experiment.robot.parameters.clear();  // to change them, the file would have to be read again
-  experiment.robot.def.gravity_m_per_s2 = {};
-  experiment.name = experiment.robot.def.name;
-  experiment.files = experiment.robot.files;
-  if (args.settled) experiment.start = StartKind::kSettledFloating;
-  return experiment;
-}
-
 /// A replay. Nothing: `exit` says how to end.
 std::unique_ptr<Session> MakeReplay(const ViewArguments& args, int& exit) {
   Diagnostics found;
@@ -75,23 +62,18 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
   const std::optional<Overrides> overrides = ParseOverrides(args.set);
   if (!overrides) return nullptr;
   exit = kBadInput;
-  const auto kind = FileKind(args.file, found);
-  const bool model = kind && *kind == "model";
-  std::optional<ExperimentSpec> experiment;
-  if (kind) {
-    experiment =
-        model ? ModelAlone(args, *overrides, found) : LoadExperiment(args.file, *overrides, found);
-  }
-  if (!experiment || !CheckStart(experiment->robot, experiment->start, found) ||
-      !CheckRecord(*experiment, found) || !Pass(found, false)) {
+  std::optional<viewer::LiveInputs> inputs =
+      viewer::LoadLiveInputs(args.file, *overrides, args.settled, found);
+  if (!inputs || !Pass(found, false)) {
     Fail(found, kBadInput);
     return nullptr;
   }
+  const bool model = inputs->model;
+  ExperimentSpec& experiment = inputs->experiment;
   viewer::LiveOptions options;
   options.inputs = {args.file, *overrides, args.step_s, std::nullopt};
   if (args.settled && !model) options.inputs.start = StartKind::kSettled;
-  if (args.step_s > 0) experiment->step_s = args.step_s;
-  if (options.inputs.start) experiment->start = *options.inputs.start;
+  if (args.step_s > 0) experiment.step_s = args.step_s;
   exit = kFailed;
   if (!args.out.empty()) {
     std::error_code error;
@@ -103,9 +85,9 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
   }
   options.speed = args.max ? 0 : args.speed;
   options.paused = args.paused || model;
-  options.record_folder = args.out;
+  options.record = viewer::RecordInto(args.out);
   options.tell = Tell;
-  auto session = viewer::LiveSession::Create(model ? "model" : "live", *experiment, options, found);
+  auto session = viewer::LiveSession::Create(model ? "model" : "live", experiment, options, found);
   fmt::print(stderr, "{}", found.Format());  // a start that settles far off is a warning
   return session;
 }

@@ -42,6 +42,8 @@ class Restarts {
   void Set(int client, const std::string& parameter, double value) {
     asked_.push_back({client, parameter, value});
   }
+  /// What the present run's files are read with.
+  const Inputs& inputs() const { return inputs_; }
   bool pending() const { return !asked_.empty() || !groups_.empty(); }
 
   /// Finds the start that all of them ask for; of two values of a parameter the later one counts. A

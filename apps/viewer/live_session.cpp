@@ -32,14 +32,13 @@ std::unique_ptr<LiveSession> LiveSession::Create(const std::string& mode,
   std::unique_ptr<LiveSession> session(new LiveSession(mode, std::move(run), options));
   session->experiment_ = experiment;
   session->given_ = ParametersOfFiles(experiment);
-  if (!options.record_folder.empty()) {
+  if (options.record) {
     const auto say = [self = session.get()](const std::string& text) {
       self->SayEvent(self->run_->time_s(), text);
       self->scene_changed_ = true;  // has the notice for those who come later
       self->options_.tell(text);
     };
-    session->recording_ =
-        Recording::Start(options.record_folder, *session->run_, experiment, say, out);
+    session->recording_ = options.record(*session->run_, experiment, say, out);
     if (!session->recording_) return nullptr;
   }
   session->StartHistory();
@@ -134,10 +133,11 @@ bool LiveSession::Drive(int client, const Command& command, std::string& error) 
     past_row_.reset();  // hands hold what is, not what was
     if (type == "drag") {
       if (!dragging_) Log(fmt::format("drag {}", command.name));
-      dragging_ = true;
+      dragging_ = touched_ = true;
       run_->SetHand(HandSpec{*node, v});
     } else {
       run_->Push({*node, v}, command.value);
+      touched_ = true;
       Log(fmt::format("push {} with ({:.4g}, {:.4g}, {:.4g}) N for {:g} s", command.name, v.x, v.y,
                       v.z, command.value));
     }
@@ -168,6 +168,7 @@ bool LiveSession::SetParameter(int client, const Command& command, std::string& 
   } else {
     Restart();
     run_->SetParameter(parameter->kind, parameter->index, command.value);
+    touched_ = true;
     Log(fmt::format("{} = {:g}", command.name, command.value));
     scene_changed_ = true;
   }
@@ -196,6 +197,7 @@ bool LiveSession::SetControl(const Command& command, std::string& error) {
       control.impedance->velocity_gain_n_s_per_m = command.value;
     }
     run_->SetControl(control);
+    touched_ = true;
     Log(fmt::format("{} of {} = {:g}",
                     command.type == "set_gain" ? command.gain
                     : control.impedance        ? "tension_offset_n"
@@ -218,13 +220,29 @@ void LiveSession::Restart(Clock::time_point deadline) {
   run_ = std::move(start->run);
   experiment_ = std::move(start->experiment);
   ++run_number_;
-  end_told_ = broken_told_ = dragging_ = false;
+  end_told_ = broken_told_ = dragging_ = touched_ = false;
+  marks_.clear();
   if (recording_) recording_->Restart(*run_, experiment_);
   StartHistory();
   Anchor();
   changed_ = scene_changed_ = true;
   SayEvent(0, "from the start");
   for (const Diagnostic& warning : start->warnings) SayEvent(0, "warning: " + warning.what);
+}
+
+std::optional<StateMark> LiveSession::State() const {
+  const World* const world = run_->world();
+  if (world == nullptr) return std::nullopt;
+  return StateMark{run_->time_s(), world->Hash(0)};
+}
+
+void LiveSession::MarkAt(std::vector<double> times_s) {
+  mark_at_s_ = std::move(times_s);
+  marks_.clear();
+}
+
+void LiveSession::Mark() {
+  if (const auto state = State()) marks_.push_back(*state);
 }
 
 void LiveSession::Log(const std::string& text) {
@@ -243,6 +261,7 @@ bool LiveSession::StepOnce() {
     history_->Take(moment_, run_->Row());
   }
   if (recording_) recording_->Take(*run_);
+  if (marks_.size() < mark_at_s_.size() && run_->time_s() >= mark_at_s_[marks_.size()]) Mark();
   if (!end_told_ && run_->time_s() >= experiment_.duration_s && mode() == "live") {
     end_told_ = true;
     Log("the experiment's end; resume goes on");

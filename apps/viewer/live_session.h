@@ -1,16 +1,18 @@
 /// A live run, in real time or at another speed.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "history.h"
+#include "live_recorder.h"
 #include "live_restarts.h"
 #include "pace.h"
-#include "recording.h"
 #include "session.h"
 #include "taut/live.h"
 
@@ -20,11 +22,16 @@ struct LiveOptions {
   Restarts::Inputs inputs;  ///< Read again when a parameter of the files changes.
   double speed = 1;         ///< Simulated seconds a second; 0: as fast as it can.
   bool paused = false;
-  /// Where to record traces, events and inputs; empty: nowhere. An existing folder.
-  std::string record_folder;
+  MakeRecorder record;  ///< Nothing: nothing is recorded.
   /// Lines for the terminal: what is not recorded, and what is again. Called on the session's
   /// thread and by Finish.
   std::function<void(const std::string&)> tell = [](const std::string&) {};
+};
+
+/// A run's state at a time, to be set beside that of `taut run` with the same inputs.
+struct StateMark {
+  double time_s = 0;
+  std::uint64_t hash = 0;  ///< `World::Hash`.
 };
 
 class LiveSession final : public Session {
@@ -36,6 +43,18 @@ class LiveSession final : public Session {
   ~LiveSession() override;
 
   bool Finish() override;
+
+  // --- where there is no thread: between turns ------------------------------------------------
+  /// Nothing where no simulation is behind it.
+  std::optional<StateMark> State() const;
+  /// Times in rising order at which to mark the state, of this run and those that begin anew.
+  void MarkAt(std::vector<double> times_s);
+  /// Marks that this run has come to, one for each of those times.
+  const std::vector<StateMark>& marks() const { return marks_; }
+  /// Whether somebody pushed, pulled or tuned since the start: no files say how it came here.
+  bool touched() const { return touched_; }
+  /// Parameters that were set, with which the files were read.
+  const Overrides& overrides() const { return restarts_.inputs().overrides; }
 
  private:
   LiveSession(const std::string& mode, std::unique_ptr<LiveRun> run, LiveOptions options);
@@ -54,6 +73,7 @@ class LiveSession final : public Session {
   void Anchor() { pace_.Anchor(run_->time_s()); }
   void Pause() { pace_.Pause(run_->time_s()); }
   void Fill(Frame& frame) const;
+  void Mark();
   void Show();
   Json MakeScene() const;
   std::optional<int> FindNode(const std::string& name) const;
@@ -64,7 +84,7 @@ class LiveSession final : public Session {
   /// Parameters of the files as they were at first: what the ranges of sliders follow from.
   std::map<std::string, double> given_;
   std::unique_ptr<LiveRun> run_;
-  std::unique_ptr<Recording> recording_;
+  std::unique_ptr<LiveRecorder> recording_;
   std::vector<bool> has_set_point_;  ///< By cable: under impedance control.
   std::optional<History> history_;
   std::optional<std::size_t> past_row_;  ///< What is shown; nothing: the present.
@@ -74,6 +94,9 @@ class LiveSession final : public Session {
   Pace pace_;
   Clock::time_point shown_wall_;
   bool changed_ = true, scene_changed_ = false;
+  std::vector<double> mark_at_s_;
+  std::vector<StateMark> marks_;
+  bool touched_ = false;
 };
 
 }  // namespace taut::viewer

@@ -148,4 +148,12 @@ void Recording::Fail(const std::string& why) {
   say_(failure_);
 }
 
+MakeRecorder RecordInto(const std::string& folder) {
+  if (folder.empty()) return {};
+  return [folder](LiveRun& run, const ExperimentSpec& experiment,
+                  std::function<void(const std::string&)> say, Diagnostics& out) {
+    return Recording::Start(folder, run, experiment, std::move(say), out);
+  };
+}
+
 }  // namespace taut::viewer

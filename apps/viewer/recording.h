@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "live_recorder.h"
 #include "taut/files.h"
 #include "taut/live.h"
 
@@ -21,7 +22,7 @@ namespace taut::viewer {
 ///
 /// Where something cannot be written nothing is recorded from then on, and what has been stays; the
 /// next restart begins the next part if that is possible again. Both are said, once.
-class Recording {
+class Recording final : public LiveRecorder {
  public:
   /// However many restarts there are: the last of these parts is replaced by those that follow it.
   static constexpr int kMaxParts = 16;
@@ -33,16 +34,16 @@ class Recording {
                                           std::function<void(const std::string&)> say,
                                           Diagnostics& out);
 
-  void Restart(LiveRun& run, const ExperimentSpec& experiment);  ///< The next part.
-  void Take(LiveRun& run);                                       ///< The present row, if it is due.
-  void Event(double time_s, const std::string& text);
-  void FlushOld();
-  bool Finish();  ///< Completes the present part. False: something is missing, of any part.
+  void Restart(LiveRun& run, const ExperimentSpec& experiment) override;
+  void Take(LiveRun& run) override;
+  void Event(double time_s, const std::string& text) override;
+  void FlushOld() override;
+  bool Finish() override;
 
   /// Since when and why nothing is recorded; empty while all is well.
   const std::string& failure() const { return failure_; }
   /// That, or in the part after it that there is something missing.
-  const std::string& notice() const { return failure_.empty() ? resumed_ : failure_; }
+  const std::string& notice() const override { return failure_.empty() ? resumed_ : failure_; }
 
  private:
   Recording(std::string folder, std::function<void(const std::string&)> say)
@@ -69,5 +70,8 @@ class Recording {
   bool ours_ = false;  ///< No pieces of another run are in the folder.
   bool complete_ = true;
 };
+
+/// Recordings in this folder; empty: nothing is recorded.
+MakeRecorder RecordInto(const std::string& folder);
 
 }  // namespace taut::viewer

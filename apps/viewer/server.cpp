@@ -17,7 +17,6 @@
 #include "drivers.h"
 #include "http_page.h"
 #include "http_sockets.h"
-#include "protocol_messages.h"
 
 namespace taut::viewer {
 namespace {
@@ -76,9 +75,7 @@ struct Server::Impl {
 
   void Opened(Connection& who) {
     clients[who.client()] = who.shared_from_this();
-    Json hello = {{"type", "hello"},        {"version", kProtocolVersion},
-                  {"mode", session.mode()}, {"title", session.title()},
-                  {"client", who.client()}, {"driver", drivers.driver()}};
+    Json hello = session.Hello(who.client(), drivers.driver());
     if (!who.may_drive()) hello["watch_only"] = true;
     who.SendText(Dump(hello));
     if (std::string scene = session.scene(); !scene.empty()) who.SendText(std::move(scene));

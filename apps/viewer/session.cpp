@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "protocol_messages.h"
+
 namespace taut::viewer {
 
 namespace {
@@ -132,16 +134,26 @@ std::optional<std::pair<int, Command>> Session::NextCommand() {
   return next;
 }
 
+Json Session::Hello(int client, int driver) const {
+  return {{"type", "hello"},  {"version", kProtocolVersion},
+          {"mode", mode_},    {"title", title_},
+          {"client", client}, {"driver", driver}};
+}
+
+Session::Clock::time_point Session::Turn() {
+  const Clock::time_point slice_end = Clock::now() + kCommandSlice;
+  while (!stop_ && Clock::now() < slice_end) {
+    const auto next = NextCommand();
+    if (!next) break;
+    Handle(next->first, next->second);
+  }
+  return stop_ ? Clock::now() : Work();
+}
+
 void Session::Loop() {
   while (!stop_) {
-    const Clock::time_point slice_end = Clock::now() + kCommandSlice;
-    while (!stop_ && Clock::now() < slice_end) {
-      const auto next = NextCommand();
-      if (!next) break;
-      Handle(next->first, next->second);
-    }
+    const Clock::time_point until = Turn();
     if (stop_) return;
-    const Clock::time_point until = Work();
     std::unique_lock lock(mutex_);
     changed_.wait_until(lock, until, [&] { return stop_ || !commands_.empty(); });
   }

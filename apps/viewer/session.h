@@ -1,6 +1,6 @@
-/// What is shown, on a thread of its own: a live run or a replay. The server asks for the newest
-/// frame and never makes the session wait; commands are kept until they are done, or until the
-/// session is told to stop.
+/// What is shown, on a thread of its own or turn by turn: a live run or a replay. The server asks
+/// for the newest frame and never makes the session wait; commands are kept until they are done, or
+/// until the session is told to stop.
 #pragma once
 
 #include <atomic>
@@ -41,10 +41,16 @@ class Session {
   /// Starts the thread. `wake` is called from it when there is something to fetch; it must return
   /// at once.
   void Start(std::function<void()> wake);
+  /// Instead of a thread: does what commands ask for and goes on for a little while (some
+  /// milliseconds). Returns when it wants to be called again at the latest.
+  Clock::time_point Turn();
   /// Waits for what is being done just now; commands that wait are forgotten.
   void Stop();
   /// After Stop: completes what the session leaves behind. False if not all of it is there.
   virtual bool Finish() { return true; }
+
+  /// What a client is told first.
+  Json Hello(int client, int driver) const;
 
   // --- for the server, from any thread; none of them waits for the session's work ------------
   /// False if so many commands wait that something must be wrong with who sends them.

@@ -35,13 +35,14 @@ class Model {
   ModelDef def_;
 };
 
-/// How many worlds share a register: 1, 2 (SSE2; NEON on AArch64), 4 (AVX2), 8 (AVX-512).
-enum class Simd { kScalar = 1, kSse2 = 2, kNeon = 2, kAvx2 = 4, kAvx512 = 8 };
+/// How many worlds share a register: 1, 2 (SSE2; NEON on AArch64; SIMD128 in
+/// WebAssembly), 4 (AVX2), 8 (AVX-512).
+enum class Simd { kScalar = 1, kSse2 = 2, kNeon = 2, kSimd128 = 2, kAvx2 = 4, kAvx512 = 8 };
 
 /// The widest that this machine has, or what the environment variable TAUT_SIMD asks for
-/// (scalar, sse2, neon, avx2, avx512; what the machine lacks falls back to what it has; a name that
-/// is none of these counts as none, and `Model::Compile` complains about it). Any thread may call
-/// it while none changes the environment.
+/// (scalar, sse2, neon, simd128, avx2, avx512; what the machine lacks falls back to what it has; a
+/// name that is none of these counts as none, and `Model::Compile` complains about it). Any thread
+/// may call it while none changes the environment.
 Simd BestSimd();
 
 class ContactFriction;  // taut/friction.h

@@ -1,7 +1,6 @@
 /// A fingerprint of texts and numbers.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -23,7 +22,7 @@ class Fnv1a {
   }
   /// To the bit, but for the sign of zero and the kind of NaN, which files do not keep.
   void AddNumber(double x) {
-    AddText(x != x ? "nan" : std::to_string(std::bit_cast<std::uint64_t>(x + 0.0)));
+    AddText(x != x ? "nan" : std::to_string(__builtin_bit_cast(std::uint64_t, x + 0.0)));
   }
   std::uint64_t value() const { return hash_; }
 

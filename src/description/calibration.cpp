@@ -1,6 +1,6 @@
 #include "taut/calibration.h"
+#include "base/number_text.h"
 
-#include <charconv>
 #include <set>
 #include <utility>
 
@@ -17,7 +17,7 @@ bool IsDay(const std::string& text) {
   const auto number = [&](std::size_t at, std::size_t size) {
     int value = -1;
     const char* const end = text.data() + at + size;
-    return std::from_chars(text.data() + at, end, value).ptr == end ? value : -1;
+    return base::FromChars(text.data() + at, end, value).ptr == end ? value : -1;
   };
   const int year = number(0, 4), month = number(5, 2), day = number(8, 2);
   return year >= 1900 && month >= 1 && month <= 12 && day >= 1 && day <= 31;
@@ -98,7 +98,7 @@ std::string CalibrationYaml(const Calibration& calibration) {
     for (const auto& [key, value] : values) {
       if (!value) continue;
       char text[32];
-      const auto end = std::to_chars(text, text + sizeof text, *value).ptr;
+      const auto end = base::ToChars(text, text + sizeof text, *value).ptr;
       out += std::string("    ") + key + ": " + std::string(text, end) + "\n";
     }
   }

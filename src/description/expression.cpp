@@ -1,10 +1,10 @@
 #include "description/expression.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
+#include "base/number_text.h"
 #include "math/elementary.h"
 #include "math/noise.h"
 #include "taut/diagnostics.h"
@@ -148,7 +148,7 @@ class Evaluator {
   double Number() {
     double value = 0.0;
     const char* const begin = text_.data() + at_;
-    const auto [end, status] = std::from_chars(begin, text_.data() + text_.size(), value);
+    const auto [end, status] = base::FromChars(begin, text_.data() + text_.size(), value);
     if (status == std::errc::invalid_argument) Unexpected();
     const std::string digits(begin, end);
     if (status != std::errc()) throw Failure{"number out of range: " + digits, ""};

@@ -1,7 +1,8 @@
 #include "description/gait_parts.h"
 
 #include <algorithm>
-#include <charconv>
+
+#include "base/number_text.h"
 
 namespace taut::description {
 namespace {
@@ -20,7 +21,7 @@ std::string Written(const CableMatch& match) {
 
 bool ToNumber(const std::string& text, double& number) {
   const char* end = text.data() + text.size();
-  const auto [stop, status] = std::from_chars(text.data(), end, number);
+  const auto [stop, status] = base::FromChars(text.data(), end, number);
   return status == std::errc() && stop == end && number - number == 0.0;  // finite
 }
 

@@ -1,5 +1,4 @@
 // Height fields by formula or from CSV, and where meshes are.
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -7,6 +6,7 @@
 
 #include "base/brief.h"
 #include "base/input_file.h"
+#include "base/number_text.h"
 #include "description/expression.h"
 #include "description/ground_keys.h"
 #include "description/height_image.h"
@@ -66,7 +66,7 @@ std::optional<std::size_t> AddRow(std::string_view line, std::vector<double>& ro
     while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
     while (!word.empty() && (word.back() == ' ' || word.back() == '\r')) word.remove_suffix(1);
     double value = 0;
-    const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
+    const auto read = base::FromChars(word.data(), word.data() + word.size(), value);
     const bool good = read.ec == std::errc() && read.ptr == word.data() + word.size();
     if (!good || !std::isfinite(value)) return number;
     row.push_back(value);

@@ -1,7 +1,5 @@
 #include "description/mesh_file.h"
 
-#include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -11,6 +9,7 @@
 
 #include "base/brief.h"
 #include "base/input_file.h"
+#include "base/number_text.h"
 #include "math/triangles.h"
 
 namespace taut::description {
@@ -48,7 +47,7 @@ std::string_view NextWord(std::string_view& line) {
 template <class Number>
 bool ReadWhole(std::string_view word, Number& value) {
   if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto read = base::FromChars(word.data(), word.data() + word.size(), value);
   return read.ec == std::errc() && read.ptr == word.data() + word.size();
 }
 
@@ -173,7 +172,7 @@ void ReadStlBinary(const std::string& path, std::string_view bytes, MeshFile& me
     for (std::size_t k = 0; k < 3; ++k) {
       double x[3];
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        x[axis] = std::bit_cast<float>(Word(bytes, at + 12 * (k + 1) + 4 * axis));
+        x[axis] = __builtin_bit_cast(float, Word(bytes, at + 12 * (k + 1) + 4 * axis));
       }
       if (!std::isfinite(x[0] + x[1] + x[2])) {
         out.Error({path, 0, 0}, "triangle " + std::to_string(mesh.triangles.size()) +

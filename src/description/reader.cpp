@@ -1,11 +1,11 @@
 #include "description/reader.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 
+#include "base/number_text.h"
 #include "description/kinds.h"
 
 namespace taut::description {
@@ -41,7 +41,7 @@ std::string Beyond(double number, const Bound& bound) {
 
 std::string Shown(double number) {
   char buffer[32];
-  const auto [end, status] = std::to_chars(buffer, buffer + sizeof buffer, number);
+  const auto [end, status] = base::ToChars(buffer, buffer + sizeof buffer, number);
   return status == std::errc() ? std::string(buffer, end) : "?";
 }
 

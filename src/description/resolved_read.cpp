@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <set>
 
+#include "base/number_text.h"
 #include "description/experiment_parts.h"
 #include "description/parameters.h"
 #include "description/plausible.h"
@@ -26,7 +26,7 @@ void Read(const Value& value, const std::string& what, const Scope& scope, int& 
 }
 void Read(const Value& value, const std::string& what, const Scope& scope, std::uint64_t& out) {
   const char* end = value.text.data() + value.text.size();
-  const auto [stop, status] = std::from_chars(value.text.data(), end, out);
+  const auto [stop, status] = base::FromChars(value.text.data(), end, out);
   if (status == std::errc() && stop == end) return;
   scope.out.Error(value.at, what + " must be a whole number");
 }
@@ -55,7 +55,7 @@ void Read(const Value& value, const std::string& what, const Scope& scope, Packe
   const char* const end = at + value.text.size();
   bool good = true;
   const auto take = [&](auto& number) {
-    const auto [stop, status] = std::from_chars(at, end, number);
+    const auto [stop, status] = base::FromChars(at, end, number);
     good = good && status == std::errc();
     at = stop;
     if (at != end && *at == ' ') ++at;

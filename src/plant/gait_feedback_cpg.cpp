@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <new>
 
+#include "base/out_of_memory.h"
 #include "plant/gait_kinds.h"
 #include "plant/lane_kernel.h"
 #include "plant/other_lanes.h"
@@ -100,7 +100,7 @@ class FeedbackCpgPlayer final : public GaitPlayer {
     integrator_step_s_ = setup.period_s / steps_a_tick_;
     const std::size_t bytes = (kernel_.feedback_cpg_bytes(count_, couplings()) + 63) / 64 * 64;
     memory_.reset(std::aligned_alloc(64, bytes));
-    if (!memory_) throw std::bad_alloc();
+    if (!memory_) base::OutOfMemory();
     kept_.Reserve(2, (kStateNumbers + 1) * signal_.size());
     for (int j = 0; j < lanes(); ++j) SetNumbers(j, *setup.gaits[static_cast<std::size_t>(j)]);
     kernel_.feedback_cpg_start(Rows(), memory_.get());

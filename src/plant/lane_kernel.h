@@ -115,6 +115,7 @@ struct LaneKernel {
 
 extern const LaneKernel kLanesScalar;
 extern const LaneKernel kLanesNeon;
+extern const LaneKernel kLanesSimd128;
 extern const LaneKernel kLanesSse2;
 extern const LaneKernel kLanesAvx2;
 extern const LaneKernel kLanesAvx512;

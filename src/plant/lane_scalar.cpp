@@ -22,6 +22,10 @@ const LaneKernel& LaneKernelOf(int lanes) {
     case 2:
       return kLanesNeon;
 #endif
+#ifdef TAUT_HAS_SIMD128
+    case 2:
+      return kLanesSimd128;
+#endif
     default:
       return kLanesScalar;
   }

@@ -1,10 +1,10 @@
 #include <sys/utsname.h>
 
-#include <charconv>
 #include <cstdio>
 #include <ctime>
 #include <fstream>
 
+#include "base/number_text.h"
 #include "taut/run.h"
 #include "taut/version.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 std::string Shortest(double x) {
   char text[32];
-  return {text, std::to_chars(text, text + sizeof(text), x).ptr};
+  return {text, base::ToChars(text, text + sizeof(text), x).ptr};
 }
 
 /// The processor's name as Linux knows it; empty elsewhere.

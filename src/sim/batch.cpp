@@ -1,7 +1,6 @@
 #include "taut/batch.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <mutex>
@@ -37,6 +36,10 @@ const sim::Kernel* KernelOf(Simd simd) {
     case Simd::kNeon:
       return &sim::kKernelNeon;
 #endif
+#ifdef TAUT_HAS_SIMD128
+    case Simd::kSimd128:
+      return &sim::kKernelSimd128;
+#endif
     case Simd::kScalar:
       return &sim::kKernelScalar;
     default:
@@ -61,17 +64,20 @@ constexpr bool kHasNeon = true;
 #else
 constexpr bool kHasNeon = false;
 #endif
+#ifdef TAUT_HAS_SIMD128
+constexpr bool kHasSimd128 = true;
+#else
+constexpr bool kHasSimd128 = false;
+#endif
 
-/// What TAUT_SIMD may say. Two of them are of one width, of which a build has one.
+/// What TAUT_SIMD may say. Three of them are of one width, of which a build has one.
 constexpr struct {
   std::string_view name;
   Simd simd;
   bool built;
-} kSimdNames[] = {{"scalar", Simd::kScalar, true},
-                  {"sse2", Simd::kSse2, kHasSse2},
-                  {"neon", Simd::kNeon, kHasNeon},
-                  {"avx2", Simd::kAvx2, true},
-                  {"avx512", Simd::kAvx512, true}};
+} kSimdNames[] = {{"scalar", Simd::kScalar, true}, {"sse2", Simd::kSse2, kHasSse2},
+                  {"neon", Simd::kNeon, kHasNeon}, {"simd128", Simd::kSimd128, kHasSimd128},
+                  {"avx2", Simd::kAvx2, true},     {"avx512", Simd::kAvx512, true}};
 
 std::string_view SimdWish() {
   const char* const text = std::getenv("TAUT_SIMD");
@@ -204,12 +210,12 @@ void Batch::Impl::Sense(int world) const noexcept {
   sim::Group& g = group(world);
   // Several threads may read at once: one senses, the others wait for it. Whoever comes later in
   // the same step takes no lock.
-  const std::atomic_ref<bool> sensed(g.sensed);
-  if (sensed.load(std::memory_order_acquire)) return;
+  // std::atomic_ref is not everywhere yet (the libc++ of emscripten 3.1.6).
+  if (__atomic_load_n(&g.sensed, __ATOMIC_ACQUIRE)) return;
   const std::lock_guard lock(sensing);
-  if (sensed.load(std::memory_order_relaxed)) return;
+  if (__atomic_load_n(&g.sensed, __ATOMIC_RELAXED)) return;
   kernel->sense(view, layout, g, scratch[0].get());
-  sensed.store(true, std::memory_order_release);
+  __atomic_store_n(&g.sensed, true, __ATOMIC_RELEASE);
 }
 
 void Batch::Impl::ForceNode(int world, int node) noexcept {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/assert.h"
+#include "base/out_of_memory.h"
 #include "base/thread_pool.h"
 #include "math/vec.h"
 #include "sim/check_index.h"
@@ -27,7 +28,7 @@ template <class T>
 Aligned<T> AllocateAligned(std::size_t count) {
   const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64 + 64;
   void* const memory = std::aligned_alloc(64, bytes);
-  if (memory == nullptr) throw std::bad_alloc();
+  if (memory == nullptr) base::OutOfMemory();
   std::fill_n(static_cast<unsigned char*>(memory), bytes, static_cast<unsigned char>(0));
   return Aligned<T>(static_cast<T*>(memory));
 }

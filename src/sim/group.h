@@ -55,6 +55,7 @@ struct Kernel {
 // Those that the build has (cmake/instruction_sets.cmake): TAUT_HAS_AVX2 and the like.
 extern const Kernel kKernelScalar;
 extern const Kernel kKernelNeon;
+extern const Kernel kKernelSimd128;
 extern const Kernel kKernelSse2;
 extern const Kernel kKernelAvx2;
 extern const Kernel kKernelAvx512;

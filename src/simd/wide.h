@@ -5,7 +5,7 @@
 /// scalar. There are no shuffles, no horizontal sums and no fused multiply-adds. Every width is
 /// used in exactly one instruction set, so that no template instance is compiled twice with
 /// different flags. This folder is the only one that knows intrinsics: where the compiler does not
-/// find an instruction by itself, wide_x86.h and wide_neon.h name it.
+/// find an instruction by itself, the headers wide_*.h name it.
 #pragma once
 
 #include <float.h>
@@ -93,7 +93,7 @@ TAUT_INLINE Wide<N, I> Select(Mask<N, I> m, Wide<N, I> yes, Wide<N, I> no) noexc
   return {m.v ? yes.v : no.v};
 }
 
-// For all widths and machines; wide_x86.h and wide_neon.h have better ones for theirs.
+// For all widths and machines; wide_*.h have better ones for theirs.
 template <int N, class I>
 TAUT_INLINE Wide<N, I> Sqrt(Wide<N, I> a) noexcept {
   for (int i = 0; i < N; ++i) a.v[i] = __builtin_sqrt(a.v[i]);
@@ -204,4 +204,6 @@ TAUT_INLINE Wide<N, I>& operator*=(Wide<N, I>& a, Wide<N, I> b) noexcept {
 #include "simd/wide_x86.h"
 #elif defined(__aarch64__)
 #include "simd/wide_neon.h"
+#elif defined(__wasm_simd128__)
+#include "simd/wide_wasm.h"
 #endif

@@ -1,10 +1,10 @@
 // Reads a trace from text.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
+#include "base/number_text.h"
 #include "trace/channel_names.h"
 #include "trace/csv_lines.h"
 #include "trace/readers.h"
@@ -61,7 +61,7 @@ class CsvParser {
     bool good = true;
     ForEachCell(line, [&](std::string_view cell, int column) {
       double number = 0.0;
-      const auto [end, failure] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
+      const auto [end, failure] = base::FromChars(cell.data(), cell.data() + cell.size(), number);
       if (failure == std::errc::result_out_of_range) {
         good = Error(line_, column, fmt::format("number \"{}\" is out of range", cell));
       } else if (failure != std::errc() || end != cell.data() + cell.size()) {

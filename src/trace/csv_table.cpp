@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <string_view>
 
+#include "base/number_text.h"
 #include "base/pattern.h"
 #include "trace/csv_lines.h"
 #include "trace/readers.h"
@@ -125,7 +125,7 @@ class TableParser {
     if (text.empty() || text == "NA" || text == "NaN" || text == "nan") return kNan;
     if (text.front() == '+') text.remove_prefix(1);
     double number = kNan;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const auto [end, failure] = base::FromChars(text.data(), text.data() + text.size(), number);
     if (failure != std::errc() || end != text.data() + text.size()) {
       Error(
           line_, cell.column, fmt::format("\"{}\" is not a number", cell.text),

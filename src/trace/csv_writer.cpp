@@ -1,9 +1,9 @@
 // A trace as text: one line a row, the shortest digits that read back as the same number.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <utility>
 
+#include "base/number_text.h"
 #include "taut/files.h"
 #include "taut/trace.h"
 #include "trace/channel_names.h"
@@ -61,7 +61,7 @@ class CsvWriter final : public TraceWriter {
  private:
   void AppendNumber(double number) {
     char digits[32];
-    const auto end = std::to_chars(digits, digits + sizeof digits, number).ptr;
+    const auto end = base::ToChars(digits, digits + sizeof digits, number).ptr;
     text_.append(digits, static_cast<std::size_t>(end - digits));
   }
 

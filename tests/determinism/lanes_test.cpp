@@ -236,6 +236,7 @@ TEST(TautSimd, ChoosesTheInstructionSetOfABatchThatDoesNotSay) {
   EXPECT_EQ(lanes_of("scalar", 3), 1);
   EXPECT_EQ(lanes_of("sse2", 3), widest_up_to(Simd::kSse2));
   EXPECT_EQ(lanes_of("neon", 3), widest_up_to(Simd::kNeon));
+  EXPECT_EQ(lanes_of("simd128", 3), widest_up_to(Simd::kSimd128));
   EXPECT_EQ(lanes_of("avx2", 3), widest_up_to(Simd::kAvx2));
   EXPECT_EQ(lanes_of("avx512", 3), widest_up_to(Simd::kAvx512));
   EXPECT_EQ(lanes_of("", 3), widest_up_to(Simd::kAvx512));
@@ -262,13 +263,12 @@ TEST(TautSimd, AnUnknownNameIsAnErrorThatSaysWhatThereIs) {
     if (BatchOn(simd, scenes::HangingMass().Def(), 3, 1))
       here += std::string(here.empty() ? "" : ", ") + name;
   }
-  EXPECT_EQ(
-      complaint("avx"),
-      "error: the environment variable TAUT_SIMD is \"avx\" (one of: scalar, sse2, neon, avx2, "
-      "avx512; this taut on this machine runs: " +
-          here + ")\n");
+  EXPECT_EQ(complaint("avx"),
+            "error: the environment variable TAUT_SIMD is \"avx\" (one of: scalar, sse2, neon, "
+            "simd128, avx2, avx512; this taut on this machine runs: " +
+                here + ")\n");
   EXPECT_NE(complaint("AVX2"), "");
-  for (const char* known : {"", "scalar", "sse2", "neon", "avx2", "avx512"}) {
+  for (const char* known : {"", "scalar", "sse2", "neon", "simd128", "avx2", "avx512"}) {
     EXPECT_EQ(complaint(known), "") << known;
   }
 }

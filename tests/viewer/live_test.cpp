@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "apps/viewer/recording.h"
 #include "taut/live.h"
 #include "taut/run.h"
 #include "tests/unit/recorder_fixture.h"
@@ -138,7 +139,7 @@ class LiveFolder : public testing::Test {
 TEST_F(LiveFolder, DragsAndPushesAreInTheTrace) {
   viewer::LiveOptions options;
   options.paused = true;
-  options.record_folder = folder_.string();
+  options.record = viewer::RecordInto(folder_.string());
   {
     const Serving serving(Live(kHang, options));
     Client client(serving.port());

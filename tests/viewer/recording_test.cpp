@@ -250,7 +250,7 @@ TEST_F(RecordingFolder, EveryClientHearsWhatIsNotRecordedAndWhatIsAgainLateOnesT
   std::vector<std::string> told;
   viewer::LiveOptions options;
   options.paused = true;
-  options.record_folder = folder_.string();
+  options.record = viewer::RecordInto(folder_.string());
   options.tell = [&](const std::string& text) { told.push_back(text); };
   std::string notice, again;
   {

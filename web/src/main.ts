@@ -1,65 +1,9 @@
 // The page: as a live view, as a replay, or as a report, by what it finds inside itself.
-import "uplot/dist/uPlot.min.css";
-import "./style.css";
-import "./robot/robot.css";
-import "./runs.css";
 import { App } from "./app";
 import { ReportSource } from "./embedded";
 import { ServerSource } from "./live";
-import { PlotPanel } from "./plots/panel";
+import { buildPage, sayWhyNot } from "./page";
 import { type Report, PROTOCOL_VERSION } from "./protocol";
-import { reportPage } from "./report/page";
-import { legend } from "./scene/legend";
-import { foresee } from "./scene/foresee";
-import { runsList } from "./scene/runs_list";
-import { View } from "./scene/view";
-import { alarms, poseNote, robotBar } from "./robot/bar";
-import { robotPanel } from "./robot/panel";
-import { giveRunColours } from "./runs";
-import { SeriesStore } from "./series";
-import { belowView } from "./ui/below_view";
-import { controls } from "./ui/controls";
-import { gifMaker } from "./ui/gif";
-import { failurePage, header, notices } from "./ui/header";
-import { Help } from "./ui/help";
-import { inspector } from "./ui/inspector";
-import { keysOf, listenToKeys } from "./ui/keyboard";
-import { recorder } from "./ui/record";
-import { timeline } from "./ui/timeline";
-import { button, el } from "./util";
-
-function start(root: HTMLElement): void {
-  const report = embeddedReport();
-  const app = new App(report ? new ReportSource(report) : new ServerSource(), report);
-  app.theme.watch(giveRunColours);
-  const store = new SeriesStore(app);
-  const view = new View(app);
-  const plots = new PlotPanel(app, store);
-  const help = new Help();
-  foresee(app, store, view);
-
-  const drawer = controls(app);
-  drawer.hidden = true;
-  const toggleControls = () => {
-    if (app.movable && !app.watches) drawer.hidden = !drawer.hidden;
-  };
-  const controlsButton = button("controls", "live controls (C)", toggleControls);
-  app.hello.watch(() => (controlsButton.hidden = !app.movable || app.watches));
-  const keys = keysOf(app, view, { help: () => help.toggle(), controls: toggleControls, editor: () => plots.toggleEditor() });
-  help.fill(keys);
-  listenToKeys(app, keys);
-
-  view.element.append(runsList(app, view));
-  const below = belowView(view.element, [poseNote(app, view.element), ...(view.draws ? [legend(app, view)] : []), inspector(app)]);
-  plots.element.prepend(robotPanel(app), drawer);
-  const top = header(app, () => help.toggle(), [controlsButton, recorder(app, view), gifMaker(app, store, view)]);
-  const overlays = [help.element, notices(app), failurePage(app)];
-  if (report) reportPage(root, report, { top, view, plots, timeline: timeline(app), overlays });
-  else root.append(top, alarms(app), el("main.split", {}, view.element, plots.element), timeline(app), robotBar(app), ...overlays);
-  view.element.after(below);
-  Object.assign(window, { taut: { app, view, store } });
-  app.start();
-}
 
 /** What is inside the page; null: nothing, so there is a server. */
 function embeddedReport(): Report | null {
@@ -74,8 +18,8 @@ function embeddedReport(): Report | null {
 
 const root = document.getElementById("app")!;
 try {
-  start(root);
+  const report = embeddedReport();
+  buildPage(root, new App(report ? new ReportSource(report) : new ServerSource(), report));
 } catch (error) {
-  const reason = error instanceof Error ? error.message : String(error);
-  root.replaceChildren(el("main.failure", { role: "alert" }, el("h1", {}, "This page cannot be shown"), el("pre", {}, reason)));
+  sayWhyNot(root, error);
 }

@@ -52,10 +52,10 @@ export function notices(app: App): HTMLElement {
 }
 
 /** In place of everything, where there is nothing to show. */
-export function failurePage(app: App): HTMLElement {
+export function failurePage(app: App, advice = "The terminal that taut was started in may say more."): HTMLElement {
   const text = el("pre");
   const element = el("main.failure", { role: "alert" }, el("h1", {}, "There is nothing to show"), text,
-    el("p", {}, "The terminal that taut was started in may say more."));
+    el("p", {}, advice));
   app.failure.watch((failure) => {
     element.hidden = failure === null;
     text.textContent = failure ?? "";

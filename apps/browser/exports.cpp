@@ -1,0 +1,53 @@
+// What the page's worker calls (web/src/demo/core.ts). Texts that are returned are valid until the
+// next call.
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "demo.h"
+
+namespace {
+
+taut::browser::Demo demo;
+std::string answer;
+std::shared_ptr<const std::string> frame;
+
+const char* Return(std::string text) {
+  answer = std::move(text);
+  return answer.c_str();
+}
+
+/// Numbers with blanks between them.
+std::vector<double> Numbers(const char* text) {
+  std::vector<double> numbers;
+  std::istringstream in(text);
+  for (double number = 0; in >> number;) numbers.push_back(number);
+  return numbers;
+}
+
+}  // namespace
+
+extern "C" {
+
+const char* taut_check(const char* path) { return Return(taut::browser::Demo::Check(path)); }
+
+const char* taut_open(const char* path, const char* mark_at_s, int paused) {
+  return Return(demo.Open(path, Numbers(mark_at_s), paused != 0));
+}
+
+const char* taut_post(const char* message) { return Return(demo.Post(message)); }
+
+double taut_turn() { return demo.Turn(); }
+
+const char* taut_messages() { return Return(demo.TakeMessages()); }
+
+/// The bytes of the newest frame, 0: none since the last call.
+const char* taut_frame() {
+  frame = demo.TakeFrame();
+  return frame ? frame->data() : nullptr;
+}
+int taut_frame_size() { return frame ? static_cast<int>(frame->size()) : 0; }
+
+const char* taut_state() { return Return(demo.State()); }
+}

@@ -1,0 +1,33 @@
+// Where no files of traces can be read: in a browser.
+#include <utility>
+
+#include "trace/hdf5_table.h"
+#include "trace/readers.h"
+
+namespace taut::trace {
+namespace {
+
+void Refuse(const std::string& path, const char* what, Diagnostics& out) {
+  out.Error({path, 0, 0}, std::string(what) + " cannot be read in a browser",
+            "the command taut reads them");
+}
+
+}  // namespace
+
+std::optional<Trace> ReadHdf5(const std::string& path, Diagnostics& out) {
+  Refuse(path, "traces", out);
+  return std::nullopt;
+}
+
+std::optional<Trace> ReadCsv(const std::string& path, Diagnostics& out) {
+  Refuse(path, "traces", out);
+  return std::nullopt;
+}
+
+std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::string& /*name*/,
+                                       double /*most*/, Diagnostics& out) {
+  Refuse(path, "tables in HDF5", out);
+  return std::nullopt;
+}
+
+}  // namespace taut::trace

@@ -1,0 +1,51 @@
+// The hash of the state, beside that of the command: the same bits, or not.
+import { button, el, number } from "../util";
+import type { Mark, RunState } from "./core";
+import type { Project } from "./project";
+import type { WorkerSource } from "./source";
+
+/** What `taut run` finds of a shipped file at some times, in rising order. */
+export type Hashes = Record<string, Mark[]>;
+
+export function bitsPanel(source: WorkerSource, project: Project, hashes: Hashes): HTMLElement {
+  const table = el("table");
+  const why = el("p.why");
+  const command = el("code");
+  const copy = button("copy", "copy the command", () => void navigator.clipboard?.writeText(command.textContent ?? ""), "button.small");
+  const element = el("section.bits", { "aria-label": "the same bits" }, el("h2", {}, "The same bits"), table, why, el("p.command", {}, command, " ", copy));
+  let said = "";
+  const show = (state: RunState | null) => {
+    const expected = state && isAsShipped(state, project) ? (hashes[state.path] ?? []) : [];
+    const found = expected.map((mark, i) => ({ mark, ours: state!.marks[i]?.hash ?? null }));
+    const model = state?.path.startsWith("models/") ?? false;
+    const now = JSON.stringify([state, found, project.ran]);
+    if (now === said) return;
+    said = now;
+    element.hidden = state === null;
+    if (!state) return;
+    table.replaceChildren(
+      el("tr", {}, el("th", {}, "time"), el("th", {}, "here"), ...(expected.length > 0 ? [el("th", {}, "taut run"), el("th")] : [])),
+      ...found.map(({ mark, ours }) => el("tr", {}, el("td", {}, seconds(mark.time_s)), el("td.hash", {}, ours ?? "…"), el("td.hash", {}, mark.hash), verdict(ours, mark.hash))),
+      el("tr", {}, el("td", {}, seconds(state.time_s)), el("td.hash", {}, state.hash), ...(expected.length > 0 ? [el("td"), el("td")] : [])));
+    why.textContent = model ? "A model by itself, which no command runs: it has a hash, and nothing to be set beside."
+      : state.touched ? "You have pulled, pushed or tuned: no command goes the same way. Reset to compare."
+      : project.ran ? "Download the changed files in place of the shipped ones; then this prints the last line's hash:"
+      : "To see the hash of the last line on your machine:";
+    command.textContent = `taut run ${state.path}${Object.entries(state.set).map(([name, value]) => ` --set ${name}=${value}`).join("")} --duration_s ${state.time_s} --json | grep state_hash`;
+    command.parentElement!.hidden = model || state.touched || state.time_s === 0;
+  };
+  source.state.watch(show);
+  return element;
+}
+
+/** No file was changed since that run began, no parameter set, nothing touched. */
+function isAsShipped(state: RunState, project: Project): boolean {
+  return !state.touched && Object.keys(state.set).length === 0 && !project.ran;
+}
+
+function verdict(ours: string | null, theirs: string): HTMLElement {
+  if (ours === null) return el("td", {}, "");
+  return ours === theirs ? el("td.same", {}, "✓ same") : el("td.other", { role: "alert" }, "✗ not the same");
+}
+
+const seconds = (time_s: number) => `${number(time_s, 5)} s`;

@@ -1,0 +1,133 @@
+// The core in WebAssembly (apps/browser), with its files: what the command taut does, on a disk in memory.
+
+/** What emscripten makes of apps/browser/exports.cpp. */
+interface Module {
+  ccall(name: string, returns: "string" | "number" | null, types: readonly string[], values: readonly unknown[]): unknown;
+  HEAPU8: Uint8Array;
+  FS: {
+    writeFile(path: string, text: string): void;
+    mkdirTree(path: string): void;
+    chdir(path: string): void;
+  };
+}
+
+export interface Complaint {
+  file: string;
+  line: number;
+  column: number;
+  /** Else a warning. */
+  error: boolean;
+  what: string;
+  hint: string;
+}
+
+export interface Checked {
+  good: boolean;
+  kind: "experiment" | "model" | "";
+  /** All that was read, the file itself first; empty where that is not known. */
+  files: string[];
+  found: Complaint[];
+}
+
+export interface Mark {
+  time_s: number;
+  /** 16 hexadecimal digits. */
+  hash: string;
+}
+
+/** Where a run stands, as apps/browser/demo.h says it. */
+export interface RunState extends Mark {
+  path: string;
+  touched: boolean;
+  set: Record<string, string>;
+  marks: Mark[];
+}
+
+export type Files = Record<string, string>;
+
+const SHOWN = "/shown";
+const DRAFT = "/draft";
+
+export class Core {
+  private shipped: Files = {};
+  private readonly edited = new Map<string, Files>();
+
+  private constructor(private readonly module: Module) {}
+
+  /** `url`: of taut_core.mjs; the .wasm lies beside it. `more`: what that takes, for where there is no fetch. */
+  static async load(url: string, more: { wasmBinary?: Uint8Array } = {}): Promise<Core> {
+    const { default: create } = (await import(/* @vite-ignore */ url)) as { default: (options: object) => Promise<Module> };
+    return new Core(await create(more));
+  }
+
+  /** Files as they are shipped. */
+  give(files: Files): void {
+    this.shipped = files;
+    for (const root of [SHOWN, DRAFT]) this.write(root, files);
+    this.module.FS.chdir(SHOWN);
+  }
+
+  /** Looks at a file, `edits` in place of what is shipped or was given; what runs is not disturbed. */
+  check(path: string, edits: Files): Checked {
+    this.edit(DRAFT, edits);
+    this.module.FS.chdir(DRAFT);
+    const checked = this.ask("taut_check", path);
+    this.module.FS.chdir(SHOWN);
+    return JSON.parse(checked) as Checked;
+  }
+
+  /** Runs a file. Where it is wrong, what ran before goes on. */
+  open(path: string, edits: Files, mark_at_s: readonly number[], paused: boolean): Checked {
+    const checked = this.check(path, edits);
+    if (!checked.good) return checked;
+    this.edit(SHOWN, edits);
+    const answer = this.module.ccall("taut_open", "string", ["string", "string", "number"], [path, mark_at_s.join(" "), paused ? 1 : 0]);
+    return JSON.parse(answer as string) as Checked;
+  }
+
+  /** A message of the viewer's protocol; empty, or why it is none. */
+  post(message: string): string {
+    return this.ask("taut_post", message);
+  }
+
+  /** Goes on for some milliseconds; in how many it wants to be called again. */
+  turn(): number {
+    return this.module.ccall("taut_turn", "number", [], []) as number;
+  }
+
+  messages(): unknown[] {
+    return JSON.parse(this.module.ccall("taut_messages", "string", [], []) as string) as unknown[];
+  }
+
+  /** The newest frame; null: none since the last call. */
+  frame(): ArrayBuffer | null {
+    const at = this.module.ccall("taut_frame", "number", [], []) as number;
+    if (at === 0) return null;
+    const size = this.module.ccall("taut_frame_size", "number", [], []) as number;
+    return this.module.HEAPU8.slice(at, at + size).buffer as ArrayBuffer;
+  }
+
+  state(): RunState | null {
+    return JSON.parse(this.module.ccall("taut_state", "string", [], []) as string) as RunState | null;
+  }
+
+  private ask(name: string, text: string): string {
+    return this.module.ccall(name, "string", ["string"], [text]) as string;
+  }
+
+  /** The files as they are shipped, but for these. */
+  private edit(root: string, edits: Files): void {
+    const before = Object.keys(this.edited.get(root) ?? {});
+    this.write(root, Object.fromEntries(before.map((path) => [path, this.shipped[path] ?? ""])));
+    this.write(root, edits);
+    this.edited.set(root, edits);
+  }
+
+  private write(root: string, files: Files): void {
+    for (const [path, text] of Object.entries(files)) {
+      const place = `${root}/${path}`;
+      this.module.FS.mkdirTree(place.slice(0, place.lastIndexOf("/")));
+      this.module.FS.writeFile(place, text);
+    }
+  }
+}

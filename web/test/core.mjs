@@ -1,0 +1,43 @@
+// The core in WebAssembly as the demo's worker has it, in node: web/src/demo/core.ts, compiled on the way.
+// TAUT_WASM: the folder that script/wasm builds into.
+import { existsSync, mkdtempSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { extname, join } from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { transformWithEsbuild } from "vite";
+
+export const ROOT = fileURLToPath(new URL("../..", import.meta.url));
+export const WASM = process.env.TAUT_WASM ?? join(ROOT, "build/wasm");
+export const CORE = join(WASM, "core/apps/browser");
+export const options = { skip: existsSync(join(CORE, "taut_core.wasm")) ? false : "this machine has no demo: script/wasm builds it" };
+
+/** Models, experiments and gaits as they are shipped, by path. */
+export const shipped = Object.fromEntries(["models", "experiments", "gaits"].flatMap((folder) =>
+  readdirSync(join(ROOT, folder)).filter((name) => [".yaml", ".obj"].includes(extname(name))).sort()
+    .map((name) => [`${folder}/${name}`, readFileSync(join(ROOT, folder, name), "utf8")])));
+
+export async function loadCore() {
+  const source = fileURLToPath(new URL("../src/demo/core.ts", import.meta.url));
+  const compiled = join(mkdtempSync(join(tmpdir(), "taut-core-")), "core.mjs");
+  writeFileSync(compiled, (await transformWithEsbuild(readFileSync(source, "utf8"), source)).code);
+  const { Core } = await import(pathToFileURL(compiled));
+  const core = await Core.load(pathToFileURL(join(CORE, "taut_core.mjs")).href, { wasmBinary: readFileSync(join(CORE, "taut_core.wasm")) });
+  core.give(shipped);
+  return core;
+}
+
+/** Opens a file and lets it run as fast as it can, until it has come to all marks. */
+export function runTo(core, path, mark_at_s, edits = {}) {
+  const opened = core.open(path, edits, mark_at_s, true);
+  if (!opened.good) throw new Error(JSON.stringify(opened.found));
+  goOn(core, mark_at_s.length);
+  return core.state();
+}
+
+export function goOn(core, marks) {
+  core.post('{"type": "speed", "factor": 0}');
+  core.post('{"type": "resume"}');
+  while (core.state().marks.length < marks) core.turn();
+  core.post('{"type": "pause"}');
+  core.turn();
+}
