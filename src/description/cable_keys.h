@@ -64,8 +64,10 @@ void Keys(Io& io, Cable& c) {
     io("rest_length_ratio", c.rest_length_ratio, Bound::kPositive,
        "Its rest length over its length as described.");
     io("ends", c.ends_on_surface, kCableEnds,
-       "Where the cable ends. `node`: at its nodes. `surface`, as NTRT attaches cables: on the sphere "
-       "at its end node, towards the next node; where there is none, on the rod that ends there (of "
+       "Where the cable ends. `node`: at its nodes. `surface`, as NTRT attaches cables: on the "
+       "sphere "
+       "at its end node, towards the next node; where there is none, on the rod that ends there "
+       "(of "
        "several the shortest), at right angles to it.");
     io("actuator", c.actuator_text);
   }
