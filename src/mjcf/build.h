@@ -33,7 +33,6 @@ struct Building {
     std::size_t index = 0;
   };
   std::vector<Made> made_of_shape;
-  std::vector<std::string> placements{""};
   UniqueNames nodes, pairs, terrain;
 
   ModelDef& def() { return made.robot.def; }

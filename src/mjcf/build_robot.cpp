@@ -195,7 +195,7 @@ std::optional<ImportedMjcf> BuildRobot(Scene& scene, const std::string& path,
                                        const MjcfImport& options, Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
   ImportedMjcf made;
-  Building b{scene, options, made, out, {}, {}, {}, {""}, {}, {}, {}};
+  Building b{scene, options, made, out, {}, {}, {}, {}, {}, {}};
   const std::string stem = std::filesystem::path(path).stem().string();
   made.robot.def.name = ToName(!options.name.empty()  ? options.name
                                : !scene.model.empty() ? scene.model

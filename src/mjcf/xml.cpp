@@ -2,6 +2,7 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 
 #include "base/input_file.h"
@@ -57,7 +58,11 @@ class XmlReader {
     if (document.ErrorID() == tinyxml2::XML_ERROR_PARSING_ATTRIBUTE) {
       return "an attribute is not key=\"value\", or is there twice";
     }
-    return id.substr(id.rfind("ERROR_") == id.npos ? 0 : id.rfind("ERROR_") + 6);
+    std::string words;  // XML_ERROR_PARSING_ELEMENT: "parsing element"
+    for (const char c : id.substr(id.rfind("ERROR_") == id.npos ? 0 : id.rfind("ERROR_") + 6)) {
+      words += c == '_' ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    return words;
   }
 
   bool Take(const tinyxml2::XMLElement& from, const std::string& path, Element& to) {

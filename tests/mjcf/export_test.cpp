@@ -250,6 +250,29 @@ TEST(MjcfExport, BoxesHullsBarsFixedBodiesAndTerrainAreThere) {
   EXPECT_EQ(theirs.model().nexclude, 1);
 }
 
+bool Meet(MujocoModel& m, const std::string& one, const std::string& two) {
+  const int a = m.Id(mjOBJ_GEOM, one), b = m.Id(mjOBJ_GEOM, two);
+  const int *type = m.model().geom_contype, *with = m.model().geom_conaffinity;
+  return (type[a] & with[b]) != 0 || (type[b] & with[a]) != 0;
+}
+
+/// A rod whose ends carry spheres meets the ground with these (mechanics/contact_roles.h).
+TEST(MjcfExport, ShapesMeetWhatTheyMeetInTaut) {
+  ModelDef def = Everything();
+  def.boxes.push_back(def.boxes[0]);
+  def.boxes[1].name = "ghost", def.boxes[1].collides = false;
+  MujocoModel all(Exported(def));
+  for (const char* other : {"slope", "step", "rb", "rh", "hb"}) EXPECT_TRUE(Meet(all, "ba", other));
+  for (const char* other : {"slope", "step", "rb"}) EXPECT_FALSE(Meet(all, "ghost", other));
+  ModelDef spine = Shipped("tetraspine3").def;
+  spine.planes = {{"ground", {0, 0, 1}, {}, {}}};
+  MujocoModel on_ground(Exported(spine));
+  EXPECT_FALSE(Meet(on_ground, "segment_0.right-left", "ground"));
+  EXPECT_TRUE(Meet(on_ground, "segment_0.right-left", "segment_1.right-left"));
+  EXPECT_TRUE(Meet(on_ground, "segment_0.right", "ground"));
+  EXPECT_FALSE(Meet(on_ground, "segment_0.right", "segment_1.left"));
+}
+
 /// What MuJoCo makes of two geoms: that of a pair, else of the higher priority, else the larger.
 double Theirs(MujocoModel& m, const std::string& one, const std::string& two) {
   const int a = m.Id(mjOBJ_GEOM, one), b = m.Id(mjOBJ_GEOM, two);
