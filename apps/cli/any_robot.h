@@ -12,6 +12,7 @@
 
 namespace taut::cli {
 
+/// Nothing and complaints of a file that has none, as a gait.
 std::optional<RobotSpec> LoadAnyRobot(const std::string& path, const Overrides& overrides,
                                       Diagnostics& out);
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 
+#include "any_robot.h"
 #include "export.h"
 #include "output.h"
 #include "overrides.h"

@@ -41,16 +41,6 @@ int WriteOrPrint(const std::string& path, const std::string& text) {
   return kOk;
 }
 
-std::optional<RobotSpec> LoadAnyRobot(const std::string& path, const Overrides& overrides,
-                                      Diagnostics& out) {
-  const auto kind = FileKind(path, out);
-  if (!kind) return std::nullopt;
-  if (*kind == "model") return LoadRobot(path, overrides, out);
-  auto experiment = LoadExperiment(path, overrides, out);
-  if (!experiment) return std::nullopt;
-  return std::move(experiment->robot);
-}
-
 std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& experiment,
                                   RunOptions options, bool csv, Diagnostics& out,
                                   const TraceMetadata& more) {

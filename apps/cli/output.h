@@ -30,10 +30,6 @@ int WriteNamed(const std::string& path, const std::string& text);
 /// The same, or to standard output if there is no path.
 int WriteOrPrint(const std::string& path, const std::string& text);
 
-/// The robot of a model file or of an experiment file. A gait has none.
-std::optional<RobotSpec> LoadAnyRobot(const std::string& path, const Overrides& overrides,
-                                      Diagnostics& out);
-
 /// Runs an experiment into a folder: traces, inputs.yaml, summary.json. `options` come without
 /// traces. Nothing, and a complaint, if it did not run; a file that could not be written is a
 /// complaint, too, and then there is no summary.json. Warnings about the start are printed when it
