@@ -102,6 +102,7 @@ TEST(Demo, WhoeverTouchesItIsNoLongerComparedUntilAReset) {
            {{"type", "push"}, {"node", node}, {"force_n", {0, 0, 5}}, {"duration_s", 0.1}},
            {{"type", "set_parameter"}, {"name", "friction_scale"}, {"value", 0.5}},
            {{"type", "set_setpoint"}, {"cable", cable}, {"value", 30}}}) {
+    Opened(demo, kPush, {0.2});  // it stands at its start
     Say(demo, touch);
     demo.Turn();
     EXPECT_EQ(State(demo)["touched"], true) << touch;
