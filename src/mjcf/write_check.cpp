@@ -69,9 +69,6 @@ class Refuser {
       Refuse(name + "it has friction or runs over wheels");
       break;
     }
-    if (cable.damping_law != DampingLaw::kExact) {
-      Refuse(name + "its damper has the law of NTRT", "`damping_law: exact`");
-    }
   }
 
   const ModelDef& def_;
@@ -96,7 +93,7 @@ void WarnOfWhatIsLeftOut(const ModelDef& def, const WriteOptions& options, Diagn
   const auto warn = [&](const std::vector<std::string>& names, const std::string& what) {
     if (!names.empty()) out.Warning({}, "left out: " + what + " of " + Some(names));
   };
-  std::vector<std::string> restitution, sticking, special, motors, speeds;
+  std::vector<std::string> restitution, sticking, special, motors, dampers, speeds;
   ForMaterials(def, [&](const std::string& name, const Material& m) {
     if (m.restitution > 0) restitution.push_back(name);
     if (m.static_friction != m.kinetic_friction) sticking.push_back(name);
@@ -112,8 +109,12 @@ void WarnOfWhatIsLeftOut(const ModelDef& def, const WriteOptions& options, Diagn
     if (options.cables == MjcfCables::kSpring ? moves : moves && !ideal) {
       motors.push_back(cable.name);
     }
+    if (cable.damping_law == DampingLaw::kClamped && cable.damping_n_s_per_m > 0) {
+      dampers.push_back(cable.name);
+    }
   }
   warn(motors, options.cables == MjcfCables::kSpring ? "the motor" : "the motor's limits");
+  warn(dampers, "the limit of dampers at the spring's force (`damping_law: clamped`)");
   for (const BodyDef& body : def.bodies) {
     const Vec3 &v = body.velocity_m_per_s, &w = body.angular_velocity_rad_per_s;
     const bool moves = v.x != 0 || v.y != 0 || v.z != 0 || w.x != 0 || w.y != 0 || w.z != 0;

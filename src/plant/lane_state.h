@@ -33,8 +33,9 @@ class LaneState {
   template <class T>
   requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void Value(T& x) {
     if (!reads()) {
-      const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&x);
-      to_->insert(to_->end(), bytes, bytes + sizeof x);
+      const std::size_t at = to_->size();
+      to_->resize(at + sizeof x);
+      std::memcpy(to_->data() + at, &x, sizeof x);
       return;
     }
     short_ = short_ || sizeof x > from_.size();

@@ -317,7 +317,6 @@ std::string Why(const ModelDef& def, const MjcfExport& options = {}) {
 TEST(MjcfExport, WhatMjcfCannotSayIsRefusedByName) {
   ModelDef def = Everything();
   def.cables[0].touches = CableTouches::kRods;
-  def.cables[0].damping_law = DampingLaw::kClamped;
   def.cables.push_back(def.cables[0]);
   def.cables[1].name = "rubs", def.cables[1].attachments[1].friction = 0.1;
   def.joints[0].kind = JointKind::kHinge;
@@ -332,7 +331,6 @@ TEST(MjcfExport, WhatMjcfCannotSayIsRefusedByName) {
   def.terrain_meshes.push_back({.name = "rock", .corners_m = {}, .triangles = {}, .material = {}});
   const std::string why = Why(def);
   for (const char* part : {"the cable \"c\": it comes to lie against",
-                           "the cable \"c\": its damper has the law of NTRT",
                            "the cable \"rubs\": it has friction or runs over wheels",
                            "the joint \"bar\"", "the motion of the body \"b\"",
                            "the height field \"hills\"", "the terrain mesh \"rock\""}) {
@@ -348,15 +346,19 @@ TEST(MjcfExport, WhatIsLeftOutIsAWarning) {
   def.boxes[0].material.restitution = 0.2;
   def.boxes[0].material.static_friction = 1;
   def.cables[0].actuator.kind = ActuatorDef::Kind::kLimited;
+  def.cables[0].damping_law = DampingLaw::kClamped;
   def.friction_law = FrictionLaw::kAlongSlip;
   Diagnostics out;
   ASSERT_TRUE(ExportMjcf(def, {}, out));
-  EXPECT_EQ(out.Format(),
-            "warning: left out: friction along the slip\n"
-            "warning: left out: friction at rest where it is more than while sliding, of \"ba\"\n"
-            "warning: left out: restitution of \"ba\"\n"
-            "warning: left out: the motor's limits of \"c\"\n"
-            "warning: left out: the velocity (a keyframe would have it) of \"a\"\n");
+  EXPECT_EQ(
+      out.Format(),
+      "warning: left out: friction along the slip\n"
+      "warning: left out: friction at rest where it is more than while sliding, of \"ba\"\n"
+      "warning: left out: restitution of \"ba\"\n"
+      "warning: left out: the limit of dampers at the spring's force (`damping_law: clamped`) of "
+      "\"c\"\n"
+      "warning: left out: the motor's limits of \"c\"\n"
+      "warning: left out: the velocity (a keyframe would have it) of \"a\"\n");
 }
 
 }  // namespace
