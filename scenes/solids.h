@@ -39,7 +39,8 @@ inline Inertia BoxInertia(double mass_kg, const Vec3& half_m) {
 
 /// An inertia with principal moments j.xx, j.yy, j.zz about axes turned by q.
 inline Inertia TurnedInertia(const Inertia& j, const Quat& q) {
-  const Vec3 a = Turned(q, {1, 0, 0}), b = Turned(q, {0, 1, 0}), c = Turned(q, {0, 0, 1});
+  const Vec3 a = Turned(q, Vec3{1, 0, 0}), b = Turned(q, Vec3{0, 1, 0}),
+             c = Turned(q, Vec3{0, 0, 1});
   const auto entry = [&](double Vec3::*p, double Vec3::*r) {
     return j.xx * (a.*p) * (a.*r) + j.yy * (b.*p) * (b.*r) + j.zz * (c.*p) * (c.*r);
   };

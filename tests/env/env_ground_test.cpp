@@ -43,7 +43,8 @@ TEST(GroundHeight, IsThatOfTheHighestPart) {
 
 TEST(GroundHeight, OfFieldsAndMeshesIsThatOfTheirTriangles) {
   ModelDef def = Bare();
-  HeightFieldDef field{.name = "field", .columns = 5, .rows = 4, .cell_m = 0.5};
+  HeightFieldDef field;
+  field.name = "field", field.columns = 5, field.rows = 4, field.cell_m = 0.5;
   field.origin_m = {2, -1, 0.25};
   for (int j = 0; j < 4; ++j) {
     for (int i = 0; i < 5; ++i) field.height_m.push_back(0.1 * i - 0.3 * j);  // one plane
@@ -59,7 +60,8 @@ TEST(GroundHeight, OfFieldsAndMeshesIsThatOfTheirTriangles) {
   def.terrain_meshes.push_back({.name = "roof",
                                 .corners_m = {{1, -1.5, 5}, {3, -1.5, 7}, {1, 0.5, 9}},
                                 .triangles = {{0, 1, 2}},
-                                .solid = false});
+                                .solid = false,
+                                .material = {}});
   const auto roofed = Compiled(def);
   EXPECT_NEAR(sim::GroundHeight(*roofed, 1.5, -1), 5 + 0.5 + 1, 1e-14);
   EXPECT_NEAR(sim::GroundHeight(*roofed, 2.9, -0.3), 0.25 + 0.2 * 1.9 - 0.6 * 1.45, 1e-14);
