@@ -38,7 +38,7 @@ std::vector<RolloutWorld> Varied(const ExperimentSpec& experiment, int count) {
       world.scales.push_back({ScaleSpec::Quantity::kFriction, {}, 1 - 0.01 * i});
       world.scales.push_back({ScaleSpec::Quantity::kStiffness, {i % 12}, 1.1});
       world.scales.push_back({ScaleSpec::Quantity::kDamping, {}, 0.9});
-      world.start_noise = {0.001, 0.1};
+      world.start_noise.position_m = 0.001, world.start_noise.heading_rad = 0.1;
     }
     worlds.push_back(world);
   }
