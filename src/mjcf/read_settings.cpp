@@ -12,7 +12,7 @@ void ReadCompiler(const Layers& layers, CompilerSettings& s) {
   using FromGeoms = CompilerSettings::FromGeoms;
   const auto choose = [&](const char* name, const std::string& usual,
                           const std::vector<std::string>& words) {
-    const std::string text = layers.Text(name, usual);
+    std::string text = layers.Text(name, usual);
     if (std::find(words.begin(), words.end(), text) != words.end()) return text;
     layers.Error(name, std::string(name) + " is \"" + text + '"', DidYouMean(text, words));
     return usual;
