@@ -1,11 +1,4 @@
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-
-#include "base/out_of_memory.h"
-#include "plant/gait_kinds.h"
-#include "plant/lane_kernel.h"
-#include "plant/other_lanes.h"
+#include "plant/oscillators.h"
 #include "taut/control/network.h"
 #include "taut/control/turns.h"
 
@@ -67,18 +60,12 @@ class LaneNetwork {
 };
 
 /// Oscillators that hear their cables and where the goal is (docs/theory/gaits.md).
-class FeedbackCpgPlayer final : public GaitPlayer {
+class FeedbackCpgPlayer final : public OscillatorPlayer {
  public:
   explicit FeedbackCpgPlayer(const GaitSetup& setup)
-      : GaitPlayer(setup),
-        kernel_(LaneKernelOf(lanes())),
-        count_(static_cast<int>(cables().size())),
+      : OscillatorPlayer(setup, setup.gaits[0]->feedback_cpg->integrator_step_s),
         found_(setup.resolved) {
     const FeedbackCpgGait& cpg = *setup.gaits[0]->feedback_cpg;
-    for (const CouplingGraph::Coupling& link : found_.graph.couplings) {
-      to_.push_back(static_cast<unsigned short>(link.to));
-      from_.push_back(static_cast<unsigned short>(link.from));
-    }
     for (std::vector<double>* row :
          {&frequency_hz_, &start_turns_, &amplitude_, &convergence_per_s_, &frequency_gain_,
           &amplitude_gain_, &phase_gain_, &offset_, &first_length_m_}) {
@@ -86,7 +73,7 @@ class FeedbackCpgPlayer final : public GaitPlayer {
     }
     feedback_.resize(kSaid * signal_.size());
     for (std::vector<double>* row : {&weight_, &coupling_turns_}) {
-      row->resize(to_.size() * setup.gaits.size());
+      row->resize(found_.graph.couplings.size() * setup.gaits.size());
     }
     of_cable_.Shape(cpg.cable_network, {std::begin(kSaidNames), std::end(kSaidNames)},
                     setup.gaits.size());
@@ -95,62 +82,21 @@ class FeedbackCpgPlayer final : public GaitPlayer {
       for (const char* said : kSaidNames) names.push_back(oscillator.name + "_" + said);
     }
     of_goal_.Shape(cpg.goal_network, std::move(names), setup.gaits.size());
-    steps_a_tick_ =
-        std::max(1, static_cast<int>(std::ceil(setup.period_s / cpg.integrator_step_s - 1e-6)));
-    integrator_step_s_ = setup.period_s / steps_a_tick_;
-    const std::size_t bytes = (kernel_.feedback_cpg_bytes(count_, couplings()) + 63) / 64 * 64;
-    memory_.reset(std::aligned_alloc(64, bytes));
-    if (!memory_) base::OutOfMemory();
-    kept_.Reserve(2, (kStateNumbers + 1) * signal_.size());
-    for (int j = 0; j < lanes(); ++j) SetNumbers(j, *setup.gaits[static_cast<std::size_t>(j)]);
-    kernel_.feedback_cpg_start(Rows(), memory_.get());
-  }
-
-  void Restart(int lane, const GaitSpec& gait) override {
-    SetNumbers(lane, gait);
-    for (std::size_t k = 0; k < kSaid * cables().size(); ++k) feedback_[At(k, lane)] = 0.0;
-    Start(Lanes{1} << lane);
-  }
-
-  void Retune(int lane, const GaitSpec& gait) override {
-    SetNumbers(lane, gait);
-    retuned_ |= Lanes{1} << lane;
+    Prepare(setup, kernel().feedback_cpg_bytes(count(), couplings()));
   }
 
   void Carry(LaneState& state) override {
-    GaitPlayer::Carry(state);
-    state.Row(States(), kStateNumbers * cables().size());
+    OscillatorPlayer::Carry(state);
     state.Row(first_length_m_);
     state.Row(feedback_);
   }
 
-  /// The oscillators start at the first tick, and go from tick to tick under what they heard at the
-  /// tick before.
-  void Tick(const GaitTick& tick, const Observation& seen) override {
-    if (retuned_ != 0) Start(0);
-    Lanes first = 0;
-    for (int j = 0; j < lanes(); ++j) {
-      if (Has(tick.due, j) && tick.number[j] == 0) first |= Lanes{1} << j;
-    }
-    if (first != 0) {
-      Go(first, 0);
-      NoteLengths(first, seen);
-    }
-    if (first != tick.due) Go(tick.due & ~first, steps_a_tick_);
-    Hear(tick.due, seen);
-  }
-
  private:
-  struct Free {
-    void operator()(void* p) const noexcept { std::free(p); }
-  };
-  /// Of an oscillator: phase, relative amplitude, frequency.
-  static constexpr std::size_t kStateNumbers = 3;
-
-  int couplings() const noexcept { return static_cast<int>(to_.size()); }
-  double* States() const { return kernel_.feedback_cpg_states(count_, couplings(), memory_.get()); }
+  double* States() const override {
+    return kernel().feedback_cpg_states(count(), couplings(), memory());
+  }
   FeedbackCpgRows Rows() const {
-    return {count_,
+    return {count(),
             couplings(),
             frequency_hz_.data(),
             start_turns_.data(),
@@ -159,13 +105,13 @@ class FeedbackCpgPlayer final : public GaitPlayer {
             frequency_gain_.data(),
             amplitude_gain_.data(),
             phase_gain_.data(),
-            to_.data(),
-            from_.data(),
+            to(),
+            from(),
             weight_.data(),
             coupling_turns_.data()};
   }
 
-  void SetNumbers(int lane, const GaitSpec& gait) {
+  void SetNumbers(int lane, const GaitSpec& gait) override {
     const FeedbackCpgGait& cpg = *gait.feedback_cpg;
     for (std::size_t i = 0; i < cables().size(); ++i) {
       const std::size_t at = At(i, lane);
@@ -179,7 +125,7 @@ class FeedbackCpgPlayer final : public GaitPlayer {
       amplitude_gain_[at] = cpg.amplitude_gain;
       phase_gain_[at] = cpg.phase_gain_rad_per_s * control::kTurnsPerRad;
     }
-    for (std::size_t k = 0; k < to_.size(); ++k) {
+    for (std::size_t k = 0; k < found_.graph.couplings.size(); ++k) {
       const CouplingGroup& group =
           cpg.groups[static_cast<std::size_t>(found_.graph.couplings[k].group)];
       weight_[At(k, lane)] = group.weight;
@@ -196,7 +142,18 @@ class FeedbackCpgPlayer final : public GaitPlayer {
     return At(static_cast<std::size_t>(cables()[i]), lane);
   }
 
-  void NoteLengths(Lanes first, const Observation& seen) {
+  void StartKernel() override { kernel().feedback_cpg_start(Rows(), memory()); }
+
+  void TickKernel(int steps) override {
+    kernel().feedback_cpg_tick(count(), couplings(), memory(), feedback_.data(),
+                               integrator_step_s(), steps, offset_.data(), signal_.data());
+  }
+
+  void Forget(int lane) override {
+    for (std::size_t k = 0; k < kSaid * cables().size(); ++k) feedback_[At(k, lane)] = 0.0;
+  }
+
+  void Begin(Lanes first, const Observation& seen) override {
     if (!of_cable_.there()) return;
     for (std::size_t i = 0; i < cables().size(); ++i) {
       for (int j = 0; j < lanes(); ++j) {
@@ -206,7 +163,7 @@ class FeedbackCpgPlayer final : public GaitPlayer {
   }
 
   /// What the networks say to every oscillator, until the next tick.
-  void Hear(Lanes due, const Observation& seen) {
+  void Hear(Lanes due, const Observation& seen) override {
     if (!of_cable_.there() && !of_goal_.there()) return;
     for (int j = 0; j < lanes(); ++j) {
       for (std::size_t i = 0; Has(due, j) && i < kSaid * cables().size(); ++i) {
@@ -227,7 +184,7 @@ class FeedbackCpgPlayer final : public GaitPlayer {
         of_cable_.Input(0, lane) = (seen.cables.length_m[cable] - first_m) / first_m;
         of_cable_.Input(1, lane) = (seen.cables.tension_n[cable] - 0.5 * most_n) / most_n;
       }
-      of_cable_.Say(kernel_);
+      of_cable_.Say(kernel());
       AddSaid(of_cable_, 0, i, due);
     }
   }
@@ -241,7 +198,7 @@ class FeedbackCpgPlayer final : public GaitPlayer {
         of_goal_.Input(1, lane) = seen.goal ? seen.goal[At(1, j)] : 0.0;
         if (of_goal_.inputs() > 2) of_goal_.Input(2, lane) = found_.place[joint];
       }
-      of_goal_.Say(kernel_);
+      of_goal_.Say(kernel());
       for (std::size_t i = 0; i < cables().size(); ++i) {
         if (static_cast<std::size_t>(found_.joint[i]) != joint) continue;
         AddSaid(of_goal_, kSaid * static_cast<std::size_t>(found_.role[i]), i, due);
@@ -257,38 +214,12 @@ class FeedbackCpgPlayer final : public GaitPlayer {
     }
   }
 
-  /// The kernel gets the numbers of all lanes; oscillators of those that begin are at their start.
-  void Start(Lanes begin) {
-    retuned_ = 0;
-    OtherLanes others(begin, lanes(), kept_);
-    others.Keep(States(), kStateNumbers * cables().size());
-    kernel_.feedback_cpg_start(Rows(), memory_.get());
-    others.PutBack();
-  }
-
-  void Go(Lanes due, int steps) {
-    OtherLanes others(due, lanes(), kept_);
-    others.Keep(States(), kStateNumbers * cables().size());
-    others.Keep(signal_.data(), cables().size());
-    kernel_.feedback_cpg_tick(count_, couplings(), memory_.get(), feedback_.data(),
-                              integrator_step_s_, steps, offset_.data(), signal_.data());
-    others.PutBack();
-  }
-
-  const LaneKernel& kernel_;
-  int count_;
   ResolvedGait found_;  ///< The same in all lanes.
-  std::vector<unsigned short> to_, from_;
   std::vector<double> frequency_hz_, start_turns_, amplitude_, convergence_per_s_, frequency_gain_,
       amplitude_gain_, phase_gain_, offset_, weight_, coupling_turns_;
   LaneNetwork of_cable_, of_goal_;
   std::vector<double> first_length_m_;
   std::vector<double> feedback_;  ///< Row kSaid * i + said.
-  std::unique_ptr<void, Free> memory_;
-  Lanes retuned_ = 0;  ///< Whose numbers the kernel has not got yet.
-  KeptRows kept_;
-  int steps_a_tick_ = 0;
-  double integrator_step_s_ = 0;
 };
 
 }  // namespace

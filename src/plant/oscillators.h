@@ -1,0 +1,127 @@
+/// What gaits of oscillators have in common: where these are in the memory of their kernel, and how
+/// they go from tick to tick in the lanes that are due. What one hears, and from whom, is its
+/// kind's (gait_cpg.cpp, gait_feedback_cpg.cpp).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "base/out_of_memory.h"
+#include "plant/gait_kinds.h"
+#include "plant/lane_kernel.h"
+#include "plant/other_lanes.h"
+
+namespace taut::plant {
+
+class OscillatorPlayer : public GaitPlayer {
+ public:
+  void Restart(int lane, const GaitSpec& gait) final {
+    SetNumbers(lane, gait);
+    Forget(lane);
+    Start(Lanes{1} << lane);
+  }
+
+  void Retune(int lane, const GaitSpec& gait) final {
+    SetNumbers(lane, gait);
+    retuned_ = true;
+  }
+
+  void Carry(LaneState& state) override {
+    GaitPlayer::Carry(state);
+    state.Row(States(), state_count());
+  }
+
+  /// The oscillators start at the first tick, and go from tick to tick under what they heard at the
+  /// tick before.
+  void Tick(const GaitTick& tick, const Observation& seen) final {
+    if (retuned_) Start(0);
+    Lanes first = 0;
+    for (int j = 0; j < lanes(); ++j) {
+      if (Has(tick.due, j) && tick.number[j] == 0) first |= Lanes{1} << j;
+    }
+    if (first != 0) {
+      Go(first, 0);
+      Begin(first, seen);
+    }
+    if (first != tick.due) Go(tick.due & ~first, steps_a_tick_);
+    Hear(tick.due, seen);
+  }
+
+ protected:
+  OscillatorPlayer(const GaitSetup& setup, double most_step_s)
+      : GaitPlayer(setup),
+        kernel_(LaneKernelOf(lanes())),
+        steps_a_tick_(
+            std::max(1, static_cast<int>(std::ceil(setup.period_s / most_step_s - 1e-6)))),
+        integrator_step_s_(setup.period_s / steps_a_tick_) {
+    for (const CouplingGraph::Coupling& link : setup.resolved.graph.couplings) {
+      to_.push_back(static_cast<unsigned short>(link.to));
+      from_.push_back(static_cast<unsigned short>(link.from));
+    }
+  }
+
+  /// Memory for the kernel, and all lanes at their start: the end of a kind's constructor.
+  void Prepare(const GaitSetup& setup, std::size_t bytes) {
+    memory_.reset(std::aligned_alloc(64, (bytes + 63) / 64 * 64));
+    if (!memory_) base::OutOfMemory();
+    kept_.Reserve(2, state_count() * static_cast<std::size_t>(lanes()) + signal_.size());
+    for (int j = 0; j < lanes(); ++j) SetNumbers(j, *setup.gaits[static_cast<std::size_t>(j)]);
+    StartKernel();
+  }
+
+  virtual void SetNumbers(int lane, const GaitSpec& gait) = 0;
+  /// Of oscillator after oscillator, in all lanes: three numbers.
+  virtual double* States() const = 0;
+  /// The kernel gets the numbers of all lanes, and all oscillators are at their start.
+  virtual void StartKernel() = 0;
+  /// All oscillators go on by so many steps of `integrator_step_s` and say where they are.
+  virtual void TickKernel(int steps) = 0;
+  /// Nothing was heard yet.
+  virtual void Forget(int lane) = 0;
+  /// What is noted at the first tick.
+  virtual void Begin(Lanes first, const Observation& seen) { (void)first, (void)seen; }
+  /// What acts on the oscillators until the next tick.
+  virtual void Hear(Lanes due, const Observation& seen) = 0;
+
+  const LaneKernel& kernel() const noexcept { return kernel_; }
+  void* memory() const noexcept { return memory_.get(); }
+  int count() const noexcept { return static_cast<int>(cables().size()); }
+  int couplings() const noexcept { return static_cast<int>(to_.size()); }
+  std::size_t state_count() const noexcept { return 3 * cables().size(); }
+  const unsigned short* to() const noexcept { return to_.data(); }
+  const unsigned short* from() const noexcept { return from_.data(); }
+  double integrator_step_s() const noexcept { return integrator_step_s_; }
+
+ private:
+  struct Free {
+    void operator()(void* p) const noexcept { std::free(p); }
+  };
+
+  /// Oscillators of lanes that begin are at their start, others stay where they are.
+  void Start(Lanes begin) {
+    retuned_ = false;
+    OtherLanes others(begin, lanes(), kept_);
+    others.Keep(States(), state_count());
+    StartKernel();
+    others.PutBack();
+  }
+
+  void Go(Lanes due, int steps) {
+    OtherLanes others(due, lanes(), kept_);
+    others.Keep(States(), state_count());
+    others.Keep(signal_.data(), cables().size());
+    TickKernel(steps);
+    others.PutBack();
+  }
+
+  const LaneKernel& kernel_;
+  std::vector<unsigned short> to_, from_;
+  int steps_a_tick_;
+  double integrator_step_s_;
+  bool retuned_ = false;  ///< The kernel has not got all numbers yet.
+  KeptRows kept_;
+  std::unique_ptr<void, Free> memory_;
+};
+
+}  // namespace taut::plant
