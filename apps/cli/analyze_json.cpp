@@ -36,7 +36,7 @@ Json ForcesJson(const ModelDef& def, const ForceAnalysis& forces) {
   json["members"] = Json::array();
   for (const StaticMember& member : forces.members) {
     json["members"].push_back({{"name", StaticMemberName(def, member)},
-                               {"kind", StaticMemberKindName(member.kind)},
+                               {"kind", NameOf(member.kind)},
                                {"length_m", member.length_m},
                                {"force_n", member.force_n}});
   }
@@ -177,7 +177,7 @@ Json ModesJson(const CaseResult& result, int most) {
   int number = 0;
   for (const Mode& mode : modes.modes) {
     if (mode.kind != Mode::Kind::kRigid && ++number > most) break;
-    json["modes"].push_back({{"kind", ModeKindName(mode.kind)},
+    json["modes"].push_back({{"kind", NameOf(mode.kind)},
                              {"frequency_hz", mode.frequency_hz},
                              {"eigenvalue_per_s2", mode.eigenvalue_per_s2},
                              {"shape", ShapeJson(result.def, mode)}});

@@ -13,20 +13,6 @@ inline std::string BodyName(const ModelDef& def, int body) {
   return body < 0 ? "world" : def.bodies[static_cast<std::size_t>(body)].name;
 }
 
-inline const char* ModeKindName(Mode::Kind kind) {
-  switch (kind) {
-    case Mode::Kind::kRigid:
-      return "rigid";
-    case Mode::Kind::kMechanism:
-      return "mechanism";
-    case Mode::Kind::kElastic:
-      return "elastic";
-    case Mode::Kind::kUnstable:
-      return "unstable";
-  }
-  return "";
-}
-
 inline const char* MemberKindName(MemberKind kind) {
   switch (kind) {
     case MemberKind::kCable:
@@ -35,20 +21,6 @@ inline const char* MemberKindName(MemberKind kind) {
       return "bar";
     case MemberKind::kRod:
       return "rod";
-  }
-  return "";
-}
-
-inline const char* StaticMemberKindName(StaticMember::Kind kind) {
-  switch (kind) {
-    case StaticMember::Kind::kCable:
-      return "cable";
-    case StaticMember::Kind::kBar:
-      return "bar";
-    case StaticMember::Kind::kHeld:
-      return "joint";
-    case StaticMember::Kind::kContact:
-      return "ground";
   }
   return "";
 }

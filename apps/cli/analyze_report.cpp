@@ -124,7 +124,7 @@ std::string ModeTable(const CaseResult& result, int most) {
     if (mode.kind == Mode::Kind::kRigid) continue;
     if (++number > most) break;
     table.Add({fmt::format("{}", number), fmt::format("{:.7g}", mode.frequency_hz),
-               ModeKindName(mode.kind), BodyName(result.def, MovesMost(mode))});
+               NameOf(mode.kind), BodyName(result.def, MovesMost(mode))});
   }
   return text + (number == 0 ? "" : table.Text());
 }

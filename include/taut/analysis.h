@@ -100,6 +100,8 @@ struct Mode {
   /// any is 1 m; a turn by its reach counts as one.
   std::vector<Vec3> translation_m, turn_rad;
 };
+/// "rigid", "mechanism", "elastic" or "unstable".
+const char* NameOf(Mode::Kind kind) noexcept;
 
 struct Modes {
   std::string why;          ///< If there are none: what is wrong.
@@ -125,6 +127,8 @@ struct StaticMember {
   double length_m = 0;  ///< Of cables and bars.
   double force_n = 0;  ///< As described: tension > 0; of contacts, how hard it pushes. [N] or [N m]
 };
+/// "cable", "bar", "joint" or "ground".
+const char* NameOf(StaticMember::Kind kind) noexcept;
 
 /// Forces that members have among themselves, without loads.
 struct SelfStress {

@@ -54,40 +54,19 @@ std::shared_ptr<Analysis> Analyse(const ExperimentSpec& experiment,
   return found;
 }
 
-const char* WordOf(Mode::Kind kind) {
-  switch (kind) {
-    case Mode::Kind::kRigid:
-      return "rigid";
-    case Mode::Kind::kMechanism:
-      return "mechanism";
-    case Mode::Kind::kElastic:
-      return "elastic";
-    case Mode::Kind::kUnstable:
-      return "unstable";
-  }
-  return "";
-}
-
 /// (kind, name, part), as docs/python.md has it.
 py::list MembersOf(const Analysis& a) {
   const ModelDef& def = a.robot.def;
   py::list members;
   for (const StaticMember& member : a.forces.members) {
     const auto i = static_cast<std::size_t>(member.index);
-    switch (member.kind) {
-      case StaticMember::Kind::kCable:
-        members.append(py::make_tuple("cable", def.cables[i].name, member.part));
-        break;
-      case StaticMember::Kind::kBar:
-        members.append(py::make_tuple("bar", def.joints[i].name, 0));
-        break;
-      case StaticMember::Kind::kHeld:
-        members.append(py::make_tuple("joint", def.joints[i].name, member.part));
-        break;
-      case StaticMember::Kind::kContact:
-        members.append(py::make_tuple("ground", def.planes[i].name, member.part));
-        break;
-    }
+    const bool joint =
+        member.kind == StaticMember::Kind::kBar || member.kind == StaticMember::Kind::kHeld;
+    const std::string& name = joint                                       ? def.joints[i].name
+                              : member.kind == StaticMember::Kind::kCable ? def.cables[i].name
+                                                                          : def.planes[i].name;
+    members.append(py::make_tuple(NameOf(member.kind), name,
+                                  member.kind == StaticMember::Kind::kBar ? 0 : member.part));
   }
   return members;
 }
@@ -210,7 +189,7 @@ void AddModes(Type& type) {
       "mode_kinds",
       [=](const Analysis& a) {
         py::list kinds;
-        for (const Mode& mode : modes(a)) kinds.append(WordOf(mode.kind));
+        for (const Mode& mode : modes(a)) kinds.append(NameOf(mode.kind));
         return kinds;
       },
       "\"rigid\", \"mechanism\", \"elastic\" or \"unstable\", by mode.");

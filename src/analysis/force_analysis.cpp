@@ -243,6 +243,20 @@ class Analysis {
 }  // namespace
 }  // namespace analysis
 
+const char* NameOf(StaticMember::Kind kind) noexcept {
+  switch (kind) {
+    case StaticMember::Kind::kCable:
+      return "cable";
+    case StaticMember::Kind::kBar:
+      return "bar";
+    case StaticMember::Kind::kHeld:
+      return "joint";
+    case StaticMember::Kind::kContact:
+      return "ground";
+  }
+  return "";
+}
+
 ForceAnalysis AnalyseForces(const ModelDef& def, bool contact) {
   return analysis::Analysis(def, contact).Run();
 }

@@ -142,6 +142,20 @@ void AddVibrations(const ModelDef& def, const Structure& s, const Eigen::MatrixX
 }  // namespace
 }  // namespace analysis
 
+const char* NameOf(Mode::Kind kind) noexcept {
+  switch (kind) {
+    case Mode::Kind::kRigid:
+      return "rigid";
+    case Mode::Kind::kMechanism:
+      return "mechanism";
+    case Mode::Kind::kElastic:
+      return "elastic";
+    case Mode::Kind::kUnstable:
+      return "unstable";
+  }
+  return "";
+}
+
 Modes FindModes(const ModelDef& def, const LoadCaseSpec& loads) {
   using namespace analysis;  // NOLINT(google-build-using-namespace): this function alone
   const Structure s(def, loads, true);
