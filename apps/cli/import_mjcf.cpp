@@ -72,6 +72,8 @@ void AddImportMjcf(CLI::App& import, int& exit_code) {
   AddChoice(*mjcf, "--slack", args->options.slack, kSlack,
             "What springs do that are shorter than at rest: nothing, as cables, or push, as bars "
             "(default: tension_only)");
+  mjcf->add_flag("--without_frictionloss", args->options.without_frictionloss,
+                 "Leave out the dry friction of tendons, for which a file is refused otherwise");
   mjcf->add_option("--keyframe", args->options.keyframe,
                    "Start, with its controls, from this key of the file (a name, or a number from "
                    "0; default: as bodies are described, controls 0)")

@@ -23,6 +23,8 @@ struct MjcfImport {
   /// What 1 in the file is; 1 if not given, with a warning where that is unlikely.
   std::optional<double> length_unit_m = {}, mass_unit_kg = {};
   MjcfSlack slack = MjcfSlack::kTensionOnly;
+  /// Leaves out dry friction of tendons that become cables, with a warning; else it is an error.
+  bool without_frictionloss = false;
   /// A key of the file by its name, or by its number from 0: where the robot is at the start, and
   /// its controls. Empty: as the bodies are described, controls 0.
   std::string keyframe = {};

@@ -14,6 +14,7 @@ struct Law {
   double gain = 0;       ///< By how much a unit of the control lessens c; of the only actuator.
   double c_at_zero = 0;  ///< Where all controls are 0.
   int actuators = 0;
+  double lag_s = 0;  ///< The longest of its actuators.
   bool pushes = false, damps_slack = false, has_most = false;
 };
 
@@ -27,7 +28,15 @@ class CableBuilder {
   }
 
  private:
+  /// What it has come to, of one that lags behind its control, if the key says so.
   double Control(std::size_t actuator) const {
+    const auto& all = scene_.actuators;
+    if (all[actuator].lag_s && key_ && !key_->act.empty()) {
+      const auto lags = [](const Actuator& one) { return one.lag_s.has_value(); };
+      const auto state =
+          std::count_if(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(actuator), lags);
+      return key_->act[static_cast<std::size_t>(state)];
+    }
     double u = key_ && !key_->ctrl.empty() ? key_->ctrl[actuator] : 0;
     const auto& range = scene_.actuators[actuator].control_range;
     if (range && scene_.clamps_controls) u = std::clamp(u, range->first, range->second);
@@ -64,6 +73,7 @@ class CableBuilder {
       law.k -= actuator.bias[1], law.b -= actuator.bias[2];
       law.c += actuator.bias[0] + actuator.gain * Control(a), law.c_at_zero += actuator.bias[0];
       law.gain = actuator.gain;
+      law.lag_s = std::max(law.lag_s, actuator.lag_s.value_or(0));
       const auto& range = actuator.force_range;
       if (!range || range->second > 0) law.pushes = true;
       if (range && range->first > -1e9) law.has_most = true;
@@ -107,6 +117,13 @@ class CableBuilder {
       const NodeDef& node = b_.def().nodes[Scene::Index(b_.node_of_site[Scene::Index(site)])];
       ends.push_back({node.body, node.position_m});
     }
+    const bool in_one_body = std::all_of(ends.begin(), ends.end(), [&](const AttachmentDef& end) {
+      return end.body == ends.front().body;
+    });
+    if (in_one_body) {
+      idle_.push_back(&tendon);
+      return;
+    }
     double length = 0;
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
       const Vec3 d = ends[i + 1].position_m - ends[i].position_m;
@@ -126,6 +143,15 @@ class CableBuilder {
     damped_ += law.damps_slack;
     summed_ += law.actuators > 0 && tendon.stiffness > 0 && !law.pushes;
     if (law.has_most) capped_.push_back(&tendon);
+    if (tendon.friction > 0) {
+      if (!b_.options.without_frictionloss) {
+        b_.out.Error(tendon.at, called + ": frictionloss of a cable is not read",
+                     "--without_frictionloss leaves it out; bars (--slack as_mujoco) have it");
+      }
+      rough_.push_back(&tendon);
+    }
+    if (law.lag_s > 0)
+      lagging_.push_back(&tendon), longest_lag_s_ = std::max(longest_lag_s_, law.lag_s);
     CableDef cable;
     cable.name = name, cable.attachments = std::move(ends);
     cable.stiffness_n_per_m = law.k, cable.damping_n_s_per_m = law.b;
@@ -183,7 +209,7 @@ class CableBuilder {
       std::swap(bar.body_a, bar.body_b);
       std::swap(bar.from_m, bar.to_m);
     }
-    bar.stiffness = law.k, bar.damping = law.b, bar.rest = rest;
+    bar.stiffness = law.k, bar.damping = law.b, bar.rest = rest, bar.friction = tendon.friction;
     bar.collides = true;
     b_.def().joints.push_back(bar);
     b_.made.robot.joint_tags.push_back({name});
@@ -233,6 +259,10 @@ class CableBuilder {
     }
     Some(capped_, " a largest tension (forcerange) that is left out");
     Some(limits_, " a limit of length (range) that is left out");
+    Some(rough_, " a dry friction (frictionloss) that is left out");
+    Some(lagging_, " actuators that follow their controls with a lag (dyntype), of up to " +
+                       Shown(longest_lag_s_) + " s; here rest lengths follow at once");
+    Some(idle_, " all sites in one body, where nothing comes of it: left out");
   }
   void Some(const std::vector<const Tendon*>& tendons, const std::string& what) {
     if (tendons.empty()) return;
@@ -263,7 +293,8 @@ class CableBuilder {
   int bilateral_ = 0, pushing_ = 0, damped_ = 0, summed_ = 0;
   int absolute_ = 0, relative_ = 0, other_ = 0, several_ = 0;
   std::string example_;
-  std::vector<const Tendon*> capped_, limits_;
+  std::vector<const Tendon*> capped_, limits_, rough_, lagging_, idle_;
+  double longest_lag_s_ = 0;
 };
 
 }  // namespace

@@ -152,7 +152,7 @@ void ScaleUnits(Building& b) {
   }
   for (JointDef& bar : def.joints) {
     scale(bar.from_m), scale(bar.to_m);
-    bar.stiffness *= m, bar.damping *= m, bar.rest *= l;
+    bar.stiffness *= m, bar.damping *= m, bar.rest *= l, bar.friction *= m * l;
   }
   for (PlaneDef& p : def.planes) scale(p.point_m);
   for (TerrainBoxDef& box : def.terrain_boxes) scale(box.center_m), scale(box.half_extents_m);

@@ -10,7 +10,7 @@ namespace {
 /// What actuator elements say, one over the other: defaults of all kinds set the same numbers.
 struct Settings {
   std::string dyntype = "none", gaintype = "fixed", biastype = "none";
-  double gain = 1, bias[3] = {0, 0, 0};
+  double gain = 1, bias[3] = {0, 0, 0}, lag_s = 1;
 };
 
 void Apply(const Element& e, Settings& s, Diagnostics& out) {
@@ -19,6 +19,7 @@ void Apply(const Element& e, Settings& s, Diagnostics& out) {
   s.gaintype = layers.Text("gaintype", s.gaintype);
   s.biastype = layers.Text("biastype", s.biastype);
   if (layers.Has("gainprm")) s.gain = layers.Numbers("gainprm", {s.gain}, 1, 10)[0];
+  if (layers.Has("dynprm")) s.lag_s = layers.Numbers("dynprm", {s.lag_s}, 1, 10)[0];
   if (layers.Has("biasprm")) {
     const auto n = layers.Numbers("biasprm", {s.bias[0], s.bias[1], s.bias[2]}, 1, 10);
     std::copy(n.begin(), n.begin() + 3, s.bias);
@@ -30,7 +31,9 @@ void Apply(const Element& e, Settings& s, Diagnostics& out) {
     if (layers.Number("dampratio", 0) != 0) {
       layers.Error("dampratio", "dampratio is not read", "kv is");
     }
-    if (layers.Number("timeconst", 0) != 0) s.dyntype = "filterexact";
+    if (const double lag_s = layers.Number("timeconst", 0); lag_s != 0) {
+      s.dyntype = "filterexact", s.lag_s = lag_s;
+    }
     s.gaintype = "fixed", s.biastype = "affine";
     s.gain = kp, s.bias[0] = 0, s.bias[1] = -kp, s.bias[2] = -kv;
   } else if (e.name == "velocity") {
@@ -65,7 +68,11 @@ class ActuatorReader {
     if (actuator.tendon < 0) return;
     Settings s;
     for (const Element* const layer : layers.all()) Apply(*layer, s, out_);
-    if (s.dyntype != "none") Refuse(e, "its dyntype is " + s.dyntype + ", only none is read");
+    const bool lags = s.dyntype == "filter" || s.dyntype == "filterexact";
+    if (!lags && s.dyntype != "none") {
+      Refuse(e, "its dyntype is " + s.dyntype + ", only none, filter and filterexact are read");
+    }
+    if (lags) actuator.lag_s = s.lag_s;
     if (s.gaintype != "fixed") Refuse(e, "its gaintype is " + s.gaintype + ", only fixed is read");
     if (s.biastype != "none" && s.biastype != "affine") {
       Refuse(e, "its biastype is " + s.biastype + ", only none and affine are read");
@@ -135,12 +142,11 @@ void ReadTendons(const Element& root, const Defaults& defaults, Scene& scene, Di
         layers.Error(polynomial, std::string(polynomial) + " that is not constant is not read");
       }
       tendon.springlength = layers.Numbers("springlength", {-1}, 1, 2);
-      for (const char* key : {"frictionloss", "armature"}) {
-        if (layers.Number(key, 0) != 0) {
-          layers.Error(key, std::string(key) + " of a tendon is not read");
-        }
+      tendon.friction = layers.Number("frictionloss", 0);
+      if (layers.Number("armature", 0) != 0) {
+        layers.Error("armature", "armature of a tendon is not read");
       }
-      for (const char* key : {"stiffness", "damping"}) {
+      for (const char* key : {"stiffness", "damping", "frictionloss"}) {
         if (layers.Numbers(key, {0}, 1, 3)[0] < 0) {
           layers.Error(key, std::string(key) + " is negative");
         }

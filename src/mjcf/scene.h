@@ -53,7 +53,7 @@ struct Tendon {
   std::string name = {}, tag = {};  ///< The tag: its default class, if it names one.
   SourceRef at;
   std::vector<int> sites = {};
-  double stiffness = 0, damping = 0;
+  double stiffness = 0, damping = 0, friction = 0;
   std::vector<double> springlength = {};  ///< One or two; what is -1 is the length at qpos0.
   bool has_limit = false;
 };
@@ -65,12 +65,13 @@ struct Actuator {
   int tendon = 0;
   double gain = 0, bias[3] = {0, 0, 0};  ///< With the gear: of the tendon's own l.
   std::optional<std::pair<double, double>> control_range = {}, force_range = {};  ///< Of p.
+  std::optional<double> lag_s = {};  ///< With which it follows its control: it has a state.
 };
 
 struct Key {
   std::string name;
   SourceRef at;
-  std::vector<double> qpos, qvel, ctrl;  ///< Empty if not said.
+  std::vector<double> qpos, qvel, ctrl, act;  ///< Empty if not said.
 };
 
 struct ContactPair {

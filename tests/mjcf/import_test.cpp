@@ -207,19 +207,6 @@ TEST_F(MjcfImportTest, FilesAreIncluded) {
   EXPECT_NEAR(made->robot.def.bodies[0].com_m.z, 1, kSame);
 }
 
-/// A rod under a ceiling on two cables that are made in every way.
-std::string Hung(const std::string& tendon, const std::string& more = "") {
-  return "<mujoco model=\"rod\"><worldbody><site name=\"top\" pos=\"0 0 2\"/><body name=\"rod\" "
-         "pos=\"0 0 1\">"
-         "<freejoint/><geom type=\"capsule\" size=\"0.02 0.3\"/><site name=\"s\" pos=\"0 0 0.3\"/>"
-         "</body></worldbody><tendon><spatial name=\"c\" " +
-         tendon + "><site site=\"top\"/><site site=\"s\"/></spatial></tendon>" + more + "</mujoco>";
-}
-std::string Pulled(const std::string& tendon, const std::string& actuator,
-                   const std::string& more = "") {
-  return Hung(tendon, "<actuator>" + actuator + "</actuator>" + more);
-}
-
 TEST_F(MjcfImportTest, SpringsAndActuatorsOfATendonAreOneCable) {
   const auto k = [&](const std::string& xml, const MjcfImport& options = {}, int key = -1) {
     SCOPED_TRACE(xml);
@@ -251,6 +238,29 @@ TEST_F(MjcfImportTest, SpringsAndActuatorsOfATendonAreOneCable) {
   c = k(Pulled("", R"(<position tendon="c" kp="60" ctrllimited="true" ctrlrange="0.1 0.3"/>)", key),
         {.keyframe = "k"}, 0);
   EXPECT_NEAR(c.rest_length_m, 0.3, kSame);
+}
+
+TEST_F(MjcfImportTest, AnActuatorWithALagIsWhatItHasComeTo) {
+  const std::string lags = R"(<general tendon="c" gainprm="80" biastype="affine" biasprm="0 -80 -2"
+                                       dyntype="filter" dynprm="0.3"/>)";
+  const auto at = [&](const std::string& says) {
+    const auto made = Same(Pulled("", lags, "<keyframe><key name=\"k\" " + says + "/></keyframe>"),
+                           {.keyframe = "k"}, 0);
+    return made ? made->robot.def.cables.at(0).rest_length_m : NAN;
+  };
+  EXPECT_NEAR(at("act=\"0.4\" ctrl=\"0.6\""), 0.4, kSame);  // as in MuJoCo, which goes on to 0.6
+  EXPECT_NE(Said().find("tendon \"c\" has actuators that follow their controls with a lag "
+                        "(dyntype), of up to 0.3 s; here rest lengths follow at once"),
+            std::string::npos)
+      << Said();
+  const auto ctrl_only =
+      Import(Pulled("", lags, R"(<keyframe><key ctrl="0.6"/></keyframe>)"), {.keyframe = "0"});
+  ASSERT_TRUE(ctrl_only);
+  EXPECT_NEAR(ctrl_only->robot.def.cables.at(0).rest_length_m, 0.6, kSame);  // where it will be
+  EXPECT_TRUE(Import(Pulled("", R"(<position tendon="c" kp="60" timeconst="0.2"/>)",
+                            R"(<keyframe><key ctrl="0.6"/></keyframe>)"),
+                     {.keyframe = "0"}));
+  EXPECT_NE(Said().find("up to 0.2 s"), std::string::npos) << Said();
 }
 
 TEST_F(MjcfImportTest, WhatWouldPushIsCounted) {

@@ -84,5 +84,33 @@ TEST_F(MjcfWorld, WhatIsLeftOutIsToldInALine) {
   EXPECT_EQ(made->notes[1], "left out: 1 tendon without stiffness and actuator, which only show");
 }
 
+TEST_F(MjcfWorld, DryFrictionOfATendonIsABarsOrLeftOutWhenAsked) {
+  const std::string rough = Hung(R"(stiffness="100" springlength="0.9" frictionloss="0.5")");
+  const auto cable = Import(rough, {.without_frictionloss = true});
+  ASSERT_TRUE(cable);
+  EXPECT_NE(Said().find("tendon \"c\" has a dry friction (frictionloss) that is left out"),
+            std::string::npos)
+      << Said();
+  const auto bar = Import(rough, {.length_unit_m = 0.1, .slack = MjcfSlack::kAsMujoco});
+  ASSERT_TRUE(bar);
+  EXPECT_NEAR(bar->robot.def.joints.at(0).friction, 0.05, kSame);
+}
+
+TEST_F(MjcfWorld, ATendonInOneBodyIsLeftOut) {
+  const std::string two = R"(<body name="lonely" pos="2 0 1"><freejoint/><geom size="0.1"/>
+      <site name="left" pos="-0.1 0 0"/><site name="right" pos="0.1 0 0"/></body>)";
+  std::string xml = Hung(R"(stiffness="100" springlength="0.5")");
+  xml.insert(xml.find("</worldbody>"), two);
+  xml.insert(xml.find("</tendon>"), R"(<spatial name="own" stiffness="9" springlength="0.1">
+      <site site="left"/><site site="right"/></spatial>)");
+  const auto made = Import(xml);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->robot.def.cables.size(), 1u);
+  EXPECT_NE(Said().find("tendon \"own\" has all sites in one body, where nothing comes of it: left "
+                        "out"),
+            std::string::npos)
+      << Said();
+}
+
 }  // namespace
 }  // namespace taut::test

@@ -46,4 +46,17 @@ class MjcfFolder : public ExperimentFolder {
   std::string yaml_;
 };
 
+/// A rod under a ceiling on two cables that are made in every way.
+inline std::string Hung(const std::string& tendon, const std::string& more = "") {
+  return "<mujoco model=\"rod\"><worldbody><site name=\"top\" pos=\"0 0 2\"/><body name=\"rod\" "
+         "pos=\"0 0 1\">"
+         "<freejoint/><geom type=\"capsule\" size=\"0.02 0.3\"/><site name=\"s\" pos=\"0 0 0.3\"/>"
+         "</body></worldbody><tendon><spatial name=\"c\" " +
+         tendon + "><site site=\"top\"/><site site=\"s\"/></spatial></tendon>" + more + "</mujoco>";
+}
+inline std::string Pulled(const std::string& tendon, const std::string& actuator,
+                          const std::string& more = "") {
+  return Hung(tendon, "<actuator>" + actuator + "</actuator>" + more);
+}
+
 }  // namespace taut::test
