@@ -4,7 +4,7 @@
 
 #include "description/environment_keys.h"
 #include "description/experiment_parts.h"
-#include "description/study_parts.h"
+#include "description/match_tunables.h"
 
 namespace taut::description {
 namespace {

@@ -122,9 +122,9 @@ std::optional<GaitSpec> ImportJson(const std::string& path, Diagnostics& out) {
   if (root->Find("nodeVals")) return ImportFeedback(*root, path, out);
   const NameTable no_names;
   const Scope scope{no_names, out};
-  std::vector<std::string> keys;
-  for (const Entry& entry : root->entries) keys.push_back(entry.key);
-  const MapReader map(*root, "controlVars", keys, scope);
+  MapReader map(*root, "controlVars", scope);
+  for (const Entry& entry : root->entries) map.Know(entry.key);
+  map.RefuseOthers();
   SineGait sine;
   sine.frequency_hz = map.Number("cpg_frequency", Bound::kPositive);
   for (int segment = 1; segment <= 2; ++segment) {

@@ -64,9 +64,9 @@ std::optional<NetworkSpec> ReadNetwork(const Value& root, const char* key, const
   const Value* of = root.Find(key);
   const Value* params = of ? of->Find("params") : nullptr;
   if (!params) return std::nullopt;
-  std::vector<std::string> keys;
-  for (const Entry& entry : params->entries) keys.push_back(entry.key);
-  const MapReader map(*params, key, keys, scope);
+  MapReader map(*params, key, scope);
+  for (const Entry& entry : params->entries) map.Know(entry.key);
+  map.RefuseOthers();
   const auto whole = [&](const char* name) {
     const Value* value = map.Require(name);
     return value ? ReadInteger(*value, map.Path(name), 1, 1000, scope).value_or(0) : 0;

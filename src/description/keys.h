@@ -84,23 +84,20 @@ struct Spellings {
   const char* when[kCount];
 };
 
-/// A line of a table, without the field.
+/// A line of a table, without the field: what readers want of it, who see hundreds of them.
 struct Key {
-  const char* name;
-  const char* meaning = "";  ///< Sentences, without range and unit.
-  Bound bound{};
-  bool needed = false, later = false, is_name = false, is_direction = false, inherited = false;
-  bool limit = false, fixed = false, varied = false, at_start = false;
-  const char* example = nullptr;
-  double before =
-      std::numeric_limits<double>::quiet_NaN();  ///< Not written: what `LaterThan` says.
+  const char* name = "";
+  const Bound* bound = &Bound::kAny;  ///< Of the table, as long as the line is visited.
+  bool needed : 1 = false, later : 1 = false, is_name : 1 = false, is_direction : 1 = false;
+  bool inherited : 1 = false, limit : 1 = false, fixed : 1 = false, varied : 1 = false;
+  bool at_start : 1 = false;
 
-  void Note(const char* text) { meaning = text; }
-  void Note(const Bound& note) { bound = note; }
+  void Note(const char* /*meaning*/) {}
+  void Note(const Bound& note) { bound = &note; }
   void Note(note::Needed) { needed = true; }
   void Note(note::ResolvedOnly) {}
   void Note(note::Later) { later = true; }
-  void Note(LaterThan note) { later = true, before = note.value; }
+  void Note(LaterThan) { later = true; }
   void Note(note::IsName) { is_name = true; }
   void Note(note::IsDirection) { is_direction = true; }
   void Note(note::Inherited) { inherited = true; }
@@ -108,9 +105,22 @@ struct Key {
   void Note(note::Fixed) { fixed = true; }
   void Note(note::Varied) { varied = true; }
   void Note(note::AtStart) { at_start = true; }
-  void Note(Example note) { example = note.json; }
+  void Note(Example) {}
   template <class E>
   void Note(const Choices<E>&) {}
+};
+
+/// The same with what is for people, and for those who write.
+struct KeyText : Key {
+  const char* meaning = "";  ///< Sentences, without range and unit.
+  const char* example = nullptr;
+  double before =
+      std::numeric_limits<double>::quiet_NaN();  ///< Not written: what `LaterThan` says.
+
+  using Key::Note;
+  void Note(const char* text) { meaning = text; }
+  void Note(LaterThan note) { later = true, before = note.value; }
+  void Note(Example note) { example = note.json; }
 };
 
 template <class T>
@@ -118,17 +128,21 @@ inline constexpr bool kIsChoices = false;
 template <class E>
 inline constexpr bool kIsChoices<Choices<E>> = true;
 
-/// A visitor of tables: `Derived::On(key, field)`, with the choices if there are any.
-/// `kOfResolved`: whether it is about resolved experiments.
+/// A visitor of tables: `Derived::On(key, field)`, with the choices if there are any. What it gets
+/// of a line is its `Derived::Line`, `Key` or `KeyText`. `kOfResolved`: whether it is about
+/// resolved experiments.
 template <class Derived, bool kOfResolved>
 class KeyVisitor {
  public:
   static constexpr bool kResolved = kOfResolved;
+  using Line = Key;
 
+  // Inline, or what no visitor wants of a line would be handed on all the same.
   template <class T, class... Notes>
-  void operator()(const char* name, T& field, const Notes&... notes) {
+  [[gnu::always_inline]] void operator()(const char* name, T& field, const Notes&... notes) {
     if constexpr (kResolved || !(std::same_as<Notes, note::ResolvedOnly> || ...)) {
-      Key key{name};
+      typename Derived::Line key;
+      key.name = name;
       (key.Note(notes), ...);
       auto& derived = static_cast<Derived&>(*this);
       if constexpr ((kIsChoices<Notes> || ...)) {
@@ -167,36 +181,9 @@ class KeyVisitor {
 
  private:
   template <class T, class Note>
-  static void Choose(Derived& derived, const Key& key, T& field, const Note& note) {
+  static void Choose(Derived& derived, const auto& key, T& field, const Note& note) {
     if constexpr (kIsChoices<Note>) derived.On(key, field, note);
   }
-};
-
-/// The names of a table's keys, and what messages call the mapping.
-template <bool kOfResolved>
-class KeyNames : public KeyVisitor<KeyNames<kOfResolved>, kOfResolved> {
- public:
-  template <class T, class... Choices>
-  void On(const Key& key, const T&, const Choices&...) {
-    names.push_back(key.name);
-  }
-  template <class OfName>
-  void Spell(const Spellings& spellings, const OfName& of_name) {
-    for (int i = 0; i < Spellings::kCount; ++i) {
-      const int wanted = this->spelling.index;
-      if (i == wanted || wanted < 0) {
-        of_name(spellings.names[i]);
-      } else {
-        other_spellings.push_back(spellings.names[i]);
-      }
-    }
-  }
-  void Map(const char* called, const char* heading, const char*, const char* = nullptr) {
-    what = called;
-    title = heading;
-  }
-  std::vector<std::string> names, other_spellings;
-  std::string what, title;
 };
 
 // Fields of structs that stand for what files say.

@@ -46,7 +46,7 @@ class NumberList : public KeyVisitor<NumberList<Number>, true> {
     constexpr double kPi = 3.14159265358979323846;
     if (key.fixed) return;
     const std::string unit = base::UnitAtEnd(key.name).Text();
-    double least = key.bound.least, most = key.bound.most;
+    double least = key.bound->least, most = key.bound->most;
     if (unit == "rad" && std::isinf(least) && std::isinf(most)) least = -kPi, most = kPi;
     Number& number = numbers.emplace_back(Number{prefix_ + name, unit, &field, least, most});
     if constexpr (requires { number.at_start; }) number.at_start = key.at_start;

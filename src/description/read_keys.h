@@ -65,15 +65,15 @@ template <class T>
 void ReadField(const Value& value, const std::string& path, const Key& key, const Scope& scope,
                T& out) {
   const auto whole = [&] {
-    TAUT_ASSERT(std::isfinite(key.bound.least) && std::isfinite(key.bound.most));
-    return ReadInteger(value, path, static_cast<int>(key.bound.least),
-                       static_cast<int>(key.bound.most), scope);
+    TAUT_ASSERT(std::isfinite(key.bound->least) && std::isfinite(key.bound->most));
+    return ReadInteger(value, path, static_cast<int>(key.bound->least),
+                       static_cast<int>(key.bound->most), scope);
   };
   const auto text = [&] {
     return key.is_name ? ReadName(value, path, scope) : ReadText(value, path, scope);
   };
   if constexpr (std::same_as<T, double>) {
-    out = ReadNumber(value, path, key.bound, scope);
+    out = ReadNumber(value, path, *key.bound, scope);
   } else if constexpr (std::same_as<T, int> || std::same_as<T, std::uint64_t>) {
     const auto read = whole();
     if (read) out = static_cast<T>(*read);
@@ -85,7 +85,7 @@ void ReadField(const Value& value, const std::string& path, const Key& key, cons
     out = {text(), value.at};
   } else if constexpr (std::same_as<T, Vec3>) {
     out = key.is_direction ? ReadDirection(value, path, scope) : ReadVec3(value, path, scope);
-    if (key.bound.above_least && !(out.x > 0.0 && out.y > 0.0 && out.z > 0.0)) {
+    if (key.bound->above_least && !(out.x > 0.0 && out.y > 0.0 && out.z > 0.0)) {
       if (!std::isnan(out.x + out.y + out.z)) {
         scope.out.Error(value.at, path + " must be three positive numbers");
       }
@@ -101,10 +101,10 @@ void ReadField(const Value& value, const std::string& path, const Key& key, cons
     const auto ends = ReadNumbers(value, path, 2, scope);
     out = ends ? std::pair((*ends)[0], (*ends)[1]) : std::pair<double, double>(NAN, NAN);
   } else if constexpr (std::same_as<T, std::vector<std::pair<double, double>>>) {
-    out = ReadPoints(value, path, key.bound, scope);
+    out = ReadPoints(value, path, *key.bound, scope);
   } else if constexpr (std::same_as<T, std::vector<double>>) {
     for (const ValuePtr& item : Items(&value, path, scope)) {
-      out.push_back(ReadNumber(*item, path, key.bound, scope));
+      out.push_back(ReadNumber(*item, path, *key.bound, scope));
     }
   } else if constexpr (std::same_as<T, std::vector<Vec3>>) {
     for (const ValuePtr& item : Items(&value, path, scope)) {
@@ -140,17 +140,19 @@ void ReadField(const Value& value, const std::string& path, const Key& key, cons
 
 class FileReader : public KeyVisitor<FileReader, false> {
  public:
-  explicit FileReader(const MapReader& map) : map_(map) { spelling = map.scope().spelling; }
+  explicit FileReader(MapReader& map) : map_(map) { spelling = map.scope().spelling; }
 
+  void Map(const char* what, const char* /*title*/, const char* /*meaning*/,
+           const char* /*example*/ = nullptr) {
+    if (*what) map_.Call(what);
+  }
   template <class T>
   void On(const Key& key, T& field) {
-    if (const Value* value = Find(key)) {
-      Scope scope = map_.scope();
-      scope.spelling = spelling;
-      ReadField(*value, map_.Path(key.name), key, scope, field);
-    } else if (key.needed) {
-      Spoil(field);
-    }
+    const auto read = [](const Value& value, const std::string& path, const Key& its_key,
+                         const Scope& scope, void* its_field) {
+      ReadField(value, path, its_key, scope, *static_cast<T*>(its_field));
+    };
+    if (!ReadInto(&field, key, read)) Spoil(field);
   }
   template <class T, class E>
   void On(const Key& key, T& field, const Choices<E>& choices) {
@@ -169,6 +171,7 @@ class FileReader : public KeyVisitor<FileReader, false> {
     const char* right = spellings.names[std::max(0, spelling.index)];
     bool wrong = false;
     for (const char* name : spellings.names) {
+      if (name == right || spelling.index < 0 || map_.Has(name)) map_.Know(name);
       if (name == right || !map_.Has(name)) continue;
       if (spelling.index < 0) {
         right = name;
@@ -206,7 +209,21 @@ class FileReader : public KeyVisitor<FileReader, false> {
   }
 
  private:
-  const Value* Find(const Key& key) const {
+  /// The same for fields of all types: what a table is compiled to is a list of calls.
+  using FieldReader = void (*)(const Value&, const std::string& path, const Key&, const Scope&,
+                               void* field);
+
+  /// False if a key is absent that is needed.
+  bool ReadInto(void* field, const Key& key, FieldReader read) {
+    const Value* value = Find(key);
+    if (!value) return !key.needed;
+    Scope scope = map_.scope();
+    scope.spelling = spelling;
+    read(*value, map_.Path(key.name), key, scope, field);
+    return true;
+  }
+  const Value* Find(const Key& key) {
+    map_.Know(key.name);
     if (std::find(ignored_.begin(), ignored_.end(), key.name) != ignored_.end()) return nullptr;
     return key.needed ? map_.Require(key.name) : map_.Find(key.name);
   }
@@ -216,22 +233,17 @@ class FileReader : public KeyVisitor<FileReader, false> {
     if constexpr (std::same_as<T, Vec3>) field = {NAN, NAN, NAN};
   }
 
-  const MapReader& map_;
+  MapReader& map_;
   std::vector<std::string> ignored_, not_chosen_;
 };
 
 template <class T>
 void ReadMapping(const Value& value, const std::string& path, const Scope& scope, T& out) {
   const std::size_t errors_before = scope.out.items().size();
-  KeyNames<false> known;
-  known.spelling = scope.spelling;
-  Keys(known, out);
-  for (std::string& name : known.other_spellings) {  // `FileReader` has more to say about these
-    if (value.Find(name)) known.names.push_back(std::move(name));
-  }
-  const MapReader map(value, known.what.empty() ? path : known.what, std::move(known.names), scope);
+  MapReader map(value, path, scope);
   FileReader io(map);
   Keys(io, out);
+  map.RefuseOthers();
   if constexpr (requires { out.at = value.at; }) out.at = value.at;
   if constexpr (requires { Check(map, out); }) Check(map, out);
   if constexpr (requires { out.good = true; }) out.good = scope.out.items().size() == errors_before;

@@ -170,9 +170,14 @@ std::string ReadText(const Value& value, std::string_view what, const Scope& sco
   return {};
 }
 
-MapReader::MapReader(const Value& value, std::string what, std::vector<std::string> known,
-                     const Scope& scope)
-    : value_(value), what_(std::move(what)), known_(std::move(known)), scope_(scope) {
+MapReader::MapReader(const Value& value, std::string what, const Scope& scope)
+    : value_(value), what_(std::move(what)), scope_(scope) {}
+
+void MapReader::Know(std::string_view key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
+}
+
+void MapReader::RefuseOthers() const {
   if (!is_map()) {
     WrongType(value_, what_.empty() ? "the file" : what_, "a map", scope_);
     return;

@@ -124,9 +124,11 @@ std::optional<E> ReadChoice(const Value& value, std::string_view what,
 /// empty one whose missing keys nobody complains about.
 class MapReader {
  public:
-  /// Complains about every key that is not in `known`. `what` names the map: "rod", "terrain".
-  MapReader(const Value& value, std::string what, std::vector<std::string> known,
-            const Scope& scope);
+  /// `what` names the map: "rod", "terrain".
+  MapReader(const Value& value, std::string what, const Scope& scope);
+  void Call(const char* what) { what_ = what; }
+  void Know(std::string_view key);
+  void RefuseOthers() const;  ///< Complains about every key that is not known by now.
 
   bool is_map() const { return value_.kind == Value::Kind::kMap; }
   const std::string& what() const { return what_; }
@@ -136,7 +138,7 @@ class MapReader {
   std::string Path(std::string_view key) const;
 
   bool Has(std::string_view key) const { return Find(key) != nullptr; }
-  bool HasAnyBut(std::string_view key) const;        ///< Of the known ones.
+  bool HasAnyBut(std::string_view key) const;        ///< Of those known by now.
   const Value* Find(std::string_view key) const;     ///< Null if absent.
   const Value* Require(std::string_view key) const;  ///< Null and a complaint if absent.
   SourceRef KeyAt(std::string_view key) const;       ///< The key's place; the map's if absent.

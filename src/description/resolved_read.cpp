@@ -84,10 +84,11 @@ void Read(const Value& value, const std::string& what, const Scope& scope, std::
 /// earlier versions of taut did not write. Ranges are left to `Model::Compile`.
 class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
  public:
-  explicit ResolvedReader(const MapReader& map) : map_(map) { spelling = map.scope().spelling; }
+  explicit ResolvedReader(MapReader& map) : map_(map) { spelling = map.scope().spelling; }
 
   template <class T>
   void On(const Key& key, T& out) {
+    map_.Know(key.name);
     if constexpr (std::same_as<T, double>) {
       if (key.limit) {
         out = map_.NumberOr(key.name, std::numeric_limits<double>::infinity(), Bound::kNonNegative);
@@ -107,6 +108,7 @@ class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
     const char* const right = spellings.names[std::max(0, spelling.index)];
     for (const char* name : spellings.names) {
       if (name != right && map_.Has(name)) {
+        map_.Know(name);
         map_.Error(name, map_.Path(name) + " is of another quantity");
       }
     }
@@ -114,28 +116,24 @@ class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
   }
   template <class E>
   void On(const Key& key, E& out, const Choices<E>& choices) {
+    map_.Know(key.name);
     const Value* value = key.later ? map_.Find(key.name) : map_.Require(key.name);
     if (!value) return;
     out = ReadChoice<E>(*value, map_.Path(key.name), choices, map_.scope()).value_or(out);
   }
 
  private:
-  const MapReader& map_;
+  MapReader& map_;
 };
 
 template <class T>
 void ReadStruct(const Value& value, const std::string& what, std::vector<std::string> more_keys,
                 const Scope& scope, T& out) {
-  KeyNames<true> known;
-  known.spelling = scope.spelling;
-  Keys(known, out);
-  known.names.insert(known.names.end(), more_keys.begin(), more_keys.end());
-  for (std::string& name : known.other_spellings) {  // `ResolvedReader` has more to say about these
-    if (value.Find(name)) known.names.push_back(std::move(name));
-  }
-  const MapReader map(value, what, known.names, scope);
+  MapReader map(value, what, scope);
   ResolvedReader reader(map);
   Keys(reader, out);
+  for (const std::string& key : more_keys) map.Know(key);
+  map.RefuseOthers();
 }
 
 template <class T>

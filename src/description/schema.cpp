@@ -144,7 +144,7 @@ template <class T>
 std::string TypeOf(const Key& key, Definitions& definitions) {
   const std::string unit = base::UnitAtEnd(key.name).Text();
   const std::string of_number =
-      Range(key.bound) + (unit.empty() ? "" : ", \"unit\": " + Json(unit));
+      Range(*key.bound) + (unit.empty() ? "" : ", \"unit\": " + Json(unit));
   if constexpr (std::same_as<T, double>) {
     return Reference("number") + of_number;
   } else if constexpr (std::same_as<T, int> || std::same_as<T, std::uint64_t>) {
@@ -156,7 +156,7 @@ std::string TypeOf(const Key& key, Definitions& definitions) {
   } else if constexpr (std::same_as<T, Vec3>) {
     std::string out = Reference("vector");
     if (key.is_direction) out += R"(, "title": "[x, y, z], not zero")";
-    const std::string range = Range(key.bound);
+    const std::string range = Range(*key.bound);
     if (!range.empty()) out += R"(, "items": {)" + Reference("number") + range + "}";
     return out + (unit.empty() ? "" : ", \"unit\": " + Json(unit));
   } else if constexpr (std::same_as<T, Quat>) {
@@ -169,7 +169,7 @@ std::string TypeOf(const Key& key, Definitions& definitions) {
     return Reference("selector");
   } else if constexpr (std::same_as<T, std::vector<double>>) {
     return R"("type": "array", "title": "numbers", "items": {)" + Reference("number") +
-           Range(key.bound) + "}" + (unit.empty() ? "" : ", \"unit\": " + Json(unit));
+           Range(*key.bound) + "}" + (unit.empty() ? "" : ", \"unit\": " + Json(unit));
   } else if constexpr (std::same_as<T, std::vector<Vec3>>) {
     return R"("type": "array", "items": {)" + Reference("vector") + "}" +
            (unit.empty() ? "" : ", \"unit\": " + Json(unit));
@@ -207,15 +207,17 @@ std::string TypeOf(const Key& key, Definitions& definitions) {
 
 class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
  public:
+  using Line = KeyText;
+
   explicit SchemaMaker(Definitions& definitions, bool replaces = false)
       : definitions_(definitions), replaces_(replaces) {}
 
   template <class T>
-  void On(const Key& key, T& field) {
+  void On(const KeyText& key, T& field) {
     Add(key, TypeOf<T>(key, definitions_), Default(field));
   }
   template <class T, class E>
-  void On(const Key& key, T& field, const Choices<E>& choices) {
+  void On(const KeyText& key, T& field, const Choices<E>& choices) {
     std::string chosen;
     for (const auto& [name, choice] : choices) {
       if constexpr (std::same_as<T, E>) {
@@ -274,7 +276,7 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
   }
 
  private:
-  void Add(const Key& key, std::string type, const std::string& fallback) {
+  void Add(const KeyText& key, std::string type, const std::string& fallback) {
     if (!fallback.empty() && !key.needed && !key.inherited && !replaces_)
       type += ", \"default\": " + fallback;
     if (*key.meaning) type += ", \"description\": " + Json(Meaning(key));
@@ -283,7 +285,7 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
     spelt_needed_ = key.needed;
     if (key.needed && !spellings_) needed_.push_back(key.name);
   }
-  std::string Meaning(const Key& key) const {
+  std::string Meaning(const KeyText& key) const {
     if (!spellings_) return key.meaning;
     const std::string in = spellings_->when[spelt_] + std::string(".");
     if (spelt_ == 0) return key.meaning + ((key.needed ? " Needed in " : " In ") + in);
@@ -299,17 +301,28 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
   std::vector<std::string> needed_, rules_, properties_;
 };
 
+/// The heading of a table.
+class TitleFinder : public KeyVisitor<TitleFinder, false> {
+ public:
+  template <class T, class... Choices>
+  void On(const Key&, const T&, const Choices&...) {}
+  void Map(const char*, const char* heading, const char*, const char* = nullptr) {
+    title = heading;
+  }
+  std::string title;
+};
+
 template <class T>
 std::string MappingReference(Definitions& definitions, bool replaces) {
   T defaults{};
-  KeyNames<false> names;
-  Keys(names, defaults);
-  if (definitions.Begin(names.title)) {
+  TitleFinder finder;
+  Keys(finder, defaults);
+  if (definitions.Begin(finder.title)) {
     SchemaMaker maker(definitions, replaces);
     Keys(maker, defaults);
-    definitions.End(names.title, "{\n      " + maker.Text("      ", false) + "\n    }");
+    definitions.End(finder.title, "{\n      " + maker.Text("      ", false) + "\n    }");
   }
-  return Reference(names.title);
+  return Reference(finder.title);
 }
 
 template <class T>

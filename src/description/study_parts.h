@@ -8,10 +8,6 @@
 
 namespace taut::description {
 
-/// Which tunables patterns stand for. Empty after a complaint.
-std::vector<std::size_t> MatchTunables(const Value& value, const std::string& what,
-                                       const std::vector<Tunable>& tunables, const Scope& scope);
-
 /// `list` is where the texts stand. `tunables` is null where the experiment could not be read: then
 /// names are not checked.
 std::vector<StudyParameter> ToParameters(const Value* list, const std::vector<VaryText>& texts,

@@ -34,6 +34,8 @@ std::string PackedText(const Packed<List>& packed) {
 template <bool kOfResolved>
 class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
  public:
+  using Line = KeyText;
+
   explicit FlowWriter(const Spelling& spelt = {}) { this->spelling = spelt; }
 
   template <class T>
@@ -74,7 +76,7 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
 
   /// Infinity, which files do not have, is a limit that is not there.
   template <class T>
-  void On(const Key& key, const T& value) {
+  void On(const KeyText& key, const T& value) {
     if constexpr (std::same_as<T, double>) {
       if (key.limit && std::isinf(value)) return;
       if (value == key.before) return;
@@ -93,7 +95,7 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
   }
   /// What is chosen if a key that came later is absent is as good as absent.
   template <class E>
-  void On(const Key& key, E value, const Choices<E>& choices) {
+  void On(const KeyText& key, E value, const Choices<E>& choices) {
     if (key.later && choices.front().second == value) return;
     for (const auto& [name, choice] : choices) {
       if (choice == value) Put(key.name, name);
@@ -123,13 +125,15 @@ inline constexpr bool kIsBlock<true, T> = std::same_as<T, RobotSpec>;
 template <bool kOfResolved>
 class BlockWriter : public KeyVisitor<BlockWriter<kOfResolved>, kOfResolved> {
  public:
+  using Line = KeyText;
+
   explicit BlockWriter(std::string indent, const Spelling& spelt = {})
       : indent_(std::move(indent)) {
     this->spelling = spelt;
   }
 
   template <class T, class... Choices>
-  void On(const Key& key, const T& value, const Choices&... choices) {
+  void On(const KeyText& key, const T& value, const Choices&... choices) {
     if constexpr (kIsRaw<T>) {
       return;
     } else if constexpr (!kOfResolved && kIsOptional<T>) {
@@ -145,7 +149,7 @@ class BlockWriter : public KeyVisitor<BlockWriter<kOfResolved>, kOfResolved> {
     }
   }
   template <class T>
-  void On(const Key& key, const std::vector<T>& items) {
+  void On(const KeyText& key, const std::vector<T>& items) {
     if constexpr (!kOfResolved && !kIsBlock<kOfResolved, T>) {
       FlowWriter<kOfResolved> line(this->spelling);
       line.On(key, items);

@@ -280,10 +280,20 @@ TEST_F(Reading, ChoicesHintAtTheLikelyOne) {
 
 // --- maps ------------------------------------------------------------------------------------
 
-TEST_F(Reading, UnknownKeysAreErrorsWithHints) {
-  const MapReader map(V("{radius: 1, densty_kg_per_m3: 2, damping: 3, zzzzzz: 4}"), "rod",
-                      {"radius_m", "density_kg_per_m3", "damping_n_s_per_m", "damping_law"},
-                      scope_);
+class ReadingMaps : public Reading {
+ protected:
+  /// A reader of a rod that has those keys.
+  MapReader Rod(const Value& value, const std::vector<std::string>& keys) {
+    MapReader map(value, "rod", scope_);
+    for (const std::string& key : keys) map.Know(key);
+    map.RefuseOthers();
+    return map;
+  }
+};
+
+TEST_F(ReadingMaps, UnknownKeysAreErrorsWithHints) {
+  Rod(V("{radius: 1, densty_kg_per_m3: 2, damping: 3, zzzzzz: 4}"),
+      {"radius_m", "density_kg_per_m3", "damping_n_s_per_m", "damping_law"});
   EXPECT_EQ(Errors(),
             "f.yaml:1:5: error: unknown key \"radius\" in rod (did you mean \"radius_m\"?)\n"
             "f.yaml:1:16: error: unknown key \"densty_kg_per_m3\" in rod (did you mean "
@@ -294,8 +304,8 @@ TEST_F(Reading, UnknownKeysAreErrorsWithHints) {
             "density_kg_per_m3, damping_n_s_per_m, damping_law)\n");
 }
 
-TEST_F(Reading, MissingKeysAreErrorsAtTheMap) {
-  const MapReader map(V("{a: 1}"), "rod", {"a", "b", "c"}, scope_);
+TEST_F(ReadingMaps, MissingKeysAreErrorsAtTheMap) {
+  const MapReader map = Rod(V("{a: 1}"), {"a", "b", "c"});
   EXPECT_EQ(map.NumberOr("a", 0, Bound::kAny), 1.0);
   EXPECT_EQ(map.NumberOr("b", 7, Bound::kAny), 7.0);
   EXPECT_TRUE(std::isnan(map.Number("b", Bound::kAny)));
@@ -305,22 +315,21 @@ TEST_F(Reading, MissingKeysAreErrorsAtTheMap) {
             "f.yaml:1:4: error: rod needs the key \"c\"\n");
 }
 
-TEST_F(Reading, SomethingElseThanAMapIsOneErrorNotMany) {
-  const MapReader map(V("3"), "rod", {"a", "b"}, scope_);
+TEST_F(ReadingMaps, SomethingElseThanAMapIsOneErrorNotMany) {
+  const MapReader map = Rod(V("3"), {"a", "b"});
   map.Number("a", Bound::kAny);
   map.Require("b");
   map.ExactlyOne({"a", "b"});
   EXPECT_EQ(Errors(), "f.yaml:1:4: error: rod must be a map, got a text\n");
 }
 
-TEST_F(Reading, ExactlyOneOfSeveralKeys) {
+TEST_F(ReadingMaps, ExactlyOneOfSeveralKeys) {
   const std::vector<std::string> keys{"mass_kg", "density_kg_per_m3"};
-  EXPECT_EQ(MapReader(V("{mass_kg: 1}"), "rod", keys, scope_).ExactlyOne(keys), "mass_kg");
+  EXPECT_EQ(Rod(V("{mass_kg: 1}"), keys).ExactlyOne(keys), "mass_kg");
   EXPECT_EQ(Errors(), "");
-  EXPECT_EQ(MapReader(V("{}"), "rod", keys, scope_).ExactlyOne(keys), "");
+  EXPECT_EQ(Rod(V("{}"), keys).ExactlyOne(keys), "");
   EXPECT_EQ(Errors(), "f.yaml:1:4: error: rod needs one of mass_kg, density_kg_per_m3\n");
-  EXPECT_EQ(
-      MapReader(V("{mass_kg: 1, density_kg_per_m3: 2}"), "rod", keys, scope_).ExactlyOne(keys), "");
+  EXPECT_EQ(Rod(V("{mass_kg: 1, density_kg_per_m3: 2}"), keys).ExactlyOne(keys), "");
   EXPECT_EQ(Errors(),
             "f.yaml:1:17: error: rod has both mass_kg and density_kg_per_m3 (only one of them may "
             "be there)\n");

@@ -145,7 +145,7 @@ std::string ErrorsOf(const std::string& text) {
   EXPECT_FALSE(LoadCatalogue(path.string(), out));
   std::filesystem::remove(path);
   std::string errors;
-  for (const Diagnostic& d : out.items())
+  for (const Diagnostic& d : Sorted(out.items()))
     errors += std::to_string(d.at.line) + ": " + d.what + "\n";
   return errors;
 }
@@ -157,9 +157,9 @@ TEST(Catalogue, EveryMistakeIsNamed) {
                      "largest_force_n: 2, colour: 3}\n"),
             "7: the peak torque is less than the rated one\n"
             "10: the peak power is less than the rated one\n"
-            "12: unknown key \"colour\" in spring\n"
+            "12: spring needs the key \"largest_travel_m\"\n"
             "12: spring.stiffness_n_per_m must be positive, got -1\n"
-            "12: spring needs the key \"largest_travel_m\"\n");
+            "12: unknown key \"colour\" in spring\n");
   EXPECT_EQ(ErrorsOf("taut: 1\nkind: catalogue\nname: c\n"),
             "1: the catalogue has neither motors nor springs\n");
 }
