@@ -23,9 +23,11 @@ target_include_directories(yaml-cpp SYSTEM PUBLIC ${TAUT_YAML_SOURCE}/include)
 target_compile_definitions(yaml-cpp PUBLIC YAML_CPP_STATIC_DEFINE)
 target_compile_options(yaml-cpp PRIVATE -w -fexceptions)
 
-# What a page has to load is to be small.
-set(CMAKE_CXX_FLAGS_RELEASE "-Os -DNDEBUG -fno-exceptions")
+# What a page has to load is to be small. emscripten takes -Oz to mean that LLVM is to inline nothing,
+# which makes two of what templates and small members are compiled to.
+set(CMAKE_CXX_FLAGS_RELEASE "-Oz -flto -sINLINING_LIMIT=0 -DNDEBUG -fno-exceptions")
+set(CMAKE_POSITION_INDEPENDENT_CODE OFF)
 
 # Exceptions make what a page loads a third larger. They are thrown and caught in two files and the YAML
 # library, which have them (src/description/CMakeLists.txt); whatever else would throw ends the program.
-add_link_options(-fexceptions)
+add_link_options(-fexceptions -flto -Oz)

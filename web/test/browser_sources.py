@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Whether the files that the browser's build lists (TAUT_BROWSER) are enough to link: continuous
+integration does not compile them for WebAssembly, and a file that moves what others call would be missed.
+
+  browser_sources.py BUILD     BUILD: a build of all of taut, for its objects and its compiler
+
+What the browser's build alone has is compiled for this machine; of all else the objects are there."""
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+OURS = re.compile(r"_ZT?[A-Z]*(NK?|K)?4taut")
+
+
+def output_of(*command):
+    """What a command prints; what it complains of, if it fails, on the way out."""
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        sys.exit(f"{shlex.join(command)}: {done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def commands_of(build):
+    """From a source's path to the entry of compile_commands.json."""
+    with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
+        return {os.path.realpath(entry["file"]): entry for entry in json.load(file)}
+
+
+def browser_commands(of_all, folder):
+    """Those of the browser's build, configured for this machine."""
+    yaml = os.path.join(folder, "yaml-cpp")
+    os.makedirs(os.path.join(yaml, "src"))
+    os.makedirs(os.path.join(yaml, "include"))
+    with open(os.path.join(yaml, "src", "none.cpp"), "w", encoding="utf-8"):
+        pass
+    build = os.path.join(folder, "build")
+    with open(os.path.join(of_all, "CMakeCache.txt"), encoding="utf-8") as file:
+        kernels = re.search(r"^TAUT_INSTRUCTION_SETS:\w+=(.*)$", file.read(), re.M).group(1)
+    output_of("cmake", "-S", ROOT, "-B", build, "-DTAUT_BROWSER=ON", f"-DTAUT_YAML_SOURCE={yaml}",
+              f"-DTAUT_INSTRUCTION_SETS={kernels}",  # those that the objects choose from
+              "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON")
+    commands = commands_of(build)
+    return {path: entry for path, entry in commands.items() if path.startswith(ROOT + os.sep)
+            and not path.startswith(os.path.join(ROOT, "benchmarks"))}
+
+
+def objects_of(build, folder):
+    """From a source's path, as seen from the top folder, to an object of it."""
+    here, objects = commands_of(build), {}
+    for number, (path, entry) in enumerate(sorted(browser_commands(build, folder).items())):
+        name = os.path.relpath(path, ROOT)
+        objects[name] = None
+        if path in here:
+            words = shlex.split(here[path]["command"])
+            made = os.path.join(here[path]["directory"], words[words.index("-o") + 1])
+            if os.path.exists(made):
+                objects[name] = made
+        if objects[name] is None:
+            words = shlex.split(entry["command"])
+            objects[name] = words[words.index("-o") + 1] = os.path.join(folder, f"{number}.o")
+            level = [word for word in words if not re.fullmatch(r"-O.*|-s[A-Z_]+=.*", word)]
+            output_of(*level, "-O0", "-I/usr/include")
+    return objects
+
+
+def symbols_of(made):
+    """What an object has, and what it wants, of taut."""
+    has, wants = set(), set()
+    for line in output_of("nm", "--no-demangle", made).splitlines():
+        kind, name = line.split()[-2:]
+        if OURS.match(name):
+            (wants if kind == "U" else has).add(name)
+    return has, wants
+
+
+def main():
+    build = os.path.abspath(sys.argv[1])
+    with tempfile.TemporaryDirectory() as folder:
+        symbols = {name: symbols_of(made) for name, made in objects_of(build, folder).items()}
+    who_has = {}
+    for name, (has, _) in symbols.items():
+        for symbol in has:
+            who_has.setdefault(symbol, name)
+    # As a linker goes through archives: from what is started, to what that wants.
+    reached = [name for name in symbols if name.startswith("apps/browser/")]
+    if len(reached) < 2:
+        sys.exit("the browser's build has no apps/browser")
+    missing = {}
+    for name in reached:
+        for symbol in sorted(symbols[name][1]):
+            owner = who_has.get(symbol)
+            if owner is None:
+                missing.setdefault(symbol, []).append(name)
+            elif owner not in reached:
+                reached.append(owner)
+    for symbol, names in missing.items():
+        print(f"{output_of('c++filt', symbol).strip()}\n  is wanted by {', '.join(names)}; no file of "
+              "the browser's build has it (src/*/CMakeLists.txt, TAUT_BROWSER)")
+    print(f"{len(reached)} of {len(symbols)} files are reached, {len(missing)} names are missing")
+    sys.exit(1 if missing else 0)
+
+
+if __name__ == "__main__":
+    main()
