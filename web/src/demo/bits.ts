@@ -31,7 +31,7 @@ export function bitsPanel(source: WorkerSource, project: Project, hashes: Hashes
       : state.touched ? "You have pulled, pushed or tuned: no command goes the same way. Reset to compare."
       : project.ran ? "Download the changed files in place of the shipped ones; then this prints the last line's hash:"
       : "To see the hash of the last line on your machine:";
-    command.textContent = `taut run ${state.path}${Object.entries(state.set).map(([name, value]) => ` --set ${name}=${value}`).join("")} --duration_s ${state.time_s} --json | grep state_hash`;
+    command.textContent = `taut run ${state.path}${Object.entries(state.set).map(([name, value]) => ` --set ${name}=${value}`).join("")} --duration_s ${Number(state.time_s.toFixed(9))} --json | grep state_hash`;
     command.parentElement!.hidden = model || state.touched || state.time_s === 0;
   };
   source.state.watch(show);
