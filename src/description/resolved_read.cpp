@@ -127,8 +127,8 @@ class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
 };
 
 template <class T>
-void ReadStruct(const Value& value, const std::string& what, std::vector<std::string> more_keys,
-                const Scope& scope, T& out) {
+void ReadStruct(const Value& value, const std::string& what,
+                const std::vector<std::string>& more_keys, const Scope& scope, T& out) {
   MapReader map(value, what, scope);
   ResolvedReader reader(map);
   Keys(reader, out);
