@@ -126,8 +126,9 @@ TEST_F(LoadCases, OfResolvedExperimentsReferToWhatIsThere) {
   EXPECT_THAT(with("joint: 4, by_m", "joint: -2, by_m"), testing::HasSubstr("must be"));
   EXPECT_THAT(with("{index: 1, by_m", "{index: 9, by_m"),
               testing::HasSubstr("there is no cable 9"));
-  EXPECT_THAT(with("rest_m: ", "rest_rad: "),
-              testing::HasSubstr("rest_rad is of another quantity"));
+  const std::string other = with("rest_m: ", "rest_rad: ");
+  EXPECT_THAT(other, testing::HasSubstr("rest_rad is of another quantity"));
+  EXPECT_THAT(other, testing::Not(testing::HasSubstr("unknown key")));  // it has been said
 }
 
 /// Of the model file, and of inputs.yaml, which knows bodies as a whole only.
