@@ -30,13 +30,8 @@ class CableBuilder {
  private:
   /// What it has come to, of one that lags behind its control, if the key says so.
   double Control(std::size_t actuator) const {
-    const auto& all = scene_.actuators;
-    if (all[actuator].lag_s && key_ && !key_->act.empty()) {
-      const auto lags = [](const Actuator& one) { return one.lag_s.has_value(); };
-      const auto state =
-          std::count_if(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(actuator), lags);
-      return key_->act[static_cast<std::size_t>(state)];
-    }
+    const auto& state = scene_.actuators[actuator].state;
+    if (state && key_ && !key_->act.empty()) return key_->act[*state];
     double u = key_ && !key_->ctrl.empty() ? key_->ctrl[actuator] : 0;
     const auto& range = scene_.actuators[actuator].control_range;
     if (range && scene_.clamps_controls) u = std::clamp(u, range->first, range->second);
@@ -73,7 +68,7 @@ class CableBuilder {
       law.k -= actuator.bias[1], law.b -= actuator.bias[2];
       law.c += actuator.bias[0] + actuator.gain * Control(a), law.c_at_zero += actuator.bias[0];
       law.gain = actuator.gain;
-      law.lag_s = std::max(law.lag_s, actuator.lag_s.value_or(0));
+      law.lag_s = std::max(law.lag_s, actuator.lag_s);
       const auto& range = actuator.force_range;
       if (!range || range->second > 0) law.pushes = true;
       if (range && range->first > -1e9) law.has_most = true;
@@ -150,8 +145,8 @@ class CableBuilder {
       }
       rough_.push_back(&tendon);
     }
-    if (law.lag_s > 0)
-      lagging_.push_back(&tendon), longest_lag_s_ = std::max(longest_lag_s_, law.lag_s);
+    if (law.lag_s > 0) lagging_.push_back(&tendon);
+    longest_lag_s_ = std::max(longest_lag_s_, law.lag_s);
     CableDef cable;
     cable.name = name, cable.attachments = std::move(ends);
     cable.stiffness_n_per_m = law.k, cable.damping_n_s_per_m = law.b;

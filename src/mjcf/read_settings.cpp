@@ -181,9 +181,6 @@ void ReadKeys(const Element& root, Scene& scene, Diagnostics& out) {
   for (const Body& body : scene.bodies) {
     if (body.is_free) positions += 7, velocities += 6;
   }
-  const auto states = static_cast<std::size_t>(
-      std::count_if(scene.actuators.begin(), scene.actuators.end(),
-                    [](const Actuator& actuator) { return actuator.lag_s.has_value(); }));
   for (const Element* const section : Sections(root, "keyframe")) {
     for (const Element& e : section->children) {
       const Layers layers({&e}, out);
@@ -196,7 +193,7 @@ void ReadKeys(const Element& root, Scene& scene, Diagnostics& out) {
       key.qpos = read("qpos", positions);
       key.qvel = read("qvel", velocities);
       key.ctrl = read("ctrl", scene.actuators.size());
-      key.act = read("act", states);
+      key.act = read("act", scene.states);
       scene.keys.push_back(std::move(key));
     }
   }

@@ -72,7 +72,7 @@ class ActuatorReader {
     if (!lags && s.dyntype != "none") {
       Refuse(e, "its dyntype is " + s.dyntype + ", only none, filter and filterexact are read");
     }
-    if (lags) actuator.lag_s = s.lag_s;
+    if (lags) actuator.lag_s = s.lag_s, actuator.state = scene_.states++;
     if (s.gaintype != "fixed") Refuse(e, "its gaintype is " + s.gaintype + ", only fixed is read");
     if (s.biastype != "none" && s.biastype != "affine") {
       Refuse(e, "its biastype is " + s.biastype + ", only none and affine are read");

@@ -65,7 +65,8 @@ struct Actuator {
   int tendon = 0;
   double gain = 0, bias[3] = {0, 0, 0};  ///< With the gear: of the tendon's own l.
   std::optional<std::pair<double, double>> control_range = {}, force_range = {};  ///< Of p.
-  std::optional<double> lag_s = {};  ///< With which it follows its control: it has a state.
+  double lag_s = 0;                       ///< With which it follows its control.
+  std::optional<std::size_t> state = {};  ///< Of one that does: its place in keys' `act`.
 };
 
 struct Key {
@@ -91,6 +92,7 @@ struct Scene {
   std::vector<Site> sites;
   std::vector<Tendon> tendons;
   std::vector<Actuator> actuators;
+  std::size_t states = 0;  ///< Of actuators.
   std::vector<Key> keys;
   std::vector<ContactPair> pairs;
   std::vector<std::pair<int, int>> excludes;  ///< Of bodies.
