@@ -53,18 +53,15 @@ def objects_of(build, folder):
     """From a source's path, as seen from the top folder, to an object of it."""
     here, objects = commands_of(build), {}
     for number, (path, entry) in enumerate(sorted(browser_commands(build, folder).items())):
-        name = os.path.relpath(path, ROOT)
-        objects[name] = None
-        if path in here:
-            words = shlex.split(here[path]["command"])
-            made = os.path.join(here[path]["directory"], words[words.index("-o") + 1])
-            if os.path.exists(made):
-                objects[name] = made
-        if objects[name] is None:
-            words = shlex.split(entry["command"])
-            objects[name] = words[words.index("-o") + 1] = os.path.join(folder, f"{number}.o")
-            level = [word for word in words if not re.fullmatch(r"-O.*|-s[A-Z_]+=.*", word)]
-            output_of(*level, "-O0", "-I/usr/include")
+        is_here = path in here
+        words = shlex.split((here[path] if is_here else entry)["command"])
+        out = words.index("-o") + 1
+        made = os.path.join(here[path]["directory"], words[out]) if is_here else os.path.join(folder, f"{number}.o")
+        if not is_here:
+            words[out] = made
+            plain = [word for word in words if not re.fullmatch(r"-O.*|-flto|-s[A-Z_]+=.*", word)]
+            output_of(*plain, "-O0", "-I/usr/include")
+        objects[os.path.relpath(path, ROOT)] = made
     return objects
 
 
