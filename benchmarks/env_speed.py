@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """What environments cost in Python: env_speed.py [WORLDS] [STEPS A PERIOD] [ROUNDS]. Prints JSON.
 
-As benchmarks/environments.cpp, of env_speed.yaml, through `taut.gym` and `taut.Batch`: "bare" is a batch that is given the same rest
-lengths and does nothing but `Batch.step`; its worlds go through the same bits, which is looked at. "singles": 64
+As benchmarks/environments.cpp, of env_speed.yaml, through `taut.gym` and `taut.Batch`: "bare" is a batch that is given
+the same rest lengths and does nothing but `Batch.step`; its worlds go through the same bits, which is looked at. "singles": 64
 `taut.gym.Env`, one after the other, gathered in arrays, against 64 worlds of one `VectorEnv`. All take turns, some
 milliseconds each; what counts are medians of ratios, of processor's time, for two threads of the clock on the wall.
 
-The module is the one that `import taut` finds: one with assertions (build/release/python) is slower by a tenth."""
+The module is the one that `import taut` finds."""
 import json
 import pathlib
 import sys
