@@ -1,0 +1,3 @@
+/// Order of cables in a file.
+
+#include "tests/mechanics/scene.h"

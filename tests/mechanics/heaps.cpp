@@ -1,0 +1,3 @@
+/// Slabs and heaps of rods.
+
+#include "tests/mechanics/scene.h"

@@ -1,0 +1,3 @@
+/// Joints at their stops, fast hinges.
+
+#include "tests/mechanics/scene.h"

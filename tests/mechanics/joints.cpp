@@ -1,0 +1,3 @@
+/// Bodies on joints: spin, loops, redundant rows.
+
+#include "tests/mechanics/scene.h"

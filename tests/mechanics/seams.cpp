@@ -1,0 +1,3 @@
+/// Ground of several pieces.
+
+#include "tests/mechanics/scene.h"

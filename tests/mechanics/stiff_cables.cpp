@@ -1,0 +1,3 @@
+/// Stiff and tight cables.
+
+#include "tests/mechanics/scene.h"

@@ -1,0 +1,3 @@
+/// Cables that touch free rods.
+
+#include "tests/mechanics/scene.h"

@@ -1,0 +1,3 @@
+/// Bodies that roll on moving ground.
+
+#include "tests/mechanics/scene.h"
