@@ -1,3 +1,109 @@
 /// Bodies that roll on moving ground.
 
+#include <string>
+
+#include "scenes/ball.h"
+#include "scenes/box.h"
 #include "tests/mechanics/scene.h"
+#include "tests/physics/world.h"
+
+namespace taut::mechanics {
+namespace {
+
+using test::Distance, test::Norm;
+
+constexpr double kRadius = 0.03;
+
+/// A table that turns with `spin` about the vertical through `axis`, and on it a ball at (0.5, 0)
+/// that rolls with 0.4 m/s along y.
+ModelDef Turntable(double spin, const Vec3& axis) {
+  ModelDef def;
+  const Material rough{5, 5};
+  const int table = scenes::AddBox(def, "table", 1, {9, 9, 0.05}, {0, 0, -0.05}, {}, rough);
+  def.bodies[table].fixed = true;
+  MotionDef motion;
+  motion.name = "turn", motion.body = table;
+  motion.axis = {0, 0, 1}, motion.center_m = axis;
+  motion.turn.speed = {{0, spin}};
+  def.motions.push_back(motion);
+  const Vec3 place{0.5, 0, kRadius}, velocity{0, 0.4, 0};
+  const int ball = scenes::AddBall(def, "ball", 0.2, kRadius, place, rough);
+  const Vec3 table_there = Cross({0, 0, spin}, place - axis);
+  const Vec3 relative = velocity - Vec3{table_there.x, table_there.y, 0};
+  def.bodies[ball].velocity_m_per_s = velocity;
+  def.bodies[ball].angular_velocity_rad_per_s = (1 / kRadius) * Cross({0, 0, 1}, relative);
+  return def;
+}
+
+/// The ball's center goes round a fixed point with 2/7 of the table's angular velocity. Source: the
+/// classical problem, e.g. Weltner, Am. J. Phys. 47 (1979) 984.
+void BallOnATurntable(Report& report) {
+  for (const double spin : {2.0, 6.0, 12.0}) {
+    for (const double h : {1e-3, 4e-3}) {
+      if (h > 2e-3 && spin != 6) continue;
+      for (const Vec3& axis : {Vec3{0, 0, 0}, Vec3{0.1, -0.2, 0}}) {
+        if (axis.x != 0 && spin != 6) continue;
+        const ModelDef def = Turntable(spin, axis);
+        Batch world = test::MakeBatch(def);
+        const Vec3 start = world.Body(0, 1).position_m, v = world.Body(0, 1).velocity_m_per_s;
+        const Vec3 center = start + (3.5 / spin) * Cross({0, 0, 1}, v);
+        const double radius = Distance(start, center);
+        double worst_radius = 0, worst_slip = 0;
+        const int blocks = report.IsFull() ? 30 : 5;
+        for (int n = 0; n < blocks; ++n) {
+          world.Step(h, test::StepsIn(1, h));
+          const BodyState ball = world.Body(0, 1);
+          worst_radius =
+              std::max(worst_radius, std::fabs(Distance(ball.position_m, center) - radius));
+          const Vec3 contact = ball.position_m - Vec3{0, 0, kRadius};
+          const Vec3 slip = ball.velocity_m_per_s +
+                            Cross(ball.angular_velocity_rad_per_s, {0, 0, -kRadius}) -
+                            Cross({0, 0, spin}, contact - axis);
+          worst_slip = std::max(worst_slip, Norm(slip));
+        }
+        const std::string of = ", table " + std::to_string(spin).substr(0, 4) + " rad/s, step " +
+                               std::to_string(h).substr(0, 5) + " s" +
+                               (axis.x != 0 ? ", axis aside" : "");
+        report.AtMost("change of the circle's radius" + of, "m", worst_radius, 1e-5);
+        report.AtMost("slip" + of, "m/s", worst_slip, 1e-9);
+        report.AtMost("status bits" + of, "1", world.Status(0).bits, 0);
+      }
+    }
+  }
+}
+
+/// A plank on two drums that turn alike is carried by v = w r, without slip.
+void PlankOnDrums(Report& report) {
+  ModelDef def;
+  const Material rough{1, 1};
+  const double radius = 0.05, spin = 3;
+  for (const double x : {-0.3, 0.3}) {
+    const int drum = scenes::AddBall(def, x < 0 ? "left" : "right", 1, 0.01, {x, 0, 0}, {});
+    def.spheres.back().collides = false;
+    def.bodies[drum].fixed = true;
+    CapsuleDef roller;
+    roller.name = def.bodies[drum].name, roller.body = drum, roller.radius_m = radius;
+    roller.from_m = {x, -0.2, 0}, roller.to_m = {x, 0.2, 0}, roller.material = rough;
+    def.capsules.push_back(roller);
+    MotionDef motion;
+    motion.name = roller.name, motion.body = drum, motion.axis = {0, 1, 0};
+    motion.center_m = {x, 0, 0}, motion.turn.speed = {{0, spin}};
+    def.motions.push_back(motion);
+  }
+  const Vec3 half{1, 0.1, 0.01};
+  const int plank = scenes::AddBox(def, "plank", 1, half, {-0.3, 0, radius + half.z}, {}, rough);
+  def.bodies[plank].velocity_m_per_s = {spin * radius, 0, 0};
+  Batch world = test::MakeBatch(def);
+  world.Step(1e-3, 4000);
+  const BodyState end = world.Body(0, plank);
+  report.Near("way in 4 s", "m", end.position_m.x + 0.3, 4 * spin * radius, 1e-7);
+  report.AtMost("speed beside the drums'", "m/s",
+                Distance(end.velocity_m_per_s, {spin * radius, 0, 0}), 1e-9);
+}
+
+const SceneEntry kTurntable("rolling", "Ball on a turntable",
+                            "circle with 2/7 of the table's angular velocity", BallOnATurntable);
+const SceneEntry kPlank("rolling", "Plank on two driven drums", "v = w r", PlankOnDrums);
+
+}  // namespace
+}  // namespace taut::mechanics

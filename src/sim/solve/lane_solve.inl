@@ -34,7 +34,7 @@ class LaneSolve {
     for (int body = 0; body < m_.body_count; ++body) {
       if (mem_.root[body] != body || !Gather(body)) continue;
       SolverWork work{0, settings_.max_linear_solves};
-      const double residual = SolveIsland(mem_.island, Target{settings_.tolerance_m_per_s}, work);
+      const double residual = SolveGathered(work);
       Scatter();
       result.linear_solves += work.linear_solves;
       if (residual > result.residual || !(residual - residual == 0)) {
@@ -49,6 +49,25 @@ class LaneSolve {
   int PushOut() noexcept;
 
  private:
+  /// Solves the island gathered. What rolls on a body with a motion takes rounds (rolling.inl).
+  double SolveGathered(SolverWork& work) noexcept {
+    constexpr int kMostRounds = 8;
+    const Target target{settings_.tolerance_m_per_s};
+    if (m_.motion_count == 0) return SolveIsland(mem_.island, target, work);
+    ExpectVelocities();
+    FollowRolling();
+    double residual = SolveIsland(mem_.island, target, work);
+    for (int round = 0; round < kMostRounds && work.linear_solves < work.limit; ++round) {
+      if (!(FollowRolling() > target.tolerance)) break;
+      residual = SolveIsland(mem_.island, target, work);
+    }
+    KeepRolling();
+    return residual;
+  }
+  void ExpectVelocities() noexcept;
+  double FollowRolling() noexcept;
+  void KeepRolling() noexcept;
+  RollingSide<L> SideOf(const Contact<L, 2>& c, int k, const Shape& shape) const noexcept;
   bool IsDeep(int body) const noexcept;
   bool IsAlone() const noexcept;
   V3<L> Pending(int body) const noexcept;

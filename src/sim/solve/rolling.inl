@@ -1,0 +1,49 @@
+/// What rolls on a body with a motion (docs/theory/motion.md, eq. 4a): along the surface its
+/// contact is at rest at the end of the step, where the contact point is by then.
+///
+/// The point's way depends on the velocities that the solve is to find. So the island is solved
+/// again with the biases of the velocities found, from the impulses found, until the biases stay:
+/// each round leaves a share h |w| / 2 of the error, w the motion's angular velocity.
+
+namespace taut::sim {
+
+/// Whether a pair's contact point moves over a round shape, so that it is of neither body.
+TAUT_INLINE bool Rolls(const View& m, const ShapePairTable& pair) noexcept {
+  return m.shapes[pair.a].shape_P.kind == ShapeKind::kRound ||
+         m.shapes[pair.b].shape_P.kind == ShapeKind::kRound;
+}
+
+/// One body of such a contact.
+template <class L>
+struct RollingSide {
+  V3<L> x_end;     ///< Its origin at the end of the step.
+  V3<L> v, w;      ///< Its velocities there.
+  V3<L> arm;       ///< From the origin to the contact point, at the middle of the step.
+  V3<L> skeleton;  ///< To the center of curvature of a round shape.
+  L radius;        ///< From there to the contact point.
+  bool is_round;
+
+  /// Of a vector that is fixed to the body, by the end.
+  V3<L> Turned(const V3<L>& a, L half_h) const noexcept {
+    const V3<L> once = half_h * Cross(w, a);
+    return a + once + L::Splat(0.5) * half_h * Cross(w, once);
+  }
+  V3<L> SkeletonAtEnd(L half_h) const noexcept { return x_end + Turned(skeleton, half_h); }
+};
+
+/// The contact point at the end of the step, from a's origin at its middle. `b_from_a`: b's origin
+/// at the middle; `normal`: from b to a.
+template <class L>
+V3<L> PointAtEnd(const RollingSide<L>& a, const RollingSide<L>& b, const V3<L>& b_from_a,
+                 const V3<L>& normal, L half_h) noexcept {
+  if (a.is_round && b.is_round) {
+    const L share = a.radius / (a.radius + b.radius);
+    return (L::Splat(1.0) - share) * a.SkeletonAtEnd(half_h) +
+           share * (b_from_a + b.SkeletonAtEnd(half_h));
+  }
+  // The other side is flat, and its normal turns with it.
+  return a.is_round ? a.SkeletonAtEnd(half_h) - a.radius * b.Turned(normal, half_h)
+                    : b_from_a + b.SkeletonAtEnd(half_h) + b.radius * a.Turned(normal, half_h);
+}
+
+}  // namespace taut::sim
