@@ -27,6 +27,19 @@ RollingSide<simd::Lane<W>> LaneSolve<W>::SideOf(const Contact<L, 2>& c, int k,
   return side;
 }
 
+template <class W>
+bool LaneSolve<W>::FindRolling() const noexcept {
+  if (m_.motion_count == 0 && m_.joint_count == 0) return false;
+  const Pool<ContactPoint<L, 2>>& pool = mem_.island.pools;
+  for (int i = 0; i < pool.count; ++i) {
+    const int touch = mem_.source[i] - m_.slot_count;
+    if (touch < 0) continue;
+    const int pair = work_.touches[lane_ * m_.pair_capacity + touch].pair;
+    if (Rolls(m_, m_.shape_pairs[pair])) return true;
+  }
+  return false;
+}
+
 /// The velocities that the bodies have at the end if they change as in the step before.
 template <class W>
 void LaneSolve<W>::ExpectVelocities() noexcept {
@@ -50,7 +63,7 @@ double LaneSolve<W>::FollowRolling() noexcept {
     const Contact<L, 2>& c = mem_.pairs[touch];
     const ShapePairTable& pair =
         m_.shape_pairs[work_.touches[lane_ * m_.pair_capacity + touch].pair];
-    if (!m_.HasMotion(c.links[1].body) || !Rolls(m_, pair)) continue;
+    if (!Rolls(m_, pair)) continue;
     const RollingSide<L> a = SideOf(c, 0, m_.shapes[pair.a].shape_P);
     const RollingSide<L> b = SideOf(c, 1, m_.shapes[pair.b].shape_P);
     // Both points from a's origin at the middle of the step; the arms differ by the bodies' places.

@@ -49,11 +49,11 @@ class LaneSolve {
   int PushOut() noexcept;
 
  private:
-  /// Solves the island gathered. What rolls on a body with a motion takes rounds (rolling.inl).
+  /// Solves the island gathered. What rolls on a body that turns takes rounds (rolling.inl).
   double SolveGathered(SolverWork& work) noexcept {
     constexpr int kMostRounds = 8;
     const Target target{settings_.tolerance_m_per_s};
-    if (m_.motion_count == 0) return SolveIsland(mem_.island, target, work);
+    if (!FindRolling()) return SolveIsland(mem_.island, target, work);
     ExpectVelocities();
     FollowRolling();
     double residual = SolveIsland(mem_.island, target, work);
@@ -64,6 +64,7 @@ class LaneSolve {
     KeepRolling();
     return residual;
   }
+  bool FindRolling() const noexcept;
   void ExpectVelocities() noexcept;
   double FollowRolling() noexcept;
   void KeepRolling() noexcept;
