@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "interrupt.h"
+#include "interruptible_port.h"
 #include "output.h"
 #include "overrides.h"
 #include "shipped.h"
@@ -17,6 +18,11 @@ namespace {
 constexpr char kVirtual[] = "virtual";
 /// For boards that have power since a moment to begin.
 constexpr double kBoot_s = 0.2;
+/// Between two looks for an interrupt or a stop, if no cycle ends.
+constexpr double kLook_s = 0.05;
+/// For all boards to confirm that their motors are off. An emulated robot on a busy machine is
+/// late.
+constexpr double kConfirm_s = 0.4, kConfirmVirtual_s = 3.0;
 
 const std::map<std::string, link::OnFault> kOnFault{
     {"hold", link::OnFault::kHold}, {"off", link::OnFault::kOff}, {"stop", link::OnFault::kStop}};
@@ -117,9 +123,10 @@ std::optional<RobotLine> RobotLine::Open(const RobotArguments& args,
     if (!line.virtual_robot) return std::nullopt;
     line.device = line.virtual_robot->device();
   }
-  line.lock = link::RobotLock::Take(line.device, out);
-  if (line.lock) line.port = link::OpenSerialPort(line.device, out);
-  if (!line.port) return std::nullopt;
+  auto port = link::OpenSerialPort(line.device, link::PortUse::kDrive, out);
+  if (port) line.stops = link::StopListener::Open(line.device, out);
+  if (!line.stops) return std::nullopt;
+  line.port = std::make_unique<InterruptiblePort>(std::move(port));
   return line;
 }
 
@@ -180,19 +187,49 @@ std::unique_ptr<RobotDesk> RobotDesk::Open(const RobotArguments& args,
   exit = kFailed;
   CatchInterrupts();
   const bool good = desk->Connect(args, experiment, found) && desk->SetUp(args, experiment, found);
+  if (!good && interrupt_asked) {
+    fmt::print(stderr, "interrupted before this command gave any motor power\n");
+    exit = kInterrupted;
+    return nullptr;
+  }
   fmt::print(stderr, "{}", found.Format());
   return good ? std::move(desk) : nullptr;
 }
 
 RobotDesk::~RobotDesk() { End(); }
 
-void RobotDesk::End() {
+bool RobotDesk::End() {
+  if (!ended_) Finish();
+  ended_ = true;
+  return ended_well_;
+}
+
+void RobotDesk::Finish() {
   if (!driver_) return;
   on_cycle = {};
-  const link::State& state = driver_->state();
-  if (state.stage == link::Stage::kUnconfigured || !state.link.connected) return;
-  if (state.stage == link::Stage::kActive) driver_->Off();
-  driver_->Cycle(3);  // whatever was commanded last is said
+  const double patience_s = virtual_robot() != nullptr ? kConfirmVirtual_s : kConfirm_s;
+  if (!confirm_ && !driver_->state().power_commanded) {
+    // What was commanded last is sent; boards that hold since before this command go on holding.
+    const double until_s = driver_->port().now_s() + patience_s;
+    for (int i = 0; i < 3 && driver_->state().link.connected; ++i) driver_->CycleBy(until_s);
+  } else {
+    power_ = link::TurnOff(*driver_, patience_s);
+    Diagnostics found;
+    link::ReportPower(*power_, found);
+    fmt::print(stderr, "{}", found.Format());
+    ended_well_ = power_->all_off();
+  }
+  line_->stops->StopAsked();
+  line_->stops->Answer(power_ && power_->all_off() ? link::StopAnswer::kStopped
+                                                   : link::StopAnswer::kUnconfirmed);
+}
+
+bool RobotDesk::EndAndReport(bool quiet) {
+  const bool good = End();
+  if (good && power_ && !quiet) {
+    fmt::print("{}\nMotors are off.\n", link::DescribeConfirmation(*power_));
+  }
+  return good;
 }
 
 std::optional<int> RobotDesk::MotorOf(const std::string& cable) const {
@@ -210,24 +247,36 @@ std::optional<int> RobotDesk::MotorOf(const std::string& cable, Diagnostics& out
 }
 
 void RobotDesk::AfterCycle(const link::State& state) {
-  if (state.stopping) line_->lock->Stopped();  // the frames have gone
-  if (line_->lock->StopAsked()) {
-    stop_asked_ = true;
+  const bool all_stopped =
+      !state.boards.empty() &&
+      std::all_of(state.boards.begin(), state.boards.end(), [&](const link::BoardView& board) {
+        return board.there && board.status.mode == board::Mode::kStopped;
+      });
+  if (state.stopping && all_stopped) line_->stops->Answer(link::StopAnswer::kStopped);
+  LookForStop();
+  if (on_cycle) on_cycle(state);
+}
+
+bool RobotDesk::LookForStop() {
+  if (line_->stops->StopAsked()) {
+    stop_asked_ = confirm_ = true;
     driver_->Stop("asked for by `taut robot estop`");
   }
   if (interrupt_asked && !stop_asked_) {
     stop_asked_ = true;
     // Who only looks on leaves what holds as it is.
-    if (state.stage == link::Stage::kActive) driver_->Stop("interrupted");
+    if (driver_->state().stage == link::Stage::kActive) driver_->Stop("interrupted");
   }
-  if (on_cycle) on_cycle(state);
+  return stop_asked_;
 }
 
 Exit RobotDesk::stop_exit() const { return interrupt_asked ? kInterrupted : kFailed; }
 
 void RobotDesk::RunWhile(const std::function<bool()>& go_on) {
-  while (!stop_asked_ && go_on()) driver_->Cycle(1);
-  if (stop_asked_) driver_->Cycle(2);
+  for (;;) {
+    if (LookForStop() || !go_on()) return;  // the stop's frames go with End's cycles
+    driver_->CycleBy(driver_->port().now_s() + kLook_s);
+  }
 }
 
 bool RobotDesk::ClearFaults(Diagnostics& out) {

@@ -12,8 +12,9 @@
 #include "commands.h"
 #include "taut/calibration.h"
 #include "taut/link/driver.h"
-#include "taut/link/robot_lock.h"
+#include "taut/link/power.h"
 #include "taut/link/robot_plant.h"
+#include "taut/link/stop_listener.h"
 #include "taut/link/virtual_robot.h"
 #include "taut/spec.h"
 
@@ -45,8 +46,8 @@ struct RobotLine {
 
   std::unique_ptr<link::VirtualRobot> virtual_robot;  ///< Null: a real one.
   std::string device;
-  std::unique_ptr<link::RobotLock> lock;
   std::unique_ptr<link::Port> port;
+  std::unique_ptr<link::StopListener> stops;
 };
 
 /// A robot that this command alone drives. Ctrl-C and `taut robot estop` stop its motors, whatever
@@ -70,13 +71,20 @@ class RobotDesk {
   const link::VirtualRobot* virtual_robot() const { return line_->virtual_robot.get(); }
   /// Somebody wants it to end; all is stopped, or about to be.
   bool stop_asked() const { return stop_asked_; }
+  /// The same, looked at now: for loops in which cycles may fail to come.
+  bool LookForStop();
   /// The status to end with then: interrupted, or stopped from elsewhere, which is a failure.
   Exit stop_exit() const;
-  /// Cycles until `go_on` says no, or somebody wants an end.
+  /// Cycles until `go_on` returns false or somebody wants an end. Both are looked at after each
+  /// cycle and 20 times a second, also while the adapter is gone or silent.
   void RunWhile(const std::function<bool()>& go_on);
   bool ClearFaults(Diagnostics& out);
-  /// Motors are off, as far as anybody answers. Said once.
-  void End();
+  /// Turns motors off if they had power, waits for the boards' confirmation, answers those who
+  /// asked for a stop, and prints an error for each board that has not confirmed. Only the first
+  /// call does anything. True: every board confirmed, or no motor had power.
+  bool End();
+  /// The same, and the last line on standard output if all have confirmed: "Motors are off."
+  bool EndAndReport(bool quiet);
 
   /// After each cycle, and what happens; also where `taut robot` prints it.
   std::function<void(const link::State&)> on_cycle;
@@ -88,6 +96,7 @@ class RobotDesk {
   bool Connect(const RobotArguments& args, const ExperimentSpec* experiment, Diagnostics& found);
   bool SetUp(const RobotArguments& args, const ExperimentSpec* experiment, Diagnostics& found);
   void AfterCycle(const link::State& state);
+  void Finish();
 
   RobotSpec robot_;
   std::vector<std::string> cables_;
@@ -95,6 +104,9 @@ class RobotDesk {
   std::optional<RobotLine> line_;
   std::unique_ptr<link::Driver> driver_;
   bool stop_asked_ = false, quiet_ = false;
+  bool confirm_ = false;  ///< The boards' confirmation is waited for even if none had power.
+  bool ended_ = false, ended_well_ = true;
+  std::optional<link::PowerReport> power_;
 };
 
 /// The device behind `--port`, where somebody may drive it already: for those who only stop it.

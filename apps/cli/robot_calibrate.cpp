@@ -20,6 +20,8 @@ namespace {
 
 /// Of a reading: at 100 a second.
 constexpr int kReadings = 100;
+/// A hundred readings take a second.
+constexpr double kPatience_s = 5;
 
 struct CalibrateArguments : RobotArguments {
   std::string cable, out = "calibration.yaml";
@@ -43,15 +45,23 @@ bool WaitForPerson(const std::string& text) {
 bool ReadLoadCell(RobotDesk& desk, int motor, Mean& out) {
   const link::MotorFigures& figures = desk.driver().figures(motor);
   std::vector<double> counts;
+  const double until_s = desk.driver().port().now_s() + kPatience_s;
+  std::int64_t read = 0;
   desk.RunWhile([&] {
     const link::State& state = desk.driver().state();
-    if (state.link.cycles > 0) {
+    if (state.link.cycles > read) {
+      read = state.link.cycles;
       counts.push_back(state.motors[static_cast<std::size_t>(motor)].tension_n /
                            figures.n_per_count +
                        figures.counts_at_zero);
     }
-    return static_cast<int>(counts.size()) < kReadings;
+    return static_cast<int>(counts.size()) < kReadings && desk.driver().port().now_s() < until_s;
   });
+  if (!desk.stop_asked() && static_cast<int>(counts.size()) < kReadings) {
+    fmt::print(stderr, "error: {} of {} readings came within {:g} s: the adapter does not answer\n",
+               counts.size(), kReadings, kPatience_s);
+    return false;
+  }
   const auto count = static_cast<double>(counts.size());
   for (const double c : counts) out.value += c / count;
   for (const double c : counts) {

@@ -16,7 +16,9 @@ namespace {
 
 /// Between two lines about how it is.
 constexpr double kReport_s = 1.0;
-constexpr double kStopPatience_s = 0.3;
+/// The driving program waits for its boards' confirmation meanwhile.
+constexpr double kStopPatience_s = 0.9;
+constexpr double kConfirm_s = 0.5;
 constexpr int kStops = 3;
 
 struct HoldArguments : RobotArguments {
@@ -58,10 +60,10 @@ int Hold(const HoldArguments& args) {
       ShowLine(state, state.time_s - begun_s);
     }
     active = state.stage == link::Stage::kActive;
-    return active && (args.duration_s < 0 || state.time_s < begun_s + args.duration_s);
+    const double since_s = desk->driver().port().now_s() - begun_s;
+    return active && (args.duration_s < 0 || since_s < args.duration_s);
   });
-  desk->End();
-  if (!args.quiet) fmt::print("Motors are off.\n");
+  if (!desk->EndAndReport(args.quiet)) return kFailed;
   return desk->stop_asked() ? desk->stop_exit() : active ? kOk : kFailed;
 }
 
@@ -74,24 +76,18 @@ int Release(const RobotArguments& args) {
   const auto desk = RobotDesk::Open(args, nullptr, exit);
   if (!desk) return exit;
   link::Driver& driver = desk->driver();
-  driver.Off();
-  driver.Cycle(3);
+  const link::PowerReport power = link::TurnOff(driver, kConfirm_s);
   Diagnostics found;
-  for (std::size_t b = 0; b < driver.state().boards.size(); ++b) {
-    const link::BoardView& board = driver.state().boards[b];
-    if (board.there && board.status.mode == board::Mode::kOff) continue;
-    if (board.there && board.status.mode == board::Mode::kStopped) continue;
-    found.Error({}, fmt::format("board {} {}", b, board.there ? "is not off" : "does not answer"));
-  }
+  link::ReportPower(power, found);
   if (!found.ok()) return Fail(found, kFailed);
-  if (!args.quiet) fmt::print("Motors are off.\n");
+  if (!args.quiet) fmt::print("{}\nMotors are off.\n", link::DescribeConfirmation(power));
   return kOk;
 }
 
 /// Straight at the bus, whoever drives: his frames may be lost by it, and his boards stop.
 int StopDirectly(const std::string& device, int boards) {
   Diagnostics found;
-  const auto port = link::OpenSerialPort(device, found);
+  const auto port = link::OpenSerialPort(device, link::PortUse::kStop, found);
   if (!port) return Fail(found, kFailed);
   link::UsbIss adapter(*port);
   adapter.SetMode();
@@ -121,12 +117,18 @@ int Estop(const RobotArguments& args, int boards) {
   Diagnostics found;
   const std::string device = DeviceOf(args, found);
   if (device.empty()) return Fail(found, kFailed);
-  switch (link::AskToStop(device, kStopPatience_s, found)) {
+  switch (link::AskToStop(device, kStopPatience_s)) {
     case link::StopAnswer::kStopped:
-      fmt::print("Who drives the robot has stopped it.\n");
+      fmt::print("All boards have stopped: the program that drives the robot has their answers.\n");
       return kOk;
+    case link::StopAnswer::kUnconfirmed:
+      fmt::print(
+          stderr,
+          "the program that drives the robot sent the stop, but not all boards confirmed it: "
+          "stopping directly\n");
+      break;
     case link::StopAnswer::kSilent:
-      fmt::print(stderr, "who drives the robot does not answer: stopping it directly\n");
+      fmt::print(stderr, "the program that drives the robot does not answer: stopping directly\n");
       break;
     case link::StopAnswer::kNobody:
       break;
@@ -163,7 +165,7 @@ int Log(const HoldArguments& args) {
       shown_s = state.time_s;
       ShowLine(state, state.time_s - begun_s);
     }
-    return args.duration_s < 0 || state.time_s < begun_s + args.duration_s;
+    return args.duration_s < 0 || driver.port().now_s() < begun_s + args.duration_s;
   });
   desk->on_cycle = {};
   desk->on_event = {};

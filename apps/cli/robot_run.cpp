@@ -106,7 +106,7 @@ int RunOn(RobotDesk& desk, const RunArguments& args, const ExperimentSpec& exper
     }
     // Without an adapter there are no cycles.
     if (view && !driver.state().link.connected) view->AfterCycle(driver.state());
-    return !desk.stop_asked();
+    return !desk.LookForStop();
   };
   desk.on_event = [&](double time_s, const std::string& text) {
     recording->Event(time_s, text);
@@ -127,7 +127,7 @@ int RunOn(RobotDesk& desk, const RunArguments& args, const ExperimentSpec& exper
   if (terminal && !args.quiet) fmt::print(stderr, "\r\033[K");
   const link::State at_end = driver.state();
   desk.on_cycle = {};
-  desk.End();
+  const bool off = desk.End();
   desk.on_event = {};
   recording->Finish(found);
   if (!summary || !found.ok()) return Fail(found, kFailed);
@@ -142,6 +142,7 @@ int RunOn(RobotDesk& desk, const RunArguments& args, const ExperimentSpec& exper
     ShowLink(at_end, recording->rows());
     fmt::print("Trace, every cycle (host.h5), events, inputs and summary: {}\n", args.out);
   }
+  if (!off) return kFailed;
   if (desk.stop_asked()) return desk.stop_exit();
   if (whole) return kOk;
   fmt::print(stderr, "error: ended at t = {:.2f} s: events.jsonl says why\n", summary->simulated_s);

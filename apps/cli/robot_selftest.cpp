@@ -116,8 +116,8 @@ int Selftest(const SelftestArguments& args) {
   LookAtBoards(*desk, findings);
   LookAtSensors(*desk, findings);
   if (args.move) MoveMotors(*desk, args, findings, found);
-  desk->End();
-  bool good = found.ok() && !desk->stop_asked();
+  const bool off = desk->End();
+  bool good = off && found.ok() && !desk->stop_asked();
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Finding& one : findings) {
     good = good && one.good;
@@ -129,7 +129,7 @@ int Selftest(const SelftestArguments& args) {
   }
   if (args.json) fmt::print("{}\n", list.dump(2));
   if (!found.ok()) return Fail(found, kFailed);
-  if (desk->stop_asked()) return desk->stop_exit();
+  if (off && desk->stop_asked()) return desk->stop_exit();
   return good ? kOk : kFailed;
 }
 

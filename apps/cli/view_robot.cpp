@@ -101,23 +101,14 @@ int ViewRobot(ViewRobotArguments args) {
   desk->on_cycle = [&](const link::State& state) { view->AfterCycle(state); };
   desk->on_event = [&](double time_s, const std::string& text) { view->Event(time_s, text); };
   desk->RunWhile([&] {
-    // Without an adapter there are no cycles, and nobody else looks whether it shall end.
-    const bool connected = driver.state().link.connected;
-    if (!connected) view->AfterCycle(driver.state());
-    return connected || !interrupt_asked;
+    // Without an adapter there are no cycles, and the page is to know.
+    if (!driver.state().link.connected) view->AfterCycle(driver.state());
+    return true;
   });
-  const bool connected = driver.state().link.connected;
-  desk->End();
+  const bool off = desk->EndAndReport(false);
   desk->on_event = {};
   const bool recorded = view->End();
-  if (connected) {
-    fmt::print("Motors are off.\n");
-  } else {
-    Tell(
-        "error: the adapter is gone, so nobody could turn motors off: boards that hear nothing "
-        "hold");
-  }
-  return connected && recorded ? kOk : kFailed;
+  return off && recorded ? kOk : kFailed;
 }
 
 }  // namespace taut::cli

@@ -16,6 +16,8 @@ using board::Mode;
 constexpr int kObey = 10;
 /// The last version before which the adapter left the bus without a stop.
 constexpr int kGoodAdapter = 8;
+/// For the stop that the destructor sends, whatever the adapter does.
+constexpr double kLastWords_s = 0.1;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -43,7 +45,9 @@ Driver::~Driver() {
   on_event = {};
   if (state_.stage == Stage::kUnconfigured || !port_.is_open()) return;
   if (state_.stage == Stage::kActive) Stop("the driver ends");
-  if (state_.stopping) Cycle(2);  // who asked for a stop last may have left it unsaid
+  // Who asked for a stop last may have left it unsaid.
+  const double until_s = port_.now_s() + kLastWords_s;
+  for (int i = 0; state_.stopping && i < 2; ++i) CycleBy(until_s);
 }
 
 std::size_t Driver::At(int motor) const {
@@ -233,6 +237,7 @@ bool Driver::Go(Mode mode, bool capture) {
   say_.arm = board::Arm::kGo;
   say_.capture = capture;
   state_.stage = Stage::kActive;
+  state_.power_commanded = true;
   return true;
 }
 
@@ -280,6 +285,18 @@ void Driver::Cycle(int count) {
     if (!state_.link.connected) return;  // nobody knows for how long
     port_.Wait(due_s());
   }
+}
+
+bool Driver::CycleBy(double time_s) {
+  if (state_.stage == Stage::kUnconfigured) {
+    WaitUntil(port_, time_s);
+    return false;
+  }
+  while (!Poll()) {
+    if (port_.now_s() >= time_s) return false;
+    port_.Wait(std::min(time_s, due_s()));
+  }
+  return true;
 }
 
 bool Driver::Enable(Mode mode, bool capture, Diagnostics& out) {

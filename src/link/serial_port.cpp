@@ -1,3 +1,7 @@
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+
 #include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/read.hpp>
@@ -7,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "link/device_lock.h"
 #include "taut/link/port.h"
 
 namespace taut::link {
@@ -17,19 +22,28 @@ using Clock = std::chrono::steady_clock;
 
 class SerialPort final : public Port {
  public:
-  explicit SerialPort(std::string device) : device_(std::move(device)) {}
+  SerialPort(std::string device, PortUse use) : device_(std::move(device)), use_(use) {}
 
   /// Empty: it is open.
   std::string Open() {
     boost::system::error_code error;
     port_.emplace(context_);
     port_->open(device_, error);  // raw: Asio sets that
+    if (!error && use_ == PortUse::kDrive) {
+      // An adapter that was plugged in again is another device: each opening locks.
+      const int handle = port_->native_handle();
+      if (flock(handle, LOCK_EX | LOCK_NB) != 0) {
+        port_.reset();
+        return kDriven;
+      }
+      ioctl(handle, TIOCEXCL);  // also keeps out programs that know no flock, but for root's
+    }
     // The adapter ignores the rate; some drivers want one all the same.
     if (!error) port_->set_option(asio::serial_port_base::baud_rate(115'200), error);
     if (!error) port_->set_option(asio::serial_port_base::flow_control(), error);
     if (error) {
       port_.reset();
-      return error.message();
+      return error == boost::system::errc::device_or_resource_busy ? kDriven : error.message();
     }
     arrived_.clear();
     context_.restart();
@@ -68,6 +82,8 @@ class SerialPort final : public Port {
   bool is_open() const override { return port_.has_value(); }
   bool Reopen() override { return Open().empty(); }
 
+  static constexpr char kDriven[] = "another program drives it";
+
  private:
   void Listen() {
     port_->async_read_some(asio::buffer(chunk_),
@@ -83,6 +99,7 @@ class SerialPort final : public Port {
   void Close() { port_.reset(); }
 
   std::string device_;
+  PortUse use_;
   asio::io_context context_;
   std::optional<asio::serial_port> port_;  ///< Nothing: lost.
   std::array<std::uint8_t, 256> chunk_{};
@@ -91,10 +108,18 @@ class SerialPort final : public Port {
 
 }  // namespace
 
-std::unique_ptr<Port> OpenSerialPort(const std::string& device, Diagnostics& out) {
-  auto port = std::make_unique<SerialPort>(device);
+std::unique_ptr<Port> OpenSerialPort(const std::string& device, PortUse use, Diagnostics& out) {
+  auto port = std::make_unique<SerialPort>(device, use);
   const std::string why = port->Open();
   if (why.empty()) return port;
+  if (why == SerialPort::kDriven) {
+    const auto process = DriverOf(device);
+    out.Error({device, 0, 0},
+              (process ? "process " + std::to_string(*process) : std::string("another program")) +
+                  " drives this robot",
+              "`taut robot estop` stops it all the same");
+    return nullptr;
+  }
   out.Error({device, 0, 0}, "cannot be opened: " + why,
             "the adapter is /dev/ttyACM0 or the like, which the group dialout may open; "
             "--port virtual is an emulated robot");

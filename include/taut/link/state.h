@@ -62,7 +62,8 @@ struct State {
   double time_s = 0;  ///< Of the port's clock, at the cycle's end.
   Stage stage = Stage::kUnconfigured;
   board::Mode commanded = board::Mode::kOff;
-  bool stopping = false;  ///< An emergency stop, until faults are cleared.
+  bool stopping = false;         ///< An emergency stop, until faults are cleared.
+  bool power_commanded = false;  ///< Motors were to get power at some time, by this driver.
   std::vector<MotorView> motors;
   std::vector<BoardView> boards;
   LinkView link;

@@ -1,0 +1,178 @@
+/// Six boards that run natively behind a USB-ISS on a pseudo-terminal, in real time, and an adapter
+/// that turns hostile once motors have power. Commands of `taut robot` drive it as a real robot; no
+/// emulator is needed.
+#pragma once
+
+#include <fcntl.h>
+#include <poll.h>
+#include <pty.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "link/fake_board.h"
+
+namespace taut::link {
+
+/// What the adapter does from the attack on.
+enum class Hostility {
+  kNone,
+  kSilent,    ///< Takes frames, acts on none and answers none.
+  kGarbage,   ///< Acts, and answers with random bytes.
+  kHalf,      ///< Acts, and answers with the first half.
+  kFlood,     ///< Acts on nothing and sends without end.
+  kUnread,    ///< Does not even take frames from the line.
+  kUnplugged  ///< The line is gone.
+};
+
+class HostileAdapter {
+ public:
+  explicit HostileAdapter(Hostility hostility) : hostility_(hostility) {
+    char name[128] = {};
+    EXPECT_EQ(openpty(&line_, &far_end_, name, nullptr, nullptr), 0);
+    device_ = name;
+    termios how{};
+    tcgetattr(far_end_, &how);
+    cfmakeraw(&how);
+    tcsetattr(far_end_, TCSANOW, &how);
+    fcntl(line_, F_SETFL, O_NONBLOCK);
+    fcntl(line_, F_SETFD, FD_CLOEXEC);
+    fcntl(far_end_, F_SETFD, FD_CLOEXEC);
+    for (int b = 0; b < board::kBoards; ++b) boards_.push_back(std::make_unique<FakeBoard>(b));
+    thread_ = std::thread([this] { Run(); });
+  }
+  ~HostileAdapter() {
+    ended_ = true;
+    thread_.join();
+    Unplug();
+  }
+  HostileAdapter(const HostileAdapter&) = delete;
+  HostileAdapter& operator=(const HostileAdapter&) = delete;
+
+  const std::string& device() const { return device_; }
+  /// From now on, motors powered or not.
+  void Attack() { attacks_ = true; }
+  bool AnyPower() const { return any_power_; }
+
+ private:
+  using Bytes = std::vector<std::uint8_t>;
+  using Clock = std::chrono::steady_clock;
+
+  void Run() {
+    auto ticked = Clock::now();
+    std::mt19937 random(1);
+    while (!ended_) {
+      pollfd ready{line_, POLLIN, 0};
+      if (line_ >= 0) {
+        poll(&ready, 1, 1);
+      } else {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+      // On a busy machine the boards' time slips, so that no board times out for it.
+      const auto now = Clock::now();
+      ticked = std::max(ticked, now - std::chrono::milliseconds(10));
+      for (; ticked < now; ticked += std::chrono::milliseconds(1)) {
+        for (const auto& board : boards_) board->Tick();
+      }
+      any_power_ = std::any_of(boards_.begin(), boards_.end(),
+                               [](const auto& board) { return board->IsPowered(); });
+      if (line_ >= 0) Serve(random);
+    }
+  }
+  void Serve(std::mt19937& random) {
+    const Hostility now = attacks_ ? hostility_ : Hostility::kNone;
+    if (now == Hostility::kUnplugged) return Unplug();
+    if (now == Hostility::kUnread) return;
+    if (now == Hostility::kFlood) {
+      Bytes noise(4096);
+      for (auto& byte : noise) byte = static_cast<std::uint8_t>(random());
+      Send(noise);
+    }
+    std::uint8_t chunk[4096];
+    const ssize_t size = read(line_, chunk, sizeof chunk);
+    if (size <= 0 || now == Hostility::kSilent || now == Hostility::kFlood) return;
+    Bytes reply = ReplyTo({chunk, chunk + size});
+    if (now == Hostility::kGarbage) {
+      reply.resize(1 + random() % 64);
+      for (auto& byte : reply) byte = static_cast<std::uint8_t>(random());
+    } else if (now == Hostility::kHalf) {
+      reply.resize(reply.size() / 2);
+    }
+    Send(reply);
+  }
+  void Send(const Bytes& bytes) const {
+    if (!bytes.empty() && write(line_, bytes.data(), bytes.size()) < 0) {
+      // The line is full: nobody reads.
+    }
+  }
+  void Unplug() {
+    if (line_ < 0) return;
+    close(line_);
+    close(far_end_);
+    line_ = far_end_ = -1;
+  }
+  FakeBoard* At(int address) {
+    const auto b = static_cast<std::size_t>(address - 0x10);
+    return b < boards_.size() ? boards_[b].get() : nullptr;
+  }
+  Bytes ReplyTo(const Bytes& frame) {
+    if (frame.size() > 1 && frame[0] == 0x5a) {
+      if (frame[1] == 1) return {7, 8, mode_};
+      if (frame[1] == 3) return {'0', '0', '0', '4', '2', '1', '0', '7'};
+      if (frame[1] == 2 && frame.size() > 2) {
+        mode_ = frame[2];
+        return {0xff, 0};
+      }
+    }
+    if (mode_ != 0x70 || frame.size() < 2) return {};
+    if (frame[0] == 0x58) return {static_cast<std::uint8_t>(At(frame[1] >> 1) ? 0xff : 0)};
+    if (frame[0] == 0x54 && frame.size() > 2) return Transfer(frame);
+    if (frame[0] != 0x57) return {};
+    Bytes reply{0xff, 0};
+    for (std::size_t at = 1; at + 6 < frame.size(); at += 7) {
+      FakeBoard* const board = At(frame[at + 2] >> 1);
+      const auto said = board != nullptr ? board->Say() : std::nullopt;
+      if (!said) return {0, 1};
+      reply.insert(reply.end(), said->begin(), said->end());
+      reply[1] = static_cast<std::uint8_t>(reply.size() - 2);
+    }
+    return reply;
+  }
+  Bytes Transfer(const Bytes& frame) {
+    const int address = frame[1] >> 1;
+    FakeBoard* const board = At(address);
+    if ((frame[1] & 1) != 0) {
+      Bytes said = (board != nullptr ? board->Say() : std::nullopt).value_or(Bytes());
+      said.resize(frame[2], 0xff);
+      return said;
+    }
+    const Bytes bytes(frame.begin() + 3, frame.end());
+    bool acknowledged = false;
+    if (address == board::kBroadcastAddress) {
+      for (const auto& one : boards_) acknowledged = one->Hear(bytes, true) || acknowledged;
+    } else if (board != nullptr) {
+      acknowledged = board->Hear(bytes, false);
+    }
+    return {static_cast<std::uint8_t>(acknowledged ? 0xff : 0)};
+  }
+
+  Hostility hostility_;
+  std::string device_;
+  int line_ = -1, far_end_ = -1;
+  std::uint8_t mode_ = 0x40;
+  std::vector<std::unique_ptr<FakeBoard>> boards_;
+  std::atomic<bool> attacks_{false}, ended_{false}, any_power_{false};
+  std::thread thread_;
+};
+
+}  // namespace taut::link

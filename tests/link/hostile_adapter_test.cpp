@@ -1,0 +1,148 @@
+// Commands of `taut robot` against adapters that fail while motors have power: what they say about
+// power is true, and they end.
+
+#include "link/hostile_adapter.h"
+
+#include <chrono>
+
+#include "tests/system/command.h"
+
+namespace taut::test {
+namespace {
+
+using link::HostileAdapter, link::Hostility;
+using Clock = std::chrono::steady_clock;
+
+/// For an end within a second, on machines that are busy.
+constexpr double kSoon_s = 20;
+
+class HostileRobot : public CommandTest {
+ protected:
+  pid_t StartRobot(const HostileAdapter& adapter, std::vector<std::string> words,
+                   const std::string& runtime = "runtime") {
+    words.insert(words.begin(), "robot");
+    words.insert(words.end(), {"--port", adapter.device()});
+    const std::string folder = Path(runtime);
+    std::filesystem::create_directories(folder);
+    return Start(words, [&] { setenv("XDG_RUNTIME_DIR", folder.c_str(), 1); });
+  }
+  CommandResult Robot(const HostileAdapter& adapter, std::vector<std::string> words,
+                      const std::string& runtime = "runtime") {
+    return End(StartRobot(adapter, std::move(words), runtime));
+  }
+  /// `taut robot hold` once motors have power; its output goes to files of its own.
+  pid_t Hold(const HostileAdapter& adapter, std::vector<std::string> more = {}) {
+    const CommandResult reference = Robot(adapter, {"reference", "--as_model"});
+    EXPECT_EQ(reference.status, 0) << reference.errors;
+    more.insert(more.begin(), "hold");
+    const pid_t hold = StartRobot(adapter, more);
+    Await([&] { return adapter.AnyPower(); });
+    return hold;
+  }
+  template <class F>
+  void Await(const F& done) {
+    const auto begun = Clock::now();
+    while (!done() && std::chrono::duration<double>(Clock::now() - begun).count() < kSoon_s) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    EXPECT_TRUE(done());
+  }
+  /// Waits for an end, at most kSoon_s.
+  CommandResult EndSoon(pid_t pid) {
+    siginfo_t ended{};
+    Await([&] {
+      ended.si_pid = 0;
+      return waitid(P_PID, static_cast<id_t>(pid), &ended, WEXITED | WNOWAIT | WNOHANG) == 0 &&
+             ended.si_pid == pid;
+    });
+    if (ended.si_pid != pid) kill(pid, SIGKILL);
+    return End(pid);
+  }
+  static int Count(const std::string& text, const std::string& part) {
+    int count = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+  }
+};
+
+TEST_F(HostileRobot, SaysOffOnceWhenAllBoardsHaveConfirmedIt) {
+  HostileAdapter adapter(Hostility::kNone);
+  const CommandResult done = EndSoon(Hold(adapter, {"--duration_s", "0.3"}));
+  EXPECT_EQ(done.status, 0) << done.errors;
+  EXPECT_EQ(Count(done.output, "Motors are off."), 1) << done.output;
+  EXPECT_EQ(Count(done.output, "confirmed by 6 of 6 boards"), 1) << done.output;
+  EXPECT_FALSE(adapter.AnyPower());
+}
+
+class HostileHold : public HostileRobot, public testing::WithParamInterface<Hostility> {};
+
+TEST_P(HostileHold, EndsByItsDurationAndSaysNothingUnconfirmed) {
+  HostileAdapter adapter(GetParam());
+  const pid_t hold = Hold(adapter, {"--duration_s", "1.5"});
+  adapter.Attack();
+  const CommandResult done = EndSoon(hold);
+  EXPECT_EQ(done.status, 1) << done.errors;
+  EXPECT_EQ(Count(done.output + done.errors, "Motors are off."), 0) << done.output;
+  EXPECT_NE(done.errors.find("has not confirmed that its motors are off"), std::string::npos)
+      << done.errors;
+  EXPECT_NE(done.errors.find("holds its motors with power"), std::string::npos) << done.errors;
+}
+
+TEST_P(HostileHold, EndsByAnInterrupt) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    HostileAdapter adapter(GetParam());
+    const pid_t hold = Hold(adapter);
+    adapter.Attack();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    kill(hold, signal);
+    const CommandResult done = EndSoon(hold);
+    EXPECT_EQ(done.status, 1) << done.errors;  // not 130: motors may have power
+    EXPECT_EQ(Count(done.output + done.errors, "Motors are off."), 0) << done.output;
+  }
+}
+
+TEST_P(HostileHold, LogEndsByItsDuration) {
+  HostileAdapter adapter(GetParam());
+  const pid_t log = StartRobot(adapter, {"log", "--duration_s", "1", "--out", "log"});
+  Await([&] { return std::filesystem::exists(Path("log/events.jsonl")); });
+  adapter.Attack();
+  EXPECT_GE(EndSoon(log).status, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Adapters, HostileHold,
+                         testing::Values(Hostility::kSilent, Hostility::kUnplugged));
+INSTANTIATE_TEST_SUITE_P(Long, HostileHold,
+                         testing::Values(Hostility::kGarbage, Hostility::kHalf, Hostility::kFlood,
+                                         Hostility::kUnread));
+
+TEST_F(HostileRobot, OneProgramDrivesWhateverTheRuntimeFolder) {
+  HostileAdapter adapter(Hostility::kNone);
+  const pid_t hold = Hold(adapter);
+  std::filesystem::rename(Path("out.txt"), Path("hold.txt"));
+  std::filesystem::rename(Path("err.txt"), Path("hold_errors.txt"));
+  const CommandResult second = Robot(adapter, {"status"}, "elsewhere");
+  EXPECT_EQ(second.status, 1);
+  EXPECT_NE(second.errors.find("process " + std::to_string(hold) + " drives this robot"),
+            std::string::npos)
+      << second.errors;
+  const CommandResult stop = Robot(adapter, {"estop"}, "elsewhere");
+  EXPECT_EQ(stop.status, 0) << stop.errors;
+  EXPECT_NE(stop.output.find("All boards have stopped"), std::string::npos) << stop.output;
+  EXPECT_FALSE(adapter.AnyPower());
+  EXPECT_EQ(EndSoon(hold).status, 1);
+}
+
+TEST_F(HostileRobot, AnEmergencyStopIsAnsweredWhileTheAdapterIsSilent) {
+  HostileAdapter adapter(Hostility::kSilent);
+  const pid_t hold = Hold(adapter);
+  std::filesystem::rename(Path("out.txt"), Path("hold.txt"));
+  std::filesystem::rename(Path("err.txt"), Path("hold_errors.txt"));
+  adapter.Attack();
+  const CommandResult stop = EndSoon(StartRobot(adapter, {"estop"}, "elsewhere"));
+  EXPECT_EQ(stop.status, 1) << stop.output;
+  EXPECT_NE(stop.errors.find("cut the motors' supply"), std::string::npos) << stop.errors;
+  EXPECT_EQ(EndSoon(hold).status, 1);
+}
+
+}  // namespace
+}  // namespace taut::test
