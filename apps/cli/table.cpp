@@ -5,13 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/diagnostics.h"
+
 namespace taut::cli {
 
 constexpr std::size_t kMostRows = 60;
 
 void Table::Add(std::vector<std::string> row) {
   ++added_;
-  if (added_ <= kMostRows) rows_.push_back(std::move(row));
+  if (added_ > kMostRows) return;
+  for (std::string& cell : row) cell = Printable(cell);
+  rows_.push_back(std::move(row));
 }
 
 std::string Table::Text() const {

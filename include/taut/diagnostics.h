@@ -43,6 +43,10 @@ class Diagnostics {
   std::vector<Diagnostic> items_, warnings_;
 };
 
+/// The text with control characters, which could steer a terminal, written as \x1b. Line ends and
+/// tabs stay. For all text from files that is printed; `Diagnostics::Format` does it itself.
+std::string Printable(std::string_view text);
+
 /// By file, line and column, without repetitions: in the order of `Diagnostics::Format`.
 std::vector<Diagnostic> Sorted(std::vector<Diagnostic> items);
 

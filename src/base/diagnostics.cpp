@@ -43,10 +43,29 @@ std::string Line(const Diagnostic& d, std::string_view kind) {
   if (!out.empty()) out += ' ';
   out += std::string(kind) + ": " + d.what;
   if (!d.hint.empty()) out += " (" + d.hint + ")";
-  return out + '\n';
+  return Printable(out) + '\n';
 }
 
 }  // namespace
+
+std::string Printable(std::string_view text) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const bool is_plain = (byte >= 0x20 && byte != 0x7f) || byte == '\n' || byte == '\t';
+    // U+0080 to U+009F, which terminals take for ESC and a letter.
+    const bool begins_c1 = byte == 0xc2 && i + 1 < text.size() &&
+                           (static_cast<unsigned char>(text[i + 1]) & 0xe0) == 0x80;
+    if (is_plain && !begins_c1) {
+      out += text[i];
+      continue;
+    }
+    const unsigned code = begins_c1 ? static_cast<unsigned char>(text[++i]) : byte;
+    out += {'\\', 'x', kDigits[code >> 4], kDigits[code & 15]};
+  }
+  return out;
+}
 
 void Diagnostics::Error(SourceRef at, std::string what, std::string hint) {
   items_.push_back({std::move(at), std::move(what), std::move(hint)});
@@ -86,9 +105,14 @@ std::string Diagnostics::Format() const {
 }
 
 std::string_view ClosestMatch(std::string_view word, const std::vector<std::string>& candidates) {
+  constexpr std::size_t kLongest = 100;  // of names; longer ones are no misspellings
   std::string_view best;
+  if (word.size() > kLongest) return best;
   int best_distance = static_cast<int>(word.size()) / 3 + 1;  // a third of the letters may differ
   for (const std::string& candidate : candidates) {
+    const auto longer =
+        static_cast<std::ptrdiff_t>(candidate.size()) - static_cast<std::ptrdiff_t>(word.size());
+    if (longer > best_distance || -longer > best_distance) continue;  // so many letters differ
     const int distance = EditDistance(word, candidate);
     if (distance <= best_distance && (best.empty() || distance < best_distance)) {
       best = candidate;

@@ -9,13 +9,22 @@
 namespace taut::base {
 
 std::optional<std::string> ReadInputFile(const std::string& path, std::size_t most_bytes,
-                                         const std::string& hint, Diagnostics& out) {
+                                         const std::string& hint, Diagnostics& out,
+                                         NamedBy named_by) {
   const auto refuse = [&](std::string what, const std::string& hint_of = {}) {
     out.Error({path, 0, 0}, std::move(what), hint_of);
     return std::nullopt;
   };
   std::error_code ignored;
+  const auto size_limit = [&] {
+    return refuse("larger than " + std::to_string(most_bytes / 1'000'000) + " MB", hint);
+  };
   if (std::filesystem::is_directory(path, ignored)) return refuse("is a directory, not a file");
+  if (std::filesystem::is_regular_file(path, ignored)) {
+    if (std::filesystem::file_size(path, ignored) > most_bytes && !ignored) return size_limit();
+  } else if (named_by == NamedBy::kFile && std::filesystem::exists(path, ignored)) {
+    return refuse("is a pipe, socket or device (expected a regular file)");
+  }
   std::ifstream in(path, std::ios::binary);
   if (!in) return refuse(std::string("cannot be opened: ") + std::strerror(errno));
   std::string text;
@@ -25,7 +34,7 @@ std::optional<std::string> ReadInputFile(const std::string& path, std::size_t mo
   }
   if (in.bad()) return refuse("cannot be read");
   if (text.size() <= most_bytes) return text;
-  return refuse("larger than " + std::to_string(most_bytes / 1'000'000) + " MB", hint);
+  return size_limit();
 }
 
 }  // namespace taut::base

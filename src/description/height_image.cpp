@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/input_file.h"
+#include "trace/unpack_limit.h"
 
 namespace taut::description {
 namespace {
@@ -103,6 +104,13 @@ std::optional<HeightImage> ReadHeightImage(const std::string& path, double most,
     return refuse("has " + std::to_string(head.columns) + " x " + std::to_string(head.rows) +
                       " samples, too many",
                   "fewer, larger cells");
+  }
+  const double unpacked = sizeof(double) * samples;
+  if (unpacked > trace::MostUnpackedBytes(static_cast<double>(bytes->size()))) {
+    return refuse("is packed too tightly: " + std::to_string(head.columns) + " x " +
+                      std::to_string(head.rows) + " samples from " + std::to_string(bytes->size()) +
+                      " bytes take " + trace::kUnpackLimit,
+                  "fewer, larger cells, or save it without compression");
   }
   const std::size_t width = head.bits == 16 ? 2 : 1, columns = head.columns, rows = head.rows;
   std::vector<png_byte> samples_of(width * columns * rows);

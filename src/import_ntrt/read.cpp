@@ -46,7 +46,9 @@ class Reader {
     const auto [found, fresh] = files_.emplace(path, File{});
     File& file = found->second;
     if (!fresh) return file;
-    auto text = base::ReadInputFile(path, description::kMaxFileBytes, "", out_);
+    auto text =
+        base::ReadInputFile(path, description::kMaxFileBytes, "", out_,
+                            files_.size() == 1 ? base::NamedBy::kUser : base::NamedBy::kFile);
     if (!text) return file;
     file.percent_lines = TreatPercent(path, *text);
     file.root = description::ParseYaml(*text, path, out_);

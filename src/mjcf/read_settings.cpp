@@ -102,9 +102,11 @@ int Find(const std::map<std::string, int>& by_name, const Element& element,
   const auto found = by_name.find(name->value);
   if (found != by_name.end()) return found->second;
   std::vector<std::string> known;
-  for (const auto& [key, index] : by_name) known.push_back(key);
+  for (const auto& [key, index] : by_name) {
+    if (out.items().size() < kMostHints) known.push_back(key);
+  }
   out.Error(name->at, std::string("there is no ") + kind + " \"" + name->value + '"',
-            known.empty() || known.size() > 1000 ? "" : DidYouMean(name->value, known));
+            known.empty() ? "" : DidYouMean(name->value, known));
   return -1;
 }
 

@@ -214,7 +214,9 @@ void Defaults::CheckClass(const Element& element, std::string_view attribute,
   const Attribute* const name = element.Find(attribute);
   if (!name || classes_.contains(name->value) || name->value == main_) return;
   std::vector<std::string> known;
-  for (const auto& [key, value] : classes_) known.push_back(key);
+  for (const auto& [key, value] : classes_) {
+    if (out.items().size() < kMostHints) known.push_back(key);
+  }
   out.Error(name->at, "there is no default class \"" + name->value + "\"",
             known.empty() ? "" : DidYouMean(name->value, known));
 }

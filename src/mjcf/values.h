@@ -1,6 +1,7 @@
 /// Attributes of an element, with those of its default classes below, and what they say.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,6 +11,10 @@
 #include "taut/types.h"
 
 namespace taut::mjcf {
+
+/// Of so many errors the first have a hint that compares a name with all known ones. A file may
+/// hold a wrong name for each of its elements, and comparing all with all would not end.
+inline constexpr std::size_t kMostHints = 10;
 
 struct Pose {
   Vec3 p;

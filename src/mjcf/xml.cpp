@@ -21,7 +21,9 @@ class XmlReader {
       : folder_(std::filesystem::path(path).parent_path()), files_(files), out_(out) {}
 
   std::optional<Element> Read(const std::string& path) {
-    const auto text = base::ReadInputFile(path, kMostBytes, "a model has less", out_);
+    const auto text =
+        base::ReadInputFile(path, kMostBytes, "a model has less", out_,
+                            files_.empty() ? base::NamedBy::kUser : base::NamedBy::kFile);
     if (!text) return std::nullopt;
     files_.push_back(path);
     if (std::any_of(text->begin(), text->end(), base::IsControl)) {

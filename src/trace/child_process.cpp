@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <string_view>
 
 namespace taut::trace {
 namespace {
@@ -25,6 +26,33 @@ std::size_t AddressSpaceBytes() {
   const int found = std::fscanf(file, "%lu", &pages);
   std::fclose(file);
   return found == 1 ? pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+struct ProcessorUse {
+  bool waits_for_processor = false;
+  double used_s = 0;
+};
+
+ProcessorUse UseOf(pid_t pid) {
+  ProcessorUse use;
+  std::FILE* file = std::fopen(fmt::format("/proc/{}/stat", pid).c_str(), "r");
+  if (file == nullptr) return use;
+  char text[1024] = {};
+  const std::size_t size = std::fread(text, 1, sizeof text - 1, file);
+  std::fclose(file);
+  // Behind the name, which may hold anything: state, ten numbers, user and system time.
+  const std::string_view all(text, size);
+  const std::size_t name_end = all.rfind(')');
+  char state = 0;
+  unsigned long user = 0, system = 0;
+  if (name_end == std::string_view::npos ||
+      std::sscanf(text + name_end + 1, " %c %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %lu %lu",
+                  &state, &user, &system) != 3) {
+    return use;
+  }
+  use.waits_for_processor = state == 'R';
+  use.used_s = static_cast<double>(user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+  return use;
 }
 
 /// A crash of the child is expected: no handlers of the program around it, no core file, no last
@@ -86,16 +114,26 @@ ChildProcess::~ChildProcess() {
 }
 
 bool ChildProcess::Read(void* to, std::size_t size) {
+  constexpr int kLook_ms = 50;
   char* at = static_cast<char*>(to);
+  const double patience_s = std::chrono::duration<double>(patience_).count();
+  double used_before_s = -1, slept_s = 0;
   while (size > 0 && trouble_.empty() && !stream_ended_) {
     pollfd waiting{descriptor_, POLLIN, 0};
-    const int ready = poll(&waiting, 1, static_cast<int>(patience_.count()));
+    const int ready = poll(&waiting, 1, kLook_ms);
     if (ready < 0 && errno == EINTR) continue;
     if (ready == 0) {
-      trouble_ = fmt::format("gave no sign of life for {} s",
-                             std::chrono::duration<double>(patience_).count());
-      break;
+      const ProcessorUse use = UseOf(pid_);
+      if (used_before_s < 0) used_before_s = use.used_s;
+      if (!use.waits_for_processor) slept_s += 1e-3 * kLook_ms;
+      if (use.used_s - used_before_s >= patience_s) {
+        trouble_ = fmt::format("used {} s of processor time without a result", patience_s);
+      } else if (slept_s >= patience_s) {
+        trouble_ = fmt::format("gave no sign of life for {} s", patience_s);
+      }
+      continue;
     }
+    used_before_s = -1, slept_s = 0;
     const ssize_t done = read(descriptor_, at, size);
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0) {

@@ -24,7 +24,9 @@ class ChildOutput {
 class ChildProcess {
  public:
   /// Forks and runs `work` in the child, which ends with it. `more_memory_bytes`: what the child
-  /// may take beyond what the parent has. `patience`: how long `Read` waits for a sign of life.
+  /// may take beyond what the parent has. `patience`: how much processor time the child may use,
+  /// and how long it may sleep, before `Read` gives up without bytes. Time in which it waits for a
+  /// processor does not count, so a busy machine is not taken for a damaged file.
   ChildProcess(const std::function<void(const ChildOutput&)>& work, std::size_t more_memory_bytes,
                std::chrono::milliseconds patience);
   ~ChildProcess();
@@ -35,7 +37,8 @@ class ChildProcess {
   bool Read(void* to, std::size_t size);
 
   /// Ends the child if it still runs. Empty if it ended by itself and well, else what befell it:
-  /// "crashed (Segmentation fault)", "gave no sign of life for 30 s".
+  /// "crashed (Segmentation fault)", "used 30 s of processor time without a result", "gave no sign
+  /// of life for 30 s".
   std::string End();
 
  private:

@@ -68,6 +68,15 @@ class QuietHdf5 {
   Hdf5Failure first_;
 };
 
+/// Why a data set with this creation plan would make HDF5 open another file: "is a virtual
+/// dataset", "has its numbers in another file"; empty if all of it is in the file itself. To be
+/// asked before anything is read.
+std::string WhyElsewhere(hid_t plan);
+
+/// The data set of that name, all of whose numbers are in the file itself. Nothing and a sentence
+/// in `error` if there is none, or if a link, external storage or a virtual layout leads elsewhere.
+Hdf5Id OpenDataset(hid_t file, const std::string& name, std::string& error);
+
 /// A fixed-length string type for `size` characters.
 Hdf5Id StringType(std::size_t size);
 

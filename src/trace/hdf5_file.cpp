@@ -86,10 +86,8 @@ struct Walk {
 std::string WhyNoColumn(hid_t dataset, Hdf5Column& column) {
   const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
   const H5D_layout_t layout = plan ? H5Pget_layout(plan) : H5D_LAYOUT_ERROR;
-  if (layout == H5D_VIRTUAL) return "is a virtual dataset; a trace is one file";
-  if (!plan || H5Pget_external_count(plan) != 0) {
-    return "has its numbers in another file; a trace is one file";
-  }
+  if (const std::string why = WhyElsewhere(plan); !why.empty())
+    return why + "; a trace is one file";
   const Hdf5Id type(H5Dget_type(dataset), H5Tclose);
   const Hdf5Id space(H5Dget_space(dataset), H5Sclose);
   const H5T_class_t kind = type ? H5Tget_class(type) : H5T_NO_CLASS;

@@ -11,6 +11,7 @@
 #include "base/input_file.h"
 #include "trace/child_process.h"
 #include "trace/hdf5.h"
+#include "trace/unpack_limit.h"
 
 namespace taut::trace {
 namespace {
@@ -19,13 +20,14 @@ constexpr std::chrono::seconds kPatience{30};
 constexpr std::uint64_t kMostErrorBytes = 1 << 16;
 
 /// The data set, with a sentence if it is none that holds a table.
-std::string OpenTable(const std::string& path, const std::string& name, double most, Hdf5Id& file,
-                      Hdf5Id& set, hsize_t size[2]) {
+std::string OpenTable(const std::string& path, const std::string& name, double most,
+                      double file_bytes, Hdf5Id& file, Hdf5Id& set, hsize_t size[2]) {
   const QuietHdf5 quiet;
   file = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file) return "is not HDF5 or is damaged: " + quiet.why();
-  set = Hdf5Id(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!set) return "has no data set " + name;
+  std::string error;
+  set = OpenDataset(file, name, error);
+  if (!set) return error;
   const Hdf5Id type(H5Dget_type(set), H5Tclose);
   const H5T_class_t kind = H5Tget_class(type);
   if (kind != H5T_FLOAT && kind != H5T_INTEGER) return name + " holds no numbers";
@@ -38,15 +40,22 @@ std::string OpenTable(const std::string& path, const std::string& name, double m
   if (static_cast<double>(size[0]) * static_cast<double>(size[1]) > most) {
     return fmt::format("{} has {} x {} numbers, more than {:.0f}", name, size[0], size[1], most);
   }
+  const double bytes = sizeof(double) * static_cast<double>(size[0]) * static_cast<double>(size[1]);
+  if (bytes > MostUnpackedBytes(file_bytes)) {
+    return fmt::format(
+        "is packed too tightly: the numbers of {} take {:.0f} MiB, {}; unpack it "
+        "with `h5repack -f NONE` first",
+        name, bytes / (1 << 20), kUnpackLimit);
+  }
   return "";
 }
 
 /// All that the child does.
-void SendTable(const std::string& path, const std::string& name, double most,
+void SendTable(const std::string& path, const std::string& name, double most, double file_bytes,
                const ChildOutput& to) {
   Hdf5Id file, set;
   hsize_t size[2] = {0, 0};
-  std::string error = OpenTable(path, name, most, file, set, size);
+  std::string error = OpenTable(path, name, most, file_bytes, file, set, size);
   std::vector<double> values;
   if (error.empty()) {
     const QuietHdf5 quiet;
@@ -67,8 +76,10 @@ std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::strin
                                        double most, Diagnostics& out) {
   // Whether it can be opened at all is told in the system's words.
   constexpr std::size_t kMostBytes = std::size_t{1} << 30;
-  if (!base::ReadInputFile(path, kMostBytes, "fewer numbers", out)) return std::nullopt;
-  ChildProcess child([&](const ChildOutput& to) { SendTable(path, name, most, to); },
+  const auto bytes = base::ReadInputFile(path, kMostBytes, "fewer numbers", out);
+  if (!bytes) return std::nullopt;
+  const auto file_bytes = static_cast<double>(bytes->size());
+  ChildProcess child([&](const ChildOutput& to) { SendTable(path, name, most, file_bytes, to); },
                      static_cast<std::size_t>(most) * 2 * sizeof(double), kPatience);
   std::uint64_t head[3] = {};
   std::string error;

@@ -163,5 +163,62 @@ TEST_F(GroundText, WrongTablesOfHdf5AreNamed) {
   has(said("hills.h5:/z"), "hills.h5: error: /z holds no numbers");
 }
 
+/// hills.h5, whose data set /z has numbers from elsewhere, in one of three ways.
+enum class Elsewhere { kExternalFile, kVirtual, kExternalLink, kSoftLink };
+void WriteElsewhere(const std::string& path, const std::string& other, Elsewhere how) {
+  const hsize_t size[2] = {2, 4};
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t space = H5Screate_simple(2, size, nullptr);
+  const hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
+  if (how == Elsewhere::kExternalLink) {
+    H5Lcreate_external(other.c_str(), "/z", file, "z", H5P_DEFAULT, H5P_DEFAULT);
+  } else if (how == Elsewhere::kSoftLink) {
+    H5Lcreate_soft("/far", file, "z", H5P_DEFAULT, H5P_DEFAULT);
+    H5Lcreate_external(other.c_str(), "/z", file, "far", H5P_DEFAULT, H5P_DEFAULT);
+  } else {
+    if (how == Elsewhere::kExternalFile) {
+      H5Pset_external(plan, other.c_str(), 0, 8);
+    } else {
+      H5Pset_virtual(plan, space, other.c_str(), "/z", space);
+    }
+    const hid_t set =
+        H5Dcreate2(file, "z", H5T_NATIVE_UCHAR, space, H5P_DEFAULT, plan, H5P_DEFAULT);
+    H5Dclose(set);
+  }
+  H5Pclose(plan), H5Sclose(space), H5Fclose(file);
+}
+
+TEST_F(GroundText, HeightsOfOtherFilesAreNotRead) {
+  const auto said = [&] {
+    return Said("- {name: hills, height_field: {file: 'hills.h5:/z', cell_m: 0.1}}");
+  };
+  const auto has = [](const std::string& text, const std::string& what) {
+    EXPECT_NE(text.find(what), std::string::npos) << text;
+  };
+  Write("secret", "root:x:0");
+  WriteHdf5(Path("other.h5"), H5T_NATIVE_UCHAR, {2, 4}, std::vector<unsigned char>(8, 1));
+  WriteElsewhere(Path("hills.h5"), Path("secret"), Elsewhere::kExternalFile);
+  has(said(), "hills.h5: error: /z has its numbers in another file");
+  WriteElsewhere(Path("hills.h5"), Path("other.h5"), Elsewhere::kVirtual);
+  has(said(), "hills.h5: error: /z is a virtual dataset");
+  WriteElsewhere(Path("hills.h5"), Path("other.h5"), Elsewhere::kExternalLink);
+  has(said(), "hills.h5: error: /z is a link to another file");
+  WriteElsewhere(Path("hills.h5"), Path("other.h5"), Elsewhere::kSoftLink);
+  has(said(), "hills.h5: error: /z is a soft link; name the data set itself");
+}
+
+TEST_F(GroundText, HeightsThatUnpackToGigabytesAreRefused) {
+  // 8 000 x 8 000 numbers, none of which is in the file.
+  const hsize_t size[2] = {8000, 8000};
+  const hid_t file = H5Fcreate(Path("hills.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t space = H5Screate_simple(2, size, nullptr);
+  const hid_t set =
+      H5Dcreate2(file, "z", H5T_NATIVE_UCHAR, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  H5Dclose(set), H5Sclose(space), H5Fclose(file);
+  const std::string text =
+      Said("- {name: hills, height_field: {file: 'hills.h5:/z', cell_m: 0.1}}");
+  EXPECT_NE(text.find("hills.h5: error: is packed too tightly"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace taut::test

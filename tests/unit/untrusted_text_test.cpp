@@ -1,0 +1,79 @@
+// Text from files in messages, and what is read as a file.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "base/input_file.h"
+#include "taut/diagnostics.h"
+
+namespace taut::test {
+namespace {
+
+TEST(UntrustedText, ControlCharactersArePrintedAsNumbers) {
+  EXPECT_EQ(Printable("\x1b]0;title\x07"), "\\x1b]0;title\\x07");
+  EXPECT_EQ(Printable("a\tb\nc"), "a\tb\nc");
+  EXPECT_EQ(Printable("\r\x7f"), "\\x0d\\x7f");
+  EXPECT_EQ(Printable("\xc2\x9b"
+                      "31m"),
+            "\\x9b31m")
+      << "a control character of two bytes";
+  EXPECT_EQ(Printable("\xc3\xa9\xc2\xb0"), "\xc3\xa9\xc2\xb0") << "letters are not";
+  EXPECT_EQ(Printable("\xc2"), "\xc2");
+}
+
+TEST(UntrustedText, NoMessageSteersATerminal) {
+  Diagnostics out;
+  out.Error({"a\x1b[2J.csv", 1, 2}, "holds \x1b[31m", "use \x1b[0m");
+  EXPECT_EQ(out.Format(), "a\\x1b[2J.csv:1:2: error: holds \\x1b[31m (use \\x1b[0m)\n");
+}
+
+TEST(UntrustedText, HintsCompareNamesOfSimilarLengthOnly) {
+  EXPECT_EQ(ClosestMatch("radius", {"radius_m"}), "radius_m");
+  EXPECT_EQ(ClosestMatch("radius", {"radius_of_the_first_of_all_rods"}), "");
+  EXPECT_EQ(ClosestMatch(std::string(101, 'a'), {std::string(101, 'a')}), "");
+}
+
+class InputFile : public testing::Test {
+ protected:
+  InputFile() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "taut_input_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~InputFile() override { std::filesystem::remove_all(folder_); }
+  std::string Complaint(const std::string& path, std::size_t most_bytes = 1 << 20) {
+    Diagnostics out;
+    EXPECT_FALSE(base::ReadInputFile(path, most_bytes, "", out));
+    return out.Format();
+  }
+  std::string folder_;
+};
+
+TEST_F(InputFile, PipesAndDevicesThatAFileNamesAreRefusedWithoutOpeningThem) {
+  const std::string pipe = folder_ + "/pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& path : {pipe, std::string("/dev/zero"), std::string("/dev/null")}) {
+    EXPECT_EQ(Complaint(path),
+              path + ": error: is a pipe, socket or device (expected a regular file)\n");
+  }
+}
+
+TEST_F(InputFile, AUserMayNameAPipe) {
+  Diagnostics out;
+  const auto text = base::ReadInputFile("/dev/null", 10, "", out, base::NamedBy::kUser);
+  ASSERT_TRUE(text) << out.Format();
+  EXPECT_EQ(*text, "");
+}
+
+TEST_F(InputFile, TooLargeAFileIsRefusedBeforeItIsRead) {
+  const std::string path = folder_ + "/large";
+  std::ofstream(path) << "x";
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40);  // with nothing in it
+  EXPECT_EQ(Complaint(path, 5'000'000), path + ": error: larger than 5 MB\n");
+}
+
+}  // namespace
+}  // namespace taut::test
