@@ -55,11 +55,12 @@ class BodyReader {
     }
     if (of.name == "frame") return;
     Mass(body);
+    const std::size_t first_shape = scene_.shapes.size();
     for (const GeomAt& geom : geoms_) {
       if (geom.body == body) ReadGeom(geom, has_mass_);
     }
     std::erase_if(geoms_, [&](const GeomAt& geom) { return geom.body == body; });
-    if (!has_mass_) SumOfShapes(body);
+    if (!has_mass_) SumOfShapes(body, first_shape);
     Bound(body);
   }
 
@@ -180,10 +181,13 @@ class BodyReader {
     if (its.mass.mass_kg < 0) layers.Error("mass", "its mass is negative");
   }
 
-  void SumOfShapes(int body) {
+  /// `first`: of its shapes, which are the last ones. Going through all shapes for each body would
+  /// take the square of their number.
+  void SumOfShapes(int body, std::size_t first) {
     std::vector<MassProperties> parts;
     Body& its = scene_.bodies[Scene::Index(body)];
-    for (const Shape& s : scene_.shapes) {
+    for (std::size_t i = first; i < scene_.shapes.size(); ++i) {
+      const Shape& s = scene_.shapes[i];
       if (s.body != body || s.mass == 0) continue;
       its.own_masses = its.own_masses && s.kind != Shape::Kind::kCapsule;
       parts.push_back(SolidOf(s));
