@@ -117,6 +117,7 @@ int LinkSpans(const View& m, const Rows<W>& s, const CableTable& cable, const Sc
       first = count;
     }
   }
+  TAUT_ASSERT(count <= cable.link_room);
   for (int k = 0; k < count; ++k) {
     links[k].turn[0] = work.bodies[links[k].body].inv_inertia * links[k].ang[0];
   }
@@ -191,7 +192,7 @@ template <class W>
   CableWork<W>& row = work.cables[c];
   row.soft = row.damped = MaskOf<W>::Splat(false);
   row.spring = row.stretch = row.tension = row.A = W::Splat(0.0);
-  row.links = work.links + work.link_count;
+  row.links = work.links.From(work.link_count);
   row.link_count = 0;
 }
 

@@ -97,6 +97,7 @@ template <class W>
     int k = 0;
     while (k < count && (links[k].row < row || (links[k].row == row && links[k].body < body))) ++k;
     if (k == count || links[k].row != row || links[k].body != body) {
+      TAUT_ASSERT(count < cable.link_room);
       for (int i = count++; i > k; --i) links[i] = links[i - 1];
       const W zero = W::Splat(0.0);
       links[k].row = row;

@@ -37,6 +37,14 @@ TAUT_INLINE bool Pulls(const RowLink<W>& link, int lane) noexcept {
   return way.x[lane] != 0.0 || way.y[lane] != 0.0 || way.z[lane] != 0.0;
 }
 
+/// The same of the link of a whole cable.
+template <class W>
+TAUT_INLINE bool Acts(const Link<W, 1>& link, int lane) noexcept {
+  const V3<W>&way = link.lin[0], &turn = link.ang[0];
+  return way.x[lane] != 0.0 || way.y[lane] != 0.0 || way.z[lane] != 0.0 || turn.x[lane] != 0.0 ||
+         turn.y[lane] != 0.0 || turn.z[lane] != 0.0;
+}
+
 /// Ratio of the tensions at a place with that mu theta.
 template <class S>
 TAUT_INLINE S RatioOf(S mu_theta) noexcept {

@@ -10,7 +10,7 @@ template <class W>
 void Poison([[maybe_unused]] const View& m, [[maybe_unused]] const Rows<W>& s,
             [[maybe_unused]] const Group& g, [[maybe_unused]] Scratch<W>& work) noexcept {
 #ifndef NDEBUG
-  work.Fill(0xff);  // a NaN as double, -1 as int
+  work.Fill(m, 0xff);  // a NaN as double, -1 as int
   const W nan = W::Splat(__builtin_nan(""));
   const auto fill = [nan](void* row, int first, int end) {
     for (int i = first; i < end; ++i) static_cast<W*>(row)[i] = nan;

@@ -1,7 +1,6 @@
 /// Typed access to a group's rows, and what a step keeps only while it runs.
 #pragma once
 
-#include "base/assert.h"
 #include "math/cable_wheel.h"
 #include "sim/constraint/cable_row.h"
 #include "sim/constraint/joint_row.h"
@@ -9,6 +8,7 @@
 #include "sim/group.h"
 #include "sim/motion_at.h"
 #include "sim/of_lane.h"
+#include "sim/room.h"
 #include "sim/solve/memory.h"
 #include "simd/angle.h"
 #include "simd/vec3.h"
@@ -19,32 +19,6 @@ using simd::M3;
 using simd::Q4;
 using simd::S3;
 using simd::V3;
-
-/// Elements of one type, one behind the other: a pointer that in builds with assertions knows its
-/// end.
-template <class T>
-class Row {
- public:
-  Row() = default;
-  TAUT_INLINE Row(T* first, [[maybe_unused]] int count) noexcept : first_(first) {
-#ifdef TAUT_ASSERTS
-    count_ = count;
-#endif
-  }
-  TAUT_INLINE T& operator[](int i) const noexcept {
-#ifdef TAUT_ASSERTS
-    TAUT_ASSERT(0 <= i && i < count_);
-#endif
-    return first_[i];
-  }
-  TAUT_INLINE T* data() const noexcept { return first_; }
-
- private:
-  T* first_;
-#ifdef TAUT_ASSERTS
-  int count_;
-#endif
-};
 
 /// A group's rows as wide numbers: row `pos` of body b is pos[b] (state_rows.h).
 template <class W>
@@ -106,10 +80,10 @@ struct AcrossWork {
 /// or stiff cables.
 template <class W>
 struct CableWork {
-  MaskOf<W> soft;  ///< Lanes in which it is.
-  W spring;        ///< Its part of the tension [N].
-  W stretch;       ///< At the middle of the step [m].
-  Link<W, 1>* links;
+  MaskOf<W> soft;         ///< Lanes in which it is.
+  W spring;               ///< Its part of the tension [N].
+  W stretch;              ///< At the middle of the step [m].
+  Row<Link<W, 1>> links;  ///< The first link_count; room is what all cables have left.
   int link_count;
   W A;  ///< Inverse effective mass along the cable [1/kg].
   MaskOf<W> damped;
@@ -171,7 +145,7 @@ struct Scratch {
   W* start;  ///< Rows that go back to the start of the step in worlds that turn non-finite.
   CableWork<W>* cables;
   StiffCable<W>* stiff;
-  Link<W, 1>* links;        ///< Of all cables.
+  Row<Link<W, 1>> links;    ///< Of all cables.
   ChainSpan<W>* spans;      ///< Of all cables with friction.
   AcrossWork<W>* across;    ///< Of all places where they slip.
   RowLink<W>* chain_links;  ///< Those of a cable from its first_link on,
@@ -191,7 +165,10 @@ struct Scratch {
   bool start_known = false;
 
   /// Overwrites all that the pointers point to.
-  void Fill(unsigned char byte) noexcept { __builtin_memset(room_.memory, byte, room_.used); }
+  void Fill(const View& m, unsigned char byte) noexcept {
+    room_.Fill(byte);
+    Scratch(m, room_.memory);
+  }
 
   static size_t Bytes(const View& m) noexcept { return Scratch(m, nullptr).room_.used; }
 
@@ -212,8 +189,7 @@ struct Scratch {
     start = room_.Take<W>(start_rows);
     cables = room_.Take<CableWork<W>>(m.cable_count);
     stiff = room_.Take<StiffCable<W>>(m.cable_count);
-    links = room_.Take<Link<W, 1>>(m.attachment_count + (m.touch_rod_count > 0 ? W::kLanes : 0) *
-                                                            kMostBends * m.touch_count);
+    links = room_.Take<Link<W, 1>>(m.CableLinkCapacity(W::kLanes));
     spans = room_.Take<ChainSpan<W>>(m.span_count);
     across = room_.Take<AcrossWork<W>>(m.slip_count);
     chain_links = room_.Take<RowLink<W>>(m.chain_link_count);

@@ -129,7 +129,7 @@ TAUT_INLINE void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work,
                            const CableTable& cable, const AttachmentWork<W>* ends,
                            CableWork<W>& row) noexcept {
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
-  row.links = work.links + work.link_count;
+  row.links = work.links.From(work.link_count);
   row.link_count = 0;
   if constexpr (kTwo) {
     AddLink(s, row, tables[0].body, ends[1].u, ends[0].arm);
@@ -324,7 +324,7 @@ template <bool kMotors, class W>
     AttachmentWork<W>* const ends = work.attachments;
     const W length =
         MeasureCable<false>(m, s, m.cables[c], m.cables[c].attachment_count, work, ends).l;
-    const W before = RateBefore(work, row.links, row.link_count);
+    const W before = RateBefore(work, row.links.data(), row.link_count);
     W k = s.stiffness[c], b = s.damping[c];
     if (kMotors && m.cables[c].motor >= 0) {
       const W share = work.motors[m.cables[c].motor].share;

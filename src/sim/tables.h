@@ -219,6 +219,16 @@ struct View {
   // Always inline: of a function that several instruction sets emit the linker keeps any one.
   /// Contacts that one world may have at once.
   [[gnu::always_inline]] int ContactCapacity() const noexcept { return slot_count + pair_capacity; }
+  /// Links of all cables to bodies, in `lanes` lanes: one an attachment, and one a rod that the
+  /// cable may lie against. A lane's cable has kMostBends of those at most, each lane others.
+  [[gnu::always_inline]] int CableLinkCapacity(int lanes) const noexcept {
+    int count = attachment_count;
+    for (int i = 0; i < touch_count; ++i) {
+      const int bends = lanes * kMostBends, rods = touches[i].rod_count;
+      count += bends < rods ? bends : rods;
+    }
+    return count;
+  }
   /// Whether a program says how it moves.
   [[gnu::always_inline]] bool HasMotion(int body) const noexcept {
     return motion_count > 0 && body < body_count && motion_of_body[body] >= 0;

@@ -82,6 +82,24 @@ inline BodyDef RodOf(double mass_kg, const Vec3& center, const Vec3& axis, doubl
   return body;
 }
 
+/// Two balls fly with a cable of 1.1 m between them into free rods that lie across its way, five in
+/// a layer. Nothing pulls at them else, and the rods pass through each other.
+inline ModelDef AcrossFreeRods(int rods, double stiffness_n_per_m) {
+  constexpr double kRodKg = 0.2, kHalfM = 0.5, kRadiusM = 0.004;
+  ModelDef def;
+  def.gravity_m_per_s2 = {};
+  for (int i = 0; i < rods; ++i) {
+    AddRod(def, {0.1 * (i % 5) - 0.2, 0, 0.1 * (i / 5) - 0.15}, kHalfM, kRadiusM, kRodKg);
+    for (int j = 0; j < i; ++j) def.apart.push_back({j, i});
+  }
+  const Vec3 from{-0.6, 0, -0.6}, to{0.6, 0.1, -0.6};
+  def.bodies.push_back(Ball(0.5, from, {0, 0, 12}));
+  def.bodies.push_back(Ball(0.5, to, {0, 0, 10}));
+  def.cables = {Cable({rods, from}, {rods + 1, to}, stiffness_n_per_m, 1.1, 0.001)};
+  def.cables[0].touches = CableTouches::kRods;
+  return def;
+}
+
 /// NTRT's MuscleNP as it stands there, all turned by 45 degrees about y: a rod and a box fly with a
 /// cable of 8 m between them into a third rod. Its momentum falls to 0.86 of what it was there.
 inline ModelDef MuscleNp() {

@@ -123,11 +123,13 @@ class OwnIsland {
     std::vector<sim::Unknown<Num>> ordered(bodies_.size());
     for (int b = 0; b < n; ++b) ordered[At(PlaceOf(b))] = bodies_[At(b)];
     bodies_ = ordered;
-    island.bodies = bodies_.data();
+    island.bodies = {bodies_.data(), n};
     auto& m = island.m;
     numbers_.clear();
-    for (Num** const list : {&m.v, &m.rhs, &m.direction, &m.trial_v}) *list = Take(6 * n);
-    for (Num** const list :
+    for (sim::Row<Num>* const list : {&m.v, &m.rhs, &m.direction, &m.trial_v}) {
+      *list = Take(6 * n);
+    }
+    for (sim::Row<Num>* const list :
          {&m.l, &m.u, &m.best, &m.center, &m.projected, &m.du, &m.u2, &m.f, &m.start}) {
       *list = Take(island.rows);
     }
@@ -149,8 +151,9 @@ class OwnIsland {
     auto& items = std::get<std::vector<Law>>(laws_);
     auto& branches = std::get<std::vector<typename Law::Branch>>(branches_);
     branches.resize(items.size());
-    static_cast<sim::Pool<Law>&>(island.pools) = {items.data(), branches.data(),
-                                                  static_cast<int>(items.size())};
+    const int count = static_cast<int>(items.size());
+    static_cast<sim::Pool<Law>&>(island.pools) = {
+        {items.data(), count}, {branches.data(), count}, count};
   }
   int AddSmall(int size, double mass, const Vec3& free_v) {
     const int body = AddBody(1 / mass, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, free_v, {});
@@ -191,7 +194,7 @@ class OwnIsland {
       place_.push_back(number[At(b)] < 0 ? next++ : place[At(number[At(b)])]);
     }
   }
-  Num* Take(int count) { return numbers_.emplace_back(At(count)).data(); }
+  sim::Row<Num> Take(int count) { return {numbers_.emplace_back(At(count)).data(), count}; }
   sim::Twist<Num> TwistOf(int body) const {
     return island.Load(island.m.v + sim::kDofs * PlaceOf(body));
   }

@@ -130,7 +130,7 @@ TEST(IslandTangent, IsHowWholeSolvesDiffer) {
       StepIsland end = IslandOf(p);
       sim::SolverWork more{0, 300};
       usable = end.Solve(more, 1e-13) <= 1e-12 && SameBranches(middle.island, end.island);
-      ends[side].assign(end.island.m.v, end.island.m.v + change.v.size());
+      ends[side].assign(end.island.m.v.data(), end.island.m.v + change.v.size());
     }
     if (!usable) continue;
     ++compared[stored.scene];

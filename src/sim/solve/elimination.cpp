@@ -28,6 +28,7 @@ void BodyGraph::Clear() noexcept {
 }
 
 void BodyGraph::Join(int i, int j) noexcept {
+  TAUT_ASSERT(0 <= i && i < count && 0 <= j && j < count);
   if (i == j) return;
   Row(i)[j / 64] |= uint64_t{1} << (j % 64);
   Row(j)[i / 64] |= uint64_t{1} << (i % 64);
@@ -77,6 +78,7 @@ bool Eliminate(BodyGraph& graph, int block_capacity, int* order, int* place,
     }
   }
   pattern.first_below[n] = used;
+  TAUT_ASSERT(low == lower && high == pattern.block_count && used == lower - n);
   return true;
 }
 

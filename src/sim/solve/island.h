@@ -11,6 +11,7 @@
 
 #include "sim/constraint/cable_chain.h"
 #include "sim/constraint/links.h"
+#include "sim/room.h"
 #include "sim/solve/elimination.h"
 
 namespace taut::sim {
@@ -55,8 +56,8 @@ struct Unknown {
 /// All constraints of one kind, and the branch of its law that each is on.
 template <class K>
 struct Pool {
-  K* items = nullptr;
-  typename K::Branch* branches = nullptr;
+  Row<K> items{nullptr, 0};
+  Row<typename K::Branch> branches{nullptr, 0};
   int count = 0;
 };
 
@@ -108,22 +109,22 @@ using LawOf = typename Named<T>::Type;
 /// What impacts need: velocities before the step, and the solution without rebounds; a row each.
 template <class Num>
 struct ImpactRows {
-  Num *before, *u, *l;
+  Row<Num> before, u, l;
 };
 
 /// The numbers that the stages of an island's solve work on.
 template <class Num>
 struct IslandMemory {
-  Num *v, *rhs, *direction, *trial_v;                        ///< 6 an unknown.
-  Num *l, *u, *best, *start, *center, *projected, *du, *u2;  ///< 1 a row.
-  Num *g, *f;                                                ///< rows^2, rows a constraint.
-  Num* blocks;                                               ///< 36 a block.
+  Row<Num> v, rhs, direction, trial_v;                    ///< 6 an unknown.
+  Row<Num> l, u, best, start, center, projected, du, u2;  ///< 1 a row.
+  Row<Num> g, f;                                          ///< rows^2, rows a constraint.
+  Row<Num> blocks;                                        ///< 36 a block.
   ImpactRows<Num> impacts;
 };
 
 template <class Num, class P>
 struct Island {
-  Unknown<Num>* bodies;
+  Row<Unknown<Num>> bodies;
   int body_count;        ///< With those that are prescribed: from pattern.count on.
   BlockPattern pattern;  ///< Of those that are not.
   P pools;

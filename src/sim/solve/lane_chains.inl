@@ -36,7 +36,7 @@ void LaneSolve<W>::GatherChains(Pool<CableChain<L>>& pool) noexcept {
     const CableTable& cable = m_.cables[c];
     if (cable.span_count == 0) continue;
     const RowLink<W>* const from = work_.chain_links + cable.first_link;
-    RowLink<L>* const links = mem_.chain_links + cable.first_link;
+    const Row<RowLink<L>> links = mem_.chain_links.From(cable.first_link);
     CableChain<L>& to = pool.items[pool.count];
     to = ChainOfLane<L>(m_, s_, cable, work_, mem_.spans + cable.first_span, lane_, h_);
     to.links = links;

@@ -94,6 +94,11 @@ class LaneSolve {
   bool IsOn(const StiffCable<W>& cable) const noexcept {
     return !displaces_ && cable.live[lane_] > 0;
   }
+  /// Whether the link is one of this lane's: a cable that touches has links to what it touches in
+  /// any lane, and what a lane gets must not depend on the others.
+  bool IsOn(const StiffCable<W>& cable, int link) const noexcept {
+    return m_.cables[cable.cable].touch < 0 || Acts(cable.links[link], lane_);
+  }
 
   template <class F>
   void EachChain(const F& f) const noexcept;
@@ -112,7 +117,7 @@ class LaneSolve {
       int first = -1;
       for (int k = 0; IsOn(cable) && k < cable.link_count; ++k) {
         const int body = cable.links[k].body;
-        if (!Moves(body)) continue;
+        if (!Moves(body) || !IsOn(cable, k)) continue;
         if (first >= 0) Join(first, body);
         first = body;
       }
@@ -193,10 +198,10 @@ class LaneSolve {
       const StiffCable<W>& cable = work_.stiff[i];
       for (int k = 0; IsOn(cable) && k < cable.link_count; ++k) {
         const int a = cable.links[k].body;
-        if (!Moves(a) || mem_.root[a] != island_root_) continue;
+        if (!Moves(a) || mem_.root[a] != island_root_ || !IsOn(cable, k)) continue;
         for (int j = 0; j < k; ++j) {
           const int b = cable.links[j].body;
-          if (Moves(b)) graph.Join(mem_.local[a], mem_.local[b]);
+          if (Moves(b) && IsOn(cable, j)) graph.Join(mem_.local[a], mem_.local[b]);
         }
       }
     }
@@ -283,7 +288,7 @@ class LaneSolve {
       for (Link<L, 3>& link : to.links) link.body = Number(link.body);
       if (displaces_) Displacing(to, from.deep[0], from.gap[0]);
     }
-    cable_source_ = mem_.source + pool.count;
+    cable_source_ = mem_.source.From(pool.count);
   }
 
   /// The law of a displacement: out, or no further in than to touch.
@@ -296,15 +301,16 @@ class LaneSolve {
       const StiffCable<W>& from = work_.stiff[i];
       if (!IsOn(from)) continue;
       CableRow<L>& to = pool.items[pool.count];
-      to.links = mem_.links + link_count;
+      const Row<Link<L, 1>> links = mem_.links.From(link_count);
+      to.links = links;
       to.link_count = 0;
       bool pulls = false;
       for (int k = 0; k < from.link_count; ++k) {
         const int body = from.links[k].body;
         const bool mine = Moves(body) && mem_.root[body] == island_root_;
-        if (!mine && !m_.HasMotion(body)) continue;
+        if ((!mine && !m_.HasMotion(body)) || !IsOn(from, k)) continue;
         pulls = pulls || mine;
-        GatherLink(from.links[k], to.links[to.link_count++]);
+        GatherLink(from.links[k], links[to.link_count++]);
       }
       if (!pulls) continue;
       link_count += to.link_count;
@@ -312,7 +318,7 @@ class LaneSolve {
       to.TakeLaw(from, [&](W x) { return OfLane<L>(x, lane_); });
       to.FinishMasses();
     }
-    joint_source_ = cable_source_ + pool.count;
+    joint_source_ = cable_source_.From(pool.count);
   }
 
   void GatherJoints(Pool<JointRow<L>>& pool, Pool<TurnFriction<L>>& frictions) noexcept {
@@ -328,9 +334,9 @@ class LaneSolve {
       to.TakeLaw(from, [&](W x) { return OfLane<L>(x, lane_); });
       if (displaces_) to.Hold();
     }
-    friction_source_ = joint_source_ + pool.count;
+    friction_source_ = joint_source_.From(pool.count);
     GatherFrictions(frictions);
-    chain_source_ = friction_source_ + frictions.count;
+    chain_source_ = friction_source_.From(frictions.count);
   }
 
   /// Of ball joints: three rows are one law. A displacement has none.
@@ -405,8 +411,7 @@ class LaneSolve {
   L h_;
   bool displaces_ = false;
   int count_ = 0, island_root_ = 0;
-  int *cable_source_ = nullptr, *joint_source_ = nullptr, *friction_source_ = nullptr;
-  int* chain_source_ = nullptr;
+  Row<int> cable_source_, joint_source_, friction_source_, chain_source_;
 };
 
 }  // namespace taut::sim

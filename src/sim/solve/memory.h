@@ -6,24 +6,11 @@
 #include "sim/constraint/joint_row.h"
 #include "sim/constraint/turn_friction.h"
 #include "sim/contacts.h"
+#include "sim/room.h"
 #include "sim/solve/island.h"
 #include "sim/tables.h"
 
 namespace taut::sim {
-
-/// Memory that is handed out piece by piece, each aligned to 64 bytes. Without memory only the
-/// sizes count: adding to a null pointer would be undefined.
-struct Room {
-  char* memory;
-  size_t used;
-
-  template <class T>
-  T* Take(int64_t count) noexcept {
-    T* const first = memory == nullptr ? nullptr : reinterpret_cast<T*>(memory + used);
-    used += (static_cast<size_t>(count) * sizeof(T) + 63) / 64 * 64;
-    return first;
-  }
-};
 
 /// The kinds of constraints that a step knows.
 template <class Num>
@@ -36,16 +23,16 @@ template <class Num>
 struct LaneMemory {
   static constexpr int64_t kFullBodies = 128;
 
-  Contact<Num, 2>* pairs;      ///< The lane's list of touches, prepared.
-  int *root, *local, *bodies;  ///< Per body: its island; its number there; an island's bodies.
-  int *order, *place;          ///< Of elimination.
-  int* source;                 ///< Per constraint of an island: where it came from.
+  Row<Contact<Num, 2>> pairs;    ///< The lane's list of touches, prepared.
+  Row<int> root, local, bodies;  ///< Per body: its island; its number there; an island's bodies.
+  Row<int> order, place;         ///< Of elimination.
+  Row<int> source;               ///< Per constraint of an island: where it came from.
   BodyGraph graph;
   int block_capacity;
   Island<Num, StepPools<Num>> island;
-  Link<Num, 1>* links;
-  RowLink<Num>* chain_links;  ///< Those of a cable from its first_link on.
-  ChainSpan<Num>* spans;
+  Row<Link<Num, 1>> links;
+  Row<RowLink<Num>> chain_links;  ///< Those of a cable from its first_link on.
+  Row<ChainSpan<Num>> spans;
 
   void Take(const View& m, Room& room) noexcept {
     const int64_t n = m.body_count, contacts = m.slot_count + m.pair_capacity;
@@ -56,11 +43,11 @@ struct LaneMemory {
     const int64_t blocks = n < kFullBodies ? n * n : kFullBodies * n;
     block_capacity = static_cast<int>(blocks);
     pairs = room.Take<Contact<Num, 2>>(m.pair_capacity);
-    int** const per_body[] = {&root, &local, &bodies, &order, &place};
-    for (int** list : per_body) *list = room.Take<int>(n + 1);
+    Row<int>* const per_body[] = {&root, &local, &bodies, &order, &place};
+    for (Row<int>* list : per_body) *list = room.Take<int>(n + 1);
     source = room.Take<int>(contacts + single + m.chain_count);
     graph.bits = room.Take<uint64_t>(n * BodyGraph::WordsFor(m.body_count));
-    links = room.Take<Link<Num, 1>>(m.attachment_count);
+    links = room.Take<Link<Num, 1>>(m.CableLinkCapacity(1));
     chain_links = room.Take<RowLink<Num>>(m.chain_link_count);
     spans = room.Take<ChainSpan<Num>>(m.span_count);
     island.bodies = room.Take<Unknown<Num>>(n);
@@ -83,12 +70,12 @@ struct LaneMemory {
     chains.items = room.Take<CableChain<Num>>(m.chain_count);
     chains.branches = room.Take<typename CableChain<Num>::Branch>(m.chain_count);
     IslandMemory<Num>& x = island.m;
-    Num** const per_dof[] = {&x.v, &x.rhs, &x.direction, &x.trial_v};
-    for (Num** list : per_dof) *list = room.Take<Num>(kDofs * n);
-    Num** const per_row[] = {&x.l,         &x.u,        &x.best,  &x.center, &x.projected,
-                             &x.du,        &x.u2,       &x.start, &x.f,      &x.impacts.before,
-                             &x.impacts.u, &x.impacts.l};
-    for (Num** list : per_row) *list = room.Take<Num>(rows);
+    Row<Num>* const per_dof[] = {&x.v, &x.rhs, &x.direction, &x.trial_v};
+    for (Row<Num>* list : per_dof) *list = room.Take<Num>(kDofs * n);
+    Row<Num>* const per_row[] = {&x.l,         &x.u,        &x.best,  &x.center, &x.projected,
+                                 &x.du,        &x.u2,       &x.start, &x.f,      &x.impacts.before,
+                                 &x.impacts.u, &x.impacts.l};
+    for (Row<Num>* list : per_row) *list = room.Take<Num>(rows);
     x.g = room.Take<Num>(cells);
     x.blocks = room.Take<Num>(36 * blocks);
   }
@@ -97,13 +84,13 @@ struct LaneMemory {
 /// What the system of all that joints hold takes (joint_places.inl).
 template <class W>
 struct JointMemory {
-  Unknown<W>* bodies;
-  JointRow<W>* rows;
-  W *G, *miss;      ///< Per row.
-  W *rhs, *change;  ///< 6 a body; rhs: also of those with motions, which do not change.
-  W* moved;         ///< Per body: how far the last displacement moved any of its points [m],
-  V3<W>* gained;    ///< and the angular momentum that it gained by it.
-  W* blocks;        ///< 36 a block.
+  Row<Unknown<W>> bodies;
+  Row<JointRow<W>> rows;
+  Row<W> G, miss;      ///< Per row.
+  Row<W> rhs, change;  ///< 6 a body; rhs: also of those with motions, which do not change.
+  Row<W> moved;        ///< Per body: how far the last displacement moved any of its points [m],
+  Row<V3<W>> gained;   ///< and the angular momentum that it gained by it.
+  Row<W> blocks;       ///< 36 a block.
 
   void Take(const View& m, Room& room) noexcept {
     const int64_t n = m.joint_body_count;
@@ -132,16 +119,16 @@ struct DualMemory {
   };
   int capacity;         ///< Rows; 0: not solved so.
   int packed_capacity;  ///< Contacts of a world, if they are packed (packed_contacts.inl).
-  Packed* packed;
-  W* a;                  ///< Inverse effective mass, then factors: an upper triangle, row by row.
-  W* c;                  ///< The contacts' system.
-  W *u, *l, *r, *q;      ///< Velocities, impulses; right sides, then changes.
-  W *d, *now;            ///< Changes and impulses of the contacts alone.
-  W *diagonal, *active;  ///< Of the cables' A and S.
+  Row<Packed> packed;
+  Row<W> a;                 ///< Inverse effective mass, then factors: an upper triangle, by rows.
+  Row<W> c;                 ///< The contacts' system.
+  Row<W> u, l, r, q;        ///< Velocities, impulses; right sides, then changes.
+  Row<W> d, now;            ///< Changes and impulses of the contacts alone.
+  Row<W> diagonal, active;  ///< Of the cables' A and S.
   ImpactRows<W> impacts;
-  Twist<W>* v;        ///< Per body.
-  Column* columns;    ///< By body:
-  int* first_column;  ///< where each body's start.
+  Row<Twist<W>> v;        ///< Per body.
+  Row<Column> columns;    ///< By body:
+  Row<int> first_column;  ///< where each body's start.
 
   void Take(const View& m, Room& room) noexcept {
     const int of_bodies = kMaxRowsPerBody * m.body_count;
@@ -157,13 +144,13 @@ struct DualMemory {
     packed = room.Take<Packed>(packed_capacity);
     a = room.Take<W>(capacity * (capacity + 1) / 2);
     c = room.Take<W>(9 * contacts * contacts);
-    W** const per_row[] = {
+    Row<W>* const per_row[] = {
         &u, &l, &r, &q, &d, &now, &diagonal, &active, &impacts.before, &impacts.u, &impacts.l};
-    for (W** list : per_row) *list = room.Take<W>(capacity);
+    for (Row<W>* list : per_row) *list = room.Take<W>(capacity);
     v = room.Take<Twist<W>>(m.body_count);
     first_column = room.Take<int>(m.body_count + 1);
     const int links = m.has_ground ? W::kLanes * packed_capacity : m.slot_count;
-    columns = room.Take<Column>(3 * links + m.attachment_count);
+    columns = room.Take<Column>(3 * links + m.CableLinkCapacity(W::kLanes));
   }
 };
 

@@ -107,6 +107,7 @@ class WorldDual {
       row += 3;
     });
     rows_ = row;
+    TAUT_ASSERT(rows_ <= mem_.capacity);
   }
 
   /// Impulses, and velocities with them.
@@ -177,7 +178,7 @@ class WorldDual {
 
   /// Which rows act on which body.
   void SortColumns() noexcept {
-    int* const next = mem_.first_column;  // shifted by one until the end
+    const sim::Row<int> next = mem_.first_column;  // shifted by one until the end
     for (int b = 0; b <= m_.body_count; ++b) next[b] = 0;
     ForEach([&](auto& law, int) {
       for (int i = 0; i < law.link_count; ++i) {
