@@ -366,7 +366,7 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
   const bool damped = Any(damps);
   CableStep<W> step{W::Splat(step_s),
                     W::Splat(1.0 / step_s),
-                    W::Splat(kSoftSpring / (step_s * step_s)),
+                    SoftLimit(W::Splat(step_s)),
                     s.last_step[0] > zero,
                     Select(damps, W::Splat(0.5 * step_s), zero),
                     W::Splat(1e300)};

@@ -100,7 +100,8 @@ Layout Tables::MakeLayout() const {
   for (const RowInfo& row : kStateRows) {
     l.*row.first = l.rows;
     l.rows += row.width * m.Count(row.per);
-    if (row.role <= Role::kParameter) l.snapshot_rows = l.rows;
+    if (row.role <= Role::kParameter) l.hash_rows = l.rows;
+    if (row.role <= Role::kReading) l.snapshot_rows = l.rows;
   }
   return l;
 }

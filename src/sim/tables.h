@@ -132,7 +132,8 @@ struct Layout {
 #define TAUT_ROW(name, ...) int name = 0;
   TAUT_STATE_ROWS(TAUT_ROW)
 #undef TAUT_ROW
-  int snapshot_rows = 0;  ///< State and parameters, which come first.
+  int hash_rows = 0;      ///< State and parameters, which come first.
+  int snapshot_rows = 0;  ///< Those and the readings, which follow.
   int rows = 0;
 };
 
