@@ -203,6 +203,11 @@ void Batch::Impl::JudgeStiffness(int world) noexcept {
 void Batch::Impl::Moved(int world) noexcept {
   for (int i = 0; i < view.body_pair_count; ++i) at(world, layout.clearance + i) = 0.0;
   for (int i = 0; i < view.touch_count; ++i) at(world, layout.touch_free + i) = 0.0;
+  ForgetMeans(world);
+}
+
+void Batch::Impl::ForgetMeans(int world) noexcept {
+  at(world, layout.mean_step) = 0.0;
   group(world).sensed = false;
 }
 
@@ -355,6 +360,9 @@ void Batch::SetParameter(int world, Parameter parameter, int index, double value
     return;
   }
   d.at(world, row) = value;
+  const bool of_cable =
+      parameter == Parameter::kCableStiffness || parameter == Parameter::kCableDamping;
+  if (of_cable) d.ForgetMeans(world);
   d.group(world).sensed = false;
   d.JudgeStiffness(world);
 }

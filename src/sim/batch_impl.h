@@ -176,6 +176,8 @@ struct Batch::Impl {
   void JudgeStiffness(int world) noexcept;
   /// Bodies moved by hand: what was known about distances is void.
   void Moved(int world) noexcept;
+  /// Cables changed by hand: means of the last step say nothing of them.
+  void ForgetMeans(int world) noexcept;
   /// Nobody knows any more how the cables lie that touch what they come to: straight.
   void ForgetBends(int world) noexcept;
   /// Bodies with motions to where they are at the world's time.

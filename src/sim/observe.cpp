@@ -235,6 +235,7 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
     key_at += sizeof(double) * (MemoryWidth() - 1);
     if (!(key >= 0 && key < KeyEnd(*d.model))) return false;
   }
+  d.Moved(world);
   for (int row = 0; row < d.layout.snapshot_rows; ++row) d.at(world, row) = Read<double>(at);
   for (int node = 0; node < d.view.node_count; ++node) {
     const Vec3 f = d.vec(world, d.layout.node_force + 3 * node);
@@ -281,12 +282,11 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
   }
   TAUT_STATE_ROWS(TAUT_ROW)
 #undef TAUT_ROW
-  d.Moved(world);
   return true;
 }
 
 std::uint64_t Batch::Hash(int world) const noexcept {
-  // FNV-1a over what a snapshot holds, without building one.
+  // FNV-1a over what a snapshot holds, readings apart, without building one.
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   std::uint64_t hash = 0xcbf29ce484222325u;
@@ -295,7 +295,7 @@ std::uint64_t Batch::Hash(int world) const noexcept {
     std::memcpy(&bits, &x, sizeof(bits));
     for (int i = 0; i < 8; ++i) hash = (hash ^ ((bits >> (8 * i)) & 0xff)) * 0x100000001b3u;
   };
-  for (int row = 0; row < d.layout.snapshot_rows; ++row) add(d.at(world, row));
+  for (int row = 0; row < d.layout.hash_rows; ++row) add(d.at(world, row));
   d.ForEachContact(world, [&](int i) { d.EachMemory(world, i, add); });
   return hash;
 }

@@ -143,7 +143,7 @@ struct Scratch {
       0;               ///< A bit for each lane in which a cable touches more than it has room for.
   V3<W>* start_spots;  ///< Spots at the start of the step [m], if start_known.
   W* start;  ///< Rows that go back to the start of the step in worlds that turn non-finite.
-  CableWork<W>* cables;
+  CableWork<W>* cables;  ///< In the order of View::cable_order.
   StiffCable<W>* stiff;
   Row<Link<W, 1>> links;    ///< Of all cables.
   ChainSpan<W>* spans;      ///< Of all cables with friction.

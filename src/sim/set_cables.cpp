@@ -42,7 +42,7 @@ void Batch::SetRestLength(int world, int cable, double rest_length_m) noexcept {
   d.at(world, d.layout.target + cable) = rest_length_m;
   d.at(world, d.layout.rest_rate + cable) = 0.0;
   d.StopMotor(world, cable);
-  d.group(world).sensed = false;
+  d.ForgetMeans(world);
 }
 
 }  // namespace taut

@@ -2,8 +2,8 @@
 
 namespace taut::sim {
 
-/// One cable of the stage below; `ends` is room for its attachments: known to be two, they stay in
-/// registers.
+/// One cable of the stage below, at the end of the step; `ends` is room for its attachments: known
+/// to be two, they stay in registers.
 template <bool kTwo, class W>
 TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
                             int attachment_count, AttachmentWork<W>* ends) noexcept {
@@ -16,8 +16,25 @@ TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, Scratch<W>& work, i
   s.sense_elastic[c] = f.elastic;
 }
 
-/// Stage: what sensors see of the cables at the end of a step.
-///   reads   pos, bodies[] (of the current state)     writes  sense_*
+/// Forces of stiff cables are means over the last step, as the solver found them
+/// (docs/theory/cables.md, eq. 8). Those at its end may swing from step to step between zero and
+/// twice the mean: the implicit midpoint rule keeps the energy of vibrations that are shorter than
+/// the step, and only their mean acts on bodies.
+template <class W>
+[[gnu::noinline]] void SenseMeans(const View& m, const Rows<W>& s) noexcept {
+  const auto known = (s.mean_step[0] > W::Splat(0.0)) & (s.mean_step[0] == s.last_step[0]);
+  if (!Any(known)) return;
+  const W limit = SoftLimit(Select(known, s.mean_step[0], W::Splat(1.0)));
+  for (int c = 0; c < m.cable_count; ++c) {
+    if (m.cables[c].span_count > 0) continue;
+    const auto mean = known & (s.stiff_k[c] > limit);
+    s.sense_tension[c] = Select(mean, s.tension[c], s.sense_tension[c]);
+    s.sense_elastic[c] = Select(mean, s.mean_elastic[c], s.sense_elastic[c]);
+  }
+}
+
+/// Stage: what sensors see of the cables: lengths and rates at the end of the step, and forces.
+///   reads   pos, bodies[] (of the current state), tension, mean_*     writes  sense_*
 template <class W>
 void StageSense(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   for (int c = 0; c < m.cable_count; ++c) {
@@ -30,6 +47,7 @@ void StageSense(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
       if (m.cables[c].span_count > 0) SenseChain(m, s, work, c);
     }
   }
+  SenseMeans(m, s);
 }
 
 }  // namespace taut::sim

@@ -30,6 +30,7 @@ enum class Per {
 enum class Role {
   kState,      ///< With commands: advances; in snapshots and hashes.
   kParameter,  ///< Does not change by itself; in snapshots and hashes.
+  kReading,    ///< Of the last step, for readers only: no step uses it. In snapshots.
   kMemory,     ///< Of the contacts of the last step; snapshots and hashes have those with a key.
   kDerived,    ///< Follows from the rest or only reports; in no snapshot.
   kSensed,     ///< Derived, and only when somebody asks for it (Group::sensed).
@@ -120,6 +121,8 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(friction_scale, Number, kWorld,    kParameter, kStays,    One)              /* [1] */ \
   ROW(gravity,        V3,     kWorld,    kParameter, kStays,    Gravity)          /* [m/s^2] */ \
   ROW(halted,         Number, kWorld,    kParameter, kStays,    Zero)             /* 1 if it stands still */ \
+  ROW(mean_step,      Number, kWorld,    kReading,   kZero,     Zero)             /* step of which stiff cables show the means [s]; 0: of none */ \
+  ROW(mean_elastic,   Number, kCable,    kReading,   kZero,     Zero)             /* of a stiff cable's spring over that step [N] */ \
   ROW(contact_key,    Number, kContact,  kMemory,    kForgets,  NoKey)            /* pair and feature; -1: none */ \
   ROW(contact_force,  V3,     kContact,  kMemory,    kStays,    Zero)             /* in W [N] */ \
   ROW(contact_slip,   Number, kContact,  kMemory,    kStays,    SlipUnknown)      /* 1 slid, 0 stuck */ \

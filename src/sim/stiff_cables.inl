@@ -12,6 +12,12 @@ namespace taut::sim {
 /// explicit scheme is stable below 4).
 inline constexpr double kSoftSpring = 0.1;
 
+/// The stiffest K of an explicit spring at this step [1/s^2].
+template <class W>
+TAUT_INLINE W SoftLimit(W h) noexcept {
+  return W::Splat(kSoftSpring) / (h * h);
+}
+
 /// Where cables are attached, at the start of the step: from the places that SaveStart has kept.
 template <class W>
 void MeasureStart(const View& m, Scratch<W>& work) noexcept {
@@ -100,16 +106,23 @@ W ShareOfStableTension(const Rows<W>& s, const StiffCable<W>& row) noexcept {
   return Select(row.live > W::Splat(0.0), s.tension[row.cable] * row.across, W::Splat(0.0));
 }
 
-/// Tensions and angular momenta of what the solver found.
+/// Tensions and angular momenta of what the solver found, and what of the tensions is the springs'.
 template <class W>
 void FinishStiffCables(const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
-  const W inv_h = W::Splat(1.0 / step_s);
+  const W zero = W::Splat(0.0), inv_h = W::Splat(1.0 / step_s);
   for (int i = 0; i < work.stiff_count; ++i) {
     const StiffCable<W>& row = work.stiff[i];
-    s.tension[row.cable] = Select(row.live > W::Splat(0.0), inv_h * row.l[0], s.tension[row.cable]);
+    const auto live = row.live > zero;
+    W u = zero;
     for (int k = 0; k < row.link_count; ++k) {
+      const BodyWork<W>& body = work.bodies[row.links[k].body];
+      AddVelocity(row.links[k], body.v, body.w, &u);
       s.mom[row.links[k].body] += row.l[0] * row.links[k].ang[0];
     }
+    const W elastic = inv_h * row.SpringImpulse(row.end - u);
+    s.tension[row.cable] = Select(live, inv_h * row.l[0], s.tension[row.cable]);
+    s.mean_elastic[row.cable] = Select(live, elastic, s.mean_elastic[row.cable]);
+    s.mean_step[0] = Select(live, W::Splat(step_s), s.mean_step[0]);
   }
 }
 

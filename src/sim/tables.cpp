@@ -15,6 +15,7 @@ View Tables::View() const noexcept {
           static_cast<int>(body_pairs.size()),
           bound_m.data(),
           cables.data(),
+          cable_order.data(),
           attachments.data(),
           spots.data(),
           nodes.data(),
@@ -100,7 +101,8 @@ Layout Tables::MakeLayout() const {
   for (const RowInfo& row : kStateRows) {
     l.*row.first = l.rows;
     l.rows += row.width * m.Count(row.per);
-    if (row.role <= Role::kParameter) l.snapshot_rows = l.rows;
+    if (row.role <= Role::kParameter) l.hash_rows = l.rows;
+    if (row.role <= Role::kReading) l.snapshot_rows = l.rows;
   }
   return l;
 }
