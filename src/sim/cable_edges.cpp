@@ -120,7 +120,7 @@ Vec3 Unit(const Vec3& a) noexcept { return (1.0 / Larger(Norm(a), 1e-300)) * a; 
 
 /// Of a surface, which edge and how deep the span is below it.
 void OfferEdge(const SurfaceEdge& edge, double key, double reach_m, Search& search) noexcept {
-  if (edge.sides != 2 || search.IsTaken(key)) return;
+  if (edge.sides != 2 || edge.border || search.IsTaken(key)) return;
   const Vec3 along = edge.to - edge.from;
   const double length_m = Norm(along);
   const Vec3 axis = Unit(along), center = 0.5 * (edge.from + edge.to);

@@ -38,6 +38,29 @@ Vec3 PlaceOf(const TouchPoint& t) noexcept {
   return Load(t.point) - (0.5 * t.gap_m) * Load(t.normal);
 }
 
+/// Beside other ground a normal may lead from a place of a box into it by so much of a sine: edges
+/// that cross have no exact one.
+constexpr double kIntoGround = 1e-2, kIntoGroundOfRod = 1e-7;
+
+/// Whether other ground covers a place of a box, and the box does not come out of it nearby.
+bool IsUnderGround(const ShapeTable& own, const SeamContact& contact, double same_m) noexcept {
+  const SeamSlack slack{0.0, kIntoGround};
+  if (!IsCovered(own.seams, contact.place, contact.normal, slack, same_m)) return false;
+  const BoxShape& box = own.shape_P.box;
+  const Vec3 d = contact.place - Load(box.center);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 a = AxisOf(box, axis);
+    const double at = Dot(d, a);
+    const Vec3 up = contact.place + (box.half_m[axis] - at) * a;
+    const Vec3 down = contact.place - (box.half_m[axis] + at) * a;
+    if (IsExposed(own.seams, up, contact, slack, same_m) ||
+        IsExposed(own.seams, down, contact, slack, same_m)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// A point of a rod's centre line.
 struct Station {
   Vec3 center;
@@ -114,14 +137,22 @@ void MarkRound(const RoundShape& round, const ShapeTable* shapes, JoinedPoint* p
     const Vec3 place = PlaceOf(p.touch), normal = Load(p.touch.normal);
     bool shared = false;
     p.kept = !IsHidden(shapes, p.box, place, station, r, &shared);
+    const SeamList& seams = shapes[p.box].seams;
+    if (p.kept && seams.count > 0 && IsOnSeam(seams, place)) {
+      shared = true;
+      p.kept = !IsCovered(seams, place, normal, {0.0, kIntoGroundOfRod});
+    }
     if (!p.kept || !shared || station.is_end) continue;
     Vec3 up = normal;
     if (!FaceAlong(shapes[p.box].shape_P.box, normal, &up)) up = normal;
     const Vec3 across = along - Dot(along, up) * up;
     if (!(Dot(across, across) > kNearer * Dot(along, along))) continue;
-    const Vec3 way = (kStraightOn * r / Norm(across)) * across;
-    p.kept =
-        !GoesOn(shapes, p.box, place, up, way) || !GoesOn(shapes, p.box, place, up, -1.0 * way);
+    const Vec3 way = (1.0 / Norm(across)) * across;
+    const auto goes_on = [&](double side) noexcept {
+      return GoesOn(shapes, p.box, place, up, side * kStraightOn * r * way) ||
+             GoesStraightOn(nullptr, seams, place, side * way, false);
+    };
+    p.kept = !goes_on(1.0) || !goes_on(-1.0);
   }
 }
 
@@ -164,6 +195,8 @@ void MarkFlat(const Convex& body, double size_m, const ShapeTable* shapes, Joine
       shared = true;
       p.kept = !IsIn(other, place + step_m * normal, -same_m);
     }
+    p.kept = p.kept && !(own.seams.count > 0 && IsUnderGround(own, {place, normal, &body.center},
+                                                              same_m + Larger(p.touch.gap_m, 0.0)));
     if (!shared) continue;
     const bool is_corner = IsCorner(body, place + p.touch.gap_m * normal, same_m);
     const Vec3 d = place - Load(own.shape_P.box.center);
@@ -212,6 +245,7 @@ uint32_t ArrivesBeside(const MovingShape& a, const ShapeTable* shapes, int box, 
     for (int k = 0; k < own.beside_count; ++k) {
       if (IsIn(shapes[own.beside[k]].shape_P.box, there)) beside |= 1u << i;
     }
+    if (own.seams.count > 0 && IsOnSeam(own.seams, there)) beside |= 1u << i;
   }
   return beside;
 }

@@ -27,7 +27,7 @@ class NearPairs {
   void Flush() noexcept {
     bool joined = false;
     for (int i = 0; i < pair_count_; ++i) {
-      joined = joined || m_.shapes[pairs_[i]->b].beside_count > 0;
+      joined = joined || m_.shapes[pairs_[i]->b].IsJoined();
     }
     if (!joined) {
       for (int i = 0; i < pair_count_; ++i) {
@@ -46,7 +46,7 @@ class NearPairs {
     int count = 0;
     for (int i = 0; i < pair_count_; ++i) {
       const int box = pairs_[i]->b;
-      if (m_.shapes[box].beside_count == 0) continue;
+      if (!m_.shapes[box].IsJoined()) continue;
       const int here = TouchLane(m_, s_, work_, *pairs_[i], lane_, margin_, found);
       for (int k = 0; k < here; ++k) points[count++] = {found[k], box, true};
     }
@@ -56,7 +56,7 @@ class NearPairs {
     int next = 0;
     for (int i = 0; i < pair_count_; ++i) {
       const int box = pairs_[i]->b;
-      if (m_.shapes[box].beside_count == 0) {
+      if (!m_.shapes[box].IsJoined()) {
         PutTouches(m_, s_, g_, work_, *pairs_[i], lane_, margin_, step_s_, slots_, overflow_);
         continue;
       }

@@ -43,6 +43,7 @@ class Compiler {
     sim::LayOutPairs(t_, shapes_of_, ground_);
     sim::LayOutTree(t_), sim::LayOutTouchRods(t_), sim::LayOutChainLinks(t_);
     sim::JoinBoxes(t_);
+    sim::JoinPieces(t_);
     sim::LayOutMotors(t_);
     sim::LayOutFriction(t_), sim::LayOutFloor(t_);
     sim::CoupleCables(t_);

@@ -93,9 +93,9 @@ class ConvexSearch {
     return ReachOfLine(s_, center_ + low * along, center_ + high * along, Sqrt(aside2) + more_m);
   }
   /// Away from ground; of a sheet to where the box is.
-  Vec3 NormalOf(const SurfaceTriangle& t) const noexcept {
+  Vec3 NormalOf(const SurfaceTable& s, const SurfaceTriangle& t) const noexcept {
     const Vec3 n = Cross(t.p[1] - t.p[0], t.p[2] - t.p[0]);
-    const bool turned = !s_.solid && Dot(n, center_ - t.p[0]) < 0.0;
+    const bool turned = !s.solid && Dot(n, center_ - t.p[0]) < 0.0;
     return ((turned ? -1.0 : 1.0) / Norm(n)) * n;
   }
 
@@ -126,7 +126,8 @@ class ConvexSearch {
     const Vec3 p = body_.corners[corner];
     SurfacePlace places[kPlacesOfCorner];
     const double look_m = s_.solid ? limit_m_ : Larger(limit_m_, kDeepestSheet * thinnest_m_);
-    const int found = NearestPlaces(s_, p, look_m, places, kPlacesOfCorner);
+    const int found =
+        NearestPlaces(s_, p, look_m, places, kPlacesOfCorner, nullptr, false, &center_);
     // The first of them with its place.
     Plane planes[kPlanesOfCorner];
     Vec3 base;
@@ -165,19 +166,28 @@ class ConvexSearch {
     const double at_base_m = (1.0 + kLevel) * Larger(-first.gap_m, 0.0) + kSameGapM;
     const Vec3 reach{beside_m, beside_m, beside_m};
     int sides = 0;
-    EachTriangle(s_, p - reach, p + reach, [&](const SurfaceTriangle& t) noexcept {
-      const Vec3 normal = NormalOf(t);
+    const auto look = [&](const SurfaceTable& s, const SurfaceTriangle& t) noexcept {
+      const Vec3 normal = NormalOf(s, t);
       const double gap_m = Dot(normal, p - t.p[0]);
       if (!(gap_m < limit_m_) || !(Dot(normal, center_ - t.p[0]) > 0.0)) return;
       // A right angle at most, as that of the corner.
       if (!(Dot(first.normal, normal) > -kLevel)) return;
-      const Vec3 middle = (1.0 / 3.0) * (t.p[0] + t.p[1] + t.p[2]) - base;
       const Vec3 down = base - t.p[0];
-      if (!(Dot(first.normal, middle) > kLevel * Norm(middle))) return;
+      if (&s == &s_) {
+        const Vec3 middle = (1.0 / 3.0) * (t.p[0] + t.p[1] + t.p[2]) - base;
+        if (!(Dot(first.normal, middle) > kLevel * Norm(middle))) return;
+      } else {  // it may go on below, where this one covers it
+        double most_m = -1.0;
+        for (const Vec3& corner : t.p) {
+          const Vec3 way = corner - base;
+          most_m = Larger(most_m, Dot(first.normal, way) - kLevel * Norm(way));
+        }
+        if (!(most_m > s_.seams.same_m)) return;
+      }
       if (!(Dot(normal, down) >= -kLevel * Norm(down) - kSameGapM)) return;
       const double apart_m = Norm(p - NearestPlaceOf(t, p));
       if (apart_m > beside_m) return;
-      if (first.gap_m < 0.0 && apart_m <= at_base_m) ++sides;
+      if (&s == &s_ && first.gap_m < 0.0 && apart_m <= at_base_m) ++sides;
       for (int i = 0; i < count; ++i) {
         if (Dot(planes[i].normal, normal) > kSamePlane) return;
       }
@@ -186,7 +196,14 @@ class ConvexSearch {
       } else if (gap_m < planes[count - 1].gap_m) {
         planes[count - 1] = {normal, gap_m};
       }
-    });
+    };
+    const auto look_at = [&](const SurfaceTable& s) noexcept {
+      EachTriangle(s, p - reach, p + reach, [&](const SurfaceTriangle& t) noexcept { look(s, t); });
+    };
+    look_at(s_);
+    for (int i = 0; i < s_.seams.count; ++i) {
+      if (s_.seams.pieces[i].kind == SeamPiece::kSurface) look_at(*s_.seams.pieces[i].surface);
+    }
     if (sides < 2) return count;
     for (int i = 1; i < count; ++i) planes[i - 1] = planes[i];
     return count - 1;
@@ -218,9 +235,26 @@ class ConvexSearch {
       if (!IsLowest(own, normal)) continue;
       if (edge.sides == 0) edge = edge_of();
       if (!LeadsOut(edge, normal, length2)) continue;
+      if (s_.seams.count > 0 && !IsEdgeOpen(edge, start + on_ground * along, normal)) continue;
       touches_.Add(from + on_own * side, normal, gap_m,
                    kFirstEdge + i + static_cast<int>(on_own > 0.5));
     }
+  }
+  /// The same of all pieces that meet at a place of the edge. It does not stick out where one of
+  /// them goes straight on from one of its sides.
+  bool IsEdgeOpen(const SurfaceEdge& edge, const Vec3& at, const Vec3& normal) const noexcept {
+    if (!IsOnSeam(s_.seams, at)) return true;
+    if (IsEdgeCovered(s_.seams, edge.from, edge.to, {at, normal, &center_}, {limit_m_, kLevel}))
+      return false;
+    const Vec3 along = edge.to - edge.from;
+    for (int k = 0; k < edge.sides; ++k) {
+      const Vec3 in = edge.apex[k] - edge.from;
+      const Vec3 inward = in - (Dot(in, along) / Dot(along, along)) * along;
+      if (GoesStraightOn(nullptr, s_.seams, at, (-1.0 / Norm(inward)) * inward, false)) {
+        return false;
+      }
+    }
+    return true;
   }
   /// Whether the faces beside an edge of the body rise from it.
   bool IsLowest(const HullEdge& own, const Vec3& normal) const noexcept {
@@ -259,7 +293,9 @@ class ConvexSearch {
         const Vec3 way = other - p;
         out = out && Dot(normal, way) <= limit_m_ + kLevel * Norm(way);
       });
-      return out;
+      if (!out || s_.seams.count == 0 || !IsOnSeam(s_.seams, p)) return out;
+      return !IsCovered(s_.seams, p, normal, {limit_m_, kLevel}) &&
+             !IsFlatAround(s_, s_.seams, p, normal);
     };
     const NearestOfConvex nearest = NearestTo(body_, p);
     if (nearest.distance_m > kSameGapM) {
@@ -300,7 +336,7 @@ double DistanceToGround(const Convex& body, double size_m, const SurfaceTable& s
   double look_m = Smaller(enough_m, kNearestLook * most_m);
   TouchPoint points[kMaxPointsPerPair];
   TouchList list(points, look_m);
-  ConvexSearch search(body, s, look_m);
+  ConvexSearch search(body, Alone(s), look_m);
   search.Run(list);
   if (list.count() > 0) {
     return Larger((1.0 - kSameGap) * list.least_gap_m() - kSameGapM, 0.0);

@@ -118,8 +118,9 @@ double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m)
   return DistanceToGround(a, b, enough_m, nullptr);
 }
 
-double DistanceToGround(const RoundShape& a, const SurfaceShape& b, double enough_m,
+double DistanceToGround(const RoundShape& a, const SurfaceShape& surface, double enough_m,
                         NearParts* kept) noexcept {
+  const SurfaceShape b{&Alone(*surface.table)};
   const Vec3 from = Load(a.from), to = Load(a.to);
   const double most_m = kFarthestLook * (Norm(to - from) + a.radius_m);
   double look_m = Smaller(enough_m, kNearestLook * most_m);

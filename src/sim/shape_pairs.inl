@@ -70,7 +70,7 @@ MovingShape LaneMoving(const View& m, const Rows<W>& s, const Scratch<W>& work, 
           {v.x[lane], v.y[lane], v.z[lane]},
           {w.x[lane], w.y[lane], w.z[lane]},
           m.bound_m[body],
-          table.shape_P.kind == ShapeKind::kSurface || table.beside_count > 0};
+          table.shape_P.kind == ShapeKind::kSurface || table.IsJoined()};
 }
 
 /// Features of a pair that pressed in the step before, a bit each. `first`, `count`: where the
@@ -99,7 +99,7 @@ int KeepTouching(const View& m, const Rows<W>& s, const Scratch<W>& work,
   a.kept = kept;
   uint32_t closing = ClosingPoints(a, b, step_s, points, count);
   if (closing == 0) return count;
-  if (m.shapes[pair.b].beside_count > 0) {
+  if (m.shapes[pair.b].IsJoined()) {
     closing &= ~ArrivesBeside(a, m.shapes, pair.b, closing, points, count);
     if (closing == 0) return count;
   }

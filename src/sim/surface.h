@@ -5,6 +5,7 @@
 #pragma once
 
 #include "math/vec.h"
+#include "sim/seams.h"
 
 namespace taut::sim {
 
@@ -55,7 +56,16 @@ struct SurfaceTable {
   const MeshEdge* edges = nullptr;
   const MeshCorner* sharp_corners = nullptr;
   const int* beside = nullptr;  ///< Corners beside those.
+
+  SeamList seams;                       ///< Other pieces of terrain that are near.
+  const SurfaceTable* alone = nullptr;  ///< The same without them; null if there are none.
 };
+
+/// A surface without the pieces beside it. Distances are those of it: what they cover counts as
+/// near, so that nothing is missed where it comes out.
+inline const SurfaceTable& Alone(const SurfaceTable& s) noexcept {
+  return s.alone == nullptr ? s : *s.alone;
+}
 
 /// A triangle of a surface.
 struct SurfaceTriangle {

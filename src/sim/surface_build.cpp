@@ -135,4 +135,10 @@ Surface::Surface(const TerrainMeshDef& mesh) : corners_(mesh.corners_m) {
   FindSharp();
 }
 
+void Surface::Join(const SeamList& seams) {
+  alone_ = std::make_unique<SurfaceTable>(*table_);
+  table_->seams = seams;
+  table_->alone = alone_.get();
+}
+
 }  // namespace taut::sim

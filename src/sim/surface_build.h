@@ -17,12 +17,16 @@ class Surface {
   /// Stays where it is, if the surface is moved, too.
   const SurfaceTable& table() const { return *table_; }
 
+  /// Other pieces near it, which are to stay where they are.
+  void Join(const SeamList& seams);
+
  private:
   // What sticks out (surface_sharp.cpp).
   void MarkField();
   void FindSharp();
 
   std::unique_ptr<SurfaceTable> table_ = std::make_unique<SurfaceTable>();
+  std::unique_ptr<SurfaceTable> alone_;
   std::vector<double> height_m_;
   std::vector<unsigned char> marks_;
   std::vector<std::vector<double>> tops_;

@@ -11,6 +11,8 @@ namespace {
 constexpr double kShortStretch = 1e-6;
 /// Nor has one along which the rod is parallel to it, as the square of a sine.
 constexpr double kParallel = 1e-24;
+/// A piece that rises from a place of another by more than this sine is nearer.
+constexpr double kCovers = 1e-7;
 
 /// A line between edges and corners, and what it found.
 class LineSearch {
@@ -52,7 +54,9 @@ class LineSearch {
     };
     if (outside.high - outside.low > short_) {
       const double share = Clamp(crossing, outside.low, outside.high);
-      Take(piece, share, at_edge(share), false);
+      const Vec3 at = at_edge(share);
+      if (s_.seams.count > 0 && !IsOpen(start, end, share, at, false)) return;
+      Take(piece, share, at, false);
       return;
     }
     // Under a ridge: the line has gone through it, and leaves across it.
@@ -66,7 +70,9 @@ class LineSearch {
       return Dot(n, under) < 0.0;
     };
     if (inside(0, 1) && inside(1, 0) && IsUnder(under + e.from)) {
-      Take(piece, crossing, at_edge(crossing), true);
+      const Vec3 at = at_edge(crossing);
+      if (s_.seams.count > 0 && !IsOpen(start, end, crossing, at, true)) return;
+      Take(piece, crossing, at, true);
     }
   }
 
@@ -81,12 +87,31 @@ class LineSearch {
       outside.CutAbove(Dot(a, other - p), Dot(along_, other - p));
     });
     if (outside.high - outside.low > short_) {
-      Take(piece, Clamp(nearest, outside.low, outside.high), p, false);
+      const double share = Clamp(nearest, outside.low, outside.high);
+      if (s_.seams.count > 0 && !IsOpen(p, p, share, p, false)) return;
+      Take(piece, share, p, false);
     }
   }
   int count() const noexcept { return count_; }
 
  private:
+  /// Whether a place on an edge, or a corner, is one of all pieces that meet there: none of them is
+  /// nearer to the line, and they do not go straight on to both sides along it, where its ends hold
+  /// it.
+  bool IsOpen(const Vec3& start, const Vec3& end, double share, const Vec3& at,
+              bool inside) const noexcept {
+    const Vec3 away = from_ + share * along_ - at;
+    const double distance = Norm(away);
+    if (!(distance <= limit_m_ && distance > 0.0) || !IsOnSeam(s_.seams, at)) return true;
+    const Vec3 normal = ((inside ? -1.0 : 1.0) / distance) * away;
+    if (IsEdgeCovered(s_.seams, start, end, {at, normal, nullptr}, {0.0, kCovers})) return false;
+    const Vec3 across = along_ - Dot(along_, normal) * normal;
+    const double length = Norm(across);
+    if (!(length * length > kParallel * along2_)) return true;
+    const Vec3 way = (1.0 / length) * across;
+    return !GoesStraightOn(&s_, s_.seams, at, way, true) ||
+           !GoesStraightOn(&s_, s_.seams, at, -1.0 * way, true);
+  }
   /// Of a field it can be told; of a mesh both triangles have said so.
   bool IsUnder(const Vec3& p) const noexcept { return !s_.is_field || DepthBelow(s_, p) > 0.0; }
 

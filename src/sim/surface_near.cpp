@@ -20,6 +20,11 @@ constexpr double kSamePlace = 4e-6;
 /// is.
 constexpr double kAbovePlane = 1e-7;
 constexpr int kMaxPlaces = 16;
+/// What is in a field at its border leaves it through the wall if that is nearer than the surface
+/// by so much: what is over the border by a bit of rounding stays on the surface.
+constexpr double kWallNearer = 0.9, kWallNearerM = 1e-6;
+/// Distances are compared as they are.
+constexpr SeamSlack kExactly{0.0, kAbovePlane};
 
 /// The place of a triangle that is nearest to a point. Source: C. Ericson, Real-Time Collision
 /// Detection (Morgan Kaufmann 2005), section 5.1.5.
@@ -63,13 +68,19 @@ struct NearestOfAll {
   SurfaceTriangle triangle;
   Vec3 at;
 
-  NearestOfAll(const SurfaceTable& s, const Vec3& p, double limit) noexcept
+  /// `seams`: pieces that cover what does not count as a way out; or null.
+  NearestOfAll(const SurfaceTable& s, const Vec3& p, double limit, const SeamList* seams,
+               const Vec3* middle) noexcept
       : limit_m(limit), distance_m(limit) {
     const Vec3 reach{limit_m, limit_m, limit_m};
     EachTriangle(s, p - reach, p + reach, [&](const SurfaceTriangle& t) noexcept {
       const Vec3 place = NearestOf(t, p);
       const double distance = Norm(p - place);
       if (!(distance <= limit_m) || (found && !(distance < distance_m))) return;
+      if (seams != nullptr) {
+        const Vec3 out = distance <= kCoincidentM ? NormalOf(t) : (1.0 / distance) * (place - p);
+        if (IsFaceCovered(*seams, t, {place, out, middle}, kExactly)) return;
+      }
       found = true;
       triangle = t, at = place, distance_m = distance;
     });
@@ -109,15 +120,24 @@ SurfacePlace PlaceOf(const NearestOfAll& near, const Vec3& p, bool inside) noexc
 /// Local minima of the distance of a point, and those found so far, the nearest first.
 class PlaceSearch {
  public:
-  PlaceSearch(const Vec3& point, double limit_m, SurfacePlace* out, int most) noexcept
-      : point_(point), limit_m_(limit_m), out_(out), most_(most) {}
+  PlaceSearch(const SurfaceTable& s, const Vec3* middle, const Vec3& point, double limit_m,
+              SurfacePlace* out, int most) noexcept
+      : seams_(s.seams),
+        solid_(s.solid),
+        middle_(middle),
+        point_(point),
+        limit_m_(limit_m),
+        out_(out),
+        most_(most) {}
 
   /// A place within a triangle.
   void Face(const SurfaceTriangle& t) noexcept {
     const Vec3 n = Cross(t.p[1] - t.p[0], t.p[2] - t.p[0]);
     const double n2 = Dot(n, n), at = Dot(n, point_ - t.p[0]);
     if (at * at > limit_m_ * limit_m_ * n2) return;
-    const double slack2 = kAbovePlane * kAbovePlane * (at * at) + kCoincidentM * kCoincidentM * n2;
+    // Where pieces meet there may be a gap.
+    const double beside_m = seams_.count > 0 ? seams_.same_m : kCoincidentM;
+    const double slack2 = kAbovePlane * kAbovePlane * (at * at) + beside_m * beside_m * n2;
     for (int k = 0; k < 3; ++k) {
       const Vec3 edge = t.p[k == 2 ? 0 : k + 1] - t.p[k];
       const double within = Dot(Cross(n, edge), point_ - t.p[k]);
@@ -126,7 +146,13 @@ class PlaceSearch {
     }
     // From the plane, not from a corner: the direction is then as good as the normal.
     const double length = Sqrt(n2), height = at / length;
-    Add({point_ - (at / n2) * n, (height < 0.0 ? -1.0 / length : 1.0 / length) * n, Abs(height)});
+    // What is solid is between its faces and what is behind them.
+    if (solid_ && height < -kCoincidentM) return;
+    const SurfacePlace place{point_ - (at / n2) * n,
+                             (height < 0.0 ? -1.0 / length : 1.0 / length) * n, Abs(height)};
+    if (seams_.count > 0 && IsFaceCovered(seams_, t, {place.at, place.normal, middle_}, kExactly))
+      return;
+    Add(place);
   }
   /// One on an edge that sticks out.
   template <class EdgeOf>
@@ -144,6 +170,11 @@ class PlaceSearch {
     for (int k = 0; k < e.sides; ++k) {
       if (Dot(away, e.apex[k] - e.from) > 0.0) return;
     }
+    if (seams_.count > 0 && !(away2 <= kCoincidentM * kCoincidentM) &&
+        IsEdgeCovered(seams_, start, end, {point_ - away, (1.0 / Sqrt(away2)) * away, middle_},
+                      kExactly)) {
+      return;
+    }
     AddAway(point_ - away, away);
   }
   /// A corner that sticks out.
@@ -154,7 +185,13 @@ class PlaceSearch {
     bool outside = true;
     each_beside(
         [&](const Vec3& other) noexcept { outside = outside && Dot(away, other - p) <= 0.0; });
-    if (outside) AddAway(p, away);
+    if (!outside) return;
+    const double away2 = Dot(away, away);
+    if (seams_.count > 0 && !(away2 <= kCoincidentM * kCoincidentM) &&
+        IsCovered(seams_, p, (1.0 / Sqrt(away2)) * away, kExactly)) {
+      return;
+    }
+    AddAway(p, away);
   }
   /// Of what is found twice the first counts: a face's direction is exact.
   void Add(const SurfacePlace& place) noexcept {
@@ -179,12 +216,85 @@ class PlaceSearch {
     const double distance = Norm(away);
     if (distance > kCoincidentM) Add({at, (1.0 / distance) * away, distance});
   }
+  const SeamList& seams_;
+  bool solid_;
+  const Vec3* middle_;
   Vec3 point_;
   double limit_m_;
   SurfacePlace* out_;
   int most_, count_ = 0, kept_count_ = 0;
   Vec3 kept_[kMaxPlaces];
 };
+
+/// A field ends in walls that go straight down from its border. Whether some other piece covers a
+/// place of one of them, and all that is above it.
+bool IsWallCovered(const SurfaceTable& s, const SurfacePlace& place, const Vec3* middle) noexcept {
+  if (s.seams.count == 0 || !IsCovered(s.seams, place.at, place.normal, kExactly)) return false;
+  const Vec3 top{place.at.x, place.at.y, HeightAt(s, place.at.x, place.at.y)};
+  return !IsExposed(s.seams, top, {place.at, place.normal, middle}, kExactly);
+}
+
+/// Of a point beside a field, lower than its border: the nearest place of its walls.
+bool PlaceOnWall(const SurfaceTable& s, const Vec3& p, double limit_m, const Vec3* middle,
+                 SurfacePlace* out) noexcept {
+  const Vec3 foot{Clamp(p.x, s.low.x, s.high.x), Clamp(p.y, s.low.y, s.high.y), p.z};
+  const Vec3 away = p - foot;
+  const double distance = Norm(away);
+  if (!(distance > kCoincidentM && distance <= limit_m)) return false;
+  if (!(p.z < HeightAt(s, foot.x, foot.y))) return false;
+  *out = {foot, (1.0 / distance) * away, distance};
+  return !IsWallCovered(s, *out, middle);
+}
+
+/// The shortest way out of a field, to its surface or through one of its walls.
+bool WayOutOfField(const SurfaceTable& s, const Vec3& p, double limit_m, double depth,
+                   const Vec3* middle, SurfacePlace* out) noexcept {
+  const SurfacePlace walls[] = {{{s.low.x, p.y, p.z}, {-1.0, 0.0, 0.0}, s.low.x - p.x},
+                                {{s.high.x, p.y, p.z}, {1.0, 0.0, 0.0}, p.x - s.high.x},
+                                {{p.x, s.low.y, p.z}, {0.0, -1.0, 0.0}, s.low.y - p.y},
+                                {{p.x, s.high.y, p.z}, {0.0, 1.0, 0.0}, p.y - s.high.y}};
+  const SurfacePlace* best = nullptr;
+  double least_m = Larger(limit_m, depth);
+  for (const SurfacePlace& wall : walls) {
+    if (-wall.distance_m > least_m || IsWallCovered(s, wall, middle)) continue;
+    best = &wall, least_m = -wall.distance_m;
+  }
+  const double reach_m =
+      best == nullptr ? least_m : (Larger(least_m, 0.0) + kWallNearerM) / kWallNearer;
+  const NearestOfAll near(s, p, reach_m, s.seams.count > 0 ? &s.seams : nullptr, middle);
+  if (near.found) {
+    *out = PlaceOf(near, p, true);
+  } else if (best != nullptr) {
+    *out = *best;
+  }
+  return near.found || best != nullptr;
+}
+
+/// The shortest way out of a closed mesh. False if the point is not inside, or others cover all
+/// ways. In the gap between two pieces, smaller than what counts as none, it is inside of both.
+bool WayOutOfMesh(const SurfaceTable& s, const Vec3& p, double reach_m, const Vec3* middle,
+                  bool* inside, SurfacePlace* out) noexcept {
+  const NearestOfAll near(s, p, reach_m, nullptr, nullptr);
+  if (!near.found) return false;
+  *inside = IsInsideOfMesh(s, p, near);
+  if (s.seams.count == 0) {
+    if (*inside) *out = PlaceOf(near, p, true);
+    return *inside;
+  }
+  bool in_gap = false;
+  if (!*inside && near.distance_m <= s.seams.same_m) {
+    const Vec3 away = p - near.at;
+    const Vec3 out_of =
+        near.distance_m <= kCoincidentM ? NormalOf(near.triangle) : (1.0 / near.distance_m) * away;
+    in_gap = IsFaceCovered(s.seams, near.triangle, {near.at, out_of, middle}, kExactly);
+  }
+  if (!*inside && !in_gap) return false;
+  const NearestOfAll open(s, p, reach_m, &s.seams, middle);
+  if (!open.found) return false;
+  if (in_gap && Dot(p - open.at, NormalOf(open.triangle)) > 0.0) return false;
+  *out = PlaceOf(open, p, true);
+  return true;
+}
 
 }  // namespace
 
@@ -193,22 +303,19 @@ Vec3 NearestPlaceOf(const SurfaceTriangle& t, const Vec3& point) noexcept {
 }
 
 int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, SurfacePlace* out,
-                  int most, const NearParts::OfEnd* known, bool above) noexcept {
+                  int most, const NearParts::OfEnd* known, bool above,
+                  const Vec3* middle) noexcept {
   if (above && known != nullptr && known->count == 0) return 0;
-  PlaceSearch search(point, limit_m, out, most);
-  // So deep it is still found.
-  const double depth = above ? 0.0 : s.is_field ? DepthBelow(s, point) : s.bucket_m;
-  // Beside a field it may be seen from below, where other edges stick out.
-  const bool beside = s.is_field && (point.x < s.low.x || point.x > s.high.x || point.y < s.low.y ||
-                                     point.y > s.high.y);
-  if (s.solid && (!s.is_field || depth > 0.0 || beside)) {
-    const NearestOfAll near(s, point, s.is_field ? Larger(limit_m, depth) : limit_m + depth);
-    const bool inside = s.is_field ? depth > 0.0 : IsInsideOfMesh(s, point, near);
-    if (near.found && inside) {
-      out[0] = PlaceOf(near, point, true);
-      return 1;
-    }
-    if (near.found && beside) search.Add(PlaceOf(near, point, false));
+  PlaceSearch search(s, middle, point, limit_m, out, most);
+  if (s.is_field && !above) {
+    // So deep it is still found.
+    const double depth = DepthBelow(s, point);
+    if (depth > 0.0) return WayOutOfField(s, point, limit_m, depth, middle, out) ? 1 : 0;
+    if (PlaceOnWall(s, point, limit_m, middle, out)) search.Add(SurfacePlace(*out));
+  } else if (s.solid && !s.is_field) {
+    bool inside = false;
+    if (WayOutOfMesh(s, point, limit_m + s.bucket_m, middle, &inside, out)) return 1;
+    if (inside) return 0;
   }
   const auto face = [&](const SurfaceTriangle& t) noexcept { search.Face(t); };
   const auto edge = [&](const Vec3& start, const Vec3& end, const auto& edge_of) noexcept {

@@ -15,9 +15,10 @@ struct SurfacePlace {
 /// Local minima of the distance of a point, those within `limit_m`, the nearest first; at most
 /// `most` of them, and how many. Inside of what is solid only the nearest: ways out could be at
 /// odds. `known`: what is near it (surface_parts.h), or null;
-/// `above`: it is known to be above the field.
+/// `above`: it is known to be above the field; `middle`: of the body of which it is a corner.
 int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, SurfacePlace* out,
-                  int most, const NearParts::OfEnd* known = nullptr, bool above = false) noexcept;
+                  int most, const NearParts::OfEnd* known = nullptr, bool above = false,
+                  const Vec3* middle = nullptr) noexcept;
 
 /// The place of a triangle that is nearest to a point.
 Vec3 NearestPlaceOf(const SurfaceTriangle& t, const Vec3& point) noexcept;

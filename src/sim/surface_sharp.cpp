@@ -26,7 +26,7 @@ int Falls(const Vec3& from, const Vec3& to, const Vec3& apex, const Vec3& other)
 }
 
 bool IsSharp(const SurfaceEdge& edge) {
-  if (edge.sides < 2) return true;  // a border
+  if (edge.border) return true;
   // Counter-clockwise seen from above.
   const Vec3 up = Cross(edge.to - edge.from, edge.apex[0] - edge.from);
   return (up.z < 0.0 ? Falls(edge.to, edge.from, edge.apex[0], edge.apex[1])

@@ -12,12 +12,14 @@
 namespace taut::sim {
 
 /// An edge, with the third corners of the triangles that have it: one at a border, two, and of a
-/// mesh that is not solid perhaps more, of which so many count.
+/// mesh that is not solid perhaps more, of which so many count. At the border of a field a place
+/// straight below is the second: there the ground ends in a wall.
 struct SurfaceEdge {
   static constexpr int kMaxSides = 4;
   Vec3 from, to;
   Vec3 apex[kMaxSides];
   int sides;
+  bool border;  ///< Of a field.
 };
 
 /// A straight line and how far around it is looked, between two places of it.
@@ -60,6 +62,7 @@ inline SurfaceEdge EdgeOfField(const SurfaceTable& s, int i, int j, FieldMark ma
   const auto at = [&](int ci, int cj) noexcept { return CornerOf(s, ci, cj); };
   SurfaceEdge edge;
   edge.sides = 0;
+  edge.border = false;
   if (mark == kSharpDiagonal) {
     const int k = Rises(s, i, j) ? 0 : 1;
     edge.from = at(i + k, j), edge.to = at(i + 1 - k, j + 1);
@@ -79,10 +82,14 @@ inline SurfaceEdge EdgeOfField(const SurfaceTable& s, int i, int j, FieldMark ma
     const bool rises = x ? Rises(s, i, j - 1) : Rises(s, i - 1, j);
     edge.apex[edge.sides++] = x ? at(rises ? i : i + 1, j - 1) : at(i - 1, rises ? j : j + 1);
   }
+  if (edge.sides == 1) {
+    edge.border = true;
+    edge.apex[edge.sides++] = {edge.from.x, edge.from.y, edge.from.z - s.cell_m};
+  }
   return edge;
 }
 
-/// `use` with the other end of every edge at a corner of a field.
+/// `use` with the other end of every edge at a corner of a field; at its border one leads down.
 template <class Use>
 void EachBesideOfField(const SurfaceTable& s, int i, int j, const Use& use) noexcept {
   const bool west = i > 0, east = i + 1 < s.columns, south = j > 0, north = j + 1 < s.rows;
@@ -90,6 +97,10 @@ void EachBesideOfField(const SurfaceTable& s, int i, int j, const Use& use) noex
   if (west) use(CornerOf(s, i - 1, j));
   if (north) use(CornerOf(s, i, j + 1));
   if (south) use(CornerOf(s, i, j - 1));
+  if (!(west && east && south && north)) {
+    const Vec3 corner = CornerOf(s, i, j);
+    use({corner.x, corner.y, corner.z - s.cell_m});
+  }
   if (east && north && Rises(s, i, j)) use(CornerOf(s, i + 1, j + 1));
   if (west && south && Rises(s, i - 1, j - 1)) use(CornerOf(s, i - 1, j - 1));
   if (west && north && !Rises(s, i - 1, j)) use(CornerOf(s, i - 1, j + 1));
@@ -175,6 +186,7 @@ inline SurfaceEdge EdgeOfMesh(const SurfaceTable& s, const MeshEdge& found) noex
   edge.from = s.corners[found.from], edge.to = s.corners[found.to];
   edge.sides = found.count < SurfaceEdge::kMaxSides ? found.count : SurfaceEdge::kMaxSides;
   for (int n = 0; n < edge.sides; ++n) edge.apex[n] = s.corners[s.beside[found.first + n]];
+  edge.border = false;
   return edge;
 }
 

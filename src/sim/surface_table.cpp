@@ -5,6 +5,13 @@
 
 namespace taut::sim {
 
+namespace {
+
+/// Beside a field by no more than this a point is within its rectangle [m].
+constexpr double kNoDistanceM = 1e-10;
+
+}  // namespace
+
 double HeightAt(const SurfaceTable& s, double x, double y) noexcept {
   const int i = CellAt((x - s.low.x) * s.inv_cell, s.columns - 1);
   const int j = CellAt((y - s.low.y) * s.inv_cell, s.rows - 1);
@@ -22,7 +29,9 @@ double HeightAt(const SurfaceTable& s, double x, double y) noexcept {
 }
 
 double DepthBelow(const SurfaceTable& s, const Vec3& p) noexcept {
-  const bool within = p.x >= s.low.x && p.x <= s.high.x && p.y >= s.low.y && p.y <= s.high.y;
+  const double beside_m = Larger(s.seams.same_m, kNoDistanceM);
+  const bool within = p.x >= s.low.x - beside_m && p.x <= s.high.x + beside_m &&
+                      p.y >= s.low.y - beside_m && p.y <= s.high.y + beside_m;
   return within ? HeightAt(s, p.x, p.y) - p.z : 0.0;
 }
 

@@ -62,6 +62,12 @@ struct ShapeTable {
   bool elsewhere[2] = {};       ///< another shape of the body has that one.
   const int* beside = nullptr;  ///< Of a box of the world: other boxes of it that it touches.
   int beside_count = 0;
+  SeamList seams;  ///< Of a box of the world: what else it meets.
+
+  /// Whether what it meets is to be looked at with it. Always inline: see View.
+  [[gnu::always_inline]] bool IsJoined() const noexcept {
+    return beside_count > 0 || seams.count > 0;
+  }
 };
 
 /// Boxes of the world that are no further apart touch each other [m].
@@ -333,6 +339,7 @@ class Tables final : public Model {
   int tree_shapes = 0;            ///< How many those are; 0 without a tree.
   std::vector<int> world_shapes;  ///< Without surfaces, in the order of the tree's numbers.
   std::vector<int> beside;        ///< What ShapeTable::beside points into.
+  std::vector<std::vector<SeamPiece>> seams;  ///< What lists of seams point into.
   std::vector<JointTable> joints;
   std::vector<JointRowTable> joint_rows;
   int turn_friction_count = 0;    ///< Ball joints with friction.
@@ -367,6 +374,10 @@ void LayOutTree(Tables& tables);
 
 /// Finds the boxes of the world that touch each other, and says so to the pairs with it.
 void JoinBoxes(Tables& tables);
+
+/// Finds the other pieces of terrain that surfaces and boxes of the world meet, and says so to the
+/// pairs with those boxes. After JoinBoxes.
+void JoinPieces(Tables& tables);
 
 /// Fills floor_m.
 void LayOutFloor(Tables& tables);
