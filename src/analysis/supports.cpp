@@ -236,7 +236,10 @@ Effect EffectOf(const LoadWork& work, const Eigen::MatrixXd& twists, double size
 
 SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads) {
   using namespace analysis;  // NOLINT(google-build-using-namespace): this function alone
-  const Structure s(def, loads, true);
+  // As described: a support that settles takes the structure with it.
+  LoadCaseSpec dead = loads;
+  dead.settlements.clear(), dead.cables.clear(), dead.bars.clear();
+  const Structure s(def, dead, true);
   SupportCheck out;
   if (s.bodies.empty()) return out;
   std::vector<Coordinate> measured;
