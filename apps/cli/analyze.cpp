@@ -106,6 +106,26 @@ bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::
   return out.ok();
 }
 
+/// Refuses load cases that move the structure along motions which supports leave free, and notes
+/// motions that nothing drives.
+bool CheckSupportsOf(const std::string& file, const ModelDef& def,
+                     const std::vector<LoadCaseSpec>& cases, std::vector<std::string>& notes,
+                     Diagnostics& out) {
+  for (const LoadCaseSpec& one : cases) {
+    const SupportCheck check = CheckSupports(def, one);
+    if (!check.missing.empty()) {
+      out.Error({file, 0, 0}, "load case " + one.name + ": " + check.missing, check.fix);
+      continue;
+    }
+    if (!IsHeld(def) || !def.planes.empty()) continue;
+    for (const std::string& motion : check.free_motions) {
+      const std::string note = motion + ": no member resists this";
+      if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+    }
+  }
+  return out.ok();
+}
+
 /// What holds a structure up, as tables or JSON, and shapes to look at.
 int Statics(const AnalyzeArguments& args, const Loaded& loaded, AnalysisResult result) {
   result.forces = AnalyseForces(result.robot.def);
@@ -118,10 +138,19 @@ int Statics(const AnalyzeArguments& args, const Loaded& loaded, AnalysisResult r
     fmt::print(stderr, "error: load case {}: {}\n", one.loads.name, one.at.why);
   }
   int exit = kOk;
+  Diagnostics found;
+  for (const CaseResult& one : result.cases) {
+    const std::string far = one.at.found ? one.move.Warning() : "";
+    if (far.empty()) continue;
+    found.Warning({args.path, 0, 0}, "load case " + one.loads.name + ": " + far,
+                  "its supports let it swing over, or a mechanism gives way");
+  }
+  if (!Pass(found, args.strict)) exit = Fail(found, kFailed);
   if (!args.forms.out.empty()) {
     ExperimentSpec there = loaded.experiment;
     there.robot = result.robot;
-    exit = WriteShapes(args.forms.out, there, result, args.modes, json);
+    const int written = WriteShapes(args.forms.out, there, result, args.modes, json);
+    if (exit == kOk) exit = written;
   }
   return result.Found() ? exit : kFailed;
 }
@@ -152,6 +181,9 @@ int Analyze(const AnalyzeArguments& args) {
     InverseArguments inverse = args.inverse;
     if (loaded->pose) inverse.calibration_rest_m = loaded->file_rest_m;
     return Inverse(args.path, result.robot, loaded->cases, result.notes, inverse);
+  }
+  if (!CheckSupportsOf(args.path, result.robot.def, loaded->cases, result.notes, found)) {
+    return Fail(found, kBadInput);
   }
   return Statics(args, *loaded, std::move(result));
 }
@@ -295,7 +327,8 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
       "  taut analyze models/hanging_mass.yaml --response node/mass/force_z node/mass/position_z\n"
       "But for --linear and --response it is statics alone: it depends on no step, and on masses "
       "as weights only.\n"
-      "Exit status: 0 good, 1 a load case has no equilibrium, 2 bad usage, 3 the file has errors.");
+      "Exit status: 0 good, 1 a load case has no equilibrium, 2 bad usage, 3 the file has errors "
+      "or supports are missing.");
   analyze->callback([args, &exit_code] { exit_code = Analyze(*args); });
 }
 

@@ -76,7 +76,25 @@ std::optional<CaseResult::Open> OpenForces(ModelDef def, const LoadCaseSpec& loa
   return open;
 }
 
+/// The member whose `factor` is smallest; null if none has one.
+template <class Factor>
+const MemberLoad* Least(const std::vector<MemberLoad>& members, const Factor& factor) {
+  const MemberLoad* least = nullptr;
+  for (const MemberLoad& load : members) {
+    if (factor(load) && (least == nullptr || *factor(load) < *factor(*least))) least = &load;
+  }
+  return least;
+}
+
 }  // namespace
+
+const MemberLoad* CaseResult::LeastSafe() const {
+  return Least(members, [](const MemberLoad& load) { return load.Least(); });
+}
+
+const MemberLoad* CaseResult::FirstSlack() const {
+  return Least(members, [](const MemberLoad& load) { return load.slackening; });
+}
 
 std::vector<CaseResult> SolveCases(const ModelDef& def, const std::vector<LoadCaseSpec>& cases,
                                    bool with_modes) {
@@ -97,10 +115,11 @@ std::vector<CaseResult> SolveCases(const ModelDef& def, const std::vector<LoadCa
     result.ends = Ends(result.def, result.at);
     result.members = MemberLoads(result.def, forces, unloaded ? &*unloaded : nullptr);
     result.open = OpenForces(result.def, loads);
-    if (!with_modes) continue;
+    result.move = LargestMove(def, result.at.pose);
     LoadCaseSpec there = loads;
     there.cables.clear();  // the pose has these rest lengths
-    result.modes = FindModes(result.def, there);
+    result.least_stiffness_n_per_m = LeastStiffness(result.def, there);
+    if (with_modes) result.modes = FindModes(result.def, there);
   }
   return results;
 }

@@ -60,9 +60,6 @@ std::string Prestress(const ForceAnalysis& f) {
         "at least\n",
         least > 0 ? "stable by prestress" : "NOT STABLE by prestress", least);
   }
-  if (f.lowest_stiffness) {
-    text += fmt::format("  least stiffness as described: {:.6g} N/m\n", *f.lowest_stiffness);
-  }
   return text;
 }
 

@@ -50,7 +50,6 @@ Json ForcesJson(const ModelDef& def, const ForceAnalysis& forces) {
   json["mechanisms"] = Json::array();
   for (const Mode& mode : forces.mechanisms) json["mechanisms"].push_back(ShapeJson(def, mode));
   json["mechanism_stiffness_n_per_m"] = forces.mechanism_stiffness;
-  json["lowest_stiffness_n_per_m"] = ToJson(forces.lowest_stiffness);
   if (forces.classical) {
     const ClassicalCount& c = *forces.classical;
     Json rods = Json::array();
@@ -192,6 +191,20 @@ Json CaseJson(const CaseResult& result, int most_modes) {
       {"residual_n", result.at.residual_n}, {"iterations", result.at.iterations},
       {"left_out", result.at.left_out}};
   if (!result.at.found) return json;
+  const MemberLoad *const least = result.LeastSafe(), *const first = result.FirstSlack();
+  json["least_safety"] = Json();
+  if (least != nullptr) {
+    json["least_safety"] = {
+        {"factor", *least->Least()}, {"of", least->LeastOf()}, {"member", least->name}};
+  }
+  json["first_slack"] = Json();
+  if (first != nullptr) {
+    json["first_slack"] = {{"factor", *first->slackening}, {"member", first->name}};
+  }
+  json["least_stiffness_n_per_m"] = ToJson(result.least_stiffness_n_per_m);
+  json["largest_move"] = {{"of", result.move.name},
+                          {"distance_m", result.move.distance_m},
+                          {"size_m", result.move.size_m}};
   json["bodies"] = PoseJson(result);
   json["members"] = MembersJson(result);
   json["reactions"] = ReactionsJson(result);

@@ -129,18 +129,28 @@ std::string ModeTable(const CaseResult& result, int most) {
   return text + (number == 0 ? "" : table.Text());
 }
 
-/// The members that are nearest to what they bear, and the slack ones.
+/// Slack cables, the least safety factor, the first slack cable, and how stiff and how far.
 std::string Verdict(const CaseResult& result) {
   std::string slack;
-  const MemberLoad* least = nullptr;
   for (const MemberLoad& load : result.members) {
     if (load.slack) slack += (slack.empty() ? "" : ", ") + load.name;
-    if (load.Least() && (!least || *load.Least() < *least->Least())) least = &load;
   }
   std::string text = "  slack: " + (slack.empty() ? std::string("none") : slack) + "\n";
-  if (least != nullptr) {
-    text += fmt::format("  least factor: {} of {} in {}\n", FactorCell(least->Least()),
+  if (const MemberLoad* const least = result.LeastSafe()) {
+    text += fmt::format("  least safety factor: {} ({} of {})\n", FactorCell(least->Least()),
                         least->LeastOf(), least->name);
+  }
+  if (const MemberLoad* const first = result.FirstSlack()) {
+    text += fmt::format("  first slack: {} at {} times the load\n", first->name,
+                        FactorCell(first->slackening));
+  }
+  if (!result.move.name.empty()) {
+    text +=
+        fmt::format("  largest move: {:.4g} m of {}\n", result.move.distance_m, result.move.name);
+  }
+  if (result.least_stiffness_n_per_m) {
+    text += fmt::format("  least stiffness: {:.6g} N/m{}\n", *result.least_stiffness_n_per_m,
+                        *result.least_stiffness_n_per_m < 0 ? ": UNSTABLE" : "");
   }
   return text;
 }

@@ -32,6 +32,13 @@ struct CaseResult {
   };
   std::optional<Open> open;
   std::optional<Modes> modes;
+  std::optional<double> least_stiffness_n_per_m;
+  Move move;  ///< From where the model describes it.
+
+  /// Of `members`: the least safety factor (buckling, yield, strength), and the first cable that
+  /// gets slack as the load grows; null if no member has one.
+  const MemberLoad* LeastSafe() const;
+  const MemberLoad* FirstSlack() const;
 };
 
 /// Each of the cases by itself.

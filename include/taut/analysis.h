@@ -61,6 +61,32 @@ Equilibrium FindEquilibrium(const ModelDef& def, const LoadCaseSpec& loads = {},
 /// `def` as it is described in a pose, at rest; `RobotAt` for the numbers alone.
 ModelDef ModelAt(const ModelDef& def, const Pose& pose);
 
+/// Whether supports hold a structure under a load case, as it is described.
+struct SupportCheck {
+  int free = 0;  ///< Motions as a whole that no member resists.
+  /// These in words: "the structure can still rotate about z through (0, 0, 1)"; one for each part
+  /// that no member connects to the others.
+  std::vector<std::string> free_motions;
+  /// Which of them the loads push along or, where something holds the part, topple; empty if they
+  /// do neither, or if ground may bear what comes down on it.
+  std::string missing;
+  std::string fix;  ///< Of `missing`.
+};
+SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads);
+
+/// The node, or the center of mass, that moves most from where it is described to a pose.
+struct Move {
+  static constexpr double kFar = 0.25;  ///< Of the size.
+  std::string name;                     ///< `node "top"` or `body "strut"`; empty if none moves.
+  double distance_m = 0;
+  double size_m = 0;  ///< Of the structure: the diagonal of the box about it as described.
+  /// Empty, or that it moves farther than that.
+  std::string Warning() const;
+};
+/// Of what nothing holds in the world (ground only pushes), the rigid motion that fits best is left
+/// out.
+Move LargestMove(const ModelDef& def, const Pose& pose);
+
 /// Stiffness and mass as described, in the motions of the bodies that move (docs/theory/statics.md,
 /// section 3). What is held is not eliminated.
 struct Tangent {
@@ -164,7 +190,9 @@ struct ForceAnalysis {
   RankGap rank;
   int unknowns = 0;    ///< Motions that count,
   int free_turns = 0;  ///< and those that are left out because nothing could resist them.
-  int rigid = 0;       ///< Ways to move as a whole, which no member resists.
+  /// Motions as a whole that no member resists: rigid motions of a part that no member connects to
+  /// the others, which move no point of the world at which its members end.
+  int rigid = 0;
   /// Independent; a feasible one first, if there is any: densities of a cable up to 1 N/m.
   std::vector<SelfStress> self_stress;
   std::vector<Mode> mechanisms;  ///< Without those as a whole.
@@ -172,14 +200,18 @@ struct ForceAnalysis {
   /// squared displacements of all points at which something acts [N/m], ascending: in units of the
   /// largest density of a cable. All positive: it is stable by prestress. Empty: no feasible state.
   std::vector<double> mechanism_stiffness;
-  /// The least eigenvalue, but for motions as a whole, of the stiffness as described, over the same
-  /// displacements [N/m]; nothing without moving bodies.
-  std::optional<double> lowest_stiffness;
   std::optional<ClassicalCount> classical;
   std::vector<std::string> left_out;  ///< What of the model takes no part, in words.
 };
 
 /// As described. Points that touch planes are members, too, if `contact`.
 ForceAnalysis AnalyseForces(const ModelDef& def, bool contact = true);
+
+/// The least stiffness about an equilibrium (`ModelAt` of what `FindEquilibrium` gives): the
+/// smallest u^T K u over the sum of the squared displacements of all points at which something acts
+/// [N/m], of all motions u that nothing holds but those as a whole that nothing resists
+/// (docs/theory/statics.md, eq. 16). Negative: the equilibrium is unstable. Nothing if no such
+/// motion is left.
+std::optional<double> LeastStiffness(const ModelDef& def, const LoadCaseSpec& loads = {});
 
 }  // namespace taut

@@ -41,7 +41,8 @@ struct MemberLoad {
   /// Of a cable that has less tension than unloaded: how many times the load until it is slack,
   /// if tension falls in proportion.
   std::optional<double> slackening;
-  /// The smallest of those there are, and its name; nothing if there are none.
+  /// The smallest safety factor (buckling, yield, strength) and its name; nothing if there is none.
+  /// Slack is no failure and is not among them: see `slackening`.
   std::optional<double> Least() const;
   std::string LeastOf() const;
 };

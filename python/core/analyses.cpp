@@ -20,6 +20,8 @@ struct Analysis {
   Equilibrium at;
   RobotSpec there;  ///< As it stands.
   std::optional<Modes> modes;
+  std::optional<double> least_stiffness_n_per_m;
+  Move move;
   Tangent tangent;
   ForceAnalysis forces;
 };
@@ -35,6 +37,21 @@ LoadCaseSpec CaseOf(const ExperimentSpec& experiment, const std::string& name, D
   return {};
 }
 
+/// Needs no GIL and lets it go.
+void Solve(const ExperimentSpec& experiment, Analysis& found) {
+  const py::gil_scoped_release others;
+  found.forces = AnalyseForces(experiment.robot.def);
+  found.at = FindEquilibrium(experiment.robot.def, found.loads);
+  found.there = RobotAt(experiment.robot, found.at.pose);
+  LoadCaseSpec there = found.loads;
+  there.cables.clear();  // the pose has these rest lengths
+  found.tangent = FindTangent(found.there.def, there);
+  if (!found.at.found) return;
+  found.modes = FindModes(found.there.def, there);
+  found.least_stiffness_n_per_m = LeastStiffness(found.there.def, there);
+  found.move = LargestMove(experiment.robot.def, found.at.pose);
+}
+
 std::shared_ptr<Analysis> Analyse(const ExperimentSpec& experiment,
                                   const std::optional<std::string>& load_case) {
   Diagnostics said;
@@ -42,15 +59,17 @@ std::shared_ptr<Analysis> Analyse(const ExperimentSpec& experiment,
   found->robot = experiment.robot;
   found->loads = load_case ? CaseOf(experiment, *load_case, said) : OwnWeight(experiment.robot.def);
   if (said.ok()) CheckStart(experiment.robot, StartKind::kSettled, said);
+  const SourceRef file{experiment.files.empty() ? "" : experiment.files[0]};
+  const std::string named = "load case " + found->loads.name + ": ";
+  if (said.ok()) {
+    const SupportCheck supports = CheckSupports(experiment.robot.def, found->loads);
+    if (!supports.missing.empty()) said.Error(file, named + supports.missing, supports.fix);
+  }
   Tell(said);
-  const py::gil_scoped_release others;
-  found->forces = AnalyseForces(experiment.robot.def);
-  found->at = FindEquilibrium(experiment.robot.def, found->loads);
-  found->there = RobotAt(experiment.robot, found->at.pose);
-  LoadCaseSpec there = found->loads;
-  there.cables.clear();  // the pose has these rest lengths
-  found->tangent = FindTangent(found->there.def, there);
-  if (found->at.found) found->modes = FindModes(found->there.def, there);
+  Solve(experiment, *found);
+  Diagnostics after;
+  if (!found->move.Warning().empty()) after.Warning(file, named + found->move.Warning());
+  Tell(after);
   return found;
 }
 
@@ -158,6 +177,19 @@ void AddEquilibrium(Type& type) {
       "residual_n", [](const Analysis& a) { return a.at.residual_n; },
       "The largest force that is left on a body [N].");
   type.def_property_readonly(
+      "largest_move_m", [](const Analysis& a) { return a.move.distance_m; },
+      "The largest distance between a node or a center of mass as described and in equilibrium, of "
+      "`largest_move_of` [m]; without the rigid motion that fits best where nothing holds the "
+      "robot "
+      "in the world.");
+  type.def_property_readonly("largest_move_of", [](const Analysis& a) { return a.move.name; });
+  type.def_property_readonly(
+      "least_stiffness_n_per_m", [](const Analysis& a) { return a.least_stiffness_n_per_m; },
+      "The smallest u^T K u over the sum of the squared displacements of all points, of the "
+      "motions "
+      "that nothing holds but those as a whole [N/m]; negative: unstable. None without equilibrium "
+      "or such a motion.");
+  type.def_property_readonly(
       "stiffness", [](const Analysis& a) { return ArrayOf(a.tangent.stiffness); },
       "(6 * moving, 6 * moving) float64: minus the derivative of the forces there, by x, y, z of "
       "the "
@@ -230,7 +262,8 @@ void AddForces(Type& type) {
       "rank", [](const Analysis& a) { return a.forces.rank.rank; }, "Of `equilibrium_matrix`.");
   type.def_property_readonly(
       "rigid", [](const Analysis& a) { return a.forces.rigid; },
-      "In how many ways it can move as a whole, which no member resists.");
+      "How many motions as a whole no member resists; those that move an anchored point are "
+      "mechanisms.");
   type.def_property_readonly(
       "self_stress_n", [](const Analysis& a) { return StatesOf(a.forces, &SelfStress::force_n); },
       "(states, members) float64: independent forces that members have among themselves without "

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "analysis/members.h"
-#include "analysis/rigid.h"
+#include "analysis/whole_motions.h"
 #include "math/vec.h"
 
 namespace taut::analysis {
@@ -105,9 +105,10 @@ class Counter {
     count.members = static_cast<int>(matrix_.cols());
     count.rank = split.rank;
     count.self_stresses = count.members - split.rank.rank;
-    Eigen::MatrixXd rigid(matrix_.rows(), 6);
+    const Eigen::MatrixXd whole = WholeMotions(def_, s_);
+    Eigen::MatrixXd rigid(matrix_.rows(), whole.cols());
     for (std::size_t p = 0; p < places_.size(); ++p) {
-      rigid.middleRows<3>(3 * Index(p)) = MovesOf(s_, places_[p]) * RigidMotions(s_);
+      rigid.middleRows<3>(3 * Index(p)) = MovesOf(s_, places_[p]) * whole;
     }
     count.rigid = static_cast<int>(PartsOf(split.left, rigid).in.cols());
     count.mechanisms = static_cast<int>(split.left.cols()) - count.rigid;

@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "analysis/members.h"
+#include "analysis/point_metric.h"
 #include "analysis/quadratic_program.h"
-#include "analysis/rigid.h"
+#include "analysis/whole_motions.h"
 #include "math/vec.h"
 #include "taut/analysis.h"
 
@@ -28,7 +29,7 @@ class Analysis {
     effective_ = s_.Effective(s_.start, false);
     out_.unknowns = static_cast<int>(effective_.cols());
     out_.free_turns = s_.motions() - out_.unknowns;
-    MeasurePlaces();
+    metric_ = PointMetric(def_, s_);
 
     const Eigen::MatrixXd full = FullMatrix();
     out_.matrix = PlainOf(effective_.transpose() * full);
@@ -55,22 +56,13 @@ class Analysis {
     return full;
   }
 
-  /// Squared displacements of all points at which something acts.
-  void MeasurePlaces() {
-    metric_ = Eigen::MatrixXd::Zero(s_.motions(), s_.motions());
-    for (const Anchor& place : PlacesOf(def_, s_)) {
-      const Eigen::MatrixXd moves = MovesOf(s_, place);
-      metric_ += moves.transpose() * moves;
-    }
-  }
-
   /// Motions that change no member: as a whole, and the mechanisms. What is across `matrix` works
   /// on forces, the dual of motions; they are the same columns in lengths.
   void FindMotions(const Split& split, const Eigen::MatrixXd& scaled) {
     // Rigid motions in the coordinates of `scaled`, whose columns are across each other.
     const Eigen::MatrixXd to_scaled =
         (scaled.transpose() * scaled).diagonal().cwiseInverse().asDiagonal() * scaled.transpose();
-    const Eigen::MatrixXd rigid = to_scaled * RigidMotions(s_);
+    const Eigen::MatrixXd rigid = to_scaled * WholeMotions(def_, s_);
     const Parts parts = PartsOf(split.left, rigid);
     out_.rigid = static_cast<int>(parts.in.cols());
     rigid_ = scaled * parts.in;
@@ -176,32 +168,16 @@ class Analysis {
     }
   }
 
-  /// Eigenvalues of `stiffness` over the metric, in the span of `motions`.
-  Eigen::VectorXd Over(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& motions) const {
-    const Eigen::MatrixXd weight = motions.transpose() * metric_ * motions;
-    const Eigen::LLT<Eigen::MatrixXd> root(weight);
-    if (root.info() != Eigen::Success) return {};
-    const Eigen::MatrixXd lower = root.matrixL();
-    Eigen::MatrixXd half = motions.transpose() * stiffness * motions;
-    lower.triangularView<Eigen::Lower>().solveInPlace(half);
-    half.transposeInPlace();
-    lower.triangularView<Eigen::Lower>().solveInPlace(half);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (half + half.transpose()));
-    return solver.eigenvalues();
-  }
-
   void FindStiffness() {
-    if (feasible_.size() > 0 && mechanisms_.cols() > 0) {
-      Eigen::VectorXd unused = Eigen::VectorXd::Zero(s_.motions());
-      Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(s_.motions(), s_.motions());
-      for (std::size_t m = 0; m < members_.size(); ++m) {
-        Add(members_[m].at, feasible_[Index(m)], 0, unused, &stiffness);
-      }
-      // A rigid motion may be part of a mechanism; what counts is what it does to the points.
-      const Eigen::VectorXd values = Over(stiffness, AcrossRigid(mechanisms_));
-      out_.mechanism_stiffness.assign(values.data(), values.data() + values.size());
+    if (feasible_.size() == 0 || mechanisms_.cols() == 0) return;
+    Eigen::VectorXd unused = Eigen::VectorXd::Zero(s_.motions());
+    Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(s_.motions(), s_.motions());
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+      Add(members_[m].at, feasible_[Index(m)], 0, unused, &stiffness);
     }
-    FindLowest();
+    // A rigid motion may be part of a mechanism; what counts is what it does to the points.
+    const Eigen::VectorXd values = EigenvaluesOver(stiffness, metric_, AcrossRigid(mechanisms_));
+    out_.mechanism_stiffness.assign(values.data(), values.data() + values.size());
   }
 
   /// Motions without what they have of motions as a whole.
@@ -209,26 +185,6 @@ class Analysis {
     if (rigid_.cols() == 0 || motions.cols() == 0) return motions;
     const Eigen::MatrixXd weight = rigid_.transpose() * metric_ * rigid_;
     return motions - rigid_ * weight.ldlt().solve(rigid_.transpose() * metric_ * motions);
-  }
-
-  /// Of the stiffness as described.
-  void FindLowest() {
-    const Reactions holding = ReactionsAsDescribed(s_, kNearPlane * s_.size_m);
-    Eigen::VectorXd gradient;
-    Eigen::MatrixXd stiffness;
-    s_.Energy(s_.start, gradient, &stiffness);
-    s_.AddReactions(s_.start, holding, gradient, &stiffness);
-    const Eigen::MatrixXd scaled = s_.Effective(s_.start, true);
-    const Eigen::MatrixXd held = HeldDirections(s_, holding);
-    Eigen::MatrixXd free =
-        scaled * Nothing(held.transpose() * scaled, 1e-9 / std::max(1.0, s_.size_m));
-    if (rigid_.cols() > 0 && free.cols() > 0) {
-      const Eigen::MatrixXd overlap = rigid_.transpose() * metric_ * free;
-      free = free * Nothing(overlap, 1e-12 * overlap.norm());
-    }
-    if (free.cols() == 0) return;
-    const Eigen::VectorXd values = Over(stiffness, free);
-    if (values.size() > 0) out_.lowest_stiffness = values[0];
   }
 
   const ModelDef& def_;

@@ -1,42 +1,17 @@
 // Modes: K v = omega^2 M v in what is free to move (docs/theory/statics.md, section 5).
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "analysis/members.h"
-#include "analysis/rigid.h"
 #include "analysis/tangent.h"
+#include "analysis/whole_motions.h"
 #include "math/angle.h"
 #include "math/vec.h"
 
 namespace taut {
 namespace analysis {
-
-Eigen::MatrixXd RigidMotions(const Structure& s) {
-  Vec3 middle;
-  for (const Vec3& center : s.start.center_m) {
-    middle = middle + (1.0 / static_cast<double>(s.bodies.size())) * center;
-  }
-  Eigen::MatrixXd rigid = Eigen::MatrixXd::Zero(s.motions(), 6);
-  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-    const Eigen::Index at = 6 * static_cast<Eigen::Index>(b);
-    rigid.block<3, 3>(at, 0) = Eigen::Matrix3d::Identity();
-    rigid.block<3, 3>(at, 3) = -CrossMatrix(s.start.center_m[b] - middle);
-    rigid.block<3, 3>(at + 3, 3) = Eigen::Matrix3d::Identity();
-  }
-  return rigid;
-}
-
-Eigen::MatrixXd Nothing(const Eigen::MatrixXd& rows, double limit) {
-  if (rows.rows() == 0) return Eigen::MatrixXd::Identity(rows.cols(), rows.cols());
-  if (rows.cols() == 0) return Eigen::MatrixXd(0, 0);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeFullV);
-  Eigen::Index rank = 0;
-  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > limit) ++rank;
-  return svd.matrixV().rightCols(rows.cols() - rank);
-}
 
 Mode ShapeOf(const ModelDef& def, const Structure& s, Eigen::VectorXd shape) {
   Mode mode;
@@ -59,45 +34,6 @@ Mode ShapeOf(const ModelDef& def, const Structure& s, Eigen::VectorXd shape) {
 }
 
 namespace {
-
-/// A basis of what is free to move, rigid motions first.
-struct Free {
-  Eigen::MatrixXd basis;
-  Eigen::Index rigid = 0;
-};
-
-/// Motions that count (lengths all), that nothing holds; of them the rigid ones that nothing
-/// resists, then what is across them by mass.
-Free FreeMotions(const Structure& s, const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& mass,
-                 const Eigen::MatrixXd& held) {
-  const Eigen::MatrixXd effective = s.Effective(s.start, true);
-  const Eigen::MatrixXd unheld =
-      effective * Nothing(held.transpose() * effective, 1e-9 / std::max(1.0, s.size_m));
-  Free out;
-  if (unheld.cols() == 0) return {unheld, 0};
-  // Turns that count for nothing are left out of a rigid motion, too.
-  const Eigen::MatrixXd rigid =
-      effective *
-      (effective.transpose() * effective).ldlt().solve(effective.transpose() * RigidMotions(s));
-  Eigen::MatrixXd scaled = rigid;
-  scaled.rightCols<3>() /= s.size_m;
-  scaled = SpanOf(scaled);  // of points in a row, or of a single one, some turns are nothing
-  const double most = (unheld.transpose() * stiffness * unheld).cwiseAbs().maxCoeff();
-  // Where nothing resists, there is round-off of what holds.
-  const bool resists = most > 1e-12 * stiffness.cwiseAbs().maxCoeff();
-  Eigen::MatrixXd resisted(held.cols() + s.motions(), scaled.cols());
-  resisted << held.transpose() * scaled,
-      (resists ? 1 / most : 0.0) * (effective * (effective.transpose() * stiffness * scaled));
-  const Eigen::MatrixXd whole = scaled * Nothing(resisted, 1e-11);
-  out.rigid = whole.cols();
-  if (out.rigid == 0) return {unheld, 0};
-  // Across them by mass: what of `unheld` has no momentum along them.
-  const Eigen::MatrixXd momenta = whole.transpose() * mass * unheld;
-  const Eigen::MatrixXd rest = unheld * Nothing(momenta, 1e-12 * momenta.norm());
-  out.basis.resize(s.motions(), whole.cols() + rest.cols());
-  out.basis << whole, rest;
-  return out;
-}
 
 /// What is not rigid: its eigenvalues, zeros told from others by the gap.
 void AddVibrations(const ModelDef& def, const Structure& s, const Eigen::MatrixXd& basis,
@@ -170,7 +106,7 @@ Modes FindModes(const ModelDef& def, const LoadCaseSpec& loads) {
   s.Energy(s.start, gradient, &stiffness);
   s.AddReactions(s.start, holding, gradient, &stiffness);
   const Eigen::MatrixXd mass = MassMatrix(def, s);
-  const Free free = FreeMotions(s, stiffness, mass, HeldDirections(s, holding));
+  const FreeMotions free = FreeMotionsOf(def, s, stiffness, mass, HeldDirections(s, holding));
   for (Eigen::Index i = 0; i < free.rigid; ++i) {
     out.modes.push_back(ShapeOf(def, s, free.basis.col(i)));
     out.modes.back().kind = Mode::Kind::kRigid;

@@ -35,12 +35,9 @@ MemberLoad Of(MemberKind kind, int index, const std::string& name) {
   return load;
 }
 
-/// In a fixed order, with what each is called.
-std::array<std::pair<const char*, const std::optional<double>*>, 4> Factors(const MemberLoad& m) {
-  return {{{"buckling", &m.buckling},
-           {"yield", &m.yield},
-           {"strength", &m.strength},
-           {"slack", &m.slackening}}};
+/// Safety factors in a fixed order, with their names.
+std::array<std::pair<const char*, const std::optional<double>*>, 3> Factors(const MemberLoad& m) {
+  return {{{"buckling", &m.buckling}, {"yield", &m.yield}, {"strength", &m.strength}}};
 }
 
 std::pair<const char*, std::optional<double>> LeastFactor(const MemberLoad& load) {

@@ -273,6 +273,25 @@ class Analyses(unittest.TestCase):
         lengths = taut.Batch(robot).cable_length_m()[0]
         np.testing.assert_allclose(densities[:len(lengths)] * lengths, found.self_stress_n[0, :len(lengths)], rtol=1e-9)
 
+    def test_missing_supports_are_an_error(self):
+        text = """
+taut: 1
+kind: model
+name: pole
+nodes: {foot: [0, 0, 0], top: [0, 0, %s]}
+pairs: [{name: pole, nodes: [foot, top]}]
+builders:
+  - {match: pole, rod: {radius_m: 0.01, mass_kg: 1}}
+  - {match: foot, support: {kind: ball}}
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "pole.yaml"
+            path.write_text(text % "1")
+            with self.assertRaisesRegex(taut.InputError, "rotate about x and y through .0, 0, 0., and the loads topple"):
+                taut.analyze(taut.load(str(path)))
+            path.write_text(text % "-1")  # it hangs: m g l / 2 over the displacement of its center, l / 2
+            self.assertAlmostEqual(taut.analyze(taut.load(str(path))).least_stiffness_n_per_m, 2 * 9.81, delta=1e-9)
+
     def test_says_what_the_command_says(self):
         said = json.loads(subprocess.run([COMMAND, "analyze", PUSH, "--json", "--modes", "1000"], check=True,
                                          capture_output=True, text=True).stdout)
@@ -287,6 +306,9 @@ class Analyses(unittest.TestCase):
             self.assertEqual(getattr(found, "mode_" + name).tolist(),
                              [[body[name] for body in one["shape"]] for one in case["modes"]["modes"]])
         self.assertEqual(found.residual_n, case["residual_n"])
+        self.assertEqual(found.least_stiffness_n_per_m, case["least_stiffness_n_per_m"])
+        self.assertEqual(found.largest_move_m, case["largest_move"]["distance_m"])
+        self.assertEqual(found.largest_move_of, case["largest_move"]["of"])
         self.assertEqual(found.left_out, case["left_out"])
         held = taut.load(PUSH).robot
         self.assertEqual(list(taut.analyze(held).tension_n), list(found.tension_n))

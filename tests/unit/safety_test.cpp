@@ -53,11 +53,14 @@ TEST(Safety, FactorsAreThoseOfTheHandbook) {
   EXPECT_EQ(loads[0].name, "rope");
   EXPECT_EQ(*loads[0].strength, 5);
   EXPECT_EQ(*loads[0].slackening, 3);  // half as much load took a third of it
-  EXPECT_EQ(loads[0].LeastOf(), "slack");
+  // A cable that gets slack at 3 times the load breaks at 5 times: two numbers, not one.
+  EXPECT_EQ(loads[0].LeastOf(), "strength");
+  EXPECT_EQ(*loads[0].Least(), 5);
   EXPECT_FALSE(loads[0].slack);
   EXPECT_TRUE(loads[1].slack);
   EXPECT_EQ(*loads[1].slackening, 1);
   EXPECT_FALSE(loads[1].strength);
+  EXPECT_FALSE(loads[1].Least()) << "slack is no failure";
   // I = 2700.97 mm^4, A = 59.690 mm^2: Euler 2488.0 N over 1.5 m, yield 14 027 N.
   EXPECT_EQ(loads[2].kind, MemberKind::kBar);
   EXPECT_NEAR(*loads[2].buckling, 2488.0 / 2000, 1e-4);

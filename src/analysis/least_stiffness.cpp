@@ -1,0 +1,98 @@
+// Least stiffness of a structure (docs/theory/statics.md, eq. 16).
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/members.h"
+#include "analysis/point_metric.h"
+#include "analysis/whole_motions.h"
+#include "taut/analysis.h"
+
+namespace taut {
+namespace analysis {
+namespace {
+
+constexpr double kUnmeasured = 1e-9;  ///< Of the largest eigenvalue of a body's metric.
+
+/// The columns of `effective` that are motions of body `b`, in its six motions.
+Eigen::MatrixXd MotionsOfBody(const Eigen::MatrixXd& effective, Eigen::Index b) {
+  const Eigen::MatrixXd rows = effective.middleRows(6 * b, 6);
+  Eigen::MatrixXd own(6, 0);
+  for (Eigen::Index i = 0; i < rows.cols(); ++i) {
+    if (rows.col(i).norm() == 0) continue;
+    own.conservativeResize(Eigen::NoChange, own.cols() + 1);
+    own.rightCols(1) = rows.col(i);
+  }
+  return own;
+}
+
+/// Directions in the columns of `own` that `metric` hardly measures.
+Eigen::MatrixXd Unmeasured(const Eigen::MatrixXd& metric, const Eigen::MatrixXd& own) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(own.transpose() * metric * own);
+  const Eigen::VectorXd& values = solver.eigenvalues();
+  const double least = kUnmeasured * std::max(1.0, values.maxCoeff());
+  Eigen::Index count = 0;
+  while (count < values.size() && values[count] <= least) ++count;
+  return solver.eigenvectors().leftCols(count);
+}
+
+}  // namespace
+
+Eigen::MatrixXd PointMetric(const ModelDef& def, const Structure& s) {
+  Eigen::MatrixXd metric = Eigen::MatrixXd::Zero(s.motions(), s.motions());
+  for (const Anchor& place : PlacesOf(def, s)) {
+    const Eigen::MatrixXd moves = MovesOf(s, place);
+    metric += moves.transpose() * moves;
+  }
+  const Eigen::MatrixXd effective = s.Effective(s.start, true);
+  for (Eigen::Index b = 0; 6 * b < s.motions(); ++b) {
+    const Eigen::MatrixXd own = MotionsOfBody(effective, b);
+    auto block = metric.block(6 * b, 6 * b, 6, 6);
+    if (Unmeasured(block, own).cols() == 0) continue;
+    block.topLeftCorner(3, 3) += Eigen::Matrix3d::Identity();
+    const Eigen::MatrixXd left = Unmeasured(block, own);
+    if (left.cols() == 0) continue;
+    // From motions to the coordinates of `own`, in which all are lengths.
+    const Eigen::MatrixXd measured =
+        left.transpose() * (own.transpose() * own).ldlt().solve(own.transpose());
+    block += measured.transpose() * measured;
+  }
+  return metric;
+}
+
+Eigen::VectorXd EigenvaluesOver(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& metric,
+                                const Eigen::MatrixXd& motions) {
+  const Eigen::LLT<Eigen::MatrixXd> root(motions.transpose() * metric * motions);
+  if (motions.cols() == 0 || root.info() != Eigen::Success) return {};
+  const Eigen::MatrixXd lower = root.matrixL();
+  Eigen::MatrixXd half = motions.transpose() * stiffness * motions;
+  lower.triangularView<Eigen::Lower>().solveInPlace(half);
+  half.transposeInPlace();
+  lower.triangularView<Eigen::Lower>().solveInPlace(half);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (half + half.transpose()));
+  return solver.eigenvalues();
+}
+
+}  // namespace analysis
+
+std::optional<double> LeastStiffness(const ModelDef& def, const LoadCaseSpec& loads) {
+  using namespace analysis;        // NOLINT(google-build-using-namespace): this function alone
+  constexpr double kZero = 1e-12;  // of the largest eigenvalue: rounding
+  const Structure s(def, loads, true);
+  if (s.bodies.empty()) return std::nullopt;
+  const Reactions holding = ReactionsAsDescribed(s, kNearPlane * s.size_m);
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd stiffness;
+  s.Energy(s.start, gradient, &stiffness);
+  s.AddReactions(s.start, holding, gradient, &stiffness);
+  const Eigen::MatrixXd metric = PointMetric(def, s);
+  const FreeMotions free = FreeMotionsOf(def, s, stiffness, metric, HeldDirections(s, holding));
+  const Eigen::VectorXd values =
+      EigenvaluesOver(stiffness, metric, free.basis.rightCols(free.basis.cols() - free.rigid));
+  if (values.size() == 0) return std::nullopt;
+  const double least = values[0];
+  return std::fabs(least) > kZero * values.cwiseAbs().maxCoeff() ? least : 0;
+}
+
+}  // namespace taut

@@ -1,0 +1,337 @@
+// Motions that supports leave free, and load cases that move the structure along them
+// (docs/theory/statics.md, section 4).
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "analysis/members.h"
+#include "analysis/whole_motions.h"
+#include "math/vec.h"
+#include "taut/analysis.h"
+
+namespace taut {
+namespace analysis {
+namespace {
+
+constexpr double kSmall = 1e-9;
+
+std::string Number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value == 0 ? 0.0 : value);
+  return text;
+}
+/// Rounding is not shown: `size` is the scale of the components.
+std::string Text(const Vec3& a, double size) {
+  const auto part = [&](double x) { return Number(std::fabs(x) < kSmall * size ? 0 : x); };
+  return "(" + part(a.x) + ", " + part(a.y) + ", " + part(a.z) + ")";
+}
+
+/// Joins "x", "y", "z" as "x, y and z".
+std::string Joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i > 0) text += i + 1 == parts.size() ? " and " : ", ";
+    text += parts[i];
+  }
+  return text;
+}
+
+/// An orthonormal basis of the columns' span by coordinate axes where these lie in it.
+std::vector<Vec3> AxesIn(const Eigen::MatrixXd& span) {
+  std::vector<Vec3> axes;
+  Eigen::MatrixXd rest = span;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d unit = Eigen::Vector3d::Unit(i);
+    if ((span.transpose() * unit).norm() < 1 - kSmall) continue;
+    axes.push_back(To(unit));
+    rest -= unit * (unit.transpose() * rest).eval();
+  }
+  const Eigen::Index left = span.cols() - static_cast<Eigen::Index>(axes.size());
+  if (left <= 0) return axes;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rest, Eigen::ComputeThinU);
+  for (Eigen::Index i = 0; i < left; ++i) {
+    Eigen::Vector3d unit = svd.matrixU().col(i);
+    Eigen::Index largest = 0;
+    unit.cwiseAbs().maxCoeff(&largest);
+    if (unit[largest] < 0) unit = -unit;
+    axes.push_back(To(unit));
+  }
+  return axes;
+}
+
+std::string AxisName(const Vec3& axis) {
+  const std::array<std::pair<double, const char*>, 3> parts{
+      {{axis.x, "x"}, {axis.y, "y"}, {axis.z, "z"}}};
+  for (const auto& [part, name] : parts) {
+    if (part == 1) return name;
+  }
+  return Text(axis, 1);
+}
+
+/// Rigid motions in words.
+class Words {
+ public:
+  Words(const Structure& s, const Component& component, const Eigen::MatrixXd& twists)
+      : s_(s), component_(component), twists_(twists) {}
+
+  std::vector<std::string> Run() {
+    const Eigen::MatrixXd turns = twists_.bottomRows(3);
+    const Eigen::MatrixXd still = twists_ * Nothing(turns, kSmall);
+    std::vector<std::string> moves;
+    for (const Vec3& axis : AxesIn(still.topRows(3))) moves.push_back(AxisName(axis));
+    if (!moves.empty()) out_.push_back("translate along " + Joined(moves));
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(turns, Eigen::ComputeThinU);
+    const Eigen::Index count = twists_.cols() - still.cols();
+    for (const Vec3& axis : AxesIn(svd.matrixU().leftCols(count))) AddTurn(turns, axis);
+    for (const auto& [line, axes] : lines_) out_.push_back("rotate about " + Joined(axes) + line);
+    return out_;
+  }
+
+ private:
+  void AddTurn(const Eigen::MatrixXd& turns, const Vec3& axis) {
+    std::string line;
+    if (const Vec3* const held = HeldPointOn(axis)) {
+      line = " through " + Text(*held, s_.size_m);
+    } else {
+      const Eigen::VectorXd share = turns.completeOrthogonalDecomposition().solve(Of(axis));
+      // Per turn of 1 rad; the third part of a twist is a turn times the size.
+      const Vec3 slide = s_.size_m * To(twists_.topRows(3) * share);
+      const double pitch = Dot(axis, slide);
+      line = " through " + Text(component_.middle_m + Cross(axis, slide), s_.size_m);
+      if (std::fabs(pitch) > 1e-6 * s_.size_m) {
+        line += " while it translates along that by " + Number(pitch) + " m/rad";
+      }
+    }
+    const auto known = std::find_if(lines_.begin(), lines_.end(),
+                                    [&](const auto& one) { return one.first == line; });
+    if (known == lines_.end()) {
+      lines_.push_back({line, {AxisName(axis)}});
+    } else {
+      known->second.push_back(AxisName(axis));
+    }
+  }
+
+  /// A point that holds the component, if turns about an axis through it are free; else null.
+  const Vec3* HeldPointOn(const Vec3& axis) const {
+    for (const auto* points : {&component_.held_points_m, &component_.joints_m}) {
+      for (const Vec3& held : *points) {
+        Eigen::VectorXd twist(6);
+        twist << Of((1 / s_.size_m) * Cross(held - component_.middle_m, axis)), Of(axis);
+        const Eigen::VectorXd rest = twist - twists_ * (twists_.transpose() * twist);
+        if (rest.norm() < kSmall * twist.norm()) return &held;
+      }
+    }
+    return nullptr;
+  }
+
+  const Structure& s_;
+  const Component& component_;
+  const Eigen::MatrixXd& twists_;
+  std::vector<std::pair<std::string, std::vector<std::string>>> lines_;
+  std::vector<std::string> out_;
+};
+
+/// Force and stiffness of the loads along rigid motions: of weight and loads, which keep their
+/// directions, of joints' springs, and of what joints with the world bear of them.
+struct LoadWork {
+  Eigen::VectorXd force;
+  Eigen::MatrixXd stiffness;
+  double scale_n = 0;  ///< Sum of the loads' sizes.
+};
+
+/// Of weight and loads alone.
+LoadWork WorkOfLoads(const Structure& s, const Component& component,
+                     const Eigen::MatrixXd& twists) {
+  const Eigen::Index count = twists.cols();
+  const Eigen::MatrixXd turns = (1 / s.size_m) * twists.bottomRows(3);
+  LoadWork work{Eigen::VectorXd::Zero(count), Eigen::MatrixXd::Zero(count, count)};
+  const auto add = [&](const Vec3& place, const Vec3& force) {
+    const Eigen::MatrixXd moves =
+        twists.topRows(3) - CrossMatrix(place - component.middle_m) * turns;
+    work.force += moves.transpose() * Of(force);
+    // The place of a point along exp(t (v, w)) has the second derivative w x (v + w x r).
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (Eigen::Index j = 0; j < count; ++j) {
+        const Vec3 bends =
+            Cross(To(turns.col(i)), To(moves.col(j))) + Cross(To(turns.col(j)), To(moves.col(i)));
+        work.stiffness(i, j) -= 0.5 * Dot(force, bends);
+      }
+    }
+    work.scale_n += std::sqrt(Dot(force, force));
+  };
+  for (const std::size_t b : component.bodies) add(s.start.center_m[b], s.weight_n[b]);
+  for (const Structure::Load& load : s.loads) {
+    if (component.Has(load.point.body)) add(PlaceOf(load.point, s.start), load.force_n);
+  }
+  return work;
+}
+
+LoadWork WorkOf(const Structure& s, const Component& component, const Eigen::MatrixXd& twists) {
+  LoadWork work = WorkOfLoads(s, component, twists);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(s.motions());
+  Eigen::MatrixXd springs = Eigen::MatrixXd::Zero(s.motions(), s.motions());
+  for (const PlacedJoint& joint : s.joints) {
+    const bool mine = component.Has(std::max(joint.a.body, joint.b.body));
+    if (!mine || joint.def.stiffness == 0 || IsBar(joint.def)) continue;
+    Add(SpringEnergyAt(joint, s.start), 1, 0, gradient, &springs);
+  }
+  const Eigen::MatrixXd motions = MotionsOf(s, component, twists);
+  work.force -= motions.transpose() * gradient;
+  work.stiffness += motions.transpose() * springs * motions;
+
+  // Joints that slide or turn: a twist's path leaves what they hold by a second order, against
+  // the forces with which they bear the loads.
+  const std::vector<Coordinate> held = RowsWithWorld(s, component);
+  if (held.empty()) return work;
+  const Eigen::MatrixXd all = Eigen::MatrixXd::Identity(6, 6);
+  const Eigen::MatrixXd slopes = SlopesAlong(held, s, component, all);
+  const Eigen::MatrixXd anchors = AnchorRows(s, component);
+  Eigen::MatrixXd bearing(6, slopes.rows() + anchors.rows());
+  bearing << slopes.transpose(), anchors.transpose();
+  const Eigen::VectorXd forces =
+      bearing.completeOrthogonalDecomposition().solve(WorkOfLoads(s, component, all).force);
+  for (std::size_t r = 0; r < held.size(); ++r) {
+    work.stiffness +=
+        forces[static_cast<Eigen::Index>(r)] * SecondAlong(held[r], s, component, twists);
+  }
+  return work;
+}
+
+/// What the loads do along free motions.
+enum class Effect { kNone, kPushes, kTopples };
+
+/// Whether a force acts along a motion in which nothing resists it.
+bool Pushes(const Eigen::VectorXd& force, const Eigen::MatrixXd& stiffness, double least_n,
+            double least_n_per_m) {
+  if (force.size() == 0) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness);
+  for (Eigen::Index i = 0; i < force.size(); ++i) {
+    const double along_n = solver.eigenvectors().col(i).dot(force);
+    if (solver.eigenvalues()[i] <= least_n_per_m && std::fabs(along_n) > least_n) return true;
+  }
+  return false;
+}
+
+Effect EffectOf(const LoadWork& work, const Eigen::MatrixXd& twists, double size_m, bool held) {
+  const double least_n = kSmall * work.scale_n, least_n_per_m = least_n / size_m;
+  if (!(least_n > 0)) return Effect::kNone;
+  // Translations first: forces along them make the stiffness of turns depend on the turns' axes.
+  const Eigen::MatrixXd still = Nothing(twists.bottomRows(3), kSmall);
+  const Eigen::MatrixXd springs = still.transpose() * work.stiffness * still;
+  if (Pushes(still.transpose() * work.force, springs, least_n, least_n_per_m)) {
+    return Effect::kPushes;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(work.stiffness);
+  if (held && solver.eigenvalues()[0] < -least_n_per_m) return Effect::kTopples;
+  return Pushes(work.force, work.stiffness, least_n, least_n_per_m) ? Effect::kPushes
+                                                                    : Effect::kNone;
+}
+
+}  // namespace
+}  // namespace analysis
+
+SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads) {
+  using namespace analysis;  // NOLINT(google-build-using-namespace): this function alone
+  // As described: a support that settles takes the structure with it.
+  LoadCaseSpec dead = loads;
+  dead.settlements.clear(), dead.cables.clear(), dead.bars.clear();
+  const Structure s(def, dead, true);
+  SupportCheck out;
+  if (s.bodies.empty()) return out;
+  std::vector<Coordinate> measured;
+  for (const MemberTerm& term : MembersOf(def, s, kNearPlane * s.size_m)) {
+    measured.push_back(term.at);
+  }
+  const Eigen::MatrixXd effective = s.Effective(s.start, true);
+  const std::vector<Component> components = ComponentsOf(def, s);
+  for (const Component& component : components) {
+    Eigen::MatrixXd twists = TwistsOf(s, component);
+    const Eigen::MatrixXd changes = SlopesAlong(measured, s, component, twists);
+    twists = twists * Nothing(changes, kSmall);
+    const Eigen::MatrixXd motions = EffectivePart(effective, MotionsOf(s, component, twists));
+    if (twists.cols() == 0) continue;
+    // Without twists that only turn points and rods about themselves.
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(motions, Eigen::ComputeFullV);
+    Eigen::Index rank = 0;
+    while (rank < svd.singularValues().size() && svd.singularValues()[rank] > kSmall) ++rank;
+    if (rank == 0) continue;
+    twists = twists * svd.matrixV().leftCols(rank);
+    const std::string part =
+        components.size() == 1
+            ? "the structure"
+            : "the part with body \"" +
+                  def.bodies[static_cast<std::size_t>(s.bodies[component.bodies[0]])].name + "\"";
+    const std::string moves = part + " can still " + Joined(Words(s, component, twists).Run());
+    out.free += static_cast<int>(rank);
+    out.free_motions.push_back(moves);
+    const bool ground = !s.touches.empty();  // it may bear what comes down on it
+    const Effect effect =
+        EffectOf(WorkOf(s, component, twists), twists, s.size_m, component.IsHeld());
+    if (ground || effect == Effect::kNone || !out.missing.empty()) continue;
+    const bool topples = effect == Effect::kTopples;
+    out.missing = moves + ", and the loads " + (topples ? "topple it" : "push it along");
+    out.fix = "no member resists " + std::string(rank == 1 ? "this motion" : "these motions") +
+              ": add an anchor or a support at nodes that move in it, " + std::to_string(rank) +
+              (rank == 1 ? " held direction" : " held directions") + " or more in all";
+  }
+  return out;
+}
+
+Move LargestMove(const ModelDef& def, const Pose& pose) {
+  using namespace analysis;  // NOLINT(google-build-using-namespace): this function alone
+  LoadCaseSpec nothing;
+  nothing.weight = false;
+  const Structure s(def, nothing, true);
+  Move out;
+  out.size_m = s.size_m;
+  std::vector<std::string> names;
+  std::vector<Vec3> before, after;
+  const auto add = [&](const std::string& name, int body, const Vec3& place) {
+    if (s.Moving(body) < 0) return;
+    const std::size_t b = static_cast<std::size_t>(body);
+    const BodyState& there = pose.bodies[b];
+    names.push_back(name), before.push_back(place);
+    after.push_back(there.position_m + Rotate(there.orientation, place - def.bodies[b].com_m));
+  };
+  for (const NodeDef& node : def.nodes)
+    add("node \"" + node.name + "\"", node.body, node.position_m);
+  for (const int body : s.bodies) {
+    const BodyDef& one = def.bodies[static_cast<std::size_t>(body)];
+    add("body \"" + one.name + "\"", body, one.com_m);
+  }
+  if (before.empty()) return out;
+  Vec3 middle, moved;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  if (!s.held_by_world) {
+    // The rigid motion that fits best is no matter of statics: it takes the middle to the middle,
+    // and turns by the rotation nearest to the sum of after before^T.
+    const double share = 1.0 / static_cast<double>(before.size());
+    for (const Vec3& p : before) middle = middle + share * p;
+    for (const Vec3& p : after) moved = moved + share * p;
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      sum += Of(after[i] - moved) * Of(before[i] - middle).transpose();
+    }
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Vector3d sign(1, 1,
+                         (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
+    turn = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  }
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double distance_m = (Of(after[i] - moved) - turn * Of(before[i] - middle)).norm();
+    if (distance_m > out.distance_m) out.distance_m = distance_m, out.name = names[i];
+  }
+  return out;
+}
+
+std::string Move::Warning() const {
+  if (distance_m <= kFar * size_m) return "";
+  return name + " moves by " + analysis::Number(distance_m) +
+         " m, more than a quarter of the structure's size of " + analysis::Number(size_m) + " m";
+}
+
+}  // namespace taut

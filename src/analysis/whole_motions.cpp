@@ -1,0 +1,250 @@
+#include "analysis/whole_motions.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "analysis/tangent.h"
+#include "math/vec.h"
+
+namespace taut::analysis {
+namespace {
+
+/// Groups of the moving bodies.
+class Groups {
+ public:
+  explicit Groups(std::size_t count) : of_(count) { std::iota(of_.begin(), of_.end(), 0); }
+  std::size_t Root(std::size_t b) const {
+    while (of_[b] != b) b = of_[b];
+    return b;
+  }
+  /// `b` and `a` are among those that move, or -1.
+  void Join(int a, int b) {
+    if (a < 0 || b < 0) return;
+    const std::size_t one = Root(static_cast<std::size_t>(a));
+    const std::size_t other = Root(static_cast<std::size_t>(b));
+    of_[std::max(one, other)] = std::min(one, other);
+  }
+
+ private:
+  std::vector<std::size_t> of_;
+};
+
+/// The first body of a cable that moves, or -1.
+int MovingOf(const Structure& s, const CableDef& cable) {
+  for (const AttachmentDef& at : cable.attachments) {
+    if (s.Moving(at.body) >= 0) return s.Moving(at.body);
+  }
+  return -1;
+}
+
+/// Of `twists`, those that joints with the world allow for more than a first order. Where their
+/// rows depend on each other, forces among them (`loads`, a state of self-stress of the frozen
+/// component) may resist in the second order, as two guides resist a rod that fits across them.
+Eigen::MatrixXd AllowedByJoints(const Structure& s, const Component& component,
+                                const Eigen::MatrixXd& twists) {
+  constexpr double kFirst = 1e-9, kSecond = 1e-6;
+  const std::vector<Coordinate> held = RowsWithWorld(s, component);
+  if (held.empty()) return twists;
+  const Eigen::MatrixXd rows = SlopesAlong(held, s, component, Eigen::MatrixXd::Identity(6, 6));
+  const Eigen::MatrixXd first = twists * Nothing(rows * twists, kFirst);
+  const Eigen::MatrixXd loads = Nothing(rows.transpose(), kFirst);
+  if (first.cols() == 0 || loads.cols() == 0) return first;
+  std::vector<Eigen::MatrixXd> second;
+  for (const Coordinate& row : held) second.push_back(SecondAlong(row, s, component, first));
+  Eigen::MatrixXd resisted = Eigen::MatrixXd::Zero(loads.cols() * first.cols(), first.cols());
+  for (Eigen::Index state = 0; state < loads.cols(); ++state) {
+    auto block = resisted.middleRows(state * first.cols(), first.cols());
+    for (std::size_t r = 0; r < held.size(); ++r) {
+      block += s.size_m * loads(static_cast<Eigen::Index>(r), state) * second[r];
+    }
+  }
+  return first * Nothing(resisted, kSecond);
+}
+
+}  // namespace
+
+bool Component::Has(int moving) const {
+  return moving >= 0 &&
+         std::find(bodies.begin(), bodies.end(), static_cast<std::size_t>(moving)) != bodies.end();
+}
+
+std::vector<Component> ComponentsOf(const ModelDef& def, const Structure& s) {
+  Groups groups(s.bodies.size());
+  for (const CableDef& cable : def.cables) {
+    for (const AttachmentDef& at : cable.attachments) {
+      groups.Join(MovingOf(s, cable), s.Moving(at.body));
+    }
+  }
+  for (const PlacedJoint& joint : s.joints) groups.Join(joint.a.body, joint.b.body);
+  std::vector<Component> out;
+  std::vector<std::size_t> number(s.bodies.size());
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const std::size_t root = groups.Root(b);
+    if (root == b) number[b] = out.size(), out.emplace_back();
+    out[number[root]].bodies.push_back(b);
+  }
+  for (Component& component : out) {
+    for (const std::size_t b : component.bodies) {
+      component.middle_m =
+          component.middle_m +
+          (1.0 / static_cast<double>(component.bodies.size())) * s.start.center_m[b];
+    }
+  }
+  const auto of = [&](int moving) -> Component& {
+    return out[number[groups.Root(static_cast<std::size_t>(moving))]];
+  };
+  for (const CableDef& cable : def.cables) {
+    const int moving = MovingOf(s, cable);
+    if (moving < 0) continue;
+    for (const AttachmentDef& at : cable.attachments) {
+      if (s.Moving(at.body) >= 0) continue;
+      of(moving).held_points_m.push_back(at.position_m);
+      if (at.wheel) of(moving).held_axes.push_back(at.wheel->axis);
+    }
+  }
+  for (const PlacedJoint& joint : s.joints) {
+    if ((joint.a.body < 0) == (joint.b.body < 0)) continue;
+    const Anchor& in_world = joint.a.body < 0 ? joint.a : joint.b;
+    Component& component = of(std::max(joint.a.body, joint.b.body));
+    const bool distance = joint.def.kind == JointKind::kDistance;
+    (distance ? component.held_points_m : component.joints_m).push_back(in_world.at_m);
+  }
+  return out;
+}
+
+Eigen::MatrixXd AnchorRows(const Structure& s, const Component& component) {
+  const std::vector<Vec3>&points = component.held_points_m, &axes = component.held_axes;
+  Eigen::MatrixXd rows =
+      Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(points.size() + axes.size()), 6);
+  Eigen::Index row = 0;
+  for (const Vec3& point : points) {
+    rows.block<3, 3>(row, 0) = Eigen::Matrix3d::Identity();
+    rows.block<3, 3>(row, 3) = -CrossMatrix((1 / s.size_m) * (point - component.middle_m));
+    row += 3;
+  }
+  for (const Vec3& axis : axes) {
+    rows.block<3, 3>(row, 3) = CrossMatrix(axis);
+    row += 3;
+  }
+  return rows;
+}
+
+std::vector<Coordinate> RowsWithWorld(const Structure& s, const Component& component) {
+  std::vector<Coordinate> rows;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const PlacedJoint& joint = s.joints[s.rows[r].joint];
+    const int moving = std::max(joint.a.body, joint.b.body);
+    const bool with_world = (joint.a.body < 0) != (joint.b.body < 0);
+    if (with_world && component.Has(moving)) rows.push_back(s.RowAt(r, s.start));
+  }
+  return rows;
+}
+
+Eigen::MatrixXd SlopesAlong(const std::vector<Coordinate>& coordinates, const Structure& s,
+                            const Component& component, const Eigen::MatrixXd& twists) {
+  const Eigen::MatrixXd motions = MotionsOf(s, component, twists);
+  Eigen::MatrixXd slopes(static_cast<Eigen::Index>(coordinates.size()), twists.cols());
+  for (std::size_t c = 0; c < coordinates.size(); ++c) {
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(s.motions());
+    Add(coordinates[c], 1, 0, slope, nullptr);
+    slopes.row(static_cast<Eigen::Index>(c)) = slope.transpose() * motions;
+  }
+  return slopes;
+}
+
+Eigen::MatrixXd SecondAlong(const Coordinate& c, const Structure& s, const Component& component,
+                            const Eigen::MatrixXd& twists) {
+  const Eigen::MatrixXd motions = MotionsOf(s, component, twists);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(s.motions());
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(s.motions(), s.motions());
+  Add(c, 1, 0, gradient, &hessian);
+  Eigen::MatrixXd second = motions.transpose() * hessian * motions;
+  // Centers of mass leave the straight line by w x (v + w x r) / 2; turns are exp(t w) in the
+  // chart.
+  for (const std::size_t b : component.bodies) {
+    const Eigen::Index at = 6 * static_cast<Eigen::Index>(b);
+    const Vec3 slope = To(gradient.segment<3>(at));
+    const auto move = [&](Eigen::Index i) { return To(motions.block<3, 1>(at, i)); };
+    const auto turn = [&](Eigen::Index i) { return To(motions.block<3, 1>(at + 3, i)); };
+    for (Eigen::Index i = 0; i < twists.cols(); ++i) {
+      for (Eigen::Index j = 0; j < twists.cols(); ++j) {
+        second(i, j) += 0.5 * Dot(slope, Cross(turn(i), move(j)) + Cross(turn(j), move(i)));
+      }
+    }
+  }
+  return second;
+}
+
+Eigen::MatrixXd TwistsOf(const Structure& s, const Component& component) {
+  return AllowedByJoints(s, component, Nothing(AnchorRows(s, component), 1e-9));
+}
+
+Eigen::MatrixXd MotionsOf(const Structure& s, const Component& component,
+                          const Eigen::MatrixXd& twists) {
+  Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(s.motions(), twists.cols());
+  const Eigen::MatrixXd turns = (1 / s.size_m) * twists.bottomRows(3);
+  for (const std::size_t b : component.bodies) {
+    const Eigen::Index at = 6 * static_cast<Eigen::Index>(b);
+    motions.middleRows(at, 3) =
+        twists.topRows(3) - CrossMatrix(s.start.center_m[b] - component.middle_m) * turns;
+    motions.middleRows(at + 3, 3) = turns;
+  }
+  return motions;
+}
+
+Eigen::MatrixXd WholeMotions(const ModelDef& def, const Structure& s) {
+  Eigen::MatrixXd all(s.motions(), 0);
+  for (const Component& component : ComponentsOf(def, s)) {
+    const Eigen::MatrixXd own = MotionsOf(s, component, TwistsOf(s, component));
+    all.conservativeResize(Eigen::NoChange, all.cols() + own.cols());
+    all.rightCols(own.cols()) = own;
+  }
+  return all;
+}
+
+Eigen::MatrixXd EffectivePart(const Eigen::MatrixXd& effective, const Eigen::MatrixXd& motions) {
+  return effective *
+         (effective.transpose() * effective).ldlt().solve(effective.transpose() * motions);
+}
+
+Eigen::MatrixXd Nothing(const Eigen::MatrixXd& rows, double limit) {
+  if (rows.rows() == 0) return Eigen::MatrixXd::Identity(rows.cols(), rows.cols());
+  if (rows.cols() == 0) return Eigen::MatrixXd(0, 0);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeFullV);
+  Eigen::Index rank = 0;
+  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > limit) ++rank;
+  return svd.matrixV().rightCols(rows.cols() - rank);
+}
+
+FreeMotions FreeMotionsOf(const ModelDef& def, const Structure& s, const Eigen::MatrixXd& stiffness,
+                          const Eigen::MatrixXd& weight, const Eigen::MatrixXd& held) {
+  const Eigen::MatrixXd effective = s.Effective(s.start, true);
+  const Eigen::MatrixXd unheld =
+      effective * Nothing(held.transpose() * effective, 1e-9 / std::max(1.0, s.size_m));
+  FreeMotions out{unheld, 0};
+  if (unheld.cols() == 0) return out;
+  // Turns that count for nothing are left out of a rigid motion, too; of points in a row, or of a
+  // single one, some turns are nothing.
+  const Eigen::MatrixXd rigid = SpanOf(EffectivePart(effective, WholeMotions(def, s)));
+  if (rigid.cols() == 0) return out;
+  const double most = (unheld.transpose() * stiffness * unheld).cwiseAbs().maxCoeff();
+  // Where nothing resists, there is round-off of what holds.
+  const bool resists = most > 1e-12 * stiffness.cwiseAbs().maxCoeff();
+  Eigen::MatrixXd resisted(held.cols() + s.motions(), rigid.cols());
+  resisted << held.transpose() * rigid,
+      (resists ? 1 / most : 0.0) * (effective * (effective.transpose() * stiffness * rigid));
+  const Eigen::MatrixXd whole = rigid * Nothing(resisted, 1e-11);
+  out.rigid = whole.cols();
+  if (out.rigid == 0) return out;
+  // Orthogonal to them by weight: the motions of `unheld` without momentum along them.
+  const Eigen::MatrixXd momenta = whole.transpose() * weight * unheld;
+  const Eigen::MatrixXd rest = unheld * Nothing(momenta, 1e-12 * momenta.norm());
+  out.basis.resize(s.motions(), whole.cols() + rest.cols());
+  out.basis << whole, rest;
+  return out;
+}
+
+}  // namespace taut::analysis
