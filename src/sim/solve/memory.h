@@ -99,18 +99,19 @@ template <class W>
 struct JointMemory {
   Unknown<W>* bodies;
   JointRow<W>* rows;
-  W *G, *miss;      ///< Per row.
-  W *rhs, *change;  ///< 6 a body; rhs: also of those with motions, which do not change.
-  W* moved;         ///< Per body: how far the last displacement moved any of its points [m],
-  V3<W>* gained;    ///< and the angular momentum that it gained by it.
-  W* blocks;        ///< 36 a block.
+  W *G, *gap, *miss, *l;  ///< Per row.
+  W *rhs, *change;        ///< 6 a body; rhs: also of those with motions, which do not change.
+  W* moved;               ///< Per body: how far the last displacement moved any of its points [m],
+  V3<W>* gained;          ///< and the angular momentum that it gained by it.
+  W* blocks;              ///< 36 a block.
 
   void Take(const View& m, Room& room) noexcept {
     const int64_t n = m.joint_body_count;
     const int64_t with_motions = n + (m.joint_count > 0 ? m.motion_count : 0);
     bodies = room.Take<Unknown<W>>(n);
     rows = room.Take<JointRow<W>>(m.joint_row_count);
-    G = room.Take<W>(m.joint_row_count), miss = room.Take<W>(m.joint_row_count);
+    W** const per_row[] = {&G, &gap, &miss, &l};
+    for (W** list : per_row) *list = room.Take<W>(m.joint_row_count);
     rhs = room.Take<W>(kDofs * with_motions), change = room.Take<W>(kDofs * n);
     moved = room.Take<W>(n), gained = room.Take<V3<W>>(n);
     blocks = room.Take<W>(36 * static_cast<int64_t>(m.joint_pattern->lower_count));
