@@ -1,6 +1,6 @@
-/// What joints hold, as one linear system over the bodies that they move, in all lanes: the least
-/// change, by mass, that brings all rows to what is wanted (docs/theory/joints.md, eq. 7). It
-/// closes gaps at the end of a step, and makes guesses of velocities agree around loops.
+/// Projections onto what joints hold, as one linear system over the bodies that they move, in all
+/// lanes: the least change, by mass, that brings all rows to what is wanted (docs/theory/joints.md,
+/// eq. 7, 7a). At the end of a step it projects velocities and closes gaps.
 ///
 /// Which bodies, rows and blocks there are follows from the model. Redundant rows share what they
 /// carry: each is softened by a share of its own inverse mass, and a second pass takes back what
@@ -16,7 +16,6 @@ TAUT_INLINE W MissOf(JointMeasure measure, const JointTable& j, W value) noexcep
 
 template <class W>
 class JointSystem {
-  static constexpr double kCompliance = 1e-7;
   static constexpr int kPasses = 2;
 
  public:
@@ -27,33 +26,31 @@ class JointSystem {
         mem_(work.joint_memory),
         matrix_(*m.joint_pattern, mem_.blocks) {}
 
-  /// `inertia(body)`: in W, what turns cost; `place(joint)`: where it is.
-  template <class F, class G>
-  void Assemble(const F& inertia, const G& place) noexcept {
+  /// Of where the bodies are.
+  void Assemble() noexcept {
     for (int k = 0; k < m_.joint_body_count; ++k) {
       const int b = m_.joint_bodies[k];
       Unknown<W>& body = mem_.bodies[k];
       body.body = b, body.size = kDofs;
       body.mass = s_.mass[b], body.inv_mass = s_.inv_mass[b];
-      body.inertia = inertia(b);
+      body.inertia = Congruence(work_.bodies[b].R, s_.inertia[b]);
     }
     matrix_.Start(mem_.bodies, true);
     rows_ = 0;
     for (int i = 0; i < m_.joint_count; ++i) {
       const JointTable& j = m_.joints[i];
-      const JointPlace<W> p = place(i);
-      const JointInertias<W> inertias(s_, work_, j);
+      const JointPlace<W> p = PlaceOf(m_, s_, j, work_.bodies[j.a].R, work_.bodies[j.b].R);
       for (int r = j.first_row; r < j.first_row + j.row_count; ++r) {
         const JointRowTable& table = m_.joint_rows[r];
         if (table.role != JointRole::kHold) break;
         const JointDirection<W> d = DirectionOf(j, table.measure, p, W::Splat(0.0));
         JointRow<W>& row = mem_.rows[rows_];
-        SetJointLinks(s_, work_, j, inertias, p, d, IsTurn(table.measure), row);
+        SetJointLinks(s_, work_, j, p, d, row);
         for (int k = 0; k < row.link_count; ++k) {
           row.links[k].body = m_.joint_number[row.links[k].body];
         }
-        mem_.G[rows_] = W::Splat(1.0) / (W::Splat(kCompliance) * row.A);
-        mem_.miss[rows_] = MissOf(table.measure, j, d.value);
+        mem_.G[rows_] = W::Splat(1.0) / (W::Splat(kHeldCompliance) * row.A);
+        mem_.gap[rows_] = MissOf(table.measure, j, d.value);
         matrix_.Add(row, &mem_.G[rows_]);
         ++rows_;
       }
@@ -61,16 +58,18 @@ class JointSystem {
     matrix_.Factor();
   }
 
-  /// By how much rows miss what is wanted, at the place.
-  void Miss(int row, W by) noexcept { mem_.miss[row] = by; }
-  int rows() const noexcept { return rows_; }
+  const JointRow<W>& row(int r) const noexcept { return mem_.rows[r]; }
 
-  /// Velocities (or displacements) by which no row misses it any more: change(k), by the number of
-  /// the body.
-  void Solve() noexcept {
+  W gap(int r) const noexcept { return mem_.gap[r]; }
+
+  /// Impulses by which no row has its velocity `miss(row)` any more (or displacements, its gap),
+  /// and what they change of velocities: impulse(row), change(k) by the number of the body.
+  template <class F>
+  void Solve(const F& miss) noexcept {
     const W zero = W::Splat(0.0);
     const int size = kDofs * m_.joint_body_count;
     for (int i = 0; i < size; ++i) mem_.change[i] = zero;
+    for (int r = 0; r < rows_; ++r) mem_.miss[r] = miss(r), mem_.l[r] = zero;
     for (int pass = 0; pass < kPasses; ++pass) {
       for (int i = 0; i < size + kDofs * m_.motion_count; ++i) mem_.rhs[i] = zero;
       for (int r = 0; r < rows_; ++r) {
@@ -81,23 +80,16 @@ class JointSystem {
         }
       }
       matrix_.Solve(mem_.rhs);
-      for (int r = 0; r < rows_; ++r) mem_.miss[r] += RateBy(mem_.rows[r], mem_.rhs);
+      for (int r = 0; r < rows_; ++r) {
+        mem_.miss[r] += RateBy(mem_.rows[r], mem_.rhs);
+        mem_.l[r] -= mem_.G[r] * mem_.miss[r];
+      }
       for (int i = 0; i < size; ++i) mem_.change[i] += mem_.rhs[i];
     }
   }
+  W impulse(int r) const noexcept { return mem_.l[r]; }
   Twist<W> change(int k) const noexcept {
     return Island<W, Pools<JointRow<W>>>::Load(mem_.change + kDofs * k);
-  }
-
-  /// A row's velocity at the velocities of bodies, by their numbers in the world.
-  W RateAt(int row, const Twist<W>* of) const noexcept {
-    W u = W::Splat(0.0);
-    const JointRow<W>& r = mem_.rows[row];
-    for (int k = 0; k < r.link_count; ++k) {
-      const Twist<W>& t = of[m_.joint_bodies[r.links[k].body]];
-      AddVelocity(r.links[k], t.v, t.w, &u);
-    }
-    return u;
   }
 
  private:
@@ -118,30 +110,57 @@ class JointSystem {
   int rows_ = 0;
 };
 
-/// Guessed velocities of the step's end that agree with what joints hold there: around loops the
-/// targets that follow from them do not contradict each other.
-template <class W>
-void AgreeGuesses(const View& m, const Rows<W>& s, Scratch<W>& work, W half_h) noexcept {
-  JointSystem<W> system(m, s, work);
-  // All turns cost alike: by mass a thin rod's turn about its axis would be nearly free, and a
-  // guess far off.
-  const auto same = [&](int b) {
-    const V3<W>& moments = s.inertia[b];
-    const W most = Max(moments.x, Max(moments.y, moments.z)), zero = W::Splat(0.0);
-    return S3<W>{most, most, most, zero, zero, zero};
+/// Projects velocities onto what joints hold, or by a share of the way (eq. 7a). Impulses do it, so
+/// energy can only fall and momenta stay. `given(body)`: the velocities of one that is prescribed.
+/// Calls took(number of the row in the model, impulse, row) for each.
+template <class W, class F, class G>
+void ProjectVelocities(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>& system,
+                       W share, const F& given, const G& took) noexcept {
+  const W zero = W::Splat(0.0);
+  const V3<W> none{zero, zero, zero};
+  const auto twist = [&](int number) {
+    const int b = m.joint_bodies[number];
+    if (number >= m.joint_body_count) return given(b);
+    return Twist<W>{s.vel[b], work.bodies[b].inv_inertia * s.mom[b]};
   };
-  system.Assemble(same, [&](int i) {
-    const JointTable& j = m.joints[i];
-    const JointPlace<W> p = PlaceOf(m, s, j, work.bodies[j.a].R, work.bodies[j.b].R);
-    return PlaceAfter(p, work.joint_guess[j.a], work.joint_guess[j.b], half_h);
+  system.Solve([&](int r) {
+    const JointRow<W>& row = system.row(r);
+    W u = zero;
+    for (int k = 0; k < row.link_count; ++k) {
+      const Twist<W> t = twist(row.links[k].body);
+      AddVelocity(row.links[k], t.v, t.w, &u);
+    }
+    return u;
   });
-  for (int r = 0; r < system.rows(); ++r) system.Miss(r, system.RateAt(r, work.joint_guess));
-  system.Solve();
-  for (int k = 0; k < m.joint_body_count; ++k) {
-    Twist<W>& guess = work.joint_guess[m.joint_bodies[k]];
-    const Twist<W> change = system.change(k);
-    guess.v += change.v, guess.w += change.w;
+  int r = 0;
+  for (int in_model = 0; in_model < m.joint_row_count; ++in_model) {
+    if (m.joint_rows[in_model].role != JointRole::kHold) continue;
+    const JointRow<W>& row = system.row(r);
+    const W l = share * system.impulse(r++);
+    for (int k = 0; k < row.link_count; ++k) {
+      const Link<W, 1>& link = row.links[k];
+      if (link.body >= m.joint_body_count) continue;
+      const int b = m.joint_bodies[link.body];
+      s.vel[b] += (link.inv_mass * l) * link.lin[0] + none;
+      s.mom[b] += l * link.ang[0] + none;
+    }
+    const bool is_pair = row.link_count == 2 && row.links[0].body < m.joint_body_count &&
+                         row.links[1].body < m.joint_body_count;
+    if (m.free_chain_count > 0 && is_pair) {
+      const int first = row.links[0].body, second = row.links[1].body;
+      work.joint_memory.gained[first] +=
+          l * GainOf(row, s.pos[m.joint_bodies[first]], s.pos[m.joint_bodies[second]]);
+    }
+    took(in_model, l, row);
   }
+}
+
+/// The displacements that close all joints, to first order, into joint_memory.change.
+template <class W>
+void FindClosing(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
+  JointSystem<W> system(m, s, work);
+  system.Assemble();
+  system.Solve([&](int r) { return system.gap(r); });
 }
 
 /// Of a chain by itself the angular momentum stays: it turns the slower for what its bodies have
@@ -193,16 +212,11 @@ void TurnJointedBodies(const View& m, const Rows<W>& s, Scratch<W>& work) noexce
 
 /// The least displacement of `lanes` that closes all gaps, to first order.
 template <class W>
-void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, MaskOf<W> lanes) noexcept {
+void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>& system,
+               MaskOf<W> lanes) noexcept {
   const W zero = W::Splat(0.0);  // + 0: see StageDriftSecond
   const V3<W> none{zero, zero, zero};
-  JointSystem<W> system(m, s, work);
-  system.Assemble([&](int b) { return Congruence(work.bodies[b].R, s.inertia[b]); },
-                  [&](int i) {
-                    const JointTable& j = m.joints[i];
-                    return PlaceOf(m, s, j, work.bodies[j.a].R, work.bodies[j.b].R);
-                  });
-  system.Solve();
+  system.Solve([&](int r) { return system.gap(r); });
   for (int k = 0; k < m.joint_body_count; ++k) {
     const int b = m.joint_bodies[k];
     Twist<W> change = system.change(k);
@@ -214,7 +228,7 @@ void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, MaskOf<W> lane
     s.quat[b] = {Select(lanes, q.w, s.quat[b].w) + zero, Select(lanes, q.x, s.quat[b].x) + zero,
                  Select(lanes, q.y, s.quat[b].y) + zero, Select(lanes, q.z, s.quat[b].z) + zero};
     const V3<W> turned = Turned(change.w, s.mom[b]);
-    work.joint_memory.gained[k] = (turned - s.mom[b]) + Cross(change.v, s.mass[b] * s.vel[b]);
+    work.joint_memory.gained[k] += (turned - s.mom[b]) + Cross(change.v, s.mass[b] * s.vel[b]);
     s.mom[b] = Select3(lanes, turned, s.mom[b]) + none;
     work.joint_memory.moved[k] = Norm1(change.v) + W::Splat(m.bound_m[b]) * Norm1(change.w);
   }
@@ -232,17 +246,78 @@ void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, MaskOf<W> lane
   }
 }
 
-/// Stage: closes what gaps the drifts have left in joints. Angular momenta turn with their bodies:
-/// a thin rod would take what it then has along its axis for a spin.
-///   reads   pos, quat     writes  pos, quat, vel, mom, bodies[].R, clearance
+/// What a motion has to hold and to do against an impulse on its body at the end of the step.
 template <class W>
-void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
+void AddToMotion(const View& m, const Rows<W>& s, const Scratch<W>& work, const Link<W, 1>& link,
+                 W impulse, W inv_h) noexcept {
+  const int b = m.joint_bodies[link.body];
+  int i = 0;
+  while (m.motions[i].body != b) ++i;
+  s.motion_force[i] -= (inv_h * impulse) * link.lin[0];
+  s.motion_torque[i] -= (inv_h * impulse) * link.ang[0];
+  const BodyWork<W>& body = work.bodies[b];
+  const W work_done = impulse * (Dot(link.lin[0], body.v) + Dot(link.ang[0], body.w));
+  s.motion_work[i] -= Select(s.halted[0] > W::Splat(0.0), W::Splat(0.0), work_done);
+}
+
+/// Stage: projects the velocities at the start of a world's first step, which are as its file or a
+/// program set them.
+///   reads   pos, quat     writes  vel, mom, bodies[].R
+template <class W>
+void StageJointStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  for (int b = 0; b < m.body_count; ++b) {
+    work.bodies[b].R = RotationOf(s.quat[b]);
+    work.bodies[b].inv_inertia = Congruence(work.bodies[b].R, s.inv_inertia[b]);
+  }
+  work.bodies[m.body_count].R = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+  ForgetGains(m, work);
+  JointSystem<W> system(m, s, work);
+  system.Assemble();
+  const auto given = [&](int b) {
+    int i = 0;
+    while (m.motions[i].body != b) ++i;
+    const Motion<W> now = MotionAt(m, m.motions[i], s.time[0]);
+    return Twist<W>{now.v, now.w};
+  };
+  ProjectVelocities(m, s, work, system, Select(s.last_step[0] == zero, one, zero), given,
+                    [](int, const W&, const JointRow<W>&) {});
+}
+
+/// Stage: projects the velocities by half, and closes the gaps that the drifts have left. Angular
+/// momenta turn with their bodies: a thin rod would take what it then has along its axis for a
+/// spin.
+///   reads   pos, quat, joints[]     writes  pos, quat, vel, mom, bodies[].R, clearance,
+///   joint_force, joint_torque, motion_force, motion_torque, motion_work
+template <class W>
+void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
+  // All of it would lose three times as much energy; without it what is left would change its sign
+  // from step to step.
+  constexpr double kShare = 0.5;
   constexpr double kClosed_m = 1e-10;
   constexpr int kRounds = 3;
+  const W inv_h = W::Splat(1.0 / step_s);
   TurnJointedBodies(m, s, work);
+  JointSystem<W> system(m, s, work);
   auto lanes = MaskOf<W>::Splat(true);
   for (int round = 0; round < kRounds && Any(lanes); ++round) {
-    CloseGaps(m, s, work, lanes);
+    system.Assemble();
+    if (round == 0) {
+      const auto given = [&](int b) { return Twist<W>{work.bodies[b].v, work.bodies[b].w}; };
+      const auto took = [&](int r, W impulse, const JointRow<W>& row) {
+        const HeldRow<W>& middle = work.joints[r];
+        const W load = inv_h * impulse;
+        s.joint_force[middle.joint] += load * middle.lin;
+        s.joint_torque[middle.joint] += load * middle.turn;
+        for (int k = 0; k < row.link_count; ++k) {
+          if (row.links[k].body < m.joint_body_count) continue;
+          AddToMotion(m, s, work, row.links[k], impulse, inv_h);
+        }
+      };
+      ProjectVelocities(m, s, work, system, W::Splat(kShare), given, took);
+    }
+    CloseGaps(m, s, work, system, lanes);
+    ForgetGains(m, work);
     lanes = lanes & (WorstGap(m, s, work) > W::Splat(kClosed_m));
   }
 }

@@ -126,45 +126,17 @@ TAUT_INLINE W RateOf(const JointPlace<W>& p, const JointDirection<W>& d, const T
   return Dot(d.lin, apart) + Dot(d.turn, b.w - a.w);
 }
 
-/// The inertias in W of the two bodies that a joint moves.
-template <class W>
-struct JointInertias {
-  S3<W> a, b;
-
-  JointInertias(const Rows<W>& s, const Scratch<W>& work, const JointTable& j) noexcept {
-    if (!HaveShares(j)) return;
-    a = Congruence(work.bodies[j.a].R, s.inertia[j.a]);
-    b = Congruence(work.bodies[j.b].R, s.inertia[j.b]);
-  }
-  static bool HaveShares(const JointTable& j) noexcept {
-    return j.holds_point && j.a_moves && j.b_moves;
-  }
-  /// The turn that both would take together from an angular momentum.
-  V3<W> TurnOf(const V3<W>& momentum) const noexcept {
-    W sum[3][3], x[3] = {momentum.x, momentum.y, momentum.z};
-    sum[0][0] = a.xx + b.xx, sum[1][1] = a.yy + b.yy, sum[2][2] = a.zz + b.zz;
-    sum[1][0] = a.xy + b.xy, sum[2][0] = a.xz + b.xz, sum[2][1] = a.yz + b.yz;
-    SolveSymmetric(sum, x);
-    return {x[0], x[1], x[2]};
-  }
-};
-
 /// Links and inverse effective mass of a row in direction `d`; the first link is to a body that
 /// impulses move.
 ///
-/// Where a joint holds a point, each body is pushed at its own (joints.md, eq. 9): at the other's,
-/// which is off by the gap, a thin rod would be turned about its axis. What the two pushes then
-/// miss of angular momentum both bodies take together, as a turn.
+/// Where a joint holds a point, each body is pushed at its own (joints.md, section 2): at the
+/// other's, which is off by the gap, a thin rod would be turned about its axis, and rows that are
+/// redundant would not be.
 template <class W>
 void SetJointLinks(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
-                   const JointInertias<W>& inertias, const JointPlace<W>& p,
-                   const JointDirection<W>& d, bool is_turn, JointRow<W>& row) noexcept {
+                   const JointPlace<W>& p, const JointDirection<W>& d, JointRow<W>& row) noexcept {
   const V3<W> arm_a = j.holds_point ? p.own_a : p.arm_a();
-  V3<W> on_b = Cross(p.own_b, d.lin) + d.turn, on_a = -(Cross(arm_a, d.lin) + d.turn);
-  if (JointInertias<W>::HaveShares(j) && !is_turn) {
-    const V3<W> turn = inertias.TurnOf(Cross(p.gap, d.lin));
-    on_b -= inertias.b * turn, on_a -= inertias.a * turn;
-  }
+  const V3<W> on_b = Cross(p.own_b, d.lin) + d.turn, on_a = -(Cross(arm_a, d.lin) + d.turn);
   row.link_count = 0;
   const auto link = [&](int body, const V3<W>& lin, const V3<W>& ang) {
     Link<W, 1>& to = row.links[row.link_count++];
@@ -180,23 +152,6 @@ void SetJointLinks(const Rows<W>& s, const Scratch<W>& work, const JointTable& j
   row.FinishMasses();
 }
 
-/// The velocity of a row, of those of all bodies.
-template <class W>
-TAUT_INLINE W RateOf(const JointRow<W>& row, const Twist<W>* of) noexcept {
-  W u = W::Splat(0.0);
-  for (int k = 0; k < row.link_count; ++k) {
-    const Twist<W>& t = of[row.links[k].body];
-    AddVelocity(row.links[k], t.v, t.w, &u);
-  }
-  return u;
-}
-
-/// Whether it is of turns alone.
-TAUT_INLINE bool IsTurn(JointMeasure measure) noexcept {
-  return measure != JointMeasure::kAlongAxis && measure != JointMeasure::kAcross1 &&
-         measure != JointMeasure::kAcross2 && measure != JointMeasure::kDistance;
-}
-
 /// a + turn x a + turn x (turn x a) / 2
 template <class W>
 TAUT_INLINE V3<W> Turned(const V3<W>& turn, const V3<W>& a) noexcept {
@@ -204,20 +159,21 @@ TAUT_INLINE V3<W> Turned(const V3<W>& turn, const V3<W>& a) noexcept {
   return a + once + W::Splat(0.5) * Cross(turn, once);
 }
 
-/// Where the joint will be after `t` at the velocities a and b.
+/// Where the joint is after the displacements a and b of its bodies.
 template <class W>
-JointPlace<W> PlaceAfter(const JointPlace<W>& p, const Twist<W>& a, const Twist<W>& b,
-                         W t) noexcept {
-  const V3<W> turn_a = t * a.w, turn_b = t * b.w;
+JointPlace<W> PlaceAfter(const JointPlace<W>& p, const Twist<W>& a, const Twist<W>& b) noexcept {
   const auto axes = [](const V3<W>& turn, const M3<W>& of) {
     return M3<W>{Turned(turn, of.r0), Turned(turn, of.r1), Turned(turn, of.r2)};
   };
   JointPlace<W> q;
-  q.own_a = Turned(turn_a, p.own_a), q.own_b = Turned(turn_b, p.own_b);
-  q.gap = p.gap + t * (b.v - a.v) + (q.own_b - p.own_b) - (q.own_a - p.own_a);
-  q.axes_a = axes(turn_a, p.axes_a), q.axes_b = axes(turn_b, p.axes_b);
+  q.own_a = Turned(a.w, p.own_a), q.own_b = Turned(b.w, p.own_b);
+  q.gap = p.gap + (b.v - a.v) + (q.own_b - p.own_b) - (q.own_a - p.own_a);
+  q.axes_a = axes(a.w, p.axes_a), q.axes_b = axes(b.w, p.axes_b);
   return q;
 }
+
+/// Compliance of rows that hold, as a share of their inverse effective masses.
+inline constexpr double kHeldCompliance = 1e-7;
 
 template <class W>
 TAUT_INLINE Twist<W> Before(const BodyWork<W>& body) noexcept {
@@ -251,26 +207,63 @@ void SetSpring(const JointTable& j, W stretch, W before, W h, JointRow<W>& row) 
   row.target = (quarter * h * k * before - half * b * before - k * stretch) / gain;
 }
 
+/// A row that holds (eq. 3) reverses its velocity, so that its impulse does no work. A tiny
+/// compliance about the impulse of the step before, if there is one, makes nearly dependent rows
+/// solvable.
 template <class W>
-void AgreeGuesses(const View& m, const Rows<W>& s, Scratch<W>& work, W half_h) noexcept;
+void SetHeld(const Rows<W>& s, const Scratch<W>& work, W last_impulse, JointRow<W>& row) noexcept {
+  const W zero = W::Splat(0.0);
+  W before = zero;
+  for (int k = 0; k < row.link_count; ++k) {
+    const BodyWork<W>& body = work.bodies[row.links[k].body];
+    AddVelocity(row.links[k], body.v0, body.w0, &before);
+  }
+  row.held = true;
+  row.give = Select(s.last_step[0] > zero, W::Splat(kHeldCompliance) * row.A, zero);
+  row.target = row.give * last_impulse - before;
+}
 
-/// The rows of all joints.
+/// The displacement of a body by which FindClosing closes the joints.
+template <class W>
+Twist<W> ClosingOf(const View& m, const Scratch<W>& work, int body) noexcept {
+  const W zero = W::Splat(0.0);
+  const int number = m.joint_number[body];
+  if (number < 0 || number >= m.joint_body_count) return {{zero, zero, zero}, {zero, zero, zero}};
+  return Island<W, Pools<JointRow<W>>>::Load(work.joint_memory.change + kDofs * number);
+}
+
+/// Turns the levers of a row that belong to the closed place back with the bodies, so that no row
+/// turns a thin rod about its axis.
+template <class W>
+void TurnLinksBack(const View& m, const Scratch<W>& work, JointRow<W>& row) noexcept {
+  for (int k = 0; k < row.link_count; ++k) {
+    Link<W, 1>& link = row.links[k];
+    link.ang[0] = Turned(-ClosingOf(m, work, link.body).w, link.ang[0]);
+    link.turn[0] = work.bodies[link.body].inv_inertia * link.ang[0];
+  }
+  row.FinishMasses();
+}
+
+template <class W>
+void FindClosing(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept;
+
+/// The rows of all joints. In models with loops the rows that hold belong to the nearest place
+/// where all joints are closed: redundant rows are exactly dependent only there.
 ///   reads   pos, bodies[]     writes  joints[], joint_angle
 template <class W>
 void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
-  const W h = W::Splat(step_s), half_h = W::Splat(0.5 * step_s);
-  const W no_limit = W::Splat(JointRow<W>::kNoLimit);
-  for (int b = 0; b <= m.body_count; ++b) work.joint_guess[b] = Before(work.bodies[b]);
-  if (m.joint_loops) AgreeGuesses(m, s, work, half_h);
+  const W h = W::Splat(step_s), no_limit = W::Splat(JointRow<W>::kNoLimit);
   const W live = Select(s.halted[0] > zero, zero, one);
+  if (m.joint_loops) FindClosing(m, s, work);
   for (int i = 0; i < m.joint_count; ++i) {
     const JointTable& j = m.joints[i];
     const BodyWork<W>&a = work.bodies[j.a], &b = work.bodies[j.b];
-    const Twist<W>&guess_a = work.joint_guess[j.a], &guess_b = work.joint_guess[j.b];
     const JointPlace<W> place = PlaceOf(m, s, j, a.R, b.R);
-    const JointPlace<W> end = PlaceAfter(place, guess_a, guess_b, half_h);
-    const JointInertias<W> inertias(s, work, j);
+    JointPlace<W> closed = place;
+    if (m.joint_loops) {
+      closed = PlaceAfter(place, ClosingOf(m, work, j.a), ClosingOf(m, work, j.b));
+    }
     W angle = zero;
     if (j.has_angle) {
       const W turn = W::Splat(2 * simd::kPi), inv_turn = W::Splat(0.5 / simd::kPi);
@@ -283,7 +276,8 @@ void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double ste
     for (int r = j.first_row; r < j.first_row + j.row_count; ++r) {
       const JointRowTable& table = m.joint_rows[r];
       HeldRow<W>& row = work.joints[r];
-      JointDirection<W> d = DirectionOf(j, table.measure, place, angle);
+      const bool at_closed = m.joint_loops && table.role == JointRole::kHold;
+      JointDirection<W> d = DirectionOf(j, table.measure, at_closed ? closed : place, angle);
       if (table.role == JointRole::kMost) {
         d = {-d.lin, -d.turn, W::Splat(j.most) - d.value};
       } else if (table.role == JointRole::kLeast) {
@@ -291,15 +285,16 @@ void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double ste
       }
       row.joint = i;
       row.lin = d.lin, row.turn = d.turn;
-      SetJointLinks(s, work, j, inertias, place, d, IsTurn(table.measure), row);
+      SetJointLinks(s, work, j, at_closed ? closed : place, d, row);
+      if (at_closed) TurnLinksBack(m, work, row);
       row.live = live;
       row.target = row.give = row.restitution = row.rebound = zero;
       row.lower = -no_limit, row.upper = no_limit;
+      row.held = false;
       row.before = RateOf(place, d, Before(a), Before(b));
       switch (table.role) {
         case JointRole::kHold:
-          row.target = RateOf(row, work.joint_guess) -
-                       RateOf(end, DirectionOf(j, table.measure, end, angle), guess_a, guess_b);
+          SetHeld(s, work, h * s.joint_load[r], row);
           break;
         case JointRole::kLeast:
         case JointRole::kMost:
@@ -354,6 +349,23 @@ JointShare<W> ShareOfStableJoints(const View& m, const Rows<W>& s, double step_s
   return worst;
 }
 
+template <class W>
+void ForgetGains(const View& m, Scratch<W>& work) noexcept {
+  const W zero = W::Splat(0.0);
+  for (int k = 0; k < m.joint_body_count; ++k) {
+    work.joint_memory.gained[k] = V3<W>{zero, zero, zero};
+  }
+}
+
+/// Angular momentum that a unit impulse gives to both bodies of a row together, because the points
+/// that it pushes are apart by the gap (eq. 9).
+template <class W>
+TAUT_INLINE V3<W> GainOf(const JointRow<W>& row, const V3<W>& pos_first,
+                         const V3<W>& pos_second) noexcept {
+  return Cross(pos_first - pos_second, row.links[0].lin[0]) +
+         (row.links[0].ang[0] + row.links[1].ang[0]);
+}
+
 /// Loads of what the solver found, and the angular momenta that they give.
 template <class W>
 void FinishJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
@@ -369,6 +381,17 @@ void FinishJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step
     s.joint_load[r] = load + zero;
     s.joint_force[row.joint] += load * row.lin;
     s.joint_torque[row.joint] += load * row.turn;
+  }
+  ForgetGains(m, work);
+  if (m.free_chain_count == 0) return;
+  const W h = W::Splat(step_s);
+  for (int r = 0; r < m.joint_row_count; ++r) {
+    const HeldRow<W>& row = work.joints[r];
+    if (m.joint_rows[r].role != JointRole::kHold || row.link_count < 2) continue;
+    const int first = row.links[0].body, second = row.links[1].body;
+    if (m.HasMotion(first) || m.HasMotion(second)) continue;
+    work.joint_memory.gained[m.joint_number[first]] +=
+        (h * s.joint_load[r]) * GainOf(row, s.pos[first], s.pos[second]);
   }
 }
 

@@ -287,6 +287,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   Poison(m, s, g, work);
   SaveStart(m, s, work);
   watch.Mark(Stage::kStart);
+  if (m.joint_count > 0 && Any(last == zero)) StageJointStart(m, s, work);
   StageDriftFirst(m, s, half_h);
   if (m.motion_count > 0) StageMotionPlaces(m, s, work, h);
   StageKinematics(m, s, g, work, ahead);
@@ -310,7 +311,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   StoreResults(m, s, g, work, step_s);
   StageDriftSecond(m, s, work, half_h);
   if (m.motion_count > 0) StageMotionEnd(m, s, work, step_s);
-  if (m.joint_count > 0) StageJointPlaces(m, s, work);
+  if (m.joint_count > 0) StageJointPlaces(m, s, work, step_s);
   watch.Mark(Stage::kIntegrate);
   Judge(m, s, g, work, solve, settings, overflow, step_s);
 

@@ -151,7 +151,6 @@ struct Scratch {
   RowLink<W>* chain_links;  ///< Those of a cable from its first_link on,
   int* chain_link_count;    ///< and how many; per cable.
   HeldRow<W>* joints;       ///< Rows of all joints.
-  Twist<W>* joint_guess;    ///< Per body and the world: guessed velocities of the step's end.
   JointMemory<W> joint_memory;
   MotionWork<W>* motions;
   MotorWork<W>* motors;
@@ -195,7 +194,6 @@ struct Scratch {
     chain_links = room_.Take<RowLink<W>>(m.chain_link_count);
     chain_link_count = room_.Take<int>(m.chain_count > 0 ? m.cable_count : 0);
     joints = room_.Take<HeldRow<W>>(m.joint_row_count);
-    joint_guess = room_.Take<Twist<W>>(m.joint_count > 0 ? bodies_count : 0);
     joint_memory.Take(m, room_);
     motions = room_.Take<MotionWork<W>>(m.motion_count);
     motors = room_.Take<MotorWork<W>>(m.motor_count);

@@ -34,8 +34,8 @@ TEST(Joint, APinnedRodSwingsWithThePeriodOfItsLength) {
 }
 
 TEST(Joint, ASwingingRodKeepsItsEnergyAndItsPin) {
-  // Second order, and no trend: the energy swings with the rod, by as much after a minute as
-  // before.
+  // The energy swings with the rod by some h^2. What is taken from the velocities at the end of a
+  // step is of third order and adds up: at most in proportion to time.
   double worst[3] = {}, last[3] = {};
   for (int k = 0; k < 3; ++k) {
     const double h = kThreeStepsS[k];
@@ -50,11 +50,13 @@ TEST(Joint, ASwingingRodKeepsItsEnergyAndItsPin) {
       ASSERT_LT(world.Joint(0, 0).gap_m, 1e-11);
     }
     EXPECT_EQ(world.Status(0).bits, kStatusOk);
-    EXPECT_LT(last[k], 1.02 * worst[k]);
+    EXPECT_LT(last[k], 60.0 / 55 * worst[k]);
   }
-  EXPECT_LT(worst[1], 1e-4);
-  EXPECT_NEAR(worst[1] / worst[0], 16, 1.5);
-  EXPECT_NEAR(worst[2] / worst[1], 16, 2);
+  EXPECT_LT(worst[1], 1e-5);
+  for (const double ratio : {worst[1] / worst[0], worst[2] / worst[1]}) {
+    EXPECT_GT(ratio, 15);
+    EXPECT_LT(ratio, 64);
+  }
 }
 
 TEST(Joint, AChainWithAThousandfoldMassAtItsEndCarriesItsWeight) {

@@ -5,8 +5,9 @@
 ///
 ///   u: the velocity of the one body against the other along it, after the step
 ///
-/// Held: no limits and nothing given. A stop: it only pushes. Dry friction: target 0, between the
-/// limits. A spring and damper: gives by what they let it move per impulse.
+/// Held: no limits, and gives by a tiny share of its own inverse mass about the impulse of the step
+/// before (joints.md, eq. 3). A stop: it only pushes. Dry friction: target 0, between the limits. A
+/// spring and damper: gives by what they let it move per impulse.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -29,6 +30,7 @@ struct JointRow {
   Num before;        ///< u at the start of the step [m/s],
   Num restitution;   ///< and how much of an approach comes back. 0 but for stops.
   Num rebound;       ///< The speed that it is to leave with; 0: none (impacts.inl).
+  bool held;         ///< `give` is a compliance of eq. 3, not that of a spring.
   int link_count;
   Link<Num, 1> links[2];
 
@@ -50,13 +52,16 @@ struct JointRow {
     A = pick(from.A), l[0] = pick(from.l[0]);
     before = pick(from.before), restitution = pick(from.restitution);
     rebound = pick(from.rebound);
+    held = from.held;
   }
   /// Of a displacement: what is held stays as it is, springs and friction are none, and a stop's
   /// other side stays free.
   void Hold() noexcept {
     const Num zero = Num::Splat(0.0);
-    const auto free = (give > zero) | (upper < Num::Splat(kNoLimit));
+    auto free = upper < Num::Splat(kNoLimit);
+    if (!held) free = free | (give > zero);
     target = give = l[0] = restitution = zero;
+    held = false;
     lower = Select(free, zero, lower), upper = Select(free, zero, upper);
   }
 
@@ -88,7 +93,9 @@ struct JointRow {
   void Linearize(const Branch& b, const Num* u, const Num* l_now, Num e,
                  LinearLaw<Num, 1>& out) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
-    out.A[0][0] = Select(b.inside, give + e * A, one);
+    // A held row's own compliance serves as e: the step solves its law.
+    const Num soft = e * A;
+    out.A[0][0] = Select(b.inside, held ? Max(give, soft) : give + soft, one);
     out.S[0][0] = Select(b.inside, one, zero);
     out.r[0] = Select(b.inside, target - u[0] - give * l_now[0], b.impulse - l_now[0]);
   }

@@ -86,7 +86,7 @@ template <class W>
 struct JointMemory {
   Row<Unknown<W>> bodies;
   Row<JointRow<W>> rows;
-  Row<W> G, miss;      ///< Per row.
+  Row<W> G, gap, miss, l;  ///< Per row.
   Row<W> rhs, change;  ///< 6 a body; rhs: also of those with motions, which do not change.
   Row<W> moved;        ///< Per body: how far the last displacement moved any of its points [m],
   Row<V3<W>> gained;   ///< and the angular momentum that it gained by it.
@@ -97,7 +97,8 @@ struct JointMemory {
     const int64_t with_motions = n + (m.joint_count > 0 ? m.motion_count : 0);
     bodies = room.Take<Unknown<W>>(n);
     rows = room.Take<JointRow<W>>(m.joint_row_count);
-    G = room.Take<W>(m.joint_row_count), miss = room.Take<W>(m.joint_row_count);
+    Row<W>* const per_row[] = {&G, &gap, &miss, &l};
+    for (Row<W>* list : per_row) *list = room.Take<W>(m.joint_row_count);
     rhs = room.Take<W>(kDofs * with_motions), change = room.Take<W>(kDofs * n);
     moved = room.Take<W>(n), gained = room.Take<V3<W>>(n);
     blocks = room.Take<W>(36 * static_cast<int64_t>(m.joint_pattern->lower_count));
