@@ -1,6 +1,8 @@
 /// Ground of pieces that meet, and bodies that cross their seams.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -112,6 +114,21 @@ inline void AddPiece(ModelDef& def, Piece kind, const Patch& p, const Material& 
   } else {
     def.terrain_meshes.push_back(MeshOf(p, kind == Piece::kSolid, material));
     def.terrain_meshes.back().name = name;
+  }
+}
+
+/// Turns meshes and boxes about the z axis of W.
+inline void TurnTerrain(ModelDef& def, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const auto turned = [&](const Vec3& p) {
+    return Vec3{c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+  };
+  for (TerrainMeshDef& mesh : def.terrain_meshes) {
+    for (Vec3& p : mesh.corners_m) p = turned(p);
+  }
+  for (TerrainBoxDef& box : def.terrain_boxes) {
+    box.center_m = turned(box.center_m);
+    box.orientation = {std::cos(angle / 2), 0, 0, std::sin(angle / 2)};
   }
 }
 
