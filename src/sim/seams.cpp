@@ -169,8 +169,11 @@ bool IsExposed(const SeamList& seams, const Vec3& end, const SeamContact& contac
   const double length_m = Norm(way);
   if (middle == nullptr || !(length_m > 2.0 * (seams.same_m + more_m))) return false;
   if (Abs(Dot(normal, way)) > kLevel * length_m || !(Dot(way, *middle - place) > 0.0)) return false;
-  // Not along what covers it, past the end of that.
-  if (IsCovered(seams, place, (1.0 / length_m) * way, {0.0, kLevel}, more_m)) return false;
+  // Where places are not exact, not along what covers it, past the end of that.
+  const double near_m = 3.0 * (seams.same_m + more_m);
+  if (more_m > 0.0 && IsOnSeam(seams, place + Smaller(near_m / length_m, 1.0) * way, more_m)) {
+    return false;
+  }
   const double step_m = kOpenSteps * seams.same_m + kSteps * more_m;
   return !IsCovered(seams, place + Smaller(step_m / length_m, 1.0) * way, normal, slack, more_m);
 }

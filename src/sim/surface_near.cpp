@@ -13,6 +13,8 @@ namespace {
 constexpr double kCoincidentM = 1e-10;
 /// Two triangles may find their common place at distances that differ so much, as a share.
 constexpr double kSameDistance = 1e-12;
+/// And, as coordinates are rounded, by so much [m].
+constexpr double kSameDistanceM = 1e-13;
 /// And, as its root, so far from each other.
 constexpr double kSamePlace = 4e-6;
 /// A point so nearly above the plane of a triangle, seen from its edge, is above the plane: what is
@@ -23,6 +25,8 @@ constexpr int kMaxPlaces = 16;
 /// What is in a field at its border leaves it through the wall if that is nearer than the surface
 /// by so much: what is over the border by a bit of rounding stays on the surface.
 constexpr double kWallNearer = 0.9, kWallNearerM = 1e-6;
+/// At right angles, as a cosine.
+constexpr double kAlongNormal = 1.0 - 1e-9;
 /// Distances are compared as they are.
 constexpr SeamSlack kExactly{0.0, kAbovePlane};
 
@@ -68,7 +72,8 @@ struct NearestOfAll {
   SurfaceTriangle triangle;
   Vec3 at;
 
-  /// `seams`: pieces that cover what does not count as a way out; or null.
+  /// `seams`: pieces that cover what does not count as a way out, which then is at right angles to
+  /// a triangle; or null.
   NearestOfAll(const SurfaceTable& s, const Vec3& p, double limit, const SeamList* seams,
                const Vec3* middle) noexcept
       : limit_m(limit), distance_m(limit) {
@@ -79,6 +84,7 @@ struct NearestOfAll {
       if (!(distance <= limit_m) || (found && !(distance < distance_m))) return;
       if (seams != nullptr) {
         const Vec3 out = distance <= kCoincidentM ? NormalOf(t) : (1.0 / distance) * (place - p);
+        if (Dot(out, NormalOf(t)) < kAlongNormal) return;
         if (IsFaceCovered(*seams, t, {place, out, middle}, kExactly)) return;
       }
       found = true;
@@ -91,7 +97,7 @@ struct NearestOfAll {
 /// at an edge or a corner that one knows which faces the point most directly.
 bool IsInsideOfMesh(const SurfaceTable& s, const Vec3& p, const NearestOfAll& near) noexcept {
   if (!near.found) return false;
-  const double same = near.distance_m * (1.0 + kSameDistance);
+  const double same = near.distance_m * (1.0 + kSameDistance) + kSameDistanceM;
   const Vec3 reach{same, same, same}, away = p - near.at;
   double most = 0.0, side = 0.0;
   EachTriangle(s, p - reach, p + reach, [&](const SurfaceTriangle& t) noexcept {
@@ -246,6 +252,15 @@ bool PlaceOnWall(const SurfaceTable& s, const Vec3& p, double limit_m, const Vec
   return !IsWallCovered(s, *out, middle);
 }
 
+/// Whether other pieces cover the shortest way out of what is inside.
+bool IsWayCovered(const SurfaceTable& s, const NearestOfAll& near, const Vec3& p,
+                  const Vec3* middle) noexcept {
+  if (s.seams.count == 0) return false;
+  const Vec3 out = near.distance_m <= kCoincidentM ? NormalOf(near.triangle)
+                                                   : (1.0 / near.distance_m) * (near.at - p);
+  return IsFaceCovered(s.seams, near.triangle, {near.at, out, middle}, kExactly);
+}
+
 /// The shortest way out of a field, to its surface or through one of its walls.
 bool WayOutOfField(const SurfaceTable& s, const Vec3& p, double limit_m, double depth,
                    const Vec3* middle, SurfacePlace* out) noexcept {
@@ -261,13 +276,20 @@ bool WayOutOfField(const SurfaceTable& s, const Vec3& p, double limit_m, double 
   }
   const double reach_m =
       best == nullptr ? least_m : (Larger(least_m, 0.0) + kWallNearerM) / kWallNearer;
-  const NearestOfAll near(s, p, reach_m, s.seams.count > 0 ? &s.seams : nullptr, middle);
-  if (near.found) {
+  const NearestOfAll near(s, p, reach_m, nullptr, nullptr);
+  if (near.found && !IsWayCovered(s, near, p, middle)) {
     *out = PlaceOf(near, p, true);
-  } else if (best != nullptr) {
-    *out = *best;
+    return true;
   }
-  return near.found || best != nullptr;
+  if (near.found) {
+    const NearestOfAll open(s, p, reach_m, &s.seams, middle);
+    if (open.found) {
+      *out = PlaceOf(open, p, true);
+      return true;
+    }
+  }
+  if (best != nullptr) *out = *best;
+  return best != nullptr;
 }
 
 /// The shortest way out of a closed mesh. False if the point is not inside, or others cover all
@@ -289,6 +311,10 @@ bool WayOutOfMesh(const SurfaceTable& s, const Vec3& p, double reach_m, const Ve
     in_gap = IsFaceCovered(s.seams, near.triangle, {near.at, out_of, middle}, kExactly);
   }
   if (!*inside && !in_gap) return false;
+  if (*inside && !IsWayCovered(s, near, p, middle)) {
+    *out = PlaceOf(near, p, true);
+    return true;
+  }
   const NearestOfAll open(s, p, reach_m, &s.seams, middle);
   if (!open.found) return false;
   if (in_gap && Dot(p - open.at, NormalOf(open.triangle)) > 0.0) return false;

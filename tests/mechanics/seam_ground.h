@@ -1,6 +1,8 @@
 /// Ground of pieces that meet, and bodies that cross their seams.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -115,6 +117,21 @@ inline void AddPiece(ModelDef& def, Piece kind, const Patch& p, const Material& 
   }
 }
 
+/// Turns meshes and boxes about the z axis of W.
+inline void TurnTerrain(ModelDef& def, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const auto turned = [&](const Vec3& p) {
+    return Vec3{c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+  };
+  for (TerrainMeshDef& mesh : def.terrain_meshes) {
+    for (Vec3& p : mesh.corners_m) p = turned(p);
+  }
+  for (TerrainBoxDef& box : def.terrain_boxes) {
+    box.center_m = turned(box.center_m);
+    box.orientation = {std::cos(angle / 2), 0, 0, std::sin(angle / 2)};
+  }
+}
+
 enum class Guest { kBox, kTurnedBox, kHull, kTurnedHull, kRodAlong, kRodAcross, kTurnedRod, kBall };
 inline constexpr Guest kGuests[] = {Guest::kBox,        Guest::kTurnedBox, Guest::kHull,
                                     Guest::kTurnedHull, Guest::kRodAlong,  Guest::kRodAcross,
@@ -138,8 +155,10 @@ inline void AddGuest(ModelDef& def, Guest guest, const Vec3& at, const Vec3& vel
   const bool turned =
       guest == Guest::kTurnedBox || guest == Guest::kTurnedHull || guest == Guest::kTurnedRod;
   const double angle = turned ? 0.3 : 0.0;
+  const int index = static_cast<int>(def.bodies.size());
+  const std::string name = "guest_" + std::to_string(index);
   BodyDef body;
-  body.name = "guest";
+  body.name = name;
   body.mass_kg = 1;
   body.com_m = at;
   body.velocity_m_per_s = velocity;
@@ -149,11 +168,11 @@ inline void AddGuest(ModelDef& def, Guest guest, const Vec3& at, const Vec3& vel
   const Quat q{std::cos(angle / 2), 0, 0, std::sin(angle / 2)};
   const Vec3 x{std::cos(angle), std::sin(angle), 0}, y{-x.y, x.x, 0};
   if (guest == Guest::kBox || guest == Guest::kTurnedBox) {
-    def.boxes.push_back({"guest", 0, at, q, {kHalfM, kHalfM, kHalfM}, material});
+    def.boxes.push_back({name, index, at, q, {kHalfM, kHalfM, kHalfM}, material});
   } else if (guest == Guest::kHull || guest == Guest::kTurnedHull) {
     HullDef hull;
-    hull.name = "guest";
-    hull.body = 0;
+    hull.name = name;
+    hull.body = index;
     hull.material = material;
     for (int i = 0; i < 8; ++i) {
       const double a = i & 1 ? kHalfM : -kHalfM, b = i & 2 ? kHalfM : -kHalfM;
@@ -161,10 +180,10 @@ inline void AddGuest(ModelDef& def, Guest guest, const Vec3& at, const Vec3& vel
     }
     def.hulls.push_back(hull);
   } else if (guest == Guest::kBall) {
-    def.spheres.push_back({"guest", 0, at, kHalfM, material});
+    def.spheres.push_back({name, index, at, kHalfM, material});
   } else {
     const Vec3 along = kHalfM * (guest == Guest::kRodAcross ? y : x);
-    def.capsules.push_back({"guest", 0, at - along, at + along, kRadiusM, material});
+    def.capsules.push_back({name, index, at - along, at + along, kRadiusM, material});
   }
 }
 
