@@ -69,7 +69,7 @@ Json ForcesJson(const ModelDef& def, const ForceAnalysis& forces) {
 Json MembersJson(const CaseResult& result) {
   Json members = Json::array();
   for (const MemberLoad& load : result.members) {
-    Json one{{"name", load.name}, {"kind", MemberKindName(load.kind)}};
+    Json one{{"name", load.name}, {"kind", NameOf(load.kind)}};
     if (load.kind == MemberKind::kCable) {
       const CableDef& cable = result.def.cables[static_cast<std::size_t>(load.index)];
       const double length_m = CableLength(cable);

@@ -13,18 +13,6 @@ inline std::string BodyName(const ModelDef& def, int body) {
   return body < 0 ? "world" : def.bodies[static_cast<std::size_t>(body)].name;
 }
 
-inline const char* MemberKindName(MemberKind kind) {
-  switch (kind) {
-    case MemberKind::kCable:
-      return "cable";
-    case MemberKind::kBar:
-      return "bar";
-    case MemberKind::kRod:
-      return "rod";
-  }
-  return "";
-}
-
 /// With the number of its part, where it has several.
 inline std::string StaticMemberName(const ModelDef& def, const StaticMember& member) {
   const auto at = static_cast<std::size_t>(member.index);

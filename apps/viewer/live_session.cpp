@@ -221,6 +221,7 @@ void LiveSession::Restart(Clock::time_point deadline) {
   experiment_ = std::move(start->experiment);
   ++run_number_;
   end_told_ = broken_told_ = dragging_ = touched_ = false;
+  overloads_told_ = 0;
   marks_.clear();
   if (recording_) recording_->Restart(*run_, experiment_);
   StartHistory();
@@ -250,6 +251,13 @@ void LiveSession::Log(const std::string& text) {
   if (recording_) recording_->Event(run_->time_s(), text);
 }
 
+void LiveSession::TellOverloads() {
+  const std::vector<Overload> overloads = run_->Overloads();
+  if (overloads.size() <= overloads_told_) return;
+  overloads_told_ = overloads.size();
+  Log(Describe(overloads));
+}
+
 bool LiveSession::StepOnce() {
   if (!run_->Step()) {
     if (!std::exchange(broken_told_, true)) Log("the state is no longer finite");
@@ -259,6 +267,7 @@ bool LiveSession::StepOnce() {
   if (history_->IsDue(run_->time_s())) {
     Fill(moment_);
     history_->Take(moment_, run_->Row());
+    TellOverloads();
   }
   if (recording_) recording_->Take(*run_);
   if (marks_.size() < mark_at_s_.size() && run_->time_s() >= mark_at_s_[marks_.size()]) Mark();

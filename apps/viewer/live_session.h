@@ -68,6 +68,7 @@ class LiveSession final : public Session {
   void Restart(Clock::time_point deadline = Clock::time_point::max());
   void StartHistory();
   void Log(const std::string& text);
+  void TellOverloads();
   bool StepOnce();
   void StepUntil(double time_s, Clock::time_point deadline);
   void Anchor() { pace_.Anchor(run_->time_s()); }
@@ -91,6 +92,7 @@ class LiveSession final : public Session {
   Frame moment_;                         ///< Kept, so that taking a moment allocates little.
   int run_number_ = 1;
   bool end_told_ = false, broken_told_ = false, dragging_ = false;
+  std::size_t overloads_told_ = 0;  ///< Of LiveRun::Overloads, how many.
   Pace pace_;
   Clock::time_point shown_wall_;
   bool changed_ = true, scene_changed_ = false;

@@ -69,6 +69,9 @@ enum StatusBits : std::uint32_t {
   /// A body's centre of mass is below all of a terrain that has a height field or a mesh and no
   /// plane: it has left what it stood on, and falls for ever.
   kStatusFellOff = 1u << 4,
+  /// A member carried more than it bears (taut/safety.h). Of runs: worlds have no limits to look
+  /// at.
+  kStatusOverloaded = 1u << 5,
 };
 
 struct WorldStatus {

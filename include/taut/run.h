@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "taut/plant.h"
+#include "taut/safety.h"
 #include "taut/start.h"
 #include "taut/trace.h"
 
@@ -88,6 +89,7 @@ struct RunSummary {
   std::vector<CableSummary> cables;
   std::vector<StrutSummary> struts;    ///< Of simulations.
   std::vector<AnchorSummary> anchors;  ///< The same.
+  std::vector<Overload> overloads;     ///< Of every step, not only recorded rows.
   std::vector<DragSummary> drags;
   std::vector<ReferenceSpec> references;  ///< The experiment's.
   double system_max_tension_n = 0;        ///< Largest `tension` of any cable, whole run.

@@ -19,6 +19,15 @@ enum class MemberKind {
   kRod,  ///< A body that is one straight rod (`StrutForces`).
 };
 
+/// What a member bears. Nothing where the model has no figure for it.
+struct MemberLimits {
+  std::optional<double> buckling_n;  ///< Euler's load, of bars and rods: pi^2 E I / Lb^2.
+  std::optional<double> yield_n;     ///< Yield stress times area, either way.
+  std::optional<double> strength_n;  ///< Tension at which it breaks.
+};
+/// `length_m`: of a bar or rod, where the model says no buckling length.
+MemberLimits LimitsOf(const MemberDef& member, MemberKind kind, double length_m);
+
 /// What members carry, tension positive.
 struct MemberForces {
   std::vector<double> cable_tension_n;  ///< Per cable.
@@ -51,5 +60,34 @@ struct MemberLoad {
 /// members without the load, if that is known.
 std::vector<MemberLoad> MemberLoads(const ModelDef& def, const MemberForces& now,
                                     const MemberForces* unloaded = nullptr);
+
+/// What of a member was exceeded.
+enum class MemberLimit {
+  kStrength,  ///< Tension at which it breaks.
+  kYield,     ///< Force at its yield stress, either way.
+  kBuckling,  ///< Euler's load, under compression.
+};
+
+/// A member that carried more than it bears while its robot moved, and of which of its limits. The
+/// simulation goes on as if it held.
+struct Overload {
+  MemberKind kind = MemberKind::kCable;
+  std::string name;
+  MemberLimit limit = MemberLimit::kStrength;
+  double bears_n = 0;       ///< The limit, > 0.
+  double carried_n = 0;     ///< The largest that it carried, > 0: compression where it buckles.
+  double first_time_s = 0;  ///< When it carried more than it bears for the first time.
+};
+
+/// "cable", "bar" or "rod".
+const char* NameOf(MemberKind kind) noexcept;
+/// "strength", "yield" or "buckling".
+const char* NameOf(MemberLimit limit) noexcept;
+
+/// A sentence without a full stop on one of them, as on cable a: cable a carried 17.14 N, more than
+/// its strength of 0.5 N, first at t = 0.12 s.
+std::string Describe(const Overload& overload);
+/// The same on the first of several, and how many there are besides. Empty if there are none.
+std::string Describe(const std::vector<Overload>& overloads);
 
 }  // namespace taut

@@ -298,6 +298,7 @@ void AddBatch(py::module_& module) {
   status["CONTACT_OVERFLOW"] = static_cast<int>(kStatusContactOverflow);
   status["STEP_TOO_LONG"] = static_cast<int>(kStatusStepTooLong);
   status["FELL_OFF"] = static_cast<int>(kStatusFellOff);
+  status["OVERLOADED"] = static_cast<int>(kStatusOverloaded);
   module.attr("status_bits") = status;
 }
 

@@ -150,6 +150,23 @@ void AddRuns(py::module_& module) {
           "status", [](const Ran& r) { return r.summary.status_text; },
           "Empty if all went well; else what failed.")
       .def_property_readonly(
+          "overloads",
+          [](const Ran& r) {
+            py::list all;
+            for (const Overload& one : r.summary.overloads) {
+              py::dict entry;
+              entry["kind"] = NameOf(one.kind);
+              entry["name"] = one.name;
+              entry["limit"] = NameOf(one.limit);
+              entry["bears_n"] = one.bears_n;
+              entry["carried_n"] = one.carried_n;
+              entry["first_time_s"] = one.first_time_s;
+              all.append(entry);
+            }
+            return all;
+          },
+          "Members that carried more than they bear, as in summary.json.")
+      .def_property_readonly(
           "max_tension_n",
           [](const Ran& r) {
             py::dict all;

@@ -99,7 +99,7 @@ Computed Run(const ExperimentSpec& given, const std::vector<std::string>& channe
     out.stopped = true;
   } else if (!summary) {
     out.failed = found.items().empty() ? "it does not start" : found.items()[0].what;
-  } else if (!summary->status_text.empty()) {
+  } else if ((summary->status.bits & ~kStatusOverloaded) != 0) {
     out.failed = summary->status_text;
   }
   if (!out.failed.empty() || out.stopped) return out;

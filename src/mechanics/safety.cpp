@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <string>
 #include <utility>
 
 #include "math/vec.h"
@@ -12,21 +14,14 @@ namespace {
 
 double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
 
-/// What a member's section bears; a cable does not buckle (eq. 9 to 11).
+/// Eq. 9 to 11.
 void TakeSection(const MemberDef& member, double length_m, MemberLoad& load) {
+  const MemberLimits bears = LimitsOf(member, load.kind, length_m);
   const double push_n = -load.least_n, pull_n = load.greatest_n;
-  if (load.kind != MemberKind::kCable && push_n > 0 && member.young_pa > 0 &&
-      member.second_moment_m4 > 0) {
-    constexpr double kPi = 3.14159265358979323846;
-    const double free_m = member.buckling_length_m > 0 ? member.buckling_length_m : length_m;
-    load.buckling =
-        kPi * kPi * member.young_pa * member.second_moment_m4 / (free_m * free_m) / push_n;
-  }
   const double larger_n = std::max(push_n, pull_n);
-  if (member.yield_pa > 0 && member.area_m2 > 0 && larger_n > 0) {
-    load.yield = member.yield_pa * member.area_m2 / larger_n;
-  }
-  if (member.strength_n > 0 && pull_n > 0) load.strength = member.strength_n / pull_n;
+  if (bears.buckling_n && push_n > 0) load.buckling = *bears.buckling_n / push_n;
+  if (bears.yield_n && larger_n > 0) load.yield = *bears.yield_n / larger_n;
+  if (bears.strength_n && pull_n > 0) load.strength = *bears.strength_n / pull_n;
 }
 
 MemberLoad Of(MemberKind kind, int index, const std::string& name) {
@@ -49,6 +44,21 @@ std::pair<const char*, std::optional<double>> LeastFactor(const MemberLoad& load
 }
 
 }  // namespace
+
+MemberLimits LimitsOf(const MemberDef& member, MemberKind kind, double length_m) {
+  MemberLimits bears;
+  // A cable does not buckle.
+  if (kind != MemberKind::kCable && member.young_pa > 0 && member.second_moment_m4 > 0) {
+    constexpr double kPi = 3.14159265358979323846;
+    const double free_m = member.buckling_length_m > 0 ? member.buckling_length_m : length_m;
+    bears.buckling_n = kPi * kPi * member.young_pa * member.second_moment_m4 / (free_m * free_m);
+  }
+  if (member.yield_pa > 0 && member.area_m2 > 0) {
+    bears.yield_n = member.yield_pa * member.area_m2;
+  }
+  if (member.strength_n > 0) bears.strength_n = member.strength_n;
+  return bears;
+}
 
 std::optional<double> MemberLoad::Least() const { return LeastFactor(*this).second; }
 std::string MemberLoad::LeastOf() const { return LeastFactor(*this).first; }
@@ -87,6 +97,53 @@ std::vector<MemberLoad> MemberLoads(const ModelDef& def, const MemberForces& now
     out.push_back(std::move(load));
   }
   return out;
+}
+
+const char* NameOf(MemberKind kind) noexcept {
+  switch (kind) {
+    case MemberKind::kCable:
+      return "cable";
+    case MemberKind::kBar:
+      return "bar";
+    case MemberKind::kRod:
+      return "rod";
+  }
+  return "";
+}
+
+const char* NameOf(MemberLimit limit) noexcept {
+  switch (limit) {
+    case MemberLimit::kStrength:
+      return "strength";
+    case MemberLimit::kYield:
+      return "yield";
+    case MemberLimit::kBuckling:
+      return "buckling";
+  }
+  return "";
+}
+
+std::string Describe(const Overload& overload) {
+  const auto brief = [](double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", x);
+    return std::string(text);
+  };
+  const char* const limit = overload.limit == MemberLimit::kStrength ? "its strength of "
+                            : overload.limit == MemberLimit::kYield  ? "the force at yield of "
+                                                                     : "its buckling load of ";
+  return std::string(NameOf(overload.kind)) + " " + overload.name + " carried " +
+         brief(overload.carried_n) + " N, more than " + limit + brief(overload.bears_n) +
+         " N, first at t = " + brief(overload.first_time_s) + " s";
+}
+
+std::string Describe(const std::vector<Overload>& overloads) {
+  if (overloads.empty()) return {};
+  const std::size_t more = overloads.size() - 1;
+  return Describe(overloads[0]) +
+         (more == 0   ? ""
+          : more == 1 ? "; and one more limit of a member was exceeded"
+                      : "; and " + std::to_string(more) + " more limits of members were exceeded");
 }
 
 }  // namespace taut

@@ -6,6 +6,7 @@
 
 #include "math/vec.h"
 #include "plant/loop.h"
+#include "plant/member_watch.h"
 #include "plant/recorder.h"
 #include "plant/start.h"
 
@@ -28,6 +29,7 @@ class Live final : public LiveRun {
         plant_(PlantOf(batch_)),
         loop_(experiment_, *plant_, brought),
         recorder_(experiment_),
+        watch_(experiment_.robot.def),
         channels_(recorder_.channels()) {
     for (const char* hand : {"hand/drag/", "hand/push/"}) {
       channels_.push_back({std::string(hand) + "node", "1"});
@@ -40,6 +42,7 @@ class Live final : public LiveRun {
       if (!body.fixed) mass_kg_ += body.mass_kg;
     }
     loop_.Prepare();
+    Watch();
   }
 
   bool Step() override {
@@ -53,6 +56,7 @@ class Live final : public LiveRun {
     }
     loop_.timeline().SetHandForces(std::move(forces));
     loop_.Step();
+    Watch();
     return true;
   }
 
@@ -61,6 +65,7 @@ class Live final : public LiveRun {
   const Observation& Observe() const override { return loop_.exact(); }
   const Commands& commands() const override { return loop_.commands(); }
   const World* world() const override { return plant_->world(); }
+  std::vector<Overload> Overloads() const override { return watch_.Overloads(); }
 
   std::vector<OutsideForce> OutsideForces() const override {
     std::vector<OutsideForce> forces;
@@ -145,6 +150,11 @@ class Live final : public LiveRun {
   }
 
  private:
+  void Watch() {
+    if (watch_.empty()) return;  // to observe costs more than to look
+    watch_.Take(loop_.time_s(), loop_.exact(), plant_->world());
+  }
+
   struct TimedPush {
     NodeForce force;
     double until_s = 0;
@@ -168,6 +178,7 @@ class Live final : public LiveRun {
   std::unique_ptr<Plant> plant_;
   plant::Loop loop_;
   plant::Recorder recorder_;
+  plant::MemberWatch watch_;
   std::vector<ChannelInfo> channels_;
   std::vector<double> row_;
   double mass_kg_ = 0;

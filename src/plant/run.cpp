@@ -100,10 +100,22 @@ class Runner {
       summary.status_text = DescribeStatus(experiment_.robot.def, summary.status);
       summary.state_hash = world->Hash(0);
     }
+    AddOverloads(summary);
     return summary;
   }
 
  private:
+  static void AddOverloads(RunSummary& summary) {
+    if (summary.overloads.empty()) return;
+    double first_s = summary.overloads[0].first_time_s;
+    for (const Overload& one : summary.overloads) first_s = std::min(first_s, one.first_time_s);
+    WorldStatus& status = summary.status;
+    status.first_time_s =
+        status.bits == kStatusOk ? first_s : std::min(first_s, status.first_time_s);
+    status.bits |= kStatusOverloaded;
+    summary.status_text += (summary.status_text.empty() ? "" : "; ") + Describe(summary.overloads);
+  }
+
   void TakeStatistics(double time_s, double step_s) {
     statistics_.Take(time_s, step_s, loop_.exact(), loop_.timeline().drag_n(),
                      loop_.plant().world());

@@ -32,6 +32,7 @@ Range Statistics::Sum::range() const {
 
 Statistics::Statistics(const ExperimentSpec& experiment)
     : experiment_(experiment),
+      watch_(experiment.robot.def),
       forces_(experiment.robot.def),
       cables_(experiment.robot.def.cables.size()),
       drags_(experiment.drags.size()) {
@@ -89,6 +90,7 @@ void Statistics::TakeLoads(const Observation& now, const World& world) {
 
 void Statistics::Take(double time_s, double step_s, const Observation& now,
                       const std::vector<double>& drag_n, const World* world) {
+  watch_.Take(time_s, now, world);
   for (std::size_t c = 0; c < cables_.size(); ++c) {
     Cable& cable = cables_[c];
     const CableState r = now.Cable(static_cast<int>(c));
@@ -159,6 +161,7 @@ void Statistics::Fill(RunSummary& summary) const {
     if (!has_loads_) continue;
     summary.anchors.push_back({name(sum.body), sum.max_force_n, sum.max_torque_n_m});
   }
+  summary.overloads = watch_.Overloads();
   for (std::size_t i = 0; i < drags_.size(); ++i) {
     summary.drags.push_back({experiment_.drags[i].name, drags_[i].range()});
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "plant/body_forces.h"
+#include "plant/member_watch.h"
 #include "taut/plant.h"
 #include "taut/run.h"
 
@@ -57,6 +58,7 @@ class Statistics {
     double max_force_n = 0, max_torque_n_m = 0;
   };
   const ExperimentSpec& experiment_;
+  MemberWatch watch_;
   BodyForces forces_;
   std::vector<StrutSum> struts_;
   std::vector<AnchorSum> anchors_;

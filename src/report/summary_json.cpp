@@ -116,6 +116,15 @@ std::string SummaryJson(const RunSummary& summary) {
                                {"max_force_n", anchor.max_force_n},
                                {"max_torque_n_m", anchor.max_torque_n_m}});
   }
+  json["overloads"] = Json::array();
+  for (const Overload& one : summary.overloads) {
+    json["overloads"].push_back({{"kind", NameOf(one.kind)},
+                                 {"name", one.name},
+                                 {"limit", NameOf(one.limit)},
+                                 {"bears_n", one.bears_n},
+                                 {"carried_n", one.carried_n},
+                                 {"first_time_s", one.first_time_s}});
+  }
   json["drags"] = Json::array();
   for (const DragSummary& drag : summary.drags) {
     json["drags"].push_back({{"name", drag.name}, {"force", ToJson(drag.force_n)}});

@@ -118,6 +118,21 @@ std::string LoadTables(const RunSummary& run) {
   return out;
 }
 
+/// A line for each limit that a member exceeded.
+std::string OverloadTable(const RunSummary& run) {
+  if (run.overloads.empty()) return {};
+  const std::size_t name_width = NameWidth(run.overloads);
+  std::string out =
+      fmt::format("\n{:<{}} {:<8}{:<10}{:>12}{:>12}{:>12}\n", "overloaded", name_width, "member",
+                  "limit", "bears N", "carried N", "first at s");
+  for (const Overload& one : run.overloads) {
+    out += fmt::format("{:<{}} {:<8}{:<10}{:>12.4g}{:>12.4g}{:>12.4g}\n", one.name, name_width,
+                       NameOf(one.kind), NameOf(one.limit), one.bears_n, one.carried_n,
+                       one.first_time_s);
+  }
+  return out;
+}
+
 std::string DragTable(const RunSummary& run) {
   if (run.drags.empty()) return {};
   const std::size_t name_width = NameWidth(run.drags);
@@ -189,8 +204,8 @@ std::string SummaryTable(const RunSummary& summary) {
     }
     out += SystemLines(summary);
   }
-  return out + LoadTables(summary) + DragTable(summary) + ActuatorTable(summary) +
-         MotorTable(summary) + report::ReferenceLines(summary);
+  return out + OverloadTable(summary) + LoadTables(summary) + DragTable(summary) +
+         ActuatorTable(summary) + MotorTable(summary) + report::ReferenceLines(summary);
 }
 
 }  // namespace taut

@@ -175,6 +175,45 @@ outer_top_2        31.25          0.0700         2.188       0.500       0.375
 )");
 }
 
+std::vector<Overload> Overloads() {
+  return {{MemberKind::kCable, "inner_top_1", MemberLimit::kStrength, 0.5, 17.14, 0.25},
+          {MemberKind::kRod, "strut_0", MemberLimit::kBuckling, 1234.5, 2345.6, 12.345}};
+}
+
+TEST(SummaryTable, HasALineForEveryLimitThatAMemberExceeded) {
+  RunSummary summary = Summary();
+  summary.overloads = Overloads();
+  summary.status.bits = kStatusOverloaded;
+  summary.status.first_time_s = 0.25;
+  summary.status_text = Describe(summary.overloads);
+  const std::string table = SummaryTable(summary);
+  EXPECT_NE(table.find("WARNING: cable inner_top_1 carried 17.14 N, more than its strength of 0.5 "
+                       "N, first at t = 0.25 s; and one more limit of a member was exceeded"),
+            std::string::npos)
+      << table;
+  EXPECT_NE(table.find(R"(
+overloaded  member  limit          bears N   carried N  first at s
+inner_top_1 cable   strength           0.5       17.14        0.25
+strut_0     rod     buckling          1234        2346       12.35
+)"),
+            std::string::npos)
+      << table;
+}
+
+TEST(SummaryJson, HasWhatMembersCarriedBeyondWhatTheyBear) {
+  RunSummary summary = Summary();
+  EXPECT_EQ(nlohmann::json::parse(SummaryJson(summary))["overloads"], nlohmann::json::array());
+  summary.overloads = Overloads();
+  const auto overloads = nlohmann::json::parse(SummaryJson(summary))["overloads"];
+  ASSERT_EQ(overloads.size(), 2u);
+  EXPECT_EQ(overloads[1]["kind"], "rod");
+  EXPECT_EQ(overloads[1]["name"], "strut_0");
+  EXPECT_EQ(overloads[1]["limit"], "buckling");
+  EXPECT_EQ(overloads[1]["bears_n"], 1234.5);
+  EXPECT_EQ(overloads[1]["carried_n"], 2345.6);
+  EXPECT_EQ(overloads[1]["first_time_s"], 12.345);
+}
+
 TEST(SummaryTable, SaysWhatWentWrongAndLeavesOutWhatWasNotReached) {
   RunSummary summary = Summary();
   summary.simulated_s = 37;
