@@ -280,7 +280,8 @@ class Batch {
   std::vector<Overlap> Overlaps(int world) const;
 
   // --- state -------------------------------------------------------------------------------
-  /// Not of a body with a motion, which is where that says.
+  /// Not of a body with a motion, which is where that says. In models with joints the next step
+  /// begins by projecting the velocities onto what joints hold (docs/theory/joints.md, eq. 7a).
   void SetBodyState(int world, int body, const BodyState& state) noexcept;
   /// Bodies with motions go where they are at that time.
   void SetTime(int world, double time_s) noexcept;

@@ -311,7 +311,7 @@ void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
   const Vec3 inertia = d.vec(world, d.layout.inertia + 3 * body);
   d.set(world, d.layout.mom + 3 * body,
         Rotate(q, {inertia.x * w.x, inertia.y * w.y, inertia.z * w.z}));
-  // Joints make velocities that are set agree, as at the start.
+  // The next step projects the velocities, as the first one does.
   if (d.view.joint_count > 0) d.at(world, d.layout.last_step) = 0;
   d.Moved(world);
 }
