@@ -12,6 +12,8 @@ constexpr double kSamePlaceM = kJoinedM;
 constexpr double kNearer = 1e-9, kStraightOn = 1e-3;
 /// From this cosine on a normal is that of a face.
 constexpr double kFace = 0.999;
+/// And that of a face of the same plane, to 1e-6 rad.
+constexpr double kLevelFace = 1.0 - 5e-13;
 /// Where a box's face is cut by another's side a point may be aside by so much, in sizes of both;
 /// and boxes go on if they do so for so many times that.
 constexpr double kCutAside = 2e-5, kSteps = 10.0;
@@ -95,16 +97,21 @@ bool IsHidden(const ShapeTable* shapes, int number, const Vec3& place, const Sta
   return hidden;
 }
 
-/// Whether boxes go on in the plane of a contact, from its place in a direction across the normal.
+/// Whether boxes go on in the plane of a contact, from its place in a direction across the normal;
+/// `by_face`: with a face of theirs.
 bool GoesOn(const ShapeTable* shapes, int number, const Vec3& place, const Vec3& normal,
-            const Vec3& way, double same_m = kSamePlaceM) noexcept {
+            const Vec3& way, double same_m = kSamePlaceM, bool by_face = false) noexcept {
   const ShapeTable& own = shapes[number];
   const auto in_plane = [&](const BoxShape& box) noexcept {
     double above = Dot(normal, Load(box.center) - place);
     for (int axis = 0; axis < 3; ++axis) {
       above += box.half_m[axis] * Abs(Dot(normal, AxisOf(box, axis)));
     }
-    return above <= kSamePlaceM && IsIn(box, place + way, same_m);
+    bool level = !by_face;
+    for (int axis = 0; axis < 3 && !level; ++axis) {
+      level = Abs(Dot(normal, AxisOf(box, axis))) > kLevelFace;
+    }
+    return level && above <= kSamePlaceM && IsIn(box, place + way, same_m);
   };
   if (in_plane(own.shape_P.box)) return true;
   for (int i = 0; i < own.beside_count; ++i) {
@@ -164,7 +171,7 @@ bool IsFlat(const ShapeTable* shapes, int number, const Vec3& place, const Vec3&
   const Vec3 u = step_m * side, v = Cross(up, u);
   for (int a = -1; a <= 1; ++a) {
     for (int b = -1; b <= 1; ++b) {
-      if (!GoesOn(shapes, number, place, up, a * u + b * v, same_m)) return false;
+      if (!GoesOn(shapes, number, place, up, a * u + b * v, same_m, true)) return false;
     }
   }
   return true;
