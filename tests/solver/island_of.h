@@ -128,7 +128,7 @@ class OwnIsland {
     numbers_.clear();
     for (Num** const list : {&m.v, &m.rhs, &m.direction, &m.trial_v}) *list = Take(6 * n);
     for (Num** const list :
-         {&m.l, &m.u, &m.best, &m.center, &m.projected, &m.du, &m.u2, &m.f, &m.start}) {
+         {&m.l, &m.u, &m.best, &m.center, &m.projected, &m.du, &m.u2, &m.f}) {
       *list = Take(island.rows);
     }
     m.g = Take(island.pools.cells());

@@ -85,9 +85,8 @@ struct LaneMemory {
     IslandMemory<Num>& x = island.m;
     Num** const per_dof[] = {&x.v, &x.rhs, &x.direction, &x.trial_v};
     for (Num** list : per_dof) *list = room.Take<Num>(kDofs * n);
-    Num** const per_row[] = {&x.l,         &x.u,        &x.best,  &x.center, &x.projected,
-                             &x.du,        &x.u2,       &x.start, &x.f,      &x.impacts.before,
-                             &x.impacts.u, &x.impacts.l};
+    Num** const per_row[] = {&x.l,  &x.u, &x.best,           &x.center,    &x.projected, &x.du,
+                             &x.u2, &x.f, &x.impacts.before, &x.impacts.u, &x.impacts.l};
     for (Num** list : per_row) *list = room.Take<Num>(rows);
     x.g = room.Take<Num>(cells);
     x.blocks = room.Take<Num>(36 * blocks);
