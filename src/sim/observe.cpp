@@ -310,7 +310,8 @@ WorldStatus Batch::Status(int world) const noexcept {
           s.cable,
           s.ground,
           d.at(world, d.layout.residual),
-          static_cast<int>(d.at(world, d.layout.linear_solves))};
+          static_cast<int>(d.at(world, d.layout.linear_solves)),
+          d.at(world, d.layout.gave_in)};
 }
 
 void Batch::ClearStatus(int world) noexcept {

@@ -8,6 +8,7 @@ template <class W>
 struct SolveResult {
   W residual;  ///< How far a lane is from solved [m/s].
   W linear_solves;
+  W gave_in;            ///< Largest change of a bias, where biases contradicted each other [m/s].
   int body[W::kLanes];  ///< Where it is furthest.
 };
 
@@ -299,6 +300,7 @@ void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
     LaneSolve<W> solver(m, s, work, settings, lane, step_s);
     const LaneResult lane_result = solver.Solve();
     result.linear_solves.Set(lane, result.linear_solves[lane] + lane_result.linear_solves);
+    result.gave_in.Set(lane, lane_result.gave_in);
     if (!(lane_result.residual <= result.residual[lane])) {
       result.residual.Set(lane, lane_result.residual);
       result.body[lane] = lane_result.body;
@@ -327,7 +329,7 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
                           const StepSettings& settings, double step_s) noexcept {
   const W zero = W::Splat(0.0);
   const Target target{settings.tolerance_m_per_s};
-  SolveResult<W> result{zero, zero, {}};
+  SolveResult<W> result{zero, zero, zero, {}};
   for (int& body : result.body) body = kWorld;
   PrepareContacts(m, s, g, work, step_s);
   if (m.joint_count > 0) PrepareJoints(m, s, work, step_s);

@@ -1,3 +1,170 @@
-/// Slabs and heaps of rods.
+/// Slabs on rods and heaps of rods: every step is solved, within a bounded multiple of the mean
+/// work.
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "scenes/heap.h"
+#include "scenes/stacks.h"
 #include "tests/mechanics/scene.h"
+#include "tests/physics/world.h"
+
+namespace taut::mechanics {
+namespace {
+
+constexpr double kStepS = 1e-3;
+/// By how much contacts may give in, as docs/theory/contact.md, section 5, has it.
+constexpr double kMostGivenInMPerS = 1e-6;
+/// The worst step's linear systems, in units of the mean of all steps of its scene.
+constexpr double kMostOfMean = 30;
+
+/// Six light rods around the middle carry a slab.
+struct Slab {
+  double mass_ratio;   ///< Of the slab and a rod.
+  double crooked_rad;  ///< Each rod points up to this much to either side of x.
+  Vec3 velocity_m_per_s{}, spin_rad_per_s{};
+
+  static constexpr double kRodKg = 0.1;
+  double WeightN() const { return kRodKg * (6 + mass_ratio) * 9.81; }
+
+  ModelDef Def(std::uint64_t seed) const {
+    constexpr double kRadiusM = 0.01, kHalfLengthM = 0.05, kOutM = 0.2, kPi = 3.141592653589793;
+    const Material material{0.5, 0.5, 0.0};
+    ModelDef def;
+    scenes::AddGround(def, material);
+    scenes::Chance chance(seed);
+    for (int i = 0; i < 6; ++i) {
+      const double place = kPi / 3 * i, heading = chance.Within(-crooked_rad, crooked_rad);
+      const Vec3 middle{kOutM * std::cos(place), kOutM * std::sin(place), kRadiusM};
+      const Vec3 half{kHalfLengthM * std::cos(heading), kHalfLengthM * std::sin(heading), 0};
+      scenes::AddRod(def, "rod_" + std::to_string(i), kRodKg, kRadiusM,
+                     scenes::Between(half, middle), scenes::Sum(middle, half), material);
+    }
+    const Vec3 half{0.3, 0.3, 0.05};
+    const int slab = scenes::AddBox(def, "slab", kRodKg * mass_ratio, half,
+                                    {0, 0, 2 * kRadiusM + half.z}, {}, material);
+    BodyDef& body = def.bodies[static_cast<std::size_t>(slab)];
+    body.velocity_m_per_s = velocity_m_per_s;
+    body.angular_velocity_rad_per_s = spin_rad_per_s;
+    return def;
+  }
+};
+
+/// What the solver reports of the steps of several runs.
+class Steps {
+ public:
+  void Run(Batch& world, int count) {
+    double highest = 0;
+    const double start = test::EnergyOf(world);
+    for (int i = 0; i < count; ++i) {
+      world.Step(kStepS);
+      const WorldStatus status = world.Status(0);
+      unsolved_ += (status.bits & kStatusNotConverged) != 0;
+      gave_in_ = std::max(gave_in_, status.gave_in_m_per_s);
+      worst_ = std::max(worst_, status.linear_solves);
+      sum_ += status.linear_solves;
+      ++count_;
+      world.ClearStatus(0);
+      highest = std::max(highest, test::EnergyOf(world) - start);
+    }
+    gain_ = std::max(gain_, highest / std::abs(start));
+  }
+  void AddTo(Report& report) const {
+    report.AtMost("unsolved of " + std::to_string(count_) + " steps", "1", unsolved_, 0);
+    report.AtMost("largest give-in", "m/s", gave_in_, kMostGivenInMPerS);
+    report.AtMost("energy above the start's", "1", gain_, 1e-9);
+  }
+  double worst_of_mean() const { return worst_ * static_cast<double>(count_) / sum_; }
+
+ private:
+  int unsolved_ = 0, worst_ = 0;
+  long count_ = 0;
+  double sum_ = 0, gave_in_ = 0, gain_ = -1;
+};
+
+double ForceOfTheGround(const Batch& world) {
+  double sum = 0;
+  for (const ContactState& contact : world.Contacts(0)) {
+    if (contact.body_b == kWorld) sum += contact.force_n.z;
+  }
+  return sum;
+}
+
+/// One slab in several starts, until it lies still.
+void Settle(Report& report, const Slab& slab) {
+  Steps steps;
+  double weight = 0, speed = 0;
+  for (std::uint64_t seed = 1; seed <= (report.IsFull() ? 6 : 2); ++seed) {
+    Batch world = test::MakeBatch(slab.Def(seed));
+    steps.Run(world, report.IsFull() ? 3000 : 500);
+    weight = std::max(weight, std::abs(ForceOfTheGround(world) / slab.WeightN() - 1));
+    speed = std::max(speed, test::Norm(world.Body(0, 6).velocity_m_per_s));
+  }
+  steps.AddTo(report);
+  report.AtMost("force of the ground at rest, of the weight", "1", weight, 1e-9);
+  report.AtMost("speed of the slab at rest", "m/s", speed, 1e-9);
+}
+
+void SpinningSlab(Report& report) { Settle(report, {1e4, 0.3, {}, {0, 0, 0.3}}); }
+void SlidingSlab(Report& report) { Settle(report, {1e4, 0.3, {0.1, 0, 0}, {}}); }
+void HeavySlab(Report& report) { Settle(report, {1e6, 0.3, {0.1, 0, 0}, {}}); }
+
+/// Rods that are nearly parallel: they roll together, but for a slip of a thousandth.
+void Rollers(Report& report) {
+  Steps steps;
+  for (const double ratio : {1e4, 1e6}) {
+    for (std::uint64_t seed = 1; seed <= (report.IsFull() ? 6 : 2); ++seed) {
+      Batch world = test::MakeBatch(Slab{ratio, 1e-3, {0.05, 0, 0}, {}}.Def(seed));
+      steps.Run(world, report.IsFull() ? 3000 : 200);
+    }
+  }
+  steps.AddTo(report);
+}
+
+void Heaps(Report& report, int rods, double friction, const std::vector<std::uint64_t>& seeds,
+           int count) {
+  Steps steps;
+  for (const std::uint64_t seed : seeds) {
+    scenes::RodHeap heap;
+    heap.rods = rods;
+    heap.friction = friction;
+    heap.seed = seed;
+    Batch world = test::MakeBatch(heap.Def());
+    steps.Run(world, count);
+  }
+  steps.AddTo(report);
+  report.AtMost("worst step's linear systems, of the mean", "1", steps.worst_of_mean(),
+                kMostOfMean);
+}
+
+void SmallHeap(Report& report) {
+  if (report.IsFull()) return Heaps(report, 20, 0.5, {1, 2, 3, 4, 5, 6, 21, 22}, 2000);
+  Heaps(report, 20, 0.5, {3}, 1500);
+}
+void RoughHeap(Report& report) {
+  if (report.IsFull()) return Heaps(report, 20, 0.8, {1, 2, 3, 4, 5, 6, 21, 22}, 2000);
+  Heaps(report, 20, 0.8, {4}, 1200);
+}
+void LargeHeap(Report& report) {
+  if (report.IsFull()) return Heaps(report, 40, 0.5, {1, 2, 3, 31}, 2000);
+  Heaps(report, 24, 0.5, {1}, 600);
+}
+
+const SceneEntry kSpinningSlab("heaps", "Slab that spins on six rods, mass ratio 1e4",
+                               "the laws of contact; statics at rest", SpinningSlab);
+const SceneEntry kSlidingSlab("heaps", "Slab that slides on six rods, mass ratio 1e4",
+                              "the laws of contact; statics at rest", SlidingSlab);
+const SceneEntry kHeavySlab("heaps", "Slab that slides on six rods, mass ratio 1e6",
+                            "the laws of contact; statics at rest", HeavySlab);
+const SceneEntry kRollers("heaps", "Slab on six rollers that are not quite parallel",
+                          "the laws of contact", Rollers);
+const SceneEntry kSmallHeap("heaps", "Heap of 20 rods, friction 0.5", "the laws of contact",
+                            SmallHeap);
+const SceneEntry kRoughHeap("heaps", "Heap of 20 rods, friction 0.8", "the laws of contact",
+                            RoughHeap);
+const SceneEntry kLargeHeap("heaps", "Heap of 24 rods (full: 40)", "the laws of contact",
+                            LargeHeap);
+
+}  // namespace
+}  // namespace taut::mechanics

@@ -137,19 +137,32 @@ TEST(ContactLaw, ReachIsWhereARayOfImpulsesLeavesItsBranch) {
   EXPECT_GT(stays, 300);
 }
 
-TEST(ContactLaw, WhatGivesInMissesNothing) {
+TEST(ContactLaw, WhatGivesInHoldsAtAnyVelocity) {
   ForEachInstance([](Contact2 c, Case which, math::Random& random) {
     const State s = Solution(c, which, random);
     const auto branch = c.BranchOf(Packed(s.u), Packed(s.l));
     Rows<3> u = s.u;
-    for (double& x : u) x += random.Uniform(-1, 1);
-    Num miss[3];
-    c.Miss(branch, Packed(u), miss);
-    c.GiveIn(miss);
-    const Rows<3> had{-c.bias[0][0], -c.bias[1][0], -c.bias[2][0]};
-    const std::size_t held = which == kOpen ? 0 : which == kSliding ? 1 : c.one_direction ? 2 : 3;
-    for (std::size_t r = 0; r < 3; ++r) EXPECT_EQ(miss[r][0] != 0, r < held);
-    for (std::size_t r = 0; r < held; ++r) EXPECT_NEAR(had[r], u[r], 1e-15);
+    for (double& x : u) x += random.Uniform(-1e-6, 1e-6);
+    Num change[3];
+    c.Disagreement(branch, Packed(u), Packed(s.l), change);
+    c.GiveIn(change);
+    EXPECT_LT(c.Residual(c.BranchOf(Packed(u), Packed(s.l)), Packed(u), Packed(s.l))[0], 1e-12);
+    const std::size_t held = which == kOpen ? 0 : c.one_direction ? 2 : 3;
+    for (std::size_t r = held; r < 3; ++r) EXPECT_EQ(change[r][0], 0);
+    // Where it slips against the friction it goes on to, as fast.
+    const double along = change[1][0] * s.l[1] + change[2][0] * s.l[2];
+    if (which == kSliding) {
+      EXPECT_NEAR(along, 0, 1e-15);
+    }
+  });
+}
+
+TEST(ContactLaw, WhatIsASolutionNeedNotGiveIn) {
+  ForEachInstance([](const Contact2& c, Case which, math::Random& random) {
+    const State s = Solution(c, which, random);
+    Num change[3];
+    c.Disagreement(c.BranchOf(Packed(s.u), Packed(s.l)), Packed(s.u), Packed(s.l), change);
+    for (const Num& x : change) EXPECT_NEAR(x[0], 0, 1e-12);
   });
 }
 

@@ -130,7 +130,7 @@ class OwnIsland {
       *list = Take(6 * n);
     }
     for (sim::Row<Num>* const list :
-         {&m.l, &m.u, &m.best, &m.center, &m.projected, &m.du, &m.u2, &m.f, &m.start}) {
+         {&m.l, &m.u, &m.best, &m.center, &m.projected, &m.du, &m.u2, &m.f}) {
       *list = Take(island.rows);
     }
     m.g = Take(island.pools.cells());

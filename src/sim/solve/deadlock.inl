@@ -4,9 +4,9 @@
 /// Contacts that stick along a closed chain (a rod jammed across a groove, a slab on rollers) have
 /// more rows than the bodies have motions, and biases that differ in the last digits of gaps and
 /// arcs. No velocities fulfil them all, and each step adds the same impulses along the chain. If
-/// these sooner or later open a contact or make it slide, that is the way to a solution, and is
-/// gone at once. If they never do, there is none: then the laws that can give in by what they miss
-/// do.
+/// these sooner or later open a contact or make it slide, that is a way to a solution, and is gone
+/// at once. Where it leads to none, proximal rounds (proximal.inl) find the velocities that miss
+/// least; then the laws that can give in by what is missed do.
 
 namespace taut::sim {
 
@@ -15,11 +15,38 @@ inline constexpr bool kGivesIn = requires(Law& law) {
   law.GiveIn(nullptr);
 };
 
-enum class Deadlock {
-  kNone,    ///< There is none, or no way out. Nothing has changed.
-  kLeft,    ///< m.l is where a law leaves its branch.
-  kGaveIn,  ///< Biases have changed.
-};
+/// At m.l, m.u and the branches of their residual: changes the biases of the laws that can give in
+/// so that they hold, if no bias changes by more than kDisagreementMPerS and that solves the
+/// island. False: nothing has changed.
+template <class Num, class P>
+bool GiveIn(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept {
+  auto& m = island.m;
+  Num most = Num::Splat(0.0);
+  const auto each = [&](const auto& f) {
+    island.pools.ForEach([&](auto& law, auto& branch, int row, int) {
+      if constexpr (kGivesIn<decltype(law)>) f(law, branch, row);
+    });
+  };
+  each([&](auto& law, auto& branch, int row) {
+    law.Disagreement(branch, m.u + row, m.l + row, m.projected + row);
+    for (int r = 0; r < LawOf<decltype(law)>::kRows; ++r) {
+      most = Max(Abs(m.projected[row + r]), most);
+    }
+  });
+  if (!(most[0] <= kDisagreementMPerS)) return false;
+  each([&](auto& law, auto&, int row) { law.GiveIn(m.projected + row); });
+  if (island.Residual(m.u, m.l)[0] <= tolerance) {
+    if (most[0] > work.gave_in) work.gave_in = most[0];
+    return true;
+  }
+  each([&](auto& law, auto&, int row) {
+    for (int r = 0; r < LawOf<decltype(law)>::kRows; ++r) {
+      m.projected[row + r] = -m.projected[row + r];
+    }
+    law.GiveIn(m.projected + row);
+  });
+  return false;
+}
 
 /// After a step of Newton's method from the velocities m.u2 and the impulses m.projected to m.u and
 /// m.l.
@@ -32,10 +59,9 @@ class DeadlockBreaker {
  public:
   explicit DeadlockBreaker(Island<Num, P>& island) noexcept : island_(island), m_(island.m) {}
 
-  /// Laws give in by no more than `most_m_per_s`.
-  Deadlock Break(double most_m_per_s) noexcept {
-    const double missed = Missed();
-    if (missed == 0) return Deadlock::kNone;
+  /// True: m.l is where a law leaves its branch. False: there is no deadlock, or no way out.
+  bool Break() noexcept {
+    if (!IsDeadlock()) return false;
     // m.projected <- what a step adds to the impulses
     for (int i = 0; i < island_.rows; ++i) m_.projected[i] = m_.l[i] - m_.projected[i];
     Num reach = Num::Splat(1e300), size = Num::Splat(0.0), added = size;
@@ -46,18 +72,10 @@ class DeadlockBreaker {
       }
       reach = Min(law.Reach(branch, m_.l + row, m_.projected + row), reach);
     });
-    if (Any(reach * added < Num::Splat(kFar) * size)) {
-      const Num beyond = Num::Splat(1.0 + 1e-9) * reach;
-      for (int i = 0; i < island_.rows; ++i) m_.l[i] += beyond * m_.projected[i];
-      return Deadlock::kLeft;
-    }
-    if (missed > most_m_per_s) return Deadlock::kNone;
-    ForEach([&](auto& law, auto& branch, int row) {
-      Num miss[LawOf<decltype(law)>::kRows];
-      law.Miss(branch, m_.u + row, miss);
-      law.GiveIn(miss);
-    });
-    return Deadlock::kGaveIn;
+    if (!Any(reach * added < Num::Splat(kFar) * size)) return false;
+    const Num beyond = Num::Splat(1.0 + 1e-9) * reach;
+    for (int i = 0; i < island_.rows; ++i) m_.l[i] += beyond * m_.projected[i];
+    return true;
   }
 
  private:
@@ -68,8 +86,8 @@ class DeadlockBreaker {
     });
   }
 
-  /// By how much the step misses what laws hold, if that is little and the same as before it; or 0.
-  double Missed() noexcept {
+  /// Whether the step misses what laws hold by little, and by the same as before it.
+  bool IsDeadlock() noexcept {
     Num most = Num::Splat(0.0), changed = most;
     ForEach([&](auto& law, auto& branch, int row) {
       constexpr int R = LawOf<decltype(law)>::kRows;
@@ -81,8 +99,7 @@ class DeadlockBreaker {
         changed = Max(Abs(now[r] - before[r]), changed);
       }
     });
-    const bool stays = most[0] <= kDisagreementMPerS && changed[0] <= kStays * most[0];
-    return stays ? most[0] : 0;
+    return most[0] > 0 && most[0] <= kDisagreementMPerS && changed[0] <= kStays * most[0];
   }
 
   Island<Num, P>& island_;

@@ -31,6 +31,12 @@ struct Target {
   double goal() const noexcept { return kGoal * tolerance; }
 };
 
+/// What has been done for an island, and what may be.
+struct SolverWork {
+  int linear_solves = 0, limit = 0;
+  double gave_in = 0;  ///< Largest change of a bias, where biases contradicted each other [m/s].
+};
+
 /// Whether a residual has hardly moved from one step to the next.
 inline bool Stays(double now, double before, double bound) noexcept {
   return now - before < bound && before - now < bound;
@@ -115,10 +121,10 @@ struct ImpactRows {
 /// The numbers that the stages of an island's solve work on.
 template <class Num>
 struct IslandMemory {
-  Row<Num> v, rhs, direction, trial_v;                    ///< 6 an unknown.
-  Row<Num> l, u, best, start, center, projected, du, u2;  ///< 1 a row.
-  Row<Num> g, f;                                          ///< rows^2, rows a constraint.
-  Row<Num> blocks;                                        ///< 36 a block.
+  Row<Num> v, rhs, direction, trial_v;             ///< 6 an unknown.
+  Row<Num> l, u, best, center, projected, du, u2;  ///< 1 a row.
+  Row<Num> g, f;                                   ///< rows^2, rows a constraint.
+  Row<Num> blocks;                                 ///< 36 a block.
   ImpactRows<Num> impacts;
 };
 

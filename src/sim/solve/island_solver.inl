@@ -9,7 +9,6 @@ double SolveInStages(Island<Num, P>& island, Target target, SolverWork& work) no
   constexpr int kSweeps = 30, kSweepsWithoutMatrix = 1000;
   constexpr double kSoftness[] = {1e-2, 1e-1, 1e-4, 1e-1};
   if (!island.has_matrix) return Sweep(island, kSweepsWithoutMatrix);
-  for (int i = 0; i < island.rows; ++i) island.m.start[i] = island.m.l[i];
   double residual = 0;
   for (int again = 0;; ++again) {
     residual = PlainNewton(island, target, work);
@@ -22,10 +21,7 @@ double SolveInStages(Island<Num, P>& island, Target target, SolverWork& work) no
     if (softness != kSoftness[0]) Sweep(island, kSweeps);
     residual = Proximal<Num, P>(island, target, work).Solve(softness);
   }
-  if (residual <= target.tolerance || residual > kDisagreementMPerS) return residual;
-  for (int i = 0; i < island.rows; ++i) island.m.center[i] = island.m.l[i];
-  const double last = PlainNewton(island, target, work, kDisagreementMPerS);
-  return last <= residual ? last : island.Return(island.m.center);
+  return residual;
 }
 
 /// An island as impacts.inl sees it.

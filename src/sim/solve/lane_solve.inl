@@ -6,7 +6,7 @@ namespace taut::sim {
 
 /// What solving one lane came to.
 struct LaneResult {
-  double residual = 0;
+  double residual = 0, gave_in = 0;
   int linear_solves = 0;
   int body = kWorld;  ///< In the island that is furthest from solved.
 };
@@ -37,6 +37,7 @@ class LaneSolve {
       const double residual = SolveGathered(work);
       Scatter();
       result.linear_solves += work.linear_solves;
+      if (work.gave_in > result.gave_in) result.gave_in = work.gave_in;
       if (residual > result.residual || !(residual - residual == 0)) {
         result.residual = residual;
         result.body = body;

@@ -72,9 +72,8 @@ struct LaneMemory {
     IslandMemory<Num>& x = island.m;
     Row<Num>* const per_dof[] = {&x.v, &x.rhs, &x.direction, &x.trial_v};
     for (Row<Num>* list : per_dof) *list = room.Take<Num>(kDofs * n);
-    Row<Num>* const per_row[] = {&x.l,         &x.u,        &x.best,  &x.center, &x.projected,
-                                 &x.du,        &x.u2,       &x.start, &x.f,      &x.impacts.before,
-                                 &x.impacts.u, &x.impacts.l};
+    Row<Num>* const per_row[] = {&x.l,  &x.u, &x.best,           &x.center,    &x.projected, &x.du,
+                                 &x.u2, &x.f, &x.impacts.before, &x.impacts.u, &x.impacts.l};
     for (Row<Num>* list : per_row) *list = room.Take<Num>(rows);
     x.g = room.Take<Num>(cells);
     x.blocks = room.Take<Num>(36 * blocks);
@@ -87,10 +86,10 @@ struct JointMemory {
   Row<Unknown<W>> bodies;
   Row<JointRow<W>> rows;
   Row<W> G, gap, miss, l;  ///< Per row.
-  Row<W> rhs, change;  ///< 6 a body; rhs: also of those with motions, which do not change.
-  Row<W> moved;        ///< Per body: how far the last displacement moved any of its points [m],
-  Row<V3<W>> gained;   ///< and the angular momentum that it gained by it.
-  Row<W> blocks;       ///< 36 a block.
+  Row<W> rhs, change;      ///< 6 a body; rhs: also of those with motions, which do not change.
+  Row<W> moved;            ///< Per body: how far the last displacement moved any of its points [m],
+  Row<V3<W>> gained;       ///< and the angular momentum that it gained by it.
+  Row<W> blocks;           ///< 36 a block.
 
   void Take(const View& m, Room& room) noexcept {
     const int64_t n = m.joint_body_count;

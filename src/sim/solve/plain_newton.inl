@@ -61,11 +61,6 @@ TAUT_INLINE bool StepOf(const Law& law, const typename Law::Branch& branch, cons
   }
 }
 
-/// What has been done for an island, and what may be.
-struct SolverWork {
-  int linear_solves = 0, limit = 0;
-};
-
 /// One step of Newton's method from m.l, m.u and the branches that the laws are said to be on.
 /// Leaves m.l with its velocities in m.v and m.u; false if there is no step.
 template <class Num, class P>
@@ -102,11 +97,9 @@ bool NewtonStep(Island<Num, P>& island, SolverWork& work) noexcept {
 }
 
 /// Leaves the best impulses that it came by, made admissible, in m.l; m.v and m.u belong to it
-/// before and after. `give_in`: what laws may give in by [m/s]; then it goes on from m.start
-/// (deadlock.inl). Returns the residual [m/s].
+/// before and after. Returns the residual [m/s].
 template <class Num, class P>
-double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work,
-                   double give_in = 0) noexcept {
+double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   constexpr int kMaxIterations = 12, kMaxDeadlocks = 8;
   constexpr double kLostFactor = 1e3, kStays = 0.1;
   auto& m = island.m;
@@ -126,13 +119,9 @@ double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work,
     if (!(residual - residual == 0)) break;
     stayed = Stays(residual, before, kStays * before) ? stayed + 1 : 0;
     if (stayed > 1 && residual < kDisagreementMPerS && deadlocks < kMaxDeadlocks) {
-      const Deadlock found = DeadlockBreaker<Num, P>(island).Break(give_in);
-      if (found != Deadlock::kNone) {
+      if (DeadlockBreaker<Num, P>(island).Break()) {
         ++deadlocks, stayed = 0, iterations = iteration + kMaxIterations;
-        const bool gave_in = found == Deadlock::kGaveIn;
-        for (int i = 0; gave_in && i < island.rows; ++i) m.l[i] = m.start[i];
         residual = island.Judge();
-        if (gave_in) best = residual;  // of another problem
         continue;
       }
     }

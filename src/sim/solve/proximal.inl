@@ -14,6 +14,10 @@ class Proximal {
   static constexpr int kMaxRounds = 40, kMaxIterations = 40, kSweepsAfterFailure = 10;
   static constexpr double kLeastSoftness = 1e-8, kStays = 1e-3;
   static constexpr int kMaxStays = 4;
+  /// A residual that no longer falls is a contradiction: after so many rounds without one of half
+  /// the residual, where rounds are this stiff or fail.
+  static constexpr double kFalls = 0.5, kSmallMPerS = 1e-8, kStiff = 1e-8;
+  static constexpr int kRoundsIfSmall = 4, kRounds = 6;
 
  public:
   Proximal(Island<Num, P>& island, Target target, SolverWork& work) noexcept
@@ -26,11 +30,13 @@ class Proximal {
 
   /// Improves m.l; m.v and m.u belong to it before and after. Returns the residual [m/s].
   double Solve(double first_softness) noexcept {
-    double e = first_softness, failed_at = 0;
+    double e = first_softness, failed_at = 0, best_at_failure = 0;
     double residual = island_.Judge(), best = residual;
     Keep(m_.best, m_.l, island_.rows);
     bool carried = false;  // m.trial_v is where the last round ended
     int stayed = 0;
+    int stale = 0;         // rounds, as stiff or stiffer, since the residual last fell to half:
+    double e_at_fall = e;  // the softness of that round
     for (int round = 0; round < kMaxRounds && residual > tolerance_ && !Exhausted(); ++round) {
       Keep(m_.center, m_.l, island_.rows);
       if (!carried) Keep(m_.trial_v, m_.v, size_);
@@ -39,8 +45,18 @@ class Proximal {
       residual = island_.Judge();
       // Biases that contradict each other: deadlock.inl
       stayed = ended_well && Stays(residual, before, kStays * residual) ? stayed + 1 : 0;
-      if (stayed == kMaxStays && best < kDisagreementMPerS) break;
+      if (residual < kFalls * best) {
+        stale = 0, e_at_fall = e;
+      } else if (ended_well && e <= e_at_fall) {
+        ++stale;
+      }
       KeepIfBest(residual, best);
+      const bool stays = stayed == kMaxStays && best < kDisagreementMPerS;
+      if (stays || !ended_well || e <= kStiff) {
+        const int enough = best <= kSmallMPerS ? kRoundsIfSmall : kRounds;
+        if (stale >= enough && LetBestGiveIn(best)) return island_.Judge();
+      }
+      if (stays) break;
       carried = ended_well && residual - residual == 0;
       if (ended_well) {
         // Not in one leap to where a round failed before.
@@ -50,6 +66,12 @@ class Proximal {
         if (e < 0.5 * failed_at) failed_at = 0;
         continue;
       }
+      // From here on rounds would repeat themselves.
+      if (failed_at > 0 && best > kFalls * best_at_failure) {
+        if (LetBestGiveIn(best)) return island_.Judge();
+        break;
+      }
+      best_at_failure = best;
       failed_at = e;
       e = 30 * e < 1 ? 30 * e : 1;
       residual = Sweep(island_, kSweepsAfterFailure);
@@ -68,6 +90,20 @@ class Proximal {
     if (!(residual < best)) return;
     best = residual;
     Keep(m_.best, m_.l, island_.rows);
+  }
+
+  /// Lets the laws that m.l misses give in: with it the step hands on what has grown along the
+  /// loop, until a contact of it slides. Else goes back to the best impulses if those that they
+  /// miss can; else leaves m.l.
+  bool LetBestGiveIn(double best) noexcept {
+    if (!(best > tolerance_ && best <= kDisagreementMPerS)) return false;
+    if (GiveIn(island_, tolerance_, work_)) return true;
+    Keep(m_.du, m_.l, island_.rows);
+    island_.Return(m_.best);
+    if (GiveIn(island_, tolerance_, work_)) return true;
+    Keep(m_.l, m_.du, island_.rows);
+    island_.Judge();
+    return false;
   }
 
   /// One round with the softness e from m.trial_v. Leaves impulses in m.l, velocities in m.trial_v.
