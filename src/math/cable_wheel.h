@@ -101,16 +101,19 @@ TAUT_INLINE V Behind(const PathPoint<V>* points, const Wheel<V>* wheels, int k, 
 }
 
 /// Lays wheels first..last-1, which follow one another, between the points before and behind them.
+/// `begun`: they have points and thetas to begin with; else on none of them it lies.
 template <class V, class S = typename Wheel<V>::S>
-void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last,
-                     const S* along) noexcept {
+void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last, const S* along,
+                     bool begun) noexcept {
   using C = Constant<S>;
   constexpr int kMostRounds = 200;
   constexpr double kStill = 1e-15;  ///< Of the distances between them.
   const S zero = C::Of(0.0);
   const V from = points[wheels[first].at - 1].p, to = points[wheels[last - 1].at + 2].p;
   for (int k = first; k < last; ++k) {
-    wheels[k].theta = wheels[k].arc = zero, wheels[k].angle = wheels[k].before;
+    wheels[k].arc = zero, wheels[k].angle = wheels[k].before;
+    if (begun) continue;
+    wheels[k].theta = zero;
     points[wheels[k].at].p = points[wheels[k].at + 1].p = from;
   }
   S busy = C::Of(1.0);
@@ -150,16 +153,52 @@ void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last
 
 /// Puts the points where the cable arrives at wheels and leaves them; the others are where they
 /// are. A path neither starts nor ends at a wheel. `along`, if it is not null: per wheel, where
-/// along the axis from its centre the middle of the arc is held [m], or kNotHeld.
+/// along the axis from its centre the middle of the arc is held [m], or kNotHeld. `begun`: see
+/// above.
 template <class V, class S = typename Wheel<V>::S>
-void LayOnWheels(PathPoint<V>* points, int wheel_count, Wheel<V>* wheels,
-                 const S* along = nullptr) noexcept {
+void LayOnWheels(PathPoint<V>* points, int wheel_count, Wheel<V>* wheels, const S* along = nullptr,
+                 bool begun = false) noexcept {
   int first = 0;
   while (first < wheel_count) {
     int last = first + 1;
     while (last < wheel_count && wheels[last].at == wheels[last - 1].at + 2) ++last;
-    LayOnNeighbours(points, wheels, first, last, along);
+    LayOnNeighbours(points, wheels, first, last, along, begun);
     first = last;
+  }
+}
+
+/// Points to begin with for wheels that are all in a row: on the side of the axis on which the
+/// cable goes by, near where the way to its end crosses that, at most `half` from the wheel's
+/// middle [m]. An angle about an axis is known but for whole turns, by the one before, and those
+/// are between the points that are next along the cable. Begun with the cable's ends instead, a
+/// cable in a loop was found to lie on nothing. `has`: 0 where there is no such wheel, else 1.
+template <class V, class S = typename Wheel<V>::S>
+void BeginOnWheels(PathPoint<V>* points, int count, Wheel<V>* wheels, const S* half,
+                   const S* has) noexcept {
+  using C = Constant<S>;
+  const S zero = C::Of(0.0), one = C::Of(1.0), tiny = C::Of(1e-300);
+  const auto unit = [&](const V& v) { return (one / Sqrt(Max(Dot(v, v), tiny))) * v; };
+  const V to = points[2 * count + 1].p;
+  V from = points[0].p;
+  for (int k = 0; k < count; ++k) {
+    Wheel<V>& wheel = wheels[k];
+    const V way = to - from, across = Cross(way, wheel.axis);
+    const S along = Dot(Cross(wheel.center - from, way), across);
+    const S place = along / Max(Dot(across, across), tiny);
+    const auto is = has[k] > zero;
+    from = Pick(is, wheel.center + Max(Min(place, half[k]), zero - half[k]) * wheel.axis, from);
+    points[1 + 2 * k].p = Pick(is, from, to);
+    wheel.theta = has[k];
+  }
+  from = points[0].p;
+  for (int k = 0; k < count; ++k) {
+    const Wheel<V>& wheel = wheels[k];
+    const V here = points[1 + 2 * k].p, next = k + 1 < count ? points[3 + 2 * k].p : to;
+    const V way = unit(here - from) + unit(next - here);
+    const S side = Select(wheel.before < zero, zero - one, one);
+    points[1 + 2 * k].p = points[2 + 2 * k].p =
+        here + (side * wheel.radius) * unit(Cross(way, wheel.axis));
+    from = here;
   }
 }
 

@@ -33,7 +33,10 @@ std::string DescribeStatus(const ModelDef& def, const WorldStatus& status) {
     add(status.cable >= 0 ? "the step is too long for the tension of a cable"
                           : "the step is too long for the forces of a body's joints");
   }
-  if (status.bits & kStatusContactOverflow) add("more contacts than there is room for");
+  if (status.bits & kStatusContactOverflow) {
+    add(status.cable >= 0 ? "a cable touches more than it can lie against"
+                          : "more contacts than there is room for");
+  }
   if (status.bits & kStatusFellOff) add("a body is below all of the terrain");
   if (out.empty()) return out;
   if (status.body != kWorld) out += ", body " + body_name();

@@ -65,8 +65,17 @@ void LayOverBends(const View& m, const Rows<W>& s, const TouchTable& touch, int 
       wheel.axis = Pick(lanes, at.arm, wheel.axis);
     });
   }
-  LayOnWheels(ends, used, wheels,
-              touch.friction > 0 ? &s.slip_along[FirstSlip(m, touch)] : nullptr);
+  if (used > 1) {
+    W half[kMostBends], has[kMostBends];
+    for (int k = 0; k < used; ++k) {
+      const BendNumbers<W>& bend = s.bend[touch.first_bend + k];
+      half[k] = bend.half;
+      has[k] = Select(bend.key == W::Splat(kNoKey), zero, one);
+    }
+    BeginOnWheels(ends, used, wheels, half, has);
+  }
+  LayOnWheels(ends, used, wheels, touch.friction > 0 ? &s.slip_along[FirstSlip(m, touch)] : nullptr,
+              used > 1);
 }
 
 /// Where bodies are in the middle of a step, for LayOverBends.
@@ -119,7 +128,12 @@ template <class W>
 class LaneBends {
  public:
   LaneBends(const View& m, const Rows<W>& s, const TouchTable& touch, int lane) noexcept
-      : s_(s), spans_(m, s, touch, lane), first_(touch.first_bend), lane_(lane) {
+      : s_(s),
+        spans_(m, s, touch, lane),
+        first_(touch.first_bend),
+        first_rod_(touch.first_rod),
+        rod_count_(touch.rod_count),
+        lane_(lane) {
     while (count_ < kMostBends && s.bend[first_ + count_].key[lane] != kNoKey) ++count_;
   }
   int count() const noexcept { return count_; }
@@ -129,6 +143,7 @@ class LaneBends {
 
   void Remove(int k) noexcept {
     spans_.Merge(k, count_);
+    MoveSides(k, -1.0);
     for (; k + 1 < count_; ++k) Copy(s_.bend[first_ + k + 1], s_.bend[first_ + k]);
     Put(s_.bend[first_ + --count_], kNoBend);
   }
@@ -136,6 +151,7 @@ class LaneBends {
   bool Insert(int k, const BendFound& found, double share) noexcept {
     if (count_ == kMostBends) return false;
     spans_.Split(k, count_, share);
+    MoveSides(k, 1.0);
     for (int i = count_++; i > k; --i) Copy(s_.bend[first_ + i - 1], s_.bend[first_ + i]);
     const BendPlace& place = found.place;
     const Vec3 &c = place.center, &u = place.axis;
@@ -153,6 +169,13 @@ class LaneBends {
  private:
   static constexpr int kWidth = kWidthBend;
 
+  /// Straight parts behind part `k` get numbers that are higher by one, or lower.
+  void MoveSides(int k, double by) const noexcept {
+    for (int i = first_rod_; i < first_rod_ + rod_count_; ++i) {
+      const double side = s_.touch_side[i][lane_];
+      if (Abs(side) > k + 1.5) s_.touch_side[i].Set(lane_, side + (side < 0.0 ? -by : by));
+    }
+  }
   void Copy(const BendNumbers<W>& from, BendNumbers<W>& to) const noexcept {
     for (int i = 0; i < kWidth; ++i) Numbers(to)[i].Set(lane_, Numbers(from)[i][lane_]);
   }
@@ -168,63 +191,8 @@ class LaneBends {
 
   const Rows<W>& s_;
   const LaneSpans<W> spans_;
-  int first_, lane_, count_ = 0;
+  int first_, first_rod_, rod_count_, lane_, count_ = 0;
 };
-
-/// Changes a lane's bends once, if the path as it is laid says so: what it has left is dropped, or
-/// where it would be beside an edge's end or through what is below it; an edge that a straight part
-/// is below is added. Returns whether something has changed.
-template <class W>
-bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchTable& touch,
-                 int used, int lane) noexcept {
-  const AttachmentWork<W>* const ends = work.attachments;
-  const Wheel<V3<W>>* const wheels = work.wheels;
-  LaneBends<W> bends(m, s, touch, lane);
-  const int before = bends.count();
-  for (int k = before - 1; k >= 0; --k) {
-    const Vec3 middle =
-        0.5 * (PlaceOf(ends[1 + 2 * k].p, lane) + PlaceOf(ends[2 + 2 * k].p, lane)) -
-        PlaceOf(wheels[k].center, lane);
-    const bool beyond = !(Abs(Dot(middle, PlaceOf(wheels[k].axis, lane))) < bends.Half(k)) ||
-                        !(Abs(wheels[k].angle[lane]) < bends.Most(k));
-    if (beyond || !(wheels[k].theta[lane] > 0.0)) bends.Remove(k);
-  }
-  if (bends.count() < before) return true;
-  double taken[kMostBends];
-  for (int k = 0; k < bends.count(); ++k) taken[k] = bends.Key(k);
-  FreeSpan span{PlaceOf(ends[0].p, lane), {}, true, false};
-  BendFound deepest;
-  int place = -1, from = 0;
-  double share = 0.5;
-  const auto take = [&] {
-    place = from;
-    const double arc_before = from > 0 ? wheels[from - 1].arc[lane] : 0.0;
-    const double arc_behind = from < bends.count() ? wheels[from].arc[lane] : 0.0;
-    share = ShareBefore(m, s, work, deepest.place, span, 0.5 * arc_before, 0.5 * arc_behind, lane);
-  };
-  for (int k = 0; k <= bends.count(); ++k) {
-    const bool end = k == bends.count();
-    if (!end && !(wheels[k].theta[lane] > 0.0)) continue;
-    span.to = PlaceOf(ends[end ? 2 * used + 1 : 1 + 2 * k].p, lane);
-    span.ends = end;
-    if (touch.terrain &&
-        FindEdge(m, span, touch.radius_m, taken, bends.count(), place >= 0, &deepest)) {
-      take();
-    }
-    if (touch.rod_count > 0 &&
-        FindRod(m, s, work, touch, span, lane, taken, bends.count(), place >= 0, &deepest)) {
-      take();
-    }
-    if (end) break;
-    span.from = PlaceOf(ends[2 + 2 * k].p, lane);
-    span.starts = false;
-    from = k + 1;
-  }
-  if (place < 0) return false;
-  if (bends.Insert(place, deepest, share)) return true;
-  work.no_room |= 1u << lane;
-  return false;
-}
 
 /// Where a cable without bends may have come to touch something since it was looked at.
 template <class W>
@@ -274,60 +242,6 @@ template <class W>
     LayOverBends(m, s, touch, used, ends, work.wheels, PoseNow(s, work));
   }
   return MeasureLaid(m, s, touch, used, work, ends);
-}
-
-/// At the middle of the step: what a cable lies against from here on. Measures it; returns its
-/// length.
-template <class W>
-[[gnu::noinline]] W FollowBends(const View& m, const Rows<W>& s, Scratch<W>& work,
-                                const CableTable& cable) noexcept {
-  constexpr int kMostRounds = 4 * kMostBends;
-  constexpr double kEnoughM = 0.05;
-  const TouchTable& touch = m.touches[cable.touch];
-  int used = BendsInUse(s, touch);
-  AttachmentWork<W>* const ends = work.attachments;
-  const AttachmentWork<W> start = Attachment(m.attachments[cable.first_attachment], work);
-  const AttachmentWork<W> end = Attachment(m.attachments[cable.first_attachment + 1], work);
-  const V3<W>&first = start.p, &last = end.p;
-  ends[0] = start, ends[1] = end;
-  const auto free = s.bend[touch.first_bend].key == W::Splat(kNoKey);
-  auto look = (!free) | MayTouchRods(m, s, work, touch, first, last, free);
-  if (touch.terrain) look = look | MayTouch(s, cable.touch, first, last);
-  look = look & (s.halted[0] == W::Splat(0.0));
-  if (!Any(look)) return MeasureTouching(m, s, cable, work, ends).l;  // nothing is bent
-  auto busy = look;
-  for (int round = 0; round < kMostRounds && Any(busy); ++round) {
-    ends[2 * used + 1] = end;
-    LayOverBends(m, s, touch, used, ends, work.wheels, PoseNow(s, work));
-    busy = busy & MayChangeBends(m, s, work, touch, used);
-    for (int lane = 0; lane < W::kLanes; ++lane) {
-      if (busy[lane]) busy.Set(lane, ChangeBends(m, s, work, touch, used, lane));
-    }
-    if (Any(busy)) used = BendsInUse(s, touch);
-  }
-  if (touch.friction > 0 && used > 0) SlideAcross(m, s, work, touch, used, ends);
-  for (int k = 0; k < used; ++k) {
-    BendNumbers<W>& bend = s.bend[touch.first_bend + k];
-    const auto live = !(bend.key == W::Splat(kNoKey));
-    bend.angle = Select(live, work.wheels[k].angle, bend.angle);
-  }
-  KeepSides(m, s, work, touch, used, look);
-  if (touch.terrain) {
-    // Of one that is free, how far it may go before it is looked at again.
-    const auto bent = !(s.bend[touch.first_bend].key == W::Splat(kNoKey));
-    W& far = s.touch_free[cable.touch];
-    far = Select(look & bent, W::Splat(0.0), far);
-    s.touch_from[cable.touch] = Pick(look, first, s.touch_from[cable.touch]);
-    s.touch_to[cable.touch] = Pick(look, last, s.touch_to[cable.touch]);
-    for (int lane = 0; lane < W::kLanes; ++lane) {
-      if (!look[lane] || bent[lane]) continue;
-      const FreeSpan span{PlaceOf(first, lane), PlaceOf(last, lane), true, true};
-      far.Set(lane, FreeDistance(m, span, touch.radius_m, kEnoughM));
-    }
-  }
-  if (!Any(busy)) return MeasureLaid(m, s, touch, used, work, ends).l;
-  ends[1] = end;
-  return MeasureTouching(m, s, cable, work, ends).l;
 }
 
 /// What the tension does to rods: one link a body, in the order of their numbers, whatever each

@@ -149,7 +149,7 @@ template <class W>
   const CableTable& cable = m.cables[c];
   AttachmentWork<W>* const ends = work.attachments;
   const W l = cable.touch >= 0
-                  ? FollowBends(m, s, work, cable)
+                  ? FollowBends(m, s, work, cable, h)
                   : MeasureCable<false>(m, s, cable, cable.attachment_count, work, ends).l;
   KeepWheels(s, cable, work);
   const W before = s.rest[c], k = s.stiffness[c];

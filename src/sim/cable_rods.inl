@@ -1,12 +1,116 @@
 /// Rods that a cable comes to lie against (docs/theory/cables.md, section 6). Where the straight
-/// lines of both cross, the cable is on one side of the rod's axis; that it is on the other one
-/// later shows that it has come through, however fast.
+/// parts of its path pass a rod, the cable is on one side of the rod's axis; that it is on the
+/// other one later shows that it has come through, however fast.
 
 namespace taut::sim {
 
 template <class W>
 TAUT_INLINE Vec3 PlaceOf(const V3<W>& p, int lane) noexcept {
   return {p.x[lane], p.y[lane], p.z[lane]};
+}
+
+/// How a body was some time before the middle of the step: until then it went on evenly.
+template <class W>
+struct BodyThen {
+  V3<W> way, half_turn;  ///< Gone since; turned back by twice the arc tangent of that.
+  W scale;
+
+  BodyThen(const BodyWork<W>& body, W ago) noexcept
+      : way(ago * body.v0), half_turn((W::Splat(-0.5) * ago) * body.w0) {
+    scale = W::Splat(2.0) / (W::Splat(1.0) + Dot(half_turn, half_turn));
+  }
+  /// A vector that turns with it.
+  V3<W> Turned(const V3<W>& v) const noexcept {
+    return v + scale * Cross(half_turn, v + Cross(half_turn, v));
+  }
+};
+
+/// Where the rods of a cable are, for all that looks at them next. `ago`: before the middle of the
+/// step [s]; null: then.
+template <class W>
+void PlaceRods(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
+               const W* ago) noexcept {
+  for (int i = 0; i < touch.rod_count; ++i) {
+    const TouchRodTable& rod = m.touch_rods[touch.first_rod + i];
+    const M3<W>& R = work.bodies[rod.body].R;
+    const V3<W> center = R * simd::Splat3<W>(rod.center_P), axis = R * simd::Splat3<W>(rod.axis_P);
+    RodLine<W>& line = work.rod_lines[i];
+    line = {s.pos[rod.body] + center, axis};
+    if (ago == nullptr) continue;
+    const BodyThen<W> then(work.bodies[rod.body], *ago);
+    line = {s.pos[rod.body] - then.way + then.Turned(center), then.Turned(axis)};
+  }
+}
+
+/// How a path passes a rod, at the straight part that is nearest to it.
+template <class S>
+struct RodPass {
+  S side;  ///< -1 or 1; 0: no part crosses the rod, seen across both.
+  S part;  ///< Number of that part.
+  S off2;  ///< Squared distance of the axis from it [m^2].
+
+  static RodPass None() noexcept {
+    using C = Constant<S>;
+    return {C::Of(0.0), C::Of(0.0), C::Of(1e300)};
+  }
+};
+
+/// Takes a straight part into account, if it `is` there.
+template <class V, class S, class M>
+TAUT_INLINE void LookAtPart(const V& from, const V& to, const V& center, const V& axis, S half,
+                            int part, M is, RodPass<S>& pass) noexcept {
+  using C = Constant<S>;
+  const Crossing<V> x = CrossingOf(from, to, center, axis);
+  const S off2 = x.across * x.across / Max(x.norm2, C::Of(1e-300));
+  const auto nearer = is & CrossWithin(x, half) & (off2 < pass.off2);
+  pass.side = Select(nearer, Select(x.across < C::Of(0.0), C::Of(-1.0), C::Of(1.0)), pass.side);
+  pass.part = Select(nearer, C::Of(part), pass.part);
+  pass.off2 = Select(nearer, off2, pass.off2);
+}
+
+/// A rod that the cable does not lie against: on which side of it which part of the path is, as one
+/// number that is 0 where that is not known (row touch_side).
+template <class S>
+TAUT_INLINE S SideOfPart(S side, S part) noexcept {
+  return side * (part + Constant<S>::Of(1.0));
+}
+
+/// How a rod is passed now, against what was known.
+template <class S>
+struct Pressed {
+  decltype(S() < S()) same;     ///< The part is the one whose side is known, or goes on from it.
+  decltype(S() < S()) through;  ///< It is on the other side now,
+  decltype(S() < S()) inside;   ///< or inside of the rod.
+};
+
+/// A path in loops has parts that pass a rod on other sides, and which of them is nearest changes
+/// as the rod goes by. So only one part is asked; close to a bend, also the next one, which is on
+/// the same side there.
+template <class S>
+TAUT_INLINE Pressed<S> PressedBy(const RodPass<S>& pass, S known, double radius_m) noexcept {
+  using C = Constant<S>;
+  constexpr double kClose = 4.0;  ///< Twice the radius, squared.
+  const S zero = C::Of(0.0), one = C::Of(1.0), radius2 = C::Of(radius_m * radius_m);
+  const S apart = Abs(pass.part + one - Abs(known));
+  using Is = decltype(S() < S());  // what & makes of two bools is an int
+  const Is same =
+      (!(pass.side * known == zero)) &
+      ((apart < C::Of(0.5)) | ((apart < C::Of(1.5)) & (pass.off2 < C::Of(kClose) * radius2)));
+  return {same, pass.side * known < zero, pass.off2 < radius2};
+}
+
+/// The side that is known next, of a rod that the cable does not lie against. It comes to be known
+/// outside of the rod only: a cable that gets into one past its end goes through it, as laying it
+/// round at once would make it longer by a jump. It is forgotten once the cable is deep inside.
+template <class S>
+TAUT_INLINE S SideNext(const RodPass<S>& pass, S known, double radius_m) noexcept {
+  using C = Constant<S>;
+  constexpr double kDeep = 0.25;  ///< Half the radius, squared.
+  const Pressed<S> pressed = PressedBy(pass, known, radius_m);
+  const auto holds =
+      pressed.same & !pressed.through & !(pass.off2 < C::Of(kDeep * radius_m * radius_m));
+  const S now = SideOfPart(pass.side, pass.part);
+  return Select(pressed.inside & !holds, C::Of(0.0), now);
 }
 
 /// Lanes in which a cable may have come to touch a rod, of those where it has been `free`: straight
@@ -16,36 +120,40 @@ MaskOf<W> MayTouchRods(const View& m, const Rows<W>& s, const Scratch<W>& work,
                        const TouchTable& touch, const V3<W>& from, const V3<W>& to,
                        MaskOf<W> free) noexcept {
   const W zero = W::Splat(0.0), half = W::Splat(0.5);
+  const auto all = MaskOf<W>::Splat(true);
   auto touches = MaskOf<W>::Splat(false);
   const V3<W> way = to - from, middle = half * (from + to);
   const W half_way = half * Sqrt(Dot(way, way)) + W::Splat(touch.radius_m);
   int body = -1;
-  bool near_body = false;
-  for (int i = touch.first_rod; i < touch.first_rod + touch.rod_count; ++i) {
-    if (m.touch_rods[i].body != body) {
-      body = m.touch_rods[i].body;
+  auto near = MaskOf<W>::Splat(false);
+  for (int i = 0; i < touch.rod_count; ++i) {
+    const TouchRodTable& rod = m.touch_rods[touch.first_rod + i];
+    W& next = work.rod_sides[i];
+    if (rod.body != body) {
+      body = rod.body;
       const V3<W> apart = s.pos[body] - middle;
       const W reach = half_way + W::Splat(m.bound_m[body]);
-      near_body = Any(free & (Dot(apart, apart) < reach * reach));
+      near = free & (Dot(apart, apart) < reach * reach);
     }
-    if (!near_body) {
-      s.touch_side[i] = Select(free, zero, s.touch_side[i]);
+    if (!Any(near)) {
+      next = zero;
       continue;
     }
-    const TouchRodTable& rod = m.touch_rods[i];
-    const M3<W>& R = work.bodies[rod.body].R;
-    const Crossing<V3<W>> x =
-        CrossingOf(from, to, s.pos[rod.body] + R * simd::Splat3<W>(rod.center_P),
-                   R * simd::Splat3<W>(rod.axis_P));
-    const auto within = CrossWithin(x, W::Splat(rod.half_m));
-    const W side = SideOf(x, W::Splat(rod.half_m));
-    const W was = s.touch_side[i];
-    const auto through = side * was < zero;
-    const auto near =
-        within & (x.across * x.across < W::Splat(rod.radius_m * rod.radius_m) * x.norm2);
-    const auto here = free & (through | near);
-    touches = touches | here;
-    s.touch_side[i] = Select(free & !here, side, was);
+    const M3<W>& R = work.bodies[body].R;
+    RodPass<W> pass = RodPass<W>::None();
+    LookAtPart(from, to, s.pos[body] + R * simd::Splat3<W>(rod.center_P),
+               R * simd::Splat3<W>(rod.axis_P), W::Splat(rod.half_m), 0, all, pass);
+    const W known = s.touch_side[touch.first_rod + i];
+    const Pressed<W> pressed = PressedBy(pass, known, rod.radius_m);
+    touches = touches | (near & pressed.same & (pressed.through | pressed.inside));
+    // Of one that is out of reach none: what other lanes are near does not matter.
+    next = Select(near, SideNext(pass, known, rod.radius_m), zero);
+  }
+  // What is looked at closely begins with the sides that were.
+  const auto write = free & !touches;
+  for (int i = 0; i < touch.rod_count; ++i) {
+    W& side = s.touch_side[touch.first_rod + i];
+    side = Select(write, work.rod_sides[i], side);
   }
   return touches;
 }
@@ -56,6 +164,16 @@ inline constexpr double kAnyTurns = 1e300;
 /// Key of a rod, which no edge of the terrain has.
 TAUT_INLINE double KeyOf(const TouchRodTable& rod) noexcept { return kEdgesOfShape * rod.shape; }
 
+/// In one lane no side is known any more of the rod with that key, if it is one: the cable goes
+/// through it until it is out.
+template <class W>
+void ForgetSide(const View& m, const Rows<W>& s, const TouchTable& touch, double key,
+                int lane) noexcept {
+  for (int i = touch.first_rod; i < touch.first_rod + touch.rod_count; ++i) {
+    if (KeyOf(m.touch_rods[i]) == key) s.touch_side[i].Set(lane, 0.0);
+  }
+}
+
 template <class W>
 TAUT_INLINE Vec3 TurnedBy(const M3<W>& R, const double* p, int lane) noexcept {
   const auto row = [&](const V3<W>& r) {
@@ -64,45 +182,39 @@ TAUT_INLINE Vec3 TurnedBy(const M3<W>& R, const double* p, int lane) noexcept {
   return {row(R.r0), row(R.r1), row(R.r2)};
 }
 
-/// A rod's middle and axis in one lane.
-struct RodInLane {
-  Vec3 center, axis;
+/// The straight parts of one lane's path: part k is before bend k.
+struct StraightParts {
+  FreeSpan span[kMostBends + 1];
+  int count;
 };
-template <class W>
-TAUT_INLINE RodInLane RodAt(const Rows<W>& s, const Scratch<W>& work, const TouchRodTable& rod,
-                            int lane) noexcept {
-  const M3<W>& R = work.bodies[rod.body].R;
-  return {PlaceOf(s.pos[rod.body], lane) + TurnedBy(R, rod.center_P, lane),
-          TurnedBy(R, rod.axis_P, lane)};
-}
 
-/// The rod into which a span has come deepest in one lane, as FindEdge finds edges.
+/// The rod into which the path has come deepest in one lane, as FindEdge finds edges.
 template <class W>
 bool FindRod(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
-             const FreeSpan& span, int lane, const double* taken, int taken_count, bool any,
-             BendFound* found) noexcept {
-  const Vec3 middle = 0.5 * (span.from + span.to), way = span.to - span.from;
-  const double half = 0.5 * Sqrt(Dot(way, way));
+             const StraightParts& parts, int lane, const double* taken, int taken_count, bool any,
+             BendFound* found, int* part) noexcept {
   bool is_new = false;
-  for (int i = touch.first_rod; i < touch.first_rod + touch.rod_count; ++i) {
-    const TouchRodTable& rod = m.touch_rods[i];
-    if (IsTaken(KeyOf(rod), taken, taken_count)) continue;
-    const auto [center, axis] = RodAt(s, work, rod, lane);
-    const Vec3 apart = middle - center;
-    const double reach = half + rod.half_m + rod.radius_m;
-    if (!(Dot(apart, apart) < reach * reach)) continue;
-    const Crossing<Vec3> x = CrossingOf(span.from, span.to, center, axis);
-    const double side = SideOf(x, rod.half_m), was = s.touch_side[i][lane];
-    if (side == 0.0) continue;
-    const double off = Abs(x.across) / Sqrt(x.norm2);
-    const bool through = side * was < 0.0;
-    if (!through && !(off < rod.radius_m)) continue;
-    const double depth = rod.radius_m + (through ? off : -off);
+  for (int i = 0; i < touch.rod_count; ++i) {
+    const TouchRodTable& rod = m.touch_rods[touch.first_rod + i];
+    const double known = s.touch_side[touch.first_rod + i][lane];
+    if (known == 0.0 || IsTaken(KeyOf(rod), taken, taken_count)) continue;
+    const Vec3 center = PlaceOf(work.rod_lines[i].center, lane);
+    const Vec3 axis = PlaceOf(work.rod_lines[i].axis, lane);
+    RodPass<double> pass = RodPass<double>::None();
+    for (int k = 0; k < parts.count; ++k) {
+      LookAtPart(parts.span[k].from, parts.span[k].to, center, axis, rod.half_m, k, true, pass);
+    }
+    const Pressed<double> pressed = PressedBy(pass, known, rod.radius_m);
+    if (!pressed.same || !(pressed.through || pressed.inside)) continue;
+    const double off = Sqrt(pass.off2);
+    const double depth = rod.radius_m + (pressed.through ? off : -off);
     if ((any || is_new) && !(depth > found->depth_m)) continue;
-    const double around = through ? side : -side;  // against the side that it was on
-    if (!CanLieOn({0.0, 0, center, axis, kAnyTurns, rod.half_m, rod.radius_m}, span, around))
-      continue;
+    const double around = known < 0.0 ? 1.0 : -1.0;  // against the side that it was on
+    const int nearest = static_cast<int>(pass.part);
+    const BendPlace place{KeyOf(rod), 0, center, axis, kAnyTurns, rod.half_m, rod.radius_m};
+    if (!CanLieOn(place, parts.span[nearest], around)) continue;
     is_new = true;
+    *part = nearest;
     const double* const c = rod.center_P;
     const double* const u = rod.axis_P;
     *found = {{KeyOf(rod),

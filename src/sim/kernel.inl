@@ -24,6 +24,7 @@
 #include "sim/cable_settled.inl"
 #include "sim/cable_bends.inl"
 #include "sim/cable_across.inl"
+#include "sim/cable_follow.inl"
 #include "sim/stiff_cables.inl"
 #include "sim/dc_motor.inl"
 #include "sim/stage_cables.inl"
@@ -224,6 +225,9 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
       status.first_time_s = s.time[0][lane];
       status.body = kWorld;
       status.cable = -1;
+    }
+    if (bits & ~status.bits & kStatusContactOverflow && work.no_room & (1u << lane)) {
+      status.cable = work.crowded_cable[lane];
     }
     if (bits & ~status.bits & kStatusNotConverged) status.body = solve.body[lane];
     if (bits & ~status.bits & kStatusStepTooLong && jointed.share[lane] > share[lane]) {

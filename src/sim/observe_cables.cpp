@@ -142,8 +142,16 @@ Batch::Impl::LaidCable Batch::Impl::Lay(int world, int cable) const {
     wheels.push_back({center, place(view.spots[wheel.axis_spot]) - center, wheel.radius_m,
                       at(world, layout.wheel_angle + table.first_wheel + k), wheel.at, 0, 0, 0});
   }
-  LayOnWheels(points.data(), static_cast<int>(wheels.size()), wheels.data(),
-              along.empty() ? nullptr : along.data());
+  const int wheel_count = static_cast<int>(wheels.size());
+  const bool begun = table.touch >= 0 && wheel_count > 1;
+  if (begun) {
+    std::vector<double> half;
+    for (const sim::BendNumbers<double>& bend : Bends(world, cable)) half.push_back(bend.half);
+    const std::vector<double> has(wheels.size(), 1.0);
+    BeginOnWheels(points.data(), wheel_count, wheels.data(), half.data(), has.data());
+  }
+  LayOnWheels(points.data(), wheel_count, wheels.data(), along.empty() ? nullptr : along.data(),
+              begun);
   // What a cable that touches has left by now is no part of its path.
   for (std::size_t k = wheels.size(); table.touch >= 0 && k-- > 0;) {
     if (wheels[k].theta > 0) continue;

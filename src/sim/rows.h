@@ -76,6 +76,12 @@ struct AcrossWork {
   W far;    ///< To where it would be straight, along the axis [m].
 };
 
+/// A rod's middle and axis in W.
+template <class W>
+struct RodLine {
+  V3<W> center, axis;
+};
+
 /// A cable while the tensions of soft ones are found. From `links` on: only in worlds with dampers
 /// or stiff cables.
 template <class W>
@@ -133,14 +139,17 @@ struct Scratch {
   BodyWork<W>* bodies;
   Spot<W>* spots;
   AttachmentWork<W>* attachments;
-  Wheel<V3<W>>* wheels;     ///< Of one cable.
-  Contact<W, 1>* contacts;  ///< Slots of all bodies: those of body b from View::first_slot[b] on.
-  int* contact_count;       ///< Used slots, per body.
-  TouchingPair* touches;    ///< Those of a lane from lane * pair_capacity on.
+  Wheel<V3<W>>* wheels;       ///< Of one cable.
+  Row<RodLine<W>> rod_lines;  ///< Of the rods that one cable may come to,
+  Row<W> rod_sides;           ///< and on which side of them it will be (cable_rods.inl).
+  Contact<W, 1>* contacts;    ///< Slots of all bodies: those of body b from View::first_slot[b] on.
+  int* contact_count;         ///< Used slots, per body.
+  TouchingPair* touches;      ///< Those of a lane from lane * pair_capacity on.
   int touch_count[W::kLanes];
   int bends_used = 0;  ///< By the cable that was measured last (cable_bends.inl).
-  uint32_t no_room =
-      0;               ///< A bit for each lane in which a cable touches more than it has room for.
+  /// A bit for each lane in which a cable touches more than it has room for, and which one.
+  uint32_t no_room = 0;
+  int crowded_cable[W::kLanes];
   V3<W>* start_spots;  ///< Spots at the start of the step [m], if start_known.
   W* start;  ///< Rows that go back to the start of the step in worlds that turn non-finite.
   CableWork<W>* cables;  ///< In the order of View::cable_order.
@@ -178,6 +187,8 @@ struct Scratch {
     start_spots = room_.Take<V3<W>>(m.spot_count);
     attachments = room_.Take<AttachmentWork<W>>(m.max_attachments);
     wheels = room_.Take<Wheel<V3<W>>>(m.max_wheels);
+    rod_lines = room_.Take<RodLine<W>>(m.MostTouchRods());
+    rod_sides = room_.Take<W>(m.MostTouchRods());
     contacts = room_.Take<Contact<W, 1>>(m.slot_count);
     contact_count = room_.Take<int>(bodies_count);
     touches = room_.Take<TouchingPair>(W::kLanes * m.pair_capacity);

@@ -252,7 +252,7 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
     LinkCable<true>(m, s, work, cable, ends, row);
   } else {
     l = cable.touch >= 0
-            ? FollowBends(m, s, work, cable)
+            ? FollowBends(m, s, work, cable, h)
             : MeasureCable<false>(m, s, cable, cable.attachment_count, work, work.attachments).l;
     KeepWheels(s, cable, work);
     LinkCable<false>(m, s, work, cable, work.attachments, row);

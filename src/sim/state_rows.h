@@ -101,7 +101,7 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(slip_place,     Number, kSlip,     kState,     kGoesBack, SlipPlace)        /* middle of a wheel's arc, on the wheel [rad] */ \
   ROW(slip_loss,      Number, kSlip,     kState,     kGoesBack, Zero)             /* energy that friction took [J] */ \
   ROW(slip_along,     Number, kSlip,     kState,     kGoesBack, NotHeld)          /* middle of a bend's arc, along its axis [m], or kNotHeld */ \
-  ROW(touch_side,     Number, kTouchRod, kState,     kZero,     TouchSide)        /* of the rod, of a cable that crosses it: -1 or 1 (cable_rods.inl) */ \
+  ROW(touch_side,     Number, kTouchRod, kState,     kZero,     TouchSide)        /* of the rod, of a part of the cable that crosses it (cable_rods.inl) */ \
   ROW(bend,           Bend,   kBend,     kState,     kForgets,  NoBend)           /* see there */ \
   ROW(motor,          Motor,  kMotor,    kState,     kGoesBack, MotorAtRest) \
   ROW(orders,         Orders, kMotor,    kState,     kStays,    FollowTarget) \

@@ -237,6 +237,14 @@ struct View {
     }
     return count;
   }
+  /// Rods that one cable may come to, the most.
+  [[gnu::always_inline]] int MostTouchRods() const noexcept {
+    int most = 0;
+    for (int i = 0; i < touch_count; ++i) {
+      if (touches[i].rod_count > most) most = touches[i].rod_count;
+    }
+    return most;
+  }
   /// Whether a program says how it moves.
   [[gnu::always_inline]] bool HasMotion(int body) const noexcept {
     return motion_count > 0 && body < body_count && motion_of_body[body] >= 0;

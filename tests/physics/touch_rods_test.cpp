@@ -2,38 +2,111 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/instruction_sets.h"
 #include "tests/physics/touch_scenes.h"
 
 namespace taut::test {
 namespace {
 
-/// One link a rod and lane: each of the worlds touches other rods.
-TEST(TouchRods, StiffCablesOverManyRodsStayInTheirMemory) {
+/// Each world's rods stand elsewhere, so that its cable touches others.
+void MoveRods(Batch& batch, int world, int rods, int which) {
+  for (int rod = 0; rod < rods; ++rod) {
+    BodyState state = batch.Body(world, rod);
+    state.position_m.z += 0.05 * which * (rod % 2 == 0 ? 1 : -1);
+    state.position_m.x += 0.02 * which;
+    batch.SetBodyState(world, rod, state);
+  }
+}
+
+/// One link a rod and lane, and what a lane gets does not depend on what others touch. Builds with
+/// assertions look at every index.
+TEST(TouchRods, StiffCablesOverManyRodsStayInTheirMemoryAndLane) {
+  constexpr int kWorlds = 8, kSteps = 80;
   for (const double friction : {0.0, 0.3}) {
     for (const int rods : {2, 5, 20}) {
       ModelDef def = AcrossFreeRods(rods, 1e4);
       def.cables[0].touch_friction = friction;
+      std::uint64_t alone[kWorlds];
+      for (int world = 0; world < kWorlds; ++world) {
+        Batch batch = MakeBatch(def);
+        MoveRods(batch, 0, rods, world);
+        batch.Step(1e-3, kSteps);
+        alone[world] = batch.Hash(0);
+      }
       for (const InstructionSet& set : kInstructionSets) {
         BatchOptions options;
-        options.worlds = 8;
+        options.worlds = kWorlds;
         options.simd = set.simd;
         Batch batch = MakeBatch(def, options);
-        for (int world = 0; world < options.worlds; ++world) {
-          for (int rod = 0; rod < rods; ++rod) {
-            BodyState state = batch.Body(world, rod);
-            state.position_m.z += 0.05 * world * (rod % 2 == 0 ? 1 : -1);
-            batch.SetBodyState(world, rod, state);
-          }
-        }
-        batch.Step(1e-3, 100);  // builds with assertions look at every index
+        for (int world = 0; world < kWorlds; ++world) MoveRods(batch, world, rods, world);
+        batch.Step(1e-3, kSteps);
         int bends = 0;
-        for (int world = 0; world < options.worlds; ++world) {
+        for (int world = 0; world < kWorlds; ++world) {
           bends += batch.CableBends(world, 0);
           EXPECT_EQ(batch.Status(world).bits & kStatusNonFinite, 0u);
+          EXPECT_EQ(batch.Hash(world), alone[world]) << rods << " " << set.name << " " << world;
         }
-        EXPECT_GT(bends, options.worlds) << rods << " " << set.name;
+        EXPECT_GT(bends, kWorlds) << rods << " " << set.name;
       }
+    }
+  }
+}
+
+/// Lowered over an arch of twelve: eight bends are all it has, which the status says, and the length
+/// is no more than over all of them.
+TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
+  constexpr int kRods = 12;
+  constexpr double kPi = 3.14159265358979323846, kArch = 0.3;
+  const Vec3 from{-0.5, 0, 0.4}, to{0.5, 0, 0.4};
+  ModelDef def;
+  def.gravity_m_per_s2 = {};
+  def.bodies = {Ball(1, from), Ball(1, to)};
+  def.cables = {Cable({0, from}, {1, to}, 1e-9, 0.1, 1e-3)};
+  def.cables[0].touches = CableTouches::kRods;
+  for (int i = 0; i < kRods; ++i) {
+    const double angle = kPi * (i + 0.5) / kRods;
+    AddRod(def, {-kArch * std::cos(angle), 0, kArch * std::sin(angle)}, 0.3, 0.01);
+    for (int j = 0; j < i; ++j) def.apart.push_back({2 + j, 2 + i});
+  }
+  Batch world = MakeBatch(def);
+  int most = 0;
+  double full = 0;  // by when the ninth comes
+  for (int i = 1; i <= 200; ++i) {
+    const Vec3 down{0, 0, -0.004 * i};
+    Lead(world, 0, from + down);
+    Lead(world, 1, to + down);
+    world.Step(kStep);
+    most = std::max(most, world.CableBends(0, 0));
+    if ((world.Status(0).bits & kStatusContactOverflow) != 0 && full == 0) {
+      full = 0.004 * i;
+      EXPECT_EQ(world.Status(0).cable, 0);
+    }
+  }
+  EXPECT_EQ(most, CableDef::kMostBends);
+  EXPECT_GT(full, 0.2);
+  EXPECT_EQ(world.Status(0).bits, static_cast<std::uint32_t>(kStatusContactOverflow));
+  EXPECT_LT(world.Cable(0, 0).length_m, 2 * 0.8 + kPi * (kArch + 0.011));
+}
+
+/// Two balls that have gone past each other, so that their cable makes a loop around the rods: its
+/// parts pass a rod outside of the loop on different sides, and it comes to none.
+TEST(TouchRods, APathInALoopComesToNoRodThatItHasNotMet) {
+  for (const double step_s : {1e-3, 2.5e-4}) {
+    for (const int rods : {3, 5}) {
+      Batch world = MakeBatch(AcrossFreeRods(rods, 1e4));
+      const double energy = EnergyOf(world);
+      double most = 0, jump = 0, last = world.Cable(0, 0).length_m;
+      for (int i = 0; i < StepsIn(0.2, step_s); ++i) {
+        world.Step(step_s);
+        const CableState cable = world.Cable(0, 0);
+        most = std::max(most, EnergyOf(world) - energy);
+        jump = std::max(jump, cable.length_m - last);
+        last = cable.length_m;
+      }
+      EXPECT_LT(most, 1e-3 * energy) << step_s << " " << rods;
+      EXPECT_LT(jump, 0.06) << step_s << " " << rods;  // 60 m/s at 1 ms
     }
   }
 }
