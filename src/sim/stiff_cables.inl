@@ -8,10 +8,6 @@
 
 namespace taut::sim {
 
-/// Limit of explicit springs: h^2 K / m, summed over the cables that a cable is coupled to (the
-/// explicit scheme is stable below 4).
-inline constexpr double kSoftSpring = 0.1;
-
 /// Where cables are attached, at the start of the step: from the places that SaveStart has kept.
 template <class W>
 void MeasureStart(const View& m, Scratch<W>& work) noexcept {
