@@ -52,11 +52,10 @@ template <class W>
 /// What is deep in each other leaves by velocities there, slowly: a displacement would not know of
 /// the cables that it stretches. Nothing leaves so fast that it would rise by as much as it is
 /// deep. `on`: lanes, or all of the lane.
-inline constexpr double kLeavingPerS = 25, kLeavingShare = 0.1, kMostLeavingMPerS = 0.2;
+inline constexpr double kLeavingShare = 0.025, kMostLeavingMPerS = 0.2;
 template <class Num, int kLinks, class M>
 TAUT_INLINE void LeaveSlowly(Contact<Num, kLinks>& c, M on, double step_s) noexcept {
-  const double fast = kLeavingShare / step_s;
-  const Num zero = Num::Splat(0.0), per_s = Num::Splat(fast < kLeavingPerS ? fast : kLeavingPerS);
+  const Num zero = Num::Splat(0.0), per_s = Num::Splat(kLeavingShare / step_s);
   const auto inside = on & (c.gap < zero);
   c.bias[0] = Select(inside, Max(per_s * c.gap, Num::Splat(-kMostLeavingMPerS)), c.bias[0]);
   c.deep = Select(on, zero, c.deep);

@@ -59,6 +59,7 @@
 #include "sim/solve/implicit_cables.inl"
 #include "sim/solve/implicit_laws.inl"
 #include "sim/solve/implicit_island.inl"
+#include "sim/solve/implicit_state.inl"
 #include "sim/solve/lane_solve.inl"
 #include "sim/solve/lane_chains.inl"
 #include "sim/solve/push_out.inl"
