@@ -26,6 +26,7 @@
 #include "sim/cable_across.inl"
 #include "sim/cable_follow.inl"
 #include "sim/stiff_cables.inl"
+#include "sim/implicit_groups.inl"
 #include "sim/dc_motor.inl"
 #include "sim/stage_cables.inl"
 #include "sim/cable_chains.inl"
@@ -56,11 +57,16 @@
 #include "sim/solve/common_turn.inl"
 #include "sim/joints.inl"
 #include "sim/joint_places.inl"
+#include "sim/solve/implicit_cables.inl"
+#include "sim/solve/implicit_laws.inl"
+#include "sim/solve/implicit_island.inl"
+#include "sim/solve/implicit_state.inl"
 #include "sim/solve/rolling.inl"
 #include "sim/solve/lane_solve.inl"
 #include "sim/solve/lane_rolling.inl"
 #include "sim/solve/lane_chains.inl"
 #include "sim/solve/push_out.inl"
+#include "sim/solve/lane_implicit.inl"
 #include "sim/stage_solve.inl"
 // clang-format on
 
@@ -290,6 +296,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   const W ahead = Select(last > zero, half_h / Max(last, W::Splat(1e-300)), zero);
 
   Poison(m, s, g, work);
+  FindImplicit(m, s, work, step_s);
   SaveStart(m, s, work);
   watch.Mark(Stage::kStart);
   if (m.joint_count > 0 && Any(last == zero)) StageJointStart(m, s, work);
@@ -315,6 +322,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   watch.Mark(Stage::kSolve);
   StoreResults(m, s, g, work, step_s);
   StageDriftSecond(m, s, work, half_h);
+  if (work.implicit.any) PutImplicitEnds(m, s, work);
   if (m.motion_count > 0) StageMotionEnd(m, s, work, step_s);
   if (m.joint_count > 0) StageJointPlaces(m, s, work, step_s);
   watch.Mark(Stage::kIntegrate);

@@ -9,6 +9,7 @@
 #include "sim/motion_at.h"
 #include "sim/of_lane.h"
 #include "sim/room.h"
+#include "sim/solve/implicit_memory.h"
 #include "sim/solve/memory.h"
 #include "simd/angle.h"
 #include "simd/vec3.h"
@@ -169,6 +170,7 @@ struct Scratch {
   W* unsolved;        ///< Per body: 1 in lanes in which it is left to the lane's own solve.
   LaneMemory<simd::Lane<W>> lane;
   DualMemory<W> dual;
+  ImplicitMemory<W> implicit;
   int stiff_count = 0, link_count = 0;
   bool start_known = false;
 
@@ -214,6 +216,7 @@ struct Scratch {
     near = room_.Take<uint64_t>((m.tree_shapes + 63) / 64);
     lane.Take(m, room_);
     dual.Take(m, room_);
+    implicit.Take(m, room_);
   }
 
   /// False if the lane's list is full.

@@ -272,7 +272,8 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
     s.rest_rate[c] = rate;
   }
   const W stretch = l - mean;
-  const auto stiff = s.stiff_k[c] > step.soft_limit;
+  auto stiff = s.stiff_k[c] > step.soft_limit;
+  if (work.implicit.any) stiff = stiff | (work.implicit.cables[c] > zero);
   row.soft = !stiff;
   row.spring = Max(k * stretch, zero);
   const bool any_stiff = Any(stiff);

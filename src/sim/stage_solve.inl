@@ -220,6 +220,10 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
     PrepareContact(c, memory, body[0], bodies[0], OfLane<L>(s.inv_mass[bodies[0]], lane), body[1],
                    bodies[1], OfLane<L>(s.inv_mass[bodies[1]], lane),
                    OfLane<L>(s.friction_scale[0], lane), step_s);
+    if (work.implicit.any) {
+      const auto on = [&](int b) { return work.implicit.bodies[b][lane] > 0; };
+      LeaveSlowly(c, MaskOf<L>::Splat(on(bodies[0]) || on(bodies[1])), step_s);
+    }
   }
   for (int first = 0, next = 0; first < work.touch_count[lane]; first = next) {
     const Contact<L, 2>* const c = work.lane.pairs;
@@ -339,11 +343,17 @@ SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>&
   if (m.chain_count > 0) cables = W::Splat(1.0);
   for (int lane = 0; lane < W::kLanes; ++lane) touches.Set(lane, work.touch_count[lane]);
   const auto cabled = busy & (cables > zero);
-  const auto dual = cabled & MayGoToDual(m, work, touches);
+  auto dual = cabled & MayGoToDual(m, work, touches);
+  auto by_lane = MaskOf<W>::Splat(false);
+  if (work.implicit.any) {
+    by_lane = StartImplicit(m, work);
+    LeaveWorldSlowly(m, work, step_s);
+  }
+  dual = dual & !by_lane;
   MarkUnsolved(m, work, cabled & !dual);
   const auto tied = m.joint_count > 0 ? busy : cabled;
   FitWorldBiases(m, work, tied);
-  FinishWorldBiases(m, s, work, tied, step_s);
+  FinishWorldBiases(m, s, work, tied & !by_lane, step_s);
   SolveBodies(m, work, target, busy & !cabled, result);
   if (Any(dual)) {
     const auto solve = [&](auto contacts) {

@@ -8,10 +8,6 @@
 
 namespace taut::sim {
 
-/// Limit of explicit springs: h^2 K / m, summed over the cables that a cable is coupled to (the
-/// explicit scheme is stable below 4).
-inline constexpr double kSoftSpring = 0.1;
-
 /// The stiffest K of an explicit spring at this step [1/s^2].
 template <class W>
 TAUT_INLINE W SoftLimit(W h) noexcept {

@@ -37,6 +37,23 @@ class BodyMatrix {
     }
   }
 
+  /// 0 everywhere, of a matrix that is not symmetric.
+  void StartGeneral(const Unknown<Num>* bodies) noexcept {
+    symmetric_ = false, bodies_only_ = true;
+    for (int i = 0; i < kBlock * p_.block_count; ++i) a_[i] = Num::Splat(0.0);
+    bodies_ = bodies;
+  }
+  /// += a block by its quarters: of velocities and spins.
+  TAUT_INLINE void AddBlock(int i, int j, const simd::M3<Num>& vv, const simd::M3<Num>& vw,
+                            const simd::M3<Num>& wv, const simd::M3<Num>& ww) noexcept {
+    Num* const to = At(i, j);
+    const auto add = [](Num* at, const V3<Num>& a, const V3<Num>& b) {
+      at[0] += a.x, at[1] += a.y, at[2] += a.z, at[3] += b.x, at[4] += b.y, at[5] += b.z;
+    };
+    add(to, vv.r0, vw.r0), add(to + 6, vv.r1, vw.r1), add(to + 12, vv.r2, vw.r2);
+    add(to + 18, wv.r0, ww.r0), add(to + 24, wv.r1, ww.r1), add(to + 30, wv.r2, ww.r2);
+  }
+
   /// += J^T G J of one constraint, without what is prescribed; G: R x R, row by row. A function by
   /// itself: among other code g++ took up to a fifth more instructions for the same loops.
   template <class Law>

@@ -34,8 +34,13 @@ class LaneSolve {
     for (int body = 0; body < m_.body_count; ++body) {
       if (mem_.root[body] != body || !Gather(body)) continue;
       SolverWork work{0, settings_.max_linear_solves};
-      const double residual = SolveGathered(work);
-      Scatter();
+      double residual = 0;
+      if (work_.implicit.any && IsImplicit()) {
+        residual = SolveImplicit(work);
+      } else {
+        residual = SolveGathered(work);
+        Scatter();
+      }
       result.linear_solves += work.linear_solves;
       if (work.gave_in > result.gave_in) result.gave_in = work.gave_in;
       if (residual > result.residual || !(residual - residual == 0)) {
@@ -100,6 +105,22 @@ class LaneSolve {
   bool IsOn(const StiffCable<W>& cable, int link) const noexcept {
     return m_.cables[cable.cable].touch < 0 || Acts(cable.links[link], lane_);
   }
+
+  /// Whether its cables are integrated implicitly (implicit_groups.inl).
+  bool IsImplicit(const StiffCable<W>& cable) const noexcept {
+    return work_.implicit.any && work_.implicit.cables[cable.cable][lane_] > 0;
+  }
+  /// The same of the island that has been gathered.
+  bool IsImplicit() const noexcept {
+    bool any = false;
+    for (int k = 0; k < count_ && !displaces_; ++k) {
+      any = any || work_.implicit.bodies[mem_.bodies[k]][lane_] > 0;
+    }
+    return any;
+  }
+  double SolveImplicit(SolverWork& work) noexcept;
+  void DisplaceEnd(int body, const V3<L>& dx, const V3<L>& half) noexcept;
+  V3<L> PendingOfTouches(int body) const noexcept;
 
   template <class F>
   void EachChain(const F& f) const noexcept;
@@ -180,7 +201,7 @@ class LaneSolve {
     for (int i = 0; i < chains.count; ++i) {
       for (int k = 0; k < chains.items[i].rows; ++k) island.m.l[row++] = chains.items[i].spans[k].l;
     }
-    return row > 0;
+    return row > 0 || (work_.implicit.any && IsImplicit());
   }
 
   /// Numbers of elimination: place[local number]. Without room for the blocks the solver has no
@@ -300,7 +321,7 @@ class LaneSolve {
     int link_count = 0;
     for (int i = 0; i < work_.stiff_count; ++i) {
       const StiffCable<W>& from = work_.stiff[i];
-      if (!IsOn(from)) continue;
+      if (!IsOn(from) || IsImplicit(from)) continue;
       CableRow<L>& to = pool.items[pool.count];
       const Row<Link<L, 1>> links = mem_.links.From(link_count);
       to.links = links;

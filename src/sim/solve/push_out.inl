@@ -114,6 +114,7 @@ V3<simd::Lane<W>> LaneSolve<W>::Displace(int number) noexcept {
   TurnAbout(q, (L::Splat(0.5) * h_) * t.w);
   NormalizeQuat(q);
   SetLane(s_.quat[body], q, lane_);
+  if (work_.implicit.any) DisplaceEnd(body, dx, (L::Splat(0.5) * h_) * t.w);
   const M3<L> before{OfLane<L>(work.R.r0, lane_), OfLane<L>(work.R.r1, lane_),
                      OfLane<L>(work.R.r2, lane_)};
   const M3<L> R = RotationOf(q);

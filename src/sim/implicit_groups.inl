@@ -1,0 +1,90 @@
+/// Implicitly integrated cables in a step: which they are, and where their bodies end
+/// (cable_groups.h, docs/theory/cables.md, section 3).
+
+namespace taut::sim {
+
+template <class W>
+[[gnu::noinline, gnu::cold]] void FindImplicitOf(const View& m, const Rows<W>& s,
+                                                 ImplicitMemory<W>& x, double step_s,
+                                                 int lane) noexcept {
+  const auto moves = [&](int body) { return s.inv_mass[body][lane] > 0; };
+  FindGroups(
+      m, step_s, moves, [&](int c) { return s.stiff_k[c][lane]; },
+      [&](int c) { return s.damping[c][lane] > 0; }, x.groups);
+  for (int b = 0; b < m.body_count; ++b) x.bodies[b].Set(lane, x.groups.IsImplicit(b) ? 1.0 : 0.0);
+  for (int c = 0; c < m.cable_count; ++c) {
+    double on = 0, damped = 0;
+    ForEachMoved(m, m.cables[c], moves, [&](int body) {
+      on = x.groups.IsImplicit(body) ? 1 : 0;
+      damped = x.groups.IsDamped(body) ? 1 : 0;
+    });
+    x.cables[c].Set(lane, on);
+    x.damped[c].Set(lane, damped);
+    x.any = x.any || on > 0;
+  }
+}
+
+template <class W>
+void FindImplicit(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
+  const W limit = W::Splat(kSoftSpring / (step_s * step_s));
+  auto stiff = MaskOf<W>::Splat(false);
+  for (int c = 0; c < m.cable_count; ++c) stiff = stiff | (s.stiff_k[c] > limit);
+  work.implicit.any = false;
+  if (!Any(stiff)) return;
+  for (int lane = 0; lane < W::kLanes; ++lane) {
+    FindImplicitOf(m, s, work.implicit, step_s, lane);
+  }
+}
+
+/// Before a solve: no end is known. Returns the lanes with such cables. Contacts of these do not
+/// follow the arc of a free body.
+template <class W>
+[[gnu::noinline, gnu::cold]] MaskOf<W> StartImplicit(const View& m, Scratch<W>& work) noexcept {
+  const W zero = W::Splat(0.0);
+  auto lanes = MaskOf<W>::Splat(false);
+  for (int b = 0; b < m.body_count; ++b) {
+    work.implicit.ended[b] = zero;
+    lanes = lanes | (work.implicit.bodies[b] > zero);
+  }
+  return lanes;
+}
+
+/// What is deep in each other leaves by velocities there, slowly: a displacement would not know of
+/// the cables that it stretches. Nothing leaves so fast that it would rise by as much as it is
+/// deep. `on`: lanes, or all of the lane.
+inline constexpr double kLeavingShare = 0.025, kMostLeavingMPerS = 0.2;
+template <class Num, int kLinks, class M>
+TAUT_INLINE void LeaveSlowly(Contact<Num, kLinks>& c, M on, double step_s) noexcept {
+  const Num zero = Num::Splat(0.0), per_s = Num::Splat(kLeavingShare / step_s);
+  const auto inside = on & (c.gap < zero);
+  c.bias[0] = Select(inside, Max(per_s * c.gap, Num::Splat(-kMostLeavingMPerS)), c.bias[0]);
+  c.deep = Select(on, zero, c.deep);
+}
+template <class W>
+[[gnu::noinline, gnu::cold]] void LeaveWorldSlowly(const View& m, Scratch<W>& work,
+                                                   double step_s) noexcept {
+  for (int b = 0; b < m.body_count; ++b) {
+    const auto on = work.implicit.bodies[b] > W::Splat(0.0);
+    for (int k = 0; k < work.contact_count[b]; ++k) {
+      LeaveSlowly(work.contacts[m.first_slot[b] + k], on, step_s);
+    }
+  }
+}
+
+/// The places that implicit islands have come to, in place of those of the second half of the
+/// drift.
+template <class W>
+[[gnu::noinline, gnu::cold]] void PutImplicitEnds(const View& m, const Rows<W>& s,
+                                                  const Scratch<W>& work) noexcept {
+  const W zero = W::Splat(0.0);
+  for (int b = 0; b < m.body_count; ++b) {
+    const auto on = work.implicit.ended[b] > zero;
+    if (!Any(on)) continue;
+    s.pos[b] = Select3(on, work.implicit.end_pos[b], s.pos[b]);
+    const Q4<W>&from = work.implicit.end_quat[b], &q = s.quat[b];
+    s.quat[b] = {Select(on, from.w, q.w), Select(on, from.x, q.x), Select(on, from.y, q.y),
+                 Select(on, from.z, q.z)};
+  }
+}
+
+}  // namespace taut::sim

@@ -1,0 +1,313 @@
+/// Stiff cables with the directions that they have on their way: forces of one stage, and their
+/// matrix (docs/theory/cables.md, section 3).
+///
+/// The force of the first stage is a discrete gradient in the lengths, and bodies turn by a Cayley
+/// map of their mean spin, so work is what springs store or give, to rounding, at any stiffness,
+/// and momenta stay. That of the second one is the force at the end.
+
+namespace taut::sim {
+
+using simd::RotationOf;
+
+/// [a] M, with [a] z = a x z.
+template <class Num>
+TAUT_INLINE M3<Num> CrossTimes(const V3<Num>& a, const M3<Num>& m) noexcept {
+  return {a.y * m.r2 - a.z * m.r1, a.z * m.r0 - a.x * m.r2, a.x * m.r1 - a.y * m.r0};
+}
+/// M [a].
+template <class Num>
+TAUT_INLINE M3<Num> TimesCross(const M3<Num>& m, const V3<Num>& a) noexcept {
+  return {Cross(m.r0, a), Cross(m.r1, a), Cross(m.r2, a)};
+}
+template <class Num>
+TAUT_INLINE M3<Num> Product(const M3<Num>& a, const M3<Num>& b) noexcept {
+  const auto row = [&](const V3<Num>& r) { return r.x * b.r0 + r.y * b.r1 + r.z * b.r2; };
+  return {row(a.r0), row(a.r1), row(a.r2)};
+}
+template <class Num>
+TAUT_INLINE M3<Num> Scaled(Num f, const M3<Num>& m) noexcept {
+  return {f * m.r0, f * m.r1, f * m.r2};
+}
+/// f (1 - a b^T)
+template <class Num>
+TAUT_INLINE M3<Num> Across(Num f, const V3<Num>& a, const V3<Num>& b) noexcept {
+  const Num x = f * a.x, y = f * a.y, z = f * a.z;
+  return {{f - x * b.x, -x * b.y, -x * b.z},
+          {-y * b.x, f - y * b.y, -y * b.z},
+          {-z * b.x, -z * b.y, f - z * b.z}};
+}
+template <class Num>
+TAUT_INLINE void AddOuter(M3<Num>& m, Num f, const V3<Num>& a, const V3<Num>& b) noexcept {
+  m.r0 += (f * a.x) * b, m.r1 += (f * a.y) * b, m.r2 += (f * a.z) * b;
+}
+/// The Cayley turn (1 - [h])^-1 (1 + [h]) y; scale: 1 / (1 + h^2).
+template <class Num>
+TAUT_INLINE V3<Num> CayleyTurn(const V3<Num>& h, Num scale, const V3<Num>& y) noexcept {
+  const V3<Num> t = Cross(h, y);
+  return y + (scale + scale) * (t + Cross(h, t));
+}
+/// (1 - [h])^-1
+template <class Num>
+TAUT_INLINE M3<Num> CayleyInverse(const V3<Num>& h, Num scale) noexcept {
+  const Num one = Num::Splat(1.0);
+  return Scaled(scale, M3<Num>{{one + h.x * h.x, h.x * h.y - h.z, h.x * h.z + h.y},
+                               {h.y * h.x + h.z, one + h.y * h.y, h.y * h.z - h.x},
+                               {h.z * h.x - h.y, h.z * h.y + h.x, one + h.z * h.z}});
+}
+
+/// A part of a step.
+template <class Num>
+struct ImplicitStage {
+  Num h;        ///< [s]
+  bool at_end;  ///< Forces are those of its end: implicit Euler.
+};
+
+/// The cables and bodies of an island, for Newton's method in the unknown velocities of a stage:
+/// means over it, of the second kind those at its end. 6 numbers a body.
+template <class W>
+class ImplicitCables {
+ public:
+  using Num = simd::Lane<W>;
+
+  ImplicitCables(ImplicitMemory<W>& mem, const Unknown<Num>* unknowns, int count) noexcept
+      : mem_(mem), unknowns_(unknowns), count_(count) {}
+
+  int cable_count = 0, point_count = 0;
+  Num most_tension = Num::Splat(0.0);  ///< Of the forces worked out last [N].
+
+  /// Arms, lengths and inertias of the start of a stage.
+  void Begin() noexcept {
+    for (int k = 0; k < count_; ++k) {
+      ImplicitBody<Num>& b = mem_.body[k];
+      if (!b.turns) continue;
+      const M3<Num> R = RotationOf(b.q);
+      b.inertia = Congruence(R, b.moments);
+      b.w = Congruence(R, b.inv_moments) * b.L;
+      b.y = b.L1 = b.L;
+    }
+    int body = -1;
+    M3<Num> R{};
+    for (int i = 0; i < point_count; ++i) {
+      ImplicitPoint<Num>& p = mem_.points[i];
+      if (p.body < 0) continue;
+      if (p.body != body) R = RotationOf(mem_.body[p.body].q);
+      body = p.body;
+      p.arm0 = R * p.p_P;
+      p.p0 = mem_.body[body].x + p.arm0;
+    }
+    for (int c = 0; c < cable_count; ++c) {
+      ImplicitCable<Num>& cable = mem_.list[c];
+      ImplicitPoint<Num>* const p = mem_.points + cable.first;
+      cable.l0 = Num::Splat(0.0);
+      for (int i = 0; i + 1 < cable.count; ++i) {
+        p[i].d0 = p[i + 1].p0 - p[i].p0;
+        p[i].l0 = Sqrt(Dot(p[i].d0, p[i].d0));
+        cable.l0 += p[i].l0;
+      }
+    }
+  }
+
+  /// res <- momenta at the end less what they would be by all forces but those of contacts.
+  void Evaluate(const ImplicitStage<Num>& stage, const Num* U, Num* res) noexcept {
+    const Num one = Num::Splat(1.0), half = Num::Splat(0.5);
+    for (int k = 0; k < count_; ++k) {
+      ImplicitBody<Num>& b = mem_.body[k];
+      const V3<Num> v{U[6 * k], U[6 * k + 1], U[6 * k + 2]};
+      const V3<Num> w{U[6 * k + 3], U[6 * k + 4], U[6 * k + 5]};
+      V3<Num> gained = b.mass * (b.ahead * v + b.behind * b.v - b.v);
+      V3<Num> turned;
+      if (b.turns) {
+        b.half = (half * stage.h) * w;
+        b.scale = one / (one + Dot(b.half, b.half));
+        b.x1 = b.x + stage.h * v;
+        b.y = b.inertia * (b.ahead * w + b.behind * b.w);
+        b.L1 = CayleyTurn(b.half, b.scale, b.y);
+        turned = b.L1 - b.L;
+      } else {
+        turned = b.inertia * (w - b.w);
+      }
+      gained -= b.share * b.force;
+      turned -= b.share * b.torque;
+      Add3(res + 6 * k, gained, turned, true);
+    }
+    for (int i = 0; i < point_count; ++i) {
+      ImplicitPoint<Num>& p = mem_.points[i];
+      if (p.body < 0) {
+        p.p1 = p.p0;
+        continue;
+      }
+      const ImplicitBody<Num>& b = mem_.body[p.body];
+      p.arm1 = CayleyTurn(b.half, b.scale, p.arm0);
+      p.p1 = b.x1 + p.arm1;
+      p.arm = stage.at_end ? p.arm1 : half * (p.arm0 + p.arm1);
+    }
+    most_tension = Num::Splat(0.0);
+    for (int c = 0; c < cable_count; ++c) Pull(stage, mem_.list[c], res);
+  }
+
+  /// The derivative of what Evaluate has just worked out; `missing`: minus the residual, contacts
+  /// included. Balances of spin are seen from half way round, (1 - [half]) times them: there a
+  /// force on the axis of a slender body turns it about no axis but those across, at any turn.
+  /// Without that Newton's first steps spin it about its own, whose moment is next to nothing.
+  void AddTo(const ImplicitStage<Num>& stage, const Num* missing,
+             BodyMatrix<Num>& matrix) noexcept {
+    const Num zero = Num::Splat(0.0), half = Num::Splat(0.5);
+    const M3<Num> none{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}};
+    for (int k = 0; k < count_; ++k) {
+      ImplicitBody<Num>& b = mem_.body[k];
+      const Num m = b.ahead * b.mass;
+      const S3<Num>& I = b.inertia;
+      M3<Num> spin{{I.xx, I.xy, I.xz}, {I.xy, I.yy, I.yz}, {I.xz, I.yz, I.zz}};
+      if (b.turns) {
+        // The columns of I, turned; and what changes as the turn does.
+        const auto column = [&](const V3<Num>& i) { return CayleyTurn(b.half, b.scale, i); };
+        const V3<Num> c0 = column(spin.r0), c1 = column(spin.r1), c2 = column(spin.r2);
+        spin = {{c0.x, c1.x, c2.x}, {c0.y, c1.y, c2.y}, {c0.z, c1.z, c2.z}};
+        spin = Scaled(b.ahead, spin);
+        b.undo = CayleyInverse(b.half, b.scale);
+        const Num* const f = missing + kDofs * k + 3;
+        const V3<Num> turned = b.y + b.L1 + V3<Num>{f[0], f[1], f[2]};
+        const M3<Num> more = TimesCross(b.undo, (half * stage.h) * turned);
+        spin.r0 -= more.r0, spin.r1 -= more.r1, spin.r2 -= more.r2;
+      }
+      matrix.AddBlock(k, k, {{m, zero, zero}, {zero, m, zero}, {zero, zero, m}}, none, none, spin);
+    }
+    for (int i = 0; i < point_count; ++i) {
+      ImplicitPoint<Num>& p = mem_.points[i];
+      if (p.body < 0) continue;
+      const ImplicitBody<Num>& b = mem_.body[p.body];
+      const V3<Num> mean = (-half * stage.h) * (p.arm0 + p.arm1);
+      p.turn = TimesCross(b.undo, mean);
+    }
+    for (int c = 0; c < cable_count; ++c) AddCable(stage, mem_.list[c], matrix);
+  }
+
+  /// `missing` of the place that Evaluate has just looked at, as it is seen from half way round
+  /// there, for a matrix that AddTo has seen elsewhere.
+  void SeenThere(Num* missing) const noexcept {
+    for (int k = 0; k < count_; ++k) {
+      const ImplicitBody<Num>& b = mem_.body[k];
+      if (!b.turns) continue;
+      Num* const f = missing + kDofs * k + 3;
+      const V3<Num> r{f[0], f[1], f[2]}, seen = b.undo * (r - Cross(b.half, r));
+      f[0] = seen.x, f[1] = seen.y, f[2] = seen.z;
+    }
+  }
+
+ private:
+  static void Add3(Num* to, const V3<Num>& a, const V3<Num>& b, bool set) noexcept {
+    const Num part[6] = {a.x, a.y, a.z, b.x, b.y, b.z};
+    for (int i = 0; i < 6; ++i) to[i] = set ? part[i] : to[i] + part[i];
+  }
+
+  /// Tension and its slope, from the length at the end (eq. 8; of the second stage the end's).
+  static void SetTension(const ImplicitStage<Num>& stage, Num l1, ImplicitCable<Num>& c) noexcept {
+    const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), half = Num::Splat(0.5);
+    const Num longer = l1 - c.l0;
+    const Num s0 = c.l0 - c.rest, s1 = (l1 - c.rest) - stage.h * c.rate;
+    const Num p0 = Max(s0, zero), p1 = Max(s1, zero), damper = c.b / stage.h;
+    const bool was = Any(s0 > zero), is = Any(s1 > zero);
+    Num phi = one, bend = zero;  // the share of the way that is taut, and its slope
+    if (was != is) {
+      const Num way = one / (s1 - s0);
+      phi = (p1 - p0) * way;
+      bend = ((is ? one : zero) - phi) * way;
+    } else if (!is) {
+      c.tension = c.elastic = c.slope = zero;
+      return;
+    }
+    if (stage.at_end) {
+      c.tension = c.k * p1;
+      c.slope = is ? c.k : zero;
+    } else if (was && is) {
+      c.tension = half * c.k * (s0 + s1);
+      c.slope = half * c.k;
+    } else {
+      c.tension = half * c.k * (p1 + p0) * phi;
+      c.slope = (c.k * p1 - c.tension) / (s1 - s0);
+    }
+    c.elastic = c.tension;
+    c.tension += damper * longer * phi;
+    c.slope += damper * (phi + longer * bend);
+    if (Any(c.tension < zero)) c.tension = c.slope = zero;
+    if (Any(c.tension > c.most)) c.tension = c.most, c.slope = zero;
+  }
+
+  void Pull(const ImplicitStage<Num>& stage, ImplicitCable<Num>& cable, Num* res) noexcept {
+    const Num one = Num::Splat(1.0);
+    ImplicitPoint<Num>* const p = mem_.points + cable.first;
+    Num l1 = Num::Splat(0.0);
+    for (int i = 0; i + 1 < cable.count; ++i) {
+      const V3<Num> d1 = p[i + 1].p1 - p[i].p1;
+      p[i].l1 = Sqrt(Dot(d1, d1));
+      p[i].n = (one / p[i].l1) * d1;
+      p[i].u = stage.at_end ? p[i].n : (one / (p[i].l0 + p[i].l1)) * (p[i].d0 + d1);
+      l1 += p[i].l1;
+    }
+    SetTension(stage, l1, cable);
+    most_tension = Max(cable.tension, most_tension);
+    const Num pull = stage.h * cable.tension;
+    for (int i = 0; i < cable.count; ++i) {
+      if (p[i].body < 0) continue;
+      const V3<Num> f = -pull * Along(p, cable.count, i, &ImplicitPoint<Num>::u);
+      Add3(res + 6 * p[i].body, f, Cross(p[i].arm, f), false);
+    }
+  }
+
+  /// In which direction a cable pulls at a point.
+  static V3<Num> Along(const ImplicitPoint<Num>* p, int count, int i,
+                       V3<Num> ImplicitPoint<Num>::*which) noexcept {
+    if (i == 0) return p[0].*which;
+    if (i == count - 1) return -(p[i - 1].*which);
+    return p[i].*which - p[i - 1].*which;
+  }
+
+  /// h C D B of a pull at `a` that changes by D as the point `b` moves.
+  static void AddPair(const ImplicitStage<Num>& stage, const ImplicitPoint<Num>& a,
+                      const ImplicitPoint<Num>& b, const M3<Num>& D,
+                      BodyMatrix<Num>& matrix) noexcept {
+    const M3<Num> vw = Product(D, b.turn), vv = Scaled(stage.h, D);
+    matrix.AddBlock(a.body, b.body, vv, vw, CrossTimes(a.arm, vv), CrossTimes(a.arm, vw));
+  }
+
+  void AddCable(const ImplicitStage<Num>& stage, const ImplicitCable<Num>& cable,
+                BodyMatrix<Num>& matrix) noexcept {
+    const Num zero = Num::Splat(0.0), half = Num::Splat(0.5);
+    const M3<Num> none{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}};
+    const ImplicitPoint<Num>* const p = mem_.points + cable.first;
+    const int count = cable.count;
+    if (!Any(cable.tension > zero) && !Any(cable.slope > zero)) return;
+    const Num pull = stage.h * cable.tension, slope = stage.h * cable.slope;
+    for (int i = 0; i + 1 < count; ++i) {
+      const Num length = stage.at_end ? p[i].l1 : p[i].l0 + p[i].l1;
+      M3<Num> D = Across(pull / length, p[i].u, p[i].n);
+      if (count == 2) AddOuter(D, slope, p[i].u, p[i].n);
+      const M3<Num> minus = Scaled(Num::Splat(-1.0), D);
+      const ImplicitPoint<Num>&a = p[i], &b = p[i + 1];
+      if (a.body >= 0) AddPair(stage, a, a, D, matrix);
+      if (b.body >= 0) AddPair(stage, b, b, D, matrix);
+      if (a.body < 0 || b.body < 0) continue;
+      AddPair(stage, a, b, minus, matrix);
+      AddPair(stage, b, a, minus, matrix);
+    }
+    for (int i = 0; i < count; ++i) {
+      if (p[i].body < 0) continue;
+      const V3<Num> g = Along(p, count, i, &ImplicitPoint<Num>::u);
+      // The arm turns.
+      const Num f = stage.at_end ? pull : half * pull;
+      matrix.AddBlock(p[i].body, p[i].body, none, none, none, CrossTimes(f * g, p[i].turn));
+      for (int j = 0; count > 2 && j < count; ++j) {
+        if (p[j].body < 0) continue;
+        M3<Num> D = none;
+        AddOuter(D, slope, g, Along(p, count, j, &ImplicitPoint<Num>::n));
+        AddPair(stage, p[i], p[j], D, matrix);
+      }
+    }
+  }
+
+  ImplicitMemory<W>& mem_;
+  const Unknown<Num>* unknowns_;
+  int count_;
+};
+
+}  // namespace taut::sim

@@ -1,0 +1,471 @@
+/// One lane's island with stiff cables, integrated implicitly: Newton's method on the true lengths
+/// and directions at the end of the step, with contacts inside (docs/theory/cables.md, section 3).
+///
+/// A step is one stage, or two where a stiff cable has a damper; of one that Newton's method does
+/// not solve, 2, 4, ... 128 parts of it are.
+
+namespace taut::sim {
+
+template <class W>
+class ImplicitIsland {
+  using Num = simd::Lane<W>;
+  using Problem = Island<Num, StepPools<Num>>;
+  /// Where a step with dampers is parted: TR-BDF2 with its middle moved, L-stable for all of them.
+  static constexpr double kMiddle = 0.9;
+  static constexpr double kTolerance = 1e-9, kLeastSpeedMPerS = 1e-3;
+  static constexpr int kMostSteps = 40, kMostHalvings = 7;
+
+ public:
+  ImplicitIsland(const View& m, const Rows<W>& s, Scratch<W>& work, Problem& island, Target target,
+                 int lane, double step_s, int limit) noexcept
+      : m_(m),
+        s_(s),
+        work_(work),
+        mem_(work.implicit),
+        island_(island),
+        laws_(mem_, island, target),
+        cables_(mem_, island.bodies, island.pattern.count),
+        matrix_(island.pattern, island.m.blocks),
+        target_(target),
+        lane_(lane),
+        step_s_(step_s),
+        limit_(limit) {}
+
+  int linear_solves = 0;
+
+  /// Adds the stiff cable `row` to those of the island. `number`: of a body in it, or -1.
+  template <class Number>
+  void AddCable(int row, const Number& number) noexcept {
+    const StiffCable<W>& from = work_.stiff[row];
+    const CableTable& table = m_.cables[from.cable];
+    ImplicitCable<Num>& c = mem_.list[cables_.cable_count++];
+    const Num h = Num::Splat(step_s_), two = Num::Splat(2.0), half = Num::Splat(0.5);
+    c.source = row;
+    c.first = cables_.point_count, c.count = table.attachment_count;
+    c.reports_mean = table.motor >= 0;
+    c.k = Num::Splat(4.0 / (step_s_ * step_s_)) * OfLane<Num>(from.spring, lane_);
+    c.b = (two / h) * OfLane<Num>(from.damper, lane_);
+    c.most = OfLane<Num>(from.upper, lane_) / h;
+    c.rate = half * OfLane<Num>(from.winding, lane_);
+    c.stretch = half * h * OfLane<Num>(from.start, lane_);
+    damped_ = damped_ || work_.implicit.damped[from.cable][lane_] > 0;
+    const auto* const pos = reinterpret_cast<const V3<W>*>(work_.start);
+    const auto* const quat = reinterpret_cast<const Q4<W>*>(pos + m_.body_count);
+    for (int i = 0; i < c.count; ++i) {
+      const AttachmentTable& at = m_.attachments[table.first_attachment + i];
+      ImplicitPoint<Num>& p = mem_.points[cables_.point_count++];
+      p.p_P = simd::Splat3<Num>(at.p_P);
+      p.body = number(at.body);
+      if (p.body >= 0) continue;
+      p.p0 = p.p_P;
+      if (at.body < m_.body_count) {
+        p.p0 = OfLane<Num>(pos[at.body], lane_) + RotationOf(QuatOf(quat[at.body])) * p.p_P;
+      }
+    }
+  }
+  bool has_cables() const noexcept { return cables_.cable_count > 0; }
+
+  /// Leaves impulses and velocities in island.m.l and .v, and the ends of its bodies. Returns the
+  /// residual [m/s].
+  double Solve() noexcept {
+    Gather();
+    double residual = Integrate();
+    KeepMomentum();
+    if (damped_) {
+      cables_.Begin();
+      // What the second stage goes on by may be more than a catch has left; the first never gains.
+      if (Gains()) {
+        damped_ = false;
+        residual = Integrate();
+        KeepMomentum();
+      }
+    }
+    for (int i = 0; i < island_.rows; ++i) island_.m.l[i] = mem_.total[i];
+    for (int k = 0; k < count(); ++k) {
+      const ImplicitBody<Num>& b = mem_.body[k];
+      island_.Store(Twist<Num>{b.v, b.w}, island_.m.v + kDofs * k);
+    }
+    return residual;
+  }
+
+  /// After the impulses have been written back: momenta less what contacts add to them later, and
+  /// where bodies end. `pending` tells that.
+  template <class Pending>
+  void Finish(const Pending& pending) noexcept {
+    const Num h = Num::Splat(step_s_);
+    for (int c = 0; c < cables_.cable_count; ++c) {
+      const ImplicitCable<Num>& cable = mem_.list[c];
+      StiffCable<W>& row = work_.stiff[cable.source];
+      const bool at_end = damped_ && !cable.reports_mean;
+      SetLane(s_.tension[row.cable], at_end ? cable.tension : cable.impulse / h, lane_);
+      SetLane(s_.mean_elastic[row.cable], at_end ? cable.elastic : cable.elastic_impulse / h,
+              lane_);
+      s_.mean_step[0].Set(lane_, step_s_);
+      row.live.Set(lane_, 0.0);
+      row.l[0].Set(lane_, 0.0);
+    }
+    for (int k = 0; k < count(); ++k) {
+      const ImplicitBody<Num>& b = mem_.body[k];
+      if (!b.turns) continue;
+      const int body = island_.bodies[k].body;
+      SetLane(s_.mom[body], b.L - pending(body), lane_);
+      SetLane(mem_.end_pos[body], b.x, lane_);
+      SetLane(mem_.end_quat[body], b.q, lane_);
+      mem_.ended[body].Set(lane_, 1.0);
+    }
+  }
+
+  // What impacts.inl asks for.
+  template <class F>
+  void ForEach(F&& f) noexcept {
+    island_.pools.ForEach([&](auto& law, auto&, int row, int) { f(law, row); });
+  }
+  Num* u() noexcept { return island_.m.u; }
+  Num* l() noexcept { return island_.m.l; }
+  ImpactRows<Num> impacts() noexcept { return island_.m.impacts; }
+  void MeasureBefore() noexcept {
+    for (int k = 0; k < island_.body_count; ++k) {
+      const Twist<Num> t =
+          k < count() ? Twist<Num>{mem_.body[k].v, mem_.body[k].w} : island_.bodies[k].before;
+      island_.Store(t, mem_.ends + kDofs * k);
+    }
+    island_.Measure(mem_.ends, island_.m.impacts.before);
+  }
+  void SolveAgain(MaskOf<Num>) noexcept { good_ = Newton(false) && good_; }
+  void Update() noexcept { good_ = Newton(true) && good_; }
+
+ private:
+  int count() const noexcept { return island_.pattern.count; }
+  int size() const noexcept { return kDofs * island_.pattern.count; }
+
+  /// The whole step, in as many parts as it takes. Returns the residual [m/s].
+  double Integrate() noexcept {
+    double residual = 0;
+    for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
+      const int parts = 1 << halvings;
+      const bool last = !alone_ || halvings == kMostHalvings || linear_solves >= limit_;
+      Restart();
+      residual = 0;
+      bool good = true;
+      for (int i = 0; i < parts && (good || last); ++i) {
+        good = Part(step_s_ / parts, 1.0 / parts, residual) && good;
+        good = good && residual <= target_.tolerance;
+      }
+      if (good) break;
+      if (!(residual > target_.tolerance)) residual = 2 * target_.tolerance;
+      if (last) break;
+    }
+    return residual;
+  }
+
+  /// The state at the start of the step.
+  void LoadStart(int body, ImplicitBody<Num>& b) const noexcept;
+
+  /// Of an island that nothing else holds: the second stage keeps angular momentum to second order
+  /// only, the first to what Newton's method leaves over. What it is off by, all bodies turn less.
+  void KeepMomentum() noexcept;
+
+  /// Kinetic and elastic energy of the state that Begin has seen [J].
+  void Energy(Num& kinetic, Num& elastic) const noexcept;
+
+  /// Whether the step has more energy than it had, with what all else but contacts has done.
+  bool Gains() const noexcept;
+
+  Q4<Num> QuatOf(const Q4<W>& q) const noexcept {
+    return {OfLane<Num>(q.w, lane_), OfLane<Num>(q.x, lane_), OfLane<Num>(q.y, lane_),
+            OfLane<Num>(q.z, lane_)};
+  }
+
+  /// What does not change from one try to the next. SaveStart has kept pos, quat, vel, mom.
+  void Gather() noexcept {
+    const auto* const mom = reinterpret_cast<const V3<W>*>(work_.start + 10 * m_.body_count);
+    for (int k = 0; k < count(); ++k) {
+      ImplicitBody<Num>& b = mem_.body[k];
+      const int body = island_.bodies[k].body;
+      const BodyWork<W>& from = work_.bodies[body];
+      b.turns = mem_.bodies[body][lane_] > 0;
+      b.mass = island_.bodies[k].mass;
+      b.moments = OfLane<Num>(s_.inertia[body], lane_);
+      b.inv_moments = OfLane<Num>(s_.inv_inertia[body], lane_);
+      b.force = b.mass * OfLane<Num>(from.v - from.v0, lane_);
+      b.torque = OfLane<Num>(from.mom_free, lane_) - OfLane<Num>(mom[body], lane_);
+    }
+    // Laws of a whole step take no part of it.
+    const Pool<ContactPoint<Num, 2>>& contacts = island_.pools;
+    alone_ = island_.rows == 3 * contacts.count;
+    damped_ = damped_ && alone_;
+    for (int i = 0; i < island_.rows; ++i) mem_.bias[i] = Num::Splat(0.0);
+    for (int i = 0; i < contacts.count; ++i) mem_.bias[3 * i] = contacts.items[i].bias[0];
+    for (int i = 0; i < island_.rows; ++i) island_.m.start[i] = island_.m.l[i];
+  }
+
+  /// Back to the start of the step.
+  void Restart() noexcept {
+    for (int k = 0; k < count(); ++k) {
+      LoadStart(island_.bodies[k].body, mem_.body[k]);
+      mem_.body[k].inertia = island_.bodies[k].inertia;
+    }
+    cables_.Begin();
+    for (int c = 0; c < cables_.cable_count; ++c) {
+      ImplicitCable<Num>& cable = mem_.list[c];
+      cable.rest = cable.l0 - cable.stretch;
+      cable.impulse = cable.elastic_impulse = Num::Splat(0.0);
+    }
+    Energy(kinetic_, elastic_);
+    const Num zero = Num::Splat(0.0), h = Num::Splat(step_s_), half = Num::Splat(0.5);
+    for (int i = 0; i < island_.rows; ++i) {
+      mem_.total[i] = mem_.gap[i] = zero;
+      island_.m.l[i] = island_.m.start[i];
+    }
+    if (island_.rows == 0) return;
+    // From the middle, where they are seen, back to the start.
+    MeasureBefore();
+    const Pool<ContactPoint<Num, 2>>& contacts = island_.pools;
+    for (int i = 0; i < contacts.count; ++i) {
+      const Num b = mem_.bias[3 * i];
+      if (Any(b > zero)) mem_.gap[3 * i] = h * (b - half * island_.m.impacts.before[3 * i]);
+    }
+  }
+
+  /// A part of the step: one stage, or two. `share` of all else that acts.
+  bool Part(double h, double share, double& residual) noexcept {
+    const Num half = Num::Splat(0.5);
+    const double first = damped_ ? kMiddle : 1.0;
+    stage_ = {Num::Splat(first * h), false};
+    cables_.Begin();
+    for (int k = 0; k < count(); ++k) {
+      ImplicitBody<Num>& b = mem_.body[k];
+      b.share = Num::Splat(first * share);
+      b.ahead = Num::Splat(b.turns ? 2.0 : 1.0);
+      b.behind = Num::Splat(b.turns ? -1.0 : 0.0);
+    }
+    good_ = true;
+    if (island_.rows > 0) {
+      PrepareContacts();
+      laws_.Begin();
+      MeasureFree();
+      const bool impacts = ExpectImpacts(*this);
+      good_ = Newton(false);
+      if (impacts && good_) Impacts();
+      if (laws_.residual > residual) residual = laws_.residual;
+    } else {
+      good_ = Newton(false);
+    }
+    const double passed = damped_ ? 1 + Extrapolates() : 1;
+    for (int i = 0; i < island_.rows; ++i) {
+      const Num mean = half * (island_.m.impacts.before[i] + island_.m.u[i]);
+      mem_.gap[i] += (Num::Splat(passed) * stage_.h) * mean;
+      mem_.total[i] += island_.m.l[i];
+    }
+    EndStage(passed);
+    if (!damped_ || !good_) return good_;
+    return SecondStage(h, share, residual) && good_;
+  }
+
+  static constexpr double Extrapolates() noexcept {
+    return (1 - kMiddle) * (1 - kMiddle) / (kMiddle * (2 - kMiddle));
+  }
+
+  bool SecondStage(double h, double share, double& residual) noexcept {
+    const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
+    constexpr double kRest = (1 - kMiddle) / (2 - kMiddle);
+    stage_ = {Num::Splat(kRest * h), true};
+    cables_.Begin();
+    for (int k = 0; k < count(); ++k) {
+      ImplicitBody<Num>& b = mem_.body[k];
+      b.share = Num::Splat((b.turns ? kRest : 1 - kMiddle) * share);
+      b.ahead = one, b.behind = zero;
+    }
+    Pool<ContactPoint<Num, 2>>& contacts = island_.pools;
+    for (int i = 0; i < contacts.count; ++i) {
+      contacts.items[i].bias[0] = Max(mem_.gap[3 * i], zero) / stage_.h;
+    }
+    laws_.Begin();
+    good_ = Newton(false);
+    if (laws_.residual > residual) residual = laws_.residual;
+    for (int i = 0; i < island_.rows; ++i) {
+      mem_.gap[i] += stage_.h * island_.m.u[i];
+      mem_.total[i] += island_.m.l[i];
+    }
+    EndStage(1);
+    return good_;
+  }
+
+  /// Biases of the stage from gaps at its start, and velocities before it.
+  void PrepareContacts() noexcept {
+    const Num zero = Num::Splat(0.0), half = Num::Splat(0.5);
+    MeasureBefore();
+    Pool<ContactPoint<Num, 2>>& contacts = island_.pools;
+    for (int i = 0; i < contacts.count; ++i) {
+      ContactPoint<Num, 2>& c = contacts.items[i];
+      c.before = island_.m.impacts.before[3 * i];
+      c.bias[0] = mem_.bias[3 * i];
+      if (Any(c.bias[0] > zero)) {
+        c.bias[0] = Max(mem_.gap[3 * i] / stage_.h + half * c.before, zero);
+      }
+    }
+  }
+
+  /// Velocities that all else but cables leads to: rebounds go by them.
+  void MeasureFree() noexcept {
+    for (int k = 0; k < island_.body_count; ++k) {
+      Twist<Num> t = island_.bodies[k].free;
+      if (k < count()) {
+        const ImplicitBody<Num>& b = mem_.body[k];
+        const Unknown<Num>& body = island_.bodies[k];
+        t = {b.v + (b.share * body.inv_mass) * b.force,
+             b.w + b.share * (body.inv_inertia * b.torque)};
+      }
+      island_.Store(t, mem_.ends + kDofs * k);
+    }
+    island_.Measure(mem_.ends, island_.m.u);
+  }
+
+  void Impacts() noexcept {
+    const auto hit = SolveImpacts<Num>(*this, island_.rows, MaskOf<Num>::Splat(true));
+    if (!Any(hit) || (good_ && laws_.residual <= target_.tolerance)) return;
+    // Rebounds that friction does not let happen.
+    for (int i = 0; i < island_.rows; ++i) island_.m.l[i] = island_.m.impacts.l[i];
+    good_ = true;
+    Update();
+    laws_.residual = 0;
+  }
+
+  /// The state at the end of a stage, of which bodies pass `passed`, and what the second starts
+  /// from.
+  void EndStage(double passed) noexcept;
+
+  /// Masses as weights, so that it is a velocity.
+  double Norm(const Num* d) const noexcept {
+    Num sum = Num::Splat(0.0), mass = sum;
+    for (int k = 0; k < count(); ++k) {
+      const ImplicitBody<Num>& b = mem_.body[k];
+      const V3<Num> v{d[6 * k], d[6 * k + 1], d[6 * k + 2]};
+      const V3<Num> w{d[6 * k + 3], d[6 * k + 4], d[6 * k + 5]};
+      sum += b.mass * Dot(v, v) + Dot(w, b.inertia * w);
+      mass += b.mass;
+    }
+    return Sqrt(sum / mass)[0];
+  }
+
+  /// How far rounding alone moves the unknowns of a stage [m/s].
+  double Noise() const noexcept {
+    Num far = Num::Splat(0.0), lightest = Num::Splat(1e300);
+    for (int k = 0; k < count(); ++k) {
+      if (!mem_.body[k].turns) continue;
+      far = Max(Norm1(mem_.body[k].x), far);
+      lightest = Min(mem_.body[k].mass, lightest);
+    }
+    constexpr double kTensions = 8e-15, kPlaces = 1e-15;
+    const double h = stage_.h[0];
+    return kTensions * h * cables_.most_tension[0] / lightest[0] + kPlaces * far[0] / h;
+  }
+
+  /// step <- change of the unknowns for the residual `res`. With `given`, for the impulses that
+  /// are; else these are found.
+  bool Step(const Num* res, bool given, Num* step) noexcept {
+    for (int i = 0; i < size(); ++i) step[i] = -res[i];
+    if (given) AddImpulses(step);
+    matrix_.Solve(step);
+    if (given || island_.rows == 0) return true;
+    for (int k = 0; k < island_.body_count; ++k) {
+      Twist<Num> t = island_.bodies[k].free;
+      if (k < count()) {
+        const ImplicitBody<Num>& b = mem_.body[k];
+        const Twist<Num> at = island_.Load(mem_.U + kDofs * k), d = island_.Load(step + kDofs * k);
+        t = {b.ahead * (at.v + d.v) + b.behind * b.v, b.ahead * (at.w + d.w) + b.behind * b.w};
+      }
+      island_.Store(t, mem_.back + kDofs * k);
+    }
+    return laws_.Solve(matrix_, mem_.back, step);
+  }
+  void AddImpulses(Num* f) noexcept {
+    island_.pools.ForEach(
+        [&](auto& law, auto&, int row, int) { island_.AddForce(law, island_.m.l + row, f); });
+  }
+
+  /// From standing still, where lengths and tensions are true. `given`: for the impulses that are.
+  bool Newton(bool given) noexcept {
+    const Num zero = Num::Splat(0.0);
+    Num *const U = mem_.U, *const trial = mem_.trial, *const d = mem_.step;
+    double speed = kLeastSpeedMPerS;
+    for (int k = 0; k < count(); ++k) {
+      const ImplicitBody<Num>& b = mem_.body[k];
+      island_.Store(Twist<Num>{b.v, b.w}, U + kDofs * k);
+    }
+    speed += Norm(U);
+    for (int k = 0; k < count(); ++k) {
+      for (int i = 0; i < kDofs && mem_.body[k].turns; ++i) U[kDofs * k + i] = zero;
+    }
+    cables_.Evaluate(stage_, U, mem_.res);
+    double before = 1e300;
+    for (int i = 0; i < kMostSteps; ++i) {
+      for (int j = 0; j < size(); ++j) mem_.back[j] = -mem_.res[j];
+      if (given || i > 0) AddImpulses(mem_.back);
+      matrix_.StartGeneral(island_.bodies);
+      cables_.AddTo(stage_, mem_.back, matrix_);
+      ++linear_solves;
+      if (!matrix_.Factor() || !Step(mem_.res, given, d)) return false;
+      const double now = Norm(d), least = kTolerance * speed + Noise();
+      if (!(now - now == 0)) return false;
+      const double near = 1e-7 * speed + 30 * Noise();
+      // Quadratic convergence: the next step would be this^3 / before^2.
+      const bool solved =
+          i > 0 && now < 0.1 * before && now * now * now <= 1e-4 * least * before * before;
+      const bool converges = i > 0 && now < 0.1 * before;
+      const bool stays = i > 3 && now > 0.5 * before && now < near && before < near;
+      before = now;
+      double way = 1;
+      for (int tries = 0;; ++tries) {
+        const Num part = Num::Splat(way);
+        for (int j = 0; j < size(); ++j) trial[j] = U[j] + part * d[j];
+        cables_.Evaluate(stage_, trial, mem_.trial_res);
+        if (stays || solved || converges || tries == 11) break;
+        if (now <= 1e3 * kTolerance * speed + 10 * Noise()) break;
+        for (int j = 0; j < size(); ++j) mem_.back[j] = -mem_.trial_res[j];
+        AddImpulses(mem_.back);
+        cables_.SeenThere(mem_.back);
+        matrix_.Solve(mem_.back);
+        // Natural monotonicity: the same matrix finds less to do there.
+        if (Norm(mem_.back) <= (1 - 0.25 * way) * now) break;
+        way *= 0.5;
+      }
+      for (int j = 0; j < size(); ++j) U[j] = trial[j], mem_.res[j] = mem_.trial_res[j];
+      if (stays || solved || (way == 1 && now <= least)) {
+        if (given) MeasureEnds();
+        return true;
+      }
+    }
+    return false;
+  }
+  void MeasureEnds() noexcept {
+    for (int k = 0; k < island_.body_count; ++k) {
+      Twist<Num> t = island_.bodies[k].free;
+      if (k < count()) {
+        const ImplicitBody<Num>& b = mem_.body[k];
+        const Twist<Num> at = island_.Load(mem_.U + kDofs * k);
+        t = {b.ahead * at.v + b.behind * b.v, b.ahead * at.w + b.behind * b.w};
+      }
+      island_.Store(t, mem_.ends + kDofs * k);
+    }
+    island_.Measure(mem_.ends, island_.m.u);
+  }
+
+  const View& m_;
+  const Rows<W>& s_;
+  Scratch<W>& work_;
+  ImplicitMemory<W>& mem_;
+  Problem& island_;
+  ImplicitLaws<W> laws_;
+  ImplicitCables<W> cables_;
+  BodyMatrix<Num> matrix_;
+  Target target_;
+  int lane_;
+  double step_s_;
+  Num kinetic_{}, elastic_{};  ///< At the start of the step [J].
+  int limit_;
+  ImplicitStage<Num> stage_{};
+  bool damped_ = false, alone_ = true, good_ = true;
+};
+
+}  // namespace taut::sim

@@ -1,0 +1,59 @@
+/// A lane's islands with stiff cables: into the implicit integration and back.
+
+namespace taut::sim {
+
+template <class W>
+double LaneSolve<W>::SolveImplicit(SolverWork& work) noexcept {
+  Island<L, StepPools<L>>& island = mem_.island;
+  // Without room for the matrix nothing is solved, and the status says so.
+  if (!island.has_matrix) return 1.0;
+  ImplicitIsland<W> implicit(m_, s_, work_, island, Target{settings_.tolerance_m_per_s}, lane_,
+                             h_[0], work.limit);
+  for (int i = 0; i < work_.stiff_count; ++i) {
+    if (!IsOn(work_.stiff[i]) || !IsImplicit(work_.stiff[i])) continue;
+    const CableTable& cable = m_.cables[work_.stiff[i].cable];
+    int body = m_.body_count;
+    for (int k = 0; k < cable.attachment_count; ++k) {
+      const int b = m_.attachments[cable.first_attachment + k].body;
+      if (Moves(b)) body = b;
+    }
+    if (!Moves(body) || mem_.root[body] != island_root_) continue;
+    implicit.AddCable(i, [&](int b) { return Moves(b) ? Number(b) : -1; });
+  }
+  const double residual = implicit.Solve();
+  work.linear_solves += implicit.linear_solves;
+  Scatter();
+  implicit.Finish([&](int body) { return Pending(body) + PendingOfTouches(body); });
+  return residual;
+}
+
+/// What an implicit solve has found of a body's end, displaced and turned by twice `half`.
+template <class W>
+void LaneSolve<W>::DisplaceEnd(int body, const V3<L>& dx, const V3<L>& half) noexcept {
+  if (!(work_.implicit.ended[body][lane_] > 0)) return;
+  V3<W>& pos = work_.implicit.end_pos[body];
+  SetLane(pos, OfLane<L>(pos, lane_) + dx, lane_);
+  const Q4<W>& from = work_.implicit.end_quat[body];
+  Q4<L> q{OfLane<L>(from.w, lane_), OfLane<L>(from.x, lane_), OfLane<L>(from.y, lane_),
+          OfLane<L>(from.z, lane_)};
+  TurnAbout(q, half);
+  NormalizeQuat(q);
+  SetLane(work_.implicit.end_quat[body], q, lane_);
+}
+
+/// Angular momentum that contacts of moving bodies have yet to add to one.
+template <class W>
+V3<simd::Lane<W>> LaneSolve<W>::PendingOfTouches(int body) const noexcept {
+  V3<L> sum{L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};
+  for (int i = 0; i < work_.touch_count[lane_]; ++i) {
+    const Contact<L, 2>& c = mem_.pairs[i];
+    for (int k = 0; k < 2; ++k) {
+      if (c.links[k].body != body) continue;
+      const V3<L> turned = Cross(c.arm[k], ImpulseOf(c));
+      sum += k == 0 ? turned : -turned;
+    }
+  }
+  return sum;
+}
+
+}  // namespace taut::sim
