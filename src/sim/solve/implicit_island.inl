@@ -42,7 +42,6 @@ class ImplicitIsland {
     const Num h = Num::Splat(step_s_), two = Num::Splat(2.0), half = Num::Splat(0.5);
     c.source = row;
     c.first = cables_.point_count, c.count = table.attachment_count;
-    c.reports_mean = table.motor >= 0;
     c.k = Num::Splat(4.0 / (step_s_ * step_s_)) * OfLane<Num>(from.spring, lane_);
     c.b = (two / h) * OfLane<Num>(from.damper, lane_);
     c.most = OfLane<Num>(from.upper, lane_) / h;
@@ -96,10 +95,8 @@ class ImplicitIsland {
     for (int c = 0; c < cables_.cable_count; ++c) {
       const ImplicitCable<Num>& cable = mem_.list[c];
       StiffCable<W>& row = work_.stiff[cable.source];
-      const bool at_end = damped_ && !cable.reports_mean;
-      SetLane(s_.tension[row.cable], at_end ? cable.tension : cable.impulse / h, lane_);
-      SetLane(s_.mean_elastic[row.cable], at_end ? cable.elastic : cable.elastic_impulse / h,
-              lane_);
+      SetLane(s_.tension[row.cable], cable.impulse / h, lane_);
+      SetLane(s_.mean_elastic[row.cable], cable.elastic_impulse / h, lane_);
       s_.mean_step[0].Set(lane_, step_s_);
       row.live.Set(lane_, 0.0);
       row.l[0].Set(lane_, 0.0);
@@ -196,7 +193,7 @@ class ImplicitIsland {
     damped_ = damped_ && alone_;
     for (int i = 0; i < island_.rows; ++i) mem_.bias[i] = Num::Splat(0.0);
     for (int i = 0; i < contacts.count; ++i) mem_.bias[3 * i] = contacts.items[i].bias[0];
-    for (int i = 0; i < island_.rows; ++i) island_.m.start[i] = island_.m.l[i];
+    for (int i = 0; i < island_.rows; ++i) mem_.start[i] = island_.m.l[i];
   }
 
   /// Back to the start of the step.
@@ -215,7 +212,7 @@ class ImplicitIsland {
     const Num zero = Num::Splat(0.0), h = Num::Splat(step_s_), half = Num::Splat(0.5);
     for (int i = 0; i < island_.rows; ++i) {
       mem_.total[i] = mem_.gap[i] = zero;
-      island_.m.l[i] = island_.m.start[i];
+      island_.m.l[i] = mem_.start[i];
     }
     if (island_.rows == 0) return;
     // From the middle, where they are seen, back to the start.

@@ -42,7 +42,6 @@ template <class Num>
 struct ImplicitCable {
   int source;           ///< Its number in Scratch::stiff.
   int first, count;     ///< Of its points.
-  bool reports_mean;    ///< Its tension is the mean of the step, else that of the last stage.
   Num k, b, most;       ///< [N/m], [N s/m]; largest tension [N].
   Num stretch;          ///< At the start of the step [m].
   Num rest, rate;       ///< At the start of the stage [m]; its change [m/s].
@@ -72,9 +71,9 @@ struct ImplicitMemory {
   ImplicitPoint<Num>* points;
   ImplicitCable<Num>* list;
   Num *U, *trial, *res, *trial_res, *step, *back, *ends;  ///< 6 a body.
-  Num *gap, *bias, *total, *unit;                         ///< Per row.
-  int *compact, *active;                                  ///< Per row.
-  Num *x, *w, *k;                                         ///< Of the rows that act.
+  Num *gap, *bias, *start, *total, *unit;  ///< Per row; start: impulses to begin from.
+  int *compact, *active;                   ///< Per row.
+  Num *x, *w, *k;                          ///< Of the rows that act.
   Num *l, *u, *y, *f, *best;
   int row_capacity;
 
@@ -95,7 +94,7 @@ struct ImplicitMemory {
     list = room.Take<ImplicitCable<Num>>(c);
     Num** const per_dof[] = {&U, &trial, &res, &trial_res, &step, &back, &ends};
     for (Num** x6 : per_dof) *x6 = room.Take<Num>(kDofs * n);
-    Num** const per_row[] = {&gap, &bias, &total, &unit};
+    Num** const per_row[] = {&gap, &bias, &start, &total, &unit};
     for (Num** row : per_row) *row = room.Take<Num>(rows);
     compact = room.Take<int>(rows), active = room.Take<int>(rows);
     x = room.Take<Num>(kDofs * n * most);
