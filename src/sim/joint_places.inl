@@ -27,6 +27,9 @@ class JointSystem {
         mem_(work.joint_memory),
         matrix_(*m.joint_pattern, mem_.blocks) {}
 
+  /// Adds the stops that are closed at the end of the step to what is held.
+  void IncludeStops() noexcept { with_stops_ = true; }
+
   /// `inertia(body)`: in W, what turns cost; `place(joint)`: where it is.
   template <class F, class G>
   void Assemble(const F& inertia, const G& place) noexcept {
@@ -58,6 +61,7 @@ class JointSystem {
         ++rows_;
       }
     }
+    if (with_stops_) AddStops(place);
     matrix_.Factor();
   }
 
@@ -85,6 +89,9 @@ class JointSystem {
       for (int i = 0; i < size; ++i) mem_.change[i] += mem_.rhs[i];
     }
   }
+  /// How the bodies give way to the generalized forces in `x`, 6 a body, if nothing held moves.
+  void GiveWay(W* x) const noexcept { matrix_.Solve(x); }
+
   Twist<W> change(int k) const noexcept {
     return Island<W, Pools<JointRow<W>>>::Load(mem_.change + kDofs * k);
   }
@@ -101,6 +108,33 @@ class JointSystem {
   }
 
  private:
+  /// Behind all rows that are held. In lanes where a stop is open its row weighs nothing.
+  template <class G>
+  void AddStops(const G& place) noexcept {
+    const W zero = W::Splat(0.0), one = W::Splat(1.0), least = W::Splat(1e-300);
+    for (int r = 0; r < m_.joint_row_count; ++r) {
+      const JointRowTable& table = m_.joint_rows[r];
+      if (!IsStop(table.role)) continue;
+      const int i = work_.joints[r].joint;
+      const JointTable& j = m_.joints[i];
+      const JointPlace<W> p = place(i);
+      const JointDirection<W> d = DirectionOf(j, table, p, AngleAt(j, p, s_.joint_angle[i]));
+      const auto closed = IsClosedAtEnd(work_.joints[r], d.value);
+      if (!Any(closed)) continue;
+      const JointInertias<W> inertias(s_, work_, j);
+      JointRow<W>& row = mem_.rows[rows_];
+      SetJointLinks(s_, work_, j, inertias, p, d, IsTurn(table.measure), row);
+      for (int k = 0; k < row.link_count; ++k) {
+        row.links[k].body = m_.joint_number[row.links[k].body];
+      }
+      const W weight = one / Max(W::Splat(kCompliance) * row.A, least);
+      mem_.G[rows_] = Select(closed, weight, zero);
+      mem_.miss[rows_] = Select(closed, d.value, zero);
+      matrix_.Add(row, &mem_.G[rows_]);
+      ++rows_;
+    }
+  }
+
   static W RateBy(const JointRow<W>& row, const W* x) noexcept {
     W u = W::Splat(0.0);
     for (int k = 0; k < row.link_count; ++k) {
@@ -116,6 +150,7 @@ class JointSystem {
   JointMemory<W>& mem_;
   BodyMatrix<W> matrix_;
   int rows_ = 0;
+  bool with_stops_ = false;
 };
 
 /// Guessed velocities of the step's end that agree with what joints hold there: around loops the
@@ -178,6 +213,12 @@ W WorstGap(const View& m, const Rows<W>& s, const Scratch<W>& work) noexcept {
       const W value = DirectionOf(j, measure, p, W::Splat(0.0)).value;
       worst = Max(Abs(MissOf(measure, j, value)), worst);
     }
+    for (int r = j.first_row; r < j.first_row + j.row_count; ++r) {
+      if (!IsStop(m.joint_rows[r].role)) continue;
+      const W gap = DirectionOf(j, m.joint_rows[r], p, AngleAt(j, p, s.joint_angle[i])).value;
+      const auto closed = IsClosedAtEnd(work.joints[r], gap);
+      worst = Max(Select(closed, Abs(gap), W::Splat(0.0)), worst);
+    }
   }
   return worst;
 }
@@ -197,6 +238,7 @@ void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, MaskOf<W> lane
   const W zero = W::Splat(0.0);  // + 0: see StageDriftSecond
   const V3<W> none{zero, zero, zero};
   JointSystem<W> system(m, s, work);
+  system.IncludeStops();
   system.Assemble([&](int b) { return Congruence(work.bodies[b].R, s.inertia[b]); },
                   [&](int i) {
                     const JointTable& j = m.joints[i];
@@ -232,19 +274,35 @@ void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, MaskOf<W> lane
   }
 }
 
+/// Angles of hinges where their bodies are now, `t` after they were read.
+template <class W>
+void FollowHinges(const View& m, const Rows<W>& s, const Scratch<W>& work, W t) noexcept {
+  for (int i = 0; i < m.joint_count; ++i) {
+    const JointTable& j = m.joints[i];
+    if (!j.has_angle) continue;
+    const BodyWork<W>&a = work.bodies[j.a], &b = work.bodies[j.b];
+    const JointPlace<W> p = PlaceOf(m, s, j, a.R, b.R);
+    const W turned = t * Dot(p.axes_a.r0, b.w - a.w);
+    s.joint_angle[i] = HingeAngle(p, s.joint_angle[i] + turned);
+  }
+}
+
 /// Stage: closes what gaps the drifts have left in joints. Angular momenta turn with their bodies:
 /// a thin rod would take what it then has along its axis for a spin.
-///   reads   pos, quat     writes  pos, quat, vel, mom, bodies[].R, clearance
+///   reads   pos, quat, joints[]     writes  pos, quat, vel, mom, bodies[].R, clearance,
+///   joint_angle
 template <class W>
-void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
+void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, W half_h) noexcept {
   constexpr double kClosed_m = 1e-10;
   constexpr int kRounds = 3;
   TurnJointedBodies(m, s, work);
+  FollowHinges(m, s, work, half_h);
   auto lanes = MaskOf<W>::Splat(true);
   for (int round = 0; round < kRounds && Any(lanes); ++round) {
     CloseGaps(m, s, work, lanes);
     lanes = lanes & (WorstGap(m, s, work) > W::Splat(kClosed_m));
   }
+  FollowHinges(m, s, work, W::Splat(0.0));
 }
 
 }  // namespace taut::sim

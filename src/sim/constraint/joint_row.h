@@ -26,9 +26,7 @@ struct JointRow {
   Num lower, upper;  ///< Of the impulse [N s], lower <= 0 <= upper.
   Num A;             ///< Inverse effective mass along it [1/kg].
   Num l[1];          ///< Impulse [N s].
-  Num before;        ///< u at the start of the step [m/s],
-  Num restitution;   ///< and how much of an approach comes back. 0 but for stops.
-  Num rebound;       ///< The speed that it is to leave with; 0: none (impacts.inl).
+  Num rebound;       ///< Speed with which a stop throws back what it catches [m/s]; 0: it does not.
   int link_count;
   Link<Num, 1> links[2];
 
@@ -48,7 +46,6 @@ struct JointRow {
     target = pick(from.target), give = pick(from.give);
     lower = pick(from.lower), upper = pick(from.upper);
     A = pick(from.A), l[0] = pick(from.l[0]);
-    before = pick(from.before), restitution = pick(from.restitution);
     rebound = pick(from.rebound);
   }
   /// Of a displacement: what is held stays as it is, springs and friction are none, and a stop's
@@ -56,7 +53,7 @@ struct JointRow {
   void Hold() noexcept {
     const Num zero = Num::Splat(0.0);
     const auto free = (give > zero) | (upper < Num::Splat(kNoLimit));
-    target = give = l[0] = restitution = zero;
+    target = give = l[0] = rebound = zero;
     lower = Select(free, zero, lower), upper = Select(free, zero, upper);
   }
 
@@ -100,12 +97,8 @@ struct JointRow {
   }
   void Clamp(Num* l_now) const noexcept { l_now[0] = Min(Max(l_now[0], lower), upper); }
 
-  /// Of stops, as contacts do (impacts.inl): how fast it would leave again. False if none would.
-  bool ExpectRebound(Num) noexcept {
-    const Num zero = Num::Splat(0.0), speed = zero - restitution * before;
-    rebound = Select((speed > Num::Splat(kLeastRebound)) & (live > zero), speed, zero);
-    return Any(rebound > zero);
-  }
+  /// Whether it would throw back anything; at which speed is known beforehand (impacts.inl).
+  bool ExpectRebound(Num) const noexcept { return Any(rebound > Num::Splat(0.0)); }
   Mask Rebound(const Num*, const Num* l_now, Mask lanes, bool) noexcept {
     const Num zero = Num::Splat(0.0);
     const auto now = lanes & (l_now[0] > zero) & (rebound > zero) & (target < rebound);
