@@ -62,7 +62,9 @@ enum StatusBits : std::uint32_t {
   kStatusOk = 0,
   kStatusNonFinite = 1u << 0,        ///< A state is NaN or infinite: the world stands still.
   kStatusNotConverged = 1u << 1,     ///< Contacts, stiff cables: not to the tolerance.
-  kStatusContactOverflow = 1u << 2,  ///< More contacts than the model has room for.
+  /// More contacts than the model has room for; or, with the cable, one that touches more than it
+  /// can lie against (docs/theory/cables.md, section 6).
+  kStatusContactOverflow = 1u << 2,
   /// For a cable's tension, across it (docs/theory/cables.md, 12), or for what joints hold a body
   /// with (docs/theory/joints.md, 8).
   kStatusStepTooLong = 1u << 3,
