@@ -1,17 +1,13 @@
 // A random model of bodies, cables and terrain, stepped 1000 times with random commands: no step
 // takes more work than what it was allowed, and a number that is not finite is never seen without a
 // status that says so.
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <utility>
-#include <vector>
 
+#include "fuzz/draw.h"
+#include "fuzz/finite.h"
 #include "fuzz/fuzz_folder.h"
-#include "math/vec.h"
-#include "scenes/solids.h"
-#include "taut/batch.h"
 
 namespace taut::fuzz {
 namespace {
@@ -29,59 +25,6 @@ constexpr int kMaxInLanes = 10 * 5;
 constexpr int kMaxOfABody = kMaxInLanes + 2 * (kMaxLinearSolves + 1);
 /// Linear systems after which an input has been seen enough of.
 constexpr long kEnough = 10'000;
-
-/// Draws what a model is made of, from the last byte to the first, as libFuzzer's
-/// FuzzedDataProvider does, but with every compiler. Sizes are those of robots; stiffnesses,
-/// masses, speeds and steps span what a user may ask for.
-class Draw {
- public:
-  explicit Draw(std::vector<std::uint8_t> from) : from_(std::move(from)) {}
-
-  int Int(int low, int high) {
-    return low + static_cast<int>(Below(static_cast<std::uint64_t>(high - low)));
-  }
-  bool Coin() { return Below(1) != 0; }
-  double Between(double low, double high) {
-    constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();
-    return low + (high - low) * (static_cast<double>(Below(kMost)) / static_cast<double>(kMost));
-  }
-  /// Between two positive numbers, all orders of magnitude alike.
-  double Scale(double low, double high) { return std::exp(Between(std::log(low), std::log(high))); }
-  Vec3 Point(double size) {
-    const double x = Between(-size, size), y = Between(-size, size), z = Between(-size, size);
-    return {x, y, z};
-  }
-  Vec3 Direction() {
-    const Vec3 v = Point(1);
-    const double length = std::sqrt(Dot(v, v));
-    return length > 1e-3 ? (1 / length) * v : Vec3{0, 0, 1};
-  }
-  Quat Turn() {
-    const Vec3 axis = Direction();  // in an order that does not depend on the compiler
-    return scenes::Turn(axis, Between(-4, 4));
-  }
-  Material Surface() {
-    Material m;
-    m.kinetic_friction = Between(0, 1.5);
-    m.static_friction = m.kinetic_friction + Between(0, 0.5);
-    m.restitution = Between(0, 1);
-    return m;
-  }
-  int Body(const ModelDef& def) { return Int(kWorld, static_cast<int>(def.bodies.size()) - 1); }
-
- private:
-  /// 0 to `most`; 0 when all bytes are used up.
-  std::uint64_t Below(std::uint64_t most) {
-    std::uint64_t number = 0;
-    for (int bits = 0; bits < 64 && most >> bits > 0 && !from_.empty(); bits += 8) {
-      number = number << 8 | from_.back();
-      from_.pop_back();
-    }
-    return most == std::numeric_limits<std::uint64_t>::max() ? number : number % (most + 1);
-  }
-
-  std::vector<std::uint8_t> from_;
-};
 
 void AddBody(ModelDef& def, Draw& draw) {
   const int index = static_cast<int>(def.bodies.size());
@@ -223,45 +166,6 @@ void Disturb(Batch& batch, int world, Draw& draw) {
     const double size_n = Command(draw);
     batch.SetNodeForce(world, node, size_n * draw.Direction());
   }
-}
-
-bool Finite(const Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-/// What can be seen of a world and is not finite; empty if all is.
-std::string NotFinite(const Batch& batch, int world) {
-  const ModelDef& def = batch.model().def();
-  for (std::size_t b = 0; b < def.bodies.size(); ++b) {
-    const BodyState s = batch.Body(world, static_cast<int>(b));
-    const double turned = s.orientation.w + s.orientation.x + s.orientation.y + s.orientation.z;
-    const bool good = Finite(s.position_m) && Finite(s.velocity_m_per_s) &&
-                      Finite(s.angular_velocity_rad_per_s) && std::isfinite(turned);
-    if (!good) return def.bodies[b].name;
-  }
-  for (std::size_t c = 0; c < def.cables.size(); ++c) {
-    const CableState s = batch.Cable(world, static_cast<int>(c));
-    const bool good = std::isfinite(s.length_m) && std::isfinite(s.rate_m_per_s) &&
-                      std::isfinite(s.rest_length_m) && std::isfinite(s.tension_n) &&
-                      std::isfinite(s.elastic_n);
-    if (!good) return def.cables[c].name;
-  }
-  for (const ContactState& c : batch.Contacts(world)) {
-    if (!Finite(c.point_m) || !Finite(c.normal) || !Finite(c.force_n)) return "a contact";
-  }
-  return {};
-}
-
-/// The input, which is drawn from its end, and before it numbers that it determines: a short input
-/// makes a whole model, too.
-std::vector<std::uint8_t> Extended(const std::uint8_t* data, std::size_t size) {
-  std::seed_seq seed(data, data + size);
-  std::mt19937 random(seed);
-  constexpr std::size_t kFollowing = 1 << 14;
-  std::vector<std::uint8_t> bytes(kFollowing + size);
-  for (std::size_t i = 0; i < kFollowing; ++i) bytes[i] = static_cast<std::uint8_t>(random());
-  std::copy(data, data + size, bytes.begin() + kFollowing);
-  return bytes;
 }
 
 void Run(const std::uint8_t* data, std::size_t size) {
