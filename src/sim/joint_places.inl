@@ -50,6 +50,7 @@ class JointSystem {
           row.links[k].body = m_.joint_number[row.links[k].body];
         }
         mem_.G[rows_] = W::Splat(1.0) / (W::Splat(kHeldCompliance) * row.A);
+        mem_.number[rows_] = r;
         mem_.gap[rows_] = MissOf(table.measure, j, d.value);
         matrix_.Add(row, &mem_.G[rows_]);
         ++rows_;
@@ -58,8 +59,9 @@ class JointSystem {
     matrix_.Factor();
   }
 
+  int rows() const noexcept { return rows_; }
   const JointRow<W>& row(int r) const noexcept { return mem_.rows[r]; }
-
+  int number(int r) const noexcept { return mem_.number[r]; }  ///< Among the model's rows.
   W gap(int r) const noexcept { return mem_.gap[r]; }
 
   /// Impulses by which no row has its velocity `miss(row)` any more (or displacements, its gap),
@@ -132,11 +134,9 @@ void ProjectVelocities(const View& m, const Rows<W>& s, Scratch<W>& work, JointS
     }
     return u;
   });
-  int r = 0;
-  for (int in_model = 0; in_model < m.joint_row_count; ++in_model) {
-    if (m.joint_rows[in_model].role != JointRole::kHold) continue;
+  for (int r = 0; r < system.rows(); ++r) {
     const JointRow<W>& row = system.row(r);
-    const W l = share * system.impulse(r++);
+    const W l = share * system.impulse(r);
     for (int k = 0; k < row.link_count; ++k) {
       const Link<W, 1>& link = row.links[k];
       if (link.body >= m.joint_body_count) continue;
@@ -151,7 +151,7 @@ void ProjectVelocities(const View& m, const Rows<W>& s, Scratch<W>& work, JointS
       work.joint_memory.gained[first] +=
           l * GainOf(row, s.pos[m.joint_bodies[first]], s.pos[m.joint_bodies[second]]);
     }
-    took(in_model, l, row);
+    took(system.number(r), l, row);
   }
 }
 

@@ -218,7 +218,7 @@ void SetHeld(const Rows<W>& s, const Scratch<W>& work, W last_impulse, JointRow<
     const BodyWork<W>& body = work.bodies[row.links[k].body];
     AddVelocity(row.links[k], body.v0, body.w0, &before);
   }
-  row.held = true;
+  row.compliant = true;
   row.give = Select(s.last_step[0] > zero, W::Splat(kHeldCompliance) * row.A, zero);
   row.target = row.give * last_impulse - before;
 }
@@ -290,7 +290,7 @@ void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double ste
       row.live = live;
       row.target = row.give = row.restitution = row.rebound = zero;
       row.lower = -no_limit, row.upper = no_limit;
-      row.held = false;
+      row.compliant = false;
       row.before = RateOf(place, d, Before(a), Before(b));
       switch (table.role) {
         case JointRole::kHold:

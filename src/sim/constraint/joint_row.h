@@ -30,7 +30,7 @@ struct JointRow {
   Num before;        ///< u at the start of the step [m/s],
   Num restitution;   ///< and how much of an approach comes back. 0 but for stops.
   Num rebound;       ///< The speed that it is to leave with; 0: none (impacts.inl).
-  bool held;         ///< `give` is a compliance of eq. 3, not that of a spring.
+  bool compliant;    ///< `give` is the compliance of eq. 3, not that of a spring.
   int link_count;
   Link<Num, 1> links[2];
 
@@ -52,16 +52,16 @@ struct JointRow {
     A = pick(from.A), l[0] = pick(from.l[0]);
     before = pick(from.before), restitution = pick(from.restitution);
     rebound = pick(from.rebound);
-    held = from.held;
+    compliant = from.compliant;
   }
   /// Of a displacement: what is held stays as it is, springs and friction are none, and a stop's
   /// other side stays free.
   void Hold() noexcept {
     const Num zero = Num::Splat(0.0);
     auto free = upper < Num::Splat(kNoLimit);
-    if (!held) free = free | (give > zero);
+    if (!compliant) free = free | (give > zero);
     target = give = l[0] = restitution = zero;
-    held = false;
+    compliant = false;
     lower = Select(free, zero, lower), upper = Select(free, zero, upper);
   }
 
@@ -95,7 +95,7 @@ struct JointRow {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     // A held row's own compliance serves as e: the step solves its law.
     const Num soft = e * A;
-    out.A[0][0] = Select(b.inside, held ? Max(give, soft) : give + soft, one);
+    out.A[0][0] = Select(b.inside, compliant ? Max(give, soft) : give + soft, one);
     out.S[0][0] = Select(b.inside, one, zero);
     out.r[0] = Select(b.inside, target - u[0] - give * l_now[0], b.impulse - l_now[0]);
   }

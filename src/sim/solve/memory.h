@@ -99,7 +99,8 @@ template <class W>
 struct JointMemory {
   Unknown<W>* bodies;
   JointRow<W>* rows;
-  W *G, *gap, *miss, *l;  ///< Per row.
+  int* number;            ///< Per row that is held: its number among the model's,
+  W *G, *gap, *miss, *l;  ///< stiffness, gap, what it misses, impulse.
   W *rhs, *change;        ///< 6 a body; rhs: also of those with motions, which do not change.
   W* moved;               ///< Per body: how far the last displacement moved any of its points [m],
   V3<W>* gained;          ///< and the angular momentum that it gained by it.
@@ -110,6 +111,7 @@ struct JointMemory {
     const int64_t with_motions = n + (m.joint_count > 0 ? m.motion_count : 0);
     bodies = room.Take<Unknown<W>>(n);
     rows = room.Take<JointRow<W>>(m.joint_row_count);
+    number = room.Take<int>(m.joint_row_count);
     W** const per_row[] = {&G, &gap, &miss, &l};
     for (W** list : per_row) *list = room.Take<W>(m.joint_row_count);
     rhs = room.Take<W>(kDofs * with_motions), change = room.Take<W>(kDofs * n);
