@@ -63,8 +63,9 @@ enum StatusBits : std::uint32_t {
   kStatusNonFinite = 1u << 0,        ///< A state is NaN or infinite: the world stands still.
   kStatusNotConverged = 1u << 1,     ///< Contacts, stiff cables: not to the tolerance.
   kStatusContactOverflow = 1u << 2,  ///< More contacts than the model has room for.
-  /// For a cable's tension, across it (docs/theory/cables.md, 12), or for what joints hold a body
-  /// with (docs/theory/joints.md, 8).
+  /// For a cable's tension, across it (docs/theory/cables.md, 12), for the forces of a body's
+  /// joints, or for how fast it turns about a hinge that its centre of mass is beside
+  /// (docs/theory/joints.md, section 6).
   kStatusStepTooLong = 1u << 3,
   /// A body's centre of mass is below all of a terrain that has a height field or a mesh and no
   /// plane: it has left what it stood on, and falls for ever.

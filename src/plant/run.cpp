@@ -30,8 +30,10 @@ std::string DescribeStatus(const ModelDef& def, const WorldStatus& status) {
   if (status.bits & kStatusNonFinite) add("the state is no longer finite");
   if (status.bits & kStatusNotConverged) add("a contact solve did not converge");
   if (status.bits & kStatusStepTooLong) {
-    add(status.cable >= 0 ? "the step is too long for the tension of a cable"
-                          : "the step is too long for the forces of a body's joints");
+    add(status.cable >= 0
+            ? "the step is too long for the tension of a cable"
+            : "the step is too long for a body's joints: their forces, or its turns about a hinge "
+              "beside its centre of mass");
   }
   if (status.bits & kStatusContactOverflow) add("more contacts than there is room for");
   if (status.bits & kStatusFellOff) add("a body is below all of the terrain");

@@ -26,6 +26,14 @@ class JointSystem {
         mem_(work.joint_memory),
         matrix_(*m.joint_pattern, mem_.blocks) {}
 
+  /// Adds the stops that press to what is held. Returns whether there are any.
+  bool IncludeStops() noexcept {
+    for (int r = 0; r < m_.joint_row_count && !with_stops_; ++r) {
+      with_stops_ = IsStop(m_.joint_rows[r].role) && Any(Presses(work_.joints[r]));
+    }
+    return with_stops_;
+  }
+
   /// Of where the bodies are.
   void Assemble() noexcept {
     for (int k = 0; k < m_.joint_body_count; ++k) {
@@ -50,16 +58,19 @@ class JointSystem {
           row.links[k].body = m_.joint_number[row.links[k].body];
         }
         mem_.G[rows_] = W::Splat(1.0) / (W::Splat(kHeldCompliance) * row.A);
+        mem_.number[rows_] = r;
         mem_.gap[rows_] = MissOf(table.measure, j, d.value);
         matrix_.Add(row, &mem_.G[rows_]);
         ++rows_;
       }
     }
+    if (with_stops_) AddStops();
     matrix_.Factor();
   }
 
+  int rows() const noexcept { return rows_; }
   const JointRow<W>& row(int r) const noexcept { return mem_.rows[r]; }
-
+  int number(int r) const noexcept { return mem_.number[r]; }  ///< Among the model's rows.
   W gap(int r) const noexcept { return mem_.gap[r]; }
 
   /// Impulses by which no row has its velocity `miss(row)` any more (or displacements, its gap),
@@ -88,11 +99,41 @@ class JointSystem {
     }
   }
   W impulse(int r) const noexcept { return mem_.l[r]; }
+
+  /// How the bodies give way to the generalized forces in `x`, 6 a body, if nothing held moves.
+  void GiveWay(W* x) const noexcept { matrix_.Solve(x); }
+
   Twist<W> change(int k) const noexcept {
     return Island<W, Pools<JointRow<W>>>::Load(mem_.change + kDofs * k);
   }
 
  private:
+  /// Behind all rows that are held. In lanes where a stop is open its row weighs nothing.
+  void AddStops() noexcept {
+    const W zero = W::Splat(0.0), one = W::Splat(1.0), least = W::Splat(1e-300);
+    for (int r = 0; r < m_.joint_row_count; ++r) {
+      const JointRowTable& table = m_.joint_rows[r];
+      if (!IsStop(table.role)) continue;
+      const int i = work_.joints[r].joint;
+      const JointTable& j = m_.joints[i];
+      const JointPlace<W> p = PlaceOf(m_, s_, j, work_.bodies[j.a].R, work_.bodies[j.b].R);
+      const JointDirection<W> d = DirectionOf(j, table, p, AngleAt(j, p, s_.joint_angle[i]));
+      const auto closed = IsClosedAtEnd(work_.joints[r], d.value);
+      if (!Any(closed)) continue;
+      JointRow<W>& row = mem_.rows[rows_];
+      SetJointLinks(s_, work_, j, p, d, row);
+      for (int k = 0; k < row.link_count; ++k) {
+        row.links[k].body = m_.joint_number[row.links[k].body];
+      }
+      const W weight = one / Max(W::Splat(kHeldCompliance) * row.A, least);
+      mem_.G[rows_] = Select(closed, weight, zero);
+      mem_.number[rows_] = r;
+      mem_.gap[rows_] = Select(closed, d.value, zero);
+      matrix_.Add(row, &mem_.G[rows_]);
+      ++rows_;
+    }
+  }
+
   static W RateBy(const JointRow<W>& row, const W* x) noexcept {
     W u = W::Splat(0.0);
     for (int k = 0; k < row.link_count; ++k) {
@@ -108,6 +149,7 @@ class JointSystem {
   JointMemory<W>& mem_;
   BodyMatrix<W> matrix_;
   int rows_ = 0;
+  bool with_stops_ = false;
 };
 
 /// Projects velocities onto what joints hold, or by a share of the way (eq. 7a). Impulses do it, so
@@ -132,11 +174,9 @@ void ProjectVelocities(const View& m, const Rows<W>& s, Scratch<W>& work, JointS
     }
     return u;
   });
-  int r = 0;
-  for (int in_model = 0; in_model < m.joint_row_count; ++in_model) {
-    if (m.joint_rows[in_model].role != JointRole::kHold) continue;
+  for (int r = 0; r < system.rows(); ++r) {
     const JointRow<W>& row = system.row(r);
-    const W l = share * system.impulse(r++);
+    const W l = share * system.impulse(r);
     for (int k = 0; k < row.link_count; ++k) {
       const Link<W, 1>& link = row.links[k];
       if (link.body >= m.joint_body_count) continue;
@@ -151,7 +191,7 @@ void ProjectVelocities(const View& m, const Rows<W>& s, Scratch<W>& work, JointS
       work.joint_memory.gained[first] +=
           l * GainOf(row, s.pos[m.joint_bodies[first]], s.pos[m.joint_bodies[second]]);
     }
-    took(in_model, l, row);
+    took(system.number(r), l, row);
   }
 }
 
@@ -196,6 +236,12 @@ W WorstGap(const View& m, const Rows<W>& s, const Scratch<W>& work) noexcept {
       if (m.joint_rows[r].role != JointRole::kHold) break;
       const W value = DirectionOf(j, measure, p, W::Splat(0.0)).value;
       worst = Max(Abs(MissOf(measure, j, value)), worst);
+    }
+    for (int r = j.first_row; r < j.first_row + j.row_count; ++r) {
+      if (!IsStop(m.joint_rows[r].role)) continue;
+      const W gap = DirectionOf(j, m.joint_rows[r], p, AngleAt(j, p, s.joint_angle[i])).value;
+      const auto closed = IsClosedAtEnd(work.joints[r], gap);
+      worst = Max(Select(closed, Abs(gap), W::Splat(0.0)), worst);
     }
   }
   return worst;
@@ -284,11 +330,24 @@ void StageJointStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept
                     [](int, const W&, const JointRow<W>&) {});
 }
 
+/// Angles of hinges where their bodies are now, `t` after they were read.
+template <class W>
+void FollowHinges(const View& m, const Rows<W>& s, const Scratch<W>& work, W t) noexcept {
+  for (int i = 0; i < m.joint_count; ++i) {
+    const JointTable& j = m.joints[i];
+    if (!j.has_angle) continue;
+    const BodyWork<W>&a = work.bodies[j.a], &b = work.bodies[j.b];
+    const JointPlace<W> p = PlaceOf(m, s, j, a.R, b.R);
+    const W turned = t * Dot(p.axes_a.r0, b.w - a.w);
+    s.joint_angle[i] = HingeAngle(p, s.joint_angle[i] + turned);
+  }
+}
+
 /// Stage: projects the velocities by half, and closes the gaps that the drifts have left. Angular
 /// momenta turn with their bodies: a thin rod would take what it then has along its axis for a
 /// spin.
 ///   reads   pos, quat, joints[]     writes  pos, quat, vel, mom, bodies[].R, clearance,
-///   joint_force, joint_torque, motion_force, motion_torque, motion_work
+///   joint_angle, joint_force, joint_torque, motion_force, motion_torque, motion_work
 template <class W>
 void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   // All of it would lose three times as much energy; without it what is left would change its sign
@@ -298,6 +357,7 @@ void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, double 
   constexpr int kRounds = 3;
   const W inv_h = W::Splat(1.0 / step_s);
   TurnJointedBodies(m, s, work);
+  FollowHinges(m, s, work, W::Splat(0.5 * step_s));
   JointSystem<W> system(m, s, work);
   auto lanes = MaskOf<W>::Splat(true);
   for (int round = 0; round < kRounds && Any(lanes); ++round) {
@@ -315,11 +375,13 @@ void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, double 
         }
       };
       ProjectVelocities(m, s, work, system, W::Splat(kShare), given, took);
+      if (system.IncludeStops()) system.Assemble();
     }
     CloseGaps(m, s, work, system, lanes);
     ForgetGains(m, work);
     lanes = lanes & (WorstGap(m, s, work) > W::Splat(kClosed_m));
   }
+  FollowHinges(m, s, work, W::Splat(0.0));
 }
 
 }  // namespace taut::sim

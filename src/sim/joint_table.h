@@ -29,6 +29,10 @@ enum class JointRole {
   kSpring,
 };
 
+constexpr bool IsStop(JointRole role) noexcept {
+  return role == JointRole::kLeast || role == JointRole::kMost;
+}
+
 struct JointRowTable {
   JointMeasure measure = JointMeasure::kAlongAxis;
   JointRole role = JointRole::kHold;

@@ -40,10 +40,13 @@ JointPlace<W> PlaceOf(const View& m, const Rows<W>& s, const JointTable& j, cons
   return p;
 }
 
-/// The angle of a hinge, -pi..pi.
+/// Returns the angle of a hinge with its turns, as near to `expected` as its pose allows. Half a
+/// turn between the two is the most that may be: `expected` has to follow the hinge's rate.
 template <class W>
-TAUT_INLINE W HingeAngle(const JointPlace<W>& p) noexcept {
-  return simd::Atan2(Dot(p.axes_a.r2, p.axes_b.r1), Dot(p.axes_a.r1, p.axes_b.r1));
+TAUT_INLINE W HingeAngle(const JointPlace<W>& p, W expected) noexcept {
+  const W turn = W::Splat(2 * simd::kPi), inv_turn = W::Splat(0.5 / simd::kPi);
+  const W angle = simd::Atan2(Dot(p.axes_a.r2, p.axes_b.r1), Dot(p.axes_a.r1, p.axes_b.r1));
+  return angle + turn * simd::Round(inv_turn * (expected - angle));
 }
 
 /// The turn that takes a's axes to b's, as a vector in W: its axis times its angle, 0..pi. At a
@@ -118,6 +121,20 @@ JointDirection<W> DirectionOf(const JointTable& j, JointMeasure measure, const J
           reach * simd::Atan2(sine, Dot(p.axes_a.r0, p.axes_b.r0))};
 }
 
+/// The same with the sign of the row's role. A stop's value is the distance that is left to it, so
+/// that its impulse pushes.
+template <class W>
+JointDirection<W> DirectionOf(const JointTable& j, const JointRowTable& row, const JointPlace<W>& p,
+                              W angle) noexcept {
+  JointDirection<W> d = DirectionOf(j, row.measure, p, angle);
+  if (row.role == JointRole::kMost) {
+    d = {-d.lin, -d.turn, W::Splat(j.most) - d.value};
+  } else if (row.role == JointRole::kLeast) {
+    d.value -= W::Splat(j.least);
+  }
+  return d;
+}
+
 /// The velocity that a row has at (va, wa), (vb, wb).
 template <class W>
 TAUT_INLINE W RateOf(const JointPlace<W>& p, const JointDirection<W>& d, const Twist<W>& a,
@@ -159,19 +176,6 @@ TAUT_INLINE V3<W> Turned(const V3<W>& turn, const V3<W>& a) noexcept {
   return a + once + W::Splat(0.5) * Cross(turn, once);
 }
 
-/// Where the joint is after the displacements a and b of its bodies.
-template <class W>
-JointPlace<W> PlaceAfter(const JointPlace<W>& p, const Twist<W>& a, const Twist<W>& b) noexcept {
-  const auto axes = [](const V3<W>& turn, const M3<W>& of) {
-    return M3<W>{Turned(turn, of.r0), Turned(turn, of.r1), Turned(turn, of.r2)};
-  };
-  JointPlace<W> q;
-  q.own_a = Turned(a.w, p.own_a), q.own_b = Turned(b.w, p.own_b);
-  q.gap = p.gap + (b.v - a.v) + (q.own_b - p.own_b) - (q.own_a - p.own_a);
-  q.axes_a = axes(a.w, p.axes_a), q.axes_b = axes(b.w, p.axes_b);
-  return q;
-}
-
 /// Compliance of rows that hold, as a share of their inverse effective masses.
 inline constexpr double kHeldCompliance = 1e-7;
 
@@ -182,19 +186,6 @@ TAUT_INLINE Twist<W> Before(const BodyWork<W>& body) noexcept {
 template <class W>
 TAUT_INLINE Twist<W> Free(const BodyWork<W>& body) noexcept {
   return {body.v, body.w};
-}
-
-/// A stop (eq. 4): it lets what comes near go as far as to touch, and what is beyond come back no
-/// faster than this step's forces would take it further, as contacts do (contact.md, eq. 5).
-template <class W>
-void SetStop(const JointTable& j, W gap, W before, W free, W h, W live, JointRow<W>& row) noexcept {
-  const W zero = W::Splat(0.0), half = W::Splat(0.5);
-  const W kick = Max(before - free, zero), slowly = W::Splat(kPushOutShare) * Abs(before);
-  const auto near = gap < h * (Abs(before) + Abs(free)) + W::Splat(kContactMarginM);
-  row.live = Select(near, live, zero);
-  row.target = zero - Max(gap / h, zero - (half * kick + slowly));
-  row.lower = zero;
-  row.restitution = W::Splat(j.restitution);
 }
 
 /// A spring and damper, as a line through the mean of the step's start and end (eq. 6).
@@ -218,7 +209,7 @@ void SetHeld(const Rows<W>& s, const Scratch<W>& work, W last_impulse, JointRow<
     const BodyWork<W>& body = work.bodies[row.links[k].body];
     AddVelocity(row.links[k], body.v0, body.w0, &before);
   }
-  row.held = true;
+  row.compliant = true;
   row.give = Select(s.last_step[0] > zero, W::Splat(kHeldCompliance) * row.A, zero);
   row.target = row.give * last_impulse - before;
 }
@@ -253,7 +244,8 @@ void FindClosing(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept;
 template <class W>
 void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
-  const W h = W::Splat(step_s), no_limit = W::Splat(JointRow<W>::kNoLimit);
+  const W h = W::Splat(step_s), half_h = W::Splat(0.5 * step_s);
+  const W no_limit = W::Splat(JointRow<W>::kNoLimit);
   const W live = Select(s.halted[0] > zero, zero, one);
   if (m.joint_loops) FindClosing(m, s, work);
   for (int i = 0; i < m.joint_count; ++i) {
@@ -262,14 +254,12 @@ void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double ste
     const JointPlace<W> place = PlaceOf(m, s, j, a.R, b.R);
     JointPlace<W> closed = place;
     if (m.joint_loops) {
-      closed = PlaceAfter(place, ClosingOf(m, work, j.a), ClosingOf(m, work, j.b));
+      closed = PlaceAfter(place, ClosingOf(m, work, j.a), ClosingOf(m, work, j.b), one);
     }
     W angle = zero;
     if (j.has_angle) {
-      const W turn = W::Splat(2 * simd::kPi), inv_turn = W::Splat(0.5 / simd::kPi);
-      angle = HingeAngle(place);
-      angle += turn * simd::Round(inv_turn * (s.joint_angle[i] - angle));
-      s.joint_angle[i] = angle;
+      const W turned = half_h * Dot(place.axes_a.r0, b.w0 - a.w0);
+      s.joint_angle[i] = angle = HingeAngle(place, s.joint_angle[i] + turned);
     }
     V3<W> turned{zero, zero, zero};
     if (j.has_turn_spring) turned = TurnOf(place);
@@ -277,28 +267,22 @@ void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double ste
       const JointRowTable& table = m.joint_rows[r];
       HeldRow<W>& row = work.joints[r];
       const bool at_closed = m.joint_loops && table.role == JointRole::kHold;
-      JointDirection<W> d = DirectionOf(j, table.measure, at_closed ? closed : place, angle);
-      if (table.role == JointRole::kMost) {
-        d = {-d.lin, -d.turn, W::Splat(j.most) - d.value};
-      } else if (table.role == JointRole::kLeast) {
-        d.value -= W::Splat(j.least);
-      }
+      JointDirection<W> d = DirectionOf(j, table, at_closed ? closed : place, angle);
       row.joint = i;
       row.lin = d.lin, row.turn = d.turn;
       SetJointLinks(s, work, j, at_closed ? closed : place, d, row);
       if (at_closed) TurnLinksBack(m, work, row);
       row.live = live;
-      row.target = row.give = row.restitution = row.rebound = zero;
+      row.target = row.give = row.rebound = row.held = row.reach = zero;
       row.lower = -no_limit, row.upper = no_limit;
-      row.held = false;
-      row.before = RateOf(place, d, Before(a), Before(b));
+      row.compliant = false;
       switch (table.role) {
         case JointRole::kHold:
           SetHeld(s, work, h * s.joint_load[r], row);
           break;
         case JointRole::kLeast:
         case JointRole::kMost:
-          SetStop(j, d.value, row.before, RateOf(place, d, Free(a), Free(b)), h, live, row);
+          SetStop(s, work, j, table, place, d, angle, s.joint_load[r], h, row);
           break;
         case JointRole::kFriction:
         case JointRole::kTurnFriction:
@@ -307,46 +291,12 @@ void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double ste
           break;
         case JointRole::kSpring:
           if (j.has_turn_spring) d.value = Dot(d.turn, turned);
-          SetSpring(j, d.value - W::Splat(j.rest), row.before, h, row);
+          SetSpring(j, d.value - W::Splat(j.rest), RateOf(place, d, Before(a), Before(b)), h, row);
           break;
       }
       row.l[0] = Select(row.live > zero, Min(Max(h * s.joint_load[r], row.lower), row.upper), zero);
     }
   }
-}
-
-/// Share of the largest stable force that joints hold a body with (joints.md, eq. 8), the largest
-/// of all bodies, and whose it is.
-template <class W>
-struct JointShare {
-  W share;
-  int body[W::kLanes];
-};
-
-/// Along its line a joint's force is implicit, across it it is not: it turns the body back like a
-/// spring that is the stiffer the more it carries.
-template <class W>
-JointShare<W> ShareOfStableJoints(const View& m, const Rows<W>& s, double step_s) noexcept {
-  const W zero = W::Splat(0.0), quarter_h2 = W::Splat(0.25 * step_s * step_s);
-  JointShare<W> worst{zero, {}};
-  for (int k = 0; k < m.joint_body_count; ++k) {
-    const int b = m.joint_bodies[k];
-    W stiffness = zero;
-    for (int i = 0; i < m.joint_count; ++i) {
-      const JointTable& j = m.joints[i];
-      if (j.a != b && j.b != b) continue;
-      const V3<W> arm = simd::Splat3<W>(j.a == b ? j.own_a_P : j.own_b_P), force = s.joint_force[i];
-      stiffness += Sqrt(Dot(arm, arm) * Dot(force, force));
-    }
-    const V3<W>& moments = s.inertia[b];
-    const W share = quarter_h2 * stiffness / Max(moments.x, Max(moments.y, moments.z));
-    const auto more = share > worst.share;
-    for (int lane = 0; lane < W::kLanes; ++lane) {
-      if (more[lane]) worst.body[lane] = b;
-    }
-    worst.share = Max(share, worst.share);
-  }
-  return worst;
 }
 
 template <class W>

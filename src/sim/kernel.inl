@@ -55,6 +55,8 @@
 #include "sim/solve/common_turn.inl"
 #include "sim/joints.inl"
 #include "sim/joint_places.inl"
+#include "sim/joint_stops.inl"
+#include "sim/joint_share.inl"
 #include "sim/solve/rolling.inl"
 #include "sim/solve/lane_solve.inl"
 #include "sim/solve/lane_rolling.inl"
@@ -183,9 +185,8 @@ template <class W>
 
 /// Writes down which lanes have something to say, and halts those that are no longer finite.
 template <class W>
-void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
-           const SolveResult<W>& solve, const StepSettings& settings, uint32_t overflow,
-           double step_s) noexcept {
+void Judge(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work, const SolveResult<W>& solve,
+           const StepSettings& settings, uint32_t overflow, double step_s) noexcept {
   const W zero = W::Splat(0.0);
   W sum = zero;  // stays 0 while everything is finite
   for (int b = 0; b < m.body_count; ++b) {
@@ -203,7 +204,7 @@ void Judge(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
     share = Max(ShareOfStableTension(s, work.stiff[i]), share);
   }
   JointShare<W> jointed{zero, {}};
-  if (m.joint_count > 0) jointed = ShareOfStableJoints(m, s, step_s);
+  if (m.joint_count > 0) jointed = ShareOfStableJoints(m, s, work, step_s);
   const auto too_long = (Max(share, jointed.share) > W::Splat(1.0)) & (!was_halted);
   s.residual[0] = solve.residual;
   s.linear_solves[0] = solve.linear_solves;

@@ -199,6 +199,12 @@ class JointCompiler {
     t_.joint_pattern = {
         t_.joint_slot.data(), t_.joint_below.data(), t_.joint_first_below.data(), n, 0, 0};
     Eliminate(graph, n * n, order.data(), place.data(), t_.joint_pattern);
+    t_.hinged.assign(bodies + 1, 0);
+    for (const JointTable& j : t_.joints) {
+      for (const int body : {j.a, j.b}) {
+        if (j.has_angle) t_.hinged[static_cast<std::size_t>(body)] = 1;
+      }
+    }
     t_.joint_number.assign(bodies + 1, -1);
     for (int k = 0; k < n; ++k) {
       const int body = members[static_cast<std::size_t>(order[static_cast<std::size_t>(k)])];

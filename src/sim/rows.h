@@ -105,6 +105,8 @@ template <class W>
 struct HeldRow : JointRow<W> {
   int joint;
   V3<W> lin, turn;
+  W held;   ///< Of a stop: 1 where it is held as it pressed in the step before (joints.md, eq. 4).
+  W reach;  ///< Of a stop: how far its bodies may come in a step [m].
 };
 
 /// How a motion moves its body in this step: velocities at its start and middle, and its end.

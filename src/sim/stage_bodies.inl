@@ -63,6 +63,48 @@ TAUT_INLINE void TurnAbout(Q4<W>& q, const V3<W>& u) noexcept {
        q.y + (u.y * q.w + u.z * q.x - u.x * q.z), q.z + (u.z * q.w + u.x * q.y - u.y * q.x)};
 }
 
+/// The same by a quaternion of cosine and sine of half the angle.
+template <class W>
+TAUT_INLINE void TurnY(Q4<W>& q, W c, W s) noexcept {
+  q = {c * q.w - s * q.y, c * q.x - s * q.z, c * q.y + s * q.w, c * q.z + s * q.x};
+}
+template <class W>
+TAUT_INLINE void TurnZ(Q4<W>& q, W c, W s) noexcept {
+  q = {c * q.w - s * q.z, c * q.x + s * q.y, c * q.y - s * q.x, c * q.z + s * q.w};
+}
+template <class W>
+TAUT_INLINE void TurnAbout(Q4<W>& q, W c, const V3<W>& u) noexcept {
+  q = {c * q.w - (u.x * q.x + u.y * q.y + u.z * q.z), c * q.x + (u.x * q.w + u.y * q.z - u.z * q.y),
+       c * q.y + (u.y * q.w + u.z * q.x - u.x * q.z),
+       c * q.z + (u.z * q.w + u.x * q.y - u.y * q.x)};
+}
+
+/// Bodies on hinges, whose turns are counted, turn further than this in half a step by sine and
+/// cosine instead of HalfAngle's series, of which 3e-5 of the angle are missing there [rad].
+inline constexpr double kSeriesTurn = 0.25;
+
+/// Cosine and sine of a turn by theta / 2 in the lanes `fast`; in others 1 and HalfAngle, which
+/// have to be normalised.
+template <class W>
+struct HalfTurn {
+  W c = W::Splat(1.0), s;
+  HalfTurn(W theta, MaskOf<W> fast) noexcept {
+    s = HalfAngle(theta, theta * theta);
+    if (!Any(fast)) return;
+    W sine, cosine;
+    simd::SinCosOfTurns(W::Splat(0.25 / simd::kPi) * theta, sine, cosine);
+    c = Select(fast, cosine, c), s = Select(fast, sine, s);
+  }
+  /// As AxisTurn does, with its bits where c is 1.
+  void Turn(W& a, W& b) const noexcept {
+    const W cc = c * c, ss = s * s, scale = W::Splat(1.0) / (cc + ss);
+    const W c2 = (cc - ss) * scale, s2 = (c * s + c * s) * scale;
+    const W a1 = c2 * a + s2 * b;
+    b = c2 * b - s2 * a;
+    a = a1;
+  }
+};
+
 /// Half a drift of a body that is free, and its mirror image. `R`: the rotation that `q` is.
 /// Returns what NormalizeQuat does.
 enum class Half { kFirst, kSecond };
@@ -89,6 +131,51 @@ TAUT_INLINE W DriftTurn(Q4<W>& q, const M3<W>& R, const V3<W>& L, const V3<W>& i
   return NormalizeQuat(q);
 }
 
+/// DriftTurn of a body on a hinge: exact however fast it spins, and with the same bits where all of
+/// its turns are by the series.
+template <Half kHalf, class W>
+[[gnu::noinline]] W DriftTurnOnHinge(Q4<W>& q, const M3<W>& R, const V3<W>& L,
+                                     const V3<W>& inv_inertia, W half_h) noexcept {
+  const W zero = W::Splat(0.0), least = W::Splat(1e-300);
+  const W y = inv_inertia.y - inv_inertia.x, z = inv_inertia.z - inv_inertia.x;
+  V3<W> l = TransposeTimes(R, L);
+  const bool has_y = Any(!(y == zero));
+  const W theta = half_h * inv_inertia.x, L2 = Dot(L, L), theta2 = theta * theta * L2;
+  const W about_y = half_h * l.y * y, about_z = half_h * l.z * z;
+  const W most = Max(theta2, Max(about_y * about_y, about_z * about_z));
+  const auto fast = most > W::Splat(kSeriesTurn * kSeriesTurn);
+  if (has_y && kHalf == Half::kFirst) {
+    const HalfTurn<W> turn(about_y, fast);
+    turn.Turn(l.z, l.x);
+    TurnY(q, turn.c, turn.s);
+  }
+  const HalfTurn<W> turn(half_h * l.z * z, fast);
+  if (has_y && kHalf == Half::kSecond) turn.Turn(l.x, l.y);
+  TurnZ(q, turn.c, turn.s);
+  if (has_y && kHalf == Half::kSecond) {
+    const HalfTurn<W> last(half_h * l.y * y, fast);
+    TurnY(q, last.c, last.s);
+  }
+  const W size = Sqrt(L2);
+  const HalfTurn<W> about(theta * size, fast);
+  const W per_size = Select(fast, about.s / Max(size, least), HalfAngle(theta, theta2));
+  TurnAbout(q, about.c, per_size * L);
+  return NormalizeQuat(q);
+}
+
+/// Half a drift of body b; see DriftTurn.
+template <Half kHalf, class W>
+TAUT_INLINE W DriftTurnOf(const View& m, const Rows<W>& s, int b, Q4<W>& q, const M3<W>& R,
+                          W half_h) noexcept {
+  if (m.joint_count > 0 && m.hinged[b] != 0) {
+    Q4<W> on_hinge = q;  // a copy, so that q may stay in registers
+    const W square = DriftTurnOnHinge<kHalf>(on_hinge, R, s.mom[b], s.inv_inertia[b], half_h);
+    q = on_hinge;
+    return square;
+  }
+  return DriftTurn<kHalf>(q, R, s.mom[b], s.inv_inertia[b], half_h);
+}
+
 /// Stage: first half of the drift.
 ///   reads   vel, mom     writes  pos, quat
 template <class W>
@@ -96,7 +183,7 @@ void StageDriftFirst(const View& m, const Rows<W>& s, W half_h) noexcept {
   for (int b = 0; b < m.body_count; ++b) {
     s.pos[b] += half_h * s.vel[b];
     Q4<W> q = s.quat[b];
-    DriftTurn<Half::kFirst>(q, RotationOf(q), s.mom[b], s.inv_inertia[b], half_h);
+    DriftTurnOf<Half::kFirst>(m, s, b, q, RotationOf(q), half_h);
     s.quat[b] = q;
   }
 }
@@ -107,8 +194,7 @@ void StageDriftSecond(const View& m, const Rows<W>& s, const Scratch<W>& work, W
   const W zero = W::Splat(0.0);  // x + 0 turns -0 into 0: lanes must not differ in the sign of zero
   for (int b = 0; b < m.body_count; ++b) {
     Q4<W> q = s.quat[b];
-    const W square =
-        DriftTurn<Half::kSecond>(q, work.bodies[b].R, s.mom[b], s.inv_inertia[b], half_h);
+    const W square = DriftTurnOf<Half::kSecond>(m, s, b, q, work.bodies[b].R, half_h);
     // + 0, or NaN where the turn was lost: Judge looks at w.
     s.quat[b] = {q.w + zero * square, q.x + zero, q.y + zero, q.z + zero};
     s.pos[b] += half_h * s.vel[b];

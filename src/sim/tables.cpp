@@ -70,6 +70,7 @@ View Tables::View() const noexcept {
           joint_rows.data(),
           joint_bodies.data(),
           joint_number.data(),
+          hinged.data(),
           &joint_pattern,
           joint_loops,
           free_chains.empty() ? 0 : static_cast<int>(free_chains.size()) - 1,

@@ -214,7 +214,7 @@ struct View {
   int joint_count, joint_row_count, joint_body_count, turn_friction_count;
   const JointTable* joints;
   const JointRowTable* joint_rows;
-  const int *joint_bodies, *joint_number;
+  const int *joint_bodies, *joint_number, *hinged;
   const BlockPattern* joint_pattern;
   bool joint_loops;
   int free_chain_count;
@@ -347,6 +347,7 @@ class Tables final : public Model {
   std::vector<int> joint_bodies;  ///< Those that joints move, in the order of elimination, then
                                   ///< those with motions;
   std::vector<int> joint_number;  ///< per body its place there, or -1;
+  std::vector<int> hinged;        ///< per body whether it is on a hinge;
   BlockPattern joint_pattern{};   ///< the blocks of their system, in what follows.
   std::vector<int> joint_slot, joint_below, joint_first_below;
   /// Bodies that joints tie to each other and not to what does not move: where each chain of them

@@ -188,6 +188,44 @@ TEST(Joint, LanesOfBallsWithFrictionAndSpringsHaveTheBitsOfAWorldAlone) {
   ExpectLanesLikeAlone(def);
 }
 
+TEST(Joint, LanesOfStopsThatPressAndOfFastRotorsHaveTheBitsOfAWorldAlone) {
+  // The damper slows the rotor, body 1, in each world at its time: some turn slowly enough for the
+  // drift's series when others still turn by sine and cosine.
+  ModelDef def = Chain(1, {0.06, 0.08, 0}, 1);
+  def.joints[0].kind = JointKind::kHinge, def.joints[0].most = 0.2;
+  scenes::AddRod(def, "rotor", 1, 0.1, {2, 0, 0}, {2, 0.1, 0}, {});
+  scenes::AddRod(def, "rod", 1, 0.01, {0.06, 0.08, 0}, {0.12, 0.16, 0}, {});
+  for (CapsuleDef& capsule : def.capsules) capsule.collides = false;
+  JointDef axle;
+  axle.name = "axle", axle.kind = JointKind::kHinge, axle.body_b = 1, axle.axis = {0, 1, 0};
+  axle.from_m = axle.to_m = {2, 0.05, 0}, axle.damping = 2e-2;
+  def.bodies[1].angular_velocity_rad_per_s = {0, 2000, 0};
+  def.joints.push_back(axle);
+  JointDef cone;
+  cone.name = "cone", cone.body_a = 0, cone.body_b = 2, cone.most = 0.3;
+  cone.from_m = cone.to_m = {0.06, 0.08, 0};
+  def.joints.push_back(cone);
+  ExpectLanesLikeAlone(def);
+}
+
+TEST(Joint, AParallelogramComesToRestOnTheStopOfOneHinge) {
+  for (const double restitution : {0.0, 0.5}) {
+    ModelDef def = FourBars(JointKind::kHinge);
+    def.joints[0].most = 0.5, def.joints[0].restitution = restitution;
+    Batch world = MakeBatch(def);
+    double energy = EnergyOf(world);
+    for (int n = 1; n <= 4000; ++n) {
+      world.Step(1e-3);
+      ASSERT_EQ(world.Status(0).bits, kStatusOk) << n;
+      ASSERT_LT(WorstGap(world, def), 1e-10) << n;
+      ASSERT_LT(world.Joint(0, 0).coordinate, 0.5 + 1e-9) << n;
+      ASSERT_LT(EnergyOf(world), energy + 1e-3) << n;
+    }
+    EXPECT_NEAR(world.Joint(0, 0).coordinate, 0.5, 1e-9);
+    EXPECT_LT(std::fabs(world.Joint(0, 0).rate), 1e-9);
+  }
+}
+
 TEST(Joint, ASnapshotGoesOnWithTheSameBits) {
   ModelDef def = FourBars(JointKind::kBall);
   def.joints[1].friction = 0.2, def.joints[2].stiffness = 1, def.joints[3].damping = 0.1;

@@ -27,10 +27,8 @@ struct JointRow {
   Num lower, upper;  ///< Of the impulse [N s], lower <= 0 <= upper.
   Num A;             ///< Inverse effective mass along it [1/kg].
   Num l[1];          ///< Impulse [N s].
-  Num before;        ///< u at the start of the step [m/s],
-  Num restitution;   ///< and how much of an approach comes back. 0 but for stops.
-  Num rebound;       ///< The speed that it is to leave with; 0: none (impacts.inl).
-  bool held;         ///< `give` is a compliance of eq. 3, not that of a spring.
+  Num rebound;       ///< Speed with which a stop throws back what it catches [m/s]; 0: it does not.
+  bool compliant;    ///< `give` is the compliance of eq. 3, not that of a spring.
   int link_count;
   Link<Num, 1> links[2];
 
@@ -50,18 +48,17 @@ struct JointRow {
     target = pick(from.target), give = pick(from.give);
     lower = pick(from.lower), upper = pick(from.upper);
     A = pick(from.A), l[0] = pick(from.l[0]);
-    before = pick(from.before), restitution = pick(from.restitution);
     rebound = pick(from.rebound);
-    held = from.held;
+    compliant = from.compliant;
   }
   /// Of a displacement: what is held stays as it is, springs and friction are none, and a stop's
   /// other side stays free.
   void Hold() noexcept {
     const Num zero = Num::Splat(0.0);
     auto free = upper < Num::Splat(kNoLimit);
-    if (!held) free = free | (give > zero);
-    target = give = l[0] = restitution = zero;
-    held = false;
+    if (!compliant) free = free | (give > zero);
+    target = give = l[0] = rebound = zero;
+    compliant = false;
     lower = Select(free, zero, lower), upper = Select(free, zero, upper);
   }
 
@@ -95,7 +92,7 @@ struct JointRow {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     // A held row's own compliance serves as e: the step solves its law.
     const Num soft = e * A;
-    out.A[0][0] = Select(b.inside, held ? Max(give, soft) : give + soft, one);
+    out.A[0][0] = Select(b.inside, compliant ? Max(give, soft) : give + soft, one);
     out.S[0][0] = Select(b.inside, one, zero);
     out.r[0] = Select(b.inside, target - u[0] - give * l_now[0], b.impulse - l_now[0]);
   }
@@ -107,12 +104,8 @@ struct JointRow {
   }
   void Clamp(Num* l_now) const noexcept { l_now[0] = Min(Max(l_now[0], lower), upper); }
 
-  /// Of stops, as contacts do (impacts.inl): how fast it would leave again. False if none would.
-  bool ExpectRebound(Num) noexcept {
-    const Num zero = Num::Splat(0.0), speed = zero - restitution * before;
-    rebound = Select((speed > Num::Splat(kLeastRebound)) & (live > zero), speed, zero);
-    return Any(rebound > zero);
-  }
+  /// Whether it would throw back anything; at which speed is known beforehand (impacts.inl).
+  bool ExpectRebound(Num) const noexcept { return Any(rebound > Num::Splat(0.0)); }
   Mask Rebound(const Num*, const Num* l_now, Mask lanes, bool) noexcept {
     const Num zero = Num::Splat(0.0);
     const auto now = lanes & (l_now[0] > zero) & (rebound > zero) & (target < rebound);

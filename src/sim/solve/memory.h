@@ -86,17 +86,19 @@ template <class W>
 struct JointMemory {
   Row<Unknown<W>> bodies;
   Row<JointRow<W>> rows;
-  Row<W> G, gap, miss, l;  ///< Per row.
-  Row<W> rhs, change;  ///< 6 a body; rhs: also of those with motions, which do not change.
-  Row<W> moved;        ///< Per body: how far the last displacement moved any of its points [m],
-  Row<V3<W>> gained;   ///< and the angular momentum that it gained by it.
-  Row<W> blocks;       ///< 36 a block.
+  Row<int> number;         ///< Per row that is held: its number among the model's,
+  Row<W> G, gap, miss, l;  ///< stiffness, gap, what it misses, impulse.
+  Row<W> rhs, change;      ///< 6 a body; rhs: also of those with motions, which do not change.
+  Row<W> moved;            ///< Per body: how far the last displacement moved any of its points [m],
+  Row<V3<W>> gained;       ///< and the angular momentum that it gained by it.
+  Row<W> blocks;           ///< 36 a block.
 
   void Take(const View& m, Room& room) noexcept {
     const int64_t n = m.joint_body_count;
     const int64_t with_motions = n + (m.joint_count > 0 ? m.motion_count : 0);
     bodies = room.Take<Unknown<W>>(n);
     rows = room.Take<JointRow<W>>(m.joint_row_count);
+    number = room.Take<int>(m.joint_row_count);
     Row<W>* const per_row[] = {&G, &gap, &miss, &l};
     for (Row<W>* list : per_row) *list = room.Take<W>(m.joint_row_count);
     rhs = room.Take<W>(kDofs * with_motions), change = room.Take<W>(kDofs * n);
