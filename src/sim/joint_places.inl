@@ -26,13 +26,9 @@ class JointSystem {
         mem_(work.joint_memory),
         matrix_(*m.joint_pattern, mem_.blocks) {}
 
-  /// Adds the stops that press to what is held. Returns whether there are any.
-  bool IncludeStops() noexcept {
-    for (int r = 0; r < m_.joint_row_count && !with_stops_; ++r) {
-      with_stops_ = IsStop(m_.joint_rows[r].role) && Any(Presses(work_.joints[r]));
-    }
-    return with_stops_;
-  }
+  /// Adds stops that press to what is held: those that are held, or all that are closed at the end.
+  void IncludeHeldStops() noexcept { held_stops_ = true; }
+  void IncludeStops() noexcept { held_stops_ = passed_stops_ = true; }
 
   /// Of where the bodies are.
   void Assemble() noexcept {
@@ -64,7 +60,7 @@ class JointSystem {
         ++rows_;
       }
     }
-    if (with_stops_) AddStops();
+    if (held_stops_) AddStops();
     matrix_.Factor();
   }
 
@@ -118,7 +114,8 @@ class JointSystem {
       const JointTable& j = m_.joints[i];
       const JointPlace<W> p = PlaceOf(m_, s_, j, work_.bodies[j.a].R, work_.bodies[j.b].R);
       const JointDirection<W> d = DirectionOf(j, table, p, AngleAt(j, p, s_.joint_angle[i]));
-      const auto closed = IsClosedAtEnd(work_.joints[r], d.value);
+      auto closed = IsClosedAtEnd(work_.joints[r], d.value);
+      if (!passed_stops_) closed = closed & (work_.joints[r].held > zero);
       if (!Any(closed)) continue;
       JointRow<W>& row = mem_.rows[rows_];
       SetJointLinks(s_, work_, j, p, d, row);
@@ -149,7 +146,7 @@ class JointSystem {
   JointMemory<W>& mem_;
   BodyMatrix<W> matrix_;
   int rows_ = 0;
-  bool with_stops_ = false;
+  bool held_stops_ = false, passed_stops_ = false;
 };
 
 /// Projects velocities onto what joints hold, or by a share of the way (eq. 7a). Impulses do it, so
@@ -245,6 +242,18 @@ W WorstGap(const View& m, const Rows<W>& s, const Scratch<W>& work) noexcept {
     }
   }
   return worst;
+}
+
+/// Whether a stop presses that is not held: bodies may have passed it.
+template <class W>
+bool StopsCatch(const View& m, const Scratch<W>& work) noexcept {
+  const W zero = W::Splat(0.0);
+  auto caught = MaskOf<W>::Splat(false);
+  for (int r = 0; r < m.joint_row_count; ++r) {
+    const HeldRow<W>& row = work.joints[r];
+    if (IsStop(m.joint_rows[r].role)) caught = caught | (Presses(row) & (row.held == zero));
+  }
+  return Any(caught);
 }
 
 template <class W>
@@ -361,6 +370,7 @@ void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, double 
   JointSystem<W> system(m, s, work);
   auto lanes = MaskOf<W>::Splat(true);
   for (int round = 0; round < kRounds && Any(lanes); ++round) {
+    if (round == 0) system.IncludeHeldStops();
     system.Assemble();
     if (round == 0) {
       const auto given = [&](int b) { return Twist<W>{work.bodies[b].v, work.bodies[b].w}; };
@@ -375,7 +385,8 @@ void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, double 
         }
       };
       ProjectVelocities(m, s, work, system, W::Splat(kShare), given, took);
-      if (system.IncludeStops()) system.Assemble();
+      system.IncludeStops();
+      if (StopsCatch(m, work)) system.Assemble();
     }
     CloseGaps(m, s, work, system, lanes);
     ForgetGains(m, work);

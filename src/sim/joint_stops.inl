@@ -6,6 +6,9 @@ namespace taut::sim {
 /// A stop that pressed and is not further away than this, besides its arc's sagitta, is held [m].
 inline constexpr double kStopClosedM = 1e-7;
 
+/// A held stop turns round what velocity it has left up to this share of what the step changes.
+inline constexpr double kStopTurned = 0.1;
+
 /// Where the joint will be after `t` at the velocities a and b.
 template <class W>
 JointPlace<W> PlaceAfter(const JointPlace<W>& p, const Twist<W>& a, const Twist<W>& b,
@@ -89,11 +92,12 @@ W ReboundOf(W e, W before, W kick, W bend, W gap, W h) noexcept {
 
 /// Sets the law of a stop (eq. 4). `load`: with which it pressed in the step before [N].
 ///
-/// One that pressed and is closed is held: its bodies end the step at rest on their arc, or leave
-/// it. Turned round as by eq. 3, the velocity of a catch would come back. Others let their bodies
-/// come as far as to touch. From beyond a stop bodies return no faster than this step's forces
-/// would take them further, as from inside a contact (contact.md, eq. 2); StageJointPlaces closes
-/// what that leaves of a step's way.
+/// One that pressed and is closed is held: what little velocity the step before has left to its
+/// bodies is turned round, as by eq. 3, so that no work is done. More than a little, as a catch
+/// leaves, would come back; they end the step at rest on their arc. Others let their bodies come as
+/// far as to touch. From beyond a stop bodies return no faster than this step's forces would take
+/// them further, as from inside a contact (contact.md, eq. 2); StageJointPlaces closes what that
+/// leaves of a step's way.
 template <class W>
 void SetStop(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
              const JointRowTable& table, const JointPlace<W>& place, const JointDirection<W>& d,
@@ -113,7 +117,9 @@ void SetStop(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
   row.held = Select(held, one, zero);
   const W slowly = W::Splat(kPushOutShare) * speed;
   const W back = Max(off / h, zero - (half * Max(before - free, zero) + slowly));
-  row.target = zero - (bend + Select(held, zero, back));
+  const auto small = Abs(before - bend) < W::Splat(kStopTurned) * (Abs(bend) + Abs(before - free));
+  const W at_rest = zero - Max(bend, before), turned = zero - before;
+  row.target = Select(held, Select(small, turned, at_rest), zero - (bend + back));
   // What pressed before is no measure of what takes bodies away from the stop.
   const W kick =
       before - RateOf(place, d, Ahead(s, a, j.a, j.a_moves, h), Ahead(s, b, j.b, j.b_moves, h));
