@@ -60,8 +60,8 @@ struct BatchOptions {
 /// What a world has to say for itself. Bits; 0 is good. Sticky until `ClearStatus`.
 enum StatusBits : std::uint32_t {
   kStatusOk = 0,
-  kStatusNonFinite = 1u << 0,        ///< A state is NaN or infinite: the world stands still.
-  kStatusNotConverged = 1u << 1,     ///< Contacts, stiff cables: not to the tolerance.
+  kStatusNonFinite = 1u << 0,     ///< A state is NaN or infinite: the world stands still.
+  kStatusNotConverged = 1u << 1,  ///< Contacts, stiff cables: not to the tolerance.
   /// More contacts than the model has room for; or, with the cable, one that touches more than it
   /// can lie against (docs/theory/cables.md, section 6).
   kStatusContactOverflow = 1u << 2,

@@ -4,6 +4,18 @@
 
 namespace taut::sim {
 
+/// Conjunction and disjunction of masks, or of the bools of a single number.
+TAUT_INLINE bool Both(bool a, bool b) noexcept { return a && b; }
+TAUT_INLINE bool Either(bool a, bool b) noexcept { return a || b; }
+template <class M>
+TAUT_INLINE M Both(const M& a, const M& b) noexcept {
+  return a & b;
+}
+template <class M>
+TAUT_INLINE M Either(const M& a, const M& b) noexcept {
+  return a | b;
+}
+
 template <class W>
 TAUT_INLINE Vec3 PlaceOf(const V3<W>& p, int lane) noexcept {
   return {p.x[lane], p.y[lane], p.z[lane]};
@@ -92,10 +104,8 @@ TAUT_INLINE Pressed<S> PressedBy(const RodPass<S>& pass, S known, double radius_
   constexpr double kClose = 4.0;  ///< Twice the radius, squared.
   const S zero = C::Of(0.0), one = C::Of(1.0), radius2 = C::Of(radius_m * radius_m);
   const S apart = Abs(pass.part + one - Abs(known));
-  using Is = decltype(S() < S());  // what & makes of two bools is an int
-  const Is same =
-      (!(pass.side * known == zero)) &
-      ((apart < C::Of(0.5)) | ((apart < C::Of(1.5)) & (pass.off2 < C::Of(kClose) * radius2)));
+  const auto follows = Both(apart < C::Of(1.5), pass.off2 < C::Of(kClose) * radius2);
+  const auto same = Both(!(pass.side * known == zero), Either(apart < C::Of(0.5), follows));
   return {same, pass.side * known < zero, pass.off2 < radius2};
 }
 

@@ -62,7 +62,7 @@ TAUT_INLINE auto RanIntoEachOther(const NextRods<V, S>& rods, double cable_radiu
   const S at0 = Dot(Cross(apart, rods.axis[1]), across) * inverse;
   const S at1 = Dot(Cross(apart, rods.axis[0]), across) * inverse;
   const Is within =
-      parallel | ((Abs(at0) < rods.half[0] - reach) & (Abs(at1) < rods.half[1] - reach));
+      Either(parallel, Both(Abs(at0) < rods.half[0] - reach, Abs(at1) < rods.half[1] - reach));
   const Is over = Dot(rods.turn[0], rods.turn[1]) > C::Of(kAlike);
   const S thick = C::Of(kSurely) * (reach - C::Of(2.0 * cable_radius_m));
   const S limit = Select(over, Max(thick, C::Of(0.0)), C::Of(kRoom) * reach);

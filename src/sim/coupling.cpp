@@ -129,7 +129,9 @@ void CoupleCables(Tables& tables) {
   std::vector<std::vector<std::size_t>> cables_at(static_cast<std::size_t>(tables.body_count));
   // In the order of a step, not of a file: sums and the iteration end a little differently in
   // another.
-  const auto cable = [&](std::size_t i) { return static_cast<std::size_t>(tables.cable_order[i].cable); };
+  const auto cable = [&](std::size_t i) {
+    return static_cast<std::size_t>(tables.cable_order[i].cable);
+  };
   for (std::size_t i = 0; i < n; ++i) {
     pulls.push_back(PullsOf(tables, tables.cables[cable(i)]));
     for (const Pull& pull : pulls[i]) {

@@ -29,7 +29,7 @@ std::array<double, N> Integrate(const F& f, double t, std::array<double, N> y, d
       {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
       {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
   static constexpr double kC[7] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
-  static constexpr double kError[7] = {71.0 / 57600,      0,           -71.0 / 16695, 71.0 / 1920,
+  static constexpr double kError[7] = {71.0 / 57600,      0,          -71.0 / 16695, 71.0 / 1920,
                                        -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
   const double span = end - t;
   double h = span / 1000;

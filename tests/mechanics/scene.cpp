@@ -21,8 +21,7 @@ bool Finding::Holds() const {
 
 void Report::Near(std::string quantity, std::string unit, double measured, double expected,
                   double tolerance) {
-  findings_.push_back(
-      {std::move(quantity), std::move(unit), expected, measured, tolerance, false});
+  findings_.push_back({std::move(quantity), std::move(unit), expected, measured, tolerance, false});
 }
 
 void Report::AtMost(std::string quantity, std::string unit, double measured, double bound) {

@@ -18,7 +18,7 @@ namespace taut::mechanics {
 /// One value of a scene beside what it has to be.
 struct Finding {
   std::string quantity, unit;
-  double expected;   ///< By the oracle; the bound where `is_bound`.
+  double expected;  ///< By the oracle; the bound where `is_bound`.
   double measured;
   double tolerance;  ///< Largest |measured - expected|; unused where `is_bound`.
   bool is_bound;     ///< `measured` has to be at most `expected`.

@@ -21,8 +21,9 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s: %s\n", scene.subject, scene.name);
     Report report(Effort::kFull);
     scene.run(report);
-    std::printf("\n**%s** (oracle: %s)\n\n| quantity | unit | expected | measured |\n|---|---|---|---|\n",
-                scene.name, scene.oracle);
+    std::printf(
+        "\n**%s** (oracle: %s)\n\n| quantity | unit | expected | measured |\n|---|---|---|---|\n",
+        scene.name, scene.oracle);
     for (const Finding& f : report.findings()) {
       char expected[80];
       if (f.is_bound) {

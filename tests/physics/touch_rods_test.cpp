@@ -54,8 +54,8 @@ TEST(TouchRods, StiffCablesOverManyRodsStayInTheirMemoryAndLane) {
   }
 }
 
-/// Lowered over an arch of twelve: eight bends are all it has, which the status says, and the length
-/// is no more than over all of them.
+/// Lowered over an arch of twelve: eight bends are all it has, which the status says, and the
+/// length is no more than over all of them.
 TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
   constexpr int kRods = 12;
   constexpr double kPi = 3.14159265358979323846, kArch = 0.3;
