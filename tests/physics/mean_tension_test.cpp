@@ -51,7 +51,9 @@ TEST(MeanTension, IsWhatTheStepGaveToTheMass) {
           const double tension = mass * (kG + change / kStepS);
           ASSERT_NEAR(cable.tension_n, tension, SolverError(1) * mass / kStepS)
               << mass << ' ' << stiffness << ' ' << ratio << ' ' << n;
-          // The spring's: what it stored over the way of its end.
+          // The spring's: what it stored over the way of its end. Two stages, of damped cables that
+          // the step does not resolve (cables.md, 12e), part that way.
+          if (ratio > 0 && stiffness / mass * kStepS * kStepS > 4) continue;
           const double stretch = LengthOf(world) - 1;
           const double a = std::max(stretch_before, 0.0), b = std::max(stretch, 0.0);
           if (std::fabs(stretch - stretch_before) < 1e-12) continue;
@@ -75,7 +77,7 @@ TEST(MeanTension, OfALightMassOnAStiffCableIsItsWeightFromTheFirstStepOn) {
 }
 
 TEST(MeanTension, BeforeAStepAndAfterAChangeByHandItIsThatOfTheMoment) {
-  scenes::HangingMass scene = LightMass(1e-3, 1e7, 0.05);
+  scenes::HangingMass scene = LightMass(1e-3, 1e7, 0);  // whose tension swings from step to step
   scene.length_m = scene.rest_length_m + 5e-10;
   const auto change = [&](const char* what, double rest_length_m, const auto& by_hand) {
     Batch world = MakeBatch(scene.Def());

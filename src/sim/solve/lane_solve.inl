@@ -35,7 +35,7 @@ class LaneSolve {
       if (mem_.root[body] != body || !Gather(body)) continue;
       SolverWork work{0, settings_.max_linear_solves};
       double residual = 0;
-      if (work_.implicit.any && IsImplicit()) {
+      if (work_.implicit.any && IsImplicit() && IsFinite()) {
         residual = SolveImplicit(work);
       } else {
         residual = SolveGathered(work);
@@ -117,6 +117,17 @@ class LaneSolve {
       any = any || work_.implicit.bodies[mem_.bodies[k]][lane_] > 0;
     }
     return any;
+  }
+  /// Whether the island's bodies have finite velocities without its constraints. Others are left as
+  /// they are: the world's status says what they are.
+  bool IsFinite() const noexcept {
+    const L zero = L::Splat(0.0);
+    L sum = zero;
+    for (int k = 0; k < count_; ++k) {
+      const Twist<L>& t = mem_.island.bodies[k].free;
+      sum += zero * (t.v.x + t.v.y + t.v.z + t.w.x + t.w.y + t.w.z);
+    }
+    return sum[0] == 0.0;
   }
   double SolveImplicit(SolverWork& work) noexcept;
   void DisplaceEnd(int body, const V3<L>& dx, const V3<L>& half) noexcept;
