@@ -90,11 +90,17 @@ int StopDirectly(const std::string& device, int boards) {
   const auto port = link::OpenSerialPort(device, link::PortUse::kStop, found);
   if (!port) return Fail(found, kFailed);
   link::UsbIss adapter(*port);
-  adapter.SetMode();
+  const bool answers = adapter.SetMode();
   std::uint8_t stop[board::kStopSize];
   board::EncodeStop(stop);
   bool heard = false;
   for (int i = 0; i < kStops; ++i) heard = adapter.Write(board::kBroadcastAddress, stop) || heard;
+  if (!answers && !heard) {
+    fmt::print(stderr,
+               "error: the adapter does not answer, so no board confirmed the stop: cut the "
+               "motors' supply\n");
+    return kFailed;
+  }
   link::Requests requests(adapter);
   int stopped = 0;
   for (int b = 0; b < boards; ++b) {
