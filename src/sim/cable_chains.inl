@@ -143,8 +143,8 @@ TAUT_INLINE void WindFirstSpan(int span_count, S wound, S* rest) noexcept {
 
 /// A cable with friction at the middle of the step: its actuator, and its spans for the solver.
 template <class W>
-[[gnu::noinline]] void MeetChain(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
-                                 CableWork<W>& row, W h, W inv_h) noexcept {
+[[gnu::noinline]] void MeetChain(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W h,
+                                 W inv_h) noexcept {
   const W half = W::Splat(0.5), quarter = W::Splat(0.25);
   const CableTable& cable = m.cables[c];
   AttachmentWork<W>* const ends = work.attachments;
@@ -189,6 +189,7 @@ template <class W>
     span.ratio = ratio[i];
     span.l = h * s.span_tension[cable.first_span + i];
   }
+  CableWork<W>& row = work.cables[c];
   row.soft = row.damped = MaskOf<W>::Splat(false);
   row.spring = row.stretch = row.tension = row.A = W::Splat(0.0);
   row.links = work.links.From(work.link_count);

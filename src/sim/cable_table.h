@@ -21,17 +21,10 @@ struct CableTable {
   int first_link = 0, link_room = 0;   ///< For what its spans do to bodies.
   bool clamped_damping = false;
   bool joins_two = false;  ///< Two bodies that are not the world, and no more.
-  int turn = 0;            ///< Its place in View::cable_order.
   int motor = -1;          ///< Which one winds it; -1: none.
   int touch = -1;          ///< Of those that touch what they come to, which; -1: it does not.
   LimitTable actuator;
   double inv_max_speed = 0;  ///< 1 / actuator.max_speed_m_per_s [s/m].
-};
-
-/// A cable in its turn, with what a step asks before it looks at the cable itself.
-struct CableTurn {
-  int cable = 0;
-  bool joins_two = false;  ///< As there.
 };
 
 /// A cylinder that a cable goes round. Its two points among the attachments have its body.

@@ -127,13 +127,8 @@ void CoupleCables(Tables& tables) {
   const std::size_t n = tables.cables.size();
   std::vector<std::vector<Pull>> pulls;
   std::vector<std::vector<std::size_t>> cables_at(static_cast<std::size_t>(tables.body_count));
-  // In the order of a step, not of a file: sums and the iteration end a little differently in
-  // another.
-  const auto cable = [&](std::size_t i) {
-    return static_cast<std::size_t>(tables.cable_order[i].cable);
-  };
   for (std::size_t i = 0; i < n; ++i) {
-    pulls.push_back(PullsOf(tables, tables.cables[cable(i)]));
+    pulls.push_back(PullsOf(tables, tables.cables[i]));
     for (const Pull& pull : pulls[i]) {
       const auto body = static_cast<std::size_t>(pull.body);
       if (!tables.def().bodies[body].fixed) cables_at[body].push_back(i);
@@ -153,7 +148,7 @@ void CoupleCables(Tables& tables) {
       // The same bits both ways, whatever the order of its sum.
       const double a = Coupling(tables, pulls[std::min(i, j)], pulls[std::max(i, j)]);
       matrix[i].emplace_back(j, a);
-      tables.coupling[cable(i)] += std::fabs(a);
+      tables.coupling[i] += std::fabs(a);
     }
   }
   tables.largest_coupling = LargestEigenvalue(matrix);

@@ -1,7 +1,6 @@
 /// The cables of a model: points of their paths, wheels, spans that friction parts.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
@@ -44,39 +43,9 @@ class CableCompiler {
       t_.max_attachments = std::max(t_.max_attachments, table.attachment_count);
       t_.cables.push_back(table);
     }
-    Order();
   }
 
  private:
-  /// What the sweeps over the cables leave of their errors depends on the order of the cables
-  /// (docs/theory/integrator.md, section 3), so that has to be one that the robot has by itself: by
-  /// name, since names stay with their cables wherever the robot stands and whichever way it is
-  /// turned; those of equal names, or without, by where they are attached.
-  void Order() {
-    const std::vector<CableDef>& cables = t_.def().cables;
-    for (std::size_t c = 0; c < cables.size(); ++c) {
-      t_.cable_order.push_back({static_cast<int>(c), t_.cables[c].joins_two});
-    }
-    std::stable_sort(t_.cable_order.begin(), t_.cable_order.end(),
-                     [&](const CableTurn& i, const CableTurn& j) {
-                       const CableDef &a = cables[static_cast<std::size_t>(i.cable)],
-                                      &b = cables[static_cast<std::size_t>(j.cable)];
-                       return a.name != b.name ? a.name < b.name : PlacesOf(a) < PlacesOf(b);
-                     });
-    int turn = 0;
-    for (const CableTurn& i : t_.cable_order) {
-      t_.cables[static_cast<std::size_t>(i.cable)].turn = turn++;
-    }
-  }
-
-  static std::vector<std::array<double, 3>> PlacesOf(const CableDef& cable) {
-    std::vector<std::array<double, 3>> places;
-    for (const AttachmentDef& at : cable.attachments) {
-      places.push_back({at.position_m.x, at.position_m.y, at.position_m.z});
-    }
-    return places;
-  }
-
   AttachmentTable Attach(int body, const Vec3& p) const {
     AttachmentTable a;
     a.body = body == kWorld ? t_.body_count : body;

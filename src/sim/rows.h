@@ -155,7 +155,7 @@ struct Scratch {
   int crowded_cable[W::kLanes];
   V3<W>* start_spots;  ///< Spots at the start of the step [m], if start_known.
   W* start;  ///< Rows that go back to the start of the step in worlds that turn non-finite.
-  CableWork<W>* cables;  ///< In the order of View::cable_order.
+  CableWork<W>* cables;
   StiffCable<W>* stiff;
   Row<Link<W, 1>> links;    ///< Of all cables.
   ChainSpan<W>* spans;      ///< Of all cables with friction.

@@ -198,8 +198,8 @@ TAUT_INLINE void RelaxCable(Scratch<W>& work, CableWork<W>& row, W dl, W half_h)
 
 /// Tension and pull of a soft cable that was found. `kAllSoft`: in all lanes it is.
 template <bool kTwo, bool kAllSoft, class W>
-TAUT_INLINE void PullCable(const Rows<W>& s, Scratch<W>& work, int c,
-                           const CableWork<W>& row) noexcept {
+TAUT_INLINE void PullCable(const Rows<W>& s, Scratch<W>& work, int c) noexcept {
+  const CableWork<W>& row = work.cables[c];
   const int link_count = kTwo ? 2 : row.link_count;
   const W pull = kAllSoft ? row.tension : Select(row.soft, row.tension, W::Splat(0.0));
   s.tension[c] = kAllSoft ? pull : Select(row.soft, row.tension, s.tension[c]);
@@ -213,17 +213,15 @@ TAUT_INLINE void PullCable(const Rows<W>& s, Scratch<W>& work, int c,
 /// The second pass over the cables, back to the first.
 template <bool kAllSoft, class W>
 TAUT_INLINE void RelaxBack(const View& m, const Rows<W>& s, Scratch<W>& work, W half_h) noexcept {
-  const CableTurn* turn = m.cable_order + m.cable_count;
-  CableWork<W>* row = work.cables + m.cable_count;
-  while (turn-- != m.cable_order) {
-    --row;
-    if (!kAllSoft && !Any(row->soft)) continue;
-    if (turn->joins_two) {
-      RelaxCable<true>(work, *row, MeanRate<true>(work, *row), half_h);
-      PullCable<true, kAllSoft>(s, work, turn->cable, *row);
+  for (int c = m.cable_count - 1; c >= 0; --c) {
+    CableWork<W>& row = work.cables[c];
+    if (!kAllSoft && !Any(row.soft)) continue;
+    if (m.cables[c].joins_two) {
+      RelaxCable<true>(work, row, MeanRate<true>(work, row), half_h);
+      PullCable<true, kAllSoft>(s, work, c);
     } else {
-      RelaxCable<false>(work, *row, MeanRate<false>(work, *row), half_h);
-      PullCable<false, kAllSoft>(s, work, turn->cable, *row);
+      RelaxCable<false>(work, row, MeanRate<false>(work, row), half_h);
+      PullCable<false, kAllSoft>(s, work, c);
     }
   }
 }
@@ -241,10 +239,11 @@ struct CableStep {
 /// A cable's length, actuator and spring. `damped`: some lane's cables are. `kMotors`, here and
 /// below: some actuators of the model are motors; others need not look.
 template <bool kTwo, bool kMotors, class W>
-TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
-                           CableWork<W>& row, bool damped, CableStep<W>& step) noexcept {
+TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, bool damped,
+                           CableStep<W>& step) noexcept {
   const W zero = W::Splat(0.0), h = step.h;
   const CableTable& cable = m.cables[c];
+  CableWork<W>& row = work.cables[c];
   W l;
   if constexpr (kTwo) {
     AttachmentWork<W> ends[2];
@@ -312,9 +311,8 @@ template <bool kMotors, class W>
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
   // Rates have changed since: in a lane that did not ask, a cable may look near by now.
   const auto asks = step.room < zero;
-  for (int i = 0; i < m.cable_count; ++i) {
-    const int c = m.cable_order[i].cable;
-    CableWork<W>& row = work.cables[i];
+  for (int c = 0; c < m.cable_count; ++c) {
+    CableWork<W>& row = work.cables[c];
     const W dl = MeanRate<false>(work, row);
     const W way = step.h * (dl - s.rest_rate[c]);
     const auto near = asks & row.soft & (row.stretch * row.stretch < way * way);
@@ -352,7 +350,7 @@ template <bool kMotors, class W>
 /// Stage: actuators move the rest lengths, cables pull on bodies.
 ///   reads   pos, bodies[], target     writes  rest, rest_rate, tension, bodies[].force, .torque
 ///           (adds), cables[], stiff[]
-///   order   cable_order, then back: tensions depend on nothing else, and not on the file's order
+///   order   cables ascending, then descending: sums do not depend on anything else
 /// The force is that of the middle of the step: geometry there, the rest length's mean over the
 /// step, and the mean of the rates at its start and its end (docs/theory/cables.md, eq. 6). The
 /// mean velocities start as expected from the step before, which had these cables' tensions in
@@ -374,24 +372,20 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
                     Select(damps, W::Splat(0.5 * step_s), zero),
                     W::Splat(1e300)};
   if constexpr (kMotors) LoadSupplies(m, s, work, step.h);
-  CableWork<W>* row = work.cables;
-  const CableTurn* const end = m.cable_order + m.cable_count;
-  for (const CableTurn* turn = m.cable_order; turn != end; ++turn, ++row) {
-    const int c = turn->cable;
-    if (turn->joins_two) {
-      MeetCable<true, kMotors>(m, s, work, c, *row, damped, step);
+  for (int c = 0; c < m.cable_count; ++c) {
+    if (m.cables[c].joins_two) {
+      MeetCable<true, kMotors>(m, s, work, c, damped, step);
     } else if (m.cables[c].span_count > 0) {
-      MeetChain(m, s, work, c, *row, step.h, step.inv_h);
+      MeetChain(m, s, work, c, step.h, step.inv_h);
     } else {
-      MeetCable<false, kMotors>(m, s, work, c, *row, damped, step);
+      MeetCable<false, kMotors>(m, s, work, c, damped, step);
     }
   }
   if (Any(step.room < zero)) SettleKinks<kMotors>(m, s, work, step);
   if (!damped) {
     for (int c = 0; c < m.cable_count; ++c) {
-      CableWork<W>& found = work.cables[m.cables[c].turn];
-      found.tension = found.spring;
-      PullCable<false, false>(s, work, c, found);
+      work.cables[c].tension = work.cables[c].spring;
+      PullCable<false, false>(s, work, c);
     }
     return;
   }

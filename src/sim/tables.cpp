@@ -15,7 +15,6 @@ View Tables::View() const noexcept {
           static_cast<int>(body_pairs.size()),
           bound_m.data(),
           cables.data(),
-          cable_order.data(),
           attachments.data(),
           spots.data(),
           nodes.data(),

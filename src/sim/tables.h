@@ -175,7 +175,6 @@ struct View {
   int body_count, cable_count, node_count, plane_count, body_pair_count;
   const double* bound_m;
   const CableTable* cables;
-  const CableTurn* cable_order;  ///< In which a step goes through them.
   const AttachmentTable* attachments;
   const AttachmentTable* spots;
   const AttachmentTable* nodes;
@@ -308,8 +307,7 @@ class Tables final : public Model {
   std::vector<double> inertia;  ///< 3 per body: principal moments [kg m^2].
   std::vector<double> bound_m;  ///< Per body and the world: reach of its shapes from its origin.
   std::vector<CableTable> cables;
-  std::vector<CableTurn> cable_order;  ///< No file's order changes it.
-  std::vector<MotorTable> motors;      ///< In the order of their cables.
+  std::vector<MotorTable> motors;  ///< In the order of their cables.
   std::vector<SupplyTable> supplies;
   std::vector<AttachmentTable> attachments;
   std::vector<AttachmentTable> spots;   ///< The distinct points of bodies among them.
