@@ -1,9 +1,9 @@
 // Static equilibrium: what Minimise finds, in the words of taut/analysis.h.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "analysis/minimum.h"
+#include "base/brief.h"
 #include "base/fixed.h"
 #include "math/vec.h"
 #include "taut/analysis.h"
@@ -12,13 +12,10 @@ namespace taut {
 namespace analysis {
 namespace {
 
-std::string Number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+using base::Brief;
+
 std::string Text(const Vec3& a) {
-  return "(" + Number(a.x) + ", " + Number(a.y) + ", " + Number(a.z) + ")";
+  return "(" + Brief(a.x) + ", " + Brief(a.y) + ", " + Brief(a.z) + ")";
 }
 
 LoadCaseSpec Share(const LoadCaseSpec& loads, double share) {
@@ -230,7 +227,7 @@ class Finder {
       }
       if (now.depth_m <= depth) continue;
       return "\"" + NameOf(now.a) + "\" and \"" + NameOf(now.b) + "\" are in each other by " +
-             Number(now.depth_m) + " m there: of what may touch, statics knows planes only";
+             Brief(now.depth_m) + " m there: of what may touch, statics knows planes only";
     }
     return "";
   }
@@ -313,7 +310,7 @@ class Finder {
     if (most >= 0) {
       const std::size_t body = static_cast<std::size_t>(structure_.bodies[worst]);
       text += ": after " + std::to_string(search_.iterations) + " linear systems body \"" +
-              def_.bodies[body].name + "\" has " + Number(most) + " N left";
+              def_.bodies[body].name + "\" has " + Brief(most) + " N left";
     }
     return text;
   }

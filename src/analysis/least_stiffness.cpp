@@ -6,6 +6,7 @@
 
 #include "analysis/members.h"
 #include "analysis/point_metric.h"
+#include "analysis/tangent.h"
 #include "analysis/whole_motions.h"
 #include "taut/analysis.h"
 
@@ -81,11 +82,7 @@ std::optional<double> LeastStiffness(const ModelDef& def, const LoadCaseSpec& lo
   constexpr double kZero = 1e-12;  // of the largest eigenvalue: rounding
   const Structure s(def, loads, true);
   if (s.bodies.empty()) return std::nullopt;
-  const Reactions holding = ReactionsAsDescribed(s, kNearPlane * s.size_m);
-  Eigen::VectorXd gradient;
-  Eigen::MatrixXd stiffness;
-  s.Energy(s.start, gradient, &stiffness);
-  s.AddReactions(s.start, holding, gradient, &stiffness);
+  const auto [holding, stiffness] = StiffnessAsDescribed(s);
   const Eigen::MatrixXd metric = PointMetric(def, s);
   const FreeMotions free = FreeMotionsOf(def, s, stiffness, metric, HeldDirections(s, holding));
   const Eigen::VectorXd values =

@@ -100,11 +100,7 @@ Modes FindModes(const ModelDef& def, const LoadCaseSpec& loads) {
     out.why = "no body moves";
     return out;
   }
-  const Reactions holding = ReactionsAsDescribed(s, kNearPlane * s.size_m);
-  Eigen::VectorXd gradient;
-  Eigen::MatrixXd stiffness;
-  s.Energy(s.start, gradient, &stiffness);
-  s.AddReactions(s.start, holding, gradient, &stiffness);
+  const auto [holding, stiffness] = StiffnessAsDescribed(s);
   const Eigen::MatrixXd mass = MassMatrix(def, s);
   const FreeMotions free = FreeMotionsOf(def, s, stiffness, mass, HeldDirections(s, holding));
   for (Eigen::Index i = 0; i < free.rigid; ++i) {

@@ -67,6 +67,14 @@ Reactions ReactionsAsDescribed(const Structure& s, double near_m) {
   }
 }
 
+HeldStiffness StiffnessAsDescribed(const Structure& s) {
+  HeldStiffness out{ReactionsAsDescribed(s, kNearPlane * s.size_m), {}};
+  Eigen::VectorXd gradient;
+  s.Energy(s.start, gradient, &out.stiffness);
+  s.AddReactions(s.start, out.holding, gradient, &out.stiffness);
+  return out;
+}
+
 Eigen::MatrixXd SpanOf(const Eigen::MatrixXd& columns) {
   constexpr double kSmall = 1e-9;
   if (columns.cols() == 0 || columns.rows() == 0) return Eigen::MatrixXd(columns.rows(), 0);
@@ -196,14 +204,10 @@ Eigen::MatrixXd EigenOf(const Matrix& m) {
 Tangent FindTangent(const ModelDef& def, const LoadCaseSpec& loads) {
   using namespace analysis;  // NOLINT(google-build-using-namespace): this function alone
   const Structure s(def, loads, true);
-  const Reactions holding = ReactionsAsDescribed(s, kNearPlane * s.size_m);
+  const auto [holding, stiffness] = StiffnessAsDescribed(s);
   Tangent out;
   out.bodies = s.bodies;
   out.left_out = s.left_out;
-  Eigen::VectorXd gradient;
-  Eigen::MatrixXd stiffness;
-  s.Energy(s.start, gradient, &stiffness);
-  s.AddReactions(s.start, holding, gradient, &stiffness);
   const Eigen::MatrixXd effective = s.Effective(s.start, false);
   out.stiffness = PlainOf(stiffness);
   out.geometric = PlainOf(GeometricStiffness(s, holding));

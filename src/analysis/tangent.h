@@ -11,6 +11,13 @@ namespace taut::analysis {
 /// `near_m` of planes, none of which pulls.
 Reactions ReactionsAsDescribed(const Structure& structure, double near_m);
 
+/// The stiffness as described, with the forces of what holds there.
+struct HeldStiffness {
+  Reactions holding;
+  Eigen::MatrixXd stiffness;
+};
+HeldStiffness StiffnessAsDescribed(const Structure& structure);
+
 /// As described, with the consistent mass of members that have one.
 Eigen::MatrixXd MassMatrix(const ModelDef& def, const Structure& structure);
 

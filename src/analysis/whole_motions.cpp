@@ -4,33 +4,13 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "analysis/tangent.h"
+#include "base/union_find.h"
 #include "math/vec.h"
 
 namespace taut::analysis {
 namespace {
-
-/// Groups of the moving bodies.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : of_(count) { std::iota(of_.begin(), of_.end(), 0); }
-  std::size_t Root(std::size_t b) const {
-    while (of_[b] != b) b = of_[b];
-    return b;
-  }
-  /// `b` and `a` are among those that move, or -1.
-  void Join(int a, int b) {
-    if (a < 0 || b < 0) return;
-    const std::size_t one = Root(static_cast<std::size_t>(a));
-    const std::size_t other = Root(static_cast<std::size_t>(b));
-    of_[std::max(one, other)] = std::min(one, other);
-  }
-
- private:
-  std::vector<std::size_t> of_;
-};
 
 /// The first body of a cable that moves, or -1.
 int MovingOf(const Structure& s, const CableDef& cable) {
@@ -72,17 +52,20 @@ bool Component::Has(int moving) const {
 }
 
 std::vector<Component> ComponentsOf(const ModelDef& def, const Structure& s) {
-  Groups groups(s.bodies.size());
+  base::UnionFind groups(s.bodies.size());
+  const auto join = [&](int a, int b) {
+    if (a >= 0 && b >= 0) groups.Join(a, b);
+  };
   for (const CableDef& cable : def.cables) {
     for (const AttachmentDef& at : cable.attachments) {
-      groups.Join(MovingOf(s, cable), s.Moving(at.body));
+      join(MovingOf(s, cable), s.Moving(at.body));
     }
   }
-  for (const PlacedJoint& joint : s.joints) groups.Join(joint.a.body, joint.b.body);
+  for (const PlacedJoint& joint : s.joints) join(joint.a.body, joint.b.body);
   std::vector<Component> out;
   std::vector<std::size_t> number(s.bodies.size());
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-    const std::size_t root = groups.Root(b);
+    const auto root = static_cast<std::size_t>(groups.Root(static_cast<int>(b)));
     if (root == b) number[b] = out.size(), out.emplace_back();
     out[number[root]].bodies.push_back(b);
   }
@@ -94,7 +77,7 @@ std::vector<Component> ComponentsOf(const ModelDef& def, const Structure& s) {
     }
   }
   const auto of = [&](int moving) -> Component& {
-    return out[number[groups.Root(static_cast<std::size_t>(moving))]];
+    return out[number[static_cast<std::size_t>(groups.Root(moving))]];
   };
   for (const CableDef& cable : def.cables) {
     const int moving = MovingOf(s, cable);

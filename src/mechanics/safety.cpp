@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
+#include "base/brief.h"
+#include "math/angle.h"
 #include "math/vec.h"
 
 namespace taut {
@@ -49,7 +50,6 @@ MemberLimits LimitsOf(const MemberDef& member, MemberKind kind, double length_m)
   MemberLimits bears;
   // A cable does not buckle.
   if (kind != MemberKind::kCable && member.young_pa > 0 && member.second_moment_m4 > 0) {
-    constexpr double kPi = 3.14159265358979323846;
     const double free_m = member.buckling_length_m > 0 ? member.buckling_length_m : length_m;
     bears.buckling_n = kPi * kPi * member.young_pa * member.second_moment_m4 / (free_m * free_m);
   }
@@ -124,17 +124,13 @@ const char* NameOf(MemberLimit limit) noexcept {
 }
 
 std::string Describe(const Overload& overload) {
-  const auto brief = [](double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", x);
-    return std::string(text);
-  };
+  using base::Brief;
   const char* const limit = overload.limit == MemberLimit::kStrength ? "its strength of "
                             : overload.limit == MemberLimit::kYield  ? "the force at yield of "
                                                                      : "its buckling load of ";
   return std::string(NameOf(overload.kind)) + " " + overload.name + " carried " +
-         brief(overload.carried_n) + " N, more than " + limit + brief(overload.bears_n) +
-         " N, first at t = " + brief(overload.first_time_s) + " s";
+         Brief(overload.carried_n) + " N, more than " + limit + Brief(overload.bears_n) +
+         " N, first at t = " + Brief(overload.first_time_s) + " s";
 }
 
 std::string Describe(const std::vector<Overload>& overloads) {

@@ -6,6 +6,18 @@
 
 namespace taut::plant {
 
+std::vector<JointDef> JointsByArms(const ModelDef& def) {
+  const auto arm = [&](int body, const Vec3& point_m) {
+    return body == kWorld ? point_m : point_m - def.bodies[static_cast<std::size_t>(body)].com_m;
+  };
+  std::vector<JointDef> joints = def.joints;
+  for (JointDef& joint : joints) {
+    joint.from_m = arm(joint.body_a, joint.from_m);
+    joint.to_m = arm(joint.body_b, joint.to_m);
+  }
+  return joints;
+}
+
 BodyForces::BodyForces(const ModelDef& def) : body_count_(def.bodies.size()) {
   for (const CableDef& cable : def.cables) {
     std::vector<BodyPoint>& points = cables_.emplace_back();
@@ -21,14 +33,7 @@ BodyForces::BodyForces(const ModelDef& def) : body_count_(def.bodies.size()) {
     }
   }
   for (const NodeDef& node : def.nodes) bodies_of_nodes_.push_back(node.body);
-  const auto arm = [&](int body, const Vec3& point_m) {
-    return body == kWorld ? point_m : point_m - def.bodies[static_cast<std::size_t>(body)].com_m;
-  };
-  joints_ = def.joints;
-  for (JointDef& joint : joints_) {
-    joint.from_m = arm(joint.body_a, joint.from_m);
-    joint.to_m = arm(joint.body_b, joint.to_m);
-  }
+  joints_ = JointsByArms(def);
 }
 
 const std::vector<BodyForce>& BodyForces::Gather(const Observation& exact, const World& world,

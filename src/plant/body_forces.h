@@ -25,6 +25,9 @@ inline mechanics::BodyMoment MomentOf(const World& world, int body, int lane = 0
   return {now.position_m, now.orientation, now.angular_velocity_rad_per_s};
 }
 
+/// The joints of a model, with `from_m` and `to_m` as arms of their bodies.
+std::vector<JointDef> JointsByArms(const ModelDef& def);
+
 /// Gathers the forces of a lane: of cables with the tensions that are read (docs/theory/loads.md,
 /// eq. 1), of contacts, joints and at nodes as means over the last step.
 class BodyForces {
@@ -37,8 +40,7 @@ class BodyForces {
  private:
   std::vector<std::vector<BodyPoint>> cables_;  ///< Empty: their path must be asked for.
   std::vector<int> bodies_of_nodes_;
-  /// A joint whose `from_m` and `to_m` are arms of its bodies.
-  std::vector<JointDef> joints_;
+  std::vector<JointDef> joints_;  ///< By arms.
   std::size_t body_count_;
   std::vector<BodyState> states_;
   std::vector<PathPoint<Vec3>> path_;

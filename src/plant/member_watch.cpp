@@ -7,10 +7,6 @@
 namespace taut::plant {
 namespace {
 
-Vec3 ArmOf(const ModelDef& def, int body, const Vec3& point_m) {
-  return body == kWorld ? point_m : point_m - def.bodies[static_cast<std::size_t>(body)].com_m;
-}
-
 Vec3 PlaceOn(const World& world, int lane, int body, const Vec3& arm_m) {
   return body == kWorld ? arm_m : PlaceOf({body, arm_m}, world.Body(lane, body));
 }
@@ -25,7 +21,7 @@ void TakeLimit(Overload& of, double time_s, double carried_n) {
 
 }  // namespace
 
-MemberWatch::MemberWatch(const ModelDef& def) : forces_(def) {
+MemberWatch::MemberWatch(const ModelDef& def) : joints_(JointsByArms(def)), forces_(def) {
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
     const CableDef& cable = def.cables[c];
     if (Add(MemberKind::kCable, static_cast<int>(c), cable.name, cable.member, 0)) {
@@ -33,14 +29,10 @@ MemberWatch::MemberWatch(const ModelDef& def) : forces_(def) {
     }
   }
   for (std::size_t j = 0; j < def.joints.size(); ++j) {
-    JointDef bar = def.joints[j];
-    if (IsBar(bar)) {
-      Add(MemberKind::kBar, static_cast<int>(j), bar.name, bar.member,
-          LengthOf(bar.to_m - bar.from_m));
-    }
-    bar.from_m = ArmOf(def, bar.body_a, bar.from_m);
-    bar.to_m = ArmOf(def, bar.body_b, bar.to_m);
-    bars_.push_back(bar);
+    const JointDef& bar = def.joints[j];
+    if (!IsBar(bar)) continue;
+    Add(MemberKind::kBar, static_cast<int>(j), bar.name, bar.member,
+        LengthOf(bar.to_m - bar.from_m));
   }
   for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) {
     const auto strut = mechanics::StrutOf(def, b);
@@ -92,7 +84,7 @@ void MemberWatch::Take(double time_s, const Observation& exact, const World* wor
     }
     if (world == nullptr) return;
     if (member.kind == MemberKind::kBar) {
-      const JointDef& bar = bars_[static_cast<std::size_t>(member.index)];
+      const JointDef& bar = joints_[static_cast<std::size_t>(member.index)];
       const Vec3 along = PlaceOn(*world, lane, bar.body_b, bar.to_m) -
                          PlaceOn(*world, lane, bar.body_a, bar.from_m);
       const double length_m = LengthOf(along);

@@ -40,7 +40,7 @@ class MemberWatch {
   static void Take(Watched& member, double time_s, double least_n, double greatest_n);
 
   std::vector<Watched> members_;
-  std::vector<JointDef> bars_;  ///< Per joint; `from_m` and `to_m` are arms of its bodies.
+  std::vector<JointDef> joints_;  ///< By arms.
   std::vector<mechanics::Strut> struts_;
   BodyForces forces_;
 };

@@ -13,6 +13,7 @@
 #include "math/vec.h"
 #include "sim/check_index.h"
 #include "sim/group.h"
+#include "sim/tables.h"
 #include "taut/batch.h"
 
 namespace taut {

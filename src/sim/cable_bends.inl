@@ -20,7 +20,7 @@ TAUT_INLINE int BodyOfBend(const View& m, const BendNumbers<W>& bend, int lane) 
 /// there.
 template <class W, class Use>
 TAUT_INLINE void EachBody(const View& m, const BendNumbers<W>& bend, const Use& use) noexcept {
-  auto left = !((bend.key == W::Splat(kNoKey)) | (bend.body == W::Splat(m.body_count)));
+  auto left = IsOnRod(m, bend);
   for (int lane = 0; lane < W::kLanes && Any(left); ++lane) {
     if (!left[lane]) continue;
     const double body = bend.body[lane];

@@ -4,7 +4,7 @@
 
 #include "math/cable_wheel.h"
 #include "math/vec.h"
-#include "sim/tables.h"
+#include "sim/view.h"
 
 namespace taut::sim {
 

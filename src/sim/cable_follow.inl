@@ -24,41 +24,10 @@ TAUT_INLINE void Crowd(Scratch<W>& work, const TouchTable& touch, int lane) noex
 template <class W>
 int BendToLetGo(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
                 int used, int count, int lane) noexcept {
-  const AttachmentWork<W>* const ends = work.attachments;
-  const auto on_rod = [&](int bend) {
-    return BodyOfBend(m, s.bend[touch.first_bend + bend], lane) < m.body_count;
-  };
   for (int k = 0; touch.rod_count > 0 && k < count; ++k) {
-    if (!on_rod(k)) continue;
-    const Wheel<V3<W>>& wheel = work.wheels[k];
-    const Wheel<Vec3> rod{PlaceOf(wheel.center, lane),
-                          PlaceOf(wheel.axis, lane),
-                          wheel.radius[lane],
-                          0.0,
-                          0,
-                          0.0,
-                          0.0,
-                          0.0};
-    const Vec3 behind = PlaceOf(ends[k + 1 < count ? 3 + 2 * k : 2 * used + 1].p, lane);
-    if (IsInside(PlaceOf(ends[2 * k].p, lane), rod, rod.radius) ||
-        IsInside(behind, rod, rod.radius)) {
-      return k;
-    }
-    if (k + 1 == count || !on_rod(k + 1)) continue;
-    const Wheel<V3<W>>& next = work.wheels[k + 1];
-    const auto turn = [&](const Wheel<V3<W>>& x) {
-      return (x.angle[lane] < 0.0 ? -1.0 : 1.0) * PlaceOf(x.axis, lane);
-    };
-    const auto half = [&](int bend) { return s.bend[touch.first_bend + bend].half[lane]; };
-    const NextRods<Vec3, double> both{{PlaceOf(wheel.center, lane), PlaceOf(next.center, lane)},
-                                      {PlaceOf(wheel.axis, lane), PlaceOf(next.axis, lane)},
-                                      {turn(wheel), turn(next)},
-                                      PlaceOf(ends[2 + 2 * k].p, lane),
-                                      PlaceOf(ends[3 + 2 * k].p, lane),
-                                      {wheel.radius[lane], next.radius[lane]},
-                                      {half(k), half(k + 1)}};
-    if (!RanIntoEachOther(both, touch.radius_m, false)) continue;
-    return next.theta[lane] < wheel.theta[lane] ? k + 1 : k;
+    if (IsInsideRod(m, s, work, touch, used, k)[lane]) return k;
+    if (k + 1 == count || !RanIntoNextRod(m, s, work, touch, k, false)[lane]) continue;
+    return work.wheels[k + 1].theta[lane] < work.wheels[k].theta[lane] ? k + 1 : k;
   }
   return -1;
 }

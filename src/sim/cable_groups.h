@@ -3,7 +3,7 @@
 /// this step. That follows from the model, its parameters and the step, never from the state.
 #pragma once
 
-#include "sim/tables.h"
+#include "sim/view.h"
 
 namespace taut::sim {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/cable_groups.h"
+#include "sim/tables.h"
 
 namespace taut {
 

@@ -32,63 +32,74 @@ TAUT_INLINE MaskOf<W> LiesAgainst(const Rows<W>& s, const TouchTable& touch, int
   return lies;
 }
 
-/// Two rods on which the cable lies, one after the other.
-template <class V, class S>
-struct NextRods {
-  V center[2], axis[2];
-  V turn[2];  ///< The axis about which the cable turns, counter-clockwise.
-  V b, a;     ///< Where it leaves the first, and arrives at the second.
-  S radius[2], half[2];
-};
-
-/// Whether they have run into each other where the cable is. Then there is no shortest way over
-/// both any more: what is laid jumps or flees along the rods, and with it the energy. Where the
-/// cable goes between them that is so as soon as it has no room there; where it goes over both,
-/// they have to be within each other, as rods can be that no contacts keep apart. Crossings near a
-/// rod's end are joints. `anywhere`: wherever the cable is.
-template <class V, class S>
-TAUT_INLINE auto RanIntoEachOther(const NextRods<V, S>& rods, double cable_radius_m,
-                                  bool anywhere) noexcept {
-  using C = Constant<S>;
-  using Is = decltype(S() < S());
-  constexpr double kSurely = 0.9, kRoom = 1.1, kParallel = 1e-6, kAlike = 0.5;
-  const V way = rods.a - rods.b, apart = rods.center[1] - rods.center[0];
-  const S reach = rods.radius[0] + rods.radius[1];
-  const V across = Cross(rods.axis[0], rods.axis[1]), beside = Cross(rods.axis[0], apart);
-  const S norm2 = Dot(across, across), along = Dot(across, apart);
-  const S inverse = C::Of(1.0) / Max(norm2, C::Of(kParallel));
-  const Is parallel = !(norm2 > C::Of(kParallel));
-  const S distance2 = Select(parallel, Dot(beside, beside), along * along * inverse);
-  const S at0 = Dot(Cross(apart, rods.axis[1]), across) * inverse;
-  const S at1 = Dot(Cross(apart, rods.axis[0]), across) * inverse;
-  const Is within =
-      Either(parallel, Both(Abs(at0) < rods.half[0] - reach, Abs(at1) < rods.half[1] - reach));
-  const Is over = Dot(rods.turn[0], rods.turn[1]) > C::Of(kAlike);
-  const S thick = C::Of(kSurely) * (reach - C::Of(2.0 * cable_radius_m));
-  const S limit = Select(over, Max(thick, C::Of(0.0)), C::Of(kRoom) * reach);
-  const S off = Dot(rods.b - rods.center[0], rods.axis[0]) - at0;
-  const Is beside_it = Dot(way, way) < reach * reach;
-  const Is near = beside_it | ((!parallel) & (!over) & (Abs(off) < reach + reach));
-  const Is looks = anywhere ? (near | !over) : near;
-  return within & (distance2 < limit * limit) & looks;
+/// Lanes in which a bend is on a rod of a body.
+template <class W>
+TAUT_INLINE MaskOf<W> IsOnRod(const View& m, const BendNumbers<W>& bend) noexcept {
+  return !((bend.key == W::Splat(kNoKey)) | (bend.body == W::Splat(m.body_count)));
 }
 
-/// Whether a point of the path is inside of a rod that it lies on next: its cable's end, or where
-/// it leaves another rod. From there on no length goes on without a jump.
-template <class V, class S>
-TAUT_INLINE auto IsInside(const V& p, const Wheel<V>& rod, S radius) noexcept {
-  using C = Constant<S>;
+/// Lanes in which bend `k` and the next are on rods that have run into each other where the cable
+/// is. Then there is no shortest way over both any more: what is laid jumps or flees along the
+/// rods, and with it the energy. Where the cable goes between them that is so as soon as it has no
+/// room there; where it goes over both, they have to be within each other, as rods can be that no
+/// contacts keep apart. Crossings near a rod's end are joints. `anywhere`: wherever the cable is.
+template <class W>
+TAUT_INLINE MaskOf<W> RanIntoNextRod(const View& m, const Rows<W>& s, const Scratch<W>& work,
+                                     const TouchTable& touch, int k, bool anywhere) noexcept {
+  constexpr double kSurely = 0.9, kRoom = 1.1, kParallel = 1e-6, kAlike = 0.5;
+  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  const BendNumbers<W>*const bend = &s.bend[touch.first_bend + k], *const next = bend + 1;
+  const Wheel<V3<W>>&rod = work.wheels[k], &other = work.wheels[k + 1];
+  const V3<W>&leaves = work.attachments[2 + 2 * k].p, &arrives = work.attachments[3 + 2 * k].p;
+  const V3<W> way = arrives - leaves, apart = other.center - rod.center;
+  const W reach = rod.radius + other.radius;
+  const V3<W> across = Cross(rod.axis, other.axis), beside = Cross(rod.axis, apart);
+  const W norm2 = Dot(across, across), along = Dot(across, apart);
+  const W inverse = one / Max(norm2, W::Splat(kParallel));
+  const auto parallel = !(norm2 > W::Splat(kParallel));
+  const W distance2 = Select(parallel, Dot(beside, beside), along * along * inverse);
+  const W at_rod = Dot(Cross(apart, other.axis), across) * inverse;
+  const W at_other = Dot(Cross(apart, rod.axis), across) * inverse;
+  const auto within =
+      parallel | ((Abs(at_rod) < bend->half - reach) & (Abs(at_other) < next->half - reach));
+  // The axes about which the cable turns, counter-clockwise.
+  const auto turn = [&](const Wheel<V3<W>>& x) {
+    return Select(x.angle < zero, zero - one, one) * x.axis;
+  };
+  const auto over = Dot(turn(rod), turn(other)) > W::Splat(kAlike);
+  const W thick = W::Splat(kSurely) * (reach - W::Splat(2.0 * touch.radius_m));
+  const W limit = Select(over, Max(thick, zero), W::Splat(kRoom) * reach);
+  const W off = Dot(leaves - rod.center, rod.axis) - at_rod;
+  const auto beside_it = Dot(way, way) < reach * reach;
+  const auto near = beside_it | ((!parallel) & (!over) & (Abs(off) < reach + reach));
+  const auto looks = anywhere ? (near | !over) : near;
+  return IsOnRod(m, *bend) & IsOnRod(m, *next) & within & (distance2 < limit * limit) & looks;
+}
+
+/// Lanes in which the path comes to bend `k` from inside of its rod, or leads there: from the
+/// cable's end, or from another rod. From there on no length goes on without a jump.
+template <class W>
+TAUT_INLINE MaskOf<W> IsInsideRod(const View& m, const Rows<W>& s, const Scratch<W>& work,
+                                  const TouchTable& touch, int used, int k) noexcept {
   constexpr double kSurely = 1.0 - 1e-6;
-  const V away = p - rod.center;
-  const S along = Dot(away, rod.axis);
-  return Dot(away, away) - along * along < C::Of(kSurely) * radius * radius;
+  const BendNumbers<W>* const bend = &s.bend[touch.first_bend + k];
+  const AttachmentWork<W>* const ends = work.attachments;
+  const Wheel<V3<W>>& rod = work.wheels[k];
+  V3<W> behind = ends[2 * used + 1].p;
+  if (k + 1 < used) behind = Pick(bend[1].key == W::Splat(kNoKey), behind, ends[3 + 2 * k].p);
+  const auto inside = [&](const V3<W>& p) {
+    const V3<W> away = p - rod.center;
+    const W along = Dot(away, rod.axis);
+    return Dot(away, away) - along * along < W::Splat(kSurely) * rod.radius * rod.radius;
+  };
+  return IsOnRod(m, *bend) & (inside(ends[2 * k].p) | inside(behind));
 }
 
 /// A bend that is left, or slips off, or whose rod runs into the next or the cable's end.
 template <class W>
 TAUT_INLINE MaskOf<W> MayLeave(const View& m, const Rows<W>& s, const Scratch<W>& work,
                                const TouchTable& touch, int used) noexcept {
-  const W zero = W::Splat(0.0), half = W::Splat(0.5), one = W::Splat(1.0);
+  const W zero = W::Splat(0.0), half = W::Splat(0.5);
   auto may = MaskOf<W>::Splat(false);
   for (int k = 0; k < used; ++k) {
     const BendNumbers<W>& bend = s.bend[touch.first_bend + k];
@@ -99,32 +110,8 @@ TAUT_INLINE MaskOf<W> MayLeave(const View& m, const Rows<W>& s, const Scratch<W>
                        (wheel.theta > zero);
     may = may | !(stays | (bend.key == W::Splat(kNoKey)));
     if (touch.rod_count == 0) continue;
-    const V3<W>& end = work.attachments[2 * used + 1].p;
-    V3<W> next_point = end;
-    if (k + 1 < used) {
-      const auto none = s.bend[touch.first_bend + k + 1].key == W::Splat(kNoKey);
-      next_point = Pick(none, end, at[2].p);
-    }
-    const auto on_rod = !((bend.key == W::Splat(kNoKey)) | (bend.body == W::Splat(m.body_count)));
-    may = may | (on_rod & (IsInside(work.attachments[2 * k].p, wheel, wheel.radius) |
-                           IsInside(next_point, wheel, wheel.radius)));
-    if (k + 1 == used) continue;
-    const BendNumbers<W>& behind = s.bend[touch.first_bend + k + 1];
-    const Wheel<V3<W>>& next = work.wheels[k + 1];
-    const W world = W::Splat(m.body_count);
-    const auto rods =
-        !((behind.key == W::Splat(kNoKey)) | (bend.body == world) | (behind.body == world));
-    const auto turn = [&](const Wheel<V3<W>>& x) {
-      return Select(x.angle < zero, zero - one, one) * x.axis;
-    };
-    const NextRods<V3<W>, W> both{{wheel.center, next.center},
-                                  {wheel.axis, next.axis},
-                                  {turn(wheel), turn(next)},
-                                  at[1].p,
-                                  at[2].p,
-                                  {wheel.radius, next.radius},
-                                  {bend.half, behind.half}};
-    may = may | (rods & RanIntoEachOther(both, touch.radius_m, true));
+    may = may | IsInsideRod(m, s, work, touch, used, k);
+    if (k + 1 < used) may = may | RanIntoNextRod(m, s, work, touch, k, true);
   }
   return may;
 }

@@ -5,6 +5,7 @@
 #include "math/rotation.h"
 #include "math/vec.h"
 #include "sim/combine.h"
+#include "sim/tables.h"
 #include "taut/friction.h"
 
 namespace taut::sim {

@@ -3,7 +3,7 @@
 /// code that every instruction set calls.
 #pragma once
 
-#include "sim/tables.h"
+#include "sim/view.h"
 
 namespace taut::sim {
 

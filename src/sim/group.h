@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "sim/near_parts.h"
-#include "sim/tables.h"
+#include "sim/view.h"
 
 namespace taut::sim {
 

@@ -8,32 +8,35 @@ template <class W>
                                                  ImplicitMemory<W>& x, double step_s,
                                                  int lane) noexcept {
   const auto moves = [&](int body) { return s.inv_mass[body][lane] > 0; };
+  const CableGroups groups{x.group.data(), x.size.data(), x.kind.data()};
   FindGroups(
       m, step_s, moves, [&](int c) { return s.stiff_k[c][lane]; },
-      [&](int c) { return s.damping[c][lane] > 0; }, x.groups);
-  for (int b = 0; b < m.body_count; ++b) x.bodies[b].Set(lane, x.groups.IsImplicit(b) ? 1.0 : 0.0);
+      [&](int c) { return s.damping[c][lane] > 0; }, groups);
+  for (int b = 0; b < m.body_count; ++b) x.bodies[b].Set(lane, groups.IsImplicit(b) ? 1.0 : 0.0);
   for (int c = 0; c < m.cable_count; ++c) {
-    double on = 0, damped = 0;
+    bool on = false, damped = false;
     ForEachMoved(m, m.cables[c], moves, [&](int body) {
-      on = x.groups.IsImplicit(body) ? 1 : 0;
-      damped = x.groups.IsDamped(body) ? 1 : 0;
+      on = groups.IsImplicit(body);
+      damped = groups.IsDamped(body);
     });
-    x.cables[c].Set(lane, on);
-    x.damped[c].Set(lane, damped);
-    x.any = x.any || on > 0;
+    if (on) x.limit[c].Set(lane, -1.0);
+    x.damped[c].Set(lane, damped ? 1.0 : 0.0);
+    x.any = x.any || on;
   }
 }
 
+/// For all steps of this length until a parameter changes.
 template <class W>
-void FindImplicit(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
-  const W limit = W::Splat(kSoftSpring / (step_s * step_s));
+void FindImplicit(const View& m, const Rows<W>& s, ImplicitMemory<W>& x, double step_s) noexcept {
+  const W limit = SoftLimit(W::Splat(step_s));
   auto stiff = MaskOf<W>::Splat(false);
-  for (int c = 0; c < m.cable_count; ++c) stiff = stiff | (s.stiff_k[c] > limit);
-  work.implicit.any = false;
-  if (!Any(stiff)) return;
-  for (int lane = 0; lane < W::kLanes; ++lane) {
-    FindImplicitOf(m, s, work.implicit, step_s, lane);
+  for (int c = 0; c < m.cable_count; ++c) {
+    stiff = stiff | (s.stiff_k[c] > limit);
+    x.limit[c] = limit;
   }
+  x.any = false;
+  if (!Any(stiff)) return;
+  for (int lane = 0; lane < W::kLanes; ++lane) FindImplicitOf(m, s, x, step_s, lane);
 }
 
 /// Before a solve: no end is known. Returns the lanes with such cables. Contacts of these do not

@@ -18,14 +18,6 @@ constexpr double kLevelFace = 1.0 - 5e-13;
 /// and boxes go on if they do so for so many times that.
 constexpr double kCutAside = 2e-5, kSteps = 10.0;
 
-bool IsIn(const BoxShape& box, const Vec3& p, double more_m = kSamePlaceM) noexcept {
-  const Vec3 d = p - Load(box.center);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (Abs(Dot(d, AxisOf(box, axis))) > box.half_m[axis] + more_m) return false;
-  }
-  return true;
-}
-
 double DistanceOf(const BoxShape& box, const Vec3& p) noexcept {
   const Vec3 d = p - Load(box.center);
   double sum = 0.0;
@@ -85,7 +77,7 @@ bool IsHidden(const ShapeTable* shapes, int number, const Vec3& place, const Sta
   bool hidden = false;
   for (int i = 0; i < own.beside_count; ++i) {
     const BoxShape& other = shapes[own.beside[i]].shape_P.box;
-    if (!IsIn(other, place)) continue;
+    if (!IsIn(other, place, kSamePlaceM)) continue;
     *shared = true;
     const double there = DistanceOf(other, station.center);
     if (station.is_end) {
@@ -103,10 +95,7 @@ bool GoesOn(const ShapeTable* shapes, int number, const Vec3& place, const Vec3&
             const Vec3& way, double same_m = kSamePlaceM, bool by_face = false) noexcept {
   const ShapeTable& own = shapes[number];
   const auto in_plane = [&](const BoxShape& box) noexcept {
-    double above = Dot(normal, Load(box.center) - place);
-    for (int axis = 0; axis < 3; ++axis) {
-      above += box.half_m[axis] * Abs(Dot(normal, AxisOf(box, axis)));
-    }
+    const double above = Dot(normal, Load(box.center) - place) + Reach(box, normal);
     bool level = !by_face;
     for (int axis = 0; axis < 3 && !level; ++axis) {
       level = Abs(Dot(normal, AxisOf(box, axis))) > kLevelFace;
@@ -250,7 +239,7 @@ uint32_t ArrivesBeside(const MovingShape& a, const ShapeTable* shapes, int box, 
     if (!(rate < 0.0)) continue;
     const Vec3 there = place + (points[i].gap_m / -rate) * (v - rate * n);
     for (int k = 0; k < own.beside_count; ++k) {
-      if (IsIn(shapes[own.beside[k]].shape_P.box, there)) beside |= 1u << i;
+      if (IsIn(shapes[own.beside[k]].shape_P.box, there, kSamePlaceM)) beside |= 1u << i;
     }
     if (own.seams.count > 0 && IsOnSeam(own.seams, there)) beside |= 1u << i;
   }

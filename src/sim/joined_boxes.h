@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "sim/passing.h"
-#include "sim/tables.h"
+#include "sim/view.h"
 
 namespace taut::sim {
 

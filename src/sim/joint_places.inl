@@ -43,21 +43,13 @@ class JointSystem {
     rows_ = 0;
     for (int i = 0; i < m_.joint_count; ++i) {
       const JointTable& j = m_.joints[i];
-      const JointPlace<W> p = PlaceOf(m_, s_, j, work_.bodies[j.a].R, work_.bodies[j.b].R);
+      const JointPlace<W> p = PlaceOf(m_, s_, work_, j);
       for (int r = j.first_row; r < j.first_row + j.row_count; ++r) {
         const JointRowTable& table = m_.joint_rows[r];
         if (table.role != JointRole::kHold) break;
         const JointDirection<W> d = DirectionOf(j, table.measure, p, W::Splat(0.0));
-        JointRow<W>& row = mem_.rows[rows_];
-        SetJointLinks(s_, work_, j, p, d, row);
-        for (int k = 0; k < row.link_count; ++k) {
-          row.links[k].body = m_.joint_number[row.links[k].body];
-        }
-        mem_.G[rows_] = W::Splat(1.0) / (W::Splat(kHeldCompliance) * row.A);
-        mem_.number[rows_] = r;
-        mem_.gap[rows_] = MissOf(table.measure, j, d.value);
-        matrix_.Add(row, &mem_.G[rows_]);
-        ++rows_;
+        Add(r, j, p, d, MissOf(table.measure, j, d.value),
+            [](W A) { return W::Splat(1.0) / (W::Splat(kHeldCompliance) * A); });
       }
     }
     if (held_stops_) AddStops();
@@ -104,6 +96,21 @@ class JointSystem {
   }
 
  private:
+  /// Row `r` of the model. `stiffness(A)`: by its inverse effective mass.
+  template <class F>
+  void Add(int r, const JointTable& j, const JointPlace<W>& p, const JointDirection<W>& d, W gap,
+           const F& stiffness) noexcept {
+    JointRow<W>& row = mem_.rows[rows_];
+    SetJointLinks(s_, work_, j, p, d, row);
+    for (int k = 0; k < row.link_count; ++k) {
+      row.links[k].body = m_.joint_number[row.links[k].body];
+    }
+    mem_.G[rows_] = stiffness(row.A);
+    mem_.number[rows_] = r;
+    mem_.gap[rows_] = gap;
+    matrix_.Add(row, &mem_.G[rows_]);
+    ++rows_;
+  }
   /// Behind all rows that are held. In lanes where a stop is open its row weighs nothing.
   void AddStops() noexcept {
     const W zero = W::Splat(0.0), one = W::Splat(1.0), least = W::Splat(1e-300);
@@ -112,22 +119,14 @@ class JointSystem {
       if (!IsStop(table.role)) continue;
       const int i = work_.joints[r].joint;
       const JointTable& j = m_.joints[i];
-      const JointPlace<W> p = PlaceOf(m_, s_, j, work_.bodies[j.a].R, work_.bodies[j.b].R);
+      const JointPlace<W> p = PlaceOf(m_, s_, work_, j);
       const JointDirection<W> d = DirectionOf(j, table, p, AngleAt(j, p, s_.joint_angle[i]));
       auto closed = IsClosedAtEnd(work_.joints[r], d.value);
       if (!passed_stops_) closed = closed & (work_.joints[r].held > zero);
       if (!Any(closed)) continue;
-      JointRow<W>& row = mem_.rows[rows_];
-      SetJointLinks(s_, work_, j, p, d, row);
-      for (int k = 0; k < row.link_count; ++k) {
-        row.links[k].body = m_.joint_number[row.links[k].body];
-      }
-      const W weight = one / Max(W::Splat(kHeldCompliance) * row.A, least);
-      mem_.G[rows_] = Select(closed, weight, zero);
-      mem_.number[rows_] = r;
-      mem_.gap[rows_] = Select(closed, d.value, zero);
-      matrix_.Add(row, &mem_.G[rows_]);
-      ++rows_;
+      Add(r, j, p, d, Select(closed, d.value, zero), [&](W A) {
+        return Select(closed, one / Max(W::Splat(kHeldCompliance) * A, least), zero);
+      });
     }
   }
 
@@ -227,7 +226,7 @@ W WorstGap(const View& m, const Rows<W>& s, const Scratch<W>& work) noexcept {
   W worst = W::Splat(0.0);
   for (int i = 0; i < m.joint_count; ++i) {
     const JointTable& j = m.joints[i];
-    const JointPlace<W> p = PlaceOf(m, s, j, work.bodies[j.a].R, work.bodies[j.b].R);
+    const JointPlace<W> p = PlaceOf(m, s, work, j);
     for (int r = j.first_row; r < j.first_row + j.row_count; ++r) {
       const JointMeasure measure = m.joint_rows[r].measure;
       if (m.joint_rows[r].role != JointRole::kHold) break;
@@ -306,8 +305,7 @@ template <class W>
 void AddToMotion(const View& m, const Rows<W>& s, const Scratch<W>& work, const Link<W, 1>& link,
                  W impulse, W inv_h) noexcept {
   const int b = m.joint_bodies[link.body];
-  int i = 0;
-  while (m.motions[i].body != b) ++i;
+  const int i = m.motion_of_body[b];
   s.motion_force[i] -= (inv_h * impulse) * link.lin[0];
   s.motion_torque[i] -= (inv_h * impulse) * link.ang[0];
   const BodyWork<W>& body = work.bodies[b];
@@ -330,9 +328,7 @@ void StageJointStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept
   JointSystem<W> system(m, s, work);
   system.Assemble();
   const auto given = [&](int b) {
-    int i = 0;
-    while (m.motions[i].body != b) ++i;
-    const Motion<W> now = MotionAt(m, m.motions[i], s.time[0]);
+    const Motion<W> now = MotionAt(m, m.motions[m.motion_of_body[b]], s.time[0]);
     return Twist<W>{now.v, now.w};
   };
   ProjectVelocities(m, s, work, system, Select(s.last_step[0] == zero, one, zero), given,
@@ -346,7 +342,7 @@ void FollowHinges(const View& m, const Rows<W>& s, const Scratch<W>& work, W t) 
     const JointTable& j = m.joints[i];
     if (!j.has_angle) continue;
     const BodyWork<W>&a = work.bodies[j.a], &b = work.bodies[j.b];
-    const JointPlace<W> p = PlaceOf(m, s, j, a.R, b.R);
+    const JointPlace<W> p = PlaceOf(m, s, work, j);
     const W turned = t * Dot(p.axes_a.r0, b.w - a.w);
     s.joint_angle[i] = HingeAngle(p, s.joint_angle[i] + turned);
   }

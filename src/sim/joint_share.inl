@@ -44,7 +44,7 @@ JointShare<W> BoundOfShares(const View& m, const Rows<W>& s, Scratch<W>& work,
     const JointTable& j = m.joints[i];
     W across = zero;
     if (j.coordinate == JointMeasure::kDistance) {
-      const JointPlace<W> p = PlaceOf(m, s, j, work.bodies[j.a].R, work.bodies[j.b].R);
+      const JointPlace<W> p = PlaceOf(m, s, work, j);
       across = four * Abs(StiffnessAcross(s.joint_force[i], p.gap));
     }
     const auto add = [&](int body, const double* own_P) {
@@ -84,7 +84,7 @@ void PushBack(const View& m, const Rows<W>& s, const Scratch<W>& work, const Row
   const V3<W> none{zero, zero, zero};
   for (int i = 0; i < m.joint_count; ++i) {
     const JointTable& j = m.joints[i];
-    const JointPlace<W> p = PlaceOf(m, s, j, work.bodies[j.a].R, work.bodies[j.b].R);
+    const JointPlace<W> p = PlaceOf(m, s, work, j);
     const V3<W>& force = s.joint_force[i];
     const int a = m.joint_number[j.a], b = m.joint_number[j.b];
     const Twist<W> ta = j.a_moves ? Bodies::Load(x + kDofs * a) : Twist<W>{none, none};
@@ -170,7 +170,7 @@ void RaiseByRotors(const View& m, const Rows<W>& s, const Scratch<W>& work, W h2
   for (int i = 0; i < m.joint_count; ++i) {
     const JointTable& j = m.joints[i];
     if (!j.has_angle) continue;
-    const JointPlace<W> p = PlaceOf(m, s, j, work.bodies[j.a].R, work.bodies[j.b].R);
+    const JointPlace<W> p = PlaceOf(m, s, work, j);
     const V3<W>& axis = p.axes_a.r0;
     const auto raise = [&](int b, const V3<W>& own) {
       const V3<W> beside = Cross(axis, own);

@@ -27,10 +27,11 @@ TAUT_INLINE M3<W> AxesOf(const M3<W>& R, const double* axes_P) noexcept {
           R * simd::Splat3<W>(axes_P + 6)};
 }
 
-/// `Ra`, `Rb`: how the bodies are turned.
+/// By the frames in `work`.
 template <class W>
-JointPlace<W> PlaceOf(const View& m, const Rows<W>& s, const JointTable& j, const M3<W>& Ra,
-                      const M3<W>& Rb) noexcept {
+JointPlace<W> PlaceOf(const View& m, const Rows<W>& s, const Scratch<W>& work,
+                      const JointTable& j) noexcept {
+  const M3<W>&Ra = work.bodies[j.a].R, &Rb = work.bodies[j.b].R;
   JointPlace<W> p;
   p.own_a = Ra * simd::Splat3<W>(j.own_a_P), p.own_b = Rb * simd::Splat3<W>(j.own_b_P);
   p.gap = p.own_b - p.own_a;
@@ -251,7 +252,7 @@ void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double ste
   for (int i = 0; i < m.joint_count; ++i) {
     const JointTable& j = m.joints[i];
     const BodyWork<W>&a = work.bodies[j.a], &b = work.bodies[j.b];
-    const JointPlace<W> place = PlaceOf(m, s, j, a.R, b.R);
+    const JointPlace<W> place = PlaceOf(m, s, work, j);
     JointPlace<W> closed = place;
     if (m.joint_loops) {
       closed = PlaceAfter(place, ClosingOf(m, work, j.a), ClosingOf(m, work, j.b), one);

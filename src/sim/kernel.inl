@@ -48,6 +48,7 @@
 #include "sim/solve/world_dual.inl"
 #include "sim/solve/world_dual_contacts.inl"
 #include "sim/solve/body_matrix.inl"
+#include "sim/solve/triangular_solves.inl"
 #include "sim/solve/deadlock.inl"
 #include "sim/solve/plain_newton.inl"
 #include "sim/solve/tangent.inl"
@@ -62,9 +63,11 @@
 #include "sim/solve/implicit_cables.inl"
 #include "sim/solve/implicit_laws.inl"
 #include "sim/solve/implicit_island.inl"
+#include "sim/solve/implicit_newton.inl"
 #include "sim/solve/implicit_state.inl"
 #include "sim/solve/rolling.inl"
 #include "sim/solve/lane_solve.inl"
+#include "sim/solve/gather_island.inl"
 #include "sim/solve/lane_rolling.inl"
 #include "sim/solve/lane_chains.inl"
 #include "sim/solve/push_out.inl"
@@ -285,10 +288,9 @@ struct NoWatch {
 };
 
 template <class W, class Watch>
-void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings& settings,
+void StepOnce(const View& m, const Rows<W>& s, Group& g, const StepSettings& settings,
               Scratch<W>& work, double step_s, Watch& watch) noexcept {
   watch.Begin();
-  const Rows<W> s(m, layout, g);
   const W zero = W::Splat(0.0);
   const W h = W::Splat(step_s), half_h = W::Splat(0.5 * step_s);
 
@@ -296,8 +298,7 @@ void StepOnce(const View& m, const Layout& layout, Group& g, const StepSettings&
   const W last = s.last_step[0];
   const W ahead = Select(last > zero, half_h / Max(last, W::Splat(1e-300)), zero);
 
-  Poison(m, s, g, work);
-  FindImplicit(m, s, work, step_s);
+  if (Poison(m, s, g, work)) FindImplicit(m, s, work.implicit, step_s);
   SaveStart(m, s, work);
   watch.Mark(Stage::kStart);
   if (m.joint_count > 0 && Any(last == zero)) StageJointStart(m, s, work);
@@ -346,8 +347,10 @@ template <class W, class Watch>
 void StepGroup(const View& m, const Layout& layout, Group& g, const StepSettings& settings,
                void* scratch, double step_s, int count) {
   Scratch<W> work(m, scratch);
+  const Rows<W> s(m, layout, g);
+  FindImplicit(m, s, work.implicit, step_s);
   Watch watch;
-  for (int i = 0; i < count; ++i) StepOnce(m, layout, g, settings, work, step_s, watch);
+  for (int i = 0; i < count; ++i) StepOnce(m, s, g, settings, work, step_s, watch);
 }
 
 template <class W>

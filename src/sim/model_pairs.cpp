@@ -9,6 +9,12 @@
 namespace taut::sim {
 namespace {
 
+std::set<int> JointedBodies(const Tables& t) {
+  std::set<int> bodies;
+  for (const JointTable& joint : t.joints) bodies.insert(joint.a), bodies.insert(joint.b);
+  return bodies;
+}
+
 class PairCompiler {
  public:
   PairCompiler(Tables& t, const std::vector<std::vector<std::size_t>>& shapes_of,
@@ -78,6 +84,7 @@ class PairCompiler {
     t_.slot_count = first;
   }
 
+  bool IsLed(int body) const { return t_.HasMotion(body) || jointed_.count(body) > 0; }
   void BeginPair(int a, int b) {
     t_.body_pairs.push_back({a, b, static_cast<int>(t_.shape_pairs.size()), 0});
   }
@@ -87,8 +94,10 @@ class PairCompiler {
   void Meet(std::size_t i, std::size_t j, std::uint32_t& id) {
     const auto [at_rest, sliding, restitution] =
         Combined(t_.def(), t_.shapes[i].material, t_.shapes[j].material);
-    t_.shape_pairs.push_back(
-        {static_cast<int>(i), static_cast<int>(j), id, at_rest, sliding, restitution, 0});
+    const ShapeTable &a = t_.shapes[i], &b = t_.shapes[j];
+    const bool round = a.shape_P.kind == ShapeKind::kRound || b.shape_P.kind == ShapeKind::kRound;
+    t_.shape_pairs.push_back({static_cast<int>(i), static_cast<int>(j), id, at_rest, sliding,
+                              restitution, 0, round && (IsLed(a.body) || IsLed(b.body))});
     id += kMaxPointsPerPair;
     ++t_.body_pairs.back().pair_count;
   }
@@ -106,6 +115,7 @@ class PairCompiler {
   const std::vector<std::vector<std::size_t>>& shapes_of_;
   const std::vector<std::size_t>& ground_;
   const std::set<std::pair<int, int>> apart_ = KeptApart(t_.def());
+  const std::set<int> jointed_ = JointedBodies(t_);
 };
 
 }  // namespace

@@ -68,11 +68,7 @@ double LowestOver(const SeamPiece& plane, const Vec3& low, const Vec3& high) {
 }
 
 double HighestOver(const SeamPiece& plane, const BoxShape& box) {
-  double above = Dot(plane.normal, Load(box.center)) - plane.offset_m;
-  for (int axis = 0; axis < 3; ++axis) {
-    above += box.half_m[axis] * std::fabs(Dot(plane.normal, AxisOf(box, axis)));
-  }
-  return above;
+  return Dot(plane.normal, Load(box.center)) - plane.offset_m + Reach(box, plane.normal);
 }
 
 bool BoundsMeet(const SeamPiece& a, const SeamPiece& b, double same_m) {

@@ -3,6 +3,7 @@
 
 #include "sim/batch_impl.h"
 #include "sim/motion_at.h"
+#include "sim/tables.h"
 
 namespace taut::sim {
 namespace {

@@ -1,7 +1,7 @@
 /// A motion at any time, outside of steps.
 #pragma once
 
-#include "sim/tables.h"
+#include "sim/view.h"
 
 namespace taut::sim {
 

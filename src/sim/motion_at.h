@@ -1,7 +1,7 @@
 /// Where a motion is at any time (docs/theory/motion.md).
 #pragma once
 
-#include "sim/tables.h"
+#include "sim/view.h"
 #include "simd/angle.h"
 #include "simd/vec3.h"
 

@@ -35,6 +35,10 @@ TAUT_INLINE S3<L> OfLane(const S3<W>& a, int lane) noexcept {
           OfLane<L>(a.xy, lane), OfLane<L>(a.xz, lane), OfLane<L>(a.yz, lane)};
 }
 template <class L, class W>
+TAUT_INLINE Q4<L> OfLane(const Q4<W>& a, int lane) noexcept {
+  return {OfLane<L>(a.w, lane), OfLane<L>(a.x, lane), OfLane<L>(a.y, lane), OfLane<L>(a.z, lane)};
+}
+template <class L, class W>
 TAUT_INLINE void SetLane(W& to, L from, int lane) noexcept {
   OneLane<L, W>::Set(to, from, lane);
 }

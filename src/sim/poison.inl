@@ -5,9 +5,9 @@ namespace taut::sim {
 
 /// Called before a step and before sensing. What it fills: scratch, rows of contacts that the last
 /// step did not have, and what sensing will write. The lanes behind the last world are worlds, too,
-/// and keep their values.
+/// and keep their values. Returns whether it has filled them.
 template <class W>
-void Poison([[maybe_unused]] const View& m, [[maybe_unused]] const Rows<W>& s,
+bool Poison([[maybe_unused]] const View& m, [[maybe_unused]] const Rows<W>& s,
             [[maybe_unused]] const Group& g, [[maybe_unused]] Scratch<W>& work) noexcept {
 #ifndef NDEBUG
   work.Fill(m, 0xff);  // a NaN as double, -1 as int
@@ -27,6 +27,9 @@ void Poison([[maybe_unused]] const View& m, [[maybe_unused]] const Rows<W>& s,
   if (Role::role == Role::kSensed) fill(s.name.data(), 0, m.Count(Per::per) * kWidth##type);
   TAUT_STATE_ROWS(TAUT_ROW)
 #undef TAUT_ROW
+  return true;
+#else
+  return false;
 #endif
 }
 

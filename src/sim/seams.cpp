@@ -25,14 +25,6 @@ bool IsWithin(const SeamPiece& piece, const Vec3& p, double more_m) noexcept {
          p.z >= piece.low.z - more_m && p.z <= piece.high.z + more_m;
 }
 
-bool IsInBox(const BoxShape& box, const Vec3& p, double more_m) noexcept {
-  const Vec3 d = p - Load(box.center);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (Abs(Dot(d, AxisOf(box, axis))) > box.half_m[axis] + more_m) return false;
-  }
-  return true;
-}
-
 /// `use(triangle, nearest)` with the triangles that have a place, and their place nearest to it.
 template <class Use>
 void EachAt(const SurfaceTable& s, const Vec3& place, double same_m, const Use& use) noexcept {
@@ -55,7 +47,7 @@ bool PlaneCovers(const SeamPiece& plane, const Vec3& place, const Vec3& normal, 
 /// the place.
 bool BoxCovers(const BoxShape& box, const Vec3& place, const Vec3& normal, double same_m,
                const SeamSlack& slack) noexcept {
-  if (!IsInBox(box, place, same_m)) return false;
+  if (!IsIn(box, place, same_m)) return false;
   const Vec3 d = place - Load(box.center);
   bool on_face = false;
   for (int axis = 0; axis < 3; ++axis) {
@@ -113,7 +105,7 @@ bool SurfaceGoesOn(const SurfaceTable& s, const Vec3& place, const Vec3& way,
 }
 
 bool BoxGoesOn(const BoxShape& box, const Vec3& place, const Vec3& way, double same_m) noexcept {
-  if (!IsInBox(box, place, same_m) || !IsInBox(box, place + kSteps * same_m * way, same_m)) {
+  if (!IsIn(box, place, same_m) || !IsIn(box, place + kSteps * same_m * way, same_m)) {
     return false;
   }
   const Vec3 d = place - Load(box.center);
@@ -134,7 +126,7 @@ bool IsOnSeam(const SeamList& seams, const Vec3& place, double more_m) noexcept 
     if (piece.kind == SeamPiece::kPlane) {
       if (Dot(piece.normal, place) - piece.offset_m <= same_m) return true;
     } else if (piece.kind == SeamPiece::kBox) {
-      if (IsInBox(piece.box, place, same_m)) return true;
+      if (IsIn(piece.box, place, same_m)) return true;
     } else {
       const SurfaceTable& s = *piece.surface;
       if (s.is_field && HeightAt(s, place.x, place.y) - place.z > same_m) return true;

@@ -10,13 +10,6 @@ static_assert(kMeetingFeature < kMaxPointsPerPair, "every feature needs a number
 
 double Sign(double x) noexcept { return x < 0.0 ? -1.0 : 1.0; }
 
-/// Half the width of a box along a unit direction.
-double Reach(const BoxShape& box, const Vec3& direction) noexcept {
-  double reach = 0.0;
-  for (int i = 0; i < 3; ++i) reach += box.half_m[i] * Abs(Dot(AxisOf(box, i), direction));
-  return reach;
-}
-
 /// How far two boxes are apart along a unit direction; negative: how far they overlap.
 double Apart(const BoxShape& a, const BoxShape& b, const Vec3& direction) noexcept {
   const Vec3 ab = Load(b.center) - Load(a.center);

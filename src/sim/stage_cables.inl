@@ -230,7 +230,6 @@ TAUT_INLINE void RelaxBack(const View& m, const Rows<W>& s, Scratch<W>& work, W 
 template <class W>
 struct CableStep {
   W h, inv_h;
-  W soft_limit;       ///< The stiffest soft cable's K [1/s^2].
   MaskOf<W> goes_on;  ///< There was a step before, and its tensions are known.
   W push;             ///< Half a step in lanes with dampers, where tensions are still to be found.
   W room;             ///< Below zero if a cable may go slack or get taut [m^2].
@@ -271,8 +270,7 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
     s.rest_rate[c] = rate;
   }
   const W stretch = l - mean;
-  auto stiff = s.stiff_k[c] > step.soft_limit;
-  if (work.implicit.any) stiff = stiff | (work.implicit.cables[c] > zero);
+  const auto stiff = s.stiff_k[c] > work.implicit.limit[c];
   row.soft = !stiff;
   row.spring = Max(k * stretch, zero);
   const bool any_stiff = Any(stiff);
@@ -365,12 +363,8 @@ void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_
   auto damps = MaskOf<W>::Splat(false);
   for (int c = 0; c < m.cable_count && Any(!damps); ++c) damps = damps | (s.damping[c] > zero);
   const bool damped = Any(damps);
-  CableStep<W> step{W::Splat(step_s),
-                    W::Splat(1.0 / step_s),
-                    SoftLimit(W::Splat(step_s)),
-                    s.last_step[0] > zero,
-                    Select(damps, W::Splat(0.5 * step_s), zero),
-                    W::Splat(1e300)};
+  CableStep<W> step{W::Splat(step_s), W::Splat(1.0 / step_s), s.last_step[0] > zero,
+                    Select(damps, W::Splat(0.5 * step_s), zero), W::Splat(1e300)};
   if constexpr (kMotors) LoadSupplies(m, s, work, step.h);
   for (int c = 0; c < m.cable_count; ++c) {
     if (m.cables[c].joins_two) {

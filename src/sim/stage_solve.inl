@@ -233,7 +233,7 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
     }
     if (next - first > 1) FitBiases(work.lane.pairs + first, next - first, MaskOf<L>::Splat(true));
     for (int i = first; m.HasMotion(c[first].links[1].body) && i < next; ++i) {
-      if (Rolls(m, m.shape_pairs[work.touches[lane * m.pair_capacity + i].pair])) continue;
+      if (m.shape_pairs[work.touches[lane * m.pair_capacity + i].pair].rolls) continue;
       FollowMotion(work, lane, work.lane.pairs[i], L::Splat(step_s));
     }
   }

@@ -17,6 +17,21 @@ inline double Clamp(double x, double low, double high) noexcept {
   return x < low ? low : x > high ? high : x;
 }
 
+/// Half the width of a box along a unit direction.
+inline double Reach(const BoxShape& box, const Vec3& direction) noexcept {
+  double reach = 0.0;
+  for (int i = 0; i < 3; ++i) reach += box.half_m[i] * Abs(Dot(AxisOf(box, i), direction));
+  return reach;
+}
+/// Whether a point is in a box whose faces are further out by `more_m`.
+inline bool IsIn(const BoxShape& box, const Vec3& p, double more_m) noexcept {
+  const Vec3 d = p - Load(box.center);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (Abs(Dot(d, AxisOf(box, axis))) > box.half_m[axis] + more_m) return false;
+  }
+  return true;
+}
+
 /// The points found so far.
 class TouchList {
  public:

@@ -13,6 +13,7 @@
 // In the order of use, as in sim/kernel.inl.
 // clang-format off
 #include "sim/solve/body_matrix.inl"
+#include "sim/solve/triangular_solves.inl"
 #include "sim/solve/deadlock.inl"
 #include "sim/solve/plain_newton.inl"
 #include "sim/solve/tangent.inl"

@@ -19,12 +19,7 @@ class BodyMatrix {
   /// M on the diagonal, else 0. `symmetric`: only the lower triangle is kept and filled. `bodies`
   /// stay where they are until the last solve.
   void Start(const Unknown<Num>* bodies, bool symmetric) noexcept {
-    symmetric_ = symmetric;
-    const Num zero = Num::Splat(0.0);
-    const int used = symmetric ? p_.lower_count : p_.block_count;
-    for (int i = 0; i < kBlock * used; ++i) a_[i] = zero;
-    bodies_ = bodies;
-    bodies_only_ = true;
+    Clear(bodies, symmetric);
     for (int b = 0; b < p_.count; ++b) {
       Num* const d = At(b, b);
       const auto& body = bodies[b];
@@ -37,11 +32,13 @@ class BodyMatrix {
     }
   }
 
-  /// 0 everywhere, of a matrix that is not symmetric.
-  void StartGeneral(const Unknown<Num>* bodies) noexcept {
-    symmetric_ = false, bodies_only_ = true;
-    for (int i = 0; i < kBlock * p_.block_count; ++i) a_[i] = Num::Splat(0.0);
+  /// 0 everywhere, of bodies alone.
+  void Clear(const Unknown<Num>* bodies, bool symmetric) noexcept {
+    symmetric_ = symmetric, bodies_only_ = true;
     bodies_ = bodies;
+    const Num zero = Num::Splat(0.0);
+    const int used = symmetric ? p_.lower_count : p_.block_count;
+    for (int i = 0; i < kBlock * used; ++i) a_[i] = zero;
   }
   /// += a block by its quarters: of velocities and spins.
   TAUT_INLINE void AddBlock(int i, int j, const simd::M3<Num>& vv, const simd::M3<Num>& vw,
@@ -296,90 +293,12 @@ class BodyMatrix {
     return good;
   }
 
-  // Triangular solves, of which each takes the columns one by one. L has ones on its diagonal.
-
-  /// x <- L^-1 x, of both factorisations.
-  struct ForwardL {
-    template <int N>
-    TAUT_INLINE static void Column(const BodyMatrix& a, int k, Num* x) noexcept {
-      const Num* const d = a.At(k, k);
-      Num* const b = x + kDofs * k;
-      for (int i = 1; i < N; ++i) {
-        for (int m = 0; m < i; ++m) b[i] -= d[6 * i + m] * b[m];
-      }
-      for (int q = a.p_.first_below[k]; q < a.p_.first_below[k + 1]; ++q) {
-        const Num* const l = a.At(a.p_.below[q], k);
-        Num* const y = x + kDofs * a.p_.below[q];
-        for (int r = 0; r < kDofs; ++r) {
-          Num sum = y[r];
-          for (int m = 0; m < N; ++m) sum -= l[kDofs * r + m] * b[m];
-          y[r] = sum;
-        }
-      }
-    }
-  };
-  /// x <- L^-T x, or with `kScaled` L^-T D^-1 x.
+  // Triangular solves, of which each takes the columns one by one (triangular_solves.inl).
+  struct ForwardL;
   template <bool kScaled>
-  struct BackwardTransposedL {
-    template <int N>
-    TAUT_INLINE static void Column(const BodyMatrix& a, int k, Num* x) noexcept {
-      const Num* const d = a.At(k, k);
-      Num* const b = x + kDofs * k;
-      for (int i = 0; kScaled && i < N; ++i) b[i] *= d[7 * i];
-      for (int q = a.p_.first_below[k]; q < a.p_.first_below[k + 1]; ++q) {
-        const Num* const l = a.At(a.p_.below[q], k);
-        const Num* const y = x + kDofs * a.p_.below[q];
-        for (int m = 0; m < N; ++m) {
-          Num sum = b[m];
-          for (int r = 0; r < kDofs; ++r) sum -= l[kDofs * r + m] * y[r];
-          b[m] = sum;
-        }
-      }
-      for (int i = N - 1; i >= 0; --i) {
-        for (int m = i + 1; m < N; ++m) b[i] -= d[6 * m + i] * b[m];
-      }
-    }
-  };
-  /// x <- U^-1 x.
-  struct BackwardU {
-    template <int N>
-    TAUT_INLINE static void Column(const BodyMatrix& a, int k, Num* x) noexcept {
-      const Num* const d = a.At(k, k);
-      Num* const b = x + kDofs * k;
-      for (int q = a.p_.first_below[k]; q < a.p_.first_below[k + 1]; ++q) {
-        const Num* const u = a.At(k, a.p_.below[q]);
-        const Num* const y = x + kDofs * a.p_.below[q];
-        for (int r = 0; r < N; ++r) {
-          Num sum = b[r];
-          for (int m = 0; m < kDofs; ++m) sum -= u[kDofs * r + m] * y[m];
-          b[r] = sum;
-        }
-      }
-      for (int i = N - 1; i >= 0; --i) {
-        for (int m = i + 1; m < N; ++m) b[i] -= d[6 * i + m] * b[m];
-        b[i] *= d[7 * i];
-      }
-    }
-  };
-  /// x <- U^-T x.
-  struct ForwardTransposedU {
-    template <int N>
-    TAUT_INLINE static void Column(const BodyMatrix& a, int k, Num* x) noexcept {
-      const Num* const d = a.At(k, k);
-      Num* const b = x + kDofs * k;
-      for (int i = 0; i < N; ++i) {
-        for (int m = 0; m < i; ++m) b[i] -= d[6 * m + i] * b[m];
-        b[i] *= d[7 * i];
-      }
-      for (int q = a.p_.first_below[k]; q < a.p_.first_below[k + 1]; ++q) {
-        const Num* const u = a.At(k, a.p_.below[q]);
-        Num* const y = x + kDofs * a.p_.below[q];
-        for (int m = 0; m < kDofs; ++m) {
-          for (int r = 0; r < N; ++r) y[m] -= u[kDofs * r + m] * b[r];
-        }
-      }
-    }
-  };
+  struct BackwardTransposedL;
+  struct BackwardU;
+  struct ForwardTransposedU;
   template <class Triangle, bool kBodiesOnly>
   TAUT_INLINE void Column(int k, Num* x) const noexcept {
     const int size = kBodiesOnly ? kDofs : bodies_[k].size;

@@ -58,7 +58,8 @@ class ImplicitIsland {
       if (p.body >= 0) continue;
       p.p0 = p.p_P;
       if (at.body < m_.body_count) {
-        p.p0 = OfLane<Num>(pos[at.body], lane_) + RotationOf(QuatOf(quat[at.body])) * p.p_P;
+        p.p0 = OfLane<Num>(pos[at.body], lane_) +
+               RotationOf(OfLane<Num>(quat[at.body], lane_)) * p.p_P;
       }
     }
   }
@@ -121,11 +122,7 @@ class ImplicitIsland {
   Num* l() noexcept { return island_.m.l; }
   ImpactRows<Num> impacts() noexcept { return island_.m.impacts; }
   void MeasureBefore() noexcept {
-    for (int k = 0; k < island_.body_count; ++k) {
-      const Twist<Num> t =
-          k < count() ? Twist<Num>{mem_.body[k].v, mem_.body[k].w} : island_.bodies[k].before;
-      island_.Store(t, mem_.ends + kDofs * k);
-    }
+    StoreVelocities(mem_.ends, &Unknown<Num>::before, [&](int k) { return VelocityOf(k); });
     island_.Measure(mem_.ends, island_.m.impacts.before);
   }
   void SolveAgain(MaskOf<Num>) noexcept { good_ = Newton(false) && good_; }
@@ -134,6 +131,22 @@ class ImplicitIsland {
  private:
   int count() const noexcept { return island_.pattern.count; }
   int size() const noexcept { return kDofs * island_.pattern.count; }
+
+  /// At the start of the stage.
+  Twist<Num> VelocityOf(int k) const noexcept { return {mem_.body[k].v, mem_.body[k].w}; }
+  /// At its end, by the unknowns of the body.
+  Twist<Num> EndVelocityOf(int k, const Twist<Num>& at) const noexcept {
+    const ImplicitBody<Num>& b = mem_.body[k];
+    return {b.ahead * at.v + b.behind * b.v, b.ahead * at.w + b.behind * b.w};
+  }
+  /// to <- velocities of all bodies: own(k) of those that are integrated, `prescribed` of others.
+  template <class Own>
+  void StoreVelocities(Num* to, Twist<Num> Unknown<Num>::*prescribed,
+                       const Own& own) const noexcept {
+    for (int k = 0; k < island_.body_count; ++k) {
+      island_.Store(k < count() ? own(k) : island_.bodies[k].*prescribed, to + kDofs * k);
+    }
+  }
 
   /// The whole step, in as many parts as it takes. Returns the residual [m/s].
   double Integrate() noexcept {
@@ -167,11 +180,6 @@ class ImplicitIsland {
 
   /// Whether the step has more energy than it had, with what all else but contacts has done.
   bool Gains() const noexcept;
-
-  Q4<Num> QuatOf(const Q4<W>& q) const noexcept {
-    return {OfLane<Num>(q.w, lane_), OfLane<Num>(q.x, lane_), OfLane<Num>(q.y, lane_),
-            OfLane<Num>(q.z, lane_)};
-  }
 
   /// What does not change from one try to the next. SaveStart has kept pos, quat, vel, mom.
   void Gather() noexcept {
@@ -305,16 +313,12 @@ class ImplicitIsland {
 
   /// Velocities that all else but cables leads to: rebounds go by them.
   void MeasureFree() noexcept {
-    for (int k = 0; k < island_.body_count; ++k) {
-      Twist<Num> t = island_.bodies[k].free;
-      if (k < count()) {
-        const ImplicitBody<Num>& b = mem_.body[k];
-        const Unknown<Num>& body = island_.bodies[k];
-        t = {b.v + (b.share * body.inv_mass) * b.force,
-             b.w + b.share * (body.inv_inertia * b.torque)};
-      }
-      island_.Store(t, mem_.ends + kDofs * k);
-    }
+    StoreVelocities(mem_.ends, &Unknown<Num>::free, [&](int k) {
+      const ImplicitBody<Num>& b = mem_.body[k];
+      const Unknown<Num>& body = island_.bodies[k];
+      return Twist<Num>{b.v + (b.share * body.inv_mass) * b.force,
+                        b.w + b.share * (body.inv_inertia * b.torque)};
+    });
     island_.Measure(mem_.ends, island_.m.u);
   }
 
@@ -332,121 +336,18 @@ class ImplicitIsland {
   /// from.
   void EndStage(double passed) noexcept;
 
-  /// Masses as weights, so that it is a velocity.
-  double Norm(const Num* d) const noexcept {
-    Num sum = Num::Splat(0.0), mass = sum;
-    for (int k = 0; k < count(); ++k) {
-      const ImplicitBody<Num>& b = mem_.body[k];
-      const V3<Num> v{d[6 * k], d[6 * k + 1], d[6 * k + 2]};
-      const V3<Num> w{d[6 * k + 3], d[6 * k + 4], d[6 * k + 5]};
-      sum += b.mass * Dot(v, v) + Dot(w, b.inertia * w);
-      mass += b.mass;
-    }
-    return Sqrt(sum / mass)[0];
-  }
+  // Newton's method of one stage (implicit_newton.inl).
 
+  /// A change of the unknowns as a velocity: masses are the weights.
+  double Norm(const Num* d) const noexcept;
   /// How far rounding alone moves the unknowns of a stage [m/s].
-  double Noise() const noexcept {
-    Num far = Num::Splat(0.0), lightest = Num::Splat(1e300);
-    for (int k = 0; k < count(); ++k) {
-      if (!mem_.body[k].turns) continue;
-      far = Max(Norm1(mem_.body[k].x), far);
-      lightest = Min(mem_.body[k].mass, lightest);
-    }
-    constexpr double kTensions = 8e-15, kPlaces = 1e-15;
-    const double h = stage_.h[0];
-    return kTensions * h * cables_.most_tension[0] / lightest[0] + kPlaces * far[0] / h;
-  }
-
+  double Noise() const noexcept;
   /// step <- change of the unknowns for the residual `res`. With `given`, for the impulses that
   /// are; else these are found.
-  bool Step(const Num* res, bool given, Num* step) noexcept {
-    for (int i = 0; i < size(); ++i) step[i] = -res[i];
-    if (given) AddImpulses(step);
-    matrix_.Solve(step);
-    if (given || island_.rows == 0) return true;
-    for (int k = 0; k < island_.body_count; ++k) {
-      Twist<Num> t = island_.bodies[k].free;
-      if (k < count()) {
-        const ImplicitBody<Num>& b = mem_.body[k];
-        const Twist<Num> at = island_.Load(mem_.U + kDofs * k), d = island_.Load(step + kDofs * k);
-        t = {b.ahead * (at.v + d.v) + b.behind * b.v, b.ahead * (at.w + d.w) + b.behind * b.w};
-      }
-      island_.Store(t, mem_.back + kDofs * k);
-    }
-    return laws_.Solve(matrix_, mem_.back, step);
-  }
-  void AddImpulses(Num* f) noexcept {
-    island_.pools.ForEach(
-        [&](auto& law, auto&, int row, int) { island_.AddForce(law, island_.m.l + row, f); });
-  }
-
-  /// From standing still, where lengths and tensions are true. `given`: for the impulses that are.
-  bool Newton(bool given) noexcept {
-    const Num zero = Num::Splat(0.0);
-    Num *const U = mem_.U, *const trial = mem_.trial, *const d = mem_.step;
-    double speed = kLeastSpeedMPerS;
-    for (int k = 0; k < count(); ++k) {
-      const ImplicitBody<Num>& b = mem_.body[k];
-      island_.Store(Twist<Num>{b.v, b.w}, U + kDofs * k);
-    }
-    speed += Norm(U);
-    for (int k = 0; k < count(); ++k) {
-      for (int i = 0; i < kDofs && mem_.body[k].turns; ++i) U[kDofs * k + i] = zero;
-    }
-    cables_.Evaluate(stage_, U, mem_.res);
-    double before = 1e300;
-    for (int i = 0; i < kMostSteps; ++i) {
-      for (int j = 0; j < size(); ++j) mem_.back[j] = -mem_.res[j];
-      if (given || i > 0) AddImpulses(mem_.back);
-      matrix_.StartGeneral(island_.bodies);
-      cables_.AddTo(stage_, mem_.back, matrix_);
-      ++linear_solves;
-      if (!matrix_.Factor() || !Step(mem_.res, given, d)) return false;
-      const double now = Norm(d), least = kTolerance * speed + Noise();
-      if (!(now - now == 0)) return false;
-      const double near = 1e-7 * speed + 30 * Noise();
-      // Quadratic convergence: the next step would be this^3 / before^2.
-      const bool solved =
-          i > 0 && now < 0.1 * before && now * now * now <= 1e-4 * least * before * before;
-      const bool converges = i > 0 && now < 0.1 * before;
-      const bool stays = i > 3 && now > 0.5 * before && now < near && before < near;
-      before = now;
-      double way = 1;
-      for (int tries = 0;; ++tries) {
-        const Num part = Num::Splat(way);
-        for (int j = 0; j < size(); ++j) trial[j] = U[j] + part * d[j];
-        cables_.Evaluate(stage_, trial, mem_.trial_res);
-        if (stays || solved || converges || tries == 11) break;
-        if (now <= 1e3 * kTolerance * speed + 10 * Noise()) break;
-        for (int j = 0; j < size(); ++j) mem_.back[j] = -mem_.trial_res[j];
-        AddImpulses(mem_.back);
-        cables_.SeenThere(mem_.back);
-        matrix_.Solve(mem_.back);
-        // Natural monotonicity: the same matrix finds less to do there.
-        if (Norm(mem_.back) <= (1 - 0.25 * way) * now) break;
-        way *= 0.5;
-      }
-      for (int j = 0; j < size(); ++j) U[j] = trial[j], mem_.res[j] = mem_.trial_res[j];
-      if (stays || solved || (way == 1 && now <= least)) {
-        if (given) MeasureEnds();
-        return true;
-      }
-    }
-    return false;
-  }
-  void MeasureEnds() noexcept {
-    for (int k = 0; k < island_.body_count; ++k) {
-      Twist<Num> t = island_.bodies[k].free;
-      if (k < count()) {
-        const ImplicitBody<Num>& b = mem_.body[k];
-        const Twist<Num> at = island_.Load(mem_.U + kDofs * k);
-        t = {b.ahead * at.v + b.behind * b.v, b.ahead * at.w + b.behind * b.w};
-      }
-      island_.Store(t, mem_.ends + kDofs * k);
-    }
-    island_.Measure(mem_.ends, island_.m.u);
-  }
+  bool Step(const Num* res, bool given, Num* step) noexcept;
+  void AddImpulses(Num* f) noexcept;
+  /// `given`: for the impulses that are.
+  bool Newton(bool given) noexcept;
 
   const View& m_;
   const Rows<W>& s_;

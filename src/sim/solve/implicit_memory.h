@@ -3,7 +3,7 @@
 
 #include "sim/cable_groups.h"
 #include "sim/solve/memory.h"
-#include "sim/tables.h"
+#include "sim/view.h"
 #include "simd/vec3.h"
 
 namespace taut::sim {
@@ -57,50 +57,51 @@ struct ImplicitMemory {
   using Num = simd::Lane<W>;
   static constexpr int64_t kMostRows = 192;  ///< Rows of laws that act at once.
 
-  bool any = false;  ///< In some lane some cables are integrated so,
-  W* cables;         ///< per cable: 1 in lanes in which it is,
-  W* damped;         ///< and in which its group has the second stage.
-  W* bodies;         ///< Per body: 1 in lanes in which such cables act on it.
-  CableGroups groups;
-  W* ended;  ///< Per body: 1 in lanes in which this step's end is known:
-  V3<W>* end_pos;
-  simd::Q4<W>* end_quat;
+  bool any = false;      ///< In some lane some cables are integrated so;
+  Row<W> limit;          ///< per cable: up to this K it is explicit [1/s^2]; -1 where it is one,
+  Row<W> damped;         ///< and 1 in lanes in which its group has the second stage.
+  Row<W> bodies;         ///< Per body: 1 in lanes in which such cables act on it.
+  Row<int> group, size;  ///< The groups of one lane (CableGroups).
+  Row<uint8_t> kind;
+  Row<W> ended;  ///< Per body: 1 in lanes in which this step's end is known:
+  Row<V3<W>> end_pos;
+  Row<simd::Q4<W>> end_quat;
 
   // Of one lane's island.
-  ImplicitBody<Num>* body;
-  ImplicitPoint<Num>* points;
-  ImplicitCable<Num>* list;
-  Num *U, *trial, *res, *trial_res, *step, *back, *ends;  ///< 6 a body.
-  Num *gap, *bias, *start, *total, *unit;  ///< Per row; start: impulses to begin from.
-  int *compact, *active;                   ///< Per row.
-  Num *x, *w, *k;                          ///< Of the rows that act.
-  Num *l, *u, *y, *f, *best;
+  Row<ImplicitBody<Num>> body;
+  Row<ImplicitPoint<Num>> points;
+  Row<ImplicitCable<Num>> list;
+  Row<Num> U, trial, res, trial_res, step, back, ends;  ///< 6 a body.
+  Row<Num> gap, bias, start, total, unit;               ///< Per row; start: impulses to begin from.
+  Row<int> compact, active;                             ///< Per row.
+  Row<Num> x, w, k;                                     ///< Of the rows that act.
+  Row<Num> l, u, y, f, best;
   int row_capacity;
 
+  /// Nothing for models without cables.
   void Take(const View& m, Room& room) noexcept {
-    const int64_t n = m.body_count, c = m.cable_count;
-    const int64_t rows =
+    const int64_t c = m.cable_count, n = c > 0 ? m.body_count : 0;
+    const int64_t all =
         3 * (m.slot_count + m.pair_capacity) + m.cable_count + m.joint_row_count + m.span_count;
-    const int64_t most = rows < kMostRows ? rows : kMostRows;
+    const int64_t rows = c > 0 ? all : 0, most = rows < kMostRows ? rows : kMostRows;
     row_capacity = static_cast<int>(most);
-    cables = room.Take<W>(c), damped = room.Take<W>(c), bodies = room.Take<W>(n);
-    groups.group = room.Take<int>(n), groups.size = room.Take<int>(n);
-    groups.kind = room.Take<uint8_t>(n);
+    limit = room.Take<W>(c), damped = room.Take<W>(c), bodies = room.Take<W>(n);
+    group = room.Take<int>(n), size = room.Take<int>(n), kind = room.Take<uint8_t>(n);
     ended = room.Take<W>(n);
     end_pos = room.Take<V3<W>>(n);
     end_quat = room.Take<simd::Q4<W>>(n);
     body = room.Take<ImplicitBody<Num>>(n);
-    points = room.Take<ImplicitPoint<Num>>(m.attachment_count);
+    points = room.Take<ImplicitPoint<Num>>(n > 0 ? m.attachment_count : 0);
     list = room.Take<ImplicitCable<Num>>(c);
-    Num** const per_dof[] = {&U, &trial, &res, &trial_res, &step, &back, &ends};
-    for (Num** x6 : per_dof) *x6 = room.Take<Num>(kDofs * n);
-    Num** const per_row[] = {&gap, &bias, &start, &total, &unit};
-    for (Num** row : per_row) *row = room.Take<Num>(rows);
+    Row<Num>* const per_dof[] = {&U, &trial, &res, &trial_res, &step, &back, &ends};
+    for (Row<Num>* numbers : per_dof) *numbers = room.Take<Num>(kDofs * n);
+    Row<Num>* const per_row[] = {&gap, &bias, &start, &total, &unit};
+    for (Row<Num>* numbers : per_row) *numbers = room.Take<Num>(rows);
     compact = room.Take<int>(rows), active = room.Take<int>(rows);
     x = room.Take<Num>(kDofs * n * most);
     w = room.Take<Num>(most * most), k = room.Take<Num>(most * most);
-    Num** const per_active[] = {&l, &u, &y, &f, &best};
-    for (Num** row : per_active) *row = room.Take<Num>(most);
+    Row<Num>* const per_active[] = {&l, &u, &y, &f, &best};
+    for (Row<Num>* numbers : per_active) *numbers = room.Take<Num>(most);
   }
 };
 

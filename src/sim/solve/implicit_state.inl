@@ -10,7 +10,7 @@ void ImplicitIsland<W>::LoadStart(int body, ImplicitBody<Num>& b) const noexcept
   const auto* const quat = reinterpret_cast<const Q4<W>*>(work_.start + 3 * n);
   const auto* const mom = reinterpret_cast<const V3<W>*>(work_.start + 10 * n);
   b.x = OfLane<Num>(pos[body], lane_);
-  b.q = QuatOf(quat[body]);
+  b.q = OfLane<Num>(quat[body], lane_);
   b.v = OfLane<Num>(work_.bodies[body].v0, lane_);
   b.w = OfLane<Num>(work_.bodies[body].w0, lane_);
   b.L = OfLane<Num>(mom[body], lane_);
@@ -94,10 +94,7 @@ void ImplicitIsland<W>::EndStage(double passed) noexcept {
   const bool more = passed > 1;
   Num* const pushed = mem_.back;
   for (int i = 0; i < size(); ++i) pushed[i] = zero;
-  if (more) {
-    island_.pools.ForEach(
-        [&](auto& law, auto&, int row, int) { island_.AddForce(law, island_.m.l + row, pushed); });
-  }
+  if (more) AddImpulses(pushed);
   const Num* const U = mem_.U;
   for (int k = 0; k < count(); ++k) {
     ImplicitBody<Num>& b = mem_.body[k];

@@ -33,9 +33,7 @@ void LaneSolve<W>::DisplaceEnd(int body, const V3<L>& dx, const V3<L>& half) noe
   if (!(work_.implicit.ended[body][lane_] > 0)) return;
   V3<W>& pos = work_.implicit.end_pos[body];
   SetLane(pos, OfLane<L>(pos, lane_) + dx, lane_);
-  const Q4<W>& from = work_.implicit.end_quat[body];
-  Q4<L> q{OfLane<L>(from.w, lane_), OfLane<L>(from.x, lane_), OfLane<L>(from.y, lane_),
-          OfLane<L>(from.z, lane_)};
+  Q4<L> q = OfLane<L>(work_.implicit.end_quat[body], lane_);
   TurnAbout(q, half);
   NormalizeQuat(q);
   SetLane(work_.implicit.end_quat[body], q, lane_);

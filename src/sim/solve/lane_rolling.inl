@@ -14,8 +14,7 @@ RollingSide<simd::Lane<W>> LaneSolve<W>::SideOf(const Contact<L, 2>& c, int k,
   side.arm = c.arm[k];
   side.skeleton = c.arm[k] + (sign * side.radius) * c.links[0].lin[0];
   if (m_.HasMotion(body)) {
-    int i = 0;
-    while (m_.motions[i].body != body) ++i;
+    const int i = m_.motion_of_body[body];
     side.v = OfLane<L>(work_.bodies[body].v, lane_);
     side.w = OfLane<L>(work_.bodies[body].w, lane_);
     side.x_end = OfLane<L>(work_.motions[i].end.pos - s_.pos[body], lane_);
@@ -27,17 +26,26 @@ RollingSide<simd::Lane<W>> LaneSolve<W>::SideOf(const Contact<L, 2>& c, int k,
   return side;
 }
 
+/// f(point, touch, pair) for the island's contacts that roll.
 template <class W>
-bool LaneSolve<W>::FindRolling() const noexcept {
-  if (m_.motion_count == 0 && m_.joint_count == 0) return false;
-  const Pool<ContactPoint<L, 2>>& pool = mem_.island.pools;
+template <class F>
+void LaneSolve<W>::EachRolling(const F& f) noexcept {
+  Pool<ContactPoint<L, 2>>& pool = mem_.island.pools;
   for (int i = 0; i < pool.count; ++i) {
     const int touch = mem_.source[i] - m_.slot_count;
     if (touch < 0) continue;
-    const int pair = work_.touches[lane_ * m_.pair_capacity + touch].pair;
-    if (Rolls(m_, m_.shape_pairs[pair])) return true;
+    const ShapePairTable& pair =
+        m_.shape_pairs[work_.touches[lane_ * m_.pair_capacity + touch].pair];
+    if (pair.rolls) f(pool.items[i], mem_.pairs[touch], pair);
   }
-  return false;
+}
+
+template <class W>
+bool LaneSolve<W>::FindRolling() noexcept {
+  if (m_.motion_count == 0 && m_.joint_count == 0) return false;
+  bool any = false;
+  EachRolling([&](const auto&, const auto&, const auto&) { any = true; });
+  return any;
 }
 
 /// The velocities that the bodies have at the end if they change as in the step before.
@@ -55,15 +63,8 @@ void LaneSolve<W>::ExpectVelocities() noexcept {
 template <class W>
 double LaneSolve<W>::FollowRolling() noexcept {
   const L half_h = L::Splat(0.5) * h_;
-  Pool<ContactPoint<L, 2>>& pool = mem_.island.pools;
   double change = 0;
-  for (int i = 0; i < pool.count; ++i) {
-    const int touch = mem_.source[i] - m_.slot_count;
-    if (touch < 0) continue;
-    const Contact<L, 2>& c = mem_.pairs[touch];
-    const ShapePairTable& pair =
-        m_.shape_pairs[work_.touches[lane_ * m_.pair_capacity + touch].pair];
-    if (!Rolls(m_, pair)) continue;
+  EachRolling([&](ContactPoint<L, 2>& point, const Contact<L, 2>& c, const ShapePairTable& pair) {
     const RollingSide<L> a = SideOf(c, 0, m_.shapes[pair.a].shape_P);
     const RollingSide<L> b = SideOf(c, 1, m_.shapes[pair.b].shape_P);
     // Both points from a's origin at the middle of the step; the arms differ by the bodies' places.
@@ -74,23 +75,20 @@ double LaneSolve<W>::FollowRolling() noexcept {
     for (int r = 1; r < 3; ++r) {
       if (r == 2 && c.one_direction) continue;
       const L bias = c.bias[r] + Dot(c.links[0].lin[r], slip);
-      const double by = Abs(bias - pool.items[i].bias[r])[0];
+      const double by = Abs(bias - point.bias[r])[0];
       if (by > change) change = by;
-      pool.items[i].bias[r] = bias;
+      point.bias[r] = bias;
     }
-  }
+  });
   return change;
 }
 
 /// The biases found, for what judges the contacts afterwards.
 template <class W>
 void LaneSolve<W>::KeepRolling() noexcept {
-  const Pool<ContactPoint<L, 2>>& pool = mem_.island.pools;
-  for (int i = 0; i < pool.count; ++i) {
-    const int touch = mem_.source[i] - m_.slot_count;
-    if (touch < 0) continue;
-    for (int r = 1; r < 3; ++r) mem_.pairs[touch].bias[r] = pool.items[i].bias[r];
-  }
+  EachRolling([&](const ContactPoint<L, 2>& point, Contact<L, 2>& c, const ShapePairTable&) {
+    for (int r = 1; r < 3; ++r) c.bias[r] = point.bias[r];
+  });
 }
 
 }  // namespace taut::sim

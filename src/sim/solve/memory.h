@@ -8,7 +8,7 @@
 #include "sim/contacts.h"
 #include "sim/room.h"
 #include "sim/solve/island.h"
-#include "sim/tables.h"
+#include "sim/view.h"
 
 namespace taut::sim {
 

@@ -108,9 +108,7 @@ V3<simd::Lane<W>> LaneSolve<W>::Displace(int number) noexcept {
   const Twist<L> t = mem_.island.Load(mem_.island.m.v + kDofs * number);
   const V3<L> dx = h_ * t.v;
   SetLane(s_.pos[body], OfLane<L>(s_.pos[body], lane_) + dx, lane_);
-  const Q4<W>& from = s_.quat[body];
-  Q4<L> q{OfLane<L>(from.w, lane_), OfLane<L>(from.x, lane_), OfLane<L>(from.y, lane_),
-          OfLane<L>(from.z, lane_)};
+  Q4<L> q = OfLane<L>(s_.quat[body], lane_);
   TurnAbout(q, (L::Splat(0.5) * h_) * t.w);
   NormalizeQuat(q);
   SetLane(s_.quat[body], q, lane_);

@@ -1,29 +1,12 @@
-/// What rolls on a body with a motion or on a joint (docs/theory/motion.md, eq. 4a): along the
-/// surface its contact is at rest at the end of the step, where the contact point is by then.
+/// Rolling on a body with a motion or on a joint (ShapePairTable::rolls; docs/theory/motion.md,
+/// eq. 4a): along the surface the contact is at rest at the end of the step, where its point is by
+/// then.
 ///
 /// The point's way depends on the velocities that the solve is to find. So the island is solved
 /// again with the biases of the velocities found, from the impulses found, until the biases stay:
 /// each round leaves a share h |w| / 2 of the error, w the motion's angular velocity.
 
 namespace taut::sim {
-
-/// Whether a body turns about something: by a motion or on a joint.
-TAUT_INLINE bool TurnsOnSomething(const View& m, int body) noexcept {
-  if (m.HasMotion(body)) return true;
-  for (int i = 0; i < m.joint_count; ++i) {
-    if (m.joints[i].a == body || m.joints[i].b == body) return true;
-  }
-  return false;
-}
-
-/// Whether a pair's contact point moves over a round shape, so that it is of neither body, and one
-/// of them is what others roll on.
-TAUT_INLINE bool Rolls(const View& m, const ShapePairTable& pair) noexcept {
-  if (m.motion_count == 0 && m.joint_count == 0) return false;
-  const ShapeTable &a = m.shapes[pair.a], &b = m.shapes[pair.b];
-  return (a.shape_P.kind == ShapeKind::kRound || b.shape_P.kind == ShapeKind::kRound) &&
-         (TurnsOnSomething(m, a.body) || TurnsOnSomething(m, b.body));
-}
 
 /// One body of such a contact.
 template <class L>
