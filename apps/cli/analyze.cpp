@@ -106,8 +106,8 @@ bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::
   return out.ok();
 }
 
-/// Refuses load cases that move the structure along motions which supports leave free, and notes
-/// motions that nothing drives.
+/// Reports an error for load cases that act along motions which the supports leave free, and a note
+/// for free motions without load.
 bool CheckSupportsOf(const std::string& file, const ModelDef& def,
                      const std::vector<LoadCaseSpec>& cases, std::vector<std::string>& notes,
                      Diagnostics& out) {
@@ -143,7 +143,7 @@ int Statics(const AnalyzeArguments& args, const Loaded& loaded, AnalysisResult r
     const std::string far = one.at.found ? one.move.Warning() : "";
     if (far.empty()) continue;
     found.Warning({args.path, 0, 0}, "load case " + one.loads.name + ": " + far,
-                  "its supports let it swing over, or a mechanism gives way");
+                  "the supports allow a large rotation, or a mechanism moves");
   }
   if (!Pass(found, args.strict)) exit = Fail(found, kFailed);
   if (!args.forms.out.empty()) {

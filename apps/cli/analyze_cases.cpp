@@ -76,7 +76,7 @@ std::optional<CaseResult::Open> OpenForces(ModelDef def, const LoadCaseSpec& loa
   return open;
 }
 
-/// The member whose `factor` is smallest; null if none has one.
+/// Returns the member with the smallest `factor`; null if no member has one.
 template <class Factor>
 const MemberLoad* Least(const std::vector<MemberLoad>& members, const Factor& factor) {
   const MemberLoad* least = nullptr;

@@ -23,7 +23,7 @@ std::string GapText(const RankGap& rank) {
 std::string Counts(const ForceAnalysis& f) {
   std::string text = fmt::format(
       "  members: {}, motions: {}, rank: {}\n"
-      "  states of self-stress: {}, mechanisms: {}, motions as a whole: {}",
+      "  states of self-stress: {}, mechanisms: {}, rigid motions: {}",
       f.members.size(), f.unknowns, GapText(f.rank), f.self_stress.size(), f.mechanisms.size(),
       f.rigid);
   if (f.free_turns > 0) text += fmt::format(", turns that nothing resists: {}", f.free_turns);
@@ -32,7 +32,7 @@ std::string Counts(const ForceAnalysis& f) {
     const ClassicalCount& c = *f.classical;
     text += fmt::format(
         "  as pin-jointed: nodes: {}, members: {}, rank: {}\n"
-        "    states of self-stress: {}, mechanisms: {}, motions as a whole: {}\n",
+        "    states of self-stress: {}, mechanisms: {}, rigid motions: {}\n",
         c.nodes, c.members, GapText(c.rank), c.self_stresses, c.mechanisms, c.rigid);
   }
   return text;

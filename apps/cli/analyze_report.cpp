@@ -115,7 +115,7 @@ std::string OpenForces(const CaseResult& result) {
 std::string ModeTable(const CaseResult& result, int most) {
   const Modes& modes = *result.modes;
   if (!modes.why.empty()) return "  none: " + modes.why + "\n";
-  std::string text = fmt::format("  as a whole: {}, mechanisms: {}, unstable: {}\n", modes.rigid,
+  std::string text = fmt::format("  rigid motions: {}, mechanisms: {}, unstable: {}\n", modes.rigid,
                                  modes.mechanisms, modes.unstable);
   Table table({"mode", "frequency", "what", "moves most"});
   table.Add({"", "Hz", "", ""});
@@ -129,7 +129,7 @@ std::string ModeTable(const CaseResult& result, int most) {
   return text + (number == 0 ? "" : table.Text());
 }
 
-/// Slack cables, the least safety factor, the first slack cable, and how stiff and how far.
+/// Slack cables, least safety factor, first slack cable, largest displacement, least stiffness.
 std::string Verdict(const CaseResult& result) {
   std::string slack;
   for (const MemberLoad& load : result.members) {
@@ -145,8 +145,8 @@ std::string Verdict(const CaseResult& result) {
                         FactorCell(first->slackening));
   }
   if (!result.move.name.empty()) {
-    text +=
-        fmt::format("  largest move: {:.4g} m of {}\n", result.move.distance_m, result.move.name);
+    text += fmt::format("  largest displacement: {:.4g} m of {}\n", result.move.distance_m,
+                        result.move.name);
   }
   if (result.least_stiffness_n_per_m) {
     text += fmt::format("  least stiffness: {:.6g} N/m{}\n", *result.least_stiffness_n_per_m,

@@ -33,10 +33,10 @@ struct CaseResult {
   std::optional<Open> open;
   std::optional<Modes> modes;
   std::optional<double> least_stiffness_n_per_m;
-  Move move;  ///< From where the model describes it.
+  Move move;  ///< From the described pose.
 
-  /// Of `members`: the least safety factor (buckling, yield, strength), and the first cable that
-  /// gets slack as the load grows; null if no member has one.
+  /// Returns the member with the least safety factor (buckling, yield, strength), and the first
+  /// cable that gets slack as the load grows; null without such a member.
   const MemberLoad* LeastSafe() const;
   const MemberLoad* FirstSlack() const;
 };

@@ -1,5 +1,5 @@
-/// A robot's port that closes itself a moment after an interrupt, so that no command hangs on an
-/// adapter that is silent, slow or floods: all that waits for it fails then.
+/// Serial port that closes at a deadline after an interrupt, so that no command hangs on an adapter
+/// that is silent, slow or flooding: operations then fail.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ class InterruptiblePort final : public link::Port {
   bool Reopen() override { return !IsOver() && port_->Reopen(); }
 
  private:
-  /// From the interrupt: enough for an emergency stop and the boards' confirmation.
+  /// Time after the interrupt for an emergency stop and the boards' confirmation.
   static constexpr double kGrace_s = 0.7;
 
   bool IsOver() const {

@@ -16,12 +16,12 @@ namespace taut::cli {
 namespace {
 
 constexpr char kVirtual[] = "virtual";
-/// For boards that have power since a moment to begin.
+/// Time for boards to boot after power-up.
 constexpr double kBoot_s = 0.2;
-/// Between two looks for an interrupt or a stop, if no cycle ends.
+/// Polling interval for interrupts and stop requests while no cycle ends.
 constexpr double kLook_s = 0.05;
-/// For all boards to confirm that their motors are off. An emulated robot on a busy machine is
-/// late.
+/// Timeouts for all boards to confirm that their motors are off: of a real robot, and of an
+/// emulated one on a busy machine.
 constexpr double kConfirm_s = 0.4, kConfirmVirtual_s = 3.0;
 
 const std::map<std::string, link::OnFault> kOnFault{
@@ -188,7 +188,7 @@ std::unique_ptr<RobotDesk> RobotDesk::Open(const RobotArguments& args,
   CatchInterrupts();
   const bool good = desk->Connect(args, experiment, found) && desk->SetUp(args, experiment, found);
   if (!good && interrupt_asked) {
-    fmt::print(stderr, "interrupted before this command gave any motor power\n");
+    fmt::print(stderr, "interrupted before this command powered any motor\n");
     exit = kInterrupted;
     return nullptr;
   }
@@ -209,7 +209,7 @@ void RobotDesk::Finish() {
   on_cycle = {};
   const double patience_s = virtual_robot() != nullptr ? kConfirmVirtual_s : kConfirm_s;
   if (!confirm_ && !driver_->state().power_commanded) {
-    // What was commanded last is sent; boards that hold since before this command go on holding.
+    // Sends the last command. Boards that were holding before this program started keep holding.
     const double until_s = driver_->port().now_s() + patience_s;
     for (int i = 0; i < 3 && driver_->state().link.connected; ++i) driver_->CycleBy(until_s);
   } else {
@@ -264,7 +264,7 @@ bool RobotDesk::LookForStop() {
   }
   if (interrupt_asked && !stop_asked_) {
     stop_asked_ = true;
-    // Who only looks on leaves what holds as it is.
+    // A program that only reads leaves holding motors as they are.
     if (driver_->state().stage == link::Stage::kActive) driver_->Stop("interrupted");
   }
   return stop_asked_;
@@ -274,7 +274,7 @@ Exit RobotDesk::stop_exit() const { return interrupt_asked ? kInterrupted : kFai
 
 void RobotDesk::RunWhile(const std::function<bool()>& go_on) {
   for (;;) {
-    if (LookForStop() || !go_on()) return;  // the stop's frames go with End's cycles
+    if (LookForStop() || !go_on()) return;  // End sends the stop frames
     driver_->CycleBy(driver_->port().now_s() + kLook_s);
   }
 }

@@ -69,21 +69,21 @@ class RobotDesk {
   /// The same; a complaint if no motor has that cable.
   std::optional<int> MotorOf(const std::string& cable, Diagnostics& out) const;
   const link::VirtualRobot* virtual_robot() const { return line_->virtual_robot.get(); }
-  /// Somebody wants it to end; all is stopped, or about to be.
+  /// Whether an interrupt or a stop request has arrived; the motors stop.
   bool stop_asked() const { return stop_asked_; }
-  /// The same, looked at now: for loops in which cycles may fail to come.
+  /// Polls for an interrupt or a stop request: for loops that may run without cycles.
   bool LookForStop();
-  /// The status to end with then: interrupted, or stopped from elsewhere, which is a failure.
+  /// Exit status after a stop: kInterrupted, or kFailed if another program requested it.
   Exit stop_exit() const;
-  /// Cycles until `go_on` returns false or somebody wants an end. Both are looked at after each
-  /// cycle and 20 times a second, also while the adapter is gone or silent.
+  /// Cycles until `go_on` returns false, an interrupt or a stop request arrives. Checks all three
+  /// after each cycle and at 20 Hz, also while the adapter is disconnected or silent.
   void RunWhile(const std::function<bool()>& go_on);
   bool ClearFaults(Diagnostics& out);
-  /// Turns motors off if they had power, waits for the boards' confirmation, answers those who
-  /// asked for a stop, and prints an error for each board that has not confirmed. Only the first
-  /// call does anything. True: every board confirmed, or no motor had power.
+  /// Turns powered motors off, waits for the boards' confirmation, answers pending stop requests,
+  /// and prints an error for each board without confirmation. Later calls have no effect. Returns
+  /// true if every board confirmed or no motor had power.
   bool End();
-  /// The same, and the last line on standard output if all have confirmed: "Motors are off."
+  /// Calls End and, if all boards confirmed, prints "Motors are off." as the last line of stdout.
   bool EndAndReport(bool quiet);
 
   /// After each cycle, and what happens; also where `taut robot` prints it.
@@ -104,7 +104,7 @@ class RobotDesk {
   std::optional<RobotLine> line_;
   std::unique_ptr<link::Driver> driver_;
   bool stop_asked_ = false, quiet_ = false;
-  bool confirm_ = false;  ///< The boards' confirmation is waited for even if none had power.
+  bool confirm_ = false;  ///< Wait for the boards' confirmation even if no motor had power.
   bool ended_ = false, ended_well_ = true;
   std::optional<link::PowerReport> power_;
 };

@@ -20,7 +20,7 @@ namespace {
 
 /// Of a reading: at 100 a second.
 constexpr int kReadings = 100;
-/// A hundred readings take a second.
+/// Timeout; a hundred readings take 1 s.
 constexpr double kPatience_s = 5;
 
 struct CalibrateArguments : RobotArguments {
@@ -58,7 +58,8 @@ bool ReadLoadCell(RobotDesk& desk, int motor, Mean& out) {
     return static_cast<int>(counts.size()) < kReadings && desk.driver().port().now_s() < until_s;
   });
   if (!desk.stop_asked() && static_cast<int>(counts.size()) < kReadings) {
-    fmt::print(stderr, "error: {} of {} readings came within {:g} s: the adapter does not answer\n",
+    fmt::print(stderr,
+               "error: only {} of {} readings arrived within {:g} s: the adapter does not answer\n",
                counts.size(), kReadings, kPatience_s);
     return false;
   }

@@ -16,7 +16,7 @@ namespace {
 
 /// Between two lines about how it is.
 constexpr double kReport_s = 1.0;
-/// The driving program waits for its boards' confirmation meanwhile.
+/// Timeout of a stop request; the driving program waits for its boards' confirmation.
 constexpr double kStopPatience_s = 0.9;
 constexpr double kConfirm_s = 0.5;
 constexpr int kStops = 3;
@@ -97,7 +97,7 @@ int StopDirectly(const std::string& device, int boards) {
   for (int i = 0; i < kStops; ++i) heard = adapter.Write(board::kBroadcastAddress, stop) || heard;
   if (!answers && !heard) {
     fmt::print(stderr,
-               "error: the adapter does not answer, so no board confirmed the stop: cut the "
+               "error: no board confirmed the stop, because the adapter does not answer: cut the "
                "motors' supply\n");
     return kFailed;
   }
@@ -125,16 +125,18 @@ int Estop(const RobotArguments& args, int boards) {
   if (device.empty()) return Fail(found, kFailed);
   switch (link::AskToStop(device, kStopPatience_s)) {
     case link::StopAnswer::kStopped:
-      fmt::print("All boards have stopped: the program that drives the robot has their answers.\n");
+      fmt::print("All boards have stopped (confirmed to the program that drives the robot).\n");
       return kOk;
     case link::StopAnswer::kUnconfirmed:
       fmt::print(
           stderr,
-          "the program that drives the robot sent the stop, but not all boards confirmed it: "
-          "stopping directly\n");
+          "the program that drives the robot sent the stop, but some boards did not confirm it: "
+          "this command stops them directly\n");
       break;
     case link::StopAnswer::kSilent:
-      fmt::print(stderr, "the program that drives the robot does not answer: stopping directly\n");
+      fmt::print(stderr,
+                 "the program that drives the robot does not answer: this command stops the boards "
+                 "directly\n");
       break;
     case link::StopAnswer::kNobody:
       break;

@@ -101,7 +101,7 @@ int ViewRobot(ViewRobotArguments args) {
   desk->on_cycle = [&](const link::State& state) { view->AfterCycle(state); };
   desk->on_event = [&](double time_s, const std::string& text) { view->Event(time_s, text); };
   desk->RunWhile([&] {
-    // Without an adapter there are no cycles, and the page is to know.
+    // Without an adapter there are no cycles; update the page all the same.
     if (!driver.state().link.connected) view->AfterCycle(driver.state());
     return true;
   });

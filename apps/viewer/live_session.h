@@ -92,7 +92,7 @@ class LiveSession final : public Session {
   Frame moment_;                         ///< Kept, so that taking a moment allocates little.
   int run_number_ = 1;
   bool end_told_ = false, broken_told_ = false, dragging_ = false;
-  std::size_t overloads_told_ = 0;  ///< Of LiveRun::Overloads, how many.
+  std::size_t overloads_told_ = 0;  ///< Number of logged items of LiveRun::Overloads.
   Pace pace_;
   Clock::time_point shown_wall_;
   bool changed_ = true, scene_changed_ = false;

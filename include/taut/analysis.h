@@ -61,30 +61,30 @@ Equilibrium FindEquilibrium(const ModelDef& def, const LoadCaseSpec& loads = {},
 /// `def` as it is described in a pose, at rest; `RobotAt` for the numbers alone.
 ModelDef ModelAt(const ModelDef& def, const Pose& pose);
 
-/// Whether supports hold a structure under a load case, as it is described.
+/// Free rigid motions of a structure as described, and whether a load case acts along them.
 struct SupportCheck {
-  int free = 0;  ///< Motions as a whole that no member resists.
-  /// These in words: "the structure can still rotate about z through (0, 0, 1)"; one for each part
-  /// that no member connects to the others.
+  int free = 0;  ///< Number of rigid motions that no member resists.
+  /// Descriptions: "the structure can still rotate about z through (0, 0, 1)"; one per part that no
+  /// member connects to the others.
   std::vector<std::string> free_motions;
-  /// Which of them the loads push along or, where something holds the part, topple; empty if they
-  /// do neither, or if ground may bear what comes down on it.
+  /// Error message if the loads act along a free motion or topple a held part; empty otherwise, and
+  /// if ground planes may support the part.
   std::string missing;
-  std::string fix;  ///< Of `missing`.
+  std::string fix;  ///< Hint for `missing`.
 };
 SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads);
 
-/// The node, or the center of mass, that moves most from where it is described to a pose.
+/// Largest displacement of a node or a center of mass from the described pose to another one.
 struct Move {
-  static constexpr double kFar = 0.25;  ///< Of the size.
+  static constexpr double kFar = 0.25;  ///< Warning threshold, as a share of `size_m`.
   std::string name;                     ///< `node "top"` or `body "strut"`; empty if none moves.
   double distance_m = 0;
-  double size_m = 0;  ///< Of the structure: the diagonal of the box about it as described.
-  /// Empty, or that it moves farther than that.
+  double size_m = 0;  ///< Diagonal of the bounding box of the described structure.
+  /// Returns a warning if `distance_m` exceeds kFar * size_m; else an empty string.
   std::string Warning() const;
 };
-/// Of what nothing holds in the world (ground only pushes), the rigid motion that fits best is left
-/// out.
+/// Structures without supports (ground contact does not count) are compared after subtraction of
+/// the best-fitting rigid motion.
 Move LargestMove(const ModelDef& def, const Pose& pose);
 
 /// Stiffness and mass as described, in the motions of the bodies that move (docs/theory/statics.md,
@@ -190,12 +190,12 @@ struct ForceAnalysis {
   RankGap rank;
   int unknowns = 0;    ///< Motions that count,
   int free_turns = 0;  ///< and those that are left out because nothing could resist them.
-  /// Motions as a whole that no member resists: rigid motions of a part that no member connects to
-  /// the others, which move no point of the world at which its members end.
+  /// Number of rigid motions that no member resists: rigid-body motions of a part that no member
+  /// connects to the others. They move no point of the world at which its members end.
   int rigid = 0;
   /// Independent; a feasible one first, if there is any: densities of a cable up to 1 N/m.
   std::vector<SelfStress> self_stress;
-  std::vector<Mode> mechanisms;  ///< Without those as a whole.
+  std::vector<Mode> mechanisms;  ///< Without rigid motions.
   /// What the first feasible self-stress gives mechanisms to resist with, as an eigenvalue over the
   /// squared displacements of all points at which something acts [N/m], ascending: in units of the
   /// largest density of a cable. All positive: it is stable by prestress. Empty: no feasible state.
@@ -207,11 +207,11 @@ struct ForceAnalysis {
 /// As described. Points that touch planes are members, too, if `contact`.
 ForceAnalysis AnalyseForces(const ModelDef& def, bool contact = true);
 
-/// The least stiffness about an equilibrium (`ModelAt` of what `FindEquilibrium` gives): the
-/// smallest u^T K u over the sum of the squared displacements of all points at which something acts
-/// [N/m], of all motions u that nothing holds but those as a whole that nothing resists
-/// (docs/theory/statics.md, eq. 16). Negative: the equilibrium is unstable. Nothing if no such
-/// motion is left.
+/// Returns the least stiffness about an equilibrium (`ModelAt` the pose of `FindEquilibrium`): the
+/// smallest u^T K u over the sum of the squared displacements of all points at which members,
+/// joints or loads act [N/m]. u: all free motions except unresisted rigid motions
+/// (docs/theory/statics.md, eq. 16). Negative: the equilibrium is unstable. Nothing without such a
+/// motion.
 std::optional<double> LeastStiffness(const ModelDef& def, const LoadCaseSpec& loads = {});
 
 }  // namespace taut

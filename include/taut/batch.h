@@ -60,20 +60,20 @@ struct BatchOptions {
 /// What a world has to say for itself. Bits; 0 is good. Sticky until `ClearStatus`.
 enum StatusBits : std::uint32_t {
   kStatusOk = 0,
-  kStatusNonFinite = 1u << 0,     ///< A state is NaN or infinite: the world stands still.
+  kStatusNonFinite = 1u << 0,     ///< A state is NaN or infinite: the world is frozen.
   kStatusNotConverged = 1u << 1,  ///< Contacts, stiff cables: not to the tolerance.
-  /// More contacts than the model has room for; or, with the cable, one that touches more than it
-  /// can lie against (docs/theory/cables.md, section 6).
+  /// The contact buffer is full; or, if `cable` is set, the cable touches more edges and rods than
+  /// it can bend around (docs/theory/cables.md, section 6).
   kStatusContactOverflow = 1u << 2,
-  /// For a cable's tension, across it (docs/theory/cables.md, 12), for the forces of a body's
-  /// joints, or for how fast it turns about a hinge that its centre of mass is beside
-  /// (docs/theory/joints.md, section 6).
+  /// The step is too long: for transverse motion under a cable's tension (docs/theory/cables.md,
+  /// 12), for the joint forces of a body, or for its rotation about a hinge away from its center of
+  /// mass (docs/theory/joints.md, section 6).
   kStatusStepTooLong = 1u << 3,
   /// A body's centre of mass is below all of a terrain that has a height field or a mesh and no
   /// plane: it has left what it stood on, and falls for ever.
   kStatusFellOff = 1u << 4,
-  /// A member carried more than it bears (taut/safety.h). Of runs: worlds have no limits to look
-  /// at.
+  /// A member exceeded its strength, yield or buckling limit (taut/safety.h). Runs only: a Batch
+  /// does not check these limits.
   kStatusOverloaded = 1u << 5,
 };
 
@@ -87,10 +87,10 @@ struct WorldStatus {
   int ground = -1;
   double residual_m_per_s = 0;  ///< Of the last solve.
   int linear_solves = 0;        ///< Of the last step: in lanes, of all islands, and of pushing out.
-  /// Largest velocity by which contacts gave in in the last step because their equations contradict
-  /// each other around a loop of bodies (docs/theory/contact.md, section 5): at most 1e-6 m/s, and
-  /// 0 in most steps. `residual_m_per_s` refers to the equations after it.
-  double gave_in_m_per_s = 0;
+  /// Largest relaxation of the contact equations in the last step, as a velocity; they are relaxed
+  /// if they are inconsistent around a loop of bodies (docs/theory/contact.md, section 5). At most
+  /// 1e-6 m/s; 0 in most steps. `residual_m_per_s` refers to the relaxed equations.
+  double contact_relaxation_m_per_s = 0;
 };
 
 /// A cable at the current time.
@@ -287,8 +287,8 @@ class Batch {
   std::vector<Overlap> Overlaps(int world) const;
 
   // --- state -------------------------------------------------------------------------------
-  /// Not of a body with a motion, which is where that says. In models with joints the next step
-  /// begins by projecting the velocities onto what joints hold (docs/theory/joints.md, eq. 7a).
+  /// Not for kinematic bodies, whose motion sets their state. In models with joints the next step
+  /// first projects the velocities onto the joint constraints (docs/theory/joints.md, eq. 7a).
   void SetBodyState(int world, int body, const BodyState& state) noexcept;
   /// Bodies with motions go where they are at that time.
   void SetTime(int world, double time_s) noexcept;

@@ -11,7 +11,7 @@ struct CableReadings {
   Number rest_length_m{};  ///< L; a robot's encoder.
   Number length_m{};       ///< l: between its ends, along all attachments.
   Number rate_m_per_s{};   ///< dl/dt, exact.
-  // Of cables that the step holds for stiff, means over the last step (docs/theory/cables.md, 3).
+  // Forces of stiff cables are means over the last step (docs/theory/cables.md, section 3).
   Number tension_n{};          ///< What a load cell feels: spring and damper.
   Number elastic_n{};          ///< max(0, k (l - L)) alone: what NTRT logs.
   Number stiffness_n_per_m{};  ///< k.

@@ -56,7 +56,7 @@ class LiveRun {
   virtual const Commands& commands() const = 0;
   /// Null where no simulation is behind it.
   virtual const World* world() const = 0;
-  /// Members that have carried more than they bear so far, as in a summary.
+  /// Members that have exceeded a limit so far, as in a summary.
   virtual std::vector<Overload> Overloads() const = 0;
   /// What pushed and dragged in the last step: the experiment's events and hands. Zeros left out.
   virtual std::vector<OutsideForce> OutsideForces() const = 0;

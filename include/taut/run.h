@@ -89,7 +89,7 @@ struct RunSummary {
   std::vector<CableSummary> cables;
   std::vector<StrutSummary> struts;    ///< Of simulations.
   std::vector<AnchorSummary> anchors;  ///< The same.
-  std::vector<Overload> overloads;     ///< Of every step, not only recorded rows.
+  std::vector<Overload> overloads;     ///< From every step, not only from recorded rows.
   std::vector<DragSummary> drags;
   std::vector<ReferenceSpec> references;  ///< The experiment's.
   double system_max_tension_n = 0;        ///< Largest `tension` of any cable, whole run.

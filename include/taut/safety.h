@@ -19,13 +19,13 @@ enum class MemberKind {
   kRod,  ///< A body that is one straight rod (`StrutForces`).
 };
 
-/// What a member bears. Nothing where the model has no figure for it.
+/// Load limits of a member. Empty where the model has no value.
 struct MemberLimits {
   std::optional<double> buckling_n;  ///< Euler's load, of bars and rods: pi^2 E I / Lb^2.
   std::optional<double> yield_n;     ///< Yield stress times area, either way.
   std::optional<double> strength_n;  ///< Tension at which it breaks.
 };
-/// `length_m`: of a bar or rod, where the model says no buckling length.
+/// `length_m`: buckling length of a bar or rod whose model sets none.
 MemberLimits LimitsOf(const MemberDef& member, MemberKind kind, double length_m);
 
 /// What members carry, tension positive.
@@ -50,8 +50,8 @@ struct MemberLoad {
   /// Of a cable that has less tension than unloaded: how many times the load until it is slack,
   /// if tension falls in proportion.
   std::optional<double> slackening;
-  /// The smallest safety factor (buckling, yield, strength) and its name; nothing if there is none.
-  /// Slack is no failure and is not among them: see `slackening`.
+  /// The smallest safety factor (buckling, yield, strength) and its name; nothing without one.
+  /// Slack is not a failure and does not count: see `slackening`.
   std::optional<double> Least() const;
   std::string LeastOf() const;
 };
@@ -61,22 +61,21 @@ struct MemberLoad {
 std::vector<MemberLoad> MemberLoads(const ModelDef& def, const MemberForces& now,
                                     const MemberForces* unloaded = nullptr);
 
-/// What of a member was exceeded.
+/// Kinds of load limits.
 enum class MemberLimit {
   kStrength,  ///< Tension at which it breaks.
   kYield,     ///< Force at its yield stress, either way.
   kBuckling,  ///< Euler's load, under compression.
 };
 
-/// A member that carried more than it bears while its robot moved, and of which of its limits. The
-/// simulation goes on as if it held.
+/// A member that exceeded a limit during a run. The simulation goes on as if it held.
 struct Overload {
   MemberKind kind = MemberKind::kCable;
   std::string name;
   MemberLimit limit = MemberLimit::kStrength;
   double bears_n = 0;       ///< The limit, > 0.
-  double carried_n = 0;     ///< The largest that it carried, > 0: compression where it buckles.
-  double first_time_s = 0;  ///< When it carried more than it bears for the first time.
+  double carried_n = 0;     ///< Largest force, > 0: compression if `limit` is kBuckling.
+  double first_time_s = 0;  ///< Time at which it first exceeded the limit.
 };
 
 /// "cable", "bar" or "rod".
@@ -84,10 +83,10 @@ const char* NameOf(MemberKind kind) noexcept;
 /// "strength", "yield" or "buckling".
 const char* NameOf(MemberLimit limit) noexcept;
 
-/// A sentence without a full stop on one of them, as on cable a: cable a carried 17.14 N, more than
-/// its strength of 0.5 N, first at t = 0.12 s.
+/// Describes an overload in a sentence without a period: cable a carried 17.14 N, more than its
+/// strength of 0.5 N, first at t = 0.12 s.
 std::string Describe(const Overload& overload);
-/// The same on the first of several, and how many there are besides. Empty if there are none.
+/// Describes the first overload and the number of others. Empty without overloads.
 std::string Describe(const std::vector<Overload>& overloads);
 
 }  // namespace taut

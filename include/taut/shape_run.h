@@ -44,8 +44,7 @@ bool WriteShapeRun(const std::string& folder, const ExperimentSpec& experiment, 
 
 /// The same for each of some modes ("mode_1", ...), mechanisms ("mechanism_1", ...) and states of
 /// self-stress ("self_stress_1", ...), in folders of these names below `folder`, which are
-/// returned. Motions as a whole are left out. Tensions of a self-stress are per cent of the
-/// largest.
+/// returned. Rigid motions are left out. Tensions of a self-stress are per cent of the largest.
 std::vector<std::string> WriteShapeRuns(const std::string& folder, const ExperimentSpec& experiment,
                                         const Modes& modes, const ForceAnalysis& forces,
                                         int most_modes, const ShapeLook& look, Diagnostics& out);

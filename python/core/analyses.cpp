@@ -185,9 +185,9 @@ void AddEquilibrium(Type& type) {
   type.def_property_readonly("largest_move_of", [](const Analysis& a) { return a.move.name; });
   type.def_property_readonly(
       "least_stiffness_n_per_m", [](const Analysis& a) { return a.least_stiffness_n_per_m; },
-      "The smallest u^T K u over the sum of the squared displacements of all points, of the "
-      "motions "
-      "that nothing holds but those as a whole [N/m]; negative: unstable. None without equilibrium "
+      "The smallest u^T K u over the sum of the squared displacements of all points, over all "
+      "free motions u "
+      "except rigid motions [N/m]; negative: unstable. None without equilibrium "
       "or such a motion.");
   type.def_property_readonly(
       "stiffness", [](const Analysis& a) { return ArrayOf(a.tangent.stiffness); },
@@ -262,7 +262,7 @@ void AddForces(Type& type) {
       "rank", [](const Analysis& a) { return a.forces.rank.rank; }, "Of `equilibrium_matrix`.");
   type.def_property_readonly(
       "rigid", [](const Analysis& a) { return a.forces.rigid; },
-      "How many motions as a whole no member resists; those that move an anchored point are "
+      "Number of rigid motions that no member resists; motions of an anchored point are "
       "mechanisms.");
   type.def_property_readonly(
       "self_stress_n", [](const Analysis& a) { return StatesOf(a.forces, &SelfStress::force_n); },

@@ -226,8 +226,8 @@ class Finder {
         if (was.body_a == now.body_a && was.body_b == now.body_b) depth += was.depth_m;
       }
       if (now.depth_m <= depth) continue;
-      return "\"" + NameOf(now.a) + "\" and \"" + NameOf(now.b) + "\" are in each other by " +
-             Brief(now.depth_m) + " m there: of what may touch, statics knows planes only";
+      return "\"" + NameOf(now.a) + "\" and \"" + NameOf(now.b) + "\" overlap by " +
+             Brief(now.depth_m) + " m there: statics supports contact with planes only";
     }
     return "";
   }

@@ -56,8 +56,8 @@ class Analysis {
     return full;
   }
 
-  /// Motions that change no member: as a whole, and the mechanisms. What is across `matrix` works
-  /// on forces, the dual of motions; they are the same columns in lengths.
+  /// Motions that change no member length: rigid motions and mechanisms. What is across `matrix`
+  /// works on forces, the dual of motions; they are the same columns in lengths.
   void FindMotions(const Split& split, const Eigen::MatrixXd& scaled) {
     // Rigid motions in the coordinates of `scaled`, whose columns are across each other.
     const Eigen::MatrixXd to_scaled =
@@ -175,12 +175,12 @@ class Analysis {
     for (std::size_t m = 0; m < members_.size(); ++m) {
       Add(members_[m].at, feasible_[Index(m)], 0, unused, &stiffness);
     }
-    // A rigid motion may be part of a mechanism; what counts is what it does to the points.
+    // A mechanism may contain a rigid motion; only the displacement of the points counts.
     const Eigen::VectorXd values = EigenvaluesOver(stiffness, metric_, AcrossRigid(mechanisms_));
     out_.mechanism_stiffness.assign(values.data(), values.data() + values.size());
   }
 
-  /// Motions without what they have of motions as a whole.
+  /// Motions without their rigid part.
   Eigen::MatrixXd AcrossRigid(const Eigen::MatrixXd& motions) const {
     if (rigid_.cols() == 0 || motions.cols() == 0) return motions;
     const Eigen::MatrixXd weight = rigid_.transpose() * metric_ * rigid_;

@@ -1,4 +1,4 @@
-// The node or center of mass that moves most from where it is described to a pose.
+// Largest displacement of a node or center of mass from the described pose to another one.
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <string>
@@ -37,8 +37,8 @@ Move LargestMove(const ModelDef& def, const Pose& pose) {
   Vec3 middle, moved;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   if (!s.held_by_world) {
-    // The rigid motion that fits best is no matter of statics: it takes the middle to the middle,
-    // and turns by the rotation nearest to the sum of after before^T.
+    // Statics leaves the rigid motion open: subtract the best fit, which maps centroid to centroid
+    // and rotates by the rotation nearest to sum(after before^T) (Kabsch).
     const double share = 1.0 / static_cast<double>(before.size());
     for (const Vec3& p : before) middle = middle + share * p;
     for (const Vec3& p : after) moved = moved + share * p;

@@ -14,9 +14,9 @@ namespace taut {
 namespace analysis {
 namespace {
 
-constexpr double kUnmeasured = 1e-9;  ///< Of the largest eigenvalue of a body's metric.
+constexpr double kUnmeasured = 1e-9;  ///< Share of the largest eigenvalue of a body's metric.
 
-/// The columns of `effective` that are motions of body `b`, in its six motions.
+/// Returns the columns of `effective` that move body `b`, restricted to its six motions.
 Eigen::MatrixXd MotionsOfBody(const Eigen::MatrixXd& effective, Eigen::Index b) {
   const Eigen::MatrixXd rows = effective.middleRows(6 * b, 6);
   Eigen::MatrixXd own(6, 0);
@@ -28,7 +28,7 @@ Eigen::MatrixXd MotionsOfBody(const Eigen::MatrixXd& effective, Eigen::Index b) 
   return own;
 }
 
-/// Directions in the columns of `own` that `metric` hardly measures.
+/// Returns the directions within `own` whose eigenvalue of `metric` is negligible.
 Eigen::MatrixXd Unmeasured(const Eigen::MatrixXd& metric, const Eigen::MatrixXd& own) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(own.transpose() * metric * own);
   const Eigen::VectorXd& values = solver.eigenvalues();
@@ -54,7 +54,7 @@ Eigen::MatrixXd PointMetric(const ModelDef& def, const Structure& s) {
     block.topLeftCorner(3, 3) += Eigen::Matrix3d::Identity();
     const Eigen::MatrixXd left = Unmeasured(block, own);
     if (left.cols() == 0) continue;
-    // From motions to the coordinates of `own`, in which all are lengths.
+    // Maps motions to coordinates of `own`, which are all lengths.
     const Eigen::MatrixXd measured =
         left.transpose() * (own.transpose() * own).ldlt().solve(own.transpose());
     block += measured.transpose() * measured;

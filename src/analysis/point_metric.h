@@ -1,19 +1,19 @@
-/// Squared displacements of a structure's points as a measure of its motions
-/// (docs/theory/statics.md, section 2).
+/// Metric of motions by the squared displacements of a structure's points (docs/theory/statics.md,
+/// section 2).
 #pragma once
 
 #include "analysis/structure.h"
 
 namespace taut::analysis {
 
-/// The sum over all points at which members, joints or loads act of the squared displacement, as a
-/// matrix of motions. Where a body's points leave a motion of it unmeasured, its center of mass
-/// counts as well; what is unmeasured then, by translation and turn times reach. So it is positive
-/// definite in the motions that count (`Structure::Effective`).
+/// Assembles the sum of squared displacements of all points at which members, joints or loads act,
+/// as a quadratic form of motions. If its points do not measure a motion of a body, its center of
+/// mass counts as well, then translation and rotation times reach. So the metric is positive
+/// definite on `Structure::Effective`.
 Eigen::MatrixXd PointMetric(const ModelDef& def, const Structure& structure);
 
-/// Eigenvalues of `stiffness` over `metric` in the span of `motions`, ascending; none if the metric
-/// is not positive there.
+/// Returns the generalized eigenvalues of `stiffness` and `metric` in the span of `motions`,
+/// ascending; empty if the metric is not positive there.
 Eigen::VectorXd EigenvaluesOver(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& metric,
                                 const Eigen::MatrixXd& motions);
 

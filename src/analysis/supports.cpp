@@ -1,5 +1,5 @@
-// Motions that supports leave free, and load cases that move the structure along them
-// (docs/theory/statics.md, section 4).
+// Missing supports: free rigid motions, and load cases that act along them (docs/theory/statics.md,
+// section 4).
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -21,7 +21,7 @@ using base::Brief;
 
 constexpr double kSmall = 1e-9;
 
-/// Rounding is not shown: `size` is the scale of the components.
+/// Formats a vector; components that are rounding errors relative to `size` print as 0.
 std::string Text(const Vec3& a, double size) {
   const auto part = [&](double x) { return Brief(std::fabs(x) < kSmall * size ? 0 : x); };
   return "(" + part(a.x) + ", " + part(a.y) + ", " + part(a.z) + ")";
@@ -37,7 +37,7 @@ std::string Joined(const std::vector<std::string>& parts) {
   return text;
 }
 
-/// An orthonormal basis of the columns' span by coordinate axes where these lie in it.
+/// Returns an orthonormal basis of the columns' span with as many coordinate axes as possible.
 std::vector<Vec3> AxesIn(const Eigen::MatrixXd& span) {
   std::vector<Vec3> axes;
   Eigen::MatrixXd rest = span;
@@ -69,7 +69,7 @@ std::string AxisName(const Vec3& axis) {
   return Text(axis, 1);
 }
 
-/// Rigid motions in words.
+/// Describes rigid motions in words.
 class Words {
  public:
   Words(const Structure& s, const Component& component, const Eigen::MatrixXd& twists)
@@ -95,7 +95,7 @@ class Words {
       line = " through " + Text(*held, s_.size_m);
     } else {
       const Eigen::VectorXd share = turns.completeOrthogonalDecomposition().solve(Of(axis));
-      // Per turn of 1 rad; the third part of a twist is a turn times the size.
+      // Per 1 rad; the rotational part of a twist is multiplied by the size.
       const Vec3 slide = s_.size_m * To(twists_.topRows(3) * share);
       const double pitch = Dot(axis, slide);
       line = " through " + Text(component_.middle_m + Cross(axis, slide), s_.size_m);
@@ -112,7 +112,7 @@ class Words {
     }
   }
 
-  /// A point that holds the component, if turns about an axis through it are free; else null.
+  /// Returns a held point of the component about which rotation along `axis` is free; else null.
   const Vec3* HeldPointOn(const Vec3& axis) const {
     for (const auto* points : {&component_.held_points_m, &component_.joints_m}) {
       for (const Vec3& held : *points) {
@@ -132,15 +132,15 @@ class Words {
   std::vector<std::string> out_;
 };
 
-/// Force and stiffness of the loads along rigid motions: of weight and loads, which keep their
-/// directions, of joints' springs, and of what joints with the world bear of them.
+/// Generalized force and stiffness of the loads along rigid motions: weight and loads of fixed
+/// direction, joint springs, and reactions of joints with the world.
 struct LoadWork {
   Eigen::VectorXd force;
   Eigen::MatrixXd stiffness;
-  double scale_n = 0;  ///< Sum of the loads' sizes.
+  double scale_n = 0;  ///< Sum of the loads' magnitudes.
 };
 
-/// Of weight and loads alone.
+/// Computes the part of weight and loads.
 LoadWork WorkOfLoads(const Structure& s, const Component& component,
                      const Eigen::MatrixXd& twists) {
   const Eigen::Index count = twists.cols();
@@ -180,8 +180,8 @@ LoadWork WorkOf(const Structure& s, const Component& component, const Eigen::Mat
   work.force -= motions.transpose() * gradient;
   work.stiffness += motions.transpose() * springs * motions;
 
-  // Joints that slide or turn: a twist's path leaves what they hold by a second order, against
-  // the forces with which they bear the loads.
+  // The path of a twist violates the constraints of sliding and rotating joints to second order;
+  // the reaction forces do work there.
   const std::vector<Coordinate> held = RowsWithWorld(s, component);
   if (held.empty()) return work;
   const Eigen::MatrixXd all = Eigen::MatrixXd::Identity(6, 6);
@@ -198,10 +198,10 @@ LoadWork WorkOf(const Structure& s, const Component& component, const Eigen::Mat
   return work;
 }
 
-/// What the loads do along free motions.
+/// Effect of the loads along free motions.
 enum class Effect { kNone, kPushes, kTopples };
 
-/// Whether a force acts along a motion in which nothing resists it.
+/// Whether a force acts along a motion without positive stiffness.
 bool Pushes(const Eigen::VectorXd& force, const Eigen::MatrixXd& stiffness, double least_n,
             double least_n_per_m) {
   if (force.size() == 0) return false;
@@ -216,7 +216,7 @@ bool Pushes(const Eigen::VectorXd& force, const Eigen::MatrixXd& stiffness, doub
 Effect EffectOf(const LoadWork& work, const Eigen::MatrixXd& twists, double size_m, bool held) {
   const double least_n = kSmall * work.scale_n, least_n_per_m = least_n / size_m;
   if (!(least_n > 0)) return Effect::kNone;
-  // Translations first: forces along them make the stiffness of turns depend on the turns' axes.
+  // Translations first: forces along them make the rotational stiffness depend on the axes.
   const Eigen::MatrixXd still = Nothing(twists.bottomRows(3), kSmall);
   const Eigen::MatrixXd springs = still.transpose() * work.stiffness * still;
   if (Pushes(still.transpose() * work.force, springs, least_n, least_n_per_m)) {
@@ -233,7 +233,7 @@ Effect EffectOf(const LoadWork& work, const Eigen::MatrixXd& twists, double size
 
 SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads) {
   using namespace analysis;  // NOLINT(google-build-using-namespace): this function alone
-  // As described: a support that settles takes the structure with it.
+  // As described: a settling support moves the structure with it.
   LoadCaseSpec dead = loads;
   dead.settlements.clear(), dead.cables.clear(), dead.bars.clear();
   const Structure s(def, dead, true);
@@ -251,7 +251,7 @@ SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads) {
     twists = twists * Nothing(changes, kSmall);
     const Eigen::MatrixXd motions = EffectivePart(effective, MotionsOf(s, component, twists));
     if (twists.cols() == 0) continue;
-    // Without twists that only turn points and rods about themselves.
+    // Drops twists that only rotate points and rods about themselves.
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(motions, Eigen::ComputeFullV);
     Eigen::Index rank = 0;
     while (rank < svd.singularValues().size() && svd.singularValues()[rank] > kSmall) ++rank;
@@ -265,15 +265,15 @@ SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads) {
     const std::string moves = part + " can still " + Joined(Words(s, component, twists).Run());
     out.free += static_cast<int>(rank);
     out.free_motions.push_back(moves);
-    const bool ground = !s.touches.empty();  // it may bear what comes down on it
+    const bool ground = !s.touches.empty();  // contact may support the structure
     const Effect effect =
         EffectOf(WorkOf(s, component, twists), twists, s.size_m, component.IsHeld());
     if (ground || effect == Effect::kNone || !out.missing.empty()) continue;
     const bool topples = effect == Effect::kTopples;
-    out.missing = moves + ", and the loads " + (topples ? "topple it" : "push it along");
+    out.missing = moves + ", and the loads " + (topples ? "topple it" : "act along this motion");
     out.fix = "no member resists " + std::string(rank == 1 ? "this motion" : "these motions") +
-              ": add an anchor or a support at nodes that move in it, " + std::to_string(rank) +
-              (rank == 1 ? " held direction" : " held directions") + " or more in all";
+              ": add anchors or supports that hold at least " + std::to_string(rank) +
+              (rank == 1 ? " direction" : " directions") + " at nodes that move";
   }
   return out;
 }

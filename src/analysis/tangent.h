@@ -11,7 +11,7 @@ namespace taut::analysis {
 /// `near_m` of planes, none of which pulls.
 Reactions ReactionsAsDescribed(const Structure& structure, double near_m);
 
-/// The stiffness as described, with the forces of what holds there.
+/// Tangent stiffness in the described pose, including the geometric part of the reactions.
 struct HeldStiffness {
   Reactions holding;
   Eigen::MatrixXd stiffness;

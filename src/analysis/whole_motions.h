@@ -1,4 +1,4 @@
-/// Rigid-body motions of a structure that its supports leave (docs/theory/statics.md, section 2).
+/// Rigid motions that supports leave free (docs/theory/statics.md, section 2).
 #pragma once
 
 #include <vector>
@@ -7,9 +7,9 @@
 
 namespace taut::analysis {
 
-/// Moving bodies that members and joints connect, and the places in the world where these end.
+/// Connected component: moving bodies that members and joints connect, with their world points.
 struct Component {
-  std::vector<std::size_t> bodies;  ///< Among those that move.
+  std::vector<std::size_t> bodies;  ///< Indices among moving bodies.
   Vec3 middle_m;                    ///< Mean of their centers of mass.
   std::vector<Vec3> held_points_m;  ///< Ends of cables, bars and distances in the world.
   std::vector<Vec3> held_axes;      ///< Of wheels in the world.
@@ -19,49 +19,49 @@ struct Component {
   bool Has(int moving) const;  ///< A body among those that move, or -1.
 };
 
-/// By the first of their bodies.
+/// Returns the connected components in the order of their first bodies.
 std::vector<Component> ComponentsOf(const ModelDef& def, const Structure& structure);
 
-/// Rigid motions of a component that move no held point and no held axis, and that its joints with
-/// the world allow; 6 x k, orthonormal: translation of `middle_m`, then the turn about it times the
-/// structure's size [m].
+/// Returns the rigid motions of a component that move no held point or axis and that its joints
+/// with the world allow. 6 x k, orthonormal: translation of `middle_m`, then rotation about it
+/// times the structure's size [m].
 Eigen::MatrixXd TwistsOf(const Structure& structure, const Component& component);
 
-/// A row a direction in which held points and axes do not move, over all six twists.
+/// Returns the constraint rows of held points and axes over all six twists.
 Eigen::MatrixXd AnchorRows(const Structure& structure, const Component& component);
 
-/// Rows of the joints between a component and the world.
+/// Returns the rows of the joints between a component and the world.
 std::vector<Coordinate> RowsWithWorld(const Structure& structure, const Component& component);
 
-/// First derivatives of coordinates along twists, a row a coordinate.
+/// Returns the first derivatives of coordinates along twists, one row per coordinate.
 Eigen::MatrixXd SlopesAlong(const std::vector<Coordinate>& coordinates, const Structure& structure,
                             const Component& component, const Eigen::MatrixXd& twists);
 
-/// The second derivative of a coordinate along exp(t xi) for twists xi: bilinear, symmetric.
+/// Returns the second derivative of a coordinate along exp(t xi) as a symmetric form of twists xi.
 Eigen::MatrixXd SecondAlong(const Coordinate& coordinate, const Structure& structure,
                             const Component& component, const Eigen::MatrixXd& twists);
 
-/// Motions of all bodies, a column a twist; other components stand still.
+/// Returns motions of all bodies, one column per twist; zero for other components.
 Eigen::MatrixXd MotionsOf(const Structure& structure, const Component& component,
                           const Eigen::MatrixXd& twists);
 
-/// The motions of `TwistsOf` of every component, side by side.
+/// Returns the rigid motions (`TwistsOf`) of all components as columns.
 Eigen::MatrixXd WholeMotions(const ModelDef& def, const Structure& structure);
 
 /// Returns the part of motions that counts (`Structure::Effective`).
 Eigen::MatrixXd EffectivePart(const Eigen::MatrixXd& effective, const Eigen::MatrixXd& motions);
 
-/// An orthonormal basis of the null space of `rows`: singular values up to `limit` count as zero.
+/// Returns an orthonormal basis of the null space of `rows`; singular values <= `limit` count as 0.
 Eigen::MatrixXd Nothing(const Eigen::MatrixXd& rows, double limit);
 
-/// Motions that nothing holds.
+/// Basis of the free motions.
 struct FreeMotions {
-  Eigen::MatrixXd basis;   ///< Those as a whole that nothing resists first, then all others.
-  Eigen::Index rigid = 0;  ///< How many of them are motions as a whole.
+  Eigen::MatrixXd basis;   ///< Unresisted rigid motions first, then all others.
+  Eigen::Index rigid = 0;  ///< Number of rigid motions.
 };
 
-/// Splits motions that leave `held` (columns) at rest. `stiffness` decides what is resisted; the
-/// two parts are orthogonal by `weight`: the mass, or a metric.
+/// Splits the motions that leave `held` (columns) at rest into rigid motions without stiffness and
+/// the rest. The two parts are orthogonal by `weight`: the mass, or a metric.
 FreeMotions FreeMotionsOf(const ModelDef& def, const Structure& structure,
                           const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& weight,
                           const Eigen::MatrixXd& held);

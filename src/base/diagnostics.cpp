@@ -54,7 +54,7 @@ std::string Printable(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
     const bool is_plain = (byte >= 0x20 && byte != 0x7f) || byte == '\n' || byte == '\t';
-    // U+0080 to U+009F, which terminals take for ESC and a letter.
+    // U+0080 to U+009F: C1 controls, which terminals interpret as ESC and a letter.
     const bool begins_c1 = byte == 0xc2 && i + 1 < text.size() &&
                            (static_cast<unsigned char>(text[i + 1]) & 0xe0) == 0x80;
     if (is_plain && !begins_c1) {
@@ -105,14 +105,14 @@ std::string Diagnostics::Format() const {
 }
 
 std::string_view ClosestMatch(std::string_view word, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kLongest = 100;  // of names; longer ones are no misspellings
+  constexpr std::size_t kLongest = 100;  // length of a name; longer words are not misspellings
   std::string_view best;
   if (word.size() > kLongest) return best;
   int best_distance = static_cast<int>(word.size()) / 3 + 1;  // a third of the letters may differ
   for (const std::string& candidate : candidates) {
     const auto longer =
         static_cast<std::ptrdiff_t>(candidate.size()) - static_cast<std::ptrdiff_t>(word.size());
-    if (longer > best_distance || -longer > best_distance) continue;  // so many letters differ
+    if (longer > best_distance || -longer > best_distance) continue;  // too many letters differ
     const int distance = EditDistance(word, candidate);
     if (distance <= best_distance && (best.empty() || distance < best_distance)) {
       best = candidate;

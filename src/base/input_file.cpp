@@ -17,7 +17,7 @@ std::optional<std::string> ReadInputFile(const std::string& path, std::size_t mo
   };
   std::error_code ignored;
   const auto size_limit = [&] {
-    return refuse("larger than " + std::to_string(most_bytes / 1'000'000) + " MB", hint);
+    return refuse("is larger than " + std::to_string(most_bytes / 1'000'000) + " MB", hint);
   };
   if (std::filesystem::is_directory(path, ignored)) return refuse("is a directory, not a file");
   if (std::filesystem::is_regular_file(path, ignored)) {

@@ -9,13 +9,13 @@
 
 namespace taut::base {
 
-/// Who named the file. A user may name a pipe on the command line; a file that names another means
-/// a regular one, and a pipe or device there would be waited for or read without end.
+/// Origin of a path. Users may pass a pipe on the command line. Paths inside files must be regular
+/// files: reading a pipe or device could block or never end.
 enum class NamedBy { kUser, kFile };
 
-/// All bytes of a file. Nothing, and a complaint, if it is a directory, cannot be opened or read,
-/// is no regular file where a file names it, or is larger than `most_bytes`, of which no more is
-/// read; `hint` says what to do about that.
+/// Returns all bytes of a file. Nothing, and a diagnostic, if it is a directory, cannot be read, is
+/// not a regular file (NamedBy::kFile), or is larger than `most_bytes`; then reading stops there.
+/// `hint` is the hint of the size diagnostic.
 std::optional<std::string> ReadInputFile(const std::string& path, std::size_t most_bytes,
                                          const std::string& hint, Diagnostics& out,
                                          NamedBy named_by = NamedBy::kFile);

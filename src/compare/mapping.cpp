@@ -44,7 +44,7 @@ class MappingReader {
   MappingReader(const std::string& path, Diagnostics& out) : path_(path), out_(out) {}
 
   std::optional<Mapping> Read() {
-    const auto text = base::ReadInputFile(path_, kMaxBytes, "a mapping has a few rules", out_,
+    const auto text = base::ReadInputFile(path_, kMaxBytes, "mappings have a few rules", out_,
                                           base::NamedBy::kUser);
     if (!text) return std::nullopt;
     const Json json = Parse(*text);

@@ -83,8 +83,8 @@ void Check(const MapReader& map, TerrainBoxText& box);
 template <class Io>
 void Keys(Io& io, Like<TerrainText> auto& t) {
   io.Map("terrain", "terrain",
-         "A part of the terrain: a plane, a box, many boxes, a height field or a mesh. Parts that "
-         "meet, within 2e-7 of the larger one's extent, are one surface.",
+         "A part of the terrain: a plane, a box, many boxes, a height field or a mesh. Parts form "
+         "one surface if they meet within 2e-7 of the larger part's extent.",
          R"({"name": "ground", "plane": {"height_m": 0, "friction": 0.5}})");
   io("name", t.name, kNeeded, kName, "Name of the part.");
   io.OneOf({"plane", "box", "scatter", "stairs", "height_field", "mesh"});

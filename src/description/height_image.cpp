@@ -107,10 +107,10 @@ std::optional<HeightImage> ReadHeightImage(const std::string& path, double most,
   }
   const double unpacked = sizeof(double) * samples;
   if (unpacked > trace::MostUnpackedBytes(static_cast<double>(bytes->size()))) {
-    return refuse("is packed too tightly: " + std::to_string(head.columns) + " x " +
+    return refuse("has too high a compression ratio: " + std::to_string(head.columns) + " x " +
                       std::to_string(head.rows) + " samples from " + std::to_string(bytes->size()) +
-                      " bytes take " + trace::kUnpackLimit,
-                  "fewer, larger cells, or save it without compression");
+                      " bytes unpack to " + trace::kUnpackLimit,
+                  "use fewer, larger cells, or save it without compression");
   }
   const std::size_t width = head.bits == 16 ? 2 : 1, columns = head.columns, rows = head.rows;
   std::vector<png_byte> samples_of(width * columns * rows);

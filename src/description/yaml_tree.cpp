@@ -259,7 +259,7 @@ ValuePtr ParseYaml(const std::string& text, const std::string& file, Diagnostics
 
 ValuePtr ReadYaml(const std::string& path, Diagnostics& out) {
   const auto text = base::ReadInputFile(
-      path, kMaxFileBytes, "what repeats can be a part with `copies:`", out, base::NamedBy::kUser);
+      path, kMaxFileBytes, "write repeated parts once, with `copies:`", out, base::NamedBy::kUser);
   return text ? ParseYaml(*text, path, out) : nullptr;
 }
 

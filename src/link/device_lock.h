@@ -1,5 +1,5 @@
-/// Which process has locked a device, and the name by which all programs of a machine know the
-/// device, whatever link or user they come by.
+/// Lock owner and unique key of a serial device. The key is the same for all users and symbolic
+/// links of a machine.
 #pragma once
 
 #include <sys/types.h>
@@ -9,10 +9,10 @@
 
 namespace taut::link {
 
-/// The process that holds a flock on the device; nothing if there is none or it cannot be seen.
+/// Returns the process that holds a flock on the device; nothing without a visible one.
 std::optional<pid_t> DriverOf(const std::string& device);
 
-/// "166:0", the device's number, or that of the file where it is none; empty if there is neither.
+/// Returns the device number ("166:0"), else device and inode of the file; empty without one.
 std::string DeviceKey(const std::string& device);
 
 }  // namespace taut::link

@@ -16,7 +16,7 @@ using board::Mode;
 constexpr int kObey = 10;
 /// The last version before which the adapter left the bus without a stop.
 constexpr int kGoodAdapter = 8;
-/// For the stop that the destructor sends, whatever the adapter does.
+/// Timeout of the stop that the destructor sends.
 constexpr double kLastWords_s = 0.1;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -45,7 +45,7 @@ Driver::~Driver() {
   on_event = {};
   if (state_.stage == Stage::kUnconfigured || !port_.is_open()) return;
   if (state_.stage == Stage::kActive) Stop("the driver ends");
-  // Who asked for a stop last may have left it unsaid.
+  // A stop may have been requested but not sent yet.
   const double until_s = port_.now_s() + kLastWords_s;
   for (int i = 0; state_.stopping && i < 2; ++i) CycleBy(until_s);
 }

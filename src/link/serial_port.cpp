@@ -30,13 +30,13 @@ class SerialPort final : public Port {
     port_.emplace(context_);
     port_->open(device_, error);  // raw: Asio sets that
     if (!error && use_ == PortUse::kDrive) {
-      // An adapter that was plugged in again is another device: each opening locks.
+      // A replugged adapter is a new device: lock it at each opening.
       const int handle = port_->native_handle();
       if (flock(handle, LOCK_EX | LOCK_NB) != 0) {
         port_.reset();
         return kDriven;
       }
-      ioctl(handle, TIOCEXCL);  // also keeps out programs that know no flock, but for root's
+      ioctl(handle, TIOCEXCL);  // also excludes programs that do not use flock, except root's
     }
     // The adapter ignores the rate; some drivers want one all the same.
     if (!error) port_->set_option(asio::serial_port_base::baud_rate(115'200), error);
@@ -117,7 +117,7 @@ std::unique_ptr<Port> OpenSerialPort(const std::string& device, PortUse use, Dia
     out.Error({device, 0, 0},
               (process ? "process " + std::to_string(*process) : std::string("another program")) +
                   " drives this robot",
-              "`taut robot estop` stops it all the same");
+              "`taut robot estop` stops the robot nevertheless");
     return nullptr;
   }
   out.Error({device, 0, 0}, "cannot be opened: " + why,

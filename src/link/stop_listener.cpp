@@ -18,7 +18,7 @@ namespace {
 
 constexpr char kStop[] = "stop", kStopped[] = "stopped", kTried[] = "unconfirmed";
 
-/// In the kernel's own name space, which no folder, user or session divides. Its size, or 0.
+/// Builds a Linux abstract socket address (independent of folder and user). Returns its size, or 0.
 socklen_t AddressOf(const std::string& device, sockaddr_un* to) {
   const std::string key = DeviceKey(device);
   if (key.empty()) return 0;
@@ -84,7 +84,7 @@ StopAnswer AskToStop(const std::string& device, double patience_s) {
   if (size == 0) return StopAnswer::kNobody;
   const int asking = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (asking < 0) return StopAnswer::kNobody;
-  // A name of its own, which the kernel chooses, for the answer to go to.
+  // An address that the kernel chooses, for the answer.
   sockaddr_un own{};
   own.sun_family = AF_UNIX;
   const bool named =

@@ -101,7 +101,7 @@ TAUT_INLINE V Behind(const PathPoint<V>* points, const Wheel<V>* wheels, int k, 
 }
 
 /// Lays wheels first..last-1, which follow one another, between the points before and behind them.
-/// `begun`: they have points and thetas to begin with; else on none of them it lies.
+/// `begun`: points and thetas hold an initial guess; else the cable starts off all wheels.
 template <class V, class S = typename Wheel<V>::S>
 void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last, const S* along,
                      bool begun) noexcept {
@@ -167,11 +167,11 @@ void LayOnWheels(PathPoint<V>* points, int wheel_count, Wheel<V>* wheels, const 
   }
 }
 
-/// Points to begin with for wheels that are all in a row: on the side of the axis on which the
-/// cable goes by, near where the way to its end crosses that, at most `half` from the wheel's
-/// middle [m]. An angle about an axis is known but for whole turns, by the one before, and those
-/// are between the points that are next along the cable. Begun with the cable's ends instead, a
-/// cable in a loop was found to lie on nothing. `has`: 0 where there is no such wheel, else 1.
+/// Sets the initial guess for consecutive wheels: points on the side of the axis on which the cable
+/// passes, near the crossing of the way to its end, at most `half` from the wheel's middle [m]. The
+/// previous angle determines the whole turns of an angle about an axis, which is measured between
+/// the neighboring points along the cable. With the cable's ends as initial guess, a looped cable
+/// was found to touch no wheel. `has`: 1 for existing wheels, else 0.
 template <class V, class S = typename Wheel<V>::S>
 void BeginOnWheels(PathPoint<V>* points, int count, Wheel<V>* wheels, const S* half,
                    const S* has) noexcept {

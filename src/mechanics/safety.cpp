@@ -15,7 +15,7 @@ namespace {
 
 double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
 
-/// Eq. 9 to 11.
+/// Computes the safety factors of a section (eq. 9 to 11).
 void TakeSection(const MemberDef& member, double length_m, MemberLoad& load) {
   const MemberLimits bears = LimitsOf(member, load.kind, length_m);
   const double push_n = -load.least_n, pull_n = load.greatest_n;

@@ -181,8 +181,8 @@ class BodyReader {
     if (its.mass.mass_kg < 0) layers.Error("mass", "its mass is negative");
   }
 
-  /// `first`: of its shapes, which are the last ones. Going through all shapes for each body would
-  /// take the square of their number.
+  /// `first`: index of the body's first shape; its shapes are the last ones. A search through all
+  /// shapes for each body would take quadratic time.
   void SumOfShapes(int body, std::size_t first) {
     std::vector<MassProperties> parts;
     Body& its = scene_.bodies[Scene::Index(body)];

@@ -12,8 +12,8 @@
 
 namespace taut::mjcf {
 
-/// Of so many errors the first have a hint that compares a name with all known ones. A file may
-/// hold a wrong name for each of its elements, and comparing all with all would not end.
+/// Number of errors with a "did you mean" hint. Each hint compares a name with all known names,
+/// which would take quadratic time in a file with many wrong names.
 inline constexpr std::size_t kMostHints = 10;
 
 struct Pose {

@@ -25,7 +25,7 @@ inline mechanics::BodyMoment MomentOf(const World& world, int body, int lane = 0
   return {now.position_m, now.orientation, now.angular_velocity_rad_per_s};
 }
 
-/// The joints of a model, with `from_m` and `to_m` as arms of their bodies.
+/// Returns the joints of a model with `from_m` and `to_m` relative to the centers of mass.
 std::vector<JointDef> JointsByArms(const ModelDef& def);
 
 /// Gathers the forces of a lane: of cables with the tensions that are read (docs/theory/loads.md,
@@ -40,7 +40,7 @@ class BodyForces {
  private:
   std::vector<std::vector<BodyPoint>> cables_;  ///< Empty: their path must be asked for.
   std::vector<int> bodies_of_nodes_;
-  std::vector<JointDef> joints_;  ///< By arms.
+  std::vector<JointDef> joints_;  ///< From `JointsByArms`.
   std::size_t body_count_;
   std::vector<BodyState> states_;
   std::vector<PathPoint<Vec3>> path_;

@@ -151,7 +151,7 @@ class Live final : public LiveRun {
 
  private:
   void Watch() {
-    if (watch_.empty()) return;  // to observe costs more than to look
+    if (watch_.empty()) return;  // building the observation costs more than the check
     watch_.Take(loop_.time_s(), loop_.exact(), plant_->world());
   }
 

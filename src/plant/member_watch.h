@@ -1,4 +1,4 @@
-/// Watch over the forces of members against their limits, step by step.
+/// Overload detection: compares member forces with their limits at every step.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace taut::plant {
 
-/// Looks only at members with a limit, so robots without any pay nothing.
+/// Checks only members with a limit, so robots without limits have no cost.
 class MemberWatch {
  public:
   explicit MemberWatch(const ModelDef& def);
@@ -19,9 +19,9 @@ class MemberWatch {
   /// Whether no member has a limit.
   bool empty() const noexcept { return members_.empty(); }
 
-  /// Takes a moment of a lane in. Bars and rods need `world`; without one, only cables are looked
-  /// at. Forces are as sensors read them: those of stiff cables, bars and contacts are means over
-  /// the last step.
+  /// Checks the current state of a lane. Bars and rods need `world`; without it, only cables are
+  /// checked. Forces are sensor values: those of stiff cables, bars and contacts are means over the
+  /// last step.
   void Take(double time_s, const Observation& exact, const World* world, int lane = 0);
 
   /// Cables first, then bars, then rods.
@@ -31,16 +31,16 @@ class MemberWatch {
   struct Watched {
     MemberKind kind = MemberKind::kCable;
     int index = 0;        ///< The cable, the joint or the place in `struts_`.
-    bool parted = false;  ///< A cable of several tensions.
+    bool parted = false;  ///< A cable with several spans (friction).
     std::array<Overload, 3> limits;
   };
-  /// False if it has no limit.
+  /// Returns false if the member has no limit.
   bool Add(MemberKind kind, int index, const std::string& name, const MemberDef& member,
            double length_m);
   static void Take(Watched& member, double time_s, double least_n, double greatest_n);
 
   std::vector<Watched> members_;
-  std::vector<JointDef> joints_;  ///< By arms.
+  std::vector<JointDef> joints_;  ///< From `JointsByArms`.
   std::vector<mechanics::Strut> struts_;
   BodyForces forces_;
 };

@@ -32,12 +32,12 @@ std::string DescribeStatus(const ModelDef& def, const WorldStatus& status) {
   if (status.bits & kStatusStepTooLong) {
     add(status.cable >= 0
             ? "the step is too long for the tension of a cable"
-            : "the step is too long for a body's joints: their forces, or its turns about a hinge "
-              "beside its centre of mass");
+            : "the step is too long for the joint forces of a body, or for its rotation about a "
+              "hinge away from its center of mass");
   }
   if (status.bits & kStatusContactOverflow) {
-    add(status.cable >= 0 ? "a cable touches more than it can lie against"
-                          : "more contacts than there is room for");
+    add(status.cable >= 0 ? "a cable touches more edges and rods than it can bend around"
+                          : "there are more contacts than the contact buffer holds");
   }
   if (status.bits & kStatusFellOff) add("a body is below all of the terrain");
   if (out.empty()) return out;

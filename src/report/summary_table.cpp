@@ -118,13 +118,13 @@ std::string LoadTables(const RunSummary& run) {
   return out;
 }
 
-/// A line for each limit that a member exceeded.
+/// One row per exceeded limit of a member.
 std::string OverloadTable(const RunSummary& run) {
   if (run.overloads.empty()) return {};
   const std::size_t name_width = NameWidth(run.overloads);
   std::string out =
       fmt::format("\n{:<{}} {:<8}{:<10}{:>12}{:>12}{:>12}\n", "overloaded", name_width, "member",
-                  "limit", "bears N", "carried N", "first at s");
+                  "limit", "capacity N", "max force N", "first at s");
   for (const Overload& one : run.overloads) {
     out += fmt::format("{:<{}} {:<8}{:<10}{:>12.4g}{:>12.4g}{:>12.4g}\n", one.name, name_width,
                        NameOf(one.kind), NameOf(one.limit), one.bears_n, one.carried_n,

@@ -177,7 +177,7 @@ struct Batch::Impl {
   void JudgeStiffness(int world) noexcept;
   /// Bodies moved by hand: what was known about distances is void.
   void Moved(int world) noexcept;
-  /// Cables changed by hand: means of the last step say nothing of them.
+  /// Cables changed from outside: means of the last step are invalid for them.
   void ForgetMeans(int world) noexcept;
   /// Nobody knows any more how the cables lie that touch what they come to: straight.
   void ForgetBends(int world) noexcept;

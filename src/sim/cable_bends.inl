@@ -169,7 +169,7 @@ class LaneBends {
  private:
   static constexpr int kWidth = kWidthBend;
 
-  /// Straight parts behind part `k` get numbers that are higher by one, or lower.
+  /// Shifts the numbers of the straight parts behind part `k` up or down by one.
   void MoveSides(int k, double by) const noexcept {
     for (int i = first_rod_; i < first_rod_ + rod_count_; ++i) {
       const double side = s_.touch_side[i][lane_];

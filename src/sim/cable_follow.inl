@@ -1,26 +1,25 @@
-/// What a cable lies against from one step to the next (docs/theory/cables.md, section 6): bends
-/// come where a straight part of its path is pressed into something, and go where it leaves that.
+/// Update of cable bends between steps (docs/theory/cables.md, section 6): a bend is added where a
+/// straight part of the path penetrates an edge or rod, and removed where the cable lifts off.
 
 namespace taut::sim {
 
-/// What one lane's cable has left while its bends change. It does not come back before all have
-/// changed, so that this ends.
+/// Edges and rods that one lane's cable has left during an update. They stay excluded until its
+/// end, so that the update terminates.
 struct LeftBehind {
   static constexpr int kMost = 2 * kMostBends;
   double key[kMost];
   int count = 0;
 };
 
-/// In one lane the cable touches more than it can lie against: the world's status says so.
+/// Marks a lane whose cable touches more than kMostBends edges and rods (status bit).
 template <class W>
 TAUT_INLINE void Crowd(Scratch<W>& work, const TouchTable& touch, int lane) noexcept {
   work.no_room |= 1u << lane;
   work.crowded_cable[lane] = touch.cable;
 }
 
-/// A bend that the cable has to let go of in one lane; -1 if there is none: on a rod in which an
-/// end of the cable is, or the next rod; of two rods in a row that have run into each other that
-/// which turns the cable less.
+/// Returns a bend to remove in one lane, or -1: on a rod that contains an end of the cable or the
+/// next bend; of two consecutive penetrating rods, the one that turns the cable less.
 template <class W>
 int BendToLetGo(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
                 int used, int count, int lane) noexcept {
@@ -32,9 +31,9 @@ int BendToLetGo(const View& m, const Rows<W>& s, const Scratch<W>& work, const T
   return -1;
 }
 
-/// Changes a lane's bends once, if the path as it is laid says so: what it has left is dropped, or
-/// where it would be beside an edge's end or through what is below it; an edge that a straight part
-/// is below is added. Returns whether something has changed.
+/// Changes a lane's bends once, by the current path. Removes bends that the cable has left, that
+/// would be beyond an edge's end or inside the ground; adds an edge that a straight part is below.
+/// Returns whether the bends changed.
 template <class W>
 bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchTable& touch,
                  int used, int lane, LeftBehind& left) noexcept {
@@ -55,7 +54,7 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
     const bool within = Abs(Dot(middle, PlaceOf(wheels[k].axis, lane))) < bends.Half(k) &&
                         Abs(wheels[k].angle[lane]) < bends.Most(k);
     if (lies && within) continue;
-    drop(k, lies);  // it is inside of what it slips off
+    drop(k, lies);  // the cable is inside the obstacle that it slips off
   }
   if (bends.count() < before) return true;
   const int weaker = BendToLetGo(m, s, work, touch, used, before, lane);
@@ -90,14 +89,14 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
   const double share = ShareBefore(m, s, work, deepest.place, parts.span[part], 0.5 * arc_before,
                                    0.5 * arc_behind, lane);
   if (bends.Insert(part, deepest, share)) return true;
-  // Of all it is pressed into this the least: it goes through it, and its length goes on evenly.
+  // The shallowest penetration: the cable passes through it, and its length stays continuous.
   ForgetSide(m, s, touch, deepest.place.key, lane);
   Crowd(work, touch, lane);
   return false;
 }
 
-/// Lays a cable, as it is or was. `start`, `end`: its ends at the middle of the step; `ago`: how
-/// long before that [s], or null.
+/// Computes the path of a cable. `start`, `end`: its ends at the middle of the step; `ago`: time
+/// before that [s], or null.
 template <class W>
 void LayThen(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchTable& touch, int used,
              const AttachmentWork<W>& start, const AttachmentWork<W>& end, const W* ago) noexcept {
@@ -123,9 +122,9 @@ void LayThen(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchTable
       });
 }
 
-/// In how many parts the time since the last step is gone through where bends change: so many that
-/// in each nothing moves by more than half a rod's radius, but for what is very fast. Then rods are
-/// met one after the other, from outside, and each comes in at its place among the bends.
+/// Number of substeps in which bends are updated: bodies move by at most half a rod's radius in
+/// each, except very fast ones. So the cable meets rods one by one from outside, and each new bend
+/// is inserted at its place.
 inline constexpr int kMostParts = 32;
 template <class W>
 [[gnu::noinline]] W PartsOf(const View& m, const Scratch<W>& work, const TouchTable& touch,
@@ -149,8 +148,8 @@ template <class W>
   return Max(Min(Round(parts + half), W::Splat(kMostParts)), one);
 }
 
-/// Changes the bends of `lanes` until they are those of the middle of the step. Returns how many
-/// are in use. `time`: since the middle of the step before.
+/// Updates the bends of `lanes` to the middle of the step. Returns the number of bends in use.
+/// `time`: since the middle of the previous step.
 template <class W>
 [[gnu::noinline]] int ChangeAll(const View& m, const Rows<W>& s, Scratch<W>& work,
                                 const TouchTable& touch, int used, MaskOf<W> lanes,
@@ -183,8 +182,7 @@ template <class W>
   return used;
 }
 
-/// At the middle of the step: what a cable lies against from here on. Measures it; returns its
-/// length.
+/// Updates the bends of a cable at the middle of the step. Returns its length.
 template <class W>
 [[gnu::noinline]] W FollowBends(const View& m, const Rows<W>& s, Scratch<W>& work,
                                 const CableTable& cable, W h) noexcept {
@@ -213,7 +211,7 @@ template <class W>
   KeepAngles(s, work, touch, used, look);
   KeepSides(m, s, work, touch, used, look);
   if (touch.terrain) {
-    // Of one that is free, how far it may go before it is looked at again.
+    // For a free cable: the distance that it may move before the next check.
     const auto bent = !(s.bend[touch.first_bend].key == W::Splat(kNoKey));
     W& far = s.touch_free[cable.touch];
     far = Select(look & bent, W::Splat(0.0), far);

@@ -1,6 +1,6 @@
-/// Which cables are integrated implicitly, with their directions (docs/theory/cables.md, section
-/// 3): all cables of a group of bodies that are connected by cables, if one of them is stiff at
-/// this step. That follows from the model, its parameters and the step, never from the state.
+/// Groups of cables that are implicit in tension and direction (docs/theory/cables.md, section 3):
+/// all cables of a group of bodies connected by cables, if one of them is stiff at this step. The
+/// selection depends on the model, its parameters and the step, never on the state.
 #pragma once
 
 #include "sim/view.h"
@@ -10,19 +10,18 @@ namespace taut::sim {
 /// Limit of explicit springs: h^2 K / m, summed over the cables that a cable is coupled to (the
 /// explicit scheme is stable below 4).
 inline constexpr double kSoftSpring = 0.1;
-/// (w h)^2 from which on the damper of a stiff cable gets the second stage.
+/// Threshold of (w h)^2 above which a damped stiff cable gets the second stage.
 inline constexpr double kUnresolvedSpring = 4.0;
-/// Bodies of a group, at most: so many have a matrix without conditions (solve/memory.h).
+/// Largest number of bodies of a group whose matrix always fits (solve/memory.h).
 inline constexpr int kMostInGroup = 128;
 
 enum GroupKind : uint8_t {
   kGroupStiff = 1,   ///< One of its cables is stiff.
-  kGroupOther = 2,   ///< It has what the scheme does not cover.
+  kGroupOther = 2,   ///< It has cables or bodies that the scheme does not support.
   kGroupDamped = 4,  ///< A stiff cable that the step does not resolve has a damper.
 };
 
-/// Whether the scheme covers a cable: one that runs straight between points of bodies, without a
-/// direct-current motor.
+/// Whether the scheme supports a cable: straight between points of bodies, no direct-current motor.
 TAUT_INLINE bool IsStraight(const View& m, const CableTable& cable) noexcept {
   if (cable.wheel_count > 0 || cable.touch >= 0 || cable.span_count > 0) return false;
   if (cable.motor >= 0) return false;
@@ -32,10 +31,10 @@ TAUT_INLINE bool IsStraight(const View& m, const CableTable& cable) noexcept {
   return true;
 }
 
-/// The groups of a world. Memory: an element a body each.
+/// The groups of a world. Each array has one element per body.
 struct CableGroups {
-  int *group, *size;  ///< Its lowest body; of that, how many there are,
-  uint8_t* kind;      ///< and the bits of GroupKind.
+  int *group, *size;  ///< Lowest body of the group; number of its bodies (at that one);
+  uint8_t* kind;      ///< bits of GroupKind.
 
   /// Whether the cables of a body are integrated implicitly.
   TAUT_INLINE bool IsImplicit(int body) const noexcept {
@@ -55,8 +54,8 @@ TAUT_INLINE void ForEachMoved(const View& m, const CableTable& cable, const Move
   }
 }
 
-/// `moves(body)`: by impulses; `stiffness(cable)`: K of (7) [1/s^2]; `damps(cable)`: it has a
-/// damper.
+/// `moves(body)`: whether impulses move it; `stiffness(cable)`: K of (7) [1/s^2]; `damps(cable)`:
+/// whether it has a damper.
 template <class Moves, class Stiffness, class Damps>
 TAUT_INLINE void FindGroups(const View& m, double step_s, const Moves& moves,
                             const Stiffness& stiffness, const Damps& damps,
@@ -103,7 +102,7 @@ TAUT_INLINE void FindGroups(const View& m, double step_s, const Moves& moves,
     if (K > kSoftSpring / (step_s * step_s)) kind |= kGroupStiff;
     if (K > kUnresolvedSpring / (step_s * step_s) && damps(c)) kind |= kGroupDamped;
     if (m.cables[c].touch >= 0) {
-      // It may come to act on any of its rods.
+      // It may later act on any of its rods.
       const TouchTable& touch = m.touches[m.cables[c].touch];
       for (int i = 0; i < touch.rod_count; ++i) {
         mark(m.touch_rods[touch.first_rod + i].body, kGroupOther);

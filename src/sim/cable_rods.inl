@@ -1,6 +1,5 @@
-/// Rods that a cable comes to lie against (docs/theory/cables.md, section 6). Where the straight
-/// parts of its path pass a rod, the cable is on one side of the rod's axis; that it is on the
-/// other one later shows that it has come through, however fast.
+/// Contact of a cable with rods (docs/theory/cables.md, section 6). The straight parts of the path
+/// pass a rod on one side of its axis. A later change of side reveals a crossing at any speed.
 
 namespace taut::sim {
 
@@ -21,24 +20,24 @@ TAUT_INLINE Vec3 PlaceOf(const V3<W>& p, int lane) noexcept {
   return {p.x[lane], p.y[lane], p.z[lane]};
 }
 
-/// How a body was some time before the middle of the step: until then it went on evenly.
+/// Pose of a body before the middle of the step, extrapolated backward at constant velocity.
 template <class W>
 struct BodyThen {
-  V3<W> way, half_turn;  ///< Gone since; turned back by twice the arc tangent of that.
+  V3<W> way, half_turn;  ///< Displacement since; half the reverse rotation (tangent).
   W scale;
 
   BodyThen(const BodyWork<W>& body, W ago) noexcept
       : way(ago * body.v0), half_turn((W::Splat(-0.5) * ago) * body.w0) {
     scale = W::Splat(2.0) / (W::Splat(1.0) + Dot(half_turn, half_turn));
   }
-  /// A vector that turns with it.
+  /// Rotates a body-fixed vector.
   V3<W> Turned(const V3<W>& v) const noexcept {
     return v + scale * Cross(half_turn, v + Cross(half_turn, v));
   }
 };
 
-/// Where the rods of a cable are, for all that looks at them next. `ago`: before the middle of the
-/// step [s]; null: then.
+/// Places the rods of a cable for the following functions. `ago`: time before the middle of the
+/// step [s]; null: 0.
 template <class W>
 void PlaceRods(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
                const W* ago) noexcept {
@@ -54,10 +53,10 @@ void PlaceRods(const View& m, const Rows<W>& s, const Scratch<W>& work, const To
   }
 }
 
-/// How a path passes a rod, at the straight part that is nearest to it.
+/// Position of a rod relative to the nearest straight part of the path.
 template <class S>
 struct RodPass {
-  S side;  ///< -1 or 1; 0: no part crosses the rod, seen across both.
+  S side;  ///< -1 or 1; 0: no part crosses the rod in projection.
   S part;  ///< Number of that part.
   S off2;  ///< Squared distance of the axis from it [m^2].
 
@@ -67,7 +66,7 @@ struct RodPass {
   }
 };
 
-/// Takes a straight part into account, if it `is` there.
+/// Adds a straight part in the lanes `is`.
 template <class V, class S, class M>
 TAUT_INLINE void LookAtPart(const V& from, const V& to, const V& center, const V& axis, S half,
                             int part, M is, RodPass<S>& pass) noexcept {
@@ -80,24 +79,23 @@ TAUT_INLINE void LookAtPart(const V& from, const V& to, const V& center, const V
   pass.off2 = Select(nearer, off2, pass.off2);
 }
 
-/// A rod that the cable does not lie against: on which side of it which part of the path is, as one
-/// number that is 0 where that is not known (row touch_side).
+/// Side of a rod without contact, and part of the path, as one number; 0: unknown (row touch_side).
 template <class S>
 TAUT_INLINE S SideOfPart(S side, S part) noexcept {
   return side * (part + Constant<S>::Of(1.0));
 }
 
-/// How a rod is passed now, against what was known.
+/// Change of a rod's side against the stored one.
 template <class S>
 struct Pressed {
-  decltype(S() < S()) same;     ///< The part is the one whose side is known, or goes on from it.
-  decltype(S() < S()) through;  ///< It is on the other side now,
-  decltype(S() < S()) inside;   ///< or inside of the rod.
+  decltype(S() < S()) same;     ///< The part is the stored one or its neighbor.
+  decltype(S() < S()) through;  ///< It has changed sides;
+  decltype(S() < S()) inside;   ///< it is inside the rod.
 };
 
-/// A path in loops has parts that pass a rod on other sides, and which of them is nearest changes
-/// as the rod goes by. So only one part is asked; close to a bend, also the next one, which is on
-/// the same side there.
+/// Parts of a looped path pass a rod on different sides, and the nearest part changes as the rod
+/// moves. So only one part is compared; close to a bend, also the next one, which is on the same
+/// side there.
 template <class S>
 TAUT_INLINE Pressed<S> PressedBy(const RodPass<S>& pass, S known, double radius_m) noexcept {
   using C = Constant<S>;
@@ -109,9 +107,9 @@ TAUT_INLINE Pressed<S> PressedBy(const RodPass<S>& pass, S known, double radius_
   return {same, pass.side * known < zero, pass.off2 < radius2};
 }
 
-/// The side that is known next, of a rod that the cable does not lie against. It comes to be known
-/// outside of the rod only: a cable that gets into one past its end goes through it, as laying it
-/// round at once would make it longer by a jump. It is forgotten once the cable is deep inside.
+/// Returns the updated side of a rod without contact. It is stored only outside the rod: a cable
+/// that enters a rod past its end passes through it, because wrapping at once would make its length
+/// jump. It is reset once the cable is deep inside.
 template <class S>
 TAUT_INLINE S SideNext(const RodPass<S>& pass, S known, double radius_m) noexcept {
   using C = Constant<S>;
@@ -156,10 +154,10 @@ MaskOf<W> MayTouchRods(const View& m, const Rows<W>& s, const Scratch<W>& work,
     const W known = s.touch_side[touch.first_rod + i];
     const Pressed<W> pressed = PressedBy(pass, known, rod.radius_m);
     touches = touches | (near & pressed.same & (pressed.through | pressed.inside));
-    // Of one that is out of reach none: what other lanes are near does not matter.
+    // Unknown for a rod out of reach: the result must not depend on other lanes.
     next = Select(near, SideNext(pass, known, rod.radius_m), zero);
   }
-  // What is looked at closely begins with the sides that were.
+  // The full check starts from the stored sides.
   const auto write = free & !touches;
   for (int i = 0; i < touch.rod_count; ++i) {
     W& side = s.touch_side[touch.first_rod + i];
@@ -174,8 +172,8 @@ inline constexpr double kAnyTurns = 1e300;
 /// Key of a rod, which no edge of the terrain has.
 TAUT_INLINE double KeyOf(const TouchRodTable& rod) noexcept { return kEdgesOfShape * rod.shape; }
 
-/// In one lane no side is known any more of the rod with that key, if it is one: the cable goes
-/// through it until it is out.
+/// Resets the stored side of the rod with that key (if it is a rod) in one lane: the cable passes
+/// through it until it has left.
 template <class W>
 void ForgetSide(const View& m, const Rows<W>& s, const TouchTable& touch, double key,
                 int lane) noexcept {
@@ -192,13 +190,13 @@ TAUT_INLINE Vec3 TurnedBy(const M3<W>& R, const double* p, int lane) noexcept {
   return {row(R.r0), row(R.r1), row(R.r2)};
 }
 
-/// The straight parts of one lane's path: part k is before bend k.
+/// Straight parts of one lane's path; part k is before bend k.
 struct StraightParts {
   FreeSpan span[kMostBends + 1];
   int count;
 };
 
-/// The rod into which the path has come deepest in one lane, as FindEdge finds edges.
+/// Finds the rod with the deepest penetration in one lane, as FindEdge does for edges.
 template <class W>
 bool FindRod(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
              const StraightParts& parts, int lane, const double* taken, int taken_count, bool any,
@@ -219,7 +217,7 @@ bool FindRod(const View& m, const Rows<W>& s, const Scratch<W>& work, const Touc
     const double off = Sqrt(pass.off2);
     const double depth = rod.radius_m + (pressed.through ? off : -off);
     if ((any || is_new) && !(depth > found->depth_m)) continue;
-    const double around = known < 0.0 ? 1.0 : -1.0;  // against the side that it was on
+    const double around = known < 0.0 ? 1.0 : -1.0;  // towards the side where it was
     const int nearest = static_cast<int>(pass.part);
     const BendPlace place{KeyOf(rod), 0, center, axis, kAnyTurns, rod.half_m, rod.radius_m};
     if (!CanLieOn(place, parts.span[nearest], around)) continue;

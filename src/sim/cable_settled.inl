@@ -32,17 +32,17 @@ TAUT_INLINE MaskOf<W> LiesAgainst(const Rows<W>& s, const TouchTable& touch, int
   return lies;
 }
 
-/// Lanes in which a bend is on a rod of a body.
+/// Returns the lanes in which a bend is on a rod of a body.
 template <class W>
 TAUT_INLINE MaskOf<W> IsOnRod(const View& m, const BendNumbers<W>& bend) noexcept {
   return !((bend.key == W::Splat(kNoKey)) | (bend.body == W::Splat(m.body_count)));
 }
 
-/// Lanes in which bend `k` and the next are on rods that have run into each other where the cable
-/// is. Then there is no shortest way over both any more: what is laid jumps or flees along the
-/// rods, and with it the energy. Where the cable goes between them that is so as soon as it has no
-/// room there; where it goes over both, they have to be within each other, as rods can be that no
-/// contacts keep apart. Crossings near a rod's end are joints. `anywhere`: wherever the cable is.
+/// Returns the lanes in which bend `k` and the next are on rods that overlap at the cable. Then no
+/// shortest path over both exists: the path and the energy jump, or drift along the rods. A cable
+/// between the rods needs free space; a cable over both fails only if the rods overlap, which is
+/// possible without contacts between them. Crossings near a rod's end are joints. `anywhere`: not
+/// only at the cable.
 template <class W>
 TAUT_INLINE MaskOf<W> RanIntoNextRod(const View& m, const Rows<W>& s, const Scratch<W>& work,
                                      const TouchTable& touch, int k, bool anywhere) noexcept {
@@ -76,8 +76,8 @@ TAUT_INLINE MaskOf<W> RanIntoNextRod(const View& m, const Rows<W>& s, const Scra
   return IsOnRod(m, *bend) & IsOnRod(m, *next) & within & (distance2 < limit * limit) & looks;
 }
 
-/// Lanes in which the path comes to bend `k` from inside of its rod, or leads there: from the
-/// cable's end, or from another rod. From there on no length goes on without a jump.
+/// Returns the lanes in which the path next to bend `k` starts inside its rod: at the cable's end,
+/// or at another rod. From there the length cannot continue without a jump.
 template <class W>
 TAUT_INLINE MaskOf<W> IsInsideRod(const View& m, const Rows<W>& s, const Scratch<W>& work,
                                   const TouchTable& touch, int used, int k) noexcept {
@@ -95,7 +95,7 @@ TAUT_INLINE MaskOf<W> IsInsideRod(const View& m, const Rows<W>& s, const Scratch
   return IsOnRod(m, *bend) & (inside(ends[2 * k].p) | inside(behind));
 }
 
-/// A bend that is left, or slips off, or whose rod runs into the next or the cable's end.
+/// Lanes in which a bend lifts off, slips off, or overlaps the next rod or the cable's end.
 template <class W>
 TAUT_INLINE MaskOf<W> MayLeave(const View& m, const Rows<W>& s, const Scratch<W>& work,
                                const TouchTable& touch, int used) noexcept {
@@ -116,7 +116,7 @@ TAUT_INLINE MaskOf<W> MayLeave(const View& m, const Rows<W>& s, const Scratch<W>
   return may;
 }
 
-/// How a path over bends passes a rod.
+/// Position of a rod relative to a path over bends.
 template <class W>
 RodPass<W> PassOf(const Rows<W>& s, const TouchTable& touch, int used,
                   const AttachmentWork<W>* ends, const TouchRodTable& rod,
@@ -160,7 +160,7 @@ template <class W>
   return may;
 }
 
-/// Of bends, the angles as they are laid.
+/// Wrap angles of the bends in the current path.
 template <class W>
 TAUT_INLINE void KeepAngles(const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
                             int used, MaskOf<W> lanes) noexcept {
@@ -171,7 +171,7 @@ TAUT_INLINE void KeepAngles(const Rows<W>& s, const Scratch<W>& work, const Touc
   }
 }
 
-/// On which side of all rods a cable is, as its path lies over work.rod_lines.
+/// Updates the side of all rods in work.rod_lines relative to a cable's path.
 template <class W>
 TAUT_INLINE void KeepSides(const View& m, const Rows<W>& s, const Scratch<W>& work,
                            const TouchTable& touch, int used, MaskOf<W> lanes) noexcept {

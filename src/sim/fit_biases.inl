@@ -176,9 +176,9 @@ template <class Num, class M>
   for (int i = 0; i < count; ++i) {
     for (int r = 0; r < rows; ++r) most = Max(Abs(missed(contacts[i], r)), most);
   }
-  const Num give_in = Select(most < Num::Splat(kDisagreementMPerS), one, zero);
+  const Num relaxes = Select(most < Num::Splat(kDisagreementMPerS), one, zero);
   for (int i = 0; i < count; ++i) {
-    for (int r = 0; r < rows; ++r) contacts[i].bias[r] -= give_in * missed(contacts[i], r);
+    for (int r = 0; r < rows; ++r) contacts[i].bias[r] -= relaxes * missed(contacts[i], r);
   }
 }
 

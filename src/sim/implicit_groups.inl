@@ -1,4 +1,4 @@
-/// Implicitly integrated cables in a step: which they are, and where their bodies end
+/// Implicitly integrated cables in a step: their selection and the final poses of their bodies
 /// (cable_groups.h, docs/theory/cables.md, section 3).
 
 namespace taut::sim {
@@ -25,7 +25,7 @@ template <class W>
   }
 }
 
-/// For all steps of this length until a parameter changes.
+/// Valid for all steps of this length until a parameter changes.
 template <class W>
 void FindImplicit(const View& m, const Rows<W>& s, ImplicitMemory<W>& x, double step_s) noexcept {
   const W limit = SoftLimit(W::Splat(step_s));
@@ -39,8 +39,8 @@ void FindImplicit(const View& m, const Rows<W>& s, ImplicitMemory<W>& x, double 
   for (int lane = 0; lane < W::kLanes; ++lane) FindImplicitOf(m, s, x, step_s, lane);
 }
 
-/// Before a solve: no end is known. Returns the lanes with such cables. Contacts of these do not
-/// follow the arc of a free body.
+/// Resets the final poses before a solve. Returns the lanes with such cables. Contacts of their
+/// bodies do not follow the arc of a free body.
 template <class W>
 [[gnu::noinline, gnu::cold]] MaskOf<W> StartImplicit(const View& m, Scratch<W>& work) noexcept {
   const W zero = W::Splat(0.0);
@@ -52,9 +52,9 @@ template <class W>
   return lanes;
 }
 
-/// What is deep in each other leaves by velocities there, slowly: a displacement would not know of
-/// the cables that it stretches. Nothing leaves so fast that it would rise by as much as it is
-/// deep. `on`: lanes, or all of the lane.
+/// Resolves deep penetrations of these bodies by slow velocities, since displacements would ignore
+/// the cables that they stretch. The speed is limited so that no body rises by its penetration
+/// depth. `on`: lanes, or all of the lane.
 inline constexpr double kLeavingShare = 0.025, kMostLeavingMPerS = 0.2;
 template <class Num, int kLinks, class M>
 TAUT_INLINE void LeaveSlowly(Contact<Num, kLinks>& c, M on, double step_s) noexcept {
@@ -74,8 +74,7 @@ template <class W>
   }
 }
 
-/// The places that implicit islands have come to, in place of those of the second half of the
-/// drift.
+/// Sets the final poses of implicit islands, which replace the second half of the drift.
 template <class W>
 [[gnu::noinline, gnu::cold]] void PutImplicitEnds(const View& m, const Rows<W>& s,
                                                   const Scratch<W>& work) noexcept {

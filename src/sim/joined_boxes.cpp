@@ -12,7 +12,7 @@ constexpr double kSamePlaceM = kJoinedM;
 constexpr double kNearer = 1e-9, kStraightOn = 1e-3;
 /// From this cosine on a normal is that of a face.
 constexpr double kFace = 0.999;
-/// And that of a face of the same plane, to 1e-6 rad.
+/// Cosine tolerance of faces in the same plane, 1e-6 rad.
 constexpr double kLevelFace = 1.0 - 5e-13;
 /// Where a box's face is cut by another's side a point may be aside by so much, in sizes of both;
 /// and boxes go on if they do so for so many times that.
@@ -32,11 +32,11 @@ Vec3 PlaceOf(const TouchPoint& t) noexcept {
   return Load(t.point) - (0.5 * t.gap_m) * Load(t.normal);
 }
 
-/// Beside other ground a normal may lead from a place of a box into it by so much of a sine: edges
-/// that cross have no exact one.
+/// Sine by which a normal at other ground may point into a box: crossing edges have no exact
+/// normal.
 constexpr double kIntoGround = 1e-2, kIntoGroundOfRod = 1e-7;
 
-/// Whether other ground covers a place of a box, and the box does not come out of it nearby.
+/// Whether other ground covers a point of a box and its neighborhood.
 bool IsUnderGround(const ShapeTable& own, const SeamContact& contact, double same_m) noexcept {
   const SeamSlack slack{0.0, kIntoGround};
   if (!IsCovered(own.seams, contact.place, contact.normal, slack, same_m)) return false;
@@ -89,8 +89,8 @@ bool IsHidden(const ShapeTable* shapes, int number, const Vec3& place, const Sta
   return hidden;
 }
 
-/// Whether boxes go on in the plane of a contact, from its place in a direction across the normal;
-/// `by_face`: with a face of theirs.
+/// Whether boxes continue in the plane of a contact, in a tangential direction; `by_face`: with one
+/// of their faces.
 bool GoesOn(const ShapeTable* shapes, int number, const Vec3& place, const Vec3& normal,
             const Vec3& way, double same_m = kSamePlaceM, bool by_face = false) noexcept {
   const ShapeTable& own = shapes[number];

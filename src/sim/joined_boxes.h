@@ -1,5 +1,5 @@
-/// Boxes of the world that touch each other, or meet other ground, are one surface: what is a
-/// contact with one of them may be none with all (docs/theory/ground.md, sections 8 and 9).
+/// Terrain boxes that touch each other or other ground form one surface: a contact with one of them
+/// may be internal to the surface (docs/theory/ground.md, sections 8 and 9).
 ///
 /// Part of a step: no standard library.
 #pragma once

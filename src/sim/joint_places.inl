@@ -1,10 +1,10 @@
-/// Projections onto what joints hold, as one linear system over the bodies that they move, in all
-/// lanes: the least change, by mass, that brings all rows to what is wanted (docs/theory/joints.md,
-/// eq. 7, 7a). At the end of a step it projects velocities and closes gaps.
+/// Projection onto joint constraints, as one linear system over the jointed bodies in all lanes:
+/// the mass-weighted least change that brings all rows to their targets (docs/theory/joints.md, eq.
+/// 7, 7a). At the end of a step it projects velocities and closes gaps.
 ///
-/// Which bodies, rows and blocks there are follows from the model. Redundant rows share what they
-/// carry: each is softened by a share of its own inverse mass, and a second pass takes back what
-/// that leaves.
+/// Bodies, rows and blocks follow from the model. Redundant rows share their load: each row gets a
+/// compliance proportional to its inverse effective mass, and a second pass removes the remaining
+/// error.
 
 namespace taut::sim {
 
@@ -26,11 +26,11 @@ class JointSystem {
         mem_(work.joint_memory),
         matrix_(*m.joint_pattern, mem_.blocks) {}
 
-  /// Adds stops that press to what is held: those that are held, or all that are closed at the end.
+  /// Adds pressing stops to the held rows: held stops, or all that are closed at the end.
   void IncludeHeldStops() noexcept { held_stops_ = true; }
   void IncludeStops() noexcept { held_stops_ = passed_stops_ = true; }
 
-  /// Of where the bodies are.
+  /// Assembles the system at the current poses.
   void Assemble() noexcept {
     for (int k = 0; k < m_.joint_body_count; ++k) {
       const int b = m_.joint_bodies[k];
@@ -61,8 +61,8 @@ class JointSystem {
   int number(int r) const noexcept { return mem_.number[r]; }  ///< Among the model's rows.
   W gap(int r) const noexcept { return mem_.gap[r]; }
 
-  /// Impulses by which no row has its velocity `miss(row)` any more (or displacements, its gap),
-  /// and what they change of velocities: impulse(row), change(k) by the number of the body.
+  /// Solves for the impulses that cancel the row velocities `miss(row)` (or for displacements, the
+  /// gaps), and for the velocity changes: impulse(row), change(k) by the number of the body.
   template <class F>
   void Solve(const F& miss) noexcept {
     const W zero = W::Splat(0.0);
@@ -88,7 +88,7 @@ class JointSystem {
   }
   W impulse(int r) const noexcept { return mem_.l[r]; }
 
-  /// How the bodies give way to the generalized forces in `x`, 6 a body, if nothing held moves.
+  /// Computes the response to the generalized forces `x` (6 per body) with all held rows fixed.
   void GiveWay(W* x) const noexcept { matrix_.Solve(x); }
 
   Twist<W> change(int k) const noexcept {
@@ -111,7 +111,7 @@ class JointSystem {
     matrix_.Add(row, &mem_.G[rows_]);
     ++rows_;
   }
-  /// Behind all rows that are held. In lanes where a stop is open its row weighs nothing.
+  /// Appended to the held rows. In lanes where a stop is open its row has zero weight.
   void AddStops() noexcept {
     const W zero = W::Splat(0.0), one = W::Splat(1.0), least = W::Splat(1e-300);
     for (int r = 0; r < m_.joint_row_count; ++r) {
@@ -148,8 +148,8 @@ class JointSystem {
   bool held_stops_ = false, passed_stops_ = false;
 };
 
-/// Projects velocities onto what joints hold, or by a share of the way (eq. 7a). Impulses do it, so
-/// energy can only fall and momenta stay. `given(body)`: the velocities of one that is prescribed.
+/// Projects velocities onto the joint constraints, or by a share (eq. 7a). It applies impulses, so
+/// energy can only fall and momenta are conserved. `given(body)`: velocities of a kinematic body.
 /// Calls took(number of the row in the model, impulse, row) for each.
 template <class W, class F, class G>
 void ProjectVelocities(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>& system,
@@ -191,7 +191,7 @@ void ProjectVelocities(const View& m, const Rows<W>& s, Scratch<W>& work, JointS
   }
 }
 
-/// The displacements that close all joints, to first order, into joint_memory.change.
+/// Computes the displacements that close all joints to first order, into joint_memory.change.
 template <class W>
 void FindClosing(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   JointSystem<W> system(m, s, work);
@@ -243,7 +243,7 @@ W WorstGap(const View& m, const Rows<W>& s, const Scratch<W>& work) noexcept {
   return worst;
 }
 
-/// Whether a stop presses that is not held: bodies may have passed it.
+/// Whether a stop presses without being held: bodies may have passed it.
 template <class W>
 bool StopsCatch(const View& m, const Scratch<W>& work) noexcept {
   const W zero = W::Splat(0.0);
@@ -300,7 +300,7 @@ void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>
   }
 }
 
-/// What a motion has to hold and to do against an impulse on its body at the end of the step.
+/// Adds the reaction and the work of a motion under an impulse on its body at the end of the step.
 template <class W>
 void AddToMotion(const View& m, const Rows<W>& s, const Scratch<W>& work, const Link<W, 1>& link,
                  W impulse, W inv_h) noexcept {
@@ -313,8 +313,8 @@ void AddToMotion(const View& m, const Rows<W>& s, const Scratch<W>& work, const 
   s.motion_work[i] -= Select(s.halted[0] > W::Splat(0.0), W::Splat(0.0), work_done);
 }
 
-/// Stage: projects the velocities at the start of a world's first step, which are as its file or a
-/// program set them.
+/// Stage: projects the initial velocities, as set by a file or a program, at the start of a world's
+/// first step.
 ///   reads   pos, quat     writes  vel, mom, bodies[].R
 template <class W>
 void StageJointStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
@@ -335,7 +335,7 @@ void StageJointStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept
                     [](int, const W&, const JointRow<W>&) {});
 }
 
-/// Angles of hinges where their bodies are now, `t` after they were read.
+/// Hinge angles in the current pose, `t` after the last reading.
 template <class W>
 void FollowHinges(const View& m, const Rows<W>& s, const Scratch<W>& work, W t) noexcept {
   for (int i = 0; i < m.joint_count; ++i) {
@@ -348,15 +348,14 @@ void FollowHinges(const View& m, const Rows<W>& s, const Scratch<W>& work, W t) 
   }
 }
 
-/// Stage: projects the velocities by half, and closes the gaps that the drifts have left. Angular
-/// momenta turn with their bodies: a thin rod would take what it then has along its axis for a
-/// spin.
+/// Stage: projects half of the velocity error and closes the gaps left by the drifts. Angular
+/// momenta rotate with their bodies: otherwise a thin rod would spin about its axis.
 ///   reads   pos, quat, joints[]     writes  pos, quat, vel, mom, bodies[].R, clearance,
 ///   joint_angle, joint_force, joint_torque, motion_force, motion_torque, motion_work
 template <class W>
 void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
-  // All of it would lose three times as much energy; without it what is left would change its sign
-  // from step to step.
+  // A full projection would lose three times as much energy; without projection the error would
+  // change sign at every step.
   constexpr double kShare = 0.5;
   constexpr double kClosed_m = 1e-10;
   constexpr int kRounds = 3;

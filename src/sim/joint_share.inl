@@ -1,13 +1,13 @@
-/// Share of the largest stable force that joints hold bodies with (docs/theory/joints.md, eq. 8).
+/// Stability limit of joint forces, as a share of it (docs/theory/joints.md, eq. 8).
 ///
-/// Along its line a joint's force is implicit, across it it is not: it turns bodies back like a
-/// spring that is the stiffer the more it carries, and a step must be able to follow that. A bound
-/// that looks at each body alone is cheap, and enough for most worlds. Where it is passed, the
-/// fastest oscillation that the joints leave is found by power iteration.
+/// A joint's force is implicit along its direction and explicit across it, where it acts as a
+/// spring with a stiffness proportional to the load; the step must resolve its oscillation. A cheap
+/// bound per body suffices for most worlds. If it is exceeded, power iteration finds the fastest
+/// oscillation that the joints allow.
 
 namespace taut::sim {
 
-/// In each lane the largest share of all bodies, and the body that has it.
+/// Largest share of all bodies and its body, per lane.
 template <class W>
 struct JointShare {
   W share;
@@ -22,16 +22,16 @@ struct JointShare {
   }
 };
 
-/// The tension of a joint that is a distance, per its length [N/m]: how stiff it is across.
+/// Tension of a distance joint per length [N/m]: its transverse stiffness.
 template <class W>
 TAUT_INLINE W StiffnessAcross(const V3<W>& force, const V3<W>& gap) noexcept {
   return (W::Splat(0.0) - Dot(force, gap)) / Max(Dot(gap, gap), W::Splat(1e-300));
 }
 
-/// A bound of every body's share: as if nothing held it but its inertia. Its turns by the principal
-/// axes go with I^-1 N, N = (F . r) 1 - F r^T a joint, whose eigenvalues are at most the largest
-/// sum of a row's sizes. A distance is stiff across by its tension per length, T, and of
-/// T |d_b - d_a|^2 / 2 a body has at most T |d|^2, d = v + w x r: 4 T / m and 4 T |r|^2 / I.
+/// Bounds every body's share by its inertia alone. Rotation about the principal axes has the matrix
+/// I^-1 N, N = (F . r) 1 - F r^T per joint, whose eigenvalues are at most the largest row sum of
+/// absolute values. A distance joint has the transverse stiffness T = tension / length, and a
+/// body's part of T |d_b - d_a|^2 / 2 is at most T |d|^2, d = v + w x r: 4 T / m and 4 T |r|^2 / I.
 template <class W>
 JointShare<W> BoundOfShares(const View& m, const Rows<W>& s, Scratch<W>& work,
                             W quarter_h2) noexcept {
@@ -73,9 +73,9 @@ JointShare<W> BoundOfShares(const View& m, const Rows<W>& s, Scratch<W>& work,
   return bound;
 }
 
-/// Adds to `forces` how joints push back where the bodies are displaced by `x`; 6 numbers a body.
-/// A body that turns by t under a force F on the lever r is turned back by t (F . r) - F (r . t):
-/// the change of its torque, seen from the body.
+/// Adds the restoring joint forces for displacements `x` to `forces` (6 numbers per body). A
+/// rotation t under a force F at the lever arm r has the restoring torque t (F . r) - F (r . t):
+/// the change of torque in the body frame.
 template <class W>
 void PushBack(const View& m, const Rows<W>& s, const Scratch<W>& work, const Row<W>& x,
               const Row<W>& forces) noexcept {
@@ -107,7 +107,7 @@ void PushBack(const View& m, const Rows<W>& s, const Scratch<W>& work, const Row
   }
 }
 
-/// Twice the kinetic energy of the velocities `x`, of body k.
+/// Returns twice the kinetic energy of body k at the velocities `x`.
 template <class W>
 W Vigour(const Unknown<W>& body, const W* x) noexcept {
   W moment[kDofs];
@@ -117,8 +117,8 @@ W Vigour(const Unknown<W>& body, const W* x) noexcept {
   return sum;
 }
 
-/// h^2 w^2 / 4 of the fastest oscillation w of the bodies that what is held leaves, and the body
-/// that moves most in it: x <- A^-1 N x, with A the system of eq. 7.
+/// Returns h^2 w^2 / 4 of the fastest oscillation w compatible with the held rows, and the body
+/// with the largest amplitude: power iteration x <- A^-1 N x with the system A of eq. 7.
 template <class W>
 JointShare<W> ShareOfFastest(const View& m, const Rows<W>& s, Scratch<W>& work,
                              W quarter_h2) noexcept {
@@ -129,7 +129,7 @@ JointShare<W> ShareOfFastest(const View& m, const Rows<W>& s, Scratch<W>& work,
   system.IncludeStops();
   system.Assemble();
   const int size = kDofs * m.joint_body_count;
-  // Some motion in which every body takes part; turns are as fast as its points, by its gyration.
+  // Start vector with all bodies; rotation scaled by the radius of gyration.
   for (int k = 0; k < m.joint_body_count; ++k) {
     const int b = m.joint_bodies[k];
     const V3<W>& moments = s.inertia[b];
@@ -161,8 +161,8 @@ JointShare<W> ShareOfFastest(const View& m, const Rows<W>& s, Scratch<W>& work,
   return fastest;
 }
 
-/// Raises `worst` where a body turns about a hinge that its centre of mass is beside, by more than
-/// a thousandth of its gyration: to (w h)^2, since its way along the arc is known to second order.
+/// Raises `worst` to (w h)^2 for rotation about a hinge whose distance from the center of mass
+/// exceeds 1e-3 of the radius of gyration, since the path along the arc is of second order.
 template <class W>
 void RaiseByRotors(const View& m, const Rows<W>& s, const Scratch<W>& work, W h2,
                    JointShare<W>& worst) noexcept {
@@ -185,7 +185,7 @@ void RaiseByRotors(const View& m, const Rows<W>& s, const Scratch<W>& work, W h2
   }
 }
 
-/// Returns the share in each lane; above 1 the step is too long.
+/// Returns the share per lane; above 1 the step is too long.
 template <class W>
 JointShare<W> ShareOfStableJoints(const View& m, const Rows<W>& s, Scratch<W>& work,
                                   double step_s) noexcept {

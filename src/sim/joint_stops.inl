@@ -1,15 +1,14 @@
-/// Stops of joints (docs/theory/joints.md, section 3): how they let their bodies come near, hold
-/// them and throw them back.
+/// Joint limits (stops; docs/theory/joints.md, section 3): approach, holding and rebound.
 
 namespace taut::sim {
 
-/// A stop that pressed and is not further away than this, besides its arc's sagitta, is held [m].
+/// Largest gap, besides the arc's sagitta, at which a stop that pressed stays held [m].
 inline constexpr double kStopClosedM = 1e-7;
 
-/// A held stop turns round what velocity it has left up to this share of what the step changes.
+/// A held stop reverses a residual velocity up to this share of the change in the step.
 inline constexpr double kStopTurned = 0.1;
 
-/// Where the joint will be after `t` at the velocities a and b.
+/// Predicts the joint after `t` at the velocities a and b.
 template <class W>
 JointPlace<W> PlaceAfter(const JointPlace<W>& p, const Twist<W>& a, const Twist<W>& b,
                          W t) noexcept {
@@ -24,15 +23,15 @@ JointPlace<W> PlaceAfter(const JointPlace<W>& p, const Twist<W>& a, const Twist<
   return q;
 }
 
-/// The angle of a hinge near `last`; of other joints 0.
+/// Returns the angle of a hinge near `last`; 0 for other joints.
 template <class W>
 TAUT_INLINE W AngleAt(const JointTable& j, const JointPlace<W>& p, W last) noexcept {
   return j.has_angle ? HingeAngle(p, last) : W::Splat(0.0);
 }
 
-/// The second half of the step of a body that nothing pushes: its velocities in the mean and at the
-/// end. Its spin w changes by w1 = I^-1 (L x w), of which less is taken where a step turns it by
-/// about a radian and series mean nothing.
+/// Free motion of a body in the second half of the step: mean and final velocities. Its spin w
+/// changes by w1 = I^-1 (L x w), reduced where the body rotates by about 1 rad per step and the
+/// series fails.
 template <class W>
 struct FreeHalf {
   Twist<W> mean, end;
@@ -49,8 +48,8 @@ struct FreeHalf {
   }
 };
 
-/// By how much a row's velocity changes over half a step along the arc that its bodies follow: that
-/// of free bodies, at the velocities before the step.
+/// Returns the change of a row's velocity over half a step along the arcs of its bodies: free
+/// motion at the velocities before the step.
 template <class W>
 W BendOf(const Scratch<W>& work, const JointTable& j, const JointRowTable& table,
          const JointPlace<W>& place, const JointDirection<W>& d, W angle, W half_h) noexcept {
@@ -61,9 +60,8 @@ W BendOf(const Scratch<W>& work, const JointTable& j, const JointRowTable& table
          RateOf(place, d, Before(a), Before(b));
 }
 
-/// The velocities that a body would have after the step if all pushed it as in the step before:
-/// what it gained then, or in the first step what forces add. As torques, what pushed it keeps its
-/// lever.
+/// Predicts the velocities of a body after the step under the forces of the previous step: its last
+/// change of velocity, or in the first step the applied forces. Torques keep their lever arms.
 template <class W>
 Twist<W> Ahead(const Rows<W>& s, const BodyWork<W>& body, int b, bool moves, W h) noexcept {
   Twist<W> t = Free(body);
@@ -74,10 +72,10 @@ Twist<W> Ahead(const Rows<W>& s, const BodyWork<W>& body, int b, bool moves, W h
   return t;
 }
 
-/// The speed with which a stop of restitution e throws its bodies back (eq. 15), 0 where it does
-/// not. `before`: its velocity; `kick`: what forces take off it in the step; `gap`: at the middle,
-/// where the step finds it. The impact is reckoned at the stop and brought back there, under the
-/// acceleration that goes on, of forces and of the arc. A bounce that ends within the step is none.
+/// Returns the rebound speed at a stop of restitution e (eq. 15), or 0. `before`: row velocity;
+/// `kick`: its decrease by forces in the step; `gap`: at the middle of the step. The impact is
+/// evaluated at the stop and extrapolated back under the acceleration of forces and arc. A bounce
+/// that ends within the step does not count.
 template <class W>
 W ReboundOf(W e, W before, W kick, W bend, W gap, W h) noexcept {
   const W zero = W::Splat(0.0), half = W::Splat(0.5), one = W::Splat(1.0);
@@ -90,14 +88,14 @@ W ReboundOf(W e, W before, W kick, W bend, W gap, W h) noexcept {
   return Select(bounces, speed, zero);
 }
 
-/// Sets the law of a stop (eq. 4). `load`: with which it pressed in the step before [N].
+/// Sets the law of a stop (eq. 4). `load`: its force in the previous step [N].
 ///
-/// One that pressed and is closed is held: what little velocity the step before has left to its
-/// bodies is turned round, as by eq. 3, so that no work is done. More than a little, as a catch
-/// leaves, would come back; they end the step at rest on their arc. Others let their bodies come as
-/// far as to touch. From beyond a stop bodies return no faster than this step's forces would take
-/// them further, as from inside a contact (contact.md, eq. 2); StageJointPlaces closes what that
-/// leaves of a step's way.
+/// A stop that pressed and is closed is held: it reverses the small residual velocity of the
+/// previous step (eq. 3), so that it does no work. A larger one, as after a snatch, would return;
+/// then the bodies end the step at rest on their arc. Other stops let their bodies approach until
+/// they touch. From beyond a stop bodies return no faster than this step's forces would move them
+/// further, as from inside a contact (contact.md, eq. 2); StageJointPlaces closes the remaining
+/// distance of about a step.
 template <class W>
 void SetStop(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
              const JointRowTable& table, const JointPlace<W>& place, const JointDirection<W>& d,
@@ -107,7 +105,7 @@ void SetStop(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
   const W before = RateOf(place, d, Before(a), Before(b)), speed = Abs(before);
   const W free = RateOf(place, d, Free(a), Free(b)), gap = d.value;
   const W bend = BendOf(work, j, table, place, d, angle, half * h);
-  // At the middle of the step a chord is this far from the arc that its ends are on.
+  // Distance between chord and arc at the middle of the step (sagitta).
   const W sagitta = W::Splat(0.25) * h * bend, off = gap - sagitta;
   row.reach = h * (speed + Abs(free)) + W::Splat(kContactMarginM);
   row.live = Select(gap < row.reach, row.live, zero);
@@ -120,7 +118,7 @@ void SetStop(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
   const auto small = Abs(before - bend) < W::Splat(kStopTurned) * (Abs(bend) + Abs(before - free));
   const W at_rest = zero - Max(bend, before), turned = zero - before;
   row.target = Select(held, Select(small, turned, at_rest), zero - (bend + back));
-  // What pressed before is no measure of what takes bodies away from the stop.
+  // The previous force does not measure the forces that pull bodies away from the stop.
   const W kick =
       before - RateOf(place, d, Ahead(s, a, j.a, j.a_moves, h), Ahead(s, b, j.b, j.b_moves, h));
   const W least_kick = Select(pressed, zero, zero - speed);
@@ -134,8 +132,8 @@ TAUT_INLINE MaskOf<W> Presses(const HeldRow<W>& row) noexcept {
   return (row.live > zero) & (row.l[0] > zero);
 }
 
-/// Where a stop is closed by displacements: it pressed in this step, and is held or was passed. One
-/// that is passed by more than a step's way, as described or as set, is left to eq. 4.
+/// Whether displacements close a stop: it pressed in this step, and is held or was passed. A stop
+/// passed by more than one step's motion (initial or set state) is left to eq. 4.
 template <class W>
 MaskOf<W> IsClosedAtEnd(const HeldRow<W>& row, W gap) noexcept {
   const W zero = W::Splat(0.0);

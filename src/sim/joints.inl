@@ -27,7 +27,7 @@ TAUT_INLINE M3<W> AxesOf(const M3<W>& R, const double* axes_P) noexcept {
           R * simd::Splat3<W>(axes_P + 6)};
 }
 
-/// By the frames in `work`.
+/// Uses the frames in `work`.
 template <class W>
 JointPlace<W> PlaceOf(const View& m, const Rows<W>& s, const Scratch<W>& work,
                       const JointTable& j) noexcept {
@@ -41,8 +41,8 @@ JointPlace<W> PlaceOf(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return p;
 }
 
-/// Returns the angle of a hinge with its turns, as near to `expected` as its pose allows. Half a
-/// turn between the two is the most that may be: `expected` has to follow the hinge's rate.
+/// Returns the unwrapped angle of a hinge closest to `expected`. The two may differ by half a turn
+/// at most, so `expected` has to follow the hinge's rate.
 template <class W>
 TAUT_INLINE W HingeAngle(const JointPlace<W>& p, W expected) noexcept {
   const W turn = W::Splat(2 * simd::kPi), inv_turn = W::Splat(0.5 / simd::kPi);
@@ -122,8 +122,8 @@ JointDirection<W> DirectionOf(const JointTable& j, JointMeasure measure, const J
           reach * simd::Atan2(sine, Dot(p.axes_a.r0, p.axes_b.r0))};
 }
 
-/// The same with the sign of the row's role. A stop's value is the distance that is left to it, so
-/// that its impulse pushes.
+/// The same with the sign of the row's role. A stop's value is the remaining distance, so that its
+/// impulse pushes.
 template <class W>
 JointDirection<W> DirectionOf(const JointTable& j, const JointRowTable& row, const JointPlace<W>& p,
                               W angle) noexcept {
@@ -147,9 +147,9 @@ TAUT_INLINE W RateOf(const JointPlace<W>& p, const JointDirection<W>& d, const T
 /// Links and inverse effective mass of a row in direction `d`; the first link is to a body that
 /// impulses move.
 ///
-/// Where a joint holds a point, each body is pushed at its own (joints.md, section 2): at the
-/// other's, which is off by the gap, a thin rod would be turned about its axis, and rows that are
-/// redundant would not be.
+/// A joint that holds a point pushes each body at its own point (joints.md, section 2). At the
+/// other's point, which is off by the gap, it would spin a thin rod about its axis, and redundant
+/// rows would become independent.
 template <class W>
 void SetJointLinks(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
                    const JointPlace<W>& p, const JointDirection<W>& d, JointRow<W>& row) noexcept {
@@ -177,7 +177,7 @@ TAUT_INLINE V3<W> Turned(const V3<W>& turn, const V3<W>& a) noexcept {
   return a + once + W::Splat(0.5) * Cross(turn, once);
 }
 
-/// Compliance of rows that hold, as a share of their inverse effective masses.
+/// Compliance of held rows, as a share of their inverse effective masses.
 inline constexpr double kHeldCompliance = 1e-7;
 
 template <class W>
@@ -215,7 +215,7 @@ void SetHeld(const Rows<W>& s, const Scratch<W>& work, W last_impulse, JointRow<
   row.target = row.give * last_impulse - before;
 }
 
-/// The displacement of a body by which FindClosing closes the joints.
+/// Returns the displacement of a body by FindClosing.
 template <class W>
 Twist<W> ClosingOf(const View& m, const Scratch<W>& work, int body) noexcept {
   const W zero = W::Splat(0.0);
@@ -224,8 +224,8 @@ Twist<W> ClosingOf(const View& m, const Scratch<W>& work, int body) noexcept {
   return Island<W, Pools<JointRow<W>>>::Load(work.joint_memory.change + kDofs * number);
 }
 
-/// Turns the levers of a row that belong to the closed place back with the bodies, so that no row
-/// turns a thin rod about its axis.
+/// Rotates the lever arms of a row from the closed pose back to the current pose, so that no row
+/// spins a thin rod about its axis.
 template <class W>
 void TurnLinksBack(const View& m, const Scratch<W>& work, JointRow<W>& row) noexcept {
   for (int k = 0; k < row.link_count; ++k) {
@@ -239,8 +239,8 @@ void TurnLinksBack(const View& m, const Scratch<W>& work, JointRow<W>& row) noex
 template <class W>
 void FindClosing(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept;
 
-/// The rows of all joints. In models with loops the rows that hold belong to the nearest place
-/// where all joints are closed: redundant rows are exactly dependent only there.
+/// Assembles the rows of all joints. In models with loops the held rows are evaluated at the
+/// nearest closed pose: redundant rows are exactly dependent only there.
 ///   reads   pos, bodies[]     writes  joints[], joint_angle
 template <class W>
 void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
@@ -308,8 +308,8 @@ void ForgetGains(const View& m, Scratch<W>& work) noexcept {
   }
 }
 
-/// Angular momentum that a unit impulse gives to both bodies of a row together, because the points
-/// that it pushes are apart by the gap (eq. 9).
+/// Returns the total angular momentum of a unit impulse on both bodies of a row, whose points are
+/// separated by the gap (eq. 9).
 template <class W>
 TAUT_INLINE V3<W> GainOf(const JointRow<W>& row, const V3<W>& pos_first,
                          const V3<W>& pos_second) noexcept {

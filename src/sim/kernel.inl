@@ -218,7 +218,7 @@ void Judge(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work, const So
   const auto too_long = (Max(share, jointed.share) > W::Splat(1.0)) & (!was_halted);
   s.residual[0] = solve.residual;
   s.linear_solves[0] = solve.linear_solves;
-  s.gave_in[0] = solve.gave_in;
+  s.relaxation[0] = solve.relaxation;
   auto fallen = MaskOf<W>::Splat(false);
   if (m.ground_count > 0) fallen = FellOff(m, s);
   if (!Any(lost | unsolved | too_long | fallen) && overflow == 0) return;

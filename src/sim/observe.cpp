@@ -286,7 +286,7 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
 }
 
 std::uint64_t Batch::Hash(int world) const noexcept {
-  // FNV-1a over what a snapshot holds, readings apart, without building one.
+  // FNV-1a over the contents of a snapshot without readings, without building one.
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   std::uint64_t hash = 0xcbf29ce484222325u;
@@ -311,7 +311,7 @@ WorldStatus Batch::Status(int world) const noexcept {
           s.ground,
           d.at(world, d.layout.residual),
           static_cast<int>(d.at(world, d.layout.linear_solves)),
-          d.at(world, d.layout.gave_in)};
+          d.at(world, d.layout.relaxation)};
 }
 
 void Batch::ClearStatus(int world) noexcept {

@@ -1,8 +1,7 @@
-/// One block of memory for a step, handed out in pieces that know their ends.
+/// Arena allocator for the memory of a step, with bounds-checked pieces.
 ///
-/// Two checks stand behind every index: builds with assertions compare it with the piece's count,
-/// and under AddressSanitizer a zone behind every piece must not be touched. Without both a piece
-/// is a pointer.
+/// Index checks: builds with assertions compare each index with the piece's count, and
+/// AddressSanitizer builds have a red zone behind every piece. Other builds use a plain pointer.
 #pragma once
 
 #include <stddef.h>
@@ -26,8 +25,7 @@ extern "C" void __asan_unpoison_memory_region(const volatile void* first, size_t
 
 namespace taut::sim {
 
-/// Elements of one type, one behind the other: a pointer that in builds with assertions knows its
-/// end.
+/// Contiguous elements of one type: a pointer, with its end in builds with assertions.
 template <class T>
 class Row {
  public:
@@ -39,7 +37,7 @@ class Row {
   }
   template <ptrdiff_t N>
   TAUT_INLINE Row(T (&all)[N]) noexcept : Row(all, N) {}
-  // Of any integer: with one type the index of a pointer would fit others as well.
+  // A template of the integer type: with one type, pointer indexing would be ambiguous.
   template <class Index>
   TAUT_INLINE T& operator[](Index i) const noexcept {
 #ifdef TAUT_ASSERTS
@@ -47,7 +45,7 @@ class Row {
 #endif
     return first_[i];
   }
-  /// What is left from element `i` on.
+  /// Returns the rest from element `i` on.
   TAUT_INLINE Row From(ptrdiff_t i) const noexcept {
 #ifdef TAUT_ASSERTS
     TAUT_ASSERT(0 <= i && i <= count_);
@@ -70,8 +68,8 @@ class Row {
 #endif
 };
 
-/// Memory that is handed out piece by piece, each aligned to 64 bytes. Without memory only the
-/// sizes count: adding to a null pointer would be undefined.
+/// Allocates pieces aligned to 64 bytes. Without memory it only counts sizes, since arithmetic on a
+/// null pointer is undefined.
 struct Room {
   char* memory;
   size_t used;
@@ -92,8 +90,8 @@ struct Room {
 #endif
     return {first, static_cast<ptrdiff_t>(count)};
   }
-  /// Overwrites all that was handed out; the pieces have to be taken again, which costs nothing
-  /// but under AddressSanitizer.
+  /// Overwrites all allocated pieces; they must be allocated again, which is free except under
+  /// AddressSanitizer.
   void Fill(unsigned char byte) const noexcept {
 #ifdef TAUT_ADDRESS_SANITIZER
     __asan_unpoison_memory_region(memory, used);

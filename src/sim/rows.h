@@ -90,7 +90,7 @@ struct CableWork {
   MaskOf<W> soft;         ///< Lanes in which it is.
   W spring;               ///< Its part of the tension [N].
   W stretch;              ///< At the middle of the step [m].
-  Row<Link<W, 1>> links;  ///< The first link_count; room is what all cables have left.
+  Row<Link<W, 1>> links;  ///< Used: the first link_count; capacity shared by all cables.
   int link_count;
   W A;  ///< Inverse effective mass along the cable [1/kg].
   MaskOf<W> damped;
@@ -112,8 +112,8 @@ template <class W>
 struct HeldRow : JointRow<W> {
   int joint;
   V3<W> lin, turn;
-  W held;   ///< Of a stop: 1 where it is held as it pressed in the step before (joints.md, eq. 4).
-  W reach;  ///< Of a stop: how far its bodies may come in a step [m].
+  W held;   ///< Stops: 1 where held, because it pressed in the previous step (joints.md, eq. 4).
+  W reach;  ///< Stops: largest approach of the bodies in a step [m].
 };
 
 /// How a motion moves its body in this step: velocities at its start and middle, and its end.
@@ -143,14 +143,14 @@ struct Scratch {
   Spot<W>* spots;
   AttachmentWork<W>* attachments;
   Wheel<V3<W>>* wheels;       ///< Of one cable.
-  Row<RodLine<W>> rod_lines;  ///< Of the rods that one cable may come to,
-  Row<W> rod_sides;           ///< and on which side of them it will be (cable_rods.inl).
+  Row<RodLine<W>> rod_lines;  ///< Rods that one cable may touch,
+  Row<W> rod_sides;           ///< and its new side of each (cable_rods.inl).
   Contact<W, 1>* contacts;    ///< Slots of all bodies: those of body b from View::first_slot[b] on.
   int* contact_count;         ///< Used slots, per body.
   TouchingPair* touches;      ///< Those of a lane from lane * pair_capacity on.
   int touch_count[W::kLanes];
   int bends_used = 0;  ///< By the cable that was measured last (cable_bends.inl).
-  /// A bit for each lane in which a cable touches more than it has room for, and which one.
+  /// Bit mask of the lanes in which a cable exceeds kMostBends, and that cable.
   uint32_t no_room = 0;
   int crowded_cable[W::kLanes];
   V3<W>* start_spots;  ///< Spots at the start of the step [m], if start_known.

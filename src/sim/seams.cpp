@@ -6,15 +6,15 @@
 namespace taut::sim {
 namespace {
 
-/// Sines and cosines by so much are rounding.
+/// Rounding tolerance of sines and cosines.
 constexpr double kLevel = 1e-6;
-/// Whatever lengths may be, this steep is not along.
+/// Sine above which a direction is not tangential, for all lengths.
 constexpr double kSteep = 0.5;
-/// So far around a place a piece is followed, in the distance that counts as none; and so far from
-/// a covered one it may be open, which bodies that press into each other do not reach.
+/// Search radius around a point, in units of the meeting distance; and distance from a covered
+/// point to open surface, beyond the penetration of pressed bodies.
 constexpr double kSteps = 16.0, kOpenSteps = 500.0;
 
-/// Whether `way`, of a given length, leads up by more than the slack.
+/// Whether `way`, of a given length, rises by more than the tolerance.
 bool Rises(double up_m, double length_m, const SeamSlack& slack) noexcept {
   return up_m > slack.length_m + slack.sine * length_m || up_m > kSteep * length_m;
 }
@@ -25,7 +25,7 @@ bool IsWithin(const SeamPiece& piece, const Vec3& p, double more_m) noexcept {
          p.z >= piece.low.z - more_m && p.z <= piece.high.z + more_m;
 }
 
-/// `use(triangle, nearest)` with the triangles that have a place, and their place nearest to it.
+/// Calls `use(triangle, nearest)` for the triangles at a point, with their nearest points.
 template <class Use>
 void EachAt(const SurfaceTable& s, const Vec3& place, double same_m, const Use& use) noexcept {
   const Vec3 reach{same_m, same_m, same_m};
@@ -35,7 +35,7 @@ void EachAt(const SurfaceTable& s, const Vec3& place, double same_m, const Use& 
   });
 }
 
-/// A half space goes on everywhere but out of it.
+/// A half space continues in all directions that do not leave it.
 bool PlaneCovers(const SeamPiece& plane, const Vec3& place, const Vec3& normal, double same_m,
                  double sine) noexcept {
   if (Dot(plane.normal, place) - plane.offset_m > same_m) return false;
@@ -43,8 +43,8 @@ bool PlaneCovers(const SeamPiece& plane, const Vec3& place, const Vec3& normal, 
   return !(out > 0.0) || Norm(normal - out * plane.normal) > sine;
 }
 
-/// All directions lead along a box or into it but those between the normals of the faces that have
-/// the place.
+/// All directions are tangential to a box or point into it, except those between the normals of the
+/// faces at the point.
 bool BoxCovers(const BoxShape& box, const Vec3& place, const Vec3& normal, double same_m,
                const SeamSlack& slack) noexcept {
   if (!IsIn(box, place, same_m)) return false;
@@ -60,7 +60,7 @@ bool BoxCovers(const BoxShape& box, const Vec3& place, const Vec3& normal, doubl
   return !on_face;
 }
 
-/// Below a field's surface, at its border: a wall that goes straight down.
+/// Below a field's surface at its border: a vertical wall.
 bool WallCovers(const SurfaceTable& s, const Vec3& place, const Vec3& normal, double same_m,
                 double sine) noexcept {
   const double depth = HeightAt(s, place.x, place.y) - place.z;
@@ -161,7 +161,7 @@ bool IsExposed(const SeamList& seams, const Vec3& end, const SeamContact& contac
   const double length_m = Norm(way);
   if (middle == nullptr || !(length_m > 2.0 * (seams.same_m + more_m))) return false;
   if (Abs(Dot(normal, way)) > kLevel * length_m || !(Dot(way, *middle - place) > 0.0)) return false;
-  // Where places are not exact, not along what covers it, past the end of that.
+  // With inexact points: not tangential to the covering piece beyond its end.
   const double near_m = 3.0 * (seams.same_m + more_m);
   if (more_m > 0.0 && IsOnSeam(seams, place + Smaller(near_m / length_m, 1.0) * way, more_m)) {
     return false;

@@ -1,9 +1,8 @@
-/// Seams: where pieces of terrain meet, they are one surface (docs/theory/ground.md, section 9).
+/// Seams: adjacent pieces of terrain form one surface (docs/theory/ground.md, section 9).
 ///
-/// Each piece finds its contacts without the others. What is a contact with one piece may be none
-/// with all of them: an edge where a neighbor goes on in the same plane, a side wall that a
-/// neighbor covers. The functions below tell those apart. They look only at the neighborhood of one
-/// place.
+/// Contacts are detected per piece. A contact with one piece may be internal to the joint surface:
+/// an edge where a neighbor continues in the same plane, a side wall that a neighbor covers. The
+/// functions below reject internal contacts. They inspect only the neighborhood of one point.
 ///
 /// Part of a step: no standard library.
 #pragma once
@@ -19,57 +18,57 @@ struct SurfaceTriangle;
 struct SeamPiece {
   enum Kind { kPlane, kBox, kSurface };
   Kind kind = kPlane;
-  double same_m = 0;  ///< Places of both pieces that are no further apart are one.
-  Vec3 low, high;     ///< Bounds, grown by `same_m`; of a field and a plane without a lower one.
+  double same_m = 0;  ///< Largest distance of coincident points of both pieces.
+  Vec3 low, high;     ///< Bounds, grown by `same_m`; fields and planes have no lower bound.
   Vec3 normal;        ///< Of a plane: normal . x = offset_m.
   double offset_m = 0;
   BoxShape box = {};
   const SurfaceTable* surface = nullptr;
 };
 
-/// What is near a piece of terrain.
+/// Pieces near a piece of terrain.
 struct SeamList {
   const SeamPiece* pieces = nullptr;
   int count = 0;
   double same_m = 0;  ///< The largest of the pieces.
 };
 
-/// A normal leads along a piece, not into it, if it rises from it by no more than this: a length,
-/// and a sine.
+/// Tolerances (length and sine) within which a normal is tangential to a piece and does not point
+/// into it.
 struct SeamSlack {
   double length_m, sine;
 };
 
-/// Whether a place belongs to some piece, too.
+/// Whether a point belongs to another piece.
 bool IsOnSeam(const SeamList& seams, const Vec3& place, double more_m = 0.0) noexcept;
 
-/// Whether a piece has the place, too, and goes on in the direction of the normal: something of it
-/// is nearer to what the normal leads to.
+/// Whether a piece contains the point and continues in the direction of the normal: a part of it is
+/// nearer to the end of the normal.
 bool IsCovered(const SeamList& seams, const Vec3& place, const Vec3& normal, const SeamSlack& slack,
                double more_m = 0.0) noexcept;
 
-/// A contact that may be covered. `middle`: of a body with flat faces, else null.
+/// A contact that may be covered. `middle`: center of a body with flat faces, else null.
 struct SeamContact {
   Vec3 place, normal;
   const Vec3* middle;
 };
 
-/// The same for a place of a triangle or an edge, along which it may come out of what covers it
-/// nearby, as the foot of a wall does: there a body with flat faces has a contact.
+/// The same for a point of a triangle or an edge that may emerge from its cover nearby, as the foot
+/// of a wall does: there a body with flat faces has a contact.
 bool IsFaceCovered(const SeamList& seams, const SurfaceTriangle& face, const SeamContact& contact,
                    const SeamSlack& slack) noexcept;
 bool IsEdgeCovered(const SeamList& seams, const Vec3& from, const Vec3& to,
                    const SeamContact& contact, const SeamSlack& slack) noexcept;
-/// Whether the way from a covered place to `end`, at right angles to the normal and to where the
-/// body is, is open.
+/// Whether the path from a covered point to `end`, perpendicular to the normal and towards the
+/// body, is open.
 bool IsExposed(const SeamList& seams, const Vec3& end, const SeamContact& contact,
                const SeamSlack& slack, double more_m = 0.0) noexcept;
 
-/// Whether a piece, or `own` if that is not null, goes straight on from a place in a direction of
-/// length 1. With `boxes` also boxes do.
+/// Whether a piece, or `own` if not null, continues straight from a point in a unit direction.
+/// `boxes`: include boxes.
 bool GoesStraightOn(const SurfaceTable* own, const SeamList& seams, const Vec3& place,
                     const Vec3& way, bool boxes) noexcept;
-/// Whether all directions at right angles to the normal go straight on.
+/// Whether the surface continues straight in all tangential directions.
 bool IsFlatAround(const SurfaceTable& own, const SeamList& seams, const Vec3& place,
                   const Vec3& normal) noexcept;
 

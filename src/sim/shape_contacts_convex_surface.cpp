@@ -176,7 +176,7 @@ class ConvexSearch {
       if (&s == &s_) {
         const Vec3 middle = (1.0 / 3.0) * (t.p[0] + t.p[1] + t.p[2]) - base;
         if (!(Dot(first.normal, middle) > kLevel * Norm(middle))) return;
-      } else {  // it may go on below, where this one covers it
+      } else {  // it may continue below, covered by this one
         double most_m = -1.0;
         for (const Vec3& corner : t.p) {
           const Vec3 way = corner - base;
@@ -240,8 +240,8 @@ class ConvexSearch {
                    kFirstEdge + i + static_cast<int>(on_own > 0.5));
     }
   }
-  /// The same of all pieces that meet at a place of the edge. It does not stick out where one of
-  /// them goes straight on from one of its sides.
+  /// The same for all pieces that meet at a point of the edge. The edge is not convex where one of
+  /// them continues straight from one of its sides.
   bool IsEdgeOpen(const SurfaceEdge& edge, const Vec3& at, const Vec3& normal) const noexcept {
     if (!IsOnSeam(s_.seams, at)) return true;
     if (IsEdgeCovered(s_.seams, edge.from, edge.to, {at, normal, &center_}, {limit_m_, kLevel}))

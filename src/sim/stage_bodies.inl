@@ -63,7 +63,7 @@ TAUT_INLINE void TurnAbout(Q4<W>& q, const V3<W>& u) noexcept {
        q.y + (u.y * q.w + u.z * q.x - u.x * q.z), q.z + (u.z * q.w + u.x * q.y - u.y * q.x)};
 }
 
-/// The same by a quaternion of cosine and sine of half the angle.
+/// The same with a quaternion from cosine and sine of half the angle.
 template <class W>
 TAUT_INLINE void TurnY(Q4<W>& q, W c, W s) noexcept {
   q = {c * q.w - s * q.y, c * q.x - s * q.z, c * q.y + s * q.w, c * q.z + s * q.x};
@@ -79,12 +79,11 @@ TAUT_INLINE void TurnAbout(Q4<W>& q, W c, const V3<W>& u) noexcept {
        c * q.z + (u.z * q.w + u.x * q.y - u.y * q.x)};
 }
 
-/// Bodies on hinges, whose turns are counted, turn further than this in half a step by sine and
-/// cosine instead of HalfAngle's series, of which 3e-5 of the angle are missing there [rad].
+/// Angle per half step above which bodies on hinges, whose turns are counted, use sine and cosine
+/// instead of HalfAngle's series, whose error there is 3e-5 of the angle [rad].
 inline constexpr double kSeriesTurn = 0.25;
 
-/// Cosine and sine of a turn by theta / 2 in the lanes `fast`; in others 1 and HalfAngle, which
-/// have to be normalised.
+/// Cosine and sine of theta / 2 in the lanes `fast`; in others 1 and HalfAngle, to be normalized.
 template <class W>
 struct HalfTurn {
   W c = W::Splat(1.0), s;
@@ -131,8 +130,8 @@ TAUT_INLINE W DriftTurn(Q4<W>& q, const M3<W>& R, const V3<W>& L, const V3<W>& i
   return NormalizeQuat(q);
 }
 
-/// DriftTurn of a body on a hinge: exact however fast it spins, and with the same bits where all of
-/// its turns are by the series.
+/// DriftTurn of a body on a hinge: exact at any speed, and bit-identical to DriftTurn where the
+/// series is used.
 template <Half kHalf, class W>
 [[gnu::noinline]] W DriftTurnOnHinge(Q4<W>& q, const M3<W>& R, const V3<W>& L,
                                      const V3<W>& inv_inertia, W half_h) noexcept {

@@ -2,8 +2,8 @@
 
 namespace taut::sim {
 
-/// One cable of the stage below, at the end of the step; `ends` is room for its attachments: known
-/// to be two, they stay in registers.
+/// Reads one cable at the end of the step. `ends`: buffer for its attachments; with two at compile
+/// time they stay in registers.
 template <bool kTwo, class W>
 TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
                             int attachment_count, AttachmentWork<W>* ends) noexcept {
@@ -17,9 +17,9 @@ TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, Scratch<W>& work, i
 }
 
 /// Forces of stiff cables are means over the last step, as the solver found them
-/// (docs/theory/cables.md, eq. 8). Those at its end may swing from step to step between zero and
-/// twice the mean: the implicit midpoint rule keeps the energy of vibrations that are shorter than
-/// the step, and only their mean acts on bodies.
+/// (docs/theory/cables.md, eq. 8). Instantaneous forces may alternate between zero and twice the
+/// mean: the implicit midpoint rule conserves the energy of vibrations shorter than the step, and
+/// only their mean acts on bodies.
 template <class W>
 [[gnu::noinline]] void SenseMeans(const View& m, const Rows<W>& s) noexcept {
   const auto known = (s.mean_step[0] > W::Splat(0.0)) & (s.mean_step[0] == s.last_step[0]);
@@ -33,7 +33,7 @@ template <class W>
   }
 }
 
-/// Stage: what sensors see of the cables: lengths and rates at the end of the step, and forces.
+/// Stage: sensor readings of cables: lengths and rates at the end of the step, and forces.
 ///   reads   pos, bodies[] (of the current state), tension, mean_*     writes  sense_*
 template <class W>
 void StageSense(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {

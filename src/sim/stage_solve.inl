@@ -8,7 +8,7 @@ template <class W>
 struct SolveResult {
   W residual;  ///< How far a lane is from solved [m/s].
   W linear_solves;
-  W gave_in;            ///< Largest change of a bias, where biases contradicted each other [m/s].
+  W relaxation;            ///< Largest relaxation of inconsistent biases [m/s].
   int body[W::kLanes];  ///< Where it is furthest.
 };
 
@@ -304,7 +304,7 @@ void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
     LaneSolve<W> solver(m, s, work, settings, lane, step_s);
     const LaneResult lane_result = solver.Solve();
     result.linear_solves.Set(lane, result.linear_solves[lane] + lane_result.linear_solves);
-    result.gave_in.Set(lane, lane_result.gave_in);
+    result.relaxation.Set(lane, lane_result.relaxation);
     if (!(lane_result.residual <= result.residual[lane])) {
       result.residual.Set(lane, lane_result.residual);
       result.body[lane] = lane_result.body;

@@ -30,7 +30,7 @@ enum class Per {
 enum class Role {
   kState,      ///< With commands: advances; in snapshots and hashes.
   kParameter,  ///< Does not change by itself; in snapshots and hashes.
-  kReading,    ///< Of the last step, for readers only: no step uses it. In snapshots.
+  kReading,    ///< Observed values of the last step; no step reads them. In snapshots.
   kMemory,     ///< Of the contacts of the last step; snapshots and hashes have those with a key.
   kDerived,    ///< Follows from the rest or only reports; in no snapshot.
   kSensed,     ///< Derived, and only when somebody asks for it (Group::sensed).
@@ -142,7 +142,7 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(touch_free,     Number, kTouch,    kDerived,   kStays,    Zero)             /* then nothing was nearer [m]; 0: not known */ \
   ROW(residual,       Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last solve [m/s] */ \
   ROW(linear_solves,  Number, kWorld,    kDerived,   kStays,    Zero)             /* of the last step */ \
-  ROW(gave_in,        Number, kWorld,    kDerived,   kStays,    Zero)             /* by the last step's contacts, see WorldStatus [m/s] */ \
+  ROW(relaxation,        Number, kWorld,    kDerived,   kStays,    Zero)             /* by the last step's contacts, see WorldStatus [m/s] */ \
   ROW(sense_span_length, Number, kSpan,  kSensed,    kStays,    Zero)             /* [m] */ \
   ROW(sense_span_rest, Number, kSpan,    kSensed,    kStays,    Zero)             /* after what is still to slip [m] */ \
   ROW(sense_slip_loss, Number, kSlip,    kSensed,    kStays,    Zero)             /* with that [J] */ \

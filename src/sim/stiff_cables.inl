@@ -8,7 +8,7 @@
 
 namespace taut::sim {
 
-/// The stiffest K of an explicit spring at this step [1/s^2].
+/// Largest K of an explicit spring at this step [1/s^2].
 template <class W>
 TAUT_INLINE W SoftLimit(W h) noexcept {
   return W::Splat(kSoftSpring) / (h * h);
@@ -102,7 +102,7 @@ W ShareOfStableTension(const Rows<W>& s, const StiffCable<W>& row) noexcept {
   return Select(row.live > W::Splat(0.0), s.tension[row.cable] * row.across, W::Splat(0.0));
 }
 
-/// Tensions and angular momenta of what the solver found, and what of the tensions is the springs'.
+/// Sets tensions, their spring parts and angular momenta from the solver's impulses.
 template <class W>
 void FinishStiffCables(const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0), inv_h = W::Splat(1.0 / step_s);

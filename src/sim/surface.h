@@ -57,12 +57,12 @@ struct SurfaceTable {
   const MeshCorner* sharp_corners = nullptr;
   const int* beside = nullptr;  ///< Corners beside those.
 
-  SeamList seams;                       ///< Other pieces of terrain that are near.
-  const SurfaceTable* alone = nullptr;  ///< The same without them; null if there are none.
+  SeamList seams;                       ///< Adjacent pieces of terrain.
+  const SurfaceTable* alone = nullptr;  ///< The same without seams; null if there are none.
 };
 
-/// A surface without the pieces beside it. Distances are those of it: what they cover counts as
-/// near, so that nothing is missed where it comes out.
+/// A surface without adjacent pieces. Distances ignore covers: covered parts count as near, so that
+/// no contact is missed where they emerge.
 inline const SurfaceTable& Alone(const SurfaceTable& s) noexcept {
   return s.alone == nullptr ? s : *s.alone;
 }

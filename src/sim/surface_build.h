@@ -17,7 +17,7 @@ class Surface {
   /// Stays where it is, if the surface is moved, too.
   const SurfaceTable& table() const { return *table_; }
 
-  /// Other pieces near it, which are to stay where they are.
+  /// Adjacent pieces; they must outlive the surface.
   void Join(const SeamList& seams);
 
  private:

@@ -11,7 +11,7 @@ namespace {
 constexpr double kShortStretch = 1e-6;
 /// Nor has one along which the rod is parallel to it, as the square of a sine.
 constexpr double kParallel = 1e-24;
-/// A piece that rises from a place of another by more than this sine is nearer.
+/// Sine above which a piece that rises from a point of another one is nearer.
 constexpr double kCovers = 1e-7;
 
 /// A line between edges and corners, and what it found.
@@ -95,9 +95,9 @@ class LineSearch {
   int count() const noexcept { return count_; }
 
  private:
-  /// Whether a place on an edge, or a corner, is one of all pieces that meet there: none of them is
-  /// nearer to the line, and they do not go straight on to both sides along it, where its ends hold
-  /// it.
+  /// Whether a point on an edge, or a corner, belongs to the joint surface of all pieces that meet
+  /// there: no piece is nearer to the line, and they do not continue straight on both sides along
+  /// it, where the ends of the line support it.
   bool IsOpen(const Vec3& start, const Vec3& end, double share, const Vec3& at,
               bool inside) const noexcept {
     const Vec3 away = from_ + share * along_ - at;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kCoincidentM = 1e-10;
 /// Two triangles may find their common place at distances that differ so much, as a share.
 constexpr double kSameDistance = 1e-12;
-/// And, as coordinates are rounded, by so much [m].
+/// The same for the rounding of coordinates [m].
 constexpr double kSameDistanceM = 1e-13;
 /// And, as its root, so far from each other.
 constexpr double kSamePlace = 4e-6;
@@ -22,12 +22,12 @@ constexpr double kSamePlace = 4e-6;
 /// is.
 constexpr double kAbovePlane = 1e-7;
 constexpr int kMaxPlaces = 16;
-/// What is in a field at its border leaves it through the wall if that is nearer than the surface
-/// by so much: what is over the border by a bit of rounding stays on the surface.
+/// Margin by which a border wall must be nearer than the surface to be the way out of a field: a
+/// point beyond the border by rounding stays on the surface.
 constexpr double kWallNearer = 0.9, kWallNearerM = 1e-6;
-/// At right angles, as a cosine.
+/// Cosine below which directions are perpendicular.
 constexpr double kAlongNormal = 1.0 - 1e-9;
-/// Distances are compared as they are.
+/// Distances are compared without tolerance.
 constexpr SeamSlack kExactly{0.0, kAbovePlane};
 
 /// The place of a triangle that is nearest to a point. Source: C. Ericson, Real-Time Collision
@@ -72,8 +72,8 @@ struct NearestOfAll {
   SurfaceTriangle triangle;
   Vec3 at;
 
-  /// `seams`: pieces that cover what does not count as a way out, which then is at right angles to
-  /// a triangle; or null.
+  /// `seams`: pieces whose covered points are no way out; then the way out is perpendicular to a
+  /// triangle. Or null.
   NearestOfAll(const SurfaceTable& s, const Vec3& p, double limit, const SeamList* seams,
                const Vec3* middle) noexcept
       : limit_m(limit), distance_m(limit) {
@@ -152,7 +152,7 @@ class PlaceSearch {
     }
     // From the plane, not from a corner: the direction is then as good as the normal.
     const double length = Sqrt(n2), height = at / length;
-    // What is solid is between its faces and what is behind them.
+    // The solid lies behind its faces.
     if (solid_ && height < -kCoincidentM) return;
     const SurfacePlace place{point_ - (at / n2) * n,
                              (height < 0.0 ? -1.0 / length : 1.0 / length) * n, Abs(height)};
@@ -232,15 +232,15 @@ class PlaceSearch {
   Vec3 kept_[kMaxPlaces];
 };
 
-/// A field ends in walls that go straight down from its border. Whether some other piece covers a
-/// place of one of them, and all that is above it.
+/// Fields end in vertical walls below their border. Whether another piece covers a point of a wall
+/// and all points above it.
 bool IsWallCovered(const SurfaceTable& s, const SurfacePlace& place, const Vec3* middle) noexcept {
   if (s.seams.count == 0 || !IsCovered(s.seams, place.at, place.normal, kExactly)) return false;
   const Vec3 top{place.at.x, place.at.y, HeightAt(s, place.at.x, place.at.y)};
   return !IsExposed(s.seams, top, {place.at, place.normal, middle}, kExactly);
 }
 
-/// Of a point beside a field, lower than its border: the nearest place of its walls.
+/// Returns the nearest point of the border walls to a point outside a field and below its border.
 bool PlaceOnWall(const SurfaceTable& s, const Vec3& p, double limit_m, const Vec3* middle,
                  SurfacePlace* out) noexcept {
   const Vec3 foot{Clamp(p.x, s.low.x, s.high.x), Clamp(p.y, s.low.y, s.high.y), p.z};
@@ -252,7 +252,7 @@ bool PlaceOnWall(const SurfaceTable& s, const Vec3& p, double limit_m, const Vec
   return !IsWallCovered(s, *out, middle);
 }
 
-/// Whether other pieces cover the shortest way out of what is inside.
+/// Whether other pieces cover the shortest way out.
 bool IsWayCovered(const SurfaceTable& s, const NearestOfAll& near, const Vec3& p,
                   const Vec3* middle) noexcept {
   if (s.seams.count == 0) return false;
@@ -261,7 +261,7 @@ bool IsWayCovered(const SurfaceTable& s, const NearestOfAll& near, const Vec3& p
   return IsFaceCovered(s.seams, near.triangle, {near.at, out, middle}, kExactly);
 }
 
-/// The shortest way out of a field, to its surface or through one of its walls.
+/// Finds the shortest way out of a field, to its surface or through a wall.
 bool WayOutOfField(const SurfaceTable& s, const Vec3& p, double limit_m, double depth,
                    const Vec3* middle, SurfacePlace* out) noexcept {
   const SurfacePlace walls[] = {{{s.low.x, p.y, p.z}, {-1.0, 0.0, 0.0}, s.low.x - p.x},
@@ -292,8 +292,8 @@ bool WayOutOfField(const SurfaceTable& s, const Vec3& p, double limit_m, double 
   return best != nullptr;
 }
 
-/// The shortest way out of a closed mesh. False if the point is not inside, or others cover all
-/// ways. In the gap between two pieces, smaller than what counts as none, it is inside of both.
+/// Finds the shortest way out of a closed mesh. False if the point is outside, or other pieces
+/// cover all ways. A point in a gap below the meeting distance is inside both pieces.
 bool WayOutOfMesh(const SurfaceTable& s, const Vec3& p, double reach_m, const Vec3* middle,
                   bool* inside, SurfacePlace* out) noexcept {
   const NearestOfAll near(s, p, reach_m, nullptr, nullptr);
@@ -334,7 +334,7 @@ int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, Surf
   if (above && known != nullptr && known->count == 0) return 0;
   PlaceSearch search(s, middle, point, limit_m, out, most);
   if (s.is_field && !above) {
-    // So deep it is still found.
+    // Search depth.
     const double depth = DepthBelow(s, point);
     if (depth > 0.0) return WayOutOfField(s, point, limit_m, depth, middle, out) ? 1 : 0;
     if (PlaceOnWall(s, point, limit_m, middle, out)) search.Add(SurfacePlace(*out));

@@ -15,7 +15,7 @@ struct SurfacePlace {
 /// Local minima of the distance of a point, those within `limit_m`, the nearest first; at most
 /// `most` of them, and how many. Inside of what is solid only the nearest: ways out could be at
 /// odds. `known`: what is near it (surface_parts.h), or null;
-/// `above`: it is known to be above the field; `middle`: of the body of which it is a corner.
+/// `above`: the point is above the field; `middle`: center of the body whose corner it is.
 int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, SurfacePlace* out,
                   int most, const NearParts::OfEnd* known = nullptr, bool above = false,
                   const Vec3* middle = nullptr) noexcept;

@@ -12,8 +12,8 @@
 namespace taut::sim {
 
 /// An edge, with the third corners of the triangles that have it: one at a border, two, and of a
-/// mesh that is not solid perhaps more, of which so many count. At the border of a field a place
-/// straight below is the second: there the ground ends in a wall.
+/// mesh that is not solid perhaps more, of which so many count. At the border of a field the second
+/// one is a point straight below: there the ground ends in a wall.
 struct SurfaceEdge {
   static constexpr int kMaxSides = 4;
   Vec3 from, to;

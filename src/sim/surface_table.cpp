@@ -7,7 +7,7 @@ namespace taut::sim {
 
 namespace {
 
-/// Beside a field by no more than this a point is within its rectangle [m].
+/// Tolerance at a field's border within which a point counts as inside its rectangle [m].
 constexpr double kNoDistanceM = 1e-10;
 
 }  // namespace

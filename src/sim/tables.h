@@ -68,7 +68,7 @@ class Tables final : public Model {
   int tree_shapes = 0;            ///< How many those are; 0 without a tree.
   std::vector<int> world_shapes;  ///< Without surfaces, in the order of the tree's numbers.
   std::vector<int> beside;        ///< What ShapeTable::beside points into.
-  std::vector<std::vector<SeamPiece>> seams;  ///< What lists of seams point into.
+  std::vector<std::vector<SeamPiece>> seams;  ///< Storage of the seam lists.
   std::vector<JointTable> joints;
   std::vector<JointRowTable> joint_rows;
   int turn_friction_count = 0;    ///< Ball joints with friction.
@@ -105,8 +105,8 @@ void LayOutTree(Tables& tables);
 /// Finds the boxes of the world that touch each other, and says so to the pairs with it.
 void JoinBoxes(Tables& tables);
 
-/// Finds the other pieces of terrain that surfaces and boxes of the world meet, and says so to the
-/// pairs with those boxes. After JoinBoxes.
+/// Finds the adjacent pieces of surfaces and terrain boxes, and marks the pairs with those boxes.
+/// Call after JoinBoxes.
 void JoinPieces(Tables& tables);
 
 /// Fills floor_m.

@@ -23,7 +23,7 @@ inline double Reach(const BoxShape& box, const Vec3& direction) noexcept {
   for (int i = 0; i < 3; ++i) reach += box.half_m[i] * Abs(Dot(AxisOf(box, i), direction));
   return reach;
 }
-/// Whether a point is in a box whose faces are further out by `more_m`.
+/// Whether a point is in a box enlarged by `more_m` on all sides.
 inline bool IsIn(const BoxShape& box, const Vec3& p, double more_m) noexcept {
   const Vec3 d = p - Load(box.center);
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-/// The topology and constants of a model as a step reads them: all worlds share them.
+/// Read-only model data for a step: topology and constants, shared by all worlds.
 ///
 /// Every body has a principal frame P: origin in the centre of mass, axes along the principal
 /// axes of inertia. Points of a body are kept in P. The world is body number `body_count`: it
@@ -21,7 +21,7 @@
 
 namespace taut::sim {
 
-/// A `DcMotorDef` in what its law is written in (dc_motor.inl).
+/// A `DcMotorDef` in the variables of its law (dc_motor.inl).
 struct MotorTable {
   int cable = 0, supply = 0;
   double way_m = 0;        ///< Of the rest length, per angle of the rotor [m/rad].
@@ -29,7 +29,7 @@ struct MotorTable {
   double constant = 0;     ///< Torque per current, back EMF per speed [V s/rad].
   double winding_ohm = 0, driver_ohm = 0;
   double rise_per_k = 0, rated_c = 0, ambient_c = 0;
-  double friction = 0, static_more = 0;  ///< Coulomb's, and what is above it at rest [N m].
+  double friction = 0, static_more = 0;  ///< Coulomb friction, excess of static friction [N m].
   double inv_stribeck2 = 0;              ///< 1 / speed^2 [s^2/rad^2].
   double viscous = 0;                    ///< [N m s/rad]
   double gear_loss = 0;                  ///< Friction of the gear per torque of the cable [1].
@@ -58,19 +58,19 @@ struct ShapeTable {
   Material material;
   int point[2] = {};            ///< Of a round one: numbers of its ends among all points;
   bool elsewhere[2] = {};       ///< another shape of the body has that one.
-  const int* beside = nullptr;  ///< Of a box of the world: other boxes of it that it touches.
+  const int* beside = nullptr;  ///< Terrain boxes: other terrain boxes that touch it.
   int beside_count = 0;
-  SeamList seams;  ///< Of a box of the world: what else it meets.
+  SeamList seams;  ///< Terrain boxes: adjacent pieces.
 
-  /// Whether what it meets is to be looked at with it. Always inline: see View.
+  /// Whether adjacent pieces must be checked with it. Always inline: see View.
   [[gnu::always_inline]] bool IsJoined() const noexcept {
     return beside_count > 0 || seams.count > 0;
   }
 };
 
-/// Boxes of the world that are no further apart touch each other [m].
+/// Largest gap between touching terrain boxes [m].
 inline constexpr double kJoinedM = 1e-9;
-/// So many of them, and of their points, are looked at together.
+/// Largest number of them, and of their points, per query.
 inline constexpr int kMostJoinedPairs = 32, kMostJoinedPoints = kMostJoinedPairs * 13;
 
 /// A point that can touch a plane: a sphere's centre, a capsule's end, a box's or a hull's corner.
@@ -93,7 +93,7 @@ struct FrictionSide {
   double axis_P[3] = {};  ///< Unit vector, if directed.
 };
 
-/// What a step needs where friction is more than two coefficients a pair (friction.h).
+/// Friction data beyond two coefficients per pair (friction.h).
 struct FrictionTable {
   const FrictionSide* sides = nullptr;  ///< Of all shapes, then of all planes.
   int shape_count = 0;
@@ -113,8 +113,8 @@ struct ShapePairTable {
   std::uint32_t id = 0;  ///< Of its first possible contact point.
   double static_friction = 0, kinetic_friction = 0, restitution = 0;
   std::uint32_t elsewhere = 0;  ///< Features that another pair has, too: a bit each.
-  /// One shape is round, so that the contact point is of neither body, and one body moves as a
-  /// program says or is on a joint (solve/rolling.inl).
+  /// One shape is round, so that the contact point is fixed to neither body, and one body is
+  /// kinematic or jointed (solve/rolling.inl).
   bool rolls = false;
 };
 
@@ -122,13 +122,13 @@ struct ShapePairTable {
 struct BodyPairTable {
   int a = 0, b = 0;  ///< b may be the world.
   int first_pair = 0, pair_count = 0;
-  bool by_tree = false;    ///< b is the world, whose shapes are looked up in its tree.
+  bool by_tree = false;    ///< b is the world; its shapes are found by its tree.
   bool on_ground = false;  ///< One pair, whose second shape is a surface.
-  int kept = -1;           ///< Its number among those that keep what is near (near_parts.h).
+  int kept = -1;           ///< Index among pairs with a cache of near parts (near_parts.h).
   bool joined = false;     ///< b is the world, and some boxes of it touch each other.
 };
 
-/// So many shapes of the world are looked at one after the other; of more there is a tree.
+/// Largest number of terrain shapes that are tested one by one; more are in a BVH.
 inline constexpr int kFewShapes = 8;
 
 inline constexpr int kMaxPlanes = 8;
@@ -196,7 +196,7 @@ struct View {
   const SlipTable* slips;
   bool along_slip;
   bool has_ground;  ///< Height fields or meshes.
-  int kept_count;   ///< Pairs that keep what is near (BodyPairTable::kept).
+  int kept_count;   ///< Number of pairs with a cache of near parts (BodyPairTable::kept).
   int motor_count, supply_count;
   const MotorTable* motors;
   const SupplyTable* supplies;
@@ -209,7 +209,7 @@ struct View {
   int touch_rod_count;
   const TouchRodTable* touch_rods;
   const FrictionTable* friction;   ///< Null: coefficients are those of the pairs.
-  double floor_m;                  ///< Whoever is below falls for ever; minus infinity: nobody.
+  double floor_m;                  ///< Bodies below it have fallen off; minus infinity: none.
   int first_ground, ground_count;  ///< Surfaces among the shapes.
   int joint_count, joint_row_count, joint_body_count, turn_friction_count;
   const JointTable* joints;
@@ -237,7 +237,7 @@ struct View {
     }
     return count;
   }
-  /// Rods that one cable may come to, the most.
+  /// Largest number of rods that one cable may touch.
   [[gnu::always_inline]] int MostTouchRods() const noexcept {
     int most = 0;
     for (int i = 0; i < touch_count; ++i) {
@@ -245,11 +245,11 @@ struct View {
     }
     return most;
   }
-  /// Whether a program says how it moves.
+  /// Whether the body is kinematic.
   [[gnu::always_inline]] bool HasMotion(int body) const noexcept {
     return motion_count > 0 && body < body_count && motion_of_body[body] >= 0;
   }
-  /// How many elements a row has.
+  /// Number of elements of a row.
   [[gnu::always_inline]] int Count(Per per) const noexcept {
     switch (per) {
       case Per::kBody:

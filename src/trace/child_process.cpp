@@ -40,7 +40,7 @@ ProcessorUse UseOf(pid_t pid) {
   char text[1024] = {};
   const std::size_t size = std::fread(text, 1, sizeof text - 1, file);
   std::fclose(file);
-  // Behind the name, which may hold anything: state, ten numbers, user and system time.
+  // After the name, which may contain any character: state, ten numbers, user and system time.
   const std::string_view all(text, size);
   const std::size_t name_end = all.rfind(')');
   char state = 0;
@@ -129,7 +129,7 @@ bool ChildProcess::Read(void* to, std::size_t size) {
       if (use.used_s - used_before_s >= patience_s) {
         trouble_ = fmt::format("used {} s of processor time without a result", patience_s);
       } else if (slept_s >= patience_s) {
-        trouble_ = fmt::format("gave no sign of life for {} s", patience_s);
+        trouble_ = fmt::format("did not respond for {} s", patience_s);
       }
       continue;
     }

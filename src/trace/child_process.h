@@ -23,10 +23,10 @@ class ChildOutput {
 /// Whatever happens to the child (a crash, a hang, memory without bound), the parent lives.
 class ChildProcess {
  public:
-  /// Forks and runs `work` in the child, which ends with it. `more_memory_bytes`: what the child
-  /// may take beyond what the parent has. `patience`: how much processor time the child may use,
-  /// and how long it may sleep, before `Read` gives up without bytes. Time in which it waits for a
-  /// processor does not count, so a busy machine is not taken for a damaged file.
+  /// Forks and runs `work` in the child, which ends with it. `more_memory_bytes`: memory limit of
+  /// the child beyond the parent's size. `patience`: limit of CPU time, and of sleep, after which
+  /// `Read` gives up without bytes. Time spent waiting for a CPU does not count, so that a busy
+  /// machine does not look like a damaged file.
   ChildProcess(const std::function<void(const ChildOutput&)>& work, std::size_t more_memory_bytes,
                std::chrono::milliseconds patience);
   ~ChildProcess();
@@ -36,9 +36,9 @@ class ChildProcess {
   /// Receives exactly `size` bytes. False if they do not come.
   bool Read(void* to, std::size_t size);
 
-  /// Ends the child if it still runs. Empty if it ended by itself and well, else what befell it:
-  /// "crashed (Segmentation fault)", "used 30 s of processor time without a result", "gave no sign
-  /// of life for 30 s".
+  /// Ends the child if it still runs. Returns an empty string if it exited normally, else the
+  /// failure: "crashed (Segmentation fault)", "used 30 s of processor time without a result", "did
+  /// not respond for 30 s".
   std::string End();
 
  private:

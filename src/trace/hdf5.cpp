@@ -47,21 +47,21 @@ Hdf5Id StringType(std::size_t size) {
 
 std::string WhyElsewhere(hid_t plan) {
   if (plan >= 0 && H5Pget_layout(plan) == H5D_VIRTUAL) return "is a virtual dataset";
-  if (plan < 0 || H5Pget_external_count(plan) != 0) return "has its numbers in another file";
+  if (plan < 0 || H5Pget_external_count(plan) != 0) return "stores its numbers in another file";
   return {};
 }
 
 Hdf5Id OpenDataset(hid_t file, const std::string& name, std::string& error) {
-  // Each part of the way: a soft link may lead to one that leads to another file.
+  // Checks each part of the path: a soft link may lead to an external link.
   for (std::size_t end = name.find('/', 1);; end = name.find('/', end + 1)) {
     const std::string part = name.substr(0, end);
     H5L_info_t link{};
     if (H5Lget_info(file, part.c_str(), &link, H5P_DEFAULT) < 0) {
-      error = "has no data set " + name;
+      error = "has no dataset " + name;
       return {};
     }
     if (link.type != H5L_TYPE_HARD) {
-      error = part + (link.type == H5L_TYPE_SOFT ? " is a soft link; name the data set itself"
+      error = part + (link.type == H5L_TYPE_SOFT ? " is a soft link; name the dataset itself"
                                                  : " is a link to another file");
       return {};
     }
@@ -69,7 +69,7 @@ Hdf5Id OpenDataset(hid_t file, const std::string& name, std::string& error) {
   }
   Hdf5Id object(H5Oopen(file, name.c_str(), H5P_DEFAULT), H5Oclose);
   if (!object || H5Iget_type(object) != H5I_DATASET) {
-    error = name + " is no data set";
+    error = name + " is not a dataset";
     return {};
   }
   const Hdf5Id plan(H5Dget_create_plist(object), H5Pclose);

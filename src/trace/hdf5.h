@@ -68,13 +68,14 @@ class QuietHdf5 {
   Hdf5Failure first_;
 };
 
-/// Why a data set with this creation plan would make HDF5 open another file: "is a virtual
-/// dataset", "has its numbers in another file"; empty if all of it is in the file itself. To be
-/// asked before anything is read.
+/// Returns the reason why a dataset with this creation property list makes HDF5 open another file:
+/// "is a virtual dataset", "stores its numbers in another file"; empty if all of it is in the file
+/// itself. To be called before anything is read.
 std::string WhyElsewhere(hid_t plan);
 
-/// The data set of that name, all of whose numbers are in the file itself. Nothing and a sentence
-/// in `error` if there is none, or if a link, external storage or a virtual layout leads elsewhere.
+/// Opens the dataset of that name if the file itself holds all its numbers. Returns nothing and a
+/// sentence in `error` if it is missing or a link, external storage or a virtual layout leads to
+/// another file.
 Hdf5Id OpenDataset(hid_t file, const std::string& name, std::string& error);
 
 /// A fixed-length string type for `size` characters.

@@ -43,7 +43,7 @@ std::string OpenTable(const std::string& path, const std::string& name, double m
   const double bytes = sizeof(double) * static_cast<double>(size[0]) * static_cast<double>(size[1]);
   if (bytes > MostUnpackedBytes(file_bytes)) {
     return fmt::format(
-        "is packed too tightly: the numbers of {} take {:.0f} MiB, {}; unpack it "
+        "has too high a compression ratio: {} unpacks to {:.0f} MiB, {}; unpack it "
         "with `h5repack -f NONE` first",
         name, bytes / (1 << 20), kUnpackLimit);
   }

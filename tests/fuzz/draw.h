@@ -14,9 +14,9 @@
 
 namespace taut::fuzz {
 
-/// Draws what a model is made of, from the last byte to the first, as libFuzzer's
-/// FuzzedDataProvider does, but with every compiler. Sizes are those of robots; stiffnesses,
-/// masses, speeds and steps span what a user may ask for.
+/// Draws the parts of a model, from the last byte to the first, as libFuzzer's FuzzedDataProvider
+/// does, with every compiler. Sizes are those of robots; stiffnesses, masses, speeds and steps span
+/// what a user may ask for.
 class Draw {
  public:
   explicit Draw(std::vector<std::uint8_t> from) : from_(std::move(from)) {}
@@ -29,7 +29,7 @@ class Draw {
     constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();
     return low + (high - low) * (static_cast<double>(Below(kMost)) / static_cast<double>(kMost));
   }
-  /// Between two positive numbers, all orders of magnitude alike.
+  /// Log-uniform between two positive numbers.
   double Scale(double low, double high) { return std::exp(Between(std::log(low), std::log(high))); }
   Vec3 Point(double size) {
     const double x = Between(-size, size), y = Between(-size, size), z = Between(-size, size);
@@ -67,8 +67,8 @@ class Draw {
   std::vector<std::uint8_t> from_;
 };
 
-/// The input, which is drawn from its end, and before it numbers that it determines: a short input
-/// makes a whole model, too.
+/// The input, consumed from its end, preceded by pseudo-random bytes seeded by it, so that a short
+/// input also makes a complete model.
 inline std::vector<std::uint8_t> Extended(const std::uint8_t* data, std::size_t size) {
   std::seed_seq seed(data, data + size);
   std::mt19937 random(seed);

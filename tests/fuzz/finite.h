@@ -1,4 +1,4 @@
-/// Looks for numbers that are not finite in all that a world shows.
+/// Search for non-finite numbers in all observable values of a world.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ inline bool Finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// What can be seen of a world and is not finite; empty if all is.
+/// Returns the name of a non-finite observable value; empty if all are finite.
 inline std::string NotFinite(const Batch& batch, int world) {
   const ModelDef& def = batch.model().def();
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {

@@ -1,8 +1,8 @@
-// A random model that mixes all that a step knows: cables that touch rods and terrain, stiff and
+// A random model that mixes all features of a step: cables that touch rods and terrain, stiff and
 // soft, with and without friction, pulleys and eyelets, motors, joints, hulls, bodies with motions,
 // height fields and meshes; eight worlds, moved a little against each other, on every instruction
-// set. No step takes more work than it is allowed, what is not finite has a status, all sets have
-// the same bits, and touching cables alone create no energy.
+// set. Checks: no step exceeds its work limit, non-finite values have a status, all sets have the
+// same bits, and touching cables alone create no energy.
 #include <string>
 
 #include "fuzz/draw.h"
@@ -13,7 +13,7 @@ namespace taut::fuzz {
 namespace {
 
 constexpr int kWorlds = 8, kSteps = 60, kStepsPerStretch = 10;
-/// Linear systems that a step may solve, an island, and in all worlds of an input.
+/// Limit of linear systems per step and island, and in all worlds of an input.
 constexpr int kMaxLinearSolves = 50;
 constexpr long kEnough = 20'000;
 
@@ -295,7 +295,7 @@ void Run(const std::uint8_t* data, std::size_t size) {
       }
       if ((status.bits & kStatusNonFinite) != 0) continue;
       const std::string lost = NotFinite(one, world);
-      Must(lost.empty(), lost + " is not finite and the status does not say so" + so_far());
+      Must(lost.empty(), lost + " is not finite and the status has no such bit" + so_far());
       if (!mix.conserves || status.bits != 0) continue;
       const double now = EnergyOf(one, world), before = start[static_cast<std::size_t>(world)];
       const double moves = one.TotalEnergy(world).kinetic_j + one.TotalEnergy(world).elastic_j;

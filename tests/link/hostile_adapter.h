@@ -24,7 +24,7 @@
 
 namespace taut::link {
 
-/// What the adapter does from the attack on.
+/// Behavior of the adapter after the attack.
 enum class Hostility {
   kNone,
   kSilent,    ///< Takes frames, acts on none and answers none.
@@ -78,7 +78,7 @@ class HostileAdapter {
       } else {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
-      // On a busy machine the boards' time slips, so that no board times out for it.
+      // Limits the boards' time on a busy machine, so that no board times out.
       const auto now = Clock::now();
       ticked = std::max(ticked, now - std::chrono::milliseconds(10));
       for (; ticked < now; ticked += std::chrono::milliseconds(1)) {

@@ -1,5 +1,5 @@
-// Commands of `taut robot` against adapters that fail while motors have power: what they say about
-// power is true, and they end.
+// Commands of `taut robot` with adapters that fail while motors have power: their power messages
+// are correct, and they end.
 
 #include "link/hostile_adapter.h"
 
@@ -13,7 +13,7 @@ namespace {
 using link::HostileAdapter, link::Hostility;
 using Clock = std::chrono::steady_clock;
 
-/// For an end within a second, on machines that are busy.
+/// Timeout for an end within a second, with margin for busy machines.
 constexpr double kSoon_s = 20;
 
 class HostileRobot : public CommandTest {
@@ -30,7 +30,7 @@ class HostileRobot : public CommandTest {
                       const std::string& runtime = "runtime") {
     return End(StartRobot(adapter, std::move(words), runtime));
   }
-  /// `taut robot hold` once motors have power; its output goes to files of its own.
+  /// Starts `taut robot hold`, returns once motors have power; its output goes to separate files.
   pid_t Hold(const HostileAdapter& adapter, std::vector<std::string> more = {}) {
     const CommandResult reference = Robot(adapter, {"reference", "--as_model"});
     EXPECT_EQ(reference.status, 0) << reference.errors;

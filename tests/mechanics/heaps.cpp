@@ -14,9 +14,9 @@ namespace taut::mechanics {
 namespace {
 
 constexpr double kStepS = 1e-3;
-/// By how much contacts may give in, as docs/theory/contact.md, section 5, has it.
-constexpr double kMostGivenInMPerS = 1e-6;
-/// The worst step's linear systems, in units of the mean of all steps of its scene.
+/// Largest relaxation of inconsistent contacts (docs/theory/contact.md, section 5).
+constexpr double kMostRelaxationMPerS = 1e-6;
+/// Number of linear systems of the worst step, as a multiple of the scene's mean.
 constexpr double kMostOfMean = 30;
 
 /// Six light rods around the middle carry a slab.
@@ -51,7 +51,7 @@ struct Slab {
   }
 };
 
-/// What the solver reports of the steps of several runs.
+/// Collects solver statistics over several runs.
 class Steps {
  public:
   void Run(Batch& world, int count) {
@@ -61,7 +61,7 @@ class Steps {
       world.Step(kStepS);
       const WorldStatus status = world.Status(0);
       unsolved_ += (status.bits & kStatusNotConverged) != 0;
-      gave_in_ = std::max(gave_in_, status.gave_in_m_per_s);
+      relaxation_ = std::max(relaxation_, status.contact_relaxation_m_per_s);
       worst_ = std::max(worst_, status.linear_solves);
       sum_ += status.linear_solves;
       ++count_;
@@ -72,7 +72,7 @@ class Steps {
   }
   void AddTo(Report& report) const {
     report.AtMost("unsolved of " + std::to_string(count_) + " steps", "1", unsolved_, 0);
-    report.AtMost("largest give-in", "m/s", gave_in_, kMostGivenInMPerS);
+    report.AtMost("largest relaxation", "m/s", relaxation_, kMostRelaxationMPerS);
     report.AtMost("energy above the start's", "1", gain_, 1e-9);
   }
   double worst_of_mean() const { return worst_ * static_cast<double>(count_) / sum_; }
@@ -80,7 +80,7 @@ class Steps {
  private:
   int unsolved_ = 0, worst_ = 0;
   long count_ = 0;
-  double sum_ = 0, gave_in_ = 0, gain_ = -1;
+  double sum_ = 0, relaxation_ = 0, gain_ = -1;
 };
 
 double ForceOfTheGround(const Batch& world) {
@@ -110,7 +110,7 @@ void SpinningSlab(Report& report) { Settle(report, {1e4, 0.3, {}, {0, 0, 0.3}});
 void SlidingSlab(Report& report) { Settle(report, {1e4, 0.3, {0.1, 0, 0}, {}}); }
 void HeavySlab(Report& report) { Settle(report, {1e6, 0.3, {0.1, 0, 0}, {}}); }
 
-/// Rods that are nearly parallel: they roll together, but for a slip of a thousandth.
+/// Nearly parallel rods: they roll together with a slip of 0.1 %.
 void Rollers(Report& report) {
   Steps steps;
   for (const double ratio : {1e4, 1e6}) {

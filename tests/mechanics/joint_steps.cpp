@@ -1,5 +1,5 @@
-/// The longest step that follows what joints carry (docs/theory/joints.md, eq. 8): stable and quiet
-/// just below it, unstable and reported just above.
+/// Stability limit of the step under joint forces (docs/theory/joints.md, eq. 8): stable and
+/// without status just below it, unstable and reported just above.
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +30,8 @@ int AddMass(ModelDef& def, double mass_kg, double inertia_kg_m2, const Vec3& at)
   return number;
 }
 
-/// How far body `b` strays sideways in a second, how much of that grows from step 10 to step 20,
-/// and the status of the world.
+/// Largest lateral deviation of body `b` in 1 s, its growth from step 10 to step 20, and the status
+/// of the world.
 struct Outcome {
   double strays_m = 0, growth = 0;
   std::uint32_t bits = 0, early_bits = 0;  ///< At the end; after 20 ms.
@@ -52,10 +52,10 @@ Outcome Follow(const ModelDef& def, int b) {
   return out;
 }
 
-/// `scene(load)`: with that share of the load at which w h = 2. All are pushed aside by 1 um/s.
-/// Above, x(n+1) - 2 x(n) + x(n-1) = -(w h)^2 x(n) grows by a + sqrt(a^2 - 1) a step,
-/// a = (w h)^2 / 2 - 1, until the deviation pulls at what the joints carry. Modes that do not grow
-/// still have up to a fortieth of it in step 10.
+/// `scene(load)`: a scene at that share of the load with w h = 2. All bodies start with 1 um/s
+/// sideways. Above, x(n+1) - 2 x(n) + x(n-1) = -(w h)^2 x(n) grows by a + sqrt(a^2 - 1) a step, a =
+/// (w h)^2 / 2 - 1, until the deviation changes the joint forces. In step 10 stable modes still
+/// have up to 1/40 of it.
 template <class F>
 void AroundTheLimit(Report& report, double margin, int body, const F& scene) {
   const Outcome below = Follow(scene(1 - margin), body), above = Follow(scene(1 + margin), body);
@@ -83,8 +83,8 @@ void StrongField(Report& report) {
 }
 
 void HeavyEnd(Report& report) {
-  // Two light rods between a pin and a heavy ball, whose common joint goes aside by x:
-  // (2 m / 3) x'' = -2 F x / l, w^2 = 3 F / (m l).
+  // Two light rods between a pin and a heavy ball, whose common joint is displaced by x: (2 m / 3)
+  // x'' = -2 F x / l, w^2 = 3 F / (m l).
   AroundTheLimit(report, 0.05, 0, [](double load) {
     constexpr double kMass = 0.01;
     ModelDef def;
@@ -122,7 +122,7 @@ void StringOfBeads(Report& report) {
 }
 
 void OffTheAxis(Report& report) {
-  // Rods whose pins are beside their axes turn about these, with little inertia: w^2 = F r / I.
+  // Rods with pins off their axes rotate about these axes, with little inertia: w^2 = F r / I.
   AroundTheLimit(report, 0.05, 0, [](double load) {
     constexpr double kAside = 5e-3, kAxial = 1e-6;
     ModelDef def;
@@ -145,7 +145,8 @@ void NoFalseAlarm(Report& report) {
                   inertia);
     report.Near(name, "1", Follow(def, 0).bits, kStatusOk, 0);
   }
-  // A free body carries the hinge; its share of the motion makes the lever lighter, not weightless.
+  // A free body carries the hinge; its motion reduces the effective inertia of the lever, but not
+  // to 0.
   ModelDef pair;
   AddMass(pair, 10, 0.1, {});
   AddMass(pair, 1, 1e-9, {0.2, 0, 0});
@@ -156,7 +157,7 @@ void NoFalseAlarm(Report& report) {
 }
 
 void Kapitza(Report& report) {
-  // Upside down on a pivot that goes up and down by a with W: it stands if (a W)^2 > 2 g l.
+  // Inverted pendulum, pivot oscillating by a with frequency W: stable if (a W)^2 > 2 g l.
   constexpr double kArm = 0.2, kSwing = 0.02;
   for (const double share : {0.9, 1.1}) {
     ModelDef def;

@@ -1,4 +1,4 @@
-/// Joints at their stops: held, thrown back and let go; hinges that spin fast.
+/// Joint stops: holding, rebound and release; fast-spinning hinges.
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +64,7 @@ void SwingingRope(Report& report) {
       longest = std::max(longest, Norm(at));
       pushed = std::max(pushed, Dot(world.Joint(0, 0).force_n, at));
       gained = std::max(gained, energy - start);
-      if (time_s < 2) continue;  // now it hangs in the rope
+      if (time_s < 2) continue;  // from here on the rope is taut
       shortest = std::min(shortest, Norm(at));
       least = std::min(least, energy), most = std::max(most, energy);
     }
@@ -78,8 +78,8 @@ void SwingingRope(Report& report) {
   }
 }
 
-/// From the lowest point with v^2 = 3.5 g L a mass leaves its circle 120 degrees further, flies a
-/// parabola and is caught again.
+/// From the lowest point with v^2 = 3.5 g L a mass leaves its circle 120 degrees further and flies
+/// a parabola until the rope snatches.
 struct Flight {
   static constexpr double kLength = 0.5;
   double speed = std::sqrt(3.5 * kG * kLength);
@@ -121,7 +121,7 @@ void SlackRope(Report& report) {
       }
       const double lost = (1 - e * e) * flight.radial * flight.radial / 2;
       const double off = std::abs(start - EnergyOf(world) - lost);
-      report.AtMost("energy lost in the catch, " + At(h, e), "J", off, 30 * h * h);
+      report.AtMost("energy lost in the snatch, " + At(h, e), "J", off, 30 * h * h);
       report.Near("apex, " + At(h, e), "m", top, flight.apex_m, 20 * h * h);
       report.AtMost("longest, above 0.5 m, " + At(h, e), "m", longest - 0.5, 1e-9);
       report.AtMost("outward force, " + At(h, e), "N m", pushed, 0);
@@ -160,7 +160,7 @@ void SpinningBodyOnRope(Report& report) {
 }
 
 void CircleInCone(Report& report) {
-  // The rod starts inside of the cone, swings out onto it and goes round along it.
+  // The rod starts inside the cone, swings onto it and moves around along it.
   const double start = 0.55, limit = 0.6;
   const Vec3 along{std::sin(start), 0, -std::cos(start)}, turn{0, 0, 6};
   for (const double h : {1e-3, 2.5e-4}) {
@@ -259,8 +259,8 @@ void FreeElbow(Report& report) {
 
 constexpr double kSteps[] = {4e-3, 1e-3, 2.5e-4}, kRestitutions[] = {0.5, 0.8, 1.0};
 
-/// The largest error of `error(restitution, step, which)` over some starts, for all restitutions
-/// and steps: of second order, besides the share `lost` of the energy at any step.
+/// Reports the largest error of `error(restitution, step, which)` over some starts, for all
+/// restitutions and steps: second order, plus the share `lost` of the energy at any step.
 template <class F>
 void Rebounds(Report& report, double bound_1ms, double lost, const F& error) {
   const int starts = report.IsFull() ? 20 : 5;
@@ -275,9 +275,9 @@ void Rebounds(Report& report, double bound_1ms, double lost, const F& error) {
   }
 }
 
-/// What a rod's pin takes of the energy E = m (w L)^2 / 6 at a blow that throws the rod back: its
-/// row gives by c = 1e-7 of 4 / m and carries l = m w L (1 + e) / 2, so that by eq. 3a of joints.md
-/// c l^2 / 2 = 3e-7 (1 + e)^2 E are lost.
+/// Energy loss in a rod's pin at the impact, from E = m (w L)^2 / 6: with the compliance of its
+/// row, c = 1e-7 of 4 / m, and the impulse l = m w L (1 + e) / 2, eq. 3a of joints.md gives the
+/// loss c l^2 / 2 = 3e-7 (1 + e)^2 E.
 constexpr double kPinTakes = 12e-7;
 
 void BouncingSlider(Report& report) {
@@ -295,7 +295,7 @@ void BouncingSlider(Report& report) {
   });
 }
 
-/// Steps until the joint's rate, which was positive, is not any more.
+/// Returns the number of steps until the joint's rate is no longer positive.
 void StepPastRebound(Batch& world, double step_s) {
   double last = 0;
   while (world.Time(0) < 10 && !(last > 0 && world.Joint(0, 0).rate <= 0)) {
@@ -305,7 +305,8 @@ void StepPastRebound(Batch& world, double step_s) {
 }
 
 void HingeStop(Report& report) {
-  // A level rod falls on a stop beneath it: its energy there is that of its height, times e^2.
+  // A level rod falls on a stop below it: after the rebound its energy is e^2 times that of the
+  // fall.
   Rebounds(report, 2e-4, kPinTakes, [](double e, double h, int i) {
     const double stop = 1.2 + 0.013 * i;
     ModelDef def = RodAlong({1, 0, 0});
@@ -320,7 +321,7 @@ void HingeStop(Report& report) {
 }
 
 void ConeStop(Report& report) {
-  // A hanging rod is thrown against its cone, upwards.
+  // A hanging rod swings upward against its cone.
   Rebounds(report, 2e-4, kPinTakes, [](double e, double h, int i) {
     const double stop = 0.6 + 0.013 * i, turn = 6, kinetic = turn * turn / 6;
     ModelDef def = RodAlong({0, 0, -1});
@@ -346,7 +347,7 @@ void SpinningHinge(Report& report) {
     Batch world = MakeBatch(def);
     world.Step(1e-3, 1000);
     const std::string name = std::to_string(static_cast<int>(rate)) + " rad/s, 1 ms";
-    // Of turns by t < 0.25 rad in half a step a share of t^4 / 120 is missing, others are exact.
+    // Angles t < 0.25 rad per half step have a relative error of t^4 / 120, others are exact.
     const double half_step = 0.5e-3 * std::abs(rate);
     const double missing = half_step < 0.25 ? std::pow(half_step, 4) / 100 : 1e-12;
     report.Near("angle after 1 s at " + name, "rad", world.Joint(0, 0).coordinate, rate,
@@ -356,7 +357,7 @@ void SpinningHinge(Report& report) {
 }
 
 void RotorBesideItsHinge(Report& report) {
-  // Half a radian a step is followed, three are not: that is reported.
+  // Half a radian per step is resolved; three are not, and the status reports it.
   for (const double rate : {500.0, 3000.0}) {
     ModelDef def = PointMass({0, 0, 1e-3}, {1e-3 * rate, 0, 0}, 0.01);
     def.gravity_m_per_s2 = {};
@@ -374,7 +375,7 @@ void RotorBesideItsHinge(Report& report) {
 }
 
 void BrakedRotor(Report& report) {
-  // A damper stops a rotor: I w' = -d w, so it turns by I w0 / d in all.
+  // A damper stops a rotor: I w' = -d w, so it rotates by I w0 / d in total.
   ModelDef def = PointMass({}, {}, 0.01);
   def.gravity_m_per_s2 = {};
   def.bodies[0].angular_velocity_rad_per_s = {0, 5000, 0};
@@ -383,7 +384,7 @@ void BrakedRotor(Report& report) {
   def.joints.push_back(hinge);
   Batch world = MakeBatch(def);
   world.Step(1e-3, 8000);
-  // The first half step goes at the full rate; all means are of second order after it.
+  // The first half step has the full rate; afterwards all means are of second order.
   report.Near("angle until it stands, from 5000 rad/s, 1 ms", "rad", world.Joint(0, 0).coordinate,
               1000, 1e-3);
 }
@@ -392,8 +393,8 @@ const SceneEntry kSpinningBodyOnRope("joint stops", "Body that spins at 200 rad/
                                      "conservation of energy", SpinningBodyOnRope);
 const SceneEntry kSwingingRope("joint stops", "Rope with a mass that swings for a minute",
                                "length of the rope; no energy from nothing", SwingingRope);
-const SceneEntry kSlackRope("joint stops", "Rope that goes slack and is caught",
-                            "circle and parabola; Newton's law at the catch", SlackRope);
+const SceneEntry kSlackRope("joint stops", "Rope that goes slack and snatches",
+                            "circle and parabola; Newton's law at the snatch", SlackRope);
 const SceneEntry kCircleInCone("joint stops", "Rod that goes round along the cone of a ball joint",
                                "angle of the cone; energy", CircleInCone);
 const SceneEntry kPressedElbow("joint stops", "Elbow pressed on its stop swings as one body",

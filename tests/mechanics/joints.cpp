@@ -80,10 +80,10 @@ Vec3 ReferencePlace(const BodyOnBall& top, double time_s) {
   return (top.arm_m / square) * Rotate({end[0], end[1], end[2], end[3]}, {0, 0, 1});
 }
 
-/// Highest and lowest energy above that of the start, and whether a status bit was set.
+/// Largest and smallest energy relative to the start, and status bits.
 struct EnergyRange {
   double gain_j = 0, loss_j = 0;
-  double flagged = 0, unsolved = 0;  ///< Steps with any status bit, and without a solution.
+  double flagged = 0, unsolved = 0;  ///< Steps with any status bit, and unsolved steps.
   double gap_m = 0;
 
   double Off() const { return std::max(gain_j, loss_j); }
@@ -265,10 +265,10 @@ void TumblingFrames(Report& report) {
   ReportFrame(report, "octahedron with a diagonal, 1 redundant row", octahedron, 1e-6);
 }
 
-/// What a net has to do: be solved, without a gain of energy, in any order of its lists.
+/// Bounds for a net: solved, without energy gain, in any order of its lists.
 struct NetBounds {
   double gain_j, gap_m, order_m;
-  bool may_be_flagged;  ///< As too stiff for the step.
+  bool may_be_flagged;  ///< Too stiff for the step.
 };
 
 void ReportNet(Report& report, const std::string& name, const ModelDef& def, double step_s,
@@ -333,7 +333,8 @@ void Nets(Report& report) {
             report.IsFull() ? 3 : 0.5, {1e-5, 1e-8, 1e-5, true});
   ReportNet(report, "4 by 4 squares, cables of 500 N/m", Net(4, 500), 1e-3, 0.3,
             {1e-5, 1e-8, 1e-5, false});
-  // What tight stiff cables pull straight carries more than a step of 1 ms can follow, and says so.
+  // Rods straightened by tight stiff cables exceed the limit of a step of 1 ms; the status reports
+  // it.
   Batch tight = MakeBatch(Net(2, 1e6));
   const EnergyRange seen = Run(tight, 1e-3, 0.3);
   report.AtMost("2 by 2 squares, cables of 1e6 N/m: steps without a solution", "1", seen.unsolved,
@@ -342,7 +343,7 @@ void Nets(Report& report) {
 }
 
 /// A cardan joint: two shafts whose axes are apart by `angle_rad` and a cross, each of its arms on
-/// two hinges. 30 rows hold 3 bodies that keep one motion: 13 of them are redundant.
+/// two hinges. 30 rows act on 3 bodies with one degree of freedom: 13 of them are redundant.
 ModelDef CardanJoint(double angle_rad, double spin_rad_per_s) {
   ModelDef def;
   def.gravity_m_per_s2 = {};
@@ -375,7 +376,7 @@ ModelDef CardanJoint(double angle_rad, double spin_rad_per_s) {
 void CardanJoints(Report& report) {
   const double angle_rad = 1;
   Batch world = MakeBatch(CardanJoint(angle_rad, 10));
-  world.Step(1e-3);  // takes from the velocities what the joints hold
+  world.Step(1e-3);  // projects the velocities onto the joints
   const double start = EnergyOf(world);
   double gain = 0, off = 0, ratio_off = 0, force_n = 0, flagged = 0;
   for (int n = 0; n < 3000; ++n) {
@@ -397,8 +398,8 @@ void CardanJoints(Report& report) {
   report.AtMost("steps with a status bit", "1", flagged, 0);
 }
 
-/// Rods in a straight line between two pins: its rows are dependent, and what little it sags its
-/// tension is a thousand times its weight.
+/// Rods in a straight line between two pins: the rows are dependent, and with the small sag the
+/// tension is a thousand times the weight.
 ModelDef StraightChain(int rods) {
   std::vector<Vec3> nodes;
   for (int i = 0; i <= rods; ++i) nodes.push_back({0.2 * i, 0, 1});

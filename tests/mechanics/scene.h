@@ -15,7 +15,7 @@
 
 namespace taut::mechanics {
 
-/// One value of a scene beside what it has to be.
+/// Measured and expected value of a quantity.
 struct Finding {
   std::string quantity, unit;
   double expected;  ///< By the oracle; the bound where `is_bound`.
@@ -26,7 +26,7 @@ struct Finding {
   bool Holds() const;  ///< False for values that are not finite.
 };
 
-/// How much a scene does: the samples of the tests, or all of it for the page.
+/// Extent of a scene: samples for the tests, or all cases for the page.
 enum class Effort { kSample, kFull };
 
 /// Collects the findings of one scene. Not thread-safe.

@@ -18,7 +18,7 @@ inline const char* NameOf(Piece p) {
   return kNames[static_cast<int>(p)];
 }
 
-/// Where a piece is seen from above: [x0, x1] by [y0, y1], with its top at height(x) [m].
+/// Plan view of a piece: [x0, x1] by [y0, y1], with its top at height(x) [m].
 struct Patch {
   double x0, x1, y0, y1;
   int cells_x = 4, cells_y = 4;
@@ -143,7 +143,7 @@ inline const char* NameOf(Guest g) {
 }
 
 inline constexpr double kHalfM = 0.1, kRadiusM = 0.03;
-/// Of its middle above level ground on which it lies.
+/// Height of its center above level ground.
 inline double RestHeight(Guest g) {
   return g == Guest::kRodAlong || g == Guest::kRodAcross || g == Guest::kTurnedRod ? kRadiusM
                                                                                    : kHalfM;

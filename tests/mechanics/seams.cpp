@@ -17,7 +17,7 @@ struct Worst {
   double position_m = 0, energy_j = 0;
   int not_good = 0;
 
-  /// Beside a world that has the right answer.
+  /// Compares with a reference world.
   void Run(Batch world, Batch right, int steps) {
     const double start_j = test::EnergyOf(world);
     for (int i = 0; i < steps; ++i) {
@@ -70,7 +70,7 @@ void FlushPieces(Report& report) {
   report.AtMost("largest gain of energy", "J", energy_j, 1e-9);
 }
 
-/// Three pieces of random kinds, cells, level and order. `jolt_m`: how badly they meet.
+/// Three pieces of random kinds, cells, level and order. `jolt_m`: misalignment of the pieces.
 Worst RandomPieces(int runs, double jolt_m) {
   Worst worst;
   for (int k = 0; k < runs; ++k) {
@@ -101,7 +101,7 @@ void PiecesInAnyOrder(Report& report) {
   ReportTo(report, RandomPieces(report.IsFull() ? 300 : 30, 0), test::SolverError(1800), 1e-9);
 }
 
-/// Gaps, overlaps and steps of 5e-8 m, a fourth of what counts as none: a step lifts by as much.
+/// Gaps, overlaps and steps of 5e-8 m, a fourth of the meeting distance: a step lifts by as much.
 void PiecesThatMeetNearly(Report& report) {
   constexpr double kJoltM = 5e-8;
   ReportTo(report, RandomPieces(report.IsFull() ? 300 : 30, kJoltM),
@@ -185,7 +185,7 @@ void TippingOverABorder(Report& report) {
     for (const Guest guest : kGuests) {
       for (int k = 0; k < runs; ++k) {
         scenes::Chance chance(50 + static_cast<std::uint64_t>(k));
-        // One in three hardly moves, and turns about the border under it.
+        // One in three hardly moves and tips over the border below it.
         const bool turns = k % 3 == 2;
         const double friction = turns ? 1 : k % 2 == 0 ? 0 : 0.3;
         const double v = turns ? chance.Within(0, 0.15) : chance.Within(0.05, 0.6);
@@ -210,11 +210,11 @@ void TippingOverABorder(Report& report) {
       }
     }
   }
-  // What a body of 1 kg gains if it falls for a step before a contact is found.
+  // Energy gain of a body of 1 kg that falls for a step before its contact is detected.
   report.AtMost("sum of all rises of energy, body of 1 kg", "J", rise_j, kG * kG * kStepS * kStepS);
 }
 
-/// Pushed along a floor against a higher piece beside it: the corners at the floor hold, too.
+/// Pushed along a floor against a higher adjacent piece: the corners at the floor hold, too.
 void WallBesideAFloor(Report& report) {
   double off_m = 0;
   for (const Piece floor : kPieces) {

@@ -1,4 +1,4 @@
-/// Statics of structures that supports hold: motions as a whole, mechanisms, least stiffness.
+/// Statics of supported structures: rigid motions, mechanisms, least stiffness.
 
 #include <algorithm>
 #include <cmath>
@@ -125,10 +125,10 @@ void Counts(Report& report, const std::string& of, const ModelDef& def, int mech
   const ForceAnalysis found = AnalyseForces(def);
   report.Near(of + ": mechanisms", "1", static_cast<double>(found.mechanisms.size()), mechanisms,
               0);
-  report.Near(of + ": motions as a whole", "1", found.rigid, whole, 0);
+  report.Near(of + ": rigid motions", "1", found.rigid, whole, 0);
   if (!found.classical) return;
   report.Near(of + ": mechanisms, pin-jointed", "1", found.classical->mechanisms, mechanisms, 0);
-  report.Near(of + ": motions as a whole, pin-jointed", "1", found.classical->rigid, whole, 0);
+  report.Near(of + ": rigid motions, pin-jointed", "1", found.classical->rigid, whole, 0);
 }
 
 double LeastStiffnessOf(const ModelDef& def) { return LeastStiffness(def).value_or(std::nan("")); }
@@ -149,10 +149,10 @@ void CablesInARow(Report& report) {
   const ModelDef def = Row(2, false, 1, 1000, 0.99);
   Counts(report, "1 m and 10 N", def, 4, 0);
   report.Near("1 m and 10 N: least stiffness", "N/m", LeastStiffnessOf(def), 10, 1e-9);
-  // Without prestress nothing resists them: they are mechanisms, and no motions as a whole.
+  // Without prestress nothing resists them: they are mechanisms, not rigid motions.
   const ModelDef straight = Row(2, true, 1, 1000, 1);
   const Modes modes = FindModes(straight);
-  report.Near("bars without prestress: modes as a whole", "1", modes.rigid, 0, 0);
+  report.Near("bars without prestress: rigid modes", "1", modes.rigid, 0, 0);
   report.Near("bars without prestress: mechanisms", "1", modes.mechanisms, 4, 0);
   report.Near("bars without prestress: least stiffness", "N/m", LeastStiffnessOf(straight), 0, 0);
 }
@@ -201,7 +201,7 @@ void PartlyAnchored(Report& report) {
     Counts(report, "prism on " + std::to_string(supports) + " ball joints",
            PrismOn(supports, false), 1, whole[supports]);
   }
-  // A mast on one anchor: cables to one point of the world keep it at its place.
+  // A mast on one anchor: three cables to one point of the world hold its position.
   ModelDef hub;
   hub.gravity_m_per_s2 = {};
   AddPrism(hub, {});
@@ -210,7 +210,7 @@ void PartlyAnchored(Report& report) {
     AddCable(hub, {{kWorld, {0.1, 0, -0.5}}, {i, foot}}, 1000, 0.5);
   }
   Counts(report, "prism on three cables to one anchor", hub, 1, 3);
-  // Two anchors leave the turn about the line through them.
+  // Two anchors leave rotation about the line through them free.
   ModelDef swing;
   scenes::AddRod(swing, "seat", 1, 1e-4, {-0.3, 0, 0}, {0.3, 0, 0}, {});
   AddCable(swing, {{kWorld, {-0.3, 0, 1}}, {0, {-0.3, 0, 0}}}, 1000, 0.99);
@@ -260,7 +260,7 @@ const SceneEntry kByDifferences("statics", "Least stiffness in equilibrium",
 
 void Pendulums(Report& report) {
   for (const double side : {-1.0, 1.0}) {
-    // No point but the joint measures how it swings: its center of mass does, at L / 2.
+    // Only the center of mass, at L / 2, measures the swing.
     ModelDef def;
     scenes::AddRod(def, "rod", 0.7, 1e-5, {0, 0, 0}, {0, 0, side * 0.8}, {});
     AddJoint(def, JointKind::kBall, kWorld, {0, 0, 0}, 0, {0, 0, 0});

@@ -132,12 +132,12 @@ void Drops(Report& report) {
 const SceneEntry kDrops("stiff cables", "Six-strut that falls, straight and tumbling",
                         "energy does not rise; it comes to stand", Drops);
 
-/// Stretched by a tenth, without weight. `kicked`: its rods get random velocities; else parallel
+/// Stretched by a tenth, without weight. `kicked`: random velocities of its rods; else parallel
 /// rods are too far apart.
 void KeepsEnergy(Report& report, double k, double h, bool kicked, double time_s) {
   scenes::SixStrut robot = Robot(k, 0);
   robot.tension_n = 0.1 * robot.cable_m() * k;
-  // As a share of what is above the least elastic energy.
+  // As a share of the energy above the minimal elastic energy.
   const double least = 24 * 0.5 * robot.tension_n * robot.tension_n / k;
   if (!kicked) robot.spacing = 0.54;
   ModelDef def = robot.Def();
@@ -178,8 +178,8 @@ void FreeMotion(Report& report) {
 const SceneEntry kFreeMotion("stiff cables", "Six-strut that vibrates and tumbles, undamped",
                              "energy and angular momentum are conserved", FreeMotion);
 
-/// A weight of `wh` on one cable, let go where it is without stretch. Returns the step after which
-/// the tension is right to 1 %.
+/// A weight with frequency `wh` on one cable, released at zero stretch. Returns the step after
+/// which the tension is within 1 %.
 int StepsUntilRight(double wh, double zeta) {
   const double h = 1e-3, k = 1e6, g = 9.81, m = k * h * h / (wh * wh);
   ModelDef def;
@@ -305,7 +305,7 @@ void Rebound(Report& report) {
 const SceneEntry kRebound("stiff cables", "Six-strut of elastic rods that rebounds",
                           "energy does not rise", Rebound);
 
-/// What decides is h^2 K = 0.1, a damper from h^2 K = 4 on, and what the scheme does not cover.
+/// Thresholds: h^2 K = 0.1; with dampers h^2 K = 4; and unsupported elements.
 void Schemes(Report& report) {
   const auto count = [](double k, double b, double h, CableScheme scheme, bool touches = false) {
     scenes::SixStrut robot = Robot(k, b);

@@ -11,12 +11,12 @@ namespace taut::mechanics {
 namespace {
 
 struct Gain {
-  double most = 0;   ///< Of the energy above the start's, as a share of that.
-  int touched = 0;   ///< The most rods at once.
-  double drift = 0;  ///< Of the momentum, as a share of what moves at the start.
+  double most = 0;   ///< Largest energy gain, as a share of the initial energy.
+  int touched = 0;   ///< Largest number of rods touched at once.
+  double drift = 0;  ///< Change of momentum, as a share of the initial one.
 };
 
-/// Rods and balls as they stand, or moved and turned at random.
+/// Rods and balls as arranged, or displaced and rotated at random.
 ModelDef Scene(int rods, double stiffness, double friction, unsigned seed) {
   ModelDef def = test::AcrossFreeRods(rods, stiffness);
   def.cables[0].touch_friction = friction;

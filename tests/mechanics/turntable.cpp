@@ -17,8 +17,8 @@ constexpr double kRadius = 0.03;
 enum class TurnedBy { kMotion, kHinge };
 
 /// A table that turns with `spin` about the vertical through `axis`, and on it a ball at (0.5, 0)
-/// that rolls with 0.4 m/s along y. On a hinge the table is so heavy that the ball does not slow
-/// it.
+/// that rolls with 0.4 m/s along y. The table on a hinge is so heavy that the ball does not slow it
+/// down.
 ModelDef Turntable(double spin, const Vec3& axis, TurnedBy by) {
   ModelDef def;
   const Material rough{5, 5};
@@ -84,7 +84,7 @@ void BallOnATurntable(Report& report) {
   RollInACircle(report, 6, 1e-3, {0, 0, 0}, TurnedBy::kHinge);
 }
 
-/// A plank on two drums that turn alike is carried by v = w r, without slip.
+/// Two drums with the same rotation carry a plank at v = w r, without slip.
 void PlankOnDrums(Report& report) {
   ModelDef def;
   const Material rough{1, 1};

@@ -34,8 +34,8 @@ TEST(Joint, APinnedRodSwingsWithThePeriodOfItsLength) {
 }
 
 TEST(Joint, ASwingingRodKeepsItsEnergyAndItsPin) {
-  // The energy swings with the rod by some h^2. What is taken from the velocities at the end of a
-  // step is of third order and adds up: at most in proportion to time.
+  // The energy oscillates with the rod by O(h^2). The velocity projection at the end of a step is
+  // of third order and accumulates: at most in proportion to time.
   double worst[3] = {}, last[3] = {};
   for (int k = 0; k < 3; ++k) {
     const double h = kThreeStepsS[k];
@@ -109,7 +109,7 @@ TEST(Joint, AChainThatCarriesTooMuchForTheStepSaysSo) {
 }
 
 TEST(Joint, ALightRodThatCarriesAHeavyEndIsNoFastOscillator) {
-  // It is pinned, and turns only together with what it carries (the limits: joint_steps.cpp).
+  // It is pinned and rotates only together with its load (limits: joint_steps.cpp).
   for (const double last_kg : {3450.0, 3550.0, 35000.0}) {
     ModelDef def = Chain(2, {0, 0, -0.1}, last_kg);
     def.bodies[0].velocity_m_per_s.x = 1e-3;

@@ -1,5 +1,5 @@
-/// Forces that are read of stiff cables: means over the last step, by the change of momentum; and
-/// those of the moment where no step led there.
+/// Force readings of stiff cables: means over the last step, checked against the change of
+/// momentum; instantaneous values if no step came before.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ scenes::HangingMass LightMass(double mass_kg, double stiffness_n_per_m, double d
 
 double LengthOf(const Batch& world) { return Norm(world.Body(0, 0).position_m); }
 
-/// What the law (cables.md, eq. 1) has at this moment.
+/// Tension by the law (cables.md, eq. 1) at this moment.
 double AtOnce(const Batch& world, double rest_length_m) {
   const CableState cable = world.Cable(0, 0);
   const double stretch = cable.length_m - rest_length_m;
@@ -49,12 +49,12 @@ TEST(MeanTension, IsWhatTheStepGaveToTheMass) {
           const double change = world.Body(0, 0).velocity_m_per_s.z - before;
           const CableState cable = world.Cable(0, 0);
           const double tension = mass * (kG + change / kStepS);
-          // The tension follows from a length, whose rounding the stiffness multiplies.
+          // The stiffness multiplies the rounding error of the length.
           ASSERT_NEAR(cable.tension_n, tension,
                       SolverError(1) * mass / kStepS + stiffness * RoundOff(1, 1))
               << mass << ' ' << stiffness << ' ' << ratio << ' ' << n;
-          // The spring's: what it stored over the way of its end. Two stages, of damped cables that
-          // the step does not resolve (cables.md, 12e), part that way.
+          // Spring part: stored energy over the displacement of its end. Two stages, of damped
+          // cables that the step does not resolve (cables.md, 12e), part that way.
           if (ratio > 0 && stiffness / mass * kStepS * kStepS > 4) continue;
           const double stretch = LengthOf(world) - 1;
           const double a = std::max(stretch_before, 0.0), b = std::max(stretch, 0.0);
@@ -68,8 +68,8 @@ TEST(MeanTension, IsWhatTheStepGaveToTheMass) {
   }
 }
 
-/// 1 g on 1e7 N/m, half of critical: at rest after 0.06 ms, a sixteenth of a step. What is left of
-/// the start's vibration in the means dies away in forty steps.
+/// 1 g on 1e7 N/m, half of critical: at rest after 0.06 ms, a sixteenth of a step. The initial
+/// vibration in the means decays within forty steps.
 TEST(MeanTension, OfALightMassOnAStiffCableIsItsWeightFromTheFirstStepOn) {
   Batch world = MakeBatch(LightMass(1e-3, 1e7, 0.5).Def());
   for (int n = 0; n < 300; ++n) {

@@ -29,7 +29,8 @@ TEST(MotorStick, AMotorThatHoldsIsAFixedEnd) {
     for (int i = 0; i < 3000; ++i) {
       held.Step(1e-3);
       fixed.Step(1e-3);
-      // Stiff cables of motors keep their directions, others do not: here both say the same.
+      // Stiff cables with motors use fixed directions, others do not: here both have the same
+      // result.
       ASSERT_NEAR(held.Body(0, 0).position_m.z, fixed.Body(0, 0).position_m.z, 1e-12)
           << efficiency << i;
       ASSERT_NEAR(held.Cable(0, 0).tension_n, fixed.Cable(0, 0).tension_n, 1e-8) << efficiency << i;

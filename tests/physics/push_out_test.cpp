@@ -75,7 +75,8 @@ TEST(PushOut, ASpineInTheGroundGoesUpNoFasterThanOneOnIt) {
 
 TEST(PushOut, APrismInTheGroundComesOutNoHigherThanItWasDeep) {
   // Its rods are displaced one by one, which stretches cables: they carry it on, alike at all
-  // steps at which they are explicit. At 1 ms they are not, and rods leave by velocities.
+  // steps at which they are explicit. At 1 ms they are implicit, and penetration is resolved by
+  // velocities.
   scenes::Prism3 scene;
   scene.damping_n_s_per_m = 10;
   for (const double depth : {1e-3, 5e-3}) {

@@ -37,7 +37,7 @@ TEST(SeamLanes, EachWorldHasItsBitsInAnyRegister) {
 
 TEST(SeamLanes, APieceBeyondReachChangesNoBit) {
   for (const Piece a : {Piece::kField, Piece::kSolid, Piece::kSheet}) {
-    // The second piece begins where nobody comes.
+    // The second piece begins beyond all bodies.
     ModelDef two = Crossing(a, Piece::kSolid, 40), one = two;
     one.terrain_meshes.pop_back();
     Batch with = MakeBatch(two), without = MakeBatch(one);

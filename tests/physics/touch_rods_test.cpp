@@ -10,7 +10,7 @@
 namespace taut::test {
 namespace {
 
-/// Each world's rods stand elsewhere, so that its cable touches others.
+/// Rods are at different places in each world, so that the cables touch different ones.
 void MoveRods(Batch& batch, int world, int rods, int which) {
   for (int rod = 0; rod < rods; ++rod) {
     BodyState state = batch.Body(world, rod);
@@ -20,8 +20,8 @@ void MoveRods(Batch& batch, int world, int rods, int which) {
   }
 }
 
-/// One link a rod and lane, and what a lane gets does not depend on what others touch. Builds with
-/// assertions look at every index.
+/// One link per rod and lane; a lane's result does not depend on the contacts of others. Builds
+/// with assertions check every index.
 TEST(TouchRods, StiffCablesOverManyRodsStayInTheirMemoryAndLane) {
   constexpr int kWorlds = 8, kSteps = 80;
   for (const double friction : {0.0, 0.3}) {
@@ -54,8 +54,8 @@ TEST(TouchRods, StiffCablesOverManyRodsStayInTheirMemoryAndLane) {
   }
 }
 
-/// Lowered over an arch of twelve: eight bends are all it has, which the status says, and the
-/// length is no more than over all of them.
+/// A cable lowered over an arch of twelve rods: it has at most eight bends, the status reports the
+/// overflow, and its length does not exceed that over all of them.
 TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
   constexpr int kRods = 12;
   constexpr double kPi = 3.14159265358979323846, kArch = 0.3;
@@ -72,7 +72,7 @@ TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
   }
   Batch world = MakeBatch(def);
   int most = 0;
-  double full = 0;  // by when the ninth comes
+  double full = 0;  // when the ninth rod is reached
   for (int i = 1; i <= 200; ++i) {
     const Vec3 down{0, 0, -0.004 * i};
     Lead(world, 0, from + down);
@@ -91,7 +91,7 @@ TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
 }
 
 /// Two balls that have gone past each other, so that their cable makes a loop around the rods: its
-/// parts pass a rod outside of the loop on different sides, and it comes to none.
+/// parts pass a rod outside the loop on different sides without touching it.
 TEST(TouchRods, APathInALoopComesToNoRodThatItHasNotMet) {
   for (const double step_s : {1e-3, 2.5e-4}) {
     for (const int rods : {3, 5}) {

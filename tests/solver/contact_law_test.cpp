@@ -145,11 +145,11 @@ TEST(ContactLaw, WhatGivesInHoldsAtAnyVelocity) {
     for (double& x : u) x += random.Uniform(-1e-6, 1e-6);
     Num change[3];
     c.Disagreement(branch, Packed(u), Packed(s.l), change);
-    c.GiveIn(change);
+    c.Relax(change);
     EXPECT_LT(c.Residual(c.BranchOf(Packed(u), Packed(s.l)), Packed(u), Packed(s.l))[0], 1e-12);
     const std::size_t held = which == kOpen ? 0 : c.one_direction ? 2 : 3;
     for (std::size_t r = held; r < 3; ++r) EXPECT_EQ(change[r][0], 0);
-    // Where it slips against the friction it goes on to, as fast.
+    // Slip opposite to friction remains, at the same speed.
     const double along = change[1][0] * s.l[1] + change[2][0] * s.l[2];
     if (which == kSliding) {
       EXPECT_NEAR(along, 0, 1e-15);
@@ -157,7 +157,7 @@ TEST(ContactLaw, WhatGivesInHoldsAtAnyVelocity) {
   });
 }
 
-TEST(ContactLaw, WhatIsASolutionNeedNotGiveIn) {
+TEST(ContactLaw, ASolutionIsNotRelaxed) {
   ForEachInstance([](const Contact2& c, Case which, math::Random& random) {
     const State s = Solution(c, which, random);
     Num change[3];

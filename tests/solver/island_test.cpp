@@ -94,8 +94,8 @@ TEST(Island, ForcesDoTheWorkThatImpulsesDo) {
 }
 
 /// Runs `stage` on a fresh island of each problem, from admissible impulses. The residual that it
-/// returns must be that of the problem's own equations, but for `inexact` and twice what contacts
-/// gave in by, which turns directions of slip, too. Returns by scene how many it did not solve.
+/// returns must be that of the problem's own equations, up to `inexact` and twice the relaxation of
+/// contacts, which also changes slip directions. Returns by scene how many it did not solve.
 template <class Stage>
 std::map<std::string, int> Unsolved(const Stage& stage, double inexact = 0) {
   std::map<std::string, int> unsolved;
@@ -108,9 +108,9 @@ std::map<std::string, int> Unsolved(const Stage& stage, double inexact = 0) {
     const std::vector<double> l = own.Impulses();
     const auto v = VelocitiesOf(p, l);
     EXPECT_NEAR(reported, ResidualOf(p, RatesOf(p, v), l),
-                1e-12 * SizeOf(v) + inexact + 2 * work.gave_in)
+                1e-12 * SizeOf(v) + inexact + 2 * work.relaxation)
         << Name(p);
-    EXPECT_LE(work.gave_in, sim::kDisagreementMPerS) << Name(p);
+    EXPECT_LE(work.relaxation, sim::kDisagreementMPerS) << Name(p);
     if (!(reported <= kTolerance)) ++unsolved[p.scene];
   }
   return unsolved;

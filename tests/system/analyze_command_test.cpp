@@ -98,7 +98,7 @@ TEST_F(AnalyzeCommand, ARobotThatNothingHoldsIsAnalysedWithoutWeight) {
             std::string::npos)
       << shown.output;
   EXPECT_NE(shown.output.find("slack: none"), std::string::npos);
-  EXPECT_NE(shown.output.find("as a whole: 6, mechanisms: 0, unstable: 0"), std::string::npos)
+  EXPECT_NE(shown.output.find("rigid motions: 6, mechanisms: 0, unstable: 0"), std::string::npos)
       << shown.output;
 }
 

@@ -1,4 +1,4 @@
-// `taut analyze` of structures that supports hold: motions as a whole, missing supports, warnings
+// `taut analyze` of supported structures: rigid motions, missing supports, warnings
 // about large displacements, safety factors and slack.
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -55,8 +55,9 @@ TEST_F(AnalyzeSupports, ATowerOnTooFewSupportsIsRefusedBeforeItIsSolved) {
   for (const char* const name : {"own", "lift", "settled"}) {
     const std::string line = std::string("loads.yaml: error: load case ") + name +
                              ": the structure can still rotate about x, y and z through (1, 0, 0), "
-                             "and the loads topple it (no member resists these motions: add an "
-                             "anchor or a support at nodes that move in it, 3 held directions";
+                             "and the loads topple it (no member resists these motions: add "
+                             "anchors or supports that hold at least 3 directions at nodes that "
+                             "move)";
     EXPECT_NE(shown.errors.find(line), std::string::npos) << shown.errors;
   }
   WriteTower(2);
@@ -95,8 +96,9 @@ TEST_F(AnalyzeSupports, SafetyAndSlackAreNumbersOfTheirOwn) {
             0.25 * lift["largest_move"]["size_m"].get<double>());
   const test::CommandResult text = Taut({"analyze", "loads.yaml", "--load_case", "lift"});
   EXPECT_EQ(text.errors, "");
-  for (const char* const part : {"  least safety factor: ", " (buckling of ", "  first slack: ",
-                                 " times the load\n", "  least stiffness: ", "  largest move: "}) {
+  for (const char* const part :
+       {"  least safety factor: ", " (buckling of ", "  first slack: ", " times the load\n",
+        "  least stiffness: ", "  largest displacement: "}) {
     EXPECT_NE(text.output.find(part), std::string::npos) << part << "\n" << text.output;
   }
 }
@@ -129,10 +131,9 @@ TEST_F(AnalyzeSupports, ARowBetweenAnchorsHasMechanisms) {
         "  - {match: cable, cable: {stiffness_n_per_m: 1000, prestress_n: 10}}\n");
   const test::CommandResult text = Taut({"analyze", "row.yaml"});
   EXPECT_EQ(text.status, 0) << text.errors;
-  for (const char* const part :
-       {"  states of self-stress: 1, mechanisms: 4, motions as a whole: 0",
-        "    states of self-stress: 1, mechanisms: 4, motions as a whole: 0\n",
-        "  stable by prestress: ", "  least stiffness: 10 N/m\n"}) {
+  for (const char* const part : {"  states of self-stress: 1, mechanisms: 4, rigid motions: 0",
+                                 "    states of self-stress: 1, mechanisms: 4, rigid motions: 0\n",
+                                 "  stable by prestress: ", "  least stiffness: 10 N/m\n"}) {
     EXPECT_NE(text.output.find(part), std::string::npos) << part << "\n" << text.output;
   }
 }

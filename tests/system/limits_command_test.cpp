@@ -150,7 +150,7 @@ TEST_F(Limits, AModelOfAMillionNodesIsRefusedAtOnce) {
   for (int i = 0; i < 1'000'000; ++i) text += "  n" + std::to_string(i) + ": [0, 0, 1]\n";
   Write("listed.yaml", text);
   ExpectRefused({"check", "listed.yaml"}, 3,
-                "listed.yaml: error: larger than 10 MB (what repeats can be a part with "
+                "listed.yaml: error: is larger than 10 MB (write repeated parts once, with "
                 "`copies:`)\n");
   text.resize(text.find("  n100000:"));
   Write("fewer.yaml", text);

@@ -153,7 +153,7 @@ TEST_F(GroundText, WrongTablesOfHdf5AreNamed) {
   has(said("hills.h5"),
       "height_field.file does not say which data set (behind a colon: "
       "hills.h5:/z)");
-  has(said("hills.h5:/y"), "hills.h5: error: has no data set /y");
+  has(said("hills.h5:/y"), "hills.h5: error: has no dataset /y");
   has(said("hills.h5:/z"), "hills.h5: error: /z: row 1, column 2 is no finite number");
   WriteHdf5(Path("hills.h5"), H5T_NATIVE_DOUBLE, {6}, std::vector<double>(6));
   has(said("hills.h5:/z"), "hills.h5: error: /z has 1 dimensions, a table has 2");
@@ -163,7 +163,7 @@ TEST_F(GroundText, WrongTablesOfHdf5AreNamed) {
   has(said("hills.h5:/z"), "hills.h5: error: /z holds no numbers");
 }
 
-/// hills.h5, whose data set /z has numbers from elsewhere, in one of three ways.
+/// Writes hills.h5, whose dataset /z refers to another file in one of several ways.
 enum class Elsewhere { kExternalFile, kVirtual, kExternalLink, kSoftLink };
 void WriteElsewhere(const std::string& path, const std::string& other, Elsewhere how) {
   const hsize_t size[2] = {2, 4};
@@ -198,13 +198,13 @@ TEST_F(GroundText, HeightsOfOtherFilesAreNotRead) {
   Write("secret", "root:x:0");
   WriteHdf5(Path("other.h5"), H5T_NATIVE_UCHAR, {2, 4}, std::vector<unsigned char>(8, 1));
   WriteElsewhere(Path("hills.h5"), Path("secret"), Elsewhere::kExternalFile);
-  has(said(), "hills.h5: error: /z has its numbers in another file");
+  has(said(), "hills.h5: error: /z stores its numbers in another file");
   WriteElsewhere(Path("hills.h5"), Path("other.h5"), Elsewhere::kVirtual);
   has(said(), "hills.h5: error: /z is a virtual dataset");
   WriteElsewhere(Path("hills.h5"), Path("other.h5"), Elsewhere::kExternalLink);
   has(said(), "hills.h5: error: /z is a link to another file");
   WriteElsewhere(Path("hills.h5"), Path("other.h5"), Elsewhere::kSoftLink);
-  has(said(), "hills.h5: error: /z is a soft link; name the data set itself");
+  has(said(), "hills.h5: error: /z is a soft link; name the dataset itself");
 }
 
 TEST_F(GroundText, HeightsThatUnpackToGigabytesAreRefused) {
@@ -217,7 +217,8 @@ TEST_F(GroundText, HeightsThatUnpackToGigabytesAreRefused) {
   H5Dclose(set), H5Sclose(space), H5Fclose(file);
   const std::string text =
       Said("- {name: hills, height_field: {file: 'hills.h5:/z', cell_m: 0.1}}");
-  EXPECT_NE(text.find("hills.h5: error: is packed too tightly"), std::string::npos) << text;
+  EXPECT_NE(text.find("hills.h5: error: has too high a compression ratio"), std::string::npos)
+      << text;
 }
 
 }  // namespace

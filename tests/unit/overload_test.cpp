@@ -1,4 +1,4 @@
-// Members that carry more than they bear in a run: who, how much, when, and where it is said.
+// Overloaded members of a run: name, force, time, and the outputs that report them.
 #include <cmath>
 
 #include "scenes/ball.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kG = 9.81;
 
-/// One row at the start and one at the end: what is in between is in no row.
+/// Rows at the start and the end only: the peak in between is not recorded.
 RunSummary SummaryOf(const ModelDef& def, double duration_s) {
   ExperimentSpec experiment = ExperimentWith(def, duration_s, {"*"});
   experiment.record.rate_hz = 1 / duration_s;
@@ -100,7 +100,7 @@ TEST(Overload, ABarThatBucklesAndYieldsIsSaidTwice) {
   constexpr double kPi = 3.14159265358979323846;
   MemberDef member;
   member.young_pa = 1e9;
-  member.second_moment_m4 = 0.5 * kG / (kPi * kPi * 1e9);  // bears half the weight
+  member.second_moment_m4 = 0.5 * kG / (kPi * kPi * 1e9);  // buckles at half the weight
   member.area_m2 = 1e-6;
   member.yield_pa = 0.75 * kG / 1e-6;
   member.strength_n = 1;  // which is of tension
@@ -140,7 +140,7 @@ TEST(Overload, ARodIsLookedAtBetweenRows) {
   EXPECT_EQ(run.overloads[0].name, "rod");
   EXPECT_EQ(run.overloads[0].limit, MemberLimit::kBuckling);
   EXPECT_NEAR(run.overloads[0].bears_n, load_n, 1e-9);
-  // It is stopped over one step, at most two; its weight comes on top.
+  // The impact takes one or two steps; the weight adds to it.
   const double momentum = 0.3 * std::sqrt(2 * kG * 0.01);
   EXPECT_GT(run.overloads[0].carried_n, 0.5 * momentum / 1e-3);
   EXPECT_LT(run.overloads[0].carried_n, 1.1 * momentum / 1e-3);
@@ -160,7 +160,7 @@ TEST(Overload, ALiveRunFindsTheSame) {
   EXPECT_EQ(live->Overloads()[0].first_time_s, run.overloads[0].first_time_s);
 }
 
-/// Recorded, summed up and judged are means over the steps (docs/theory/cables.md, section 3): 1 g
+/// Traces, summaries and overloads use means over the steps (docs/theory/cables.md, section 3): 1 g
 /// on 1e7 N/m, half of critical, is at rest after 0.06 ms.
 TEST(StiffCable, RowsAndLargestTensionOfALightMassAreItsWeight) {
   scenes::HangingMass scene;

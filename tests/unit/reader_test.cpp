@@ -130,7 +130,7 @@ TEST(YamlTree, FilesThatCannotBeReadSayWhy) {
   std::ofstream(path) << "a: " << std::string(kMaxFileBytes, '#');
   Diagnostics large;
   EXPECT_EQ(ReadYaml(path, large), nullptr);
-  EXPECT_EQ(large.items()[0].what, "larger than 10 MB");
+  EXPECT_EQ(large.items()[0].what, "is larger than 10 MB");
   std::remove(path.c_str());
 }
 

@@ -192,7 +192,7 @@ TEST(SummaryTable, HasALineForEveryLimitThatAMemberExceeded) {
             std::string::npos)
       << table;
   EXPECT_NE(table.find(R"(
-overloaded  member  limit          bears N   carried N  first at s
+overloaded  member  limit       capacity N max force N  first at s
 inner_top_1 cable   strength           0.5       17.14        0.25
 strut_0     rod     buckling          1234        2346       12.35
 )"),

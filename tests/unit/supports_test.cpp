@@ -40,7 +40,7 @@ TEST(Supports, FreeMotionsAreNamedByTheirAxes) {
   EXPECT_EQ(check.free_motions,
             std::vector<std::string>{"the structure can still translate along x, y and z and "
                                      "rotate about x, y and z through (0, 0, 0)"});
-  // Planes bear it from below: it slides and turns on them.
+  // Planes support it from below: it can slide and rotate on them.
   for (int i = 0; i < 3; ++i) Hold(def, JointKind::kPlane, i);
   check = CheckSupports(def, {});
   EXPECT_EQ(check.free, 3);
@@ -50,22 +50,22 @@ TEST(Supports, FreeMotionsAreNamedByTheirAxes) {
   EXPECT_EQ(check.missing, "") << "weight does nothing along them";
   EXPECT_EQ(CheckSupports(def, Push(0, {0, 0, 5})).missing, "");
   EXPECT_EQ(CheckSupports(def, Push(0, {5, 0, 0})).missing,
-            check.free_motions[0] + ", and the loads push it along");
-  // A line along x: what is free is x alone.
+            check.free_motions[0] + ", and the loads act along this motion");
+  // Lines along x: only translation along x is free.
   Hold(def, JointKind::kLine, 1, {1, 0, 0}), Hold(def, JointKind::kLine, 2, {1, 0, 0});
   check = CheckSupports(def, Push(0, {5, 0, 0}));
   EXPECT_EQ(check.free, 1);
   EXPECT_EQ(check.missing,
-            "the structure can still translate along x, and the loads push it along");
+            "the structure can still translate along x, and the loads act along this motion");
   EXPECT_EQ(check.fix,
-            "no member resists this motion: add an anchor or a support at nodes that move in it, 1 "
-            "held direction or more in all");
+            "no member resists this motion: add anchors or supports that hold at least 1 direction "
+            "at nodes that move");
   EXPECT_EQ(CheckSupports(def, Push(0, {0, 5, 0})).missing, "");
 }
 
 TEST(Supports, ATurnAboutTheLineThroughTwoOfThemIsNamed) {
   for (const double height_m : {0.5, -0.5}) {
-    // The third corner hangs or stands beside the line between the two that are held.
+    // The third corner is below or above the line between the two held ones.
     ModelDef def = Triangle(0);
     Hold(def, JointKind::kBall, 1), Hold(def, JointKind::kBall, 2);
     const Vec3 tip{0, 0, height_m};
@@ -91,7 +91,7 @@ TEST(Supports, WhatTheGroundMayBearIsNotRefused) {
   EXPECT_EQ(CheckSupports(def, {}).missing, "");
 }
 
-/// What slides along a rail may hang from it: the rail bears it wherever it is.
+/// A body on a rail may hang from it: the rail supports it everywhere.
 TEST(Supports, ARodThatHangsFromARailIsNotRefused) {
   for (const double side : {-1.0, 1.0}) {
     ModelDef def;
@@ -130,8 +130,8 @@ TEST(Supports, APartThatNothingHoldsIsNamed) {
   const SupportCheck check = CheckSupports(def, {});
   EXPECT_EQ(check.free, 3);
   EXPECT_EQ(check.missing,
-            "the part with body \"loose\" can still translate along x, y and z, and the loads push "
-            "it along");
+            "the part with body \"loose\" can still translate along x, y and z, and the loads act "
+            "along this motion");
 }
 
 TEST(Supports, LoadsOfAFloatingRobotHaveToBalance) {
@@ -161,7 +161,8 @@ TEST(LargestMove, IsThatOfTheNodeThatMovesMost) {
             "node \"mass\" moves by 0.327 m, more than a quarter of the structure's size of 1 m");
 }
 
-/// On the ground only the change of shape counts: not how far a robot falls, rolls and turns.
+/// On the ground only the change of shape counts, not the rigid motion of a falling or rolling
+/// robot.
 TEST(LargestMove, LeavesOutTheRigidMotionOfWhatNothingHolds) {
   const ModelDef def = Triangle(1);
   Pose pose;

@@ -7,8 +7,8 @@
 namespace taut::sim {
 namespace {
 
-/// How far a point is from the walls below the border of a field: the way out of them if it is
-/// inside; else to their nearest place, if that is on its height.
+/// Distance of a point from the border walls of a field: the way out if it is inside; else to the
+/// nearest wall point at its height.
 double DistanceToWalls(const SurfaceTable& s, const Vec3& p, bool below) {
   if (below) {
     return std::min({p.x - s.low.x, s.high.x - p.x, p.y - s.low.y, s.high.y - p.y});

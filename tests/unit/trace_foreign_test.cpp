@@ -129,7 +129,7 @@ TEST_F(ForeignHdf5, OtherFilesAreNotRead) {
   H5Pclose(layout);
   Close();
   EXPECT_EQ(Complaint(path),
-            "f.h5: error: /a has its numbers in another file; a trace is one file\n");
+            "f.h5: error: /a stores its numbers in another file; a trace is one file\n");
 
   std::filesystem::rename(path, Path("other.h5"));
   path = Make("taut trace", 1);

@@ -313,7 +313,7 @@ TEST(ChildProcess, TellsHowItEnded) {
   EXPECT_EQ(end([] { std::abort(); }), "crashed (Aborted)");
   EXPECT_EQ(end([] { _exit(7); }), "ended with status 7");
   EXPECT_EQ(end([] { std::this_thread::sleep_for(kNoLimit); }, milliseconds(1000)),
-            "gave no sign of life for 1 s");
+            "did not respond for 1 s");
   // A plain call of operator new: clang leaves out a vector that nobody looks at.
   EXPECT_EQ(end([] { ::operator delete(::operator new (std::size_t{1} << 33)); }),
             "ended with status 1")

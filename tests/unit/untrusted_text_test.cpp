@@ -1,4 +1,4 @@
-// Text from files in messages, and what is read as a file.
+// Control characters of untrusted text in messages, and paths that are not regular files.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -72,7 +72,7 @@ TEST_F(InputFile, TooLargeAFileIsRefusedBeforeItIsRead) {
   const std::string path = folder_ + "/large";
   std::ofstream(path) << "x";
   std::filesystem::resize_file(path, std::uintmax_t{1} << 40);  // with nothing in it
-  EXPECT_EQ(Complaint(path, 5'000'000), path + ": error: larger than 5 MB\n");
+  EXPECT_EQ(Complaint(path, 5'000'000), path + ": error: is larger than 5 MB\n");
 }
 
 }  // namespace

@@ -84,8 +84,8 @@ class Driver {
   void RunUntil(double time_s);  ///< Polls and waits, by the port's clock.
   /// So many cycles; fewer if the adapter is gone, none before `Configure`.
   void Cycle(int count = 1);
-  /// Until a cycle has ended, or the port's clock shows `time_s`; tries to reach an adapter that is
-  /// gone meanwhile. True: a cycle has ended.
+  /// Runs until a cycle has ended or the port's clock reaches `time_s`; meanwhile tries to
+  /// reconnect a missing adapter. Returns whether a cycle has ended.
   bool CycleBy(double time_s);
   /// Motors get power in two steps, held where they are, and then `mode`. False and a complaint if
   /// a board is not well or does not obey.

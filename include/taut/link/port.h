@@ -40,14 +40,14 @@ inline void WaitUntil(Port& port, double time_s) {
   while (port.now_s() < time_s) port.Wait(time_s);
 }
 
-/// kDrive: this program alone, by locks on the device itself (flock, TIOCEXCL), which hold for any
-/// user, session and runtime folder, and end with the port or the process. kStop: beside a program
-/// that drives, for an emergency stop.
+/// kDrive: exclusive access by locks on the device (flock, TIOCEXCL). They hold for any user,
+/// session and runtime folder, and end with the port or the process. kStop: shared with the driving
+/// program, for an emergency stop.
 enum class PortUse { kDrive, kStop };
 
 /// The serial port of an adapter, such as /dev/ttyACM0, or the pseudo-terminal of a virtual robot.
-/// Nothing and a complaint if it cannot be opened, or if another program drives: then the complaint
-/// names its process.
+/// Null and a diagnostic if it cannot be opened or another program drives the robot; the diagnostic
+/// then names its process.
 std::unique_ptr<Port> OpenSerialPort(const std::string& device, PortUse use, Diagnostics& out);
 
 }  // namespace taut::link

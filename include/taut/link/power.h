@@ -1,5 +1,5 @@
-/// Motor power as the boards confirm it: turns motors off and reports which boards said so, and
-/// when. A statement that motors are off rests on nothing else.
+/// Confirmed motor power: turns motors off and reports which boards have confirmed it, and when.
+/// taut reports motors as off only on this confirmation.
 ///
 /// Threads: as for `Driver`.
 #pragma once
@@ -11,12 +11,12 @@
 
 namespace taut::link {
 
-/// What one board said last about its motors.
+/// Motor power of one board by its last status.
 struct BoardPower {
   enum class Is { kOff, kOn, kUnknown };
-  Is is = Is::kUnknown;                  ///< Unknown: no status came since the command.
+  Is is = Is::kUnknown;                  ///< Unknown: no status arrived after the command.
   board::Mode mode = board::Mode::kOff;  ///< In its last status.
-  double age_s = -1;                     ///< Of that status; negative: there was none.
+  double age_s = -1;                     ///< Age of that status; negative without one.
 };
 
 struct PowerReport {
@@ -34,8 +34,8 @@ PowerReport TurnOff(Driver& driver, double patience_s);
 
 /// "confirmed by 6 of 6 boards within 23 ms".
 std::string DescribeConfirmation(const PowerReport& report);
-/// An error for each board that has not confirmed, and how boards behave without commands. Nothing
-/// where all have.
+/// Adds an error for each board without confirmation, and a hint on boards without commands. Adds
+/// nothing if all boards have confirmed.
 void ReportPower(const PowerReport& report, Diagnostics& out);
 
 }  // namespace taut::link

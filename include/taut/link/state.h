@@ -63,7 +63,7 @@ struct State {
   Stage stage = Stage::kUnconfigured;
   board::Mode commanded = board::Mode::kOff;
   bool stopping = false;         ///< An emergency stop, until faults are cleared.
-  bool power_commanded = false;  ///< Motors were to get power at some time, by this driver.
+  bool power_commanded = false;  ///< This driver has commanded motor power before.
   std::vector<MotorView> motors;
   std::vector<BoardView> boards;
   LinkView link;

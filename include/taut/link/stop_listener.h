@@ -1,8 +1,8 @@
-/// Emergency stops from other programs: whoever drives a robot answers on a socket that is named
-/// after the device. Any user of the machine may ask, whatever the session or runtime folder.
-/// (That one program alone drives is a matter of the port: `PortUse`.)
+/// Emergency stop requests from other programs: the driving program answers on a socket that is
+/// named after the device. Any user of the machine may send a request, in any session or runtime
+/// folder. (`PortUse` ensures that only one program drives.)
 ///
-/// Threads: an object belongs to one at a time.
+/// Threads: use an object from one thread at a time.
 #pragma once
 
 #include <memory>
@@ -12,18 +12,18 @@
 
 namespace taut::link {
 
-/// What became of asking the program that drives a robot to stop it.
+/// Result of a stop request to the program that drives a robot.
 enum class StopAnswer {
   kNobody,       ///< No program drives it.
-  kSilent,       ///< One does, and did not answer in time.
-  kUnconfirmed,  ///< It tried, and not all boards confirmed that their motors are off.
-  kStopped,      ///< All boards confirmed it.
+  kSilent,       ///< A program drives it, and did not answer in time.
+  kUnconfirmed,  ///< It sent the stop; some boards did not confirm it.
+  kStopped,      ///< All boards confirmed the stop.
 };
 
-/// The driving program's end.
+/// Server side, in the driving program.
 class StopListener {
  public:
-  /// Null and a complaint if the socket cannot be made, or another program listens there.
+  /// Null and a diagnostic if the socket cannot be created, or another program uses it.
   static std::unique_ptr<StopListener> Open(const std::string& device, Diagnostics& out);
   ~StopListener();
   StopListener(const StopListener&) = delete;
@@ -31,7 +31,7 @@ class StopListener {
 
   /// Whether another program has asked for an emergency stop since the last call. Does not wait.
   bool StopAsked();
-  /// Tells those who asked what became of it; kStopped or kUnconfirmed.
+  /// Answers all pending requests with kStopped or kUnconfirmed.
   void Answer(StopAnswer answer);
 
  private:

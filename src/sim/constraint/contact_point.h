@@ -274,14 +274,14 @@ struct ContactPoint {
     const Num ends = Select(dl[0] < zero, Max(l_now[0], zero) / (zero - dl[0]), never);
     return Select(b.closed, Min(ends, Select(b.slides, never, leaves)), never);
   }
-  /// The least change of u that makes it a solution with the impulses l on the branch `b`, but for
-  /// ln of what is open: what misses un = -bias; of what is inside of the cone, what slips; of what
-  /// is on its edge, what slips but against the friction.
+  /// Computes the least change of u that solves the law with the impulses l on the branch `b`,
+  /// except ln of open contacts: the error of un = -bias; the slip if l is inside the cone; the
+  /// slip not opposite to friction if l is on its boundary.
   void Disagreement(const Branch& b, const Num* u, const Num* l_now, Num* out) const noexcept {
     const Num zero = Num::Splat(0.0);
     const Num l1 = l_now[1], l2 = one_direction ? zero : l_now[2];
     const Num u1 = u[1] + bias[1], u2 = one_direction ? zero : u[2] + bias[2];
-    // A clamped impulse is on the edge but for its rounding.
+    // A clamped impulse is on the boundary up to rounding.
     const Num edge = Num::Splat(1.0 - 1e-9) * mu * l_now[0], length2 = l1 * l1 + l2 * l2;
     const Num against = Min(u1 * l1 + u2 * l2, zero) / Max(length2, Num::Splat(1e-300));
     const Num share = Select(length2 > edge * edge, against, zero);
@@ -289,8 +289,8 @@ struct ContactPoint {
     out[1] = Select(b.closed, u1 - share * l1, zero);
     out[2] = Select(b.closed, u2 - share * l2, zero);
   }
-  /// Holds velocities that differ by that from those that it held.
-  void GiveIn(const Num* change) noexcept {
+  /// Shifts the velocities that satisfy the law by `change`.
+  void Relax(const Num* change) noexcept {
     for (int r = 0; r < kRows; ++r) bias[r] -= change[r];
   }
 

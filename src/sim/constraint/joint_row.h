@@ -5,9 +5,9 @@
 ///
 ///   u: the velocity of the one body against the other along it, after the step
 ///
-/// Held: no limits, and gives by a tiny share of its own inverse mass about the impulse of the step
-/// before (joints.md, eq. 3). A stop: it only pushes. Dry friction: target 0, between the limits. A
-/// spring and damper: gives by what they let it move per impulse.
+/// Held: no limits; compliance is a tiny share of its inverse effective mass about the previous
+/// impulse (joints.md, eq. 3). Stop: it only pushes. Dry friction: target 0 between the limits.
+/// Spring and damper: `give` is their velocity per impulse.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -27,7 +27,7 @@ struct JointRow {
   Num lower, upper;  ///< Of the impulse [N s], lower <= 0 <= upper.
   Num A;             ///< Inverse effective mass along it [1/kg].
   Num l[1];          ///< Impulse [N s].
-  Num rebound;       ///< Speed with which a stop throws back what it catches [m/s]; 0: it does not.
+  Num rebound;       ///< Rebound speed of an impact at a stop [m/s]; 0: no rebound.
   bool compliant;    ///< `give` is the compliance of eq. 3, not that of a spring.
   int link_count;
   Link<Num, 1> links[2];
@@ -104,7 +104,7 @@ struct JointRow {
   }
   void Clamp(Num* l_now) const noexcept { l_now[0] = Min(Max(l_now[0], lower), upper); }
 
-  /// Whether it would throw back anything; at which speed is known beforehand (impacts.inl).
+  /// Whether the stop rebounds; its speed is computed beforehand (impacts.inl).
   bool ExpectRebound(Num) const noexcept { return Any(rebound > Num::Splat(0.0)); }
   Mask Rebound(const Num*, const Num* l_now, Mask lanes, bool) noexcept {
     const Num zero = Num::Splat(0.0);

@@ -32,7 +32,7 @@ class BodyMatrix {
     }
   }
 
-  /// 0 everywhere, of bodies alone.
+  /// Sets all entries to 0, for bodies without links.
   void Clear(const Unknown<Num>* bodies, bool symmetric) noexcept {
     symmetric_ = symmetric, bodies_only_ = true;
     bodies_ = bodies;
@@ -40,7 +40,7 @@ class BodyMatrix {
     const int used = symmetric ? p_.lower_count : p_.block_count;
     for (int i = 0; i < kBlock * used; ++i) a_[i] = zero;
   }
-  /// += a block by its quarters: of velocities and spins.
+  /// Adds a block given by its four 3x3 parts for velocities and spins.
   TAUT_INLINE void AddBlock(int i, int j, const simd::M3<Num>& vv, const simd::M3<Num>& vw,
                             const simd::M3<Num>& wv, const simd::M3<Num>& ww) noexcept {
     Num* const to = At(i, j);

@@ -4,27 +4,27 @@
 /// Contacts that stick along a closed chain (a rod jammed across a groove, a slab on rollers) have
 /// more rows than the bodies have motions, and biases that differ in the last digits of gaps and
 /// arcs. No velocities fulfil them all, and each step adds the same impulses along the chain. If
-/// these sooner or later open a contact or make it slide, that is a way to a solution, and is gone
-/// at once. Where it leads to none, proximal rounds (proximal.inl) find the velocities that miss
-/// least; then the laws that can give in by what is missed do.
+/// these sooner or later open a contact or make it slide, the solver jumps there at once. Otherwise
+/// the equations are inconsistent: proximal rounds (proximal.inl) find the velocities with the
+/// least error; then the laws that support it are relaxed by this error.
 
 namespace taut::sim {
 
 template <class Law>
-inline constexpr bool kGivesIn = requires(Law& law) {
-  law.GiveIn(nullptr);
+inline constexpr bool kRelaxes = requires(Law& law) {
+  law.Relax(nullptr);
 };
 
-/// At m.l, m.u and the branches of their residual: changes the biases of the laws that can give in
-/// so that they hold, if no bias changes by more than kDisagreementMPerS and that solves the
+/// Relaxes inconsistent laws at m.l, m.u and the branches of their residual: changes their biases
+/// so that they hold, if no bias changes by more than kDisagreementMPerS and this solves the
 /// island. False: nothing has changed.
 template <class Num, class P>
-bool GiveIn(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept {
+bool Relax(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept {
   auto& m = island.m;
   Num most = Num::Splat(0.0);
   const auto each = [&](const auto& f) {
     island.pools.ForEach([&](auto& law, auto& branch, int row, int) {
-      if constexpr (kGivesIn<decltype(law)>) f(law, branch, row);
+      if constexpr (kRelaxes<decltype(law)>) f(law, branch, row);
     });
   };
   each([&](auto& law, auto& branch, int row) {
@@ -34,16 +34,16 @@ bool GiveIn(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept
     }
   });
   if (!(most[0] <= kDisagreementMPerS)) return false;
-  each([&](auto& law, auto&, int row) { law.GiveIn(m.projected + row); });
+  each([&](auto& law, auto&, int row) { law.Relax(m.projected + row); });
   if (island.Residual(m.u, m.l)[0] <= tolerance) {
-    if (most[0] > work.gave_in) work.gave_in = most[0];
+    if (most[0] > work.relaxation) work.relaxation = most[0];
     return true;
   }
   each([&](auto& law, auto&, int row) {
     for (int r = 0; r < LawOf<decltype(law)>::kRows; ++r) {
       m.projected[row + r] = -m.projected[row + r];
     }
-    law.GiveIn(m.projected + row);
+    law.Relax(m.projected + row);
   });
   return false;
 }
@@ -59,7 +59,7 @@ class DeadlockBreaker {
  public:
   explicit DeadlockBreaker(Island<Num, P>& island) noexcept : island_(island), m_(island.m) {}
 
-  /// True: m.l is where a law leaves its branch. False: there is no deadlock, or no way out.
+  /// Returns true if m.l is now where a law leaves its branch. False: no deadlock, or no way out.
   bool Break() noexcept {
     if (!IsDeadlock()) return false;
     // m.projected <- what a step adds to the impulses
@@ -82,11 +82,11 @@ class DeadlockBreaker {
   template <class F>
   void ForEach(F&& f) noexcept {
     island_.pools.ForEach([&](auto& law, auto& branch, int row, int) {
-      if constexpr (kGivesIn<decltype(law)>) f(law, branch, row);
+      if constexpr (kRelaxes<decltype(law)>) f(law, branch, row);
     });
   }
 
-  /// Whether the step misses what laws hold by little, and by the same as before it.
+  /// Whether the laws have a small error that the step has not changed.
   bool IsDeadlock() noexcept {
     Num most = Num::Splat(0.0), changed = most;
     ForEach([&](auto& law, auto& branch, int row) {

@@ -1,4 +1,4 @@
-/// One lane's island into the memory of the solver (LaneSolve), and what it found back.
+/// Gathers one lane's island into the solver's memory and scatters the solution (LaneSolve).
 
 namespace taut::sim {
 
@@ -81,7 +81,7 @@ void LaneSolve<W>::GatherLink(const Link<W, R>& from, Link<L, S>& to, int first)
   }
 }
 
-/// As the lanes have worked them out, all together (prepare_contact.inl).
+/// Copies contacts as prepared for all lanes at once (prepare_contact.inl).
 template <class W>
 void LaneSolve<W>::GatherMasses(const Contact<W, 1>& from, ContactPoint<L, 2>& to) const noexcept {
   to.wnn = OfLane<L>(from.wnn, lane_), to.wt = OfLane<L>(from.wt, lane_);
@@ -177,7 +177,7 @@ void LaneSolve<W>::GatherJoints(Pool<JointRow<L>>& pool,
   chain_source_ = friction_source_.From(frictions.count);
 }
 
-/// Of ball joints: three rows are one law. A displacement has none.
+/// Ball joints: three rows form one law, except in displacement solves.
 template <class W>
 void LaneSolve<W>::GatherFrictions(Pool<TurnFriction<L>>& pool) noexcept {
   pool.count = 0;

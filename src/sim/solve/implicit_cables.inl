@@ -1,9 +1,9 @@
-/// Stiff cables with the directions that they have on their way: forces of one stage, and their
-/// matrix (docs/theory/cables.md, section 3).
+/// Forces and stiffness matrix of stiff cables in one implicit stage, with changing directions
+/// (docs/theory/cables.md, section 3).
 ///
-/// The force of the first stage is a discrete gradient in the lengths, and bodies turn by a Cayley
-/// map of their mean spin, so work is what springs store or give, to rounding, at any stiffness,
-/// and momenta stay. That of the second one is the force at the end.
+/// First stage: the force is a discrete gradient in the lengths, and bodies rotate by the Cayley
+/// map of their mean spin. So energy and momenta are conserved to rounding at any stiffness. Second
+/// stage: the force at the end.
 
 namespace taut::sim {
 
@@ -59,11 +59,11 @@ TAUT_INLINE M3<Num> CayleyInverse(const V3<Num>& h, Num scale) noexcept {
 template <class Num>
 struct ImplicitStage {
   Num h;        ///< [s]
-  bool at_end;  ///< Forces are those of its end: implicit Euler.
+  bool at_end;  ///< Forces at its end: implicit Euler.
 };
 
-/// The cables and bodies of an island, for Newton's method in the unknown velocities of a stage:
-/// means over it, of the second kind those at its end. 6 numbers a body.
+/// The cables and bodies of an island for Newton's method. Unknowns: mean velocities of the stage
+/// (implicit Euler: final velocities), 6 numbers per body.
 template <class W>
 class ImplicitCables {
  public:
@@ -73,7 +73,7 @@ class ImplicitCables {
       : mem_(mem), unknowns_(unknowns), count_(count) {}
 
   int cable_count = 0, point_count = 0;
-  Num most_tension = Num::Splat(0.0);  ///< Of the forces worked out last [N].
+  Num most_tension = Num::Splat(0.0);  ///< Of the last evaluation [N].
 
   /// Arms, lengths and inertias of the start of a stage.
   void Begin() noexcept {
@@ -107,7 +107,7 @@ class ImplicitCables {
     }
   }
 
-  /// res <- momenta at the end less what they would be by all forces but those of contacts.
+  /// res <- final momenta minus those under all forces except contacts.
   void Evaluate(const ImplicitStage<Num>& stage, const Num* U, Num* res) noexcept {
     const Num one = Num::Splat(1.0), half = Num::Splat(0.5);
     for (int k = 0; k < count_; ++k) {
@@ -145,10 +145,10 @@ class ImplicitCables {
     for (int c = 0; c < cable_count; ++c) Pull(stage, mem_.list[c], res);
   }
 
-  /// The derivative of what Evaluate has just worked out; `missing`: minus the residual, contacts
-  /// included. Balances of spin are seen from half way round, (1 - [half]) times them: there a
-  /// force on the axis of a slender body turns it about no axis but those across, at any turn.
-  /// Without that Newton's first steps spin it about its own, whose moment is next to nothing.
+  /// Adds the derivative of the last Evaluate. `missing`: minus the residual, including contacts.
+  /// Torque balances are multiplied by (1 - [half]), the frame halfway through the rotation: there
+  /// a force on the axis of a slender body causes only transverse rotation, at any angle. Otherwise
+  /// Newton's first steps would spin it about its axis, whose moment of inertia is nearly 0.
   void AddTo(const ImplicitStage<Num>& stage, const Num* missing,
              BodyMatrix<Num>& matrix) noexcept {
     const Num zero = Num::Splat(0.0), half = Num::Splat(0.5);
@@ -159,7 +159,7 @@ class ImplicitCables {
       const S3<Num>& I = b.inertia;
       M3<Num> spin{{I.xx, I.xy, I.xz}, {I.xy, I.yy, I.yz}, {I.xz, I.yz, I.zz}};
       if (b.turns) {
-        // The columns of I, turned; and what changes as the turn does.
+        // The rotated columns of I, and their derivative by the rotation.
         const auto column = [&](const V3<Num>& i) { return CayleyTurn(b.half, b.scale, i); };
         const V3<Num> c0 = column(spin.r0), c1 = column(spin.r1), c2 = column(spin.r2);
         spin = {{c0.x, c1.x, c2.x}, {c0.y, c1.y, c2.y}, {c0.z, c1.z, c2.z}};
@@ -182,8 +182,8 @@ class ImplicitCables {
     for (int c = 0; c < cable_count; ++c) AddCable(stage, mem_.list[c], matrix);
   }
 
-  /// `missing` of the place that Evaluate has just looked at, as it is seen from half way round
-  /// there, for a matrix that AddTo has seen elsewhere.
+  /// Transforms `missing` of the last Evaluate to its halfway frame, for a matrix that AddTo
+  /// computed at another state.
   void SeenThere(Num* missing) const noexcept {
     for (int k = 0; k < count_; ++k) {
       const ImplicitBody<Num>& b = mem_.body[k];
@@ -200,14 +200,14 @@ class ImplicitCables {
     for (int i = 0; i < 6; ++i) to[i] = set ? part[i] : to[i] + part[i];
   }
 
-  /// Tension and its slope, from the length at the end (eq. 8; of the second stage the end's).
+  /// Computes tension and its slope from the final length (eq. 8; second stage: the final tension).
   static void SetTension(const ImplicitStage<Num>& stage, Num l1, ImplicitCable<Num>& c) noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), half = Num::Splat(0.5);
     const Num longer = l1 - c.l0;
     const Num s0 = c.l0 - c.rest, s1 = (l1 - c.rest) - stage.h * c.rate;
     const Num p0 = Max(s0, zero), p1 = Max(s1, zero), damper = c.b / stage.h;
     const bool was = Any(s0 > zero), is = Any(s1 > zero);
-    Num phi = one, bend = zero;  // the share of the way that is taut, and its slope
+    Num phi = one, bend = zero;  // taut share of the length change, and its slope
     if (was != is) {
       const Num way = one / (s1 - s0);
       phi = (p1 - p0) * way;
@@ -254,7 +254,7 @@ class ImplicitCables {
     }
   }
 
-  /// In which direction a cable pulls at a point.
+  /// Pull direction of a cable at a point.
   static V3<Num> Along(const ImplicitPoint<Num>* p, int count, int i,
                        V3<Num> ImplicitPoint<Num>::*which) noexcept {
     if (i == 0) return p[0].*which;
@@ -262,7 +262,7 @@ class ImplicitCables {
     return p[i].*which - p[i - 1].*which;
   }
 
-  /// h C D B of a pull at `a` that changes by D as the point `b` moves.
+  /// Adds h C D B of a pull at `a` with the derivative D by the point `b`.
   static void AddPair(const ImplicitStage<Num>& stage, const ImplicitPoint<Num>& a,
                       const ImplicitPoint<Num>& b, const M3<Num>& D,
                       BodyMatrix<Num>& matrix) noexcept {
@@ -293,7 +293,7 @@ class ImplicitCables {
     for (int i = 0; i < count; ++i) {
       if (p[i].body < 0) continue;
       const V3<Num> g = Along(p, count, i, &ImplicitPoint<Num>::u);
-      // The arm turns.
+      // Derivative of the rotating lever arm.
       const Num f = stage.at_end ? pull : half * pull;
       matrix.AddBlock(p[i].body, p[i].body, none, none, none, CrossTimes(f * g, p[i].turn));
       for (int j = 0; count > 2 && j < count; ++j) {

@@ -1,8 +1,8 @@
 /// One lane's island with stiff cables, integrated implicitly: Newton's method on the true lengths
 /// and directions at the end of the step, with contacts inside (docs/theory/cables.md, section 3).
 ///
-/// A step is one stage, or two where a stiff cable has a damper; of one that Newton's method does
-/// not solve, 2, 4, ... 128 parts of it are.
+/// A step has one stage, or two if a stiff cable has a damper. If Newton's method fails, the step
+/// is divided into 2, 4, ... 128 substeps.
 
 namespace taut::sim {
 
@@ -10,7 +10,7 @@ template <class W>
 class ImplicitIsland {
   using Num = simd::Lane<W>;
   using Problem = Island<Num, StepPools<Num>>;
-  /// Where a step with dampers is parted: TR-BDF2 with its middle moved, L-stable for all of them.
+  /// Stage boundary of steps with dampers: TR-BDF2 with a moved middle, L-stable for all values.
   static constexpr double kMiddle = 0.9;
   static constexpr double kTolerance = 1e-9, kLeastSpeedMPerS = 1e-3;
   static constexpr int kMostSteps = 40, kMostHalvings = 7;
@@ -33,7 +33,7 @@ class ImplicitIsland {
 
   int linear_solves = 0;
 
-  /// Adds the stiff cable `row` to those of the island. `number`: of a body in it, or -1.
+  /// Adds the stiff cable `row` to those of the island. `number`: index of a body in it, or -1.
   template <class Number>
   void AddCable(int row, const Number& number) noexcept {
     const StiffCable<W>& from = work_.stiff[row];
@@ -65,7 +65,7 @@ class ImplicitIsland {
   }
   bool has_cables() const noexcept { return cables_.cable_count > 0; }
 
-  /// Leaves impulses and velocities in island.m.l and .v, and the ends of its bodies. Returns the
+  /// Solves the step: impulses and velocities in island.m.l and .v, and final poses. Returns the
   /// residual [m/s].
   double Solve() noexcept {
     Gather();
@@ -73,7 +73,7 @@ class ImplicitIsland {
     KeepMomentum();
     if (damped_) {
       cables_.Begin();
-      // What the second stage goes on by may be more than a catch has left; the first never gains.
+      // After a snatch the extrapolation of the second stage may add energy; the first never does.
       if (Gains()) {
         damped_ = false;
         residual = Integrate();
@@ -88,8 +88,8 @@ class ImplicitIsland {
     return residual;
   }
 
-  /// After the impulses have been written back: momenta less what contacts add to them later, and
-  /// where bodies end. `pending` tells that.
+  /// After the impulses are written back: stores momenta without the later contact impulses
+  /// (`pending`), and final poses.
   template <class Pending>
   void Finish(const Pending& pending) noexcept {
     const Num h = Num::Splat(step_s_);
@@ -113,7 +113,7 @@ class ImplicitIsland {
     }
   }
 
-  // What impacts.inl asks for.
+  // Interface for impacts.inl.
   template <class F>
   void ForEach(F&& f) noexcept {
     island_.pools.ForEach([&](auto& law, auto&, int row, int) { f(law, row); });
@@ -134,12 +134,12 @@ class ImplicitIsland {
 
   /// At the start of the stage.
   Twist<Num> VelocityOf(int k) const noexcept { return {mem_.body[k].v, mem_.body[k].w}; }
-  /// At its end, by the unknowns of the body.
+  /// At its end, from the unknowns of the body.
   Twist<Num> EndVelocityOf(int k, const Twist<Num>& at) const noexcept {
     const ImplicitBody<Num>& b = mem_.body[k];
     return {b.ahead * at.v + b.behind * b.v, b.ahead * at.w + b.behind * b.w};
   }
-  /// to <- velocities of all bodies: own(k) of those that are integrated, `prescribed` of others.
+  /// to <- velocities of all bodies: own(k) of integrated ones, `prescribed` of others.
   template <class Own>
   void StoreVelocities(Num* to, Twist<Num> Unknown<Num>::*prescribed,
                        const Own& own) const noexcept {
@@ -148,7 +148,7 @@ class ImplicitIsland {
     }
   }
 
-  /// The whole step, in as many parts as it takes. Returns the residual [m/s].
+  /// Solves the whole step in as many substeps as necessary. Returns the residual [m/s].
   double Integrate() noexcept {
     double residual = 0;
     for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
@@ -171,17 +171,17 @@ class ImplicitIsland {
   /// The state at the start of the step.
   void LoadStart(int body, ImplicitBody<Num>& b) const noexcept;
 
-  /// Of an island that nothing else holds: the second stage keeps angular momentum to second order
-  /// only, the first to what Newton's method leaves over. What it is off by, all bodies turn less.
+  /// Free islands: the second stage conserves angular momentum to second order only, the first to
+  /// the residual of Newton's method. A common rotation of all bodies corrects the error.
   void KeepMomentum() noexcept;
 
-  /// Kinetic and elastic energy of the state that Begin has seen [J].
+  /// Stores kinetic and elastic energy of the state after Begin [J].
   void Energy(Num& kinetic, Num& elastic) const noexcept;
 
-  /// Whether the step has more energy than it had, with what all else but contacts has done.
+  /// Whether the step gains energy beyond the work of all forces except contacts.
   bool Gains() const noexcept;
 
-  /// What does not change from one try to the next. SaveStart has kept pos, quat, vel, mom.
+  /// Sets data shared by all attempts. SaveStart has stored pos, quat, vel, mom.
   void Gather() noexcept {
     const auto* const mom = reinterpret_cast<const V3<W>*>(work_.start + 10 * m_.body_count);
     for (int k = 0; k < count(); ++k) {
@@ -195,7 +195,7 @@ class ImplicitIsland {
       b.force = b.mass * OfLane<Num>(from.v - from.v0, lane_);
       b.torque = OfLane<Num>(from.mom_free, lane_) - OfLane<Num>(mom[body], lane_);
     }
-    // Laws of a whole step take no part of it.
+    // Laws of a whole step do not apply to substeps.
     const Pool<ContactPoint<Num, 2>>& contacts = island_.pools;
     alone_ = island_.rows == 3 * contacts.count;
     damped_ = damped_ && alone_;
@@ -204,7 +204,7 @@ class ImplicitIsland {
     for (int i = 0; i < island_.rows; ++i) mem_.start[i] = island_.m.l[i];
   }
 
-  /// Back to the start of the step.
+  /// Restores the start of the step.
   void Restart() noexcept {
     for (int k = 0; k < count(); ++k) {
       LoadStart(island_.bodies[k].body, mem_.body[k]);
@@ -223,7 +223,7 @@ class ImplicitIsland {
       island_.m.l[i] = mem_.start[i];
     }
     if (island_.rows == 0) return;
-    // From the middle, where they are seen, back to the start.
+    // From the middle of the step, where they are measured, back to its start.
     MeasureBefore();
     const Pool<ContactPoint<Num, 2>>& contacts = island_.pools;
     for (int i = 0; i < contacts.count; ++i) {
@@ -232,7 +232,7 @@ class ImplicitIsland {
     }
   }
 
-  /// A part of the step: one stage, or two. `share` of all else that acts.
+  /// Solves a substep of one or two stages. `share`: its share of all other impulses.
   bool Part(double h, double share, double& residual) noexcept {
     const Num half = Num::Splat(0.5);
     const double first = damped_ ? kMiddle : 1.0;
@@ -296,7 +296,7 @@ class ImplicitIsland {
     return good_;
   }
 
-  /// Biases of the stage from gaps at its start, and velocities before it.
+  /// Sets biases of the stage from gaps and velocities at its start.
   void PrepareContacts() noexcept {
     const Num zero = Num::Splat(0.0), half = Num::Splat(0.5);
     MeasureBefore();
@@ -311,7 +311,7 @@ class ImplicitIsland {
     }
   }
 
-  /// Velocities that all else but cables leads to: rebounds go by them.
+  /// Velocities under all forces except cables; rebounds use them.
   void MeasureFree() noexcept {
     StoreVelocities(mem_.ends, &Unknown<Num>::free, [&](int k) {
       const ImplicitBody<Num>& b = mem_.body[k];
@@ -325,28 +325,27 @@ class ImplicitIsland {
   void Impacts() noexcept {
     const auto hit = SolveImpacts<Num>(*this, island_.rows, MaskOf<Num>::Splat(true));
     if (!Any(hit) || (good_ && laws_.residual <= target_.tolerance)) return;
-    // Rebounds that friction does not let happen.
+    // Rebounds that friction prevents.
     for (int i = 0; i < island_.rows; ++i) island_.m.l[i] = island_.m.impacts.l[i];
     good_ = true;
     Update();
     laws_.residual = 0;
   }
 
-  /// The state at the end of a stage, of which bodies pass `passed`, and what the second starts
-  /// from.
+  /// Sets the state after `passed` times the stage length, and the start of the second stage.
   void EndStage(double passed) noexcept;
 
   // Newton's method of one stage (implicit_newton.inl).
 
-  /// A change of the unknowns as a velocity: masses are the weights.
+  /// Norm of a change of the unknowns as a velocity, weighted by mass.
   double Norm(const Num* d) const noexcept;
-  /// How far rounding alone moves the unknowns of a stage [m/s].
+  /// Effect of rounding on the unknowns of a stage [m/s].
   double Noise() const noexcept;
-  /// step <- change of the unknowns for the residual `res`. With `given`, for the impulses that
-  /// are; else these are found.
+  /// step <- change of the unknowns for the residual `res`. `given`: keeps the impulses; else
+  /// solves for them, too.
   bool Step(const Num* res, bool given, Num* step) noexcept;
   void AddImpulses(Num* f) noexcept;
-  /// `given`: for the impulses that are.
+  /// `given`: keeps the impulses.
   bool Newton(bool given) noexcept;
 
   const View& m_;

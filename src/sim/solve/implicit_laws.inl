@@ -1,11 +1,11 @@
-/// Impulses of contacts and joints while cables are integrated implicitly: the laws of an island on
-/// the inverse of the cables' matrix, which is dense and not symmetric (docs/theory/contact.md,
-/// eq. 20). Contacts that stay open have no row.
+/// Contact and joint impulses with implicit cables: the laws of an island with the Delassus matrix
+/// W = J A^-1 J^T, A the cables' matrix. W is dense and not symmetric (docs/theory/contact.md, eq.
+/// 20). Open contacts have no row.
 
 namespace taut::sim {
 
-// The inverse effective masses that natural maps and single solutions go by: those of a block of
-// W, row by row. Of laws without, those of bodies by themselves stay.
+// Inverse effective masses for natural maps and single solutions: a block of W, row by row. Laws
+// without a block keep those of the bodies.
 template <class Num, int N>
 void SetMasses(ContactPoint<Num, N>& c, const Num* w, int stride) noexcept {
   const Num half = Num::Splat(0.5), one = Num::Splat(1.0), least = Num::Splat(1e-300);
@@ -23,7 +23,7 @@ void SetMasses(JointRow<Num>& row, const Num* w, int) noexcept {
 template <class Law, class Num>
 void SetMasses(Law&, const Num*, int) noexcept {}
 
-/// Whether a law is that of a contact, which has no row while it is open.
+/// Whether a law is a contact, which has no row while it is open.
 template <class Law>
 inline constexpr bool kOpens = requires(Law& law) {
   law.mu;
@@ -41,7 +41,7 @@ class ImplicitLaws {
 
   double residual = 0;
 
-  /// Of a new stage: no contact has a row yet but those that pressed.
+  /// Starts a stage: only contacts that pressed have a row.
   void Begin() noexcept {
     for (int i = 0; i < island_.rows; ++i) mem_.active[i] = 0;
     island_.pools.ForEach([&](auto& law, auto&, int row, int) {
@@ -53,9 +53,9 @@ class ImplicitLaws {
     });
   }
 
-  /// Impulses island.m.l for the velocities `ends` without them, 6 a body, where an impulse p of
-  /// momenta changes velocities by ahead A^-1 p. Adds A^-1 J^T l to `step`. False if there is no
-  /// room.
+  /// Solves for the impulses island.m.l. `ends`: velocities without impulses, 6 per body; an
+  /// impulse p changes them by ahead A^-1 p. Adds A^-1 J^T l to `step`. False if memory is too
+  /// small.
   bool Solve(const BodyMatrix<Num>& matrix, const Num* ends, Num* step) noexcept {
     const Num zero = Num::Splat(0.0);
     auto& m = island_.m;
@@ -84,7 +84,7 @@ class ImplicitLaws {
       if (count_ == before) break;
       Respond(matrix, before);
       Iterate();
-      // Others that this closes.
+      // Contacts that this closes.
       island_.Measure(ends, m.u2);
       for (int b = 0; b < kDofs * island_.body_count; ++b) mem_.ends[b] = zero;
       for (int c = 0; c < count_; ++c) {
@@ -106,7 +106,7 @@ class ImplicitLaws {
  private:
   int size() const noexcept { return kDofs * island_.pattern.count; }
 
-  /// Columns of A^-1 J^T from `first` on, W, and the laws' masses.
+  /// Computes the columns of A^-1 J^T from `first` on, W, and the laws' masses.
   void Respond(const BodyMatrix<Num>& matrix, int first) noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     auto& m = island_.m;
@@ -213,7 +213,7 @@ class ImplicitLaws {
     for (int i = 0; i < count_; ++i) to[i] = from[i];
   }
 
-  /// From constraint to constraint, each by itself.
+  /// Gauss-Seidel sweep over the constraints.
   void Sweep() noexcept {
     const int stride = mem_.row_capacity;
     island_.pools.ForEach([&](auto& law, auto&, int row, int) {
@@ -252,7 +252,7 @@ class ImplicitLaws {
     for (int i = 0; i < count_; ++i) mem_.l[i] += mem_.f[i];
   }
 
-  /// f <- K^-1 f, with pivots.
+  /// f <- K^-1 f, with partial pivoting.
   void Eliminate() noexcept {
     const int stride = mem_.row_capacity;
     for (int k = 0; k < count_; ++k) {

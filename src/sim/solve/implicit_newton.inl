@@ -1,5 +1,5 @@
-/// Newton's method on the velocities of a stage's end, from standing still, where the lengths and
-/// tensions of cables are true (docs/theory/cables.md, section 3).
+/// Newton's method for the final velocities of a stage. It starts at rest, where cable lengths and
+/// tensions are exact (docs/theory/cables.md, section 3).
 
 namespace taut::sim {
 
@@ -84,7 +84,7 @@ bool ImplicitIsland<W>::Newton(bool given) noexcept {
       AddImpulses(mem_.back);
       cables_.SeenThere(mem_.back);
       matrix_.Solve(mem_.back);
-      // Natural monotonicity: the same matrix finds less to do there.
+      // Natural monotonicity test: the simplified Newton step must be shorter.
       if (Norm(mem_.back) <= (1 - 0.25 * way) * now) break;
       way *= 0.5;
     }

@@ -1,5 +1,5 @@
-/// States of an island that is integrated implicitly: its start, the ends of its stages, what it
-/// keeps (docs/theory/cables.md, 12e).
+/// States of an implicitly integrated island: start, ends of its stages, conserved quantities
+/// (docs/theory/cables.md, 12e).
 
 namespace taut::sim {
 
@@ -109,7 +109,7 @@ void ImplicitIsland<W>::EndStage(double passed) noexcept {
     NormalizeQuat(b.q);
     b.L = b.L1;
     if (!more) continue;
-    // Impulses of contacts are over; forces go on.
+    // Contact impulses have ended; forces continue.
     const Num* const p = pushed + kDofs * k;
     const V3<Num> hit{p[0], p[1], p[2]}, spun{p[3], p[4], p[5]};
     b.v += q * ((b.v - v0) - (Num::Splat(1.0) / b.mass) * hit);

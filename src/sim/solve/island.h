@@ -31,10 +31,10 @@ struct Target {
   double goal() const noexcept { return kGoal * tolerance; }
 };
 
-/// What has been done for an island, and what may be.
+/// Work counters and limits of an island's solve.
 struct SolverWork {
   int linear_solves = 0, limit = 0;
-  double gave_in = 0;  ///< Largest change of a bias, where biases contradicted each other [m/s].
+  double relaxation = 0;  ///< Largest relaxation of inconsistent biases [m/s].
 };
 
 /// Whether a residual has hardly moved from one step to the next.

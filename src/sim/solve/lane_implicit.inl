@@ -1,11 +1,11 @@
-/// A lane's islands with stiff cables: into the implicit integration and back.
+/// Data transfer between a lane's islands with stiff cables and the implicit integration.
 
 namespace taut::sim {
 
 template <class W>
 double LaneSolve<W>::SolveImplicit(SolverWork& work) noexcept {
   Island<L, StepPools<L>>& island = mem_.island;
-  // Without room for the matrix nothing is solved, and the status says so.
+  // If the matrix does not fit into memory nothing is solved, and the status bit is set.
   if (!island.has_matrix) return 1.0;
   ImplicitIsland<W> implicit(m_, s_, work_, island, Target{settings_.tolerance_m_per_s}, lane_,
                              h_[0], work.limit);
@@ -27,7 +27,7 @@ double LaneSolve<W>::SolveImplicit(SolverWork& work) noexcept {
   return residual;
 }
 
-/// What an implicit solve has found of a body's end, displaced and turned by twice `half`.
+/// Stores the final pose of a body from an implicit solve: displaced and rotated by twice `half`.
 template <class W>
 void LaneSolve<W>::DisplaceEnd(int body, const V3<L>& dx, const V3<L>& half) noexcept {
   if (!(work_.implicit.ended[body][lane_] > 0)) return;
@@ -39,7 +39,7 @@ void LaneSolve<W>::DisplaceEnd(int body, const V3<L>& dx, const V3<L>& half) noe
   SetLane(work_.implicit.end_quat[body], q, lane_);
 }
 
-/// Angular momentum that contacts of moving bodies have yet to add to one.
+/// Angular momentum that contacts between moving bodies will add later.
 template <class W>
 V3<simd::Lane<W>> LaneSolve<W>::PendingOfTouches(int body) const noexcept {
   V3<L> sum{L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};

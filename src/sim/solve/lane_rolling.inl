@@ -1,8 +1,8 @@
-/// The rounds of LaneSolve over what rolls on bodies with motions (rolling.inl).
+/// Fixed-point rounds of LaneSolve for rolling on kinematic or jointed bodies (rolling.inl).
 
 namespace taut::sim {
 
-/// At the velocities in the island's memory.
+/// Uses the velocities in the island's memory.
 template <class W>
 RollingSide<simd::Lane<W>> LaneSolve<W>::SideOf(const Contact<L, 2>& c, int k,
                                                 const Shape& shape) const noexcept {
@@ -26,7 +26,7 @@ RollingSide<simd::Lane<W>> LaneSolve<W>::SideOf(const Contact<L, 2>& c, int k,
   return side;
 }
 
-/// f(point, touch, pair) for the island's contacts that roll.
+/// Calls f(point, touch, pair) for the island's rolling contacts.
 template <class W>
 template <class F>
 void LaneSolve<W>::EachRolling(const F& f) noexcept {
@@ -48,7 +48,7 @@ bool LaneSolve<W>::FindRolling() noexcept {
   return any;
 }
 
-/// The velocities that the bodies have at the end if they change as in the step before.
+/// Predicts the final velocities from their change in the previous step.
 template <class W>
 void LaneSolve<W>::ExpectVelocities() noexcept {
   for (int k = 0; k < count_; ++k) {
@@ -83,7 +83,7 @@ double LaneSolve<W>::FollowRolling() noexcept {
   return change;
 }
 
-/// The biases found, for what judges the contacts afterwards.
+/// Stores the biases for the residual of the contacts.
 template <class W>
 void LaneSolve<W>::KeepRolling() noexcept {
   EachRolling([&](const ContactPoint<L, 2>& point, Contact<L, 2>& c, const ShapePairTable&) {

@@ -6,7 +6,7 @@ namespace taut::sim {
 
 /// What solving one lane came to.
 struct LaneResult {
-  double residual = 0, gave_in = 0;
+  double residual = 0, relaxation = 0;
   int linear_solves = 0;
   int body = kWorld;  ///< In the island that is furthest from solved.
 };
@@ -42,7 +42,7 @@ class LaneSolve {
         Scatter();
       }
       result.linear_solves += work.linear_solves;
-      if (work.gave_in > result.gave_in) result.gave_in = work.gave_in;
+      if (work.relaxation > result.relaxation) result.relaxation = work.relaxation;
       if (residual > result.residual || !(residual - residual == 0)) {
         result.residual = residual;
         result.body = body;
@@ -55,7 +55,7 @@ class LaneSolve {
   int PushOut() noexcept;
 
  private:
-  /// Solves the island gathered. What rolls on a body that turns takes rounds (rolling.inl).
+  /// Solves the gathered island. Rolling on a rotating body takes fixed-point rounds (rolling.inl).
   double SolveGathered(SolverWork& work) noexcept {
     constexpr int kMostRounds = 8;
     const Target target{settings_.tolerance_m_per_s};
@@ -102,8 +102,8 @@ class LaneSolve {
   bool IsOn(const StiffCable<W>& cable) const noexcept {
     return !displaces_ && cable.live[lane_] > 0;
   }
-  /// Whether the link is one of this lane's: a cable that touches has links to what it touches in
-  /// any lane, and what a lane gets must not depend on the others.
+  /// Whether the link belongs to this lane: a touching cable has links to the contacts of all
+  /// lanes, and a lane's result must not depend on other lanes.
   bool IsOn(const StiffCable<W>& cable, int link) const noexcept {
     return m_.cables[cable.cable].touch < 0 || Acts(cable.links[link], lane_);
   }
@@ -112,7 +112,7 @@ class LaneSolve {
   bool IsImplicit(const StiffCable<W>& cable) const noexcept {
     return work_.implicit.any && work_.implicit.limit[cable.cable][lane_] < 0;
   }
-  /// The same of the island that has been gathered.
+  /// The same for the gathered island.
   bool IsImplicit() const noexcept {
     bool any = false;
     for (int k = 0; k < count_ && !displaces_; ++k) {
@@ -120,8 +120,8 @@ class LaneSolve {
     }
     return any;
   }
-  /// Whether the island's bodies have finite velocities without its constraints. Others are left as
-  /// they are: the world's status says what they are.
+  /// Whether the island's bodies have finite velocities without constraints. Other islands are not
+  /// solved: the world's status has kStatusNonFinite.
   bool IsFinite() const noexcept {
     const L zero = L::Splat(0.0);
     L sum = zero;
@@ -210,8 +210,8 @@ class LaneSolve {
   /// The law of a displacement: out, or no further in than to touch.
   void Displacing(ContactPoint<L, 2>& c, double deep, double gap) const noexcept;
 
-  // Between the lanes and the memory of the solver (gather_island.inl).
-  /// The island of `root`. False if nothing acts on it.
+  // Gather and scatter between the lanes and the solver's memory (gather_island.inl).
+  /// Gathers the island of `root`. Returns false if no constraint acts on it.
   bool Gather(int root) noexcept;
   void GatherBody(int body, Unknown<L>& out) const noexcept;
   /// `first`: of the rows of `to`.
@@ -223,7 +223,7 @@ class LaneSolve {
   void GatherJoints(Pool<JointRow<L>>& pool, Pool<TurnFriction<L>>& frictions) noexcept;
   void GatherFrictions(Pool<TurnFriction<L>>& pool) noexcept;
   void GatherChains(Pool<CableChain<L>>& pool) noexcept;
-  /// Those to begin from.
+  /// Warm-start impulses.
   void GatherImpulses() noexcept;
   /// Impulses and velocities back into the lane.
   void Scatter() noexcept;

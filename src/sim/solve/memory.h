@@ -26,7 +26,7 @@ struct LaneMemory {
   Row<Contact<Num, 2>> pairs;    ///< The lane's list of touches, prepared.
   Row<int> root, local, bodies;  ///< Per body: its island; its number there; an island's bodies.
   Row<int> order, place;         ///< Of elimination.
-  Row<int> source;               ///< Per constraint of an island: where it came from.
+  Row<int> source;               ///< Per constraint of an island: its index in the lane.
   BodyGraph graph;
   int block_capacity;
   Island<Num, StepPools<Num>> island;
@@ -86,10 +86,10 @@ struct JointMemory {
   Row<Unknown<W>> bodies;
   Row<JointRow<W>> rows;
   Row<int> number;         ///< Per row that is held: its number among the model's,
-  Row<W> G, gap, miss, l;  ///< stiffness, gap, what it misses, impulse.
-  Row<W> rhs, change;      ///< 6 a body; rhs: also of those with motions, which do not change.
-  Row<W> moved;            ///< Per body: how far the last displacement moved any of its points [m],
-  Row<V3<W>> gained;       ///< and the angular momentum that it gained by it.
+  Row<W> G, gap, miss, l;  ///< stiffness, gap, error, impulse.
+  Row<W> rhs, change;      ///< 6 per body; rhs: also for kinematic bodies, which do not change.
+  Row<W> moved;            ///< Per body: largest displacement of its points [m],
+  Row<V3<W>> gained;       ///< and the change of angular momentum by it.
   Row<W> blocks;           ///< 36 a block.
 
   void Take(const View& m, Room& room) noexcept {

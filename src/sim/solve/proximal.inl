@@ -14,8 +14,8 @@ class Proximal {
   static constexpr int kMaxRounds = 40, kMaxIterations = 40, kSweepsAfterFailure = 10;
   static constexpr double kLeastSoftness = 1e-8, kStays = 1e-3;
   static constexpr int kMaxStays = 4;
-  /// A residual that no longer falls is a contradiction: after so many rounds without one of half
-  /// the residual, where rounds are this stiff or fail.
+  /// A stagnating residual shows inconsistent equations: number of rounds without halving it, once
+  /// rounds are this stiff or fail.
   static constexpr double kFalls = 0.5, kSmallMPerS = 1e-8, kStiff = 1e-8;
   static constexpr int kRoundsIfSmall = 4, kRounds = 6;
 
@@ -35,7 +35,7 @@ class Proximal {
     Keep(m_.best, m_.l, island_.rows);
     bool carried = false;  // m.trial_v is where the last round ended
     int stayed = 0;
-    int stale = 0;         // rounds, as stiff or stiffer, since the residual last fell to half:
+    int stale = 0;         // rounds, as stiff or stiffer, since the residual was last halved:
     double e_at_fall = e;  // the softness of that round
     for (int round = 0; round < kMaxRounds && residual > tolerance_ && !Exhausted(); ++round) {
       Keep(m_.center, m_.l, island_.rows);
@@ -43,7 +43,7 @@ class Proximal {
       const bool ended_well = Round(e);
       const double before = residual;
       residual = island_.Judge();
-      // Biases that contradict each other: deadlock.inl
+      // Inconsistent biases: see deadlock.inl
       stayed = ended_well && Stays(residual, before, kStays * residual) ? stayed + 1 : 0;
       if (residual < kFalls * best) {
         stale = 0, e_at_fall = e;
@@ -54,7 +54,7 @@ class Proximal {
       const bool stays = stayed == kMaxStays && best < kDisagreementMPerS;
       if (stays || !ended_well || e <= kStiff) {
         const int enough = best <= kSmallMPerS ? kRoundsIfSmall : kRounds;
-        if (stale >= enough && LetBestGiveIn(best)) return island_.Judge();
+        if (stale >= enough && RelaxBest(best)) return island_.Judge();
       }
       if (stays) break;
       carried = ended_well && residual - residual == 0;
@@ -66,9 +66,9 @@ class Proximal {
         if (e < 0.5 * failed_at) failed_at = 0;
         continue;
       }
-      // From here on rounds would repeat themselves.
+      // Further rounds would repeat the same result.
       if (failed_at > 0 && best > kFalls * best_at_failure) {
-        if (LetBestGiveIn(best)) return island_.Judge();
+        if (RelaxBest(best)) return island_.Judge();
         break;
       }
       best_at_failure = best;
@@ -92,15 +92,15 @@ class Proximal {
     Keep(m_.best, m_.l, island_.rows);
   }
 
-  /// Lets the laws that m.l misses give in: with it the step hands on what has grown along the
-  /// loop, until a contact of it slides. Else goes back to the best impulses if those that they
-  /// miss can; else leaves m.l.
-  bool LetBestGiveIn(double best) noexcept {
+  /// Relaxes the laws that m.l violates: with m.l the next step starts from the impulses grown
+  /// along the loop, until a contact slides. If that fails, tries the best impulses; else leaves
+  /// m.l.
+  bool RelaxBest(double best) noexcept {
     if (!(best > tolerance_ && best <= kDisagreementMPerS)) return false;
-    if (GiveIn(island_, tolerance_, work_)) return true;
+    if (Relax(island_, tolerance_, work_)) return true;
     Keep(m_.du, m_.l, island_.rows);
     island_.Return(m_.best);
-    if (GiveIn(island_, tolerance_, work_)) return true;
+    if (Relax(island_, tolerance_, work_)) return true;
     Keep(m_.l, m_.du, island_.rows);
     island_.Judge();
     return false;

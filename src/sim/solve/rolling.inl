@@ -1,14 +1,13 @@
-/// Rolling on a body with a motion or on a joint (ShapePairTable::rolls; docs/theory/motion.md,
-/// eq. 4a): along the surface the contact is at rest at the end of the step, where its point is by
-/// then.
+/// Rolling on a kinematic or jointed body (ShapePairTable::rolls; docs/theory/motion.md, eq. 4a):
+/// the tangential velocity is zero at the final contact point of the step.
 ///
-/// The point's way depends on the velocities that the solve is to find. So the island is solved
-/// again with the biases of the velocities found, from the impulses found, until the biases stay:
-/// each round leaves a share h |w| / 2 of the error, w the motion's angular velocity.
+/// The final contact point depends on the unknown velocities. So fixed-point rounds solve the
+/// island with the biases of the last velocities, warm-started, until the biases converge: each
+/// round leaves a share h |w| / 2 of the error, w the motion's angular velocity.
 
 namespace taut::sim {
 
-/// One body of such a contact.
+/// One body of a rolling contact.
 template <class L>
 struct RollingSide {
   V3<L> x_end;     ///< Its origin at the end of the step.
@@ -18,7 +17,7 @@ struct RollingSide {
   L radius;        ///< From there to the contact point.
   bool is_round;
 
-  /// Of a vector that is fixed to the body, by the end.
+  /// Change of a body-fixed vector until the end of the step.
   V3<L> Turned(const V3<L>& a, L half_h) const noexcept {
     const V3<L> once = half_h * Cross(w, a);
     return a + once + L::Splat(0.5) * half_h * Cross(w, once);
@@ -26,8 +25,8 @@ struct RollingSide {
   V3<L> SkeletonAtEnd(L half_h) const noexcept { return x_end + Turned(skeleton, half_h); }
 };
 
-/// The contact point at the end of the step, from a's origin at its middle. `b_from_a`: b's origin
-/// at the middle; `normal`: from b to a.
+/// Returns the contact point at the end of the step, from a's origin at its middle. `b_from_a`: b's
+/// origin at the middle; `normal`: from b to a.
 template <class L>
 V3<L> PointAtEnd(const RollingSide<L>& a, const RollingSide<L>& b, const V3<L>& b_from_a,
                  const V3<L>& normal, L half_h) noexcept {
@@ -36,7 +35,7 @@ V3<L> PointAtEnd(const RollingSide<L>& a, const RollingSide<L>& b, const V3<L>& 
     return (L::Splat(1.0) - share) * a.SkeletonAtEnd(half_h) +
            share * (b_from_a + b.SkeletonAtEnd(half_h));
   }
-  // The other side is flat, and its normal turns with it.
+  // The other side is flat; its normal rotates with it.
   return a.is_round ? a.SkeletonAtEnd(half_h) - a.radius * b.Turned(normal, half_h)
                     : b_from_a + b.SkeletonAtEnd(half_h) + b.radius * a.Turned(normal, half_h);
 }

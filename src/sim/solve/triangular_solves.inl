@@ -1,4 +1,4 @@
-/// Solves with the factors of a BodyMatrix, a column a body. L has ones on its diagonal.
+/// Triangular solves with the factors of a BodyMatrix, one column per body. L has a unit diagonal.
 
 namespace taut::sim {
 
