@@ -1,5 +1,7 @@
 #include "benchmarks/contact_catalogue.h"
 
+#include <numbers>
+
 #include "benchmarks/robots.h"
 #include "scenes/chance.h"
 #include "scenes/heap.h"
@@ -13,7 +15,6 @@ namespace taut::bench {
 namespace {
 
 using Seed = std::uint64_t;
-constexpr double kPi = 3.14159265358979323846;
 
 void AddHeaps(std::vector<ContactScene>& all) {
   const auto heap = [&](const std::string& name, int rods, double friction) {
@@ -133,7 +134,7 @@ std::vector<ModelDef> PainleveGrid() {
       for (const double velocity : {3.0, -3.0}) {
         scenes::PainleveRod rod;
         rod.friction = 0.1 * mu;
-        rod.angle_rad = angle * kPi / 180;
+        rod.angle_rad = angle * std::numbers::pi / 180;
         rod.velocity_m_per_s = velocity;
         grid.push_back(rod.Def());
       }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "scenes/ball.h"
@@ -16,7 +17,6 @@ namespace taut::bench {
 namespace {
 
 constexpr int kPeriodTicks = 100;  // a second
-constexpr double kPi = 3.14159265358979323846;
 
 PlaneDef Ground() {
   PlaneDef ground;
@@ -120,7 +120,7 @@ ModelDef SwingingChain(int rods, double friction_n_m) {
 Motion::Motion(const ModelDef& def) {
   for (const CableDef& cable : def.cables) rest_m_.push_back(cable.rest_length_m);
   for (int i = 0; i < kPeriodTicks; ++i) {
-    factor_.push_back(1 + 0.02 * std::sin(2 * kPi * i / kPeriodTicks));
+    factor_.push_back(1 + 0.02 * std::sin(2 * std::numbers::pi * i / kPeriodTicks));
   }
 }
 

@@ -36,3 +36,35 @@ build_quietly() {
     return 1
   fi
 }
+
+# build_showing PRESET [TARGET...]: the same, with a line of progress: rewritten on a terminal, once a
+# minute elsewhere. Shows nothing if there is nothing to build.
+build_showing() {
+  local log=build/$1.build.log line done_count count started_s=$SECONDS shown_s=$SECONDS ended='' left
+  mkdir -p build
+  : >"$log"
+  while IFS= read -r line; do
+    echo "$line" >>"$log"
+    if [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]]; then
+      done_count=${BASH_REMATCH[1]} count=${BASH_REMATCH[2]}
+      if [ "$done_count" -eq 1 ]; then echo "Building: $count steps, on $jobs processors."; fi
+      left=''
+      if [ $((SECONDS - started_s)) -gt 20 ]; then
+        left=$(((SECONDS - started_s) * (count - done_count) / done_count / 60 + 1))
+        left=", about $left min left"
+      fi
+      if [ -t 1 ]; then
+        printf '\r  %d of %d%s   ' "$done_count" "$count" "$left"
+        ended=$'\n'
+      elif [ $((SECONDS - shown_s)) -ge 60 ]; then
+        printf '  %d of %d%s\n' "$done_count" "$count" "$left"
+        shown_s=$SECONDS
+      fi
+    fi
+  done < <(build "$@" 2>&1 || echo "the build failed")
+  printf '%s' "$ended"
+  if [ "$(tail -n 1 "$log")" = "the build failed" ]; then
+    grep -vE '^\[[0-9]+/[0-9]+\] [^:]*$' "$log" >&2
+    return 1
+  fi
+}

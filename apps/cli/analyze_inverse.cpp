@@ -8,6 +8,7 @@
 
 #include "analyze_inverse.h"
 #include "analyze_names.h"
+#include "json_values.h"
 #include "output.h"
 #include "table.h"
 
@@ -20,8 +21,6 @@ struct Answer {
   LoadCaseSpec loads;
   HoldingForces forces;
 };
-
-Json ToJson(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
 
 HoldingOptions OptionsOf(const InverseArguments& args, const ModelDef& def) {
   HoldingOptions options;
@@ -89,7 +88,7 @@ Json CablesJson(const ModelDef& def, const HoldingForces& forces) {
   return cables;
 }
 
-Json ToJson(const ModelDef& def, const Answer& answer) {
+Json AnswerJson(const ModelDef& def, const Answer& answer) {
   const HoldingForces& forces = answer.forces;
   Json json{{"name", answer.loads.name},
             {"weight", answer.loads.weight},
@@ -138,7 +137,7 @@ int Inverse(const std::string& file, const RobotSpec& robot, const std::vector<L
               {"notes", notes},
               {"minimise", HoldingCostName(args.minimise)}};
     json["load_cases"] = Json::array();
-    for (const Answer& answer : answers) json["load_cases"].push_back(ToJson(def, answer));
+    for (const Answer& answer : answers) json["load_cases"].push_back(AnswerJson(def, answer));
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
   } else {
     fmt::print("Model {}: cables that hold it as described, least {}\n", def.name,

@@ -2,14 +2,12 @@
 
 #include "analyze_names.h"
 #include "analyze_report.h"
+#include "json_values.h"
 
 namespace taut::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json ToJson(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
-Json ToJson(const std::optional<double>& x) { return x ? Json(*x) : Json(); }
 
 Json RankJson(const RankGap& rank) {
   return {{"rank", rank.rank},

@@ -1,14 +1,13 @@
 #include <nlohmann/json.hpp>
 
 #include "check_report.h"
+#include "json_values.h"
 #include "taut/loads.h"
 
 namespace taut::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json ToJson(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
 
 Json BodiesJson(const ModelDef& def) {
   const std::vector<BodyLoad> loads = StartLoads(def);

@@ -82,6 +82,12 @@ CommandText Describe(const CLI::App& command) {
   return text;
 }
 
+std::vector<std::string> CommandText::CommandWords() const {
+  std::vector<std::string> words;
+  for (const CommandText& one : commands) words.push_back(one.Word());
+  return words;
+}
+
 std::string UsageLine(const CommandText& command) {
   std::string line = command.name + " [FLAGS]";
   if (!command.commands.empty()) line += " COMMAND";

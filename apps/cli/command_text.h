@@ -32,6 +32,9 @@ struct CommandText {
 
   /// The last word of its name.
   std::string Word() const;
+
+  /// The last words of its commands, in their order.
+  std::vector<std::string> CommandWords() const;
 };
 
 /// What is hidden (an empty group) is left out.

@@ -30,12 +30,6 @@ void ForEach(const CommandText& command, const std::function<void(const CommandT
   for (const CommandText& one : command.commands) ForEach(one, act);
 }
 
-std::vector<std::string> CommandWords(const CommandText& command) {
-  std::vector<std::string> words;
-  for (const CommandText& one : command.commands) words.push_back(one.Word());
-  return words;
-}
-
 // bash: tables of what follows a flag, of flags, and of what may stand in a command's place.
 
 std::string BashValue(const WordText& word) {
@@ -45,7 +39,7 @@ std::string BashValue(const WordText& word) {
 }
 
 std::string BashPlace(const CommandText& command) {
-  if (!command.commands.empty()) return "_taut_words " + Sh(Spaced(CommandWords(command)));
+  if (!command.commands.empty()) return "_taut_words " + Sh(Spaced(command.CommandWords()));
   if (command.arguments.empty()) return ":";
   const WordText& first = command.arguments.front();
   return first.Choices().empty() ? "_taut_paths -f" : BashValue(first);
@@ -170,7 +164,7 @@ std::string FishCondition(const CommandText& command) {
   }
   if (command.commands.empty()) return condition;
   return condition + (condition.empty() ? "" : "; and ") + "not __fish_seen_subcommand_from " +
-         Spaced(CommandWords(command));
+         Spaced(command.CommandWords());
 }
 
 std::string FishValue(const WordText& word) {

@@ -18,7 +18,7 @@ namespace {
 constexpr double kReport_s = 1.0;
 /// Timeout of a stop request; the driving program waits for its boards' confirmation.
 constexpr double kStopPatience_s = 0.9;
-constexpr double kConfirm_s = 0.5;
+constexpr double kHoldConfirm_s = 0.5;
 constexpr int kStops = 3;
 
 struct HoldArguments : RobotArguments {
@@ -76,7 +76,7 @@ int Release(const RobotArguments& args) {
   const auto desk = RobotDesk::Open(args, nullptr, exit);
   if (!desk) return exit;
   link::Driver& driver = desk->driver();
-  const link::PowerReport power = link::TurnOff(driver, kConfirm_s);
+  const link::PowerReport power = link::TurnOff(driver, kHoldConfirm_s);
   Diagnostics found;
   link::ReportPower(power, found);
   if (!found.ok()) return Fail(found, kFailed);

@@ -41,9 +41,9 @@ struct RunArguments {
 };
 
 /// One line that is rewritten on a terminal, a line every ten seconds elsewhere.
-class ProgressLine {
+class RunProgressLine {
  public:
-  explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+  explicit RunProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
 
   bool Show(const RunProgress& p) {
     if (!quiet_ && (terminal_ || p.wall_s - last_s_ >= 10)) {
@@ -145,7 +145,7 @@ int Run(const RunArguments& args) {
   const auto folder = RunFolder::Open(path, {}, found);
   if (!folder) return Fail(found, kFailed);
   if (!args.json) OutputIsNews();
-  ProgressLine line(args.quiet);
+  RunProgressLine line(args.quiet);
   RunOptions options;
   options.threads = args.threads;
   options.plant = plant.get();

@@ -22,12 +22,6 @@ std::string Joined(const std::vector<std::string>& words, const char* last) {
   return out;
 }
 
-std::vector<std::string> CommandWords(const CommandText& command) {
-  std::vector<std::string> words;
-  for (const CommandText& one : command.commands) words.push_back(one.Word());
-  return words;
-}
-
 /// Flags that begin like the word, else the one that looks like it. Empty: none does.
 std::string MeantFlags(const CommandText& command, std::string word) {
   std::vector<std::string> all, longer;
@@ -76,7 +70,7 @@ bool ExplainUnknown(const CLI::App& app, const CommandText& command) {
 bool ExplainMissing(const CLI::App& app, const CommandText& command) {
   if (!command.commands.empty()) {
     fmt::print(stderr, "error: {} needs a command: {}\n", command.name,
-               Joined(CommandWords(command), " or "));
+               Joined(command.CommandWords(), " or "));
     return true;
   }
   for (const CLI::Option* option : app.get_options()) {
@@ -119,7 +113,7 @@ int NoSuchCommand(const CLI::App& command, const std::string& word) {
   const CommandText text = Describe(command);
   const std::string before = text.name == "taut" ? "" : text.name.substr(5) + " ";
   fmt::print(stderr, "error: there is no command \"{}{}\" ({})\n", before, word,
-             DidYouMean(word, CommandWords(text)));
+             DidYouMean(word, text.CommandWords()));
   return kUsage;
 }
 

@@ -10,21 +10,21 @@
 namespace taut::viewer {
 namespace {
 
-using Json = nlohmann::json;
+bool IsNumber(const nlohmann::json& value) {
+  return value.is_number() && std::isfinite(value.get<double>());
+}
 
-bool IsNumber(const Json& value) { return value.is_number() && std::isfinite(value.get<double>()); }
-
-bool IsInteger(const Json& value) {
+bool IsInteger(const nlohmann::json& value) {
   return value.is_number() && std::fabs(value.get<double>()) <= 2147483647.0 &&
          value.get<double>() == std::floor(value.get<double>());
 }
 
-bool IsVec3(const Json& value) {
+bool IsVec3(const nlohmann::json& value) {
   return value.is_array() && value.size() == 3 && IsNumber(value[0]) && IsNumber(value[1]) &&
          IsNumber(value[2]);
 }
 
-bool IsChoice(const Json& value, std::string_view choices) {
+bool IsChoice(const nlohmann::json& value, std::string_view choices) {
   if (!value.is_string()) return false;
   const std::string text = value.get<std::string>();
   while (!choices.empty()) {
@@ -35,7 +35,7 @@ bool IsChoice(const Json& value, std::string_view choices) {
   return false;
 }
 
-bool Fits(const Json& value, const MessageField& field) {
+bool Fits(const nlohmann::json& value, const MessageField& field) {
   switch (field.kind) {
     case FieldKind::kString:
       return value.is_string() && value.get_ref<const std::string&>().size() < 1000;
@@ -54,7 +54,7 @@ bool Fits(const Json& value, const MessageField& field) {
 }
 
 /// Whether `json` has the fields of messages of this type and no others.
-bool CheckFields(const Json& json, const std::string& type, std::string& error) {
+bool CheckFields(const nlohmann::json& json, const std::string& type, std::string& error) {
   bool known = false;
   std::size_t found = 1;  // "type"
   for (const MessageField& field : kClientFields) {
@@ -108,7 +108,7 @@ std::optional<Command> ParseCommand(std::string_view text, std::string& error) {
     error = "the message is too long";
     return std::nullopt;
   }
-  const Json json = Json::parse(text, nullptr, false);
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("type") || !json["type"].is_string()) {
     error = "a message is a JSON object with a text \"type\"";
     return std::nullopt;

@@ -7,7 +7,7 @@
 namespace taut::viewer {
 namespace {
 
-constexpr std::chrono::microseconds kFramePeriod{16667};
+constexpr std::chrono::microseconds kReplayFramePeriod{16667};
 constexpr std::chrono::milliseconds kIdlePeriod{1000};
 /// "As fast as it can" makes no sense for a replay.
 constexpr double kMaxSpeed = 100;
@@ -96,7 +96,7 @@ Session::Clock::time_point ReplaySession::Work() {
     shown_wall_ = now;
     changed_ = false;
   }
-  return shown_wall_ + (paused_ ? Clock::duration(kIdlePeriod) : kFramePeriod);
+  return shown_wall_ + (paused_ ? Clock::duration(kIdlePeriod) : kReplayFramePeriod);
 }
 
 }  // namespace taut::viewer

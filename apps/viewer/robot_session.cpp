@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kFramePeriod{50}, kStatusPeriod{100};
+constexpr milliseconds kRobotFramePeriod{50}, kStatusPeriod{100};
 /// Less than a cycle: all of them are kept, whenever they end.
 constexpr double kHistoryPeriod_s = 0.005;
 /// A minute of cycles: what waits for a disk that stands still.
@@ -302,7 +302,7 @@ Session::Clock::time_point RobotSession::Work() {
     status_wall_ = now;
     ShowStatus();
   }
-  return now + kFramePeriod;
+  return now + kRobotFramePeriod;
 }
 
 Json RobotSession::MakeScene() const {

@@ -15,8 +15,6 @@ namespace taut {
 namespace analysis {
 namespace {
 
-using Kind = StaticMember::Kind;
-
 class Analysis {
  public:
   Analysis(const ModelDef& def, bool contact) : def_(def), s_(def, {}, contact) {}
@@ -93,14 +91,16 @@ class Analysis {
     program.gradient = Eigen::VectorXd::Zero(null.cols());
     std::vector<Eigen::Index> rows;
     for (std::size_t m = 0; m < members_.size(); ++m) {
-      const Kind kind = members_[m].member.kind;
-      if (kind == Kind::kCable || kind == Kind::kContact) rows.push_back(Index(m));
+      const StaticMember::Kind kind = members_[m].member.kind;
+      if (kind == StaticMember::Kind::kCable || kind == StaticMember::Kind::kContact)
+        rows.push_back(Index(m));
     }
     program.inequalities.resize(Index(rows.size()), null.cols());
     program.at_least.resize(Index(rows.size()));
     bool cables = false;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const bool cable = members_[static_cast<std::size_t>(rows[i])].member.kind == Kind::kCable;
+      const bool cable =
+          members_[static_cast<std::size_t>(rows[i])].member.kind == StaticMember::Kind::kCable;
       program.inequalities.row(Index(i)) = densities.row(rows[i]);
       program.at_least[Index(i)] = cable ? 1 : 0;
       cables = cables || cable;
@@ -134,7 +134,7 @@ class Analysis {
     Eigen::VectorXd density = ByLength(state);
     double largest = 0, any = density.cwiseAbs().maxCoeff(), sum = 0;
     for (std::size_t m = 0; m < members_.size(); ++m) {
-      if (members_[m].member.kind != Kind::kCable) continue;
+      if (members_[m].member.kind != StaticMember::Kind::kCable) continue;
       largest = std::max(largest, std::fabs(density[Index(m)]));
       sum += density[Index(m)];
     }
@@ -148,8 +148,9 @@ class Analysis {
       const double force = state[Index(m)];
       out.force_n.push_back(force);
       out.density_n_per_m.push_back(member.length_m > 0 ? density[Index(m)] : 0);
-      if (member.kind == Kind::kCable && !(density[Index(m)] > 1e-9)) out.feasible = false;
-      if (member.kind == Kind::kContact && force < -1e-9) out.feasible = false;
+      if (member.kind == StaticMember::Kind::kCable && !(density[Index(m)] > 1e-9))
+        out.feasible = false;
+      if (member.kind == StaticMember::Kind::kContact && force < -1e-9) out.feasible = false;
     }
     AddRods(state, out);
     out_.self_stress.push_back(out);

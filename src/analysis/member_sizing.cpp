@@ -7,8 +7,6 @@
 namespace taut {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 class Checks {
  public:
   Checks(const SizingTask& task, Diagnostics& out)
@@ -41,8 +39,8 @@ SizedMember OfRadius(const SizingTask& task, double radius_m, double inner_share
   const double c2 = inner_share * inner_share, r2 = radius_m * radius_m;
   SizedMember sized;
   sized.radius_m = radius_m;
-  sized.member.area_m2 = kPi * r2 * (1 - c2);
-  sized.member.second_moment_m4 = 0.25 * kPi * r2 * r2 * (1 - c2 * c2);
+  sized.member.area_m2 = std::numbers::pi * r2 * (1 - c2);
+  sized.member.second_moment_m4 = 0.25 * std::numbers::pi * r2 * r2 * (1 - c2 * c2);
   sized.member.young_pa = task.material.young_pa;
   sized.member.yield_pa = task.material.yield_pa;
   sized.mass_kg = task.material.density_kg_per_m3 * sized.member.area_m2 * task.length_m;
@@ -55,7 +53,8 @@ double YieldRadius(const SizingTask& task, double inner_share) {
   double largest = 0;
   for (const double force : task.force_n) largest = std::max(largest, std::fabs(force));
   const double share = 1 - inner_share * inner_share;
-  return std::sqrt(task.yield_factor * largest / (kPi * share * task.material.yield_pa));
+  return std::sqrt(task.yield_factor * largest /
+                   (std::numbers::pi * share * task.material.yield_pa));
 }
 
 }  // namespace
@@ -79,7 +78,8 @@ std::optional<SizedMember> LightestRod(const SizingTask& task, Diagnostics& out)
   double pressed = 0;
   for (const double force : task.force_n) pressed = std::max(pressed, -force);
   const double euler = std::pow(4 * task.buckling_factor * pressed * length * length /
-                                    (kPi * kPi * kPi * task.material.young_pa * (1 - c2 * c2)),
+                                    (std::numbers::pi * std::numbers::pi * std::numbers::pi *
+                                     task.material.young_pa * (1 - c2 * c2)),
                                 0.25);
   const double stout =
       task.slenderness ? 2 * length / (*task.slenderness * std::sqrt(1 + c2)) : 0.0;

@@ -1,9 +1,10 @@
 #include "compare/foreign_units.h"
 
+#include <numbers>
+
 namespace taut {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kPound_kg = 0.45359237, kGravity_m_per_s2 = 9.80665, kInch_m = 0.0254;
 constexpr double kPoundForce_n = kPound_kg * kGravity_m_per_s2;
 
@@ -27,11 +28,11 @@ const std::vector<ForeignUnit>& Units() {
       {"cm/s", "m/s", 1e-2},
       {"mm/s", "m/s", 1e-3},
       {"rad", "rad", 1},
-      {"deg", "rad", kPi / 180},
-      {"turn", "rad", 2 * kPi},
+      {"deg", "rad", std::numbers::pi / 180},
+      {"turn", "rad", 2 * std::numbers::pi},
       {"rad/s", "rad/s", 1},
-      {"deg/s", "rad/s", kPi / 180},
-      {"rpm", "rad/s", kPi / 30},
+      {"deg/s", "rad/s", std::numbers::pi / 180},
+      {"rpm", "rad/s", std::numbers::pi / 30},
       {"N", "N", 1},
       {"kN", "N", 1e3},
       {"mN", "N", 1e-3},

@@ -27,7 +27,7 @@ bool MatchesAny(const std::vector<std::string>& set, const List& all) {
                      [&](const auto& one) { return Matches({set}, one.tags); });
 }
 
-std::string Shown(const std::vector<std::string>& set) {
+std::string ShownTags(const std::vector<std::string>& set) {
   std::string shown;
   for (const std::string& tag : set) shown += (shown.empty() ? "[" : ", ") + tag;
   return shown + "]";
@@ -59,7 +59,7 @@ void CheckMatches(const BuilderText& builder, const Assembly& assembly, Diagnost
     const bool placed =
         builder.on_pairs() ? MatchesAny(set, assembly.pairs) : MatchesAny(set, assembly.nodes);
     if (placed) continue;  // a full name such as segment_0.tip
-    out.Error(builder.match_at, std::string("no ") + what + " matches " + Shown(set),
+    out.Error(builder.match_at, std::string("no ") + what + " matches " + ShownTags(set),
               CouldMatch(set, others)
                   ? "a " + builder.kind + " goes on " + what + "s, but these tags are on " + other
                   : TagHint(set, mine));
@@ -121,7 +121,7 @@ Assignment AssignBuilders(const ModelText& model, const Assembly& assembly, Diag
       continue;
     }
     out.Error(placed.at, "no builder matches the pair \"" + placed.name + "\"",
-              placed.tags.empty() ? "it has no tags" : "its tags are " + Shown(placed.tags));
+              placed.tags.empty() ? "it has no tags" : "its tags are " + ShownTags(placed.tags));
   }
   return assignment;
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "description/beam_axes.h"
@@ -14,7 +15,6 @@
 namespace taut::description {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kShortest_m = 1e-9;  ///< What is shorter has no direction.
 /// Inertia radius of a lone point mass. All that pulls at it acts at its centre and it has no
 /// shape, so it never turns and the value changes nothing; it only has to be a number.
@@ -145,7 +145,7 @@ class BodyBuilder {
       return;
     }
     if (builder.rod) {
-      const double r = builder.rod->radius_m, volume = kPi * r * r * length;
+      const double r = builder.rod->radius_m, volume = std::numbers::pi * r * r * length;
       solids.parts.push_back(SolidCylinder(from, to, r, builder.rod->mass.Of(volume, length)));
       solids.bounds = Union(solids.bounds, BulletCylinderBounds(from, to, r));
       robot_.solids->capsules.push_back(builder.rod->mass.AsWritten());
@@ -179,8 +179,9 @@ class BodyBuilder {
       const BuilderText& builder = model_.builders[b];
       if (builder.sphere) {
         const double r = builder.sphere->radius_m;
-        solids.parts.push_back(SolidSphere(
-            placed.position_m, r, builder.sphere->mass.Of(4.0 / 3.0 * kPi * r * r * r, 0.0)));
+        solids.parts.push_back(
+            SolidSphere(placed.position_m, r,
+                        builder.sphere->mass.Of(4.0 / 3.0 * std::numbers::pi * r * r * r, 0.0)));
         solids.bounds = Union(solids.bounds, SphereBounds(placed.position_m, r));
         robot_.solids->spheres.push_back(builder.sphere->mass.AsWritten());
         Add(robot_.def.spheres, *builder.sphere, placed.name, body, TurnOf(placed.instance))

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "base/number_text.h"
 #include "math/elementary.h"
@@ -14,7 +15,6 @@ namespace {
 
 constexpr int kMaxNesting = 100;  ///< Of parentheses, signs and powers: bounds the recursion.
 constexpr std::size_t kMaxLength = 10'000;  ///< Bounds the time that names take.
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Function {
@@ -141,7 +141,7 @@ class Evaluator {
     at_ += length;
     SkipSpace();
     if (at_ < text_.size() && text_[at_] == '(') return Call(name);
-    if (name == "pi") return kPi;
+    if (name == "pi") return std::numbers::pi;
     return Named(name);
   }
 

@@ -2,6 +2,7 @@
 // mean is in NTRT's code only; the facts used here are named at each place.
 #include <algorithm>
 #include <filesystem>
+#include <numbers>
 #include <sstream>
 
 #include "base/input_file.h"
@@ -14,9 +15,6 @@ namespace description {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kMetre = 0.01;  // the spines are in centimetres
 
 // BaseSpineCPGControl::Config of LearningSpineJSON: the learner's numbers are in 0..1 and stand for
 // 0..30 Hz, 0..30 cm/s, weights 0..1 per cm/s and second, and phases -pi..pi.
@@ -100,7 +98,7 @@ std::optional<GaitSpec> ImportLearned(const std::string& folder, NtrtCableOrder 
     const std::string file = *set + "_edge-" + std::to_string(kEdges - 1 - i) + ".nnw";
     const auto [weight, phase] = ReadNnw(fs::path(folder) / file, out);
     cpg.groups.push_back({names[static_cast<std::size_t>(i)], weight / kMetre,
-                          -kPi + 2.0 * kPi * phase, SourceRef{}});
+                          -std::numbers::pi + 2.0 * std::numbers::pi * phase, SourceRef{}});
   }
   if (out.items().size() != errors_before) return std::nullopt;
   GaitSpec gait;

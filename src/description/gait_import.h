@@ -10,6 +10,8 @@
 
 namespace taut::description {
 
+inline constexpr double kMetre = 0.01;  // the spines are in centimetres
+
 /// What `FindCouplings` calls the groups of so many roles by index, in the order in which NTRT's
 /// scaleEdgeActions fills its table.
 std::vector<std::string> IndexGroups(int roles);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <sstream>
 
 #include "base/input_file.h"
@@ -15,11 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kMetre = 0.01;  // the spines are in centimetres
-constexpr int kRoles = 8;        // cables a joint
+constexpr int kRoles = 8;  // cables a joint
 /// The rates of amplitudes reach 600 a second.
-constexpr double kIntegratorStepS = 0.001;
+constexpr double kFeedbackStepS = 0.001;
 /// Cables of a joint in the order of NTRT's nodes.
 const std::vector<std::string> kOscillators{"outer_front", "outer_right", "outer_back",
                                             "outer_left",  "inner_front", "inner_right",
@@ -140,12 +139,12 @@ std::optional<GaitSpec> ImportFeedback(const Value& root, const std::string& pat
   // 0..200 (cm/s)^2, -0.5..6.28 rad/s. The square of the amplitude converges with it itself.
   const std::vector<double>& node = nodes[0];
   const double square = 300.0 * node[1];
-  cpg.frequency_hz = 30.0 * node[0] / (2.0 * kPi);
+  cpg.frequency_hz = 30.0 * node[0] / (2.0 * std::numbers::pi);
   cpg.convergence_per_s = square;
-  cpg.frequency_gain_hz_per_s = (-0.5 + 10.5 * node[2]) / (2.0 * kPi);
+  cpg.frequency_gain_hz_per_s = (-0.5 + 10.5 * node[2]) / (2.0 * std::numbers::pi);
   cpg.amplitude_gain = square > 0.0 ? 200.0 * node[3] / square : 0.0;
   cpg.phase_gain_rad_per_s = -0.5 + 6.78 * node[4];
-  cpg.integrator_step_s = kIntegratorStepS;
+  cpg.integrator_step_s = kFeedbackStepS;
   cpg.symmetry = CpgSymmetry::kIndex;
   if (!(square > 0.0)) {
     out.Error(root.at, "nodeVals: an amplitude of 0 moves nothing");
@@ -161,7 +160,8 @@ std::optional<GaitSpec> ImportFeedback(const Value& root, const std::string& pat
   const std::vector<std::string> names = IndexGroups(kRoles);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::vector<double>& edge = edges[edges.size() - 1 - i];  // taken from the back
-    cpg.groups.push_back({names[i], edge[0] / kMetre, -kPi + 2.0 * kPi * edge[1], SourceRef{}});
+    cpg.groups.push_back({names[i], edge[0] / kMetre,
+                          -std::numbers::pi + 2.0 * std::numbers::pi * edge[1], SourceRef{}});
   }
   GaitSpec gait;
   gait.name = "ntrt_feedback";

@@ -18,7 +18,7 @@
 namespace taut::description {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+constexpr std::size_t kMostTableBytes = std::size_t{1} << 30;
 constexpr double kMostInFile = 1e8;
 /// A formula takes 2 us a corner.
 constexpr double kMostByFormula = 4e6;
@@ -76,7 +76,7 @@ std::optional<std::size_t> AddRow(std::string_view line, std::vector<double>& ro
 }
 
 bool ReadCsv(const std::string& path, const Scope& scope, HeightFieldDef& field) {
-  const auto text = base::ReadInputFile(path, kMostBytes, "fewer, larger cells", scope.out);
+  const auto text = base::ReadInputFile(path, kMostTableBytes, "fewer, larger cells", scope.out);
   if (!text) return false;
   const std::size_t errors_before = scope.out.items().size();
   constexpr std::size_t kMostErrors = 10;

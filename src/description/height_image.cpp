@@ -13,7 +13,7 @@
 namespace taut::description {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+constexpr std::size_t kMostImageBytes = std::size_t{1} << 30;
 
 /// What libpng reads from, and what it says.
 struct Source {
@@ -36,7 +36,7 @@ void Take(png_structp png, png_bytep to, std::size_t count) {
   source.at += count;
 }
 
-struct Head {
+struct PngHeader {
   png_uint_32 columns = 0, rows = 0;
   int bits = 0, colour = 0;
 };
@@ -54,7 +54,7 @@ class Reader {
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
-  bool ReadHead(Head& head) {
+  bool ReadHead(PngHeader& head) {
     if (info_ == nullptr || setjmp(source_.back) != 0) return false;
     png_set_read_fn(png_, &source_, Take);
     png_read_info(png_, info_);
@@ -84,14 +84,14 @@ class Reader {
 }  // namespace
 
 std::optional<HeightImage> ReadHeightImage(const std::string& path, double most, Diagnostics& out) {
-  const auto bytes = base::ReadInputFile(path, kMostBytes, "fewer, larger cells", out);
+  const auto bytes = base::ReadInputFile(path, kMostImageBytes, "fewer, larger cells", out);
   if (!bytes) return std::nullopt;
   const auto refuse = [&](const std::string& what, const std::string& hint = {}) {
     out.Error({path, 0, 0}, what, hint);
     return std::nullopt;
   };
   Reader reader(*bytes);
-  Head head;
+  PngHeader head;
   if (!reader.ReadHead(head)) {
     return refuse(std::string("is no PNG or is damaged: ") + reader.why(),
                   "heights are a gray PNG, best with 16 bits");

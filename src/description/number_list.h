@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -43,11 +44,11 @@ class NumberList : public KeyVisitor<NumberList<Number>, true> {
 
  private:
   void Add(const Key& key, const std::string& name, double& field) {
-    constexpr double kPi = 3.14159265358979323846;
     if (key.fixed) return;
     const std::string unit = base::UnitAtEnd(key.name).Text();
     double least = key.bound->least, most = key.bound->most;
-    if (unit == "rad" && std::isinf(least) && std::isinf(most)) least = -kPi, most = kPi;
+    if (unit == "rad" && std::isinf(least) && std::isinf(most))
+      least = -std::numbers::pi, most = std::numbers::pi;
     Number& number = numbers.emplace_back(Number{prefix_ + name, unit, &field, least, most});
     if constexpr (requires { number.at_start; }) number.at_start = key.at_start;
   }

@@ -9,7 +9,7 @@
 namespace taut::description {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Finds a circle among parameters that all wait for another one: "a -> b -> a".
 /// `waits_for[i]` is one that i waits for.
@@ -150,7 +150,7 @@ NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagno
 
   // While they are evaluated, all names exist, so that hints can point at them.
   NameTable values;
-  for (const ParameterText& parameter : parameters) values[parameter.name] = kNan;
+  for (const ParameterText& parameter : parameters) values[parameter.name] = kUnknown;
   std::vector<bool> done(parameters.size(), false);
   const auto evaluate = [&](std::size_t i) {
     const ParameterText& parameter = parameters[i];

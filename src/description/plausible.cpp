@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
@@ -17,7 +18,6 @@ namespace {
 
 using base::Brief;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// A rounding of a position may be this part of the smallest size of a robot.
@@ -73,13 +73,13 @@ struct Item {
   std::string name;
   SourceRef at;
 };
-using Items = std::vector<Item>;
+using ItemList = std::vector<Item>;
 
 bool Less(const Item& a, const Item& b) { return a.value < b.value; }
 
 /// Radii, half the smallest edges of boxes, half the smallest extents of hulls [m].
-Items Sizes(const RobotSpec& robot) {
-  Items sizes;
+ItemList Sizes(const RobotSpec& robot) {
+  ItemList sizes;
   const auto add = [&](double size_m, const char* kind, const auto& shape) {
     sizes.push_back(
         {size_m, std::string(kind) + " \"" + shape.name + "\"", SourceOf(robot, shape.body)});
@@ -91,8 +91,8 @@ Items Sizes(const RobotSpec& robot) {
   return sizes;
 }
 
-Items Masses(const RobotSpec& robot) {
-  Items masses;
+ItemList Masses(const RobotSpec& robot) {
+  ItemList masses;
   for (std::size_t b = 0; b < robot.def.bodies.size(); ++b) {
     const BodyDef& body = robot.def.bodies[b];
     if (!body.fixed) {
@@ -102,8 +102,8 @@ Items Masses(const RobotSpec& robot) {
   return masses;
 }
 
-Items Stiffnesses(const RobotSpec& robot) {
-  Items stiffnesses;
+ItemList Stiffnesses(const RobotSpec& robot) {
+  ItemList stiffnesses;
   for (std::size_t c = 0; c < robot.def.cables.size(); ++c) {
     const CableDef& cable = robot.def.cables[c];
     stiffnesses.push_back(
@@ -113,7 +113,7 @@ Items Stiffnesses(const RobotSpec& robot) {
 }
 
 /// At the larger one, as that is the usual slip.
-void WarnOfRatio(const Items& items, double most, const char* what, const char* unit,
+void WarnOfRatio(const ItemList& items, double most, const char* what, const char* unit,
                  Diagnostics& out) {
   if (items.empty()) return;
   const auto [least, greatest] = std::minmax_element(items.begin(), items.end(), Less);
@@ -144,9 +144,9 @@ void WarnOfDensities(const RobotSpec& robot, Diagnostics& out) {
     if (IsBody(robot, body)) volume_m3[static_cast<std::size_t>(body)] += volume;
   };
   for (const SphereDef& s : robot.def.spheres)
-    add(s.body, 4.0 / 3.0 * kPi * std::pow(s.radius_m, 3));
+    add(s.body, 4.0 / 3.0 * std::numbers::pi * std::pow(s.radius_m, 3));
   for (const CapsuleDef& c : robot.def.capsules) {
-    add(c.body, kPi * c.radius_m * c.radius_m * Length(c));
+    add(c.body, std::numbers::pi * c.radius_m * c.radius_m * Length(c));
   }
   for (const BoxDef& b : robot.def.boxes) {
     add(b.body, 8.0 * b.half_extents_m.x * b.half_extents_m.y * b.half_extents_m.z);
@@ -175,7 +175,7 @@ namespace {
 /// The smallest size of a robot: of a shape, for want of shapes of a cable, for want of all a
 /// metre.
 Item Smallest(const RobotSpec& robot) {
-  Items sizes = Sizes(robot);
+  ItemList sizes = Sizes(robot);
   if (sizes.empty()) {
     for (const CableDef& cable : robot.def.cables) {
       sizes.push_back({cable.rest_length_m, "cable \"" + cable.name + "\"", {}});

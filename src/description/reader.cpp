@@ -11,7 +11,7 @@
 namespace taut::description {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 std::string Joined(const std::vector<std::string>& words, std::string_view between) {
   std::string out;
@@ -71,7 +71,7 @@ double ReadNumber(const Value& value, std::string_view what, const Bound& bound,
                   const Scope& scope) {
   if (value.kind != Value::Kind::kScalar) {
     WrongType(value, what, "a number", scope);
-    return kNan;
+    return kMissing;
   }
   std::string text = value.text;
   std::transform(text.begin(), text.end(), text.begin(),
@@ -79,7 +79,7 @@ double ReadNumber(const Value& value, std::string_view what, const Bound& bound,
   if (text == ".nan" || text == "nan" || text == ".inf" || text == "inf" || text == "-.inf" ||
       text == "-inf") {
     scope.out.Error(value.at, std::string(what) + " must be a finite number, got " + value.text);
-    return kNan;
+    return kMissing;
   }
   if (scope.used) {
     for (std::string& name : NamesIn(value.text)) scope.used->insert(std::move(name));
@@ -87,7 +87,7 @@ double ReadNumber(const Value& value, std::string_view what, const Bound& bound,
   Evaluated result = Evaluate(value.text, scope.names);
   if (!result.error.empty()) {
     scope.out.Error(value.at, std::string(what) + ": " + result.error, std::move(result.hint));
-    return kNan;
+    return kMissing;
   }
   const double number = result.value;
   const std::string wrong = Beyond(number, bound);
@@ -95,7 +95,7 @@ double ReadNumber(const Value& value, std::string_view what, const Bound& bound,
   const bool too_much = number >= bound.most;
   scope.out.Error(value.at, std::string(what) + wrong + ", got " + Shown(number),
                   too_much ? bound.hint : "");
-  return kNan;
+  return kMissing;
 }
 
 std::optional<int> ReadInteger(const Value& value, std::string_view what, int least, int most,
@@ -146,7 +146,8 @@ std::optional<std::vector<double>> ReadNumbers(const Value& value, std::string_v
 
 Vec3 ReadVec3(const Value& value, std::string_view what, const Scope& scope) {
   const auto numbers = ReadNumbers(value, what, 3, scope);
-  return numbers ? Vec3{(*numbers)[0], (*numbers)[1], (*numbers)[2]} : Vec3{kNan, kNan, kNan};
+  return numbers ? Vec3{(*numbers)[0], (*numbers)[1], (*numbers)[2]}
+                 : Vec3{kMissing, kMissing, kMissing};
 }
 
 Vec3 ReadDirection(const Value& value, std::string_view what, const Scope& scope) {
@@ -155,7 +156,7 @@ Vec3 ReadDirection(const Value& value, std::string_view what, const Scope& scope
   const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
   if (largest == 0.0) {
     scope.out.Error(value.at, std::string(what) + " must not be zero", "it is a direction");
-    return {kNan, kNan, kNan};
+    return {kMissing, kMissing, kMissing};
   }
   // Of length 1 up to rounding: as taut writes it, to be read to the bit.
   if (std::fabs(v.x * v.x + v.y * v.y + v.z * v.z - 1.0) < 1e-15) return v;
@@ -236,7 +237,7 @@ std::string MapReader::ExactlyOne(const std::vector<std::string>& keys) const {
 
 double MapReader::Number(std::string_view key, const Bound& bound) const {
   const Value* found = Require(key);
-  return found ? ReadNumber(*found, Path(key), bound, scope_) : kNan;
+  return found ? ReadNumber(*found, Path(key), bound, scope_) : kMissing;
 }
 
 double MapReader::NumberOr(std::string_view key, double fallback, const Bound& bound) const {

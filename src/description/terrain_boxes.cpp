@@ -1,6 +1,7 @@
 #include "description/terrain_boxes.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "math/elementary.h"
 #include "math/random.h"
@@ -8,8 +9,6 @@
 
 namespace taut::description {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// What these random numbers are for, among all uses of a seed (plant/streams.h has others).
 constexpr std::uint32_t kScatterStream = 100;
@@ -51,7 +50,7 @@ std::vector<TerrainBoxDef> Boxes(const ScatterText& s) {
     const double x = random.Uniform(s.low_m.x, s.high_m.x);
     const double y = random.Uniform(s.low_m.y, s.high_m.y);
     const double z = random.Uniform(s.low_m.z, s.high_m.z);
-    const double half_heading = 0.5 * random.Uniform(-kPi, kPi);
+    const double half_heading = 0.5 * random.Uniform(-std::numbers::pi, std::numbers::pi);
     const Quat q{math::Cos(half_heading), 0, 0, math::Sin(half_heading)};
     boxes.push_back({{}, {x, y, z}, q, half, s.material});
   }

@@ -12,7 +12,6 @@
 namespace taut {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kSides = 24, kCableSides = 8;
 constexpr int kRings = 6;                    // from the equator to a pole
 constexpr double kTurnByShape = 2.39996323;  // see Axes
@@ -40,7 +39,7 @@ struct Axes {
 
 /// By how much a polygon's corners have to be farther out than a circle of the same area.
 double Wider(int sides) {
-  const double step = 2 * kPi / sides;
+  const double step = 2 * std::numbers::pi / sides;
   return std::sqrt(step / std::sin(step));
 }
 
@@ -48,7 +47,8 @@ double Wider(int sides) {
 double Higher() {
   double volume = 0;  // of frusta, in units of pi r^3
   for (int k = 0; k < kRings; ++k) {
-    const double low = 0.5 * kPi * k / kRings, high = 0.5 * kPi * (k + 1) / kRings;
+    const double low = 0.5 * std::numbers::pi * k / kRings,
+                 high = 0.5 * std::numbers::pi * (k + 1) / kRings;
     const double a = std::cos(low), b = k + 1 < kRings ? std::cos(high) : 0.0;
     volume += (std::sin(high) - std::sin(low)) * (a * a + a * b + b * b) / 3;
   }
@@ -69,7 +69,7 @@ class Round {
     rings_.push_back({static_cast<int>(mesh_.corners_m.size()), sides_});
     const double level = std::sqrt(1 - rise * rise);
     for (int i = 0; i < sides_; ++i) {
-      const Vec3 out = axes_.Around(2 * kPi * i / sides_);
+      const Vec3 out = axes_.Around(2 * std::numbers::pi * i / sides_);
       Add(center + radius * out, level * out + rise * axes_.along);
     }
   }
@@ -105,7 +105,7 @@ void AddCapsule(ShapeMesh& mesh, const Vec3& from, const Vec3& to, double radius
   Round round(mesh, axes, kSides);
   round.Pole(from - high * axes.along, -1.0 * axes.along);
   const auto ring = [&](const Vec3& center, int k) {
-    const double latitude = 0.5 * kPi * k / kRings;
+    const double latitude = 0.5 * std::numbers::pi * k / kRings;
     round.Ring(center + (high * std::sin(latitude)) * axes.along, wide * std::cos(latitude),
                std::sin(latitude));
   };
@@ -136,7 +136,7 @@ void AddPiece(ShapeMesh& mesh, const Vec3& from, const Vec3& to, double radius, 
   const int first = static_cast<int>(mesh.corners_m.size());
   for (const Vec3& end : {from, to}) {
     for (int i = 0; i < kCableSides; ++i) {
-      const Vec3 out = axes.Around(2 * kPi * i / kCableSides);
+      const Vec3 out = axes.Around(2 * std::numbers::pi * i / kCableSides);
       mesh.corners_m.push_back(end + (Wider(kCableSides) * radius) * out);
     }
   }

@@ -8,7 +8,6 @@
 namespace taut::identify {
 namespace {
 
-using learn::Row;
 using learn::Statement;
 
 constexpr std::size_t kDigits = 16;
@@ -62,10 +61,11 @@ bool PointMemory::Begin(const std::string& path, const std::map<std::string, std
           "CREATE TABLE IF NOT EXISTS point (key TEXT PRIMARY KEY, failed TEXT NOT NULL, "
           "value TEXT NOT NULL, sum TEXT NOT NULL);");
   std::map<std::string, std::string> known;
-  const bool read = made && Statement(*database_, "SELECT name, value FROM fact").Run([&](Row& r) {
-    const std::string name = r.Text(0);
-    known[name] = r.Text(1);
-  });
+  const bool read =
+      made && Statement(*database_, "SELECT name, value FROM fact").Run([&](learn::Row& r) {
+        const std::string name = r.Text(0);
+        known[name] = r.Text(1);
+      });
   if (!read) {
     out.Error({path}, "is not the memory of a fit, or cannot be written: " + database_->TakeError(),
               "give another folder with --out");
@@ -95,7 +95,7 @@ bool PointMemory::Begin(const std::string& path, const std::map<std::string, std
 
 bool PointMemory::ReadPoints() {
   Statement get(*database_, "SELECT key, failed, value, sum FROM point");
-  const bool good = get.Run([&](Row& row) {
+  const bool good = get.Run([&](learn::Row& row) {
     const std::string key = row.Text(0), failed = row.Text(1), bits = row.Text(2);
     Residuals point{{}, failed};
     if (row.Text(3) == SumOf(key, failed, bits) && NumbersOf(bits, point.value)) {

@@ -26,7 +26,7 @@ polyline{fill:none;stroke-width:1.5}polyline.fitted{stroke:#1f6fb2}.key span{dis
 .wide{overflow-x:auto}
 )";
 
-std::string Row(const std::vector<std::string>& cells, const char* tag = "td") {
+std::string TableRow(const std::vector<std::string>& cells, const char* tag = "td") {
   std::string out = "<tr>";
   for (const std::string& cell : cells) {
     out += std::string("<") + tag + ">" + Escaped(cell) + "</" + tag + ">";
@@ -36,13 +36,13 @@ std::string Row(const std::vector<std::string>& cells, const char* tag = "td") {
 
 std::string Table(const std::vector<std::vector<std::string>>& rows) {
   std::string out = "<div class=\"wide\"><table>\n";
-  for (std::size_t i = 0; i < rows.size(); ++i) out += Row(rows[i], i == 0 ? "th" : "td");
+  for (std::size_t i = 0; i < rows.size(); ++i) out += TableRow(rows[i], i == 0 ? "th" : "td");
   return out + "</table></div>\n";
 }
 
 std::string G(double x) { return std::isfinite(x) ? fmt::format("{:.5g}", x) : "-"; }
 
-std::string Parameters(const Identification& fit, const FitOutcome& outcome) {
+std::string ParameterSection(const Identification& fit, const FitOutcome& outcome) {
   std::vector<std::vector<std::string>> rows{
       {"parameter", "start", "fitted", "se", "jackknife", "prior sd", "pull", "verdict"}};
   std::string sentences;
@@ -153,7 +153,7 @@ std::string ResidualPlots(const Identification& fit, const FitOutcome& outcome) 
   return out;
 }
 
-std::string Profiles(const Identification& fit, const FitOutcome& outcome) {
+std::string ProfileSection(const Identification& fit, const FitOutcome& outcome) {
   if (outcome.profiles.empty()) return {};
   std::string out =
       "<h2>Profiles</h2>\n<p class=\"note\">Rise of chi-square where one parameter is held and all "
@@ -265,11 +265,11 @@ std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
          (v.judgement == FitJudgement::kGood ? "good" : "bad") + "\">";
   for (const std::string& sentence : v.sentences) out += Escaped(sentence) + "<br>\n";
   out += "</div>\n";
-  out += Parameters(fit, outcome);
+  out += ParameterSection(fit, outcome);
   out += "<h2>Errors</h2>\n" + Errors("trained on", fit.train_points(), outcome.train) +
          Errors("held out", fit.test_points(), outcome.test);
   out += Looks(fit, looks) + Carried(fit, outcome);
-  out += ResidualPlots(fit, outcome) + Profiles(fit, outcome) + Correlations(fit, outcome) +
+  out += ResidualPlots(fit, outcome) + ProfileSection(fit, outcome) + Correlations(fit, outcome) +
          Jackknifed(fit, outcome) + Design(outcome, problem.parameters.size());
   return out + "</body></html>\n";
 }

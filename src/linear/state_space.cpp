@@ -206,8 +206,8 @@ Column Less(const Column& a, const Column& b) {
 
 /// States on which nothing depends but themselves are left out, and then what only they depended
 /// on.
-std::vector<std::size_t> Kept(const std::vector<Coordinate>& states,
-                              const std::vector<Column>& columns) {
+std::vector<std::size_t> KeptStates(const std::vector<Coordinate>& states,
+                                    const std::vector<Column>& columns) {
   constexpr double kNothing = 1e-10;
   const std::size_t n = states.size();
   std::vector<bool> stays(n, true);
@@ -233,7 +233,7 @@ std::vector<std::size_t> Kept(const std::vector<Coordinate>& states,
 
 void Fill(const Coordinates& c, const Columns& columns, StateSpace& out) {
   const std::size_t all = c.states().size();
-  const std::vector<std::size_t> kept = Kept(c.states(), columns.of_states);
+  const std::vector<std::size_t> kept = KeptStates(c.states(), columns.of_states);
   const int n = static_cast<int>(kept.size()), m = static_cast<int>(c.inputs().size());
   const int p = static_cast<int>(c.outputs().size());
   out.A = Matrix(n, n), out.B = Matrix(n, m), out.C = Matrix(p, n), out.D = Matrix(p, m);

@@ -3,7 +3,7 @@
 namespace taut::linear {
 namespace {
 
-constexpr double kHairM = 1e-12;
+constexpr double kSlackHairM = 1e-12;
 
 }  // namespace
 
@@ -71,7 +71,7 @@ void Tick<Num>::Run(World<Num>& world, TickMemory<Num>& memory,
     // A limited actuator that is just there has a way of no length, and that no direction: what a
     // change of it does is asked a hair beside.
     if (to[0] == world.Get(world.layout().rest + static_cast<int>(c))[0]) {
-      to += Num::Splat(kHairM);
+      to += Num::Splat(kSlackHairM);
     }
     world.Set(row, to);
   }

@@ -12,7 +12,7 @@ namespace {
 using board::Mode;
 
 constexpr std::size_t kBoardsPerReply = 3;  // whose frames fit into one reply of the adapter
-constexpr int kTries = 2;                   // of a frame, within a cycle
+constexpr int kReadTries = 2;               // of a frame, within a cycle
 constexpr int kLookForLost = 10;            // cycles between two looks for a board that is lost
 // A board looks at a request within 2 ms: its answer may come with the next cycle only.
 constexpr int kAnswerCycles = 2;
@@ -121,7 +121,7 @@ void Driver::AddReads() {
     if (state_.boards[static_cast<std::size_t>(b)].there) {
       group.push_back(b);
     } else if (state_.link.cycles % kLookForLost == 0) {
-      ReadAgain(b, kTries);
+      ReadAgain(b, kReadTries);
     }
     if (group.size() == kBoardsPerReply) close();
   }
@@ -194,7 +194,7 @@ void Driver::EndStep(UsbIss::State how) {
       if (!IsExcused()) unheard_in_row_ = heard ? 0 : unheard_in_row_ + 1;
       if (heard) break;
       ++state_.link.unheard_broadcasts;
-      if (step.tries + 1 < kTries && !silent) {
+      if (step.tries + 1 < kReadTries && !silent) {
         Step again = step;  // boards that did hear it know its number
         ++again.tries;
         steps_.insert(steps_.begin() + static_cast<std::ptrdiff_t>(step_) + 1, again);
@@ -231,7 +231,7 @@ void Driver::EndStep(UsbIss::State how) {
 /// From a board that is lost the last try is expected to fail.
 void Driver::CountBad(int board, int tries) {
   BoardView& view = state_.boards[static_cast<std::size_t>(board)];
-  if (view.there || tries < kTries) ++view.bad_frames;
+  if (view.there || tries < kReadTries) ++view.bad_frames;
 }
 
 void Driver::TakeFrame(int board, std::span<const std::uint8_t> bytes, int tries) {
@@ -243,7 +243,7 @@ void Driver::TakeFrame(int board, std::span<const std::uint8_t> bytes, int tries
     CountBad(board, tries);
   }
   // What it senses is still to be had; not from one that never says it.
-  if (tries < kTries) ReadAgain(board, tries + 1);
+  if (tries < kReadTries) ReadAgain(board, tries + 1);
 }
 
 void Driver::TakeStatus(int board, const board::Status& status) {

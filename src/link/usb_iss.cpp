@@ -8,12 +8,13 @@ namespace {
 
 // Commands, and what I2C_DIRECT is made of.
 constexpr std::uint8_t kIss = 0x5a, kAd0 = 0x54, kDirect = 0x57, kTest = 0x58;
-constexpr std::uint8_t kStart = 0x01, kStop = 0x03, kNack = 0x04, kRead1 = 0x20, kWrite1 = 0x30;
+constexpr std::uint8_t kI2cStart = 0x01, kI2cStop = 0x03, kNack = 0x04, kRead1 = 0x20,
+                       kWrite1 = 0x30;
 constexpr std::uint8_t kI2cHardware400kHz = 0x70, kUnusedPinsAreInputs = 0x04;
 
 /// The maker asks hosts to wait so long for a reply.
 constexpr double kPatience_s = 0.5;
-constexpr int kTries = 3;
+constexpr int kVersionTries = 3;
 
 std::size_t SizeOf(const Bytes& reply, ReplyShape shape) {
   if (!shape.direct) return shape.bytes;
@@ -58,7 +59,7 @@ std::optional<Bytes> UsbIss::Transfer(std::span<const std::uint8_t> frame, Reply
 std::optional<AdapterInfo> UsbIss::Identify() {
   // What a program before this one left half said spoils the first frame.
   std::optional<Bytes> version;
-  for (int i = 0; i < kTries && !version && port_.is_open(); ++i) {
+  for (int i = 0; i < kVersionTries && !version && port_.is_open(); ++i) {
     version = Transfer(std::array{kIss, std::uint8_t{1}}, {3});
   }
   if (!version) return std::nullopt;
@@ -103,11 +104,11 @@ Bytes UsbIss::ReadFrame(std::uint8_t address, std::size_t size) {
 Bytes UsbIss::ReadsFrame(std::span<const std::uint8_t> addresses, std::size_t size) {
   Bytes frame{kDirect};
   for (const std::uint8_t address : addresses) {
-    const std::uint8_t begin[] = {kStart, kWrite1, static_cast<std::uint8_t>(address << 1 | 1)};
+    const std::uint8_t begin[] = {kI2cStart, kWrite1, static_cast<std::uint8_t>(address << 1 | 1)};
     frame.insert(frame.end(), std::begin(begin), std::end(begin));
     // All but the last byte, and that one not acknowledged: so the slave lets go.
     if (size > 1) frame.push_back(static_cast<std::uint8_t>(kRead1 + size - 2));
-    frame.insert(frame.end(), {kNack, kRead1, kStop});
+    frame.insert(frame.end(), {kNack, kRead1, kI2cStop});
   }
   return frame;
 }

@@ -32,13 +32,13 @@ MemberLoad Of(MemberKind kind, int index, const std::string& name) {
 }
 
 /// Safety factors in a fixed order, with their names.
-std::array<std::pair<const char*, const std::optional<double>*>, 3> Factors(const MemberLoad& m) {
+std::array<std::pair<const char*, const std::optional<double>*>, 3> FactorsOf(const MemberLoad& m) {
   return {{{"buckling", &m.buckling}, {"yield", &m.yield}, {"strength", &m.strength}}};
 }
 
 std::pair<const char*, std::optional<double>> LeastFactor(const MemberLoad& load) {
   std::pair<const char*, std::optional<double>> least{"", std::nullopt};
-  for (const auto& [name, factor] : Factors(load)) {
+  for (const auto& [name, factor] : FactorsOf(load)) {
     if (*factor && (!least.second || **factor < *least.second)) least = {name, *factor};
   }
   return least;

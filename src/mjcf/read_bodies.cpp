@@ -1,6 +1,7 @@
 // The tree of bodies, laid out in W.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "math/principal_axes.h"
 #include "math/vec.h"
@@ -8,8 +9,6 @@
 
 namespace taut::mjcf {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 class BodyReader {
  public:
@@ -334,13 +333,13 @@ void BodyReader::ReadMass(const Layers& layers, Shape& shape) {
   double volume = 0;
   switch (shape.kind) {
     case Shape::Kind::kSphere:
-      volume = 4.0 / 3.0 * kPi * r * r * r;
+      volume = 4.0 / 3.0 * std::numbers::pi * r * r * r;
       break;
     case Shape::Kind::kCapsule:
-      volume = kPi * r * r * l + 4.0 / 3.0 * kPi * r * r * r;
+      volume = std::numbers::pi * r * r * l + 4.0 / 3.0 * std::numbers::pi * r * r * r;
       break;
     case Shape::Kind::kCylinder:
-      volume = kPi * r * r * l;
+      volume = std::numbers::pi * r * r * l;
       break;
     case Shape::Kind::kBox:
       volume = 8 * shape.half.x * shape.half.y * shape.half.z;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 
 #include "math/rotation.h"
 #include "math/vec.h"
@@ -10,8 +11,6 @@
 
 namespace taut::mjcf {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
 std::string KindOf(const std::string& name) {
@@ -136,7 +135,7 @@ Quat Layers::ReadTurn(const CompilerSettings& settings) const {
     Error(name, std::string(name) + " has no length");
     return Vec3{0, 0, 1};
   };
-  const double angle = settings.degrees ? kPi / 180 : 1;
+  const double angle = settings.degrees ? std::numbers::pi / 180 : 1;
   int ways = 0;
   for (const char* name : {"quat", "axisangle", "xyaxes", "zaxis", "euler"}) {
     ways += element().Find(name) != nullptr;

@@ -13,8 +13,6 @@
 namespace taut {
 namespace {
 
-using Json = nlohmann::json;
-
 /// Rows of a cable's channel; null after a complaint.
 const std::vector<double>* Rows(const Trace& trace, const std::string& channel,
                                 const std::string& path, Diagnostics& out) {
@@ -60,27 +58,27 @@ CableDemand OfRows(const std::vector<double>& time_s, const std::vector<double>&
 }
 
 /// What the summary knows of every step. A file that is not such a summary says nothing.
-bool TakeSummary(const Json& summary, std::vector<CableDemand>& cables) {
+bool TakeSummary(const nlohmann::json& summary, std::vector<CableDemand>& cables) {
   const auto list = summary.find("cables");
   if (list == summary.end() || !list->is_array() || list->size() != cables.size()) return false;
   try {
     for (std::size_t i = 0; i < cables.size(); ++i) {
-      const Json& of = list->at(i);
+      const nlohmann::json& of = list->at(i);
       if (of.at("name") != cables[i].cable) return false;
     }
     for (std::size_t i = 0; i < cables.size(); ++i) {
-      const Json& of = list->at(i);
+      const nlohmann::json& of = list->at(i);
       CableDemand& d = cables[i];
       d.peak_force_n = of.at("tension").at("max_n");
       d.peak_elastic_n = of.at("elastic").at("max_n");
       if (!d.actuated) continue;
-      const Json& actuator = of.at("actuator");
+      const nlohmann::json& actuator = of.at("actuator");
       d.peak_speed_m_per_s = actuator.at("max_speed_m_per_s");
       d.peak_power_w = actuator.at("max_power_w");
       d.gross_energy_j = actuator.at("energy_j");
       d.net_energy_j = actuator.at("net_energy_j");
     }
-  } catch (const Json::exception&) {
+  } catch (const nlohmann::json::exception&) {
     return false;
   }
   return true;
@@ -137,7 +135,8 @@ std::optional<RunDemand> DemandOfRun(const std::string& folder, Diagnostics& out
   auto demand = DemandOf(*trace, *experiment, path, out);
   if (!demand) return std::nullopt;
   std::ifstream summary(place / "summary.json");
-  const Json json = summary ? Json::parse(summary, nullptr, false) : Json();
+  const nlohmann::json json =
+      summary ? nlohmann::json::parse(summary, nullptr, false) : nlohmann::json();
   demand->every_step = json.is_object() && TakeSummary(json, demand->cables);
   for (CableDemand& d : demand->cables) d.stretch_m = d.peak_elastic_n / d.stiffness_n_per_m;
   return demand;

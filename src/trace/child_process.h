@@ -10,6 +10,9 @@
 
 namespace taut::trace {
 
+/// Processor time that a child may take to read a file of HDF5.
+inline constexpr std::chrono::seconds kChildPatience{30};
+
 /// The child's end of the pipe. Ends the child once the parent is gone.
 class ChildOutput {
  public:

@@ -15,7 +15,7 @@
 namespace taut::trace {
 namespace {
 
-constexpr std::size_t kMaxErrors = 20;
+constexpr std::size_t kMaxTableErrors = 20;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDay_s = 86400.0;
 
@@ -42,7 +42,7 @@ class TableParser {
     }
     if (Trim(line).empty()) return true;
     Row(Cells(line));
-    return errors_ < kMaxErrors;
+    return errors_ < kMaxTableErrors;
   }
 
   std::optional<Trace> Take() {
@@ -206,7 +206,7 @@ class TableParser {
   }
 
   void Error(int line, int column, std::string what, std::string hint = {}) {
-    if (++errors_ <= kMaxErrors) {
+    if (++errors_ <= kMaxTableErrors) {
       out_.Error({path_, line, column}, std::move(what), std::move(hint));
     }
   }

@@ -16,10 +16,9 @@
 namespace taut::trace {
 namespace {
 
-constexpr std::chrono::seconds kPatience{30};
 constexpr std::size_t kMemoryBytes = std::size_t{1} << 30;
 constexpr std::uint64_t kBlockRows = 1 << 16;
-constexpr std::uint64_t kMaxTextBytes = 64 << 20;
+constexpr std::uint64_t kMaxSentTextBytes = 64 << 20;
 constexpr std::uint64_t kMaxCount = 1 << 20;
 
 void SendNumber(const ChildOutput& to, std::uint64_t number) { to.Write(&number, sizeof number); }
@@ -78,7 +77,7 @@ class Receiver {
 
   bool Text(std::string& text) {
     std::uint64_t size = 0;
-    if (!Number(size, kMaxTextBytes)) return false;
+    if (!Number(size, kMaxSentTextBytes)) return false;
     text.resize(size);
     return child_.Read(text.data(), size);
   }
@@ -138,7 +137,8 @@ std::size_t RisingRows(const std::vector<double>& time_s) {
 }  // namespace
 
 std::optional<Trace> ReadHdf5(const std::string& path, Diagnostics& out) {
-  ChildProcess child([&](const ChildOutput& to) { SendTrace(path, to); }, kMemoryBytes, kPatience);
+  ChildProcess child([&](const ChildOutput& to) { SendTrace(path, to); }, kMemoryBytes,
+                     kChildPatience);
   Receiver receiver(child);
   Trace trace;
   if (!receiver.All(trace)) {

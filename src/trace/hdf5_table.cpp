@@ -16,7 +16,6 @@
 namespace taut::trace {
 namespace {
 
-constexpr std::chrono::seconds kPatience{30};
 constexpr std::uint64_t kMostErrorBytes = 1 << 16;
 
 /// The data set, with a sentence if it is none that holds a table.
@@ -80,7 +79,7 @@ std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::strin
   if (!bytes) return std::nullopt;
   const auto file_bytes = static_cast<double>(bytes->size());
   ChildProcess child([&](const ChildOutput& to) { SendTable(path, name, most, file_bytes, to); },
-                     static_cast<std::size_t>(most) * 2 * sizeof(double), kPatience);
+                     static_cast<std::size_t>(most) * 2 * sizeof(double), kChildPatience);
   std::uint64_t head[3] = {};
   std::string error;
   Hdf5Table table;

@@ -2,11 +2,10 @@
 #include <limits>
 
 #include "env/env_fixture.h"
+#include "tests/constants.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Rows of five worlds, whose callbacks see and say this.
 struct Callbacks {

@@ -3,11 +3,10 @@
 
 #include "env/env_fixture.h"
 #include "taut/rollout.h"
+#include "tests/constants.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81;
 
 /// A study's own result with this objective.
 RolloutResult StudyResult(const ExperimentSpec& experiment, const ObjectiveSpec& objective) {

@@ -20,8 +20,6 @@
 namespace taut {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 double VolumeOf(const ShapeMesh& mesh) {
   return math::SixVolumes(mesh.corners_m, mesh.triangles) / 6;
 }
@@ -94,13 +92,13 @@ TEST(ShapeMesh, EnclosesTheVolumeOfWhatItStandsFor) {
   ASSERT_EQ(shapes.size(), 7u);
   for (const ShapeMesh& mesh : shapes) ExpectClosed(mesh);
   const double rod_m = std::sqrt(0.16 + 0.36 + 0.64), r = 0.03;
-  EXPECT_NEAR(VolumeOf(shapes[0]), kPi * r * r * (rod_m + 4 * r / 3), 1e-15);
-  EXPECT_NEAR(VolumeOf(shapes[1]), kPi * r * r * (2 + 4 * r / 3), 1e-15);
-  EXPECT_NEAR(VolumeOf(shapes[2]), 4 * kPi / 3 * std::pow(0.25, 3), 1e-15);
+  EXPECT_NEAR(VolumeOf(shapes[0]), std::numbers::pi * r * r * (rod_m + 4 * r / 3), 1e-15);
+  EXPECT_NEAR(VolumeOf(shapes[1]), std::numbers::pi * r * r * (2 + 4 * r / 3), 1e-15);
+  EXPECT_NEAR(VolumeOf(shapes[2]), 4 * std::numbers::pi / 3 * std::pow(0.25, 3), 1e-15);
   EXPECT_NEAR(VolumeOf(shapes[3]), 8 * 0.1 * 0.2 * 0.3, 1e-15);
   EXPECT_NEAR(VolumeOf(shapes[4]), 1.0 / 6, 1e-15);
-  EXPECT_NEAR(VolumeOf(shapes[5]), kPi * 0.004 * 0.004 * 4, 1e-15);
-  EXPECT_NEAR(VolumeOf(shapes[6]), kPi * 0.004 * 0.004 * 5, 1e-15);
+  EXPECT_NEAR(VolumeOf(shapes[5]), std::numbers::pi * 0.004 * 0.004 * 4, 1e-15);
+  EXPECT_NEAR(VolumeOf(shapes[6]), std::numbers::pi * 0.004 * 0.004 * 5, 1e-15);
   ExpectNear(CentreOf(shapes[0]), {0.3, -0.1, 0.7}, 1e-12);
   ExpectNear(CentreOf(shapes[2]), {-1, 0.5, 2}, 1e-12);
   ExpectNear(CentreOf(shapes[3]), {3, 1, -2}, 1e-12);
@@ -141,13 +139,14 @@ TEST(ShapeMesh, CablesLieOnTheirWheels) {
     // Over it, along half its circumference, or below it, straight: a chord per ten degrees is
     // that much shorter.
     const double length_m = CableLength(def.cables[0]);
-    EXPECT_NEAR(VolumeOf(mesh), kPi * 1e-6 * length_m, 2e-3 * kPi * 1e-6 * length_m);
-    EXPECT_LT(VolumeOf(mesh), kPi * 1e-6 * length_m * (1 + 1e-9));
+    EXPECT_NEAR(VolumeOf(mesh), std::numbers::pi * 1e-6 * length_m,
+                2e-3 * std::numbers::pi * 1e-6 * length_m);
+    EXPECT_LT(VolumeOf(mesh), std::numbers::pi * 1e-6 * length_m * (1 + 1e-9));
     double highest = -2;
     for (const Vec3& corner : mesh.corners_m) highest = std::max(highest, corner.z);
     over += length_m > 2.2;
     // Straight up, over it and down again; the other way round it does not touch.
-    EXPECT_NEAR(length_m, length_m > 2.2 ? 2 + 0.1 * kPi : 0.2, 1e-9);
+    EXPECT_NEAR(length_m, length_m > 2.2 ? 2 + 0.1 * std::numbers::pi : 0.2, 1e-9);
     EXPECT_NEAR(highest, length_m > 2.2 ? 0.1 : -1, 2e-3);
   }
   EXPECT_EQ(over, 1);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tests/linear/linear_robots.h"
 
@@ -63,7 +64,7 @@ TEST(ExactRest, AStiffRope) {
   EXPECT_EQ(system.derivatives, Derivatives::kDifferences);
   // As a pendulum it swings to both sides, its length is that of the rope under the weight.
   const std::vector<double> swings_hz = Swings(system);
-  const double pendulum_hz = std::sqrt(9.81 / (1 + 0.5 * 9.81 / 4e6)) / (2 * kPi);
+  const double pendulum_hz = std::sqrt(9.81 / (1 + 0.5 * 9.81 / 4e6)) / (2 * std::numbers::pi);
   ASSERT_GE(swings_hz.size(), 2u);
   EXPECT_NEAR(swings_hz[0], pendulum_hz, 1e-5 * pendulum_hz);
   EXPECT_NEAR(swings_hz[1], pendulum_hz, 1e-5 * pendulum_hz);
@@ -73,7 +74,7 @@ TEST(ExactRest, AHinge) {
   // So have held joints.
   const StateSpace system = Find(OnAHinge());
   EXPECT_EQ(system.derivatives, Derivatives::kDifferences);
-  const double own_hz = std::sqrt(0.5 * 9.81 * 0.5 / (1e-3 + 0.5 * 0.25)) / (2 * kPi);
+  const double own_hz = std::sqrt(0.5 * 9.81 * 0.5 / (1e-3 + 0.5 * 0.25)) / (2 * std::numbers::pi);
   const std::vector<double> swings_hz = Swings(system);
   ASSERT_EQ(swings_hz.size(), 1u);
   EXPECT_NEAR(swings_hz[0], own_hz, 1e-5 * own_hz);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "math/vec.h"
 #include "taut/run_folder.h"
@@ -74,7 +75,7 @@ TEST_F(ShapeRun, SwingsAsTheModeAndIsReadLikeARun) {
   }
   const double amplitude = 0.08 * SizeOf(def) / greatest_m;
   for (const std::size_t row : {0u, 15u, 30u, 45u, 120u}) {  // 60 rows a swing
-    const double share = std::sin(2 * kPi * static_cast<double>(row) / 60);
+    const double share = std::sin(2 * std::numbers::pi * static_cast<double>(row) / 60);
     for (std::size_t b = 0; b < def.bodies.size(); ++b) {
       const std::string& name = def.bodies[b].name;
       const Vec3 wanted = def.bodies[b].com_m + amplitude * share * first->translation_m[b];
@@ -115,7 +116,7 @@ TEST_F(ShapeRun, SelfStressIsShownAsTensions) {
     }
     of = q;
   }
-  EXPECT_NEAR(density[1] / density[0], 2 * std::sin(kPi / 3), 1e-9);
+  EXPECT_NEAR(density[1] / density[0], 2 * std::sin(std::numbers::pi / 3), 1e-9);
   // In per cent, so that colours tell; equal cables have equal numbers.
   EXPECT_EQ(At(*trace, "cable/side_1/tension_n", 0), 100);
   EXPECT_EQ(At(*trace, "cable/side_2/tension_n", 0), 100);

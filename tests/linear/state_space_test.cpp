@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "math/vec.h"
 #include "taut/analysis.h"
@@ -234,8 +235,9 @@ TEST(StateSpace, FrequenciesAreThoseOfStaticsWithTheStepsDispersion) {
   std::vector<double> wanted_hz;
   for (const Mode& mode : modes.modes) {
     if (mode.kind != Mode::Kind::kElastic) continue;
-    const double w = 2 * kPi * mode.frequency_hz;
-    wanted_hz.push_back(std::acos(1 - w * w * e.step_s * e.step_s / 2) / (2 * kPi * e.step_s));
+    const double w = 2 * std::numbers::pi * mode.frequency_hz;
+    wanted_hz.push_back(std::acos(1 - w * w * e.step_s * e.step_s / 2) /
+                        (2 * std::numbers::pi * e.step_s));
   }
   ASSERT_EQ(swings_hz.size(), wanted_hz.size());
   std::sort(wanted_hz.begin(), wanted_hz.end());
@@ -267,13 +269,13 @@ TEST(StateSpace, RespondsLikeAnOscillator) {
   const FrequencyResponse r = ResponseOf(system, *input, *output, {0, 0.5, 2, 3.18, 5, 20});
   EXPECT_NEAR(r.magnitude[0], 1 / 200.0, 1e-6 / 200);
   for (std::size_t i = 1; i < r.frequency_hz.size(); ++i) {
-    const std::complex<double> s(0, 2 * kPi * r.frequency_hz[i]);
+    const std::complex<double> s(0, 2 * std::numbers::pi * r.frequency_hz[i]);
     const std::complex<double> x =
         1.0 / (0.5 * s * s + 2.0 * s + 200.0) * std::exp(-s * (kStep / 2));
     // Held from step to step (half a step late), and the scheme's error of second order.
     const double w_h = std::abs(s) * kStep, bound = 2 * w_h * w_h + 1e-4;
     EXPECT_NEAR(r.magnitude[i], std::abs(x), bound * std::abs(x)) << r.frequency_hz[i];
-    EXPECT_NEAR(std::remainder(r.phase_rad[i] - std::arg(x), 2 * kPi), 0, bound);
+    EXPECT_NEAR(std::remainder(r.phase_rad[i] - std::arg(x), 2 * std::numbers::pi), 0, bound);
   }
 }
 

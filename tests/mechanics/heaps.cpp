@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "scenes/heap.h"
@@ -13,7 +14,7 @@
 namespace taut::mechanics {
 namespace {
 
-constexpr double kStepS = 1e-3;
+constexpr double kHeapStepS = 1e-3;
 /// Largest relaxation of inconsistent contacts (docs/theory/contact.md, section 5).
 constexpr double kMostRelaxationMPerS = 1e-6;
 /// Number of linear systems of the worst step, as a multiple of the scene's mean.
@@ -29,13 +30,14 @@ struct Slab {
   double WeightN() const { return kRodKg * (6 + mass_ratio) * 9.81; }
 
   ModelDef Def(std::uint64_t seed) const {
-    constexpr double kRadiusM = 0.01, kHalfLengthM = 0.05, kOutM = 0.2, kPi = 3.141592653589793;
+    constexpr double kRadiusM = 0.01, kHalfLengthM = 0.05, kOutM = 0.2;
     const Material material{0.5, 0.5, 0.0};
     ModelDef def;
     scenes::AddGround(def, material);
     scenes::Chance chance(seed);
     for (int i = 0; i < 6; ++i) {
-      const double place = kPi / 3 * i, heading = chance.Within(-crooked_rad, crooked_rad);
+      const double place = std::numbers::pi / 3 * i,
+                   heading = chance.Within(-crooked_rad, crooked_rad);
       const Vec3 middle{kOutM * std::cos(place), kOutM * std::sin(place), kRadiusM};
       const Vec3 half{kHalfLengthM * std::cos(heading), kHalfLengthM * std::sin(heading), 0};
       scenes::AddRod(def, "rod_" + std::to_string(i), kRodKg, kRadiusM,
@@ -58,7 +60,7 @@ class Steps {
     double highest = 0;
     const double start = test::EnergyOf(world);
     for (int i = 0; i < count; ++i) {
-      world.Step(kStepS);
+      world.Step(kHeapStepS);
       const WorldStatus status = world.Status(0);
       unsolved_ += (status.bits & kStatusNotConverged) != 0;
       relaxation_ = std::max(relaxation_, status.contact_relaxation_m_per_s);

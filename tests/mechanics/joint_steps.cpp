@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "tests/mechanics/scene.h"
@@ -11,7 +12,7 @@
 namespace taut::mechanics {
 namespace {
 
-using test::kG, test::kPi, test::MakeBatch, test::Norm;
+using test::MakeBatch, test::Norm;
 
 constexpr double kStep = 1e-3, kLength = 0.1;
 
@@ -167,7 +168,7 @@ void Kapitza(Report& report) {
     MotionDef motion;
     motion.name = "pivot", motion.body = 0, motion.direction = {0, 0, 1};
     motion.slide.amplitude = kSwing;
-    motion.slide.frequency_hz = share * std::sqrt(2 * kG * kArm) / kSwing / (2 * kPi);
+    motion.slide.frequency_hz = share * std::sqrt(2 * kG * kArm) / kSwing / (2 * std::numbers::pi);
     def.motions.push_back(motion);
     def.joints.push_back(Pin(JointKind::kHinge, 0, 1, {}, {}));
     Batch world = MakeBatch(def);

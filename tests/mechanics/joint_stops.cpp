@@ -1,9 +1,11 @@
-/// Joint stops: holding, rebound and release; fast-spinning hinges.
+/// Joint stops: holding, rebound and release.
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
+#include "tests/mechanics/jointed_mass.h"
 #include "tests/mechanics/runge_kutta.h"
 #include "tests/mechanics/scene.h"
 #include "tests/physics/joint_scenes.h"
@@ -11,23 +13,7 @@
 namespace taut::mechanics {
 namespace {
 
-using test::EnergyOf, test::kG, test::kPi, test::MakeBatch, test::Norm, test::StepsIn;
-
-/// A mass of 1 kg at `at`, far smaller than all distances.
-ModelDef PointMass(const Vec3& at, const Vec3& velocity, double inertia_kg_m2 = 1e-6) {
-  ModelDef def;
-  BodyDef body;
-  body.name = "mass", body.mass_kg = 1, body.com_m = at, body.velocity_m_per_s = velocity;
-  body.inertia_kg_m2.xx = body.inertia_kg_m2.yy = body.inertia_kg_m2.zz = inertia_kg_m2;
-  def.bodies.push_back(body);
-  return def;
-}
-
-JointDef JointAt(JointKind kind, const Vec3& at, const Vec3& axis) {
-  JointDef joint;
-  joint.name = "joint", joint.kind = kind, joint.axis = axis, joint.from_m = joint.to_m = at;
-  return joint;
-}
+using test::EnergyOf, test::MakeBatch, test::Norm, test::StepsIn;
 
 /// A thin rod of 1 m and 1 kg that turns about its end at the origin.
 ModelDef RodAlong(const Vec3& to) {
@@ -338,57 +324,6 @@ void ConeStop(Report& report) {
   });
 }
 
-void SpinningHinge(Report& report) {
-  for (const double rate : {200.0, 490.0, 3000.0, 3200.0, -7000.0, 50000.0}) {
-    ModelDef def = PointMass({}, {}, 0.01);
-    def.gravity_m_per_s2 = {};
-    def.bodies[0].angular_velocity_rad_per_s = {0, rate, 0};
-    def.joints.push_back(JointAt(JointKind::kHinge, {}, {0, 1, 0}));
-    Batch world = MakeBatch(def);
-    world.Step(1e-3, 1000);
-    const std::string name = std::to_string(static_cast<int>(rate)) + " rad/s, 1 ms";
-    // Angles t < 0.25 rad per half step have a relative error of t^4 / 120, others are exact.
-    const double half_step = 0.5e-3 * std::abs(rate);
-    const double missing = half_step < 0.25 ? std::pow(half_step, 4) / 100 : 1e-12;
-    report.Near("angle after 1 s at " + name, "rad", world.Joint(0, 0).coordinate, rate,
-                missing * std::abs(rate));
-    report.Near("rate at " + name, "rad/s", world.Joint(0, 0).rate, rate, 1e-9 * std::abs(rate));
-  }
-}
-
-void RotorBesideItsHinge(Report& report) {
-  // Half a radian per step is resolved; three are not, and the status reports it.
-  for (const double rate : {500.0, 3000.0}) {
-    ModelDef def = PointMass({0, 0, 1e-3}, {1e-3 * rate, 0, 0}, 0.01);
-    def.gravity_m_per_s2 = {};
-    def.bodies[0].angular_velocity_rad_per_s = {0, rate, 0};
-    def.joints.push_back(JointAt(JointKind::kHinge, {}, {0, 1, 0}));
-    Batch world = MakeBatch(def);
-    world.Step(1e-3, 1000);
-    const std::string name = std::to_string(static_cast<int>(rate)) + " rad/s, 1 mm beside, 1 ms";
-    const double wanted = rate < 1000 ? kStatusOk : kStatusStepTooLong;
-    report.Near("status bits at " + name, "1", world.Status(0).bits, wanted, 0);
-    if (rate > 1000) continue;
-    report.Near("angle after 1 s at " + name, "rad", world.Joint(0, 0).coordinate, rate,
-                1e-4 * rate);
-  }
-}
-
-void BrakedRotor(Report& report) {
-  // A damper stops a rotor: I w' = -d w, so it rotates by I w0 / d in total.
-  ModelDef def = PointMass({}, {}, 0.01);
-  def.gravity_m_per_s2 = {};
-  def.bodies[0].angular_velocity_rad_per_s = {0, 5000, 0};
-  JointDef hinge = JointAt(JointKind::kHinge, {}, {0, 1, 0});
-  hinge.damping = 0.05;
-  def.joints.push_back(hinge);
-  Batch world = MakeBatch(def);
-  world.Step(1e-3, 8000);
-  // The first half step has the full rate; afterwards all means are of second order.
-  report.Near("angle until it stands, from 5000 rad/s, 1 ms", "rad", world.Joint(0, 0).coordinate,
-              1000, 1e-3);
-}
-
 const SceneEntry kSpinningBodyOnRope("joint stops", "Body that spins at 200 rad/s on a rope",
                                      "conservation of energy", SpinningBodyOnRope);
 const SceneEntry kSwingingRope("joint stops", "Rope with a mass that swings for a minute",
@@ -407,14 +342,5 @@ const SceneEntry kHingeStop("joint stops", "Rod that falls on the stop of its hi
                             "energy e^2 of the fall", HingeStop);
 const SceneEntry kConeStop("joint stops", "Rod that is thrown against its cone",
                            "energy e^2 of the impact", ConeStop);
-const SceneEntry kSpinningHinge("joint stops", "Hinge that spins by many radians a step",
-                                "angle = rate times time", SpinningHinge);
-const SceneEntry kRotorBesideItsHinge("joint stops",
-                                      "Rotor whose hinge is beside its centre of mass",
-                                      "angle = rate times time, or a status bit",
-                                      RotorBesideItsHinge);
-const SceneEntry kBrakedRotor("joint stops", "Rotor braked by a damper", "angle I w / d",
-                              BrakedRotor);
-
 }  // namespace
 }  // namespace taut::mechanics

@@ -1,6 +1,10 @@
 /// Ground of several pieces.
 
+#include <algorithm>
+#include <cmath>
+
 #include "scenes/chance.h"
+#include "tests/constants.h"
 #include "tests/mechanics/scene.h"
 #include "tests/mechanics/seam_ground.h"
 
@@ -9,7 +13,7 @@ namespace {
 
 using namespace taut::seams;
 
-constexpr double kStepS = 1e-3, kG = 9.81;
+constexpr double kStepS = 1e-3;
 constexpr Material kNoFriction{0, 0, 0};
 
 /// The worst of several runs.

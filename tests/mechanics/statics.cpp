@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "math/vec.h"
 #include "scenes/rod.h"
@@ -17,8 +18,6 @@ using test::AddBar;
 using test::AddCable;
 using test::AddJoint;
 using test::AddPoint;
-
-constexpr double kPi = 3.14159265358979323846;
 
 // --- Structures ----------------------------------------------------------------------------------
 
@@ -60,7 +59,8 @@ int AddPrism(ModelDef& def, const Vec3& at) {
   const int first = static_cast<int>(def.bodies.size());
   std::vector<Vec3> low, high;
   for (int i = 0; i < 3; ++i) {
-    const double a = 2 * kPi * i / 3, b = a + kPi / 2 + kPi / 3;
+    const double a = 2 * std::numbers::pi * i / 3,
+                 b = a + std::numbers::pi / 2 + std::numbers::pi / 3;
     low.push_back(at + Vec3{0.7 * std::cos(a), 0.7 * std::sin(a), 0});
     high.push_back(at + Vec3{0.7 * std::cos(b), 0.7 * std::sin(b), 1.1});
     scenes::AddRod(def, "rod" + std::to_string(def.bodies.size()), 0.4, 1e-4, low.back(),
@@ -139,7 +139,7 @@ void CablesInARow(Report& report) {
     const ModelDef def = Row(inner, false, 0.5, 1000, 0.48);
     const std::string of = std::to_string(inner + 1) + " cables in a row";
     Counts(report, of, def, 2 * inner, 0);
-    const double least = 40 * (2 - 2 * std::cos(kPi / (inner + 1)));
+    const double least = 40 * (2 - 2 * std::cos(std::numbers::pi / (inner + 1)));
     report.Near(of + ": least stiffness", "N/m", LeastStiffnessOf(def), least, 1e-10 * least);
     const ForceAnalysis found = AnalyseForces(def);
     const double by_prestress =

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "math/vec.h"
 #include "peers/robots.h"
@@ -15,7 +16,6 @@ namespace {
 
 using nlohmann::json;
 constexpr double kStepS = 0.001;
-constexpr double kPi = 3.14159265358979323846;
 
 /// taut as a peer of its peers.
 class Ours final : public World {
@@ -82,7 +82,7 @@ json Stand(const ModelDef& def, World& world) {
 
 /// Weight that leans by 10 degrees towards `heading_rad`: the same as a slope.
 ModelDef Leaning(ModelDef def, double heading_rad) {
-  const double lean = 10 * kPi / 180, g = 9.81;
+  const double lean = 10 * std::numbers::pi / 180, g = 9.81;
   def.gravity_m_per_s2 = {g * std::sin(lean) * std::cos(heading_rad),
                           g * std::sin(lean) * std::sin(heading_rad), -g * std::cos(lean)};
   return def;
@@ -106,7 +106,7 @@ json Report() {
     out["stand"][robot] = Each(def, [&](World& world) { return Stand(def, world); });
   }
   for (const int degrees : {0, 45, 90}) {
-    const double heading_rad = degrees * kPi / 180;
+    const double heading_rad = degrees * std::numbers::pi / 180;
     // On ground of 0.5 the product is 0.5.
     const ModelDef slope =
         Leaning(test::OnGround(test::Robot("tetraspine3", {{"friction", "1"}})), heading_rad);

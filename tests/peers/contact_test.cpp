@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "math/vec.h"
 #include "peers/engine_test.h"
@@ -13,7 +14,6 @@ namespace taut::peers {
 namespace {
 
 constexpr double kStepS = 0.001;
-constexpr double kPi = 3.14159265358979323846;
 
 class ContactOf : public EngineTest {
  protected:
@@ -37,7 +37,7 @@ TEST_P(ContactOf, SlidingOnTheDiagonalShowsTheShapeOfItsCone) {
   const bool pyramid = GetParam().engine == Engine::kMujoco && !GetParam().options.elliptic;
   const bool box = GetParam().engine == Engine::kOde;
   const double mu = 0.5 * (pyramid ? std::sqrt(0.5) : box ? std::sqrt(2.0) : 1);
-  EXPECT_NEAR(WayOf(kPi / 4), 1 / (2 * mu * 9.81), kStepS);
+  EXPECT_NEAR(WayOf(std::numbers::pi / 4), 1 / (2 * mu * 9.81), kStepS);
 }
 
 TEST_P(ContactOf, OnlyBulletSlidesUnderACouple) {
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Peers, ContactOf, testing::ValuesIn(kSettings), CaseNam
 /// taut beside them.
 TEST(PeersContact, OursDoesNeither) {
   Diagnostics complaints;
-  for (const double heading_rad : {0.0, kPi / 4, kPi / 2}) {
+  for (const double heading_rad : {0.0, std::numbers::pi / 4, std::numbers::pi / 2}) {
     Batch world(Model::Compile(test::Sled(1, heading_rad), complaints), {});
     world.Step(kStepS, 2000);
     const Vec3 p = world.Body(0, 0).position_m;

@@ -10,11 +10,11 @@
 #include "scenes/ball.h"
 #include "scenes/rod.h"
 #include "scenes/rough_ground.h"
+#include "tests/constants.h"
 
 namespace taut::peers {
 namespace {
 
-constexpr double kG = 9.81;
 constexpr double kSlope = 10 * 3.14159265358979323846 / 180;
 
 HeightFieldDef SplitTheSame(HeightFieldDef field) {

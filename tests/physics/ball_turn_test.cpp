@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "tests/physics/joint_scenes.h"
 
@@ -156,7 +157,7 @@ TEST(BallTurn, FrictionStopsASpinAboutAnyAxisAndThenHoldsIt) {
 TEST(BallTurn, FrictionsLimitIsTheSameAboutEveryAxis) {
   // A rod of 1 m held level: its weight turns it with m g / 2, about an axis that goes around.
   for (int i = 0; i < 24; ++i) {
-    const double heading = i * kPi / 12 + 0.05;
+    const double heading = i * std::numbers::pi / 12 + 0.05;
     const double torque = 0.5 * kG;
     for (const double share : {1.0001, 0.9999}) {
       ModelDef def;

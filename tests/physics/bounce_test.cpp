@@ -6,12 +6,11 @@
 
 #include "scenes/ball.h"
 #include "scenes/block_on_slope.h"
+#include "tests/constants.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81;
 
 /// Steps until the ball has bounced `bounces` times and is in free flight again; the height above
 /// the ground to which it will rise. In flight that is known exactly: the scheme keeps parabolas.

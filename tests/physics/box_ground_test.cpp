@@ -5,13 +5,13 @@
 #include "scenes/rough_ground.h"
 #include "sim/shape_contacts.h"
 #include "sim/surface_build.h"
+#include "tests/constants.h"
 #include "tests/physics/lanes_alike.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
 
-constexpr double kG = 9.81;
 using Split = HeightFieldDef::Split;
 
 void AddFlat(ModelDef& def, int form, const Material& material) {

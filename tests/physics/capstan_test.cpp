@@ -2,17 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <random>
 #include <vector>
 
 #include "math/described_path.h"
 #include "sim/constraint/cable_chain.h"
+#include "tests/constants.h"
 #include "tests/physics/lanes_alike.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846, kG = 9.81;
 
 BodyDef Ball(double mass_kg, const Vec3& p, double inertia = 1e-4) {
   BodyDef body;
@@ -44,7 +44,7 @@ ModelDef Atwood(double m1, double m2, double friction, int wheels = 1, double st
   const double x = arch + (wheels == 1 ? 0 : radius);
   std::vector<AttachmentDef> path{{0, {-x, 0, -1}}};
   for (int k = 0; k < wheels; ++k) {
-    const double angle = wheels == 1 ? 0 : kPi * k / (wheels - 1);
+    const double angle = wheels == 1 ? 0 : std::numbers::pi * k / (wheels - 1);
     const double out = wheels == 1 ? 0 : arch;
     path.push_back(
         Round(kWorld, {-out * std::cos(angle), 0, out * std::sin(angle)}, radius, friction));
@@ -57,7 +57,7 @@ ModelDef Atwood(double m1, double m2, double friction, int wheels = 1, double st
 }
 
 TEST(Capstan, AtwoodsMachineSlipsAsEytelweinSays) {
-  const double c = std::exp(0.2 * kPi);
+  const double c = std::exp(0.2 * std::numbers::pi);
   for (const double m2 : {0.4, 0.5, 0.53}) {
     ModelDef def = Atwood(1, m2, 0.2);
     def.cables[0].damping_n_s_per_m = 20;
@@ -101,7 +101,7 @@ TEST(Capstan, OverManyRodsTheRatioIsThatOfTheWholeAngle) {
     world.Step(1e-3, 500);
     const double first = world.CableSpan(0, 0, 0).tension_n;
     const double last = world.CableSpan(0, 0, world.CableSpans(0) - 1).tension_n;
-    EXPECT_NEAR(first / last, std::exp(0.2 * kPi), 1e-8) << wheels;
+    EXPECT_NEAR(first / last, std::exp(0.2 * std::numbers::pi), 1e-8) << wheels;
   }
 }
 
@@ -147,8 +147,8 @@ TEST(Capstan, OverThreeQuartersOfATurn) {
     world.Step(1e-3);
   }
   EXPECT_NEAR(world.CableSpan(0, 0, 1).tension_n / world.CableSpan(0, 0, 0).tension_n,
-              std::exp(0.3 * 1.5 * kPi), 1e-6);
-  EXPECT_NEAR(std::exp(0.3 * 1.5 * kPi), 4.111207, 5e-7);
+              std::exp(0.3 * 1.5 * std::numbers::pi), 1e-6);
+  EXPECT_NEAR(std::exp(0.3 * 1.5 * std::numbers::pi), 4.111207, 5e-7);
 }
 
 /// Lots of spans at random: each place sticks within its ratio, or slips at it and the right way;

@@ -8,12 +8,12 @@
 #include "scenes/block_on_slope.h"
 #include "scenes/box.h"
 #include "scenes/rod.h"
+#include "tests/constants.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
 
-constexpr double kG = 9.81;
 constexpr double kBlockHeight_m = 0.03;  ///< Of a block's centre above what it stands on.
 
 /// A block on a level or tilted plane, or on a terrain box with the same surface.

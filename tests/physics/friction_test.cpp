@@ -3,16 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "scenes/ball.h"
 #include "scenes/block_on_slope.h"
 #include "scenes/rod.h"
+#include "tests/constants.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81, kPi = 3.14159265358979323846;
 
 scenes::Slope SlopeOf(double angle_rad, double static_friction, double kinetic_friction) {
   return {angle_rad, {static_friction, kinetic_friction, 0}};
@@ -109,7 +109,7 @@ TEST(Friction, ASliderAtRestSticksWithItsStaticFrictionWhicheverWayTheGroundTilt
   // not.
   for (const Slider& slider : kSliders) {
     for (int direction = 0; direction < 8; ++direction) {
-      const double a = direction * kPi / 4 + 0.1;
+      const double a = direction * std::numbers::pi / 4 + 0.1;
       const auto tilt = [&](Batch& world, double slope) {
         world.SetParameter(0, Parameter::kGravityX, 0, slope * kG * std::cos(a));
         world.SetParameter(0, Parameter::kGravityY, 0, slope * kG * std::sin(a));
@@ -170,7 +170,7 @@ TEST(Friction, ASledStopsAfterTheSameDistanceInEveryDirection) {
   const double v = 1, mu = 0.4, h = 1e-3;
   for (const FrictionLaw law : {FrictionLaw::kCone, FrictionLaw::kAlongSlip}) {
     for (int direction = 0; direction < 8; ++direction) {
-      const double a = direction * kPi / 4 + 0.1;
+      const double a = direction * std::numbers::pi / 4 + 0.1;
       ModelDef def = Sled(0, mu, mu);
       def.friction_law = law;
       Batch world = MakeBatch(def);

@@ -6,12 +6,12 @@
 #include "scenes/rod.h"
 #include "scenes/rough_ground.h"
 #include "scenes/six_strut.h"
+#include "tests/constants.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
 
-constexpr double kG = 9.81;
 using Split = HeightFieldDef::Split;
 
 /// One flat ground in all its forms.

@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "scenes/solids.h"
+#include "tests/constants.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81;
 
 int AddPointMass(ModelDef& def, const std::string& name, double mass_kg, const Vec3& p) {
   BodyDef body;

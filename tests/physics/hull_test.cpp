@@ -1,18 +1,18 @@
 // Bodies with flat faces: statics and slopes in closed form, boxes, and what is kept in flight.
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "math/convex_hull.h"
 #include "mechanics/mass_properties.h"
 #include "scenes/box.h"
 #include "scenes/rough_ground.h"
+#include "tests/constants.h"
 #include "tests/physics/lanes_alike.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kG = 9.81;
 
 /// What corners about the origin span, of 700 kg/m^3, moved to `at_m`. Returns the body's index.
 int AddHull(ModelDef& def, const std::string& name, std::vector<Vec3> corners_m, const Vec3& at_m,
@@ -42,7 +42,7 @@ std::vector<Vec3> BoxCorners(const Vec3& half_m) {
 std::vector<Vec3> PrismCorners(int count, double radius_m, double width_m) {
   std::vector<Vec3> corners;
   for (int i = 0; i < count; ++i) {
-    const double angle = (2 * i + 1) * kPi / count;
+    const double angle = (2 * i + 1) * std::numbers::pi / count;
     const double x = radius_m * std::sin(angle), z = -radius_m * std::cos(angle);
     corners.push_back({x, -0.5 * width_m, z});
     corners.push_back({x, 0.5 * width_m, z});
@@ -155,10 +155,10 @@ TEST(Hull, APrismRollsFromHalfTheAngleOfASide) {
     for (const double more : {-2e-3, 2e-3}) {
       ModelDef def;
       const double radius = 0.05;
-      AddHull(def, "a", PrismCorners(sides, radius, 0.08), {0, 0, radius * std::cos(kPi / sides)},
-              {}, material);
+      AddHull(def, "a", PrismCorners(sides, radius, 0.08),
+              {0, 0, radius * std::cos(std::numbers::pi / sides)}, {}, material);
       AddFloor(def, floor, material);
-      Slope(def, kPi / sides + more);
+      Slope(def, std::numbers::pi / sides + more);
       Batch world = MakeBatch(def);
       const Vec3 start = world.Body(0, 0).position_m;
       world.Step(1e-3, 1000);

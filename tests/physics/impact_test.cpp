@@ -11,12 +11,11 @@
 #include "scenes/ball.h"
 #include "scenes/chance.h"
 #include "scenes/rod.h"
+#include "tests/constants.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81;
 
 TEST(Impact, ABallOnARestingBallBouncesForeverWithItsEnergy) {
   // The blow goes through the lower ball into the ground and comes back in the same step.

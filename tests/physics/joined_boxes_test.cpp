@@ -5,13 +5,13 @@
 #include "scenes/box.h"
 #include "scenes/rod.h"
 #include "scenes/six_strut.h"
+#include "tests/constants.h"
 #include "tests/physics/lanes_alike.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
 
-constexpr double kG = 9.81;
 const Material kMaterial{0.5, 0.4, 0};
 
 /// A floor with its top in z = 0.

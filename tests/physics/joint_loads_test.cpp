@@ -1,4 +1,6 @@
 // What joints carry at the start (taut/statics.h) against statics by hand, and against the step.
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "taut/statics.h"
@@ -74,7 +76,7 @@ TEST(JointLoads, AClampedBeamTurnsItsWall) {
 }
 
 TEST(JointLoads, ARodThatIsLetGoLevelPullsWithAQuarterOfItsWeight) {
-  const ModelDef def = Pendulum(kPi / 2);
+  const ModelDef def = Pendulum(std::numbers::pi / 2);
   const auto loads = StartJointLoads(def);
   EXPECT_LT(Distance(loads[0].force_n, {0, 0, kG / 4}), 1e-5);  // it has a radius of 1 mm
   EXPECT_NEAR(LeftAtStart(def, loads)[0].force_n.z, -0.75 * kG, 1e-5);
@@ -83,7 +85,7 @@ TEST(JointLoads, ARodThatIsLetGoLevelPullsWithAQuarterOfItsWeight) {
 TEST(JointLoads, ASpringHoldsWhatItIsWoundUpFor) {
   // The weight of a level rod turns it with m g / 2 about y.
   for (const JointKind kind : {JointKind::kHinge, JointKind::kBall}) {
-    ModelDef def = Pendulum(kPi / 2, kind);
+    ModelDef def = Pendulum(std::numbers::pi / 2, kind);
     JointDef& j = def.joints[0];
     j.stiffness = 10;
     const double angle = 0.05 * kG;

@@ -8,11 +8,10 @@
 #include <string>
 
 #include "scenes/rod_chain.h"
+#include "tests/constants.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
-
-inline constexpr double kPi = 3.14159265358979323846, kG = 9.81;
 
 /// A thin rod of 1 m and 1 kg that hangs from the world at its upper end, turned out of the plumb.
 inline ModelDef Pendulum(double angle_rad, JointKind kind = JointKind::kBall) {

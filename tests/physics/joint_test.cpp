@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "tests/physics/joint_scenes.h"
 
@@ -24,10 +25,12 @@ double CrossingTime(Batch& world, double step_s, int crossings) {
 
 TEST(Joint, APinnedRodSwingsWithThePeriodOfItsLength) {
   // Of a rod about its end w^2 = 3 g / 2 L. From 90 degrees: times 2 K(1/sqrt 2) / pi.
-  const double small = 2 * kPi * std::sqrt(2.0 / (3 * kG)), wide = 1.180340599016096 * small;
+  const double small = 2 * std::numbers::pi * std::sqrt(2.0 / (3 * kG)),
+               wide = 1.180340599016096 * small;
   EXPECT_NEAR(small, 1.63795, 1e-5);
   for (const JointKind kind : {JointKind::kBall, JointKind::kHinge}) {
-    Batch slow = MakeBatch(Pendulum(1e-3, kind)), far = MakeBatch(Pendulum(kPi / 2, kind));
+    Batch slow = MakeBatch(Pendulum(1e-3, kind)),
+          far = MakeBatch(Pendulum(std::numbers::pi / 2, kind));
     EXPECT_NEAR(CrossingTime(slow, 1e-3, 5) / 2.25, small, 1e-5 * small);
     EXPECT_NEAR(CrossingTime(far, 1e-3, 5) / 2.25, wide, 1e-5 * wide);
   }

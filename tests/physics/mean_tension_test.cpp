@@ -7,13 +7,14 @@
 #include <cmath>
 
 #include "scenes/hanging_mass.h"
+#include "tests/constants.h"
 #include "tests/instruction_sets.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
 
-constexpr double kG = 9.81, kStepS = 1e-3;
+constexpr double kStepS = 1e-3;
 
 /// A mass that hangs on a damped cable of 1 m, which begins without stretch.
 scenes::HangingMass LightMass(double mass_kg, double stiffness_n_per_m, double damping_ratio) {

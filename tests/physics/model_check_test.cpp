@@ -10,11 +10,11 @@
 #include "scenes/block_on_slope.h"
 #include "scenes/rod.h"
 #include "taut/batch.h"
+#include "tests/constants.h"
 
 namespace taut::test {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// One of everything, and nothing wrong with it.

@@ -3,15 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "scenes/box.h"
 #include "scenes/rod.h"
+#include "tests/constants.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846, kG = 9.81;
 
 int Box(ModelDef& def, const std::string& name, double mass_kg, const Vec3& center_m,
         const Vec3& half_m, const Material& material) {
@@ -97,7 +97,8 @@ TEST(Motion, AShakerDrivesASpringLikeTheClosedForm) {
   // t), r = w / w0. What the shaker does is what the mass and its spring have.
   double error[2] = {}, lost[2] = {};
   for (int k = 0; k < 2; ++k) {
-    const double h = k == 0 ? 1e-3 : 0.5e-3, w0 = 20, f = 2, A = 0.01, r = 2 * kPi * f / w0;
+    const double h = k == 0 ? 1e-3 : 0.5e-3, w0 = 20, f = 2, A = 0.01,
+                 r = 2 * std::numbers::pi * f / w0;
     ModelDef def = Slab(0.5, Sliding({1, 0, 0}, {{}, A, f, 0}));
     def.boxes[0].collides = false;
     def.gravity_m_per_s2 = {};
@@ -111,7 +112,8 @@ TEST(Motion, AShakerDrivesASpringLikeTheClosedForm) {
     for (int n = 1; n <= StepsIn(2, h); ++n) {
       world.Step(h);
       const double t = n * h;
-      const double x = A / (1 - r * r) * (std::sin(2 * kPi * f * t) - r * std::sin(w0 * t));
+      const double x =
+          A / (1 - r * r) * (std::sin(2 * std::numbers::pi * f * t) - r * std::sin(w0 * t));
       error[k] = std::max(error[k], std::fabs(world.Body(0, 1).position_m.x - 1 - x));
       ASSERT_LT(world.Joint(0, 0).gap_m, 1e-10);
       lost[k] = std::max(lost[k], std::fabs(EnergyOf(world) - world.Motion(0, 0).work_j));
@@ -240,8 +242,8 @@ TEST(Motion, BeforeTimeZeroItStandsStill) {
   EXPECT_EQ(world.Body(0, 0).velocity_m_per_s.x, 0);
   EXPECT_EQ(world.Motion(0, 0).work_j, 0);
   world.Step(1e-3, 101);
-  EXPECT_NEAR(world.Motion(0, 0).slide_m, 0.2 + 0.1 * (std::sin(0.6 * kPi + 1) - std::sin(1.0)),
-              1e-12);
+  EXPECT_NEAR(world.Motion(0, 0).slide_m,
+              0.2 + 0.1 * (std::sin(0.6 * std::numbers::pi + 1) - std::sin(1.0)), 1e-12);
 }
 
 TEST(Motion, WrongOnesAreAllNamed) {

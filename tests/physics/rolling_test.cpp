@@ -5,12 +5,11 @@
 #include "scenes/ball.h"
 #include "scenes/block_on_slope.h"
 #include "scenes/rod.h"
+#include "tests/constants.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81;
 
 /// A round thing of radius 0.1 m at rest on a slope; it rolls towards +x. `share` is its moment of
 /// inertia about the axis it rolls about, over m r^2.

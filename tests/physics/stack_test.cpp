@@ -7,12 +7,11 @@
 
 #include "scenes/ball.h"
 #include "scenes/rod.h"
+#include "tests/constants.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81;
 
 int AddBox(ModelDef& def, const std::string& name, double mass_kg, const Vec3& center,
            const Vec3& half, const Material& material) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,6 @@
 #include "tests/physics/world.h"
 
 namespace taut::test {
-
-inline constexpr double kPi = 3.14159265358979323846;
 
 /// Every contact has a coefficient of 0.5, on both sides.
 inline ModelDef Standing(const std::string& robot) {
@@ -32,8 +31,8 @@ inline ModelDef Standing(const std::string& robot) {
     // On the triangle that three ends form below, the (1, 1, 1) corner down.
     scenes::SixStrut scene;
     scene.damping_n_s_per_m = 20;
-    scene.orientation =
-        scenes::Turn({std::sqrt(0.5), -std::sqrt(0.5), 0}, kPi - std::atan(std::sqrt(2.0)));
+    scene.orientation = scenes::Turn({std::sqrt(0.5), -std::sqrt(0.5), 0},
+                                     std::numbers::pi - std::atan(std::sqrt(2.0)));
     double lowest = 1;
     for (const NodeDef& node : scene.Def().nodes) lowest = std::min(lowest, node.position_m.z);
     scene.center_m.z -= lowest - scene.rod_radius_m - 0.0005;
@@ -51,7 +50,7 @@ inline ModelDef Standing(const std::string& robot) {
 /// Settles for 20 s on ground that is tilted by `slope_deg` (or rather: gravity is), then stands
 /// for `time_s`: no node creeps by more than 1e-9 m/s.
 inline void StandsStill(const std::string& robot, double slope_deg, double time_s) {
-  const double slope = slope_deg * kPi / 180, h = 1e-3;
+  const double slope = slope_deg * std::numbers::pi / 180, h = 1e-3;
   const ModelDef def = Standing(robot);
   Batch world = MakeBatch(def);
   world.SetParameter(0, Parameter::kGravityX, 0, 9.81 * std::sin(slope));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,6 @@
 
 namespace taut::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Lets a robot without weight come to rest: whenever its kinetic energy begins to fall, all
 /// velocities are set to zero (kinetic damping), so that mechanisms, which cables damp least, come
@@ -62,12 +61,13 @@ void AddCable(ModelDef& def, int node_a, int node_b, double stiffness, double re
 ModelDef Prism(int n, double polygon_rest_m, double side_rest_m, double twist_off_rad) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
-  const double r = 0.3, height = 0.5, twist = kPi / 2 + kPi / n + twist_off_rad;
+  const double r = 0.3, height = 0.5,
+               twist = std::numbers::pi / 2 + std::numbers::pi / n + twist_off_rad;
   const auto corner = [&](double angle, double z) {
     return Vec3{r * std::cos(angle), r * std::sin(angle), z};
   };
   for (int i = 0; i < n; ++i) {
-    const double a = 2 * kPi * i / n;
+    const double a = 2 * std::numbers::pi * i / n;
     scenes::AddRod(def, "strut_" + std::to_string(i), 0.1, 0.005, corner(a, 0),
                    corner(a + twist, height), {});
   }
@@ -85,7 +85,7 @@ TEST(Statics, APrismSettlesAtItsTwistWithItsSelfStress) {
   for (const int n : {3, 4, 5, 6, 8}) {
     for (const double twist_off : {-0.15, 0.1}) {
       for (const double side_rest : {0.42, 0.48}) {
-        const double edge = 2 * 0.3 * std::sin(kPi / n);
+        const double edge = 2 * 0.3 * std::sin(std::numbers::pi / n);
         Batch world = MakeBatch(Prism(n, 0.9 * edge, side_rest, twist_off));
         const double speed = Settle(world, 20);
         const std::string what = std::to_string(n) + " struts, side " + std::to_string(side_rest);
@@ -105,13 +105,14 @@ TEST(Statics, APrismSettlesAtItsTwistWithItsSelfStress) {
             turn(world.NodePosition(0, 0) - low, world.NodePosition(0, 2 * n - 1) - high);
         const double along_strut =
             turn(world.NodePosition(0, 0) - low, world.NodePosition(0, 1) - high);
-        EXPECT_NEAR(along_side, kPi / 2 - kPi / n, 1e-10) << what;
-        EXPECT_NEAR(along_strut, kPi / 2 + kPi / n, 1e-10) << what;
+        EXPECT_NEAR(along_side, std::numbers::pi / 2 - std::numbers::pi / n, 1e-10) << what;
+        EXPECT_NEAR(along_strut, std::numbers::pi / 2 + std::numbers::pi / n, 1e-10) << what;
         const auto density = [&](int cable) {
           return world.Cable(0, cable).tension_n / world.Cable(0, cable).length_m;
         };
         for (int i = 0; i < 2 * n; ++i) {
-          EXPECT_NEAR(density(i) / density(2 * n), 1 / (2 * std::sin(kPi / n)), 1e-10) << what;
+          EXPECT_NEAR(density(i) / density(2 * n), 1 / (2 * std::sin(std::numbers::pi / n)), 1e-10)
+              << what;
         }
         for (int i = 0; i < n; ++i) EXPECT_GT(density(2 * n + i), 1) << what;
       }

@@ -8,13 +8,13 @@
 
 #include "scenes/ball.h"
 #include "scenes/tetraspine3.h"
+#include "tests/constants.h"
 #include "tests/instruction_sets.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool Finite(const Batch& batch, int world, int body) {

@@ -8,12 +8,13 @@
 
 #include "scenes/ball.h"
 #include "scenes/rod.h"
+#include "tests/constants.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
 
-constexpr double kG = 9.81, kRadian = 57.29577951308232;
+constexpr double kRadian = 57.29577951308232;
 const Material kRough{100, 100, 0};
 
 /// A thin rod falls over about its lower end from 5 degrees; its speed at 45 degrees against that

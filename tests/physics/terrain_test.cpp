@@ -6,12 +6,11 @@
 #include "scenes/block_on_slope.h"
 #include "scenes/chance.h"
 #include "scenes/single_rod.h"
+#include "tests/constants.h"
 #include "tests/physics/world.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81;
 
 TEST(Terrain, ABallRollsOffAStepAndFallsAsAParabola) {
   // It rolls without slipping on a terrain box, leaves the edge, lands on the plane below and rolls

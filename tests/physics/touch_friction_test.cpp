@@ -2,16 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <vector>
 
 #include "math/described_path.h"
+#include "tests/constants.h"
 #include "tests/physics/lanes_alike.h"
 #include "tests/physics/touch_scenes.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846, kG = 9.81;
 
 /// The spans' rest lengths are those of the whole cable.
 void ExpectNothingLost(const Batch& world) {
@@ -63,7 +63,7 @@ Batch Atwood(double m1, double m2, double friction, double damping,
 }
 
 TEST(TouchFriction, AtwoodsMachineOverAWallSlipsAsEytelweinSays) {
-  const double c = std::exp(0.2 * kPi);
+  const double c = std::exp(0.2 * std::numbers::pi);
   for (const double m2 : {0.4, 0.5, 0.53}) {
     Batch world = Atwood(1, m2, 0.2, 20);
     const double a = (1 - c * m2) / (1 + c * m2) * kG;
@@ -136,7 +136,7 @@ TEST(TouchFriction, ARodThatTurnsCarriesTheCableAlong) {
   def.bodies = {Ball(1, {-0.3, 0, 0.2}), Ball(m2, {0.3, 0, 0.2})};
   AddRod(def, {}, 0.3, radius - 1e-3, 1);
   def.bodies[2].inertia_kg_m2 = {1, inertia, 1, 0, 0, 0};
-  const double length = 2 + kPi * radius;
+  const double length = 2 + std::numbers::pi * radius;
   def.cables = {Cable({0, {-0.3, 0, 0.2}}, {1, {0.3, 0, 0.2}}, 1e5, length - 0.8 * kG / 1e5, 1e-3)};
   def.cables[0].touches = CableTouches::kRods;
   def.cables[0].touch_friction = 1;
@@ -164,7 +164,8 @@ struct Across {
   const Vec3 from{-0.2, 0, -0.1}, to{0.2, 0, -0.1};
   /// How far they are from the ridge, and how far round it the cable goes.
   const double far_m = std::sqrt(0.2 * 0.2 + 0.1 * 0.1 - kRadius * kRadius);
-  const double theta = 2 * kPi - 2 * std::atan2(0.2, 0.1) - 2 * std::atan2(far_m, kRadius);
+  const double theta =
+      2 * std::numbers::pi - 2 * std::atan2(0.2, 0.1) - 2 * std::atan2(far_m, kRadius);
   const double trails_m = far_m * std::tan(std::asin(0.5 * kFriction * theta));
   ModelDef def;
 
@@ -172,7 +173,7 @@ struct Across {
     def.gravity_m_per_s2 = {};
     def.bodies = {Ball(1e13, from, {0, kSpeed, 0}), Ball(1e13, to, {0, kSpeed, 0})};
     TerrainBoxDef ridge = Box({-1, -9, -1 - std::sqrt(2.0)}, {1, 9, 1 - std::sqrt(2.0)});
-    ridge.orientation = {std::cos(kPi / 8), 0, std::sin(kPi / 8), 0};
+    ridge.orientation = {std::cos(std::numbers::pi / 8), 0, std::sin(std::numbers::pi / 8), 0};
     def.terrain_boxes = {ridge};
     def.cables = {Cable({0, from}, {1, to}, 1000, 0.4, kRadius)};
     def.cables[0].touch_friction = kFriction;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "tests/instruction_sets.h"
 #include "tests/physics/touch_scenes.h"
@@ -58,7 +59,7 @@ TEST(TouchRods, StiffCablesOverManyRodsStayInTheirMemoryAndLane) {
 /// overflow, and its length does not exceed that over all of them.
 TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
   constexpr int kRods = 12;
-  constexpr double kPi = 3.14159265358979323846, kArch = 0.3;
+  constexpr double kArch = 0.3;
   const Vec3 from{-0.5, 0, 0.4}, to{0.5, 0, 0.4};
   ModelDef def;
   def.gravity_m_per_s2 = {};
@@ -66,7 +67,7 @@ TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
   def.cables = {Cable({0, from}, {1, to}, 1e-9, 0.1, 1e-3)};
   def.cables[0].touches = CableTouches::kRods;
   for (int i = 0; i < kRods; ++i) {
-    const double angle = kPi * (i + 0.5) / kRods;
+    const double angle = std::numbers::pi * (i + 0.5) / kRods;
     AddRod(def, {-kArch * std::cos(angle), 0, kArch * std::sin(angle)}, 0.3, 0.01);
     for (int j = 0; j < i; ++j) def.apart.push_back({2 + j, 2 + i});
   }
@@ -87,7 +88,7 @@ TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
   EXPECT_EQ(most, CableDef::kMostBends);
   EXPECT_GT(full, 0.2);
   EXPECT_EQ(world.Status(0).bits, static_cast<std::uint32_t>(kStatusContactOverflow));
-  EXPECT_LT(world.Cable(0, 0).length_m, 2 * 0.8 + kPi * (kArch + 0.011));
+  EXPECT_LT(world.Cable(0, 0).length_m, 2 * 0.8 + std::numbers::pi * (kArch + 0.011));
 }
 
 /// Two balls that have gone past each other, so that their cable makes a loop around the rods: its

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <vector>
 
 #include "math/described_path.h"
@@ -9,8 +10,6 @@
 
 namespace taut::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 BodyDef Ball(double mass_kg, const Vec3& p, const Vec3& velocity = {}, double inertia = 1e-4) {
   BodyDef body;
@@ -49,11 +48,11 @@ TEST(Wheel, APathOfThreeQuartersOfATurnHasTheLengthOfItsTangentsAndArc) {
   // The straight way passes it by; a turn more is three quarters of one that lie on.
   EXPECT_NEAR(length(false, 0), 0.5, 1e-15);
   EXPECT_NEAR(length(false, 1), 1.371238898, 5e-10);
-  EXPECT_NEAR(length(false, 1), 0.5 + 0.4 + 1.5 * kPi * radius, 1e-14);
-  EXPECT_NEAR(length(false, 4), 0.5 + 0.4 + 7.5 * kPi * radius, 1e-13);
+  EXPECT_NEAR(length(false, 1), 0.5 + 0.4 + 1.5 * std::numbers::pi * radius, 1e-14);
+  EXPECT_NEAR(length(false, 4), 0.5 + 0.4 + 7.5 * std::numbers::pi * radius, 1e-13);
   const double tangents = std::atan(5.0) + std::atan(4.0);
   const double between = std::atan2(0.1, 0.5) + std::atan2(0.1, 0.4);
-  EXPECT_NEAR(length(true, 0), 0.9 + radius * (1.5 * kPi + between - tangents), 1e-14);
+  EXPECT_NEAR(length(true, 0), 0.9 + radius * (1.5 * std::numbers::pi + between - tangents), 1e-14);
 }
 
 /// A skew path is straight on the unrolled cylinder: as steep before it as behind.
@@ -115,7 +114,7 @@ ModelDef Atwood(double m1, double m2, int wheels, double stiffness = 1e5) {
   const double arch = 0.1, radius = wheels == 1 ? arch : 0.005;
   std::vector<AttachmentDef> path{{0, {-arch - (wheels == 1 ? 0 : radius), 0, -1}}};
   for (int k = 0; k < wheels; ++k) {
-    const double angle = wheels == 1 ? 0 : kPi * k / (wheels - 1);
+    const double angle = wheels == 1 ? 0 : std::numbers::pi * k / (wheels - 1);
     const Vec3 center =
         wheels == 1 ? Vec3{} : Vec3{-arch * std::cos(angle), 0, arch * std::sin(angle)};
     path.push_back(Round(kWorld, center, {0, 1, 0}, radius, true));
@@ -144,9 +143,10 @@ TEST(Wheel, ACableWindsOffADrumAndOnToIt) {
   // under a force at its radius, and rolls all of it off.
   const double radius = 0.05, inertia = 0.002, turns = 3;
   const Vec3 center{0, 0, 0}, end{1, 0, -radius};
-  const double wound = 2 * kPi * turns;
+  const double wound = 2 * std::numbers::pi * turns;
   // It leaves the drum below its middle, towards x.
-  const Vec3 rim{radius * std::sin(kPi + wound), 0, radius * std::cos(kPi + wound)};
+  const Vec3 rim{radius * std::sin(std::numbers::pi + wound), 0,
+                 radius * std::cos(std::numbers::pi + wound)};
   ModelDef def;
   def.gravity_m_per_s2 = {};
   def.bodies = {Ball(1, center, {}, inertia)};

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <complex>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "system/command.h"
 
@@ -11,7 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-const double kPi = std::acos(-1.0);
 const std::string kMass = TAUT_SOURCE_DIR "/models/hanging_mass.yaml";
 const char* const kForce = "node/mass/force_z";
 const char* const kPlace = "node/mass/position_z";
@@ -45,11 +45,12 @@ TEST_F(AnalyzeLinear, AMassOnASpringAndADamperRespondsAsItsClosedForm) {
   for (std::size_t i = 0; i < 13; ++i) {
     const double f = response["frequency_hz"][i];
     EXPECT_NEAR(f, 0.5 * std::pow(2.0, static_cast<double>(i) / 2), 1e-9 * f);
-    const std::complex<double> s(0, 2 * kPi * f);
+    const std::complex<double> s(0, 2 * std::numbers::pi * f);
     const std::complex<double> wanted = std::exp(-s * 0.0005) / (0.5 * s * s + 4.0 * s + 400.0);
     const double w_h = std::abs(s) * 0.001, bound = w_h * w_h + 1e-5;
     EXPECT_NEAR(response["gain"][i], std::abs(wanted), bound * std::abs(wanted)) << f;
-    EXPECT_NEAR(std::remainder(response["phase_rad"][i].get<double>() - std::arg(wanted), 2 * kPi),
+    EXPECT_NEAR(std::remainder(response["phase_rad"][i].get<double>() - std::arg(wanted),
+                               2 * std::numbers::pi),
                 0, bound)
         << f;
   }
@@ -59,7 +60,8 @@ TEST_F(AnalyzeLinear, AMassOnASpringAndADamperRespondsAsItsClosedForm) {
   for (const json& mode : result["modes"]) {
     if (std::fabs(mode["damping"].get<double>() - share) > 1e-3) continue;
     ++swings;
-    EXPECT_NEAR(mode["frequency_hz"], own * std::sqrt(1 - share * share) / (2 * kPi), 1e-3);
+    EXPECT_NEAR(mode["frequency_hz"], own * std::sqrt(1 - share * share) / (2 * std::numbers::pi),
+                1e-3);
   }
   EXPECT_EQ(swings, 1);
 }

@@ -9,12 +9,10 @@
 #include <numbers>
 
 #include "base/pattern.h"
+#include "tests/constants.h"
 
 namespace taut {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 template <class Function>
 Trace Sampled(double step_s, int rows, const Function& f, double start_s = 0.0,
@@ -55,7 +53,7 @@ TEST(Compare, ATraceEqualsItself) {
 TEST(Compare, AShiftedSineHasTheDelayTheRmseAndTheBiasOfTheClosedForm) {
   // a = 2 sin(w t) + 7, b = 2 sin(w (t - tau)) + 5 over whole periods:
   // mean of (a - b) is 2, mean of its square 4 + 2^2 (1 - cos(w tau)).
-  const double w = 2 * kPi, tau_s = 0.07, step_s = 0.01;
+  const double w = 2 * std::numbers::pi, tau_s = 0.07, step_s = 0.01;
   const int periods = 9, rows = 100 * periods;  // no row twice at the periods' end
   const Trace a = Sampled(step_s, rows, [&](double t) { return 2 * std::sin(w * t) + 7; });
   const Trace b =
@@ -83,7 +81,7 @@ TEST(Compare, AShiftedSineHasTheDelayTheRmseAndTheBiasOfTheClosedForm) {
 TEST(Compare, ADelayBetweenRowsIsWhatTheParabolaGives) {
   // Through cos(h (k - d)) at k = -1, 0, 1 the parabola peaks at tan(h d) / (2 tan(h / 2)) with
   // h = w step and d the delay in rows; it is d up to O(h^2 d).
-  const double w = 2 * kPi, step_s = 0.01, h = w * step_s;
+  const double w = 2 * std::numbers::pi, step_s = 0.01, h = w * step_s;
   for (const double d : {-0.45, -0.1, 0.2, 0.3}) {
     const auto sine = [&](double t) { return std::sin(w * t); };
     const auto later = [&](double t) { return std::sin(w * (t - (3 + d) * step_s)); };

@@ -7,16 +7,14 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <random>
 #include <vector>
 
 #include "simd/wide.h"
+#include "tests/constants.h"
 
 namespace taut::control {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 template <class Real = double>
 struct Network {

@@ -13,11 +13,10 @@
 
 #include "simd/wide.h"
 #include "taut/control/network.h"
+#include "tests/constants.h"
 
 namespace taut::control {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 template <class Real = double>
 struct Oscillators {

@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "taut/control/rate.h"
+#include "tests/constants.h"
 
 namespace taut::control {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPeriod = 0.001;
 constexpr double kStiffness = 229.16;
 

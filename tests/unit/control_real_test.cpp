@@ -6,16 +6,14 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "simd/wide.h"
 #include "taut/control/impedance.h"
 #include "taut/control/rate.h"
+#include "tests/constants.h"
 
 namespace taut::control {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(ControlReal, ClampKeepsTheRange) {
   EXPECT_EQ(Clamp(5.0, -1.0, 2.0), 2.0);

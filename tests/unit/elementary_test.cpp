@@ -1,6 +1,7 @@
 // The oracle is the C library's long double functions (64 bits of mantissa or more), which are
 // good to about 0.001 units in the last place of a double.
 #include "math/elementary.h"
+#include "tests/constants.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <random>
 
 namespace taut::math {
@@ -18,8 +20,6 @@ static_assert(std::numeric_limits<long double>::digits >= 64,
               "the oracle needs a wide long double");
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kBoundUlp = 0.502;  // 0.5001 ours, the rest the oracle's
 
 /// Distance of `got` from the true value, in units of the true value's last place.
@@ -57,7 +57,7 @@ TEST(Elementary, SinCosAndTanAreCorrectlyRoundedUpTo1e9) {
 // There the result is all cancellation: sin(fl(k pi / 2)) needs every bit of the reduction.
 TEST(Elementary, SinAndCosKeepTheirDigitsNextToMultiplesOfHalfPi) {
   for (int k = 1; k < 5000; ++k) {
-    const double x = k * (kPi / 2);
+    const double x = k * (std::numbers::pi / 2);
     EXPECT_LE(UlpsOff(Sin(x), sinl(x)), kBoundUlp) << k;
     EXPECT_LE(UlpsOff(Cos(x), cosl(x)), kBoundUlp) << k;
   }
@@ -128,10 +128,10 @@ TEST(Elementary, ExactResultsAreExact) {
   EXPECT_EQ(Exp(0.0), 1.0);
   EXPECT_EQ(Log(1.0), 0.0);
   EXPECT_EQ(Cos(0.0), 1.0);
-  EXPECT_EQ(Sin(kPi / 6), 0.49999999999999994);  // of the double below pi / 6
+  EXPECT_EQ(Sin(std::numbers::pi / 6), 0.49999999999999994);  // of the double below pi / 6
   EXPECT_EQ(Acos(1.0), 0.0);
-  EXPECT_EQ(Acos(-1.0), kPi);
-  EXPECT_EQ(Asin(1.0), kPi / 2);
+  EXPECT_EQ(Acos(-1.0), std::numbers::pi);
+  EXPECT_EQ(Asin(1.0), std::numbers::pi / 2);
 }
 
 TEST(Elementary, SpecialCasesFollowC) {

@@ -1,15 +1,13 @@
 // Gaits whose oscillators hear cables and a goal: files, what is wrong with them, and how they
 // play.
 #include <cmath>
-#include <numbers>
 
 #include "plant/gait_kinds.h"
+#include "tests/constants.h"
 #include "unit/experiment_fixture.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 constexpr const char* kGait = R"(taut: 1
 kind: gait

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "math/angle.h"
 #include "math/vec.h"
@@ -57,7 +58,8 @@ ModelDef Prism(int n) {
   robot.def.gravity_m_per_s2 = {};
   constexpr double kRadius = 0.7, kHeight = 1.1;
   for (int i = 0; i < n; ++i) {
-    const double low = 2 * kPi * i / n, high = low + kPi / 2 + kPi / n;
+    const double low = 2 * std::numbers::pi * i / n,
+                 high = low + std::numbers::pi / 2 + std::numbers::pi / n;
     robot.AddRod({kRadius * std::cos(low), kRadius * std::sin(low), 0},
                  {kRadius * std::cos(high), kRadius * std::sin(high), kHeight});
   }
@@ -122,7 +124,7 @@ TEST(ForceAnalysis, PrismsHaveTheDensitiesAndMechanismsThatAreKnown) {
     const std::size_t sides = static_cast<std::size_t>(2 * n);
     for (int i = 0; i < 2 * n; ++i) {
       EXPECT_NEAR(state.density_n_per_m[static_cast<std::size_t>(i)] / state.density_n_per_m[sides],
-                  1 / (2 * std::sin(kPi / n)), 1e-9);
+                  1 / (2 * std::sin(std::numbers::pi / n)), 1e-9);
     }
     ASSERT_FALSE(state.rod_density_n_per_m.empty());
     EXPECT_NEAR(state.rod_density_n_per_m[0] / state.density_n_per_m[sides], -1, 1e-9);

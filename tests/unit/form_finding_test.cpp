@@ -16,8 +16,6 @@
 namespace taut {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 double Distance(const FormNet& net, int a, int b) {
   return Length(net.nodes_m[static_cast<std::size_t>(a)] -
@@ -59,9 +57,10 @@ Prism PrismOf(int n, double twist_rad, double above_radius_m) {
     prism.group.push_back(group);
   };
   for (int i = 0; i < n; ++i)
-    prism.net.nodes_m.push_back({std::cos(2 * kPi * i / n), std::sin(2 * kPi * i / n), 0});
+    prism.net.nodes_m.push_back(
+        {std::cos(2 * std::numbers::pi * i / n), std::sin(2 * std::numbers::pi * i / n), 0});
   for (int i = 0; i < n; ++i) {
-    const double angle = 2 * kPi * i / n + twist_rad;
+    const double angle = 2 * std::numbers::pi * i / n + twist_rad;
     prism.net.nodes_m.push_back(
         {above_radius_m * std::cos(angle), above_radius_m * std::sin(angle), 1.5});
   }
@@ -79,7 +78,7 @@ Prism PrismOf(int n, double twist_rad, double above_radius_m) {
 // q_strut = -2 sin(pi / n) q_h.
 TEST(FormFinding, PrismsTwistByWhatTheirCornersAsk) {
   for (const int n : {3, 4, 5, 7}) {
-    const Prism prism = PrismOf(n, kPi / 2 + kPi / n + 0.1, 1.0);
+    const Prism prism = PrismOf(n, std::numbers::pi / 2 + std::numbers::pi / n + 0.1, 1.0);
     Diagnostics out;
     const FreeForm form = FindFreeForm(prism.net, prism.group, out);
     ASSERT_TRUE(out.ok()) << out.Format();
@@ -88,12 +87,12 @@ TEST(FormFinding, PrismsTwistByWhatTheirCornersAsk) {
     EXPECT_TRUE(form.super_stable);
     const std::vector<double>& q = form.group_force_density_n_per_m;
     const double sign = q[0];
-    EXPECT_NEAR(sign * q[1], 2 * std::sin(kPi / n), 1e-9);
-    EXPECT_NEAR(sign * q[2], -2 * std::sin(kPi / n), 1e-9);
+    EXPECT_NEAR(sign * q[1], 2 * std::sin(std::numbers::pi / n), 1e-9);
+    EXPECT_NEAR(sign * q[2], -2 * std::sin(std::numbers::pi / n), 1e-9);
     const Vec3 &foot = form.nodes_m[0], &top = form.nodes_m[static_cast<std::size_t>(n)];
     const double turn =
         std::atan2(foot.x * top.y - foot.y * top.x, foot.x * top.x + foot.y * top.y);
-    EXPECT_NEAR(turn, kPi / 2 + kPi / n, 1e-9);
+    EXPECT_NEAR(turn, std::numbers::pi / 2 + std::numbers::pi / n, 1e-9);
   }
 }
 

@@ -1,6 +1,7 @@
 // Friction by speed and direction in files: what they say, how it turns with its part, what is said
 // of wrong ones, and the ways through a resolved experiment and a written model.
 #include <cmath>
+#include <numbers>
 
 #include "math/vec.h"
 #include "taut/batch.h"
@@ -9,8 +10,6 @@
 
 namespace taut::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 std::string OneRod(const std::string& surface) {
   return "nodes: {a: [0, 0, 0], b: [1, 0, 0]}\n"  // line 4

@@ -2,16 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "fake_plant.h"
 #include "plant/loop.h"
 #include "taut/run.h"
+#include "tests/constants.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 RobotSpec Spine() {
   Diagnostics out;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 
 #include "fake_plant.h"
 #include "plant/gait_kinds.h"
@@ -12,11 +11,11 @@
 #include "plant/loop.h"
 #include "taut/play.h"
 #include "taut/run.h"
+#include "tests/constants.h"
 
 namespace taut::test {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 const std::string kRoot = TAUT_SOURCE_DIR "/";
 
 RobotSpec Spine() {

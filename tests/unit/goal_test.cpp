@@ -14,8 +14,6 @@
 namespace taut::test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 class Goal : public ExperimentErrors {
  protected:
   ExperimentSpec With(const std::string& goal, const std::string& more = "") {
@@ -54,9 +52,9 @@ TEST_F(Goal, TheSensorSaysTheWayInTheBodysHorizontalFrame) {
   Standing bodies;
   // Looks along x; turned left by a quarter; then rolled about its own axis, too, and nose up.
   bodies.states[{0, 1}].position_m = {0, 0, 5};
-  bodies.states[{1, 1}] = At({3, 1, 0}, About({0, 0, 1}, kPi / 2));
-  bodies.states[{2, 1}] =
-      At({3, 1, 0}, About({0, 0, 1}, kPi / 2) * About({0, 1, 0}, -0.7) * About({1, 0, 0}, 2.0));
+  bodies.states[{1, 1}] = At({3, 1, 0}, About({0, 0, 1}, std::numbers::pi / 2));
+  bodies.states[{2, 1}] = At({3, 1, 0}, About({0, 0, 1}, std::numbers::pi / 2) *
+                                            About({0, 1, 0}, -0.7) * About({1, 0, 0}, 2.0));
   const std::array<std::int64_t, 3> number{};
   Observation exact;
   exact.lanes = 3;
@@ -116,7 +114,7 @@ TEST_F(Goal, NoiseTurnsItAboutTheOrigin) {
   const GoalSpec goal{.at_m = {3, 4, 1}};
   double least = 1, most = -1;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    const Vec3 at = plant::GoalOf(goal, {.goal_rad = kPi / 2}, seed);
+    const Vec3 at = plant::GoalOf(goal, {.goal_rad = std::numbers::pi / 2}, seed);
     EXPECT_NEAR(std::hypot(at.x, at.y), 5.0, 1e-12);
     EXPECT_EQ(at.z, 1.0);
     const double turned = (3 * at.x + 4 * at.y) / 25;  // cosine

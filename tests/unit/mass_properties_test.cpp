@@ -3,14 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "math/vec.h"
 #include "taut/statics.h"
 
 namespace taut {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 void ExpectNear(const Inertia& got, const Inertia& wanted, double tolerance) {
   EXPECT_NEAR(got.xx, wanted.xx, tolerance);
@@ -54,7 +53,7 @@ TEST(MassProperties, ACylinderAlongAnAxisHasTheTextbookMoments) {
 
 TEST(MassProperties, ASlantedCylinderIsTheSumOfItsPoints) {
   // Points of a cylinder about z, turned by a rotation that the cylinder's ends get, too.
-  const double half = 0.25 * kPi, s = std::sin(half) / std::sqrt(14.0);
+  const double half = 0.25 * std::numbers::pi, s = std::sin(half) / std::sqrt(14.0);
   const Quat q{std::cos(half), s, 2 * s, 3 * s};
   const double r = 0.3, l = 2.0;
   std::vector<Vec3> points;
@@ -62,7 +61,7 @@ TEST(MassProperties, ASlantedCylinderIsTheSumOfItsPoints) {
   for (int a = 0; a < n; ++a) {
     for (int b = 0; b < n; ++b) {
       for (int c = 0; c < 12; ++c) {
-        const double rho = r * std::sqrt((a + 0.5) / n), phi = 2 * kPi * c / 12;
+        const double rho = r * std::sqrt((a + 0.5) / n), phi = 2 * std::numbers::pi * c / 12;
         points.push_back(
             Rotate(q, {rho * std::cos(phi), rho * std::sin(phi), l * ((b + 0.5) / n - 0.5)}));
       }

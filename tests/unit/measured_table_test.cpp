@@ -2,14 +2,13 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <numbers>
 
 #include "taut/compare.h"
 #include "trace_fixture.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 class MeasuredTable : public TraceFolder {
  protected:
@@ -70,7 +69,7 @@ TEST_F(MeasuredTable, PosesOfTheBestSpineAreReadUnchanged) {
     ASSERT_NEAR(pose.time_s[row], 2.5 + (ms - first_ms) / 1000, 1e-9);
     ASSERT_NEAR(Values(pose, "body/v/position_x_m")[row], x / 100, 1e-15);
     ASSERT_NEAR(Values(pose, "body/v/position_z_m")[row], y / 100 - 0.1, 1e-15);
-    ASSERT_NEAR(Values(pose, "body/v/angle_rad")[row], turn * kPi / 180, 1e-15);
+    ASSERT_NEAR(Values(pose, "body/v/angle_rad")[row], turn * std::numbers::pi / 180, 1e-15);
   }
   EXPECT_EQ(row, 871u);
   EXPECT_EQ(pose.time_s.size(), row);

@@ -10,8 +10,6 @@
 namespace taut {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 SizingTask Aluminium(double length_m, const std::vector<double>& force_n) {
   SizingTask task;
   task.name = "strut";
@@ -44,14 +42,15 @@ TEST(MemberSizing, ALongRodIsAtTheLoadAtWhichItBuckles) {
     ASSERT_TRUE(rod) << out.Format();
     EXPECT_EQ(rod->limit, SizingLimit::kBuckling);
     const double load = BucklingLoad(70e9 * rod->member.second_moment_m4, 3, 60);
-    EXPECT_NEAR(load / (2.5 * 2000), 1 - kPi * kPi / (12 * 60 * 60), 1e-7);
+    EXPECT_NEAR(load / (2.5 * 2000), 1 - std::numbers::pi * std::numbers::pi / (12 * 60 * 60),
+                1e-7);
     // The section's moment from rings.
     double moment = 0, area = 0;
     constexpr int kRings = 20000;
     for (int i = 0; i < kRings; ++i) {
       const double width = rod->radius_m * (1 - inner) / kRings;
       const double r = rod->radius_m * inner + (i + 0.5) * width;
-      area += 2 * kPi * r * width, moment += kPi * r * r * r * width;
+      area += 2 * std::numbers::pi * r * width, moment += std::numbers::pi * r * r * r * width;
     }
     EXPECT_NEAR(rod->member.second_moment_m4 / moment, 1, 1e-8);
     EXPECT_NEAR(rod->mass_kg, 2700 * area * 3, 1e-8);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "math/angle.h"
@@ -156,8 +157,8 @@ TEST(Modes, APointBetweenTwoTautCablesHasItsTwoFrequencies) {
     def.gravity_m_per_s2 = {};
     return def;
   }());
-  const double across = std::sqrt(2 * tension / mass) / (2 * kPi);
-  Expect(hz, {across, across, std::sqrt(2 * k / mass) / (2 * kPi)}, 1e-12);
+  const double across = std::sqrt(2 * tension / mass) / (2 * std::numbers::pi);
+  Expect(hz, {across, across, std::sqrt(2 * k / mass) / (2 * std::numbers::pi)}, 1e-12);
 }
 
 TEST(Modes, ARodHangsAsAPendulumAndFallsFromItsHead) {
@@ -167,7 +168,7 @@ TEST(Modes, ARodHangsAsAPendulumAndFallsFromItsHead) {
     AddJoint(def, JointKind::kBall, kWorld, {0, 0, 0}, 0, {0, 0, 0});
     const Modes modes = FindModes(def);
     ASSERT_EQ(modes.modes.size(), 2U);  // not about its axis
-    const double hz = std::sqrt(1.5 * 9.81 / 0.8) / (2 * kPi);
+    const double hz = std::sqrt(1.5 * 9.81 / 0.8) / (2 * std::numbers::pi);
     for (const Mode& mode : modes.modes) EXPECT_NEAR(mode.frequency_hz, -side * hz, 1e-8);
     EXPECT_EQ(modes.unstable, side > 0 ? 2 : 0);
     EXPECT_EQ(modes.rigid, 0);
@@ -233,7 +234,7 @@ TEST(Modes, OfAFloatingPrismAreThoseOfARingDown) {
       before = now;
       ASSERT_LT(world.Time(0), 5);
     }
-    const double hz = 20 / (last - first), wh = 2 * kPi * mode.frequency_hz * step_s;
+    const double hz = 20 / (last - first), wh = 2 * std::numbers::pi * mode.frequency_hz * step_s;
     const bool is_explicit = CableSchemes(world.model(), step_s)[0] == CableScheme::kExplicit;
     const double shift = is_explicit ? wh * wh / 24 : -wh * wh / 12;
     EXPECT_NEAR(hz / mode.frequency_hz - 1, shift, 0.03 * std::fabs(shift)) << step_s;

@@ -1,17 +1,17 @@
 // Overloaded members of a run: name, force, time, and the outputs that report them.
 #include <cmath>
+#include <numbers>
 
 #include "scenes/ball.h"
 #include "scenes/hanging_mass.h"
 #include "scenes/rod.h"
 #include "taut/live.h"
 #include "taut/summary.h"
+#include "tests/constants.h"
 #include "unit/recorder_fixture.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81;
 
 /// Rows at the start and the end only: the peak in between is not recorded.
 RunSummary SummaryOf(const ModelDef& def, double duration_s) {
@@ -97,10 +97,10 @@ ModelDef OnABar(const MemberDef& member) {
 }
 
 TEST(Overload, ABarThatBucklesAndYieldsIsSaidTwice) {
-  constexpr double kPi = 3.14159265358979323846;
   MemberDef member;
   member.young_pa = 1e9;
-  member.second_moment_m4 = 0.5 * kG / (kPi * kPi * 1e9);  // buckles at half the weight
+  member.second_moment_m4 =
+      0.5 * kG / (std::numbers::pi * std::numbers::pi * 1e9);  // buckles at half the weight
   member.area_m2 = 1e-6;
   member.yield_pa = 0.75 * kG / 1e-6;
   member.strength_n = 1;  // which is of tension
@@ -125,13 +125,13 @@ TEST(Overload, ABarThatBucklesAndYieldsIsSaidTwice) {
 /// A rod of 0.3 kg that falls on its end from 1 cm and stands: between two rows it lands with
 /// m v = m sqrt(2 g 0.01 m) in one step.
 TEST(Overload, ARodIsLookedAtBetweenRows) {
-  constexpr double kPi = 3.14159265358979323846;
   ModelDef def;
   scenes::AddRod(def, "rod", 0.3, 0.01, {0, 0, 0.02}, {0, 0, 0.42}, {});
   scenes::AddGround(def, {});
   const double load_n = 50;
   def.capsules[0].member.young_pa = 1e9;
-  def.capsules[0].member.second_moment_m4 = load_n * 0.4 * 0.4 / (kPi * kPi * 1e9);
+  def.capsules[0].member.second_moment_m4 =
+      load_n * 0.4 * 0.4 / (std::numbers::pi * std::numbers::pi * 1e9);
   const RunSummary run = SummaryOf(def, 0.1);
   ASSERT_EQ(run.struts.size(), 1u);
   EXPECT_GT(run.struts[0].least_n, -0.31 * kG) << "or the rows have it, too";

@@ -2,12 +2,11 @@
 #include <cmath>
 
 #include "scenes/ball.h"
+#include "tests/constants.h"
 #include "unit/recorder_fixture.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81;
 
 /// A fixed box of 2 kg about `center_m`, with a node in its middle.
 void AddFixedBox(ModelDef& def, const std::string& name, const Vec3& center_m, const Vec3& half_m,

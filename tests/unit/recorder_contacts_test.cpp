@@ -7,13 +7,12 @@
 #include "scenes/ball.h"
 #include "taut/live.h"
 #include "taut/summary.h"
+#include "tests/constants.h"
 #include "unit/experiment_fixture.h"
 #include "unit/recorder_fixture.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81;
 
 /// Balls of 1, 2, 3 ... kg in a row on the ground.
 ModelDef Balls(int count) {

@@ -5,12 +5,11 @@
 #include "scenes/ball.h"
 #include "scenes/rod.h"
 #include "taut/statics.h"
+#include "tests/constants.h"
 #include "unit/recorder_fixture.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81;
 
 /// A rod of 0.3 kg and 0.4 m with balls at its ends, through `middle_m` along `along`.
 ModelDef Rod(const Vec3& middle_m, const Vec3& along, double start_kg = 0, double end_kg = 0) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "math/described_path.h"
 #include "unit/model_fixture.h"
@@ -67,7 +68,7 @@ TEST(Route, WhatIsWoundUpIsNotShorterThanItsRestLength) {
 
 TEST(Route, ADrumHasWhatIsWoundUpAtEitherEnd) {
   // Left or right is as one goes along the cable.
-  const double straight = std::sqrt(0.5 * 0.5), wound = 2 * kPi * 2.25 * 0.1;
+  const double straight = std::sqrt(0.5 * 0.5), wound = 2 * std::numbers::pi * 2.25 * 0.1;
   for (const std::string& route : {"[a, " + Drum("side: left, turns: 2.25") + "]",
                                    "[" + Drum("side: right, turns: 2.25") + ", a]"}) {
     const RobotSpec robot = Good(Posts(route));
@@ -163,7 +164,7 @@ TEST(Route, AnAxisAlongTheWayHasNoSide) {
   const CableDef wound = Good(pulley("[-4, 0, 3]", ", turns: 1")).def.cables[0];
   // Both ends are 0.38 m from the axis, and 0.5 m apart along it.
   const double from_axis = 0.38, tangent = std::sqrt(from_axis * from_axis - 0.01);
-  const double across = 2 * tangent + 0.1 * (2 * kPi - 2 * std::acos(0.1 / from_axis));
+  const double across = 2 * tangent + 0.1 * (2 * std::numbers::pi - 2 * std::acos(0.1 / from_axis));
   EXPECT_NEAR(math::DescribedPath(wound).length_m(), std::hypot(across, 0.5), 1e-12);
 }
 

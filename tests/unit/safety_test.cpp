@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "scenes/rod.h"
 
@@ -12,11 +13,10 @@ namespace {
 
 /// A steel tube of 20 mm by 1 mm, 1.5 m long, as a bar between two bodies and as a rod.
 MemberDef Tube() {
-  constexpr double kPi = 3.14159265358979323846;
   MemberDef member;
   member.young_pa = 210e9;
-  member.area_m2 = kPi * (0.01 * 0.01 - 0.009 * 0.009);
-  member.second_moment_m4 = kPi / 4 * (std::pow(0.01, 4) - std::pow(0.009, 4));
+  member.area_m2 = std::numbers::pi * (0.01 * 0.01 - 0.009 * 0.009);
+  member.second_moment_m4 = std::numbers::pi / 4 * (std::pow(0.01, 4) - std::pow(0.009, 4));
   member.yield_pa = 235e6;
   member.strength_n = 20e3;
   return member;

@@ -1,4 +1,6 @@
 // Boxes against boxes.
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "unit/shape_helpers.h"
@@ -6,7 +8,6 @@
 namespace taut::sim {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kTiny = 1e-12;
 /// How much nearer an edge must be than a face to be preferred, for random boxes.
 constexpr double kPreferenceM = 1e-4 * 0.2;
@@ -74,7 +75,8 @@ TEST(TouchBoxBox, OverhangingBoxIsCarriedWhereItOverlaps) {
 }
 
 TEST(TouchBoxBox, BoxTurnedBy45DegreesTouchesInAnOctagon) {
-  const Points points = Touch(Cube(0.1, Turn({0, 0, 1}, kPi / 4, {0, 0, 0.199})), Cube(0.1));
+  const Points points =
+      Touch(Cube(0.1, Turn({0, 0, 1}, std::numbers::pi / 4, {0, 0, 0.199})), Cube(0.1));
   const double c = 0.1 * (std::sqrt(2.0) - 1.0), z = 0.0995;
   ExpectPlaces(points,
                {{0.1, c, z},
@@ -106,8 +108,8 @@ TEST(TouchBoxBox, EqualBoxesOnEachOtherKeepTheirFeaturesInSpiteOfRounding) {
 TEST(TouchBoxBox, BoxOnItsEdgeTouchesInTwoPoints) {
   const double reach = 0.1 * std::sqrt(2.0);
   const BoxShape floor = Box({1, 1, 0.1}, Shift({0, 0, -0.1}));
-  const Points points =
-      Touch(Box({0.1, 0.3, 0.1}, Turn({0, 1, 0}, kPi / 4, {0, 0, reach - 0.001})), floor);
+  const Points points = Touch(
+      Box({0.1, 0.3, 0.1}, Turn({0, 1, 0}, std::numbers::pi / 4, {0, 0, reach - 0.001})), floor);
   ExpectPlaces(points, {{0, -0.3, -0.0005}, {0, 0.3, -0.0005}}, kTiny);
   ExpectAll(points, {0, 0, 1}, -0.001);
 }
@@ -125,10 +127,10 @@ TEST(TouchBoxBox, BoxOnItsCornerTouchesInOnePoint) {
 TEST(TouchBoxBox, CrossedEdgesTouchInOnePoint) {
   // Two roofs: an edge along x looks up, an edge along y looks down.
   const double reach = 0.1 * std::sqrt(2.0);
-  const BoxShape low = Box({0.3, 0.1, 0.1}, Turn({1, 0, 0}, kPi / 4));
+  const BoxShape low = Box({0.3, 0.1, 0.1}, Turn({1, 0, 0}, std::numbers::pi / 4));
   for (const double gap : {-0.002, 0.0, 0.003}) {
     const BoxShape high =
-        Box({0.1, 0.3, 0.1}, Turn({0, 1, 0}, kPi / 4, {0.05, 0.02, 2 * reach + gap}));
+        Box({0.1, 0.3, 0.1}, Turn({0, 1, 0}, std::numbers::pi / 4, {0.05, 0.02, 2 * reach + gap}));
     const Points points = Touch(high, low, 0.01);
     ExpectPlaces(points, {{0.05, 0, reach + 0.5 * gap}}, kTiny);
     ExpectAll(points, {0, 0, 1}, gap);
@@ -184,7 +186,7 @@ TEST(TouchBoxBox, PointsOfATippingBoxStayContinuous) {
   const double diagonal = std::sqrt(0.05);
   Points before;
   // About the edge at x = 0.2, from flat over its balance to flat on the next side.
-  for (double angle = 0; angle < kPi / 2; angle += 1e-5) {
+  for (double angle = 0; angle < std::numbers::pi / 2; angle += 1e-5) {
     const double to_center = std::atan2(0.1, 0.2) + angle;  // above the edge, seen from it
     const Motion motion =
         Turn({0, 1, 0}, angle,

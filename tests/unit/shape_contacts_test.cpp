@@ -1,4 +1,6 @@
 // Spheres and capsules against each other and against boxes.
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "unit/shape_helpers.h"
@@ -6,7 +8,6 @@
 namespace taut::sim {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kTiny = 1e-12;
 /// How far from the least distance a walk may end.
 constexpr double kWalkM = 1e-6;
@@ -99,7 +100,7 @@ TEST(TouchRoundRound, PointsOfATwistingRodStayContinuous) {
   Points before = Touch(high, low);
   ASSERT_EQ(before.size(), 2u);
   double angle = 1e-9;
-  for (; angle < kPi / 4; angle += std::min(1e-5, 0.05 * angle)) {
+  for (; angle < std::numbers::pi / 4; angle += std::min(1e-5, 0.05 * angle)) {
     const Points now = Touch(Moved(high, Turn({0, 0, 1}, angle)), low);
     ASSERT_LT(WorstChange(before, now, 0.01), 3e-5) << angle;
     ASSERT_NEAR(Deepest(now).gap_m, -5e-5, 2.1e-8) << angle;

@@ -8,15 +8,14 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <numbers>
 
 namespace taut::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// One cable under T0 + B cos(w t), wound in by A sin(w t), for `cycles` of a second.
 struct Sine {
-  double base_n = 20, swing_n = 8, wound_m = 0.05, w = 2 * kPi;
+  double base_n = 20, swing_n = 8, wound_m = 0.05, w = 2 * std::numbers::pi;
   int cycles = 3, rows = 30001;
 
   ExperimentSpec Experiment() const {
@@ -62,8 +61,8 @@ TEST(Sizing, ASineHasTheDemandsOfItsClosedForm) {
   EXPECT_NEAR(d.peak_power_w, (t0 + b) * a * w, 20 * off);
   // Mean of (T0 + B cos)^2 cos^2 over a turn.
   EXPECT_NEAR(d.rms_power_w, a * w * std::sqrt(t0 * t0 / 2 + 3 * b * b / 8), 20 * off);
-  EXPECT_NEAR(d.gross_energy_j, sine.cycles * a * (2 * t0 + b * kPi / 2), 1e-4);
-  EXPECT_NEAR(d.net_energy_j, sine.cycles * kPi * a * b, 1e-5);
+  EXPECT_NEAR(d.gross_energy_j, sine.cycles * a * (2 * t0 + b * std::numbers::pi / 2), 1e-4);
+  EXPECT_NEAR(d.net_energy_j, sine.cycles * std::numbers::pi * a * b, 1e-5);
   EXPECT_NEAR(d.wound_m, 2 * a, 1e-12);
   EXPECT_NEAR(d.stretch_m, (t0 + b - 2) / 400, 1e-12);
   EXPECT_TRUE(d.actuated);
@@ -91,7 +90,7 @@ TEST(Sizing, AMotorsFactorsAreWhatItHasOverWhatIsNeeded) {
   motor.peak_power_w = 20;
   CableDemand cable;
   cable.peak_force_n = 30, cable.rms_force_n = 10;
-  cable.peak_speed_m_per_s = 0.5, cable.peak_power_w = 8, cable.wound_m = 0.2 * kPi;
+  cable.peak_speed_m_per_s = 0.5, cable.peak_power_w = 8, cable.wound_m = 0.2 * std::numbers::pi;
   // Spool of 1 cm: 30 N are 0.3 N m behind the gear, 0.06 before it; 0.5 m/s are 500 rad/s.
   const Fit fit = FitOf(motor, 0.01, 1.0, cable);
   ASSERT_EQ(fit.margins.size(), 4u);
@@ -170,7 +169,7 @@ TEST(Catalogue, TheExampleIsRead) {
   ASSERT_TRUE(catalogue) << out.Format();
   ASSERT_EQ(catalogue->motors.size(), 2u);
   EXPECT_EQ(catalogue->motors[0].name, "small");
-  EXPECT_NEAR(catalogue->motors[0].max_speed_rad_per_s, 9000 * 2 * kPi / 60, 1e-9);
+  EXPECT_NEAR(catalogue->motors[0].max_speed_rad_per_s, 9000 * 2 * std::numbers::pi / 60, 1e-9);
   EXPECT_FALSE(catalogue->motors[0].rated_power_w);
   EXPECT_EQ(*catalogue->motors[1].rated_power_w, 20);
   EXPECT_EQ(catalogue->springs.size(), 2u);

@@ -9,11 +9,10 @@
 #include "scenes/rod.h"
 #include "scenes/solids.h"
 #include "taut/loads.h"
+#include "tests/constants.h"
 
 namespace taut::test {
 namespace {
-
-constexpr double kG = 9.81;
 
 AxialForce Only(const ModelDef& def, const std::vector<BodyForce>& forces) {
   const auto struts = StrutForces(def, forces);

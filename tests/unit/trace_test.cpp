@@ -6,13 +6,13 @@
 #include <cstring>
 #include <limits>
 
+#include "tests/constants.h"
 #include "trace/channel_names.h"
 #include "trace_fixture.h"
 
 namespace taut::test {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Bitwise, so that NaN equals NaN and 0 differs from -0.

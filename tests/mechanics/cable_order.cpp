@@ -1,3 +1,0 @@
-/// Order of cables in a file.
-
-#include "tests/mechanics/scene.h"
