@@ -116,6 +116,27 @@ bool BoxGoesOn(const BoxShape& box, const Vec3& place, const Vec3& way, double s
   return false;
 }
 
+/// Whether an open sheet at the point separates the direction from the middle of the body.
+bool IsBehindSheet(const SeamList& seams, const Vec3& place, const Vec3& way, const Vec3& middle,
+                   double more_m) noexcept {
+  bool behind = false;
+  for (int i = 0; i < seams.count && !behind; ++i) {
+    const SeamPiece& piece = seams.pieces[i];
+    if (piece.kind != SeamPiece::kSurface || piece.surface->solid || piece.surface->is_field ||
+        !IsWithin(piece, place, more_m)) {
+      continue;
+    }
+    EachAt(*piece.surface, place, piece.same_m + more_m,
+           [&](const SurfaceTriangle& t, const Vec3&) noexcept {
+             const Vec3 n = Cross(t.p[1] - t.p[0], t.p[2] - t.p[0]);
+             const double along = Dot(n, way), least = kLevel * Norm(n) * Norm(way);
+             const double side = Dot(n, middle - place);
+             behind = behind || (along > least && side < 0.0) || (along < -least && side > 0.0);
+           });
+  }
+  return behind;
+}
+
 }  // namespace
 
 bool IsOnSeam(const SeamList& seams, const Vec3& place, double more_m) noexcept {
@@ -166,6 +187,7 @@ bool IsExposed(const SeamList& seams, const Vec3& end, const SeamContact& contac
   if (more_m > 0.0 && IsOnSeam(seams, place + Smaller(near_m / length_m, 1.0) * way, more_m)) {
     return false;
   }
+  if (IsBehindSheet(seams, place, way, *middle, more_m)) return false;
   const double step_m = kOpenSteps * seams.same_m + kSteps * more_m;
   return !IsCovered(seams, place + Smaller(step_m / length_m, 1.0) * way, normal, slack, more_m);
 }

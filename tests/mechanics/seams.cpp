@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "scenes/chance.h"
 #include "tests/constants.h"
@@ -115,8 +117,11 @@ void PiecesThatMeetNearly(Report& report) {
 /// Pieces of other sizes along a border, four in a corner; turned or not. On a plane.
 void PiecesInCorners(Report& report) {
   Worst worst;
-  const int runs = report.IsFull() ? 200 : 24;
-  for (int k = 0; k < runs; ++k) {
+  // In the last ones a box or hull turns over the border of a sheet, behind which a wall goes down.
+  std::vector<int> starts(report.IsFull() ? 200 : 24);
+  std::iota(starts.begin(), starts.end(), 0);
+  starts.insert(starts.end(), {170, 685, 686, 844, 1013, 1709, 1817});
+  for (const int k : starts) {
     scenes::Chance chance(300 + static_cast<std::uint64_t>(k));
     const bool turned = k % 3 == 2;
     const Guest guest = kGuests[static_cast<int>(chance.Within(0, 8))];
