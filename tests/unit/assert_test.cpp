@@ -31,7 +31,7 @@ TEST(AssertDeathTest, ARowKnowsItsEnd) {
   const sim::Row<double> row(numbers, 2);
   EXPECT_EQ(row[1], 2.0);
 #ifdef TAUT_ASSERTS
-  EXPECT_DEATH(row[2], "rows.h:[0-9]+: assertion failed: 0 <= i && i < count_");
+  EXPECT_DEATH(row[2], "room.h:[0-9]+: assertion failed: 0 <= .* < count_");
   EXPECT_DEATH(row[-1], "assertion failed");
 #endif
 }

@@ -2,7 +2,7 @@
 /// and directions at the end of the step, with contacts inside (docs/theory/cables.md, section 3).
 ///
 /// A step has one stage, or two if a stiff cable has a damper. If Newton's method fails, the step
-/// is divided into 2, 4, ... 128 substeps.
+/// is divided into 2, 4, ... 128 substeps, within the bound of linear systems of a step.
 
 namespace taut::sim {
 
@@ -14,24 +14,28 @@ class ImplicitIsland {
   static constexpr double kMiddle = 0.9;
   static constexpr double kTolerance = 1e-9, kLeastSpeedMPerS = 1e-3;
   static constexpr int kMostSteps = 40, kMostHalvings = 7;
+  /// Linear systems of contacts for one of bodies, as a bound of work.
+  static constexpr int kContactSystems = 5;
 
  public:
   ImplicitIsland(const View& m, const Rows<W>& s, Scratch<W>& work, Problem& island, Target target,
-                 int lane, double step_s, int limit) noexcept
+                 int lane, double step_s, SolverWork& solver_work) noexcept
       : m_(m),
         s_(s),
         work_(work),
         mem_(work.implicit),
         island_(island),
-        laws_(mem_, island, target),
+        work_done_(solver_work),
+        contact_work_{0, kContactSystems * solver_work.limit},
+        laws_(mem_, island, target, contact_work_),
         cables_(mem_, island.bodies, island.pattern.count),
         matrix_(island.pattern, island.m.blocks),
         target_(target),
         lane_(lane),
-        step_s_(step_s),
-        limit_(limit) {}
+        step_s_(step_s) {}
 
-  int linear_solves = 0;
+  /// After Solve: whether the velocities are no solution, not even to 1e-6 m/s.
+  bool failed() const noexcept { return failed_; }
 
   /// Adds the stiff cable `row` to those of the island. `number`: index of a body in it, or -1.
   template <class Number>
@@ -132,6 +136,10 @@ class ImplicitIsland {
   int count() const noexcept { return island_.pattern.count; }
   int size() const noexcept { return kDofs * island_.pattern.count; }
 
+  bool IsExhausted() const noexcept {
+    return work_done_.linear_solves >= work_done_.limit ||
+           contact_work_.linear_solves >= contact_work_.limit;
+  }
   /// At the start of the stage.
   Twist<Num> VelocityOf(int k) const noexcept { return {mem_.body[k].v, mem_.body[k].w}; }
   /// At its end, from the unknowns of the body.
@@ -153,17 +161,23 @@ class ImplicitIsland {
     double residual = 0;
     for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
       const int parts = 1 << halvings;
-      const bool last = !alone_ || halvings == kMostHalvings || linear_solves >= limit_;
+      const bool last = !alone_ || halvings == kMostHalvings;
       Restart();
       residual = 0;
-      bool good = true;
-      for (int i = 0; i < parts && (good || last); ++i) {
-        good = Part(step_s_ / parts, 1.0 / parts, residual) && good;
-        good = good && residual <= target_.tolerance;
+      bool good = true, converged = true;
+      is_jammed_ = false;
+      for (int i = 0; i < parts && (good || last) && !is_jammed_; ++i) {
+        converged = Part(step_s_ / parts, 1.0 / parts, residual) && converged && !is_jammed_;
+        good = good && converged && residual <= target_.tolerance;
       }
+      failed_ = !converged || !(residual <= kDisagreementMPerS);
       if (good) break;
       if (!(residual > target_.tolerance)) residual = 2 * target_.tolerance;
       if (last) break;
+      if (is_jammed_ || IsExhausted()) {
+        failed_ = true;
+        break;
+      }
     }
     return residual;
   }
@@ -256,6 +270,7 @@ class ImplicitIsland {
     } else {
       good_ = Newton(false);
     }
+    is_jammed_ = is_jammed_ || laws_.is_jammed;
     const double passed = damped_ ? 1 + Extrapolates() : 1;
     for (int i = 0; i < island_.rows; ++i) {
       const Num mean = half * (island_.m.impacts.before[i] + island_.m.u[i]);
@@ -287,6 +302,7 @@ class ImplicitIsland {
     }
     laws_.Begin();
     good_ = Newton(false);
+    is_jammed_ = is_jammed_ || laws_.is_jammed;
     if (laws_.residual > residual) residual = laws_.residual;
     for (int i = 0; i < island_.rows; ++i) {
       mem_.gap[i] += stage_.h * island_.m.u[i];
@@ -353,6 +369,8 @@ class ImplicitIsland {
   Scratch<W>& work_;
   ImplicitMemory<W>& mem_;
   Problem& island_;
+  SolverWork& work_done_;
+  SolverWork contact_work_;  ///< Of the laws of contact, whose systems are smaller.
   ImplicitLaws<W> laws_;
   ImplicitCables<W> cables_;
   BodyMatrix<Num> matrix_;
@@ -360,9 +378,8 @@ class ImplicitIsland {
   int lane_;
   double step_s_;
   Num kinetic_{}, elastic_{};  ///< At the start of the step [J].
-  int limit_;
   ImplicitStage<Num> stage_{};
-  bool damped_ = false, alone_ = true, good_ = true;
+  bool damped_ = false, alone_ = true, good_ = true, failed_ = false, is_jammed_ = false;
 };
 
 }  // namespace taut::sim

@@ -36,13 +36,16 @@ class ImplicitLaws {
  public:
   using Problem = Island<Num, StepPools<Num>>;
 
-  ImplicitLaws(ImplicitMemory<W>& mem, Problem& island, Target target) noexcept
-      : mem_(mem), island_(island), target_(target) {}
+  ImplicitLaws(ImplicitMemory<W>& mem, Problem& island, Target target, SolverWork& work) noexcept
+      : mem_(mem), island_(island), target_(target), work_(work) {}
 
   double residual = 0;
+  /// Whether bodies are jammed: contacts press with impulses whose rounding exceeds the tolerance.
+  bool is_jammed = false;
 
   /// Starts a stage: only contacts that pressed have a row.
   void Begin() noexcept {
+    is_jammed = false;
     for (int i = 0; i < island_.rows; ++i) mem_.active[i] = 0;
     island_.pools.ForEach([&](auto& law, auto&, int row, int) {
       if constexpr (kOpens<LawOf<decltype(law)>>) {
@@ -185,6 +188,7 @@ class ImplicitLaws {
     Keep(mem_.best, mem_.l);
     for (int round = 0; round < kRounds; ++round) {
       for (int i = 0; i < kSteps && !(residual <= target_.goal()); ++i) {
+        ++work_.linear_solves;
         NewtonStep(Num::Splat(kCompliances[round]));
         Velocities();
         const double before = residual;
@@ -194,6 +198,7 @@ class ImplicitLaws {
         if (!(residual - residual == 0)) break;
       }
       if (best <= target_.tolerance || round + 1 == kRounds) break;
+      if (work_.linear_solves >= work_.limit) break;
       Keep(mem_.l, mem_.best);
       for (int i = 0; i < kSweeps; ++i) Sweep();
       Velocities();
@@ -205,6 +210,11 @@ class ImplicitLaws {
       const int at = mem_.compact[row];
       if (at < 0) return;
       law.Clamp(mem_.l + at);
+      if constexpr (kOpens<LawOf<decltype(law)>>) {
+        constexpr double kRounding = 2.2204460492503131e-16;
+        const Num most = Num::Splat(target_.tolerance / kRounding);
+        is_jammed = is_jammed || Any(mem_.l[at] * law.wnn > most);
+      }
       for (int r = 0; r < RowsOf(law); ++r) island_.m.l[row + r] = mem_.l[at + r];
     });
     residual = best;
@@ -288,6 +298,7 @@ class ImplicitLaws {
   ImplicitMemory<W>& mem_;
   Problem& island_;
   Target target_;
+  SolverWork& work_;
   int count_ = 0;
 };
 

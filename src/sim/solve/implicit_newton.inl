@@ -63,7 +63,8 @@ bool ImplicitIsland<W>::Newton(bool given) noexcept {
     if (given || i > 0) AddImpulses(mem_.back);
     matrix_.Clear(island_.bodies, false);
     cables_.AddTo(stage_, mem_.back, matrix_);
-    ++linear_solves;
+    if (IsExhausted()) return false;
+    ++work_done_.linear_solves;
     if (!matrix_.Factor() || !Step(mem_.res, given, d)) return false;
     const double noise = Noise(), now = Norm(d), least = kTolerance * speed + noise;
     if (!(now - now == 0)) return false;

@@ -8,7 +8,7 @@ double LaneSolve<W>::SolveImplicit(SolverWork& work) noexcept {
   // If the matrix does not fit into memory nothing is solved, and the status bit is set.
   if (!island.has_matrix) return 1.0;
   ImplicitIsland<W> implicit(m_, s_, work_, island, Target{settings_.tolerance_m_per_s}, lane_,
-                             h_[0], work.limit);
+                             h_[0], work);
   for (int i = 0; i < work_.stiff_count; ++i) {
     if (!IsOn(work_.stiff[i]) || !IsImplicit(work_.stiff[i])) continue;
     const CableTable& cable = m_.cables[work_.stiff[i].cable];
@@ -21,10 +21,25 @@ double LaneSolve<W>::SolveImplicit(SolverWork& work) noexcept {
     implicit.AddCable(i, [&](int b) { return Moves(b) ? Number(b) : -1; });
   }
   const double residual = implicit.Solve();
-  work.linear_solves += implicit.linear_solves;
+  if (implicit.failed()) return SolveWithFixedDirections(work);
   Scatter();
   implicit.Finish([&](int body) { return Pending(body) + PendingOfTouches(body); });
   return residual;
+}
+
+/// Solves an island whose implicit integration failed, with fixed directions of its cables for this
+/// step. The residual stays above the tolerance, so that the status reports the step.
+template <class W>
+double LaneSolve<W>::SolveWithFixedDirections(SolverWork& work) noexcept {
+  fixed_directions_ = true;
+  Gather(island_root_);
+  SolverWork own{0, settings_.max_linear_solves};
+  const double residual = SolveGathered(own);
+  Scatter();
+  fixed_directions_ = false;
+  work.linear_solves += own.linear_solves;
+  const double least = 2 * settings_.tolerance_m_per_s;
+  return residual > least || !(residual - residual == 0) ? residual : least;
 }
 
 /// Stores the final pose of a body from an implicit solve: displaced and rotated by twice `half`.

@@ -110,7 +110,7 @@ class LaneSolve {
 
   /// Whether its cables are integrated implicitly (implicit_groups.inl).
   bool IsImplicit(const StiffCable<W>& cable) const noexcept {
-    return work_.implicit.any && work_.implicit.limit[cable.cable][lane_] < 0;
+    return work_.implicit.any && !fixed_directions_ && work_.implicit.limit[cable.cable][lane_] < 0;
   }
   /// The same for the gathered island.
   bool IsImplicit() const noexcept {
@@ -132,6 +132,7 @@ class LaneSolve {
     return sum[0] == 0.0;
   }
   double SolveImplicit(SolverWork& work) noexcept;
+  double SolveWithFixedDirections(SolverWork& work) noexcept;
   void DisplaceEnd(int body, const V3<L>& dx, const V3<L>& half) noexcept;
   V3<L> PendingOfTouches(int body) const noexcept;
 
@@ -235,7 +236,7 @@ class LaneSolve {
   const StepSettings& settings_;
   int lane_;
   L h_;
-  bool displaces_ = false;
+  bool displaces_ = false, fixed_directions_ = false;
   int count_ = 0, island_root_ = 0;
   Row<int> cable_source_, joint_source_, friction_source_, chain_source_;
 };
