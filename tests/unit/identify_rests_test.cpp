@@ -159,7 +159,7 @@ TEST_F(Rests, ARunThatBlowsUpSaysItself) {
   Write("a.csv", "time_s,node/ball/position_z_m\n0,0\n");
   const auto fit = Make(Replaced(kFit, ", forward: load_cases", ""));
   ASSERT_TRUE(fit) << out_.Format();
-  const Residuals at = At(*fit, {1e300});
+  const Residuals at = At(*fit, {1e308});
   EXPECT_NE(at.failed, "");
   EXPECT_EQ(at.failed.find("no number"), std::string::npos) << at.failed;
 }
