@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "compare/gaps.h"
 
 namespace taut::compare {
 namespace {
@@ -18,10 +21,8 @@ bool SameTimes(const std::vector<double>& a, RowRange rows_a, const std::vector<
   return true;
 }
 
-double MeanStep(const std::vector<double>& time_s, RowRange rows) {
-  const std::size_t count = rows.end - rows.begin;
-  return count < 2 ? 0.0
-                   : (time_s[rows.end - 1] - time_s[rows.begin]) / static_cast<double>(count - 1);
+double StepOf(const std::vector<double>& time_s, RowRange rows) {
+  return UsualStep(time_s, rows.begin, rows.end);
 }
 
 }  // namespace
@@ -46,7 +47,7 @@ CommonClock MakeCommonClock(const std::vector<double>& time_a_s,
   const RowRange rows_a = RowsBetween(time_a_s, clock.from_s, clock.to_s);
   const RowRange rows_b = RowsBetween(time_b_s, clock.from_s, clock.to_s);
   const bool same = SameTimes(time_a_s, rows_a, time_b_s, rows_b);
-  clock.resample_a = !same && MeanStep(time_a_s, rows_a) < MeanStep(time_b_s, rows_b);
+  clock.resample_a = !same && StepOf(time_a_s, rows_a) < StepOf(time_b_s, rows_b);
   clock.resample_b = !same && !clock.resample_a;
   const std::vector<double>& time_s = clock.resample_a ? time_b_s : time_a_s;
   const RowRange rows = clock.resample_a ? rows_b : rows_a;
@@ -56,7 +57,7 @@ CommonClock MakeCommonClock(const std::vector<double>& time_a_s,
 }
 
 std::vector<double> Interpolate(const std::vector<double>& time_s,
-                                const std::vector<double>& values,
+                                const std::vector<double>& values, const std::vector<bool>& gaps,
                                 const std::vector<double>& at_s) {
   std::vector<double> result;
   result.reserve(at_s.size());
@@ -67,6 +68,13 @@ std::vector<double> Interpolate(const std::vector<double>& time_s,
       result.push_back(values.front());
     } else if (next == time_s.size() || time_s[next - 1] == at) {
       result.push_back(values[next - 1]);
+    } else if (gaps[next - 1]) {
+      // Times of a CSV file lose digits: next to a row is on it.
+      const bool on_next = time_s[next] - at <= Tolerance(at);
+      const bool on_last = at - time_s[next - 1] <= Tolerance(at);
+      result.push_back(on_next   ? values[next]
+                       : on_last ? values[next - 1]
+                                 : std::numeric_limits<double>::quiet_NaN());
     } else {
       const double part = (at - time_s[next - 1]) / (time_s[next] - time_s[next - 1]);
       result.push_back(values[next - 1] + part * (values[next] - values[next - 1]));
@@ -77,7 +85,8 @@ std::vector<double> Interpolate(const std::vector<double>& time_s,
 
 TraceSpan SpanOf(const std::vector<double>& time_s) {
   if (time_s.empty()) return {};
-  return {time_s.size(), time_s.front(), time_s.back(), MeanStep(time_s, {0, time_s.size()})};
+  return {time_s.size(), time_s.front(), time_s.back(), StepOf(time_s, {0, time_s.size()}),
+          GapSpans(time_s, FindGaps(time_s))};
 }
 
 }  // namespace taut::compare

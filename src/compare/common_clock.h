@@ -14,8 +14,8 @@ struct RowRange {
 };
 RowRange RowsBetween(const std::vector<double>& time_s, double from_s, double to_s);
 
-/// Times at which two traces are compared: the rows of the one with the longer step. The other is
-/// interpolated linearly between its rows.
+/// Times at which two traces are compared: the rows of the one with the longer usual step. The
+/// other is interpolated linearly between its rows.
 struct CommonClock {
   double from_s = 0.0, to_s = -1.0;
   std::vector<double> time_s;
@@ -24,9 +24,11 @@ struct CommonClock {
 CommonClock MakeCommonClock(const std::vector<double>& time_a_s,
                             const std::vector<double>& time_b_s, const CompareOptions& options);
 
-/// The values of a channel at `at_s`, which rises and lies within `time_s`. NaN next to NaN.
+/// The values of a channel at `at_s`, which rises; held before the first row and after the last.
+/// NaN next to NaN and inside of gaps (`FindGaps`).
 std::vector<double> Interpolate(const std::vector<double>& time_s,
-                                const std::vector<double>& values, const std::vector<double>& at_s);
+                                const std::vector<double>& values, const std::vector<bool>& gaps,
+                                const std::vector<double>& at_s);
 
 TraceSpan SpanOf(const std::vector<double>& time_s);
 

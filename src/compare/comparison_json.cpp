@@ -16,8 +16,11 @@ Json ToJson(const WindowStatistics& window) {
 }
 
 Json ToJson(const TraceSpan& span, const std::string& name, const std::vector<std::string>& only) {
+  Json gaps = Json::array();
+  for (const auto& [from_s, to_s] : span.gaps_s) gaps.push_back({from_s, to_s});
   return {{"name", name},          {"rows", span.rows},     {"first_s", span.first_s},
-          {"last_s", span.last_s}, {"step_s", span.step_s}, {"only_here", only}};
+          {"last_s", span.last_s}, {"step_s", span.step_s}, {"gaps_s", gaps},
+          {"only_here", only}};
 }
 
 Json ToJson(const ChannelComparison& channel, const std::vector<TimeWindow>& windows) {
@@ -33,6 +36,7 @@ Json ToJson(const ChannelComparison& channel, const std::vector<TimeWindow>& win
   return {{"name", channel.name},
           {"unit", channel.unit},
           {"rows", channel.rows},
+          {"missing_s", channel.missing_s},
           {"rmse", channel.rmse},
           {"bias", channel.bias},
           {"max_error", ToJson(channel.error)},
@@ -68,6 +72,7 @@ std::string ComparisonJson(const Comparison& comparison, const std::string& name
   json["to_s"] = comparison.to_s;
   json["rows"] = comparison.rows;
   json["resampled"] = comparison.resampled;
+  json["unknown_signs"] = comparison.unknown_signs;
   json["unit_conflicts"] = comparison.unit_conflicts;
   json["phases"] = Json::array();
   for (const TimeWindow& phase : comparison.phases) {

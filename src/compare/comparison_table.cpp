@@ -136,6 +136,52 @@ void AppendAlone(const TraceSpan& one, const TraceSpan& other, const char* which
   if (!parts.empty()) out += fmt::format("only {} covers {}\n", which, parts);
 }
 
+/// Gaps between rows, the longest first if there are many.
+void AppendGaps(const TraceSpan& span, const char* which, std::string& out) {
+  if (span.gaps_s.empty()) return;
+  auto gaps = span.gaps_s;
+  constexpr std::size_t kMost = 5;
+  if (gaps.size() > kMost) {
+    std::stable_sort(gaps.begin(), gaps.end(), [](const auto& x, const auto& y) {
+      return x.second - x.first > y.second - y.first;
+    });
+  }
+  std::string spans;
+  for (std::size_t i = 0; i < std::min(gaps.size(), kMost); ++i) {
+    spans += fmt::format("{}{:g} .. {:g} s", i == 0 ? "" : ", ", gaps[i].first, gaps[i].second);
+  }
+  const std::string more =
+      gaps.size() > kMost ? fmt::format(" and {} shorter gaps", gaps.size() - kMost) : "";
+  out += fmt::format("gaps of {}, not compared: {}{}\n", which, spans, more);
+}
+
+/// The channels that miss more of the common time than the gaps of the traces.
+void AppendMissing(const Comparison& comparison, std::string& out) {
+  double known_s = 0;
+  for (const TraceSpan* span : {&comparison.a, &comparison.b}) {
+    for (const auto& [from_s, to_s] : span->gaps_s) {
+      known_s +=
+          std::max(0.0, std::min(to_s, comparison.to_s) - std::max(from_s, comparison.from_s));
+    }
+  }
+  const double step_s = std::max(comparison.a.step_s, comparison.b.step_s);
+  const double least_s = known_s > 0 ? known_s + 4 * step_s : 0.0;
+  std::vector<std::pair<std::string, double>> missing;
+  for (const ChannelComparison& c : comparison.channels) {
+    if (c.missing_s > least_s) missing.emplace_back(c.name, c.missing_s);
+  }
+  if (missing.empty()) return;
+  std::stable_sort(missing.begin(), missing.end(),
+                   [](const auto& x, const auto& y) { return x.second > y.second; });
+  out += fmt::format("channels with missing values ({}), of {:g} s:\n", missing.size(),
+                     comparison.to_s - comparison.from_s);
+  constexpr std::size_t kMost = 8;
+  for (std::size_t i = 0; i < std::min(missing.size(), kMost); ++i) {
+    out += fmt::format("  {}: {:.4g} s\n", missing[i].first, missing[i].second);
+  }
+  if (missing.size() > kMost) out += fmt::format("  and {} more\n", missing.size() - kMost);
+}
+
 /// Names that differ in the middle only become one, with their number: "cable/*/damping_n (12)".
 std::vector<std::string> Abridged(const std::vector<std::string>& names) {
   std::vector<std::pair<std::string, int>> counts;
@@ -201,6 +247,11 @@ std::string ComparisonTable(const Comparison& comparison, const std::string& nam
   out += "\n";
   AppendAlone(comparison.a, comparison.b, "a", out);
   AppendAlone(comparison.b, comparison.a, "b", out);
+  AppendGaps(comparison.a, "a", out);
+  AppendGaps(comparison.b, "b", out);
+  AppendMissing(comparison, out);
+  AppendList("signs not aligned, a component of the quaternion is missing",
+             comparison.unknown_signs, out);
   AppendList("only in a", comparison.only_a, out);
   AppendList("only in b", comparison.only_b, out);
   if (!comparison.unit_conflicts.empty()) out += "units differ, not compared:\n";

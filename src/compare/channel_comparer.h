@@ -1,0 +1,54 @@
+/// Comparison of one channel of two traces on one clock.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "compare/common_clock.h"
+#include "compare/orientation.h"
+
+namespace taut::compare {
+
+/// Of a / |b| in percent; NaN if b is 0.
+double Percent(double a, double b);
+
+/// Compares channel after channel. A reference to all that it is given, which outlives it.
+class ChannelComparer {
+ public:
+  ChannelComparer(const Trace& a, const Trace& b, const CompareOptions& options,
+                  const CommonClock& clock);
+
+  /// Compares channel `in_a` of a with channel `in_b` of b.
+  ChannelComparison Compare(std::size_t in_a, std::size_t in_b);
+
+ private:
+  /// A channel of both, on the rows of each trace and on the clock.
+  struct Columns {
+    std::vector<double> a, b, clock_a, clock_b;
+  };
+  /// A quaternion of both traces, by its channels.
+  struct Pair {
+    QuaternionChannels in_a{}, in_b{};
+  };
+  std::vector<double> OnClock(const std::vector<double>& time_s, const std::vector<double>& values,
+                              const std::vector<bool>& gaps, bool resample, RowRange rows) const;
+  /// The columns as they are, of quaternions with signs of b that are those of a.
+  const Columns& ColumnsOf(std::size_t in_a, std::size_t in_b);
+  void SetLag(const Columns& columns, ChannelComparison& result) const;
+
+  const Trace& a_;
+  const Trace& b_;
+  const CompareOptions& options_;
+  const CommonClock& clock_;
+  std::vector<bool> gaps_a_, gaps_b_, gaps_clock_;
+  std::vector<double> even_s_;
+  bool uneven_ = false;
+  double step_s_ = 0.0;
+  RowRange rows_a_, rows_b_;
+  std::vector<Pair> quaternions_;
+  std::optional<std::size_t> turned_;  ///< Whose columns these are.
+  std::array<Columns, 4> columns_;
+  Columns single_;
+};
+
+}  // namespace taut::compare
