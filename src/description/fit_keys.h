@@ -193,7 +193,8 @@ void Keys(Io& io, Like<FitResidualText> auto& r) {
      "The same as a share of what is measured; the larger of the two counts.");
   io("window", r.window, "When. If absent, all of the time that experiment and data share.");
   io("statistic", r.statistic, kFitStatistics,
-     "What of a window is compared; `rows`: every row of the data.");
+     "What of a window is compared, at the times of its data; `mean`: over time; `rows`: every "
+     "row.");
   io("loss", r.loss, kLosses,
      "`squares`: least squares. `huber`, `cauchy`: large residuals count less, from `loss_sd` on.");
   io("loss_sd", r.loss_sd, Bound::kPositive,

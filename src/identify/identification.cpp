@@ -19,7 +19,8 @@ namespace {
 /// A row with what acts on it.
 struct Tied {
   Row row;
-  std::size_t model = 0, channel = 0;
+  std::size_t model = 0;
+  RowChannels channels;
   std::vector<std::size_t> gains, offsets, delays;  ///< Estimates of the fit.
 };
 
@@ -106,7 +107,7 @@ void Made::AddRows(const FitResidual& residual, std::size_t experiment, const Me
     Tied& tied = set.rows.emplace_back();
     tied.model = models_.ModelOf(experiment);
     if (row.how == Row::How::kRest) models_.NeedMoment(tied.model, row.from_s);
-    if (row.how != Row::How::kReference) tied.channel = models_.Need(tied.model, row.channel);
+    tied.channels = ChannelsOf(row, [&](const auto& c) { return models_.Need(tied.model, c); });
     for (std::size_t i = 0; i < spec_.estimates.size(); ++i) {
       const FitEstimate& e = spec_.estimates[i];
       if (std::find(e.experiments.begin(), e.experiments.end(), experiment) ==
@@ -237,7 +238,7 @@ Residuals Made::Compose(const Set& set, const std::vector<double>& all,
     const FitExperiment& one = spec_.experiments[tied.row.experiment];
     const Computed& model = *computed.at(tied.model);
     if (!model.failed.empty()) return {{}, one.name + ": " + model.failed};
-    const auto value = ValueOf(tied.row, model, tied.channel, sum(tied.delays));
+    const auto value = ValueOf(tied.row, model, tied.channels, sum(tied.delays));
     if (!value || !std::isfinite(*value)) {
       return {{}, one.name + ": no number for " + tied.row.channel + ", " + tied.row.point.where};
     }
@@ -291,6 +292,9 @@ std::map<std::string, std::string> Made::Facts() const {
     for (const FitPoint& p : set->points) {
       sum.AddText(p.channel), sum.AddText(p.where);
       sum.AddNumber(p.measured), sum.AddNumber(p.sd), sum.AddNumber(p.time_s);
+    }
+    for (const Tied& tied : set->rows) {
+      if (tied.row.samples) tied.row.samples->AddTo(sum);
     }
   }
   std::uint64_t experiments = 0;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "compare/orientation.h"
 #include "identify/rows.h"
 #include "taut/compare.h"
 #include "taut/run_folder.h"
@@ -20,12 +21,14 @@ bool Rises(const std::vector<double>& times) {
 }
 
 std::optional<Trace> Read(const FitExperiment& one, Diagnostics& out) {
-  auto trace = ReadTraceOfRun(one.data_file, out);
-  if (!trace) return std::nullopt;
-  if (one.map_file.empty()) return trace;
-  const auto mapping = LoadMapping(one.map_file, out);
-  if (!mapping) return std::nullopt;
-  return ApplyMapping(*mapping, std::move(*trace), one.data_file, out);
+  std::optional<Trace> trace;
+  if (one.map_file.empty()) {
+    trace = ReadTraceOfRun(one.data_file, out);
+  } else if (const auto mapping = LoadMapping(one.map_file, out)) {
+    trace = ReadMapped(one.data_file, *mapping, one.map_file, out);
+  }
+  if (trace) compare::MakeOrientationsContinuous(*trace);
+  return trace;
 }
 
 }  // namespace

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "base/pattern.h"
+#include "compare/gaps.h"
+#include "compare/orientation.h"
 #include "report/reference.h"
 
 namespace taut::identify {
@@ -56,30 +60,53 @@ std::vector<Window> Windows(const FitSpec& spec, const FitResidual& residual,
   return {window};
 }
 
+/// A channel of the data.
+struct Column {
+  const std::vector<double>* values = nullptr;
+  /// Of a component of a quaternion: all four; else null.
+  std::array<const std::vector<double>*, 4> quaternion{};
+
+  bool HasQuaternion() const { return quaternion[0] != nullptr; }
+  std::array<double, 4> QuaternionAt(std::size_t row) const {
+    return {(*quaternion[0])[row], (*quaternion[1])[row], (*quaternion[2])[row],
+            (*quaternion[3])[row]};
+  }
+  /// Whether there is a number in a row; a quaternion is whole or missing.
+  bool Finite(std::size_t row) const {
+    if (!std::isfinite((*values)[row])) return false;
+    if (!HasQuaternion()) return true;
+    const auto q = QuaternionAt(row);
+    return std::all_of(q.begin(), q.end(), [](double x) { return std::isfinite(x); });
+  }
+};
+
 /// Of the rows in a window: their numbers.
 std::vector<std::size_t> Inside(const Measured& measured, const Window& window,
-                                const std::vector<double>& values) {
+                                const Column& column) {
   std::vector<std::size_t> out;
   const std::vector<double>& times = measured.trace.time_s;
   const auto first = std::lower_bound(times.begin(), times.end(), window.data_from_s - 1e-9);
   for (auto t = first; t != times.end() && *t <= window.data_to_s + 1e-9; ++t) {
     const auto row = static_cast<std::size_t>(t - times.begin());
-    if (std::isfinite(values[row])) out.push_back(row);
+    if (column.Finite(row)) out.push_back(row);
   }
   return out;
 }
 
+/// Means are over time: rows are weighted by the time for which they stand.
 double Of(FitStatistic statistic, const std::vector<double>& values,
-          const std::vector<std::size_t>& rows) {
-  double sum = 0, least = INFINITY, most = -INFINITY;
-  for (const std::size_t row : rows) {
-    sum += values[row];
-    least = std::min(least, values[row]);
-    most = std::max(most, values[row]);
+          const std::vector<std::size_t>& rows, const std::vector<double>& weights) {
+  double sum = 0, time = 0, least = INFINITY, most = -INFINITY;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double value = values[rows[i]];
+    sum += weights[i] * value;
+    time += weights[i];
+    least = std::min(least, value);
+    most = std::max(most, value);
   }
   if (statistic == FitStatistic::kMax) return most;
   if (statistic == FitStatistic::kMin) return least;
-  return sum / static_cast<double>(rows.size());
+  return sum / time;
 }
 
 Row::How HowOf(FitStatistic statistic) {
@@ -99,14 +126,16 @@ class Maker {
         windows_(Windows(spec, residual, experiment, measured)),
         late_s_(StartDelay(spec, experiment)) {}
 
-  void Channel(const ChannelInfo& channel, const std::vector<double>* values) {
+  /// `column` null: nothing is measured.
+  void Channel(const ChannelInfo& channel, const Column* column) {
     if (one_.forward == FitForward::kLoadCases) {
       for (std::size_t i = 0; i < one_.experiment.load_cases.size(); ++i) {
-        if (values && !std::isfinite((*values)[i])) continue;
+        if (column && !column->Finite(i)) continue;
         Row row = Begin(channel, "load case " + one_.experiment.load_cases[i].name, i);
+        if (column && column->HasQuaternion()) row.orientation = column->QuaternionAt(i);
         row.row = i;
         row.point.time_s = static_cast<double>(i + 1);
-        Add(std::move(row), values ? (*values)[i] : 0.0);
+        Add(std::move(row), column ? (*column->values)[i] : 0.0);
       }
       return;
     }
@@ -114,12 +143,12 @@ class Maker {
       ++asked;
       if (one_.forward == FitForward::kDynamic && Beyond(window)) continue;
       std::vector<std::size_t> inside;
-      if (values) {
-        inside = Inside(*measured_, window, *values);
+      if (column) {
+        inside = Inside(*measured_, window, *column);
         if (inside.empty()) continue;
       }
       ++met;
-      OfWindow(channel, window, values, inside);
+      OfWindow(channel, window, column, inside);
     }
   }
   std::vector<Row> rows;
@@ -144,27 +173,55 @@ class Maker {
     row.point.sd = std::max(residual_.sd, residual_.relative_sd * std::fabs(measured));
     rows.push_back(std::move(row));
   }
-  void OfWindow(const ChannelInfo& channel, const Window& window, const std::vector<double>* values,
+  /// When a row of the data was, on the experiment's clock if the data's is not late.
+  double TimeOf(const Window& window, std::size_t row) const {
+    return measured_->trace.time_s[row] - window.data_from_s + window.from_s;
+  }
+  Samples SamplesOf(const Window& window, const Column& column,
+                    const std::vector<std::size_t>& inside) const {
+    Samples samples;
+    for (const std::size_t i : inside) {
+      samples.time_s.push_back(TimeOf(window, i));
+      if (column.HasQuaternion()) samples.orientation.push_back(column.QuaternionAt(i));
+    }
+    samples.weight = compare::TimeWeights(samples.time_s);
+    return samples;
+  }
+  void OfStatistic(Row row, const Column* column, const std::vector<std::size_t>& inside,
+                   const Window& window) {
+    const bool rest = one_.forward == FitForward::kStatic;
+    row.how = rest ? Row::How::kRest : HowOf(residual_.statistic);
+    if (rest) row.from_s = row.point.time_s = window.moment_s;
+    if (!column) return Add(std::move(row), 0.0);
+    auto samples = std::make_shared<Samples>(SamplesOf(window, *column, inside));
+    const double measured = Of(residual_.statistic, *column->values, inside, samples->weight);
+    if (rest && column->HasQuaternion()) {
+      auto& sum = row.orientation.emplace();
+      for (std::size_t k = 0; k < 4; ++k) {
+        sum[k] = Of(FitStatistic::kMean, *column->quaternion[k], inside, samples->weight);
+      }
+    }
+    if (!rest) row.samples = std::move(samples);
+    Add(std::move(row), measured);
+  }
+  void OfWindow(const ChannelInfo& channel, const Window& window, const Column* column,
                 const std::vector<std::size_t>& inside) {
     Row row = Begin(channel, window.where, window.number);
     row.from_s = window.from_s, row.to_s = window.to_s;
     row.point.time_s = 0.5 * (window.from_s + window.to_s) - late_s_;
-    const bool rest = one_.forward == FitForward::kStatic;
-    const double moment_s = window.moment_s;
     if (residual_.statistic != FitStatistic::kRows) {
-      row.how = rest ? Row::How::kRest : HowOf(residual_.statistic);
-      if (rest) row.from_s = row.point.time_s = moment_s;
-      Add(std::move(row), values ? Of(residual_.statistic, *values, inside) : 0.0);
-      return;
+      return OfStatistic(std::move(row), column, inside, window);
     }
+    const bool rest = one_.forward == FitForward::kStatic;
     for (const std::size_t i : inside) {
       Row each = row;
       each.how = rest ? Row::How::kRest : Row::How::kAt;
-      each.from_s = each.to_s = measured_->trace.time_s[i] - window.data_from_s + window.from_s;
+      each.from_s = each.to_s = TimeOf(window, i);
       each.point.time_s = each.from_s - late_s_;
-      if (rest) each.from_s = moment_s;
+      if (rest) each.from_s = window.moment_s;
       each.point.where = fmt::format("at {:g} s", each.point.time_s);
-      Add(std::move(each), (*values)[i]);
+      if (column->HasQuaternion()) each.orientation = column->QuaternionAt(i);
+      Add(std::move(each), (*column->values)[i]);
     }
   }
 
@@ -202,6 +259,19 @@ std::vector<Row> OfReferences(const FitExperiment& one, const FitResidual& resid
     }
   }
   return out;
+}
+
+Column ColumnOf(const Trace& trace, std::size_t channel) {
+  Column column{&trace.values[channel], {}};
+  const auto names = compare::QuaternionNames(trace.channels[channel].name);
+  std::array<const std::vector<double>*, 4> found{};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto at = trace.Find(names[i]);
+    if (!at) return column;
+    found[i] = &trace.values[*at];
+  }
+  column.quaternion = found;
+  return column;
 }
 
 std::vector<std::string> Names(const std::vector<ChannelInfo>& channels) {
@@ -245,6 +315,7 @@ std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std:
     out.Error(residual.at, "residuals: " + what, hint);
   };
   bool any = false, good = true;
+  std::set<std::string> sign_unknown;
   for (std::size_t c = 0; c < offered.size(); ++c) {
     if (!base::Fits(residual.channels, offered[c].name)) continue;
     any = true;
@@ -260,7 +331,21 @@ std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std:
             "a mapping can have `unit` and `scale`");
       good = false;
     } else {
-      maker.Channel(offered[c], measured ? &measured->trace.values[c] : nullptr);
+      if (!measured) {
+        maker.Channel(offered[c], nullptr);
+        continue;
+      }
+      const Column column = ColumnOf(measured->trace, c);
+      const auto names = compare::QuaternionNames(offered[c].name);
+      if (!names.empty() && !column.HasQuaternion() && sign_unknown.insert(names[0]).second) {
+        const std::string all = names[0].substr(0, names[0].size() - 1) + "{w,x,y,z}";
+        out.Warning(residual.at,
+                    fmt::format("residuals: the data of {} have only some of {}, so their sign "
+                                "cannot be aligned with that of the run",
+                                one.name, all),
+                    "q and -q are the same orientation: record all four components");
+      }
+      maker.Channel(offered[c], &column);
     }
   }
   if (!any) {
@@ -281,51 +366,6 @@ std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std:
                             maker.asked - maker.met, maker.asked, residual.channels, one.name));
   }
   return std::move(maker.rows);
-}
-
-std::optional<double> ValueOf(const Row& row, const Computed& computed, std::size_t channel,
-                              double delay_s) {
-  if (row.how == Row::How::kReference) {
-    if (row.reference >= computed.references.size()) return std::nullopt;
-    return computed.references[row.reference][row.value];
-  }
-  const std::vector<double>& values = computed.values[channel];
-  if (row.how == Row::How::kRow) {
-    return row.row < values.size() ? std::optional(values[row.row]) : std::nullopt;
-  }
-  const std::vector<double>& times = computed.time_s;
-  if (times.empty()) return std::nullopt;
-  if (row.how == Row::How::kRest) {
-    const auto moment = std::lower_bound(times.begin(), times.end(), row.from_s - 1e-9);
-    if (moment == times.end()) return std::nullopt;
-    return values[static_cast<std::size_t>(moment - times.begin())];
-  }
-  const auto at = [&](double t) {
-    const auto after = std::upper_bound(times.begin(), times.end(), t);
-    if (after == times.begin()) return values.front();
-    if (after == times.end()) return values.back();
-    const auto i = static_cast<std::size_t>(after - times.begin());
-    const double share = (t - times[i - 1]) / (times[i] - times[i - 1]);
-    return values[i - 1] + share * (values[i] - values[i - 1]);
-  };
-  const double from_s = std::clamp(row.from_s - delay_s, times.front(), times.back());
-  const double to_s = std::clamp(row.to_s - delay_s, times.front(), times.back());
-  double before_s = from_s, before = at(from_s);
-  if (row.how == Row::How::kAt || !(to_s > from_s)) return before;
-  // Straight lines between rows, so that a window that moves changes all smoothly.
-  double area = 0, least = before, most = before;
-  const auto add = [&](double t, double x) {
-    area += 0.5 * (t - before_s) * (before + x);
-    least = std::min(least, x), most = std::max(most, x);
-    before_s = t, before = x;
-  };
-  const auto first = std::upper_bound(times.begin(), times.end(), from_s);
-  for (auto t = first; t != times.end() && *t < to_s; ++t) {
-    add(*t, values[static_cast<std::size_t>(t - times.begin())]);
-  }
-  add(to_s, at(to_s));
-  if (row.how == Row::How::kMax) return most;
-  return row.how == Row::How::kMin ? least : area / (to_s - from_s);
 }
 
 }  // namespace taut::identify

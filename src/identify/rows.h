@@ -1,10 +1,14 @@
 /// Which numbers of what is computed are set beside which of what was measured.
 #pragma once
 
+#include <array>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/hash.h"
 #include "identify/computed.h"
 #include "taut/fit_spec.h"
 #include "taut/identify.h"
@@ -22,6 +26,16 @@ struct Measured {
 /// data has an empty trace.
 std::optional<Measured> ReadMeasured(const FitExperiment& one, Diagnostics& out);
 
+/// Rows of the data in a window. A run is looked at in the same moments, with the same weights, so
+/// that gaps and uneven rows are those of both.
+struct Samples {
+  std::vector<double> time_s;  ///< As `Row::from_s`.
+  std::vector<double> weight;  ///< Time for which each stands (`compare::TimeWeights`).
+  std::vector<std::array<double, 4>> orientation;  ///< Measured, of its channels; else empty.
+
+  void AddTo(base::Fnv1a& sum) const;
+};
+
 /// One residual's part of what is computed.
 struct Row {
   enum class How { kRow, kRest, kAt, kMean, kMax, kMin, kReference };
@@ -31,10 +45,16 @@ struct Row {
   std::size_t row = 0;          ///< kRow: of `Computed`.
   double from_s = 0, to_s = 0;  ///< A window, or kAt and kRest a moment, on the experiment's clock
                                 ///< if the data's is not late.
-  std::size_t reference = 0;    ///< Of the experiment,
-  std::size_t value = 0;        ///< and which of its values.
-  std::size_t window = 0;       ///< Which, for groups.
+  std::shared_ptr<const Samples> samples;  ///< kMean, kMax, kMin of data; of a design null.
+  /// What was measured of a quaternion's channel, w first: one of kAt, kRest and kRow. The sign of
+  /// what is computed is chosen to be nearer to it.
+  std::optional<std::array<double, 4>> orientation;
+  std::size_t reference = 0;  ///< Of the experiment,
+  std::size_t value = 0;      ///< and which of its values.
+  std::size_t window = 0;     ///< Which, for groups.
   FitPoint point;
+
+  bool HasQuaternion() const { return orientation || (samples && !samples->orientation.empty()); }
 };
 
 /// How late the data's clock is where a search begins.
@@ -46,9 +66,17 @@ std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std:
                           const Measured* measured, const std::vector<ChannelInfo>& channels,
                           Diagnostics& out);
 
-/// What a row asks for; `channel`: its channel's place among those that were computed. Nothing if
-/// there is none.
-std::optional<double> ValueOf(const Row& row, const Computed& computed, std::size_t channel,
+/// Places of channels among those that were computed.
+struct RowChannels {
+  std::size_t own = 0;
+  std::optional<std::array<std::size_t, 4>> quaternion;  ///< Of an orientation, w first.
+};
+
+/// Asks `need` for the channels that a row reads.
+RowChannels ChannelsOf(const Row& row, const std::function<std::size_t(const std::string&)>& need);
+
+/// What a row asks for. Nothing if there is none.
+std::optional<double> ValueOf(const Row& row, const Computed& computed, const RowChannels& channels,
                               double delay_s);
 
 }  // namespace taut::identify

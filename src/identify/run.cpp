@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "compare/orientation.h"
 #include "identify/computed.h"
 #include "report/reference.h"
 #include "taut/run.h"
@@ -109,6 +110,7 @@ Computed Run(const ExperimentSpec& given, const std::vector<std::string>& channe
       values.push_back(report::OurValue(*summary, reference, value.cable));
     }
   }
+  compare::MakeOrientationsContinuous(memory.trace);  // straight lines between rows follow
   out.time_s = memory.trace.time_s;
   for (const std::string& channel : channels) {
     const auto at = memory.trace.Find(channel);

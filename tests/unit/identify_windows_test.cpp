@@ -27,7 +27,7 @@ double Of(Row::How how, double from_s, double to_s, double delay_s = 0) {
   Row row;
   row.how = how;
   row.from_s = from_s, row.to_s = to_s;
-  return *identify::ValueOf(row, Course(), 1, delay_s);
+  return *identify::ValueOf(row, Course(), {1, {}}, delay_s);
 }
 
 TEST(RowsOfARun, AreStatisticsOfStraightLines) {
@@ -41,9 +41,9 @@ TEST(RowsOfARun, AreStatisticsOfStraightLines) {
   Row row;
   row.how = Row::How::kRest;
   row.from_s = 3;
-  EXPECT_EQ(*identify::ValueOf(row, Course(), 1, 0), 2);
+  EXPECT_EQ(*identify::ValueOf(row, Course(), {1, {}}, 0), 2);
   row.from_s = 5;
-  EXPECT_FALSE(identify::ValueOf(row, Course(), 1, 0));
+  EXPECT_FALSE(identify::ValueOf(row, Course(), {1, {}}, 0));
 }
 
 namespace fs = std::filesystem;
