@@ -107,8 +107,10 @@ struct FitTrack {
   double damping = 0;          ///< Marquardt's lambda.
   std::vector<double> weight;  ///< His D, one a parameter.
   int iterations = 0;
-  int rejected = 0;                             ///< Iterations since it last moved.
-  std::int64_t failed = 0;                      ///< Trial points that could not be computed,
+  int rejected = 0;                ///< Iterations since it last moved.
+  std::vector<double> step_share;  ///< Of the steps of differences, one a parameter.
+  bool check = true;               ///< Steps of differences are checked at `values`, or are to be.
+  std::int64_t failed = 0;         ///< Trial points that could not be computed,
   std::map<std::string, std::int64_t> reasons;  ///< and why, with how many of each.
 };
 
@@ -164,6 +166,10 @@ struct FitColumn {
   /// function has a kink or a jump here, as where another contact slips. Not to be trusted.
   bool kink = false;
   double kink_share = 0;  ///< By how much, as a share of the slope.
+  double step = 0;        ///< The longer size, in the parameter's unit.
+  /// Of the problem's step: below 1 if that was too long, its sizes disagreed and shorter ones do
+  /// not. Beyond `step` the function bends: standard errors that are longer are not to be trusted.
+  double step_share = 1;
   /// The second derivative's part over a step, in residuals a scale: an effect that begins with its
   /// square shows here and not in the slope.
   double curved = 0;

@@ -213,7 +213,7 @@ void Keys(Io& io, Like<FitSearchText> auto& s) {
      "From how many places: the first is where the experiments are, the others are drawn from the "
      "priors.");
   io("step", s.values.step, Bound{.least = 0.0, .most = 1.0, .above_least = true},
-     "Step of differences, in scales.");
+     "Longest step of differences, in scales; shortened where halving it changes the derivative.");
   io("iterations", s.values.iterations, Bound{.least = 1, .most = 10'000}, "At most, a start.");
   io("tolerance", s.values.tolerance, Bound{.least = 0.0, .most = 0.1, .above_least = true},
      "A search ends when its cost falls by less than this share.");

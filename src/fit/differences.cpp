@@ -71,11 +71,11 @@ TwoSizes Both(const Stencil& s, double value, const std::vector<double>& f,
 }  // namespace
 
 Stencil MakeStencil(const FitProblem& problem, const std::vector<double>& values,
-                    std::size_t parameter, bool both_sizes) {
+                    std::size_t parameter, bool both_sizes, double share) {
   const FitParameter& p = problem.parameters[parameter];
   const double value = values[parameter];
   const double up = p.high - value, down = value - p.low;
-  double h = p.step * FitScale(p);
+  double h = share * p.step * FitScale(p);
   Stencil stencil;
   stencil.parameter = parameter;
   stencil.central = std::min(up, down) >= 0.25 * h;
@@ -145,36 +145,3 @@ FitColumn CheckedColumn(const Stencil& s, double value, double scale,
 }
 
 }  // namespace taut::fit
-
-namespace taut {
-
-FitDerivatives Differentiate(const FitProblem& problem, const std::vector<double>& values) {
-  FitDerivatives result;
-  std::vector<std::vector<double>> points = {values};
-  std::vector<fit::Stencil> stencils;
-  for (std::size_t j = 0; j < values.size(); ++j) {
-    stencils.push_back(fit::MakeStencil(problem, values, j, true));
-    fit::AddPoints(stencils.back(), values, points);
-  }
-  const auto answers = fit::Compute(problem, points);
-  if (!answers) {
-    result.why = "stopped";
-    return result;
-  }
-  if (!answers->front().failed.empty()) {
-    result.why = answers->front().failed;
-    return result;
-  }
-  result.residual = answers->front().value;
-  std::span<const Residuals> rest(answers->data() + 1, answers->size() - 1);
-  for (const fit::Stencil& stencil : stencils) {
-    const std::size_t j = stencil.parameter;
-    result.columns.push_back(fit::CheckedColumn(stencil, values[j], FitScale(problem.parameters[j]),
-                                                result.residual, rest.first(stencil.at.size())));
-    rest = rest.subspan(stencil.at.size());
-  }
-  result.done = true;
-  return result;
-}
-
-}  // namespace taut

@@ -161,6 +161,11 @@ std::string Together(const FitProblem& problem, const Identifiability& all, std:
   return names.empty() ? "" : "; it goes with " + fit::List(names);
 }
 
+/// Whether an error reaches further than a step that had to be shortened.
+bool Bends(const FitColumn& column, double se) {
+  return column.step_share < 1.0 && se > column.step;
+}
+
 std::string Sentence(const FitProblem& problem, const Identifiability& all, std::size_t j,
                      const FitColumn& column) {
   const FitParameter& p = problem.parameters[j];
@@ -201,7 +206,10 @@ std::string Sentence(const FitProblem& problem, const Identifiability& all, std:
   }
   if (column.kink) {
     text += "; its derivative depends on the step by " + Brief(100 * column.kink_share) +
-            " %: a kink, or a step too long, so errors are not to be trusted";
+            " %, and no shorter step resolves it: a kink or noise, so errors are not to be trusted";
+  } else if (Bends(column, v.se)) {
+    text += "; its derivative is that of steps of " + Brief(column.step, p.unit) +
+            ", shorter than its error, and longer ones disagree, so errors are not to be trusted";
   }
   if (!column.failed.empty()) text += "; points beside it could not be computed: " + column.failed;
   return text;
@@ -243,7 +251,6 @@ Identifiability Identify(const FitProblem& problem, const std::vector<double>& v
     ParameterVerdict& verdict = all.parameters[j];
     verdict.kind = Determined::kAtBound;  // those that are free are looked at below
     verdict.value = values[j];
-    verdict.kink = derivatives.columns[j].kink;
     if (fit::HasPrior(p)) verdict.pull = (values[j] - fit::PriorMean(p)) / p.prior_sd;
   }
   for (std::size_t k = 0; k < local.free.size(); ++k) {
@@ -265,6 +272,8 @@ Identifiability Identify(const FitProblem& problem, const std::vector<double>& v
   }
   Correlate(local, all);
   for (std::size_t j = 0; j < n; ++j) {
+    const FitColumn& column = derivatives.columns[j];
+    all.parameters[j].kink = column.kink || Bends(column, all.parameters[j].se);
     all.parameters[j].sentence = Sentence(problem, all, j, derivatives.columns[j]);
   }
   return all;

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kLeastDamping = 1e-12, kMostDamping = 1e12;
+/// Below this share of the promised gain, slopes are looked at again.
+constexpr double kPoorRatio = 0.25;
 
 /// The cosine of the angle between the residuals and column j.
 double Cosine(const Quadratic& quadratic, const Vector& gradient, double residual_norm,
@@ -44,6 +46,7 @@ Search::Search(const FitProblem& problem, std::span<const FitJob> jobs, const Fi
     track.values = track.start;
     track.damping = options.first_damping;
     track.weight.assign(problem.parameters.size(), 0.0);
+    track.step_share.assign(problem.parameters.size(), 1.0);
   }
   kept_ = state_;
 }
@@ -138,48 +141,6 @@ bool Search::Begin() {
   return true;
 }
 
-bool Search::Derive() {
-  std::vector<std::vector<double>> points;
-  std::vector<std::pair<std::size_t, Stencil>> plan;
-  for (std::size_t t = 0; t < jobs_.size(); ++t) {
-    if (!Running(t) || !work_[t].slopes.empty()) continue;
-    for (std::size_t j = 0; j < problem_.parameters.size(); ++j) {
-      if (Held(t, j)) continue;
-      plan.emplace_back(t, MakeStencil(problem_, state_.tracks[t].values, j, false));
-      AddPoints(plan.back().second, state_.tracks[t].values, points);
-    }
-    work_[t].slopes.resize(problem_.parameters.size());
-    work_[t].nearby.clear();
-    work_[t].nearby_cost = state_.tracks[t].cost;
-  }
-  std::vector<Residuals> answers;
-  if (!Compute(points, answers)) return false;
-  std::size_t next = 0;
-  for (const auto& [t, stencil] : plan) {
-    // What a search that goes on computes again was counted before.
-    const bool counts = !resumed_ || state_.tracks[t].rejected == 0;
-    const std::size_t first = next;
-    for (std::size_t k = 0; k < stencil.at.size(); ++k, ++next) {
-      if (counts) ++state_.points;
-      if (!answers[next].failed.empty()) {
-        if (counts) CountFailure(t, answers[next].failed);
-        continue;
-      }
-      const double cost = CostAt(t, points[next], answers[next].value);
-      if (cost < work_[t].nearby_cost) {
-        work_[t].nearby = points[next];
-        work_[t].nearby_residual = answers[next].value;
-        work_[t].nearby_cost = cost;
-      }
-    }
-    work_[t].slopes[stencil.parameter] =
-        Slope(stencil, state_.tracks[t].values[stencil.parameter], work_[t].residual,
-              std::span<const Residuals>(answers).subspan(first, stencil.at.size()));
-  }
-  resumed_ = false;
-  return true;
-}
-
 StepBox Search::BoxOf(std::size_t t, const Vector& gradient) const {
   const std::vector<double>& values = state_.tracks[t].values;
   StepBox box;
@@ -202,6 +163,7 @@ void Search::MoveTo(std::size_t t, const std::vector<double>& values, double cos
   track.values = values;
   track.cost = cost;
   track.rejected = 0;
+  track.check = false;
   work_[t].slopes.clear();
 }
 
@@ -243,7 +205,8 @@ void Search::Propose(std::size_t t, std::vector<Trial>& trials,
   }
   ++track.iterations;
   if (cosine <= options_.gradient_tolerance) {
-    if (!Jump(t)) End(t, FitEnd::kConverged, "no parameter's column has a part of the residuals");
+    if (!CheckFirst(t) && !Jump(t))
+      End(t, FitEnd::kConverged, "no parameter's column has a part of the residuals");
     return;
   }
   double damping = options_.dampings > 1 ? 0.1 * track.damping : track.damping;
@@ -285,18 +248,20 @@ void Search::Choose(std::size_t t, std::span<Trial> trials,
     const double turned = 2.0 * ratio - 1.0;
     track.damping = trial.damping * std::max(1.0 / 3.0, 1.0 - turned * turned * turned);
     track.damping = std::clamp(track.damping, kLeastDamping, kMostDamping);
+    const bool checked = track.check;
     MoveTo(t, points[best], trial.cost);
     work_[t].residual = std::move(trial.answer.value);
-    if (small) End(t, FitEnd::kConverged, "the cost no longer changes");
-    if (trial.length <= options_.step_tolerance) {
-      End(t, FitEnd::kConverged, "the step has vanished");
-    }
+    const bool vanished = trial.length <= options_.step_tolerance;
+    if (small && checked) End(t, FitEnd::kConverged, "the cost no longer changes");
+    if (vanished && checked) End(t, FitEnd::kConverged, "the step has vanished");
+    track.check = ratio < kPoorRatio || small || vanished;
     return;
   }
   // The one with the least damping goes furthest and promises most.
   const double promised = trials.front().predicted;
   const bool vanished = trials.front().length <= options_.step_tolerance;
   const bool nothing = promised <= options_.cost_tolerance * track.cost;
+  if (CheckFirst(t)) return;
   if (vanished || nothing || track.damping >= kMostDamping) {
     if (Jump(t)) return;
     const bool stuck = !vanished && !nothing;

@@ -43,7 +43,11 @@ class Search {
 
   bool Begin();   ///< Residuals of all starts. False: stopped.
   bool Derive();  ///< Slopes of those that moved. False: stopped.
-  bool Try();     ///< An iteration. False: stopped.
+  /// Before a search ends at differences that were not checked: has them checked, if they were not.
+  bool CheckFirst(std::size_t track);
+  /// Counts points of differences and keeps the best of each track.
+  void TakeNearby(std::size_t track, const std::vector<double>& point, const Residuals& answer);
+  bool Try();  ///< An iteration. False: stopped.
 
   FitState Stopped();  ///< What was kept, with those that still run marked.
   bool Compute(const std::vector<std::vector<double>>& points, std::vector<Residuals>& answers);

@@ -76,6 +76,25 @@ class FitCommand : public CommandTest {
   }
 };
 
+TEST_F(FitCommand, FindsASpringConstantWithDefaultSteps) {
+  // 22 periods of a swing, noise-free: a default step of damping_n_s_per_m is too long there.
+  const std::string hang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
+  ASSERT_EQ(End(Start({"run", hang, "--set", "stiffness_n_per_m=410", "--set", "hang_m=1.03",
+                       "--set", "damping_n_s_per_m=0.5", "--out", "truth", "--quiet", "--csv"}))
+                .status,
+            0);
+  const CommandResult done =
+      Fit("taut: 1\nkind: fit\nname: f\nexperiments: [{name: one, experiment: " + hang +
+          ", data: truth/trace.csv, set: {hang_m: 1.03}}]\n"
+          "estimate:\n  - {parameter: stiffness_n_per_m}\n"
+          "  - {parameter: damping_n_s_per_m, start: 0.2, low: 0, high: 5}\n"
+          "residuals: [{channel: \"cable/*/length_m\", sd: 0.001, statistic: rows}]\n");
+  EXPECT_EQ(done.status, 0) << done.output << done.errors;
+  const auto summary = Summary();
+  EXPECT_NEAR(summary["parameters"][0]["value"], 410, 0.01);
+  EXPECT_NEAR(summary["parameters"][1]["value"], 0.5, 1e-4);
+}
+
 TEST_F(FitCommand, FindsWhatATwinWasMadeWith) {
   const CommandResult done = Fit(kFit, {"--profile", "k_n_per_m"});
   EXPECT_EQ(done.status, 0) << done.output << done.errors;

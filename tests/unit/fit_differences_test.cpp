@@ -90,6 +90,25 @@ TEST(FitDifferences, AFailedPointIsNamedAndItsOtherSideServes) {
   EXPECT_EQ(Differentiate(problem, {1}).why, "slack");
 }
 
+TEST(FitDifferences, AStepThatIsTooLongIsShortened) {
+  // A swing of 20 periods whose frequency is x: over a step of 0.1 its phase turns by 2 pi.
+  const auto swing = [](double x) { return 1e4 * std::sin(62.8 * x); };
+  const FitColumn column = Of(Parameter("x", 0), 0.4, swing).columns[0];
+  EXPECT_FALSE(column.kink);
+  EXPECT_LT(column.step_share, 1);
+  EXPECT_NEAR(column.slope[0], 1e4 * 62.8 * std::cos(62.8 * 0.4), 1e4 * 62.8 * 1e-3);
+  // Where the data say so little that errors reach beyond that step, it stays a warning.
+  const auto faint = [](double x) { return std::sin(62.8 * x); };
+  EXPECT_TRUE(Of(Parameter("x", 0), 0.4, faint).columns[0].kink);
+}
+
+TEST(FitDifferences, AStepThatResolvesIsLeftAlone) {
+  const FitColumn column =
+      Of(Parameter("x", 0), 0.4, [](double x) { return std::sin(x); }).columns[0];
+  EXPECT_EQ(column.step_share, 1);
+  EXPECT_NEAR(column.step, 0.1, 1e-15);
+}
+
 TEST(FitDifferences, AllPointsAreOneCall) {
   auto problem = MakeProblem({Parameter("x", 0), Parameter("y", 0)}, 1, {});
   int calls = 0;

@@ -174,7 +174,8 @@ TEST(FitVerdict, AKinkIsPartOfTheSentence) {
   });
   const ParameterVerdict of = At(problem, {0}).parameters[0];
   EXPECT_TRUE(of.kink);
-  EXPECT_NE(of.sentence.find("a kink, or a step too long"), std::string::npos) << of.sentence;
+  EXPECT_NE(of.sentence.find("no shorter step resolves it: a kink or noise"), std::string::npos)
+      << of.sentence;
 }
 
 TEST(FitVerdict, EstimatesThatGoTogetherSaySo) {
