@@ -18,6 +18,11 @@ Json ToJson(const Range& range) {
   return {{"mean_n", range.mean}, {"min_n", range.min}, {"max_n", range.max}};
 }
 
+/// A largest value from 5 s on; null of a run that ended before.
+Json AfterStart(double value, const RunSummary& run) {
+  return run.simulated_s > 5 ? Json(value) : Json();
+}
+
 Json ToJson(const CableSummary::Quantity& quantity, const RunSummary& run) {
   Json phases = Json::object();
   for (std::size_t i = 0; i < run.phases.size() && i < quantity.phases.size(); ++i) {
@@ -25,7 +30,7 @@ Json ToJson(const CableSummary::Quantity& quantity, const RunSummary& run) {
         report::Complete(run, run.phases[i]) ? ToJson(quantity.phases[i]) : Json();
   }
   return {{"max_n", quantity.max_n},
-          {"max_after_start_n", quantity.max_after_start_n},
+          {"max_after_start_n", AfterStart(quantity.max_after_start_n, run)},
           {"phases", phases}};
 }
 
@@ -96,7 +101,8 @@ std::string SummaryJson(const RunSummary& summary) {
   json["system_max_tension_n"] = summary.system_max_tension_n;
   json["system_max_tension_cable"] = summary.system_max_tension_cable;
   json["system_max_elastic_n"] = summary.system_max_elastic_n;
-  json["system_max_elastic_after_start_n"] = summary.system_max_elastic_after_start_n;
+  json["system_max_elastic_after_start_n"] =
+      AfterStart(summary.system_max_elastic_after_start_n, summary);
   json["phases"] = Json::array();
   for (const PhaseSpec& phase : summary.phases) {
     json["phases"].push_back(

@@ -46,6 +46,15 @@ RunSummary Summary() {
   return summary;
 }
 
+TEST(SummaryJson, ARunThatEndsInItsFirstSecondsHasNoMaximumAfterThem) {
+  RunSummary summary = Summary();
+  summary.simulated_s = 2;
+  const auto json = nlohmann::ordered_json::parse(SummaryJson(summary));
+  EXPECT_TRUE(json["system_max_elastic_after_start_n"].is_null());
+  EXPECT_TRUE(json["cables"][0]["tension"]["max_after_start_n"].is_null());
+  EXPECT_EQ(json["cables"][0]["tension"]["max_n"], 41.25);
+}
+
 TEST(SummaryJson, HoldsEverythingUnderItsName) {
   RunSummary summary = Summary();
   summary.drags = {{"scale", {1.5, 1.25, 1.75}}};
