@@ -103,6 +103,7 @@ LearnSummary RunStudy(const StudySpec& study, Evaluator& evaluator, const LearnO
 /// A study's folder, read back.
 struct StudyResult {
   std::string name;
+  std::string taut_version;  ///< That began it.
   std::vector<StudyParameter> parameters;
   std::vector<Evaluation> evaluations;  ///< By id.
   ExperimentSpec experiment;            ///< As it was resolved.

@@ -306,6 +306,7 @@ std::optional<StudyResult> ReadStudyFolder(const std::string& folder, Diagnostic
   }
   StudyResult result;
   result.name = contents->facts["name"];
+  result.taut_version = contents->facts["taut_version"];
   result.parameters = std::move(contents->parameters);
   result.evaluations = std::move(contents->evaluations);
   result.skipped = std::move(contents->damage);
