@@ -15,7 +15,7 @@ struct Law {
   double c_at_zero = 0;  ///< Where all controls are 0.
   int actuators = 0;
   double lag_s = 0;  ///< The longest of its actuators.
-  bool pushes = false, damps_slack = false, has_most = false;
+  bool pushes = false, damps_slack = false, has_most = false, has_least = false;
 };
 
 class CableBuilder {
@@ -55,10 +55,9 @@ class CableBuilder {
     law.k = tendon.stiffness, law.b = tendon.damping;
     law.damps_slack = tendon.damping > 0;
     if (tendon.stiffness > 0) {
-      const double longest = tendon.springlength.back();
+      const double longest = tendon.springlength[1];
       law.c = tendon.stiffness * (longest < 0 ? Length(tendon) : longest);
-      // With two numbers it pushes below the first.
-      law.pushes = tendon.springlength.size() < 2 || tendon.springlength[0] != 0;
+      law.pushes = tendon.springlength[0] != 0;
     }
     law.c_at_zero = law.c;
     for (std::size_t a = 0; a < scene_.actuators.size(); ++a) {
@@ -72,24 +71,66 @@ class CableBuilder {
       const auto& range = actuator.force_range;
       if (!range || range->second > 0) law.pushes = true;
       if (range && range->first > -1e9) law.has_most = true;
+      if (range && range->second < 0) law.has_least = true;
     }
     return law;
+  }
+
+  /// The tension at the start as MuJoCo computes it, where the tendon has this length.
+  double TensionInMujoco(int index, double length) const {
+    const Tendon& tendon = scene_.tendons[Scene::Index(index)];
+    double shortest = tendon.springlength[0], longest = tendon.springlength[1];
+    if (longest < 0) shortest = longest = Length(tendon);
+    const double stretch = length > longest    ? length - longest
+                           : length < shortest ? length - shortest
+                                               : 0;
+    double tension = tendon.stiffness * stretch;
+    for (std::size_t a = 0; a < scene_.actuators.size(); ++a) {
+      const Actuator& actuator = scene_.actuators[a];
+      if (actuator.tendon != index) continue;
+      const auto& range = actuator.force_range;
+      const double push = actuator.gain * Control(a) + actuator.bias[0] + actuator.bias[1] * length;
+      tension -= range ? std::clamp(push, range->first, range->second) : push;
+    }
+    return tension;
+  }
+
+  /// Complains where the cable's tension at the start is not MuJoCo's: a limit of an actuator's
+  /// force acts there, or the spring is slack there while an actuator pulls. What only pushes in
+  /// MuJoCo is a warning of its own.
+  void CheckStart(int index, const Law& law, double length) {
+    const Tendon& tendon = scene_.tendons[Scene::Index(index)];
+    const double theirs = TensionInMujoco(index, length);
+    const double ours = std::max(0.0, law.k * length - law.c);
+    const double size = law.k * length + std::fabs(law.c);
+    if (std::fabs(std::max(theirs, 0.0) - ours) <= 1e-9 * size) return;
+    b_.out.Error(tendon.at,
+                 "tendon \"" + tendon.name + "\" has a tension of " + Shown(theirs) +
+                     " at the start in MuJoCo, as a cable " + Shown(ours) +
+                     ": a cable has neither" +
+                     " limits of its force (forcerange) nor a spring that is slack by itself",
+                 "a keyframe or numbers with which no limit acts at the start can be imported");
   }
 
   void Build(int index) {
     const Tendon& tendon = scene_.tendons[Scene::Index(index)];
     const std::string called = "tendon \"" + tendon.name + "\"";
     const Law law = LawOf(index);
+    const bool limits = tendon.range && scene_.has_limits;
     if (law.k == 0 && law.b == 0 && law.actuators == 0) {
-      if (!tendon.has_limit) {
-        ++scene_.pictures;
+      if (tendon.friction > 0) {
+        b_.out.Error(tendon.at, called + " has a dry friction (frictionloss) and no stiffness",
+                     "stiffness and springlength make a cable of it");
+      }
+      if (!limits) {
+        scene_.pictures += tendon.friction == 0;
         return;
       }
       b_.out.Error(tendon.at, called + " has a limit of its length and no stiffness",
                    "stiffness and springlength make a cable of it");
       return;
     }
-    if (tendon.has_limit) limits_.push_back(&tendon);
+    if (limits) limits_.push_back(&tendon);
     if (!(law.k > 0)) {
       b_.out.Error(tendon.at,
                    called + (law.actuators > 0 ? " is pulled by a force, without stiffness"
@@ -128,16 +169,18 @@ class CableBuilder {
       }
       length += std::sqrt(Dot(d, d));
     }
+    if (law.actuators > 0) CheckStart(index, law, length);
     const std::string name = b_.pairs.Take(NameOf(tendon));
     if (law.pushes && b_.options.slack == MjcfSlack::kAsMujoco) {
       AddBar(tendon, law, rest, ends, name);
       return;
     }
-    bilateral_ += law.pushes;
+    if (law.pushes) bilateral_.push_back(&tendon);
     pushing_ += law.pushes && length < rest;
-    damped_ += law.damps_slack;
-    summed_ += law.actuators > 0 && tendon.stiffness > 0 && !law.pushes;
+    if (law.damps_slack) damped_.push_back(&tendon);
+    if (law.actuators > 0 && tendon.stiffness > 0) summed_.push_back(&tendon);
     if (law.has_most) capped_.push_back(&tendon);
+    if (law.has_least) pulled_.push_back(&tendon);
     if (tendon.friction > 0) {
       if (!b_.options.without_frictionloss) {
         b_.out.Error(tendon.at, called + ": frictionloss of a cable is not read",
@@ -187,7 +230,7 @@ class CableBuilder {
 
   void AddBar(const Tendon& tendon, const Law& law, double rest,
               const std::vector<AttachmentDef>& ends, const std::string& name) {
-    const bool dead_band = tendon.springlength.size() == 2 && tendon.stiffness > 0;
+    const bool dead_band = tendon.springlength[0] != tendon.springlength[1] && tendon.stiffness > 0;
     if (ends.size() != 2 || law.actuators > 0 || dead_band) {
       b_.out.Error(tendon.at,
                    "tendon \"" + tendon.name +
@@ -234,25 +277,25 @@ class CableBuilder {
     note(relative_, " of MuJoCo: changes of rest lengths of cables");
     note(other_, " u of MuJoCo: rest lengths by another scale, as of " + example_);
     note(several_, " of MuJoCo: several of a cable, whose rest length follows from their sum");
-    if (bilateral_ > 0) {
-      b_.out.Warning({},
-                     Count(static_cast<std::size_t>(bilateral_), "tendon") +
+    if (!bilateral_.empty()) {
+      b_.out.Warning(bilateral_[0]->at,
+                     Count(bilateral_.size(), "tendon") +
                          " would push in MuJoCo when shorter than at rest; here cables only "
                          "pull. " +
                          std::to_string(pushing_) + " of them would do so at the start",
                      "--slack as_mujoco makes bars of them");
     }
-    if (damped_ > 0) {
-      b_.out.Warning({}, Count(static_cast<std::size_t>(damped_), "damper") +
-                             " of tendons would act in MuJoCo while slack, too; here only with "
-                             "tension");
+    if (!damped_.empty()) {
+      b_.out.Warning(damped_[0]->at,
+                     Count(damped_.size(), "damper") +
+                         " of tendons would act in MuJoCo while slack, too; here only with "
+                         "tension");
     }
-    if (summed_ > 0) {
-      b_.Note(Count(static_cast<std::size_t>(summed_), "cable") +
-              " with a spring and an actuator: one cable of both, which is slack where their sum "
-              "would push");
-    }
+    Some(
+        summed_,
+        " a spring and an actuator: here one cable of both, slack only where their sum would push");
     Some(capped_, " a largest tension (forcerange) that is left out");
+    Some(pulled_, " a least tension (forcerange) that is left out");
     Some(limits_, " a limit of length (range) that is left out");
     Some(rough_, " a dry friction (frictionloss) that is left out");
     Some(lagging_, " actuators that follow their controls with a lag (dyntype), of up to " +
@@ -285,10 +328,11 @@ class CableBuilder {
   Building& b_;
   Scene& scene_;
   const Key* key_;
-  int bilateral_ = 0, pushing_ = 0, damped_ = 0, summed_ = 0;
+  int pushing_ = 0;
   int absolute_ = 0, relative_ = 0, other_ = 0, several_ = 0;
   std::string example_;
-  std::vector<const Tendon*> capped_, limits_, rough_, lagging_, idle_;
+  std::vector<const Tendon*> bilateral_, damped_, summed_, capped_, pulled_, limits_, rough_,
+      lagging_, idle_;
   double longest_lag_s_ = 0;
 };
 

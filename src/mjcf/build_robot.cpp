@@ -60,6 +60,13 @@ void TellWhatIsLeftOut(Building& b) {
         (text.empty() ? "" : ", ") + what + (count > 1 ? " (" + std::to_string(count) + ")" : "");
   }
   if (!text.empty()) b.Note("left out: " + text);
+  if (const auto& twisting = b.scene.twisting; !twisting.empty()) {
+    b.out.Warning(
+        twisting[0],
+        "torsional and rolling friction (condim above 3) is left out" +
+            (twisting.size() > 1 ? " here and of " + std::to_string(twisting.size() - 1) + " more"
+                                 : std::string()));
+  }
   if (b.scene.pictures > 0) {
     b.Note("left out: " + Count(static_cast<std::size_t>(b.scene.pictures), "tendon") +
            " without stiffness and actuator, which only show");
@@ -90,6 +97,13 @@ void PutAt(const Key* key, Building& b) {
     const std::size_t q = 7 * free, v = 6 * free;
     ++free;
     if (body.root != static_cast<int>(i)) continue;  // moves with what it is welded to
+    if (body.aligned) {
+      b.out.Error(body.at,
+                  "the free joint of body \"" + body.name +
+                      "\" has align=\"true\": poses of keys are not read then",
+                  "align=\"false\" keeps the body's frame");
+      return;
+    }
     const int made = b.RigidOf(static_cast<int>(i)).body;
     Pose now = body.frame;
     if (!key->qpos.empty()) {

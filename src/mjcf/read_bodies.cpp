@@ -117,8 +117,11 @@ class BodyReader {
       out_.Error(joint.at, joint.Called() + whose + ": the world does not move");
       return;
     }
-    if (joint.name == "freejoint") return;
     const Layers layers = Over(joint, cls);
+    const std::string align = layers.Text("align", "auto");
+    scene_.bodies[Scene::Index(body)].aligned =
+        align == "auto" ? scene_.settings.alignfree : align == "true";
+    if (joint.name == "freejoint") return;
     const std::string type = layers.Text("type", "hinge");
     if (type != "free") {
       out_.Error(
@@ -284,7 +287,9 @@ void BodyReader::ReadGeom(const GeomAt& from, bool body_has_mass) {
   const auto friction = layers.Numbers("friction", {1, 0.005, 0.0001}, 1, 3);
   shape.friction = shape.condim == 1 ? 0 : friction[0];
   if (friction[0] < 0) layers.Error("friction", "its friction is negative");
-  if (shape.condim > 3) ++scene_.left_out["friction against twisting and rolling (geom.condim)"];
+  const bool twists =
+      shape.condim > 3 && (friction[1] > 0 || (shape.condim > 4 && friction[2] > 0));
+  if (twists && touches) scene_.twisting.push_back(shape.at);
   Register(scene_.shape_by_name, *from.element, static_cast<int>(scene_.shapes.size()), out_);
   scene_.shapes.push_back(shape);
 }

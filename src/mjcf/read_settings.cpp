@@ -34,6 +34,7 @@ void ReadCompiler(const Layers& layers, CompilerSettings& s) {
                    : text == "false" ? FromGeoms::kFalse
                                      : FromGeoms::kAuto;
   }
+  s.alignfree = layers.Flag("alignfree", s.alignfree);
   s.autolimits_given = s.autolimits_given || layers.Has("autolimits");
   s.autolimits = layers.Flag("autolimits", s.autolimits);
   s.boundmass = layers.Number("boundmass", s.boundmass);
@@ -46,10 +47,15 @@ void ReadFlags(const Element& element, Scene& scene, Diagnostics& out) {
   for (const Attribute& a : element.attributes) {
     if (a.value != "enable" && a.value != "disable") {
       out.Error(a.at, "flag." + a.name + " must be enable or disable, not \"" + a.value + '"');
+    } else if (a.name == "override" && a.value == "enable") {
+      out.Error(a.at, "flag.override=\"enable\" is not read",
+                "friction is that of each geom; o_friction replaces it only with this flag");
     } else if (a.value == "disable") {
       if (a.name == "gravity") scene.gravity = {};
       if (a.name == "contact") scene.has_contacts = false;
       if (a.name == "clampctrl") scene.clamps_controls = false;
+      if (a.name == "frictionloss") scene.has_dry_friction = false;
+      if (a.name == "limit") scene.has_limits = false;
       for (const char* whole :
            {"constraint", "passive", "spring", "damper", "actuation", "equality"}) {
         if (a.name == whole) out.Error(a.at, "flag." + a.name + "=\"disable\" is not read");
@@ -68,6 +74,11 @@ void ReadOption(const Layers& layers, Scene& scene, Diagnostics& out) {
     if (layers.Number(fluid, 0) != 0) layers.Error(fluid, "a fluid is not read", "there is none");
   }
   scene.only_pairs = layers.Text("collision", "all") == "predefined";
+  if (layers.Has("actuatorgroupdisable")) {
+    for (const double group : layers.Numbers("actuatorgroupdisable", {}, 0, 31)) {
+      scene.disabled_groups.push_back(static_cast<int>(group));
+    }
+  }
   for (const Element& child : layers.element().children) {
     if (child.name == "flag") ReadFlags(child, scene, out);
   }
@@ -132,10 +143,17 @@ void ReadContacts(const Element& root, const Defaults& defaults, Scene& scene, D
         const int a = Find(scene.shape_by_name, e, "geom1", "geom", out),
                   b = Find(scene.shape_by_name, e, "geom2", "geom", out);
         if (a < 0 || b < 0) continue;
-        const Shape &one = scene.shapes[Scene::Index(a)], &two = scene.shapes[Scene::Index(b)];
-        const double usual = std::max(one.friction, two.friction);
-        const double friction = layers.Numbers("friction", {usual, usual, 0, 0, 0}, 1, 5)[0];
-        scene.pairs.push_back({e.at, a, b, layers.Whole("condim", 3) == 1 ? 0 : friction});
+        // Of the geoms' own friction and condim MuJoCo takes nothing.
+        const auto friction = layers.Numbers("friction", {1, 1, 0.005, 0.0001, 0.0001}, 1, 5);
+        const int condim = layers.Whole("condim", 3);
+        if (friction[0] < 0) layers.Error("friction", "its friction is negative");
+        if (condim > 1 && friction[0] != friction[1]) {
+          layers.Error(
+              "friction", "friction that differs between the two tangents is not read",
+              "the first two numbers are those of the tangents; the second is 1 if absent");
+        }
+        if (condim > 3) scene.twisting.push_back(e.at);
+        scene.pairs.push_back({e.at, a, b, condim == 1 ? 0 : friction[0]});
       }
     }
   }
@@ -194,8 +212,10 @@ void ReadKeys(const Element& root, Scene& scene, Diagnostics& out) {
       };
       key.qpos = read("qpos", positions);
       key.qvel = read("qvel", velocities);
-      key.ctrl = read("ctrl", scene.actuators.size());
-      key.act = read("act", scene.states);
+      if (!scene.lacks_actuators) {
+        key.ctrl = read("ctrl", scene.actuators.size());
+        key.act = read("act", scene.states);
+      }
       scene.keys.push_back(std::move(key));
     }
   }

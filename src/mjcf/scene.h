@@ -46,6 +46,7 @@ struct Body {
       0;  ///< The body that it is one rigid body with: itself, or what it is in or welded to.
   Pose frame = {};
   MassProperties mass = {};
+  bool aligned = false;  ///< MuJoCo turns its frame into its principal axes: poses of keys differ.
   bool own_masses = true;  ///< Each of its shapes weighs what a solid of taut's weighs.
 };
 
@@ -54,8 +55,9 @@ struct Tendon {
   SourceRef at;
   std::vector<int> sites = {};
   double stiffness = 0, damping = 0, friction = 0;
-  std::vector<double> springlength = {};  ///< One or two; what is -1 is the length at qpos0.
-  bool has_limit = false;
+  /// Below the first it pushes, above the second it pulls. Both -1: the length at qpos0.
+  double springlength[2] = {-1, -1};
+  std::optional<std::pair<double, double>> range = {};  ///< Limits of its length.
 };
 
 /// p = gain ctrl + bias0 + bias1 l + bias2 dl/dt along a tendon, where positive pushes.
@@ -86,19 +88,23 @@ struct Scene {
   CompilerSettings settings;
   Vec3 gravity{0, 0, -9.81};
   double timestep = 0.002;
-  bool clamps_controls = true, has_contacts = true, only_pairs = false;
+  bool clamps_controls = true, has_contacts = true, only_pairs = false, has_dry_friction = true,
+       has_limits = true;
+  std::vector<int> disabled_groups;  ///< Of actuators.
   std::vector<Body> bodies;
   std::vector<Shape> shapes;
   std::vector<Site> sites;
   std::vector<Tendon> tendons;
   std::vector<Actuator> actuators;
-  std::size_t states = 0;  ///< Of actuators.
+  std::size_t states = 0;        ///< Of actuators.
+  bool lacks_actuators = false;  ///< Some are refused: numbers of keys cannot be checked.
   std::vector<Key> keys;
   std::vector<ContactPair> pairs;
   std::vector<std::pair<int, int>> excludes;  ///< Of bodies.
   std::map<std::string, int> site_by_name, body_by_name, shape_by_name, tendon_by_name;
   LeftOut left_out;
-  int pictures = 0;  ///< Tendons that do nothing.
+  std::vector<SourceRef> twisting;  ///< Geoms and pairs with torsional or rolling friction.
+  int pictures = 0;                 ///< Tendons that do nothing.
 
   bool Moves(int body) const { return bodies[Index(bodies[Index(body)].root)].is_free; }
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }

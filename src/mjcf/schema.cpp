@@ -1,7 +1,10 @@
 #include "mjcf/schema.h"
 
 #include <algorithm>
+#include <map>
 #include <sstream>
+
+#include "mjcf/values.h"
 
 namespace taut::mjcf {
 namespace {
@@ -11,27 +14,53 @@ constexpr const char* kBodyParts = "inertial joint freejoint geom site body fram
 constexpr const char* kPictures = "camera light";
 constexpr const char* kNotBodies = "composite flexcomp attach replicate plugin";
 constexpr const char* kActuators =
-    "general motor position velocity intvelocity damper cylinder muscle adhesion plugin dcmotor";
+    "general motor position velocity intvelocity damper cylinder muscle adhesion plugin dcmotor "
+    "orientation pid";
 const std::string kJoint =
-    "name class type pos axis damping stiffness armature frictionloss springdamper";
+    "name class type pos axis damping stiffness armature frictionloss springdamper align";
 const std::string kJointLeftOut =
     "group range limited ref springref margin solreflimit solimplimit solreffriction "
-    "solimpfriction actuatorfrclimited actuatorfrcrange actuatorgravcomp user align";
+    "solimpfriction actuatorfrclimited actuatorfrcrange actuatorgravcomp user springyield";
 const std::string kGeom =
     "name class type contype conaffinity condim group priority size mass density fromto friction "
     "mesh hfield shellinertia ";
 const std::string kGeomLeftOut =
-    "material rgba solmix solref solimp margin gap fitscale user fluidshape fluidcoef hullvertices";
+    "material rgba solmix solref solimp margin gap fitscale user fluidshape fluidcoef hullvertices "
+    "castshadow adhesion surfacevel";
 const std::string kTendon =
     "name class springlength stiffness damping armature frictionloss limited range "
     "actuatorfrclimited actuatorfrcrange";
 const std::string kTendonLeftOut =
-    "group solreflimit solimplimit solreffriction solimpfriction margin width material rgba user";
+    "group solreflimit solimplimit solreffriction solimpfriction margin width material rgba user "
+    "springyield";
 const std::string kActuator =
     "name class tendon joint jointinparent site refsite body cranksite slidersite ctrllimited "
-    "ctrlrange forcelimited forcerange gear ";
-const std::string kActuatorLeftOut =
-    "group user lengthrange cranklength actlimited actrange actdim actearly nsample interp delay";
+    "ctrlrange forcelimited forcerange gear group actlimited actrange delay damping armature ";
+const std::string kActuatorLeftOut = "user lengthrange cranklength actdim actearly nsample interp";
+
+/// Attributes of `left_out` that change a force or a place. With the neutral number, or numbers
+/// that begin the neutral ones, they change nothing and nothing is reported.
+struct Change {
+  const char *elements, *attributes, *neutral;
+  const char* consequence;  ///< Of leaving it out, for a warning; null: it is refused.
+};
+constexpr const char* kSoft =
+    "contacts are rigid here, in MuJoCo as soft as these numbers make them";
+constexpr const char* kWelded = "welded bodies are one body here, in MuJoCo a soft constraint";
+constexpr Change kChanges[] = {
+    {"geom pair", "solref", "0.02 1", kSoft},
+    {"geom pair", "solimp", "0.9 0.95 0.001 0.5 2", kSoft},
+    {"pair", "solreffriction", "0 0", kSoft},
+    {"geom pair", "margin gap", "0",
+     "contacts begin where shapes touch here, in MuJoCo at the distance that these numbers set"},
+    {"geom pair", "adhesion", "0", nullptr},
+    {"geom", "surfacevel", "0 0 0", nullptr},
+    {"tendon spatial joint", "springyield", "0", nullptr},
+    {"weld equality", "solref", "0.02 1", kWelded},
+    {"weld equality", "solimp", "0.9 0.95 0.001 0.5 2", kWelded},
+    {"weld", "torquescale", "1", kWelded},
+    {"key", "mpos mquat plastic", "", "places of mocap bodies are those of the file"},
+};
 
 bool Has(const char* list, const std::string& word) {
   const std::string padded = std::string(" ") + list + " ";
@@ -58,7 +87,7 @@ class Checker {
     for (const Attribute& a : element.attributes) {
       if (Has(rule->read, a.name)) continue;
       if (Has(rule->left_out, a.name)) {
-        ++left_out_[element.name + "." + a.name];
+        LeaveOut(element, kind, a);
         continue;
       }
       out_.Error(a.at, element.name + " has no \"" + a.name + "\" in MJCF",
@@ -86,8 +115,43 @@ class Checker {
     if (name == "frame" || name == "worldbody") return "body";
     return name;
   }
+
+  void LeaveOut(const Element& element, const std::string& kind, const Attribute& a) {
+    const std::string called = element.name + "." + a.name;
+    for (const Change& change : kChanges) {
+      if (!Has(change.elements, kind) || !Has(change.attributes, a.name)) continue;
+      const auto is = ToNumbers(a.value), neutral = ToNumbers(change.neutral);
+      const bool changes_nothing = is && !is->empty() && is->size() <= neutral->size() &&
+                                   std::equal(is->begin(), is->end(), neutral->begin());
+      if (changes_nothing) return;
+      if (change.consequence == nullptr) {
+        out_.Error(a.at, element.Called() + ": " + a.name + " is not read");
+        return;
+      }
+      const auto [first, fresh] = changes_.try_emplace(change.consequence, Changed{called, a.at});
+      first->second.more += !fresh;
+      return;
+    }
+    ++left_out_[called];
+  }
+
+  struct Changed {
+    std::string called;
+    SourceRef at;
+    int more = 0;
+  };
   LeftOut& left_out_;
   Diagnostics& out_;
+  std::map<std::string, Changed> changes_;  ///< By consequence.
+
+ public:
+  void Warn() const {
+    for (const auto& [consequence, its] : changes_) {
+      const std::string more =
+          its.more > 0 ? " and " + std::to_string(its.more) + " more are" : " is";
+      out_.Warning(its.at, its.called + more + " left out: " + consequence);
+    }
+  }
 };
 
 }  // namespace
@@ -100,15 +164,19 @@ const std::vector<Rule>& Rules() {
   static const std::string kSite = std::string("name class fromto ") + kTurns;
   static const std::string kInertial = std::string("mass diaginertia fullinertia ") + kTurns;
   static const std::string kInDefaults =
-      std::string("default geom site joint tendon equality ") + kActuators;
+      std::string("default geom site joint tendon equality pair ") + kActuators;
   static const std::string kGeneral =
-      kActuator + "dyntype gaintype biastype dynprm gainprm biasprm";
+      kActuator + "dyntype gaintype biastype dynprm gainprm biasprm inheritrange";
+  static const std::string kIntegrated = kActuator + "kp kv dampratio inheritrange";
+  static const std::string kCylinder = kActuator + "timeconst bias area diameter";
   static const std::string kPosition = kActuator + "kp kv dampratio timeconst inheritrange";
   static const std::string kVelocity = kActuator + "kv kp";
   static const std::string kOthers =
       kActuatorLeftOut +
       " kp kv gain bias area diameter timeconst range force scale lmin lmax vmax fpmax fvmax "
-      "ctrlrange plugin instance dyntype dynprm inheritrange";
+      "ctrlrange plugin instance dyntype dynprm inheritrange dampratio tausmooth input ki imax "
+      "slewmax posrange velrange ffrange cogging controller inductance lugre motorconst nominal "
+      "resistance saturation thermal";
   static const char* const kActuatorOut = kActuatorLeftOut.c_str();
   static const std::vector<Rule> kRules{
       {"mujoco", "model", "",
@@ -116,28 +184,30 @@ const std::vector<Rule>& Rules() {
        "size statistic visual asset sensor custom", "extension deformable"},
       {"compiler",
        "angle coordinate eulerseq inertiafromgeom inertiagrouprange autolimits boundmass "
-       "boundinertia settotalmass",
+       "boundinertia settotalmass alignfree",
        "balanceinertia strippath fitaabb fusestatic convexhull discardvisual usethread meshdir "
-       "texturedir assetdir exactmeshinertia alignfree saveinertial conflict",
+       "texturedir assetdir exactmeshinertia saveinertial conflict passthrough savecanonical "
+       "savecompiled",
        "", "lengthrange LRopt", ""},
-      {"option", "gravity timestep density viscosity collision",
+      {"option", "gravity timestep density viscosity collision actuatorgroupdisable",
        "wind magnetic integrator cone jacobian solver iterations tolerance ls_iterations "
        "ls_tolerance noslip_iterations noslip_tolerance mpr_iterations mpr_tolerance "
        "ccd_iterations ccd_tolerance impratio apirate o_margin o_solref o_solimp o_friction "
-       "sdf_iterations sdf_initpoints actuatorgroupdisable sleep_tolerance",
+       "sdf_iterations sdf_initpoints sleep_tolerance",
        "flag", "", ""},
-      {"flag", "gravity contact constraint passive spring damper actuation equality clampctrl",
-       "frictionloss limit warmstart filterparent refsafe sensor override energy fwdinv "
-       "invdiscrete "
-       "multiccd island nativeccd eulerdamp midphase autoreset sensornoise sleep diagexact",
+      {"flag",
+       "gravity contact constraint passive spring damper actuation equality clampctrl frictionloss "
+       "limit override",
+       "warmstart filterparent refsafe sensor energy fwdinv invdiscrete multiccd island nativeccd "
+       "eulerdamp midphase autoreset sensornoise sleep diagexact ipc speculative",
        "", "", ""},
-      {"default", "class", "", kInDefaults.c_str(), "mesh material camera light pair", ""},
-      {"body", kBody.c_str(), "user sleep", kBodyParts, kPictures, kNotBodies},
+      {"default", "class", "", kInDefaults.c_str(), "mesh material camera light texture", ""},
+      {"body", kBody.c_str(), "user sleep fuse simple", kBodyParts, kPictures, kNotBodies},
       {"inertial", kInertial.c_str(), "", "", "", ""},
       {"joint", kJoint.c_str(), kJointLeftOut.c_str(), "", "", ""},
-      {"freejoint", "name", "group align", "", "", ""},
+      {"freejoint", "name align", "group", "", "", ""},
       {"geom", kGeomRead.c_str(), kGeomLeftOut.c_str(), "", "", "plugin"},
-      {"site", kSite.c_str(), "type group size material rgba user", "", "", ""},
+      {"site", kSite.c_str(), "type group size material rgba user mesh", "", "", ""},
       {"tendon", kTendon.c_str(), kTendonLeftOut.c_str(), "spatial", "", "fixed"},
       {"spatial", kTendon.c_str(), kTendonLeftOut.c_str(), "site", "", "geom pulley"},
       {"spatial/site", "site", "", "", "", ""},
@@ -146,22 +216,25 @@ const std::vector<Rule>& Rules() {
       {"motor", kActuator.c_str(), kActuatorOut, "", "", ""},
       {"position", kPosition.c_str(), kActuatorOut, "", "", ""},
       {"velocity", kVelocity.c_str(), kActuatorOut, "", "", ""},
-      {"intvelocity", kActuator.c_str(), kOthers.c_str(), "", "", ""},
+      {"intvelocity", kIntegrated.c_str(), kActuatorOut, "", "", ""},
       {"damper", kActuator.c_str(), kOthers.c_str(), "", "", ""},
-      {"cylinder", kActuator.c_str(), kOthers.c_str(), "", "", ""},
+      {"cylinder", kCylinder.c_str(), kActuatorOut, "", "", ""},
       {"muscle", kActuator.c_str(), kOthers.c_str(), "", "", ""},
       {"adhesion", kActuator.c_str(), kOthers.c_str(), "", "", ""},
-      {"equality", "active", "class solref solimp", "weld connect joint tendon distance flex", "",
-       ""},
+      {"dcmotor", kActuator.c_str(), kOthers.c_str(), "", "", ""},
+      {"orientation", kActuator.c_str(), kOthers.c_str(), "", "", ""},
+      {"pid", kActuator.c_str(), kOthers.c_str(), "", "", ""},
+      {"equality", "active", "class solref solimp",
+       "weld connect joint tendon distance flex flexstrain", "", ""},
       {"weld", "name class active body1 body2 site1 site2 relpose anchor",
        "solref solimp torquescale", "", "", ""},
       {"connect", "name class active body1 body2 site1 site2 anchor", "solref solimp", "", "", ""},
       {"contact", "", "", "pair exclude", "", ""},
       {"pair", "name class geom1 geom2 condim friction",
-       "solref solreffriction solimp margin gap user", "", "", ""},
+       "solref solreffriction solimp margin gap user adhesion", "", "", ""},
       {"exclude", "name body1 body2", "", "", "", ""},
       {"keyframe", "", "", "key", "", ""},
-      {"key", "name qpos qvel ctrl act", "time mpos mquat", "", "", ""},
+      {"key", "name qpos qvel ctrl act", "time mpos mquat plastic", "", "", ""},
   };
   return kRules;
 }
@@ -172,7 +245,9 @@ void CheckSchema(const Element& root, LeftOut& left_out, Diagnostics& out) {
               root.name == "robot" ? "this is URDF; MuJoCo's compile makes MJCF of it" : "");
     return;
   }
-  Checker(left_out, out).Run(root, "mujoco");
+  Checker checker(left_out, out);
+  checker.Run(root, "mujoco");
+  checker.Warn();
 }
 
 }  // namespace taut::mjcf

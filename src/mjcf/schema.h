@@ -24,7 +24,7 @@ bool IsActuator(const std::string& element);
 using LeftOut = std::map<std::string, int>;
 
 /// Complains about all elements and attributes below `root` that are refused or that nobody knows,
-/// counts those that are left out.
+/// counts those that are left out, and warns of those among them that change a force or a place.
 void CheckSchema(const Element& root, LeftOut& left_out, Diagnostics& out);
 
 }  // namespace taut::mjcf

@@ -110,11 +110,15 @@ bool Layers::Flag(std::string_view name, bool if_absent) const {
   return if_absent;
 }
 
-bool Layers::Limited(std::string_view name, std::string_view range,
-                     const CompilerSettings& settings) const {
-  const std::string text = Text(name, "auto");
-  if (text == "auto") return Has(range) && settings.autolimits;
-  return Flag(name, false);
+std::optional<std::pair<double, double>> Layers::Range(std::string_view flag,
+                                                       std::string_view range,
+                                                       const CompilerSettings& settings) const {
+  const auto n = Numbers(range, {0, 0}, 2, 2);
+  const bool limited =
+      Text(flag, "auto") == "auto" ? settings.autolimits && n[0] != n[1] : Flag(flag, false);
+  if (!limited) return std::nullopt;
+  if (!(n[0] < n[1])) Error(range, std::string(range) + " must rise");
+  return std::pair(n[0], n[1]);
 }
 
 std::optional<std::pair<Vec3, Vec3>> Layers::FromTo() const {
@@ -183,7 +187,7 @@ Pose Layers::ReadPose(const CompilerSettings& settings) const {
   return {{n[0], n[1], n[2]}, ReadTurn(settings)};
 }
 
-void Defaults::Add(const Element& element, Class* in, Diagnostics& out) {
+void Defaults::Add(const Element& element, const Class* in, Diagnostics& out) {
   const Attribute* const name = element.Find("class");
   std::string called = name ? name->value : "";
   if (in == nullptr) {
@@ -195,7 +199,7 @@ void Defaults::Add(const Element& element, Class* in, Diagnostics& out) {
   }
   const auto [entry, fresh] = classes_.try_emplace(called);
   Class* const its = &entry->second;
-  if (fresh) its->in = in;
+  if (fresh && in != nullptr) its->in = in, its->inherited = in->settings.size();
   if (!fresh && (in != nullptr || called != main_)) {
     out.Error(name->at, "there are two default classes \"" + called + "\"");
     return;
@@ -220,12 +224,11 @@ void Defaults::CheckClass(const Element& element, std::string_view attribute,
             known.empty() ? "" : DidYouMean(name->value, known));
 }
 
-void Defaults::Collect(const Class* of, const std::string& kind,
+void Defaults::Collect(const Class& of, std::size_t count, const std::string& kind,
                        std::vector<const Element*>& found) {
-  if (of == nullptr) return;
-  Collect(of->in, kind, found);
-  for (const Element* const setting : of->settings) {
-    if (KindOf(setting->name) == kind) found.push_back(setting);
+  if (of.in != nullptr) Collect(*of.in, of.inherited, kind, found);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (KindOf(of.settings[i]->name) == kind) found.push_back(of.settings[i]);
   }
 }
 
@@ -238,7 +241,7 @@ Layers Defaults::Over(const Element& element, const std::string& child_class,
   const auto found = classes_.find(called);
   // A freejoint has no defaults.
   if (found != classes_.end() && element.name != "freejoint") {
-    Collect(&found->second, KindOf(element.name), layers);
+    Collect(found->second, found->second.settings.size(), KindOf(element.name), layers);
   }
   layers.push_back(&element);
   return {std::move(layers), out};

@@ -27,7 +27,7 @@ struct CompilerSettings {
   bool degrees = true, global = false;
   std::string eulerseq = "xyz";
   enum class FromGeoms { kFalse, kTrue, kAuto } from_geoms = FromGeoms::kAuto;
-  bool autolimits = true, autolimits_given = false;
+  bool autolimits = true, autolimits_given = false, alignfree = false;
   double boundmass = 0, boundinertia = 0, settotalmass = -1;
   std::vector<double> inertia_groups{0, 5};
 };
@@ -52,10 +52,10 @@ class Layers {
   double Number(std::string_view name, double if_absent) const;
   int Whole(std::string_view name, int if_absent) const;
   bool Flag(std::string_view name, bool if_absent) const;
-  /// "true" or "false", or with `auto` or nothing what the range says: limited if it is there and
-  /// the compiler's autolimits are on.
-  bool Limited(std::string_view name, std::string_view range,
-               const CompilerSettings& settings) const;
+  /// The range if it limits anything: `flag` is "true", or it is `auto` or absent, the compiler's
+  /// autolimits are on and the range is not empty. Complains about a range that does not rise.
+  std::optional<std::pair<double, double>> Range(std::string_view flag, std::string_view range,
+                                                 const CompilerSettings& settings) const;
   Pose ReadPose(const CompilerSettings& settings) const;
   std::optional<std::pair<Vec3, Vec3>> FromTo() const;
 
@@ -81,10 +81,14 @@ class Defaults {
  private:
   struct Class {
     const Class* in = nullptr;
+    /// How many of `in`'s own settings it inherits, those before it begins: what a later section
+    /// adds to the outermost class does not reach it, as in MuJoCo.
+    std::size_t inherited = 0;
     std::vector<const Element*> settings;
   };
-  void Add(const Element& element, Class* in, Diagnostics& out);
-  static void Collect(const Class* of, const std::string& kind, std::vector<const Element*>& found);
+  static void Collect(const Class& of, std::size_t count, const std::string& kind,
+                      std::vector<const Element*>& found);
+  void Add(const Element& element, const Class* in, Diagnostics& out);
   std::map<std::string, Class> classes_;
   std::string main_ = "main";
 };

@@ -77,11 +77,51 @@ TEST_F(MjcfWorld, WhatIsLeftOutIsToldInALine) {
   ASSERT_TRUE(made);
   EXPECT_TRUE(made->robot.def.cables.empty());
   ASSERT_GE(made->notes.size(), 2u);
-  EXPECT_EQ(
-      made->notes[0],
-      "left out: asset, camera, geom of type mesh that only shows, geom.rgba, geom.solref, light, "
-      "sensor, spatial.width, visual");
+  EXPECT_EQ(made->notes[0],
+            "left out: asset, camera, geom of type mesh that only shows, geom.rgba, light, "
+            "sensor, spatial.width, visual");
   EXPECT_EQ(made->notes[1], "left out: 1 tendon without stiffness and actuator, which only show");
+  EXPECT_EQ(Said(),
+            "model.xml:3: warning: geom.solref is left out: contacts are rigid here, in MuJoCo as "
+            "soft as these numbers make them\n");
+}
+
+TEST_F(MjcfWorld, WhatChangesAForceOrAPlaceIsAWarningWithItsLine) {
+  const std::string a = R"(<mujoco><worldbody><geom name="f" type="plane" size="1 1 1"/>
+    <body name="a" pos="0 0 1"><freejoint/>
+    <geom name="g" type="sphere" size="0.1" )";
+  const std::string end = R"(/></body></worldbody></mujoco>)";
+  const std::pair<const char*, const char*> cases[] = {
+      {"solimp=\"0.8 0.9 0.01\"",
+       "model.xml:3: warning: geom.solimp is left out: contacts are rigid"},
+      {"margin=\"0.01\"",
+       "model.xml:3: warning: geom.margin is left out: contacts begin where shapes touch here"},
+      {"margin=\"0.01\" gap=\"0.01\"", "geom.margin and 1 more are left out"},
+      {"condim=\"4\"", "model.xml:3: warning: torsional and rolling friction (condim above 3)"},
+  };
+  for (const auto& [attributes, said] : cases) {
+    Import(a + attributes + end);
+    EXPECT_NE(Said().find(said), std::string::npos) << attributes << "\n" << Said();
+  }
+  Import(a + "solref=\"0.02\" solimp=\"0.9 0.95\" margin=\"0\" condim=\"6\" friction=\"1 0 0\"" +
+         end);
+  EXPECT_TRUE(out_.warnings().empty()) << Said();
+}
+
+TEST_F(MjcfWorld, APairThatGivesNoFrictionHasOne) {
+  // Neither MuJoCo 2.2.2 nor 4.0.0 takes the geoms' friction for a pair; here geoms give 0.4.
+  const auto said = [&](const std::string& of_pair, const std::string& defaults = "") {
+    Import("<mujoco>" + defaults + R"(<worldbody>
+    <geom name="f" type="plane" size="1 1 1" friction="0.3"/><body name="a" pos="0 0 1">
+    <freejoint/><geom name="g" type="sphere" size="0.1" friction="0.4"/></body></worldbody>
+    <contact><pair geom1="f" geom2="g" )" +
+           of_pair + "/></contact></mujoco>");
+    return Said();
+  };
+  const std::string another = "1 pair of geoms have another friction here";
+  EXPECT_NE(said("").find(another), std::string::npos) << Said();
+  EXPECT_EQ(said("friction=\"0.4 0.4\""), "");
+  EXPECT_EQ(said("", "<default><pair friction=\"0.4 0.4\"/></default>"), "");
 }
 
 TEST_F(MjcfWorld, DryFrictionOfATendonIsABarsOrLeftOutWhenAsked) {

@@ -1,0 +1,265 @@
+// Actuators on tendons, with the defaults of their classes.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mjcf/scene.h"
+
+namespace taut::mjcf {
+namespace {
+
+/// Parameters of an actuator while elements are applied to it: the elements of its default classes
+/// from the outermost one inwards, then its own. All kinds of element write the same parameters.
+struct ActuatorSettings {
+  std::string dyntype = "none", gaintype = "fixed", biastype = "none";
+  double gain = 1, bias[3] = {0, 0, 0}, lag_s = 1, inherited_range = 0;
+
+  bool Lags() const { return dyntype == "filter" || dyntype == "filterexact"; }
+  /// Whether an actuator has the same force with the other ones.
+  bool Equals(const ActuatorSettings& other) const {
+    const bool same_bias = biastype != "affine" || std::equal(bias, bias + 3, other.bias);
+    return dyntype == other.dyntype && gaintype == other.gaintype && biastype == other.biastype &&
+           gain == other.gain && same_bias && (!Lags() || lag_s == other.lag_s) &&
+           inherited_range == other.inherited_range;
+  }
+};
+
+/// Applies one element as MuJoCo's reader does: a parameter that the element neither gives nor
+/// implies keeps its value. `kv` of a `position` is such a parameter, and so is its `bias[0]`.
+void Apply(const Element& e, ActuatorSettings& s, Diagnostics& out) {
+  const Layers layers({&e}, out);
+  const auto number = [&](const char* name, double if_absent) {
+    const double given = layers.Number(name, if_absent);
+    if (layers.Has(name) && given < 0) layers.Error(name, std::string(name) + " is negative");
+    return given;
+  };
+  if (e.name == "general") {
+    s.dyntype = layers.Text("dyntype", s.dyntype);
+    s.gaintype = layers.Text("gaintype", s.gaintype);
+    s.biastype = layers.Text("biastype", s.biastype);
+    if (layers.Has("gainprm")) s.gain = layers.Numbers("gainprm", {s.gain}, 1, 10)[0];
+    if (layers.Has("dynprm")) s.lag_s = layers.Numbers("dynprm", {s.lag_s}, 1, 10)[0];
+    const auto n = layers.Numbers("biasprm", {s.bias[0], s.bias[1], s.bias[2]}, 1, 10);
+    std::copy(n.begin(), n.begin() + 3, s.bias);
+    s.inherited_range = number("inheritrange", s.inherited_range);
+  } else if (e.name == "motor") {
+    s.gain = 1;
+    s.dyntype = "none", s.gaintype = "fixed", s.biastype = "none";
+  } else if (e.name == "position" || e.name == "intvelocity") {
+    s.gain = layers.Number("kp", s.gain), s.bias[1] = -s.gain;
+    if (layers.Has("kv")) s.bias[2] = -number("kv", 0);
+    // A positive number here is a ratio of damping, until MuJoCo knows the masses.
+    if (layers.Has("dampratio")) s.bias[2] = number("dampratio", 0);
+    if (layers.Has("kv") && layers.Has("dampratio")) {
+      layers.Error("dampratio", "it has both kv and dampratio");
+    }
+    if (layers.Has("timeconst")) {
+      s.lag_s = number("timeconst", 0);
+      s.dyntype = s.lag_s == 0 ? "none" : "filterexact";
+    }
+    if (e.name == "intvelocity") s.dyntype = "integrator";
+    s.inherited_range = number("inheritrange", s.inherited_range);
+    s.gaintype = "fixed", s.biastype = "affine";
+  } else if (e.name == "velocity") {
+    s.gain = layers.Number("kv", s.gain);
+    s.bias[0] = s.bias[1] = 0, s.bias[2] = -s.gain;
+    s.dyntype = "none", s.gaintype = "fixed", s.biastype = "affine";
+  } else if (e.name == "cylinder") {
+    s.lag_s = number("timeconst", s.lag_s);
+    const auto n = layers.Numbers("bias", {s.bias[0], s.bias[1], s.bias[2]}, 1, 3);
+    std::copy(n.begin(), n.begin() + 3, s.bias);
+    const double diameter = number("diameter", -1);
+    s.gain = layers.Number("area", s.gain);
+    if (diameter >= 0) s.gain = std::numbers::pi / 4 * diameter * diameter;
+    s.dyntype = "filter", s.gaintype = "fixed", s.biastype = "affine";
+  }
+}
+
+/// Until MuJoCo 3.15 each element changes what all elements before it made.
+ActuatorSettings MergedUntil315(const std::vector<const Element*>& layers, Diagnostics& out) {
+  ActuatorSettings s;
+  for (const Element* const layer : layers) Apply(*layer, s, out);
+  return s;
+}
+
+/// Since MuJoCo 3.16 an element of another kind than `general` inherits from the latest element
+/// before it that is `general` or of its own kind, and takes less from `general`. Found by 10 000
+/// random files of up to four elements: 3.16.0, 3.17.0 and 4.0.0 compile each of them so.
+ActuatorSettings MergedSince316(const std::vector<const Element*>& layers) {
+  Diagnostics ignored;
+  std::vector<std::pair<std::string, ActuatorSettings>> made{{"general", {}}};
+  for (const Element* const layer : layers) {
+    const std::string& kind = layer->name;
+    const auto from = std::find_if(made.rbegin(), made.rend(), [&](const auto& before) {
+      return kind == "general" || before.first == "general" || before.first == kind;
+    });
+    ActuatorSettings s = from->second;
+    if (kind == "position" && s.dyntype != "filterexact") s.dyntype = "none", s.lag_s = 1;
+    if (kind == "motor" || kind == "velocity") s.bias[0] = s.bias[1] = s.bias[2] = 0, s.lag_s = 1;
+    if (kind == "position" || kind == "intvelocity") s.bias[0] = 0;
+    Apply(*layer, s, ignored);
+    made.emplace_back(kind, s);
+  }
+  return made.back().second;
+}
+
+class ActuatorReader {
+ public:
+  ActuatorReader(const Defaults& defaults, Scene& scene, Diagnostics& out)
+      : defaults_(defaults), scene_(scene), out_(out) {}
+
+  void Read(const Element& e) {
+    const Layers layers = defaults_.Over(e, "", out_);
+    Actuator actuator;
+    actuator.at = e.at;
+    actuator.name = layers.Text("name");
+    for (const Element* const layer : layers.all()) {
+      if (IsRead(layer->name)) continue;
+      const std::string under =
+          layer == &e ? "" : " are not read, as is its default in line " + LineOf(*layer);
+      Refuse(e, under.empty() ? "actuators of kind " + e.name + " are not read"
+                              : "actuators of kind " + layer->name + under);
+      return;
+    }
+    for (const char* other : {"joint", "jointinparent", "site", "body", "cranksite"}) {
+      if (!e.Find(other)) continue;
+      Refuse(e, std::string("an actuator on a ") + other + " is not read, those on tendons are");
+      return;
+    }
+    actuator.tendon = Find(scene_.tendon_by_name, e, "tendon", "tendon", out_);
+    if (actuator.tendon < 0) return;
+    const ActuatorSettings s = MergedUntil315(layers.all(), out_);
+    const ActuatorSettings since = MergedSince316(layers.all());
+    if (!s.Equals(since)) {
+      Refuse(e,
+             "versions of MuJoCo disagree on what it inherits: " + Text(s) + " until 3.15, " +
+                 Text(since) + " since 3.16",
+             "its classes set actuators of another kind: give these parameters in the element");
+      return;
+    }
+    ReadLaw(layers, s, actuator);
+    ReadRanges(layers, s, actuator);
+    ReadRest(layers, actuator);
+    scene_.actuators.push_back(actuator);
+  }
+
+ private:
+  static bool IsRead(const std::string& kind) {
+    return kind == "general" || kind == "motor" || kind == "position" || kind == "velocity" ||
+           kind == "intvelocity" || kind == "cylinder";
+  }
+  static std::string LineOf(const Element& e) {
+    return std::to_string(e.at.line) + " of " + e.at.file;
+  }
+
+  static std::string Text(const ActuatorSettings& s) {
+    char text[160];
+    std::snprintf(text, sizeof text, "gain %.6g, bias %.6g %.6g %.6g (%s), dyntype %s", s.gain,
+                  s.bias[0], s.bias[1], s.bias[2], s.biastype.c_str(), s.dyntype.c_str());
+    return text;
+  }
+
+  void ReadLaw(const Layers& layers, const ActuatorSettings& s, Actuator& actuator) {
+    const Element& e = layers.element();
+    const bool lags = s.Lags();
+    if (!lags && s.dyntype != "none") {
+      Refuse(e, "its dyntype is " + s.dyntype + ", only none, filter and filterexact are read");
+    }
+    if (lags) actuator.lag_s = s.lag_s, actuator.state = scene_.states++;
+    if (s.gaintype != "fixed") Refuse(e, "its gaintype is " + s.gaintype + ", only fixed is read");
+    if (s.biastype != "none" && s.biastype != "affine") {
+      Refuse(e, "its biastype is " + s.biastype + ", only none and affine are read");
+    }
+    const bool affine = s.biastype == "affine";
+    if (affine && s.bias[2] > 0 && s.gain == -s.bias[1]) {
+      layers.Error("dampratio", "dampratio is not read", "kv is");
+    }
+    // The actuator's length is the tendon's times the gear, and so is its force the other way.
+    const double gear = layers.Numbers("gear", {1}, 1, 6)[0];
+    actuator.gain = gear * s.gain;
+    actuator.bias[0] = affine ? gear * s.bias[0] : 0;
+    actuator.bias[1] = affine ? gear * gear * s.bias[1] : 0;
+    actuator.bias[2] = affine ? gear * gear * s.bias[2] : 0;
+  }
+
+  void ReadRanges(const Layers& layers, const ActuatorSettings& s, Actuator& actuator) {
+    const Element& e = layers.element();
+    if (const auto range = layers.Range("ctrllimited", "ctrlrange", scene_.settings)) {
+      actuator.control_range = range;
+    }
+    const bool as_tendon = s.gaintype == "fixed" && s.biastype == "affine" &&
+                           s.gain == -s.bias[1] && s.inherited_range > 0;
+    if (as_tendon) InheritRange(layers, s, actuator);
+    if (const auto range = layers.Range("forcelimited", "forcerange", scene_.settings)) {
+      const double gear = layers.Numbers("gear", {1}, 1, 6)[0];
+      actuator.force_range = std::minmax(gear * range->first, gear * range->second);
+    }
+    const bool unsure = layers.Has("forcerange") && layers.Text("forcelimited", "auto") == "auto" &&
+                        actuator.force_range && !scene_.settings.autolimits_given;
+    if (unsure && !warned_) {
+      warned_ = true;
+      out_.Warning(e.at, e.Called() + ": whether forcerange counts is not said; here it does",
+                   "MuJoCo 2 would not take it so: forcelimited says it to all versions");
+    }
+    if (!actuator.state) return;
+    if (layers.Range("actlimited", "actrange", scene_.settings)) {
+      layers.Error("actrange", "a range of its activation is not read", "ctrlrange is");
+    }
+  }
+
+  /// `inheritrange`: a share of the tendon's range about its middle.
+  void InheritRange(const Layers& layers, const ActuatorSettings& s, Actuator& actuator) {
+    const auto& range = scene_.tendons[Scene::Index(actuator.tendon)].range;
+    if (s.dyntype == "filter") {
+      layers.Error("inheritrange", "inheritrange is not for dyntype filter");
+    } else if (layers.Has("ctrlrange") &&
+               layers.Numbers("ctrlrange", {0, 0}, 2, 2) != std::vector<double>{0, 0}) {
+      layers.Error("inheritrange", "it has both ctrlrange and inheritrange");
+    } else if (!range) {
+      layers.Error("inheritrange", "inheritrange is given, but its tendon has no range");
+    } else if (layers.Text("ctrllimited", "auto") != "false") {
+      const double middle = 0.5 * (range->first + range->second);
+      const double radius = 0.5 * (range->second - range->first) * s.inherited_range;
+      if (scene_.settings.autolimits || layers.Text("ctrllimited", "auto") == "true") {
+        actuator.control_range = std::pair(middle - radius, middle + radius);
+      }
+    }
+  }
+
+  /// Attributes that would change its force, and are not part of taut's cables.
+  void ReadRest(const Layers& layers, Actuator& actuator) {
+    for (const char* key : {"damping", "armature"}) {
+      const auto n = layers.Numbers(key, {0, 0, 0}, 1, 3);
+      if (n == std::vector<double>{0, 0, 0}) continue;
+      layers.Error(key, std::string(key) + " of an actuator is not read");
+    }
+    if (const double delay_s = layers.Number("delay", 0); delay_s != 0) {
+      actuator.lag_s += delay_s;
+    }
+    const std::vector<int>& off = scene_.disabled_groups;
+    if (std::find(off.begin(), off.end(), layers.Whole("group", 0)) != off.end()) {
+      Refuse(layers.element(), "its group is disabled (option actuatorgroupdisable)",
+             "take the actuator out of the file, or its group off the list");
+    }
+  }
+
+  void Refuse(const Element& e, const std::string& what, const std::string& hint = {}) {
+    scene_.lacks_actuators = true;
+    out_.Error(e.at, e.Called() + ": " + what, hint);
+  }
+  const Defaults& defaults_;
+  Scene& scene_;
+  Diagnostics& out_;
+  bool warned_ = false;
+};
+
+}  // namespace
+
+void ReadActuators(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out) {
+  ActuatorReader reader(defaults, scene, out);
+  for (const Element* const section : Sections(root, "actuator")) {
+    for (const Element& e : section->children) reader.Read(e);
+  }
+}
+
+}  // namespace taut::mjcf
