@@ -16,6 +16,9 @@ namespace {
 /// In sizes of the body: what is in one plane or in one place; and how far that may be widened
 /// where faces do not close.
 constexpr double kSame = 1e-7, kWidest = 1e-3, kWider = 10.0;
+/// How often a point may be added without one more corner. In a body whose thickness is near the
+/// tolerance, the corner that is added may be dropped with the next faces, or drop another one.
+constexpr int kMostFruitless = 16;
 
 using Face = std::vector<int>;
 using Points = std::vector<Vec3>;
@@ -208,12 +211,19 @@ ConvexHull HullOf(const std::vector<Vec3>& points, int most_corners) {
   ConvexHull hull;
   Points chosen = Start(points, same_m), outside = points;
   if (chosen.empty()) return {};
-  for (;;) {
+  for (int fruitless = 0;;) {
+    const std::size_t corners_before = hull.corners.size();
     for (double near_m = same_m; near_m <= kWidest * size_m; near_m *= kWider) {
       hull = Closed(chosen, near_m);
       if (!hull.corners.empty()) break;
     }
     if (hull.corners.empty()) return {};
+    if (hull.corners.size() <= corners_before && ++fruitless > kMostFruitless) {
+      outside = points;
+      hull.left_out_m = Outermost(outside, hull, same_m).second;
+      hull.too_thin = true;
+      break;
+    }
     const auto [farthest, out_m] = Outermost(outside, hull, same_m);
     hull.left_out_m = out_m;
     const bool full = static_cast<int>(hull.corners.size()) >= most_corners;

@@ -13,6 +13,7 @@ struct ConvexHull {
   std::vector<Vec3> corners;
   std::vector<std::vector<int>> faces;
   double left_out_m = 0.0;  ///< How far the farthest point is outside.
+  bool too_thin = false;    ///< Faces cannot be told apart: points stay outside for that reason.
 };
 
 /// Of `points`, with `most_corners` corners at most: from the outermost inwards. Points that are

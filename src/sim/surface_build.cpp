@@ -10,6 +10,9 @@ namespace {
 /// So that a triangle lies in few buckets, and few triangles in a bucket.
 constexpr double kBucketsPerTriangle = 2.0;
 constexpr double kMostBuckets = 4e6;
+/// Entries of all buckets together. Each triangle is in all buckets of its bounding box, so that
+/// long triangles across the mesh would be in millions.
+constexpr double kEntriesPerTriangle = 16.0, kMostFurtherEntries = 1e6;
 
 bool Rises(const HeightFieldDef& field, int i, int j) {
   const auto at = [&](int column, int row) {
@@ -93,25 +96,47 @@ Surface::Surface(const TerrainMeshDef& mesh) : corners_(mesh.corners_m) {
   const auto buckets = [&](double extent) {
     return std::max(1, static_cast<int>(std::ceil(extent / t.bucket_m)));
   };
+  const auto set_buckets = [&] {
+    t.inv_bucket = 1.0 / t.bucket_m;
+    t.buckets[0] = buckets(size.x), t.buckets[1] = buckets(size.y), t.buckets[2] = buckets(size.z);
+  };
+  const auto span = [&](std::size_t k, int* low, int* high) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = [&](int corner) {
+        const Vec3 p = corners_[static_cast<std::size_t>(corner)] - t.low;
+        return (axis == 0 ? p.x : axis == 1 ? p.y : p.z) * t.inv_bucket;
+      };
+      const auto& v = mesh.triangles[k];
+      low[axis] = CellAt(std::min({at(v[0]), at(v[1]), at(v[2])}), t.buckets[axis]);
+      high[axis] = CellAt(std::max({at(v[0]), at(v[1]), at(v[2])}), t.buckets[axis]);
+    }
+  };
+  // In doubles: the sum may exceed an int by far.
+  const auto entries = [&] {
+    double sum = 0;
+    for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
+      int low[3], high[3];
+      span(k, low, high);
+      sum += static_cast<double>(high[0] - low[0] + 1) * (high[1] - low[1] + 1) *
+             (high[2] - low[2] + 1);
+    }
+    return sum;
+  };
   while (static_cast<double>(buckets(size.x)) * buckets(size.y) * buckets(size.z) > kMostBuckets) {
     t.bucket_m *= 1.25;
   }
-  t.inv_bucket = 1.0 / t.bucket_m;
-  t.buckets[0] = buckets(size.x), t.buckets[1] = buckets(size.y), t.buckets[2] = buckets(size.z);
+  set_buckets();
+  const double most_entries = kEntriesPerTriangle * count + kMostFurtherEntries;
+  while (t.buckets[0] * t.buckets[1] * t.buckets[2] > 1 && entries() > most_entries) {
+    t.bucket_m *= 1.25;
+    set_buckets();
+  }
   const auto all = static_cast<std::size_t>(t.buckets[0]) * static_cast<std::size_t>(t.buckets[1]) *
                    static_cast<std::size_t>(t.buckets[2]);
   const auto each = [&](const auto& use) {
     for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
       int low[3], high[3];
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto at = [&](int corner) {
-          const Vec3 p = corners_[static_cast<std::size_t>(corner)] - t.low;
-          return (axis == 0 ? p.x : axis == 1 ? p.y : p.z) * t.inv_bucket;
-        };
-        const auto& v = mesh.triangles[k];
-        low[axis] = CellAt(std::min({at(v[0]), at(v[1]), at(v[2])}), t.buckets[axis]);
-        high[axis] = CellAt(std::max({at(v[0]), at(v[1]), at(v[2])}), t.buckets[axis]);
-      }
+      span(k, low, high);
       for (int z = low[2]; z <= high[2]; ++z) {
         for (int y = low[1]; y <= high[1]; ++y) {
           for (int x = low[0]; x <= high[0]; ++x) {

@@ -96,6 +96,20 @@ TEST(ConvexHull, HoldsAllPointsOrSaysByHowMuchNot) {
   }
 }
 
+TEST(ConvexHull, AThinDiscEndsAndSaysWhatItLeavesOut) {
+  // As thin as the tolerance: corners that are added are dropped again, without end before.
+  for (const double thickness : {3e-7, 7e-7, 1e-6, 2e-6}) {
+    std::vector<Vec3> disc;
+    for (int i = 0; i < 32; ++i) {
+      const double angle = 2 * M_PI * i / 32;
+      for (const double z : {0.0, thickness}) disc.push_back({std::cos(angle), std::sin(angle), z});
+    }
+    const ConvexHull hull = HullOf(disc, 64);
+    if (hull.corners.empty()) continue;  // flat
+    EXPECT_TRUE(hull.too_thin || hull.left_out_m <= 1e-6) << thickness;
+  }
+}
+
 TEST(ConvexHull, ThereIsNoneOfWhatIsFlat) {
   EXPECT_TRUE(HullOf({}, 64).corners.empty());
   EXPECT_TRUE(HullOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 64).corners.empty());

@@ -17,6 +17,25 @@ double DistanceToWalls(const SurfaceTable& s, const Vec3& p, bool below) {
   return p.z < HeightAt(s, x, y) ? std::hypot(p.x - x, p.y - y) : 1e300;
 }
 
+TEST(Surface, TrianglesAcrossTheWholeMeshFillFewBuckets) {
+  // 236 kB as an STL. In all buckets of their boxes they would be 4.3e9 entries.
+  TerrainMeshDef mesh;
+  const int count = 4720;
+  mesh.corners_m = {{0, 0, 0}, {1, 1, 1}};
+  for (int i = 0; i < count; ++i) {
+    mesh.corners_m.push_back({0, (i + 1.0) / (count + 1), 0.5});
+    mesh.triangles.push_back({0, 1, i + 2});
+  }
+  const Surface surface(mesh);
+  const SurfaceTable& t = surface.table();
+  EXPECT_LE(t.first_in_bucket[t.buckets[0] * t.buckets[1] * t.buckets[2]], 16 * count + 1'000'000);
+  // A mesh of usual triangles has the buckets that it had.
+  const Known usual(scenes::MeshOf(RoughField(1, 40, 40)));
+  EXPECT_LE(usual.table().first_in_bucket[usual.table().buckets[0] * usual.table().buckets[1] *
+                                          usual.table().buckets[2]],
+            16 * 3042);
+}
+
 TEST(NearestPlaces, TheFirstIsTheNearestOfAllTrianglesAndWalls) {
   int inside = 0, outside = 0, walls = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
