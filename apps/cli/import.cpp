@@ -1,7 +1,40 @@
 // `taut import`: robots of other programs as models of taut.
 #include "import.h"
 
+#include <cstdlib>
+#include <filesystem>
+
+#include "output.h"
+#include "taut/files.h"
+#include "taut/spec.h"
+#include "taut/start.h"
+
 namespace taut::cli {
+
+void WarnOfRefusal(const std::string& model_yaml, const std::string& imported_file,
+                   const std::string& advice, Diagnostics& out) {
+  std::error_code failed;
+  std::string folder =
+      (std::filesystem::temp_directory_path(failed) / "taut_import_XXXXXX").string();
+  Diagnostics found;
+  if (failed || mkdtemp(folder.data()) == nullptr) {
+    out.Warning({imported_file, 0, 0}, "the model could not be checked: no temporary folder",
+                "`taut check` does so");
+    return;
+  }
+  const std::string path = folder + "/model.yaml";
+  if (WriteWholeFile(path, model_yaml, found)) {
+    if (const auto robot = LoadRobot(path, {}, found)) {
+      CheckStart(*robot, StartKind::kAsDescribed, found);
+    }
+  }
+  std::filesystem::remove_all(folder, failed);
+  for (const Diagnostic& reason : found.items()) {
+    const bool deep = reason.what.find(" deep in each other") != std::string::npos;
+    out.Warning({imported_file, 0, 0}, "`taut check` refuses the model: " + reason.what,
+                deep ? advice : reason.hint);
+  }
+}
 
 void AddImport(CLI::App& app, int& exit_code) {
   CLI::App* group = app.add_subcommand("import", "Models of other simulators as models of taut.");

@@ -6,8 +6,7 @@
 #include <numbers>
 
 #include "base/number_text.h"
-#include "math/elementary.h"
-#include "math/noise.h"
+#include "description/expression_steps.h"
 #include "taut/diagnostics.h"
 
 namespace taut::description {
@@ -48,10 +47,9 @@ std::size_t IdentifierLength(std::string_view text, std::size_t start) {
   return end - start;
 }
 
-/// Leaves the recursive descent at the first error; never leaves this file.
-struct Failure {
-  std::string error, hint;
-};
+using Step = Formula::Step;
+using Kind = Formula::Kind;
+using Failure = ExpressionFailure;
 
 /// Recursive descent:
 ///   sum     = product {("+" | "-") product}
@@ -59,16 +57,16 @@ struct Failure {
 ///   sign    = ("-" | "+") sign | power
 ///   power   = atom ["^" sign]
 ///   atom    = number | name | function "(" sum {"," sum} ")" | "(" sum ")"
-class Evaluator {
+class Parser {
  public:
-  Evaluator(std::string_view text, const NameTable& names) : text_(text), names_(names) {}
+  Parser(std::string_view text, const NameTable& names, std::vector<Step>& steps)
+      : text_(text), names_(names), steps_(steps) {}
 
-  double Run() {
+  void Run() {
     SkipSpace();
     if (at_ == text_.size()) throw Failure{"an expression is missing", ""};
-    const double value = Sum();
+    Sum();
     if (at_ < text_.size()) Unexpected();
-    return value;
   }
 
  private:
@@ -82,67 +80,73 @@ class Evaluator {
     int& depth_;
   };
 
-  double Sum() {
-    double value = Product();
+  void Emit(Kind kind) { steps_.push_back({kind}); }
+
+  void Sum() {
+    Product();
     for (;;) {
       if (Take('+')) {
-        value = Checked(value + Product(), "a sum");
+        Product(), Emit(Kind::kAdd);
       } else if (Take('-')) {
-        value = Checked(value - Product(), "a difference");
+        Product(), Emit(Kind::kSubtract);
       } else {
-        return value;
+        return;
       }
     }
   }
 
-  double Product() {
-    double value = Sign();
+  void Product() {
+    Sign();
     for (;;) {
       if (Take('*')) {
-        value = Checked(value * Sign(), "a product");
+        Sign(), Emit(Kind::kMultiply);
       } else if (Take('/')) {
-        const double divisor = Sign();
-        if (divisor == 0.0) throw Failure{"division by zero", ""};
-        value = Checked(value / divisor, "a quotient");
+        Sign(), Emit(Kind::kDivide);
       } else {
-        return value;
+        return;
       }
     }
   }
 
-  double Sign() {
+  void Sign() {
     const Deeper deeper(depth_);
-    if (Take('-')) return -Sign();
-    if (Take('+')) return Sign();
-    return Power();
-  }
-
-  double Power() {
-    const double base = Atom();
-    if (!Take('^')) return base;
-    const double exponent = Sign();
-    if (base == 0.0 && exponent < 0.0) throw Failure{"division by zero", "0 ^ a negative number"};
-    if (base < 0.0 && exponent != std::floor(exponent)) {
-      throw Failure{"a negative number to a broken power", "write (-x)^y for a whole y"};
+    if (Take('-')) {
+      Sign(), Emit(Kind::kNegate);
+    } else if (Take('+')) {
+      Sign();
+    } else {
+      Power();
     }
-    return Checked(math::Pow(base, exponent), "a power");
   }
 
-  double Atom() {
+  void Power() {
+    Atom();
+    if (!Take('^')) return;
+    Sign(), Emit(Kind::kPower);
+  }
+
+  void Atom() {
     if (Take('(')) {
-      const double value = Sum();
+      Sum();
       Expect(')');
-      return value;
+      return;
     }
-    if (at_ < text_.size() && (IsDigit(text_[at_]) || text_[at_] == '.')) return Number();
+    if (at_ < text_.size() && (IsDigit(text_[at_]) || text_[at_] == '.')) {
+      steps_.push_back({Kind::kNumber, Number()});
+      return;
+    }
     const std::size_t length = IdentifierLength(text_, at_);
     if (length == 0) Unexpected();
     const std::string_view name = text_.substr(at_, length);
     at_ += length;
     SkipSpace();
-    if (at_ < text_.size() && text_[at_] == '(') return Call(name);
-    if (name == "pi") return std::numbers::pi;
-    return Named(name);
+    if (at_ < text_.size() && text_[at_] == '(') {
+      Call(name);
+    } else if (name == "pi") {
+      steps_.push_back({Kind::kNumber, std::numbers::pi});
+    } else {
+      steps_.push_back({.kind = Kind::kName, .name = &Named(name)});
+    }
   }
 
   double Number() {
@@ -162,7 +166,7 @@ class Evaluator {
     return value;
   }
 
-  double Named(std::string_view name) {
+  const double& Named(std::string_view name) {
     const auto found = names_.find(name);
     if (found != names_.end()) return found->second;  // NaN spreads, silently, as intended
     if (FindFunction(name)) {
@@ -179,7 +183,7 @@ class Evaluator {
     return DidYouMean(name, known);
   }
 
-  double Call(std::string_view name) {
+  void Call(std::string_view name) {
     const Deeper deeper(depth_);
     const Function* function = FindFunction(name);
     if (!function) {
@@ -188,10 +192,10 @@ class Evaluator {
       throw Failure{"unknown function \"" + std::string(name) + "\"", DidYouMean(name, known)};
     }
     Expect('(');
-    std::vector<double> arguments{Sum()};
-    while (Take(',')) arguments.push_back(Sum());
+    Sum();
+    int count = 1;
+    for (; Take(','); ++count) Sum();
     Expect(')');
-    const int count = static_cast<int>(arguments.size());
     if (function->arguments > 0 ? count != function->arguments : count < -function->arguments) {
       const std::string wanted = function->arguments == 1 ? "1 argument"
                                  : function->arguments == -2
@@ -199,60 +203,9 @@ class Evaluator {
                                      : std::to_string(function->arguments) + " arguments";
       throw Failure{std::string(name) + " takes " + wanted + ", got " + std::to_string(count), ""};
     }
-    for (const double argument : arguments) {
-      if (std::isnan(argument)) return kNan;
-    }
-    return Checked(Apply(name, arguments), name);
-  }
-
-  static double Apply(std::string_view name, const std::vector<double>& arguments) {
-    const double x = arguments[0];
-    if (name == "sqrt") {
-      if (x < 0.0) throw Failure{"sqrt of a negative number", ""};
-      return std::sqrt(x);
-    }
-    if (name == "asin" || name == "acos") {
-      if (std::fabs(x) > 1.0) throw Failure{std::string(name) + " of a number outside -1..1", ""};
-      return name == "asin" ? math::Asin(x) : math::Acos(x);
-    }
-    if (name == "log") {
-      if (!(x > 0.0)) throw Failure{"log of a number that is not positive", ""};
-      return math::Log(x);
-    }
-    if (name == "sin" || name == "cos" || name == "tan") {
-      if (std::fabs(x) > math::kMaxAngle) {
-        throw Failure{std::string(name) + " of an angle beyond 1e9 rad", "angles are in rad"};
-      }
-      return name == "sin" ? math::Sin(x) : name == "cos" ? math::Cos(x) : math::Tan(x);
-    }
-    if (name == "atan") return math::Atan(x);
-    if (name == "atan2") return math::Atan2(x, arguments[1]);
-    if (name == "exp") return math::Exp(x);
-    if (name == "abs") return std::fabs(x);
-    if (name == "floor") return std::floor(x);
-    if (name == "ceil") return std::ceil(x);
-    if (name == "round") return std::round(x);
-    if (name == "noise") return Noise(x, arguments[1], arguments[2]);
-    double best = x;  // min and max
-    for (const double other : arguments) {
-      if (name == "min" ? other < best : other > best) best = other;
-    }
-    return best;
-  }
-
-  static double Noise(double seed, double x, double y) {
-    if (!(seed >= 0.0 && seed <= 0x1p53 && std::floor(seed) == seed)) {
-      throw Failure{"the seed of noise is not a whole number", "0, 1, 2, ..."};
-    }
-    if (!(std::fabs(x) < 1e9 && std::fabs(y) < 1e9)) {
-      throw Failure{"noise of a place beyond 1e9", ""};
-    }
-    return math::Noise(static_cast<std::uint64_t>(seed), x, y);
-  }
-
-  static double Checked(double value, std::string_view of) {
-    if (std::isinf(value)) throw Failure{std::string(of) + " that is too large for a number", ""};
-    return value;
+    steps_.push_back({.kind = Kind::kCall,
+                      .function = function->name,
+                      .arguments = static_cast<std::size_t>(count)});
   }
 
   bool Take(char wanted) {
@@ -285,19 +238,36 @@ class Evaluator {
 
   std::string_view text_;
   const NameTable& names_;
+  std::vector<Step>& steps_;
   std::size_t at_ = 0;
   int depth_ = 0;
 };
 
 }  // namespace
 
-Evaluated Evaluate(std::string_view expression, const NameTable& names) {
-  if (expression.size() > kMaxLength) return {kNan, "the expression is too long", ""};
+Formula::Formula(std::string_view expression, const NameTable& names) {
+  if (expression.size() > kMaxLength) {
+    wrong_ = {kNan, "the expression is too long", ""};
+    return;
+  }
   try {
-    return {Evaluator(expression, names).Run(), "", ""};
+    Parser(expression, names, steps_).Run();
+  } catch (const Failure& failure) {
+    wrong_ = {kNan, failure.error, failure.hint};
+  }
+}
+
+Evaluated Formula::Value() const {
+  if (!wrong_.error.empty()) return wrong_;
+  try {
+    return {ValueOf(steps_), "", ""};
   } catch (const Failure& failure) {
     return {kNan, failure.error, failure.hint};
   }
+}
+
+Evaluated Evaluate(std::string_view expression, const NameTable& names) {
+  return Formula(expression, names).Value();
 }
 
 std::vector<std::string> NamesIn(std::string_view expression) {

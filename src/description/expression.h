@@ -28,6 +28,31 @@ struct Evaluated {
 
 Evaluated Evaluate(std::string_view expression, const NameTable& names);
 
+/// An expression that is parsed once and evaluated for many values of its names.
+class Formula {
+ public:
+  /// Refers to the values in `names`, which must outlive it and keep its names.
+  Formula(std::string_view expression, const NameTable& names);
+
+  /// With the values that `names` has now; the same bits and errors as `Evaluate`.
+  Evaluated Value() const;
+  /// Steps of one evaluation.
+  std::size_t size() const { return steps_.size(); }
+
+  enum class Kind { kNumber, kName, kAdd, kSubtract, kMultiply, kDivide, kPower, kNegate, kCall };
+  struct Step {
+    Kind kind;
+    double number = 0.0;
+    const double* name = nullptr;
+    std::string_view function = {};
+    std::size_t arguments = 0;
+  };
+
+ private:
+  std::vector<Step> steps_;  ///< Postfix.
+  Evaluated wrong_;          ///< Why it cannot be parsed.
+};
+
 /// The parameters that an expression refers to, each once. Never fails: what is no expression
 /// has whatever names are in it.
 std::vector<std::string> NamesIn(std::string_view expression);

@@ -20,8 +20,9 @@ namespace {
 
 constexpr std::size_t kMostTableBytes = std::size_t{1} << 30;
 constexpr double kMostInFile = 1e8;
-/// A formula takes 2 us a corner.
 constexpr double kMostByFormula = 4e6;
+/// Steps of a formula for all corners together; a step takes 5 to 50 ns.
+constexpr double kMostSteps = 4e8;
 
 /// Heights by a formula, which is looked at once a corner.
 bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldDef& field) {
@@ -35,14 +36,28 @@ bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldD
   if (scope.used != nullptr) {
     for (const std::string& name : NamesIn(formula.text)) scope.used->insert(name);
   }
+  double& i_of = names["i"] = 0;
+  double& j_of = names["j"] = 0;
+  double& x_m = names["x_m"] = 0;
+  double& y_m = names["y_m"] = 0;
+  const Formula parsed(formula.text, names);
+  const double corners = static_cast<double>(field.columns) * field.rows;
+  if (corners * static_cast<double>(parsed.size()) > kMostSteps) {
+    scope.out.Error(formula.at,
+                    "height_field.height_m has " + std::to_string(parsed.size()) +
+                        " operations and numbers for each of " + base::Brief(corners) +
+                        " corners, more than 400 000 000 in all",
+                    "a shorter formula, fewer, larger cells, or a file");
+    return false;
+  }
   field.height_m.reserve(static_cast<std::size_t>(field.columns) *
                          static_cast<std::size_t>(field.rows));
   for (int j = 0; j < field.rows; ++j) {
     for (int i = 0; i < field.columns; ++i) {
-      names["i"] = i, names["j"] = j;
-      names["x_m"] = (i - 0.5 * (field.columns - 1)) * field.cell_m;
-      names["y_m"] = (j - 0.5 * (field.rows - 1)) * field.cell_m;
-      const Evaluated height = Evaluate(formula.text, names);
+      i_of = i, j_of = j;
+      x_m = (i - 0.5 * (field.columns - 1)) * field.cell_m;
+      y_m = (j - 0.5 * (field.rows - 1)) * field.cell_m;
+      const Evaluated height = parsed.Value();
       if (!height.error.empty()) {
         scope.out.Error(formula.at,
                         "height_field.height_m at i = " + std::to_string(i) +

@@ -42,6 +42,12 @@ math::ConvexHull HullOrComplaint(const SourceRef& at, const std::string& what,
   math::ConvexHull hull = math::HullOf(corners_m, HullDef::kMostCorners);
   if (hull.corners.empty()) {
     out.Error(at, what + " has no volume", "corners that are not all in one plane, four at least");
+  } else if (hull.too_thin) {
+    out.Error(at,
+              what + " is so thin that its faces cannot be told apart: of the corners left out, " +
+                  "the farthest is " + Brief(hull.left_out_m) + " m outside",
+              "a thickness of 1e-5 times its width or more");
+    hull.corners.clear();
   }
   return hull;
 }
@@ -55,13 +61,26 @@ bool AddObject(const MapReader& map, const std::string& path, const MeshFile& me
                      : name.empty()         ? "object " + std::to_string(number)
                                             : "the object \"" + name + '"';
   const MeshFile object = PartOf(mesh, number);
-  if (!ReportFaults(object, true, path, {what, ": what is open has no mass"}, out)) return false;
+  Diagnostics faults;
+  const bool closed = ReportFaults(
+      object, true, path,
+      {what, ": what is open has no volume; with mass_kg its hull has the mass"}, faults);
+  if (!closed && !convex.mass.mass_kg) {
+    for (const Diagnostic& fault : faults.items()) out.Error(fault.at, fault.what, fault.hint);
+    return false;
+  }
   ConvexText::Part part{{}, object.corners, object.triangles};
   for (Vec3& p : part.corners_m) p = convex.scale_m * p;
   const SourceRef at = map.Find("file")->at;
   what += " of " + path;
   math::ConvexHull hull = HullOrComplaint(at, what, part.corners_m, out);
   if (hull.corners.empty()) return false;
+  if (!closed) {
+    const Diagnostic& first = faults.items().front();
+    out.Warning(first.at, first.what + ": the mass of " + what + " is distributed as in its hull");
+    part.corners_m = hull.corners;
+    part.triangles = math::TrianglesOf(hull);
+  }
   WarnOfHull(at, what, part, hull, out);
   part.hull_m = std::move(hull.corners);
   convex.parts.push_back(std::move(part));

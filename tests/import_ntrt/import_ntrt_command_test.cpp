@@ -31,6 +31,30 @@ TEST_F(ImportNtrtCommand, WithoutAUnitItSaysHowLargeTheRobotWouldBe) {
   }
 }
 
+TEST_F(ImportNtrtCommand, WhyCheckRefusesTheModelIsAWarning) {
+  // Two rods that cross, as in the hinge of LaikaICRA2019Model.
+  Write("hinge.yaml",
+        "nodes: {a1: [0, 1, 0], a2: [2, 1, 0], b1: [1, 1, -1], b2: [1, 1, 1]}\n"
+        "pair_groups:\n  rod: [[a1, a2], [b1, b2]]\n"
+        "  cable: [[a1, b1], [a1, b2], [a2, b1], [a2, b2]]\n"
+        "builders:\n  rod: {class: tgRodInfo, parameters: {density: 0.7, radius: 0.1}}\n"
+        "  cable: {class: tgBasicActuatorInfo, parameters: {stiffness: 1000, damping: 10, "
+        "pretension: 100}}\n");
+  const CommandResult warned =
+      Taut({"import", "ntrt", "hinge.yaml", "--length_unit_m", "0.1", "--out", "m.yaml"});
+  EXPECT_EQ(warned.status, 0);
+  EXPECT_NE(warned.errors.find("hinge.yaml: warning: `taut check` refuses the model: "),
+            std::string::npos)
+      << warned.errors;
+  EXPECT_NE(warned.errors.find("0.02 m deep in each other"), std::string::npos) << warned.errors;
+  EXPECT_NE(warned.errors.find("list both bodies in `apart` of the model"), std::string::npos);
+  EXPECT_EQ(Taut({"check", "m.yaml", "--quiet"}).status, 3);
+  // The advice helps.
+  Write("m.yaml", Read(Path("m.yaml")) + "apart: [[a1-a2, b1-b2]]\n");
+  EXPECT_EQ(Taut({"check", "m.yaml", "--quiet"}).status, 0);
+  EXPECT_EQ(Taut({"import", "ntrt", "hinge.yaml", "--length_unit_m", "0.1", "--strict"}).status, 3);
+}
+
 TEST_F(ImportNtrtCommand, BadInputIsRefused) {
   const CommandResult none = Taut({"import", "ntrt", "none.yaml", "--length_unit_m", "1"});
   EXPECT_EQ(none.status, 3);

@@ -55,6 +55,13 @@ class ConvexText : public ExperimentFolder {
   std::string warnings_;
 };
 
+/// The box of `Box` without its top.
+std::string OpenBox() {
+  std::string obj = Box(0, 1, "open");
+  obj.erase(obj.find("f 5 6 8 7\n"), std::string("f 5 6 8 7\n").size());
+  return obj;
+}
+
 void ExpectHas(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << text << "\nlacks " << part;
 }
@@ -95,6 +102,35 @@ TEST_F(ConvexText, EveryObjectOfAFileIsAHullAndWeighs) {
   ASSERT_EQ(robot.files.size(), 2u);
   ExpectHas(robot.files[1], "l.obj");
   EXPECT_EQ(warnings_, "");
+}
+
+TEST_F(ConvexText, WithAMassAMeshWithHolesIsItsHull) {
+  Write("open.obj", OpenBox());
+  const RobotSpec robot = With("file: open.obj, scale_m: 0.1, mass_kg: 3");
+  ASSERT_EQ(robot.def.hulls.size(), 1u);
+  const BodyDef& body = robot.def.bodies[0];
+  EXPECT_NEAR(body.mass_kg, 3, 1e-12);
+  EXPECT_NEAR(body.inertia_kg_m2.zz, 3 * (0.04 + 0.01) / 12, 1e-9);  // the closed box's
+  ExpectHas(warnings_, "open.obj");
+  ExpectHas(warnings_, "is not closed");
+  ExpectHas(warnings_, "the mass of the mesh of ");
+  ExpectHas(warnings_, " is distributed as in its hull");
+  // A density would need its volume.
+  ExpectHas(Said("file: open.obj, scale_m: 0.1, density_kg_per_m3: 600"),
+            "what is open has no volume; with mass_kg its hull has the mass");
+}
+
+TEST_F(ConvexText, AMeshThatIsInsideOutOrHasLinesForTrianglesIsItsHullToo) {
+  std::string inside_out = Box(0, 1, "box"), line = Box(0, 1, "box") + "f 1 2 2\n";
+  for (std::size_t at = inside_out.find("\nf "); at != inside_out.npos;
+       at = inside_out.find("\nf ", at + 1)) {
+    std::swap(inside_out[at + 5], inside_out[at + 9]);
+  }
+  for (const std::string& obj : {inside_out, line}) {
+    Write("bad.obj", obj);
+    EXPECT_NEAR(With("file: bad.obj, scale_m: 0.1, mass_kg: 3").def.bodies[0].mass_kg, 3, 1e-12);
+    ExpectHas(warnings_, " is distributed as in its hull");
+  }
 }
 
 TEST_F(ConvexText, SolidsOfAnStlAreItsObjects) {
