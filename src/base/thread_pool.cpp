@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
+#include <system_error>
+#include <utility>
 
 #include "base/assert.h"
 
@@ -31,10 +34,23 @@ ThreadPool::ThreadPool(int threads) {
   spins_ = threads <= cores;
   shares_ = std::vector<Share>(static_cast<std::size_t>(threads));
   workers_.reserve(static_cast<std::size_t>(threads - 1));
-  for (int i = 1; i < threads; ++i) workers_.emplace_back([this, i] { Work(i); });
+  for (int i = 1; i < threads; ++i) {
+    try {
+      workers_.emplace_back([this, i] { Work(i); });
+    } catch (const std::system_error& error) {
+      Stop();
+      throw std::system_error(error.code(), "cannot start thread " + std::to_string(i + 1) +
+                                                " of " + std::to_string(threads));
+    } catch (...) {
+      Stop();
+      throw;
+    }
+  }
 }
 
-ThreadPool::~ThreadPool() {
+ThreadPool::~ThreadPool() { Stop(); }
+
+void ThreadPool::Stop() noexcept {
   state_.fetch_or(kStop);
   Ring(idle_sleepers_, start_);
   for (std::thread& worker : workers_) worker.join();
@@ -48,10 +64,20 @@ void ThreadPool::RunErased(void* context, Call call) {
   call_ = call;
   state_.store(((before >> 32) + 1) << 32 | kOpen);
   Ring(idle_sleepers_, start_);
-  call(context, 0);
+  Guarded(0);
   // Who has not joined by now will not: this round's context is about to end.
   state_.fetch_and(~kOpen);
   WaitUntil([](std::uint64_t state) { return (state & kJoined) == 0; }, caller_sleeps_, done_);
+  if (failed_) std::rethrow_exception(std::exchange(failed_, nullptr));
+}
+
+void ThreadPool::Guarded(int thread) noexcept {
+  try {
+    call_(context_, thread);
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    if (!failed_) failed_ = std::current_exception();
+  }
 }
 
 void ThreadPool::Work(int thread) {
@@ -66,7 +92,7 @@ void ThreadPool::Work(int thread) {
     // The whole word is compared, so nobody joins a round that has closed since.
     if (!state_.compare_exchange_strong(state, state + 1)) continue;
     seen = state >> 32;
-    call_(context_, thread);
+    Guarded(thread);
     if (((state_.fetch_sub(1) - 1) & (kOpen | kJoined)) == 0) Ring(caller_sleeps_, done_);
   }
 }

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -16,7 +17,8 @@ namespace taut::base {
 /// looks. Where there are more threads than cores it sleeps at once.
 class ThreadPool {
  public:
-  /// `threads` includes the caller; 0 means one a core.
+  /// `threads` includes the caller; 0 means one a core. Throws std::system_error, which names the
+  /// number of the thread, if the system gives no more threads.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -27,7 +29,8 @@ class ThreadPool {
   /// Calls work(thread) on the caller, which is thread 0, and at most once on each other thread, as
   /// soon as it is awake; returns when all that were called are done. Threads that are late are not
   /// waited for, so `work` must share out what there is to do as it goes. Allocates nothing. One
-  /// caller at a time.
+  /// caller at a time. If calls throw, rethrows the first exception on the caller after all have
+  /// returned; work that no thread has begun by then may be left out.
   template <class Work>
   void Run(Work& work) {
     RunErased(&work, [](void* context, int thread) { (*static_cast<Work*>(context))(thread); });
@@ -67,6 +70,9 @@ class ThreadPool {
 
   void RunErased(void* context, Call call);
   void Work(int thread);
+  /// Calls the round's work; keeps the first exception for the caller.
+  void Guarded(int thread) noexcept;
+  void Stop() noexcept;
   /// Spins, then sleeps, until `state_` fulfils `good`; returns it.
   template <class Good>
   std::uint64_t WaitUntil(const Good& good, std::atomic<int>& sleepers,
@@ -82,9 +88,10 @@ class ThreadPool {
   // Of the round; written before it opens, read by those who have joined.
   void* context_ = nullptr;
   Call call_ = nullptr;
+  std::exception_ptr failed_;  ///< Guarded by `mutex_` until all have returned.
 
   bool spins_ = false;
-  std::mutex mutex_;  ///< Guards falling asleep, nothing else.
+  std::mutex mutex_;  ///< Guards falling asleep and `failed_`.
   std::condition_variable start_, done_;
   std::atomic<int> idle_sleepers_{0}, caller_sleeps_{0};
   std::vector<Share> shares_;  ///< One a thread.

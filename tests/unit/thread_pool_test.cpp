@@ -2,8 +2,14 @@
 #include "base/thread_pool.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <atomic>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -122,6 +128,47 @@ TEST(ThreadPool, EndsWhateverItsThreadsDo) {
     EXPECT_GE(calls, i % 3);
   }
 }
+
+// The exception of any thread reaches the caller, after all threads have returned; the pool serves
+// the next round.
+TEST(ThreadPool, AnExceptionOfAnyThreadReachesTheCaller) {
+  ThreadPool pool(3);
+  for (int thrower = 0; thrower < 3; ++thrower) {
+    for (int round = 0; round < 20; ++round) {
+      std::atomic<int> begun{0}, ended{0};
+      auto work = [&](int thread) {
+        ++begun;
+        Until([&] { return begun == 3; });
+        if (thread == thrower) throw std::bad_alloc();
+        ++ended;
+      };
+      EXPECT_THROW(pool.Run(work), std::bad_alloc);
+      EXPECT_EQ(ended, 2);
+    }
+  }
+  std::atomic<int> pieces{0};
+  auto all = [&](int, std::size_t) { ++pieces; };
+  pool.ForEach(100, all);
+  EXPECT_EQ(pieces, 100);
+}
+
+// A limit of the process on its memory, which stacks of threads need; so do the sanitizers.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
+TEST(ThreadPool, ThreadsThatCannotStartAreAnExceptionThatNamesTheNumber) {
+  const auto in_child = [] {
+    const rlimit limit{rlim_t{1} << 30, rlim_t{1} << 30};
+    setrlimit(RLIMIT_AS, &limit);
+    try {
+      ThreadPool pool(100000);
+    } catch (const std::system_error& error) {
+      std::fprintf(stderr, "caught: %s\n", error.what());
+      std::_Exit(7);
+    }
+    std::_Exit(1);
+  };
+  EXPECT_EXIT(in_child(), testing::ExitedWithCode(7), "cannot start thread [0-9]+ of 100000");
+}
+#endif
 
 }  // namespace
 }  // namespace taut::base
