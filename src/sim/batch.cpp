@@ -322,57 +322,6 @@ void Batch::SetTime(int world, double time_s) noexcept {
   impl_->PlaceMotions(world);
 }
 
-int Batch::Impl::ParameterRow(const char* function, int world, Parameter parameter,
-                              int index) const noexcept {
-  switch (parameter) {
-    case Parameter::kBodyMass:
-      CheckBody(function, world, index);
-      return layout.mass + index;
-    case Parameter::kCableStiffness:
-      CheckCable(function, world, index);
-      return layout.stiffness + index;
-    case Parameter::kCableDamping:
-      CheckCable(function, world, index);
-      return layout.damping + index;
-    default:
-      break;
-  }
-  CheckWorld(function, world);
-  sim::CheckIndex(function, "parameter of the world", index, 1);
-  switch (parameter) {
-    case Parameter::kFrictionScale:
-      return layout.friction_scale;
-    case Parameter::kGravityX:
-      return layout.gravity;
-    case Parameter::kGravityY:
-      return layout.gravity + 1;
-    default:
-      return layout.gravity + 2;
-  }
-}
-
-void Batch::SetParameter(int world, Parameter parameter, int index, double value) noexcept {
-  Impl& d = *impl_;
-  const int row = d.ParameterRow(__func__, world, parameter, index);
-  if (parameter == Parameter::kBodyMass) {
-    const BodyState state = Body(world, index);
-    d.SetMass(world, index, value);
-    d.JudgeStiffness(world);
-    SetBodyState(world, index, state);  // same velocity, other momentum
-    return;
-  }
-  d.at(world, row) = value;
-  const bool of_cable =
-      parameter == Parameter::kCableStiffness || parameter == Parameter::kCableDamping;
-  if (of_cable) d.ForgetMeans(world);
-  d.group(world).sensed = false;
-  d.JudgeStiffness(world);
-}
-
-double Batch::GetParameter(int world, Parameter parameter, int index) const noexcept {
-  return impl_->at(world, impl_->ParameterRow(__func__, world, parameter, index));
-}
-
 std::size_t Batch::BytesPerWorld() const noexcept {
   const Impl& d = *impl_;
   return static_cast<std::size_t>(d.layout.rows) * sizeof(double) + sizeof(sim::LaneStatus) +
