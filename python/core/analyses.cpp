@@ -39,7 +39,7 @@ LoadCaseSpec CaseOf(const ExperimentSpec& experiment, const std::string& name, D
 
 /// Needs no GIL and lets it go.
 void Solve(const ExperimentSpec& experiment, Analysis& found) {
-  const py::gil_scoped_release others;
+  const Released others;
   found.forces = AnalyseForces(experiment.robot.def);
   found.at = FindEquilibrium(experiment.robot.def, found.loads);
   found.there = RobotAt(experiment.robot, found.at.pose);

@@ -46,13 +46,18 @@ std::pair<Parameter, int> ParameterOf(const Worlds& worlds, const std::string& n
 void Step(Worlds& worlds, double step_s, int count, const py::object& targets) {
   Positive(step_s, "step_s");
   if (count < 0) throw py::value_error(fmt::format("count: {}; 0 or more", count));
-  if (targets.is_none()) {
-    worlds.With([&](Batch& batch) { batch.Step(step_s, count); });
-    return;
+  std::span<const double> rows;
+  Array a;
+  if (!targets.is_none()) {
+    a = Finite(targets, {worlds.worlds(), worlds.cables()}, "rest_length_target_m");
+    rows = {a.data(), static_cast<std::size_t>(a.size())};
   }
-  const Array a = Shaped(targets, {worlds.worlds(), worlds.cables()}, "rest_length_target_m");
-  const std::span<const double> rows(a.data(), static_cast<std::size_t>(a.size()));
-  worlds.With([&](Batch& batch) { batch.Step(step_s, count, rows); });
+  const bool done = worlds.With([&](Batch& batch) {
+    Signals signals;
+    if (count == 0 && !rows.empty()) batch.Step(step_s, 0, rows);
+    return StepUntilSignal(batch, step_s, count, rows, signals);
+  });
+  if (!done) throw py::error_already_set();
 }
 
 void AddStates(BatchType& type) {
@@ -129,7 +134,7 @@ void AddStates(BatchType& type) {
       [](Worlds& worlds) {
         py::array_t<double> a(worlds.worlds());
         double* to = a.mutable_data();
-        worlds.With([&](Batch& b) {
+        worlds.Look([&](Batch& b) {
           for (int w = 0; w < b.worlds(); ++w) to[w] = b.Time(w);
         });
         return a;
@@ -143,7 +148,7 @@ void AddCommands(BatchType& type) {
       [](Worlds& worlds, const py::object& rest_length_m, std::optional<py::ssize_t> world) {
         std::vector<py::ssize_t> shape{worlds.cables()};
         if (!world) shape.insert(shape.begin(), worlds.worlds());
-        const Array a = Shaped(rest_length_m, shape, "rest_length_m");
+        const Array a = Finite(rest_length_m, shape, "rest_length_m");
         const int first = world ? worlds.World(*world) : 0,
                   last = world ? first + 1 : worlds.worlds();
         const double* from = a.data();
@@ -162,7 +167,7 @@ void AddCommands(BatchType& type) {
       [](Worlds& worlds, py::ssize_t world, py::ssize_t node, const py::object& force_n) {
         const int w = worlds.World(world),
                   n = Index(node, static_cast<int>(worlds.nodes()), "node");
-        const Array f = Shaped(force_n, {3}, "force_n");
+        const Array f = Finite(force_n, {3}, "force_n");
         const Vec3 force{f.at(0), f.at(1), f.at(2)};
         worlds.With([&](Batch& b) { b.SetNodeForce(w, n, force); });
       },
@@ -174,9 +179,16 @@ void AddCommands(BatchType& type) {
         const auto [parameter, i] = ParameterOf(worlds, name, index);
         const Array a = Shaped(values, {worlds.worlds()}, "values");
         const double* from = a.data();
-        worlds.With([&, p = parameter, at = i](Batch& b) {
-          for (int w = 0; w < b.worlds(); ++w) b.SetParameter(w, p, at, from[w]);
+        const std::string wrong = worlds.With([&, p = parameter, at = i](Batch& b) {
+          std::string first;
+          for (int w = 0; w < b.worlds() && first.empty(); ++w) {
+            first = b.ParameterError(p, at, from[w]);
+            if (!first.empty()) first = fmt::format("values[{}]: {} {}", w, name, first);
+          }
+          for (int w = 0; w < b.worlds() && first.empty(); ++w) b.SetParameter(w, p, at, from[w]);
+          return first;
         });
+        if (!wrong.empty()) throw py::value_error(wrong);
       },
       py::arg("name"), py::arg("values"), py::arg("index") = 0,
       "A number of the model for each world, (worlds,): body_mass_kg (index: of the body; its "
@@ -188,7 +200,7 @@ void AddCommands(BatchType& type) {
         const auto [parameter, i] = ParameterOf(worlds, name, index);
         py::array_t<double> a(worlds.worlds());
         double* to = a.mutable_data();
-        worlds.With([&, p = parameter, at = i](Batch& b) {
+        worlds.Look([&, p = parameter, at = i](Batch& b) {
           for (int w = 0; w < b.worlds(); ++w) to[w] = b.GetParameter(w, p, at);
         });
         return a;
@@ -198,7 +210,8 @@ void AddCommands(BatchType& type) {
       "step", &Step, py::arg("step_s"), py::arg("count") = 1,
       py::arg("rest_length_target_m") = py::none(),
       "Advances every world by `count` steps of `step_s`, under new targets for the rest lengths, "
-      "(worlds, cables) [m], if they are given. Other Python threads go on meanwhile.");
+      "(worlds, cables) [m], if they are given. Other Python threads go on meanwhile. Ctrl-C ends "
+      "it between two steps.");
 }
 
 void AddSnapshots(BatchType& type) {
@@ -206,7 +219,7 @@ void AddSnapshots(BatchType& type) {
       "save",
       [](Worlds& worlds, py::ssize_t world) {
         const int w = worlds.World(world);
-        const auto bytes = worlds.With([&](Batch& b) { return b.Save(w); });
+        const auto bytes = worlds.Look([&](Batch& b) { return b.Save(w); });
         return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
       },
       py::arg("world") = 0, "All that determines a world's future, as bytes.");
@@ -232,7 +245,7 @@ void AddSnapshots(BatchType& type) {
       "hash",
       [](Worlds& worlds, py::ssize_t world) {
         const int w = worlds.World(world);
-        return worlds.With([&](Batch& b) { return b.Hash(w); });
+        return worlds.Look([&](Batch& b) { return b.Hash(w); });
       },
       py::arg("world") = 0, "Of a world's state: the same bits, the same number.");
   type.def(
@@ -240,7 +253,7 @@ void AddSnapshots(BatchType& type) {
       [](Worlds& worlds) {
         py::array_t<std::uint32_t> a(worlds.worlds());
         std::uint32_t* to = a.mutable_data();
-        worlds.With([&](Batch& b) {
+        worlds.Look([&](Batch& b) {
           for (int w = 0; w < b.worlds(); ++w) to[w] = b.Status(w).bits;
         });
         return a;
@@ -250,7 +263,7 @@ void AddSnapshots(BatchType& type) {
       "contacts",
       [](Worlds& worlds, py::ssize_t world) {
         const int w = worlds.World(world);
-        const auto touching = worlds.With([&](Batch& b) { return b.Contacts(w); });
+        const auto touching = worlds.Look([&](Batch& b) { return b.Contacts(w); });
         return ContactsOf(touching);
       },
       py::arg("world") = 0,

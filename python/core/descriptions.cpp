@@ -22,7 +22,7 @@ py::object Load(const std::string& path, const py::kwargs& set) {
   std::optional<ExperimentSpec> experiment;
   std::optional<RobotSpec> robot;
   {
-    const py::gil_scoped_release others;
+    const Released others;
     kind = FileKind(path, said);
     if (kind == "experiment") experiment = LoadExperiment(path, overrides, said);
     if (kind == "model") robot = LoadRobot(path, overrides, said);
@@ -73,8 +73,14 @@ void AddDescriptions(py::module_& module) {
           "robot", [](const Experiment& e) { return std::make_shared<Robot>(e.robot); },
           "The robot as placed, with the experiment's terrain: a copy.")
       .def_readonly("step_s", &Experiment::step_s, "Time step [s].")
-      .def_readwrite("duration_s", &Experiment::duration_s, "How long `taut.run` runs it [s].")
-      .def_readwrite("seed", &Experiment::seed, "Of all that is drawn.")
+      .def_property(
+          "duration_s", [](const Experiment& e) { return e.duration_s; },
+          [](Experiment& e, double given) { e.duration_s = Positive(given, "duration_s"); },
+          "How long `taut.run` runs it [s].")
+      .def_property(
+          "seed", [](const Experiment& e) { return e.seed; },
+          [](Experiment& e, const py::object& given) { e.seed = Seed(given); },
+          "Of all that is drawn.")
       .def_property_readonly(
           "parameters", [](const Experiment& e) { return e.parameters; },
           "The experiment's own named parameters as resolved (SI).")

@@ -1,8 +1,9 @@
 // Environments for learners, under taut.gym.
 #include <pybind11/functional.h>
 
+#include <algorithm>
+#include <exception>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include "owner.h"
 #include "taut/env.h"
 #include "text.h"
+#include "worlds.h"
 
 namespace taut::python {
 namespace {
@@ -41,18 +43,17 @@ class Environments {
  public:
   Environments(const ExperimentSpec& experiment, int worlds, int threads,
                const std::optional<std::string>& simd, const std::string& autoreset, bool randomise,
-               std::optional<std::uint64_t> seed, int own_observations, const py::object& observe,
+               const py::object& seed, int own_observations, const py::object& observe,
                const py::object& judge)
       : observe_(observe), judge_(judge) {
-    if (worlds < 1) throw py::value_error("worlds: at least 1");
-    if (threads < 0) throw py::value_error("threads: 0 is one a core");
+    CheckWorlds(worlds);
     if (own_observations < 0) throw py::value_error("own_observations: 0 or more");
     EnvOptions options;
     options.worlds = worlds;
-    options.threads = threads;
+    options.threads = Threads(threads);
     options.simd = SimdOf(simd);
     options.randomise = randomise;
-    options.seed = seed;
+    if (!seed.is_none()) options.seed = Seed(seed);
     options.own_observations = own_observations;
     bool known = false;
     for (const auto& [name, mode] : kAutoresets) {
@@ -66,7 +67,7 @@ class Environments {
     Diagnostics said;
     std::unique_ptr<Env> env;
     {
-      const py::gil_scoped_release others;
+      const Released others;
       env = Env::Create(experiment, options, said);
     }
     Rethrow();
@@ -133,7 +134,7 @@ class Environments {
     auto* count = steps.mutable_data();
     auto* reward = rewards.mutable_data();
     auto* end = ends.mutable_data();
-    owner().With([&](const Env& env) {
+    owner().Look([&](const Env& env) {
       for (int w = 0; w < static_cast<int>(n); ++w) {
         const EpisodeState e = last ? env.Last(w) : env.Episode(w);
         seed[w] = e.seed, count[w] = e.steps, reward[w] = e.reward;
@@ -144,44 +145,69 @@ class Environments {
   }
 
  private:
-  /// f(arrays...) for what a caller brought. What it raises comes out of the call that led to it.
+  /// Calls f(rows, observations), or the five arguments of `judge`, with copies, which stay as they
+  /// are for callers that keep them; copies back what may be written. What f raises comes out of
+  /// the call that led to it.
   void Call(const py::object& f, const EnvView& view, bool judges) {
-    const py::gil_scoped_acquire mine;
+    const Acquired mine;
     if (raised_) return;
-    const py::ssize_t n = view.env.worlds();
-    const auto columns = static_cast<py::ssize_t>(view.env.observation_channels().size());
-    const auto numbers = static_cast<py::ssize_t>(view.env.action_channels().size());
-    const py::capsule alive(&kNobody, [](void*) {});  // views, for the time of the call
-    const auto array = [&](auto span, std::vector<py::ssize_t> shape) {
-      using T = std::remove_const_t<typename decltype(span)::element_type>;
-      return py::array_t<T>(std::move(shape), span.data(), alive);
-    };
-    const bool single = !view.observations_f32.empty();
-    py::object seen = single ? py::object(array(view.observations_f32, {n, columns}))
-                             : py::object(array(view.observations_f64, {n, columns}));
-    const py::object rows = array(view.rows, {n});
     try {
-      if (!judges) {
-        f(rows, seen);
-        return;
+      if (!view.observations_f32.empty()) {
+        Call(f, view, view.observations_f32, view.actions_f32, judges);
+      } else {
+        Call(f, view, view.observations_f64, view.actions_f64, judges);
       }
-      py::object acted = !view.actions_f32.empty()
-                             ? py::object(array(view.actions_f32, {n, numbers}))
-                             : py::object(array(view.actions_f64, {n, numbers}));
-      f(rows, seen, acted, array(view.rewards, {n}), array(view.terminated, {n}));
-    } catch (py::error_already_set& error) {
-      raised_ = std::make_unique<py::error_already_set>(std::move(error));
+    } catch (...) {
+      raised_ = std::current_exception();
+    }
+    // A child of fork() within f has none of the threads that the step goes on with.
+    if (owner().Forked()) {
+      Rethrow();
+      owner().CheckProcess();
     }
   }
+  template <class T>
+  static void Call(const py::object& f, const EnvView& view, std::span<T> observations,
+                   std::span<const T> actions, bool judges) {
+    const auto worlds = static_cast<std::size_t>(view.env.worlds());
+    const py::array_t<std::uint8_t> rows = CopyOf(view.rows);
+    const py::array_t<T> seen = CopyOf<T>(observations, worlds);
+    if (!judges) {
+      CallPython(f, rows, seen);
+      return TakeBack(seen, observations, "observations");
+    }
+    const py::array_t<double> rewards = CopyOf<double>(view.rewards);
+    const py::array_t<std::uint8_t> over = CopyOf<std::uint8_t>(view.terminated);
+    CallPython(f, rows, seen, CopyOf(actions, worlds), rewards, over);
+    TakeBack(seen, observations, "observations");
+    TakeBack(rewards, view.rewards, "rewards");
+    TakeBack(over, view.terminated, "terminated");
+  }
+  template <class T>
+  static py::array_t<T> CopyOf(std::span<const T> from) {  // (worlds,)
+    return py::array_t<T>(static_cast<py::ssize_t>(from.size()), from.data());
+  }
+  template <class T>
+  static py::array_t<T> CopyOf(std::span<const T> from, std::size_t worlds) {  // (worlds, n)
+    const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(worlds),
+                                         static_cast<py::ssize_t>(from.size() / worlds)};
+    return py::array_t<T>(shape, from.data());
+  }
+  /// numpy lets a callback give its array another size or kind.
+  template <class T>
+  static void TakeBack(const py::array_t<T>& from, std::span<T> to, const char* what) {
+    if (!py::isinstance<Rows<T>>(from) || static_cast<std::size_t>(from.size()) != to.size()) {
+      throw py::value_error(
+          fmt::format("{}: the callback has changed the shape or the kind of its array", what));
+    }
+    std::copy_n(from.data(), to.size(), to.data());
+  }
   void Rethrow() {
-    if (!raised_) return;
-    const std::unique_ptr<py::error_already_set> raised = std::move(raised_);
-    throw py::error_already_set(*raised);
+    if (raised_) std::rethrow_exception(std::exchange(raised_, nullptr));
   }
 
-  static inline char kNobody = 0;
   const py::object observe_, judge_;
-  std::unique_ptr<py::error_already_set> raised_;
+  std::exception_ptr raised_;
   std::unique_ptr<Owner<Env>> owned_;
   bool same_step_ = false;
 };
@@ -193,7 +219,7 @@ void AddEnvironments(py::module_& module) {
   py::class_<E, std::shared_ptr<E>> type(module, "Environments",
                                          "What taut.gym stands on: arrays in, arrays out.");
   type.def(py::init<const ExperimentSpec&, int, int, const std::optional<std::string>&,
-                    const std::string&, bool, std::optional<std::uint64_t>, int, const py::object&,
+                    const std::string&, bool, const py::object&, int, const py::object&,
                     const py::object&>(),
            py::arg("experiment"), py::arg("worlds") = 1, py::arg("threads") = 1,
            py::arg("simd") = py::none(), py::arg("autoreset") = "next_step",
@@ -216,11 +242,11 @@ void AddEnvironments(py::module_& module) {
   type.def("experiment", [](E& e, py::ssize_t world) {
     const int w = e.World(world);
     return std::make_shared<ExperimentSpec>(
-        e.owner().With([&](const Env& env) { return env.Experiment(w); }));
+        e.owner().Look([&](const Env& env) { return env.Experiment(w); }));
   });
   type.def("hash", [](E& e, py::ssize_t world) {
     const int w = e.World(world);
-    return e.owner().With([&](const Env& env) { return env.Hash(w); });
+    return e.owner().Look([&](const Env& env) { return env.Hash(w); });
   });
   type.def(
       "save",
@@ -242,7 +268,7 @@ void AddEnvironments(py::module_& module) {
       py::arg("snapshot"), py::arg("world") = 0);
   type.def("time_s", [](E& e, py::ssize_t world) {
     const int w = e.World(world);
-    return e.owner().With([&](const Env& env) { return env.Time(w); });
+    return e.owner().Look([&](const Env& env) { return env.Time(w); });
   });
   py::list ends;
   for (const auto& [name, end] : kEnds) ends.append(py::make_tuple(name, static_cast<int>(end)));

@@ -94,7 +94,7 @@ std::shared_ptr<Fitted> Search(const Asked& asked, const Overrides& overrides,
 std::shared_ptr<Fitted> Fit(const std::string& path, const std::optional<std::string>& folder,
                             int threads, const std::vector<std::string>& profiles, bool design,
                             const py::object& progress, const py::kwargs& set) {
-  if (threads < 0) throw py::value_error(fmt::format("threads: {}; 0 is one a core", threads));
+  Threads(threads);
   const Overrides overrides = OverridesOf(set);
   std::mutex mutex;
   IdentifyProgress now;
@@ -121,7 +121,7 @@ std::shared_ptr<Fitted> Fit(const std::string& path, const std::optional<std::st
         }
         if (progress.is_none() || p.computed == told || p.iterations == 0) return;
         told = p.computed;
-        progress(p.what, p.iterations, p.chi2);
+        CallPython(progress, p.what, p.iterations, p.chi2);
       });
   Tell(said);
   return fitted;

@@ -9,6 +9,8 @@
 #include <mutex>
 #include <thread>
 
+#include "gil.h"
+
 namespace taut::python {
 
 namespace py = pybind11;
@@ -19,7 +21,7 @@ void Interruptible(const std::function<void(const std::atomic<bool>& stop)>& wor
   std::unique_ptr<py::error_already_set> raised;
   std::exception_ptr failed;
   {
-    const py::gil_scoped_release others;
+    const Released others;
     std::mutex mutex;
     std::condition_variable changed;
     bool done = false;
@@ -39,9 +41,9 @@ void Interruptible(const std::function<void(const std::atomic<bool>& stop)>& wor
         if (changed.wait_for(lock, std::chrono::milliseconds(100), [&] { return done; })) break;
       }
       if (stop) continue;
-      const py::gil_scoped_acquire mine;
+      const Acquired mine;
       try {
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        if (SignalRaised()) throw py::error_already_set();
         if (look) look();
       } catch (py::error_already_set& error) {
         raised = std::make_unique<py::error_already_set>(std::move(error));

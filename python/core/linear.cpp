@@ -74,7 +74,7 @@ py::tuple Respond(const StateSpace& s, const std::string& input, const std::stri
   }
   FrequencyResponse response;
   {
-    const py::gil_scoped_release others;
+    const Released others;
     response = ResponseOf(s, from, to, all);
   }
   return py::make_tuple(ArrayOf(response.magnitude), ArrayOf(response.phase_rad));

@@ -2,6 +2,29 @@
 #include "taut/version.h"
 #include "text.h"
 
+namespace {
+
+namespace py = pybind11;
+
+/// For an object that has been made by `__new__` alone, or whose subclass has not called
+/// `super().__init__()` yet, pybind11 allocates memory and takes what is in there for the object.
+/// It asks this hook for the memory.
+void* RaiseNotInitialized(std::size_t) {
+  throw py::type_error("this object is not initialized: its __init__() has not been called");
+}
+
+void RefuseWhatIsNotInitialized(const py::module_& module) {
+  for (const auto& [name, value] : module.attr("__dict__").cast<py::dict>()) {
+    if (!PyType_Check(value.ptr())) continue;
+    auto* const type = reinterpret_cast<PyTypeObject*>(value.ptr());
+    for (py::detail::type_info* info : py::detail::all_type_info(type)) {
+      info->operator_new = RaiseNotInitialized;
+    }
+  }
+}
+
+}  // namespace
+
 PYBIND11_MODULE(_core, module) {
   module.doc() = "The simulator; use it through `import taut`.";
   module.attr("version") = taut::kVersion;
@@ -14,4 +37,5 @@ PYBIND11_MODULE(_core, module) {
   taut::python::AddFits(module);
   taut::python::AddAnalyses(module);
   taut::python::AddLinear(module);
+  RefuseWhatIsNotInitialized(module);
 }

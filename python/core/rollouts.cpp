@@ -100,7 +100,7 @@ py::dict Columns(const std::vector<RolloutResult>& results) {
 py::dict Rollout(const ExperimentSpec& experiment, const std::string& objective_text,
                  const std::vector<Given>& given, int threads,
                  const std::optional<std::string>& simd, const py::object& progress) {
-  if (threads < 0) throw py::value_error(fmt::format("threads: {}; 0 is one a core", threads));
+  Threads(threads);
   RolloutOptions options;
   options.threads = threads;
   options.simd = SimdOf(simd);
@@ -126,7 +126,7 @@ py::dict Rollout(const ExperimentSpec& experiment, const std::string& objective_
       },
       [&] {
         const std::size_t now = done;
-        if (!progress.is_none() && now != told) progress(told = now, worlds.size());
+        if (!progress.is_none() && now != told) CallPython(progress, told = now, worlds.size());
       });
   Tell(said);
   return Columns(results);

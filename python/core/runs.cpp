@@ -41,13 +41,13 @@ struct Ran {
 };
 
 Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progress) {
-  if (threads < 0) throw py::value_error("threads: 0 is one a core");
+  Threads(threads);
   Diagnostics said;
   Ran ran{std::make_shared<Trace>(), {}};
   std::optional<RunSummary> summary;
   bool stopped = false;  // by an exception of Python's, Ctrl-C for one
   if (CheckRecord(experiment, said)) {
-    const py::gil_scoped_release others;
+    const Released others;
     ran.trace->channels = RunChannels(experiment);
     ran.trace->metadata = RunMetadata(experiment);
     InMemory writer(*ran.trace);
@@ -55,11 +55,11 @@ Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progres
     options.threads = threads;
     options.traces = {&writer};
     options.progress = [&](const RunProgress& now) {
-      const py::gil_scoped_acquire mine;
-      if (PyErr_CheckSignals() != 0) return !(stopped = true);
+      const Acquired mine;
+      if (SignalRaised()) return !(stopped = true);
       if (progress.is_none()) return true;
       try {
-        progress(now.time_s, now.duration_s);
+        CallPython(progress, now.time_s, now.duration_s);
       } catch (py::error_already_set& error) {
         error.restore();
         stopped = true;
@@ -79,7 +79,7 @@ SharedTrace Read(const std::string& path) {
   Diagnostics said;
   std::optional<Trace> trace;
   {
-    const py::gil_scoped_release others;
+    const Released others;
     trace = ReadTrace(TraceOfRun(path), said);
   }
   if (!trace) Refuse(said);

@@ -1,28 +1,13 @@
 // Sequences of targets, worlds side by side: what a controller that looks ahead tries out.
+#include <algorithm>
 #include <chrono>
+#include <utility>
 #include <vector>
 
 #include "worlds.h"
 
 namespace taut::python {
 namespace {
-
-/// Asks Python for signals, though not more often than people press keys. The GIL must not be held.
-class Signals {
- public:
-  /// Whether one has raised.
-  bool Raised() {
-    const auto now = std::chrono::steady_clock::now();
-    if (now < next_) return false;
-    next_ = now + std::chrono::milliseconds(100);
-    const py::gil_scoped_acquire mine;
-    return PyErr_CheckSignals() != 0;
-  }
-
- private:
-  std::chrono::steady_clock::time_point next_ =
-      std::chrono::steady_clock::now() + std::chrono::milliseconds(100);
-};
 
 void PutPositions(const Batch& batch, double* to, py::ssize_t world_stride) {
   const int bodies = static_cast<int>(batch.model().def().bodies.size());
@@ -40,7 +25,7 @@ Rows<double> Rollout(Worlds& worlds, const py::object& targets_m, double step_s,
   PyErr_Clear();
   const py::ssize_t ticks = given && given.ndim() == 3 ? given.shape(1) : 1;
   const py::ssize_t cables = worlds.cables();
-  const Array targets = Shaped(targets_m, {worlds.worlds(), ticks, cables}, "rest_length_target_m");
+  const Array targets = Finite(targets_m, {worlds.worlds(), ticks, cables}, "rest_length_target_m");
   Rows<double> positions = Output(out, {worlds.worlds(), ticks, worlds.bodies(), 3});
   std::vector<std::uint8_t> snapshot;
   if (start) {
@@ -57,11 +42,12 @@ Rows<double> Rollout(Worlds& worlds, const py::object& targets_m, double step_s,
     if (!of_this_model) return;
     Signals signals;
     std::vector<double> now(static_cast<std::size_t>(worlds.worlds() * cables));
-    for (py::ssize_t t = 0; t < ticks && !(raised = signals.Raised()); ++t) {
+    for (py::ssize_t t = 0; t < ticks; ++t) {
+      if ((raised = signals.Raised())) return;
       for (int w = 0; w < batch.worlds(); ++w) {
         std::copy_n(from + (w * ticks + t) * cables, cables, now.begin() + w * cables);
       }
-      batch.Step(step_s, count, now);
+      if ((raised = !StepUntilSignal(batch, step_s, count, now, signals))) return;
       PutPositions(batch, to + t * 3 * worlds.bodies(), ticks * 3 * worlds.bodies());
     }
   });
@@ -72,6 +58,36 @@ Rows<double> Rollout(Worlds& worlds, const py::object& targets_m, double step_s,
 
 }  // namespace
 
+bool Signals::Raised() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_) return false;
+  next_ = now + kBetween;
+  const Acquired mine;
+  return SignalRaised();
+}
+
+bool StepUntilSignal(Batch& batch, double step_s, int count, std::span<const double> targets_m,
+                     Signals& signals) {
+  constexpr std::chrono::milliseconds kShort{25}, kLong{100};
+  constexpr int kFirst = 4096;  // steps of one world, some tens of milliseconds
+  int piece = std::max(1, kFirst / batch.worlds());
+  while (count > 0) {
+    const auto start = std::chrono::steady_clock::now();
+    const int now = std::min(piece, count);
+    if (targets_m.empty()) {
+      batch.Step(step_s, now);
+    } else {
+      batch.Step(step_s, now, std::exchange(targets_m, {}));
+    }
+    count -= now;
+    const auto took = std::chrono::steady_clock::now() - start;
+    if (took < kShort && piece < (1 << 20)) piece *= 2;
+    if (took > kLong) piece = std::max(1, piece / 2);
+    if (count > 0 && signals.Raised()) return false;
+  }
+  return true;
+}
+
 void AddSequences(BatchType& type) {
   type.def(
       "rollout", &Rollout, py::arg("rest_length_target_m"), py::arg("step_s"), py::arg("count") = 1,
@@ -80,7 +96,7 @@ void AddSequences(BatchType& type) {
       "held for `count` steps of `step_s`. `start`: what `save` gave, where all worlds begin; "
       "None: where they are. Returns body_position_m after every tick, (worlds, ticks, bodies, "
       "3) [m]; afterwards the batch is at the end of it. Other Python threads go on meanwhile; "
-      "Ctrl-C ends it between two ticks.");
+      "Ctrl-C ends it between two steps.");
 }
 
 }  // namespace taut::python

@@ -21,7 +21,7 @@ Found Read(const std::string& folder, bool skip_damaged) {
   Diagnostics said;
   std::optional<StudyResult> result;
   {
-    const py::gil_scoped_release others;
+    const Released others;
     result = ReadStudyFolder(folder, said, skip_damaged);
   }
   for (const std::string& skipped : result ? result->skipped : std::vector<std::string>{}) {
@@ -47,8 +47,8 @@ class Progress {
     }
     if (progress.is_none() || now.evaluations == told_) return;
     told_ = now.evaluations;
-    progress(now.evaluations, now.budget,
-             now.best_score ? py::object(py::float_(*now.best_score)) : py::object(py::none()));
+    CallPython(progress, now.evaluations, now.budget,
+               now.best_score ? py::object(py::float_(*now.best_score)) : py::object(py::none()));
   }
 
  private:
@@ -59,12 +59,12 @@ class Progress {
 
 Found Learn(const std::string& path, const std::optional<std::string>& folder, int threads,
             const py::object& progress, bool skip_damaged, const py::kwargs& set) {
-  if (threads < 0) throw py::value_error(fmt::format("threads: {}; 0 is one a core", threads));
+  Threads(threads);
   const Overrides overrides = OverridesOf(set);
   Diagnostics said;
   std::optional<StudySpec> study;
   {
-    const py::gil_scoped_release others;
+    const Released others;
     study = LoadStudy(path, overrides, said);
     if (study) CheckStart(study->experiment.robot, study->experiment.start, said);
   }

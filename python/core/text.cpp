@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace taut::python {
 namespace {
 
@@ -82,6 +85,25 @@ Overrides OverridesOf(const py::kwargs& values) {
   return overrides;
 }
 
+std::uint64_t Seed(const py::object& given) {
+  const auto whole = py::reinterpret_steal<py::object>(
+      PyBool_Check(given.ptr()) ? nullptr : PyNumber_Index(given.ptr()));
+  const auto seed = whole ? PyLong_AsUnsignedLongLong(whole.ptr()) : 0;
+  if (whole && PyErr_Occurred() == nullptr) return seed;
+  PyErr_Clear();
+  throw py::value_error(fmt::format("seed: {}; a whole number, 0 or more, below 2**64",
+                                    py::repr(given).cast<std::string>()));
+}
+
+int Threads(py::ssize_t threads) {
+  constexpr int kMost = 1024;
+  if (threads < 0 || threads > kMost) {
+    throw py::value_error(
+        fmt::format("threads: {}; from 0, which is one a core, to {}", threads, kMost));
+  }
+  return static_cast<int>(threads);
+}
+
 int Index(py::ssize_t index, int count, const char* what) {
   const py::ssize_t from_start = index < 0 ? index + count : index;
   if (from_start < 0 || from_start >= count) {
@@ -111,6 +133,18 @@ Array Shaped(const py::object& given, const std::vector<py::ssize_t>& shape, con
         fmt::format("{}: {}; expected {}", what, TextOf(a), TextOf(shape, "float64")));
   }
   return a;
+}
+
+Array Finite(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what) {
+  Array a = Shaped(given, shape, what);
+  const double* const end = a.data() + a.size();
+  const double* const bad = std::find_if(a.data(), end, [](double x) { return !std::isfinite(x); });
+  if (bad == end) return a;
+  std::vector<py::ssize_t> at(shape.size());
+  py::ssize_t rest = bad - a.data();
+  for (std::size_t i = shape.size(); i-- > 0; rest /= shape[i]) at[i] = rest % shape[i];
+  throw py::value_error(
+      fmt::format("{}: {} at {}; expected finite numbers", what, *bad, ShapeText(at)));
 }
 
 void CheckArray(const py::object& given, const py::dtype& kind,

@@ -6,11 +6,14 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "gil.h"
 #include "taut/batch.h"
 #include "taut/diagnostics.h"
 #include "taut/matrix.h"
@@ -44,6 +47,20 @@ Overrides OverridesOf(const py::kwargs& values);
 /// An instruction set by its name, nothing for None; else ValueError.
 std::optional<Simd> SimdOf(const std::optional<std::string>& name);
 
+/// `value`; ValueError, which names `what`, unless it is a positive number.
+inline double Positive(double value, const char* what) {
+  if (!(value > 0) || !std::isfinite(value)) {
+    throw py::value_error(fmt::format("{}: {}; a positive number", what, value));
+  }
+  return value;
+}
+
+/// A seed: a whole number, no bool, below 2^64; else ValueError.
+std::uint64_t Seed(const py::object& given);
+
+/// A number of threads: 0 (one a core) to 1024, as `--threads` of the command; else ValueError.
+int Threads(py::ssize_t threads);
+
 /// An index that is less than `count`, those below 0 counted from the end; else IndexError, which
 /// names `what`.
 int Index(py::ssize_t index, int count, const char* what);
@@ -56,6 +73,9 @@ std::string ShapeText(const std::vector<py::ssize_t>& shape);
 /// `given` if it is an array of exactly this shape; else ValueError, which names both. `what` is
 /// what the caller calls it.
 Array Shaped(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what);
+
+/// The same, of finite numbers; else ValueError, which names the first that is not.
+Array Finite(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what);
 
 /// ValueError, which names what is there and what is expected, unless `given` is an array of
 /// exactly this kind and shape, contiguous, and writeable if it is to be `written`. `what` is what

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,20 +18,26 @@
 
 namespace taut::python {
 
+/// ValueError for a number of worlds that nothing can hold, for which integers would overflow.
+inline void CheckWorlds(int worlds) {
+  constexpr int kMost = 1'000'000'000;
+  if (worlds >= 1 && worlds <= kMost) return;
+  throw py::value_error(fmt::format("worlds: {}; at least 1, at most {}", worlds, kMost));
+}
+
 /// Threads: any of Python's; they wait for each other.
 class Worlds {
  public:
   Worlds(const ModelDef& def, int worlds, int threads, const std::optional<std::string>& simd) {
-    if (worlds < 1) throw py::value_error(fmt::format("worlds: {}; at least 1", worlds));
-    if (threads < 0) throw py::value_error(fmt::format("threads: {}; 0 is one a core", threads));
+    CheckWorlds(worlds);
     BatchOptions options;
     options.worlds = worlds;
-    options.threads = threads;
+    options.threads = Threads(threads);
     options.simd = SimdOf(simd);
     Diagnostics said;
     std::unique_ptr<Batch> batch;
     {
-      const py::gil_scoped_release others;
+      const Released others;
       if (auto model = Model::Compile(def, said)) {
         batch = std::make_unique<Batch>(std::move(model), options);
       }
@@ -39,9 +47,15 @@ class Worlds {
     owned_ = std::make_unique<Owner<Batch>>(std::move(batch), "this batch was");
   }
 
+  /// f(Batch&), which may change it; as in `Owner`.
   template <class F>
   auto With(F f) {
     return owned_->With(f);
+  }
+  /// f(Batch&), which only reads.
+  template <class F>
+  auto Look(F f) {
+    return owned_->Look(f);
   }
 
   const ModelDef& def() const { return owned_->peek().model().def(); }
@@ -60,7 +74,7 @@ class Worlds {
     if (width > 1) shape.push_back(width);
     py::array_t<double> a = Output(out, shape);
     double* to = a.mutable_data();
-    With([&](Batch& batch) {
+    Look([&](Batch& batch) {
       for (int w = 0; w < batch.worlds(); ++w) {
         for (int i = 0; i < static_cast<int>(count); ++i, to += width) put(batch, w, i, to);
       }
@@ -72,13 +86,22 @@ class Worlds {
   std::unique_ptr<Owner<Batch>> owned_;
 };
 
-/// `value`; ValueError, which names `what`, unless it is a positive number.
-inline double Positive(double value, const char* what) {
-  if (!(value > 0) || !std::isfinite(value)) {
-    throw py::value_error(fmt::format("{}: {}; a positive number", what, value));
-  }
-  return value;
-}
+/// Runs signal handlers of Python, at most ten times a second.
+class Signals {
+ public:
+  /// Whether one raised (Ctrl-C); its exception is set. The GIL must not be held.
+  bool Raised();
+
+ private:
+  static constexpr std::chrono::milliseconds kBetween{100};
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + kBetween;
+};
+
+/// `Batch::Step` in pieces of a fraction of a second, to the same bits: under `targets_m` (worlds,
+/// cables), or the present ones if it is empty. False if a signal handler raised between two
+/// pieces: the worlds are then some steps short of `count`. The GIL must not be held.
+bool StepUntilSignal(Batch& batch, double step_s, int count, std::span<const double> targets_m,
+                     Signals& signals);
 
 using BatchType = py::class_<Worlds, std::shared_ptr<Worlds>>;
 

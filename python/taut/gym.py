@@ -4,12 +4,14 @@
     observations, infos = envs.reset(seed=1)
     observations, rewards, terminated, truncated, infos = envs.step(actions)
 
-Where gymnasium is installed, these are its VectorEnv and Env, with its spaces; else classes of the same
-methods and attributes. The experiment's `environment` says what actions, observations and rewards are
+Where gymnasium is installed (0.29 or newer), these are its VectorEnv and Env, with its spaces; else classes of the
+same methods and attributes. `AutoresetMode` is gymnasium's from 1.1 on, and before that an enum of the same members. The experiment's `environment` says what actions, observations and rewards are
 (docs/environments.md). Worlds give the same bits for the same seed and actions, whatever runs beside them.
 """
 
 import enum as _enum
+import numbers as _numbers
+import re as _re
 from typing import Any as _Any
 
 import numpy as _np
@@ -20,13 +22,22 @@ _VectorBase: _Any = object
 _EnvBase: _Any = object
 try:
     import gymnasium as _gymnasium
-    from gymnasium.spaces import Box
-    from gymnasium.vector import AutoresetMode
-    from gymnasium.vector.utils import batch_space as _batch_space
-
-    _VectorBase, _EnvBase = _gymnasium.vector.VectorEnv, _gymnasium.Env
-except ImportError:
+except ModuleNotFoundError as _error:
+    if _error.name != "gymnasium":  # one that is installed, but cannot be imported
+        raise
     from taut._spaces import AutoresetMode, Box, batch_space as _batch_space
+else:
+    if tuple(map(int, _re.findall(r"\d+", _gymnasium.__version__)[:2])) < (0, 29):
+        raise ImportError(f"gymnasium {_gymnasium.__version__} is installed; taut.gym needs 0.29 or newer, or none")
+    import gymnasium.vector as _vector
+    from gymnasium.spaces import Box  # type: ignore[no-redef]
+    from gymnasium.vector.utils import batch_space as _batch_space  # type: ignore[no-redef]
+
+    _VectorBase, _EnvBase = _vector.VectorEnv, _gymnasium.Env
+    try:
+        from gymnasium.vector import AutoresetMode  # type: ignore[no-redef]
+    except ImportError:  # before 1.1
+        from taut._spaces import AutoresetMode
 
 EpisodeEnd = _enum.IntEnum(  # type: ignore[misc]
     "EpisodeEnd", [(name.upper(), value) for name, value in _core.episode_ends])
@@ -47,16 +58,27 @@ def _experiment(experiment, set_):
     return loaded
 
 
+def _seed(seed, worlds=1):
+    """`seed`, if that and the `worlds` - 1 that follow are seeds."""
+    below = 2**64 - worlds + 1
+    whole = isinstance(seed, _numbers.Integral) and not isinstance(seed, bool)
+    if not whole or not 0 <= int(seed) < below:
+        raise ValueError(f"seed: {seed!r}; a whole number, 0 or more, below {below}")
+    return int(seed)
+
+
 class VectorEnv(_VectorBase):
     """Many worlds, an episode each. Arrays are (num_envs, n); actions are -1..1.
 
     `copy=False`: `step` and `reset` return the same arrays again and again, which saves their making.
-    Callbacks see all worlds at once, as views that are void afterwards: `observe(rows, observations)` fills
-    the last `own_observations` columns; `judge(rows, observations, actions, rewards, terminated)` changes the
-    last two. Rows of worlds whose `rows` is 0 are not to be looked at.
-    Threads: one at a time.
+    Callbacks see all worlds at once: `observe(rows, observations)` fills the last `own_observations` columns;
+    `judge(rows, observations, actions, rewards, terminated)` changes the last two. Their arrays are copies that they
+    may keep; only changes made before they return count. Rows of worlds whose `rows` is 0 are not to be looked at.
+    Callbacks may call `time_s`, `hash` and `experiment`; what changes the environment raises RuntimeError there.
+    Threads: they wait for each other.
     """
 
+    is_vector_env = True  # Gymnasium before 1.0 asks for it
     render_mode = None
     spec = None
 
@@ -68,6 +90,8 @@ class VectorEnv(_VectorBase):
             raise ValueError(f"dtype: {dtype}; float32 or float64")
         if not isinstance(autoreset_mode, AutoresetMode):
             autoreset_mode = AutoresetMode(autoreset_mode)
+        if seed is not None:
+            seed = _seed(seed, max(num_envs, 1))
         self._core = _core.Environments(
             _experiment(experiment, set), num_envs, threads, simd, _AUTORESET[autoreset_mode], randomise, seed,
             own_observations, observe, judge)
@@ -124,11 +148,9 @@ class VectorEnv(_VectorBase):
         seeds = None
         if seed is not None:
             if _np.ndim(seed) == 0:
-                if seed < 0:
-                    raise ValueError(f"seed: {seed}; 0 or more")
-                seeds = _np.uint64(seed) + _np.arange(self.num_envs, dtype=_np.uint64)
+                seeds = _np.uint64(_seed(seed, self.num_envs)) + _np.arange(self.num_envs, dtype=_np.uint64)
             else:
-                seeds = _np.ascontiguousarray(seed, dtype=_np.uint64)
+                seeds = _np.array([_seed(one) for one in seed], dtype=_np.uint64)
         if mask is not None:
             mask = _np.ascontiguousarray(_np.asarray(mask, bool).astype(_np.uint8))
         observations = self._fresh(self._observations)

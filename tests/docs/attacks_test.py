@@ -1,5 +1,6 @@
 """Every test that docs/robustness.md names as holding an attack is there, by its name in ctest."""
 
+import ast
 import re
 
 from page import ROOT, Page
@@ -16,6 +17,10 @@ def names():
         found |= set(re.findall(r"add_test\(NAME ([\w.]+)", path.read_text()))
         found |= {f"Fuzz.{name}" for name in re.findall(r"^taut_fuzz\((\w+) ", path.read_text(), re.M)}
     found |= {f"Faults.{name}" for name in re.findall(r"^def ([A-Z]\w+)", (TESTS / "faults/faults_test.py").read_text(), re.M)}
+    for path in (TESTS / "python").glob("*_test.py"):
+        for suite in ast.parse(path.read_text()).body:
+            if isinstance(suite, ast.ClassDef):
+                found |= {f"{suite.name}.{test.name}" for test in suite.body if isinstance(test, ast.FunctionDef)}
     found |= {f"Web.{path.name.removesuffix('.test.mjs')}" for path in (ROOT / "web/test").glob("*.test.mjs")}
     return found
 
@@ -25,6 +30,8 @@ def main():
     begin = lines.index("## Attacks tried")
     rows = [line for line in lines[begin:] if line.startswith("| ")]
     there, wrong = names(), []
+    python = [line for line in lines[lines.index("### Attacks on the Python module"):] if "test_" in line]
+    assert len(python) > 15, f"{len(python)} rows of the Python module"
     for row in rows:
         held = [text for text in re.findall(r"`([^`]+)`", row.rstrip(" |").split(" | ")[-1]) if re.fullmatch(r"[A-Z]\w+\.\w+", text)]
         wrong += [f"docs/robustness.md: there is no test {name}" for name in held if name not in there]

@@ -3,6 +3,7 @@
 import math
 import os
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -304,6 +305,39 @@ class WithGymnasium(unittest.TestCase):
             for action in actions_of(many, 12):
                 for one, other in zip(single.step(action)[:4], many.step(action)[:4]):
                     np.testing.assert_array_equal(one, other)
+
+
+class OtherGymnasiums(unittest.TestCase):
+    """What stands in for versions that are not installed here has of them what taut.gym takes."""
+
+    def imported(self, version, init=""):
+        """Output of a program that imports taut.gym beside this gymnasium."""
+        spaces = (ROOT / "python/taut/_spaces.py").read_text()
+        files = {"__init__.py": f"{init}\n__version__ = {version!r}\nclass Env:\n    def reset(self, *, seed=None): pass\n",
+                 "spaces.py": spaces, "vector/utils.py": spaces, "vector/__init__.py": "class VectorEnv: pass\n"}
+        text = ("import gymnasium, gymnasium.vector, taut.gym\n"
+                f"one, many = taut.gym.Env({SPINE!r}), taut.gym.make_vec({SPINE!r}, 2, autoreset_mode='SameStep')\n"
+                "one.reset(seed=1), many.reset(seed=1)\n"
+                "print(isinstance(one, gymnasium.Env), isinstance(many, gymnasium.vector.VectorEnv))\n")
+        with tempfile.TemporaryDirectory() as folder:
+            for name, content in files.items():
+                path = pathlib.Path(folder, "gymnasium", name)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(content)
+            path = os.pathsep.join([folder, os.environ.get("PYTHONPATH", "")])
+            ran = subprocess.run([sys.executable, "-c", text], env=os.environ | {"PYTHONPATH": path}, text=True,
+                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=100)
+        return ran.stdout
+
+    def test_those_without_autoreset_modes_have_its_classes(self):
+        for version in ("0.29.1", "1.0.0"):
+            self.assertEqual(self.imported(version), "True True\n")
+
+    def test_one_that_is_too_old_is_named(self):
+        self.assertIn("ImportError: gymnasium 0.28.1 is installed; taut.gym needs 0.29 or newer", self.imported("0.28.1"))
+
+    def test_one_that_cannot_be_imported_is_not_hidden(self):
+        self.assertIn("ModuleNotFoundError: No module named 'cloud_pickle'", self.imported("1.1.0", "import cloud_pickle"))
 
 
 if __name__ == "__main__":
