@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <charconv>
+#include <set>
 
 #include "base/hash.h"
 
@@ -30,9 +31,10 @@ bool NumbersOf(const std::string& bits, std::vector<double>& out) {
   return true;
 }
 
-std::string SumOf(const std::string& key, const std::string& failed, const std::string& bits) {
+std::string SumOf(const std::string& facts, const std::string& key, const std::string& failed,
+                  const std::string& bits) {
   base::Fnv1a sum;
-  sum.AddText(key), sum.AddText(failed), sum.AddText(bits);
+  sum.AddText(facts), sum.AddText(key), sum.AddText(failed), sum.AddText(bits);
   return base::HashText(sum.value());
 }
 
@@ -71,12 +73,32 @@ bool PointMemory::Begin(const std::string& path, const std::map<std::string, std
               "give another folder with --out");
     return false;
   }
+  base::Fnv1a sum;
+  for (const auto& [name, value] : facts) sum.AddText(name), sum.AddText(value);
+  facts_sum_ = base::HashText(sum.value());
   if (!known.empty() && known != facts) {
+    std::set<std::string> names;
+    for (const auto& all : {facts, known}) {
+      for (const auto& [name, value] : all) names.insert(name);
+    }
     std::string which;
-    for (const auto& [name, value] : facts) {
-      if (known[name] != value) which += (which.empty() ? "" : ", ") + name;
+    for (const std::string& name : names) {
+      const auto here = facts.find(name);
+      const auto there = known.find(name);
+      const bool both = here != facts.end() && there != known.end();
+      if (both && here->second == there->second) continue;
+      which += (which.empty() ? "" : ", ") + name;
     }
     out.Error({path}, "holds another fit: it differs in " + which,
+              "give another folder with --out, or remove this one");
+    return false;
+  }
+  if (!ReadPoints()) {
+    out.Error({path}, "cannot be read: " + database_->TakeError());
+    return false;
+  }
+  if (known.empty() && remembered_ + damaged_ > 0) {
+    out.Error({path}, "is damaged: holds points, but not the facts of their fit",
               "give another folder with --out, or remove this one");
     return false;
   }
@@ -88,9 +110,7 @@ bool PointMemory::Begin(const std::string& path, const std::map<std::string, std
       return false;
     }
   }
-  if (ReadPoints()) return true;
-  out.Error({path}, "cannot be read: " + database_->TakeError());
-  return false;
+  return true;
 }
 
 bool PointMemory::ReadPoints() {
@@ -98,7 +118,7 @@ bool PointMemory::ReadPoints() {
   const bool good = get.Run([&](learn::Row& row) {
     const std::string key = row.Text(0), failed = row.Text(1), bits = row.Text(2);
     Residuals point{{}, failed};
-    if (row.Text(3) == SumOf(key, failed, bits) && NumbersOf(bits, point.value)) {
+    if (row.Text(3) == SumOf(facts_sum_, key, failed, bits) && NumbersOf(bits, point.value)) {
       points_.emplace(key, std::move(point));
     } else {
       ++damaged_;
@@ -121,7 +141,11 @@ bool PointMemory::Add(const std::vector<std::pair<std::string, Residuals>>& poin
     if (!good) break;
     const std::string bits = Bits(point.value);
     Statement put(*database_, "INSERT OR REPLACE INTO point VALUES (?, ?, ?, ?)");
-    good = put.Bind(key).Bind(point.failed).Bind(bits).Bind(SumOf(key, point.failed, bits)).Run();
+    good = put.Bind(key)
+               .Bind(point.failed)
+               .Bind(bits)
+               .Bind(SumOf(facts_sum_, key, point.failed, bits))
+               .Run();
   }
   if (good && database_->Execute("COMMIT")) return true;
   error_ = database_->TakeError();

@@ -19,7 +19,8 @@ class PointMemory {
  public:
   PointMemory() = default;
   /// `facts`: what makes points the same; a file that says another of them is another fit's. Null
-  /// and a complaint if that is so, or if the file cannot be read or written.
+  /// and a complaint if that is so, or if the file cannot be read or written, or holds points
+  /// without facts. Points that were computed under other facts count as damaged.
   static std::unique_ptr<PointMemory> Open(const std::string& path,
                                            const std::map<std::string, std::string>& facts,
                                            Diagnostics& out);
@@ -42,6 +43,7 @@ class PointMemory {
 
   std::unique_ptr<learn::Database> database_;
   std::map<std::string, Residuals> points_;
+  std::string facts_sum_;  ///< Part of the checksum of every point.
   std::string error_;
   std::int64_t remembered_ = 0, damaged_ = 0;
 };

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -12,6 +13,11 @@ namespace taut::learn {
 Database::Database(const std::string& path, Open how) {
   const int make = how == Open::kOrMake ? SQLITE_OPEN_CREATE : 0;
   if (!Check(sqlite3_open_v2(path.c_str(), &db_, SQLITE_OPEN_READWRITE | make, nullptr))) return;
+  Protect();
+  if (how == Open::kThatIsThere) OpenWithoutFolder(path);
+}
+
+void Database::Protect() {
   sqlite3_busy_timeout(db_, 10'000);
   // https://sqlite.org/security.html: a file may hold more than data.
   sqlite3_db_config(db_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
@@ -20,6 +26,26 @@ Database::Database(const std::string& path, Open how) {
   sqlite3_db_config(db_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
   Execute("PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0;");
   TakeError();  // a file that cannot be read says so to whoever reads it
+}
+
+void Database::OpenWithoutFolder(const std::string& path) {
+  const int result = sqlite3_exec(db_, "SELECT 1 FROM sqlite_schema", nullptr, nullptr, nullptr);
+  if ((result & 0xff) != SQLITE_CANTOPEN && (result & 0xff) != SQLITE_READONLY) return;
+  namespace fs = std::filesystem;
+  const std::string log = path + "-wal";
+  std::error_code ignored;
+  if (fs::exists(log, ignored) && fs::file_size(log, ignored) > 0) {
+    error_ = "rows of it are in " + log + ", and the folder cannot be written; read a copy of both";
+    return;
+  }
+  std::string uri = "file:";
+  for (const char c : path) {
+    uri += c == '%' ? "%25" : c == '?' ? "%3f" : c == '#' ? "%23" : std::string(1, c);
+  }
+  sqlite3_close(std::exchange(db_, nullptr));
+  constexpr int kFlags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
+  // Immutable: without locks and without the files beside it.
+  if (Check(sqlite3_open_v2((uri + "?immutable=1").c_str(), &db_, kFlags, nullptr))) Protect();
 }
 
 Database::~Database() { sqlite3_close(db_); }

@@ -16,7 +16,9 @@ namespace taut::learn {
 class Database {
  public:
   enum class Open { kThatIsThere, kOrMake };
-  /// What the file holds is not looked at yet. Nothing in it is trusted to be code.
+  /// What the file holds is not looked at yet. Nothing in it is trusted to be code. A file that is
+  /// there opens where its folder cannot be written (a read-only medium, another user's), if no
+  /// rows of it are left in its write-ahead log.
   Database(const std::string& path, Open how);
   /// In memory.
   Database() : Database(":memory:", Open::kOrMake) {}
@@ -40,6 +42,10 @@ class Database {
   friend class Statement;
   /// Whether a call went well.
   bool Check(int result);
+  /// Opens the connection anew for a file in WAL mode in a folder that cannot be written, where
+  /// SQLite could not make the files beside it that it needs.
+  void OpenWithoutFolder(const std::string& path);
+  void Protect();
 
   sqlite3* db_ = nullptr;
   std::string error_;

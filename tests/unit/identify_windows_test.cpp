@@ -1,6 +1,7 @@
 // Which numbers of a run are set beside which of the data: windows, statistics, clocks, references,
 // and what is done to them on the way.
 #include <cmath>
+#include <filesystem>
 
 #include "identify/rows.h"
 #include "learn/sqlite.h"
@@ -207,7 +208,7 @@ TEST_F(Windows, WhatIsKnownBeforeIsTheProblems) {
 
 TEST_F(Windows, WhatActsOnTheHoldOutAloneStaysAndTakesNoPlace) {
   // The first number is the hold-out's own offset: it is none of the problem's.
-  fs::copy_file(folder_ / "a.csv", folder_ / "b.csv", fs::copy_options::overwrite_existing);
+  std::filesystem::copy_file(folder_ / "a.csv", folder_ / "b.csv", fs::copy_options::overwrite_existing);
   const std::string text =
       "taut: 1\nkind: fit\nname: f\nexperiments:\n"
       "  - {name: b, experiment: experiment.yaml, data: b.csv, forward: static, use: test}\n"
@@ -336,6 +337,47 @@ TEST_F(Windows, ARecordThatIsDamagedIsComputedAgain) {
   ASSERT_TRUE(fit) << out_.Format();
   EXPECT_EQ(fit->counts().damaged, 1);
   EXPECT_EQ(At(*fit, {125, 0}).value, first);
+}
+
+TEST_F(Windows, PointsWithoutTheFactsOfTheirFitAreRefused) {
+  {
+    const auto fit = Make(kFit, "fit.sqlite");
+    ASSERT_TRUE(fit) << out_.Format();
+    At(*fit, {125, 0});
+  }
+  const std::string path = (folder_ / "fit.sqlite").string();
+  learn::Database database(path, learn::Database::Open::kOrMake);
+  ASSERT_TRUE(database.Execute("INSERT INTO fact VALUES ('weather', 'rain')"));
+  EXPECT_FALSE(Make(kFit, "fit.sqlite"));
+  EXPECT_NE(out_.Format().find("it differs in weather"), std::string::npos) << out_.Format();
+  ASSERT_TRUE(database.Execute("DELETE FROM fact"));
+  EXPECT_FALSE(Make(kFit, "fit.sqlite"));
+  EXPECT_NE(out_.Format().find("holds points, but not the facts of their fit"), std::string::npos)
+      << out_.Format();
+}
+
+TEST_F(Windows, PointsUnderFactsThatWereChangedAreDamaged) {
+  const std::string path = (folder_ / "fit.sqlite").string();
+  std::vector<double> of_other_data;
+  const auto facts = [&](const std::string& sql) {
+    learn::Database database(path, learn::Database::Open::kOrMake);
+    ASSERT_TRUE(database.Execute(sql));
+  };
+  {
+    const auto fit = Make(kFit, "fit.sqlite");
+    ASSERT_TRUE(fit) << out_.Format();
+    of_other_data = At(*fit, {125, 0}).value;
+  }
+  fs::copy_file(path, path + ".old");
+  WriteData("node/ball/position_z_m", 111, 0);
+  std::filesystem::remove(path);
+  ASSERT_TRUE(Make(kFit, "fit.sqlite")) << out_.Format();  // the facts of these data
+  facts("ATTACH '" + path + ".old' AS old; INSERT INTO point SELECT * FROM old.point");
+  const auto fit = Make(kFit, "fit.sqlite");
+  ASSERT_TRUE(fit) << out_.Format();
+  EXPECT_EQ(fit->counts().damaged, 1);
+  EXPECT_EQ(fit->counts().remembered, 0);
+  EXPECT_NE(At(*fit, {125, 0}).value, of_other_data);
 }
 
 }  // namespace

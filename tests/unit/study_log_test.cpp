@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <iostream>
 #include <random>
 
@@ -89,6 +90,30 @@ TEST_F(StudyLog, GivesBackEveryBit) {
   EXPECT_EQ(log->evaluations[7].values, LoggedEvaluation(7).values);
   EXPECT_EQ(log->evaluations[7].worlds[1].state_hash, LoggedEvaluation(7).worlds[1].state_hash);
   EXPECT_EQ(log->parameters[1].targets, (std::vector<std::string>{"hold.b", "hold.c"}));
+}
+
+// As on a read-only medium. Root may write everywhere, so that a child gives up being it.
+TEST_F(StudyLog, OpensWhereItsFolderCannotBeWritten) {
+  const std::string odd = (folder_ / "50% #1? study.sqlite").string();
+  std::ofstream(odd, std::ios::binary) << Whole();
+  fs::permissions(odd, fs::perms{0444});
+  fs::permissions(folder_, fs::perms{0555});
+  const auto read = [&] {
+    if (geteuid() == 0 && setuid(65534) != 0) std::_Exit(3);
+    Diagnostics out;
+    const auto log = Log::OpenToRead(odd, out);
+    const auto contents = log ? log->Read(out) : std::nullopt;
+    std::cerr << out.Format();
+    if (!contents || !contents->damage.empty()) std::_Exit(1);
+    std::_Exit(contents->evaluations.size() == kLogged ? 0 : 2);
+  };
+  EXPECT_EXIT(read(), testing::ExitedWithCode(0), "");
+  fs::permissions(folder_, fs::perms{0755});
+  std::ofstream(odd + "-wal", std::ios::binary) << "rows that only the log has";
+  fs::permissions(folder_, fs::perms{0555});
+  EXPECT_EXIT(read(), testing::ExitedWithCode(1),
+              "rows of it are in .*-wal, and the folder cannot be");
+  fs::permissions(folder_, fs::perms{0755});
 }
 
 TEST_F(StudyLog, OfVersionOneIsReadAndBecomesOneOfThisVersion) {
