@@ -294,10 +294,14 @@ class WithGymnasium(unittest.TestCase):
 
     def test_its_checker_finds_nothing(self):
         from gymnasium.utils.env_checker import check_env
-        check_env(taut.gym.Env(short()), skip_render_check=True)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", ".*Box observation space")  # it warns of bounds that are infinite
+            check_env(taut.gym.Env(short()), skip_render_check=True)
 
     def test_many_are_as_its_own_vectors_of_single_ones(self):
         import gymnasium
+        if not hasattr(gymnasium.vector, "AutoresetMode"):
+            self.skipTest("gymnasium before 1.1: its vectors have one mode only")
         for mode in (AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP):
             single = gymnasium.vector.SyncVectorEnv([lambda: taut.gym.Env(short())] * 3, autoreset_mode=mode)
             many = taut.gym.make_vec(short(), 3, autoreset_mode=mode)

@@ -1,7 +1,6 @@
 // Which numbers of a run are set beside which of the data: windows, statistics, clocks, references,
 // and what is done to them on the way.
 #include <cmath>
-#include <filesystem>
 
 #include "identify/rows.h"
 #include "learn/sqlite.h"
@@ -208,7 +207,7 @@ TEST_F(Windows, WhatIsKnownBeforeIsTheProblems) {
 
 TEST_F(Windows, WhatActsOnTheHoldOutAloneStaysAndTakesNoPlace) {
   // The first number is the hold-out's own offset: it is none of the problem's.
-  std::filesystem::copy_file(folder_ / "a.csv", folder_ / "b.csv", fs::copy_options::overwrite_existing);
+  fs::copy_file(folder_ / "a.csv", folder_ / "b.csv", fs::copy_options::overwrite_existing);
   const std::string text =
       "taut: 1\nkind: fit\nname: f\nexperiments:\n"
       "  - {name: b, experiment: experiment.yaml, data: b.csv, forward: static, use: test}\n"
@@ -370,7 +369,7 @@ TEST_F(Windows, PointsUnderFactsThatWereChangedAreDamaged) {
   }
   fs::copy_file(path, path + ".old");
   WriteData("node/ball/position_z_m", 111, 0);
-  std::filesystem::remove(path);
+  fs::remove(path);
   ASSERT_TRUE(Make(kFit, "fit.sqlite")) << out_.Format();  // the facts of these data
   facts("ATTACH '" + path + ".old' AS old; INSERT INTO point SELECT * FROM old.point");
   const auto fit = Make(kFit, "fit.sqlite");
