@@ -83,8 +83,8 @@ ActuatorSettings MergedUntil315(const std::vector<const Element*>& layers, Diagn
 }
 
 /// Since MuJoCo 3.16 an element of another kind than `general` inherits from the latest element
-/// before it that is `general` or of its own kind, and takes less from `general`. Found by 10 000
-/// random files of up to four elements: 3.16.0, 3.17.0 and 4.0.0 compile each of them so.
+/// before it that is `general` or of its own kind, and takes less from `general`. Found with
+/// random files of up to four elements: 10,000 with 4.0.0 and 1,500 with 3.16.0 compile so.
 ActuatorSettings MergedSince316(const std::vector<const Element*>& layers) {
   Diagnostics ignored;
   std::vector<std::pair<std::string, ActuatorSettings>> made{{"general", {}}};
