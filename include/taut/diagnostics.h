@@ -43,8 +43,8 @@ class Diagnostics {
   std::vector<Diagnostic> items_, warnings_;
 };
 
-/// Escapes control characters (as \x1b), which could send commands to a terminal. Keeps line ends
-/// and tabs. Use it for all printed text from files; `Diagnostics::Format` already does.
+/// Escapes control characters, which could send commands to a terminal, in hexadecimal. Keeps line
+/// ends and tabs. Use it for all printed text from files; `Diagnostics::Format` already does.
 std::string Printable(std::string_view text);
 
 /// By file, line and column, without repetitions: in the order of `Diagnostics::Format`.

@@ -17,6 +17,7 @@ import tempfile
 try:
     import mujoco
 except ImportError:
+    print("skipped: this machine has no Python package mujoco")
     sys.exit(77)
 
 KINDS = ["general", "motor", "position", "velocity", "intvelocity", "cylinder", "damper", "muscle"]

@@ -183,10 +183,10 @@ TEST_F(ConvexText, WrongOnesAreNamed) {
   Write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
   Write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n");
   Write("turned.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n");
-  ExpectHas(Said("file: open.obj, scale_m: 1, mass_kg: 1"),
+  ExpectHas(Said("file: open.obj, scale_m: 1, density_kg_per_m3: 1"),
             "open.obj:7: error: the mesh is not closed");
-  ExpectHas(Said("file: flat.obj, scale_m: 1, mass_kg: 1"), "the mesh is inside out");
-  ExpectHas(Said("file: turned.obj, scale_m: 1, mass_kg: 1"), "is inside out");
+  ExpectHas(Said("file: flat.obj, scale_m: 1, density_kg_per_m3: 1"), "the mesh is inside out");
+  ExpectHas(Said("file: turned.obj, scale_m: 1, density_kg_per_m3: 1"), "is inside out");
   ExpectHas(Said("file: none.obj, scale_m: 1, mass_kg: 1"), "none.obj");
   ExpectHas(Said("file: open.obj, mass_kg: 1"), "scale_m");
   ExpectHas(Said("corners_m: [[0, 0, 0], [1, 0, 0], [0, 1, 0]], mass_kg: 1"),
