@@ -8,7 +8,7 @@ template <class W>
 struct SolveResult {
   W residual;  ///< How far a lane is from solved [m/s].
   W linear_solves;
-  W relaxation;            ///< Largest relaxation of inconsistent biases [m/s].
+  W relaxation;         ///< Largest relaxation of inconsistent biases [m/s].
   int body[W::kLanes];  ///< Where it is furthest.
 };
 
