@@ -76,12 +76,12 @@ HeldStiffness StiffnessAsDescribed(const Structure& s) {
 }
 
 Eigen::MatrixXd SpanOf(const Eigen::MatrixXd& columns) {
-  constexpr double kSmall = 1e-9;
+  constexpr double kSmallShare = 1e-9;
   if (columns.cols() == 0 || columns.rows() == 0) return Eigen::MatrixXd(columns.rows(), 0);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(columns, Eigen::ComputeThinU);
   const Eigen::VectorXd& values = svd.singularValues();
   Eigen::Index rank = 0;
-  while (rank < values.size() && values[rank] > kSmall * values[0]) ++rank;
+  while (rank < values.size() && values[rank] > kSmallShare * values[0]) ++rank;
   return svd.matrixU().leftCols(rank);
 }
 
