@@ -29,7 +29,7 @@ Eigen::MatrixXd AllowedByJoints(const Structure& s, const Component& component,
   const std::vector<Coordinate> held = RowsWithWorld(s, component);
   if (held.empty()) return twists;
   const Eigen::MatrixXd rows = SlopesAlong(held, s, component, Eigen::MatrixXd::Identity(6, 6));
-  const Eigen::MatrixXd first = twists * Nothing(rows * twists, kFirst);
+  Eigen::MatrixXd first = twists * Nothing(rows * twists, kFirst);
   const Eigen::MatrixXd loads = Nothing(rows.transpose(), kFirst);
   if (first.cols() == 0 || loads.cols() == 0) return first;
   std::vector<Eigen::MatrixXd> second;
