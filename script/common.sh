@@ -27,14 +27,13 @@ build() {
   cmake --build "build/$preset" --parallel "$jobs" ${1:+--target "$@"}
 }
 
-# build_quietly PRESET [TARGET...]: the same; shows what the compiler said only if it fails.
+# compiler_messages PRESET: the log of a build that failed, without its steps.
+compiler_messages() { grep -vE '^\[[0-9]+/[0-9]+\] [^:]*$' "build/$1.build.log" >&2; }
+
+# build_quietly PRESET [TARGET...]: the same; shows the compiler's messages only if it fails.
 build_quietly() {
-  local log=build/$1.build.log
   mkdir -p build
-  if ! build "$@" >"$log" 2>&1; then
-    grep -vE '^\[[0-9]+/[0-9]+\] [^:]*$' "$log" >&2
-    return 1
-  fi
+  build "$@" >"build/$1.build.log" 2>&1 || { compiler_messages "$1"; return 1; }
 }
 
 # build_showing PRESET [TARGET...]: the same, with a line of progress: rewritten on a terminal, once a
@@ -63,8 +62,5 @@ build_showing() {
     fi
   done < <(build "$@" 2>&1 || echo "the build failed")
   printf '%s' "$ended"
-  if [ "$(tail -n 1 "$log")" = "the build failed" ]; then
-    grep -vE '^\[[0-9]+/[0-9]+\] [^:]*$' "$log" >&2
-    return 1
-  fi
+  [ "$(tail -n 1 "$log")" != "the build failed" ] || { compiler_messages "$1"; return 1; }
 }

@@ -12,7 +12,7 @@
 namespace taut::cli {
 
 void WarnOfRefusal(const std::string& model_yaml, const std::string& imported_file,
-                   const std::string& advice, Diagnostics& out) {
+                   Diagnostics& out) {
   std::error_code failed;
   std::string folder =
       (std::filesystem::temp_directory_path(failed) / "taut_import_XXXXXX").string();
@@ -30,9 +30,8 @@ void WarnOfRefusal(const std::string& model_yaml, const std::string& imported_fi
   }
   std::filesystem::remove_all(folder, failed);
   for (const Diagnostic& reason : found.items()) {
-    const bool deep = reason.what.find(" deep in each other") != std::string::npos;
     out.Warning({imported_file, 0, 0}, "`taut check` refuses the model: " + reason.what,
-                deep ? advice : reason.hint);
+                reason.hint);
   }
 }
 

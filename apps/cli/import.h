@@ -12,8 +12,7 @@ void AddImportMjcf(CLI::App& group, int& exit_code);
 void AddImportNtrt(CLI::App& group, int& exit_code);
 
 /// Warns of each reason for which `taut check` refuses an imported model, at the imported file.
-/// `advice` is the hint for bodies that are deep in each other.
 void WarnOfRefusal(const std::string& model_yaml, const std::string& imported_file,
-                   const std::string& advice, Diagnostics& out);
+                   Diagnostics& out);
 
 }  // namespace taut::cli

@@ -38,21 +38,17 @@ Extreme LargestOf(const SharedRows& rows) {
 
 WindowStatistics StatisticsOf(const SharedRows& rows) {
   WindowStatistics result{rows.values.size(), kUnknownValue, kUnknownValue, kUnknownValue};
-  const std::vector<double> weights = TimeWeights(rows.time_s);
-  double sum = 0, time = 0;
-  for (std::size_t i = 0; i < rows.values.size(); ++i) {
-    const double value = rows.values[i];
-    sum += weights[i] * value;
-    time += weights[i];
+  for (const double value : rows.values) {
     if (!(value >= result.min)) result.min = value;
     if (!(value <= result.max)) result.max = value;
   }
-  if (result.rows > 0) result.mean = sum / time;
+  result.mean = WeightedMean(rows.values, TimeWeights(rows.time_s, FindGaps(rows.time_s)));
   return result;
 }
 
-/// Sets the results that depend on differences at the times of the common clock.
-void CompareRows(const CommonClock& clock, const std::vector<double>& a,
+/// Sets the results that depend on differences at the times of the common clock, whose rows are
+/// usually `usual_s` apart.
+void CompareRows(const CommonClock& clock, double usual_s, const std::vector<double>& a,
                  const std::vector<double>& b, ChannelComparison& result) {
   std::vector<double> time_s, differences;
   result.error = {kUnknownValue, kUnknownValue};
@@ -69,21 +65,15 @@ void CompareRows(const CommonClock& clock, const std::vector<double>& a,
   result.bias = result.rmse = kUnknownValue;
   result.missing_s = clock.to_s - clock.from_s;
   if (time_s.empty()) return;
-  const std::vector<double> weights = TimeWeights(time_s);
-  double sum = 0, squares = 0, time = 0;
-  for (std::size_t i = 0; i < time_s.size(); ++i) {
-    sum += weights[i] * differences[i];
-    squares += weights[i] * differences[i] * differences[i];
-    time += weights[i];
-  }
-  result.bias = sum / time;
-  result.rmse = std::sqrt(squares / time);
+  const std::vector<bool> gaps = FindGaps(time_s);
+  const std::vector<double> weights = TimeWeights(time_s, gaps);
+  result.bias = WeightedMean(differences, weights);
+  for (double& difference : differences) difference *= difference;
+  result.rmse = std::sqrt(WeightedMean(differences, weights));
   result.missing_s = 0;
-  for (const auto& [from_s, to_s] : GapSpans(time_s, FindGaps(time_s))) {
-    result.missing_s += to_s - from_s;
-  }
+  for (const auto& [from_s, to_s] : GapSpans(time_s, gaps)) result.missing_s += to_s - from_s;
   // Beyond the first and the last row that count, where clocks differ by less than two steps.
-  const double least_s = 2 * UsualStep(clock.time_s, 0, clock.time_s.size());
+  const double least_s = 2 * usual_s;
   for (const double end_s : {time_s.front() - clock.from_s, clock.to_s - time_s.back()}) {
     if (end_s > least_s) result.missing_s += end_s;
   }
@@ -91,10 +81,9 @@ void CompareRows(const CommonClock& clock, const std::vector<double>& a,
 
 /// Evenly spaced times over the clock's span: a lag is a number of rows only if rows are even. As
 /// far apart as the clock's rows usually are, so that a gap does not make them sparse.
-std::vector<double> EvenTimes(const CommonClock& clock) {
+std::vector<double> EvenTimes(const CommonClock& clock, double usual_s) {
   const double first = clock.time_s.front(), last = clock.time_s.back();
   const std::size_t rows = clock.time_s.size();
-  const double usual_s = UsualStep(clock.time_s, 0, rows);
   const double wanted = usual_s > 0 ? std::round((last - first) / usual_s) + 1 : 1.0;
   const double count =
       std::clamp(wanted, static_cast<double>(rows), 8.0 * static_cast<double>(rows));
@@ -122,7 +111,8 @@ ChannelComparer::ChannelComparer(const Trace& a, const Trace& b, const CompareOp
       gaps_a_(FindGaps(a.time_s)),
       gaps_b_(FindGaps(b.time_s)),
       gaps_clock_(FindGaps(clock.time_s)),
-      even_s_(EvenTimes(clock)) {
+      usual_s_(UsualStep(clock.time_s, 0, clock.time_s.size())),
+      even_s_(EvenTimes(clock, usual_s_)) {
   const double span_s = clock.time_s.back() - clock.time_s.front();
   step_s_ = even_s_.size() < 2 ? 0.0 : span_s / static_cast<double>(even_s_.size() - 1);
   uneven_ = even_s_.size() != clock.time_s.size();
@@ -190,7 +180,7 @@ ChannelComparison ChannelComparer::Compare(std::size_t in_a, std::size_t in_b) {
   ChannelComparison result;
   result.name = a_.channels[in_a].name;
   result.unit = a_.channels[in_a].unit;
-  CompareRows(clock_, of.clock_a, of.clock_b, result);
+  CompareRows(clock_, usual_s_, of.clock_a, of.clock_b, result);
   SetLag(of, result);
   const CoveredTime covered_a(a_.time_s, of.a), covered_b(b_.time_s, of.b);
   result.max_a = LargestOf(RowsShared(a_.time_s, of.a, rows_a_, covered_b));

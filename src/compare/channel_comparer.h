@@ -41,6 +41,7 @@ class ChannelComparer {
   const CompareOptions& options_;
   const CommonClock& clock_;
   std::vector<bool> gaps_a_, gaps_b_, gaps_clock_;
+  double usual_s_;  ///< Distance of the clock's rows.
   std::vector<double> even_s_;
   bool uneven_ = false;
   double step_s_ = 0.0;

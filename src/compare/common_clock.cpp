@@ -10,13 +10,11 @@ namespace taut::compare {
 namespace {
 
 /// Times closer than this are the same row: what the digits of a CSV file may lose.
-double Tolerance(double time_s) { return 1e-9 * std::max(1.0, std::abs(time_s)); }
-
 bool SameTimes(const std::vector<double>& a, RowRange rows_a, const std::vector<double>& b,
                RowRange rows_b) {
   if (rows_a.end - rows_a.begin != rows_b.end - rows_b.begin) return false;
   for (std::size_t i = rows_a.begin, j = rows_b.begin; i < rows_a.end; ++i, ++j) {
-    if (!(std::abs(a[i] - b[j]) <= Tolerance(a[i]))) return false;
+    if (!(std::abs(a[i] - b[j]) <= TimeTolerance(a[i]))) return false;
   }
   return true;
 }
@@ -28,8 +26,8 @@ double StepOf(const std::vector<double>& time_s, RowRange rows) {
 }  // namespace
 
 RowRange RowsBetween(const std::vector<double>& time_s, double from_s, double to_s) {
-  const auto begin = std::lower_bound(time_s.begin(), time_s.end(), from_s - Tolerance(from_s));
-  const auto end = std::upper_bound(begin, time_s.end(), to_s + Tolerance(to_s));
+  const auto begin = std::lower_bound(time_s.begin(), time_s.end(), from_s - TimeTolerance(from_s));
+  const auto end = std::upper_bound(begin, time_s.end(), to_s + TimeTolerance(to_s));
   return {static_cast<std::size_t>(begin - time_s.begin()),
           static_cast<std::size_t>(end - time_s.begin())};
 }
@@ -70,8 +68,8 @@ std::vector<double> Interpolate(const std::vector<double>& time_s,
       result.push_back(values[next - 1]);
     } else if (gaps[next - 1]) {
       // Times of a CSV file lose digits: next to a row is on it.
-      const bool on_next = time_s[next] - at <= Tolerance(at);
-      const bool on_last = at - time_s[next - 1] <= Tolerance(at);
+      const bool on_next = time_s[next] - at <= TimeTolerance(at);
+      const bool on_last = at - time_s[next - 1] <= TimeTolerance(at);
       result.push_back(on_next   ? values[next]
                        : on_last ? values[next - 1]
                                  : std::numeric_limits<double>::quiet_NaN());

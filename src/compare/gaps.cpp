@@ -26,9 +26,9 @@ double MedianOf(const std::vector<double>& distances, std::size_t begin, std::si
   return *middle;
 }
 
-double TimeTolerance(double time_s) { return 1e-9 * std::max(1.0, std::abs(time_s)); }
-
 }  // namespace
+
+double TimeTolerance(double time_s) { return 1e-9 * std::max(1.0, std::abs(time_s)); }
 
 std::vector<bool> FindGaps(const std::vector<double>& time_s) {
   const std::vector<double> distances = DistancesOf(time_s, 0, time_s.size());
@@ -54,8 +54,7 @@ std::vector<std::pair<double, double>> GapSpans(const std::vector<double>& time_
   return spans;
 }
 
-std::vector<double> TimeWeights(const std::vector<double>& time_s) {
-  const std::vector<bool> gaps = FindGaps(time_s);
+std::vector<double> TimeWeights(const std::vector<double>& time_s, const std::vector<bool>& gaps) {
   const double usual_s = UsualStep(time_s, 0, time_s.size());
   std::vector<double> weights(time_s.size(), 1.0);
   if (!(usual_s > 0)) return weights;
@@ -74,6 +73,15 @@ std::vector<double> TimeWeights(const std::vector<double>& time_s) {
   }
   if (most - least <= 1e-6 * most) std::fill(weights.begin(), weights.end(), 1.0);
   return weights;
+}
+
+double WeightedMean(const std::vector<double>& values, const std::vector<double>& weights) {
+  double sum = 0, time = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    sum += weights[i] * values[i];
+    time += weights[i];
+  }
+  return sum / time;
 }
 
 double UsualStep(const std::vector<double>& time_s, std::size_t begin, std::size_t end) {

@@ -11,6 +11,9 @@
 
 namespace taut::compare {
 
+/// Times that differ by no more are the same: those of a CSV file lose digits [s].
+double TimeTolerance(double time_s);
+
 /// Whether nothing was recorded between rows i and i + 1; one entry fewer than rows. `time_s`
 /// rises.
 std::vector<bool> FindGaps(const std::vector<double>& time_s);
@@ -22,7 +25,11 @@ std::vector<std::pair<double, double>> GapSpans(const std::vector<double>& time_
 /// Time for which each row stands: half of the distances to both neighbors. On a side without one
 /// (an end, a gap) as long as on the other; a row without neighbors stands for the usual step. All
 /// 1 if rows are evenly spaced, so that sums are those of plain means to the bit.
-std::vector<double> TimeWeights(const std::vector<double>& time_s);
+/// `gaps`: those of `FindGaps`.
+std::vector<double> TimeWeights(const std::vector<double>& time_s, const std::vector<bool>& gaps);
+
+/// Mean of values with such weights; NaN without values.
+double WeightedMean(const std::vector<double>& values, const std::vector<double>& weights);
 
 /// Median distance of rows; 0 of fewer than two.
 double UsualStep(const std::vector<double>& time_s, std::size_t begin, std::size_t end);

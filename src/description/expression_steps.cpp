@@ -100,6 +100,7 @@ double Combined(Formula::Kind kind, double a, double b) {
 
 double ValueOf(const std::vector<Formula::Step>& steps) {
   std::vector<double> stack;
+  stack.reserve(steps.size());
   for (const Formula::Step& step : steps) {
     if (step.kind == Formula::Kind::kNumber) {
       stack.push_back(step.number);

@@ -96,17 +96,11 @@ std::vector<std::size_t> Inside(const Measured& measured, const Window& window,
 /// Means are over time: rows are weighted by the time for which they stand.
 double Of(FitStatistic statistic, const std::vector<double>& values,
           const std::vector<std::size_t>& rows, const std::vector<double>& weights) {
-  double sum = 0, time = 0, least = INFINITY, most = -INFINITY;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double value = values[rows[i]];
-    sum += weights[i] * value;
-    time += weights[i];
-    least = std::min(least, value);
-    most = std::max(most, value);
-  }
-  if (statistic == FitStatistic::kMax) return most;
-  if (statistic == FitStatistic::kMin) return least;
-  return sum / time;
+  std::vector<double> inside;
+  for (const std::size_t row : rows) inside.push_back(values[row]);
+  if (statistic == FitStatistic::kMax) return *std::max_element(inside.begin(), inside.end());
+  if (statistic == FitStatistic::kMin) return *std::min_element(inside.begin(), inside.end());
+  return compare::WeightedMean(inside, weights);
 }
 
 Row::How HowOf(FitStatistic statistic) {
@@ -184,7 +178,7 @@ class Maker {
       samples.time_s.push_back(TimeOf(window, i));
       if (column.HasQuaternion()) samples.orientation.push_back(column.QuaternionAt(i));
     }
-    samples.weight = compare::TimeWeights(samples.time_s);
+    samples.weight = compare::TimeWeights(samples.time_s, compare::FindGaps(samples.time_s));
     return samples;
   }
   void OfStatistic(Row row, const Column* column, const std::vector<std::size_t>& inside,

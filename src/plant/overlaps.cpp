@@ -74,8 +74,10 @@ bool CheckOverlaps(const RobotSpec& robot, const Batch& batch, bool terrain, boo
       out.Error(PlaceOf(robot, overlap),
                 what + " at the start, more than half the thickness of the thinner one, " +
                     Brief(overlap.half_thickness_m) + " m",
-                with_terrain ? "`place` moves the robot"
-                             : "move one of them, or write `collides: false`");
+                with_terrain
+                    ? "`place` moves the robot"
+                    : "move one of them, write `collides: false`, or list both bodies in `apart` "
+                      "of the model");
       good = false;
     } else {
       out.Warning(PlaceOf(robot, overlap), what + " at the start",

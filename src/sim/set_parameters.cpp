@@ -1,9 +1,9 @@
 // Parameters of single worlds: masses, stiffnesses, friction, gravity, and the limits of their
 // values.
 #include <cmath>
-#include <cstdio>
 #include <string>
 
+#include "base/brief.h"
 #include "sim/batch_impl.h"
 
 namespace taut {
@@ -66,9 +66,7 @@ std::string Batch::ParameterError(Parameter parameter, int index, double value) 
   if (IsWithoutMass(model().def(), parameter, index)) return {};
   const char* const violated = BoundViolatedBy(parameter, value);
   if (violated == nullptr) return {};
-  char got[32];
-  std::snprintf(got, sizeof got, "%g", value);
-  return std::string("must be ") + violated + ", got " + got;
+  return std::string("must be ") + violated + ", got " + base::Brief(value);
 }
 
 bool Batch::SetParameter(int world, Parameter parameter, int index, double value) noexcept {

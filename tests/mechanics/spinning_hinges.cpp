@@ -13,13 +13,18 @@ namespace {
 
 using test::MakeBatch;
 
+/// A rotor on a hinge along y without gravity, `beside_m` off its axis.
+ModelDef Rotor(double rate_rad_per_s, double beside_m = 0) {
+  ModelDef def = PointMass({0, 0, beside_m}, {beside_m * rate_rad_per_s, 0, 0}, 0.01);
+  def.gravity_m_per_s2 = {};
+  def.bodies[0].angular_velocity_rad_per_s = {0, rate_rad_per_s, 0};
+  def.joints.push_back(JointAt(JointKind::kHinge, {}, {0, 1, 0}));
+  return def;
+}
+
 void SpinningHinge(Report& report) {
   for (const double rate : {200.0, 490.0, 3000.0, 3200.0, -7000.0, 50000.0}) {
-    ModelDef def = PointMass({}, {}, 0.01);
-    def.gravity_m_per_s2 = {};
-    def.bodies[0].angular_velocity_rad_per_s = {0, rate, 0};
-    def.joints.push_back(JointAt(JointKind::kHinge, {}, {0, 1, 0}));
-    Batch world = MakeBatch(def);
+    Batch world = MakeBatch(Rotor(rate));
     world.Step(1e-3, 1000);
     const std::string name = std::to_string(static_cast<int>(rate)) + " rad/s, 1 ms";
     // Angles t < 0.25 rad per half step have a relative error of t^4 / 120, others are exact.
@@ -34,11 +39,7 @@ void SpinningHinge(Report& report) {
 void RotorBesideItsHinge(Report& report) {
   // Half a radian per step is resolved; three are not, and the status reports it.
   for (const double rate : {500.0, 3000.0}) {
-    ModelDef def = PointMass({0, 0, 1e-3}, {1e-3 * rate, 0, 0}, 0.01);
-    def.gravity_m_per_s2 = {};
-    def.bodies[0].angular_velocity_rad_per_s = {0, rate, 0};
-    def.joints.push_back(JointAt(JointKind::kHinge, {}, {0, 1, 0}));
-    Batch world = MakeBatch(def);
+    Batch world = MakeBatch(Rotor(rate, 1e-3));
     world.Step(1e-3, 1000);
     const std::string name = std::to_string(static_cast<int>(rate)) + " rad/s, 1 mm beside, 1 ms";
     const double wanted = rate < 1000 ? kStatusOk : kStatusStepTooLong;
@@ -51,12 +52,8 @@ void RotorBesideItsHinge(Report& report) {
 
 void BrakedRotor(Report& report) {
   // A damper stops a rotor: I w' = -d w, so it rotates by I w0 / d in total.
-  ModelDef def = PointMass({}, {}, 0.01);
-  def.gravity_m_per_s2 = {};
-  def.bodies[0].angular_velocity_rad_per_s = {0, 5000, 0};
-  JointDef hinge = JointAt(JointKind::kHinge, {}, {0, 1, 0});
-  hinge.damping = 0.05;
-  def.joints.push_back(hinge);
+  ModelDef def = Rotor(5000);
+  def.joints[0].damping = 0.05;
   Batch world = MakeBatch(def);
   world.Step(1e-3, 8000);
   // The first half step has the full rate; afterwards all means are of second order.

@@ -138,9 +138,13 @@ TEST(CompareGaps, AreSpansMuchLongerThanTheDistancesAroundThem) {
   EXPECT_EQ(gaps({}), Spans{});
 }
 
+std::vector<double> Weights(const std::vector<double>& times) {
+  return compare::TimeWeights(times, compare::FindGaps(times));
+}
+
 TEST(CompareGaps, WeightsAreTheTimeForWhichRowsStand) {
-  EXPECT_EQ(compare::TimeWeights(Rows(0, 1, 0.1)), std::vector<double>(11, 1.0));
-  const auto weights = compare::TimeWeights({0, 1, 2, 4, 6, 8});
+  EXPECT_EQ(Weights(Rows(0, 1, 0.1)), std::vector<double>(11, 1.0));
+  const auto weights = Weights({0, 1, 2, 4, 6, 8});
   const std::vector<double> expected{1, 1, 1.5, 2, 2, 2};
   EXPECT_EQ(weights, expected);
 }

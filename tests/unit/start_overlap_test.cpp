@@ -68,8 +68,8 @@ TEST_F(StartOverlap, BodiesInEachOtherAreNamedBoth) {
   EXPECT_EQ(
       Found("0"),
       "model.yaml:11:5: error: the rod \"a\" and the rod \"b\" are 0.011 m deep in each other at "
-      "the start, more than half the thickness of the thinner one, 0.01 m (move one of them, or "
-      "write `collides: false`)\n");
+      "the start, more than half the thickness of the thinner one, 0.01 m (move one of them, "
+      "write `collides: false`, or list both bodies in `apart` of the model)\n");
 }
 
 TEST_F(StartOverlap, BoxesOfTerrainAreTerrain) {

@@ -170,14 +170,10 @@ class ImplicitIsland {
         converged = Part(step_s_ / parts, 1.0 / parts, residual) && converged && !is_jammed_;
         good = good && converged && residual <= target_.tolerance;
       }
-      failed_ = !converged || !(residual <= kDisagreementMPerS);
+      failed_ = !good && !(last && converged && residual <= kDisagreementMPerS);
       if (good) break;
       if (!(residual > target_.tolerance)) residual = 2 * target_.tolerance;
-      if (last) break;
-      if (is_jammed_ || IsExhausted()) {
-        failed_ = true;
-        break;
-      }
+      if (last || is_jammed_ || IsExhausted()) break;
     }
     return residual;
   }
