@@ -18,8 +18,8 @@ void WarnOfRefusal(const std::string& model_yaml, const std::string& imported_fi
       (std::filesystem::temp_directory_path(failed) / "taut_import_XXXXXX").string();
   Diagnostics found;
   if (failed || mkdtemp(folder.data()) == nullptr) {
-    out.Warning({imported_file, 0, 0}, "the model could not be checked: no temporary folder",
-                "`taut check` does so");
+    out.Warning({imported_file, 0, 0}, "cannot check the model: no temporary folder",
+                "run `taut check`");
     return;
   }
   const std::string path = folder + "/model.yaml";

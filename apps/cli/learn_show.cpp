@@ -96,13 +96,13 @@ int ReplayBest(const std::string& folder, bool skip_damaged, bool quiet) {
   }
   if (!best->worlds.empty() && best->worlds[0].state_hash != summary->state_hash) {
     if (study->taut_version == kVersion) {
-      found.Error({folder}, "the replay does not end in the state that was logged",
-                  "another build of taut gives other numbers");
+      found.Error({folder}, "the replay ends in another state than the logged run",
+                  "another build of taut can give other numbers");
     } else {
       found.Warning({folder},
-                    fmt::format("the replay does not end in the state that taut {} logged",
+                    fmt::format("the replay ends in another state than the run of taut {}",
                                 study->taut_version),
-                    fmt::format("taut {} gives other numbers, see CHANGELOG.md", kVersion));
+                    fmt::format("numbers of taut {} differ, see CHANGELOG.md", kVersion));
     }
   }
   return Pass(found, false) ? kOk : Fail(found, kFailed);

@@ -294,10 +294,10 @@ class Batch {
   void SetTime(int world, double time_s) noexcept;
   void SetRestLength(int world, int cable, double rest_length_m) noexcept;
   /// Returns the reason why `SetParameter` refuses a value ("must be a positive number [kg], got
-  /// -1"); empty if it accepts it. Limits are those of model files. Bodies that are fixed have no
-  /// mass, and accept any.
+  /// -1"); empty if it accepts it. Limits are those of model files. Fixed bodies have no mass
+  /// and accept any value.
   std::string ParameterError(Parameter parameter, int index, double value) const;
-  /// False, and nothing changes, if `ParameterError` returns a reason.
+  /// Returns false and changes nothing if `ParameterError` returns a reason.
   bool SetParameter(int world, Parameter parameter, int index, double value) noexcept;
   double GetParameter(int world, Parameter parameter, int index) const noexcept;
 

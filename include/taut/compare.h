@@ -62,27 +62,27 @@ struct Extreme {
   double time_s = 0.0;
 };
 
-/// Of a trace's own rows within a window, at times that both traces cover. Each row counts by the
-/// time for which it stands. Without rows: NaN.
+/// Statistics of a trace's rows within a window, at times that both traces cover. The weight of a
+/// row is half the time between its neighbors. Without rows: NaN.
 struct WindowStatistics {
   std::size_t rows = 0;
   double mean = 0.0, min = 0.0, max = 0.0;
 };
 
 /// One channel of both traces; differences are a - b, and means are over time. A component of a
-/// quaternion has the sign of a, made continuous: q and -q are the same orientation. B is the
-/// reference. What cannot be told (a lag of a constant, a percentage of zero) is NaN.
+/// quaternion has the sign of a, made continuous: q and -q are the same orientation. b is the
+/// reference. Undefined values (the lag of a constant, a percentage of zero) are NaN.
 struct ChannelComparison {
   std::string name, unit;
-  std::size_t rows = 0;    ///< Compared: on the common clock, where both have a number.
-  double missing_s = 0.0;  ///< Of the common time, for which one of them has none.
+  std::size_t rows = 0;    ///< Compared rows of the common clock; both have a number there.
+  double missing_s = 0.0;  ///< Part of the common time in which one trace has no number.
   double rmse = 0.0;
   double bias = 0.0;             ///< Mean difference.
   Extreme error;                 ///< The difference of largest magnitude, signed.
   double lag_s = 0.0;            ///< By how much b comes after a, where they are most alike.
   bool lag_at_limit = false;     ///< The best lag is the longest looked at: it may be longer.
   double correlation = 0.0;      ///< At that lag, -1..1.
-  Extreme max_a, max_b;          ///< Each of the trace's own rows, at times that both cover.
+  Extreme max_a, max_b;          ///< From the rows of each trace, at times that both cover.
   double max_error_percent = 0;  ///< (max_a - max_b) / |max_b|.
   struct Phase {
     WindowStatistics a, b;
@@ -116,8 +116,8 @@ struct Comparison {
   std::vector<ChannelComparison> channels;  ///< In the order of a.
   std::vector<SystemMaximum> system;
   std::vector<std::string> only_a, only_b;  ///< Selected channels that the other lacks.
-  /// Compared channels `.../orientation_*` whose signs cannot be aligned: of their quaternions, one
-  /// of the traces lacks a component.
+  /// Compared channels `.../orientation_*` whose signs cannot be aligned: one of the traces lacks a
+  /// component of the quaternion.
   std::vector<std::string> unknown_signs;
   std::vector<std::string> unit_conflicts;  ///< "name: N against lbf": not compared.
 };

@@ -108,8 +108,8 @@ struct FitTrack {
   std::vector<double> weight;  ///< His D, one a parameter.
   int iterations = 0;
   int rejected = 0;                ///< Iterations since it last moved.
-  std::vector<double> step_share;  ///< Of the steps of differences, one a parameter.
-  bool check = true;               ///< Steps of differences are checked at `values`, or are to be.
+  std::vector<double> step_share;  ///< Shares of the difference steps, one a parameter.
+  bool check = true;               ///< Whether difference steps are (to be) checked at `values`.
   std::int64_t failed = 0;         ///< Trial points that could not be computed,
   std::map<std::string, std::int64_t> reasons;  ///< and why, with how many of each.
 };
@@ -167,8 +167,8 @@ struct FitColumn {
   bool kink = false;
   double kink_share = 0;  ///< By how much, as a share of the slope.
   double step = 0;        ///< The longer size, in the parameter's unit.
-  /// Of the problem's step: below 1 if that was too long, its sizes disagreed and shorter ones do
-  /// not. Beyond `step` the function bends: standard errors that are longer are not to be trusted.
+  /// Share of the problem's step: below 1 if that step was too long (its two sizes disagreed, and
+  /// shorter ones agree). Standard errors longer than `step` are unreliable: the function curves.
   double step_share = 1;
   /// The second derivative's part over a step, in residuals a scale: an effect that begins with its
   /// square shows here and not in the slope.

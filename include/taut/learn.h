@@ -103,7 +103,7 @@ LearnSummary RunStudy(const StudySpec& study, Evaluator& evaluator, const LearnO
 /// A study's folder, read back.
 struct StudyResult {
   std::string name;
-  std::string taut_version;  ///< That began it.
+  std::string taut_version;  ///< Version that began the study.
   std::vector<StudyParameter> parameters;
   std::vector<Evaluation> evaluations;  ///< By id.
   ExperimentSpec experiment;            ///< As it was resolved.

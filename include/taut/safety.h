@@ -22,7 +22,7 @@ enum class MemberKind {
 /// Load limits of a member. Empty where the model has no value.
 struct MemberLimits {
   std::optional<double> buckling_n;  ///< Euler's load, of bars and rods: pi^2 E I / Lb^2.
-  std::optional<double> yield_n;     ///< Yield stress times area, either way.
+  std::optional<double> yield_n;     ///< Yield stress times area, in tension and compression.
   std::optional<double> strength_n;  ///< Tension at which it breaks.
 };
 /// `length_m`: buckling length of a bar or rod whose model sets none.
@@ -64,7 +64,7 @@ std::vector<MemberLoad> MemberLoads(const ModelDef& def, const MemberForces& now
 /// Kinds of load limits.
 enum class MemberLimit {
   kStrength,  ///< Tension at which it breaks.
-  kYield,     ///< Force at its yield stress, either way.
+  kYield,     ///< Force at its yield stress, in tension or compression.
   kBuckling,  ///< Euler's load, under compression.
 };
 

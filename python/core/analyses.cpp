@@ -321,7 +321,7 @@ void AddAnalyses(py::module_& module) {
       "What holds a structure up, as `taut analyze` says it: statics alone. `load_case`: a name of "
       "the experiment's `load_cases`; None: its own weight, or nothing where nothing holds it in "
       "the "
-      "world. Other Python threads go on meanwhile.";
+      "world. Other Python threads run meanwhile.";
   module.def("analyze", &Analyse, py::arg("experiment"), py::arg("load_case") = py::none(), words);
   module.def(
       "analyze",

@@ -210,7 +210,7 @@ void AddCommands(BatchType& type) {
       "step", &Step, py::arg("step_s"), py::arg("count") = 1,
       py::arg("rest_length_target_m") = py::none(),
       "Advances every world by `count` steps of `step_s`, under new targets for the rest lengths, "
-      "(worlds, cables) [m], if they are given. Other Python threads go on meanwhile. Ctrl-C ends "
+      "(worlds, cables) [m], if they are given. Other Python threads run meanwhile. Ctrl-C ends "
       "it between two steps.");
 }
 

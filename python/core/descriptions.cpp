@@ -76,11 +76,11 @@ void AddDescriptions(py::module_& module) {
       .def_property(
           "duration_s", [](const Experiment& e) { return e.duration_s; },
           [](Experiment& e, double given) { e.duration_s = Positive(given, "duration_s"); },
-          "How long `taut.run` runs it [s].")
+          "Simulated time of `taut.run` [s].")
       .def_property(
           "seed", [](const Experiment& e) { return e.seed; },
           [](Experiment& e, const py::object& given) { e.seed = Seed(given); },
-          "Of all that is drawn.")
+          "Seed of all random numbers.")
       .def_property_readonly(
           "parameters", [](const Experiment& e) { return e.parameters; },
           "The experiment's own named parameters as resolved (SI).")

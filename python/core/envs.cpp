@@ -198,7 +198,7 @@ class Environments {
   static void TakeBack(const py::array_t<T>& from, std::span<T> to, const char* what) {
     if (!py::isinstance<Rows<T>>(from) || static_cast<std::size_t>(from.size()) != to.size()) {
       throw py::value_error(
-          fmt::format("{}: the callback has changed the shape or the kind of its array", what));
+          fmt::format("{}: the callback has changed the shape or data type of its array", what));
     }
     std::copy_n(from.data(), to.size(), to.data());
   }

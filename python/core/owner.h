@@ -61,8 +61,8 @@ class Owner {
   void CheckProcess() const {
     if (!Forked()) return;
     throw std::runtime_error(std::string(what_) +
-                             " made before fork(): make it anew in the child, or start workers "
-                             "with multiprocessing's \"spawn\"");
+                             " was made before fork(): make a new one in the child, or start "
+                             "workers with multiprocessing's \"spawn\"");
   }
 
  private:

@@ -95,7 +95,7 @@ void AddSequences(BatchType& type) {
       "Every world through a sequence of targets of its own, (worlds, ticks, cables) [m], each "
       "held for `count` steps of `step_s`. `start`: what `save` gave, where all worlds begin; "
       "None: where they are. Returns body_position_m after every tick, (worlds, ticks, bodies, "
-      "3) [m]; afterwards the batch is at the end of it. Other Python threads go on meanwhile; "
+      "3) [m]; afterwards the batch is at the end of it. Other Python threads run meanwhile; "
       "Ctrl-C ends it between two steps.");
 }
 

@@ -91,7 +91,7 @@ std::uint64_t Seed(const py::object& given) {
   const auto seed = whole ? PyLong_AsUnsignedLongLong(whole.ptr()) : 0;
   if (whole && PyErr_Occurred() == nullptr) return seed;
   PyErr_Clear();
-  throw py::value_error(fmt::format("seed: {}; a whole number, 0 or more, below 2**64",
+  throw py::value_error(fmt::format("seed: {}; expected a whole number, 0 to 2**64 - 1",
                                     py::repr(given).cast<std::string>()));
 }
 
@@ -99,7 +99,7 @@ int Threads(py::ssize_t threads) {
   constexpr int kMost = 1024;
   if (threads < 0 || threads > kMost) {
     throw py::value_error(
-        fmt::format("threads: {}; from 0, which is one a core, to {}", threads, kMost));
+        fmt::format("threads: {}; expected 0 (one a core) to {}", threads, kMost));
   }
   return static_cast<int>(threads);
 }

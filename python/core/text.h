@@ -50,7 +50,7 @@ std::optional<Simd> SimdOf(const std::optional<std::string>& name);
 /// `value`; ValueError, which names `what`, unless it is a positive number.
 inline double Positive(double value, const char* what) {
   if (!(value > 0) || !std::isfinite(value)) {
-    throw py::value_error(fmt::format("{}: {}; a positive number", what, value));
+    throw py::value_error(fmt::format("{}: {}; expected a positive number", what, value));
   }
   return value;
 }

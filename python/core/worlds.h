@@ -22,7 +22,7 @@ namespace taut::python {
 inline void CheckWorlds(int worlds) {
   constexpr int kMost = 1'000'000'000;
   if (worlds >= 1 && worlds <= kMost) return;
-  throw py::value_error(fmt::format("worlds: {}; at least 1, at most {}", worlds, kMost));
+  throw py::value_error(fmt::format("worlds: {}; expected 1 to {}", worlds, kMost));
 }
 
 /// Threads: any of Python's; they wait for each other.

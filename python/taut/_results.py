@@ -30,7 +30,7 @@ def _world(number: int, world: World):
             raise ValueError(f"worlds[{number}][{name!r}]: {value!r}; a number")
         if name == "seed":
             if not isinstance(value, numbers.Integral) or not 0 <= int(value) < 2**64:
-                raise ValueError(f"worlds[{number}][{name!r}]: {value!r}; a whole number, 0 or more, below 2**64")
+                raise ValueError(f"worlds[{number}][{name!r}]: {value!r}; expected a whole number, 0 to 2**64 - 1")
             seed = int(value)
         else:
             values.append((name, float(value)))

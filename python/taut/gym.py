@@ -5,8 +5,8 @@
     observations, rewards, terminated, truncated, infos = envs.step(actions)
 
 Where gymnasium is installed (0.29 or newer), these are its VectorEnv and Env, with its spaces; else classes of the
-same methods and attributes. `AutoresetMode` is gymnasium's from 1.1 on, and before that an enum of the same members. The experiment's `environment` says what actions, observations and rewards are
-(docs/environments.md). Worlds give the same bits for the same seed and actions, whatever runs beside them.
+same methods and attributes. `AutoresetMode` is Gymnasium's from 1.1 on; before, an enum with the same members. The
+experiment's `environment` defines actions, observations and rewards (docs/environments.md). Worlds give the same bits for the same seed and actions, whatever runs beside them.
 """
 
 import enum as _enum
@@ -59,11 +59,11 @@ def _experiment(experiment, set_):
 
 
 def _seed(seed, worlds=1):
-    """`seed`, if that and the `worlds` - 1 that follow are seeds."""
+    """Returns `seed` if it and the next `worlds` - 1 whole numbers are valid seeds; else raises ValueError."""
     below = 2**64 - worlds + 1
     whole = isinstance(seed, _numbers.Integral) and not isinstance(seed, bool)
     if not whole or not 0 <= int(seed) < below:
-        raise ValueError(f"seed: {seed!r}; a whole number, 0 or more, below {below}")
+        raise ValueError(f"seed: {seed!r}; expected a whole number, 0 or more, below {below}")
     return int(seed)
 
 

@@ -100,7 +100,7 @@ class Words {
       const double pitch = Dot(axis, slide);
       line = " through " + Text(component_.middle_m + Cross(axis, slide), s_.size_m);
       if (std::fabs(pitch) > 1e-6 * s_.size_m) {
-        line += " while it translates along that by " + Brief(pitch) + " m/rad";
+        line += " while it translates along the axis by " + Brief(pitch) + " m/rad";
       }
     }
     const auto known = std::find_if(lines_.begin(), lines_.end(),

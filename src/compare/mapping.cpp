@@ -44,8 +44,8 @@ class MappingReader {
   MappingReader(const std::string& path, Diagnostics& out) : path_(path), out_(out) {}
 
   std::optional<Mapping> Read() {
-    const auto text = base::ReadInputFile(path_, kMaxBytes, "mappings have a few rules", out_,
-                                          base::NamedBy::kUser);
+    const auto text =
+        base::ReadInputFile(path_, kMaxBytes, "expected a few rules", out_, base::NamedBy::kUser);
     if (!text) return std::nullopt;
     const Json json = Parse(*text);
     if (good_) Root(json);

@@ -12,7 +12,7 @@ namespace {
 
 double Checked(double value, std::string_view of) {
   if (std::isinf(value))
-    throw ExpressionFailure{std::string(of) + " that is too large for a number", ""};
+    throw ExpressionFailure{std::string(of) + " is too large for a number", ""};
   return value;
 }
 
@@ -21,7 +21,7 @@ double NoiseAt(double seed, double x, double y) {
     throw ExpressionFailure{"the seed of noise is not a whole number", "0, 1, 2, ..."};
   }
   if (!(std::fabs(x) < 1e9 && std::fabs(y) < 1e9)) {
-    throw ExpressionFailure{"noise of a place beyond 1e9", ""};
+    throw ExpressionFailure{"noise of a coordinate beyond 1e9", ""};
   }
   return math::Noise(static_cast<std::uint64_t>(seed), x, y);
 }
@@ -67,7 +67,8 @@ double PowerOf(double base, double exponent) {
   if (base == 0.0 && exponent < 0.0)
     throw ExpressionFailure{"division by zero", "0 ^ a negative number"};
   if (base < 0.0 && exponent != std::floor(exponent)) {
-    throw ExpressionFailure{"a negative number to a broken power", "write (-x)^y for a whole y"};
+    throw ExpressionFailure{"a negative number to a fractional power",
+                            "write (-x)^y for a whole y"};
   }
   return Checked(math::Pow(base, exponent), "a power");
 }

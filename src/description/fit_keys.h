@@ -193,7 +193,7 @@ void Keys(Io& io, Like<FitResidualText> auto& r) {
      "The same as a share of what is measured; the larger of the two counts.");
   io("window", r.window, "When. If absent, all of the time that experiment and data share.");
   io("statistic", r.statistic, kFitStatistics,
-     "What of a window is compared, at the times of its data; `mean`: over time; `rows`: every "
+     "Compared statistic of a window at the times of its data; `mean`: over time; `rows`: every "
      "row.");
   io("loss", r.loss, kLosses,
      "`squares`: least squares. `huber`, `cauchy`: large residuals count less, from `loss_sd` on.");
@@ -213,7 +213,7 @@ void Keys(Io& io, Like<FitSearchText> auto& s) {
      "From how many places: the first is where the experiments are, the others are drawn from the "
      "priors.");
   io("step", s.values.step, Bound{.least = 0.0, .most = 1.0, .above_least = true},
-     "Longest step of differences, in scales; shortened where halving it changes the derivative.");
+     "Longest difference step, in scales; shortened if halving it changes the derivative.");
   io("iterations", s.values.iterations, Bound{.least = 1, .most = 10'000}, "At most, a start.");
   io("tolerance", s.values.tolerance, Bound{.least = 0.0, .most = 0.1, .above_least = true},
      "A search ends when its cost falls by less than this share.");

@@ -47,7 +47,7 @@ bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldD
                     "height_field.height_m has " + std::to_string(parsed.size()) +
                         " operations and numbers for each of " + base::Brief(corners) +
                         " corners, more than 400 000 000 in all",
-                    "a shorter formula, fewer, larger cells, or a file");
+                    "use a shorter formula, fewer, larger cells, or a file");
     return false;
   }
   field.height_m.reserve(static_cast<std::size_t>(field.columns) *
@@ -91,7 +91,8 @@ std::optional<std::size_t> AddRow(std::string_view line, std::vector<double>& ro
 }
 
 bool ReadCsv(const std::string& path, const Scope& scope, HeightFieldDef& field) {
-  const auto text = base::ReadInputFile(path, kMostTableBytes, "fewer, larger cells", scope.out);
+  const auto text =
+      base::ReadInputFile(path, kMostTableBytes, "use fewer, larger cells", scope.out);
   if (!text) return false;
   const std::size_t errors_before = scope.out.items().size();
   constexpr std::size_t kMostErrors = 10;

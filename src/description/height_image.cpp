@@ -84,7 +84,7 @@ class Reader {
 }  // namespace
 
 std::optional<HeightImage> ReadHeightImage(const std::string& path, double most, Diagnostics& out) {
-  const auto bytes = base::ReadInputFile(path, kMostImageBytes, "fewer, larger cells", out);
+  const auto bytes = base::ReadInputFile(path, kMostImageBytes, "use fewer, larger cells", out);
   if (!bytes) return std::nullopt;
   const auto refuse = [&](const std::string& what, const std::string& hint = {}) {
     out.Error({path, 0, 0}, what, hint);

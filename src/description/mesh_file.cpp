@@ -257,7 +257,7 @@ std::optional<MeshFile> ReadMeshFile(const std::string& path, Diagnostics& out) 
     out.Error({path, 0, 0}, "is neither .obj nor .stl", "a mesh is a Wavefront OBJ or an STL");
     return std::nullopt;
   }
-  const auto text = base::ReadInputFile(path, kMostMeshBytes, "fewer triangles", out);
+  const auto text = base::ReadInputFile(path, kMostMeshBytes, "use fewer triangles", out);
   if (!text) return std::nullopt;
   const std::size_t errors_before = out.items().size();
   MeshFile mesh;

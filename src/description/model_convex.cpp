@@ -62,9 +62,9 @@ bool AddObject(const MapReader& map, const std::string& path, const MeshFile& me
                                             : "the object \"" + name + '"';
   const MeshFile object = PartOf(mesh, number);
   Diagnostics faults;
-  const bool closed = ReportFaults(
-      object, true, path,
-      {what, ": what is open has no volume; with mass_kg its hull has the mass"}, faults);
+  const bool closed =
+      ReportFaults(object, true, path,
+                   {what, ": an open mesh has no volume; mass_kg gives its hull a mass"}, faults);
   if (!closed && !convex.mass.mass_kg) {
     for (const Diagnostic& fault : faults.items()) out.Error(fault.at, fault.what, fault.hint);
     return false;

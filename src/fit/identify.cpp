@@ -206,10 +206,10 @@ std::string Sentence(const FitProblem& problem, const Identifiability& all, std:
   }
   if (column.kink) {
     text += "; its derivative depends on the step by " + Brief(100 * column.kink_share) +
-            " %, and no shorter step resolves it: a kink or noise, so errors are not to be trusted";
+            " %, and no shorter step resolves it: a kink or noise, so its error is unreliable";
   } else if (Bends(column, v.se)) {
-    text += "; its derivative is that of steps of " + Brief(column.step, p.unit) +
-            ", shorter than its error, and longer ones disagree, so errors are not to be trusted";
+    text += "; its derivative is from steps of " + Brief(column.step, p.unit) +
+            ", shorter than its error, and longer ones disagree, so its error is unreliable";
   }
   if (!column.failed.empty()) text += "; points beside it could not be computed: " + column.failed;
   return text;

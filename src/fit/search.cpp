@@ -206,7 +206,7 @@ void Search::Propose(std::size_t t, std::vector<Trial>& trials,
   ++track.iterations;
   if (cosine <= options_.gradient_tolerance) {
     if (!CheckFirst(t) && !Jump(t))
-      End(t, FitEnd::kConverged, "no parameter's column has a part of the residuals");
+      End(t, FitEnd::kConverged, "the residuals are orthogonal to every column");
     return;
   }
   double damping = options_.dampings > 1 ? 0.1 * track.damping : track.damping;

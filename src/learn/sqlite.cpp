@@ -35,7 +35,7 @@ void Database::OpenWithoutFolder(const std::string& path) {
   const std::string log = path + "-wal";
   std::error_code ignored;
   if (fs::exists(log, ignored) && fs::file_size(log, ignored) > 0) {
-    error_ = "rows of it are in " + log + ", and the folder cannot be written; read a copy of both";
+    error_ = "some rows are in " + log + ", and the folder cannot be written; read a copy of both";
     return;
   }
   std::string uri = "file:";

@@ -117,7 +117,7 @@ std::unique_ptr<Port> OpenSerialPort(const std::string& device, PortUse use, Dia
     out.Error({device, 0, 0},
               (process ? "process " + std::to_string(*process) : std::string("another program")) +
                   " drives this robot",
-              "`taut robot estop` stops the robot nevertheless");
+              "to stop the robot, run `taut robot estop`");
     return nullptr;
   }
   out.Error({device, 0, 0}, "cannot be opened: " + why,

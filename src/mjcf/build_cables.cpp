@@ -105,11 +105,10 @@ class CableBuilder {
     const double size = law.k * length + std::fabs(law.c);
     if (std::fabs(std::max(theirs, 0.0) - ours) <= 1e-9 * size) return;
     b_.out.Error(tendon.at,
-                 "tendon \"" + tendon.name + "\" has a tension of " + Shown(theirs) +
-                     " at the start in MuJoCo, as a cable " + Shown(ours) +
-                     ": a cable has neither" +
-                     " limits of its force (forcerange) nor a spring that is slack by itself",
-                 "a keyframe or numbers with which no limit acts at the start can be imported");
+                 "tendon \"" + tendon.name + "\" starts with a tension of " + Shown(theirs) +
+                     " in MuJoCo and " + Shown(ours) + " as a cable: a cable has neither" +
+                     " limits of its force (forcerange) nor a spring that can be slack alone",
+                 "use a keyframe or values with which no limit acts at the start");
   }
 
   void Build(int index) {
@@ -119,15 +118,15 @@ class CableBuilder {
     const bool limits = tendon.range && scene_.has_limits;
     if (law.k == 0 && law.b == 0 && law.actuators == 0) {
       if (tendon.friction > 0) {
-        b_.out.Error(tendon.at, called + " has a dry friction (frictionloss) and no stiffness",
-                     "stiffness and springlength make a cable of it");
+        b_.out.Error(tendon.at, called + " has dry friction (frictionloss) but no stiffness",
+                     "set stiffness and springlength to make it a cable");
       }
       if (!limits) {
         scene_.pictures += tendon.friction == 0;
         return;
       }
       b_.out.Error(tendon.at, called + " has a limit of its length and no stiffness",
-                   "stiffness and springlength make a cable of it");
+                   "set stiffness and springlength to make it a cable");
       return;
     }
     if (limits) limits_.push_back(&tendon);
@@ -288,14 +287,13 @@ class CableBuilder {
     if (!damped_.empty()) {
       b_.out.Warning(damped_[0]->at,
                      Count(damped_.size(), "damper") +
-                         " of tendons would act in MuJoCo while slack, too; here only with "
-                         "tension");
+                         " of tendons would act in MuJoCo while slack, too; here dampers act "
+                         "only under tension");
     }
-    Some(
-        summed_,
-        " a spring and an actuator: here one cable of both, slack only where their sum would push");
+    Some(summed_,
+         " a spring and an actuator: here they are one cable, slack only if their sum would push");
     Some(capped_, " a largest tension (forcerange) that is left out");
-    Some(pulled_, " a least tension (forcerange) that is left out");
+    Some(pulled_, " a minimum tension (forcerange) that is left out");
     Some(limits_, " a limit of length (range) that is left out");
     Some(rough_, " a dry friction (frictionloss) that is left out");
     Some(lagging_, " actuators that follow their controls with a lag (dyntype), of up to " +

@@ -100,8 +100,8 @@ void PutAt(const Key* key, Building& b) {
     if (body.aligned) {
       b.out.Error(body.at,
                   "the free joint of body \"" + body.name +
-                      "\" has align=\"true\": poses of keys are not read then",
-                  "align=\"false\" keeps the body's frame");
+                      "\" has align=\"true\", which is not read with poses of keys",
+                  "set align=\"false\" to keep the frame of the body");
       return;
     }
     const int made = b.RigidOf(static_cast<int>(i)).body;

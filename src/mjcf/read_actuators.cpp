@@ -116,14 +116,14 @@ class ActuatorReader {
     for (const Element* const layer : layers.all()) {
       if (IsRead(layer->name)) continue;
       const std::string under =
-          layer == &e ? "" : " are not read, as is its default in line " + LineOf(*layer);
+          layer == &e ? "" : " are not read; its class sets one in line " + LineOf(*layer);
       Refuse(e, under.empty() ? "actuators of kind " + e.name + " are not read"
                               : "actuators of kind " + layer->name + under);
       return;
     }
     for (const char* other : {"joint", "jointinparent", "site", "body", "cranksite"}) {
       if (!e.Find(other)) continue;
-      Refuse(e, std::string("an actuator on a ") + other + " is not read, those on tendons are");
+      Refuse(e, std::string("an actuator on a ") + other + " is not read (expected a tendon)");
       return;
     }
     actuator.tendon = Find(scene_.tendon_by_name, e, "tendon", "tendon", out_);
@@ -132,9 +132,9 @@ class ActuatorReader {
     const ActuatorSettings since = MergedSince316(layers.all());
     if (!s.Equals(since)) {
       Refuse(e,
-             "versions of MuJoCo disagree on what it inherits: " + Text(s) + " until 3.15, " +
+             "versions of MuJoCo disagree on its defaults: " + Text(s) + " until 3.15, " +
                  Text(since) + " since 3.16",
-             "its classes set actuators of another kind: give these parameters in the element");
+             "set these parameters in the element: its classes set other kinds of actuators");
       return;
     }
     ReadLaw(layers, s, actuator);
@@ -163,12 +163,12 @@ class ActuatorReader {
     const Element& e = layers.element();
     const bool lags = s.Lags();
     if (!lags && s.dyntype != "none") {
-      Refuse(e, "its dyntype is " + s.dyntype + ", only none, filter and filterexact are read");
+      Refuse(e, "its dyntype is " + s.dyntype + " (expected none, filter or filterexact)");
     }
     if (lags) actuator.lag_s = s.lag_s, actuator.state = scene_.states++;
-    if (s.gaintype != "fixed") Refuse(e, "its gaintype is " + s.gaintype + ", only fixed is read");
+    if (s.gaintype != "fixed") Refuse(e, "its gaintype is " + s.gaintype + " (expected fixed)");
     if (s.biastype != "none" && s.biastype != "affine") {
-      Refuse(e, "its biastype is " + s.biastype + ", only none and affine are read");
+      Refuse(e, "its biastype is " + s.biastype + " (expected none or affine)");
     }
     const bool affine = s.biastype == "affine";
     if (affine && s.bias[2] > 0 && s.gain == -s.bias[1]) {
@@ -198,12 +198,12 @@ class ActuatorReader {
                         actuator.force_range && !scene_.settings.autolimits_given;
     if (unsure && !warned_) {
       warned_ = true;
-      out_.Warning(e.at, e.Called() + ": whether forcerange counts is not said; here it does",
-                   "MuJoCo 2 would not take it so: forcelimited says it to all versions");
+      out_.Warning(e.at, e.Called() + ": forcerange has no forcelimited; here it applies",
+                   "MuJoCo 2 ignores such a forcerange: set forcelimited");
     }
     if (!actuator.state) return;
     if (layers.Range("actlimited", "actrange", scene_.settings)) {
-      layers.Error("actrange", "a range of its activation is not read", "ctrlrange is");
+      layers.Error("actrange", "actrange is not read", "use ctrlrange");
     }
   }
 
@@ -211,7 +211,7 @@ class ActuatorReader {
   void InheritRange(const Layers& layers, const ActuatorSettings& s, Actuator& actuator) {
     const auto& range = scene_.tendons[Scene::Index(actuator.tendon)].range;
     if (s.dyntype == "filter") {
-      layers.Error("inheritrange", "inheritrange is not for dyntype filter");
+      layers.Error("inheritrange", "inheritrange does not apply to dyntype filter");
     } else if (layers.Has("ctrlrange") &&
                layers.Numbers("ctrlrange", {0, 0}, 2, 2) != std::vector<double>{0, 0}) {
       layers.Error("inheritrange", "it has both ctrlrange and inheritrange");
@@ -239,7 +239,7 @@ class ActuatorReader {
     const std::vector<int>& off = scene_.disabled_groups;
     if (std::find(off.begin(), off.end(), layers.Whole("group", 0)) != off.end()) {
       Refuse(layers.element(), "its group is disabled (option actuatorgroupdisable)",
-             "take the actuator out of the file, or its group off the list");
+             "remove the actuator, or its group from the option");
     }
   }
 

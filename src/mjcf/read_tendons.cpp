@@ -18,7 +18,7 @@ void ReadSpringLength(const Layers& layers, Tendon& tendon, Diagnostics& out) {
   }
   if (l[0] == -1 && l[1] == -1) return;
   if (l[0] > l[1] || l[1] < 0) {
-    layers.Error("springlength", "springlength must rise and not be negative",
+    layers.Error("springlength", "springlength must increase and not be negative",
                  "-1 is the length at the start");
   }
 }

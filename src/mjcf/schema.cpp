@@ -44,15 +44,14 @@ struct Change {
   const char *elements, *attributes, *neutral;
   const char* consequence;  ///< Of leaving it out, for a warning; null: it is refused.
 };
-constexpr const char* kSoft =
-    "contacts are rigid here, in MuJoCo as soft as these numbers make them";
-constexpr const char* kWelded = "welded bodies are one body here, in MuJoCo a soft constraint";
+constexpr const char* kSoft = "contacts are rigid here; in MuJoCo these numbers make them soft";
+constexpr const char* kWelded = "welded bodies are one body here; in MuJoCo a soft constraint";
 constexpr Change kChanges[] = {
     {"geom pair", "solref", "0.02 1", kSoft},
     {"geom pair", "solimp", "0.9 0.95 0.001 0.5 2", kSoft},
     {"pair", "solreffriction", "0 0", kSoft},
     {"geom pair", "margin gap", "0",
-     "contacts begin where shapes touch here, in MuJoCo at the distance that these numbers set"},
+     "contacts begin where shapes touch here; in MuJoCo at the distance that these numbers set"},
     {"geom pair", "adhesion", "0", nullptr},
     {"geom", "surfacevel", "0 0 0", nullptr},
     {"tendon spatial joint", "springyield", "0", nullptr},

@@ -22,7 +22,7 @@ class XmlReader {
 
   std::optional<Element> Read(const std::string& path) {
     const auto text =
-        base::ReadInputFile(path, kMostBytes, "MJCF models are smaller", out_,
+        base::ReadInputFile(path, kMostBytes, "expected an MJCF model", out_,
                             files_.empty() ? base::NamedBy::kUser : base::NamedBy::kFile);
     if (!text) return std::nullopt;
     files_.push_back(path);

@@ -59,7 +59,7 @@ TEST_F(MjcfActuators, WhereVersionsOfMujocoInheritOtherParametersTheActuatorIsRe
   for (const auto& [defaults, actuator] : cases) {
     EXPECT_NE(Refused(Pulled("stiffness=\"9\" springlength=\"0 0.5\"", actuator,
                              "\n<default>" + std::string(defaults) + "</default>"))
-                  .find("\"a\": versions of MuJoCo disagree on what it inherits: gain "),
+                  .find("\"a\": versions of MuJoCo disagree on its defaults: gain "),
               std::string::npos)
         << defaults << "\n"
         << Said();
@@ -95,17 +95,16 @@ TEST_F(MjcfActuators, InheritedRangesOfTendonsLimitControls) {
 
 TEST_F(MjcfActuators, TensionsAtTheStartThatNoCableHasAreRefused) {
   // 80 (0.7 - 0.6) - 2 in MuJoCo, where the spring is slack by itself; at most 5 of the actuator.
-  EXPECT_NE(
-      Refused(Pulled("stiffness=\"50\" springlength=\"0 0.9\"",
-                     "<general tendon=\"c\" biastype=\"affine\" biasprm=\"0 -80 0\"/>"))
-          .find("model.xml:1: error: tendon \"c\" has a tension of 56 at the start in MuJoCo, "
-                "as a cable 46"),
-      std::string::npos)
+  EXPECT_NE(Refused(Pulled("stiffness=\"50\" springlength=\"0 0.9\"",
+                           "<general tendon=\"c\" biastype=\"affine\" biasprm=\"0 -80 0\"/>"))
+                .find("model.xml:1: error: tendon \"c\" starts with a tension of 56 in MuJoCo "
+                      "and 46 as a cable"),
+            std::string::npos)
       << Said();
   EXPECT_NE(Refused(Pulled("stiffness=\"50\" springlength=\"0 0.5\"",
                            "<general tendon=\"c\" biastype=\"affine\" biasprm=\"0 -80 0\" "
                            "forcerange=\"-5 0\"/>"))
-                .find("has a tension of 15 at the start in MuJoCo, as a cable 66"),
+                .find("starts with a tension of 15 in MuJoCo and 66 as a cable"),
             std::string::npos)
       << Said();
 }

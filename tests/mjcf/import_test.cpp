@@ -350,7 +350,7 @@ TEST_F(MjcfImportTest, UnitsAreScaledAndAskedFor) {
             "warning: with this unit of length gravity is 0.981 m/s^2, as MuJoCo has it for the "
             "file (gravity_m_per_s2 of the model is where to change it)\n"
             "model.xml:4: warning: 1 damper of tendons would act in MuJoCo while slack, too; here "
-            "only with tension\n");
+            "dampers act only under tension\n");
   const ModelDef& def = made->robot.def;
   EXPECT_NEAR(def.gravity_m_per_s2.z, -0.981, kSame);
   EXPECT_NEAR(def.bodies[0].mass_kg, 0.6, kSame);

@@ -82,8 +82,8 @@ TEST_F(MjcfWorld, WhatIsLeftOutIsToldInALine) {
             "sensor, spatial.width, visual");
   EXPECT_EQ(made->notes[1], "left out: 1 tendon without stiffness and actuator, which only show");
   EXPECT_EQ(Said(),
-            "model.xml:3: warning: geom.solref is left out: contacts are rigid here, in MuJoCo as "
-            "soft as these numbers make them\n");
+            "model.xml:3: warning: geom.solref is left out: contacts are rigid here; in MuJoCo "
+            "these numbers make them soft\n");
 }
 
 TEST_F(MjcfWorld, WhatChangesAForceOrAPlaceIsAWarningWithItsLine) {

@@ -160,13 +160,13 @@ class Resources(Attack):
                      lambda n: taut.learn(str(ROOT / "studies" / "sidewinder3.yaml"), "/nowhere", threads=n),
                      lambda n: taut.fit(str(ROOT / "fits" / "tetraspine3_push.yaml"), threads=n)):
             for n in (-1, 1025, 10**6):
-                with self.assertRaisesRegex(ValueError, f"threads: {n}; from 0.* to 1024"):
+                with self.assertRaisesRegex(ValueError, f"threads: {n}; expected 0.* to 1024"):
                     call(n)
 
     def test_world_counts_have_a_limit(self):
         for n in (0, 10**9 + 1, 2**31 - 1):
             for make in (lambda: taut.Batch(taut.load(PUSH), worlds=n), lambda: taut.gym.make_vec(SPINE, n)):
-                with self.assertRaisesRegex(ValueError, f"worlds: {n}; at least 1, at most 1000000000"):
+                with self.assertRaisesRegex(ValueError, f"worlds: {n}; expected 1 to 1000000000"):
                     make()
 
     def test_threads_that_the_system_refuses_are_an_exception(self):
@@ -325,7 +325,7 @@ class Nonsense(unittest.TestCase):
     def test_experiments_have_numbers_that_mean_something(self):
         experiment = taut.load(PUSH)
         for wrong in (float("nan"), -1, 0, float("inf")):
-            with self.assertRaisesRegex(ValueError, "duration_s: .*; a positive number"):
+            with self.assertRaisesRegex(ValueError, "duration_s: .*; expected a positive number"):
                 experiment.duration_s = wrong
         for wrong in (-1, 1.5, 2**64):
             with self.assertRaisesRegex((ValueError, TypeError), "seed"):

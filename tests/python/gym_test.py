@@ -261,7 +261,7 @@ class WrongCalls(unittest.TestCase):
                           (lambda: envs.reset(seed=-1), "0 or more"),
                           (lambda: envs.reset(options={"mask": 1}), "reset_mask"),
                           (lambda: envs.reset(options={"reset_mask": [True]}), "mask"),
-                          (lambda: taut.gym.make_vec(SPINE, 0), "at least 1"),
+                          (lambda: taut.gym.make_vec(SPINE, 0), "expected 1 to 1000000000"),
                           (lambda: taut.gym.make_vec(SPINE, 1, dtype=np.int32), "float32 or float64"),
                           (lambda: taut.gym.make_vec(SPINE, 1, autoreset_mode="never"), "never"),
                           (lambda: taut.gym.make_vec(str(ROOT / "models/prism3.yaml"), 1), "a model"),

@@ -117,7 +117,7 @@ TEST_F(ConvexText, WithAMassAMeshWithHolesIsItsHull) {
   ExpectHas(warnings_, " is distributed as in its hull");
   // A density would need its volume.
   ExpectHas(Said("file: open.obj, scale_m: 0.1, density_kg_per_m3: 600"),
-            "what is open has no volume; with mass_kg its hull has the mass");
+            "an open mesh has no volume; mass_kg gives its hull a mass");
 }
 
 TEST_F(ConvexText, AMeshThatIsInsideOutOrHasLinesForTrianglesIsItsHullToo) {

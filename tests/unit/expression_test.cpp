@@ -101,14 +101,14 @@ TEST(Expression, EveryMistakeHasItsMessage) {
   EXPECT_EQ(Error("1 / (n - 3)"), "division by zero");
   EXPECT_EQ(Error("0 ^ -1"), "division by zero (0 ^ a negative number)");
   EXPECT_EQ(Error("(-8) ^ (1/3)"),
-            "a negative number to a broken power (write (-x)^y for a whole y)");
+            "a negative number to a fractional power (write (-x)^y for a whole y)");
   EXPECT_EQ(Error("sqrt(-1)"), "sqrt of a negative number");
   EXPECT_EQ(Error("acos(1.1)"), "acos of a number outside -1..1");
   EXPECT_EQ(Error("log(0)"), "log of a number that is not positive");
   EXPECT_EQ(Error("sin(1e10)"), "sin of an angle beyond 1e9 rad (angles are in rad)");
-  EXPECT_EQ(Error("exp(1000)"), "exp that is too large for a number");
-  EXPECT_EQ(Error("1e300 * 1e300"), "a product that is too large for a number");
-  EXPECT_EQ(Error("1e308 + 1e308"), "a sum that is too large for a number");
+  EXPECT_EQ(Error("exp(1000)"), "exp is too large for a number");
+  EXPECT_EQ(Error("1e300 * 1e300"), "a product is too large for a number");
+  EXPECT_EQ(Error("1e308 + 1e308"), "a sum is too large for a number");
   EXPECT_EQ(Error(std::string(500, '(') + "1"), "the expression is nested too deeply");
   EXPECT_EQ(Error(std::string(5000, '-') + "1"), "the expression is nested too deeply");
   EXPECT_EQ(Error("1" + std::string(10'000, ' ')), "the expression is too long");

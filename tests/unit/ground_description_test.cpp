@@ -50,7 +50,7 @@ TEST_F(GroundText, AFormulaIsRefusedWhereAllCornersWouldTakeTooLong) {
   EXPECT_EQ(robot.def.height_fields[0].height_m[0], ones - 49.5);
   const std::string said = Said(field(10'000));
   EXPECT_NE(said.find(" operations and numbers for each of 1e+06 corners, more than 400 000 000 in "
-                      "all (a shorter formula"),
+                      "all (use a shorter formula"),
             std::string::npos)
       << said;
 }

@@ -23,7 +23,7 @@ enum class StopAnswer {
 /// Server side, in the driving program.
 class StopListener {
  public:
-  /// Null and a diagnostic if the socket cannot be created, or another program uses it.
+  /// Null, with a diagnostic, if the socket cannot be created, or another program uses it.
   static std::unique_ptr<StopListener> Open(const std::string& device, Diagnostics& out);
   ~StopListener();
   StopListener(const StopListener&) = delete;
