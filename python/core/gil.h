@@ -9,43 +9,91 @@
 
 namespace taut::python {
 
+/// Daemon threads may be at work when the program ends. What they use (static variables, the
+/// interpreter) is destroyed then, so the end waits for them: Python's atexit calls
+/// EndOfProgram::Begin(), after which each of them sleeps at its next turn to or from the GIL.
+class EndOfProgram {
+ public:
+  /// Registers Begin() with Python's module atexit. The GIL must be held.
+  static void Register();
+  /// Whether the program ends and this thread is not the one that ends it.
+  static bool Reached();
+  /// Count this thread among those that compute without the GIL, or are in a callback.
+  static void Compute(int change);
+  static void Call(int change);
+  /// Until the process is gone.
+  [[noreturn]] static void Sleep();
+
+ private:
+  static void Begin();
+};
+
 /// Returns f(), which calls C functions of Python and makes no objects with destructors. Up to 3.13
 /// CPython ends a thread by pthread_exit() if it wants the lock while the interpreter ends. That
 /// unwinds the stack, through destructors that are noexcept or need the lock. Such a thread sleeps
-/// instead until the process is gone, as it does from 3.14 on.
+/// instead, as it does from 3.14 on.
 template <class F>
 auto OrSleep(F f) {
   try {
     return f();
   } catch (const abi::__forced_unwind&) {
-    for (;;) pause();
+    EndOfProgram::Sleep();
   }
 }
 
 /// Other Python threads run during its lifetime. The GIL must be held.
 class Released {
  public:
-  Released() : state_(PyEval_SaveThread()) {}
+  Released() {
+    if (EndOfProgram::Reached()) {
+      PyEval_SaveThread();
+      EndOfProgram::Sleep();
+    }
+    EndOfProgram::Compute(+1);  // before the GIL is free, so that the end sees it
+    state_ = PyEval_SaveThread();
+  }
   ~Released() {
+    if (EndOfProgram::Reached()) {
+      EndOfProgram::Compute(-1);
+      EndOfProgram::Sleep();
+    }
     OrSleep([this] { PyEval_RestoreThread(state_); });
+    EndOfProgram::Compute(-1);
   }
   Released(const Released&) = delete;
   Released& operator=(const Released&) = delete;
 
  private:
-  PyThreadState* const state_;
+  PyThreadState* state_;
 };
 
-/// Holds the GIL during its lifetime, on a thread that called from Python.
+/// Holds the GIL during its lifetime, within that of a Released of the same thread.
 class Acquired {
  public:
-  Acquired() : state_(OrSleep([] { return PyGILState_Ensure(); })) {}
-  ~Acquired() { PyGILState_Release(state_); }
+  Acquired() {
+    if (EndOfProgram::Reached()) {
+      EndOfProgram::Compute(-1);
+      EndOfProgram::Sleep();
+    }
+    state_ = OrSleep([] { return PyGILState_Ensure(); });
+    EndOfProgram::Call(+1);
+    EndOfProgram::Compute(-1);
+  }
+  ~Acquired() {
+    if (EndOfProgram::Reached()) {
+      EndOfProgram::Call(-1);
+      PyGILState_Release(state_);
+      EndOfProgram::Sleep();
+    }
+    EndOfProgram::Compute(+1);
+    EndOfProgram::Call(-1);
+    PyGILState_Release(state_);
+  }
   Acquired(const Acquired&) = delete;
   Acquired& operator=(const Acquired&) = delete;
 
  private:
-  const PyGILState_STATE state_;
+  PyGILState_STATE state_;
 };
 
 /// f(arguments...); throws error_already_set if it raises. The GIL must be held.

@@ -40,6 +40,7 @@ void Interruptible(const std::function<void(const std::atomic<bool>& stop)>& wor
         std::unique_lock lock(mutex);
         if (changed.wait_for(lock, std::chrono::milliseconds(100), [&] { return done; })) break;
       }
+      if (EndOfProgram::Reached()) stop = true;
       if (stop) continue;
       const Acquired mine;
       try {

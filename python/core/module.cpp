@@ -1,4 +1,5 @@
 // The Python module taut._core; taut/__init__.py says what of it people see.
+#include "gil.h"
 #include "taut/version.h"
 #include "text.h"
 
@@ -38,4 +39,5 @@ PYBIND11_MODULE(_core, module) {
   taut::python::AddAnalyses(module);
   taut::python::AddLinear(module);
   RefuseWhatIsNotInitialized(module);
+  taut::python::EndOfProgram::Register();
 }

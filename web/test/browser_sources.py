@@ -43,25 +43,43 @@ def browser_commands(of_all, folder):
         kernels = re.search(r"^TAUT_INSTRUCTION_SETS:\w+=(.*)$", file.read(), re.M).group(1)
     output_of("cmake", "-S", ROOT, "-B", build, "-DTAUT_BROWSER=ON", f"-DTAUT_YAML_SOURCE={yaml}",
               f"-DTAUT_INSTRUCTION_SETS={kernels}",  # those that the objects choose from
-              "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON")
+              "-DTAUT_UNITY_BUILD=OFF", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON")
     commands = commands_of(build)
     return {path: entry for path, entry in commands.items() if path.startswith(ROOT + os.sep)
             and not path.startswith(os.path.join(ROOT, "benchmarks"))}
 
 
+def object_in(entry):
+    """What an entry of compile_commands.json makes."""
+    words = shlex.split(entry["command"])
+    return os.path.join(entry["directory"], words[words.index("-o") + 1])
+
+
+def objects_made(here, wanted):
+    """From a source's path to the object that the build has of it. A file of a unity build that holds
+    others than those wanted has none: their symbols would count as well."""
+    objects = {}
+    for path, entry in here.items():
+        sources = [path]
+        if os.path.basename(os.path.dirname(path)) == "Unity":
+            with open(path, encoding="utf-8") as file:
+                sources = [os.path.realpath(name) for name in re.findall(r'#include "(.*)"', file.read())]
+        if wanted.issuperset(sources):
+            objects.update(dict.fromkeys(sources, object_in(entry)))
+    return objects
+
+
 def objects_of(build, folder):
     """From a source's path, as seen from the top folder, to an object of it."""
-    here, objects = commands_of(build), {}
-    for number, (path, entry) in enumerate(sorted(browser_commands(build, folder).items())):
-        is_here = path in here
-        words = shlex.split((here[path] if is_here else entry)["command"])
-        out = words.index("-o") + 1
-        made = os.path.join(here[path]["directory"], words[out]) if is_here else os.path.join(folder, f"{number}.o")
-        if not is_here:
-            words[out] = made
+    wanted, objects = browser_commands(build, folder), {}
+    made = objects_made(commands_of(build), set(wanted))
+    for number, (path, entry) in enumerate(sorted(wanted.items())):
+        if path not in made:
+            words = shlex.split(entry["command"])
+            made[path] = words[words.index("-o") + 1] = os.path.join(folder, f"{number}.o")
             plain = [word for word in words if not re.fullmatch(r"-O.*|-flto|-s[A-Z_]+=.*", word)]
             output_of(*plain, "-O0", "-I/usr/include")
-        objects[os.path.relpath(path, ROOT)] = made
+        objects[os.path.relpath(path, ROOT)] = made[path]
     return objects
 
 
