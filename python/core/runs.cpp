@@ -75,7 +75,7 @@ Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progres
   return ran;
 }
 
-SharedTrace Read(const std::string& path) {
+SharedTrace ReadRun(const std::string& path) {
   Diagnostics said;
   std::optional<Trace> trace;
   {
@@ -180,7 +180,7 @@ void AddRuns(py::module_& module) {
       "Runs an experiment from start to end, as `taut run` does, to the same bits. "
       "`progress(time_s, duration_s)` is called a few times a second. Ctrl-C ends it. Raises "
       "`taut.InputError` if it cannot start.");
-  module.def("read_trace", &Read, py::arg("path"),
+  module.def("read_trace", &ReadRun, py::arg("path"),
              "Reads a trace that was recorded: .h5, .csv or .csv.gz, or that of a run's folder.");
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using Found = std::shared_ptr<StudyResult>;
 
-Found Read(const std::string& folder, bool skip_damaged) {
+Found FoundIn(const std::string& folder, bool skip_damaged) {
   Diagnostics said;
   std::optional<StudyResult> result;
   {
@@ -85,7 +85,7 @@ Found Learn(const std::string& path, const std::optional<std::string>& folder, i
       },
       [&] { state.Tell(progress); });
   Tell(later);
-  return Read(options.folder, skip_damaged);
+  return FoundIn(options.folder, skip_damaged);
 }
 
 /// Of a number of the log; the best if None.
@@ -175,7 +175,7 @@ void AddStudies(py::module_& module) {
       "parameters of the study, its experiment or model. `threads`: 0 is one a core. "
       "`progress(evaluations, budget, best_score)` is called a few times a second. After "
       "Ctrl-C the same call goes on.");
-  module.def("read_study", &Read, py::arg("folder"), py::arg("skip_damaged") = false,
+  module.def("read_study", &FoundIn, py::arg("folder"), py::arg("skip_damaged") = false,
              "What a study's folder has so far.");
 }
 

@@ -144,6 +144,7 @@ void ExpectLeastGaps(const Def& def, unsigned seed, int boxes) {
     const double clear =
         DistanceUpTo(box, SurfaceShape{&ground.table()}, random.Between(0.5, 2) * distance);
     EXPECT_LE(clear, distance) << seed << " " << i;
+    EXPECT_EQ(DistanceUpTo(box, SurfaceShape{&ground.table()}, 0.0), 0.0);
     ++near;
     // On as far again and a little into each other: the way out is the same, unless what was
     // nearest was a corner beside an edge.

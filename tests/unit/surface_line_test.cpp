@@ -77,6 +77,7 @@ TEST(NearestAlong, WhatIsFoundIsTheDistanceOfTheLineWhereItIsLeast) {
       const RoundShape rod{{a.x, a.y, a.z}, {b.x, b.y, b.z}, 1e-3};
       const double bound = DistanceUpTo(rod, SurfaceShape{&field.table()}, 0.3);
       EXPECT_LE(bound, least);
+      EXPECT_EQ(DistanceUpTo(rod, SurfaceShape{&field.table()}, 0.0), 0.0);
       // Beyond a sixteenth of its size it goes by bounds.
       const double near = (Length(b - a) + 1e-3) / 16;
       if (least - 1e-3 < near) {
