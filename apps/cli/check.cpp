@@ -124,7 +124,10 @@ int Check(const CheckArguments& args) {
   const StartKind described = of ? of->start : StartKind::kAsDescribed;
   const bool settles = (args.settled || described != StartKind::kAsDescribed) && !args.couplings;
   const ExperimentSpec to_settle = settles ? ToSettle(*robot, of) : ExperimentSpec{};
-  if (experiment) CheckRecord(*experiment, found);
+  if (experiment) {
+    CheckRecord(*experiment, found);
+    WarnOfStep(*experiment, found);
+  }
   if (experiment && experiment->environment) CheckEnvironment(*experiment, found);
   if (!CheckStart(*robot, settles ? to_settle.start : described, found)) return Bad(args, found);
   std::optional<SettledStart> settled;

@@ -3,6 +3,7 @@
 #include "check_report.h"
 #include "json_values.h"
 #include "taut/loads.h"
+#include "taut/run.h"
 
 namespace taut::cli {
 namespace {
@@ -136,7 +137,7 @@ std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment,
   if (experiment) {
     json["experiment"] = {{"name", experiment->name},
                           {"duration_s", experiment->duration_s},
-                          {"step_s", experiment->step_s}};
+                          {"step_s", LongestStep(*experiment)}};
   }
   if (settled) {
     json["settled"] = {{"slack_cables", settled->slack_cables},

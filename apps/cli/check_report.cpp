@@ -9,6 +9,7 @@
 #include "table.h"
 #include "taut/env.h"
 #include "taut/loads.h"
+#include "taut/run.h"
 
 namespace taut::cli {
 namespace {
@@ -216,7 +217,7 @@ std::string RobotTables(const RobotSpec& robot) {
 
 std::string ExperimentTables(const ExperimentSpec& experiment) {
   std::string text = fmt::format("Experiment {}: {:g} s in steps of {:g} s, {}\n", experiment.name,
-                                 experiment.duration_s, experiment.step_s,
+                                 experiment.duration_s, LongestStep(experiment),
                                  Counted(experiment.controllers.size(), "controller"));
   const std::vector<NodeDef>& nodes = experiment.robot.def.nodes;
   Table table({"what", "name", "acts on", "when"});

@@ -49,13 +49,18 @@ std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& exper
   metadata.emplace_back(kRunIdKey, folder.id());
   metadata.insert(metadata.end(), more.begin(), more.end());
   std::vector<std::unique_ptr<TraceWriter>> writers;
+  std::vector<std::string> names{"trace.h5"};
   writers.push_back(CreateHdf5Trace(folder.Path("trace.h5"), channels, metadata, out));
-  if (csv) writers.push_back(CreateCsvTrace(folder.Path("trace.csv"), channels, out));
+  if (csv) {
+    names.push_back("trace.csv");
+    writers.push_back(CreateCsvTrace(folder.Path("trace.csv"), channels, out));
+  }
   folder.Prepare(ResolvedYaml(experiment), out);
   if (!out.ok()) return std::nullopt;
+  writers.back() = folder.BeginWith(std::move(writers.back()), std::move(names));
   for (const auto& writer : writers) options.traces.push_back(writer.get());
-  options.begin = [&folder, refuses = std::move(options.begin)](Diagnostics& found) {
-    return (!refuses || refuses(found)) && Pass(found, false) && folder.Begin(found);
+  options.begin = [refuses = std::move(options.begin)](Diagnostics& found) {
+    return (!refuses || refuses(found)) && Pass(found, false);
   };
   auto summary = RunExperiment(experiment, options, out);
   if (!summary) return std::nullopt;

@@ -158,6 +158,7 @@ int Run(RunArguments args) {
   if (args.duration_s >= 0) experiment->duration_s = args.duration_s;
   if (args.view && !TokensOf(args.server)) return kUsage;
   CheckRecord(*experiment, found);
+  WarnOfStep(*experiment, found);
   link::MotorCables(experiment->robot, found);
   link::ModeFor(*experiment, found);
   if (!Pass(found, false)) return Fail(found, kBadInput);

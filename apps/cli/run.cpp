@@ -132,6 +132,7 @@ int Run(const RunArguments& args) {
     CheckStart(experiment->robot, experiment->start, found);
   }
   CheckRecord(*experiment, found);
+  WarnOfStep(*experiment, found);
   CheckFinalPose(args, experiment->robot, found);
   if (!Pass(found, args.strict)) return Fail(found, kBadInput);
   if (args.strict && !plant && experiment->start != StartKind::kAsDescribed) {

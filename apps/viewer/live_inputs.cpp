@@ -35,6 +35,7 @@ std::optional<LiveInputs> LoadLiveInputs(const std::string& path, const Override
       !CheckRecord(*experiment, out)) {
     return std::nullopt;
   }
+  WarnOfStep(*experiment, out);
   if (settled && !model) experiment->start = StartKind::kSettled;
   return LiveInputs{std::move(*experiment), model};
 }

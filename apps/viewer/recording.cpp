@@ -1,7 +1,6 @@
 #include "recording.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -11,16 +10,6 @@
 #include "taut/run_folder.h"
 
 namespace taut::viewer {
-namespace {
-
-std::pair<dev_t, ino_t> IdentityOf(const std::string& path) {
-  struct stat info {};
-  if (stat(path.c_str(), &info) != 0) return {};
-  return {info.st_dev, info.st_ino};
-}
-
-}  // namespace
-
 std::unique_ptr<Recording> Recording::Start(const std::string& folder, LiveRun& run,
                                             const ExperimentSpec& experiment,
                                             std::function<void(const std::string&)> say,
@@ -71,11 +60,6 @@ bool Recording::BeginFiles(LiveRun& run, const ExperimentSpec& experiment, Diagn
   if (!events_->Create()) return fail(*events_);
   writer_ = CreateHdf5Trace(Path("trace", ".h5"), run.channels(), metadata, out);
   if (!writer_) return false;
-  // What `taut run` wrote there would say something of another run.
-  if (!ours_ && !RemoveRunBefore(folder_, {"trace.h5", "inputs.yaml", "events.jsonl"}, out)) {
-    return false;
-  }
-  ours_ = true;
   rate_hz_ = experiment.record.rate_hz;
   rows_ = 1;
   if (!writer_->Append(time_s_, run.Row().data())) {  // with its first row it has its name
@@ -83,6 +67,11 @@ bool Recording::BeginFiles(LiveRun& run, const ExperimentSpec& experiment, Diagn
     return false;
   }
   identity_ = IdentityOf(Path("trace", ".h5"));
+  // What `taut run` wrote there would say something of another run.
+  if (!ours_ && !RemoveRunBefore(folder_, {"trace.h5", "inputs.yaml", "events.jsonl"}, out)) {
+    return false;
+  }
+  ours_ = true;
   if (!inputs.Publish()) return fail(inputs);
   return events_->Publish() || fail(*events_);
 }

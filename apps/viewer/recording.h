@@ -2,8 +2,6 @@
 /// events, and the inputs.
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -62,7 +60,7 @@ class Recording final : public LiveRecorder {
   int part_ = 1;
   std::unique_ptr<TraceWriter> writer_;
   std::unique_ptr<NewFile> events_;
-  std::pair<dev_t, ino_t> identity_;  ///< Of the trace's file.
+  FileIdentity identity_;  ///< Of the trace's file.
   double rate_hz_ = 0, time_s_ = 0;
   std::int64_t rows_ = 0, event_count_ = 0;
   std::string failure_, resumed_;

@@ -4,6 +4,7 @@
 /// leave the whole text of one of them.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -26,7 +27,7 @@ bool WriteWholeFile(const std::string& path, std::string_view text, Diagnostics&
 class NewFile {
  public:
   explicit NewFile(std::string path) : path_(std::move(path)) {}
-  ~NewFile();  ///< What was not published is gone.
+  ~NewFile();  ///< What was not published is gone, unless it was left.
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
 
@@ -43,6 +44,8 @@ class NewFile {
   bool Publish();
   /// Brings what was written since to the disk.
   bool Sync();
+  /// What is not published stays at `made_at()`.
+  void Leave() { left_ = true; }
 
   bool published() const { return published_; }
   const std::string& why() const { return why_; }
@@ -52,8 +55,15 @@ class NewFile {
 
   std::string path_, made_at_, why_;
   int descriptor_ = -1;
-  bool published_ = false;
+  bool published_ = false, left_ = false;
 };
+
+/// Which file is at a path: differs once another one has its place.
+struct FileIdentity {
+  std::uint64_t device = 0, file = 0;  ///< 0, 0: there is none.
+  bool operator==(const FileIdentity&) const = default;
+};
+FileIdentity IdentityOf(const std::string& path);
 
 /// The right to write into a folder, which one process at a time has. It ends with the object or
 /// with the process, however that ends; the empty file `.lock` stays.

@@ -135,6 +135,14 @@ struct RunOptions {
 /// in `RunOptions`; what is not known of it has no channel.
 std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment, Plant* plant = nullptr);
 
+/// The longest step of a run [s]: at most `step_s`. A step ends at each tick of a controller, a
+/// gait, the sensors and the goal, so it is at most their shortest period, divided into equal
+/// steps.
+double LongestStep(const ExperimentSpec& experiment);
+
+/// Warns if `step_s` is longer than the shortest of these periods.
+void WarnOfStep(const ExperimentSpec& experiment, Diagnostics& out);
+
 /// False, and a complaint each, if the experiment asks for channels that no run of it has.
 bool CheckRecord(const ExperimentSpec& experiment, Diagnostics& out);
 

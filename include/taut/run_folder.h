@@ -1,7 +1,9 @@
 /// The folder that a run writes (docs/cli.md): trace.h5, perhaps trace.csv, inputs.yaml,
 /// summary.json, perhaps report.html. A run is one transaction: its folder has one writer, all
-/// pieces carry the run's id, those of the run before are gone before the first of it is there, and
-/// readers refuse pieces of different runs.
+/// pieces carry the run's id, and readers refuse pieces of different runs. The run before is whole
+/// until the new trace has its first row on the disk, which replaces the old trace. Then the other
+/// old pieces go, the summary first; inputs.yaml is replaced last. If a writer is killed in
+/// between, the next reader or writer finishes that.
 ///
 /// Threads: a `RunFolder` belongs to one thread at a time; the functions may be called by any
 /// number at once.
@@ -52,10 +54,16 @@ class RunFolder {
   /// there is no room: then what the folder holds is still all of the run before.
   bool Prepare(const std::string& experiment, Diagnostics& out);
 
-  /// The run begins: the pieces of the one before go, the summary first, and inputs.yaml is there,
-  /// if it was prepared: what a robot was seen to do has none.
-  /// Traces appear with their first rows. False and a complaint if that fails.
-  bool Begin(Diagnostics& out);
+  /// The run begins: the pieces of the one before go, the summary first, but for `traces`, which
+  /// are of this run already. Then inputs.yaml is there, if it was prepared: what a robot was seen
+  /// to do has none. False and a complaint if that fails.
+  bool Begin(Diagnostics& out, const std::vector<std::string>& traces = {});
+
+  /// The run begins as soon as `last` has its first row: then the run before is whole until the new
+  /// one has a row. `traces`: names of all traces of the run, of which `last` gets each row last.
+  /// The folder must outlive what is returned.
+  std::unique_ptr<TraceWriter> BeginWith(std::unique_ptr<TraceWriter> last,
+                                         std::vector<std::string> traces);
 
   /// The run's last word, once its traces are finished. False and a complaint if it cannot be
   /// written or the folder is no longer ours.
@@ -64,6 +72,7 @@ class RunFolder {
  private:
   RunFolder(std::string folder, const std::vector<std::string>& more,
             std::unique_ptr<FolderLock> lock);
+  bool BeginFiles(Diagnostics& out, const std::vector<std::string>& traces);
 
   std::string folder_, id_;
   std::vector<std::string> more_;  ///< Removed at the beginning, too.

@@ -46,6 +46,7 @@ Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progres
   Ran ran{std::make_shared<Trace>(), {}};
   std::optional<RunSummary> summary;
   bool stopped = false;  // by an exception of Python's, Ctrl-C for one
+  WarnOfStep(experiment, said);
   if (CheckRecord(experiment, said)) {
     const Released others;
     ran.trace->channels = RunChannels(experiment);

@@ -121,6 +121,9 @@ class Run(Scenario):
     def check(self, outcome, folder):
         """Whether summary and traces are those of one run."""
         good = outcome.status == 0
+        read = self.program.plain(("report", "run/trace.h5"), folder)  # which may finish the replacement
+        if read.returncode != 0:
+            return f"neither the old run nor the new one is left: {read.stderr}"
         if not (folder / "run/summary.json").exists():
             return "no summary, status 0" if good else None  # declared to be no finished run
         try:

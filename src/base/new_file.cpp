@@ -42,10 +42,16 @@ bool SyncFolderOf(const std::string& path) {
 
 }  // namespace
 
+FileIdentity IdentityOf(const std::string& path) {
+  struct stat info {};
+  if (stat(path.c_str(), &info) != 0) return {};
+  return {info.st_dev, info.st_ino};
+}
+
 NewFile::~NewFile() {
   if (descriptor_ < 0) return;
   close(descriptor_);
-  if (!published_) unlink(made_at_.c_str());
+  if (!published_ && !left_) unlink(made_at_.c_str());
 }
 
 bool NewFile::Fail() {

@@ -60,12 +60,13 @@ bool WriteRests(const Identification& fit, std::size_t experiment, const Experim
   shown.duration_s = rests.time_s.empty() ? 0 : rests.time_s.back();
   shown.compare_with.reset();
   const auto run = RunFolder::Open(folder, {}, out);
-  if (!run || !run->Prepare(ResolvedYaml(shown), out) || !run->Begin(out)) return false;
+  if (!run) return false;
   TraceMetadata metadata = RunMetadata(shown);
   metadata.emplace_back(kRunIdKey, run->id());
   metadata.emplace_back("forward", one.forward == FitForward::kStatic ? "static" : "load_cases");
-  const auto trace = CreateHdf5Trace(run->Path("trace.h5"), channels, metadata, out);
-  if (!trace) return false;
+  auto trace = CreateHdf5Trace(run->Path("trace.h5"), channels, metadata, out);
+  if (!trace || !run->Prepare(ResolvedYaml(shown), out)) return false;
+  trace = run->BeginWith(std::move(trace), {"trace.h5"});
   bool good = true;
   for (std::size_t row = 0; good && row < rests.time_s.size(); ++row) {
     std::vector<double> values;

@@ -54,7 +54,7 @@ TraceMetadata RunMetadata(const ExperimentSpec& experiment) {
           {"model", experiment.robot.def.name},
           {"input_hash", hash},
           {"seed", std::to_string(experiment.seed)},
-          {"step_s", Shortest(experiment.step_s)},
+          {"step_s", Shortest(LongestStep(experiment))},
           {"duration_s", Shortest(experiment.duration_s)},
           {"started", NowUtc()},
           {"machine", MachineName()},

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <thread>
 #include <vector>
 
 namespace taut {
@@ -96,6 +98,126 @@ std::vector<Piece> PiecesOfRun(const std::string& path, const Trace& trace) {
   return pieces;
 }
 
+/// The inputs that the writer of run `id` put on the disk beside this trace and has not named yet.
+/// A run that replaces another is in this state from the first row of its trace on, until the
+/// pieces of the run before are gone.
+std::optional<fs::path> UnnamedInputs(const std::string& trace, const std::string& id) {
+  const fs::path inputs = BesideTrace(trace, "inputs", ".yaml");
+  const std::string name = inputs.filename().string() + ".";
+  const fs::path folder = inputs.has_parent_path() ? inputs.parent_path() : ".";
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string other = entry.path().filename().string();
+    if (!other.starts_with(name) || !other.ends_with(".part")) continue;
+    const auto text = ReadText(entry.path().string());
+    if (text && !id.empty() && IdOfInputs(*text) == id) return entry.path();
+  }
+  return std::nullopt;
+}
+
+/// Does what the writer of this trace would have done next. The caller is the folder's writer.
+bool FinishReplacement(const std::string& trace, const fs::path& unnamed) {
+  const fs::path path(trace);
+  Diagnostics ignored;
+  if (path.filename() == "trace.h5" &&
+      !RemoveRunBefore(path.parent_path().string(), {kInputs, "trace.h5"}, ignored)) {
+    return false;
+  }
+  return std::rename(unnamed.c_str(), BesideTrace(trace, "inputs", ".yaml").c_str()) == 0;
+}
+
+bool AreOfOneRun(const std::vector<Piece>& pieces) {
+  return std::all_of(pieces.begin(), pieces.end(),
+                     [&](const Piece& piece) { return piece.id == pieces.front().id; });
+}
+
+/// What is there of the run that a trace is of. If its writer was killed while it replaced another
+/// run, what is left of that goes first; if the writer is at it, this waits.
+std::vector<Piece> WholePiecesOfRun(const std::string& path, const Trace& trace) {
+  constexpr int kLooks = 50;
+  constexpr std::chrono::milliseconds kBetween{20};
+  std::vector<Piece> pieces = PiecesOfRun(path, trace);
+  for (int look = 0; look < kLooks && !AreOfOneRun(pieces); ++look) {
+    const auto unnamed = UnnamedInputs(path, IdOfTrace(trace));
+    if (unnamed) {
+      Diagnostics ignored;
+      const fs::path folder = fs::path(path).parent_path();
+      const auto lock = FolderLock::Take(folder.empty() ? "." : folder.string(), ignored);
+      if (!lock || !FinishReplacement(path, *unnamed)) std::this_thread::sleep_for(kBetween);
+    }
+    pieces = PiecesOfRun(path, trace);
+    if (!unnamed) break;  // or a writer has just finished
+  }
+  return pieces;
+}
+
+/// In a folder whose writer the caller is.
+void FinishReplacementIn(const std::string& folder) {
+  const std::string path = (fs::path(folder) / "trace.h5").string();
+  std::error_code ignored;
+  const auto is_unnamed = [](const fs::directory_entry& entry) {
+    const std::string name = entry.path().filename().string();
+    return name.starts_with(std::string(kInputs) + ".") && name.ends_with(".part");
+  };
+  const fs::directory_iterator all(folder, ignored);
+  if (!fs::exists(path, ignored) || std::none_of(begin(all), end(all), is_unnamed)) return;
+  Diagnostics unread;
+  const auto trace = ReadTrace(path, unread);
+  const auto unnamed = trace ? UnnamedInputs(path, IdOfTrace(*trace)) : std::nullopt;
+  if (unnamed) FinishReplacement(path, *unnamed);
+}
+
+/// Writes the last of a run's traces, and removes the run before once the first row of all has its
+/// place.
+class BeginningTrace final : public TraceWriter {
+ public:
+  BeginningTrace(RunFolder& folder, std::unique_ptr<TraceWriter> writer,
+                 std::vector<std::string> traces)
+      : folder_(folder), writer_(std::move(writer)), traces_(std::move(traces)) {
+    for (const std::string& name : traces_) before_.push_back(IdentityOf(folder_.Path(name)));
+  }
+  /// This one may have failed after another has replaced that of the run before.
+  ~BeginningTrace() override { Begin(); }
+
+  bool Append(double time_s, const double* values) override {
+    return error_.empty() && writer_->Append(time_s, values) && Begin();
+  }
+  bool FlushOld() override { return error_.empty() && writer_->FlushOld(); }
+  bool Finish() override {
+    // Before its first row another one has failed: the run before stays.
+    if (!begun_ && traces_.size() > 1 && Replaced().empty()) return true;
+    return error_.empty() && writer_->Finish() && Begin();
+  }
+  const std::string& error() const override { return error_.empty() ? writer_->error() : error_; }
+
+ private:
+  std::vector<std::string> Replaced() const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < traces_.size(); ++i) {
+      if (IdentityOf(folder_.Path(traces_[i])) != before_[i]) names.push_back(traces_[i]);
+    }
+    return names;
+  }
+
+  bool Begin() {
+    if (begun_) return true;
+    const std::vector<std::string> replaced = Replaced();
+    if (replaced.empty()) return true;
+    begun_ = true;
+    Diagnostics out;
+    if (folder_.Begin(out, replaced)) return true;
+    error_ = out.items().front().at.file + ": " + out.items().front().what;
+    return false;
+  }
+
+  RunFolder& folder_;
+  const std::unique_ptr<TraceWriter> writer_;
+  const std::vector<std::string> traces_;
+  std::vector<FileIdentity> before_;
+  bool begun_ = false;
+  std::string error_;
+};
+
 }  // namespace
 
 void RemoveLeftovers(const std::string& folder) {
@@ -126,6 +248,7 @@ std::unique_ptr<RunFolder> RunFolder::Open(const std::string& folder,
                                            const std::vector<std::string>& more, Diagnostics& out) {
   auto lock = FolderLock::Take(folder, out);
   if (!lock) return nullptr;
+  FinishReplacementIn(folder);
   RemoveLeftovers(folder);
   return std::unique_ptr<RunFolder>(new RunFolder(folder, more, std::move(lock)));
 }
@@ -143,8 +266,19 @@ bool RunFolder::Prepare(const std::string& experiment, Diagnostics& out) {
   return false;
 }
 
-bool RunFolder::Begin(Diagnostics& out) {
-  std::vector<std::string> replaced;
+std::unique_ptr<TraceWriter> RunFolder::BeginWith(std::unique_ptr<TraceWriter> last,
+                                                  std::vector<std::string> traces) {
+  return std::make_unique<BeginningTrace>(*this, std::move(last), std::move(traces));
+}
+
+bool RunFolder::Begin(Diagnostics& out, const std::vector<std::string>& traces) {
+  if (BeginFiles(out, traces)) return true;
+  if (inputs_) inputs_->Leave();  // with them the next reader finishes what could not be done
+  return false;
+}
+
+bool RunFolder::BeginFiles(Diagnostics& out, const std::vector<std::string>& traces) {
+  std::vector<std::string> replaced = traces;
   if (inputs_) replaced.push_back(kInputs);
   if (!RemoveRunBefore(folder_, replaced, out)) return false;
   for (const std::string& name : more_) {
@@ -192,7 +326,7 @@ std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out) {
   auto trace = ReadTrace(path, out);
   if (!trace) return std::nullopt;
   const auto shown = [](const Piece& piece) { return piece.id.empty() ? "none" : piece.id; };
-  const std::vector<Piece> pieces = PiecesOfRun(path, *trace);
+  const std::vector<Piece> pieces = WholePiecesOfRun(path, *trace);
   for (const Piece& piece : pieces) {
     if (piece.id == pieces.front().id) continue;
     out.Error({piece.path},

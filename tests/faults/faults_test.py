@@ -48,8 +48,8 @@ def AKilledRunIsNoFinishedRun():
     with tempfile.TemporaryDirectory() as folder:
         keep = 'cp run/summary.json kept 2>/dev/null; "$taut" "$@"; status=$?\n'
         keep += '[ $status -lt 128 ] || mv kept run/summary.json; rm -f kept; [ $status -lt 128 ] || kill -KILL $$; exit $status'
-        run = faults("run", "--at", "write 20 kill", taut=instead(folder, keep))
-    assert run.returncode == 1 and "WRONG: trace.h5 is not that of the summary" in run.stdout, run
+        run = faults("run", "--at", "write 150 kill", taut=instead(folder, keep))
+    assert run.returncode == 1 and "WRONG: neither the old run nor the new one is left" in run.stdout, run
 
 
 def MemoryThatIsMissingWhereNothingMayBeThrownIsSaid():

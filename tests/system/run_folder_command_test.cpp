@@ -98,10 +98,10 @@ TEST_F(RunCommand, AKilledRunLeavesItsFirstRowAndNothingOfTheRunBefore) {
   ASSERT_EQ(Taut({"run", kHang, "--out", "run", "--csv", "--report", "--quiet"}).status, 0);
   const std::string before = IdOfTrace("run/trace.h5");
   Kill(StartLong("run", before), SIGKILL);
-  EXPECT_EQ(Names("run"), (std::vector<std::string>{".lock", "inputs.yaml", "trace.h5"}));
   Diagnostics out;
   const auto trace = ReadTraceOfRun(Path("run/trace.h5"), out);
   ASSERT_TRUE(trace) << out.Format();
+  EXPECT_EQ(Names("run"), (std::vector<std::string>{".lock", "inputs.yaml", "trace.h5"}));
   EXPECT_TRUE(trace->unfinished);
   EXPECT_GE(trace->time_s.size(), 1u);
   const CommandResult report = Taut({"report", "run/trace.h5"});

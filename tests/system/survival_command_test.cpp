@@ -203,7 +203,7 @@ TEST_F(Survival, AFileThatCannotBeWrittenIsAFailure) {
   std::filesystem::create_directories(Path("run/inputs.yaml"));  // a folder of that name
   const CommandResult result = Taut({"run", kHang, "--quiet", "--out", "run"});
   EXPECT_EQ(result.status, 1);
-  EXPECT_EQ(result.errors, "run/inputs.yaml: error: cannot be written: Is a directory\n");
+  EXPECT_EQ(result.errors, "error: run/inputs.yaml: cannot be written: Is a directory\n");
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
 // The folder of a run: begun, finished, and pieces that do not belong together.
 #include "taut/run_folder.h"
 
+#include <chrono>
+#include <thread>
+
 #include "trace_fixture.h"
 
 namespace taut::test {
@@ -116,6 +119,93 @@ TEST_F(Run, TheRunBeforeIsThereUntilTheNewOneBegins) {
   EXPECT_EQ(ReadFile(Path("inputs.yaml")), "# run " + folder->id() + "\ntaut: 1\n");
   ASSERT_TRUE(folder->Finish("{}", out)) << out.Format();
   EXPECT_EQ(ReadFile(Path("summary.json")), "{}");
+}
+
+/// A finished run "old", over which a run "new" was killed: after its trace had its place, and
+/// after `gone` of the old pieces were removed.
+struct KilledRun : Run {
+  void Leave(int gone, const std::string& trace_of = "new") const {
+    WriteTrace("trace.h5", trace_of);
+    WriteInputs("inputs.yaml", "old");
+    WriteInputs("inputs.yaml.77.part", "new");
+    if (gone < 1) WriteSummary("summary.json", "old");
+    if (gone < 2) WriteFile("report.html", "old");
+  }
+  std::string InputsId() const { return ReadFile(Path("inputs.yaml")).substr(6, 3); }
+};
+
+TEST_F(KilledRun, IsReadWhereverItWasKilledAndNothingOldIsLeft) {
+  for (int gone = 0; gone <= 2; ++gone) {
+    Leave(gone);
+    EXPECT_EQ(Read("trace.h5"), "") << gone;
+    EXPECT_EQ(Names(), (std::vector<std::string>{".lock", "inputs.yaml", "trace.h5"})) << gone;
+    EXPECT_EQ(InputsId(), "new");
+  }
+}
+
+TEST_F(KilledRun, IsFinishedByTheNextOneWhichMayFailToBegin) {
+  Leave(0);
+  Diagnostics out;
+  ASSERT_TRUE(RunFolder::Open(Path(""), {}, out)) << out.Format();
+  EXPECT_EQ(Names(), (std::vector<std::string>{".lock", "inputs.yaml", "trace.h5"}));
+  EXPECT_EQ(InputsId(), "new");
+}
+
+TEST_F(KilledRun, LeavesTheOldOneWholeIfItHadNoRow) {
+  Leave(0, "old");
+  EXPECT_EQ(Read("trace.h5"), "");
+  Diagnostics out;
+  ASSERT_TRUE(RunFolder::Open(Path(""), {}, out)) << out.Format();
+  EXPECT_EQ(Names(), (std::vector<std::string>{".lock", "inputs.yaml", "report.html",
+                                               "summary.json", "trace.h5"}));
+  EXPECT_EQ(InputsId(), "old");
+}
+
+TEST_F(KilledRun, OfWhichNothingIsLeftToFinishIsRefused) {
+  Leave(0);
+  fs::remove(Path("inputs.yaml.77.part"));
+  EXPECT_NE(Read("trace.h5").find("inputs.yaml: error: is not of the run of trace.h5"),
+            std::string::npos);
+}
+
+TEST_F(KilledRun, IsWaitedForIfItIsAlive) {
+  Leave(0);
+  Diagnostics out;
+  auto lock = FolderLock::Take(Path(""), out);
+  ASSERT_TRUE(lock) << out.Format();
+  std::thread writer([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    fs::remove(Path("summary.json"));
+    fs::rename(Path("inputs.yaml.77.part"), Path("inputs.yaml"));
+  });
+  EXPECT_EQ(Read("trace.h5"), "");
+  writer.join();
+}
+
+TEST_F(Run, TheFirstRowOfTheLastTraceBeginsIt) {
+  for (const char* const name : {"trace.h5", "trace.csv", "summary.json"}) WriteFile(name, "old");
+  Diagnostics out;
+  const auto folder = RunFolder::Open(Path(""), {}, out);
+  ASSERT_TRUE(folder && folder->Prepare("taut: 1\n", out)) << out.Format();
+  const auto trace =
+      folder->BeginWith(CreateHdf5Trace(Path("trace.h5"), Channels(1), {}, out), {"trace.h5"});
+  EXPECT_EQ(ReadFile(Path("trace.h5")), "old");
+  EXPECT_TRUE(fs::exists(Path("summary.json")));
+  ASSERT_TRUE(AppendRow(*trace, 0, 1, 0.0)) << trace->error();
+  EXPECT_EQ(Names(), (std::vector<std::string>{".lock", "inputs.yaml", "trace.h5"}));
+  EXPECT_TRUE(trace->Finish()) << trace->error();
+}
+
+TEST_F(Run, WhatCannotBeRemovedIsAnErrorOfTheTrace) {
+  fs::create_directory(Path("summary.json"));
+  Diagnostics out;
+  const auto folder = RunFolder::Open(Path(""), {}, out);
+  ASSERT_TRUE(folder && folder->Prepare("taut: 1\n", out)) << out.Format();
+  const auto trace =
+      folder->BeginWith(CreateHdf5Trace(Path("trace.h5"), Channels(1), {}, out), {"trace.h5"});
+  EXPECT_FALSE(AppendRow(*trace, 0, 1, 0.0));
+  EXPECT_EQ(WithoutFolder(trace->error()),
+            "summary.json: of the run before cannot be removed: Is a directory");
 }
 
 TEST_F(Run, EveryRunHasAnIdOfItsOwn) {

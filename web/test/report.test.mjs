@@ -4,7 +4,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { closeBrowser, cursorTo, numbersBeside, openPage, picture, untilTime, writeReport } from "./browser.mjs";
+import { closeBrowser, cursorTo, drawn, numbersBeside, openPage, picture, untilTime, writeReport } from "./browser.mjs";
 import { comparedRuns, contactCount, pose, RATE_HZ, reference, report, rowsOf, rowTime, scene, seriesOf, setpoint_n, tension_n, VERSION } from "./fixture.mjs";
 
 let folder;
@@ -23,6 +23,22 @@ test("ItAsksNobodyForAnything", async () => {
   assert.deepEqual(page.requests.filter((url) => !/^(file|data|blob):/.test(url)), []);
   assert.equal(page.requests.filter((url) => url.startsWith("file:")).length, 1);
   assert.deepEqual(page.complaints, []);
+});
+
+test("ItsLegendFollowsAScaleThatChangesWithoutANewFrame", async () => {
+  const scales = () => page.evaluate(() => [document.querySelector(".legend").dataset.maxN, String(window.taut.view.world.cables.scale_n)]);
+  const setScale = (scale_n) => page.evaluate((wanted) => {
+    const { world } = window.taut.view;
+    world.cables.scale_n = wanted; // as soon as the trace's largest tension is known
+    world.update(window.taut.app.frame.value);
+  }, scale_n);
+  await drawn(page);
+  const [shown, drawnWith] = await scales();
+  assert.equal(shown, drawnWith);
+  await setScale(2 * Number(drawnWith));
+  await drawn(page);
+  assert.deepEqual(await scales(), [String(2 * Number(drawnWith)), String(2 * Number(drawnWith))]);
+  await setScale(Number(drawnWith));
 });
 
 test("ItSaysWhatWasRunAndWhatCameOut", async () => {

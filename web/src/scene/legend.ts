@@ -50,8 +50,7 @@ export function legend(app: App, view: View): HTMLElement {
     grid.hidden = !world.scene.terrain.some((terrain) => terrain.kind === "plane");
     element.dataset["maxN"] = String(max_n);
   };
-  app.frame.watch(draw);
-  app.theme.watch(draw);
+  view.afterDraw.push(draw); // scales may change without a new frame
   return element;
 }
 

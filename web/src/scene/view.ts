@@ -26,6 +26,8 @@ export class View {
   world: World | null = null;
   follow = true;
   readonly frames = { drawn: 0 };
+  /** Called after each picture: what is beside it says of this picture. */
+  readonly afterDraw: (() => void)[] = [];
   private readonly stage = new ThreeScene();
   private readonly sun = new DirectionalLight(0xffffff, 2.2);
   private readonly controls: OrbitControls;
@@ -200,6 +202,7 @@ export class View {
     this.renderer.render(this.stage, this.camera);
     ++this.frames.drawn;
     this.element.dataset["drawn"] = String(this.frames.drawn);
+    for (const call of this.afterDraw) call();
   }
 
   /** The shadow's box stays around the robot, so that its edges are fine wherever it goes. */
