@@ -13,7 +13,52 @@ namespace {
 
 constexpr std::size_t kMostBytes = 64 << 20;
 constexpr std::size_t kMostElements = 500'000;
+constexpr std::size_t kMostAttributes = 1000;  // of an element; the library looks for doubles
 constexpr int kMostFiles = 100;
+
+/// Elements, comments and declarations of a text, and the attributes of the element that has most,
+/// without making anything of them. In XML they are exact. Quotes without an end do no harm: then
+/// the text is no XML.
+struct MarkupCount {
+  std::size_t nodes = 0, attributes = 0;
+};
+
+MarkupCount CountMarkup(std::string_view text) {
+  MarkupCount count;
+  const auto after = [&](std::size_t at, std::string_view end) {
+    const std::size_t found = text.find(end, at);
+    return found == text.npos ? text.size() : found + end.size();
+  };
+  for (std::size_t at = 0; (at = text.find('<', at)) != text.npos;) {
+    const std::string_view tag = text.substr(at);
+    if (tag.starts_with("</")) {
+      ++at;
+      continue;
+    }
+    ++count.nodes;
+    if (tag.starts_with("<!--")) {
+      at = after(at + 4, "-->");
+    } else if (tag.starts_with("<![CDATA[")) {
+      at = after(at + 9, "]]>");
+    } else if (tag.starts_with("<?") || tag.starts_with("<!")) {
+      at = after(at, tag[1] == '?' ? "?>" : ">");
+    } else {
+      std::size_t attributes = 0;
+      char quote = '\0';
+      for (++at; at < text.size() && (quote != '\0' || text[at] != '>'); ++at) {
+        const char c = text[at];
+        if (quote != '\0') {
+          if (c == quote) quote = '\0';
+        } else if (c == '"' || c == '\'') {
+          quote = c;
+          ++attributes;
+        }
+      }
+      count.attributes = std::max(count.attributes, attributes);
+    }
+  }
+  return count;
+}
 
 class XmlReader {
  public:
@@ -30,6 +75,7 @@ class XmlReader {
       out_.Error({path}, "there are control characters in this file");
       return std::nullopt;
     }
+    if (!Fits(*text, path)) return std::nullopt;
     tinyxml2::XMLDocument document;
     if (document.Parse(text->data(), text->size()) != tinyxml2::XML_SUCCESS ||
         document.RootElement() == nullptr) {
@@ -49,6 +95,24 @@ class XmlReader {
   }
 
  private:
+  /// Whether the text, with all before it, keeps to the limits. Asked before the library makes a
+  /// tree of it: that takes 20 times the memory of the text, and the square of an element's
+  /// attributes in time.
+  bool Fits(std::string_view text, const std::string& path) {
+    const MarkupCount count = CountMarkup(text);
+    elements_ += count.nodes;
+    if (elements_ > kMostElements) {
+      out_.Error({path}, "there are more than " + std::to_string(kMostElements) +
+                             " elements and comments up to the end of this file");
+    } else if (count.attributes > kMostAttributes) {
+      out_.Error({path},
+                 "an element has more than " + std::to_string(kMostAttributes) + " attributes");
+    } else {
+      return true;
+    }
+    return false;
+  }
+
   static std::string Why(const tinyxml2::XMLDocument& document) {
     const std::string id = tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID());
     if (document.ErrorID() == tinyxml2::XML_ERROR_MISMATCHED_ELEMENT) {
@@ -68,11 +132,6 @@ class XmlReader {
   }
 
   bool Take(const tinyxml2::XMLElement& from, const std::string& path, Element& to) {
-    if (++elements_ > kMostElements) {
-      out_.Error({path, from.GetLineNum()},
-                 "there are more than " + std::to_string(kMostElements) + " elements");
-      return false;
-    }
     to.name = from.Name();
     to.at = {path, from.GetLineNum(), 0};
     for (const auto* a = from.FirstAttribute(); a != nullptr; a = a->Next()) {

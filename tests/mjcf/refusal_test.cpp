@@ -212,9 +212,42 @@ TEST_F(MjcfRefusal, WhatIsNoXmlOrNotMjcfIsSaid) {
       << Said();
   EXPECT_NE(Refused(With("<site name=\"u\"/>"), {.keyframe = "z"}).find("there is no key \"z\""),
             std::string::npos);
-  std::string deep = "<mujoco><worldbody>";
-  for (int i = 0; i < 1000; ++i) deep += "<body>";
-  Refused(deep);
+}
+
+TEST_F(MjcfRefusal, SizesHaveLimits) {
+  const auto many = [](int count, const std::string& text) {
+    std::string all;
+    for (int i = 0; i < count; ++i) all += text;
+    return all;
+  };
+  EXPECT_EQ(Refused(many(1000, "<body>")),
+            "model.xml:1: error: this is no XML: elements are nested too deeply\n");
+  const std::string elements =
+      "model.xml: error: there are more than 500000 elements and comments up to the end of this "
+      "file\n";
+  EXPECT_EQ(Refused("<mujoco>" + many(500'000, "<a/>") + "</mujoco>"), elements);
+  EXPECT_EQ(Refused("<mujoco>" + many(500'000, "<!---->") + "</mujoco>"), elements);
+  // In a comment, in CDATA and in a value there are none.
+  const std::string none = many(300'000, "<a>");
+  EXPECT_EQ(Refused("<mujoco a='" + none + "'><!--" + none + "--><![CDATA[" + none + "]]></mujoco>")
+                .find("more than"),
+            std::string::npos);
+  std::string attributes;
+  for (int i = 0; i <= 1000; ++i) attributes += " a" + std::to_string(i) + "=\"1\"";
+  EXPECT_EQ(Refused("<mujoco" + attributes + "/>"),
+            "model.xml: error: an element has more than 1000 attributes\n");
+  std::string files;
+  for (int i = 0; i < 100; ++i) {
+    const std::string name = std::to_string(i) + ".xml";
+    Write(name, "<mujocoinclude/>");
+    files += "<include file=\"" + name + "\"/>";
+  }
+  EXPECT_EQ(Refused("<mujoco>\n" + files + "</mujoco>"),
+            "model.xml:2: error: there are more than 100 files\n");
+  std::filesystem::resize_file(Path("model.xml"), (64 << 20) + 1);
+  out_ = {};
+  EXPECT_FALSE(ImportMjcf(Path("model.xml"), {}, out_));
+  EXPECT_EQ(Said(), "model.xml: error: is larger than 67 MB (expected an MJCF model)\n");
 }
 
 }  // namespace
