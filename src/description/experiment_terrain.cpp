@@ -147,6 +147,15 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
       return fresh;
     };
     if (!claim(text.name)) continue;
+    const int made = text.scatter ? text.scatter->count : text.stairs ? text.stairs->steps : 0;
+    if (const std::size_t all = def.terrain_boxes.size() + static_cast<std::size_t>(made);
+        all > static_cast<std::size_t>(kMostBoxes)) {
+      scope.out.Error(text.at,
+                      "the terrain has " + std::to_string(all) + " boxes up to here, more than " +
+                          std::to_string(kMostBoxes),
+                      "what a run writes of more could not be read back");
+      return;  // before they are made: thousands of entries would fill the memory
+    }
     std::vector<TerrainBoxDef> boxes;
     if (text.scatter) boxes = Boxes(*text.scatter);
     if (text.stairs) boxes = Boxes(*text.stairs);
@@ -162,12 +171,6 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
       if (!claim(boxes[i].name)) break;
       def.terrain_boxes.push_back(std::move(boxes[i]));
       robot.terrain_box_sources.push_back(text.at);
-    }
-    if (!boxes.empty() && def.terrain_boxes.size() > static_cast<std::size_t>(kMostBoxes)) {
-      scope.out.Error(text.at,
-                      "the terrain has " + std::to_string(def.terrain_boxes.size()) +
-                          " boxes up to here, more than " + std::to_string(kMostBoxes),
-                      "what a run writes of more could not be read back");
     }
   }
 }

@@ -212,5 +212,17 @@ TEST_F(TerrainBoxErrors, OfNamesAndNumbers) {
   ExpectGood(stairs(std::string(198, 'n'), 3));
 }
 
+TEST_F(TerrainBoxErrors, ThousandsOfEntriesAreRefusedBeforeTheyAreMade) {
+  // 10 million boxes: 2 GB, if each entry were made and then complained about.
+  std::string many;
+  for (int i = 0; i < 2'000; ++i) {
+    many += (i == 0 ? "" : "\n  ") + ("- {name: a" + std::to_string(i)) +
+            ", stairs: {steps: 5000, width_m: 1, tread_m: 1, rise_m: 1}}";
+  }
+  Expect(kGround, many,
+         "8:5: error: the terrain has 10000 boxes up to here, more than 5000 (what a run writes of "
+         "more could not be read back)");
+}
+
 }  // namespace
 }  // namespace taut::test
