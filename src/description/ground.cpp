@@ -1,14 +1,13 @@
-// Height fields by formula or from CSV, and where meshes are.
+// Height fields by formula or from files, and where meshes are.
 #include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "base/brief.h"
-#include "base/input_file.h"
-#include "base/number_text.h"
 #include "description/expression.h"
 #include "description/ground_keys.h"
+#include "description/height_csv.h"
 #include "description/height_image.h"
 #include "description/mesh_file.h"
 #include "description/reader.h"
@@ -18,7 +17,6 @@
 namespace taut::description {
 namespace {
 
-constexpr std::size_t kMostTableBytes = std::size_t{1} << 30;
 constexpr double kMostInFile = 1e8;
 constexpr double kMostByFormula = 4e6;
 /// Steps of a formula for all corners together; a step takes 5 to 50 ns.
@@ -72,54 +70,13 @@ bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldD
   return true;
 }
 
-/// The numbers of a line; where one is wrong, which.
-std::optional<std::size_t> AddRow(std::string_view line, std::vector<double>& row) {
-  std::size_t at = 0;
-  for (std::size_t number = 1;; ++number) {
-    const std::size_t end = std::min(line.find(',', at), line.size());
-    std::string_view word = line.substr(at, end - at);
-    while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
-    while (!word.empty() && (word.back() == ' ' || word.back() == '\r')) word.remove_suffix(1);
-    double value = 0;
-    const auto read = base::FromChars(word.data(), word.data() + word.size(), value);
-    const bool good = read.ec == std::errc() && read.ptr == word.data() + word.size();
-    if (!good || !std::isfinite(value)) return number;
-    row.push_back(value);
-    if (end == line.size()) return std::nullopt;
-    at = end + 1;
-  }
-}
-
 bool ReadCsv(const std::string& path, const Scope& scope, HeightFieldDef& field) {
-  const auto text =
-      base::ReadInputFile(path, kMostTableBytes, "use fewer, larger cells", scope.out);
-  if (!text) return false;
-  const std::size_t errors_before = scope.out.items().size();
-  constexpr std::size_t kMostErrors = 10;
-  int line_number = 0;
-  std::vector<double> row;
-  for (std::size_t at = 0; at < text->size();) {
-    const std::size_t end = std::min(text->find('\n', at), text->size());
-    const std::string_view line = std::string_view(*text).substr(at, end - at);
-    at = end + 1;
-    ++line_number;
-    if (line.empty() || line == "\r" || line.front() == '#') continue;
-    row.clear();
-    const SourceRef place{path, line_number, 0};
-    if (const auto wrong = AddRow(line, row)) {
-      scope.out.Error(place, "number " + std::to_string(*wrong) + " of this line is none",
-                      "finite numbers in m, with commas between them");
-    } else if (field.columns > 0 && row.size() != static_cast<std::size_t>(field.columns)) {
-      scope.out.Error(place, "this line has " + std::to_string(row.size()) +
-                                 " heights, those before have " + std::to_string(field.columns));
-    } else {
-      field.columns = static_cast<int>(row.size());
-      ++field.rows;
-      field.height_m.insert(field.height_m.end(), row.begin(), row.end());
-    }
-    if (scope.out.items().size() - errors_before >= kMostErrors) break;
-  }
-  return scope.out.items().size() == errors_before;
+  auto table = ReadHeightCsv(path, kMostInFile, scope.out);
+  if (!table) return false;
+  field.columns = table->columns;
+  field.rows = table->rows;
+  field.height_m = std::move(table->height_m);
+  return true;
 }
 
 bool IsImage(const std::string& file) { return EndsIn(file, ".png"); }

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "base/brief.h"
 #include "base/input_file.h"
 #include "trace/unpack_limit.h"
 
@@ -102,7 +103,7 @@ std::optional<HeightImage> ReadHeightImage(const std::string& path, double most,
   const double samples = static_cast<double>(head.columns) * head.rows;
   if (samples > most) {
     return refuse("has " + std::to_string(head.columns) + " x " + std::to_string(head.rows) +
-                      " samples, too many",
+                      " samples, more than " + base::Brief(most),
                   "fewer, larger cells");
   }
   const double unpacked = sizeof(double) * samples;

@@ -326,6 +326,7 @@ TEST(GroundModel, GroundThatCannotBeIsRefused) {
     change(def.height_fields[0]);
     return SaidOf(def);
   };
+  has(of([](auto& f) { f.columns = 100'000, f.rows = 1001; }), "has more than 10^8 cells");
   has(of([](auto& f) { f.height_m.pop_back(); }), "has 5 heights, not a height for each");
   has(of([](auto& f) { f.height_m[4] = INFINITY; }), "height 4 must be finite");
   has(of([](auto& f) { f.cell_m = 0; }), "side of a cell must be a positive number");

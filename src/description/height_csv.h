@@ -1,0 +1,21 @@
+/// Heights as a CSV file without a header.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "taut/diagnostics.h"
+
+namespace taut::description {
+
+struct HeightTable {
+  int columns = 0, rows = 0;
+  std::vector<double> height_m;  ///< Row by row, from the first line.
+};
+
+/// Reads one row per line; empty lines and lines that begin with # do not count. Returns nothing
+/// after an error: numbers that are not finite, rows of unequal length, more than `most` numbers.
+std::optional<HeightTable> ReadHeightCsv(const std::string& path, double most, Diagnostics& out);
+
+}  // namespace taut::description
