@@ -101,10 +101,12 @@ class Reader {
     const Value& root = *file.root;
     AddChildren(structure, path, root.Find("substructures"));
     ReadBuilders(in_, root.Find("builders"));
-    AddNodes(structure, root.Find("nodes"));
+    if (!model_.full) AddNodes(structure, root.Find("nodes"));
+    if (model_.full) return;  // else thousands of files, or lines, would repeat the complaint
     for (const Entry& group : MapOf(root.Find("pair_groups"), "pair_groups", out_)) {
       for (const ValuePtr& item : ListOf(group.value.get(), group.key, out_)) {
         std::string a, b;
+        if (model_.full) return;
         if (!ReadTwo(*item, a, b, out_)) continue;
         const int from = NodeAt(in_, structure, a, item->at);
         const int to = NodeAt(in_, structure, b, item->at);
@@ -127,6 +129,7 @@ class Reader {
         continue;
       }
       if (model_.nodes.size() >= kMostItems) {
+        model_.full = true;
         out_.Error(entry.key_at, "more than " + std::to_string(kMostItems) + " nodes");
         return;
       }
@@ -140,8 +143,12 @@ class Reader {
     for (const Entry& entry : entries) {
       MapOf(entry.value.get(), entry.key, out_);
       OnlyKeys(*entry.value, {"path", "rotation", "translation", "scale", "offset"}, out_);
-      for (const std::string& name : AtSlashes(entry.key)) AddChild(structure, path, name, entry);
+      for (const std::string& name : AtSlashes(entry.key)) {
+        if (model_.full) return;
+        AddChild(structure, path, name, entry);
+      }
     }
+    if (model_.full) return;
     // Turned first, all of them; then each key's scale, offset and translation.
     for (const Entry& entry : entries) {
       ForNamed(structure, entry, [&](int child, int) {
@@ -184,6 +191,7 @@ class Reader {
                  open_.size() >= kDeepest
                      ? "files include files more than " + std::to_string(kDeepest) + " levels deep"
                      : "more than " + std::to_string(kMostStructures) + " substructures");
+      model_.full = true;
       return;
     }
     Structure child;
@@ -337,7 +345,9 @@ int NodeAt(const Reading& in, int structure, const std::string& path, const Sour
 }
 
 void AddPair(const Reading& in, int structure, int from, int to, Words tags, const SourceRef& at) {
+  if (in.model.full) return;
   if (in.model.pairs.size() >= kMostItems) {
+    in.model.full = true;
     in.out.Error(at, "more than " + std::to_string(kMostItems) + " pairs");
     return;
   }

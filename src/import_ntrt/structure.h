@@ -74,6 +74,7 @@ struct Model {
   std::vector<Pair> pairs;
   std::vector<Builder> builders;
   NtrtCounts counts;
+  bool full = false;  ///< A limit has been complained about: nothing more is added.
 
   /// The structure with that name below this one, the nearest level first; -1: none.
   int FindChild(int structure, const std::string& name) const;

@@ -42,6 +42,29 @@ TEST_F(NtrtYaml, AllThatIsWrongIsSaidAtOnce) {
       "substructures, bond_groups)\n");
 }
 
+TEST_F(NtrtYaml, SizesHaveLimitsThatAreSaidOnce) {
+  std::string nodes = "nodes:\n";
+  for (int i = 0; i <= 20'000; ++i) nodes += "  n" + std::to_string(i) + ": [0, 0, 0]\n";
+  EXPECT_EQ(Complaints(nodes), "s.yaml:20002:3: error: more than 20000 nodes\n");
+  std::string pairs = "nodes: {a: [0, 0, 0], b: [0, 1, 0]}\npair_groups:\n  string:\n";
+  for (int i = 0; i < 20'010; ++i) pairs += "    - [a, b]\n";
+  EXPECT_EQ(Complaints(pairs), "s.yaml:20004:7: error: more than 20000 pairs\n");
+
+  Write("part.yaml", kTwoRods);
+  std::string parts = "substructures:\n";
+  for (int i = 1'000; i < 3'200; ++i) {  // 100 a key, as keys of YAML have 1024 letters at most
+    parts += std::string(i % 100 == 0 ? "  p" : "/p") + std::to_string(i) +
+             (i % 100 == 99 ? ": {path: part.yaml}\n" : "");
+  }
+  EXPECT_EQ(Complaints(parts), "s.yaml:21:611: error: more than 2000 substructures\n");
+  for (int i = 0; i < 40; ++i) {
+    Write(std::to_string(i) + ".yaml",
+          "substructures: {p: {path: " + std::to_string(i + 1) + ".yaml}}\n");
+  }
+  EXPECT_EQ(Complaints("substructures: {p: {path: 0.yaml}}\n"),
+            "30.yaml:1:27: error: files include files more than 32 levels deep\n");
+}
+
 TEST_F(NtrtYaml, BondsAndSubstructuresAreChecked) {
   Write("part.yaml", kTwoRods);
   Write("self.yaml", "substructures: {me: {path: self.yaml}}\n");
