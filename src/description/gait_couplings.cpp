@@ -26,6 +26,11 @@ bool HasActuator(const RobotSpec& robot, int cable) {
 std::vector<int> Oscillators(const RobotSpec& robot, const std::vector<std::string>& order,
                              const SourceRef& at, Diagnostics& out) {
   std::vector<int> cables;
+  const std::string too_many = "more than " + std::to_string(kMaxOscillators) + " oscillators";
+  if (order.size() > kMaxOscillators) {
+    out.Error(at, too_many);
+    return cables;
+  }
   std::vector<std::string> names;
   for (std::size_t c = 0; c < robot.def.cables.size(); ++c) {
     const int cable = static_cast<int>(c);
@@ -48,7 +53,7 @@ std::vector<int> Oscillators(const RobotSpec& robot, const std::vector<std::stri
     }
   }
   if (cables.empty() && order.empty()) out.Error(at, "no cable of the robot has an actuator");
-  if (cables.size() > kMaxOscillators) out.Error(at, "more than 65535 oscillators");
+  if (cables.size() > kMaxOscillators) out.Error(at, too_many);
   return out.items().size() == errors_before ? cables : std::vector<int>();
 }
 

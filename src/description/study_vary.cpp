@@ -44,6 +44,7 @@ std::vector<StudyParameter> ToParameters(const Value* list, const std::vector<Va
   std::map<std::size_t, SourceRef> taken;
   std::set<std::string> names;
   for (const VaryText& vary : texts) {
+    if (out.size() > kMostParameters) break;  // further entries would only repeat the complaints
     const bool each = vary.each.value, good = HasRoom(vary, scope);
     if (each == (vary.all.value != nullptr) || !tunables) continue;
     const auto found = MatchTunables(each ? *vary.each.value : *vary.all.value,
@@ -79,9 +80,8 @@ std::vector<StudyParameter> ToParameters(const Value* list, const std::vector<Va
     }
   }
   if (out.size() > kMostParameters) {
-    scope.out.Error(
-        list->at, "vary: " + std::to_string(out.size()) + " parameters are too many, at most 1000",
-        "let groups share one: `all` instead of `each`");
+    scope.out.Error(list->at, "vary: more than " + std::to_string(kMostParameters) + " parameters",
+                    "let groups share one: `all` instead of `each`");
   }
   if (list && list->kind == Value::Kind::kSequence && list->items.empty()) {
     scope.out.Error(list->at, "vary is empty: there is nothing to learn");

@@ -56,6 +56,21 @@ const std::string& CableOf(const RobotSpec& robot, const CouplingGraph& graph, i
       .name;
 }
 
+TEST(Couplings, OscillatorsAre65535AtMost) {
+  RobotSpec robot;
+  robot.def.cables.resize(65'536);
+  std::vector<std::string> order(65'536, "a");
+  for (std::size_t c = 0; c < robot.def.cables.size(); ++c) {
+    robot.def.cables[c].name = std::to_string(c);
+    robot.def.cables[c].actuator.kind = ActuatorDef::Kind::kIdeal;
+  }
+  for (const auto& names : {std::vector<std::string>{}, order}) {
+    Diagnostics out;
+    EXPECT_FALSE(FindCouplings(robot, CpgSymmetry::kNone, names, {}, out));
+    EXPECT_EQ(out.Format(), "error: more than 65535 oscillators\n");
+  }
+}
+
 // "Symmetry rules can then be used to reduce the number of phase offsets from 132 to 57. Thus, the
 // simulation needs to learn 116 parameters" [M15].
 TEST(Couplings, ThreeSegmentsHaveThePapersCounts) {

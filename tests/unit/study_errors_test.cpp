@@ -74,6 +74,23 @@ TEST_F(StudyFile, AParameterThatNothingReadsIsAWarning) {
   EXPECT_EQ(out_.warnings()[0].at.line, 14);
 }
 
+TEST_F(StudyFile, ParametersAreAThousandAtMost) {
+  std::string many;
+  for (int i = 0; i < 2000; ++i) {
+    many += "\n  - {name: p" + std::to_string(i) + ", all: model.friction, low: 0.5, high: 2}";
+  }
+  const std::string wrong = Wrong(
+      "\n  - {each: impedance.outer_*_1.tension_offset_n, low: 1, "
+      "high: 20}",
+      many);
+  EXPECT_NE(wrong.find("7: vary: more than 1000 parameters (let groups share one: `all` instead of "
+                       "`each`)\n"),
+            wrong.npos)
+      << wrong;
+  // Entries after the limit are not read: two lines a parameter, the first of which is free.
+  EXPECT_LT(out_.items().size(), 1100u);
+}
+
 TEST_F(StudyFile, UnknownNamesAreSaidWithTheLikelyOne) {
   EXPECT_EQ(
       Wrong("all: model.friction", "all: model.fricton"),
