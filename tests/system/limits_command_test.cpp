@@ -83,6 +83,11 @@ TEST_F(Limits, NumbersOutOfRangeAreBadUsage) {
                   "error: --duration_s: \"" + text +
                       "\" is not a number from 0 to 1e+09\n`taut run --help` tells more.\n");
   }
+  for (const std::string command : {"learn", "fit"}) {
+    ExpectRefused({command, "a.yaml", "--threads", "1025"}, 2,
+                  "error: --threads: \"1025\" is not a whole number from 0 to 1024\n`taut " +
+                      command + " --help` tells more.\n");
+  }
 }
 
 TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {

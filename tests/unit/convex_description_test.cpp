@@ -204,6 +204,31 @@ TEST_F(ConvexText, WrongOnesAreNamed) {
   ExpectHas(Said(many + "[0, 0, 3]], mass_kg: 1"), "are 66, more than 64");
 }
 
+TEST_F(ConvexText, OfAFileWithMoreCornersTheHullHas64AndItIsSaid) {
+  // Two cones, base on base: 102 corners, all of which are its hull's.
+  std::string top, bottom, text;
+  for (int i = 0; i < 100; ++i) {
+    const double angle = 0.02 * std::acos(-1.0) * i;
+    text += "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
+    const std::string a = std::to_string(1 + i), b = std::to_string(1 + (i + 1) % 100);
+    top += "f " + a + " " + b + " 101\n";
+    bottom += "f " + b + " " + a + " 102\n";
+  }
+  Write("cones.obj", text + "v 0 0 1\nv 0 0 -1\n" + top + bottom);
+  const RobotSpec robot = With("file: cones.obj, scale_m: 1, density_kg_per_m3: 1");
+  ASSERT_EQ(robot.def.hulls.size(), 1u);
+  EXPECT_EQ(robot.def.hulls[0].corners_m.size(), 64u);
+  ExpectHas(warnings_, "has 102 corners: of those that 64 do not hold, the farthest is ");
+}
+
+TEST_F(ConvexText, AFileHas256ObjectsAtMost) {
+  std::string many;
+  for (int i = 0; i < 257; ++i) many += Box(3 * i, 1 + 8 * i, "box_" + std::to_string(i));
+  Write("many.obj", many);
+  ExpectHas(Said("file: many.obj, scale_m: 1, mass_kg: 1"),
+            "many.obj has 257 objects, more than 256");
+}
+
 TEST_F(ConvexText, AResolvedExperimentHasItsCorners) {
   Write("l.obj", Box(0, 1, "one") + Box(2, 9, "two"));
   With("file: l.obj, scale_m: 0.05, mass_kg: 3");

@@ -22,6 +22,15 @@ TEST_F(ExperimentErrors, SelectorsMustMatch) {
   Expect("{cables: left, ", "{", "15:11: error: set_points needs the key \"cables\"");
 }
 
+TEST_F(ExperimentErrors, SensorsAreLateBy10000PeriodsAtMost) {
+  Change("duration_s: 10\n",
+         "duration_s: 10\nsensors: {period_s: 0.001, load_cell: {delay_s: 10.001}}\n");
+  EXPECT_NE(Complaints().find("error: sensors.load_cell.delay_s must not be longer than 10000 "
+                              "sensor periods (the period is 0.001 s)\n"),
+            std::string::npos)
+      << Complaints();
+}
+
 TEST_F(ExperimentErrors, ARobotWithoutCablesHasNoneToDrive) {
   Write("model.yaml",
         "taut: 1\nkind: model\nname: rod\nnodes: {a: [0, 0, 0], b: [1, 0, 0], a1: {at_m: [0, 1, "

@@ -116,6 +116,19 @@ TEST_F(FeedbackGait, WrongNetworksAreAnswered) {
          "11:7: error: there are two oscillators one (the first is in line 10)");
 }
 
+TEST_F(FeedbackGait, HiddenNeuronsAre32AtMost) {
+  std::string more;
+  for (int i = 2; i <= 33; ++i) {
+    more += "      - {name: h" + std::to_string(i) + ", weights: [0, 3, 0]}\n";
+  }
+  ChangeFile("g.yaml", kGait, "      - {name: h2, weights: [0, 3, 0], bias: 0.25}\n", more);
+  Diagnostics out;
+  EXPECT_FALSE(LoadGait(Path("g.yaml"), out));
+  EXPECT_NE(out.Format().find("error: goal_network.hidden must have 1 to 32 neurons, not 33\n"),
+            std::string::npos)
+      << out.Format();
+}
+
 TEST_F(FeedbackGait, WhatDoesNotFitTheRobotIsAnswered) {
   const auto changed = [](const std::string& from, const std::string& to) {
     std::string text = kGait;

@@ -175,6 +175,15 @@ TEST_F(MappingTest, TwoChannelsMayNotBecomeOne) {
   EXPECT_EQ(out.Format(), "t.csv: error: the mapping makes two channels b\n");
 }
 
+TEST_F(MappingTest, AFileOfMoreThan10MbIsRefused) {
+  Diagnostics out;
+  const std::string path = WriteFile("m.json", "{}");
+  std::filesystem::resize_file(path, 10'000'001);
+  EXPECT_FALSE(LoadMapping(path, out));
+  EXPECT_EQ(WithoutFolder(out.Format()),
+            "m.json: error: is larger than 10 MB (expected a few rules)\n");
+}
+
 TEST_F(MappingTest, ComplaintsNameTheKeyAndComeAllAtOnce) {
   EXPECT_EQ(Complaint(R"({"version": 1, "chanels": [], "vectors": {}, "description": 3})"),
             "chanels is not known here (did you mean \"channels\"?)\n"

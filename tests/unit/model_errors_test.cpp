@@ -205,6 +205,14 @@ TEST(ModelErrors, PairsAndTagsAreAReasonableNumber) {
       "copies of this placement)\n");
 }
 
+TEST(ModelErrors, BuildersAreAReasonableNumber) {
+  std::string many = "nodes: {a: [0, 0, 0]}\nbuilders:\n";
+  for (int i = 0; i < 1001; ++i) many += "  - {match: a, point_mass: {mass_kg: 1}}\n";
+  EXPECT_EQ(Errors(many),
+            "robot.yaml:6:3: error: more than 1000 builders (match by tags that many nodes or "
+            "pairs share)\n");
+}
+
 TEST(ModelErrors, RotationsAreWellFormed) {
   const auto rotate = [](const std::string& text) {
     return Errors(std::string(kBars) + "structure: [{part: bar, rotate: " + text + "}]\n");

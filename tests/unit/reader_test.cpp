@@ -335,6 +335,18 @@ TEST_F(ReadingMaps, ExactlyOneOfSeveralKeys) {
             "be there)\n");
 }
 
+TEST(Hints, NameTwelveOrAllOfFourteen) {
+  std::vector<std::string> names;
+  std::string twelve = "one of:";
+  for (int i = 0; i < 15; ++i) {
+    names.push_back("quite_long_" + std::to_string(i));
+    if (i < 12) twelve += (i == 0 ? " " : ", ") + names.back();
+  }
+  EXPECT_EQ(DidYouMean("x", names), twelve + ", ...");
+  names.pop_back();
+  EXPECT_EQ(DidYouMean("x", names), twelve + ", quite_long_12, quite_long_13");
+}
+
 TEST(Header, TautAndKindMustBeRight) {
   const auto errors = [](const std::string& yaml) {
     Diagnostics out;

@@ -168,6 +168,19 @@ TEST(Route, AnAxisAlongTheWayHasNoSide) {
   EXPECT_NEAR(math::DescribedPath(wound).length_m(), std::hypot(across, 0.5), 1e-12);
 }
 
+TEST(Route, FrictionIsAt15PlacesOfACableAtMost) {
+  const auto route = [](int eyelets) {
+    std::string text = "[a";
+    for (int i = 0; i < eyelets; ++i) {
+      text += std::string(", {eyelet: ") + (i % 2 == 0 ? "w" : "c") + ", friction: 0.1}";
+    }
+    return Posts(text + ", b]");
+  };
+  EXPECT_EQ(Good(route(15)).def.cables[0].attachments.size(), 17u);
+  EXPECT_EQ(Errors(route(16)),
+            "robot.yaml:7:5: error: the cable \"rope\" has friction at more than 15 places\n");
+}
+
 TEST(Route, WithFrictionADirectCurrentMotorDoesNotWindIt) {
   const std::string motor = "prestress_n: 1, actuator: {dc_motor: {}}";
   for (const std::string& element :
