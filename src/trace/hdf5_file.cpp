@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <cstring>
 
 #include "trace/unpack_limit.h"
 
 namespace taut::trace {
 namespace {
 
+/// Of an attribute; a longer one is left out. The parent takes no more (hdf5_reader.cpp).
 constexpr std::size_t kMaxTextBytes = 64 << 20;
 
 /// The widest number that a machine has.
@@ -34,7 +36,8 @@ std::optional<std::string> TextAttribute(hid_t object, const std::string& name) 
     char* text = nullptr;
     const Hdf5Id memory(H5Tcopy(type), H5Tclose);
     if (H5Aread(attribute, memory, &text) < 0 || text == nullptr) return std::nullopt;
-    std::string copy = text;
+    std::optional<std::string> copy;
+    if (const std::size_t size = std::strlen(text); size <= kMaxTextBytes) copy.emplace(text, size);
     H5free_memory(text);
     return copy;
   }

@@ -72,6 +72,28 @@ TEST_F(ForeignHdf5, FloatsIntegersAndTextOfAnyLengthAreFine) {
   EXPECT_EQ(trace->values[1], (std::vector<double>{0.5, 1.5, 2.5}));
 }
 
+TEST_F(ForeignHdf5, TextsOfMoreThan64MebibytesAreLeftOut) {
+  const std::string path = Make("taut trace", 1);
+  Times();
+  const hid_t type = H5Tcopy(H5T_C_S1), scalar = H5Screate(H5S_SCALAR);
+  H5Tset_size(type, H5T_VARIABLE);
+  const auto add = [&](const char* name, const std::string& text) {
+    const hid_t attribute = H5Acreate2(file_, name, type, scalar, H5P_DEFAULT, H5P_DEFAULT);
+    const char* const value = text.c_str();
+    H5Awrite(attribute, type, &value);
+    H5Aclose(attribute);
+  };
+  add("large", std::string((64 << 20) + 1, 'x'));
+  add("small", "as it is");
+  H5Sclose(scalar);
+  H5Tclose(type);
+  Close();
+  Diagnostics out;
+  const auto trace = ReadTrace(path, out);
+  ASSERT_TRUE(trace) << out.Format();
+  EXPECT_EQ(trace->metadata, (TraceMetadata{{"small", "as it is"}}));
+}
+
 TEST_F(ForeignHdf5, WhatIsNotATraceOfThisVersionIsSaidToBeSo) {
   std::string path = Make("photo", 1);
   Close();
