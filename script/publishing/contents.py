@@ -4,7 +4,7 @@ PARTS = {
     "Begin": ["docs/tutorial.md", "docs/tutorial_ground.md", "docs/tutorial_joints.md", "docs/tutorial_cables.md",
               "docs/tutorial_python.md", "docs/gallery.md", "report.md", "demo.md"],
     "Use": ["docs/cli.md", "docs/viewer.md", "docs/browser.md", "docs/analyze.md", "docs/export.md", "docs/learning.md", "docs/environments.md", "docs/cluster.md",
-            "docs/compare.md", "docs/fit.md", "docs/python.md", "docs/glossary.md"],
+            "docs/compare.md", "docs/fit.md", "docs/python.md", "docs/limits.md", "docs/glossary.md"],
     "Coming from": ["docs/from_gymnasium.md", "docs/from_ntrt.md", "docs/from_mujoco.md", "docs/from_matlab.md"],
     "Files": ["docs/formats/model.md", "docs/formats/experiment.md", "docs/formats/gait.md", "docs/formats/study.md",
               "docs/formats/"],
