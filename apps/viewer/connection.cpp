@@ -5,17 +5,13 @@
 #include "command.h"
 
 namespace taut::viewer {
-namespace {
 
-/// A client that leaves this much unread is gone or has no use for it.
-constexpr std::size_t kMaxWaitingBytes = 64 << 20;
-
-}  // namespace
-
-Connection::Connection(tcp::socket socket, int client, bool may_drive, Handlers handlers)
+Connection::Connection(tcp::socket socket, int client, bool may_drive, std::size_t max_unread_bytes,
+                       Handlers handlers)
     : stream_(std::move(socket)),
       client_(client),
       may_drive_(may_drive),
+      max_unread_bytes_(max_unread_bytes),
       handlers_(std::move(handlers)) {}
 
 void Connection::Accept(const http::request<http::empty_body>& request) {
@@ -47,7 +43,7 @@ void Connection::Read() {
 void Connection::SendText(std::string text) {
   if (!open_ || closing_) return;
   waiting_bytes_ += text.size();
-  if (waiting_bytes_ > kMaxWaitingBytes) return Close("too slow");
+  if (waiting_bytes_ > max_unread_bytes_) return Close("too slow");
   texts_.push_back(std::move(text));
   Write();
 }

@@ -20,7 +20,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
     std::function<void(Connection&)> closed;
   };
 
-  Connection(tcp::socket socket, int client, bool may_drive, Handlers handlers);
+  /// Closes where more than `max_unread_bytes` of texts wait.
+  Connection(tcp::socket socket, int client, bool may_drive, std::size_t max_unread_bytes,
+             Handlers handlers);
 
   int client() const noexcept { return client_; }
   bool may_drive() const noexcept { return may_drive_; }
@@ -38,6 +40,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::websocket::stream<beast::tcp_stream> stream_;
   int client_;
   bool may_drive_;
+  std::size_t max_unread_bytes_;
   Handlers handlers_;
   beast::flat_buffer received_;
   std::deque<std::string> texts_;

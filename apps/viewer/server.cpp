@@ -69,7 +69,7 @@ struct Server::Impl {
     };
     handlers.closed = [this](Connection& who) { Closed(who); };
     std::make_shared<Connection>(std::move(socket), client, access == Access::kDrive,
-                                 std::move(handlers))
+                                 options.max_unread_bytes, std::move(handlers))
         ->Accept(request);
   }
 

@@ -61,6 +61,7 @@ CONSTANTS = {
     "unfinished HTTP requests": ("apps/viewer/server.h", "max_http"),
     "header of": ("apps/viewer/http_sockets.cpp", "kMaxHeaderBytes"),
     "message to": ("apps/viewer/command.h", "kMaxMessageBytes"),
+    "messages that a page": ("apps/viewer/server.h", "max_unread_bytes"),
     "commands of all pages": ("apps/viewer/session.cpp", "kMaxWaiting"),
     "requests for plots": ("apps/viewer/session.cpp", "kMaxSeriesWaiting"),
     "commands to a robot": ("apps/viewer/robot_session.cpp", "kMaxCommands"),

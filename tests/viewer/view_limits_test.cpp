@@ -37,6 +37,14 @@ TEST(ViewLimits, TheHeadOfARequestHas8KibibytesAtMost) {
                boost::system::system_error);
 }
 
+TEST(ViewLimits, APageThatLeavesTooMuchUnreadIsClosed) {
+  viewer::ServerOptions options;
+  EXPECT_EQ(options.max_unread_bytes, 64u << 20);
+  options.max_unread_bytes = 100;  // less than the greeting
+  const Serving serving(PausedLive(kHang), options);
+  EXPECT_EQ(std::string(Client(serving.port()).AwaitClose().reason.c_str()), "too slow");
+}
+
 /// A session that nobody has started: what it is given waits.
 class Waiting final : public viewer::Session {
  public:
