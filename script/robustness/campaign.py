@@ -8,8 +8,9 @@ import shutil
 import threading
 import time
 
+from robustness.commands import ALL
 from robustness.inject import KILL_KINDS, Fault
-from robustness.scenarios import ALL, View, said
+from robustness.scenarios import View, said
 from validation.runs import Problem, table
 
 MOST_POINTS = 2000   # of memory, of one kind and mode, unless another number is asked for

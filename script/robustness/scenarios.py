@@ -212,7 +212,7 @@ class Reader(Scenario):
         copy = shutil.copytree(self.before, folder / "right")
         self.right = self.run(copy)
         if said(self.right) or self.right.status != 0:
-            raise Problem(f"taut {' '.join(self.words())}: {self.right.errors}")
+            raise Problem(f"taut {' '.join(map(str, self.words()))}: {self.right.errors}")
         self.made_right = {name: (copy / name).read_bytes() for name in self.makes}
 
     def prepare(self):
@@ -298,6 +298,3 @@ class View(Scenario):
             return "status 0, no error, and no recording"
         read = self.program.plain(("compare", trace, trace), folder)
         return None if read.returncode == 0 else f"status 0, and the recording cannot be read: {read.stderr}"
-
-
-ALL = {"run": Run, "learn": Learn, "view": View, "check": Check, "compare": Compare, "report": Report, "top": Top}
