@@ -10,26 +10,54 @@
 #include "taut/start.h"
 
 namespace taut::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A new folder in that of temporary files, removed with all that is in it at the end of its scope.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::error_code failed;
+    std::string name = (fs::temp_directory_path(failed) / "taut_import_XXXXXX").string();
+    if (!failed && mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  /// Empty if it could not be made.
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace
 
 void WarnOfRefusal(const std::string& model_yaml, const std::string& imported_file,
                    Diagnostics& out) {
-  std::error_code failed;
-  std::string folder =
-      (std::filesystem::temp_directory_path(failed) / "taut_import_XXXXXX").string();
+  const auto not_checked = [&](const std::string& why) {
+    out.Warning({imported_file, 0, 0}, "cannot check the model: " + why, "run `taut check`");
+  };
+  const TemporaryFolder folder;
+  if (folder.path().empty()) return not_checked("no temporary folder");
+  const std::string path = folder.path() + "/model.yaml";
   Diagnostics found;
-  if (failed || mkdtemp(folder.data()) == nullptr) {
-    out.Warning({imported_file, 0, 0}, "cannot check the model: no temporary folder",
-                "run `taut check`");
-    return;
-  }
-  const std::string path = folder + "/model.yaml";
   if (WriteWholeFile(path, model_yaml, found)) {
     if (const auto robot = LoadRobot(path, {}, found)) {
       CheckStart(*robot, StartKind::kAsDescribed, found);
     }
   }
-  std::filesystem::remove_all(folder, failed);
   for (const Diagnostic& reason : found.items()) {
+    // Mistakes have a line; this is the temporary file as a whole.
+    if (reason.at.file == path && reason.at.line == 0) {
+      not_checked("its temporary file " + reason.what);
+      continue;
+    }
     out.Warning({imported_file, 0, 0}, "`taut check` refuses the model: " + reason.what,
                 reason.hint);
   }

@@ -52,6 +52,12 @@ def AKilledRunIsNoFinishedRun():
     assert run.returncode == 1 and "WRONG: neither the old run nor the new one is left" in run.stdout, run
 
 
+def AnImportThatCannotCheckItsModelSaysSo():
+    run = faults("import_ntrt", "--at", "open 1 once", "--at", "read 3 once", "--at", "name 1 once")
+    assert run.returncode == 0 and run.stdout.count("cannot check the model: its temporary file cannot be") == 3, run
+    assert "refuses the model" not in run.stdout, run
+
+
 def MemoryThatIsMissingWhereNothingMayBeThrownIsSaid():
     # Of these, some fail while texts of JSON go, which needs memory, too.
     calls = faults("top", "--at", "memory 1 once").stdout
