@@ -97,11 +97,17 @@ int Judge(const FitVerdict& verdict) {
   return verdict.judgement == FitJudgement::kGood ? kOk : kFailed;
 }
 
+int FailOfInput(const Identification& fit) {
+  fmt::print(stderr, "error: {}; the same command goes on from here\n", fit.input_error());
+  return kFailed;
+}
+
 /// Of a fit that is ready: rank 0's part.
 int Search(const FitArguments& args, const Identification& fit, const std::string& folder) {
   Diagnostics found;
   const bool depends = CheckDependence(fit, found);
   if (interrupt_asked) return kInterrupted;
+  if (!fit.input_error().empty()) return FailOfInput(fit);
   if (!depends) return Fail(found, kBadInput);
   if (args.check) {
     if (!args.quiet) PrintCheck(fit);
@@ -123,6 +129,7 @@ int Search(const FitArguments& args, const Identification& fit, const std::strin
     found.Error({MemoryIn(folder)}, "cannot be written: " + fit.memory_error());
     return Fail(found, kFailed);
   }
+  if (!fit.input_error().empty()) return FailOfInput(fit);
   if (!outcome.interrupted && !outcome.why.empty()) {
     fmt::print(stderr, "error: no fit: {}\n", outcome.why);
     return kFailed;

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "apps/viewer/report.h"
+#include "apps/viewer/web_files.h"
 #include "interrupt.h"
 #include "output.h"
 #include "taut/run.h"
@@ -32,6 +33,8 @@ std::optional<std::vector<std::string>> WriteBeforeAndAfter(const Identification
                                                             const std::string& folder,
                                                             Diagnostics& out) {
   std::vector<std::string> reports;
+  std::string no_pages;  // without them there is no report, and the runs can be viewed all the same
+  const bool pages = viewer::FindWebFolder(no_pages).has_value();
   for (std::size_t e = 0; e < fit.spec().experiments.size(); ++e) {
     const FitExperiment& one = fit.spec().experiments[e];
     const fs::path untuned = fs::path(folder) / ("untuned_" + one.name);
@@ -41,12 +44,12 @@ std::optional<std::vector<std::string>> WriteBeforeAndAfter(const Identification
         !WriteOne(fit, e, *with, fitted.string(), out)) {
       return std::nullopt;
     }
-    Diagnostics
-        no_pages;  // without them there is no report, and the runs can be viewed all the same
-    const bool report =
-        viewer::WriteReport((fitted / "trace.h5").string(), {(untuned / "trace.h5").string()},
-                            (fitted / "report.html").string(), no_pages);
-    reports.push_back(report ? "fitted_" + one.name + "/report.html" : "");
+    if (pages &&
+        !viewer::WriteReport((fitted / "trace.h5").string(), {(untuned / "trace.h5").string()},
+                             (fitted / "report.html").string(), out)) {
+      return std::nullopt;
+    }
+    reports.push_back(pages ? "fitted_" + one.name + "/report.html" : "");
   }
   return reports;
 }

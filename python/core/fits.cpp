@@ -79,9 +79,16 @@ std::shared_ptr<Fitted> Search(const Asked& asked, const Overrides& overrides,
   auto fitted = std::make_shared<Fitted>();
   fitted->fit = Identification::Make(*spec, options, said);
   if (!fitted->fit) return nullptr;
+  const auto unreadable = [&] {
+    const std::string why = fitted->fit->input_error();
+    if (!why.empty()) said.Error({}, why);
+    return !why.empty();
+  };
   CheckProfiles(*fitted->fit, asked.how.profiles, said);
-  if (!CheckDependence(*fitted->fit, said) || !said.ok()) return nullptr;
+  const bool depends = CheckDependence(*fitted->fit, said);
+  if (unreadable() || !depends || !said.ok()) return nullptr;
   fitted->outcome = RunFit(*fitted->fit, asked.how);
+  if (unreadable()) return nullptr;
   if (const std::string why = fitted->fit->memory_error(); !why.empty()) {
     said.Error({options.memory_file}, "cannot be written: " + why);
   }

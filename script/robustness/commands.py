@@ -1,9 +1,10 @@
 """Scenarios by the names under which script/faults runs them."""
 
-from robustness import conversions, scenarios
+from robustness import conversions, fits, scenarios
 
 ALL = {"run": scenarios.Run, "learn": scenarios.Learn, "view": scenarios.View, "check": scenarios.Check,
        "compare": scenarios.Compare, "report": scenarios.Report, "top": scenarios.Top,
        "import_mjcf": conversions.ImportMjcf, "import_ntrt": conversions.ImportNtrt,
        "export_mjcf": conversions.ExportMjcf, "export_shape": conversions.ExportShape,
-       "export_structure": conversions.ExportStructure, "analyze": conversions.Analyze, "size": conversions.Size}
+       "export_structure": conversions.ExportStructure, "analyze": conversions.Analyze, "size": conversions.Size,
+       "fit": fits.Fit, "fit_resumed": fits.FitResumed}

@@ -5,8 +5,20 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
+
+#include "base/unreadable.h"
 
 namespace taut::base {
+namespace {
+
+constexpr std::string_view kNotOpened = "cannot be opened: ", kNotRead = "cannot be read: ";
+
+}  // namespace
+
+bool IsUnreadable(const Diagnostic& diagnostic) {
+  return diagnostic.what.starts_with(kNotOpened) || diagnostic.what.starts_with(kNotRead);
+}
 
 std::optional<std::string> ReadInputFile(const std::string& path, std::size_t most_bytes,
                                          const std::string& hint, Diagnostics& out,
@@ -26,13 +38,16 @@ std::optional<std::string> ReadInputFile(const std::string& path, std::size_t mo
     return refuse("is a pipe, socket or device (expected a regular file)");
   }
   std::ifstream in(path, std::ios::binary);
-  if (!in) return refuse(std::string("cannot be opened: ") + std::strerror(errno));
+  if (!in) return refuse(std::string(kNotOpened) + std::strerror(errno));
   std::string text;
   for (std::array<char, 65536> chunk; in && text.size() <= most_bytes;) {
+    errno = 0;
     in.read(chunk.data(), chunk.size());
+    if (in.bad()) {
+      return refuse(std::string(kNotRead) + std::strerror(errno != 0 ? errno : EIO));
+    }
     text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
   }
-  if (in.bad()) return refuse("cannot be read");
   if (text.size() <= most_bytes) return text;
   return size_limit();
 }

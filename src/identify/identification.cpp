@@ -71,6 +71,7 @@ class Made : public Identification {
     return {models_.computed(), memory_->remembered(), memory_->damaged()};
   }
   std::string memory_error() const override { return memory_->error(); }
+  std::string input_error() const override { return models_.input_error(); }
 
  private:
   void AddRows(const FitResidual& residual, std::size_t experiment, const Measured* measured,

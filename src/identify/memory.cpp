@@ -102,15 +102,22 @@ bool PointMemory::Begin(const std::string& path, const std::map<std::string, std
               "give another folder with --out, or remove this one");
     return false;
   }
-  for (const auto& [name, value] : facts) {
-    if (!known.empty()) break;
-    Statement put(*database_, "INSERT INTO fact VALUES (?, ?)");
-    if (!put.Bind(name).Bind(value).Run()) {
-      out.Error({path}, "cannot be written: " + database_->TakeError());
-      return false;
-    }
+  if (known.empty() && !WriteFacts(facts)) {
+    out.Error({path}, "cannot be written: " + database_->TakeError());
+    return false;
   }
   return true;
+}
+
+/// All or none: a part of them would be those of another fit.
+bool PointMemory::WriteFacts(const std::map<std::string, std::string>& facts) {
+  bool good = database_->Execute("BEGIN IMMEDIATE");
+  for (const auto& [name, value] : facts) {
+    if (!good) break;
+    Statement put(*database_, "INSERT INTO fact VALUES (?, ?)");
+    good = put.Bind(name).Bind(value).Run();
+  }
+  return good && database_->Execute("COMMIT");  // closing rolls back what is not committed
 }
 
 bool PointMemory::ReadPoints() {

@@ -39,6 +39,7 @@ class PointMemory {
  private:
   bool Begin(const std::string& path, const std::map<std::string, std::string>& facts,
              Diagnostics& out);
+  bool WriteFacts(const std::map<std::string, std::string>& facts);
   bool ReadPoints();
 
   std::unique_ptr<learn::Database> database_;

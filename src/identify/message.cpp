@@ -19,6 +19,7 @@ void Get(base::ByteReader& in, std::vector<std::vector<double>>& lists) {
 std::string Pack(const Computed& computed) {
   base::ByteWriter out;
   out.Put(computed.failed);
+  out.Put(computed.unreadable);
   out.Put(computed.stopped);
   out.Put(computed.time_s);
   Put(out, computed.values);
@@ -30,6 +31,7 @@ Computed UnpackComputed(const std::string& bytes) {
   base::ByteReader in(bytes);
   Computed computed;
   in.Get(computed.failed);
+  in.Get(computed.unreadable);
   in.Get(computed.stopped);
   in.Get(computed.time_s);
   Get(in, computed.values);

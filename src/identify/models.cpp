@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/bytes.h"
+#include "base/unreadable.h"
 #include "description/reader.h"
 
 namespace taut::identify {
@@ -95,7 +96,14 @@ Models::Answer Models::ComputeOne(const Job& job) const {
   const auto experiment = LoadExperiment(one.experiment_file, job.second, found);
   if (!experiment) {
     Computed out;
-    out.failed = found.items().empty() ? "it cannot be read" : found.items()[0].what;
+    // Every file was read when the fit began, so this says nothing of the trial's numbers.
+    const auto& errors = found.items();
+    const auto unreadable = std::find_if(errors.begin(), errors.end(), base::IsUnreadable);
+    if (unreadable != errors.end()) {
+      out.unreadable = unreadable->at.file + " " + unreadable->what;
+    } else {
+      out.failed = errors.empty() ? "it cannot be read" : errors[0].what;
+    }
     return std::make_shared<const Computed>(std::move(out));
   }
   return std::make_shared<const Computed>(
@@ -158,6 +166,7 @@ void Models::Remember(const std::string& key, const Answer& answer) {
 
 std::vector<std::map<std::size_t, Models::Answer>> Models::Compute(
     const std::vector<std::vector<double>>& points, const std::set<std::size_t>& models) {
+  if (!input_error_.empty()) return {};
   std::map<std::string, Answer> answers;
   std::vector<std::pair<std::string, Job>> jobs;
   std::vector<std::map<std::size_t, std::string>> keys(points.size());
@@ -176,7 +185,8 @@ std::vector<std::map<std::size_t, Models::Answer>> Models::Compute(
   for (const auto& [key, job] : jobs) plain.push_back(job);
   const std::vector<Answer> made = spread_ ? ComputeSpread(plain) : ComputeAll(plain);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (!made[i] || made[i]->stopped) return {};
+    if (made[i] && !made[i]->unreadable.empty()) input_error_ = made[i]->unreadable;
+    if (!made[i] || made[i]->stopped || !input_error_.empty()) return {};
     ++computed_;
     answers[jobs[i].first] = made[i];
     Remember(jobs[i].first, made[i]);

@@ -35,7 +35,8 @@ class Models {
 
   using Answer = std::shared_ptr<const Computed>;
   /// Of points, in all estimates of the fit, one map model -> answer each; `models`: those wanted.
-  /// Side by side. Those that were computed lately are remembered. Empty: it was stopped.
+  /// Side by side. Those that were computed lately are remembered. Empty: it was stopped, or a
+  /// file cannot be read any more (`input_error`).
   std::vector<std::map<std::size_t, Answer>> Compute(const std::vector<std::vector<double>>& points,
                                                      const std::set<std::size_t>& models);
 
@@ -48,6 +49,7 @@ class Models {
   std::string Meaning() const;
 
   std::int64_t computed() const { return computed_; }
+  const std::string& input_error() const { return input_error_; }
   int threads() const { return pool_.threads(); }
 
  private:
@@ -73,6 +75,7 @@ class Models {
   std::map<std::string, Answer> lately_;
   std::deque<std::string> order_;  ///< Of `lately_`, the oldest first.
   std::int64_t computed_ = 0;
+  std::string input_error_;
 };
 
 }  // namespace taut::identify

@@ -52,6 +52,19 @@ def AKilledRunIsNoFinishedRun():
     assert run.returncode == 1 and "WRONG: neither the old run nor the new one is left" in run.stdout, run
 
 
+def AFitKilledAtItsFirstWritesGoesOn():
+    # Among them are those of the facts that the points belong to.
+    run = faults("fit", *(word for at in range(25, 45, 3) for word in ("--at", f"write {at} kill")))
+    assert run.returncode == 0 and run.stdout.count("good: killed") == 7, run
+
+
+def AFileThatCannotBeReadEndsAFitAndIsNoFailedTrial():
+    calls = faults("fit", "--at", "read 1 once").stdout
+    count = int(re.search(r"(\d+) read", calls)[1])
+    run = faults("fit", *(word for part in (4, 5, 6) for word in ("--at", f"read {count // part} sticky")))
+    assert run.returncode == 0 and run.stdout.count("the same command goes on from here") > 0, run
+
+
 def AnImportThatCannotCheckItsModelSaysSo():
     run = faults("import_ntrt", "--at", "open 1 once", "--at", "read 3 once", "--at", "name 1 once")
     assert run.returncode == 0 and run.stdout.count("cannot check the model: its temporary file cannot be") == 3, run
