@@ -77,17 +77,18 @@ double ValueOf(const Json& scene, const std::string& name) {
 }
 
 /// The first scene that a client of a server sees which was started with these commands waiting,
-/// once the run has this number.
+/// once the run has this number and has come to this time.
 struct Outcome {
   Json scene;
   ReceivedFrame frame;
 };
-Outcome After(std::unique_ptr<viewer::Session> session, double run) {
+Outcome After(std::unique_ptr<viewer::Session> session, double run, double time_s = 0) {
   const Serving serving(std::move(session));
   Client client(serving.port());
   Outcome outcome;
-  outcome.frame =
-      client.AwaitFrame([run](const auto& f) { return f[FrameHeader::kFrameRun] >= run; });
+  outcome.frame = client.AwaitFrame([=](const auto& f) {
+    return f[FrameHeader::kFrameRun] >= run && f[FrameHeader::kFrameTimeS] >= time_s;
+  });
   // Who comes now gets the scene of now.
   outcome.scene = Client(serving.port()).Await("scene")["scene"];
   return outcome;
@@ -125,7 +126,7 @@ TEST(ViewSession, OtherCommandsKeepTheirPlaceAmongRestarts) {
   Post(*session, "set_parameter", "friction_scale", 0.25);
   Post(*session, "step");
   Post(*session, "step");
-  const Outcome outcome = After(std::move(session), 3);
+  const Outcome outcome = After(std::move(session), 3, 0.002);
   EXPECT_EQ(outcome.frame[FrameHeader::kFrameRun], 3);
   EXPECT_EQ(outcome.frame[FrameHeader::kFrameTimeS], 0.002);
   EXPECT_EQ(ValueOf(outcome.scene, "mass_kg"), 0.8);
