@@ -201,11 +201,7 @@ class BodyBuilder {
 
 }  // namespace
 
-const Rigid& Building::RigidOf(int body) const {
-  const int root = scene.bodies[Scene::Index(body)].root;
-  return *std::find_if(rigids.begin(), rigids.end(),
-                       [&](const Rigid& rigid) { return rigid.root == root; });
-}
+const Rigid& Building::RigidOf(int body) const { return rigids[rigid_of_body[Scene::Index(body)]]; }
 
 void FindRigids(Building& b) {
   Scene& scene = b.scene;
@@ -253,24 +249,25 @@ void FindRigids(Building& b) {
     if (rods != 1 && !by_node) rigid.placement = placements.Take(ToName(name, "body"));
   }
   // As a model file is read: what is outside of parts first, then part by part.
-  std::vector<std::string> order{""};
-  const auto is_body = [](const Rigid& rigid) { return rigid.moves || !rigid.shapes.empty(); };
+  std::vector<std::vector<const Rigid*>> parts(1);
+  std::map<std::string, std::size_t> part_of{{"", 0}};
   for (const auto& [root, rigid] : by_root) {
-    if (!is_body(rigid) || rigid.placement.empty()) continue;
-    if (std::find(order.begin(), order.end(), rigid.placement) == order.end()) {
-      order.push_back(rigid.placement);
-    }
+    if (!rigid.moves && rigid.shapes.empty()) continue;
+    const auto [part, fresh] = part_of.try_emplace(rigid.placement, parts.size());
+    if (fresh) parts.emplace_back();
+    parts[part->second].push_back(&rigid);
   }
-  for (const std::string& placement : order) {
-    for (const auto& [root, rigid] : by_root) {
-      if (is_body(rigid) && rigid.placement == placement) b.rigids.push_back(rigid);
-    }
+  for (const auto& part : parts) {
+    for (const Rigid* const rigid : part) b.rigids.push_back(*rigid);
   }
   for (auto& [root, rigid] : by_root) {  // nothing but nodes
     if (rigid.moves || !rigid.shapes.empty()) continue;
     rigid.placement.clear();
     b.rigids.push_back(rigid);
   }
+  std::vector<std::size_t> of_root(scene.bodies.size());
+  for (std::size_t i = 0; i < b.rigids.size(); ++i) of_root[Scene::Index(b.rigids[i].root)] = i;
+  for (const Body& body : scene.bodies) b.rigid_of_body.push_back(of_root[Scene::Index(body.root)]);
 }
 
 void BuildBodies(Building& b) {

@@ -187,21 +187,22 @@ void ScaleUnits(Building& b) {
     longest = std::max(longest, Length(rod.to_m - rod.from_m));
   for (const BodyDef& body : def.bodies) heaviest = std::max(heaviest, body.mass_kg);
   char text[200];
+  const SourceRef whole{b.scene.bodies.front().at.file, 0, 0};
   const double g = Length(def.gravity_m_per_s2);
   if (longest > kLong_m && !b.options.length_unit_m) {
     std::snprintf(text, sizeof text, "a rod is %.3g m long: is 1 in this file a metre?", longest);
-    b.out.Warning({}, text, "--length_unit_m says what it is");
+    b.out.Warning(whole, text, "--length_unit_m says what it is");
   }
   if (heaviest > kHeavy_kg && !b.options.mass_unit_kg) {
     std::snprintf(text, sizeof text, "a body weighs %.4g kg: is 1 in this file a kilogram?",
                   heaviest);
-    b.out.Warning({}, text, "--mass_unit_kg says what it is");
+    b.out.Warning(whole, text, "--mass_unit_kg says what it is");
   }
   if (l != 1 && g > 0 && std::fabs(g / kEarth - 1) > 0.02) {
     std::snprintf(text, sizeof text,
                   "with this unit of length gravity is %.3g m/s^2, as MuJoCo has it for the file",
                   g);
-    b.out.Warning({}, text, "gravity_m_per_s2 of the model is where to change it");
+    b.out.Warning(whole, text, "gravity_m_per_s2 of the model is where to change it");
   }
 }
 
@@ -209,7 +210,7 @@ std::optional<ImportedMjcf> BuildRobot(Scene& scene, const std::string& path,
                                        const MjcfImport& options, Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
   ImportedMjcf made;
-  Building b{scene, options, made, out, {}, {}, {}, {}, {}, {}};
+  Building b{scene, options, made, out, {}, {}, {}, {}, {}, {}, {}};
   const std::string stem = std::filesystem::path(path).stem().string();
   made.robot.def.name = ToName(!options.name.empty()  ? options.name
                                : !scene.model.empty() ? scene.model

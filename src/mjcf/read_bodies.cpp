@@ -10,6 +10,9 @@
 namespace taut::mjcf {
 namespace {
 
+/// Time grows with the number of pairs.
+constexpr std::size_t kMostGeoms = 5000;
+
 class BodyReader {
  public:
   BodyReader(const Defaults& defaults, Scene& scene, Diagnostics& out)
@@ -45,7 +48,7 @@ class BodyReader {
       } else if (child.name == "site") {
         ReadSite(child, body, frame, cls);
       } else if (child.name == "geom") {
-        geoms_.push_back({&child, body, frame, cls});
+        AddGeom({&child, body, frame, cls});
       } else if (child.name == "joint" || child.name == "freejoint") {
         ReadJoint(child, body, cls);
       } else if (child.name == "inertial") {
@@ -55,10 +58,11 @@ class BodyReader {
     if (of.name == "frame") return;
     Mass(body);
     const std::size_t first_shape = scene_.shapes.size();
-    for (const GeomAt& geom : geoms_) {
-      if (geom.body == body) ReadGeom(geom, has_mass_);
-    }
-    std::erase_if(geoms_, [&](const GeomAt& geom) { return geom.body == body; });
+    // Geoms of the bodies within are gone, so the last ones are those of this body.
+    std::size_t own = geoms_.size();
+    while (own > 0 && geoms_[own - 1].body == body) --own;
+    for (std::size_t i = own; i < geoms_.size(); ++i) ReadGeom(geoms_[i], has_mass_);
+    geoms_.resize(own);
     if (!has_mass_) SumOfShapes(body, first_shape);
     Bound(body);
   }
@@ -156,6 +160,14 @@ class BodyReader {
     std::string cls;
   };
 
+  void AddGeom(GeomAt geom) {
+    if (++geom_count_ == kMostGeoms + 1) {
+      out_.Error(geom.element->at, "there are more than " + std::to_string(kMostGeoms) + " geoms",
+                 "which of them touch is asked of all pairs");
+    }
+    if (geom_count_ <= kMostGeoms) geoms_.push_back(std::move(geom));
+  }
+
   /// An inertial that counts.
   void Mass(int body) {
     using FromGeoms = CompilerSettings::FromGeoms;
@@ -241,7 +253,8 @@ class BodyReader {
   const Defaults& defaults_;
   Scene& scene_;
   Diagnostics& out_;
-  std::vector<GeomAt> geoms_;
+  std::vector<GeomAt> geoms_;  ///< Of open bodies.
+  std::size_t geom_count_ = 0;
   std::pair<const Element*, Pose> inertial_{};
   std::vector<int> parents_;
   bool has_mass_ = false;

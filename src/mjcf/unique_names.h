@@ -1,7 +1,7 @@
 /// Names of one kind, each once.
 #pragma once
 
-#include <set>
+#include <map>
 #include <string>
 
 namespace taut::mjcf {
@@ -11,13 +11,18 @@ class UniqueNames {
   /// `name`, or where that is taken or empty, the first of name_2, name_3 ... that is not.
   std::string Take(const std::string& name) {
     const std::string base = name.empty() ? "unnamed" : name;
-    std::string taken = base;
-    for (int i = 2; !taken_.insert(taken).second; ++i) taken = base + "_" + std::to_string(i);
-    return taken;
+    const auto [first, fresh] = taken_.try_emplace(base, 1);
+    if (fresh) return base;
+    std::string free;
+    do {
+      free = base + "_" + std::to_string(++first->second);
+    } while (!taken_.try_emplace(free, 1).second);
+    return free;
   }
 
  private:
-  std::set<std::string> taken_;
+  /// Names, and how often each was asked for: where the search for a free one begins.
+  std::map<std::string, int> taken_;
 };
 
 }  // namespace taut::mjcf

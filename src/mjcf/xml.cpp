@@ -12,15 +12,20 @@ namespace taut::mjcf {
 namespace {
 
 constexpr std::size_t kMostBytes = 64 << 20;
-constexpr std::size_t kMostElements = 500'000;
-constexpr std::size_t kMostAttributes = 1000;  // of an element; the library looks for doubles
+constexpr std::size_t kMostElements = 50'000;
 constexpr int kMostFiles = 100;
+/// Of all files together: each is limited by the library, but the innermost element may include
+/// another file, and reading is recursive.
+constexpr int kDeepest = 500;
+/// The library compares each attribute with all before it.
+constexpr std::size_t kMostAttributes = 200;  // of an element
 
 /// Elements, comments and declarations of a text, and the attributes of the element that has most,
 /// without making anything of them. In XML they are exact. Quotes without an end do no harm: then
 /// the text is no XML.
 struct MarkupCount {
   std::size_t nodes = 0, attributes = 0;
+  std::size_t crowded_at = 0;  ///< Where that element begins.
 };
 
 MarkupCount CountMarkup(std::string_view text) {
@@ -43,6 +48,7 @@ MarkupCount CountMarkup(std::string_view text) {
     } else if (tag.starts_with("<?") || tag.starts_with("<!")) {
       at = after(at, tag[1] == '?' ? "?>" : ">");
     } else {
+      const std::size_t begin = at;
       std::size_t attributes = 0;
       char quote = '\0';
       for (++at; at < text.size() && (quote != '\0' || text[at] != '>'); ++at) {
@@ -54,7 +60,7 @@ MarkupCount CountMarkup(std::string_view text) {
           ++attributes;
         }
       }
-      count.attributes = std::max(count.attributes, attributes);
+      if (attributes > count.attributes) count.attributes = attributes, count.crowded_at = begin;
     }
   }
   return count;
@@ -105,7 +111,8 @@ class XmlReader {
       out_.Error({path}, "there are more than " + std::to_string(kMostElements) +
                              " elements and comments up to the end of this file");
     } else if (count.attributes > kMostAttributes) {
-      out_.Error({path},
+      const auto from = text.begin(), to = from + static_cast<std::ptrdiff_t>(count.crowded_at);
+      out_.Error({path, 1 + static_cast<int>(std::count(from, to, '\n'))},
                  "an element has more than " + std::to_string(kMostAttributes) + " attributes");
     } else {
       return true;
@@ -132,6 +139,11 @@ class XmlReader {
   }
 
   bool Take(const tinyxml2::XMLElement& from, const std::string& path, Element& to) {
+    if (depth_ >= kDeepest) {
+      out_.Error({path, from.GetLineNum()}, "elements of all files are nested more than " +
+                                                std::to_string(kDeepest) + " deep");
+      return false;
+    }
     to.name = from.Name();
     to.at = {path, from.GetLineNum(), 0};
     for (const auto* a = from.FirstAttribute(); a != nullptr; a = a->Next()) {
@@ -143,6 +155,7 @@ class XmlReader {
       }
       to.attributes.push_back({a->Name(), value, at});
     }
+    ++depth_;
     for (const auto* c = from.FirstChildElement(); c != nullptr; c = c->NextSiblingElement()) {
       if (std::string_view(c->Name()) == "include") {
         if (!Include(*c, path, to)) return false;
@@ -150,6 +163,7 @@ class XmlReader {
         return false;
       }
     }
+    --depth_;
     return true;
   }
 
@@ -183,6 +197,7 @@ class XmlReader {
   std::vector<std::string>& files_;
   Diagnostics& out_;
   std::size_t elements_ = 0;
+  int depth_ = 0;
 };
 
 }  // namespace

@@ -223,19 +223,19 @@ TEST_F(MjcfRefusal, SizesHaveLimits) {
   EXPECT_EQ(Refused(many(1000, "<body>")),
             "model.xml:1: error: this is no XML: elements are nested too deeply\n");
   const std::string elements =
-      "model.xml: error: there are more than 500000 elements and comments up to the end of this "
+      "model.xml: error: there are more than 50000 elements and comments up to the end of this "
       "file\n";
-  EXPECT_EQ(Refused("<mujoco>" + many(500'000, "<a/>") + "</mujoco>"), elements);
-  EXPECT_EQ(Refused("<mujoco>" + many(500'000, "<!---->") + "</mujoco>"), elements);
+  EXPECT_EQ(Refused("<mujoco>" + many(50'000, "<a/>") + "</mujoco>"), elements);
+  EXPECT_EQ(Refused("<mujoco>" + many(50'000, "<!---->") + "</mujoco>"), elements);
   // In a comment, in CDATA and in a value there are none.
-  const std::string none = many(300'000, "<a>");
+  const std::string none = many(60'000, "<a>");
   EXPECT_EQ(Refused("<mujoco a='" + none + "'><!--" + none + "--><![CDATA[" + none + "]]></mujoco>")
                 .find("more than"),
             std::string::npos);
   std::string attributes;
-  for (int i = 0; i <= 1000; ++i) attributes += " a" + std::to_string(i) + "=\"1\"";
+  for (int i = 0; i <= 200; ++i) attributes += " a" + std::to_string(i) + "=\"1\"";
   EXPECT_EQ(Refused("<mujoco" + attributes + "/>"),
-            "model.xml: error: an element has more than 1000 attributes\n");
+            "model.xml:1: error: an element has more than 200 attributes\n");
   std::string files;
   for (int i = 0; i < 100; ++i) {
     const std::string name = std::to_string(i) + ".xml";
@@ -248,6 +248,36 @@ TEST_F(MjcfRefusal, SizesHaveLimits) {
   out_ = {};
   EXPECT_FALSE(ImportMjcf(Path("model.xml"), {}, out_));
   EXPECT_EQ(Said(), "model.xml: error: is larger than 67 MB (expected an MJCF model)\n");
+}
+
+TEST_F(MjcfRefusal, FilesThatIncludeFilesHaveOneDepthTogether) {
+  // Reading is recursive: without a common limit 50 files exhaust the stack.
+  constexpr int kFiles = 50, kDeep = 90;
+  std::string opened, closed;
+  for (int i = 0; i < kDeep; ++i) opened += "<body>", closed += "</body>";
+  for (int i = 1; i <= kFiles; ++i) {
+    Write("part_" + std::to_string(i) + ".xml", "<mujoco>" + opened + "<include file=\"part_" +
+                                                    std::to_string(i + 1) + ".xml\"/>" + closed +
+                                                    "</mujoco>");
+  }
+  EXPECT_NE(Refused("<mujoco><worldbody><include file=\"part_1.xml\"/></worldbody></mujoco>")
+                .find("part_6.xml:1: error: elements of all files are nested more than 500 deep"),
+            std::string::npos)
+      << Said();
+}
+
+TEST_F(MjcfRefusal, WhatTakesTheSquareOfItsNumberIsLimited) {
+  std::string attributes, geoms;
+  for (int i = 0; i <= 200; ++i) attributes += " a" + std::to_string(i) + "=\"<!-- > = --\"";
+  EXPECT_NE(
+      Refused("<mujoco>\n<!-- <a b=" + attributes + " -->\n<worldbody" + attributes + "/></mujoco>")
+          .find("model.xml:3: error: an element has more than 200 attributes"),
+      std::string::npos)
+      << Said();
+  for (int i = 0; i <= 5000; ++i) geoms += "<geom size=\"0.1\"/>";
+  EXPECT_NE(Refused(With(geoms)).find("model.xml:3: error: there are more than 5000 geoms"),
+            std::string::npos)
+      << Said();
 }
 
 }  // namespace
