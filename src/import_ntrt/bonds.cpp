@@ -94,6 +94,7 @@ void WarnOfLeftBehind(const Reading& in, int second, const SourceRef& at) {
     return structure == second;
   };
   for (const Pair& pair : in.model.pairs) {
+    if (!in.model.MayCompare({}, {})) return;
     if (pair.removed || below(pair.structure)) continue;
     if (!below(in.node(pair.from).structure) && !below(in.node(pair.to).structure)) continue;
     in.out.Warning(at,
@@ -129,6 +130,7 @@ void RunThrough(const Reading& in, int parent, int first, int second, const Node
     in.out.Warning(bond.at, "no cable runs along this edge: NTRT adds two and takes none away");
   }
   for (const NodeOnEdge& other : all) {
+    if (in.model.ComparedTooMuch()) return;
     bool ignored = false;
     Remove(in, first, bond.node, other.node, ignored);
     Remove(in, second, bond.node, other.node, ignored);

@@ -58,7 +58,10 @@ class Maker {
   int FindBuilder(const Words& tags, int structure, const Kind& is_kind) const {
     for (int b = static_cast<int>(model_.builders.size()) - 1; b >= 0; --b) {
       if (!is_kind(BuilderOf(b).kind)) continue;
-      if (HasAll(tags, Without(BuilderOf(b).search, StructureOf(structure).tags))) return b;
+      const Words& search = BuilderOf(b).search;
+      const Words& own = StructureOf(structure).tags;
+      if (!model_.MayCompare(search, own) || !model_.MayCompare(tags, search)) return -1;
+      if (HasAll(tags, Without(search, own))) return b;
     }
     return -1;
   }
@@ -93,6 +96,7 @@ class Maker {
         connectors_.push_back({cable, i});
         continue;
       }
+      if (model_.ComparedTooMuch()) return;
       ++model_.counts.ignored_pairs;
       std::string tags;
       for (const std::string& tag : pair.tags) tags += (tags.empty() ? "" : " ") + tag;

@@ -1,22 +1,31 @@
 #include "import_ntrt/draft.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace taut::import_ntrt {
 namespace {
 
-std::string Unique(const std::string& name, std::set<std::string>& taken) {
-  std::string free = name;
-  for (int i = 2; !taken.insert(free).second; ++i) free = name + "_" + std::to_string(i);
+/// Names that are taken, and how often each was asked for: where the search for a free one begins.
+using Taken = std::map<std::string, int>;
+
+std::string Unique(const std::string& name, Taken& taken) {
+  const auto [first, fresh] = taken.try_emplace(name, 1);
+  if (fresh) return name;
+  std::string free;
+  do {
+    free = name + "_" + std::to_string(++first->second);
+  } while (!taken.try_emplace(free, 1).second);
   return free;
 }
 
 Words NameTexts(const Words& words) {
   Words names;
+  std::set<std::string> known;
   for (const std::string& word : words) {
     const std::string name = NameText(word);
-    if (!Has(names, name)) names.push_back(name);
+    if (known.insert(name).second) names.push_back(name);
   }
   return names;
 }
@@ -46,7 +55,7 @@ class Drafter {
 
   /// By the way from the topmost structure: leg_knee.
   void NamePlacements() {
-    std::set<std::string> taken;
+    Taken taken;
     for (const Structure& structure : model_.structures) {
       std::string name;
       if (structure.parent >= 0) {
@@ -63,7 +72,7 @@ class Drafter {
     const auto use = [&](int node) { is_used[static_cast<std::size_t>(node)] = true; };
     for (const Solid& solid : built_.solids) use(solid.from), use(solid.to);
     for (const Cable& cable : built_.cables) use(cable.from.node), use(cable.to.node);
-    std::vector<std::set<std::string>> taken(model_.structures.size());
+    std::vector<Taken> taken(model_.structures.size());
     for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
       const Node& node = model_.nodes[i];
       DraftNode draft;

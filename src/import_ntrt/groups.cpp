@@ -2,6 +2,7 @@
 // something.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "description/beam_axes.h"
 #include "import_ntrt/draft.h"
@@ -35,15 +36,10 @@ class Grouper {
   const Vec3& PlaceOf(int node) const { return model_.nodes[static_cast<std::size_t>(node)].place; }
 
   void Add(Group group, int item, const Words& key) {
-    const std::string text = group.Text();
-    auto same = std::find_if(draft_.groups.begin(), draft_.groups.end(),
-                             [&](const Group& other) { return other.Text() == text; });
-    if (same == draft_.groups.end()) {
-      draft_.groups.push_back(std::move(group));
-      same = draft_.groups.end() - 1;
-    }
-    same->items.push_back(item);
-    same->keys.push_back(key);
+    const auto [same, fresh] = group_by_text_.try_emplace(group.Text(), draft_.groups.size());
+    if (fresh) draft_.groups.push_back(std::move(group));
+    draft_.groups[same->second].items.push_back(item);
+    draft_.groups[same->second].keys.push_back(key);
   }
 
   /// The tags that were looked for among those of a pair or node of this structure.
@@ -245,6 +241,7 @@ class Grouper {
   const Built& built_;
   const double u_;
   Draft& draft_;
+  std::map<std::string, std::size_t> group_by_text_;
   Diagnostics& out_;
   std::vector<double> shortest_;
 };

@@ -2,6 +2,7 @@
 // at f0c52e93.
 #include "import_ntrt/read.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 constexpr int kDeepest = 32;        // files in files
 constexpr double kFarthest = 1e12;  // in the files' unit
 constexpr std::size_t kMostStructures = 2000;
+constexpr std::size_t kMostHinted = 300;  // names among which a hint is searched
 
 const description::NameTable kNoNames;
 
@@ -196,6 +198,10 @@ class Reader {
     }
     Structure child;
     child.tags = Split(name);
+    if (child.tags.empty()) {
+      out_.Error(entry.key_at, "a substructure needs a name");
+      return;
+    }
     child.parent = parent;
     child.file = *file;
     child.at = entry.key_at;
@@ -215,6 +221,8 @@ class Reader {
       const int child = model_.FindChild(structure, name);
       if (child >= 0) {
         visit(child, index);
+      } else if (model_.ComparedTooMuch()) {
+        return;                                 // one complaint at the end
       } else if (!entry.value->Find("path")) {  // a missing file has been complained about
         out_.Error(entry.key_at, "there is no substructure \"" + name + "\"",
                    "one of its entries needs a `path`");
@@ -331,15 +339,19 @@ int NodeAt(const Reading& in, int structure, const std::string& path, const Sour
     const std::string name = left.substr(0, dot);
     structure = in.model.FindChild(structure, name);
     if (structure >= 0) continue;
+    if (in.model.ComparedTooMuch()) return -1;  // one complaint at the end
     in.out.Error(at, "there is no substructure \"" + name + "\" for the node \"" + path + "\"");
     return -1;
   }
   const int node = in.model.FindNode(structure, left);
-  if (node < 0) {
+  if (node < 0 && !in.model.ComparedTooMuch()) {
     std::vector<std::string> names;
-    for (const int i : in.structure(structure).nodes) names.push_back(in.node(i).tags[0]);
+    for (const int i : in.structure(structure).nodes) {
+      if (names.size() > kMostHinted) break;
+      names.push_back(in.node(i).tags[0]);
+    }
     in.out.Error(at, "there is no node \"" + path + "\"",
-                 names.empty() ? "" : DidYouMean(left, names));
+                 names.empty() ? "" : description::NameHint(left, names));
   }
   return node;
 }
@@ -364,6 +376,15 @@ std::optional<Model> ReadStructure(const std::string& path, const NtrtOptions& o
   if (model.nodes.empty()) {
     out.Error({path, 1, 1}, "describes no nodes",
               "an NTRT structure has `nodes:`, or `substructures:` that have");
+    return std::nullopt;
+  }
+  for (const Node& node : model.nodes) {
+    const double farthest =
+        std::max({std::fabs(node.place.x), std::fabs(node.place.y), std::fabs(node.place.z)});
+    if (std::isfinite(node.place.x + node.place.y + node.place.z) && farthest <= kFarthest)
+      continue;
+    out.Error(node.at, "the scales and turns of its structures move this node too far",
+              "coordinates are within 1e12");
     return std::nullopt;
   }
   return model;

@@ -122,6 +122,10 @@ void ReadBuilders(const Reading& in, const Value* builders) {
     Builder builder;
     builder.search = Split(entry.key);
     builder.at = entry.key_at;
+    if (builder.search.empty()) {
+      in.out.Error(entry.key_at, "a builder needs a tag");
+      continue;
+    }
     MapOf(entry.value.get(), entry.key, in.out);
     // NTRT overlooks other keys; a misspelt `parameters` would leave the defaults.
     OnlyKeys(*entry.value, {"class", "parameters"}, in.out);

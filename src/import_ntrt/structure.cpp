@@ -41,9 +41,9 @@ int Model::FindChild(int structure, const std::string& name) const {
   const Words wanted = Split(name);
   int found = -1;
   ForEachBelow(structure, [&](int s) {
-    if (s == structure || !HasAll(structures[static_cast<std::size_t>(s)].tags, wanted)) {
-      return false;
-    }
+    const Words& tags = structures[static_cast<std::size_t>(s)].tags;
+    if (!MayCompare(tags, wanted)) return true;
+    if (s == structure || !HasAll(tags, wanted)) return false;
     found = s;
     return true;
   });
@@ -55,7 +55,9 @@ int Model::FindNode(int structure, const std::string& name) const {
   int found = -1;
   ForEachBelow(structure, [&](int s) {
     for (const int node : structures[static_cast<std::size_t>(s)].nodes) {
-      if (!HasAll(nodes[static_cast<std::size_t>(node)].tags, wanted)) continue;
+      const Words& tags = nodes[static_cast<std::size_t>(node)].tags;
+      if (!MayCompare(tags, wanted)) return true;
+      if (!HasAll(tags, wanted)) continue;
       found = node;
       return true;
     }
@@ -69,6 +71,7 @@ int Model::FindPair(int structure, const Vec3& a, const Vec3& b) const {
   ForEachBelow(structure, [&](int s) {
     for (const int i : structures[static_cast<std::size_t>(s)].pairs) {
       const Pair& pair = pairs[static_cast<std::size_t>(i)];
+      if (!MayCompare(pair.tags, {})) return true;
       if (pair.removed) continue;
       const Vec3& from = nodes[static_cast<std::size_t>(pair.from)].place;
       const Vec3& to = nodes[static_cast<std::size_t>(pair.to)].place;
@@ -86,6 +89,8 @@ int Model::FindPair(int structure, const Vec3& a, const Vec3& b) const {
 void Model::Turn(int structure, const Vec3& about, const Quat& q) {
   ForEachBelow(structure, [&](int s) {
     Structure& moved = structures[static_cast<std::size_t>(s)];
+    comparisons += moved.nodes.size();
+    if (ComparedTooMuch()) return true;
     for (const int i : moved.nodes) {
       Vec3& place = nodes[static_cast<std::size_t>(i)].place;
       place = about + Rotate(q, place - about);
@@ -99,6 +104,8 @@ void Model::Turn(int structure, const Vec3& about, const Quat& q) {
 void Model::Shift(int structure, const Vec3& by) {
   ForEachBelow(structure, [&](int s) {
     Structure& moved = structures[static_cast<std::size_t>(s)];
+    comparisons += moved.nodes.size();
+    if (ComparedTooMuch()) return true;
     for (const int i : moved.nodes) {
       Vec3& place = nodes[static_cast<std::size_t>(i)].place;
       place = place + by;
@@ -112,6 +119,8 @@ void Model::Scale(int structure, double factor) {
   const Vec3 about = Centroid(structure);
   ForEachBelow(structure, [&](int s) {
     Structure& moved = structures[static_cast<std::size_t>(s)];
+    comparisons += moved.nodes.size();
+    if (ComparedTooMuch()) return true;
     for (const int i : moved.nodes) {
       Node& node = nodes[static_cast<std::size_t>(i)];
       node.place = about + factor * (node.place - about);

@@ -2,6 +2,7 @@
 /// frame (y up) and the files' units throughout.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,6 +16,8 @@
 namespace taut::import_ntrt {
 
 inline constexpr std::size_t kMostItems = 20000;  ///< Nodes, and pairs.
+/// Comparisons of words and moves of nodes that a structure may need: seconds of one core.
+inline constexpr std::uint64_t kMostComparisons = 200'000'000;
 
 struct Node {
   Words tags;  ///< The first is its name.
@@ -75,6 +78,17 @@ struct Model {
   std::vector<Builder> builders;
   NtrtCounts counts;
   bool full = false;  ///< A limit has been complained about: nothing more is added.
+  /// Of words and places, and moves of nodes. Beyond kMostComparisons nothing is found any more,
+  /// and the structure is refused: names, bonds and builders are searched linearly, so a small file
+  /// could take hours.
+  mutable std::uint64_t comparisons = 0;
+
+  /// Counts a comparison of two lists of words; false if there were too many.
+  bool MayCompare(const Words& words, const Words& wanted) const {
+    comparisons += 1 + words.size() * wanted.size();
+    return comparisons <= kMostComparisons;
+  }
+  bool ComparedTooMuch() const { return comparisons > kMostComparisons; }
 
   /// The structure with that name below this one, the nearest level first; -1: none.
   int FindChild(int structure, const std::string& name) const;

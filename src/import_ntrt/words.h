@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -16,9 +17,10 @@ inline bool Has(const Words& words, const std::string& word) {
 
 inline Words Split(const std::string& text) {
   Words words;
+  std::set<std::string> known;
   std::istringstream in(text);
   for (std::string word; in >> word;) {
-    if (!Has(words, word)) words.push_back(word);
+    if (known.insert(word).second) words.push_back(word);
   }
   return words;
 }

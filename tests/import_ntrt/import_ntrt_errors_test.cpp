@@ -165,5 +165,48 @@ TEST_F(NtrtYaml, WhatNtrtCannotBuildIsRefused) {
   EXPECT_NE(Complaints("nodes: [\n").find("error: not valid YAML"), std::string::npos);
 }
 
+TEST_F(NtrtYaml, NamesWithoutAWordAreRefused) {
+  // Such a substructure was found by any name, and such a builder built every pair.
+  Write("part.yaml", kTwoRods);
+  EXPECT_EQ(Complaints("substructures: {\" \": {path: part.yaml}, p/: {path: part.yaml}}\n"),
+            "s.yaml:1:17: error: a substructure needs a name\n"
+            "s.yaml:1:41: error: a substructure needs a name\n");
+  EXPECT_EQ(Complaints("nodes: {a: [0, 0, 0], b: [0, 1, 0]}\npair_groups: {rod: [[a, b]]}\n"
+                       "builders: {\" \": {class: tgBasicActuatorInfo}}\n"),
+            "s.yaml:3:12: error: a builder needs a tag\n");
+}
+
+TEST_F(NtrtYaml, ScalesThatOverflowAreRefused) {
+  Write("part.yaml", kTwoRods);
+  std::string below = "part.yaml";
+  for (int i = 0; i < 30; ++i) {
+    const std::string file = "scaled_" + std::to_string(i) + ".yaml";
+    Write(file, "substructures: {p: {path: " + below + ", scale: 1e12}}\n");
+    below = file;
+  }
+  EXPECT_NE(
+      Complaints("substructures: {p: {path: " + below + "}}\n").find("move this node too far"),
+      std::string::npos);
+}
+
+TEST_F(NtrtYaml, StructuresThatWouldTakeHoursAreRefused) {
+  // Each bond looked through all cables once for each other bond.
+  constexpr int kNodes = 600;
+  std::string nodes = "nodes:\n", cables = "pair_groups:\n  string:\n", bonds;
+  for (int i = 0; i < kNodes; ++i) {
+    const std::string name = "n" + std::to_string(i), next = "n" + std::to_string((i + 1) % kNodes);
+    nodes += "  " + name + ": [" + std::to_string(i) + ", " + std::to_string(i * i % 7) + ", " +
+             std::to_string(i * i % 5) + "]\n";
+    cables += "    - [" + name + ", " + next + "]\n";
+    bonds += "      - [" + name + ", " + name + "/" + next + "]\n";
+  }
+  Write("part.yaml", nodes + cables);
+  EXPECT_NE(Complaints("substructures: {p/q: {path: part.yaml}}\n"
+                       "bond_groups:\n  string:\n    p/q/node_edge:\n" +
+                       bonds)
+                .find("s.yaml: error: is too large: "),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace taut
