@@ -1,12 +1,13 @@
 #include "taut/calibration.h"
-#include "base/number_text.h"
 
 #include <set>
 #include <utility>
 
+#include "base/number_text.h"
 #include "description/calibration_keys.h"
 #include "description/read_keys.h"
 #include "description/robot_file.h"
+#include "description/write_keys.h"
 
 namespace taut {
 namespace description {
@@ -70,25 +71,19 @@ std::optional<Calibration> LoadCalibration(const std::string& path,
 }
 
 std::string CalibrationYaml(const Calibration& calibration) {
-  const auto quoted = [](const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-      if (c == '"' || c == '\\') out += '\\';
-      out += c == '\n' ? ' ' : c;
-    }
-    return out + "\"";
-  };
+  using description::PlainOrQuoted, description::Quoted;
   std::string out =
       "# yaml-language-server: $schema=../schema/calibration.schema.json\n"
       "taut: 1\nkind: calibration\nname: " +
-      calibration.name + "\n";
+      PlainOrQuoted(calibration.name) + "\n";
   if (!calibration.description.empty()) {
-    out += "description: " + quoted(calibration.description) + "\n";
+    out += "description: " + Quoted(calibration.description) + "\n";
   }
   out += "cables:\n";
   for (const CableCalibration& cable : calibration.cables) {
-    out += "  - cable: " + cable.cable + "\n    measured: " + quoted(cable.measured) + "\n";
-    if (!cable.how.empty()) out += "    how: " + quoted(cable.how) + "\n";
+    out += "  - cable: " + PlainOrQuoted(cable.cable) +
+           "\n    measured: " + Quoted(cable.measured) + "\n";
+    if (!cable.how.empty()) out += "    how: " + Quoted(cable.how) + "\n";
     const std::pair<const char*, const std::optional<double>&> values[] = {
         {"load_cell_n_per_count", cable.load_cell_n_per_count},
         {"load_cell_counts_at_zero", cable.load_cell_counts_at_zero},

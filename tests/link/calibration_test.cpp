@@ -106,7 +106,7 @@ TEST_F(CalibrationFile, AllMistakesAreSaidAtOnce) {
 TEST_F(CalibrationFile, IsReadAsItWasWritten) {
   Calibration written;
   written.name = "bench_2";
-  written.description = "Two cables, \"by hand\"; 5 kg at C:\\lab.";
+  written.description = "Two cables, \"by hand\";\n5 kg at C:\\lab.";
   written.cables = {{"front",
                      "2026-11-23",
                      "Weights: 1, 2 and 5 kg # in air",
