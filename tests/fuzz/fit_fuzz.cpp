@@ -1,0 +1,60 @@
+// Any text as a fit, beside the shipped experiments and measurements.
+#include "fuzz/refusals.h"
+#include "fuzz/shipped_folder.h"
+#include "fuzz/text_mutator.h"
+#include "taut/fit_spec.h"
+
+namespace {
+
+using taut::FitSpec;
+using taut::fuzz::Must;
+
+void CheckExperiments(const std::vector<std::size_t>& indices, const FitSpec& fit,
+                      const std::string& what) {
+  for (const std::size_t index : indices) {
+    Must(index < fit.experiments.size(), "experiment of " + what);
+  }
+}
+
+void CheckFit(const FitSpec& fit) {
+  Must(!fit.experiments.empty() && !fit.estimates.empty() && !fit.residuals.empty(),
+       "something to fit");
+  for (const taut::FitEstimate& one : fit.estimates) {
+    CheckExperiments(one.experiments, fit, one.name);
+    const taut::FitRange& range = one.range;
+    Must(range.scale > 0, "a scale of " + one.name);
+    Must(range.low <= range.start && range.start <= range.high, "start of " + one.name);
+  }
+  for (const taut::FitResidual& one : fit.residuals) {
+    CheckExperiments(one.experiments, fit, one.channels);
+    Must(one.sd > 0 && one.relative_sd >= 0, "sd of " + one.channels);
+  }
+  for (const taut::FitCandidate& candidate : fit.design) {
+    for (const auto& one : candidate.residuals) {
+      CheckExperiments(one.experiments, fit, candidate.name);
+    }
+  }
+  for (const taut::FitCarried& one : fit.carried) CheckExperiments(one.experiments, fit, one.name);
+}
+
+}  // namespace
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned seed) {
+  return taut::fuzz::MutateText(data, size, max_size, seed);
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const taut::fuzz::ShippedFolder folder(
+      "fits", {"experiments", "gaits", "mappings", "models", "tests/data/best_2d_spine"});
+  const std::string path = folder.Write("fits/input.yaml", data, size);
+  taut::Diagnostics out;
+  const auto fit = LoadFit(path, {}, out);
+  taut::fuzz::CheckReading(fit.has_value(), out);
+  if (!fit) return 0;
+  CheckFit(*fit);
+  taut::Diagnostics ignored;
+  const auto again = LoadFit(path, {}, ignored);
+  Must(again && FitText(*again) == FitText(*fit), "the same text twice");
+  return 0;
+}

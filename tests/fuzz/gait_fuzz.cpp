@@ -1,0 +1,26 @@
+// Any text as a gait. An accepted one is written and read back.
+#include "taut/gait.h"
+
+#include "fuzz/refusals.h"
+#include "fuzz/shipped_folder.h"
+#include "fuzz/text_mutator.h"
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned seed) {
+  return taut::fuzz::MutateText(data, size, max_size, seed);
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using taut::fuzz::Must;
+  static const taut::fuzz::ShippedFolder folder("own", {"gaits"});
+  taut::Diagnostics out;
+  const auto gait = taut::LoadGait(folder.Write("gaits/input.yaml", data, size), out);
+  taut::fuzz::CheckReading(gait.has_value(), out);
+  if (!gait) return 0;
+  const std::string text = GaitYaml(*gait);
+  taut::Diagnostics again;
+  const auto same = taut::LoadGait(folder.Write("own/again.yaml", text.data(), text.size()), again);
+  Must(same.has_value(), "what was written can be read: " + again.Format() + text);
+  Must(GaitYaml(*same) == text, "what was written is read as it was");
+  return 0;
+}

@@ -1,0 +1,61 @@
+// Any text as a structure of NTRT, beside the structures that it may include.
+#include "taut/import_ntrt.h"
+
+#include "description/yaml_tree.h"
+#include "fuzz/readers.h"
+#include "fuzz/refusals.h"
+#include "fuzz/text_mutator.h"
+
+namespace {
+
+using taut::fuzz::Must;
+namespace fs = std::filesystem;
+
+/// All structures lie beside the input, and those of folders in folders beside it and above it, so
+/// that most of the relative paths of the seeds lead to a file.
+struct Structures {
+  taut::fuzz::Folder folder;
+  Structures() {
+    const fs::path top = folder.Path("in");
+    fs::create_directory(top);
+    for (const auto& entry :
+         fs::recursive_directory_iterator(TAUT_SOURCE_DIR "/tests/data/ntrt/yaml")) {
+      if (entry.path().extension() != ".yaml") continue;
+      const fs::path parent = entry.path().parent_path().filename();
+      for (const fs::path& to : {top, top / parent, fs::path(folder.Path(parent.string()))}) {
+        fs::create_directories(to);
+        fs::copy_file(entry.path(), to / entry.path().filename(), fs::copy_options::skip_existing);
+      }
+    }
+  }
+};
+
+}  // namespace
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned seed) {
+  return taut::fuzz::MutateText(data, size, max_size, seed);
+}
+
+/// Inputs of odd size are read as NTRT does where it is hardly meant.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const Structures structures;
+  const taut::fuzz::Folder& folder = structures.folder;
+  taut::Diagnostics out;
+  const auto import =
+      taut::ImportNtrt(folder.Write("in/input.yaml", data, size), {0.1, size % 2 == 1, {}}, out);
+  taut::fuzz::CheckReading(import.has_value(), out);
+  if (!import) return 0;
+  const std::string& text = import->model_yaml;
+  const std::string model = folder.Write("model.yaml", text.data(), text.size());
+  taut::Diagnostics of_model;
+  Must(taut::description::ParseYaml(text, model, of_model) != nullptr,
+       "a model file: " + of_model.Format() + text);
+  const auto robot = taut::LoadRobot(model, {}, of_model);
+  taut::fuzz::CheckReading(robot.has_value(), of_model);
+  if (!robot) return 0;
+  taut::fuzz::CheckRobot(*robot);
+  Must(static_cast<int>(robot->def.cables.size()) == import->counts.cables,
+       "as many cables as were counted");
+  return 0;
+}

@@ -1,0 +1,23 @@
+/// Folders of the source tree, copied beside a fuzz input that names files in them.
+#pragma once
+
+#include <initializer_list>
+
+#include "fuzz/fuzz_folder.h"
+
+namespace taut::fuzz {
+
+class ShippedFolder : public Folder {
+ public:
+  /// Copies these folders of the source tree. `own` is created for the inputs.
+  ShippedFolder(const std::string& own, std::initializer_list<const char*> shipped) {
+    namespace fs = std::filesystem;
+    fs::create_directories(Path(own));
+    for (const char* name : shipped) {
+      fs::create_directories(fs::path(Path(name)).parent_path());
+      fs::copy(fs::path(TAUT_SOURCE_DIR) / name, Path(name), fs::copy_options::recursive);
+    }
+  }
+};
+
+}  // namespace taut::fuzz

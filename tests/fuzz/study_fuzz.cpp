@@ -1,0 +1,32 @@
+// Any text as a study, beside the shipped experiments.
+#include "taut/study.h"
+
+#include "fuzz/refusals.h"
+#include "fuzz/shipped_folder.h"
+#include "fuzz/text_mutator.h"
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned seed) {
+  return taut::fuzz::MutateText(data, size, max_size, seed);
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using taut::fuzz::Must;
+  static const taut::fuzz::ShippedFolder folder("studies",
+                                                {"experiments", "gaits", "mappings", "models"});
+  const std::string path = folder.Write("studies/input.yaml", data, size);
+  taut::Diagnostics out;
+  const auto study = LoadStudy(path, {}, out);
+  taut::fuzz::CheckReading(study.has_value(), out);
+  if (!study) return 0;
+  for (const taut::StudyParameter& one : study->parameters) {
+    Must(one.low <= one.high && !one.targets.empty(), "bounds of " + one.name);
+  }
+  for (const taut::SearchSpec& one : study->searches) {
+    Must(one.evaluations > 0 && one.batch > 0, "evaluations of a search");
+  }
+  taut::Diagnostics ignored;
+  const auto again = LoadStudy(path, {}, ignored);
+  Must(again && StudyText(*again) == StudyText(*study), "the same text twice");
+  return 0;
+}
