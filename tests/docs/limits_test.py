@@ -42,6 +42,8 @@ CONSTANTS = {
     "elements and comments": ("src/mjcf/xml.cpp", "kMostElements"),
     "attributes of": ("src/mjcf/xml.cpp", "kMostAttributes"),
     "files of": ("src/mjcf/xml.cpp", "kMostFiles"),
+    "nesting of MJCF elements, with": ("src/mjcf/xml.cpp", "kDeepest"),
+    "geoms of": ("src/mjcf/read_bodies.cpp", "kMostGeoms"),
     "nodes of an NTRT structure": ("src/import_ntrt/structure.h", "kMostItems"),
     "pairs of an NTRT structure": ("src/import_ntrt/structure.h", "kMostItems"),
     "substructures of": ("src/import_ntrt/read.cpp", "kMostStructures"),
@@ -76,7 +78,7 @@ CONSTANTS = {
     "angles in": ("src/math/elementary.h", "kMaxAngle"),
 }
 # Ranges of keys, a library's limit: their numbers are in no constant.
-WITHOUT = ("columns, and rows", "nesting of MJCF", "starts of", "step", "duration")
+WITHOUT = ("columns, and rows", "nesting of MJCF elements of one file", "starts of", "step", "duration")
 UNITS = {"MB": 1e6, "KiB": 1 << 10, "MiB": 1 << 20, "GiB": 1 << 30}
 
 

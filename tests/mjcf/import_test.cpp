@@ -347,7 +347,8 @@ TEST_F(MjcfImportTest, UnitsAreScaledAndAskedFor) {
   const auto made = Import(xml, {.length_unit_m = 0.1, .mass_unit_kg = 0.01});
   ASSERT_TRUE(made);
   EXPECT_EQ(Said(),
-            "warning: with this unit of length gravity is 0.981 m/s^2, as MuJoCo has it for the "
+            "model.xml: warning: with this unit of length gravity is 0.981 m/s^2, as MuJoCo has it "
+            "for the "
             "file (gravity_m_per_s2 of the model is where to change it)\n"
             "model.xml:4: warning: 1 damper of tendons would act in MuJoCo while slack, too; here "
             "dampers act only under tension\n");
