@@ -230,10 +230,14 @@ class Maker {
       out_.Error(pair.at, "both ends of a cable are in one place");
       return;
     }
-    ++model_.counts.cables;
     Cable cable{connector.builder, connector.pair, {}, {}, 0.0};
     cable.from = MakeEnd(builder, builder.is.move_from_to_edge, pair.from, pair.to);
     cable.to = MakeEnd(builder, builder.is.move_to_to_edge, pair.to, pair.from);
+    if (out_.ok() && cable.from.body == cable.to.body) {
+      out_.Warning(pair.at, "the cable ends twice on one body, where it does nothing: left away",
+                   "leave the pair away");
+      return;
+    }
     cable.rest_length =
         Length(cable.to.point - cable.from.point) - builder.is.pretension / builder.is.stiffness;
     if (!(cable.rest_length > 0.0)) {
@@ -243,11 +247,6 @@ class Maker {
           "the pretension is more than stretches this cable from nothing to its length: NTRT "
           "ends with an error there",
           "lower it, here or in the model");
-    }
-    if (out_.ok() && cable.from.body == cable.to.body) {
-      out_.Warning(pair.at, "the cable ends twice on one body, where it does nothing: left away",
-                   "leave the pair away");
-      return;
     }
     built_.cables.push_back(cable);
   }
@@ -260,6 +259,7 @@ class Maker {
       ++(kind == Class::kRod ? counts.rods : kind == Class::kBox ? counts.boxes : counts.spheres);
     }
     counts.bodies = static_cast<int>(built_.mass_kg.size());
+    counts.cables = static_cast<int>(built_.cables.size());
     counts.mass_kg = std::accumulate(built_.mass_kg.begin(), built_.mass_kg.end(), 0.0);
   }
 

@@ -254,6 +254,19 @@ TEST_F(NtrtYaml, WhatAlmostMeetsIsNotOneBody) {
   }
 }
 
+TEST_F(NtrtYaml, CablesThatAreLeftAwayAreNotCounted) {
+  std::string yaml = kTwoRods;
+  yaml.replace(yaml.find("[b, d]]"), 7, "[b, d], [a, b]]");
+  const RobotSpec robot = Robot(yaml + kBuilders);
+  EXPECT_EQ(robot.def.cables.size(), 2u);
+  EXPECT_EQ(counts_.cables, 2);
+  EXPECT_EQ(warnings_,
+            "s.yaml:8:28: warning: another pair joins these two nodes already; as in NTRT both are "
+            "built (leave one of them away)\n"
+            "s.yaml:8:28: warning: the cable ends twice on one body, where it does nothing: left "
+            "away (leave the pair away)\n");
+}
+
 TEST_F(NtrtYaml, ABodyWithoutMassStandsStill) {
   std::string yaml = kTwoRods;
   yaml.replace(yaml.find("rod: [[a, b], [c, d]]"), 21, "rod: [[a, b]]\n  fixed: [[c, d]]");
