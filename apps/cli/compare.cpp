@@ -42,7 +42,8 @@ std::optional<Trace> Load(const std::string& path, const std::string& map, Diagn
   return ReadMapped(path, *mapping, map, out);
 }
 
-int RunCompare(const CompareArguments& given) {
+int RunCompare(CompareArguments given) {
+  for (std::string* path : {&given.path_a, &given.path_b}) *path = TraceOfRun(*path);
   Diagnostics found;
   const auto a = Load(given.path_a, given.map_a, found);
   const auto b = Load(given.path_b, given.map_b, found);
@@ -71,8 +72,11 @@ int RunCompare(const CompareArguments& given) {
 void AddCompare(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("compare", "Say how far two traces are apart.");
   const auto given = std::make_shared<CompareArguments>();
-  command->add_option("A", given->path_a, "Trace (.h5, .csv, .csv.gz): what is judged")->required();
-  command->add_option("B", given->path_b, "Trace: the reference")->required();
+  command
+      ->add_option("A", given->path_a,
+                   "Trace (.h5, .csv, .csv.gz), or folder of a run: what is judged")
+      ->required();
+  command->add_option("B", given->path_b, "Trace, or folder of a run: the reference")->required();
   command->add_option("--map", given->map_b, "Mapping file that gives B the names of taut")
       ->option_text("FILE");
   command->add_option("--map_a", given->map_a, "The same for A")->option_text("FILE");

@@ -39,7 +39,9 @@ class Writer {
         options_(options),
         geoms_(GeomsOf(def)),
         friction_(FrictionsOf(def, geoms_)),
-        site_of_(def.cables.size()) {}
+        site_of_(def.cables.size()) {
+    unique_bodies_.Take("world");  // MuJoCo's name of what does not move
+  }
 
   std::string Text() {
     xml_ << "<mujoco" << Key("model", def_.name.empty() ? "unnamed" : def_.name) << ">\n"

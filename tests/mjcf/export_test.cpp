@@ -314,6 +314,14 @@ std::string Why(const ModelDef& def, const MjcfExport& options = {}) {
   return out.Format();
 }
 
+TEST(MjcfExport, ABodyNamedWorldGetsAnotherName) {
+  ModelDef def = Everything();
+  def.bodies[0].name = "world";
+  MujocoModel theirs(Exported(def));
+  ASSERT_TRUE(theirs);
+  EXPECT_GE(theirs.Id(mjOBJ_BODY, "world_2"), 1);
+}
+
 TEST(MjcfExport, WhatMjcfCannotSayIsRefusedByName) {
   ModelDef def = Everything();
   def.cables[0].touches = CableTouches::kRods;

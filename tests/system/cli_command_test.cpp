@@ -128,7 +128,8 @@ TEST_F(CliCommand, WhatIsMissingOrTooMuchIsNamed) {
             "error: FILE is missing (Model, experiment or gait file (YAML)); usage: taut check "
             "[FLAGS] FILE");
   EXPECT_EQ(Refusal({"compare", "a.h5"}),
-            "error: B is missing (Trace: the reference); usage: taut compare [FLAGS] A B");
+            "error: B is missing (Trace, or folder of a run: the reference); usage: taut compare "
+            "[FLAGS] A B");
   EXPECT_EQ(Refusal({"check", "a.yaml", "b.yaml"}),
             "error: \"b.yaml\" is too much; usage: taut check [FLAGS] FILE");
   EXPECT_EQ(

@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "unit/trace_fixture.h"
@@ -62,6 +63,14 @@ TEST_F(CompareCommand, PassesWithinTheLimitAndFailsBeyondIt) {
   EXPECT_EQ(Run("a.h5 b.csv --map map.json --channels 'cable/b/*' --max_rmse 6.01").status, 0);
   EXPECT_EQ(Run("a.h5 b.csv --map map.json --channels 'cable/b/*' --max_rmse 5.99").status, 1);
   EXPECT_EQ(Run("b.csv a.h5 --map_a map.json --max_error_percent 46.7").status, 0);
+}
+
+TEST_F(CompareCommand, AFolderOfARunStandsForItsTrace) {
+  std::filesystem::create_directory(Path("run"));
+  std::filesystem::copy_file(Path("a.h5"), Path("run/trace.h5"));
+  const Outcome outcome = Run("run a.h5 --max_rmse 0");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("\nPASS: within the limits\n"), std::string::npos);
 }
 
 TEST_F(CompareCommand, JsonAloneIsOnStandardOutput) {
