@@ -69,7 +69,9 @@ void ReadOption(const Layers& layers, Scene& scene, Diagnostics& out) {
   const auto n = layers.Numbers("gravity", {g.x, g.y, g.z}, 3, 3);
   scene.gravity = {n[0], n[1], n[2]};
   scene.timestep = layers.Number("timestep", scene.timestep);
-  if (!(scene.timestep > 0)) layers.Error("timestep", "timestep must be positive");
+  if (!(scene.timestep >= 1e-9 && scene.timestep <= 1)) {
+    layers.Error("timestep", "timestep must be within 1e-9..1");  // as step_s of an experiment
+  }
   for (const char* fluid : {"density", "viscosity"}) {
     if (layers.Number(fluid, 0) != 0) layers.Error(fluid, "a fluid is not read", "there is none");
   }

@@ -250,6 +250,13 @@ TEST_F(MjcfRefusal, SizesHaveLimits) {
   EXPECT_EQ(Said(), "model.xml: error: is larger than 67 MB (expected an MJCF model)\n");
 }
 
+TEST_F(MjcfRefusal, TimestepsAreThoseOfExperiments) {
+  for (const std::string step : {"0", "-1", "1e-10", "2", "1e308"}) {
+    EXPECT_EQ(Refused("<mujoco>\n<option timestep=\"" + step + "\"/></mujoco>"),
+              "model.xml:2: error: option: timestep must be within 1e-9..1\n");
+  }
+}
+
 TEST_F(MjcfRefusal, FilesThatIncludeFilesHaveOneDepthTogether) {
   // Reading is recursive: without a common limit 50 files exhaust the stack.
   constexpr int kFiles = 50, kDeep = 90;
