@@ -72,7 +72,6 @@ class RunFolder {
  private:
   RunFolder(std::string folder, const std::vector<std::string>& more,
             std::unique_ptr<FolderLock> lock);
-  bool BeginFiles(Diagnostics& out, const std::vector<std::string>& traces);
 
   std::string folder_, id_;
   std::vector<std::string> more_;  ///< Removed at the beginning, too.

@@ -23,6 +23,12 @@ class EndOfProgram {
   static void Call(int change);
   /// Until the process is gone.
   [[noreturn]] static void Sleep();
+  /// At the end of a thread's work: once the program ends, the thread sleeps.
+  static void SleepIfReached() {
+    if (!Reached()) return;
+    Compute(-1);
+    Sleep();
+  }
 
  private:
   static void Begin();
@@ -53,10 +59,7 @@ class Released {
     state_ = PyEval_SaveThread();
   }
   ~Released() {
-    if (EndOfProgram::Reached()) {
-      EndOfProgram::Compute(-1);
-      EndOfProgram::Sleep();
-    }
+    EndOfProgram::SleepIfReached();
     OrSleep([this] { PyEval_RestoreThread(state_); });
     EndOfProgram::Compute(-1);
   }
@@ -71,10 +74,7 @@ class Released {
 class Acquired {
  public:
   Acquired() {
-    if (EndOfProgram::Reached()) {
-      EndOfProgram::Compute(-1);
-      EndOfProgram::Sleep();
-    }
+    EndOfProgram::SleepIfReached();
     state_ = OrSleep([] { return PyGILState_Ensure(); });
     EndOfProgram::Call(+1);
     EndOfProgram::Compute(-1);

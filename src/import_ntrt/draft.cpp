@@ -1,24 +1,12 @@
 #include "import_ntrt/draft.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
+
+#include "base/unique_names.h"
 
 namespace taut::import_ntrt {
 namespace {
-
-/// Names that are taken, and how often each was asked for: where the search for a free one begins.
-using Taken = std::map<std::string, int>;
-
-std::string Unique(const std::string& name, Taken& taken) {
-  const auto [first, fresh] = taken.try_emplace(name, 1);
-  if (fresh) return name;
-  std::string free;
-  do {
-    free = name + "_" + std::to_string(++first->second);
-  } while (!taken.try_emplace(free, 1).second);
-  return free;
-}
 
 Words NameTexts(const Words& words) {
   Words names;
@@ -55,13 +43,13 @@ class Drafter {
 
   /// By the way from the topmost structure: leg_knee.
   void NamePlacements() {
-    Taken taken;
+    base::UniqueNames taken;
     for (const Structure& structure : model_.structures) {
       std::string name;
       if (structure.parent >= 0) {
         const std::string& parent = draft_.placements[static_cast<std::size_t>(structure.parent)];
         name = structure.tags.empty() ? "_" : NameText(structure.tags[0]);
-        name = Unique(parent.empty() ? name : parent + "_" + name, taken);
+        name = taken.Take(parent.empty() ? name : parent + "_" + name);
       }
       draft_.placements.push_back(name);
     }
@@ -72,12 +60,12 @@ class Drafter {
     const auto use = [&](int node) { is_used[static_cast<std::size_t>(node)] = true; };
     for (const Solid& solid : built_.solids) use(solid.from), use(solid.to);
     for (const Cable& cable : built_.cables) use(cable.from.node), use(cable.to.node);
-    std::vector<Taken> taken(model_.structures.size());
+    std::vector<base::UniqueNames> taken(model_.structures.size());
     for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
       const Node& node = model_.nodes[i];
       DraftNode draft;
       draft.structure = is_used[i] ? node.structure : -1;
-      draft.name = Unique(NameText(node.tags[0]), taken[static_cast<std::size_t>(node.structure)]);
+      draft.name = taken[static_cast<std::size_t>(node.structure)].Take(NameText(node.tags[0]));
       const std::string& placement = draft_.placements[static_cast<std::size_t>(node.structure)];
       draft.full_name = placement.empty() ? draft.name : placement + "." + draft.name;
       draft.tags = Without(NameTexts(node.tags), {draft.name});

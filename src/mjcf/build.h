@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/unique_names.h"
 #include "mjcf/scene.h"
-#include "mjcf/unique_names.h"
 
 namespace taut::mjcf {
 
@@ -34,7 +34,7 @@ struct Building {
     std::size_t index = 0;
   };
   std::vector<Made> made_of_shape;
-  UniqueNames nodes, pairs, terrain;
+  base::UniqueNames nodes, pairs, terrain;
 
   ModelDef& def() { return made.robot.def; }
   void Note(const std::string& text) { made.notes.push_back(text); }

@@ -221,7 +221,7 @@ void FindRigids(Building& b) {
     if (IsTerrain(scene, scene.shapes[i])) continue;
     of(scene.shapes[i].body).shapes.push_back(static_cast<int>(i));
   }
-  UniqueNames placements;
+  base::UniqueNames placements;
   std::set<std::string> prefixes;
   for (auto& [root, rigid] : by_root) {
     rigid.placement = CommonPrefix(scene, rigid);

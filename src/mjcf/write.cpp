@@ -5,9 +5,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/unique_names.h"
 #include "description/reader.h"
 #include "math/vec.h"
-#include "mjcf/unique_names.h"
 
 namespace taut::mjcf {
 namespace {
@@ -150,7 +150,7 @@ class Writer {
 
   /// A node's name for the cables that end there, else a site of the cable's own.
   void NameSites() {
-    UniqueNames names;
+    base::UniqueNames names;
     for (const NodeDef& node : def_.nodes) {
       sites_.push_back({names.Take(node.name), node.body, node.position_m});
     }
@@ -261,7 +261,7 @@ class Writer {
 
   void Tendons() {
     if (def_.cables.empty() && def_.joints.empty()) return;
-    UniqueNames names;
+    base::UniqueNames names;
     xml_ << "<tendon>\n";
     for (std::size_t c = 0; c < def_.cables.size(); ++c) {
       const CableDef& cable = def_.cables[c];
@@ -332,7 +332,7 @@ class Writer {
   std::vector<std::vector<std::size_t>> site_of_;  ///< Per attachment of a cable.
   std::vector<std::size_t> bar_sites_;             ///< The first of two, per joint.
   std::vector<std::string> tendons_, body_names_;
-  UniqueNames unique_bodies_;
+  base::UniqueNames unique_bodies_;
 };
 
 }  // namespace

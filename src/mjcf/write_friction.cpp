@@ -1,8 +1,8 @@
 // Geoms by name, and what MuJoCo is told of their friction.
 #include <cmath>
 
+#include "base/unique_names.h"
 #include "mechanics/contact_roles.h"
-#include "mjcf/unique_names.h"
 #include "mjcf/write.h"
 #include "sim/combine.h"
 
@@ -27,7 +27,7 @@ double Given(const ModelDef& def, const Friction& all, const Geoms::Geom& shape,
 
 Geoms GeomsOf(const ModelDef& def) {
   const mechanics::ContactRoles roles = mechanics::ContactRolesOf(def);
-  UniqueNames names;
+  base::UniqueNames names;
   Geoms geoms;
   const auto none = [](bool collides) { return mechanics::ContactRole{collides, collides}; };
   const auto add = [&](auto& list, const std::string& name, int body, const Material& material,

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "plant/schedule.h"
 #include "taut/run.h"
 
 namespace taut {
@@ -36,10 +37,9 @@ Ticks FastestTicks(const ExperimentSpec& experiment) {
 double LongestStep(const ExperimentSpec& experiment) {
   const double period_s = FastestTicks(experiment).period_s;
   if (!std::isfinite(period_s)) return experiment.step_s;
-  const double steps = std::ceil(period_s / experiment.step_s - 1e-6);
-  const double step_s = period_s / std::fmax(steps, 1.0);
-  // "n steps" that differ by rounding only are the step asked for.
-  return std::fabs(step_s - experiment.step_s) < 1e-9 * step_s ? experiment.step_s : step_s;
+  plant::Schedule schedule(experiment.step_s, INFINITY);
+  schedule.Aim(period_s);
+  return schedule.step_s();
 }
 
 void WarnOfStep(const ExperimentSpec& experiment, Diagnostics& out) {

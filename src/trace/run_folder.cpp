@@ -59,6 +59,10 @@ std::optional<std::string> ReadText(const std::string& path) {
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
+std::string FolderOf(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path().string() : ".";
+}
+
 std::string IdOfInputs(const std::string& text) {
   if (!text.starts_with(kIdLine)) return {};
   return text.substr(kIdLine.size(), text.find('\n') - kIdLine.size());
@@ -98,25 +102,31 @@ std::vector<Piece> PiecesOfRun(const std::string& path, const Trace& trace) {
   return pieces;
 }
 
-/// The inputs that the writer of run `id` put on the disk beside this trace and has not named yet.
-/// A run that replaces another is in this state from the first row of its trace on, until the
-/// pieces of the run before are gone.
-std::optional<fs::path> UnnamedInputs(const std::string& trace, const std::string& id) {
+/// Inputs beside this trace that their writers put on the disk and have not named yet. A run that
+/// replaces another has some from the first row of its trace on, until the old files are removed.
+std::vector<Piece> UnnamedInputs(const std::string& trace) {
   const fs::path inputs = BesideTrace(trace, "inputs", ".yaml");
   const std::string name = inputs.filename().string() + ".";
-  const fs::path folder = inputs.has_parent_path() ? inputs.parent_path() : ".";
+  std::vector<Piece> found;
   std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(FolderOf(inputs), ignored)) {
     const std::string other = entry.path().filename().string();
     if (!other.starts_with(name) || !other.ends_with(".part")) continue;
     const auto text = ReadText(entry.path().string());
-    if (text && !id.empty() && IdOfInputs(*text) == id) return entry.path();
+    if (text) found.push_back({entry.path().string(), IdOfInputs(*text)});
   }
-  return std::nullopt;
+  return found;
+}
+
+/// The one of this run; nothing if there is none.
+std::optional<std::string> PathOfRun(const std::vector<Piece>& pieces, const std::string& id) {
+  const auto at = std::find_if(pieces.begin(), pieces.end(),
+                               [&](const Piece& piece) { return !id.empty() && piece.id == id; });
+  return at == pieces.end() ? std::nullopt : std::optional(at->path);
 }
 
 /// Does what the writer of this trace would have done next. The caller is the folder's writer.
-bool FinishReplacement(const std::string& trace, const fs::path& unnamed) {
+bool FinishReplacement(const std::string& trace, const std::string& unnamed) {
   const fs::path path(trace);
   Diagnostics ignored;
   if (path.filename() == "trace.h5" &&
@@ -138,11 +148,10 @@ std::vector<Piece> WholePiecesOfRun(const std::string& path, const Trace& trace)
   constexpr std::chrono::milliseconds kBetween{20};
   std::vector<Piece> pieces = PiecesOfRun(path, trace);
   for (int look = 0; look < kLooks && !AreOfOneRun(pieces); ++look) {
-    const auto unnamed = UnnamedInputs(path, IdOfTrace(trace));
+    const auto unnamed = PathOfRun(UnnamedInputs(path), IdOfTrace(trace));
     if (unnamed) {
       Diagnostics ignored;
-      const fs::path folder = fs::path(path).parent_path();
-      const auto lock = FolderLock::Take(folder.empty() ? "." : folder.string(), ignored);
+      const auto lock = FolderLock::Take(FolderOf(path), ignored);
       if (!lock || !FinishReplacement(path, *unnamed)) std::this_thread::sleep_for(kBetween);
     }
     pieces = PiecesOfRun(path, trace);
@@ -154,16 +163,11 @@ std::vector<Piece> WholePiecesOfRun(const std::string& path, const Trace& trace)
 /// In a folder whose writer the caller is.
 void FinishReplacementIn(const std::string& folder) {
   const std::string path = (fs::path(folder) / "trace.h5").string();
-  std::error_code ignored;
-  const auto is_unnamed = [](const fs::directory_entry& entry) {
-    const std::string name = entry.path().filename().string();
-    return name.starts_with(std::string(kInputs) + ".") && name.ends_with(".part");
-  };
-  const fs::directory_iterator all(folder, ignored);
-  if (!fs::exists(path, ignored) || std::none_of(begin(all), end(all), is_unnamed)) return;
+  const std::vector<Piece> all = UnnamedInputs(path);
+  if (all.empty()) return;
   Diagnostics unread;
   const auto trace = ReadTrace(path, unread);
-  const auto unnamed = trace ? UnnamedInputs(path, IdOfTrace(*trace)) : std::nullopt;
+  const auto unnamed = trace ? PathOfRun(all, IdOfTrace(*trace)) : std::nullopt;
   if (unnamed) FinishReplacement(path, *unnamed);
 }
 
@@ -272,12 +276,7 @@ std::unique_ptr<TraceWriter> RunFolder::BeginWith(std::unique_ptr<TraceWriter> l
 }
 
 bool RunFolder::Begin(Diagnostics& out, const std::vector<std::string>& traces) {
-  if (BeginFiles(out, traces)) return true;
-  if (inputs_) inputs_->Leave();  // with them the next reader finishes what could not be done
-  return false;
-}
-
-bool RunFolder::BeginFiles(Diagnostics& out, const std::vector<std::string>& traces) {
+  if (inputs_) inputs_->Leave();  // with them the next reader finishes what cannot be done here
   std::vector<std::string> replaced = traces;
   if (inputs_) replaced.push_back(kInputs);
   if (!RemoveRunBefore(folder_, replaced, out)) return false;

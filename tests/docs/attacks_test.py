@@ -3,7 +3,7 @@
 import ast
 import re
 
-from page import ROOT, Page
+from page import ROOT, Page, refuse
 
 TESTS = ROOT / "tests"
 
@@ -36,8 +36,7 @@ def main():
         held = [text for text in re.findall(r"`([^`]+)`", row.rstrip(" |").split(" | ")[-1]) if re.fullmatch(r"[A-Z]\w+\.\w+", text)]
         wrong += [f"docs/robustness.md: there is no test {name}" for name in held if name not in there]
     assert len(rows) > 30, f"{len(rows)} rows"
-    if wrong:
-        raise SystemExit("\n".join(wrong))
+    refuse(wrong)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 import re
 
 from attacks_test import names
-from page import ROOT, Page
+from page import ROOT, Page, refuse
 
 # Rows by their first words: the file, and the constant that the first number of the row is.
 CONSTANTS = {
@@ -126,8 +126,7 @@ def main():
             wrong.append(f"{at}: {limit} on the page, {value:g} in {path}")
     wrong += [f"docs/limits.md: no row begins with {key}" for key in CONSTANTS if key not in used]
     assert len(rows) > 60, f"{len(rows)} rows"
-    if wrong:
-        raise SystemExit("\n".join(wrong))
+    refuse(wrong)
 
 
 if __name__ == "__main__":

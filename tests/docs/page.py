@@ -6,6 +6,12 @@ import re
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
+def refuse(wrong):
+    """Ends the test with these complaints, if there are any."""
+    if wrong:
+        raise SystemExit("\n".join(wrong))
+
+
 class Block:
     """A fenced block. `info` is what stands behind the opening fence, `line` the line after it."""
 

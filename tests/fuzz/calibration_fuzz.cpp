@@ -2,7 +2,7 @@
 #include "taut/calibration.h"
 
 #include "fuzz/refusals.h"
-#include "fuzz/text_mutator.h"
+#include "fuzz/text_input.h"
 
 namespace {
 
@@ -26,11 +26,6 @@ void CheckSame(const Calibration& a, const Calibration& b) {
 }
 
 }  // namespace
-
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t max_size, unsigned seed) {
-  return taut::fuzz::MutateText(data, size, max_size, seed);
-}
 
 /// Inputs of odd size are for a robot with known cables.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

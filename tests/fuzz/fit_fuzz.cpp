@@ -1,7 +1,7 @@
 // Any text as a fit, beside the shipped experiments and measurements.
 #include "fuzz/refusals.h"
 #include "fuzz/shipped_folder.h"
-#include "fuzz/text_mutator.h"
+#include "fuzz/text_input.h"
 #include "taut/fit_spec.h"
 
 namespace {
@@ -38,11 +38,6 @@ void CheckFit(const FitSpec& fit) {
 }
 
 }  // namespace
-
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t max_size, unsigned seed) {
-  return taut::fuzz::MutateText(data, size, max_size, seed);
-}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const taut::fuzz::ShippedFolder folder(

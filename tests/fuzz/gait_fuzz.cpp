@@ -3,12 +3,7 @@
 
 #include "fuzz/refusals.h"
 #include "fuzz/shipped_folder.h"
-#include "fuzz/text_mutator.h"
-
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t max_size, unsigned seed) {
-  return taut::fuzz::MutateText(data, size, max_size, seed);
-}
+#include "fuzz/text_input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using taut::fuzz::Must;

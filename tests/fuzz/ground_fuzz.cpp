@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto read = taut::fuzz::ReadTerrain(
         folder, "{name: g, height_field: {file: ground.csv, cell_m: 0.1}}", out);
     if (!read) return 0;
-    def.height_fields = read->robot.def.height_fields;
+    def = taut::fuzz::HeightsOf(*read);
   }
   taut::fuzz::DropARod(std::move(def), kSteps);
   return 0;

@@ -51,13 +51,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto read = taut::fuzz::ReadTerrain(
       folder, "{name: g, height_field: {file: 'hills.h5:/z', cell_m: 0.1}}", out);
   if (!read) return 0;
-  taut::ModelDef def;
-  def.height_fields = read->robot.def.height_fields;
-  const taut::HeightFieldDef& field = def.height_fields.at(0);
-  Must(field.height_m.size() ==
-           static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows),
-       "a height for each corner");
-  for (const double height_m : field.height_m) Must(std::isfinite(height_m), "a finite height");
+  taut::ModelDef def = taut::fuzz::HeightsOf(*read);
+  for (const double height_m : def.height_fields.at(0).height_m)
+    Must(std::isfinite(height_m), "a finite height");
   taut::fuzz::DropARod(std::move(def), 5);
   return 0;
 }

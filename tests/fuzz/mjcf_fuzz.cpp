@@ -4,7 +4,7 @@
 
 #include "fuzz/readers.h"
 #include "fuzz/refusals.h"
-#include "fuzz/text_mutator.h"
+#include "fuzz/text_input.h"
 
 namespace {
 
@@ -49,11 +49,6 @@ void CheckExport(const ImportedMjcf& made, const taut::MjcfExport& options, cons
 }
 
 }  // namespace
-
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t max_size, unsigned seed) {
-  return taut::fuzz::MutateText(data, size, max_size, seed);
-}
 
 /// The size of the input chooses the options.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -4,7 +4,7 @@
 #include "description/yaml_tree.h"
 #include "fuzz/readers.h"
 #include "fuzz/refusals.h"
-#include "fuzz/text_mutator.h"
+#include "fuzz/text_input.h"
 
 namespace {
 
@@ -31,11 +31,6 @@ struct Structures {
 };
 
 }  // namespace
-
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t max_size, unsigned seed) {
-  return taut::fuzz::MutateText(data, size, max_size, seed);
-}
 
 /// Inputs of odd size are read as NTRT does where it is hardly meant.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

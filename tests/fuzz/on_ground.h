@@ -46,4 +46,15 @@ inline std::optional<ExperimentSpec> ReadTerrain(const Folder& folder, const std
   return read;
 }
 
+/// The height field of `ReadTerrain` alone, with a height for each corner.
+inline ModelDef HeightsOf(const ExperimentSpec& read) {
+  ModelDef def;
+  def.height_fields = read.robot.def.height_fields;
+  const HeightFieldDef& field = def.height_fields.at(0);
+  Must(field.height_m.size() ==
+           static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows),
+       "a height for each corner");
+  return def;
+}
+
 }  // namespace taut::fuzz

@@ -1,7 +1,7 @@
 /// Mutations of text files by lines, words and numbers, for libFuzzer's custom mutator.
 ///
-/// libFuzzer mutates bytes, which breaks nearly every XML or YAML file. A target that reads text
-/// defines `LLVMFuzzerCustomMutator` as a call of `MutateText`.
+/// libFuzzer mutates bytes, which breaks nearly every XML or YAML file. Targets that read text
+/// include text_input.h.
 #pragma once
 
 #include <algorithm>

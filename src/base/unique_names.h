@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-namespace taut::mjcf {
+namespace taut::base {
 
 class UniqueNames {
  public:
@@ -25,4 +25,4 @@ class UniqueNames {
   std::map<std::string, int> taken_;
 };
 
-}  // namespace taut::mjcf
+}  // namespace taut::base
