@@ -18,7 +18,7 @@ target_compile_options(taut_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow
 # instead of -O3 (-O1 compiles in two thirds of the time), and its files are compiled eight at a time
 # (unity build), which halves the time again: headers are parsed and templates instantiated once for
 # all eight. Files with options of their own, and those with SKIP_UNITY_BUILD_INCLUSION, are compiled one
-# by one. Editors and clang-tidy want file by file: preset "tidy".
+# by one. Editors and clang-tidy need a build file by file: preset "tidy".
 option(TAUT_UNITY_BUILD "Compile several files at a time" ON)
 function(taut_outside_step target level)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)

@@ -70,11 +70,11 @@ int RunCompare(CompareArguments given) {
 }  // namespace
 
 void AddCompare(CLI::App& app, int& exit_code) {
-  auto* command = app.add_subcommand("compare", "Say how far two traces are apart.");
+  auto* command = app.add_subcommand("compare", "Compute the differences of two traces.");
   const auto given = std::make_shared<CompareArguments>();
   command
       ->add_option("A", given->path_a,
-                   "Trace (.h5, .csv, .csv.gz), or folder of a run: what is judged")
+                   "Trace (.h5, .csv, .csv.gz), or folder of a run: compared with B")
       ->required();
   command->add_option("B", given->path_b, "Trace, or folder of a run: the reference")->required();
   command->add_option("--map", given->map_b, "Mapping file that gives B the names of taut")

@@ -33,7 +33,7 @@ std::optional<std::vector<std::string>> WriteBeforeAndAfter(const Identification
                                                             const std::string& folder,
                                                             Diagnostics& out) {
   std::vector<std::string> reports;
-  std::string no_pages;  // without them there is no report, and the runs can be viewed all the same
+  std::string no_pages;  // without pages there is no report, but the runs can be viewed
   const bool pages = viewer::FindWebFolder(no_pages).has_value();
   for (std::size_t e = 0; e < fit.spec().experiments.size(); ++e) {
     const FitExperiment& one = fit.spec().experiments[e];

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A new folder in that of temporary files, removed with all that is in it at the end of its scope.
+/// A new folder in the system's temporary folder; the destructor removes it with its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -29,7 +29,7 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
-  /// Empty if it could not be made.
+  /// Returns an empty path if the folder could not be created.
   const std::string& path() const { return path_; }
 
  private:
@@ -53,7 +53,7 @@ void WarnOfRefusal(const std::string& model_yaml, const std::string& imported_fi
     }
   }
   for (const Diagnostic& reason : found.items()) {
-    // Mistakes have a line; this is the temporary file as a whole.
+    // Errors in the model have a line. This one is about the temporary file itself.
     if (reason.at.file == path && reason.at.line == 0) {
       not_checked("its temporary file " + reason.what);
       continue;

@@ -20,7 +20,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     std::function<void(Connection&)> closed;
   };
 
-  /// Closes where more than `max_unread_bytes` of texts wait.
+  /// Closes the connection if more than `max_unread_bytes` of texts wait.
   Connection(tcp::socket socket, int client, bool may_drive, std::size_t max_unread_bytes,
              Handlers handlers);
 

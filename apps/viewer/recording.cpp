@@ -67,8 +67,8 @@ bool Recording::BeginFiles(LiveRun& run, const ExperimentSpec& experiment, Diagn
     return false;
   }
   identity_ = IdentityOf(Path("trace", ".h5"));
-  inputs.Leave();  // with them the next reader finishes what cannot be done here
-  // What `taut run` wrote there would say something of another run.
+  inputs.Leave();  // if a step below fails, the next reader completes it with these inputs
+  // Files of `taut run` in this folder belong to another run.
   if (!ours_ && !RemoveRunBefore(folder_, {"trace.h5", "inputs.yaml", "events.jsonl"}, out)) {
     return false;
   }

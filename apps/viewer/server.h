@@ -34,8 +34,8 @@ struct ServerOptions {
   std::size_t max_http = 256;
   /// How long a request, and the next on its socket, may take to come, and an answer to go.
   std::chrono::milliseconds request_patience{10'000}, answer_patience{60'000};
-  /// A page that leaves more than this unread is gone or has no use for it: it is closed. Frames do
-  /// not count, of which only the newest waits.
+  /// Unread text at which the connection of a page is closed: the page is gone or too slow. Frames
+  /// do not count, since only the newest one waits.
   std::size_t max_unread_bytes = 64 << 20;
 };
 

@@ -21,30 +21,30 @@ namespace taut {
 /// complaint if that fails.
 bool WriteWholeFile(const std::string& path, std::string_view text, Diagnostics& out);
 
-/// A file that takes its name when it is worth it: until then what had the name stays.
+/// A file that takes its name once it is complete. Until then, an older file of that name stays.
 ///
 /// Belongs to one thread at a time. After a function has returned false, `why()` is the reason.
 class NewFile {
  public:
   explicit NewFile(std::string path) : path_(std::move(path)) {}
-  ~NewFile();  ///< What was not published is gone, unless it was left.
+  ~NewFile();  ///< Removes an unpublished file, unless `Leave` was called.
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
 
-  /// Makes the file beside its place, under a name that nothing else has and no link leads to.
+  /// Creates the file in the folder of its path, under a unique name that no link points to.
   bool Create();
   const std::string& path() const { return path_; }
   /// Where it is until it is published.
   const std::string& made_at() const { return made_at_; }
 
   bool Write(std::string_view bytes);
-  /// All of the bytes or none: where there is no room, what had been written before is left.
+  /// Writes all of the bytes or none: without room, the file keeps its earlier contents.
   bool WriteAllOrNone(std::string_view bytes);
-  /// Brings what was written to the disk and gives the file its name. Does nothing the second time.
+  /// Flushes the file to the disk and gives it its name. Does nothing the second time.
   bool Publish();
-  /// Brings what was written since to the disk.
+  /// Flushes the file to the disk.
   bool Sync();
-  /// What is not published stays at `made_at()`.
+  /// Keeps the file at `made_at()` even if it is never published.
   void Leave() { left_ = true; }
 
   bool published() const { return published_; }
@@ -58,9 +58,9 @@ class NewFile {
   bool published_ = false, left_ = false;
 };
 
-/// Which file is at a path: differs once another one has its place.
+/// Identity of the file at a path: differs once another file replaces it.
 struct FileIdentity {
-  std::uint64_t device = 0, file = 0;  ///< 0, 0: there is none.
+  std::uint64_t device = 0, file = 0;  ///< 0, 0: no file.
   bool operator==(const FileIdentity&) const = default;
 };
 FileIdentity IdentityOf(const std::string& path);

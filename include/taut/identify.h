@@ -102,8 +102,8 @@ class Identification {
   virtual IdentifyCounts counts() const = 0;
   /// Why the memory can no longer be written; empty if it can.
   virtual std::string memory_error() const = 0;
-  /// Which file of the fit could not be read again, and why; empty if none. It ends a search, whose
-  /// trials so far are kept.
+  /// Returns the file of the fit that can no longer be read, and the reason; empty if all can be.
+  /// Such a file ends a search, and the trials so far are kept.
   virtual std::string input_error() const = 0;
 };
 

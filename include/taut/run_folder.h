@@ -1,9 +1,9 @@
 /// The folder that a run writes (docs/cli.md): trace.h5, perhaps trace.csv, inputs.yaml,
 /// summary.json, perhaps report.html. A run is one transaction: its folder has one writer, all
-/// pieces carry the run's id, and readers refuse pieces of different runs. The run before is whole
-/// until the new trace has its first row on the disk, which replaces the old trace. Then the other
-/// old pieces go, the summary first; inputs.yaml is replaced last. If a writer is killed in
-/// between, the next reader or writer finishes that.
+/// pieces carry the run's id, and readers refuse pieces of different runs. The run before stays
+/// complete until the new trace has its first row on the disk, which replaces the old trace. Then
+/// the other old pieces are removed, the summary first; inputs.yaml is replaced last. If a writer
+/// is killed in between, the next reader or writer completes the replacement.
 ///
 /// Threads: a `RunFolder` belongs to one thread at a time; the functions may be called by any
 /// number at once.
@@ -29,8 +29,7 @@ std::string NewRunId();
 /// `inputs.yaml` of a run: the experiment's text after a first line with the id.
 std::string InputsOfRun(const std::string& id, const std::string& experiment);
 
-/// Removes from a folder whose writer the caller is what a killed writer left before its file had
-/// its name.
+/// Removes unnamed files of a killed writer. The caller must be the folder's writer.
 void RemoveLeftovers(const std::string& folder);
 
 /// Removes from a folder whose writer the caller is the pieces of the run before, the summary
@@ -54,14 +53,14 @@ class RunFolder {
   /// there is no room: then what the folder holds is still all of the run before.
   bool Prepare(const std::string& experiment, Diagnostics& out);
 
-  /// The run begins: the pieces of the one before go, the summary first, but for `traces`, which
-  /// are of this run already. Then inputs.yaml is there, if it was prepared: what a robot was seen
-  /// to do has none. False and a complaint if that fails.
+  /// Begins the run: removes the pieces of the run before, the summary first, except for `traces`,
+  /// which are of this run already. Then publishes inputs.yaml, if it was prepared; logs of a robot
+  /// have none. Returns false, with a diagnostic, if that fails.
   bool Begin(Diagnostics& out, const std::vector<std::string>& traces = {});
 
-  /// The run begins as soon as `last` has its first row: then the run before is whole until the new
-  /// one has a row. `traces`: names of all traces of the run, of which `last` gets each row last.
-  /// The folder must outlive what is returned.
+  /// Returns a writer that begins the run as soon as `last` has its first row, so that the run
+  /// before stays complete until then. `traces`: names of all traces of the run; `last` must get
+  /// each row after the others. The folder must outlive the writer.
   std::unique_ptr<TraceWriter> BeginWith(std::unique_ptr<TraceWriter> last,
                                          std::vector<std::string> traces);
 

@@ -318,10 +318,9 @@ void AddAnalyses(py::module_& module) {
            (a.at.found ? ">" : ": no equilibrium>");
   });
   const char* const words =
-      "What holds a structure up, as `taut analyze` says it: statics alone. `load_case`: a name of "
-      "the experiment's `load_cases`; None: its own weight, or nothing where nothing holds it in "
-      "the "
-      "world. Other Python threads run meanwhile.";
+      "The statics of a structure, as `taut analyze` computes them. `load_case`: a name of the "
+      "experiment's `load_cases`; None: the robot's weight, or no load if nothing holds the robot "
+      "in the world. Other Python threads run meanwhile.";
   module.def("analyze", &Analyse, py::arg("experiment"), py::arg("load_case") = py::none(), words);
   module.def(
       "analyze",

@@ -157,7 +157,7 @@ class Environments {
       } else {
         Call(f, view, view.observations_f64, view.actions_f64, judges);
       }
-    } catch (const abi::__forced_unwind&) {  // which is no exception of f
+    } catch (const abi::__forced_unwind&) {  // end of the thread, not an exception of f
       EndOfProgram::Sleep();
     } catch (...) {
       raised_ = std::current_exception();

@@ -10,11 +10,11 @@ namespace taut::python {
 
 namespace {
 
-/// How long the end waits for work, and for callbacks, which may sleep for ever.
+/// Longest waits at the end for computing threads, and for callbacks, which may sleep forever.
 constexpr std::chrono::seconds kLongestWork{10}, kLongestCall{1};
 
 std::atomic<int> computing{0}, calling{0};
-std::atomic<std::thread::id> ends_it;  ///< The thread that ends the program; none before that.
+std::atomic<std::thread::id> ends_it;  ///< The thread that ends the program; no thread before.
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void EndOfProgram::Sleep() {
 }
 
 void EndOfProgram::Begin() {
-  ends_it.store(std::this_thread::get_id());  // with the GIL: nobody starts to compute after this
+  ends_it.store(std::this_thread::get_id());  // with the GIL: no thread starts to compute later
   PyThreadState* const state = PyEval_SaveThread();
   const auto start = std::chrono::steady_clock::now();
   const auto within = [start](std::chrono::seconds limit) {
@@ -45,7 +45,7 @@ void EndOfProgram::Begin() {
 }
 
 void EndOfProgram::Register() {
-  // A forked child has none of the threads that compute.
+  // Threads that compute do not exist in a forked child.
   pthread_atfork(nullptr, nullptr, [] { computing = calling = 0; });
   pybind11::module_::import("atexit").attr("register")(pybind11::cpp_function(&Begin));
 }

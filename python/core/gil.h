@@ -9,19 +9,19 @@
 
 namespace taut::python {
 
-/// Daemon threads may be at work when the program ends. What they use (static variables, the
-/// interpreter) is destroyed then, so the end waits for them: Python's atexit calls
-/// EndOfProgram::Begin(), after which each of them sleeps at its next turn to or from the GIL.
+/// The end of the program with daemon threads that still compute. They use static variables and the
+/// interpreter, which are destroyed then. So Python's atexit calls EndOfProgram::Begin(), which
+/// waits for these threads; each of them sleeps as soon as it next releases or takes the GIL.
 class EndOfProgram {
  public:
   /// Registers Begin() with Python's module atexit. The GIL must be held.
   static void Register();
-  /// Whether the program ends and this thread is not the one that ends it.
+  /// Returns true if the program ends, on another thread than this one.
   static bool Reached();
-  /// Count this thread among those that compute without the GIL, or are in a callback.
+  /// Change the counts of threads that compute without the GIL, and of threads in callbacks.
   static void Compute(int change);
   static void Call(int change);
-  /// Until the process is gone.
+  /// Sleeps until the process has ended.
   [[noreturn]] static void Sleep();
   /// At the end of a thread's work: once the program ends, the thread sleeps.
   static void SleepIfReached() {
@@ -55,7 +55,7 @@ class Released {
       PyEval_SaveThread();
       EndOfProgram::Sleep();
     }
-    EndOfProgram::Compute(+1);  // before the GIL is free, so that the end sees it
+    EndOfProgram::Compute(+1);  // before the GIL is free, so that Begin() waits
     state_ = PyEval_SaveThread();
   }
   ~Released() {
@@ -70,7 +70,7 @@ class Released {
   PyThreadState* state_;
 };
 
-/// Holds the GIL during its lifetime, within that of a Released of the same thread.
+/// Holds the GIL during its lifetime, within the lifetime of a Released on the same thread.
 class Acquired {
  public:
   Acquired() {

@@ -1,4 +1,4 @@
-// The Python module taut._core; taut/__init__.py says what of it people see.
+// The Python module taut._core; taut/__init__.py exports its public names.
 #include "gil.h"
 #include "taut/version.h"
 #include "text.h"

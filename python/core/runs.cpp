@@ -182,7 +182,7 @@ void AddRuns(py::module_& module) {
       "`progress(time_s, duration_s)` is called a few times a second. Ctrl-C ends it. Raises "
       "`taut.InputError` if it cannot start.");
   module.def("read_trace", &ReadRun, py::arg("path"),
-             "Reads a trace that was recorded: .h5, .csv or .csv.gz, or that of a run's folder.");
+             "Reads a recorded trace: .h5, .csv or .csv.gz, or the folder of a run.");
 }
 
 }  // namespace taut::python

@@ -92,11 +92,11 @@ void AddSequences(BatchType& type) {
   type.def(
       "rollout", &Rollout, py::arg("rest_length_target_m"), py::arg("step_s"), py::arg("count") = 1,
       py::arg("start") = py::none(), py::arg("out") = py::none(),
-      "Every world through a sequence of targets of its own, (worlds, ticks, cables) [m], each "
-      "held for `count` steps of `step_s`. `start`: what `save` gave, where all worlds begin; "
-      "None: where they are. Returns body_position_m after every tick, (worlds, ticks, bodies, "
-      "3) [m]; afterwards the batch is at the end of it. Other Python threads run meanwhile; "
-      "Ctrl-C ends it between two steps.");
+      "Steps each world through its sequence of targets, (worlds, ticks, cables) [m], each "
+      "held for `count` steps of `step_s`. `start`: the result of `save` with which all worlds "
+      "begin; None: their present states. Returns body_position_m after every tick, (worlds, "
+      "ticks, bodies, 3) [m]; afterwards the batch is in its last state. Other Python threads run "
+      "meanwhile; Ctrl-C ends it between two steps.");
 }
 
 }  // namespace taut::python

@@ -176,7 +176,7 @@ void AddStudies(py::module_& module) {
       "`progress(evaluations, budget, best_score)` is called a few times a second. After "
       "Ctrl-C the same call goes on.");
   module.def("read_study", &FoundIn, py::arg("folder"), py::arg("skip_damaged") = false,
-             "What a study's folder has so far.");
+             "Reads the results in a study's folder.");
 }
 
 }  // namespace taut::python

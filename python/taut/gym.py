@@ -6,7 +6,8 @@
 
 Where gymnasium is installed (0.29 or newer), these are its VectorEnv and Env, with its spaces; else classes of the
 same methods and attributes. `AutoresetMode` is Gymnasium's from 1.1 on; before, an enum with the same members. The
-experiment's `environment` defines actions, observations and rewards (docs/environments.md). Worlds give the same bits for the same seed and actions, whatever runs beside them.
+experiment's `environment` defines actions, observations and rewards (docs/environments.md). A world gives the same bits
+for the same seed and actions, independent of all other worlds.
 """
 
 import enum as _enum

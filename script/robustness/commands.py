@@ -1,4 +1,4 @@
-"""Scenarios by the names under which script/faults runs them."""
+"""Scenarios of script/faults by name."""
 
 from robustness import conversions, fits, scenarios
 

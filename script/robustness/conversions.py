@@ -1,6 +1,6 @@
 """Commands that convert files: import, export, analyze and size, with calls that fail.
 
-Results that these commands write replace older ones, so that each has an old and a new content."""
+The outputs of these commands replace older files, so each output has an old and a new content."""
 
 import re
 
@@ -21,7 +21,7 @@ motors:
 
 
 class Converter(Reader):
-    """A command that writes files, each of which is the old or the new one afterwards."""
+    """A command that writes files. Afterwards, each file must be the old or the new one."""
     kinds = ("memory", "hdf5", "write", "sync", "name", "open", "truncate", "close", "read")
     kills = True
 

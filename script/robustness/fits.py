@@ -1,4 +1,4 @@
-"""`taut fit` with calls that fail: a new fit, and one that goes on where it was killed."""
+"""`taut fit` with calls that fail: a new fit, and a fit that goes on after a kill."""
 
 import contextlib
 import json
@@ -62,7 +62,7 @@ RUNS = ("untuned_rest", "fitted_rest", "untuned_swing", "fitted_swing")
 
 
 class Fit(Scenario):
-    """A fit in a new folder. Whatever happens, the same command goes on to the same bytes afterwards."""
+    """A fit in a new folder. After any fault, the same command must go on to the same bytes."""
     kills = True
 
     def __init__(self, program, folder):
@@ -81,7 +81,7 @@ class Fit(Scenario):
         return ("fit", "fit.yaml", "--threads", "1", "--quiet", "--out", "out")
 
     def points(self, folder):
-        """Points that a fit keeps; none if it keeps no file yet."""
+        """Returns the points in fit.sqlite; an empty dict if it or its table does not exist yet."""
         if not (folder / "fit.sqlite").exists():
             return {}
         with contextlib.closing(sqlite3.connect(folder / "fit.sqlite")) as db:
@@ -110,7 +110,7 @@ class Fit(Scenario):
         return f"gone on, {wrong}" if wrong else None
 
     def difference(self, folder):
-        """What is missing or different from the right folder, in words; None if nothing is."""
+        """Returns a text about the first difference from the right folder; None if there is no difference."""
         for name in SAME_BYTES:
             if not (folder / name).exists() or (folder / name).read_bytes() != (self.right / name).read_bytes():
                 return f"{name} is missing or has other bytes"
@@ -136,7 +136,7 @@ class Fit(Scenario):
 
 
 class FitResumed(Fit):
-    """The same in a folder where it was killed after some of its points."""
+    """A fit that goes on in a folder in which it was killed after some of its points."""
 
     def prepare(self):
         calls = self.program.run(self.words(), shutil.copytree(self.before, self.before.parent / "counted")).calls

@@ -153,8 +153,8 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
       scope.out.Error(text.at,
                       "the terrain has " + std::to_string(all) + " boxes up to here, more than " +
                           std::to_string(kMostBoxes),
-                      "what a run writes of more could not be read back");
-      return;  // before they are made: thousands of entries would fill the memory
+                      "use a height field or a mesh");
+      return;  // before boxes are made: thousands of entries would fill the memory
     }
     std::vector<TerrainBoxDef> boxes;
     if (text.scatter) boxes = Boxes(*text.scatter);

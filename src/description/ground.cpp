@@ -1,4 +1,4 @@
-// Height fields by formula or from files, and where meshes are.
+// Height fields by formula or from files, and placement of meshes.
 #include <cmath>
 #include <string>
 #include <string_view>

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostTableBytes = std::size_t{1} << 30;
 
-/// The numbers of a line; where one is wrong, which.
+/// Appends the numbers of a line to `row`. Returns the position of the first wrong one, if any.
 std::optional<std::size_t> AddRow(std::string_view line, std::vector<double>& row) {
   std::size_t at = 0;
   for (std::size_t number = 1;; ++number) {

@@ -15,8 +15,8 @@
 namespace taut::identify {
 
 struct Computed {
-  std::string failed;      ///< Why there is nothing; else empty.
-  std::string unreadable;  ///< Why its files cannot be read: then nothing is known of the trial.
+  std::string failed;      ///< Reason why there is no result; else empty.
+  std::string unreadable;  ///< Reason why its files cannot be read; then the trial is undecided.
   bool stopped = false;
   std::vector<double> time_s;               ///< Of a rest: of its set points; of load cases 1, 2...
   std::vector<std::vector<double>> values;  ///< [channel as asked][row].

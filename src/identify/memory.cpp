@@ -109,7 +109,7 @@ bool PointMemory::Begin(const std::string& path, const std::map<std::string, std
   return true;
 }
 
-/// All or none: a part of them would be those of another fit.
+/// Writes all facts or none: a part of them would belong to another fit.
 bool PointMemory::WriteFacts(const std::map<std::string, std::string>& facts) {
   bool good = database_->Execute("BEGIN IMMEDIATE");
   for (const auto& [name, value] : facts) {
@@ -117,7 +117,7 @@ bool PointMemory::WriteFacts(const std::map<std::string, std::string>& facts) {
     Statement put(*database_, "INSERT INTO fact VALUES (?, ?)");
     good = put.Bind(name).Bind(value).Run();
   }
-  return good && database_->Execute("COMMIT");  // closing rolls back what is not committed
+  return good && database_->Execute("COMMIT");  // closing rolls back an open transaction
 }
 
 bool PointMemory::ReadPoints() {

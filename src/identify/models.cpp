@@ -96,7 +96,7 @@ Models::Answer Models::ComputeOne(const Job& job) const {
   const auto experiment = LoadExperiment(one.experiment_file, job.second, found);
   if (!experiment) {
     Computed out;
-    // Every file was read when the fit began, so this says nothing of the trial's numbers.
+    // Every file was read when the fit began, so the trial's numbers are not the cause.
     const auto& errors = found.items();
     const auto unreadable = std::find_if(errors.begin(), errors.end(), base::IsUnreadable);
     if (unreadable != errors.end()) {

@@ -34,9 +34,9 @@ class Models {
   const std::vector<double>& Moments(std::size_t model) const { return models_[model].moments_s; }
 
   using Answer = std::shared_ptr<const Computed>;
-  /// Of points, in all estimates of the fit, one map model -> answer each; `models`: those wanted.
-  /// Side by side. Those that were computed lately are remembered. Empty: it was stopped, or a
-  /// file cannot be read any more (`input_error`).
+  /// Computes points, in all estimates of the fit, in parallel: one map model -> answer for each.
+  /// `models`: the wanted models. Recent answers are cached. Returns an empty vector if it was
+  /// stopped, or if a file can no longer be read (`input_error`).
   std::vector<std::map<std::size_t, Answer>> Compute(const std::vector<std::vector<double>>& points,
                                                      const std::set<std::size_t>& models);
 

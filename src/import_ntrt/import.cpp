@@ -126,11 +126,10 @@ std::optional<NtrtImport> ImportNtrt(const std::string& path, const NtrtOptions&
   if (!model) return std::nullopt;
   const Built built = BuildStructure(*model, out);
   if (model->ComparedTooMuch()) {
-    out.Error(
-        {path, 0, 0},
-        "is too large: finding what its names, bonds and builders stand for takes more than " +
-            std::to_string(kMostComparisons) + " comparisons",
-        "use fewer or shorter names, bonds and builders");
+    out.Error({path, 0, 0},
+              "is too large: resolving its names, bonds and builders takes more than " +
+                  std::to_string(kMostComparisons) + " comparisons",
+              "use fewer or shorter names, bonds and builders");
   }
   if (built.solids.empty() && out.items().size() == errors_before) {
     out.Error({path, 0, 0}, "NTRT builds no solid from it",

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 constexpr int kDeepest = 32;        // files in files
 constexpr double kFarthest = 1e12;  // in the files' unit
 constexpr std::size_t kMostStructures = 2000;
-constexpr std::size_t kMostHinted = 300;  // names among which a hint is searched
+constexpr std::size_t kMostHinted = 300;  // names from which a hint is chosen
 
 const description::NameTable kNoNames;
 
@@ -104,7 +104,7 @@ class Reader {
     AddChildren(structure, path, root.Find("substructures"));
     ReadBuilders(in_, root.Find("builders"));
     if (!model_.full) AddNodes(structure, root.Find("nodes"));
-    if (model_.full) return;  // else thousands of files, or lines, would repeat the complaint
+    if (model_.full) return;  // else thousands of files or lines would repeat the error
     for (const Entry& group : MapOf(root.Find("pair_groups"), "pair_groups", out_)) {
       for (const ValuePtr& item : ListOf(group.value.get(), group.key, out_)) {
         std::string a, b;

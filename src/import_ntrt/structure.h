@@ -16,7 +16,7 @@
 namespace taut::import_ntrt {
 
 inline constexpr std::size_t kMostItems = 20000;  ///< Nodes, and pairs.
-/// Comparisons of words and moves of nodes that a structure may need: seconds of one core.
+/// Limit of word comparisons and node moves for a structure: seconds of one core.
 inline constexpr std::uint64_t kMostComparisons = 200'000'000;
 
 struct Node {
@@ -77,13 +77,13 @@ struct Model {
   std::vector<Pair> pairs;
   std::vector<Builder> builders;
   NtrtCounts counts;
-  bool full = false;  ///< A limit has been complained about: nothing more is added.
-  /// Of words and places, and moves of nodes. Beyond kMostComparisons nothing is found any more,
-  /// and the structure is refused: names, bonds and builders are searched linearly, so a small file
-  /// could take hours.
+  bool full = false;  ///< A limit was exceeded and reported; nothing more is added.
+  /// Number of comparisons of words and places, and of moves of nodes. Beyond kMostComparisons,
+  /// searches find nothing and the structure is refused. Names, bonds and builders are searched
+  /// linearly, so a small file could take hours.
   mutable std::uint64_t comparisons = 0;
 
-  /// Counts a comparison of two lists of words; false if there were too many.
+  /// Counts a comparison of two lists of words; returns false beyond the limit.
   bool MayCompare(const Words& words, const Words& wanted) const {
     comparisons += 1 + words.size() * wanted.size();
     return comparisons <= kMostComparisons;

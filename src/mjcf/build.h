@@ -26,7 +26,7 @@ struct Building {
   ImportedMjcf& made;
   Diagnostics& out;
   std::vector<Rigid> rigids;  ///< In the order of the robot's bodies; the world's last.
-  std::vector<std::size_t> rigid_of_body;  ///< Per body of the scene, its place in `rigids`.
+  std::vector<std::size_t> rigid_of_body;  ///< Per body of the scene, its index in `rigids`.
   std::vector<int> node_of_site;
   /// Per shape of the scene: a sphere, capsule or box of the robot, or a part of its terrain.
   struct Made {

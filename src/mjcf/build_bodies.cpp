@@ -248,7 +248,7 @@ void FindRigids(Building& b) {
          (rigid.sites.size() == 1 && scene.sites[Scene::Index(rigid.sites[0])].name == name));
     if (rods != 1 && !by_node) rigid.placement = placements.Take(ToName(name, "body"));
   }
-  // As a model file is read: what is outside of parts first, then part by part.
+  // In the order of a model file: bodies outside of parts first, then part by part.
   std::vector<std::vector<const Rigid*>> parts(1);
   std::map<std::string, std::size_t> part_of{{"", 0}};
   for (const auto& [root, rigid] : by_root) {

@@ -191,18 +191,18 @@ void ScaleUnits(Building& b) {
   const double g = Length(def.gravity_m_per_s2);
   if (longest > kLong_m && !b.options.length_unit_m) {
     std::snprintf(text, sizeof text, "a rod is %.3g m long: is 1 in this file a metre?", longest);
-    b.out.Warning(whole, text, "--length_unit_m says what it is");
+    b.out.Warning(whole, text, "set --length_unit_m");
   }
   if (heaviest > kHeavy_kg && !b.options.mass_unit_kg) {
     std::snprintf(text, sizeof text, "a body weighs %.4g kg: is 1 in this file a kilogram?",
                   heaviest);
-    b.out.Warning(whole, text, "--mass_unit_kg says what it is");
+    b.out.Warning(whole, text, "set --mass_unit_kg");
   }
   if (l != 1 && g > 0 && std::fabs(g / kEarth - 1) > 0.02) {
     std::snprintf(text, sizeof text,
                   "with this unit of length gravity is %.3g m/s^2, as MuJoCo has it for the file",
                   g);
-    b.out.Warning(whole, text, "gravity_m_per_s2 of the model is where to change it");
+    b.out.Warning(whole, text, "to change it, set gravity_m_per_s2 in the model");
   }
 }
 

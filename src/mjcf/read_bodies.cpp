@@ -10,7 +10,7 @@
 namespace taut::mjcf {
 namespace {
 
-/// Time grows with the number of pairs.
+/// Limit of geoms: time grows with the number of their pairs.
 constexpr std::size_t kMostGeoms = 5000;
 
 class BodyReader {
@@ -58,7 +58,7 @@ class BodyReader {
     if (of.name == "frame") return;
     Mass(body);
     const std::size_t first_shape = scene_.shapes.size();
-    // Geoms of the bodies within are gone, so the last ones are those of this body.
+    // Geoms of child bodies were removed, so the last ones belong to this body.
     std::size_t own = geoms_.size();
     while (own > 0 && geoms_[own - 1].body == body) --own;
     for (std::size_t i = own; i < geoms_.size(); ++i) ReadGeom(geoms_[i], has_mass_);
@@ -163,7 +163,7 @@ class BodyReader {
   void AddGeom(GeomAt geom) {
     if (++geom_count_ == kMostGeoms + 1) {
       out_.Error(geom.element->at, "there are more than " + std::to_string(kMostGeoms) + " geoms",
-                 "which of them touch is asked of all pairs");
+                 "all pairs of them are tested for contact");
     }
     if (geom_count_ <= kMostGeoms) geoms_.push_back(std::move(geom));
   }
@@ -253,7 +253,7 @@ class BodyReader {
   const Defaults& defaults_;
   Scene& scene_;
   Diagnostics& out_;
-  std::vector<GeomAt> geoms_;  ///< Of open bodies.
+  std::vector<GeomAt> geoms_;  ///< Geoms of the bodies that are being read.
   std::size_t geom_count_ = 0;
   std::pair<const Element*, Pose> inertial_{};
   std::vector<int> parents_;

@@ -40,7 +40,7 @@ class Writer {
         geoms_(GeomsOf(def)),
         friction_(FrictionsOf(def, geoms_)),
         site_of_(def.cables.size()) {
-    unique_bodies_.Take("world");  // MuJoCo's name of what does not move
+    unique_bodies_.Take("world");  // MuJoCo's name of the static body
   }
 
   std::string Text() {

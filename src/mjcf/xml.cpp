@@ -14,18 +14,18 @@ namespace {
 constexpr std::size_t kMostBytes = 64 << 20;
 constexpr std::size_t kMostElements = 50'000;
 constexpr int kMostFiles = 100;
-/// Of all files together: each is limited by the library, but the innermost element may include
-/// another file, and reading is recursive.
+/// Nesting over all files together. The library limits each file, but the innermost element may
+/// include another file, and reading is recursive.
 constexpr int kDeepest = 500;
 /// The library compares each attribute with all before it.
 constexpr std::size_t kMostAttributes = 200;  // of an element
 
-/// Elements, comments and declarations of a text, and the attributes of the element that has most,
-/// without making anything of them. In XML they are exact. Quotes without an end do no harm: then
-/// the text is no XML.
+/// Number of elements, comments and declarations of a text, and of the attributes of the element
+/// with the most, without parsing. The counts are exact for XML. An unclosed quote does no harm,
+/// because the text is then not XML.
 struct MarkupCount {
   std::size_t nodes = 0, attributes = 0;
-  std::size_t crowded_at = 0;  ///< Where that element begins.
+  std::size_t crowded_at = 0;  ///< Position of that element.
 };
 
 MarkupCount CountMarkup(std::string_view text) {
@@ -101,9 +101,9 @@ class XmlReader {
   }
 
  private:
-  /// Whether the text, with all before it, keeps to the limits. Asked before the library makes a
-  /// tree of it: that takes 20 times the memory of the text, and the square of an element's
-  /// attributes in time.
+  /// Returns true if the text, with all texts before it, is within the limits. Called before the
+  /// library parses the text: parsing takes 20 times the memory of the text, and time grows with
+  /// the square of an element's attributes.
   bool Fits(std::string_view text, const std::string& path) {
     const MarkupCount count = CountMarkup(text);
     elements_ += count.nodes;

@@ -9,9 +9,9 @@
 namespace taut {
 namespace {
 
-/// What ends steps most often, and how often [s].
+/// The clock with the shortest period, whose ticks end steps most often.
 struct Ticks {
-  std::string of;  ///< With its verb.
+  std::string of;  ///< Its name and a verb.
   double period_s = INFINITY;
 };
 

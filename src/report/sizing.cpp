@@ -129,7 +129,7 @@ std::optional<RunDemand> DemandOf(const Trace& trace, const ExperimentSpec& expe
 std::optional<RunDemand> DemandOfRun(const std::string& folder, Diagnostics& out) {
   const std::filesystem::path place(folder);
   const std::string path = (place / "trace.h5").string();
-  const auto trace = ReadTraceOfRun(path, out);  // first: it may have to finish what was killed
+  const auto trace = ReadTraceOfRun(path, out);  // first: it may complete a killed run
   const auto experiment = LoadExperiment((place / "inputs.yaml").string(), {}, out);
   if (!experiment || !trace) return std::nullopt;
   auto demand = DemandOf(*trace, *experiment, path, out);

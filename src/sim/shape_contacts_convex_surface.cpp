@@ -332,7 +332,7 @@ int TouchGround(const Convex& body, const SurfaceTable& s, double margin_m,
 
 double DistanceToGround(const Convex& body, double size_m, const SurfaceTable& s,
                         double enough_m) noexcept {
-  if (!(enough_m > 0.0)) return 0.0;  // what follows multiplies it
+  if (!(enough_m > 0.0)) return 0.0;  // the search below multiplies it
   const double most_m = kFarthestLook * size_m;
   double look_m = Smaller(enough_m, kNearestLook * most_m);
   TouchPoint points[kMaxPointsPerPair];

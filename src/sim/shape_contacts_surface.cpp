@@ -120,7 +120,7 @@ double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m)
 
 double DistanceToGround(const RoundShape& a, const SurfaceShape& surface, double enough_m,
                         NearParts* kept) noexcept {
-  if (!(enough_m > 0.0)) return 0.0;  // what follows multiplies it
+  if (!(enough_m > 0.0)) return 0.0;  // the search below multiplies it
   const SurfaceShape b{&Alone(*surface.table)};
   const Vec3 from = Load(a.from), to = Load(a.to);
   const double most_m = kFarthestLook * (Norm(to - from) + a.radius_m);

@@ -13,7 +13,8 @@
 namespace taut::trace {
 namespace {
 
-/// Of an attribute; a longer one is left out. The parent takes no more (hdf5_reader.cpp).
+/// Longest text of an attribute; longer ones are left out. The parent process accepts no more
+/// (hdf5_reader.cpp).
 constexpr std::size_t kMaxTextBytes = 64 << 20;
 
 /// The widest number that a machine has.

@@ -102,8 +102,8 @@ std::vector<Piece> PiecesOfRun(const std::string& path, const Trace& trace) {
   return pieces;
 }
 
-/// Inputs beside this trace that their writers put on the disk and have not named yet. A run that
-/// replaces another has some from the first row of its trace on, until the old files are removed.
+/// Returns unpublished inputs in the folder of this trace. A run that replaces another has some
+/// from the first row of its trace on, until the old files are removed.
 std::vector<Piece> UnnamedInputs(const std::string& trace) {
   const fs::path inputs = BesideTrace(trace, "inputs", ".yaml");
   const std::string name = inputs.filename().string() + ".";
@@ -118,14 +118,14 @@ std::vector<Piece> UnnamedInputs(const std::string& trace) {
   return found;
 }
 
-/// The one of this run; nothing if there is none.
+/// Returns the path of the piece of this run, if there is one.
 std::optional<std::string> PathOfRun(const std::vector<Piece>& pieces, const std::string& id) {
   const auto at = std::find_if(pieces.begin(), pieces.end(),
                                [&](const Piece& piece) { return !id.empty() && piece.id == id; });
   return at == pieces.end() ? std::nullopt : std::optional(at->path);
 }
 
-/// Does what the writer of this trace would have done next. The caller is the folder's writer.
+/// Completes a replacement that the writer of this trace began. The caller is the folder's writer.
 bool FinishReplacement(const std::string& trace, const std::string& unnamed) {
   const fs::path path(trace);
   Diagnostics ignored;
@@ -141,8 +141,8 @@ bool AreOfOneRun(const std::vector<Piece>& pieces) {
                      [&](const Piece& piece) { return piece.id == pieces.front().id; });
 }
 
-/// What is there of the run that a trace is of. If its writer was killed while it replaced another
-/// run, what is left of that goes first; if the writer is at it, this waits.
+/// Returns the pieces of the run of a trace. If its writer was killed while it replaced another
+/// run, the remains of the other run are removed first. A writer that is still alive is waited for.
 std::vector<Piece> WholePiecesOfRun(const std::string& path, const Trace& trace) {
   constexpr int kLooks = 50;
   constexpr std::chrono::milliseconds kBetween{20};
@@ -160,7 +160,7 @@ std::vector<Piece> WholePiecesOfRun(const std::string& path, const Trace& trace)
   return pieces;
 }
 
-/// In a folder whose writer the caller is.
+/// Completes a replacement in a folder. The caller is the folder's writer.
 void FinishReplacementIn(const std::string& folder) {
   const std::string path = (fs::path(folder) / "trace.h5").string();
   const std::vector<Piece> all = UnnamedInputs(path);
@@ -171,8 +171,8 @@ void FinishReplacementIn(const std::string& folder) {
   if (unnamed) FinishReplacement(path, *unnamed);
 }
 
-/// Writes the last of a run's traces, and removes the run before once the first row of all has its
-/// place.
+/// Writes the last of a run's traces, and removes the run before once every trace has its first row
+/// on the disk.
 class BeginningTrace final : public TraceWriter {
  public:
   BeginningTrace(RunFolder& folder, std::unique_ptr<TraceWriter> writer,
@@ -180,7 +180,7 @@ class BeginningTrace final : public TraceWriter {
       : folder_(folder), writer_(std::move(writer)), traces_(std::move(traces)) {
     for (const std::string& name : traces_) before_.push_back(IdentityOf(folder_.Path(name)));
   }
-  /// This one may have failed after another has replaced that of the run before.
+  /// This trace may have failed after another one has replaced its predecessor.
   ~BeginningTrace() override { Begin(); }
 
   bool Append(double time_s, const double* values) override {
@@ -188,7 +188,7 @@ class BeginningTrace final : public TraceWriter {
   }
   bool FlushOld() override { return error_.empty() && writer_->FlushOld(); }
   bool Finish() override {
-    // Before its first row another one has failed: the run before stays.
+    // Another trace has failed before its first row: the run before stays.
     if (!begun_ && traces_.size() > 1 && Replaced().empty()) return true;
     return error_.empty() && writer_->Finish() && Begin();
   }
@@ -276,7 +276,7 @@ std::unique_ptr<TraceWriter> RunFolder::BeginWith(std::unique_ptr<TraceWriter> l
 }
 
 bool RunFolder::Begin(Diagnostics& out, const std::vector<std::string>& traces) {
-  if (inputs_) inputs_->Leave();  // with them the next reader finishes what cannot be done here
+  if (inputs_) inputs_->Leave();  // if a step below fails, the next reader completes it
   std::vector<std::string> replaced = traces;
   if (inputs_) replaced.push_back(kInputs);
   if (!RemoveRunBefore(folder_, replaced, out)) return false;

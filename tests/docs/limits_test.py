@@ -1,11 +1,11 @@
-"""docs/limits.md: the tests that it names are there, and its numbers are those of the code."""
+"""docs/limits.md: the tests in its tables exist, and its numbers equal the constants of the code."""
 
 import re
 
 from attacks_test import names
 from page import ROOT, Page, refuse
 
-# Rows by their first words: the file, and the constant that the first number of the row is.
+# First words of a row: the file, and the constant that equals the first number of the row.
 CONSTANTS = {
     "YAML file": ("src/description/yaml_tree.h", "kMaxFileBytes"),
     "nodes of a YAML file": ("src/description/yaml_tree.h", "kMaxYamlNodes"),
@@ -15,7 +15,7 @@ CONSTANTS = {
     "nesting of an expression": ("src/description/expression.cpp", "kMaxNesting"),
     "mapping file": ("src/compare/mapping.cpp", "kMaxBytes"),
     "nodes of a model": ("src/description/model_text.h", "kMaxModelNodes"),
-    "nodes that all pairs name": ("src/description/model_text.h", "kMaxModelEnds"),
+    "node references of": ("src/description/model_text.h", "kMaxModelEnds"),
     "copies of a placement": ("src/description/model_text.h", "kMaxCopies"),
     "builders": ("src/description/model_text.h", "kMaxBuilders"),
     "tags of": ("src/description/model_text.h", "kMaxTags"),
@@ -77,13 +77,13 @@ CONSTANTS = {
     "linear systems": ("include/taut/batch.h", "max_linear_solves"),
     "angles in": ("src/math/elementary.h", "kMaxAngle"),
 }
-# Ranges of keys, a library's limit: their numbers are in no constant.
+# Rows without a constant: ranges of keys, and the limit of a library.
 WITHOUT = ("columns, and rows", "nesting of MJCF elements of one file", "starts of", "step", "duration")
 UNITS = {"MB": 1e6, "KiB": 1 << 10, "MiB": 1 << 20, "GiB": 1 << 30}
 
 
 def key_of(what, keys):
-    """The longest of the keys that a row begins with."""
+    """Returns the longest key with which a row begins."""
     found = [key for key in keys if what == key or (what.startswith(key) and not what[len(key)].isalnum())]
     return max(found, key=len, default=None)
 
@@ -104,7 +104,7 @@ def number_of(cell):
 def main():
     there, wrong, used = names(), [], set()
     rows = [(line, [cell.strip() for cell in text.strip("| ").split(" | ")]) for line, text in Page(ROOT / "docs/limits.md").prose
-            if text.startswith("| ") and not text.startswith("| what |")]
+            if text.startswith("| ") and not text.startswith("| item |")]
     for line, cells in rows:
         what, limit, tests = cells[0], cells[1], re.findall(r"`([A-Z]\w+\.\w+)`", cells[-1])
         at = f"docs/limits.md:{line}: {what}"

@@ -53,7 +53,7 @@ def AKilledRunIsNoFinishedRun():
 
 
 def AFitKilledAtItsFirstWritesGoesOn():
-    # Among them are those of the facts that the points belong to.
+    # These include the writes of the facts to which the points belong.
     run = faults("fit", *(word for at in range(25, 45, 3) for word in ("--at", f"write {at} kill")))
     assert run.returncode == 0 and run.stdout.count("good: killed") == 7, run
 

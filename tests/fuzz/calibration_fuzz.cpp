@@ -40,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   taut::Diagnostics again;
   const auto same =
       LoadCalibration(folder.Write("again.yaml", text.data(), text.size()), cables, again);
-  Must(same.has_value(), "what was written can be read: " + again.Format() + text);
+  Must(same.has_value(), "the written file can be read: " + again.Format() + text);
   CheckSame(*read, *same);
   return 0;
 }

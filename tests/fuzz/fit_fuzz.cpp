@@ -1,4 +1,4 @@
-// Any text as a fit, beside the shipped experiments and measurements.
+// Any text as a fit, in a folder with the shipped experiments and measurements.
 #include "fuzz/refusals.h"
 #include "fuzz/shipped_folder.h"
 #include "fuzz/text_input.h"

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text = GaitYaml(*gait);
   taut::Diagnostics again;
   const auto same = taut::LoadGait(folder.Write("own/again.yaml", text.data(), text.size()), again);
-  Must(same.has_value(), "what was written can be read: " + again.Format() + text);
-  Must(GaitYaml(*same) == text, "what was written is read as it was");
+  Must(same.has_value(), "the written file can be read: " + again.Format() + text);
+  Must(GaitYaml(*same) == text, "reading and writing gives the same text");
   return 0;
 }

@@ -22,7 +22,7 @@ void Append(std::string& file, const void* data, std::size_t size) {
   file.append(static_cast<const char*>(data), size);
 }
 
-/// One copy of a corner: in place, beside, nearly in place, twice as large each time, turned.
+/// One copy of a corner: in place, shifted, nearly in place, scaled, rotated.
 taut::fuzz::Corner Copied(taut::fuzz::Corner corner, int copy, int how) {
   const auto k = static_cast<float>(copy);
   if (how == 1) corner[0] += k;

@@ -42,7 +42,7 @@ void CheckExport(const ImportedMjcf& made, const taut::MjcfExport& options, cons
   if (options.keyframe) as_written.keyframe = "start";
   const auto again =
       ImportMjcf(folder.Write("again.xml", xml->data(), xml->size()), as_written, reading);
-  Must(again.has_value(), "what was written can be read: " + reading.Format() + *xml);
+  Must(again.has_value(), "the written file can be read: " + reading.Format() + *xml);
   Must(again->robot.def.bodies.size() == made.robot.def.bodies.size() &&
            again->robot.def.cables.size() == made.robot.def.cables.size(),
        "as many bodies and cables");

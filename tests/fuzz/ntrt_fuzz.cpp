@@ -1,4 +1,4 @@
-// Any text as a structure of NTRT, beside the structures that it may include.
+// Any text as a structure of NTRT, in a folder with structures that it may include.
 #include "taut/import_ntrt.h"
 
 #include "description/yaml_tree.h"
@@ -11,8 +11,8 @@ namespace {
 using taut::fuzz::Must;
 namespace fs = std::filesystem;
 
-/// All structures lie beside the input, and those of folders in folders beside it and above it, so
-/// that most of the relative paths of the seeds lead to a file.
+/// Copies of all structures: in the folder of the input, and by the name of their folder in folders
+/// next to the input and one level above, so that most relative paths of the seeds lead to a file.
 struct Structures {
   taut::fuzz::Folder folder;
   Structures() {
@@ -32,7 +32,7 @@ struct Structures {
 
 }  // namespace
 
-/// Inputs of odd size are read as NTRT does where it is hardly meant.
+/// Inputs of odd size are read with the option `like_ntrt`.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Structures structures;
   const taut::fuzz::Folder& folder = structures.folder;

@@ -27,7 +27,7 @@ inline void DropARod(ModelDef def, int steps) {
   Batch world(model, {});
   world.Step(1e-3, steps);
   const Vec3 p = world.Body(0, index).position_m;
-  Must(std::isfinite(p.x + p.y + p.z), "a place");
+  Must(std::isfinite(p.x + p.y + p.z), "a finite position");
 }
 
 /// Writes a model of one rod, and an experiment with this terrain; reads the experiment.

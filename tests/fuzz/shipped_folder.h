@@ -1,4 +1,4 @@
-/// Folders of the source tree, copied beside a fuzz input that names files in them.
+/// Copies of folders of the source tree, for fuzz inputs that refer to files in them.
 #pragma once
 
 #include <initializer_list>

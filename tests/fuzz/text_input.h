@@ -1,5 +1,4 @@
-/// For targets whose input is a text and nothing else: included once, it defines libFuzzer's
-/// mutator.
+/// libFuzzer's mutator for targets whose input is only a text. Included once in a target.
 #pragma once
 
 #include "fuzz/text_mutator.h"

@@ -89,7 +89,7 @@ class TriangleMutator {
     }
   }
 
-  /// Divides a triangle at a point of an edge, which its neighbor keeps whole.
+  /// Divides a triangle at a point of an edge; its neighbor stays undivided.
   void Subdivide(std::vector<Triangle>& t) {
     const std::size_t index = Below(t.size());
     const Triangle whole = t[index];

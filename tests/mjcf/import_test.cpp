@@ -349,7 +349,7 @@ TEST_F(MjcfImportTest, UnitsAreScaledAndAskedFor) {
   EXPECT_EQ(Said(),
             "model.xml: warning: with this unit of length gravity is 0.981 m/s^2, as MuJoCo has it "
             "for the "
-            "file (gravity_m_per_s2 of the model is where to change it)\n"
+            "file (to change it, set gravity_m_per_s2 in the model)\n"
             "model.xml:4: warning: 1 damper of tendons would act in MuJoCo while slack, too; here "
             "dampers act only under tension\n");
   const ModelDef& def = made->robot.def;

@@ -227,7 +227,7 @@ TEST_F(MjcfRefusal, SizesHaveLimits) {
       "file\n";
   EXPECT_EQ(Refused("<mujoco>" + many(50'000, "<a/>") + "</mujoco>"), elements);
   EXPECT_EQ(Refused("<mujoco>" + many(50'000, "<!---->") + "</mujoco>"), elements);
-  // In a comment, in CDATA and in a value there are none.
+  // Comments, CDATA and attribute values contain no elements.
   const std::string none = many(60'000, "<a>");
   EXPECT_EQ(Refused("<mujoco a='" + none + "'><!--" + none + "--><![CDATA[" + none + "]]></mujoco>")
                 .find("more than"),

@@ -166,7 +166,7 @@ class Processes(Attack):
     def test_functions_that_run_at_the_end_may_use_taut(self):
         text = f"""
             import atexit
-            def at_the_end():  # registered before taut's own, so it runs after it
+            def at_the_end():  # registered before taut's function, so it runs after that
                 batch.step(1e-3, 5)
                 print(round(batch.time_s()[0], 6), len(taut.run(push).trace.time_s) > 3)
             atexit.register(at_the_end)

@@ -1,4 +1,4 @@
-// How large files of ground may be: what is refused before anything is made of it.
+// Size limits of ground files: larger files are refused before they are parsed.
 #include <hdf5.h>
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace {
 
 class GroundLimits : public GroundText {
  protected:
-  /// hills.h5 with a data set /z of this size, none of whose numbers is in the file.
+  /// Writes hills.h5 with a data set /z of this size, but without its numbers.
   void WriteEmptyTable(hsize_t rows, hsize_t columns) const {
     const hsize_t size[2] = {rows, columns};
     const hid_t file = H5Fcreate(Path("hills.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
@@ -27,7 +27,7 @@ class GroundLimits : public GroundText {
   }
 };
 
-/// An image of 16 bits up to where its samples would begin.
+/// A 16-bit image without its samples.
 std::string PngHead(const std::string& columns_and_rows, const std::string& crc) {
   return std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) + columns_and_rows +
          std::string("\x10\0\0\0\0", 5) + crc + std::string("\0\0\0\1IDAT", 8);
@@ -56,7 +56,7 @@ TEST_F(GroundLimits, HeightsInAFileAre100MillionAtMost) {
   WriteEmptyTable(10'001, 10'000);
   EXPECT_EQ(SaidOfField("file: 'hills.h5:/z'"),
             "hills.h5: error: /z has 10001 x 10000 numbers, more than 100000000\n");
-  // Text of so many numbers takes too long for a test: with a smaller limit it is the same.
+  // Text of 100 million numbers takes too long for a test; a smaller limit works the same way.
   Write("hills.csv", "1,2\n3,4\n5,6\n");
   Diagnostics out;
   const auto table = description::ReadHeightCsv(Path("hills.csv"), 6, out);

@@ -1,4 +1,4 @@
-// A file of a fit that cannot be read again ends the fit: it says nothing about a trial's numbers.
+// Files of a fit that can no longer be read: they end the fit, and no trial counts as failed.
 #include "tests/unit/identify_fixture.h"
 
 namespace taut {

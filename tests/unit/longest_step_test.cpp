@@ -10,7 +10,7 @@
 namespace taut {
 namespace {
 
-/// Of a run that records every step.
+/// The longest step between rows of a run that records every step.
 class LongestRow final : public TraceWriter {
  public:
   bool Append(double time_s, const double*) override {

@@ -121,8 +121,8 @@ TEST_F(Run, TheRunBeforeIsThereUntilTheNewOneBegins) {
   EXPECT_EQ(ReadFile(Path("summary.json")), "{}");
 }
 
-/// A finished run "old", over which a run "new" was killed: after its trace had its place, and
-/// after `gone` of the old pieces were removed.
+/// A finished run "old", and a run "new" that was killed while it replaced "old": after its trace
+/// was published, and after `gone` of the old pieces were removed.
 struct KilledRun : Run {
   void Leave(int gone, const std::string& trace_of = "new") const {
     WriteTrace("trace.h5", trace_of);

@@ -87,7 +87,7 @@ TEST_F(StudyFile, ParametersAreAThousandAtMost) {
                        "`each`)\n"),
             wrong.npos)
       << wrong;
-  // Entries after the limit are not read: two lines a parameter, the first of which is free.
+  // Entries after the limit are not read, so they add no errors.
   EXPECT_LT(out_.items().size(), 1100u);
 }
 

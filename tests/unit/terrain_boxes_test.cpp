@@ -204,8 +204,8 @@ TEST_F(TerrainBoxErrors, OfNamesAndNumbers) {
          "8:6: error: there are two parts of the terrain called a_2 (the first is in line 7)");
   ExpectGood(stairs("a", 3000) + "\n  " + stairs("b", 2000));
   Expect(kGround, stairs("a", 3000) + "\n  " + stairs("b", 2001),
-         "8:5: error: the terrain has 5001 boxes up to here, more than 5000 (what a run writes of "
-         "more could not be read back)");
+         "8:5: error: the terrain has 5001 boxes up to here, more than 5000 (use a height field or "
+         "a mesh)");
   Expect(kGround, stairs(std::string(199, 'n'), 3),
          "7:12: error: terrain.name: with the number of a box it has more than 200 characters (a "
          "shorter name)");
@@ -220,8 +220,8 @@ TEST_F(TerrainBoxErrors, ThousandsOfEntriesAreRefusedBeforeTheyAreMade) {
             ", stairs: {steps: 5000, width_m: 1, tread_m: 1, rise_m: 1}}";
   }
   Expect(kGround, many,
-         "8:5: error: the terrain has 10000 boxes up to here, more than 5000 (what a run writes of "
-         "more could not be read back)");
+         "8:5: error: the terrain has 10000 boxes up to here, more than 5000 (use a height field "
+         "or a mesh)");
 }
 
 }  // namespace

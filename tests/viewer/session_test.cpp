@@ -76,8 +76,8 @@ double ValueOf(const Json& scene, const std::string& name) {
   return std::nan("");
 }
 
-/// The first scene that a client of a server sees which was started with these commands waiting,
-/// once the run has this number and has come to this time.
+/// The scene and frame of a client, once the run has this number and this time. Its server was
+/// started with these commands waiting.
 struct Outcome {
   Json scene;
   ReceivedFrame frame;
@@ -89,7 +89,7 @@ Outcome After(std::unique_ptr<viewer::Session> session, double run, double time_
   outcome.frame = client.AwaitFrame([=](const auto& f) {
     return f[FrameHeader::kFrameRun] >= run && f[FrameHeader::kFrameTimeS] >= time_s;
   });
-  // Who comes now gets the scene of now.
+  // A new client gets the present scene.
   outcome.scene = Client(serving.port()).Await("scene")["scene"];
   return outcome;
 }

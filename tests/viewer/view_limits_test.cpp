@@ -1,5 +1,4 @@
-// How much the viewer takes of browsers and of traces: what is beyond is refused, closed or drawn
-// more coarsely.
+// Limits of the viewer for browsers and traces: excess is refused, closed or drawn more coarsely.
 #include <utility>
 
 #include "apps/viewer/report.h"
@@ -19,7 +18,7 @@ TEST(ViewLimits, SixtyFourMayLookOfWhichFortyEightMayOnlyWatch) {
   const auto add = [&](const std::string& target) {
     auto client = std::make_unique<Client>(serving.port(), target);
     if (!client->open()) return false;
-    client->Await("hello");  // it counts from here on
+    client->Await("hello");  // the client counts from here on
     clients.push_back(std::move(client));
     return true;
   };
@@ -45,7 +44,7 @@ TEST(ViewLimits, APageThatLeavesTooMuchUnreadIsClosed) {
   EXPECT_EQ(std::string(Client(serving.port()).AwaitClose().reason.c_str()), "too slow");
 }
 
-/// A session that nobody has started: what it is given waits.
+/// A session that was not started: posted commands wait.
 class Waiting final : public viewer::Session {
  public:
   Waiting() : Session("live", "waiting") {}

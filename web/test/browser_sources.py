@@ -50,14 +50,14 @@ def browser_commands(of_all, folder):
 
 
 def object_in(entry):
-    """What an entry of compile_commands.json makes."""
+    """Returns the object file of an entry of compile_commands.json."""
     words = shlex.split(entry["command"])
     return os.path.join(entry["directory"], words[words.index("-o") + 1])
 
 
 def objects_made(here, wanted):
-    """From a source's path to the object that the build has of it. A file of a unity build that holds
-    others than those wanted has none: their symbols would count as well."""
+    """Returns the object in the build for each source path. A file of a unity build with other sources
+    than the wanted ones is left out, because their symbols would count as well."""
     objects = {}
     for path, entry in here.items():
         sources = [path]
@@ -70,7 +70,7 @@ def objects_made(here, wanted):
 
 
 def objects_of(build, folder):
-    """From a source's path, as seen from the top folder, to an object of it."""
+    """Returns an object for each source path relative to the top folder."""
     wanted, objects = browser_commands(build, folder), {}
     made = objects_made(commands_of(build), set(wanted))
     for number, (path, entry) in enumerate(sorted(wanted.items())):

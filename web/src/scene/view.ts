@@ -26,7 +26,7 @@ export class View {
   world: World | null = null;
   follow = true;
   readonly frames = { drawn: 0 };
-  /** Called after each picture: what is beside it says of this picture. */
+  /** Called after each picture, for elements that describe this picture. */
   readonly afterDraw: (() => void)[] = [];
   private readonly stage = new ThreeScene();
   private readonly sun = new DirectionalLight(0xffffff, 2.2);
