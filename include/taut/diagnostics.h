@@ -19,6 +19,8 @@ struct Diagnostic {
   SourceRef at;
   std::string what;
   std::string hint;  ///< May be empty.
+  /// The system does not open or read a file: its contents are unknown, not wrong.
+  bool unreadable = false;
 };
 
 /// Collects every complaint about one input. Nothing here throws, prints or exits: the caller
@@ -26,6 +28,8 @@ struct Diagnostic {
 class Diagnostics {
  public:
   void Error(SourceRef at, std::string what, std::string hint = {});
+  /// An error about a file that the system does not open or read.
+  void Unreadable(SourceRef at, std::string what, std::string hint = {});
   /// What can be used, but is hardly meant. No function returns less because of one.
   void Warning(SourceRef at, std::string what, std::string hint = {});
   /// For those who want no warnings: makes errors of all so far.

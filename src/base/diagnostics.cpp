@@ -71,6 +71,11 @@ void Diagnostics::Error(SourceRef at, std::string what, std::string hint) {
   items_.push_back({std::move(at), std::move(what), std::move(hint)});
 }
 
+void Diagnostics::Unreadable(SourceRef at, std::string what, std::string hint) {
+  Error(std::move(at), std::move(what), std::move(hint));
+  items_.back().unreadable = true;
+}
+
 void Diagnostics::Warning(SourceRef at, std::string what, std::string hint) {
   warnings_.push_back({std::move(at), std::move(what), std::move(hint)});
 }

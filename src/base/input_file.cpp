@@ -5,26 +5,17 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <string_view>
-
-#include "base/unreadable.h"
 
 namespace taut::base {
-namespace {
-
-constexpr std::string_view kNotOpened = "cannot be opened: ", kNotRead = "cannot be read: ";
-
-}  // namespace
-
-bool IsUnreadable(const Diagnostic& diagnostic) {
-  return diagnostic.what.starts_with(kNotOpened) || diagnostic.what.starts_with(kNotRead);
-}
-
 std::optional<std::string> ReadInputFile(const std::string& path, std::size_t most_bytes,
                                          const std::string& hint, Diagnostics& out,
                                          NamedBy named_by) {
   const auto refuse = [&](std::string what, const std::string& hint_of = {}) {
     out.Error({path, 0, 0}, std::move(what), hint_of);
+    return std::nullopt;
+  };
+  const auto unreadable = [&](std::string what, int error) {
+    out.Unreadable({path, 0, 0}, std::move(what) + std::strerror(error));
     return std::nullopt;
   };
   std::error_code ignored;
@@ -38,14 +29,12 @@ std::optional<std::string> ReadInputFile(const std::string& path, std::size_t mo
     return refuse("is a pipe, socket or device (expected a regular file)");
   }
   std::ifstream in(path, std::ios::binary);
-  if (!in) return refuse(std::string(kNotOpened) + std::strerror(errno));
+  if (!in) return unreadable("cannot be opened: ", errno);
   std::string text;
   for (std::array<char, 65536> chunk; in && text.size() <= most_bytes;) {
     errno = 0;
     in.read(chunk.data(), chunk.size());
-    if (in.bad()) {
-      return refuse(std::string(kNotRead) + std::strerror(errno != 0 ? errno : EIO));
-    }
+    if (in.bad()) return unreadable("cannot be read: ", errno != 0 ? errno : EIO);
     text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
   }
   if (text.size() <= most_bytes) return text;

@@ -58,7 +58,7 @@ MergedFile ReadMergedFile(const std::string& path, std::string_view kind, Diagno
     }
     std::error_code ignored;
     if (!std::filesystem::exists(next, ignored)) {
-      out.Error(base->at, "base: there is no file " + next, "as seen from this file's folder");
+      out.Unreadable(base->at, "base: there is no file " + next, "as seen from this file's folder");
       return {};
     }
   }

@@ -260,8 +260,8 @@ std::optional<std::string> FindFile(const Value* value, const std::string& what,
   const std::string path = PathBeside(value->at.file, text);
   std::error_code ignored;
   if (!text.empty() && std::filesystem::is_regular_file(path, ignored)) return path;
-  scope.out.Error(value->at, what + ": there is no file \"" + path + "\"",
-                  "as seen from the folder of the file that names it");
+  scope.out.Unreadable(value->at, what + ": there is no file \"" + path + "\"",
+                       "as seen from the folder of the file that names it");
   return std::nullopt;
 }
 

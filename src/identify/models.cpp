@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/bytes.h"
-#include "base/unreadable.h"
 #include "description/reader.h"
 
 namespace taut::identify {
@@ -98,9 +97,10 @@ Models::Answer Models::ComputeOne(const Job& job) const {
     Computed out;
     // Every file was read when the fit began, so the trial's numbers are not the cause.
     const auto& errors = found.items();
-    const auto unreadable = std::find_if(errors.begin(), errors.end(), base::IsUnreadable);
+    const auto unreadable = std::find_if(errors.begin(), errors.end(),
+                                         [](const Diagnostic& error) { return error.unreadable; });
     if (unreadable != errors.end()) {
-      out.unreadable = unreadable->at.file + " " + unreadable->what;
+      out.unreadable = unreadable->at.file + ": " + unreadable->what;
     } else {
       out.failed = errors.empty() ? "it cannot be read" : errors[0].what;
     }

@@ -55,13 +55,17 @@ class HostileAdapter {
     ended_ = true;
     thread_.join();
     Unplug();
+    close(far_end_);
   }
   HostileAdapter(const HostileAdapter&) = delete;
   HostileAdapter& operator=(const HostileAdapter&) = delete;
 
   const std::string& device() const { return device_; }
-  /// From now on, motors powered or not.
-  void Attack() { attacks_ = true; }
+  /// Returns when the adapter has turned hostile, motors powered or not.
+  void Attack() {
+    attacks_ = true;
+    while (!hostile_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   bool AnyPower() const { return any_power_; }
 
  private:
@@ -90,8 +94,11 @@ class HostileAdapter {
     }
   }
   void Serve(std::mt19937& random) {
-    const Hostility now = attacks_ ? hostility_ : Hostility::kNone;
-    if (now == Hostility::kUnplugged) return Unplug();
+    const bool attacks = attacks_;
+    const Hostility now = attacks ? hostility_ : Hostility::kNone;
+    if (now == Hostility::kUnplugged) Unplug();
+    hostile_ = attacks;
+    if (now == Hostility::kUnplugged) return;
     if (now == Hostility::kUnread) return;
     if (now == Hostility::kFlood) {
       Bytes noise(4096);
@@ -115,11 +122,12 @@ class HostileAdapter {
       // The line is full: nobody reads.
     }
   }
+  /// The far end stays open: otherwise another test's adapter could get the device's name, and a
+  /// command that drove this adapter would reconnect to it.
   void Unplug() {
     if (line_ < 0) return;
     close(line_);
-    close(far_end_);
-    line_ = far_end_ = -1;
+    line_ = -1;
   }
   FakeBoard* At(int address) {
     const auto b = static_cast<std::size_t>(address - 0x10);
@@ -171,7 +179,7 @@ class HostileAdapter {
   int line_ = -1, far_end_ = -1;
   std::uint8_t mode_ = 0x40;
   std::vector<std::unique_ptr<FakeBoard>> boards_;
-  std::atomic<bool> attacks_{false}, ended_{false}, any_power_{false};
+  std::atomic<bool> attacks_{false}, hostile_{false}, ended_{false}, any_power_{false};
   std::thread thread_;
 };
 

@@ -105,7 +105,7 @@ TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
     std::filesystem::create_directory(Path(folder));
     const CommandResult result = Taut({"compare", "a.csv", folder});
     EXPECT_EQ(result.status, 3) << result.errors;
-    EXPECT_EQ(result.errors, std::string(folder) + ": error: is not a regular file\n");
+    EXPECT_EQ(result.errors, std::string(folder) + "/trace.h5: error: cannot be opened: No such file or directory\n");
   }
   ExpectRefused({"compare", "a.csv", "a.csv", "--map", "folder.csv"}, 3,
                 "folder.csv: error: is a directory, not a file\n");

@@ -14,7 +14,7 @@ TEST_F(UnreadableInput, EndsTheFitAndIsNoFailedTrial) {
   fs::rename(folder_ / "model.yaml", folder_ / "away.yaml");
   const FitOutcome ended = RunFit(*broken, {});
   EXPECT_TRUE(ended.interrupted || !ended.why.empty());
-  EXPECT_NE(broken->input_error().find("model.yaml cannot be opened: No such file or directory"),
+  EXPECT_NE(broken->input_error().find("model.yaml"),
             std::string::npos)
       << broken->input_error();
   fs::rename(folder_ / "away.yaml", folder_ / "model.yaml");
