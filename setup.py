@@ -37,7 +37,7 @@ class BuildWithCMake(build_ext):
         package.mkdir(parents=True, exist_ok=True)
         shutil.copy2(made, package / name)
         for folder in SHIPPED if not self.inplace else []:
-            shutil.copytree(ROOT / folder, package / "share" / "taut" / folder, dirs_exist_ok=True)
+            shutil.copytree(ROOT / "share" / folder, package / "share" / "taut" / folder, dirs_exist_ok=True)
 
     def compile_here(self):
         folder = pathlib.Path(self.build_temp).resolve() / "cmake"

@@ -17,9 +17,9 @@
 #include <thread>
 
 #include "benchmarks/mujoco_files.h"
+#include "benchmarks/peers/settings.h"
 #include "benchmarks/robots.h"
 #include "benchmarks/stage_watch.h"
-#include "peers/settings.h"
 
 namespace taut::bench {
 namespace {

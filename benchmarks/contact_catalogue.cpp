@@ -3,13 +3,13 @@
 #include <numbers>
 
 #include "benchmarks/robots.h"
-#include "scenes/chance.h"
-#include "scenes/heap.h"
-#include "scenes/many_rows.h"
-#include "scenes/prism_tower.h"
-#include "scenes/single_rod.h"
-#include "scenes/spine_on_rubble.h"
-#include "scenes/stacks.h"
+#include "tests/scenes/chance.h"
+#include "tests/scenes/heap.h"
+#include "tests/scenes/many_rows.h"
+#include "tests/scenes/prism_tower.h"
+#include "tests/scenes/single_rod.h"
+#include "tests/scenes/spine_on_rubble.h"
+#include "tests/scenes/stacks.h"
 
 namespace taut::bench {
 namespace {

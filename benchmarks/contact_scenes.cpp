@@ -19,9 +19,9 @@
 
 #include "benchmarks/contact_catalogue.h"
 #include "benchmarks/mujoco_files.h"
+#include "benchmarks/peers/settings.h"
 #include "benchmarks/robots.h"
-#include "peers/settings.h"
-#include "scenes/chance.h"
+#include "tests/scenes/chance.h"
 
 namespace taut::bench {
 namespace {

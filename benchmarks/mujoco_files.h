@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "peers/peer.h"
+#include "benchmarks/peers/peer.h"
 #include "taut/model_def.h"
 
 namespace taut::bench {

@@ -5,13 +5,13 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "scenes/ball.h"
-#include "scenes/many_rows.h"
-#include "scenes/rod_chain.h"
-#include "scenes/rough_ground.h"
-#include "scenes/six_strut.h"
-#include "scenes/tetraspine3.h"
 #include "taut/spec.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/many_rows.h"
+#include "tests/scenes/rod_chain.h"
+#include "tests/scenes/rough_ground.h"
+#include "tests/scenes/six_strut.h"
+#include "tests/scenes/tetraspine3.h"
 
 namespace taut::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "peers/peer.h"
+#include "benchmarks/peers/peer.h"
 #include "taut/batch.h"
 
 namespace taut::bench {
@@ -13,11 +13,11 @@ namespace taut::bench {
 inline constexpr double kStepS = 0.001;
 inline constexpr int kControlSteps = 10;  ///< Rest lengths are commanded at 100 Hz.
 
-/// A model of models/ on the ground.
+/// A model of share/models/ on the ground.
 ModelDef OnGround(const std::string& robot);
 
-/// A model of models/, or "six_strut_stiff", whose cables are rows of the solver, above hills with
-/// so many corners along each side; 0: above a plane.
+/// A model of share/models/, or "six_strut_stiff", whose cables are rows of the solver, above hills
+/// with so many corners along each side; 0: above a plane.
 ModelDef OnHills(const std::string& robot, int corners);
 /// A ball that rolls at 1 m/s, and would for ever, over level triangles.
 ModelDef BallOnTriangles();

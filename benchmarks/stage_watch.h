@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "sim/batch_inside.h"
+#include "sim/batch/batch_inside.h"
 
 namespace taut {
 namespace sim {

@@ -1,8 +1,10 @@
 /// The step of one instruction set with a watch; see stage_watch.h.
+#pragma once
+
 #include <time.h>
 
 #include "benchmarks/stage_watch.h"
-#include "sim/kernel.inl"
+#include "sim/step/kernel.inl"
 
 namespace taut::sim {
 

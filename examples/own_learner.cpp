@@ -1,6 +1,6 @@
 // A learner in a few lines, and rewards of one's own.
 //
-//   own_learner experiments/learn_spine.yaml
+//   own_learner share/experiments/learn_spine.yaml
 //
 // 64 worlds of a robot; each tries a linear law of its own, from what it sees to what it does. The
 // reward is the experiment's, and more for whoever keeps low. What the best law of a round earned

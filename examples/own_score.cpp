@@ -1,6 +1,6 @@
 // A measure of one's own: how much a robot still moves after a push.
 //
-//   own_score experiments/push_20n.yaml
+//   own_score share/experiments/push_20n.yaml
 //
 // The experiment in sixteen variants side by side, the velocity gain B of its impedance control
 // from a quarter to twice what the file says. Each is scored by minus the time integral of the
@@ -76,7 +76,8 @@ int main(int argc, char** argv) {
   taut::Diagnostics out;
   auto experiment = argc == 2 ? taut::LoadExperiment(argv[1], {}, out) : std::nullopt;
   if (!experiment) {
-    std::fprintf(stderr, "usage: own_score experiments/push_20n.yaml\n%s", out.Format().c_str());
+    std::fprintf(stderr, "usage: own_score share/experiments/push_20n.yaml\n%s",
+                 out.Format().c_str());
     return 2;
   }
   const std::vector<double> scores = Scores(*experiment, taut::BestSimd(), out);

@@ -27,7 +27,7 @@ from torch.distributions import Normal, kl_divergence
 import taut
 import taut.gym
 
-TASK = pathlib.Path(__file__).resolve().parents[1] / "experiments" / "learn_roll_ahead.yaml"
+TASK = pathlib.Path(__file__).resolve().parents[1] / "share/experiments" / "learn_roll_ahead.yaml"
 
 
 @dataclasses.dataclass(frozen=True)

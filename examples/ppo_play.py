@@ -16,7 +16,7 @@ import torch
 import taut
 import taut.gym
 
-EXPERIMENTS = pathlib.Path(__file__).resolve().parents[1] / "experiments"
+EXPERIMENTS = pathlib.Path(__file__).resolve().parents[1] / "share/experiments"
 SINE, PLAIN = EXPERIMENTS / "roll_six_strut.yaml", EXPERIMENTS / "roll_six_strut_start.yaml"
 
 

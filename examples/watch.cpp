@@ -1,7 +1,7 @@
 // A page of a program's own: two worlds beside each other in a browser.
 //
-//   watch models/prism3.yaml            open the address that it prints
-//   watch models/prism3.yaml 0          without waiting, for tests
+//   watch share/models/prism3.yaml            open the address that it prints
+//   watch share/models/prism3.yaml 0          without waiting, for tests
 //
 // A prism slides over rough ground, another over ice; the page shows both, their cables' tensions,
 // what they stand on and how far they are. Pausing there pauses here. The example asserts that ice
@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   taut::Diagnostics out;
   auto robot = argc >= 2 ? taut::LoadRobot(argv[1], {}, out) : std::nullopt;
   if (!robot) {
-    std::fprintf(stderr, "usage: watch models/prism3.yaml [SPEED]\n%s", out.Format().c_str());
+    std::fprintf(stderr, "usage: watch share/models/prism3.yaml [SPEED]\n%s", out.Format().c_str());
     return 2;
   }
   robot->def.planes.emplace_back().name = "ground";

@@ -18,18 +18,21 @@ class Rules:
 
     def __init__(self, path):
         self.uses, self.layer_of_header, self.folders = {}, {}, {}
-        self.only, self.system, self.errors = [], {}, []
+        self.only, self.system, self.rooms, self.errors = [], {}, {}, []
         for number, line in enumerate(path.read_text().splitlines(), 1):
             line = line.split("#")[0].strip()
             if not line:
                 continue
-            match = re.fullmatch(r"(layer|headers|folder|only|system) ([\w/]+):(.*)", line)
+            match = re.fullmatch(r"(layer|room|headers|folder|only|system) ([\w/]+):(.*)", line)
             if not match:
                 self.errors.append(f"{path.name}:{number}: error: cannot read this line")
                 continue
             kind, name, words = match[1], match[2], match[3].split()
             if kind == "layer":
                 self.uses[name] = {name, *words}
+            elif kind == "room":
+                layer, room = name.split("/")
+                self.rooms.setdefault(layer, {})[room] = {room, *words}
             elif kind == "headers":
                 self.layer_of_header.update({word: name for word in words})
             elif kind == "folder":
@@ -50,9 +53,21 @@ def check_outside(rules, where, layer, header, errors):
         errors.append(f"{where}: error: {layer} may include only {', '.join(allowed)}, not <{header}>")
 
 
+def check_room(rules, where, layer, path, header, errors):
+    """An include of a layer's own, from one of its rooms."""
+    rooms = rules.rooms.get(layer)
+    if not rooms or header.split("/")[0] != layer:
+        return
+    room, other = path.parent.name, header.split("/")[1]
+    if room not in rooms:
+        errors.append(f"{where}: error: {layer}/{room} is no room of layers.txt")
+    elif other not in rooms[room]:
+        errors.append(f"{where}: error: {layer}/{room} may not include {header}")
+
+
 def folder_of(rules, header):
     """The folder of layers.txt that a header is in: apps/viewer of apps/viewer/server.h."""
-    return next((folder for folder in rules.folders if header.startswith(folder + "/")), None)
+    return max((folder for folder in rules.folders if header.startswith(folder + "/")), key=len, default=None)
 
 
 def check_file(rules, root, path, layer, allowed, private, errors):
@@ -76,6 +91,7 @@ def check_file(rules, root, path, layer, allowed, private, errors):
                 errors.append(f"{where}: error: {layer} may include public headers only, not {header}")
             elif owner not in allowed:
                 errors.append(f"{where}: error: {layer} may not include {header} of {owner}")
+            check_room(rules, where, layer, path, header, errors)
         elif folder_of(rules, header) and (root / header).exists():
             owner = folder_of(rules, header)
             if owner not in (layer, *allowed):
@@ -121,6 +137,8 @@ def check(root):
 
     for folder, allowed in rules.folders.items():
         for path in sources(root / folder):
+            if folder_of(rules, str(path.relative_to(root))) != folder:
+                continue  # a folder in it has rules of its own
             check_file(rules, root, path, folder, allowed, "src" in allowed, errors)
     return errors
 

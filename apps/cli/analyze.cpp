@@ -16,6 +16,7 @@
 #include "commands.h"
 #include "output.h"
 #include "overrides.h"
+#include "shipped.h"
 #include "taut/alone.h"
 #include "taut/start.h"
 
@@ -284,7 +285,8 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<AnalyzeArguments>();
   CLI::App* analyze = app.add_subcommand(
       "analyze", "Say what holds a structure up: its equilibrium, safety and modes.");
-  analyze->add_option("file", args->path, "Model or experiment file (YAML)")->required();
+  LookUpShipped(analyze->add_option("file", args->path, "Model or experiment file (YAML)"))
+      ->required();
   analyze->add_option("--set", args->set, "Parameter of the file")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);

@@ -5,6 +5,7 @@
 #include "interrupt.h"
 #include "output.h"
 #include "overrides.h"
+#include "shipped.h"
 #include "taut/start.h"
 
 namespace taut::cli {
@@ -20,7 +21,8 @@ std::optional<RobotSpec> LoadAnyRobot(const std::string& path, const Overrides& 
 }
 
 void AddPlacedRobot(CLI::App& command, PlacedRobotArguments& args) {
-  command.add_option("file", args.path, "Model or experiment file (YAML)")->required();
+  LookUpShipped(command.add_option("file", args.path, "Model or experiment file (YAML)"))
+      ->required();
   command.add_option("--set", args.set, "Parameter of the file")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);

@@ -9,6 +9,7 @@
 #include "gait_report.h"
 #include "output.h"
 #include "overrides.h"
+#include "shipped.h"
 #include "streams.h"
 #include "taut/env.h"
 #include "taut/run.h"
@@ -158,7 +159,8 @@ void AddCheck(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<CheckArguments>();
   CLI::App* check = app.add_subcommand(
       "check", "Check a model, experiment or gait file; show what it describes.");
-  check->add_option("file", args->path, "Model, experiment or gait file (YAML)")->required();
+  LookUpShipped(check->add_option("file", args->path, "Model, experiment or gait file (YAML)"))
+      ->required();
   check->add_option("--set", args->set, "Parameter of the file")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);

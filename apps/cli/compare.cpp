@@ -7,6 +7,7 @@
 
 #include "output.h"
 #include "overrides.h"
+#include "shipped.h"
 #include "taut/compare.h"
 #include "taut/run_folder.h"
 
@@ -77,9 +78,11 @@ void AddCompare(CLI::App& app, int& exit_code) {
                    "Trace (.h5, .csv, .csv.gz), or folder of a run: compared with B")
       ->required();
   command->add_option("B", given->path_b, "Trace, or folder of a run: the reference")->required();
-  command->add_option("--map", given->map_b, "Mapping file that gives B the names of taut")
+  LookUpShipped(
+      command->add_option("--map", given->map_b, "Mapping file that gives B the names of taut"))
       ->option_text("FILE");
-  command->add_option("--map_a", given->map_a, "The same for A")->option_text("FILE");
+  LookUpShipped(command->add_option("--map_a", given->map_a, "The same for A"))
+      ->option_text("FILE");
   command
       ->add_option("--channels", given->options.channels,
                    "Only channels that fit a pattern such as 'cable/*/tension_n'")

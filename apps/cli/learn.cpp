@@ -11,6 +11,7 @@
 #include "output.h"
 #include "overrides.h"
 #include "progress_line.h"
+#include "shipped.h"
 #include "streams.h"
 #include "taut/cluster.h"
 #include "taut/learn.h"
@@ -140,10 +141,10 @@ void AddLearn(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<LearnArguments>();
   CLI::App* learn = app.add_subcommand(
       "learn", "Search for the numbers of a controller, gait or model that score best.");
-  learn
-      ->add_option("study", args->path,
-                   "Study file (YAML); for --best and --top a study's folder, for --parameters an "
-                   "experiment")
+  LookUpShipped(learn->add_option(
+                    "study", args->path,
+                    "Study file (YAML); for --best and --top a study's folder, for --parameters an "
+                    "experiment"))
       ->required();
   learn->add_option("--set", args->set, "Parameter of the study, experiment or model")
       ->option_text("NAME=VALUE")

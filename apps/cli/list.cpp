@@ -26,7 +26,7 @@ void PrintLines(const std::vector<ShippedFile>& files) {
   std::string kind;
   for (const ShippedFile& file : files) {
     if (file.kind != kind) {
-      fmt::print("{}{}, in {}\n", kind.empty() ? "" : "\n", file.kind, *ShippedFolder(file.kind));
+      fmt::print("{}{}, in {}\n", kind.empty() ? "" : "\n", file.kind, *ShippedFolderOf(file.kind));
     }
     kind = file.kind;
     fmt::print("  {:<{}}  {}\n", file.head.name, width, file.head.description);

@@ -24,11 +24,11 @@ struct NewArguments {
 
 /// A file that comes with taut; what is missing shows when the new file is read.
 std::string Shipped(const std::string& folder, const std::string& file) {
-  return ShippedFolder(folder).value_or(folder) + "/" + file;
+  return ShippedFolderOf(folder).value_or(folder) + "/" + file;
 }
 
 std::string Schema(const std::string& kind) {
-  const auto folder = ShippedFolder("schema");
+  const auto folder = ShippedFolderOf("schema");
   return folder ? *folder + "/" + kind + ".schema.json" : "";
 }
 
@@ -80,7 +80,8 @@ void AddNew(CLI::App& app, int& exit_code) {
       ->required()
       ->option_text("NAME")
       ->check(CheckName);
-  create->add_option("--model", args->model, "Of an experiment: the robot's model file")
+  LookUpShipped(
+      create->add_option("--model", args->model, "Of an experiment: the robot's model file"))
       ->option_text("FILE");
   create->footer(
       "Examples:\n"

@@ -45,9 +45,9 @@ void AddPort(CLI::App& command, RobotArguments& args) {
 }
 
 void AddModel(CLI::App& command, RobotArguments& args) {
-  command
-      .add_option("--model", args.model,
-                  "The robot: names of its cables (default: tetraspine3_motors.yaml of taut)")
+  LookUpShipped(command.add_option(
+                    "--model", args.model,
+                    "The robot: names of its cables (default: tetraspine3_motors.yaml of taut)"))
       ->option_text("FILE");
   command.add_option("--set", args.set, "Parameter of the model")
       ->option_text("NAME=VALUE")
@@ -55,8 +55,8 @@ void AddModel(CLI::App& command, RobotArguments& args) {
 }
 
 void AddDriving(CLI::App& command, RobotArguments& args) {
-  command
-      .add_option("--calibration", args.calibration, "What was measured, to be set on the boards")
+  LookUpShipped(command.add_option("--calibration", args.calibration,
+                                   "What was measured, to be set on the boards"))
       ->option_text("FILE");
   command
       .add_option("--encoder_lines", args.encoder_lines,
@@ -79,7 +79,7 @@ void AddJson(CLI::App& command, RobotArguments& args) {
 
 std::string ModelPath(const RobotArguments& args) {
   if (!args.model.empty()) return args.model;
-  const auto folder = ShippedFolder("models");
+  const auto folder = ShippedFolderOf("models");
   return folder.value_or("models") + "/tetraspine3_motors.yaml";
 }
 

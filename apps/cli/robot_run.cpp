@@ -10,6 +10,7 @@
 #include "robot.h"
 #include "robot_recording.h"
 #include "robot_view.h"
+#include "shipped.h"
 #include "taut/run.h"
 #include "taut/run_folder.h"
 #include "taut/summary.h"
@@ -180,7 +181,8 @@ int Run(RunArguments args) {
 void AddRobotRun(CLI::App& robot, int& exit_code) {
   auto args = std::make_shared<RunArguments>();
   CLI::App* run = robot.add_subcommand("run", "Run an experiment on the robot, in real time.");
-  run->add_option("experiment", args->experiment, "Experiment file (YAML)")->required();
+  LookUpShipped(run->add_option("experiment", args->experiment, "Experiment file (YAML)"))
+      ->required();
   AddPort(*run, *args);
   run->add_option("--set", args->set, "Parameter of the experiment or model")
       ->option_text("NAME=VALUE")

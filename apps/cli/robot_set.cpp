@@ -7,6 +7,7 @@
 
 #include "output.h"
 #include "robot.h"
+#include "shipped.h"
 
 namespace taut::cli {
 namespace {
@@ -186,8 +187,9 @@ void AddRobotSet(CLI::App& robot, int& exit_code) {
   set->add_option("values", args->values, "Parameters, as duty_limit=0.5; none: show all")
       ->option_text("NAME=VALUE");
   AddPort(*set, *args);
-  set->add_option("--model", args->model,
-                  "The robot: names of its cables (default: tetraspine3_motors.yaml of taut)")
+  LookUpShipped(
+      set->add_option("--model", args->model,
+                      "The robot: names of its cables (default: tetraspine3_motors.yaml of taut)"))
       ->option_text("FILE");
   set->add_option("--cable", args->cables, "Only of the motors of these cables")
       ->option_text("NAME");
@@ -212,8 +214,8 @@ void AddRobotReference(CLI::App& robot, int& exit_code) {
       ->option_text("CABLE=REST_LENGTH_M");
   AddPort(*reference, *args);
   AddModel(*reference, *args);
-  reference
-      ->add_option("--calibration", args->calibration, "What was measured, to be set on the boards")
+  LookUpShipped(reference->add_option("--calibration", args->calibration,
+                                      "What was measured, to be set on the boards"))
       ->option_text("FILE");
   auto* flag =
       reference->add_flag("--as_model", *as_model, "All cables are as the model describes them");

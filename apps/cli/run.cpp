@@ -13,6 +13,7 @@
 #include "interrupt.h"
 #include "output.h"
 #include "overrides.h"
+#include "shipped.h"
 #include "streams.h"
 #include "taut/batch.h"
 #include "taut/compare.h"
@@ -192,7 +193,8 @@ int Run(const RunArguments& args) {
 void AddRun(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<RunArguments>();
   CLI::App* run = app.add_subcommand("run", "Run an experiment: trace, summary and table.");
-  run->add_option("experiment", args->experiment, "Experiment file (YAML)")->required();
+  LookUpShipped(run->add_option("experiment", args->experiment, "Experiment file (YAML)"))
+      ->required();
   run->add_option("--set", args->set, "Parameter of the experiment or model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "taut/shipped.h"
+
 namespace taut::cli {
 
 namespace fs = std::filesystem;
@@ -12,20 +14,27 @@ const std::vector<std::string>& ShippedKinds() {
   return kinds;
 }
 
-std::optional<std::string> ShippedFolder(const std::string& name) {
+std::optional<std::string> ShippedFolderOf(const std::string& kind) {
+  const auto shipped = ShippedFolder();
+  if (!shipped) return std::nullopt;
+  // In a build these are links into the source tree; users are to see where they lead.
   std::error_code failed;
-  const fs::path command = fs::read_symlink("/proc/self/exe", failed).parent_path();
-  for (const fs::path& share : {command.parent_path() / "share/taut", command / "share/taut"}) {
-    // In a build these are links into the source tree; users are to see where they lead.
-    const fs::path folder = fs::canonical(share / name, failed);
-    if (!failed && fs::is_directory(folder, failed)) return folder.string();
-  }
-  return std::nullopt;
+  const fs::path folder = fs::canonical(fs::path(*shipped) / kind, failed);
+  return failed ? std::nullopt : std::optional(folder.string());
+}
+
+CLI::Option* LookUpShipped(CLI::Option* input) {
+  return input->transform(CLI::Validator(
+      [](std::string& path) {
+        path = FindInput(path, ShippedFolder());
+        return std::string();
+      },
+      "", "file that comes with taut"));
 }
 
 std::vector<ShippedFile> ShippedFiles(const std::string& kind, Diagnostics& out) {
   std::vector<ShippedFile> files;
-  const std::optional<std::string> folder = ShippedFolder(kind);
+  const std::optional<std::string> folder = ShippedFolderOf(kind);
   if (!folder) return files;
   std::error_code failed;
   for (const fs::directory_entry& entry : fs::directory_iterator(*folder, failed)) {

@@ -1,6 +1,8 @@
 /// The files that come with taut: robots, experiments, gaits, studies, fits.
 #pragma once
 
+#include <CLI/CLI.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +22,11 @@ const std::vector<std::string>& ShippedKinds();
 
 /// A folder of them beside the installed command (share/taut) or of the tree that the command was
 /// built from. Nothing if there is none.
-std::optional<std::string> ShippedFolder(const std::string& name);
+std::optional<std::string> ShippedFolderOf(const std::string& kind);
+
+/// Looks an input file up among the files that come with taut if the current folder has none of
+/// its name (`FindInput`).
+CLI::Option* LookUpShipped(CLI::Option* input);
 
 /// The files of a kind, by name.
 std::vector<ShippedFile> ShippedFiles(const std::string& kind, Diagnostics& out);

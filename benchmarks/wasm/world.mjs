@@ -1,4 +1,4 @@
-// One world of MuJoCo in WebAssembly, driven as peers/mujoco.cpp drives the one that is built in.
+// One world of MuJoCo in WebAssembly, driven as benchmarks/peers/mujoco.cpp drives the one that is built in.
 import { setFlagsFromString } from "node:v8";
 import load from "@mujoco/mujoco";
 

@@ -15,7 +15,8 @@ std::string Representation(const std::string& kind, const std::string& name, con
          std::to_string(def.cables.size()) + " cables>";
 }
 
-py::object Load(const std::string& path, const py::kwargs& set) {
+py::object Load(const std::string& given, const py::kwargs& set) {
+  const std::string path = InputPath(given);
   const Overrides overrides = OverridesOf(set);
   Diagnostics said;
   std::optional<std::string> kind;
@@ -100,6 +101,7 @@ void AddDescriptions(py::module_& module) {
       .def("__repr__",
            [](const Experiment& e) { return Representation("Experiment", e.name, e.robot.def); });
 
+  module.def("data_folder", &DataFolder, "Folder of the files that come with taut, or None.");
   module.def("load", &Load, py::arg("path"),
              "Reads a model or an experiment file; keyword arguments set its named parameters, as "
              "numbers or expressions:\n\n"

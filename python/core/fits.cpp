@@ -65,7 +65,7 @@ struct Asked {
 /// All of it, on a thread of its own. Nothing where `said` has errors.
 std::shared_ptr<Fitted> Search(const Asked& asked, const Overrides& overrides,
                                const std::atomic<bool>& stop, Diagnostics& said) {
-  const auto spec = LoadFit(asked.path, overrides, said);
+  const auto spec = LoadFit(InputPath(asked.path), overrides, said);
   if (!spec) return nullptr;
   std::unique_ptr<FolderLock> lock;
   IdentifyOptions options;

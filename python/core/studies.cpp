@@ -65,7 +65,7 @@ Found Learn(const std::string& path, const std::optional<std::string>& folder, i
   std::optional<StudySpec> study;
   {
     const Released others;
-    study = LoadStudy(path, overrides, said);
+    study = LoadStudy(InputPath(path), overrides, said);
     if (study) CheckStart(study->experiment.robot, study->experiment.start, said);
   }
   Tell(said);

@@ -1,9 +1,12 @@
 #include "text.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "taut/shipped.h"
 
 namespace taut::python {
 namespace {
@@ -40,6 +43,14 @@ std::optional<Simd> SimdOf(const std::optional<std::string>& name) {
   }
   throw py::value_error("simd: \"" + *name + "\"; there are scalar, sse2, neon, avx2 and avx512");
 }
+
+std::optional<std::string> DataFolder() {
+  Dl_info module{};
+  if (dladdr(reinterpret_cast<const void*>(&DataFolder), &module) == 0) return std::nullopt;
+  return ShippedFolder(module.dli_fname);
+}
+
+std::string InputPath(const std::string& path) { return FindInput(path, DataFolder()); }
 
 void Tell(const Diagnostics& said) {
   if (!said.ok()) Refuse(said);

@@ -34,6 +34,11 @@ void AddFits(py::module_& module);
 void AddAnalyses(py::module_& module);
 void AddLinear(py::module_& module);
 
+/// The folder of the files that come with taut, if there is one.
+std::optional<std::string> DataFolder();
+/// A path to an input file, looked up in that folder if it is not in the current one (`FindInput`).
+std::string InputPath(const std::string& path);
+
 /// Raises `taut.InputError` with all that is wrong, if anything is; tells warnings by
 /// `warnings.warn` as `taut.InputWarning`. The GIL must be held.
 void Tell(const Diagnostics& said);

@@ -11,7 +11,7 @@ EXPERIMENTS = ["push_20n", "drop_six_strut", "hills", "puppy_stand", "wall"]
 
 
 def measured(command):
-    run = subprocess.run([*command, *(f"experiments/{name}.yaml" for name in EXPERIMENTS)], capture_output=True,
+    run = subprocess.run([*command, *(f"share/experiments/{name}.yaml" for name in EXPERIMENTS)], capture_output=True,
                          text=True, check=True)
     return [json.loads(line) for line in run.stdout.splitlines()]
 

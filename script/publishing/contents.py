@@ -14,7 +14,7 @@ PARTS = {
     "Theory": ["docs/theory/integrator.md", "docs/theory/cables.md", "docs/theory/contact.md", "docs/theory/"],
     "How good it is": ["docs/validation/README.md", "docs/validation/", "docs/performance.md", "docs/determinism.md",
                        "docs/robustness.md"],
-    "The project": ["docs/README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md"],
+    "The project": ["docs/README.md", "ARCHITECTURE.md", "docs/extending.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md"],
 }
 REST = "More"  # pages that no part names: whoever writes one need not know this file
 

@@ -67,14 +67,14 @@ class ExportMjcf(Converter):
     makes = ("prism.xml",)
 
     def words(self):
-        return ("export", "mjcf", ROOT / "models/prism3.yaml", "--keyframe", "--out", "prism.xml")
+        return ("export", "mjcf", ROOT / "share/models/prism3.yaml", "--keyframe", "--out", "prism.xml")
 
 
 class ExportShape(Converter):
     makes = ("prism.glb",)
 
     def words(self):
-        return ("export", "shape", ROOT / "models/prism3.yaml", "--out", "prism.glb")
+        return ("export", "shape", ROOT / "share/models/prism3.yaml", "--out", "prism.glb")
 
 
 class ExportStructure(Converter):
@@ -83,7 +83,7 @@ class ExportStructure(Converter):
         "clusters.csv", "structure.json"))
 
     def words(self):
-        return ("export", "structure", ROOT / "models/prism3.yaml", "--out", "prism")
+        return ("export", "structure", ROOT / "share/models/prism3.yaml", "--out", "prism")
 
 
 class Analyze(Reader):
@@ -91,7 +91,7 @@ class Analyze(Reader):
         pass
 
     def words(self):
-        return ("analyze", ROOT / "models/prism3.yaml", "--json")
+        return ("analyze", ROOT / "share/models/prism3.yaml", "--json")
 
 
 class Size(Reader):
@@ -99,4 +99,4 @@ class Size(Reader):
 
     def prepare(self):
         (self.before / "winches.yaml").write_text(WINCHES)
-        self.made("run", ROOT / "experiments/rest_length_sine.yaml", "--duration_s", "0.3", "--quiet", "--out", "run")
+        self.made("run", ROOT / "share/experiments/rest_length_sine.yaml", "--duration_s", "0.3", "--quiet", "--out", "run")

@@ -74,7 +74,7 @@ class OnTerminal:
 
 
 def killed_runs(program, folder, count, rng, show):
-    words = ("run", ROOT / "experiments/hang.yaml", "--step_s", STEP_S, "--duration_s", SIMULATED_S)
+    words = ("run", ROOT / "share/experiments/hang.yaml", "--step_s", STEP_S, "--duration_s", SIMULATED_S)
     began_s = time.monotonic()
     right = program.plain((*words, "--quiet", "--csv", "--out", "right"), folder)
     longest_s = time.monotonic() - began_s

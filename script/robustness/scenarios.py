@@ -19,7 +19,7 @@ from validation.runs import ROOT, Problem
 EXPERIMENT = """\
 taut: 1
 kind: experiment
-base: {root}/experiments/{base}.yaml
+base: {root}/share/experiments/{base}.yaml
 name: {name}
 duration_s: {duration_s}
 """

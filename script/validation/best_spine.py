@@ -59,7 +59,7 @@ class Data:
         entries = []
         for use, which, half in (("train", train, halves[0]), ("test", test, halves[1])):
             for number in which:
-                entries.append(f"  - {{name: t{number}{half}, experiment: {self._beside('experiments/best_2d_spine.yaml')}, "
+                entries.append(f"  - {{name: t{number}{half}, experiment: {self._beside('share/experiments/best_2d_spine.yaml')}, "
                                f"data: ../test{number}{half}.csv, setpoints: ../test{number}_setpoints.csv, "
                                f"forward: static, use: {use}}}\n")
         residuals = [f"  - {{channel: {c}, sd: {sd}, window: {{after_setpoint_s: [{AFTER_S[0]}, {AFTER_S[1]}]}}}}\n"

@@ -20,10 +20,10 @@ ROD_FRICTION, MASS_KG, G = 0.15, 2.349, 9.81
 
 
 def experiment(folder):
-    """experiments/drag.yaml on ground that holds more at rest, of a robot that was weighed."""
+    """share/experiments/drag.yaml on ground that holds more at rest, of a robot that was weighed."""
     (folder / "drag.yaml").write_text(f"""taut: 1
 kind: experiment
-base: {fits.beside(folder, "experiments/drag.yaml")}
+base: {fits.beside(folder, "share/experiments/drag.yaml")}
 name: drag
 parameters: {{ground_sliding: 0.5, extra: 0.1, mass: 1}}
 terrain:

@@ -201,11 +201,11 @@ def frequency_text(rows):
 
 def beside(text):
     """The text of an experiment's controllers for a file in runs/validation/gaits/x/."""
-    return replaced(text, "../gaits/", os.path.relpath(ROOT / "gaits", ROOT / "runs/validation/gaits/x") + "/")
+    return replaced(text, "../gaits/", os.path.relpath(ROOT / "share/gaits", ROOT / "runs/validation/gaits/x") + "/")
 
 
 def changed_controllers(gait, old, new):
-    return beside(replaced(yaml_block(f"experiments/{gait.key}.yaml", "controllers"), old, new))
+    return beside(replaced(yaml_block(f"share/experiments/{gait.key}.yaml", "controllers"), old, new))
 
 
 def law_variants(gait):
@@ -258,7 +258,7 @@ def saturation_table(run_of):
 def controllers(gait, exact):
     """The experiment's controllers on one clock that every step divides: the law at 250 Hz, the gait at
     50 Hz."""
-    text = yaml_block(f"experiments/{gait.key}.yaml", "controllers")
+    text = yaml_block(f"share/experiments/{gait.key}.yaml", "controllers")
     text = replaced(text, "    period_s: 0.001\n", "    period_s: 0.004\n")
     text = replaced(text, "period_s: 0.01}", "period_s: 0.02}")
     text = beside(text)
@@ -297,7 +297,7 @@ def steps_table(gait, exact, paths):
 
 
 def inverted():
-    line = next(line for line in (ROOT / "gaits/cpg_learned.yaml").read_text().splitlines() if "inverted:" in line)
+    line = next(line for line in (ROOT / "share/gaits/cpg_learned.yaml").read_text().splitlines() if "inverted:" in line)
     return {name.strip(" []") for name in line.split(":", 1)[1].split(",")}
 
 

@@ -22,7 +22,7 @@ HEADINGS = 9
 NTRT = """controllers:
   - name: motion
     period_s: 0.001
-    velocity_input: {{gait: ../../../../gaits/ntrt_feedback.yaml, period_s: 0.01}}
+    velocity_input: {{gait: ../../../../share/gaits/ntrt_feedback.yaml, period_s: 0.01}}
     impedance:
       gains: [{{cables: cable, position_gain_n_per_m: 1000, velocity_gain_n_s_per_m: 200}}]
       set_points:

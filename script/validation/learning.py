@@ -37,7 +37,7 @@ def learn(taut, method, seed):
     name = f"{method}_{seed}".lower().replace(" ", "_").replace(",", "").replace("'", "")
     folder = taut.folder / name
     folder.mkdir(parents=True, exist_ok=True)
-    base = os.path.relpath(ROOT / "studies/sidewinder3.yaml", folder)
+    base = os.path.relpath(ROOT / "share/studies/sidewinder3.yaml", folder)
     (folder / "study.yaml").write_text(
         f"taut: 1\nkind: study\nbase: {base}\nname: {name}\nseed: {seed}\n"
         "worlds: {count: 2, friction: 0.2, mass: 0.1, stiffness: 0.1, start: {position_m: 0.001}}\n"
@@ -113,7 +113,7 @@ def distance(taut, gait, change, keys, step_s):
     name = f"{gait}_{change}".replace(" ", "_").replace("%", "").replace("+", "more").replace("-", "less")
     folder = taut.folder / name
     folder.mkdir(parents=True, exist_ok=True)
-    base = os.path.relpath(ROOT / "experiments" / f"{gait}.yaml", folder)
+    base = os.path.relpath(ROOT / "share/experiments" / f"{gait}.yaml", folder)
     (folder / "experiment.yaml").write_text(
         f"taut: 1\nkind: experiment\nbase: {base}\nname: {name}\nduration_s: 60\nstep_s: {step_s}\n"
         f"record: {{rate_hz: 1, channels: [system/com_*]}}\n{keys}")
@@ -135,7 +135,7 @@ def speeds(taut):
     program = taut.command.parent / "benchmarks/rollout_speed"
     rows = []
     for experiment in ("sidewinder3_start", "sidewinder3", "cpg_learned", "sidewinder12"):
-        run = subprocess.run([program, f"experiments/{experiment}.yaml", "4"], capture_output=True,
+        run = subprocess.run([program, f"share/experiments/{experiment}.yaml", "4"], capture_output=True,
                              text=True, check=False)
         if run.returncode != 0:
             raise Problem(f"{program}: {run.stderr}; script/build makes it")

@@ -114,7 +114,7 @@ def later(a, b):
 
 
 def frequency_hz():
-    text = yaml_block("gaits/puppy_trot.yaml", "sine")
+    text = yaml_block("share/gaits/puppy_trot.yaml", "sine")
     return float(text.split("frequency_hz:")[1].split()[0])
 
 

@@ -10,7 +10,7 @@ import time
 
 from validation.runs import Problem, Variant, fill, replaced, table, yaml_block
 
-EXPERIMENT = "experiments/push_20n.yaml"
+EXPERIMENT = "share/experiments/push_20n.yaml"
 TRACE = "tests/data/ntrt/push_1000hz.csv.gz"
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 PHASES = {"before": (25, 30), "during": (35, 40), "after": (50, 60)}

@@ -66,7 +66,7 @@ def page(taut):
     python(taut, "examples/ppo.py", "--out", learned, "--updates", UPDATES, "--minutes", 600)
     python(taut, "examples/ppo.py", "--out", learned, "--play", "--starts", STARTS, "--seconds", SECONDS)
     elsewhere = json.loads(python(taut, "script/validation/roll_elsewhere.py", learned))
-    bases = {"policy": os.path.relpath(taut.folder / "ppo/play/policy_{}", "experiments"), "sine": "roll_six_strut"}
+    bases = {"policy": os.path.relpath(taut.folder / "ppo/play/policy_{}", "share/experiments"), "sine": "roll_six_strut"}
     groups = {name: [variant(name, base.format(number), number) for number in range(STARTS)]
               for name, base in bases.items()}
     taut.run([v for group in groups.values() for v in group])

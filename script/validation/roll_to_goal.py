@@ -135,7 +135,7 @@ def page(taut):
     frictions = [f"flat ground, friction {friction:g}" for friction in FRICTIONS]
     for name, friction in zip(frictions, FRICTIONS):
         add(name, "roll_to_goal", {"ground_friction": friction})
-    model = f"model: ../../../../{OTHER}\nstart: settled_floating\n"   # seen from where the run is
+    model = f"model: ../../../../share/{OTHER}\nstart: settled_floating\n"   # seen from where the run is
     add("six_strut", "roll_to_goal_six_strut", {})
     add("six_strut_hills", "roll_to_goal_hills", {"drop_m": "0.02 * times"}, keys=model)
     add("six_strut_far", "roll_to_goal_six_strut", {"goal_m": 100}, FAR, rate_hz=50,

@@ -16,7 +16,7 @@ class Problem(Exception):
 
 
 class Variant:
-    """An experiment of experiments/ with some of its keys replaced.
+    """An experiment of share/experiments/ with some of its keys replaced.
 
     `keys` is the YAML of the top-level keys that replace the base's, `parameters` the values for
     --set. `full_trace` keeps all channels at the base's rate, in trace.h5 and trace.csv. A run whose status
@@ -45,7 +45,7 @@ class Taut:
     def _run(self, variant):
         folder = self.folder / variant.name
         folder.mkdir(parents=True, exist_ok=True)
-        base = os.path.relpath(pathlib.Path("experiments", variant.base + ".yaml"), folder)
+        base = os.path.relpath(pathlib.Path("share/experiments", variant.base + ".yaml"), folder)
         record = "" if variant.full_trace else "record: {rate_hz: 1}\n"
         experiment = folder / "experiment.yaml"
         experiment.write_text(

@@ -40,7 +40,7 @@ TOUCH_M = 0.0002
 
 def scaled_gait(folder, factor):
     """The gait with all amplitudes, and the offsets that follow from them, times a factor."""
-    text = (ROOT / GAIT).read_text()
+    text = (ROOT / "share" / GAIT).read_text()
     for name in ("inner_front", "inner_back", "outer_front", "outer_back"):
         text = replaced(text, f"  {name}_m_per_s: ", f"  {name}_m_per_s: {factor} * ")
     folder.mkdir(parents=True, exist_ok=True)
@@ -48,12 +48,12 @@ def scaled_gait(folder, factor):
 
 
 def rough_model(folder, robot_friction):
-    text = replaced((ROOT / MODEL).read_text(), f"  friction: {ROBOT_FRICTION} ", f"  friction: {robot_friction:.9g} ")
+    text = replaced((ROOT / "share" / MODEL).read_text(), f"  friction: {ROBOT_FRICTION} ", f"  friction: {robot_friction:.9g} ")
     (folder / f"model_{robot_friction:.3f}.yaml").write_text(text)
 
 
 def variant(factor, friction, start, step_s, experiment=EXPERIMENT, robot_friction=ROBOT_FRICTION):
-    controllers = replaced(yaml_block(f"experiments/{experiment}.yaml", "controllers"),
+    controllers = replaced(yaml_block(f"share/experiments/{experiment}.yaml", "controllers"),
                            "../" + GAIT, f"../gait_{factor}.yaml")
     other, model = "", ""
     if robot_friction != ROBOT_FRICTION:

@@ -31,7 +31,7 @@ def prepare(folder, test):
         "".join(f"      - {{node: n{n}, force_n: [0, 0, {-1e3 * row[0]:g} * share]}}\n" for n in (3, 4, 5))
         for i, row in enumerate(rows))
     (folder / f"{test}.yaml").write_text(
-        f"taut: 1\nkind: experiment\nname: t3_{test}\nmodel: {fits.beside(folder, 'models/t3_prism.yaml')}\n"
+        f"taut: 1\nkind: experiment\nname: t3_{test}\nmodel: {fits.beside(folder, 'share/models/t3_prism.yaml')}\n"
         f"set: {{lengthening_m: {TESTS[test]}}}\nparameters: {{share: 1}}\nduration_s: 1\nload_cases:\n{cases}")
 
 

@@ -20,8 +20,8 @@ FIRST = ("push_n", "yaw_rad", "ground_friction")   # what the maxima can feel mo
 
 def experiment(folder):
     """The push test with everything that is not known for sure as a parameter."""
-    text = (ROOT / "experiments" / "push_20n.yaml").read_text()
-    text = replaced(text, "../models/", fits.beside(folder, "models") + "/")
+    text = (ROOT / "share/experiments" / "push_20n.yaml").read_text()
+    text = replaced(text, "../models/", fits.beside(folder, "share/models") + "/")
     text = replaced(text, "  ground_friction: 0.5\n", "  ground_friction: 0.5\n" + "".join(
         f"  {name}: {default}\n" for name, default in
         [("yaw_rad", 0), ("pitch_rad", 0), ("shared", 0.45), ("hold_yaw_rad", 0), ("rise_s", 5),

@@ -35,7 +35,7 @@ def experiment(folder):
     (folder / "twin.yaml").write_text(f"""taut: 1
 kind: experiment
 name: twin
-model: {fits.beside(folder, "models/tetraspine3.yaml")}
+model: {fits.beside(folder, "share/models/tetraspine3.yaml")}
 parameters: {{ground_friction: 0.5, mass: 1, weight_n: {WEIGHT_N}}}
 terrain: [{{name: ground, plane: {{height_m: 0, friction: ground_friction}}}}]
 scale: [{{mass: mass}}]

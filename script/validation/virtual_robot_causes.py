@@ -33,14 +33,14 @@ class Cause:
     def write(self, folder, name):
         """The experiment and its model as files in the folder."""
         folder.mkdir(parents=True, exist_ok=True)
-        text = (ROOT / f"models/{self.model}.yaml").read_text()
+        text = (ROOT / f"share/models/{self.model}.yaml").read_text()
         for old, new in self.changes.items():
             text = replaced(text, old, new)
         if self.model != LIMITED:
-            models = os.path.relpath(ROOT / "models", folder)
+            models = os.path.relpath(ROOT / "share/models", folder)
             text = replaced(text, "base: tetraspine3.yaml", f"base: {models}/tetraspine3.yaml")
         (folder / "model.yaml").write_text(text)
-        base = os.path.relpath(ROOT / "experiments" / f"{name}.yaml", folder)
+        base = os.path.relpath(ROOT / "share/experiments" / f"{name}.yaml", folder)
         path = folder / "experiment.yaml"
         path.write_text(
             f"taut: 1\nkind: experiment\nbase: {base}\nname: {name}_cause\nmodel: model.yaml\n{self.keys}")
@@ -137,19 +137,19 @@ TOGETHER = (
 
 
 def build_firmware(folder, changes):
-    """The boards' program with changes of its motor loop, by the flags of firmware/CMakeLists.txt."""
+    """The boards' program with changes of its motor loop, by the flags of apps/firmware/CMakeLists.txt."""
     shutil.rmtree(folder, ignore_errors=True)
-    for part in ("include/taut/board", "include/taut/control", "firmware"):
+    for part in ("include/taut/board", "include/taut/control", "apps/firmware"):
         shutil.copytree(ROOT / part, folder / part)
     loop = folder / "include/taut/board/motor_loop.h"
     text = loop.read_text()
     for old, new in changes.items():
         text = replaced(text, old, new)
     loop.write_text(text)
-    flags = re.search(r"set\(TAUT_AVR_FLAGS ([^)]*)\)", (ROOT / "firmware/CMakeLists.txt").read_text())[1].split()
+    flags = re.search(r"set\(TAUT_AVR_FLAGS ([^)]*)\)", (ROOT / "apps/firmware/CMakeLists.txt").read_text())[1].split()
     flags = [flag for flag in flags if not flag.startswith("-I")]
     elf = folder / "taut_board.elf"
-    sources = sorted(map(str, pathlib.Path(folder, "firmware").glob("*.cpp")))
+    sources = sorted(map(str, pathlib.Path(folder, "apps/firmware").glob("*.cpp")))
     try:
         done = subprocess.run(["avr-g++", *flags, f"-I{folder}/include", f"-I{folder}", *sources, "-o", elf],
                               capture_output=True, text=True)

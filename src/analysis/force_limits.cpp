@@ -7,7 +7,7 @@
 #include "analysis/quadratic_program.h"
 #include "base/fixed.h"
 #include "math/vec.h"
-#include "sim/combine.h"
+#include "sim/contacts/combine.h"
 
 namespace taut::analysis {
 namespace {

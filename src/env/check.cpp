@@ -3,7 +3,7 @@
 #include <set>
 #include <string>
 
-#include "description/look_at.h"
+#include "description/experiment/look_at.h"
 #include "env/plan.h"
 #include "plant/recorder.h"
 #include "taut/run.h"

@@ -11,7 +11,7 @@
 #include "env/group.h"
 #include "env/snapshot.h"
 #include "plant/recorder.h"
-#include "sim/check_index.h"
+#include "sim/batch/check_index.h"
 #include "taut/study.h"
 
 namespace taut {

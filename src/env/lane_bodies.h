@@ -6,7 +6,7 @@
 
 #include "plant/body_channels.h"
 #include "plant/lane_kernel.h"
-#include "sim/batch_inside.h"
+#include "sim/batch/batch_inside.h"
 
 namespace taut::env {
 

@@ -6,7 +6,7 @@
 
 #include "base/assert.h"
 #include "env/starts.h"
-#include "sim/batch_inside.h"
+#include "sim/batch/batch_inside.h"
 
 namespace taut::env {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <map>
 
-#include "description/reader.h"
+#include "description/yaml/reader.h"
 #include "identify/computed.h"
 #include "taut/identify.h"
 #include "taut/run.h"

@@ -5,7 +5,7 @@
 
 #include "base/hash.h"
 #include "base/pattern.h"
-#include "description/reader.h"
+#include "description/yaml/reader.h"
 #include "identify/carried.h"
 #include "identify/memory.h"
 #include "identify/models.h"

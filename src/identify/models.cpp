@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/bytes.h"
-#include "description/reader.h"
+#include "description/yaml/reader.h"
 
 namespace taut::identify {
 namespace {

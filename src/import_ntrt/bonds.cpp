@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include "description/yaml_tree.h"
+#include "description/yaml/yaml_tree.h"
 #include "import_ntrt/read.h"
 #include "import_ntrt/turn.h"
 

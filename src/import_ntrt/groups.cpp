@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "description/beam_axes.h"
+#include "description/model/beam_axes.h"
 #include "import_ntrt/draft.h"
 #include "import_ntrt/turn.h"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "base/union_find.h"
-#include "description/reader.h"
+#include "description/yaml/reader.h"
 #include "import_ntrt/draft.h"
 #include "taut/import_ntrt.h"
 #include "taut/spec.h"

@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "base/input_file.h"
-#include "description/gait_parts.h"
-#include "description/reader.h"
+#include "description/gait/gait_parts.h"
+#include "description/yaml/reader.h"
 #include "import_ntrt/turn.h"
 
 namespace taut::import_ntrt {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "description/yaml_tree.h"
+#include "description/yaml/yaml_tree.h"
 #include "import_ntrt/structure.h"
 
 namespace taut::import_ntrt {

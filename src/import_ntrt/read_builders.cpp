@@ -1,7 +1,7 @@
 // `builders:`: which class builds what carries a tag, and its parameters by NTRT's names.
 #include <cmath>
 
-#include "description/yaml_tree.h"
+#include "description/yaml/yaml_tree.h"
 #include "import_ntrt/read.h"
 
 namespace taut::import_ntrt {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "description/reader.h"
+#include "description/yaml/reader.h"
 #include "math/angle.h"
 
 namespace taut::import_ntrt {

@@ -170,7 +170,7 @@ bool CheckKinks(Rest& rest) {
   return true;
 }
 
-/// The coefficient of friction of a contact by its key (sim/tables.h), as the step had it.
+/// The coefficient of friction of a contact by its key (sim/data/tables.h), as the step had it.
 double FrictionOf(const sim::View& m, double key, bool slides) {
   const auto id = static_cast<std::uint32_t>(key);
   if (id < m.first_pair_id) {

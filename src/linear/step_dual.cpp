@@ -2,7 +2,7 @@
 
 #include "simd/dual.h"
 // The very text that simulates; it must find the numbers above.
-#include "sim/kernel.inl"
+#include "sim/step/kernel.inl"
 
 namespace taut::linear {
 

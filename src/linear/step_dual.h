@@ -1,7 +1,7 @@
 /// The step compiled for numbers with a derivative.
 #pragma once
 
-#include "sim/group.h"
+#include "sim/data/group.h"
 
 namespace taut::linear {
 

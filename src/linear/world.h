@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/batch_inside.h"
+#include "sim/batch/batch_inside.h"
 #include "simd/dual.h"
 
 namespace taut::linear {

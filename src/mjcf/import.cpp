@@ -1,8 +1,8 @@
 // A file of MJCF as a robot, and the experiment to go with it.
 #include "mjcf/scene.h"
 
-#include "description/reader.h"
-#include "description/write_keys.h"
+#include "description/yaml/reader.h"
+#include "description/yaml/write_keys.h"
 
 namespace taut {
 

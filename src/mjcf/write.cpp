@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "base/unique_names.h"
-#include "description/reader.h"
+#include "description/yaml/reader.h"
 #include "math/vec.h"
 
 namespace taut::mjcf {

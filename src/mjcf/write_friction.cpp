@@ -4,7 +4,7 @@
 #include "base/unique_names.h"
 #include "mechanics/contact_roles.h"
 #include "mjcf/write.h"
-#include "sim/combine.h"
+#include "sim/contacts/combine.h"
 
 namespace taut::mjcf {
 namespace {

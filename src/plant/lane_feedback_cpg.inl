@@ -1,5 +1,8 @@
-/// Included by lane_kernel.inl: networks, and oscillators that they act on.
+/// Networks, and oscillators that they act on.
+#pragma once
 
+#include "plant/lane_kernel.h"
+#include "plant/lane_rows.inl"
 #include "taut/control/feedback_cpg.h"
 #include "taut/control/network.h"
 

@@ -1,5 +1,8 @@
-/// Included by lane_kernel.inl: what is seen of all lanes at once, for who wants rows of numbers.
+/// What is seen of all lanes at once, for who wants rows of numbers.
+#pragma once
 
+#include "plant/lane_kernel.h"
+#include "plant/lane_rows.inl"
 #include "simd/vec3.h"
 
 namespace taut::plant {

@@ -69,7 +69,7 @@ struct FeedbackCpgRows {
   const double *weight_per_m = nullptr, *coupling_turns = nullptr;  ///< Per coupling.
 };
 
-/// Bodies of a group as the step has them (src/sim/state_rows.h).
+/// Bodies of a group as the step has them (src/sim/data/state_rows.h).
 struct BodyRows {
   int count = 0;
   /// Rows of a body: 3, 4 (principal frame in W), 3, 3 (angular momentum in W), 3.

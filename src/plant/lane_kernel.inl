@@ -1,23 +1,16 @@
 /// Included once an instruction set, by lane_*.cpp, with the width of its registers. As in the
 /// step, nothing here uses the standard library, and every function is a template of W.
+#pragma once
 
+#include "plant/lane_feedback_cpg.inl"
+#include "plant/lane_gather.inl"
 #include "plant/lane_kernel.h"
+#include "plant/lane_rows.inl"
 #include "simd/wide.h"
 #include "taut/control/cpg.h"
 #include "taut/control/sine.h"
 
 namespace taut::plant {
-
-template <class W>
-TAUT_INLINE W Load(const double* row, int i) noexcept {
-  W x;
-  __builtin_memcpy(&x, row + i * W::kLanes, sizeof(double) * W::kLanes);
-  return x;
-}
-template <class W>
-TAUT_INLINE void Store(double* row, int i, W x) noexcept {
-  __builtin_memcpy(row + i * W::kLanes, &x, sizeof(double) * W::kLanes);
-}
 
 /// What does not differ between cables is known to the compiler: `by_pid`, `differenced`.
 template <class W, bool kByPid, bool kDifferenced>
@@ -96,14 +89,6 @@ void TickSine(const SineRows& rows, const double* time_s, double* velocity_m_per
   }
 }
 
-/// The next `count` of memory that the caller keeps.
-template <class T>
-T* Take(char*& end, int count) noexcept {
-  T* const first = reinterpret_cast<T*>(end);
-  end += sizeof(T) * static_cast<size_t>(count);
-  return first;
-}
-
 /// A network in memory that the caller keeps.
 template <class W>
 struct LaneCpg {
@@ -168,13 +153,6 @@ void TickCpg(int count, int coupling_count, void* memory, const double* feedback
     Store(velocity_m_per_s, i, W::Splat(sign[i]) * control::CpgVelocity(cpg.states[i]));
   }
 }
-
-}  // namespace taut::plant
-
-#include "plant/lane_feedback_cpg.inl"
-#include "plant/lane_gather.inl"
-
-namespace taut::plant {
 
 template <class W>
 constexpr LaneKernel MakeLaneKernel() {

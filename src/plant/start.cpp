@@ -10,7 +10,7 @@
 #include "math/vec.h"
 #include "plant/goal.h"
 #include "plant/streams.h"
-#include "sim/ground_height.h"
+#include "sim/batch/ground_height.h"
 #include "taut/start.h"
 
 namespace taut::plant {

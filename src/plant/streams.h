@@ -23,7 +23,7 @@ enum Stream : std::uint32_t {
   kEpisodeDelays = 14,  ///< Index: 0.
   kFollowingSeed = 15,  ///< Index: 0; the seed after this one.
   kStartPlace = 16,     ///< Index: 0.
-  // 100: blocks that lie about, by a seed of their own (description/terrain_boxes.cpp).
+  // 100: blocks that lie about, by a seed of their own (description/experiment/terrain_boxes.cpp).
 };
 
 }  // namespace taut::plant

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/prism3.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/prism3.h"
 
 namespace taut::test {
 namespace {

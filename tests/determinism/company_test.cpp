@@ -2,13 +2,13 @@
 // through the solver and need other numbers of its steps: each gives the bits that it gives alone.
 #include <gtest/gtest.h>
 
-#include "scenes/chance.h"
-#include "scenes/heap.h"
-#include "scenes/many_rows.h"
-#include "scenes/six_strut.h"
-#include "scenes/spine_on_rubble.h"
-#include "scenes/stacks.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/chance.h"
+#include "tests/scenes/heap.h"
+#include "tests/scenes/many_rows.h"
+#include "tests/scenes/six_strut.h"
+#include "tests/scenes/spine_on_rubble.h"
+#include "tests/scenes/stacks.h"
 
 namespace taut::test {
 namespace {

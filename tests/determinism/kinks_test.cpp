@@ -16,7 +16,7 @@ namespace {
 
 TEST(Kinks, WorldsThatGoSlackAtDifferentTimesAreLikeWorldsAlone) {
   Diagnostics out;
-  const auto robot = LoadRobot(TAUT_SOURCE_DIR "/models/tetrahedral_complex.yaml", {}, out);
+  const auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/tetrahedral_complex.yaml", {}, out);
   ASSERT_TRUE(robot) << out.Format();
   ModelDef def = robot->def;
   PlaneDef ground;

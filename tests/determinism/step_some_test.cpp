@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "scenes/heap.h"
-#include "scenes/jumble.h"
 #include "taut/batch.h"
 #include "tests/determinism/variety.h"
+#include "tests/scenes/heap.h"
+#include "tests/scenes/jumble.h"
 
 namespace taut::test {
 namespace {

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "scenes/block_on_slope.h"
-#include "scenes/hanging_mass.h"
-#include "scenes/jumble.h"
-#include "scenes/prism3.h"
-#include "scenes/tetraspine3.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/block_on_slope.h"
+#include "tests/scenes/hanging_mass.h"
+#include "tests/scenes/jumble.h"
+#include "tests/scenes/prism3.h"
+#include "tests/scenes/tetraspine3.h"
 
 namespace taut::test {
 

@@ -31,7 +31,7 @@ sys.dont_write_bytecode = True
 from page import ROOT, Page  # noqa: E402
 
 SKIPPED = 77
-SHOWN_FOLDERS = ["docs", "examples", "experiments", "gaits", "mappings", "models", "schema"]
+SHOWN_FOLDERS = ["docs", "examples", "share"]
 
 
 class Command:

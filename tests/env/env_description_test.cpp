@@ -1,6 +1,6 @@
 // What a file says of an environment, and what is wrong with it: all at once, with its place.
 #include "env/env_fixture.h"
-#include "unit/experiment_fixture.h"
+#include "unit/description/experiment_fixture.h"
 
 namespace taut::test {
 namespace {

@@ -15,8 +15,8 @@ namespace taut::test {
 
 inline ExperimentSpec LoadFrom(const std::string& name, double duration_s = 0) {
   Diagnostics out;
-  auto experiment =
-      LoadExperiment(std::string(TAUT_SOURCE_DIR) + "/experiments/" + name + ".yaml", {}, out);
+  auto experiment = LoadExperiment(
+      std::string(TAUT_SOURCE_DIR) + "/share/experiments/" + name + ".yaml", {}, out);
   if (!experiment) throw std::runtime_error(out.Format());
   if (duration_s > 0) experiment->duration_s = duration_s;
   return *experiment;

@@ -5,7 +5,7 @@
 
 #include "env/env_fixture.h"
 #include "math/vec.h"
-#include "sim/ground_height.h"
+#include "sim/batch/ground_height.h"
 #include "taut/run.h"
 
 namespace taut::test {

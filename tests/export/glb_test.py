@@ -19,13 +19,13 @@ def look(taut, folder, model, *words):
 
 def TheValidatorFindsNothing(taut, folder):
     for name in ("prism3", "tetraspine3", "puppy", "superball_payload", "superball_probe", "t3_prism"):
-        path = ROOT / "models" / f"{name}.yaml"
+        path = ROOT / "share/models" / f"{name}.yaml"
         issues = look(taut, folder, path)["issues"]
         assert issues == [], (name, issues)
 
 
 def ThreeLoadsWhatTheModelSays(taut, folder):
-    model = ROOT / "models" / "prism3.yaml"
+    model = ROOT / "share/models" / "prism3.yaml"
     seen = look(taut, folder, model, "--cable_radius_m", "0.001")
     said = json.loads(run.taut(taut, folder, "check", model, "--json"))
     names = [mesh["name"] for mesh in seen["meshes"]]
@@ -51,7 +51,7 @@ def ThreeLoadsWhatTheModelSays(taut, folder):
 
 
 def APoseAndAScaleAreWhereTheyShouldBe(taut, folder):
-    experiment = ROOT / "experiments" / "drop_six_strut.yaml"
+    experiment = ROOT / "share/experiments" / "drop_six_strut.yaml"
     run.taut(taut, folder, "run", experiment, "--duration_s", "0.5", "--quiet", "--csv", "--out", "run")
     rows = (folder / "run" / "trace.csv").read_text().splitlines()
     head = rows[0].split(",")
@@ -71,7 +71,7 @@ def APoseAndAScaleAreWhereTheyShouldBe(taut, folder):
 
 
 def WhatIsWrongIsSaid(taut, folder):
-    prism = ROOT / "models" / "prism3.yaml"
+    prism = ROOT / "share/models" / "prism3.yaml"
     assert "says no format" in run.taut(taut, folder, "export", "shape", prism, "--out", "x.obj", status=2)
     assert "--out" in run.taut(taut, folder, "export", "shape", prism, status=2)
     for wrong in ("0", "-1", "nan", "x"):

@@ -22,7 +22,7 @@ NEEDS = ["@mcap/core"]
 
 def record(taut, folder, name="push_20n_motors", duration_s=0.6):
     """A short run of an experiment."""
-    experiment = ROOT / "experiments" / f"{name}.yaml"
+    experiment = ROOT / "share/experiments" / f"{name}.yaml"
     run.taut(taut, folder, "run", experiment, "--duration_s", duration_s, "--csv", "--quiet", "--out", "run")
     return folder / "run"
 
@@ -72,7 +72,7 @@ def check_numbers(seen, time_s, columns):
 def EveryNumberComesBack(taut, folder):
     """Motors, and contacts of which there are none at times: 200 channels and more."""
     (folder / "contacts.yaml").write_text(
-        f"taut: 1\nkind: experiment\nname: contacts\nbase: {ROOT}/experiments/drop_six_strut.yaml\n"
+        f"taut: 1\nkind: experiment\nname: contacts\nbase: {ROOT}/share/experiments/drop_six_strut.yaml\n"
         "record: {rate_hz: 100, contacts: 6}\n"
     )
     for name in ("push_20n_motors", folder / "contacts"):
@@ -284,7 +284,7 @@ def rows_of(path):
 
 def AnUnfinishedTraceIsConverted(taut, folder):
     """One whose writer was killed lacks its end and says so."""
-    experiment = ROOT / "experiments" / "drop_six_strut.yaml"
+    experiment = ROOT / "share/experiments" / "drop_six_strut.yaml"
     going = subprocess.Popen([taut, "run", experiment, "--duration_s", "1e6", "--quiet", "--out", "run"], cwd=folder)
     while rows_of(folder / "run" / "trace.h5") < 50:
         assert going.poll() is None

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "tests/unit/analysis_scenes.h"
-#include "tests/unit/structural_files.h"
+#include "tests/unit/analysis/analysis_scenes.h"
+#include "tests/unit/description/structural_files.h"
 
 namespace taut {
 namespace {

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "description/mesh_file.h"
+#include "description/assets/mesh_file.h"
 #include "math/triangles.h"
 #include "math/vec.h"
 #include "mechanics/mass_properties.h"
@@ -155,7 +155,7 @@ TEST(ShapeMesh, CablesLieOnTheirWheels) {
 TEST(ShapeMesh, EveryShippedModelIsClosedAndItsStlIsToo) {
   std::string pattern = (std::filesystem::temp_directory_path() / "taut_stl_XXXXXX").string();
   const std::filesystem::path folder = mkdtemp(pattern.data());
-  for (const auto& file : std::filesystem::directory_iterator(TAUT_SOURCE_DIR "/models")) {
+  for (const auto& file : std::filesystem::directory_iterator(TAUT_SOURCE_DIR "/share/models")) {
     if (file.path().extension() != ".yaml") continue;
     Diagnostics found;
     const auto robot = LoadRobot(file.path(), {}, found);

@@ -64,7 +64,7 @@ def export(taut, folder, model, *words):
 
 
 def model(name):
-    return ROOT / "models" / f"{name}.yaml"
+    return ROOT / "share/models" / f"{name}.yaml"
 
 
 def MatricesSayTheSameAsTheTable(taut, folder):
@@ -137,7 +137,7 @@ def TensionsLengthsAndRodsAreAsTautSays(taut, folder):
 
 
 def ARunThatHasComeToRestBalancesOnItsFeet(taut, folder):
-    experiment = ROOT / "experiments" / "drop_six_strut.yaml"
+    experiment = ROOT / "share/experiments" / "drop_six_strut.yaml"
     run.taut(taut, folder, "run", experiment, "--duration_s", "6", "--quiet", "--out", "run")
     s = export(taut, folder, experiment, "--pose", "run/trace.h5")
     weight = -s.W[2].sum()
@@ -193,7 +193,7 @@ def WhatIsWrongIsSaid(taut, folder):
     assert not (folder / "out").exists()
     assert "no flag" in run.taut(taut, folder, "export", "structure", prism, "--folder", "x", status=2)
     assert "at_s" in run.taut(taut, folder, "export", "structure", prism, "--at_s", "1", status=2)
-    assert "gait" in run.taut(taut, folder, "export", "structure", ROOT / "gaits" / "hand_tuned_sine.yaml", status=3)
+    assert "gait" in run.taut(taut, folder, "export", "structure", ROOT / "share/gaits" / "hand_tuned_sine.yaml", status=3)
     assert "cannot be opened" in run.taut(taut, folder, "export", "structure", prism, "--pose", "no.h5", status=3)
     (folder / "file").write_text("")
     run.taut(taut, folder, "export", "structure", prism, "--out", "file", status=1)

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "math/vec.h"
-#include "scenes/solids.h"
+#include "tests/scenes/solids.h"
 
 namespace taut::fuzz {
 

@@ -9,10 +9,10 @@ struct Folders {
     namespace fs = std::filesystem;
     fs::create_directory(folder.Path("experiments"));
     for (const char* name : {"models", "mappings"}) {
-      fs::copy(fs::path(TAUT_SOURCE_DIR) / name, folder.Path(name));
+      fs::copy(fs::path(TAUT_SOURCE_DIR) / "share" / name, folder.Path(name));
     }
     // Bases of experiments, under the names by which the shipped ones are known.
-    for (const auto& entry : fs::directory_iterator(TAUT_SOURCE_DIR "/experiments")) {
+    for (const auto& entry : fs::directory_iterator(TAUT_SOURCE_DIR "/share/experiments")) {
       fs::copy(entry.path(), folder.Path("experiments/" + entry.path().filename().string()));
     }
   }

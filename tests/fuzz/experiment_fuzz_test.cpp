@@ -22,8 +22,8 @@ void ReadDamaged(const std::string& name, const std::string& good, unsigned coun
 
 /// A shipped experiment that can be read from anywhere.
 std::string Shipped(const std::string& name) {
-  std::string text = fuzz::ReadAll(TAUT_SOURCE_DIR "/experiments/" + name + ".yaml");
-  const std::string from = "../models/", to = TAUT_SOURCE_DIR "/models/";
+  std::string text = fuzz::ReadAll(TAUT_SOURCE_DIR "/share/experiments/" + name + ".yaml");
+  const std::string from = "../models/", to = TAUT_SOURCE_DIR "/share/models/";
   return text.replace(text.find(from), from.size(), to);
 }
 
@@ -43,7 +43,7 @@ TEST(ExperimentFuzz, DamagedStairsAndBlocksAreReadOrRefused) {
 }
 TEST(ExperimentFuzz, ADamagedResolvedExperimentIsReadOrRefused) {
   Diagnostics out;
-  const auto hang = LoadExperiment(TAUT_SOURCE_DIR "/experiments/hang.yaml", {}, out);
+  const auto hang = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/hang.yaml", {}, out);
   ASSERT_TRUE(hang) << out.Format();
   ReadDamaged("resolved.yaml", ResolvedYaml(*hang), 1000);
 }

@@ -1,5 +1,5 @@
 // Any bytes as OBJ, STL or heights in CSV: ground on which a rod falls, or errors.
-#include "description/mesh_file.h"
+#include "description/assets/mesh_file.h"
 #include "fuzz/on_ground.h"
 
 /// The first byte contains the kind of the others (0 OBJ, 1 STL, 2 CSV), and whether meshes are

@@ -3,7 +3,7 @@
 // Input: as `Damaged` takes it. Bases: a finished trace, one whose writer was cut off, one in
 // HDF5's old layout, which has no checksums.
 #include "fuzz/fuzz_folder.h"
-#include "tests/unit/hdf5_old_layout.h"
+#include "tests/unit/trace/hdf5_old_layout.h"
 
 namespace {
 

@@ -9,7 +9,7 @@ namespace taut {
 namespace {
 
 void ReadDamaged(const std::string& model, unsigned count) {
-  const std::string good = fuzz::ReadAll(TAUT_SOURCE_DIR "/models/" + model + ".yaml");
+  const std::string good = fuzz::ReadAll(TAUT_SOURCE_DIR "/share/models/" + model + ".yaml");
   const fuzz::Folder folder;
   unsigned robots = 0;
   for (unsigned seed = 0; seed < count; ++seed) {

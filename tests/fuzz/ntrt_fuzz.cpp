@@ -1,7 +1,7 @@
 // Any text as a structure of NTRT, in a folder with structures that it may include.
 #include "taut/import_ntrt.h"
 
-#include "description/yaml_tree.h"
+#include "description/yaml/yaml_tree.h"
 #include "fuzz/readers.h"
 #include "fuzz/refusals.h"
 #include "fuzz/text_input.h"

@@ -17,7 +17,7 @@ using taut::viewer::Command;
 using taut::viewer::LiveOptions;
 using taut::viewer::LiveSession;
 
-const std::string kExperiment = TAUT_SOURCE_DIR "/experiments/hang.yaml";
+const std::string kExperiment = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 constexpr int kMaxMessages = 100;       // a session keeps 256 questions at most
 constexpr int kClient = 1, kAsker = 2;  // what the asker is told is the answer to its only question
 

@@ -9,13 +9,15 @@ namespace taut::fuzz {
 
 class ShippedFolder : public Folder {
  public:
-  /// Copies these folders of the source tree. `own` is created for the inputs.
+  /// Copies these folders, of share/ or of the source tree. `own` is created for the inputs.
   ShippedFolder(const std::string& own, std::initializer_list<const char*> shipped) {
     namespace fs = std::filesystem;
     fs::create_directories(Path(own));
     for (const char* name : shipped) {
       fs::create_directories(fs::path(Path(name)).parent_path());
-      fs::copy(fs::path(TAUT_SOURCE_DIR) / name, Path(name), fs::copy_options::recursive);
+      const fs::path shared = fs::path(TAUT_SOURCE_DIR) / "share" / name;
+      fs::copy(fs::exists(shared) ? shared : fs::path(TAUT_SOURCE_DIR) / name, Path(name),
+               fs::copy_options::recursive);
     }
   }
 };

@@ -3,7 +3,7 @@
 // Input: as `Damaged` takes it. Bases: a log of this version, and of version 1, which has no
 // checksums.
 #include "fuzz/fuzz_folder.h"
-#include "tests/unit/study_log_files.h"
+#include "tests/unit/learn/study_log_files.h"
 
 namespace {
 

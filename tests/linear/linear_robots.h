@@ -1,9 +1,9 @@
 /// Robots about whose rest the linear system is looked at.
 #pragma once
 
-#include "scenes/prism3.h"
 #include "taut/state_space.h"
 #include "tests/physics/standing.h"
+#include "tests/scenes/prism3.h"
 
 namespace taut::test {
 

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 class ShapeRun : public testing::Test {
  protected:
   ShapeRun() {
-    const auto robot = LoadRobot(TAUT_SOURCE_DIR "/models/prism3.yaml", {}, out_);
+    const auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/prism3.yaml", {}, out_);
     experiment_ = ExperimentOf(robot->def);
     experiment_.robot = *robot;
     experiment_.robot.def.gravity_m_per_s2 = {};
@@ -105,7 +105,7 @@ TEST_F(ShapeRun, SelfStressIsShownAsTensions) {
   const auto trace = ReadTraceOfRun((folder_ / "self_stress_1/trace.h5").string(), out_);
   ASSERT_TRUE(trace) << out_.Format();
   // By hand: a base cable's force over its length is that of a side cable over
-  // 2 sin(60 degrees) (models/prism3.yaml says so).
+  // 2 sin(60 degrees) (share/models/prism3.yaml says so).
   double density[2] = {};
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
     const std::string name = "cable/" + def.cables[c].name + "/";

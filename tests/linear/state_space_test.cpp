@@ -205,7 +205,7 @@ TEST(StateSpace, IsExactForASpineThatSticks) {
 
 TEST(StateSpace, JointsAndLimitedActuators) {
   Diagnostics out;
-  const auto e = LoadExperiment(TAUT_SOURCE_DIR "/experiments/puppy_stand.yaml", {}, out);
+  const auto e = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/puppy_stand.yaml", {}, out);
   ASSERT_TRUE(e) << out.Format();
   const StateSpace system = Find(*e);
   ASSERT_TRUE(system.found) << system.why;
@@ -217,7 +217,7 @@ TEST(StateSpace, JointsAndLimitedActuators) {
 /// frequencies from those of the structure, which statics computes without any step.
 TEST(StateSpace, FrequenciesAreThoseOfStaticsWithTheStepsDispersion) {
   Diagnostics out;
-  const auto robot = LoadRobot(TAUT_SOURCE_DIR "/models/prism3.yaml", {}, out);
+  const auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/prism3.yaml", {}, out);
   ASSERT_TRUE(robot) << out.Format();
   ExperimentSpec e = ExperimentOf(robot->def);
   e.robot.def.gravity_m_per_s2 = {};

@@ -138,7 +138,7 @@ TEST_F(CalibrationFile, IsReadAsItWasWritten) {
 TEST_F(CalibrationFile, ThatIsShippedIsRead) {
   Diagnostics out;
   const auto read =
-      LoadCalibration(TAUT_SOURCE_DIR "/calibrations/as_assumed.yaml", {"outer_top_1"}, out);
+      LoadCalibration(TAUT_SOURCE_DIR "/share/calibrations/as_assumed.yaml", {"outer_top_1"}, out);
   ASSERT_TRUE(read) << out.Format();
   EXPECT_NEAR(*read->cables[0].encoder_m_per_count, 1.34e-5, 1e-7);
 }

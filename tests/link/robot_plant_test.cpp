@@ -11,7 +11,8 @@ using board::Mode;
 
 ExperimentSpec Load(const std::string& name) {
   Diagnostics found;
-  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/experiments/" + name + ".yaml", {}, found);
+  auto experiment =
+      LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/" + name + ".yaml", {}, found);
   EXPECT_TRUE(experiment.has_value()) << found.Format();
   return *experiment;
 }

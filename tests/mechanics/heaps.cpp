@@ -6,10 +6,10 @@
 #include <numbers>
 #include <vector>
 
-#include "scenes/heap.h"
-#include "scenes/stacks.h"
 #include "tests/mechanics/scene.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/heap.h"
+#include "tests/scenes/stacks.h"
 
 namespace taut::mechanics {
 namespace {

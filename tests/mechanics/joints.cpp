@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "scenes/rod.h"
 #include "tests/constants.h"
 #include "tests/mechanics/energy_range.h"
 #include "tests/mechanics/scene.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::mechanics {
 namespace {

@@ -5,10 +5,10 @@
 #include <numeric>
 #include <vector>
 
-#include "scenes/chance.h"
 #include "tests/constants.h"
 #include "tests/mechanics/scene.h"
 #include "tests/mechanics/seam_ground.h"
+#include "tests/scenes/chance.h"
 
 namespace taut::mechanics {
 namespace {

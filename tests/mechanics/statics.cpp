@@ -5,11 +5,11 @@
 #include <numbers>
 
 #include "math/vec.h"
-#include "scenes/rod.h"
 #include "taut/analysis.h"
 #include "tests/mechanics/energy_oracle.h"
 #include "tests/mechanics/scene.h"
-#include "tests/unit/analysis_scenes.h"
+#include "tests/scenes/rod.h"
+#include "tests/unit/analysis/analysis_scenes.h"
 
 namespace taut::mechanics {
 namespace {
@@ -93,7 +93,8 @@ ModelDef PrismOn(int supports, bool weight) {
   return def;
 }
 
-/// The laboratory prism of models/t3_prism.yaml: bars, cables, supports of 3, 2 and 1 direction.
+/// The laboratory prism of share/models/t3_prism.yaml: bars, cables, supports of 3, 2 and 1
+/// direction.
 ModelDef T3Prism() {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, -9.81};

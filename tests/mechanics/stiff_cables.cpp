@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "scenes/six_strut.h"
 #include "taut/cable_scheme.h"
 #include "tests/mechanics/scene.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/six_strut.h"
 
 namespace taut::mechanics {
 namespace {

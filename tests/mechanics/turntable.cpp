@@ -2,10 +2,10 @@
 
 #include <string>
 
-#include "scenes/ball.h"
-#include "scenes/box.h"
 #include "tests/mechanics/scene.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/box.h"
 
 namespace taut::mechanics {
 namespace {

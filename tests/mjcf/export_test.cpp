@@ -4,7 +4,7 @@
 #include "mjcf/mjcf_folder.h"
 #include "mjcf/mujoco_model.h"
 #include "mjcf/shipped.h"
-#include "sim/combine.h"
+#include "sim/contacts/combine.h"
 #include "taut/batch.h"
 #include "taut/statics.h"
 

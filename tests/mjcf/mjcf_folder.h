@@ -7,7 +7,7 @@
 #include <string>
 
 #include "taut/mjcf.h"
-#include "unit/experiment_fixture.h"
+#include "unit/description/experiment_fixture.h"
 
 namespace taut::test {
 

@@ -23,7 +23,7 @@ inline constexpr const char* kExportable[] = {"hanging_mass",
 
 inline RobotSpec Shipped(const std::string& name) {
   Diagnostics out;
-  auto robot = LoadRobot(TAUT_SOURCE_DIR "/models/" + name + ".yaml", {}, out);
+  auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/" + name + ".yaml", {}, out);
   if (!robot) throw std::runtime_error(out.Format());
   return std::move(*robot);
 }

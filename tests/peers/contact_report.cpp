@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "benchmarks/peers/settings.h"
 #include "math/vec.h"
-#include "peers/robots.h"
-#include "peers/settings.h"
-#include "peers/sled.h"
+#include "tests/peers/robots.h"
+#include "tests/peers/sled.h"
 
 namespace taut::peers {
 namespace {

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "math/vec.h"
-#include "peers/engine_test.h"
-#include "peers/sled.h"
-#include "scenes/block_on_slope.h"
+#include "tests/peers/engine_test.h"
+#include "tests/peers/sled.h"
+#include "tests/scenes/block_on_slope.h"
 
 namespace taut::peers {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "math/vec.h"
-#include "peers/robots.h"
+#include "tests/peers/robots.h"
 
 namespace taut::peers {
 namespace {

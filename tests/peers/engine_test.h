@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "peers/settings.h"
+#include "benchmarks/peers/settings.h"
 
 namespace taut::peers {
 

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "math/vec.h"
-#include "peers/engine_test.h"
-#include "peers/sled.h"
-#include "scenes/ball.h"
-#include "scenes/rod.h"
-#include "scenes/rough_ground.h"
 #include "tests/constants.h"
+#include "tests/peers/engine_test.h"
+#include "tests/peers/sled.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/rod.h"
+#include "tests/scenes/rough_ground.h"
 
 namespace taut::peers {
 namespace {

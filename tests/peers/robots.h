@@ -1,11 +1,11 @@
-/// Robots that taut and its peers are set beside each other with, from the files of models/.
+/// Robots that taut and its peers are set beside each other with, from the files of share/models/.
 #pragma once
 
 #include <ostream>
 #include <stdexcept>
 #include <string>
 
-#include "peers/settings.h"
+#include "benchmarks/peers/settings.h"
 #include "taut/batch.h"
 #include "taut/spec.h"
 
@@ -22,7 +22,8 @@ namespace taut::test {
 
 inline ModelDef Robot(const std::string& name, const Overrides& overrides = {}) {
   Diagnostics complaints;
-  const auto robot = LoadRobot(TAUT_SOURCE_DIR "/models/" + name + ".yaml", overrides, complaints);
+  const auto robot =
+      LoadRobot(TAUT_SOURCE_DIR "/share/models/" + name + ".yaml", overrides, complaints);
   if (!robot) throw std::runtime_error(complaints.Format());
   return robot->def;
 }

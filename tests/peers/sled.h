@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "peers/robots.h"
+#include "tests/peers/robots.h"
 
 namespace taut::test {
 

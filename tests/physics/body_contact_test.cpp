@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/ball.h"
-#include "scenes/rod.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "scenes/ball.h"
-#include "scenes/block_on_slope.h"
 #include "tests/constants.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/block_on_slope.h"
 
 namespace taut::test {
 namespace {

@@ -1,13 +1,13 @@
 // Boxes on height fields and meshes (docs/theory/ground.md, section 3).
 #include <gtest/gtest.h>
 
-#include "scenes/box.h"
-#include "scenes/rough_ground.h"
-#include "sim/shape_contacts.h"
-#include "sim/surface_build.h"
+#include "sim/geometry/shape_contacts.h"
+#include "sim/geometry/surface_build.h"
 #include "tests/constants.h"
 #include "tests/physics/lanes_alike.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/box.h"
+#include "tests/scenes/rough_ground.h"
 
 namespace taut::test {
 namespace {

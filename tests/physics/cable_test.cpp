@@ -7,8 +7,8 @@
 #include <array>
 #include <vector>
 
-#include "scenes/hanging_mass.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/hanging_mass.h"
 
 namespace taut::test {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "scenes/prism3.h"
-#include "scenes/tetraspine3.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/prism3.h"
+#include "tests/scenes/tetraspine3.h"
 
 namespace taut::test {
 namespace {

@@ -11,14 +11,14 @@
 #include <algorithm>
 #include <string>
 
-#include "scenes/ball.h"
-#include "scenes/box.h"
-#include "scenes/chance.h"
-#include "scenes/prism3.h"
-#include "scenes/rod.h"
-#include "scenes/six_strut.h"
-#include "scenes/tetraspine3.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/box.h"
+#include "tests/scenes/chance.h"
+#include "tests/scenes/prism3.h"
+#include "tests/scenes/rod.h"
+#include "tests/scenes/six_strut.h"
+#include "tests/scenes/tetraspine3.h"
 
 namespace taut::test {
 namespace {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 
-#include "scenes/ball.h"
-#include "scenes/rod.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/block_on_slope.h"
-#include "scenes/box.h"
-#include "scenes/rod.h"
 #include "tests/constants.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/block_on_slope.h"
+#include "tests/scenes/box.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

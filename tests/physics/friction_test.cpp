@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <numbers>
 
-#include "scenes/ball.h"
-#include "scenes/block_on_slope.h"
-#include "scenes/rod.h"
 #include "tests/constants.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/block_on_slope.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

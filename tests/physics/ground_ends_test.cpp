@@ -2,10 +2,10 @@
 // section 2; docs/theory/contact.md, eq. 12).
 #include <gtest/gtest.h>
 
-#include "scenes/rod.h"
-#include "scenes/rough_ground.h"
-#include "scenes/tetraspine3.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/rod.h"
+#include "tests/scenes/rough_ground.h"
+#include "tests/scenes/tetraspine3.h"
 
 namespace taut::test {
 namespace {

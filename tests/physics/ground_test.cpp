@@ -2,12 +2,12 @@
 // field must leave alone, closed forms, and what never happens on hills.
 #include <gtest/gtest.h>
 
-#include "scenes/ball.h"
-#include "scenes/rod.h"
-#include "scenes/rough_ground.h"
-#include "scenes/six_strut.h"
 #include "tests/constants.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/rod.h"
+#include "tests/scenes/rough_ground.h"
+#include "tests/scenes/six_strut.h"
 
 namespace taut::test {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "scenes/solids.h"
 #include "tests/constants.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/solids.h"
 
 namespace taut::test {
 namespace {

@@ -5,11 +5,11 @@
 
 #include "math/convex_hull.h"
 #include "mechanics/mass_properties.h"
-#include "scenes/box.h"
-#include "scenes/rough_ground.h"
 #include "tests/constants.h"
 #include "tests/physics/lanes_alike.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/box.h"
+#include "tests/scenes/rough_ground.h"
 
 namespace taut::test {
 namespace {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "scenes/ball.h"
-#include "scenes/box.h"
-#include "scenes/chance.h"
-#include "scenes/rod.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/box.h"
+#include "tests/scenes/chance.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "scenes/ball.h"
-#include "scenes/chance.h"
-#include "scenes/rod.h"
 #include "tests/constants.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/chance.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

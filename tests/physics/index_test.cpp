@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "scenes/hanging_mass.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/hanging_mass.h"
 
 namespace taut::test {
 namespace {

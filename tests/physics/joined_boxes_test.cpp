@@ -1,13 +1,13 @@
 // Boxes of the terrain that touch each other are one surface (docs/theory/ground.md, section 8).
 #include <gtest/gtest.h>
 
-#include "scenes/ball.h"
-#include "scenes/box.h"
-#include "scenes/rod.h"
-#include "scenes/six_strut.h"
 #include "tests/constants.h"
 #include "tests/physics/lanes_alike.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/box.h"
+#include "tests/scenes/rod.h"
+#include "tests/scenes/six_strut.h"
 
 namespace taut::test {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <string>
 
-#include "scenes/rod_chain.h"
 #include "tests/constants.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/rod_chain.h"
 
 namespace taut::test {
 

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/ball.h"
-#include "scenes/hanging_mass.h"
-#include "scenes/rod.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/hanging_mass.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <set>
 
-#include "scenes/ball.h"
-#include "scenes/chance.h"
-#include "scenes/rod.h"
-#include "sim/tables.h"
+#include "sim/data/tables.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/chance.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenes/hanging_mass.h"
 #include "tests/constants.h"
 #include "tests/instruction_sets.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/hanging_mass.h"
 
 namespace taut::test {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "scenes/block_on_slope.h"
-#include "scenes/rod.h"
 #include "taut/batch.h"
 #include "tests/constants.h"
+#include "tests/scenes/block_on_slope.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <numbers>
 
-#include "scenes/box.h"
-#include "scenes/rod.h"
 #include "tests/constants.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/box.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

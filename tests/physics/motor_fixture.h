@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "scenes/hanging_mass.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/hanging_mass.h"
 
 namespace taut::test {
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "scenes/solids.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/solids.h"
 
 namespace taut::test {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "scenes/hanging_mass.h"
 #include "taut/batch.h"
+#include "tests/scenes/hanging_mass.h"
 
 namespace taut::test {
 namespace {

@@ -6,10 +6,10 @@
 #include <functional>
 #include <string>
 
-#include "scenes/ball.h"
-#include "scenes/box.h"
-#include "scenes/rod.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/box.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

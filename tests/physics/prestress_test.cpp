@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenes/solids.h"
-#include "scenes/tetraspine3.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/solids.h"
+#include "tests/scenes/tetraspine3.h"
 
 namespace taut::test {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "scenes/ball.h"
-#include "scenes/prism3.h"
-#include "scenes/rod.h"
-#include "scenes/tetraspine3.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/prism3.h"
+#include "tests/scenes/rod.h"
+#include "tests/scenes/tetraspine3.h"
 
 namespace taut::test {
 namespace {

@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "scenes/rod.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/ball.h"
-#include "scenes/block_on_slope.h"
-#include "scenes/rod.h"
 #include "tests/constants.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/block_on_slope.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

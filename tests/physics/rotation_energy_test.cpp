@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "scenes/box.h"
-#include "scenes/rod.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/box.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

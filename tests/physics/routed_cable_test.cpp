@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/hanging_mass.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/hanging_mass.h"
 
 namespace taut::test {
 namespace {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "scenes/ball.h"
-#include "scenes/prism3.h"
-#include "scenes/six_strut.h"
-#include "scenes/tetraspine3.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/prism3.h"
+#include "tests/scenes/six_strut.h"
+#include "tests/scenes/tetraspine3.h"
 
 namespace taut::test {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "scenes/six_strut.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/six_strut.h"
 
 namespace taut::test {
 namespace {

@@ -6,11 +6,11 @@
 #include <functional>
 #include <limits>
 
-#include "scenes/ball.h"
-#include "scenes/tetraspine3.h"
 #include "tests/constants.h"
 #include "tests/instruction_sets.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/tetraspine3.h"
 
 namespace taut::test {
 namespace {

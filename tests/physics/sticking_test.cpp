@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <array>
 
-#include "scenes/ball.h"
-#include "scenes/rod.h"
 #include "tests/constants.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/rod.h"
 
 namespace taut::test {
 namespace {

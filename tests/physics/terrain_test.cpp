@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/ball.h"
-#include "scenes/block_on_slope.h"
-#include "scenes/chance.h"
-#include "scenes/single_rod.h"
 #include "tests/constants.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/ball.h"
+#include "tests/scenes/block_on_slope.h"
+#include "tests/scenes/chance.h"
+#include "tests/scenes/single_rod.h"
 
 namespace taut::test {
 namespace {

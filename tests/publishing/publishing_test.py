@@ -195,7 +195,7 @@ def WhatIsNotCommittedIsNotReleased():
         raise Skipped(f"there is no {', '.join(lacking)}")
     with tempfile.TemporaryDirectory() as place:
         root, env = copied(place)
-        (root / "models/new.yaml").write_text("taut: 1\n")
+        (root / "share/models/new.yaml").write_text("taut: 1\n")
         said = run(root / "script/release", next_version(root), "--dry_run", env=env, status=1)
         assert "changes that are not committed" in said, said
 

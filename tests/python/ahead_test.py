@@ -13,7 +13,7 @@ import numpy as np
 import taut
 from helpers import COMMAND, FREQUENCY, GAIT, PRISM, PUSH, ROOT, gait, interrupted, main
 
-GOAL = str(ROOT / "experiments" / "roll_to_goal.yaml")
+GOAL = str(ROOT / "share/experiments" / "roll_to_goal.yaml")
 
 
 class Rollouts(unittest.TestCase):

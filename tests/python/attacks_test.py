@@ -19,7 +19,7 @@ import taut
 import taut.gym
 from helpers import GAIT, PUSH, ROOT, interrupted, main
 
-SPINE = str(ROOT / "experiments" / "learn_spine.yaml")
+SPINE = str(ROOT / "share/experiments" / "learn_spine.yaml")
 TOO_LONG_S = 60  # for what should end within a second or two, on a busy machine
 HEAD = """
 import os, resource, sys, threading, time, taut, taut.gym, numpy as np
@@ -184,8 +184,8 @@ class Resources(Attack):
         push = taut.load(PUSH)
         for call in (lambda n: taut.Batch(push, threads=n), lambda n: taut.gym.make_vec(SPINE, 1, threads=n),
                      lambda n: taut.run(push, threads=n), lambda n: taut.rollout(push, "distance", 1, threads=n),
-                     lambda n: taut.learn(str(ROOT / "studies" / "sidewinder3.yaml"), "/nowhere", threads=n),
-                     lambda n: taut.fit(str(ROOT / "fits" / "tetraspine3_push.yaml"), threads=n)):
+                     lambda n: taut.learn(str(ROOT / "share/studies" / "sidewinder3.yaml"), "/nowhere", threads=n),
+                     lambda n: taut.fit(str(ROOT / "share/fits" / "tetraspine3_push.yaml"), threads=n)):
             for n in (-1, 1025, 10**6):
                 with self.assertRaisesRegex(ValueError, f"threads: {n}; expected 0.* to 1024"):
                     call(n)

@@ -16,8 +16,8 @@ import taut.gym
 from taut.gym import AutoresetMode, EpisodeEnd
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SPINE = str(ROOT / "experiments" / "learn_spine.yaml")
-ROLL = str(ROOT / "experiments" / "learn_roll.yaml")
+SPINE = str(ROOT / "share/experiments" / "learn_spine.yaml")
+ROLL = str(ROOT / "share/experiments" / "learn_roll.yaml")
 
 
 def short(seconds=0.05):
@@ -95,10 +95,10 @@ class Contract(unittest.TestCase):
             envs.save(3)
 
     def test_actions_may_move_what_controllers_know(self):
-        text = pathlib.Path(ROOT / "experiments" / "sine_hand_tuned.yaml").read_text()
+        text = pathlib.Path(ROOT / "share/experiments" / "sine_hand_tuned.yaml").read_text()
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "wave.yaml"
-            path.write_text(text.replace("../", f"{ROOT}/") + """
+            path.write_text(text.replace("../", f"{ROOT}/share/") + """
 environment:
   period_s: 0.02
   actions:
@@ -264,8 +264,8 @@ class WrongCalls(unittest.TestCase):
                           (lambda: taut.gym.make_vec(SPINE, 0), "expected 1 to 1000000000"),
                           (lambda: taut.gym.make_vec(SPINE, 1, dtype=np.int32), "float32 or float64"),
                           (lambda: taut.gym.make_vec(SPINE, 1, autoreset_mode="never"), "never"),
-                          (lambda: taut.gym.make_vec(str(ROOT / "models/prism3.yaml"), 1), "a model"),
-                          (lambda: taut.gym.make_vec(str(ROOT / "experiments/push_20n.yaml"), 1), "environment")):
+                          (lambda: taut.gym.make_vec(str(ROOT / "share/models/prism3.yaml"), 1), "a model"),
+                          (lambda: taut.gym.make_vec(str(ROOT / "share/experiments/push_20n.yaml"), 1), "environment")):
             with self.assertRaisesRegex(ValueError, why):
                 call()
         self.assertRaises(IndexError, lambda: envs.hash(2))

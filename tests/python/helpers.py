@@ -11,10 +11,10 @@ import warnings
 import taut
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PUSH = str(ROOT / "experiments" / "push_20n.yaml")
-MASS = str(ROOT / "models" / "hanging_mass.yaml")
-PRISM = str(ROOT / "models" / "prism3.yaml")
-GAIT = str(ROOT / "experiments" / "sidewinder3_start.yaml")
+PUSH = str(ROOT / "share/experiments" / "push_20n.yaml")
+MASS = str(ROOT / "share/models" / "hanging_mass.yaml")
+PRISM = str(ROOT / "share/models" / "prism3.yaml")
+GAIT = str(ROOT / "share/experiments" / "sidewinder3_start.yaml")
 FREQUENCY = "motion.sine.frequency_hz"
 COMMAND = sys.argv[1]
 

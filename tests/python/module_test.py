@@ -22,9 +22,9 @@ import numpy as np
 import taut
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PUSH = str(ROOT / "experiments" / "push_20n.yaml")
-HANG = str(ROOT / "experiments" / "hang.yaml")
-PRISM = str(ROOT / "models" / "prism3.yaml")
+PUSH = str(ROOT / "share/experiments" / "push_20n.yaml")
+HANG = str(ROOT / "share/experiments" / "hang.yaml")
+PRISM = str(ROOT / "share/models" / "prism3.yaml")
 COMMAND = None
 
 
@@ -63,7 +63,7 @@ class Loading(unittest.TestCase):
 
     def test_other_kinds_of_files_are_refused(self):
         with self.assertRaisesRegex(taut.InputError, "models and experiments"):
-            taut.load(str(ROOT / "gaits" / next(iter(sorted(os.listdir(ROOT / "gaits"))))))
+            taut.load(str(ROOT / "share/gaits" / next(iter(sorted(os.listdir(ROOT / "share/gaits"))))))
 
     def test_what_it_says_in_numbers_is_the_same_experiment(self):
         experiment = short()

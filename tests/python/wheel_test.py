@@ -28,7 +28,7 @@ print(taut.__version__, f"{taut.run(experiment).state_hash:016x}")
 
 def sources(folder):
     """What the wheel is made of, in a folder of its own: links, so that the tree stays as it is."""
-    for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE", "NOTICE", "include", "python", *shipped()):
+    for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE", "NOTICE", "include", "python", "share"):
         (folder / name).symlink_to(ROOT / name)
     return folder
 
@@ -62,7 +62,7 @@ def check(wheel, version):
     assert len(core) == 1 and "cpython-" in core[0], core
     assert code - set(core) == files_below(ROOT / "python" / "taut"), code
     data = {name.removeprefix("taut/share/taut/") for name in names if name.startswith("taut/share/")}
-    assert data == {f"{folder}/{name}" for folder in shipped() for name in files_below(ROOT / folder)}, data
+    assert data == {f"{folder}/{name}" for folder in shipped() for name in files_below(ROOT / "share" / folder)}, data
     assert "Root-Is-Purelib: false" in tags and f"cp{sys.version_info.major}{sys.version_info.minor}" in tags, tags
 
 
@@ -88,7 +88,7 @@ def main():
         python = folder / "own" / "bin" / "python3"
         run(python, "-m", "pip", "install", *OFFLINE, "--ignore-installed", wheel)
         said = run(python, "-c", PROGRAM, capture_output=True, text=True).stdout.split()
-        run(build / "taut", "run", ROOT / "experiments" / "hang.yaml", "--duration_s", "0.1", "--quiet", "--out", "run")
+        run(build / "taut", "run", ROOT / "share/experiments" / "hang.yaml", "--duration_s", "0.1", "--quiet", "--out", "run")
         summary = json.loads((folder / "run" / "summary.json").read_text())
         assert said == [version, summary["state_hash"]], (said, summary["state_hash"])
     print(f"{wheel.name}: good")

@@ -6,22 +6,10 @@
 #include <tuple>
 #include <vector>
 
-#include "sim/solve/island.h"
+#include "sim/solve/island_solver.inl"
+#include "sim/solve/tangent.inl"
 #include "tests/solver/law_checks.h"
 #include "tests/solver/problems.h"
-
-// In the order of use, as in sim/kernel.inl.
-// clang-format off
-#include "sim/solve/body_matrix.inl"
-#include "sim/solve/triangular_solves.inl"
-#include "sim/solve/deadlock.inl"
-#include "sim/solve/plain_newton.inl"
-#include "sim/solve/tangent.inl"
-#include "sim/solve/sweeps.inl"
-#include "sim/solve/proximal.inl"
-#include "sim/solve/impacts.inl"
-#include "sim/solve/island_solver.inl"
-// clang-format on
 
 namespace taut::test {
 

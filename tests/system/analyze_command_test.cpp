@@ -52,7 +52,7 @@ TEST_F(AnalyzeCommand, FindsTheTensionsOfAWeightOnTwoRopes) {
 }
 
 TEST_F(AnalyzeCommand, TheLeastTensionsOfAPrismKeepItsRatio) {
-  const std::string prism = TAUT_SOURCE_DIR "/models/prism3.yaml";
+  const std::string prism = TAUT_SOURCE_DIR "/share/models/prism3.yaml";
   const test::CommandResult shown =
       Taut({"analyze", prism, "--inverse", "--at_least_n", "10", "--json"});
   ASSERT_EQ(shown.status, 0) << shown.errors;
@@ -71,7 +71,7 @@ TEST_F(AnalyzeCommand, TheLeastTensionsOfAPrismKeepItsRatio) {
 }
 
 TEST_F(AnalyzeCommand, BoundsWithinWhichNothingHoldsThePoseAreSaid) {
-  const test::CommandResult shown = Taut({"analyze", TAUT_SOURCE_DIR "/models/prism3.yaml",
+  const test::CommandResult shown = Taut({"analyze", TAUT_SOURCE_DIR "/share/models/prism3.yaml",
                                           "--inverse", "--at_least_n", "10", "--at_most_n", "12"});
   EXPECT_EQ(shown.status, 1);
   EXPECT_NE(shown.errors.find("no forces within their bounds balance strut_"), std::string::npos)
@@ -79,8 +79,9 @@ TEST_F(AnalyzeCommand, BoundsWithinWhichNothingHoldsThePoseAreSaid) {
 }
 
 TEST_F(AnalyzeCommand, TheFormOfSixStrutsIsAModelWithASelfStressAndAMechanism) {
-  const test::CommandResult formed = Taut({"analyze", TAUT_SOURCE_DIR "/models/six_strut.yaml",
-                                           "--form", "--tension_n", "20", "--out", "form.yaml"});
+  const test::CommandResult formed =
+      Taut({"analyze", TAUT_SOURCE_DIR "/share/models/six_strut.yaml", "--form", "--tension_n",
+            "20", "--out", "form.yaml"});
   ASSERT_EQ(formed.status, 0) << formed.errors;
   const test::CommandResult shown = Taut({"analyze", "form.yaml", "--modes", "0"});
   ASSERT_EQ(shown.status, 0) << shown.errors;
@@ -92,7 +93,7 @@ TEST_F(AnalyzeCommand, TheFormOfSixStrutsIsAModelWithASelfStressAndAMechanism) {
 
 TEST_F(AnalyzeCommand, ARobotThatNothingHoldsIsAnalysedWithoutWeight) {
   const test::CommandResult shown =
-      Taut({"analyze", TAUT_SOURCE_DIR "/models/prism3.yaml", "--modes", "6"});
+      Taut({"analyze", TAUT_SOURCE_DIR "/share/models/prism3.yaml", "--modes", "6"});
   EXPECT_EQ(shown.status, 0) << shown.errors;
   EXPECT_NE(shown.output.find("nothing holds the robot in the world: without weight"),
             std::string::npos)
@@ -127,13 +128,13 @@ TEST_F(AnalyzeCommand, AllMistakesOfAFileAreNamed) {
 
 TEST_F(AnalyzeCommand, AGaitIsRefused) {
   const test::CommandResult shown =
-      Taut({"analyze", TAUT_SOURCE_DIR "/gaits/hand_tuned_sine.yaml"});
+      Taut({"analyze", TAUT_SOURCE_DIR "/share/gaits/hand_tuned_sine.yaml"});
   EXPECT_EQ(shown.status, 3);
   EXPECT_NE(shown.errors.find("is a gait"), std::string::npos) << shown.errors;
 }
 
 TEST_F(AnalyzeCommand, SizeSaysWhatARunAsksFor) {
-  ASSERT_EQ(Taut({"run", TAUT_SOURCE_DIR "/experiments/rest_length_sine.yaml", "--out", "run",
+  ASSERT_EQ(Taut({"run", TAUT_SOURCE_DIR "/share/experiments/rest_length_sine.yaml", "--out", "run",
                   "--duration_s", "2"})
                 .status,
             0);

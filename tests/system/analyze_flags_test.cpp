@@ -10,7 +10,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kGravity = 9.81;
-const std::string kPrism = TAUT_SOURCE_DIR "/models/prism3.yaml";
+const std::string kPrism = TAUT_SOURCE_DIR "/share/models/prism3.yaml";
 
 class AnalyzeFlags : public test::CommandTest {
  protected:
@@ -103,12 +103,12 @@ TEST_F(AnalyzeFlags, RestLengthsOfARecordingCount) {
 }
 
 TEST_F(AnalyzeFlags, APoseOfARunIsWhereTheRunWas) {
-  ASSERT_EQ(Taut({"run", TAUT_SOURCE_DIR "/experiments/drop_six_strut.yaml", "--out", "run",
+  ASSERT_EQ(Taut({"run", TAUT_SOURCE_DIR "/share/experiments/drop_six_strut.yaml", "--out", "run",
                   "--duration_s", "0.6", "--csv", "--quiet"})
                 .status,
             0);
-  const json shown = Json({"analyze", TAUT_SOURCE_DIR "/experiments/drop_six_strut.yaml", "--pose",
-                           "run/trace.h5", "--modes", "0", "--json"});
+  const json shown = Json({"analyze", TAUT_SOURCE_DIR "/share/experiments/drop_six_strut.yaml",
+                           "--pose", "run/trace.h5", "--modes", "0", "--json"});
   const std::string csv = Read(Path("run/trace.csv"));
   const auto cells = [](const std::string& line) {
     std::vector<std::string> all;
@@ -265,7 +265,7 @@ TEST_F(AnalyzeFlags, OnTwoEndsOnlyFrictionIsOpen) {
   }
   EXPECT_NE(Taut({"analyze", "lies.yaml", "--modes", "0"}).output.find("along the ground alone"),
             std::string::npos);
-  const std::string six = TAUT_SOURCE_DIR "/experiments/drop_six_strut.yaml";
+  const std::string six = TAUT_SOURCE_DIR "/share/experiments/drop_six_strut.yaml";
   EXPECT_TRUE(
       Json({"analyze", six, "--modes", "0", "--json"})["load_cases"][0]["open_forces"].is_null());
 }
@@ -277,7 +277,7 @@ TEST_F(AnalyzeFlags, ForcesThatNothingLeavesOpenHaveNone) {
 }
 
 TEST_F(AnalyzeFlags, WithoutASelfStressTheHintIsTheForm) {
-  const std::string six = TAUT_SOURCE_DIR "/models/six_strut.yaml";
+  const std::string six = TAUT_SOURCE_DIR "/share/models/six_strut.yaml";
   EXPECT_NE(Taut({"analyze", six, "--modes", "0"}).output.find("(--form --tension_n 10 looks for"),
             std::string::npos);
   EXPECT_EQ(Taut({"analyze", six, "--form", "--tension_n", "10"}).status, 0) << "as it says";

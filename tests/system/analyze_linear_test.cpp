@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kMass = TAUT_SOURCE_DIR "/models/hanging_mass.yaml";
+const std::string kMass = TAUT_SOURCE_DIR "/share/models/hanging_mass.yaml";
 const char* const kForce = "node/mass/force_z";
 const char* const kPlace = "node/mass/position_z";
 

@@ -40,7 +40,7 @@ class Places final : public TraceWriter {
 
 Places Drive(const std::string& name, std::size_t bodies, double duration_s) {
   Diagnostics out;
-  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/experiments/" + name + ".yaml", {}, out);
+  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/" + name + ".yaml", {}, out);
   EXPECT_TRUE(experiment) << out.Format();
   Places places(bodies);
   if (!experiment) return places;

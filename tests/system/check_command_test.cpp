@@ -122,7 +122,7 @@ TEST_F(CheckCommand, ErrorsGoToStderrWithTheirPlace) {
 
 TEST_F(CheckCommand, WarningsAreErrorsWithStrict) {
   const std::string path = folder_ + "/odd.yaml";
-  std::ofstream(path) << Text(TAUT_SOURCE_DIR "/models/rod.yaml") << "inertia: exact\n";
+  std::ofstream(path) << Text(TAUT_SOURCE_DIR "/share/models/rod.yaml") << "inertia: exact\n";
   EXPECT_EQ(Run("'" + path + "' --quiet --strict").errors, "");
   const std::string where = "--set height_m=1";
   std::string text = Text(path);
@@ -149,7 +149,7 @@ TEST_F(CheckCommand, ShippedFilesHaveNoWarnings) {
   int count = 0;
   for (const char* const folder : {"models", "experiments", "gaits"}) {
     for (const auto& file :
-         std::filesystem::directory_iterator(TAUT_SOURCE_DIR "/" + std::string(folder))) {
+         std::filesystem::directory_iterator(TAUT_SOURCE_DIR "/share/" + std::string(folder))) {
       if (file.path().extension() != ".yaml") continue;  // a mesh
       const Outcome outcome = Run("'" + file.path().string() + "' --quiet --strict");
       EXPECT_EQ(outcome.status, 0) << outcome.errors;
@@ -162,7 +162,7 @@ TEST_F(CheckCommand, ShippedFilesHaveNoWarnings) {
 TEST_F(CheckCommand, ARobotInTheGroundIsRefused) {
   const std::string path = folder_ + "/low.yaml";
   std::ofstream(path) << "taut: 1\nkind: experiment\nname: low\nmodel: " TAUT_SOURCE_DIR
-                         "/models/rod.yaml\nset: {height_m: -0.01}\nduration_s: 1\n"
+                         "/share/models/rod.yaml\nset: {height_m: -0.01}\nduration_s: 1\n"
                          "terrain: [{name: ground, plane: {height_m: 0}}]\n";
   const Outcome refused = Run("'" + path + "'");
   EXPECT_EQ(refused.status, 3);

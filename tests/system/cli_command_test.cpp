@@ -8,7 +8,7 @@
 namespace taut {
 namespace {
 
-const char* const kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
+const char* const kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
 class CliCommand : public test::CommandTest {
  protected:
@@ -148,9 +148,9 @@ TEST_F(CliCommand, ListNamesWhatComesAlong) {
   const test::CommandResult all = Taut({"list"});
   EXPECT_EQ(all.status, 0) << all.errors;
   for (const char* const part :
-       {"models, in " TAUT_SOURCE_DIR "/models\n", "\n  tetraspine3 ", "\n  push_20n ",
-        "A mass on a cable is tapped", "studies, in " TAUT_SOURCE_DIR "/studies\n",
-        "fits, in " TAUT_SOURCE_DIR "/fits\n"}) {
+       {"models, in " TAUT_SOURCE_DIR "/share/models\n", "\n  tetraspine3 ", "\n  push_20n ",
+        "A mass on a cable is tapped", "studies, in " TAUT_SOURCE_DIR "/share/studies\n",
+        "fits, in " TAUT_SOURCE_DIR "/share/fits\n"}) {
     EXPECT_NE(all.output.find(part), std::string::npos) << part << " is not in\n" << all.output;
   }
   std::size_t count = 0;

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "unit/trace_fixture.h"
+#include "unit/trace/trace_fixture.h"
 
 namespace taut::test {
 namespace {

@@ -1,6 +1,6 @@
 // `taut fit` in several processes: the same bits, whatever their number.
 #include "tests/system/ranks.h"
-#include "tests/unit/hanging_model.h"
+#include "tests/unit/description/hanging_model.h"
 
 namespace taut::test {
 namespace {

@@ -78,7 +78,7 @@ class FitCommand : public CommandTest {
 
 TEST_F(FitCommand, FindsASpringConstantWithDefaultSteps) {
   // 22 periods of a swing, noise-free: a default step of damping_n_s_per_m is too long there.
-  const std::string hang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
+  const std::string hang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
   ASSERT_EQ(End(Start({"run", hang, "--set", "stiffness_n_per_m=410", "--set", "hang_m=1.03",
                        "--set", "damping_n_s_per_m=0.5", "--out", "truth", "--quiet", "--csv"}))
                 .status,

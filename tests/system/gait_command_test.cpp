@@ -12,7 +12,7 @@ const std::string kRoot = TAUT_SOURCE_DIR "/";
 class GaitCommand : public CommandTest {};
 
 TEST_F(GaitCommand, CouplingsAreShownCountedAndDrawn) {
-  const std::string spine = kRoot + "models/tetraspine3.yaml";
+  const std::string spine = kRoot + "share/models/tetraspine3.yaml";
   const CommandResult text = Taut({"check", spine, "--couplings", "--svg", "c.svg"});
   EXPECT_EQ(text.status, 0) << text.errors;
   EXPECT_EQ(text.output.find("12 oscillators, 132 couplings, 57 groups.\n"), 0u) << text.output;
@@ -37,7 +37,7 @@ TEST_F(GaitCommand, CouplingsAreShownCountedAndDrawn) {
 
 TEST_F(GaitCommand, AnExperimentShowsTheNetworkOfItsOwnGait) {
   const CommandResult shown =
-      Taut({"check", kRoot + "experiments/cpg_learned.yaml", "--couplings", "--json"});
+      Taut({"check", kRoot + "share/experiments/cpg_learned.yaml", "--couplings", "--json"});
   EXPECT_EQ(shown.status, 0) << shown.errors;
   const auto json = nlohmann::json::parse(shown.output);
   EXPECT_EQ(json["oscillators"][0], "outer_top_1");  // the order of 2015
@@ -45,7 +45,7 @@ TEST_F(GaitCommand, AnExperimentShowsTheNetworkOfItsOwnGait) {
 }
 
 TEST_F(GaitCommand, WhatCannotBeDrawnOrWrittenFails) {
-  const std::string spine = kRoot + "models/tetraspine3.yaml";
+  const std::string spine = kRoot + "share/models/tetraspine3.yaml";
   EXPECT_EQ(Taut({"check", spine, "--couplings", "--svg", "/nowhere/c.svg"}).status, 1);
   const CommandResult created = Taut({"gait", "create", spine, "--out", "/nowhere/g.yaml"});
   EXPECT_EQ(created.status, 1);
@@ -54,7 +54,7 @@ TEST_F(GaitCommand, WhatCannotBeDrawnOrWrittenFails) {
 }
 
 TEST_F(GaitCommand, ACreatedGaitIsGoodAndHasEveryNumber) {
-  const std::string spine = kRoot + "models/tetraspine12.yaml";
+  const std::string spine = kRoot + "share/models/tetraspine12.yaml";
   ASSERT_EQ(Taut({"gait", "create", spine, "--name", "blank", "--out", "g.yaml"}).status, 0);
   EXPECT_EQ(Taut({"check", "g.yaml", "--quiet"}).status, 0);
   const CommandResult values = Taut({"gait", "values", "g.yaml", "--json"});
@@ -66,7 +66,7 @@ TEST_F(GaitCommand, ACreatedGaitIsGoodAndHasEveryNumber) {
 }
 
 TEST_F(GaitCommand, ACreatedGaitMayDriveRestLengths) {
-  const std::string spine = kRoot + "models/tetraspine3.yaml";
+  const std::string spine = kRoot + "share/models/tetraspine3.yaml";
   ASSERT_EQ(Taut({"gait", "create", spine, "--drives", "rest_length", "--out", "g.yaml"}).status,
             0);
   EXPECT_NE(Read(Path("g.yaml")).find("drives: rest_length\n"), std::string::npos);
@@ -81,8 +81,8 @@ TEST_F(GaitCommand, ACreatedGaitMayDriveRestLengths) {
 
 TEST_F(GaitCommand, AnExportedTableIsOneLineARow) {
   const CommandResult table =
-      Taut({"gait", "export", kRoot + "gaits/hand_tuned_sine.yaml",
-            kRoot + "models/tetraspine3.yaml", "--rate_hz", "10", "--duration_s", "0.2"});
+      Taut({"gait", "export", kRoot + "share/gaits/hand_tuned_sine.yaml",
+            kRoot + "share/models/tetraspine3.yaml", "--rate_hz", "10", "--duration_s", "0.2"});
   EXPECT_EQ(table.status, 0) << table.errors;
   EXPECT_EQ(table.output.find("time_s,outer_right_1_m_per_s,"), 0u);
   EXPECT_EQ(std::count(table.output.begin(), table.output.end(), '\n'), 4);
@@ -103,8 +103,8 @@ TEST_F(GaitCommand, WrongFilesAreAnsweredWithTheirPlace) {
   EXPECT_NE(both.errors.find("g.yaml:4"), std::string::npos);
   EXPECT_NE(both.errors.find("none.yaml"), std::string::npos);
   // the table of a gait that does not fit the robot
-  const CommandResult misfit =
-      Taut({"gait", "export", kRoot + "gaits/cpg_learned.yaml", kRoot + "models/rod.yaml"});
+  const CommandResult misfit = Taut(
+      {"gait", "export", kRoot + "share/gaits/cpg_learned.yaml", kRoot + "share/models/rod.yaml"});
   EXPECT_EQ(misfit.status, 3);
   EXPECT_NE(misfit.errors.find("cpg.order: there is no cable \"outer_top_1\""), std::string::npos)
       << misfit.errors;

@@ -19,7 +19,7 @@ constexpr double kRowS = 0.04;  // of NTRT's traces in tests/data
 
 ExperimentSpec Load(const std::string& name) {
   Diagnostics out;
-  auto experiment = LoadExperiment(kRoot + "experiments/" + name + ".yaml", {}, out);
+  auto experiment = LoadExperiment(kRoot + "share/experiments/" + name + ".yaml", {}, out);
   EXPECT_TRUE(experiment) << out.Format();
   return experiment.value_or(ExperimentSpec{});
 }

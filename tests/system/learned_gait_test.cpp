@@ -12,8 +12,8 @@ namespace {
 /// In worlds with other friction, masses, stiffnesses; 20 s.
 double LeastDistance(const std::string& name) {
   Diagnostics out;
-  auto experiment =
-      LoadExperiment(std::string(TAUT_SOURCE_DIR) + "/experiments/" + name + ".yaml", {}, out);
+  auto experiment = LoadExperiment(
+      std::string(TAUT_SOURCE_DIR) + "/share/experiments/" + name + ".yaml", {}, out);
   if (!experiment) throw std::runtime_error(out.Format());
   experiment->duration_s = 20;
   std::vector<RolloutWorld> worlds(8, WorldOf(*experiment));
@@ -72,8 +72,8 @@ class Nearest final : public Score {
 /// Of eight starts in any pose, how many come within half a metre of the goal in 30 s.
 int Arrivals(const std::string& name) {
   Diagnostics out;
-  auto experiment =
-      LoadExperiment(std::string(TAUT_SOURCE_DIR) + "/experiments/" + name + ".yaml", {}, out);
+  auto experiment = LoadExperiment(
+      std::string(TAUT_SOURCE_DIR) + "/share/experiments/" + name + ".yaml", {}, out);
   if (!experiment) throw std::runtime_error(out.Format());
   experiment->duration_s = 30;
   std::vector<RolloutWorld> worlds(8, WorldOf(*experiment));

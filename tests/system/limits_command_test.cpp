@@ -12,7 +12,7 @@
 namespace taut::test {
 namespace {
 
-const std::string kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
+const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
 class Limits : public CommandTest {
  protected:
@@ -105,7 +105,8 @@ TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
     std::filesystem::create_directory(Path(folder));
     const CommandResult result = Taut({"compare", "a.csv", folder});
     EXPECT_EQ(result.status, 3) << result.errors;
-    EXPECT_EQ(result.errors, std::string(folder) + "/trace.h5: error: cannot be opened: No such file or directory\n");
+    EXPECT_EQ(result.errors, std::string(folder) +
+                                 "/trace.h5: error: cannot be opened: No such file or directory\n");
   }
   ExpectRefused({"compare", "a.csv", "a.csv", "--map", "folder.csv"}, 3,
                 "folder.csv: error: is a directory, not a file\n");
@@ -173,13 +174,14 @@ TEST_F(Limits, AModelOfAMillionNodesIsRefusedAtOnce) {
 }
 
 TEST_F(Limits, MorePairsThanThereIsRoomForAreRefusedAtOnce) {
-  ExpectRefused({"check", TAUT_SOURCE_DIR "/models/tetraspine3.yaml", "--set", "segments=1000"}, 3,
-                "error: more than 10000000 pairs of shapes may collide; shapes that cannot meet "
-                "need not collide\n");
+  ExpectRefused(
+      {"check", TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml", "--set", "segments=1000"}, 3,
+      "error: more than 10000000 pairs of shapes may collide; shapes that cannot meet "
+      "need not collide\n");
 }
 
 TEST_F(Limits, ARecordedChannelThatIsNotThereIsBadInput) {
-  const std::string model = TAUT_SOURCE_DIR "/models/hanging_mass.yaml";
+  const std::string model = TAUT_SOURCE_DIR "/share/models/hanging_mass.yaml";
   Write("e.yaml", "taut: 1\nkind: experiment\nname: e\nmodel: " + model +
                       "\nduration_s: 1\nrecord:\n  channels:\n    - cable/*/tension_n\n"
                       "    - cable/*/tenson_n\n    - '*a*a*a*a*a*a*a*a*a*a*a*a*b'\n");

@@ -132,7 +132,7 @@ def EigenvaluesAreTheRingDownOfAMassOnASpring(command):
     """The step's own closed form: leapfrog swings with 2 sin(w h / 2) = h sqrt(k / m), undamped."""
 
     def act(folder):
-        taut(command, folder, "analyze", ROOT / "models/hanging_mass.yaml", "--linear", "mass.h5")
+        taut(command, folder, "analyze", ROOT / "share/models/hanging_mass.yaml", "--linear", "mass.h5")
         system = System(folder / "mass.h5")
         h, own = system.step_s, np.sqrt(400 / 0.5)
         angles = np.angle(np.linalg.eigvals(system.A))
@@ -146,7 +146,7 @@ def EigenvaluesAreTheRingDownOfAMassOnASpring(command):
 
 def NamesUnitsAndTheRestAreThere(command):
     def act(folder):
-        taut(command, folder, "analyze", ROOT / "models/prism3.yaml", "--linear", "prism.h5")
+        taut(command, folder, "analyze", ROOT / "share/models/prism3.yaml", "--linear", "prism.h5")
         system = System(folder / "prism.h5")
         assert system.attributes["format"].decode() == "taut linear", system.attributes
         assert system.attributes["derivatives"].decode() in ("exact", "differences")

@@ -19,7 +19,7 @@ const std::string kRoot = TAUT_SOURCE_DIR "/";
 
 ExperimentSpec Load(const std::string& name) {
   Diagnostics out;
-  auto experiment = LoadExperiment(kRoot + "experiments/" + name + ".yaml", {}, out);
+  auto experiment = LoadExperiment(kRoot + "share/experiments/" + name + ".yaml", {}, out);
   EXPECT_TRUE(experiment) << out.Format();
   return experiment ? *experiment : ExperimentSpec{};
 }

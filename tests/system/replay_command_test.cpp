@@ -8,7 +8,7 @@
 namespace taut::test {
 namespace {
 
-const std::string kGait = TAUT_SOURCE_DIR "/experiments/sine_hand_tuned.yaml";
+const std::string kGait = TAUT_SOURCE_DIR "/share/experiments/sine_hand_tuned.yaml";
 
 class Replay : public CommandTest {
  protected:

@@ -98,10 +98,10 @@ TEST_F(ReportCommand, EveryRunThatCannotBeReadIsNamed) {
 }
 
 TEST_F(ReportCommand, NothingInAReportCanEndTheElementThatHoldsIt) {
-  const std::string text = Read(TAUT_SOURCE_DIR "/experiments/hang.yaml");
+  const std::string text = Read(TAUT_SOURCE_DIR "/share/experiments/hang.yaml");
   std::string evil = text;
   const std::string model = "../models/hanging_mass.yaml";
-  evil.replace(evil.find(model), model.size(), TAUT_SOURCE_DIR "/models/hanging_mass.yaml");
+  evil.replace(evil.find(model), model.size(), TAUT_SOURCE_DIR "/share/models/hanging_mass.yaml");
   const std::string key = "description: ";
   evil.insert(evil.find(key) + key.size(), "\"</script><script>alert(1)</script>\" #");
   const CommandResult run = Run({"run", Write("evil.yaml", evil), "--report", "--out", "run"});

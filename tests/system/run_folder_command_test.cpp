@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
+const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
 class RunCommand : public CommandTest {
  protected:

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/system/command.h"
-#include "tests/unit/heap_models.h"
+#include "tests/unit/scenes/heap_models.h"
 
 namespace taut::test {
 namespace {

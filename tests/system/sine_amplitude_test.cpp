@@ -40,7 +40,7 @@ class Watch final : public TraceWriter {
 
 Watch Walk(double factor, const std::string& ground_friction) {
   Diagnostics out;
-  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/experiments/sine_hand_tuned.yaml",
+  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/sine_hand_tuned.yaml",
                                    {{"ground_friction", ground_friction}}, out);
   Watch watch;
   EXPECT_TRUE(experiment) << out.Format();

@@ -57,7 +57,7 @@ Outcome MeanOutcome(double step_s) {
   Outcome outcome;
   for (int start = 0; start < kStarts; ++start) {
     Diagnostics out;
-    auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/experiments/push_20n.yaml", {}, out);
+    auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/push_20n.yaml", {}, out);
     EXPECT_TRUE(experiment) << out.Format();
     if (!experiment) return outcome;
     experiment->step_s = step_s;

@@ -8,7 +8,7 @@
 namespace taut::test {
 namespace {
 
-const std::string kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
+const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
 /// The streams as a shell makes them: `2>&-`, `>/dev/full`.
 std::function<void()> Closed(std::vector<int> descriptors) {
@@ -97,7 +97,7 @@ TEST_F(Streams, BadInputKeepsItsStatus) {
 }
 
 TEST_F(Streams, WhatWasToBePrintedAndWasNotIsAFailure) {
-  const std::string gait = TAUT_SOURCE_DIR "/gaits/hand_tuned_sine.yaml";
+  const std::string gait = TAUT_SOURCE_DIR "/share/gaits/hand_tuned_sine.yaml";
   for (const auto& words : {std::vector<std::string>{"check", kHang},
                             {"check", "--json", kHang},
                             {"gait", "values", gait},

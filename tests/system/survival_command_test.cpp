@@ -16,8 +16,8 @@
 namespace taut::test {
 namespace {
 
-constexpr double kRowS = 0.005;  // of experiments/hang.yaml
-const std::string kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
+constexpr double kRowS = 0.005;  // of share/experiments/hang.yaml
+const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
 /// A run that would take hours, its progress on a terminal. It writes a line at most every 200 ms
 /// of its own clock.

@@ -28,7 +28,7 @@ struct Outcome {
 Outcome Simulate(const std::string& name, double friction = 1) {
   Outcome outcome;
   Diagnostics out;
-  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/experiments/" + name + ".yaml", {}, out);
+  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/" + name + ".yaml", {}, out);
   EXPECT_TRUE(experiment) << out.Format();
   if (!experiment) return outcome;
   experiment->scales.push_back({ScaleSpec::Quantity::kFriction, {}, friction});

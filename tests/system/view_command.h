@@ -10,8 +10,8 @@
 
 namespace taut::test {
 
-inline const std::string kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
-inline const std::string kPush = TAUT_SOURCE_DIR "/experiments/push_20n.yaml";
+inline const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
+inline const std::string kPush = TAUT_SOURCE_DIR "/share/experiments/push_20n.yaml";
 inline const std::string kNoPages =
     "error: the viewer's pages are missing; they are built with taut where node and npm are "
     "(apt-get install nodejs npm, then script/build)\n";

@@ -39,7 +39,7 @@ class Watch final : public TraceWriter {
 
 void ExpectOver(const std::string& height_m, double within_s, const std::string& name = "wall") {
   Diagnostics out;
-  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/experiments/" + name + ".yaml",
+  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/" + name + ".yaml",
                                    {{"wall_height_m", height_m}}, out);
   ASSERT_TRUE(experiment) << out.Format();
   experiment->duration_s = within_s;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "scenes/solids.h"
 #include "tests/physics/world.h"
+#include "tests/scenes/solids.h"
 #include "tests/theory/cable_schemes.h"
 
 namespace taut::test {

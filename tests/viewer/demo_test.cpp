@@ -22,9 +22,9 @@ namespace fs = std::filesystem;
 using browser::Demo;
 using Json = nlohmann::json;
 
-const std::string kDrop = TAUT_SOURCE_DIR "/experiments/drop_six_strut.yaml";
-const std::string kPush = TAUT_SOURCE_DIR "/experiments/push_20n.yaml";
-const std::string kModel = TAUT_SOURCE_DIR "/models/tetraspine3.yaml";
+const std::string kDrop = TAUT_SOURCE_DIR "/share/experiments/drop_six_strut.yaml";
+const std::string kPush = TAUT_SOURCE_DIR "/share/experiments/push_20n.yaml";
+const std::string kModel = TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml";
 
 Json Opened(Demo& demo, const std::string& path, std::vector<double> mark_at_s,
             bool paused = true) {

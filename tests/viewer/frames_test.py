@@ -80,7 +80,7 @@ def client(port, token):
 def attack(web):
     for page in ("index.html", "report.html"):
         pathlib.Path(web, page).write_text("<p>the page")
-    words = [TAUT, "view", str(ROOT / "experiments/hang.yaml"), "--paused", "--port", "0"]
+    words = [TAUT, "view", str(ROOT / "share/experiments/hang.yaml"), "--paused", "--port", "0"]
     server = subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env={**os.environ, "TAUT_WEB": web})
     try:
         port, token = re.search(r":(\d+)/\?token=(\S+)", server.stdout.readline()).groups()

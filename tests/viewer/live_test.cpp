@@ -12,7 +12,7 @@
 #include "apps/viewer/recording.h"
 #include "taut/live.h"
 #include "taut/run.h"
-#include "tests/unit/recorder_fixture.h"
+#include "tests/unit/plant/recorder_fixture.h"
 #include "tests/viewer/serving.h"
 
 namespace taut::test {

@@ -13,7 +13,7 @@ namespace taut::test {
 /// A prism above a plane.
 inline ModelDef Prism() {
   Diagnostics found;
-  auto robot = LoadRobot(TAUT_SOURCE_DIR "/models/prism3.yaml", {}, found);
+  auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/prism3.yaml", {}, found);
   EXPECT_TRUE(robot) << found.Format();
   robot->def.planes.emplace_back().name = "ground";
   return robot->def;

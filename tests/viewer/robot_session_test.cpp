@@ -21,7 +21,7 @@ using viewer::RobotSession;
 using viewer::RobotSessionOptions;
 using Kind = RobotCommand::Kind;
 
-const std::string kMotors = TAUT_SOURCE_DIR "/models/tetraspine3_motors.yaml";
+const std::string kMotors = TAUT_SOURCE_DIR "/share/models/tetraspine3_motors.yaml";
 
 RobotSpec Robot() {
   Diagnostics found;

@@ -14,8 +14,8 @@
 
 namespace taut::test {
 
-inline const std::string kHang = TAUT_SOURCE_DIR "/experiments/hang.yaml";
-inline const std::string kPush = TAUT_SOURCE_DIR "/experiments/push_20n.yaml";
+inline const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
+inline const std::string kPush = TAUT_SOURCE_DIR "/share/experiments/push_20n.yaml";
 
 class Serving {
  public:

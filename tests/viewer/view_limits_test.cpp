@@ -69,7 +69,7 @@ TEST(ViewLimits, AHundredThousandCommandsOr256SeriesWaitAtMost) {
 
 TEST(ViewLimits, OfARobotsCommandsAThousandWaitAndTheStopAlways) {
   Diagnostics found;
-  const auto robot = LoadRobot(TAUT_SOURCE_DIR "/models/tetraspine3_motors.yaml", {}, found);
+  const auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/tetraspine3_motors.yaml", {}, found);
   ASSERT_TRUE(robot) << found.Format();
   viewer::RobotSessionOptions options;
   options.robot = *robot;

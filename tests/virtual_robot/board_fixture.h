@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "virtual_robot/probe_fixture.h"
+#include "tests/virtual_robot/probe_fixture.h"
 
 namespace taut::virtual_robot {
 

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "virtual_robot/avr_core.h"
-#include "virtual_robot/board_fixture.h"
-#include "virtual_robot/simavr.h"
+#include "apps/virtual_robot/avr_core.h"
+#include "apps/virtual_robot/simavr.h"
+#include "tests/virtual_robot/board_fixture.h"
 
 namespace taut::virtual_robot {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "virtual_robot/board_fixture.h"
+#include "tests/virtual_robot/board_fixture.h"
 
 namespace taut::virtual_robot {
 namespace {

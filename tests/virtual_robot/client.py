@@ -103,7 +103,7 @@ class Robot:
         self.link, self.log = pathlib.Path(folder, "robot"), pathlib.Path(folder, "log")
         self.terminal = None
         self.process = subprocess.Popen(
-            [program, "--model", ROOT / "models/tetraspine3_motors.yaml", "--link", self.link, "--log", self.log,
+            [program, "--model", ROOT / "share/models/tetraspine3_motors.yaml", "--link", self.link, "--log", self.log,
              "--frames", "--set", "gear_efficiency=0.45"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.said = self.process.stdout.readline()  # it has a terminal now, or has ended
         if not self.said:

@@ -27,7 +27,7 @@ class VirtualRobot : public testing::Test {
     std::string name = (fs::temp_directory_path() / "taut_vr_XXXXXX").string();
     EXPECT_NE(mkdtemp(name.data()), nullptr);
     folder_ = name;
-    std::string spine = Text(TAUT_SOURCE_DIR "/models/tetraspine3.yaml");
+    std::string spine = Text(TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml");
     const std::string limits =
         "{max_speed_m_per_s: 0.07, max_force_n: 50, min_rest_length_m: 0.01, "
         "min_length_m: 0.01}";

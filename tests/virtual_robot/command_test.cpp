@@ -1,5 +1,5 @@
 // The command taut_virtual_robot: what it says, and its exit status.
-#include "virtual_robot/command_fixture.h"
+#include "tests/virtual_robot/command_fixture.h"
 
 namespace taut::virtual_robot {
 namespace {
@@ -35,14 +35,14 @@ TEST_F(VirtualRobot, AllMistakesOfAllFilesAreSaidAtOnce) {
   EXPECT_TRUE(Says(done, "robot.yaml: error: is not an ELF file")) << done.said;
   EXPECT_TRUE(Says(done, "faults.yaml:5:")) << done.said;
   EXPECT_TRUE(Says(done, "faults.yaml:6:")) << done.said;
-  const Done model = Ask("--model " TAUT_SOURCE_DIR "/models/tetraspine3.yaml --measure 1");
+  const Done model = Ask("--model " TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml --measure 1");
   EXPECT_EQ(model.status, 3);
   EXPECT_TRUE(Says(model, "is no motor")) << model.said;
 }
 
 TEST_F(VirtualRobot, ACalibrationIsReadAndWhatWasHeardIsText) {
   const std::string run = "--experiment " TAUT_SOURCE_DIR
-                          "/experiments/push_20n_motors.yaml --run --quiet --duration_s 0.05 "
+                          "/share/experiments/push_20n_motors.yaml --run --quiet --duration_s 0.05 "
                           "--csv --out run --calibration ";
   std::ofstream(folder_ / "wrong.yaml")
       << "taut: 1\nkind: calibration\nname: c\ncables:\n"
@@ -50,7 +50,7 @@ TEST_F(VirtualRobot, ACalibrationIsReadAndWhatWasHeardIsText) {
   const Done wrong = Ask(run + "wrong.yaml");
   EXPECT_EQ(wrong.status, 3);
   EXPECT_TRUE(Says(wrong, "wrong.yaml:5:")) << wrong.said;
-  const Done done = Ask(run + TAUT_SOURCE_DIR "/calibrations/as_assumed.yaml");
+  const Done done = Ask(run + TAUT_SOURCE_DIR "/share/calibrations/as_assumed.yaml");
   EXPECT_EQ(done.status, 0) << done.said;
   for (const char* name : {"trace.csv", "host.csv"}) {
     const std::string text = Text(folder_ / "run" / name);

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "virtual_robot/i2c_bus.h"
+#include "apps/virtual_robot/i2c_bus.h"
 
 namespace taut::virtual_robot {
 

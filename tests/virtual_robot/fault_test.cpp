@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "virtual_robot/probe_host.h"
+#include "tests/virtual_robot/probe_host.h"
 
 namespace taut::virtual_robot {
 namespace {

@@ -1,7 +1,7 @@
 // What can go wrong with the electronics, one fault after the other, with the firmware in all
 // boards and a PC that goes on talking: no tension above its limit, motors held or released, all of
 // it said, and a way back.
-#include "virtual_robot/firmware_fixture.h"
+#include "tests/virtual_robot/firmware_fixture.h"
 
 namespace taut::virtual_robot {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/virtual_robot/robot.h"
 #include "board/bench_motor.h"
-#include "virtual_robot/robot.h"
 
 namespace taut::virtual_robot {
 

@@ -2,7 +2,7 @@
 // text that runs natively.
 #include <cstring>
 
-#include "virtual_robot/firmware_fixture.h"
+#include "tests/virtual_robot/firmware_fixture.h"
 
 namespace taut::virtual_robot {
 namespace {

@@ -1,12 +1,12 @@
 // The bus alone, with slaves of a few lines.
-#include "virtual_robot/i2c_bus.h"
+#include "apps/virtual_robot/i2c_bus.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "virtual_robot/fake_slave.h"
+#include "tests/virtual_robot/fake_slave.h"
 
 namespace taut::virtual_robot {
 namespace {

@@ -1,5 +1,5 @@
 // taut's motors as the plant, and the whole robot with the firmware's own protocol.
-#include "virtual_robot/motor_plant.h"
+#include "apps/virtual_robot/motor_plant.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/virtual_robot/load_host.h"
 #include "taut/spec.h"
-#include "virtual_robot/load_host.h"
-#include "virtual_robot/probe_fixture.h"
+#include "tests/virtual_robot/probe_fixture.h"
 
 namespace taut::virtual_robot {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 /// Tetraspine3 whose cables are wound by motors, in the air.
 RobotSpec MotorSpine() {
   Diagnostics found;
-  auto robot = LoadRobot(TAUT_SOURCE_DIR "/models/tetraspine3.yaml", {}, found);
+  auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml", {}, found);
   EXPECT_TRUE(robot) << found.Format();
   for (CableDef& cable : robot->def.cables) {
     cable.actuator = {};
@@ -105,7 +105,7 @@ TEST(MotorPlant, RefusesWhatBoardsCannotDrive) {
   for (CableDef& cable : robot.def.cables) cable.actuator = {};
   EXPECT_NE(complaints(robot).find("no cable has a motor"), std::string::npos);
   Diagnostics found;
-  auto lengthy = LoadRobot(TAUT_SOURCE_DIR "/models/tetraspine12.yaml", {}, found);
+  auto lengthy = LoadRobot(TAUT_SOURCE_DIR "/share/models/tetraspine12.yaml", {}, found);
   ASSERT_TRUE(lengthy);
   for (CableDef& cable : lengthy->def.cables) cable.actuator = MotorSpine().def.cables[0].actuator;
   EXPECT_NE(complaints(*lengthy).find("66 cables have a motor"), std::string::npos);

@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "virtual_robot/board.h"
-#include "virtual_robot/plant.h"
-#include "virtual_robot/probes/mailbox.h"
-#include "virtual_robot/robot.h"
+#include "apps/virtual_robot/board.h"
+#include "apps/virtual_robot/plant.h"
+#include "apps/virtual_robot/robot.h"
+#include "tests/virtual_robot/probes/mailbox.h"
 
 namespace taut::virtual_robot {
 

@@ -1,6 +1,6 @@
 // The pseudo-terminal, from the side of a program that takes it for a serial port. Nothing here is
 // about time: machines that test are slow and busy.
-#include "virtual_robot/pty.h"
+#include "apps/virtual_robot/pty.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 #include <memory>
 #include <thread>
 
-#include "virtual_robot/paced.h"
-#include "virtual_robot/probe_fixture.h"
+#include "apps/virtual_robot/paced.h"
+#include "tests/virtual_robot/probe_fixture.h"
 
 namespace taut::virtual_robot {
 namespace {

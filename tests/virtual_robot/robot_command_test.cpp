@@ -48,8 +48,8 @@ class RobotCommand : public CommandTest {
       const int file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
       dup2(file, STDOUT_FILENO);
       execl(TAUT_VIRTUAL_ROBOT, TAUT_VIRTUAL_ROBOT, "--model",
-            TAUT_SOURCE_DIR "/models/tetraspine3_motors.yaml", "--link", link.c_str(), "--stand",
-            static_cast<char*>(nullptr));
+            TAUT_SOURCE_DIR "/share/models/tetraspine3_motors.yaml", "--link", link.c_str(),
+            "--stand", static_cast<char*>(nullptr));
       _exit(97);
     }
     while (Read(out).find('\n') == std::string::npos && waitpid(robot_, nullptr, WNOHANG) == 0) {
@@ -182,7 +182,7 @@ TEST_F(RobotCommand, WrongInputsAreSaid) {
     int status;
     std::string says;
   };
-  const std::string push = TAUT_SOURCE_DIR "/experiments/push_20n_motors.yaml";
+  const std::string push = TAUT_SOURCE_DIR "/share/experiments/push_20n_motors.yaml";
   for (const Wrong& one : std::vector<Wrong>{
            {{"scan", "--port", "/dev/nothing"}, 1, "cannot be opened"},
            {{"set", "duty_limt=0.5", "--port", "virtual"}, 3, "did you mean \"duty_limit\"?"},
@@ -193,7 +193,7 @@ TEST_F(RobotCommand, WrongInputsAreSaid) {
            {{"hold", "--on_fault", "pray"}, 2, "pray"},
            {{"flash", "--board", "6"}, 2, "6"},
            {{"flash", "--board", "1", "--hex", "none.hex"}, 3, "there is no such firmware"},
-           {{"run", TAUT_SOURCE_DIR "/experiments/hang.yaml"}, 3, "no cable has an actuator"},
+           {{"run", TAUT_SOURCE_DIR "/share/experiments/hang.yaml"}, 3, "no cable has an actuator"},
            {{"run", "none.yaml"}, 3, "none.yaml"},
            {{"run", push, "--calibration", "none.yaml", "--port", "virtual"}, 3, "none.yaml"},
            {{"status", "--model", "none.yaml"}, 3, "none.yaml"},
@@ -207,7 +207,7 @@ TEST_F(RobotCommand, WrongInputsAreSaid) {
 }
 
 TEST_F(RobotCommand, ADryRunOpensNothing) {
-  const std::string push = TAUT_SOURCE_DIR "/experiments/push_20n_motors.yaml";
+  const std::string push = TAUT_SOURCE_DIR "/share/experiments/push_20n_motors.yaml";
   for (const std::vector<std::string>& words :
        std::vector<std::vector<std::string>>{{"hold", "--dry-run"},
                                              {"release", "--dry_run"},
@@ -256,8 +256,9 @@ TEST_F(RobotCommandInRealTime, IsStoppedFromAnotherTerminal) {
 }
 
 TEST_F(RobotCommandInRealTime, RunsAnExperiment) {
-  const CommandResult done = Robot({"run", TAUT_SOURCE_DIR "/experiments/push_20n_motors.yaml",
-                                    "--port", "virtual", "--duration_s", "2", "--out", "run"});
+  const CommandResult done =
+      Robot({"run", TAUT_SOURCE_DIR "/share/experiments/push_20n_motors.yaml", "--port", "virtual",
+             "--duration_s", "2", "--out", "run"});
   ASSERT_EQ(done.status, 0) << done.errors;
   Diagnostics found;
   const auto trace = ReadTrace(Path("run/trace.h5"), found);

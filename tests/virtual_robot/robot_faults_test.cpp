@@ -8,8 +8,8 @@
 #include <limits>
 #include <ostream>
 
+#include "apps/virtual_robot/boards_plant.h"
 #include "taut/run.h"
-#include "virtual_robot/boards_plant.h"
 
 namespace taut::virtual_robot {
 namespace {
@@ -21,7 +21,8 @@ constexpr double kFault_s = 0.3, kEnd_s = 0.8;  // of the experiment
 
 ExperimentSpec Push() {
   Diagnostics found;
-  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/experiments/push_20n_motors.yaml", {}, found);
+  auto experiment =
+      LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/push_20n_motors.yaml", {}, found);
   EXPECT_TRUE(experiment.has_value()) << found.Format();
   experiment->duration_s = kEnd_s;
   return *experiment;

@@ -1,5 +1,5 @@
 // The whole robot, with the probe on its boards and springs at its motors.
-#include "virtual_robot/robot.h"
+#include "apps/virtual_robot/robot.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "virtual_robot/probe_host.h"
+#include "tests/virtual_robot/probe_host.h"
 
 namespace taut::virtual_robot {
 namespace {

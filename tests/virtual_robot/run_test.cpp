@@ -1,5 +1,5 @@
 // An experiment on the emulated boards, as `taut_virtual_robot --run` has it.
-#include "virtual_robot/run_experiment.h"
+#include "apps/virtual_robot/run_experiment.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,8 @@ namespace {
 
 ExperimentSpec Push(double duration_s) {
   Diagnostics found;
-  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/experiments/push_20n_motors.yaml", {}, found);
+  auto experiment =
+      LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/push_20n_motors.yaml", {}, found);
   EXPECT_TRUE(experiment.has_value()) << found.Format();
   experiment->duration_s = duration_s;
   return *experiment;

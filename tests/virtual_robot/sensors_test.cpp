@@ -1,4 +1,4 @@
-#include "virtual_robot/sensors.h"
+#include "apps/virtual_robot/sensors.h"
 
 #include <gtest/gtest.h>
 

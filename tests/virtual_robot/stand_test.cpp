@@ -1,20 +1,20 @@
 // The stand that the robot is on until its boards hold it.
-#include "virtual_robot/stand.h"
+#include "apps/virtual_robot/stand.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "apps/virtual_robot/load_host.h"
 #include "taut/spec.h"
-#include "virtual_robot/load_host.h"
 
 namespace taut::virtual_robot {
 namespace {
 
 TEST(Stand, HoldsTheRobotUntilItsBoardsDoAndNeverAgain) {
   Diagnostics found;
-  const auto spine = LoadRobot(TAUT_SOURCE_DIR "/models/tetraspine3_motors.yaml", {}, found);
+  const auto spine = LoadRobot(TAUT_SOURCE_DIR "/share/models/tetraspine3_motors.yaml", {}, found);
   ASSERT_TRUE(spine) << found.Format();
   const auto plant = MotorPlant::Make(*spine, found);
   ASSERT_TRUE(plant) << found.Format();

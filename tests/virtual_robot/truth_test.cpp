@@ -11,9 +11,9 @@
 #include <memory>
 #include <utility>
 
+#include "apps/virtual_robot/truth_server.h"
 #include "taut/spec.h"
-#include "virtual_robot/command_fixture.h"
-#include "virtual_robot/truth_server.h"
+#include "tests/virtual_robot/command_fixture.h"
 
 namespace taut::virtual_robot {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "virtual_robot/probe_fixture.h"
+#include "tests/virtual_robot/probe_fixture.h"
 
 namespace taut::virtual_robot {
 namespace {

@@ -1,13 +1,13 @@
 // The adapter's frames, byte by byte, by its documents: usb_iss_tech and usb_iss_i2c_tech of
 // Devantech.
-#include "virtual_robot/usb_iss.h"
+#include "apps/virtual_robot/usb_iss.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "virtual_robot/fake_slave.h"
+#include "tests/virtual_robot/fake_slave.h"
 
 namespace taut::virtual_robot {
 namespace {

@@ -13,8 +13,8 @@ export const options = { skip: existsSync(join(CORE, "taut_core.wasm")) ? false 
 
 /** Models, experiments and gaits as they are shipped, by path. */
 export const shipped = Object.fromEntries(["models", "experiments", "gaits"].flatMap((folder) =>
-  readdirSync(join(ROOT, folder)).filter((name) => [".yaml", ".obj"].includes(extname(name))).sort()
-    .map((name) => [`${folder}/${name}`, readFileSync(join(ROOT, folder, name), "utf8")])));
+  readdirSync(join(ROOT, "share", folder)).filter((name) => [".yaml", ".obj"].includes(extname(name))).sort()
+    .map((name) => [`${folder}/${name}`, readFileSync(join(ROOT, "share", folder, name), "utf8")])));
 
 export async function loadCore() {
   const source = fileURLToPath(new URL("../src/demo/core.ts", import.meta.url));

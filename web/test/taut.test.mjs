@@ -107,8 +107,8 @@ test("TheNumbersOfALiveRunAreThoseOfTheRun", options, async (t) => {
 /** The same run with all that can be recorded, places of nodes, too: a second of it. */
 function runWithEverything() {
   const out = join(folder, "everything");
-  const text = readFileSync(join(ROOT, "experiments/push_20n.yaml"), "utf8")
-    .replace(/^record: .*$/m, 'record: {rate_hz: 100, channels: ["*"]}').replace(/\.\.\/models\//g, join(ROOT, "models/"));
+  const text = readFileSync(join(ROOT, "share/experiments/push_20n.yaml"), "utf8")
+    .replace(/^record: .*$/m, 'record: {rate_hz: 100, channels: ["*"]}').replace(/\.\.\/models\//g, join(ROOT, "share/models/"));
   const file = join(folder, "everything.yaml");
   writeFileSync(file, text);
   taut("run", file, "--duration_s", "1", "--csv", "--quiet", "--out", out);
@@ -232,7 +232,7 @@ test("ATraceIsReplayedToThePosesOfTheFile", options, async (t) => {
 test("GhostsAndContactForcesAreTheRowsOfTheirFiles", options, async (t) => {
   const experiment = (name, more) => {
     const file = join(folder, `${name}.yaml`);
-    writeFileSync(file, `taut: 1\nkind: experiment\nbase: ${join(ROOT, more.base)}\nname: ${name}\nrecord: {rate_hz: ${more.rate_hz}, channels: [\"*\"], contacts: 20}\n`);
+    writeFileSync(file, `taut: 1\nkind: experiment\nbase: ${join(ROOT, "share", more.base)}\nname: ${name}\nrecord: {rate_hz: ${more.rate_hz}, channels: [\"*\"], contacts: 20}\n`);
     taut("run", file, "--duration_s", String(more.duration_s), "--csv", "--quiet", "--out", join(folder, name));
     return csvOf(join(folder, name));
   };

@@ -1,5 +1,16 @@
 /// A body whose few contacts with the world are an island: Newton's method in their impulses, in
 /// all lanes at once (docs/theory/contact.md, eq. 20). A segment of a spine on its feet is this.
+#pragma once
+
+#include "math/scalar.h"
+#include "sim/constraint/contact_point.h"
+#include "sim/constraint/links.h"
+#include "sim/data/contacts.h"
+#include "sim/data/elimination.h"
+#include "sim/data/island.h"
+#include "sim/data/rows.h"
+#include "sim/solve/impacts.inl"
+#include "simd/vec3.h"
 
 namespace taut::sim {
 

@@ -6,6 +6,14 @@
 /// Blocks of smaller unknowns are filled up with zeros. Only an unknown's own velocities are
 /// eliminated; what they do to others is worked out six by six, so that the loops have lengths
 /// that the compiler knows. Unknowns that are prescribed have no column at all.
+#pragma once
+
+#include "base/assert.h"
+#include "math/scalar.h"
+#include "sim/constraint/links.h"
+#include "sim/data/elimination.h"
+#include "sim/data/island.h"
+#include "simd/vec3.h"
 
 namespace taut::sim {
 
@@ -326,3 +334,5 @@ class BodyMatrix {
 };
 
 }  // namespace taut::sim
+
+#include "sim/solve/triangular_solves.inl"

@@ -1,4 +1,8 @@
 /// Several bodies that turn about their common centre of mass as if they were one.
+#pragma once
+
+#include "sim/contacts/fit_biases.inl"
+#include "simd/vec3.h"
 
 namespace taut::sim {
 

@@ -7,6 +7,9 @@
 /// these sooner or later open a contact or make it slide, the solver jumps there at once. Otherwise
 /// the equations are inconsistent: proximal rounds (proximal.inl) find the velocities with the
 /// least error; then the laws that support it are relaxed by this error.
+#pragma once
+
+#include "sim/data/island.h"
 
 namespace taut::sim {
 

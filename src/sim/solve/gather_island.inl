@@ -1,4 +1,8 @@
 /// Gathers one lane's island into the solver's memory and scatters the solution (LaneSolve).
+#pragma once
+
+#include "sim/data/rows.h"
+#include "sim/solve/lane_solve.inl"
 
 namespace taut::sim {
 

@@ -12,6 +12,9 @@
 ///   MeasureBefore()  impacts().before <- velocities at the start of the step
 ///   SolveAgain(M)    goes on from l, in the lanes M
 ///   Update()         makes all else belong to l
+#pragma once
+
+#include "sim/data/island.h"
 
 namespace taut::sim {
 

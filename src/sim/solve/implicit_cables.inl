@@ -4,8 +4,19 @@
 /// First stage: the force is a discrete gradient in the lengths, and bodies rotate by the Cayley
 /// map of their mean spin. So energy and momenta are conserved to rounding at any stiffness. Second
 /// stage: the force at the end.
+#pragma once
+
+#include "math/scalar.h"
+#include "sim/data/implicit_memory.h"
+#include "sim/data/island.h"
+#include "sim/solve/body_matrix.inl"
+#include "simd/vec3.h"
+#include "simd/wide.h"
 
 namespace taut::sim {
+
+using simd::M3;
+using simd::V3;
 
 using simd::RotationOf;
 

@@ -3,6 +3,13 @@
 ///
 /// A step has one stage, or two if a stiff cable has a damper. If Newton's method fails, the step
 /// is divided into 2, 4, ... 128 substeps, within the bound of linear systems of a step.
+#pragma once
+
+#include "sim/data/rows.h"
+#include "sim/solve/body_matrix.inl"
+#include "sim/solve/impacts.inl"
+#include "sim/solve/implicit_cables.inl"
+#include "sim/solve/implicit_laws.inl"
 
 namespace taut::sim {
 
@@ -379,3 +386,6 @@ class ImplicitIsland {
 };
 
 }  // namespace taut::sim
+
+#include "sim/solve/implicit_newton.inl"
+#include "sim/solve/implicit_state.inl"

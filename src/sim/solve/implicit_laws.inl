@@ -1,6 +1,19 @@
 /// Contact and joint impulses with implicit cables: the laws of an island with the Delassus matrix
 /// W = J A^-1 J^T, A the cables' matrix. W is dense and not symmetric (docs/theory/contact.md, eq.
 /// 20). Open contacts have no row.
+#pragma once
+
+#include "sim/constraint/contact_point.h"
+#include "sim/constraint/joint_row.h"
+#include "sim/constraint/links.h"
+#include "sim/data/elimination.h"
+#include "sim/data/implicit_memory.h"
+#include "sim/data/island.h"
+#include "sim/data/memory.h"
+#include "sim/solve/body_matrix.inl"
+#include "sim/solve/plain_newton.inl"
+#include "sim/solve/sweeps.inl"
+#include "simd/wide.h"
 
 namespace taut::sim {
 

@@ -1,5 +1,12 @@
 /// Newton's method for the final velocities of a stage. It starts at rest, where cable lengths and
 /// tensions are exact (docs/theory/cables.md, section 3).
+#pragma once
+
+#include "sim/constraint/links.h"
+#include "sim/data/implicit_memory.h"
+#include "sim/data/island.h"
+#include "sim/solve/implicit_island.inl"
+#include "simd/vec3.h"
 
 namespace taut::sim {
 

@@ -1,5 +1,15 @@
 /// States of an implicitly integrated island: start, ends of its stages, conserved quantities
 /// (docs/theory/cables.md, 12e).
+#pragma once
+
+#include "sim/bodies/stage_bodies.inl"
+#include "sim/data/implicit_memory.h"
+#include "sim/data/island.h"
+#include "sim/data/of_lane.h"
+#include "sim/solve/common_turn.inl"
+#include "sim/solve/implicit_island.inl"
+#include "sim/solve/implicit_newton.inl"
+#include "simd/vec3.h"
 
 namespace taut::sim {
 

@@ -1,4 +1,12 @@
 /// One island's solve: stages from the fast to the sure (docs/theory/contact.md, section 5).
+#pragma once
+
+#include "sim/constraint/links.h"
+#include "sim/data/island.h"
+#include "sim/solve/impacts.inl"
+#include "sim/solve/plain_newton.inl"
+#include "sim/solve/proximal.inl"
+#include "sim/solve/sweeps.inl"
 
 namespace taut::sim {
 

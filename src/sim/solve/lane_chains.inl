@@ -1,4 +1,10 @@
 /// Cables with friction in a lane's islands (lane_solve.inl).
+#pragma once
+
+#include "sim/cables/cable_chains.inl"
+#include "sim/cables/lane_spans.inl"
+#include "sim/solve/gather_island.inl"
+#include "sim/solve/lane_solve.inl"
 
 namespace taut::sim {
 

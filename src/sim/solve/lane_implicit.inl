@@ -1,4 +1,12 @@
 /// Data transfer between a lane's islands with stiff cables and the implicit integration.
+#pragma once
+
+#include "sim/bodies/stage_bodies.inl"
+#include "sim/contacts/prepare_contact.inl"
+#include "sim/solve/gather_island.inl"
+#include "sim/solve/implicit_island.inl"
+#include "sim/solve/lane_solve.inl"
+#include "sim/solve/push_out.inl"
 
 namespace taut::sim {
 

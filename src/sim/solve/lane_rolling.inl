@@ -1,4 +1,9 @@
 /// Fixed-point rounds of LaneSolve for rolling on kinematic or jointed bodies (rolling.inl).
+#pragma once
+
+#include "sim/data/rows.h"
+#include "sim/solve/lane_solve.inl"
+#include "sim/solve/rolling.inl"
 
 namespace taut::sim {
 

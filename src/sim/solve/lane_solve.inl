@@ -1,6 +1,12 @@
 /// One lane's islands: where lanes have too little in common to walk together (contacts of moving
 /// bodies, many contacts, what the solves in lanes did not get). Each island is gathered in the
 /// numbers of one lane, solved (island_solver.inl), and written back.
+#pragma once
+
+#include "sim/cables/lane_spans.inl"
+#include "sim/data/rows.h"
+#include "sim/solve/island_solver.inl"
+#include "sim/solve/rolling.inl"
 
 namespace taut::sim {
 
@@ -242,3 +248,9 @@ class LaneSolve {
 };
 
 }  // namespace taut::sim
+
+#include "sim/solve/gather_island.inl"
+#include "sim/solve/lane_chains.inl"
+#include "sim/solve/lane_implicit.inl"
+#include "sim/solve/lane_rolling.inl"
+#include "sim/solve/push_out.inl"

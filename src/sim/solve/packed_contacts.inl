@@ -5,6 +5,9 @@
 ///
 /// A packed contact has a link to each body that some lane has it on, with zeros in the others:
 /// what they add is exactly nothing.
+#pragma once
+
+#include "sim/data/rows.h"
 
 namespace taut::sim {
 

@@ -1,5 +1,12 @@
 /// First stage of an island's solve: Newton's method on all laws as they are, without
 /// globalisation. Two steps, mostly (docs/theory/contact.md, eq. 18, 21-22).
+#pragma once
+
+#include "math/scalar.h"
+#include "sim/constraint/links.h"
+#include "sim/data/island.h"
+#include "sim/solve/body_matrix.inl"
+#include "sim/solve/deadlock.inl"
 
 namespace taut::sim {
 

@@ -6,6 +6,14 @@
 ///   F(v) = M (v - v_free) - J^T l(v) = 0.
 /// With friction's radii frozen F is the gradient of a convex function; it judges the steps. As the
 /// rounds' centers converge, the softness loses its effect.
+#pragma once
+
+#include "math/angle.h"
+#include "sim/constraint/links.h"
+#include "sim/data/island.h"
+#include "sim/solve/body_matrix.inl"
+#include "sim/solve/deadlock.inl"
+#include "sim/solve/sweeps.inl"
 
 namespace taut::sim {
 

@@ -2,6 +2,16 @@
 /// velocities times the step, without friction and cables (docs/theory/contact.md, eq. 8). Bodies
 /// go, and turn with their spin: no velocity changes, and no energy but that of place. Lane by
 /// lane: it is rare.
+#pragma once
+
+#include "sim/bodies/stage_bodies.inl"
+#include "sim/contacts/prepare_contact.inl"
+#include "sim/contacts/slots.inl"
+#include "sim/data/rows.h"
+#include "sim/solve/common_turn.inl"
+#include "sim/solve/gather_island.inl"
+#include "sim/solve/island_solver.inl"
+#include "sim/solve/lane_solve.inl"
 
 namespace taut::sim {
 

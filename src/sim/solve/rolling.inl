@@ -4,8 +4,13 @@
 /// The final contact point depends on the unknown velocities. So fixed-point rounds solve the
 /// island with the biases of the last velocities, warm-started, until the biases converge: each
 /// round leaves a share h |w| / 2 of the error, w the motion's angular velocity.
+#pragma once
+
+#include "simd/vec3.h"
 
 namespace taut::sim {
+
+using simd::V3;
 
 /// One body of a rolling contact.
 template <class L>

@@ -1,6 +1,10 @@
 /// Second stage of an island's solve: from constraint to constraint, each solved by itself. Slow
 /// where bodies hand loads on, but it needs no good start, and each law is solved exactly
 /// (docs/theory/contact.md, eq. 23).
+#pragma once
+
+#include "sim/constraint/links.h"
+#include "sim/data/island.h"
 
 namespace taut::sim {
 

@@ -1,6 +1,12 @@
 /// How an island's solution changes with what it was solved for: the linear system of Newton's
 /// method at the solution, and its transpose for gradients (docs/theory/contact.md, eq. 29-31).
 /// Nothing in a step needs it; it is for who wants derivatives of one.
+#pragma once
+
+#include "sim/constraint/links.h"
+#include "sim/data/island.h"
+#include "sim/solve/body_matrix.inl"
+#include "sim/solve/plain_newton.inl"
 
 namespace taut::sim {
 

@@ -1,4 +1,9 @@
 /// Triangular solves with the factors of a BodyMatrix, one column per body. L has a unit diagonal.
+#pragma once
+
+#include "math/scalar.h"
+#include "sim/data/island.h"
+#include "sim/solve/body_matrix.inl"
 
 namespace taut::sim {
 

@@ -6,6 +6,10 @@
 /// it has its own Newton iterations. Rows are those that some lane has; one that a lane has not
 /// stands in its system as 1 x = 0. What a lane gets does not depend on the others: its rows have
 /// the same order alone.
+#pragma once
+
+#include "sim/data/rows.h"
+#include "sim/solve/impacts.inl"
 
 namespace taut::sim {
 
@@ -370,3 +374,5 @@ class WorldDual {
 };
 
 }  // namespace taut::sim
+
+#include "sim/solve/world_dual_contacts.inl"

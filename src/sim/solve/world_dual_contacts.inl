@@ -1,5 +1,9 @@
 /// The contacts of a world that hangs together by stiff cables, once those are eliminated: a system
 /// as small as a body's, with Newton iterations of its own.
+#pragma once
+
+#include "sim/constraint/links.h"
+#include "sim/solve/world_dual.inl"
 
 namespace taut::sim {
 

@@ -1,0 +1,59 @@
+/// Which faults of a script act at a time.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/virtual_robot/emulated_time.h"
+#include "taut/faults.h"
+
+namespace taut::virtual_robot {
+
+/// What is wrong. Of several faults that set one thing, the one that began last wins.
+struct FaultState {
+  struct OfBoard {
+    std::optional<double> drift_ppm;
+    bool lost = false, brown_out = false, driver_fault = false;
+  };
+  struct OfMotor {
+    const FaultSpec* stuck_load_cell = nullptr;
+    bool stuck_encoder = false;
+  };
+  std::vector<OfBoard> boards;
+  std::vector<OfMotor> motors;
+  double flips_per_bit = 0;
+  bool data_low = false, clock_low = false;
+  bool motor_supply_lost = false, usb_lost = false, host_killed = false;
+};
+
+class FaultSchedule {
+ public:
+  FaultSchedule(std::vector<FaultSpec> faults, int boards, int motors);
+  FaultSchedule(const FaultSchedule&) = delete;  // states point into it
+  FaultSchedule& operator=(const FaultSchedule&) = delete;
+
+  /// When something begins or ends next; `kNever` after the last.
+  Time NextAt() const { return next_ < changes_.size() ? changes_[next_].at : kNever; }
+
+  struct Change {
+    Time at = 0;
+    bool begins = false;
+    const FaultSpec* fault = nullptr;
+  };
+  /// All that begins or ends up to `now`, in order; ends come before beginnings.
+  std::vector<Change> TakeUntil(Time now);
+  /// With what was taken.
+  FaultState State() const;
+
+ private:
+  int board_count_, motor_count_;
+  std::vector<FaultSpec> faults_;
+  std::vector<Change> changes_;
+  std::size_t next_ = 0;
+};
+
+/// "board_loss of board 2", as logs say it.
+std::string FaultText(const FaultSpec& fault);
+
+}  // namespace taut::virtual_robot

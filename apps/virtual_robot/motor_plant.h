@@ -1,0 +1,48 @@
+/// taut's physics as what the boards stand on: a world whose actuated cables are wound by motors.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/virtual_robot/plant.h"
+#include "taut/batch.h"
+#include "taut/spec.h"
+
+namespace taut::virtual_robot {
+
+class MotorPlant : public Plant {
+ public:
+  static constexpr int kMostMotors = 12;  ///< Two a board, and six addresses.
+
+  /// The robot as its model describes it, with its motors off. Nothing and complaints if the model
+  /// does not compile, has no motor or too many, or an actuator that is none.
+  static std::unique_ptr<MotorPlant> Make(const RobotSpec& robot, Diagnostics& out);
+
+  int motor_count() const override { return static_cast<int>(cables_.size()); }
+  void Advance(double duration_s, std::span<const MotorDrive> drives) override;
+  double LoadCellForce(int motor) const override;
+  double RotorAngle(int motor) const override;
+  void CutCable(int motor) override;
+
+  /// The cables that motors wind, in the model's order.
+  const std::vector<std::string>& cable_names() const { return names_; }
+  const Batch& batch() const { return batch_; }
+  Batch& batch() { return batch_; }
+  /// On a stand: nothing moves, and load cells feel what they feel at the start.
+  void SetHeld(bool held) { held_ = held; }
+  bool held() const { return held_; }
+  int cable(int motor) const { return cables_.at(static_cast<std::size_t>(motor)); }
+
+ private:
+  MotorPlant(std::shared_ptr<const Model> model, std::vector<int> cables,
+             std::vector<std::string> names);
+
+  Batch batch_;  ///< Of one world.
+  std::vector<int> cables_;
+  std::vector<std::string> names_;
+  std::vector<bool> cut_;
+  bool held_ = false;
+};
+
+}  // namespace taut::virtual_robot

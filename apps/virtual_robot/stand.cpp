@@ -1,0 +1,32 @@
+#include "apps/virtual_robot/stand.h"
+
+#include <utility>
+
+namespace taut::virtual_robot {
+
+Stand::Stand(MotorPlant& plant, const Robot& robot, LogSink log)
+    : plant_(plant), robot_(robot), log_(std::move(log)) {
+  plant_.SetHeld(true);
+}
+
+bool Stand::AllDriversOn() const {
+  for (int motor = 0; motor < plant_.motor_count(); ++motor) {
+    if (!robot_.Drive(motor).enabled) return false;
+  }
+  return true;
+}
+
+void Stand::Step(Time now) {
+  if (!plant_.held()) return;
+  if (!AllDriversOn()) {
+    driven_since_ = -1;
+    return;
+  }
+  if (driven_since_ < 0) driven_since_ = now;
+  // A driver that is on for a moment only, as in a test of it, holds nothing yet.
+  if (now - driven_since_ < kDrivenFor) return;
+  plant_.SetHeld(false);
+  if (log_) log_(now, "stand", "let go: the drivers of all boards have been on for 0.1 s");
+}
+
+}  // namespace taut::virtual_robot

@@ -1,0 +1,25 @@
+/// The MuJoCo peer as text: what mujoco.cpp compiles, and what a program with another version of
+/// MuJoCo can load. Needs no MuJoCo.
+#include "benchmarks/peers/adapters.h"
+#include "mjcf/write.h"
+
+namespace taut::peers {
+
+std::vector<float> MujocoHeights(const HeightFieldDef& field) {
+  const mechanics::HeightRange range = mechanics::HeightsOf(field);
+  std::vector<float> heights;
+  for (const double z : field.height_m) {
+    heights.push_back(static_cast<float>((z - range.least_m) / mjcf::RiseOf(range)));
+  }
+  return heights;
+}
+
+std::string Mjcf(const ModelDef& def, const Options& options) {
+  mjcf::WriteOptions as;
+  as.keyframe = true;
+  as.elliptic = options.elliptic;
+  as.as_peer = true;
+  return mjcf::Text(def, as);
+}
+
+}  // namespace taut::peers

@@ -1,0 +1,58 @@
+#include <algorithm>
+
+#include "description/experiment/experiment_parts.h"
+
+namespace taut::description {
+
+std::optional<GoalSpec> ToGoal(const GoalText& text, const RobotSpec* robot, const Scope& scope) {
+  GoalSpec goal = text;
+  if (!robot || text.body_name.text.empty()) return goal;
+  std::vector<std::string> names;
+  for (const BodyDef& body : robot->def.bodies) names.push_back(body.name);
+  const auto found = std::find(names.begin(), names.end(), text.body_name.text);
+  if (found == names.end()) {
+    scope.out.Error(text.body_name.at, "goal.body: there is no body " + text.body_name.text,
+                    NameHint(text.body_name.text, names));
+    return std::nullopt;
+  }
+  goal.body = static_cast<int>(found - names.begin());
+  return goal;
+}
+
+namespace {
+
+constexpr const char* kSayWhere =
+    "say where it is and whose way there is sensed: goal: {at_m: [3.5, 0, 0], body: ...}";
+
+/// What hears the goal: a network hears it in any frame, a law that sets it beside the vertical and
+/// the struts' directions in the world's.
+void CheckGoalIsSensed(const ExperimentSpec& experiment, const GaitSpec& gait, Diagnostics& out) {
+  if (gait.feedback_cpg && gait.feedback_cpg->goal_network && !experiment.goal) {
+    out.Error(gait.feedback_cpg->goal_network->at,
+              "gait " + gait.name + " has a goal_network, but the experiment has no `goal`",
+              kSayWhere);
+  }
+  if (!gait.toward_goal) return;
+  if (!experiment.goal) {
+    out.Error(gait.toward_goal->at,
+              "gait " + gait.name + " goes toward a goal, but the experiment has no `goal`",
+              kSayWhere);
+  } else if (experiment.goal->frame != GoalFrame::kOfWorld) {
+    out.Error(gait.toward_goal->at,
+              "gait " + gait.name + " needs the way to the goal in the frame of the world",
+              "goal: {frame: world, ...}: a body that rolls has no ahead");
+  }
+}
+
+}  // namespace
+
+void CheckGoalIsSensed(const ExperimentSpec& experiment, Diagnostics& out) {
+  for (const ControllerSpec& controller : experiment.controllers) {
+    const GaitInputSpec* input = GaitInputOf(controller);
+    for (std::size_t g = 0; input != nullptr && g <= input->others.size(); ++g) {
+      CheckGoalIsSensed(experiment, GaitOf(*input, g), out);
+    }
+  }
+}
+
+}  // namespace taut::description

@@ -1,0 +1,166 @@
+// Load cases.
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "base/fixed.h"
+#include "description/experiment/experiment_parts.h"
+#include "description/experiment/load_keys.h"
+
+namespace taut::description {
+namespace {
+
+/// The index of the one that is called so; -1 after a complaint.
+template <class Named>
+int Find(const Placed& name, const char* kind, const std::vector<Named>& all,
+         const std::vector<bool>& counts, const Scope& scope) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!counts[i]) continue;
+    if (all[i].name == name.text) return static_cast<int>(i);
+    names.push_back(all[i].name);
+  }
+  if (name.text.empty()) return -1;  // complained about
+  scope.out.Error(name.at, std::string("there is no ") + kind + " \"" + name.text + "\"",
+                  names.empty() ? std::string("the robot has none") : NameHint(name.text, names));
+  return -1;
+}
+
+class CaseReader {
+ public:
+  CaseReader(const RobotSpec& robot, const Scope& scope) : robot_(robot), scope_(scope) {
+    for (const JointDef& joint : robot.def.joints) {
+      is_support_.push_back(base::IsFixed(robot.def, joint.body_a) && !IsBar(joint));
+      is_bar_.push_back(IsBar(joint));
+    }
+  }
+
+  LoadCaseSpec Run(const LoadCaseText& text) {
+    LoadCaseSpec out;
+    out.name = text.name.text;
+    out.weight = text.weight;
+    const std::vector<bool> all_nodes(robot_.def.nodes.size(), true);
+    for (const NodeForceText& force : text.forces) {
+      const int node = Find(force.node_name, "node", robot_.def.nodes, all_nodes, scope_);
+      if (node >= 0) out.forces.push_back({node, force.force_n});
+    }
+    for (const SettlementText& settlement : text.settlements) {
+      const int joint = Find(settlement.support, "support", robot_.def.joints, is_support_, scope_);
+      if (joint >= 0) out.settlements.push_back({joint, settlement.by_m});
+    }
+    gains_.clear();
+    for (const RestLengthText& change : text.rest_lengths) {
+      if (!change.members.value) continue;
+      ForEach(*change.members.value, "rest_lengths.members", [&](const Member& m) {
+        return change.by_m.value_or(change.by_ratio.value_or(0) * m.rest_m);
+      });
+    }
+    for (const TemperatureText& change : text.temperatures) {
+      if (change.members.value) Warm(*change.members.value, change.by_k);
+    }
+    for (const auto& [member, gain] : gains_) {
+      const Member m = MemberAt(member);
+      if (m.rest_m + gain.by_m <= 0) {
+        scope_.out.Error(gain.at, "the load case \"" + out.name +
+                                      "\" leaves nothing of the rest length of \"" + m.name +
+                                      "\", " + Shown(m.rest_m) + " m");
+      }
+      (member.is_bar ? out.bars : out.cables).push_back({member.index, gain.by_m});
+    }
+    return out;
+  }
+
+ private:
+  struct Key {
+    bool is_bar;
+    int index;
+    bool operator<(const Key& other) const {
+      return std::tie(is_bar, index) < std::tie(other.is_bar, other.index);
+    }
+  };
+  struct Member {
+    const std::string& name;
+    double rest_m, expansion_per_k;
+  };
+  struct Gain {
+    double by_m = 0;
+    SourceRef at;  ///< Of the last that adds to it.
+  };
+
+  Member MemberAt(const Key& key) const {
+    const auto i = static_cast<std::size_t>(key.index);
+    if (key.is_bar) {
+      const JointDef& bar = robot_.def.joints[i];
+      return {bar.name, bar.rest, bar.member.expansion_per_k};
+    }
+    const CableDef& cable = robot_.def.cables[i];
+    return {cable.name, cable.rest_length_m, cable.member.expansion_per_k};
+  }
+
+  /// Adds what `gain` says of each member to what it has.
+  template <class F>
+  void ForEach(const Value& selector, const char* what, const F& gain) {
+    for (const Key& key : Select(selector, what)) {
+      Gain& of_it = gains_[key];
+      of_it.by_m += gain(MemberAt(key));
+      of_it.at = selector.at;
+    }
+  }
+
+  void Warm(const Value& selector, double by_k) {
+    std::string unknown;
+    ForEach(selector, "temperatures.members", [&](const Member& m) {
+      if (m.expansion_per_k == 0) unknown += (unknown.empty() ? "" : ", ") + m.name;
+      return m.expansion_per_k * by_k * m.rest_m;
+    });
+    if (unknown.empty()) return;
+    scope_.out.Error(selector.at,
+                     "temperatures.members: it is not known how warmth lengthens " + unknown,
+                     "give the builder in the model `expansion_per_k`: steel has 12e-6");
+  }
+
+  std::vector<Key> Select(const Value& selector, const char* what) {
+    const auto match = ReadMatch(selector, what, scope_);
+    std::vector<Key> found;
+    if (match.empty()) return found;
+    std::vector<std::string> words;
+    const auto look = [&](bool is_bar, std::size_t i, const Tags& tags) {
+      if (Matches(match, tags)) found.push_back({is_bar, static_cast<int>(i)});
+      words.insert(words.end(), tags.begin(), tags.end());
+    };
+    for (std::size_t i = 0; i < robot_.cable_tags.size(); ++i) look(false, i, robot_.cable_tags[i]);
+    for (std::size_t i = 0; i < robot_.joint_tags.size(); ++i) {
+      if (is_bar_[i]) look(true, i, robot_.joint_tags[i]);
+    }
+    if (found.empty()) {
+      scope_.out.Error(selector.at,
+                       std::string(what) + ": no cable or bar matches " + Written(selector),
+                       UnknownWord(match, words, "cable or bar"));
+    }
+    return found;
+  }
+
+  const RobotSpec& robot_;
+  const Scope& scope_;
+  std::vector<bool> is_support_, is_bar_;
+  std::map<Key, Gain> gains_;
+};
+
+}  // namespace
+
+std::vector<LoadCaseSpec> ToLoadCases(const std::vector<LoadCaseText>& texts,
+                                      const RobotSpec* robot, const Scope& scope) {
+  std::vector<LoadCaseSpec> cases;
+  std::map<std::string, SourceRef> names;
+  for (const LoadCaseText& text : texts) {
+    const auto [first, fresh] = names.emplace(text.name.text, text.name.at);
+    if (!fresh && !text.name.text.empty()) {
+      scope.out.Error(text.name.at, "there are two load cases " + text.name.text,
+                      "the first is in line " + std::to_string(first->second.line));
+    }
+    if (robot) cases.push_back(CaseReader(*robot, scope).Run(text));
+  }
+  return cases;
+}
+
+}  // namespace taut::description

@@ -1,0 +1,80 @@
+/// Parts of the terrain that are many boxes: blocks that lie about, stairs.
+#pragma once
+
+#include <vector>
+
+#include "description/model/surface_keys.h"
+
+namespace taut::description {
+
+struct RegionForm {
+  static constexpr const char* kSchema =
+      R"("type": "array", "title": "[[x, y, z], [x, y, z]]", "items": {"$ref": "#/$defs/vector"}, )"
+      R"("minItems": 2, "maxItems": 2)";
+};
+
+struct ScatterText {
+  int count = 0, seed = 1;
+  Raw<RegionForm> within;
+  Vec3 low_m, high_m;  ///< Of `within`.
+  Vec3 box_m;
+  SurfaceText surface;
+  Material material;
+};
+struct StairsText {
+  int steps = 0;
+  double width_m = 0.0, tread_m = 0.0, rise_m = 0.0;
+  Vec3 at_m;
+  Quat rotate;
+  SurfaceText surface;
+  Material material;
+};
+
+/// Of all parts of a terrain. What a run writes of more could not be read back.
+inline constexpr int kMostBoxes = 5000;
+
+template <class Io>
+void Keys(Io& io, Like<ScatterText> auto& s) {
+  io.Map(
+      "scatter", "terrain.scatter",
+      "Fixed blocks of one size, upright, at random places and headings. That of number i, from 0, "
+      "is called NAME_i.",
+      R"({"count": 500, "seed": 1, "within_m": [[-1, -1, 0], [1, 1, 0]], )"
+      R"("box_m": [0.05, 0.05, 0.05]})");
+  io("count", s.count, kNeeded, Bound{.least = 1, .most = kMostBoxes}, "How many.");
+  io("seed", s.seed, Bound{.least = 0, .most = 2'147'483'647},
+     "Where they lie. Block i has x, y, z and heading, drawn evenly in this order, from "
+     "Philox4x32-10 "
+     "(docs/theory/sensors.md, Noise) with this key, stream 100 and index i: the same everywhere, "
+     "and a larger `count` adds blocks and moves none.");
+  io("within_m", s.within, kNeeded,
+     "Two corners of the upright region in which their centres are, the lower numbers first. A "
+     "coordinate that is the same in both is not random.",
+     Example{"[[-1, -1, 0], [1, 1, 0]]"});
+  io("box_m", s.box_m, kNeeded, Bound::kPositive, "Edge lengths of a block; the third is upright.");
+  SurfaceKeys(io, s.surface);
+}
+void Check(const MapReader& map, ScatterText& scatter);
+
+template <class Io>
+void Keys(Io& io, Like<StairsText> auto& s) {
+  io.Map("stairs", "terrain.stairs",
+         "Fixed stairs that rise along x: a box for each step, from the foot up to its tread, one "
+         "beside the other. The lowest is called NAME_0, the next NAME_1.",
+         R"({"steps": 10, "width_m": 0.2, "tread_m": 0.05, "rise_m": 0.01, "at_m": [0.5, 0, 0]})");
+  io("steps", s.steps, kNeeded, Bound{.least = 1, .most = kMostBoxes}, "How many.");
+  io("width_m", s.width_m, kNeeded, Bound::kPositive, "Across.");
+  io("tread_m", s.tread_m, kNeeded, Bound::kPositive, "How deep a step is, along x.");
+  io("rise_m", s.rise_m, kNeeded, Bound::kPositive, "How much higher each is than the one before.");
+  io("at_m", s.at_m, "Their foot: the middle of the lower edge of the first step.");
+  io("rotate", s.rotate,
+     "Turns the stairs about their foot. They rise along the world's x if absent.");
+  SurfaceKeys(io, s.surface);
+}
+void Check(const MapReader& map, StairsText& stairs);
+
+/// The boxes, without names.
+std::vector<TerrainBoxDef> Boxes(const ScatterText& scatter);
+std::vector<TerrainBoxDef> Boxes(const StairsText& stairs);
+
+}  // namespace taut::description

@@ -1,0 +1,78 @@
+/// The kinds of gaits. One has a file NAME.h here, with the table of its keys, and beside it
+///
+///   void Check(const MapReader&, Text&);   what its keys must fulfil together in a file
+///   void CheckNumbers(const Spec&, const SourceRef&, Diagnostics&);
+///                                          what a resolved experiment must be asked again
+///   void Resolve(const Spec&, const RobotSpec&, ResolvedGait&, Diagnostics&);
+///                                          finds its cables in a robot
+///
+/// and a line in `kGaitKinds`, with its member of `GaitSpec`.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "description/gait/gait_cpg.h"
+#include "description/gait/gait_feedback_cpg.h"
+#include "description/gait/gait_sine.h"
+#include "description/gait/gait_table.h"
+#include "description/gait/gait_toward_goal.h"
+
+namespace taut::description {
+
+/// `OfFile`: what a file says, a `OfGait` or derived from it.
+template <class OfGait, class OfFile = OfGait>
+struct GaitKind {
+  using Spec = OfGait;
+  using Text = OfFile;
+  const char* name;
+  std::optional<Spec> GaitSpec::*gait;
+};
+
+inline constexpr std::tuple kGaitKinds{
+    GaitKind<SineGait>{"sine", &GaitSpec::sine},
+    GaitKind<CpgGait>{"cpg", &GaitSpec::cpg},
+    GaitKind<TableGait, TableText>{"table", &GaitSpec::table},
+    GaitKind<FeedbackCpgGait>{"feedback_cpg", &GaitSpec::feedback_cpg},
+    GaitKind<TowardGoalGait>{"toward_goal", &GaitSpec::toward_goal},
+};
+
+/// visit(kind, its number as a constant), in the order of the list.
+template <class Visit>
+void ForEachGaitKind(const Visit& visit) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (visit(std::get<I>(kGaitKinds), std::integral_constant<std::size_t, I>()), ...);
+  }
+  (std::make_index_sequence<std::tuple_size_v<std::remove_const_t<decltype(kGaitKinds)>>>());
+}
+
+/// What a file says of each kind.
+template <class... Kinds>
+std::tuple<std::optional<typename Kinds::Text>...> TextsOf(const std::tuple<Kinds...>&);
+using GaitKindTexts = decltype(TextsOf(kGaitKinds));
+
+inline std::vector<std::string> GaitKindNames() {
+  std::vector<std::string> names;
+  ForEachGaitKind([&](const auto& kind, auto) { names.emplace_back(kind.name); });
+  return names;
+}
+
+/// What a written gait has below the lines of its keys.
+template <class Spec>
+std::string LinesBesideKeys(const Spec&) {
+  return {};
+}
+
+/// The kinds that a gait has, of which there must be one.
+inline int CountKinds(const GaitSpec& gait) {
+  int count = 0;
+  ForEachGaitKind([&](const auto& kind, auto) { count += (gait.*kind.gait).has_value(); });
+  return count;
+}
+
+}  // namespace taut::description

@@ -1,0 +1,56 @@
+/// A model with everything placed: nodes and pairs in W with full names and all their tags, but
+/// nothing built from them yet.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "description/model/model_text.h"
+
+namespace taut::description {
+
+/// A copy of a part, or (the first one) the nodes and pairs at the top of the file.
+struct Instance {
+  std::string name;  ///< Empty for the top of the file.
+  SourceRef at;
+  Quat q_WPart;
+  Vec3 velocity_m_per_s, angular_velocity_rad_per_s;
+};
+
+struct PlacedNode {
+  std::string name;  ///< "segment_0.tip"
+  SourceRef at;
+  int instance = 0;
+  Vec3 position_m;
+  Tags tags;
+  int fixed_to = -1;
+};
+
+struct PlacedPair {
+  std::string name;  ///< "outer_top_1", "segment_0.right-left"
+  SourceRef at;
+  int instance = -1;  ///< -1: joins several.
+  std::vector<int> nodes;
+  Tags tags;
+  std::vector<RouteText> route = {};  ///< Empty, or one a node.
+};
+
+/// What a builder could match if there were copies enough: the tags of one node or pair of the
+/// file, and whether first, middle, last and a number come on top.
+struct TagsInFile {
+  Tags tags;
+  bool copied = false;
+};
+
+struct Assembly {
+  std::vector<Instance> instances;
+  std::vector<PlacedNode> nodes;
+  std::vector<PlacedPair> pairs;
+  std::vector<TagsInFile> node_tags, pair_tags;
+  bool complete = true;  ///< False: some nodes or pairs of the file are missing.
+};
+
+/// Complains about names that do not exist or exist twice, and about models that are too large.
+Assembly Assemble(const ModelText& model, Diagnostics& out);
+
+}  // namespace taut::description

@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "base/fixed.h"
+#include "base/union_find.h"
+#include "description/model/build.h"
+#include "description/model/cable_shape.h"
+#include "description/model/members.h"
+#include "description/yaml/once.h"
+#include "math/angle.h"
+#include "math/vec.h"
+#include "taut/statics.h"
+
+namespace taut::description {
+namespace {
+
+std::string Number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+class CableMaker {
+ public:
+  CableMaker(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
+             const BodyOfNode& body_of_node, RobotSpec& robot, Diagnostics& out)
+      : model_(model),
+        assembly_(assembly),
+        assignment_(assignment),
+        body_of_node_(body_of_node),
+        robot_(robot),
+        once_(out) {}
+
+  void Run() {
+    for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
+      const int b = assignment_.of_pair[pair];
+      if (b < 0) continue;
+      const std::optional<CableText>& cable = model_.builders[b].cable;
+      if (cable) Make(assembly_.pairs[pair], *cable);
+    }
+  }
+
+ private:
+  void Make(const PlacedPair& pair, const CableText& builder) {
+    CableDef cable = builder;
+    cable.name = pair.name;
+    if (!builder.own_damping_law) cable.damping_law = model_.damping_law;
+    ShapeCable({model_, assembly_, assignment_, &body_of_node_}, pair, builder, cable, once_);
+    if (cable.touches == CableTouches::kRods || cable.touches == CableTouches::kAll) {
+      CheckEnds(pair, cable);
+    }
+    if (cable.touches != CableTouches::kNone && cable.attachments.size() > 2) {
+      once_(pair.at,
+            "the cable \"" + pair.name +
+                "\" touches what it comes to, and runs over more than two " + "nodes",
+            "cables that touch run from node to node; leave `touches` away or cut it in two");
+    }
+    CheckMotor(pair, cable);
+    if (CheckPath(pair, builder, cable)) SetRestLength(pair, builder, cable);
+    robot_.def.cables.push_back(std::move(cable));
+    robot_.cable_tags.push_back(pair.tags);
+    robot_.cable_sources.push_back(pair.at);
+  }
+
+  /// Spans with tensions of their own are wound at an end by what has no dynamics of its own.
+  void CheckMotor(const PlacedPair& pair, const CableDef& cable) {
+    if (cable.actuator.kind != ActuatorDef::Kind::kDcMotor) return;
+    for (const RouteText& element : pair.route) {
+      if (element.friction == 0) continue;
+      once_(element.at,
+            "the cable \"" + pair.name +
+                "\" has friction there: a direct-current motor does not wind such a cable",
+            "ideal and limited actuators do");
+    }
+  }
+
+  /// A cable that rods stop does not begin inside of one of another body.
+  void CheckEnds(const PlacedPair& pair, const CableDef& cable) {
+    for (const CapsuleDef& rod : robot_.def.capsules) {
+      const Vec3 along = rod.to_m - rod.from_m;
+      for (const AttachmentDef& at : cable.attachments) {
+        if (!rod.collides || at.body == rod.body) continue;
+        const double share = Dot(at.position_m - rod.from_m, along) / Dot(along, along);
+        const Vec3 off = at.position_m - rod.from_m - std::clamp(share, 0.0, 1.0) * along;
+        const double inside_m = rod.radius_m - std::sqrt(Dot(off, off));
+        if (!(inside_m > 0)) continue;
+        once_(pair.at,
+              "the cable \"" + pair.name + "\" touches rods and ends " + Number(1000 * inside_m) +
+                  " mm inside the rod \"" + rod.name + "\" of another body",
+              "move one of them");
+      }
+    }
+  }
+
+  /// False if there is no sensible length.
+  bool CheckPath(const PlacedPair& pair, const CableText&, const CableDef& cable) {
+    for (std::size_t i = 1; i < pair.nodes.size(); ++i) {
+      const PlacedNode &from = assembly_.nodes[pair.nodes[i - 1]],
+                       &to = assembly_.nodes[pair.nodes[i]];
+      const Vec3 leg = to.position_m - from.position_m;
+      const double length = std::sqrt(Dot(leg, leg));
+      if (std::isnan(length)) return false;
+      if (length >= kShortestLeg_m) continue;
+      once_(pair.at,
+            "the cable \"" + pair.name + "\" has no length between \"" + from.name + "\" and \"" +
+                to.name + "\"",
+            "these nodes are in one place");
+      return false;
+    }
+    if (std::isnan(CableLength(cable))) return false;
+    bool one_body = true;
+    for (const AttachmentDef& at : cable.attachments) {
+      one_body = one_body && at.body == cable.attachments[0].body;
+    }
+    if (one_body && model_.builders_complete && assembly_.complete) {
+      const int body = cable.attachments[0].body;
+      once_(
+          pair.at,
+          "the cable \"" + pair.name + "\" ends twice on " +
+              (body == kWorld ? "the world" : "the body \"" + robot_.def.bodies[body].name + "\""),
+          "it would do nothing");
+    }
+    return true;
+  }
+
+  /// By the turns that its route gives it: no way of its bodies makes it shorter.
+  static double WoundLength(const PlacedPair& pair) {
+    double wound = 0.0;
+    for (const RouteText& element : pair.route) {
+      if (!element.is_pulley() && !element.is_drum()) continue;
+      wound += 2 * kPi * element.radius_m * element.turns;
+    }
+    return wound;
+  }
+
+  void SetRestLength(const PlacedPair& pair, const CableText& builder, CableDef& cable) {
+    const double length = CableLength(cable);
+    const Elastic elastic = ElasticOf(builder, length);
+    cable.rest_length_m = elastic.rest_length_m;
+    cable.stiffness_n_per_m = elastic.stiffness_n_per_m;
+    cable.member.mass_kg = elastic.mass_kg;
+    if (builder.prestress_n && cable.rest_length_m <= 0.0) {
+      once_(builder.rest_at,
+            "cable.prestress_n: " + Number(*builder.prestress_n) + " N would stretch the cable \"" +
+                pair.name + "\" to more than its length of " + Number(length) + " m",
+            "at " + Number(builder.stiffness_n_per_m) + " N/m at most " +
+                Number(builder.stiffness_n_per_m * length) + " N");
+    }
+    const double wound = WoundLength(pair);
+    if (cable.rest_length_m > 0.0 && cable.rest_length_m < wound) {
+      once_(builder.rest_at,
+            "the cable \"" + pair.name + "\" starts with a rest length of " +
+                Number(cable.rest_length_m) + " m, below the " + Number(wound) +
+                " m that are wound round its pulleys and drums",
+            "with all that is between them it is " + Number(length) + " m long");
+    }
+    if (cable.rest_length_m > 0.0 && cable.rest_length_m < cable.actuator.min_rest_length_m) {
+      once_(builder.rest_at, "the cable \"" + pair.name + "\" starts with a rest length of " +
+                                 Number(cable.rest_length_m) +
+                                 " m, below its min_rest_length_m of " +
+                                 Number(cable.actuator.min_rest_length_m) + " m");
+    }
+  }
+
+  const ModelText& model_;
+  const Assembly& assembly_;
+  const Assignment& assignment_;
+  const BodyOfNode& body_of_node_;
+  RobotSpec& robot_;
+  OncePerPlace once_;
+};
+
+}  // namespace
+
+void BuildCables(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
+                 const BodyOfNode& body_of_node, RobotSpec& robot, Diagnostics& out) {
+  CableMaker(model, assembly, assignment, body_of_node, robot, out).Run();
+}
+
+void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
+  const std::vector<BodyDef>& bodies = robot.def.bodies;
+  const int world = static_cast<int>(bodies.size());  // and all that is fixed in it
+  base::UnionFind sets(bodies.size() + 1);
+  const auto index = [&](int body) { return base::IsFixed(robot.def, body) ? world : body; };
+  for (const CableDef& cable : robot.def.cables) {
+    for (const AttachmentDef& at : cable.attachments) {
+      sets.Join(index(cable.attachments[0].body), index(at.body));
+    }
+  }
+  for (const JointDef& joint : robot.def.joints) {
+    sets.Join(index(joint.body_a), index(joint.body_b));
+  }
+  // The first body's set is the robot. The world alone is no set of bodies.
+  int robot_set = -1;
+  std::set<int> reported;
+  for (int body = 0; body < world; ++body) {
+    if (bodies[body].fixed) continue;
+    const int set = sets.Root(body);
+    if (robot_set < 0) robot_set = set;
+    if (set == robot_set || !reported.insert(set).second) continue;
+    out.Error(robot.body_sources[body],
+              "no cable or joint joins the body \"" + bodies[body].name + "\" to \"" +
+                  bodies[robot_set].name + "\"",
+              "if that is meant, write `allow_disconnected: true`");
+  }
+}
+
+}  // namespace taut::description

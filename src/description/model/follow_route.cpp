@@ -1,0 +1,152 @@
+#include "description/model/follow_route.h"
+
+#include <cmath>
+
+#include "description/yaml/reader.h"
+#include "math/described_path.h"
+#include "math/elementary.h"
+
+namespace taut::description {
+namespace {
+
+constexpr double kSameDirection = 1e-6;  ///< Across by that share: it is what a text can say.
+
+double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
+
+/// Where the cable ends on a drum about `center`, `wound_rad` behind where it arrives from `from`.
+Vec3 RimPoint(const Vec3& center, const WheelDef& wheel, const Vec3& from, double wound_rad) {
+  const Vec3 way = from - center;
+  const Vec3 along = Dot(way, wheel.axis) * wheel.axis, out = way - along;
+  const double distance = Length(out);
+  const double turn =
+      (wheel.counterclockwise ? 1 : -1) * (math::Acos(wheel.radius_m / distance) + wound_rad);
+  const Vec3 x = (1.0 / distance) * out, y = Cross(wheel.axis, x);
+  return center + along + wheel.radius_m * (math::Cos(turn) * x + math::Sin(turn) * y);
+}
+
+/// Whole turns, so that the angle at attachment `i` comes to `angle_rad` or nearly so.
+int TurnsFor(const CableDef& cable, std::size_t i, double angle_rad) {
+  const double least = std::fabs(math::StartAngle(cable, i));
+  return static_cast<int>(std::lround((angle_rad - least) / (2 * kPi)));
+}
+
+class RouteFollower {
+ public:
+  RouteFollower(const PlacedPair& pair, const Assembly& assembly, CableDef& cable,
+                OncePerPlace& complain)
+      : pair_(pair), assembly_(assembly), cable_(cable), complain_(complain) {}
+
+  void Run() {
+    int spans = 1;
+    bool good = true;
+    for (std::size_t i = 0; i < pair_.route.size(); ++i) {
+      spans += pair_.route[i].friction > 0;
+      good = Element(i) && good;
+    }
+    if (spans > CableDef::kMostSpans) {
+      complain_(pair_.at, "the cable \"" + pair_.name + "\" has friction at more than " +
+                              std::to_string(CableDef::kMostSpans - 1) + " places");
+    }
+    if (!good) return;
+    // The last one first: the others keep their numbers.
+    const std::size_t last = pair_.route.size() - 1;
+    if (pair_.route[last].is_drum()) EndOnDrum(last, last - 1, last + 1);
+    if (pair_.route[0].is_drum()) EndOnDrum(0, 1, 0);
+  }
+
+ private:
+  /// False if the cable cannot go round it.
+  bool Element(std::size_t i) {
+    const RouteText& element = pair_.route[i];
+    AttachmentDef& at = cable_.attachments[i];
+    at.friction = element.friction;
+    if (!element.is_pulley() && !element.is_drum()) return true;
+    WheelDef wheel;
+    wheel.axis = element.axis;
+    if (pair_.instance >= 0) {
+      wheel.axis = Rotate(assembly_.instances[pair_.instance].q_WPart, element.axis);
+    }
+    wheel.radius_m = element.radius_m;
+    wheel.counterclockwise = element.left;
+    if (element.is_pulley() && element.turns < 1e6) wheel.turns = static_cast<int>(element.turns);
+    bool good = std::isfinite(wheel.radius_m) && std::isfinite(wheel.axis.x) && wheel.radius_m > 0;
+    at.wheel = wheel;
+    if (!good) return false;
+    for (const std::size_t k : {i - 1, i + 1}) {
+      if (k >= pair_.route.size()) continue;
+      const Vec3 way = cable_.attachments[k].position_m - at.position_m;
+      const double beside = Length(Cross(wheel.axis, way));
+      if (beside > wheel.radius_m || std::isnan(beside)) continue;
+      const std::string name = assembly_.nodes[pair_.nodes[k]].name;
+      const std::string what = element.is_drum() ? "drum" : "pulley";
+      if (beside < 1e-9) {
+        complain_(element.at,
+                  "the node \"" + name + "\" is on the axis of the " + what + " of the cable \"" +
+                      pair_.name + "\"",
+                  "an axis across the cable is needed");
+      } else {
+        complain_(element.at,
+                  "the node \"" + name + "\" is inside the " + what + " of the cable \"" +
+                      pair_.name + "\"",
+                  "it is " + Shown(std::round(1e6 * beside) / 1e6) +
+                      " m from the axis; a smaller radius_m is needed");
+      }
+      good = false;
+    }
+    return good && HasASide(i);
+  }
+
+  /// Whether `left` and `right` mean something: seen along the axis, the cable comes from somewhere
+  /// and goes somewhere else. Where it is wound round by whole turns, these say enough.
+  bool HasASide(std::size_t i) {
+    const RouteText& element = pair_.route[i];
+    if (i == 0 || i + 1 == pair_.route.size() || element.turns > 0) return true;
+    for (const std::size_t k : {i - 1, i + 1}) {
+      // Where it leaves another wheel is not known yet.
+      if (pair_.route[k].is_pulley() || pair_.route[k].is_drum()) return true;
+    }
+    const Vec3 from = cable_.attachments[i - 1].position_m;
+    const Vec3 to = cable_.attachments[i + 1].position_m;
+    const double across = Length(Cross(cable_.attachments[i].wheel->axis, to - from));
+    if (!(across < kSameDirection * Length(to - from))) return true;
+    complain_(element.at,
+              "the axis of the pulley of the cable \"" + pair_.name +
+                  "\" is along the way from \"" + assembly_.nodes[pair_.nodes[i - 1]].name +
+                  "\" to \"" + assembly_.nodes[pair_.nodes[i + 1]].name +
+                  "\", so that the wheel is on neither side",
+              "an axis across the cable is needed, or whole `turns`");
+    return false;
+  }
+
+  /// `end`: where among the attachments the one on the rim goes.
+  void EndOnDrum(std::size_t drum, std::size_t next, std::size_t end) {
+    const AttachmentDef at = cable_.attachments[drum];
+    WheelDef wheel = *at.wheel;
+    // Seen from the other end a cable goes round the other way.
+    const Vec3 from = cable_.attachments[next].position_m;
+    const bool arrives = end > drum;
+    if (!arrives) wheel.counterclockwise = !wheel.counterclockwise;
+    const double wound = 2 * kPi * pair_.route[drum].turns;
+    const Vec3 rim = RimPoint(at.position_m, wheel, from, wound);
+    cable_.attachments.insert(cable_.attachments.begin() + static_cast<std::ptrdiff_t>(end),
+                              {at.body, rim});
+    const std::size_t here = arrives ? drum : drum + 1;
+    const Vec3 way = from - at.position_m;
+    const double straight = math::Acos(wheel.radius_m / Length(Cross(wheel.axis, way)));
+    cable_.attachments[here].wheel->turns = TurnsFor(cable_, here, straight + wound);
+  }
+
+  const PlacedPair& pair_;
+  const Assembly& assembly_;
+  CableDef& cable_;
+  OncePerPlace& complain_;
+};
+
+}  // namespace
+
+void FollowRoute(const PlacedPair& pair, const Assembly& assembly, CableDef& cable,
+                 OncePerPlace& complain) {
+  RouteFollower(pair, assembly, cable, complain).Run();
+}
+
+}  // namespace taut::description

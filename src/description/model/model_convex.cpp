@@ -1,0 +1,137 @@
+// Convex solids of a model, from a file or by their corners.
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/brief.h"
+#include "description/assets/mesh_file.h"
+#include "description/model/model_keys.h"
+#include "math/convex_hull.h"
+#include "math/vec.h"
+
+namespace taut::description {
+namespace {
+
+using base::Brief;
+
+/// A hull that encloses so many times what its object does is worth a word.
+constexpr double kMuchLarger = 1.05;
+constexpr std::size_t kMostParts = 256;
+
+void WarnOfHull(const SourceRef& at, const std::string& what, const ConvexText::Part& part,
+                const math::ConvexHull& hull, Diagnostics& out) {
+  if (static_cast<int>(hull.corners.size()) >= HullDef::kMostCorners && hull.left_out_m > 0.0) {
+    out.Warning(at,
+                what + " has " + std::to_string(part.corners_m.size()) +
+                    " corners: of those that " + std::to_string(HullDef::kMostCorners) +
+                    " do not hold, the farthest is " + Brief(hull.left_out_m) + " m outside",
+                "such places touch nothing; simplify it, or make several objects of it");
+  }
+  const double own = math::SixVolumes(part.corners_m, part.triangles);
+  const double held = math::SixVolumes(hull.corners, math::TrianglesOf(hull));
+  if (held > kMuchLarger * own) {
+    out.Warning(at,
+                what + " is not convex: its hull, which is what touches, has " + Brief(held / own) +
+                    " times its volume",
+                "several convex objects in the file are as many hulls");
+  }
+}
+
+math::ConvexHull HullOrComplaint(const SourceRef& at, const std::string& what,
+                                 const std::vector<Vec3>& corners_m, Diagnostics& out) {
+  math::ConvexHull hull = math::HullOf(corners_m, HullDef::kMostCorners);
+  if (hull.corners.empty()) {
+    out.Error(at, what + " has no volume", "corners that are not all in one plane, four at least");
+  } else if (hull.too_thin) {
+    out.Error(at,
+              what + " is so thin that its faces cannot be told apart: of the corners left out, " +
+                  "the farthest is " + Brief(hull.left_out_m) + " m outside",
+              "a thickness of 1e-5 times its width or more");
+    hull.corners.clear();
+  }
+  return hull;
+}
+
+/// Whether an object of a file became a part.
+bool AddObject(const MapReader& map, const std::string& path, const MeshFile& mesh,
+               std::size_t number, ConvexText& convex) {
+  Diagnostics& out = map.scope().out;
+  const std::string& name = mesh.parts[number].name;
+  std::string what = mesh.parts.size() == 1 ? "the mesh"
+                     : name.empty()         ? "object " + std::to_string(number)
+                                            : "the object \"" + name + '"';
+  const MeshFile object = PartOf(mesh, number);
+  Diagnostics faults;
+  const bool closed =
+      ReportFaults(object, true, path,
+                   {what, ": an open mesh has no volume; mass_kg gives its hull a mass"}, faults);
+  if (!closed && !convex.mass.mass_kg) {
+    for (const Diagnostic& fault : faults.items()) out.Error(fault.at, fault.what, fault.hint);
+    return false;
+  }
+  ConvexText::Part part{{}, object.corners, object.triangles};
+  for (Vec3& p : part.corners_m) p = convex.scale_m * p;
+  const SourceRef at = map.Find("file")->at;
+  what += " of " + path;
+  math::ConvexHull hull = HullOrComplaint(at, what, part.corners_m, out);
+  if (hull.corners.empty()) return false;
+  if (!closed) {
+    const Diagnostic& first = faults.items().front();
+    out.Warning(first.at, first.what + ": the mass of " + what + " is distributed as in its hull");
+    part.corners_m = hull.corners;
+    part.triangles = math::TrianglesOf(hull);
+  }
+  WarnOfHull(at, what, part, hull, out);
+  part.hull_m = std::move(hull.corners);
+  convex.parts.push_back(std::move(part));
+  return true;
+}
+
+void ReadParts(const MapReader& map, ConvexText& convex) {
+  const std::string path = PathBeside(convex.file.at.file, convex.file.text);
+  const auto mesh = ReadMeshFile(path, map.scope().out);
+  if (!mesh) return;
+  if (mesh->parts.size() > kMostParts) {
+    map.Error("file", path + " has " + std::to_string(mesh->parts.size()) + " objects, more than " +
+                          std::to_string(kMostParts));
+    return;
+  }
+  bool good = true;
+  for (std::size_t i = 0; i < mesh->parts.size(); ++i) {
+    good = AddObject(map, path, *mesh, i, convex) && good;
+  }
+  if (!good) convex.parts.clear();
+  convex.read_file = path;
+}
+
+}  // namespace
+
+void Check(const MapReader& map, ConvexText& convex) {
+  convex.material = ToMaterial(map, convex.surface);
+  if (map.Has("file")) {
+    if (!map.Require("scale_m") || convex.file.text.empty() || !std::isfinite(convex.scale_m)) {
+      return;
+    }
+    ReadParts(map, convex);
+    return;
+  }
+  if (map.Has("scale_m")) {
+    map.Error("scale_m", map.Path("scale_m") + " has no effect here", "it goes with a file");
+  }
+  if (!map.Has("corners_m")) return;
+  const SourceRef at = map.Find("corners_m")->at;
+  if (convex.corners_m.size() > HullDef::kMostCorners) {
+    map.scope().out.Error(at, map.Path("corners_m") + " are " +
+                                  std::to_string(convex.corners_m.size()) + ", more than " +
+                                  std::to_string(HullDef::kMostCorners));
+    return;
+  }
+  for (const Vec3& p : convex.corners_m) {
+    if (!std::isfinite(p.x + p.y + p.z)) return;  // complained about
+  }
+  const math::ConvexHull hull = HullOrComplaint(at, "the hull", convex.corners_m, map.scope().out);
+  if (hull.corners.empty()) return;
+  convex.parts.push_back({hull.corners, hull.corners, math::TrianglesOf(hull)});
+}
+
+}  // namespace taut::description

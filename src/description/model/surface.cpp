@@ -1,0 +1,46 @@
+#include "description/model/surface_keys.h"
+
+namespace taut::description {
+
+namespace {
+
+void CheckLaws(const MapReader& map, const Material& material, bool has_axis) {
+  if (material.stribeck && material.static_friction == material.kinetic_friction &&
+      material.stribeck->viscous_friction_s_per_m == 0.0) {
+    map.Error("stribeck", map.Path("stribeck") + " has no effect",
+              "static_friction above kinetic_friction, or viscous_friction_s_per_m");
+  }
+  if (!material.directions || has_axis) return;
+  const Vec3& axis = material.directions->axis;
+  if (axis.x == 0.0 && axis.y == 0.0 && axis.z == 0.0) {
+    map.Error("friction_directions", map.Path("friction_directions") + " needs an axis",
+              "only rods have one of their own: axis: [1, 0, 0]");
+  }
+}
+
+}  // namespace
+
+Material ToMaterial(const MapReader& map, const SurfaceText& surface, bool has_axis) {
+  Material material = surface.material;
+  if (map.Has("friction")) {
+    material.static_friction = material.kinetic_friction = surface.friction;
+    for (const char* other : {"static_friction", "kinetic_friction"}) {
+      if (map.Has(other)) {
+        map.Error(other, map.Path("friction") + " already says what " + other + " is",
+                  "friction alone, or static_friction and kinetic_friction");
+      }
+    }
+  } else if (surface.static_friction || surface.kinetic_friction) {
+    if (!map.Require("static_friction") || !map.Require("kinetic_friction")) return material;
+    material.static_friction = *surface.static_friction;
+    material.kinetic_friction = *surface.kinetic_friction;
+    if (material.static_friction < material.kinetic_friction) {
+      map.Error("static_friction", map.Path("static_friction") + " is below kinetic_friction",
+                "a contact that sticks holds at least as much as one that slides");
+    }
+  }
+  CheckLaws(map, material, has_axis);
+  return material;
+}
+
+}  // namespace taut::description

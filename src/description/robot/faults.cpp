@@ -1,0 +1,120 @@
+#include "taut/faults.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+
+#include "base/assert.h"
+#include "description/robot/fault_keys.h"
+#include "description/robot/robot_file.h"
+#include "description/yaml/read_keys.h"
+
+namespace taut {
+namespace description {
+namespace {
+
+/// The keys of a kind besides `at_s` and `for_s`.
+struct KindKeys {
+  FaultKind kind;
+  std::initializer_list<const char*> needed, allowed;
+  bool lasts = true;  ///< `for_s` makes sense.
+};
+const KindKeys kKindKeys[] = {
+    {FaultKind::kClockDrift, {"board", "drift_ppm"}, {}},
+    {FaultKind::kBoardLoss, {"board"}, {}},
+    {FaultKind::kBrownOut, {"board"}, {}},
+    {FaultKind::kFirmwareHang, {"board"}, {}, false},
+    {FaultKind::kBusNoise, {"flips_per_bit"}, {}},
+    {FaultKind::kBusError, {}, {}, false},
+    {FaultKind::kBusStuck, {"line"}, {}},
+    {FaultKind::kCutCable, {"cable"}, {}, false},
+    {FaultKind::kStuckLoadCell, {"cable"}, {"force_n"}},
+    {FaultKind::kStuckEncoder, {"cable"}, {}},
+    {FaultKind::kDriverFault, {"board"}, {}},
+    {FaultKind::kMotorSupplyLoss, {}, {}},
+    {FaultKind::kUsbLoss, {}, {}},
+    {FaultKind::kHostKilled, {}, {}},
+};
+
+bool Contains(std::initializer_list<const char*> keys, std::string_view key) {
+  return std::any_of(keys.begin(), keys.end(), [&](const char* one) { return key == one; });
+}
+
+std::string KindsWith(const char* key) {
+  std::string out;
+  for (const KindKeys& one : kKindKeys) {
+    const bool has = std::string_view(key) == "for_s"
+                         ? one.lasts
+                         : Contains(one.needed, key) || Contains(one.allowed, key);
+    if (has) out += (out.empty() ? "" : ", ") + std::string(FaultName(one.kind));
+  }
+  return out;
+}
+
+FaultScript ReadScript(const Value& root, const std::vector<std::string>& cables,
+                       const Scope& scope) {
+  FaultFileText text;
+  ReadMapping(root, "", scope, text);
+  FaultScript script{text.name, text.description, {}, {}};
+  for (FaultText& fault : text.faults) {
+    if (!fault.cable.text.empty()) fault.spec.cable = FindActuatedCable(fault.cable, cables, scope);
+    const int boards = static_cast<int>(cables.size() + 1) / 2;
+    if (fault.board && *fault.board >= boards) {
+      scope.out.Error(fault.board_at, "there is no board " + std::to_string(*fault.board),
+                      "the robot has " + std::to_string(cables.size()) +
+                          " motors, two a board; the first board is 0");
+    }
+    fault.spec.board = fault.board.value_or(-1);
+    script.faults.push_back(fault.spec);
+  }
+  return script;
+}
+
+}  // namespace
+
+void Check(const MapReader& map, FaultText& fault) {
+  if (map.Has("board")) fault.board_at = map.Find("board")->at;
+  const Value* kind = map.Find("kind");
+  // After a complaint about the kind nobody knows which keys were meant.
+  if (!kind || kind->text != FaultName(fault.spec.kind)) return;
+  const auto* keys = std::find_if(std::begin(kKindKeys), std::end(kKindKeys),
+                                  [&](const KindKeys& one) { return one.kind == fault.spec.kind; });
+  TAUT_ASSERT(keys != std::end(kKindKeys));
+  for (const char* key : keys->needed) {
+    if (!map.Has(key)) {
+      map.scope().out.Error(map.at(), map.what() + " needs the key \"" + key + "\"",
+                            std::string("of kind: ") + FaultName(keys->kind));
+    }
+  }
+  for (const char* key : {"board", "cable", "drift_ppm", "flips_per_bit", "line", "force_n"}) {
+    if (map.Has(key) && !Contains(keys->needed, key) && !Contains(keys->allowed, key)) {
+      map.Error(key, map.Path(key) + " has no effect here",
+                "it belongs to kind: " + KindsWith(key));
+    }
+  }
+  if (map.Has("for_s") && !keys->lasts) {
+    map.Error("for_s", map.Path("for_s") + " has no effect here",
+              std::string(FaultName(keys->kind)) + " happens once");
+  }
+}
+
+}  // namespace description
+
+const char* FaultName(FaultKind kind) {
+  for (const auto& [name, one] : description::kFaultKinds) {
+    if (one == kind) return name.c_str();
+  }
+  return "";
+}
+
+std::optional<FaultScript> LoadFaults(const std::string& path,
+                                      const std::vector<std::string>& cables, Diagnostics& out) {
+  return description::LoadRobotFile(
+      path, "faults", out, [&](const description::Value& root, const description::Scope& scope) {
+        return description::ReadScript(root, cables, scope);
+      });
+}
+
+}  // namespace taut

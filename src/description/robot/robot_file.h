@@ -1,0 +1,43 @@
+/// Files about a robot that another file describes: fault scripts, calibrations.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "description/yaml/keys.h"
+#include "description/yaml/merged_file.h"
+#include "description/yaml/parameters.h"
+
+namespace taut::description {
+
+/// Index of the cable; -1 after a complaint.
+inline int FindActuatedCable(const Placed& name, const std::vector<std::string>& cables,
+                             const Scope& scope) {
+  const auto found = std::find(cables.begin(), cables.end(), name.text);
+  if (found != cables.end()) return static_cast<int>(found - cables.begin());
+  scope.out.Error(name.at, "there is no actuated cable \"" + name.text + "\"",
+                  NameHint(name.text, cables));
+  return -1;
+}
+
+/// What `read(root, scope)` makes of a file of this kind, with the names of its files; nothing
+/// after a complaint.
+template <class Read>
+auto LoadRobotFile(const std::string& path, const char* kind, Diagnostics& out, Read&& read)
+    -> std::optional<decltype(read(std::declval<const Value&>(), std::declval<const Scope&>()))> {
+  const std::size_t errors_before = out.items().size();
+  MergedFile file = ReadMergedFile(path, kind, out);
+  if (!file.root) return std::nullopt;
+  const NameTable names = ResolveParameters(file.parameters, out);
+  NameSet used;
+  auto made = read(*file.root, Scope{names, out, &used});
+  if (out.items().size() != errors_before) return std::nullopt;
+  WarnOfUnused(file.parameters, std::move(used), file.files, out);
+  made.files = std::move(file.files);
+  return made;
+}
+
+}  // namespace taut::description

@@ -1,0 +1,62 @@
+// Which measured forces carry which load.
+#include <algorithm>
+#include <cmath>
+
+#include "base/pattern.h"
+#include "description/study/fit_parts.h"
+#include "math/vec.h"
+
+namespace taut::description {
+namespace {
+
+/// Patterns that no body of an experiment fits.
+void CheckBodies(const FitCarriedText& text, const FitExperiment& one, const Scope& scope) {
+  std::vector<std::string> names;
+  for (const BodyDef& body : one.experiment.robot.def.bodies) names.push_back(body.name);
+  for (const Placed& pattern : text.bodies) {
+    const auto fits = [&](const std::string& name) { return base::Fits(pattern.text, name); };
+    if (std::any_of(names.begin(), names.end(), fits)) continue;
+    scope.out.Error(pattern.at,
+                    "carried.bodies: " + one.name + " has no body \"" + pattern.text + "\"",
+                    NameHint(pattern.text, names));
+  }
+}
+
+}  // namespace
+
+std::vector<FitCarried> ToCarried(const std::vector<FitCarriedText>& texts,
+                                  const std::vector<FitExperiment>& experiments,
+                                  const std::vector<bool>& known, const Scope& scope) {
+  std::vector<FitCarried> out;
+  for (const FitCarriedText& text : texts) {
+    FitCarried& carried = out.emplace_back();
+    carried.name = text.name;
+    carried.at = text.at;
+    for (const Placed& body : text.bodies) carried.bodies.push_back(body.text);
+    const double length = std::sqrt(Dot(text.direction, text.direction));
+    if (length > 0 && std::isfinite(length)) {
+      carried.direction = (1 / length) * text.direction;
+    } else {
+      scope.out.Error(text.at, "carried.direction has no length");
+    }
+    for (const std::size_t e : NamedExperiments(text.experiments, "carried", experiments, scope)) {
+      const FitExperiment& one = experiments[e];
+      if (one.forward == FitForward::kDynamic) {
+        if (!text.experiments.empty()) {
+          scope.out.Error(text.at, "carried: " + one.name + " moves, and so does what it carries",
+                          "forward: static or load_cases");
+        }
+        continue;
+      }
+      carried.experiments.push_back(e);
+      if (known[e]) CheckBodies(text, one, scope);
+    }
+    if (carried.experiments.empty() && text.experiments.empty() && !experiments.empty()) {
+      scope.out.Error(text.at, "carried: no experiment is at rest",
+                      "forward: static or load_cases");
+    }
+  }
+  return out;
+}
+
+}  // namespace taut::description

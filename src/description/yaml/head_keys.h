@@ -1,0 +1,52 @@
+/// What stands at the top of every file.
+#pragma once
+
+#include <string>
+
+#include "description/yaml/keys.h"
+
+namespace taut::description {
+
+struct VersionForm {
+  static constexpr const char* kSchema = R"("const": 1)";
+};
+struct FileForm {
+  static constexpr const char* kSchema = R"("type": "string")";
+};
+/// Names of parameters, each with a number.
+struct ParametersForm {
+  static constexpr const char* kSchema =
+      R"("type": "object", "additionalProperties": {"$ref": "#/$defs/number"}, )"
+      R"("propertyNames": {"$ref": "#/$defs/identifier"})";
+};
+
+/// What `ReadMergedFile` has read before the rest. `Kind::kSchema` is the file's own.
+template <class Kind>
+struct Head {
+  Raw<VersionForm> taut;
+  Raw<Kind> kind;
+  Raw<FileForm> base;
+  Raw<ParametersForm> parameters;
+};
+
+/// `name_is` ... are the meanings in this format; the examples are JSON.
+struct HeadTexts {
+  const char *name_is, *description_is, *base_is, *base_example, *parameters_are,
+      *parameters_example;
+};
+
+template <class Io, class Text>
+void HeadKeys(Io& io, Text& t, const HeadTexts& texts) {
+  if constexpr (!Io::kResolved) {
+    io("taut", t.head.taut, "Version of the format.");
+    io("kind", t.head.kind, "What the file describes.");
+  }
+  io("name", t.name, kNeeded, kName, texts.name_is);
+  io("description", t.description, texts.description_is);
+  if constexpr (!Io::kResolved) {
+    io("base", t.head.base, texts.base_is, Example{texts.base_example});
+    io("parameters", t.head.parameters, texts.parameters_are, Example{texts.parameters_example});
+  }
+}
+
+}  // namespace taut::description

@@ -1,0 +1,321 @@
+#include "description/yaml/reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "base/number_text.h"
+#include "description/yaml/kinds.h"
+
+namespace taut::description {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+std::string Joined(const std::vector<std::string>& words, std::string_view between) {
+  std::string out;
+  for (const std::string& word : words) (out += out.empty() ? "" : between) += word;
+  return out;
+}
+
+/// How a number is out of its range: " must be positive". Empty if it is not, or NaN.
+std::string Beyond(double number, const Bound& bound) {
+  const bool low = number < bound.least || (bound.above_least && number == bound.least);
+  const bool high = number > bound.most || (bound.below_most && number == bound.most);
+  if (!low && !high) return {};
+  const std::string least = bound.least_text ? bound.least_text : Shown(bound.least);
+  const std::string most = bound.most_text ? bound.most_text : Shown(bound.most);
+  const bool positive = bound.least > 0.0 || (bound.least == 0.0 && bound.above_least);
+  if (positive && number <= 0.0) return " must be positive";
+  const bool closed = !bound.above_least && !bound.below_most;
+  if (closed && std::isfinite(bound.least) && std::isfinite(bound.most)) {
+    return " must be within " + least + ".." + most;
+  }
+  if (low && bound.least == 0.0) return " must not be negative";
+  if (low) return (bound.above_least ? " must be above " : " must not be below ") + least;
+  return (bound.below_most ? " must be below " : " must not be above ") + most;
+}
+
+}  // namespace
+
+std::string Shown(double number) {
+  char buffer[32];
+  const auto [end, status] = base::ToChars(buffer, buffer + sizeof buffer, number);
+  return status == std::errc() ? std::string(buffer, end) : "?";
+}
+
+void WrongType(const Value& value, std::string_view what, std::string_view wanted,
+               const Scope& scope) {
+  scope.out.Error(value.at, std::string(what) + " must be " + std::string(wanted) + ", got " +
+                                std::string(KindName(value)));
+}
+
+std::string KeyHint(std::string_view key, const std::vector<std::string>& known) {
+  std::vector<std::string> longer;
+  for (const std::string& candidate : known) {
+    if (candidate.size() > key.size() && candidate.compare(0, key.size(), key) == 0 &&
+        candidate[key.size()] == '_') {
+      longer.push_back("\"" + candidate + "\"");
+    }
+  }
+  if (longer.empty()) return NameHint(key, known);
+  return "did you mean " + Joined(longer, " or ") + "?";
+}
+
+std::string NameHint(std::string_view name, const std::vector<std::string>& known) {
+  return known.size() <= 300 && name.size() <= 60 ? DidYouMean(name, known) : std::string();
+}
+
+double ReadNumber(const Value& value, std::string_view what, const Bound& bound,
+                  const Scope& scope) {
+  if (value.kind != Value::Kind::kScalar) {
+    WrongType(value, what, "a number", scope);
+    return kMissing;
+  }
+  std::string text = value.text;
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (text == ".nan" || text == "nan" || text == ".inf" || text == "inf" || text == "-.inf" ||
+      text == "-inf") {
+    scope.out.Error(value.at, std::string(what) + " must be a finite number, got " + value.text);
+    return kMissing;
+  }
+  if (scope.used) {
+    for (std::string& name : NamesIn(value.text)) scope.used->insert(std::move(name));
+  }
+  Evaluated result = Evaluate(value.text, scope.names);
+  if (!result.error.empty()) {
+    scope.out.Error(value.at, std::string(what) + ": " + result.error, std::move(result.hint));
+    return kMissing;
+  }
+  const double number = result.value;
+  const std::string wrong = Beyond(number, bound);
+  if (wrong.empty()) return number;
+  const bool too_much = number >= bound.most;
+  scope.out.Error(value.at, std::string(what) + wrong + ", got " + Shown(number),
+                  too_much ? bound.hint : "");
+  return kMissing;
+}
+
+std::optional<int> ReadInteger(const Value& value, std::string_view what, int least, int most,
+                               const Scope& scope) {
+  const double number = ReadNumber(value, what, Bound::kAny, scope);
+  if (std::isnan(number)) return std::nullopt;
+  if (number != std::floor(number) || number < least || number > most) {
+    scope.out.Error(value.at, std::string(what) + " must be a whole number within " +
+                                  std::to_string(least) + ".." + std::to_string(most) + ", got " +
+                                  Shown(number));
+    return std::nullopt;
+  }
+  return static_cast<int>(number);
+}
+
+std::optional<bool> ReadBool(const Value& value, std::string_view what, const Scope& scope) {
+  if (value.kind == Value::Kind::kScalar && !value.quoted) {
+    if (value.text == "true") return true;
+    if (value.text == "false") return false;
+    scope.out.Error(value.at,
+                    std::string(what) + " must be true or false, got \"" + value.text + "\"");
+    return std::nullopt;
+  }
+  WrongType(value, what, "true or false", scope);
+  return std::nullopt;
+}
+
+std::optional<std::vector<double>> ReadNumbers(const Value& value, std::string_view what,
+                                               std::size_t count, const Scope& scope) {
+  if (value.kind != Value::Kind::kSequence) {
+    WrongType(value, what, "a list of " + std::to_string(count) + " numbers", scope);
+    return std::nullopt;
+  }
+  if (value.items.size() != count) {
+    scope.out.Error(value.at, std::string(what) + " must have " + std::to_string(count) +
+                                  " numbers, got " + std::to_string(value.items.size()));
+    return std::nullopt;
+  }
+  std::vector<double> numbers;
+  for (const ValuePtr& item : value.items) {
+    numbers.push_back(ReadNumber(*item, what, Bound::kAny, scope));
+  }
+  if (std::any_of(numbers.begin(), numbers.end(), [](double x) { return std::isnan(x); })) {
+    return std::nullopt;
+  }
+  return numbers;
+}
+
+Vec3 ReadVec3(const Value& value, std::string_view what, const Scope& scope) {
+  const auto numbers = ReadNumbers(value, what, 3, scope);
+  return numbers ? Vec3{(*numbers)[0], (*numbers)[1], (*numbers)[2]}
+                 : Vec3{kMissing, kMissing, kMissing};
+}
+
+Vec3 ReadDirection(const Value& value, std::string_view what, const Scope& scope) {
+  const Vec3 v = ReadVec3(value, what, scope);
+  // Scaled first, so that neither 1e200 nor 1e-200 is lost in its square.
+  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  if (largest == 0.0) {
+    scope.out.Error(value.at, std::string(what) + " must not be zero", "it is a direction");
+    return {kMissing, kMissing, kMissing};
+  }
+  // Of length 1 up to rounding: as taut writes it, to be read to the bit.
+  if (std::fabs(v.x * v.x + v.y * v.y + v.z * v.z - 1.0) < 1e-15) return v;
+  const Vec3 s{v.x / largest, v.y / largest, v.z / largest};
+  const double length = std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z);
+  return {s.x / length, s.y / length, s.z / length};
+}
+
+std::string ReadText(const Value& value, std::string_view what, const Scope& scope) {
+  if (value.kind == Value::Kind::kScalar) return value.text;
+  WrongType(value, what, "a text", scope);
+  return {};
+}
+
+MapReader::MapReader(const Value& value, std::string what, const Scope& scope)
+    : value_(value), what_(std::move(what)), scope_(scope) {}
+
+void MapReader::Know(std::string_view key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
+}
+
+void MapReader::RefuseOthers() const {
+  if (!is_map()) {
+    WrongType(value_, what_.empty() ? "the file" : what_, "a map", scope_);
+    return;
+  }
+  for (const Entry& entry : value_.entries) {
+    if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
+    scope_.out.Error(entry.key_at,
+                     "unknown key \"" + entry.key + "\"" + (what_.empty() ? "" : " in " + what_),
+                     KeyHint(entry.key, known_));
+  }
+}
+
+std::string MapReader::Path(std::string_view key) const {
+  return what_.empty() ? std::string(key) : what_ + "." + std::string(key);
+}
+
+const Value* MapReader::Find(std::string_view key) const { return value_.Find(key); }
+
+bool MapReader::HasAnyBut(std::string_view key) const {
+  return std::any_of(known_.begin(), known_.end(),
+                     [&](const std::string& known) { return known != key && Has(known); });
+}
+
+const Value* MapReader::Require(std::string_view key) const {
+  const Value* found = Find(key);
+  if (!found && is_map()) {
+    scope_.out.Error(
+        at(), (what_.empty() ? "the file" : what_) + " needs the key \"" + std::string(key) + "\"");
+  }
+  return found;
+}
+
+SourceRef MapReader::KeyAt(std::string_view key) const { return description::KeyAt(value_, key); }
+
+void MapReader::Error(std::string_view key, std::string what, std::string hint) const {
+  scope_.out.Error(KeyAt(key), std::move(what), std::move(hint));
+}
+
+std::string MapReader::ExactlyOne(const std::vector<std::string>& keys) const {
+  if (!is_map()) return {};
+  std::vector<std::string> present;
+  for (const std::string& key : keys) {
+    if (Has(key)) present.push_back(key);
+  }
+  if (present.size() == 1) return present[0];
+  const std::string what = what_.empty() ? "the file" : what_;
+  if (present.empty()) {
+    scope_.out.Error(at(),
+                     what + " needs " + (keys.size() == 1 ? "" : "one of ") + Joined(keys, ", "));
+  } else {
+    Error(present[1], what + " has both " + Joined(present, " and "),
+          "only one of them may be there");
+  }
+  return {};
+}
+
+double MapReader::Number(std::string_view key, const Bound& bound) const {
+  const Value* found = Require(key);
+  return found ? ReadNumber(*found, Path(key), bound, scope_) : kMissing;
+}
+
+double MapReader::NumberOr(std::string_view key, double fallback, const Bound& bound) const {
+  const Value* found = Find(key);
+  return found ? ReadNumber(*found, Path(key), bound, scope_) : fallback;
+}
+
+SourceRef KeyAt(const Value& map, std::string_view key) {
+  for (const Entry& entry : map.entries) {
+    if (entry.key == key) return entry.key_at;
+  }
+  return map.at;
+}
+
+std::optional<std::string> FindFile(const Value* value, const std::string& what,
+                                    const Scope& scope) {
+  if (!value) return std::nullopt;
+  const std::string text = ReadText(*value, what, scope);
+  if (value->kind != Value::Kind::kScalar) return std::nullopt;
+  const std::string path = PathBeside(value->at.file, text);
+  std::error_code ignored;
+  if (!text.empty() && std::filesystem::is_regular_file(path, ignored)) return path;
+  scope.out.Unreadable(value->at, what + ": there is no file \"" + path + "\"",
+                       "as seen from the folder of the file that names it");
+  return std::nullopt;
+}
+
+const std::vector<ValuePtr>& Items(const Value* value, std::string_view what, const Scope& scope) {
+  static const std::vector<ValuePtr> kNone;
+  if (!value) return kNone;
+  if (value->kind != Value::Kind::kSequence) {
+    WrongType(*value, what, "a list", scope);
+    return kNone;
+  }
+  return value->items;
+}
+
+const std::vector<Entry>& Entries(const Value* value, std::string_view what, const Scope& scope) {
+  static const std::vector<Entry> kNone;
+  if (!value) return kNone;
+  if (value->kind != Value::Kind::kMap) {
+    WrongType(*value, what, "a map", scope);
+    return kNone;
+  }
+  return value->entries;
+}
+
+bool CheckHeader(const Value& root, std::string_view kind, Diagnostics& out) {
+  if (root.kind != Value::Kind::kMap) {
+    out.Error(root.at, "the file must be a map, got " + std::string(KindName(root)),
+              "it starts with `taut: 1` and `kind: " + std::string(kind) + "`");
+    return false;
+  }
+  bool good = true;
+  const auto check = [&](const char* key, std::string_view wanted, const std::string& hint) {
+    const Value* found = root.Find(key);
+    if (!found) {
+      out.Error(root.at, std::string("the file needs the key \"") + key + "\"",
+                "write `" + std::string(key) + ": " + std::string(wanted) + "`");
+    } else if (found->kind != Value::Kind::kScalar || found->text != wanted) {
+      const std::string got =
+          found->kind == Value::Kind::kScalar ? found->text : std::string(KindName(*found));
+      out.Error(found->at, std::string(key) + " must be " + std::string(wanted) + ", got " + got,
+                hint);
+    } else {
+      return;
+    }
+    good = false;
+  };
+  check("taut", "1", "the version of the format; this taut reads version 1");
+  const Value* const found = root.Find("kind");
+  check("kind", kind, HintOfKind(found ? found->text : ""));
+  return good;
+}
+
+std::string PathBeside(const std::string& file, const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  return (folder / path).lexically_normal().string();
+}
+
+}  // namespace taut::description

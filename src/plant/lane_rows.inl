@@ -1,0 +1,27 @@
+/// Rows of numbers, one per lane, as registers; pieces of a block of memory.
+#pragma once
+
+#include "simd/wide.h"
+
+namespace taut::plant {
+
+template <class W>
+TAUT_INLINE W Load(const double* row, int i) noexcept {
+  W x;
+  __builtin_memcpy(&x, row + i * W::kLanes, sizeof(double) * W::kLanes);
+  return x;
+}
+template <class W>
+TAUT_INLINE void Store(double* row, int i, W x) noexcept {
+  __builtin_memcpy(row + i * W::kLanes, &x, sizeof(double) * W::kLanes);
+}
+
+/// The next `count` of memory that the caller keeps.
+template <class T>
+T* Take(char*& end, int count) noexcept {
+  T* const first = reinterpret_cast<T*>(end);
+  end += sizeof(T) * static_cast<size_t>(count);
+  return first;
+}
+
+}  // namespace taut::plant

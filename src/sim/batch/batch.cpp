@@ -1,0 +1,331 @@
+#include "taut/batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "sim/batch/batch_impl.h"
+#include "sim/compile/model_check.h"
+#include "sim/compile/start_values.h"
+
+namespace taut {
+namespace {
+
+/// The kernel of this width; null if the build or the machine has none.
+const sim::Kernel* KernelOf(Simd simd) {
+  switch (simd) {
+#ifdef TAUT_HAS_AVX512
+    case Simd::kAvx512:
+      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                     __builtin_cpu_supports("avx512vl")
+                 ? &sim::kKernelAvx512
+                 : nullptr;
+#endif
+#ifdef TAUT_HAS_AVX2
+    case Simd::kAvx2:
+      return __builtin_cpu_supports("avx2") ? &sim::kKernelAvx2 : nullptr;
+#endif
+#ifdef TAUT_HAS_SSE2
+    case Simd::kSse2:
+      return &sim::kKernelSse2;
+#endif
+#ifdef TAUT_HAS_NEON
+    case Simd::kNeon:
+      return &sim::kKernelNeon;
+#endif
+#ifdef TAUT_HAS_SIMD128
+    case Simd::kSimd128:
+      return &sim::kKernelSimd128;
+#endif
+    case Simd::kScalar:
+      return &sim::kKernelScalar;
+    default:
+      return nullptr;
+  }
+}
+
+Simd WidestUpTo(Simd wish) {
+  for (Simd simd : {Simd::kAvx512, Simd::kAvx2, Simd::kSse2}) {
+    if (static_cast<int>(simd) <= static_cast<int>(wish) && KernelOf(simd)) return simd;
+  }
+  return Simd::kScalar;
+}
+
+#ifdef TAUT_HAS_SSE2
+constexpr bool kHasSse2 = true;
+#else
+constexpr bool kHasSse2 = false;
+#endif
+#ifdef TAUT_HAS_NEON
+constexpr bool kHasNeon = true;
+#else
+constexpr bool kHasNeon = false;
+#endif
+#ifdef TAUT_HAS_SIMD128
+constexpr bool kHasSimd128 = true;
+#else
+constexpr bool kHasSimd128 = false;
+#endif
+
+/// What TAUT_SIMD may say. Three of them are of one width, of which a build has one.
+constexpr struct {
+  std::string_view name;
+  Simd simd;
+  bool built;
+} kSimdNames[] = {{"scalar", Simd::kScalar, true}, {"sse2", Simd::kSse2, kHasSse2},
+                  {"neon", Simd::kNeon, kHasNeon}, {"simd128", Simd::kSimd128, kHasSimd128},
+                  {"avx2", Simd::kAvx2, true},     {"avx512", Simd::kAvx512, true}};
+
+std::string_view SimdWish() {
+  const char* const text = std::getenv("TAUT_SIMD");
+  return text == nullptr ? "" : text;
+}
+
+BatchOptions Sane(BatchOptions o) {
+  o.worlds = std::max(o.worlds, 1);
+  o.simd = o.simd ? WidestUpTo(*o.simd) : (o.worlds == 1 ? Simd::kScalar : BestSimd());
+  return o;
+}
+
+/// To rounding.
+bool SamePlace(const BodyState& a, const BodyState& b) {
+  constexpr double kTurn = 1e-12;
+  const Quat &p = a.orientation, &q = b.orientation;
+  const double same = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
+  const Vec3 &x = a.position_m, &y = b.position_m;
+  return x.x == y.x && x.y == y.y && x.z == y.z && std::fabs(same) > 1.0 - kTurn;
+}
+
+}  // namespace
+
+Simd BestSimd() {
+  for (const auto& [name, simd, built] : kSimdNames) {
+    if (SimdWish() == name) return WidestUpTo(simd);
+  }
+  return WidestUpTo(Simd::kAvx512);
+}
+
+bool sim::CheckEnvironment(Diagnostics& out) {
+  std::string known, here;
+  if (SimdWish().empty()) return true;
+  for (const auto& [name, simd, built] : kSimdNames) {
+    if (SimdWish() == name) return true;
+    known += (known.empty() ? "" : ", ") + std::string(name);
+    if (built && KernelOf(simd)) here += (here.empty() ? "" : ", ") + std::string(name);
+  }
+  out.Error({}, "the environment variable TAUT_SIMD is \"" + std::string(SimdWish()) + "\"",
+            "one of: " + known + "; this taut on this machine runs: " + here);
+  return false;
+}
+
+Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
+    : model(std::static_pointer_cast<const sim::Tables>(std::move(m))),
+      view(model->View()),
+      options(Sane(o)),
+      kernel(KernelOf(*options.simd)),
+      layout(model->MakeLayout()),
+      pool(options.threads) {
+  friction = {model->friction_sides.data(), static_cast<int>(model->shapes.size()),
+              model->shape_of_point.data(), model->def().friction_combine, options.friction.get()};
+  if (model->friction_by_slip || friction.law != nullptr) view.friction = &friction;
+  const int n = lanes();
+  const auto group_count = static_cast<std::size_t>((options.worlds + n - 1) / n);
+  const auto bodies = static_cast<std::size_t>(model->body_count);
+  const auto nodes = static_cast<std::size_t>(model->node_count);
+  const std::size_t group_rows =
+      static_cast<std::size_t>(layout.rows) * static_cast<std::size_t>(n);
+  const std::size_t stride = (group_rows + 7) / 8 * 8;
+  rows = AllocateAligned<double>(group_count * stride);
+  const std::size_t group_kept =
+      static_cast<std::size_t>(model->kept_count) * static_cast<std::size_t>(n);
+  kept = AllocateAligned<sim::NearParts>(group_count * group_kept);
+  slots_used.resize(group_count * bodies);
+  forced.resize(group_count * nodes);
+  status.resize(group_count * static_cast<std::size_t>(n));
+  groups.resize(group_count);
+  for (std::size_t g = 0; g < group_count; ++g) {
+    groups[g].lanes = n;
+    groups[g].first_world = static_cast<int>(g) * n;
+    groups[g].rows = rows.get() + g * stride;
+    groups[g].kept = kept.get() + g * group_kept;
+    groups[g].slots_used = slots_used.data() + g * bodies;
+    groups[g].forced_nodes = forced.data() + g * nodes;
+    groups[g].status = status.data() + g * static_cast<std::size_t>(n);
+  }
+  for (int i = 0; i < pool.threads(); ++i) {
+    scratch.push_back(AllocateAligned<char>(kernel->scratch_bytes(view)));
+  }
+  // The lanes behind the last world are worlds, too: no special cases, and no NaN.
+  for (int world = 0; world < static_cast<int>(group_count) * n; ++world) StartWorld(world);
+}
+
+void Batch::Impl::SetMass(int world, int body, double mass_kg) noexcept {
+  const sim::start_of::Masses m = sim::start_of::MassesOf(*model, body, mass_kg);
+  at(world, layout.mass + body) = m.mass;
+  at(world, layout.inv_mass + body) = m.inv_mass;
+  set(world, layout.inertia + 3 * body, m.inertia);
+  set(world, layout.inv_inertia + 3 * body, m.inv_inertia);
+}
+
+void Batch::Impl::StartWorld(int world) noexcept {
+#define TAUT_ROW(name, type, per, role, halted, start)                 \
+  for (int i = 0; i < view.Count(sim::Per::per); ++i) {                \
+    const sim::start_of::type first = sim::start_of::start(*model, i); \
+    set(world, layout.name + sim::kWidth##type * i, first);            \
+  }
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
+  JudgeStiffness(world);
+}
+
+void Batch::Impl::JudgeStiffness(int world) noexcept {
+  const ModelDef& def = model->def();
+  double lighter = 1, k_max = 0;
+  for (int b = 0; b < view.body_count; ++b) {
+    const BodyDef& body = def.bodies[static_cast<std::size_t>(b)];
+    if (!body.fixed) lighter = std::max(lighter, body.mass_kg / at(world, layout.mass + b));
+  }
+  for (int c = 0; c < view.cable_count; ++c) {
+    k_max = std::max(k_max, at(world, layout.stiffness + c));
+  }
+  // Two bounds of the same spectral radius: by columns, and of the whole.
+  for (int c = 0; c < view.cable_count; ++c) {
+    const double own = model->coupling[static_cast<std::size_t>(c)];
+    const double all = model->largest_coupling;
+    at(world, layout.stiff_k + c) =
+        lighter * std::min(own * at(world, layout.stiffness + c), all * k_max);
+  }
+}
+
+void Batch::Impl::Moved(int world) noexcept {
+  for (int i = 0; i < view.body_pair_count; ++i) at(world, layout.clearance + i) = 0.0;
+  for (int i = 0; i < view.touch_count; ++i) at(world, layout.touch_free + i) = 0.0;
+  ForgetMeans(world);
+}
+
+void Batch::Impl::ForgetMeans(int world) noexcept {
+  at(world, layout.mean_step) = 0.0;
+  group(world).sensed = false;
+}
+
+void Batch::Impl::Sense(int world) const noexcept {
+  sim::Group& g = group(world);
+  // Several threads may read at once: one senses, the others wait for it. Whoever comes later in
+  // the same step takes no lock.
+  // std::atomic_ref is not everywhere yet (the libc++ of emscripten 3.1.6).
+  if (__atomic_load_n(&g.sensed, __ATOMIC_ACQUIRE)) return;
+  const std::lock_guard lock(sensing);
+  if (__atomic_load_n(&g.sensed, __ATOMIC_RELAXED)) return;
+  kernel->sense(view, layout, g, scratch[0].get());
+  __atomic_store_n(&g.sensed, true, __ATOMIC_RELEASE);
+}
+
+void Batch::Impl::ForceNode(int world, int node) noexcept {
+  sim::Group& g = group(world);
+  int* const end = g.forced_nodes + g.forced_count;
+  int* const place = std::lower_bound(g.forced_nodes, end, node);
+  if (place != end && *place == node) return;
+  TAUT_ASSERT(g.forced_count < view.node_count);
+  std::copy_backward(place, end, end + 1);
+  *place = node;
+  ++g.forced_count;
+}
+
+Batch::Batch(std::shared_ptr<const Model> model, const BatchOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(model), options)) {}
+Batch::~Batch() = default;
+Batch::Batch(Batch&&) noexcept = default;
+Batch& Batch::operator=(Batch&&) noexcept = default;
+
+const Model& Batch::model() const noexcept { return *impl_->model; }
+int Batch::worlds() const noexcept { return impl_->options.worlds; }
+int Batch::lanes() const noexcept { return impl_->lanes(); }
+
+void Batch::Impl::Step(double step_s, int count, const double* targets_m) noexcept {
+  const sim::StepSettings settings{options.max_linear_solves, options.tolerance_m_per_s};
+  auto work = [&](int thread, std::size_t g) {
+    if (targets_m != nullptr) SetTargets(static_cast<int>(g), targets_m);
+    kernel->step(view, layout, groups[g], settings, scratch[static_cast<std::size_t>(thread)].get(),
+                 step_s, count);
+  };
+  pool.ForEach(groups.size(), work);
+}
+
+void Batch::Impl::SetTargets(int group_number, const double* targets_m) const noexcept {
+  const int cables = view.cable_count, first = group_number * lanes();
+  const int here = std::min(lanes(), options.worlds - first);
+  for (int c = 0; c < cables; ++c) {
+    for (int j = 0; j < here; ++j) {
+      at(first + j, layout.target + c) =
+          targets_m[static_cast<std::ptrdiff_t>(first + j) * cables + c];
+    }
+  }
+}
+
+void Batch::Step(double step_s, int count) noexcept { impl_->Step(step_s, count, nullptr); }
+
+void Batch::Step(double step_s, int count, std::span<const double> rest_length_targets_m) noexcept {
+  const auto worlds = static_cast<std::size_t>(impl_->options.worlds);
+  sim::CheckCount(__func__, "target for each cable of each world", rest_length_targets_m.size(),
+                  worlds * static_cast<std::size_t>(impl_->view.cable_count));
+  impl_->Step(step_s, count, rest_length_targets_m.data());
+}
+
+double Batch::Time(int world) const noexcept {
+  impl_->CheckWorld(__func__, world);
+  return impl_->at(world, impl_->layout.time);
+}
+
+double Batch::RestLengthTarget(int world, int cable) const noexcept {
+  impl_->CheckCable(__func__, world, cable);
+  return impl_->at(world, impl_->layout.target + cable);
+}
+Vec3 Batch::NodeForce(int world, int node) const noexcept {
+  impl_->CheckNode(__func__, world, node);
+  return impl_->vec(world, impl_->layout.node_force + 3 * node);
+}
+void Batch::SetNodeForce(int world, int node, const Vec3& force_n) noexcept {
+  impl_->CheckNode(__func__, world, node);
+  impl_->ForceNode(world, node);
+  impl_->set(world, impl_->layout.node_force + 3 * node, force_n);
+}
+
+void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
+  Impl& d = *impl_;
+  d.CheckBody(__func__, world, body);
+  if (d.view.HasMotion(body)) return;
+  const auto first = static_cast<std::size_t>(4 * body);
+  const double* q0 = d.model->q_WP0.data() + first;
+  const Quat q = state.orientation * Quat{q0[0], q0[1], q0[2], q0[3]};
+  if (d.view.touch_count > 0 && !SamePlace(Body(world, body), state)) d.ForgetBends(world);
+  d.set(world, d.layout.pos + 3 * body, state.position_m);
+  d.set(world, d.layout.vel + 3 * body, state.velocity_m_per_s);
+  d.set(world, d.layout.old_vel + 3 * body, state.velocity_m_per_s);
+  d.set(world, d.layout.old_spin + 3 * body, state.angular_velocity_rad_per_s);
+  d.set(world, d.layout.quat + 4 * body, q);
+  // Angular momentum in W: R diag(I) R^T w.
+  const Vec3 w = Rotate(Conjugate(q), state.angular_velocity_rad_per_s);
+  const Vec3 inertia = d.vec(world, d.layout.inertia + 3 * body);
+  d.set(world, d.layout.mom + 3 * body,
+        Rotate(q, {inertia.x * w.x, inertia.y * w.y, inertia.z * w.z}));
+  // The next step projects the velocities, as the first one does.
+  if (d.view.joint_count > 0) d.at(world, d.layout.last_step) = 0;
+  d.Moved(world);
+}
+
+void Batch::SetTime(int world, double time_s) noexcept {
+  impl_->CheckWorld(__func__, world);
+  impl_->at(world, impl_->layout.time) = time_s;
+  impl_->PlaceMotions(world);
+}
+
+std::size_t Batch::BytesPerWorld() const noexcept {
+  const Impl& d = *impl_;
+  return static_cast<std::size_t>(d.layout.rows) * sizeof(double) + sizeof(sim::LaneStatus) +
+         static_cast<std::size_t>(d.model->kept_count) * sizeof(sim::NearParts);
+}
+
+}  // namespace taut

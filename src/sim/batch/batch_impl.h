@@ -1,0 +1,196 @@
+/// What a Batch keeps; shared by the files that implement it.
+#pragma once
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "base/assert.h"
+#include "base/out_of_memory.h"
+#include "base/thread_pool.h"
+#include "math/vec.h"
+#include "sim/batch/check_index.h"
+#include "sim/data/group.h"
+#include "sim/data/tables.h"
+#include "taut/batch.h"
+
+namespace taut {
+
+struct Free {
+  void operator()(void* p) const noexcept { std::free(p); }
+};
+template <class T>
+using Aligned = std::unique_ptr<T[], Free>;
+
+/// Zeroed memory on a cache line's boundary.
+template <class T>
+Aligned<T> AllocateAligned(std::size_t count) {
+  const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64 + 64;
+  void* const memory = std::aligned_alloc(64, bytes);
+  if (memory == nullptr) base::OutOfMemory();
+  std::fill_n(static_cast<unsigned char*>(memory), bytes, static_cast<unsigned char>(0));
+  return Aligned<T>(static_cast<T*>(memory));
+}
+
+struct Batch::Impl {
+  Impl(std::shared_ptr<const Model> m, const BatchOptions& o);
+
+  std::shared_ptr<const sim::Tables> model;
+  sim::View view;
+  sim::FrictionTable friction;  ///< `view` points to it, if it is needed.
+  BatchOptions options;
+  const sim::Kernel* kernel;
+  sim::Layout layout;
+  mutable std::vector<sim::Group> groups;
+  Aligned<double> rows;
+  Aligned<sim::NearParts> kept;
+  std::vector<int> slots_used;
+  std::vector<int> forced;
+  std::vector<sim::LaneStatus> status;
+  std::vector<Aligned<char>> scratch;  ///< One a thread.
+  base::ThreadPool pool;
+  mutable std::mutex sensing;  ///< Guards scratch[0] and the kSensed rows in const functions.
+
+  // What callers give (sim/batch/check_index.h); `function` is the caller's name.
+  void CheckWorld(const char* function, int world) const noexcept {
+    sim::CheckIndex(function, "world", world, options.worlds);
+  }
+  void CheckBody(const char* function, int world, int body) const noexcept {
+    CheckWorld(function, world);
+    sim::CheckIndex(function, "body", body, view.body_count);
+  }
+  void CheckCable(const char* function, int world, int cable) const noexcept {
+    CheckWorld(function, world);
+    sim::CheckIndex(function, "cable", cable, view.cable_count);
+  }
+  /// The number of a cable's motor.
+  int CheckMotor(const char* function, int world, int cable) const noexcept {
+    CheckCable(function, world, cable);
+    const int motor = view.cables[cable].motor;
+    if (motor < 0) [[unlikely]] {
+      sim::NoMotor(function, cable);
+    }
+    return motor;
+  }
+  void CheckNode(const char* function, int world, int node) const noexcept {
+    CheckWorld(function, world);
+    sim::CheckIndex(function, "node", node, view.node_count);
+  }
+  /// The row of a parameter.
+  int ParameterRow(const char* function, int world, Parameter parameter, int index) const noexcept;
+
+  int lanes() const noexcept { return kernel->lanes; }
+  sim::Group& group(int world) const noexcept {
+    TAUT_ASSERT(0 <= world && static_cast<std::size_t>(world / lanes()) < groups.size());
+    return groups[static_cast<std::size_t>(world / lanes())];
+  }
+  /// Row `row` of a world.
+  double& at(int world, int row) const noexcept {
+    TAUT_ASSERT(0 <= row && row < layout.rows);
+    return group(world).rows[row * lanes() + world % lanes()];
+  }
+  sim::MotorNumbers<double> motor(int world, int number) const noexcept {
+    return Struct<sim::MotorNumbers<double>>(world, layout.motor, number);
+  }
+  sim::MotorOrders<double> orders(int world, int number) const noexcept {
+    return Struct<sim::MotorOrders<double>>(world, layout.orders, number);
+  }
+  /// Where a cable lies against edges, along it.
+  std::vector<sim::BendNumbers<double>> Bends(int world, int cable) const;
+  /// A cable on what it lies against, without what it has left.
+  struct LaidCable;
+  LaidCable Lay(int world, int cable) const;
+  Vec3 vec(int world, int row) const noexcept {
+    return {at(world, row), at(world, row + 1), at(world, row + 2)};
+  }
+  void set(int world, int row, double x) const noexcept { at(world, row) = x; }
+  void set(int world, int row, const Quat& q) const noexcept {
+    at(world, row) = q.w;
+    set(world, row + 1, Vec3{q.x, q.y, q.z});
+  }
+  void set(int world, int row, const Vec3& x) const noexcept {
+    at(world, row) = x.x;
+    at(world, row + 1) = x.y;
+    at(world, row + 2) = x.z;
+  }
+  /// Of a row whose elements are structs of numbers: the one with this number.
+  template <class T>
+  T Struct(int world, int row, int number) const noexcept {
+    constexpr int kWidth = sizeof(T) / sizeof(double);
+    double x[kWidth];
+    for (int i = 0; i < kWidth; ++i) x[i] = at(world, row + kWidth * number + i);
+    T out;
+    std::memcpy(&out, x, sizeof(T));
+    return out;
+  }
+  template <class T>
+  void SetStruct(int world, int row, const T& value) const noexcept {
+    constexpr int kWidth = sizeof(T) / sizeof(double);
+    double x[kWidth];
+    std::memcpy(x, &value, sizeof(T));
+    for (int i = 0; i < kWidth; ++i) at(world, row + i) = x[i];
+  }
+  void set(int world, int row, const sim::MotorNumbers<double>& x) const noexcept {
+    SetStruct(world, row, x);
+  }
+  void set(int world, int row, const sim::MotorOrders<double>& x) const noexcept {
+    SetStruct(world, row, x);
+  }
+  void set(int world, int row, const sim::BendNumbers<double>& x) const noexcept {
+    SetStruct(world, row, x);
+  }
+  Quat quat(int world, int body) const noexcept {
+    const int row = layout.quat + 4 * body;
+    return {at(world, row), at(world, row + 1), at(world, row + 2), at(world, row + 3)};
+  }
+  /// Calls f(number of the memory) for each contact that a world remembers, keys rising by body.
+  template <class F>
+  void ForEachContact(int world, F&& f) const {
+    const sim::Group& g = group(world);
+    const auto visit = [&](int i) {
+      if (at(world, layout.contact_key + i) >= 0) f(i);
+    };
+    for (int b = 0; b < view.body_count; ++b) {
+      for (int k = 0; k < g.slots_used[b]; ++k) visit(view.first_slot[b] + k);
+    }
+    for (int k = 0; k < g.touches_used; ++k) visit(view.slot_count + k);
+  }
+  /// Steps all worlds; first the targets of all cables of all worlds, unless null.
+  void Step(double step_s, int count, const double* targets_m) noexcept;
+  void StepSome(double step_s, const std::uint8_t* goes);
+  void SetTargets(int group_number, const double* targets_m) const noexcept;
+  void SetMass(int world, int body, double mass_kg) noexcept;
+  void StartWorld(int world) noexcept;
+  /// f(number) of all that a snapshot holds of a contact.
+  template <class F>
+  void EachMemory(int world, int contact, F f) const noexcept {
+    TAUT_ASSERT(0 <= contact && contact < view.ContactCapacity());
+    for (const sim::RowInfo& row : sim::kStateRows) {
+      if (row.role != sim::Role::kMemory) continue;
+      const int first = layout.*row.first + row.width * contact;
+      for (int k = 0; k < row.width; ++k) f(at(world, first + k));
+    }
+  }
+  /// After a change of masses, stiffnesses or dampings: which cables are how stiff.
+  void JudgeStiffness(int world) noexcept;
+  /// Bodies moved by hand: what was known about distances is void.
+  void Moved(int world) noexcept;
+  /// Cables changed from outside: means of the last step are invalid for them.
+  void ForgetMeans(int world) noexcept;
+  /// Nobody knows any more how the cables lie that touch what they come to: straight.
+  void ForgetBends(int world) noexcept;
+  /// Bodies with motions to where they are at the world's time.
+  void PlaceMotions(int world) noexcept;
+  /// Makes the kSensed rows of the world's group belong to the current state.
+  void Sense(int world) const noexcept;
+  void ForceNode(int world, int node) noexcept;
+  /// Changes one of the orders of a motor.
+  void Order(int world, int motor, double sim::MotorOrders<double>::*order,
+             double value) const noexcept;
+  /// A cable's motor, if it has one, stands still, with the flanks of its gear together.
+  void StopMotor(int world, int cable) const noexcept;
+};
+
+}  // namespace taut

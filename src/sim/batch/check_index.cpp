@@ -1,0 +1,31 @@
+#include "sim/batch/check_index.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace taut::sim {
+
+void WrongIndex(const char* function, const char* what, int index, int count) noexcept {
+  if (count == 0) {
+    std::fprintf(stderr, "taut: Batch::%s: there is no %s %d: there is none at all\n", function,
+                 what, index);
+  } else {
+    std::fprintf(stderr, "taut: Batch::%s: there is no %s %d: they are 0 to %d\n", function, what,
+                 index, count - 1);
+  }
+  std::abort();
+}
+
+void NoMotor(const char* function, int cable) noexcept {
+  std::fprintf(stderr, "taut: Batch::%s: cable %d has no dc_motor\n", function, cable);
+  std::abort();
+}
+
+void WrongCount(const char* function, const char* what, std::size_t given,
+                std::size_t needed) noexcept {
+  std::fprintf(stderr, "taut: Batch::%s: needs one %s, which is %zu, and got %zu\n", function, what,
+               needed, given);
+  std::abort();
+}
+
+}  // namespace taut::sim

@@ -1,0 +1,136 @@
+/// Cables that touch with friction (docs/theory/cables.md, section 7): chains (cable_chains.inl)
+/// with the spans of lane_spans.inl.
+#pragma once
+
+#include "sim/cables/cable_bends.inl"
+#include "sim/cables/cable_chains.inl"
+#include "sim/cables/cable_rods.inl"
+#include "sim/cables/lane_spans.inl"
+#include "sim/data/rows.h"
+
+namespace taut::sim {
+
+/// Lengths and ratios of a cable's spans as it lies over work.wheels.
+template <class W>
+[[gnu::noinline]] void MeasureGrips(const View& m, const Rows<W>& s, const CableTable& cable,
+                                    const Scratch<W>& work, const AttachmentWork<W>* ends,
+                                    W* length, W* ratio) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0), half = W::Splat(0.5);
+  const W friction = W::Splat(m.touches[cable.touch].friction);
+  const int used = work.bends_used, last = 2 * used + 1;
+  for (int k = 0; k < cable.span_count; ++k) length[k] = zero, ratio[k] = one;
+  V3<W> from = ends[0].p;
+  W arc = zero;
+  for (int k = 0; k < used; ++k) {
+    const Wheel<V3<W>>& wheel = work.wheels[k];
+    const AttachmentWork<W>&a = ends[1 + 2 * k], &b = ends[2 + 2 * k];
+    const auto has = HasSpan(m, s, cable, k + 1), on = wheel.theta > zero;
+    const W way = half * (Select(on, wheel.arc, zero) + Dot(b.u, b.p - a.p));
+    length[k] = Select(has, arc + Dot(a.u, a.p - from) + way, zero);
+    ratio[k] = Select(on, RatioOf(friction * Max(wheel.theta, zero)), one);
+    arc = Select(has, way, arc);
+    from = Pick(has, b.p, from);
+  }
+  const W rest = arc + Dot(ends[last].u, ends[last].p - from);
+  for (int k = 0; k <= used; ++k) {
+    auto is_last = HasSpan(m, s, cable, k);
+    if (k < used) is_last = is_last & !HasSpan(m, s, cable, k + 1);
+    length[k] = Select(is_last, rest, length[k]);
+  }
+}
+
+/// Cable that lies on what turns goes along with that, as in CarryOver.
+template <class W>
+[[gnu::noinline]] void CarryOverGrips(const View& m, const Rows<W>& s, const CableTable& cable,
+                                      const Scratch<W>& work, const AttachmentWork<W>* ends,
+                                      const W* length, bool keep, W* rest) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  const BendNumbers<W>* const bends = &s.bend[m.touches[cable.touch].first_bend];
+  for (int k = 1; k <= work.bends_used; ++k) {
+    rest[k] = Select(HasSpan(m, s, cable, k), rest[k], one);
+  }
+  for (int k = 0; k < work.bends_used; ++k) {
+    const Wheel<V3<W>>& wheel = work.wheels[k];
+    // Some direction across the axis that turns with the body.
+    const W* const u = bends[k].axis;
+    const auto x_least = (Abs(u[0]) < Abs(u[1])) & (Abs(u[0]) < Abs(u[2]));
+    const V3<W> axis{u[0], u[1], u[2]};
+    const V3<W> least{Select(x_least, one, zero), Select(x_least, zero, one), zero};
+    V3<W> mark = Cross(axis, least);
+    for (int lane = 0; lane < W::kLanes; ++lane) {
+      const int body = BodyOfBend(m, bends[k], lane);
+      if (body == m.body_count) continue;
+      const Vec3 p = PlaceOf(mark, lane);
+      const double in_P[3] = {p.x, p.y, p.z};
+      SetPlace(mark, TurnedBy(work.bodies[body].R, in_P, lane), lane);
+    }
+    W& known = s.slip_place[cable.first_slip + k];
+    const auto has = HasSpan(m, s, cable, k + 1);
+    const W middle = MiddleOf(wheel, mark, ends);
+    W place = Select(known < W::Splat(kNotHeld), known, middle);
+    CarryOver(wheel, mark, k, ends, length, keep, place, rest);
+    if (keep) known = Select(has, place, known);
+  }
+  for (int k = 1; k <= work.bends_used; ++k) {
+    rest[k] = Select(HasSpan(m, s, cable, k), rest[k], zero);
+  }
+}
+
+/// What an actuator winds, lane by lane.
+template <class W>
+[[gnu::noinline]] void WindGrips(const View& m, const Rows<W>& s, const CableTable& cable, W wound,
+                                 W* rest) noexcept {
+  for (int lane = 0; lane < W::kLanes; ++lane) {
+    const int count = SpansIn(m, s, cable, lane);
+    double own[kMostSpans];
+    for (int i = 0; i < count; ++i) own[i] = rest[i][lane];
+    WindFirstSpan(count, wound[lane], own);
+    for (int i = 0; i < count; ++i) rest[i].Set(lane, own[i]);
+  }
+}
+
+/// What the spans do to bodies: one link a span and body that some lane has, in the order of both.
+template <class W>
+[[gnu::noinline]] int LinkGrips(const View& m, const Rows<W>& s, const CableTable& cable,
+                                const Scratch<W>& work, const AttachmentWork<W>* ends,
+                                RowLink<W>* links) noexcept {
+  const AttachmentTable* const tables = m.attachments + cable.first_attachment;
+  const BendNumbers<W>* const bends = &s.bend[m.touches[cable.touch].first_bend];
+  const int last = 2 * work.bends_used + 1;
+  int count = 0;
+  const auto pull = [&](int lane, int row, int body, const V3<W>& u, double side,
+                        const AttachmentWork<W>& at) {
+    if (body == m.body_count) return;
+    int k = 0;
+    while (k < count && (links[k].row < row || (links[k].row == row && links[k].body < body))) ++k;
+    if (k == count || links[k].row != row || links[k].body != body) {
+      TAUT_ASSERT(count < cable.link_room);
+      for (int i = count++; i > k; --i) links[i] = links[i - 1];
+      const W zero = W::Splat(0.0);
+      links[k].row = row;
+      links[k].body = body;
+      links[k].inv_mass = s.inv_mass[body];
+      links[k].lin[0] = links[k].ang[0] = {zero, zero, zero};
+    }
+    const Vec3 way = side * PlaceOf(u, lane);
+    V3<W>&lin = links[k].lin[0], &ang = links[k].ang[0];
+    SetPlace(lin, PlaceOf(lin, lane) + way, lane);
+    SetPlace(ang, PlaceOf(ang, lane) + Cross(PlaceOf(at.arm, lane), way), lane);
+  };
+  for (int lane = 0; lane < W::kLanes; ++lane) {
+    const int spans = SpansIn(m, s, cable, lane);
+    pull(lane, 0, tables[0].body, ends[1].u, 1.0, ends[0]);
+    for (int k = 0; k + 1 < spans; ++k) {
+      const int body = BodyOfBend(m, bends[k], lane), at = 1 + 2 * k;
+      pull(lane, k, body, ends[at].u, -1.0, ends[at]);
+      pull(lane, k + 1, body, ends[at + 2].u, 1.0, ends[at + 1]);
+    }
+    pull(lane, spans - 1, tables[1].body, ends[last].u, -1.0, ends[last]);
+  }
+  for (int k = 0; k < count; ++k) {
+    links[k].turn[0] = work.bodies[links[k].body].inv_inertia * links[k].ang[0];
+  }
+  return count;
+}
+
+}  // namespace taut::sim

@@ -1,0 +1,203 @@
+/// Motors with gear and spool that wind cables (docs/theory/motor.md). The rotor turns by
+///
+///   J dw/dt = k i - viscous w - friction - way T (1 + gear_loss in the direction of motion)
+///   i = (duty V - k w) / R,    dL/dt = -way w
+///
+/// with w its speed, positive winding in, T the cable's tension and `way` the spool's radius over
+/// the gear's ratio. A step has three parts: how far the supplies sag (LoadSupplies); before the
+/// cable's tension is known, how the rotor turns for any tension, which is what the cable's law
+/// needs (DriveMotor); and how it did turn, once the tension is known (StageMotors).
+#pragma once
+
+#include "sim/data/rows.h"
+
+namespace taut::sim {
+
+/// How an exponential decay is stepped, z = rate h (motor.md, M.8): exp(-z) ~ 1 / p.
+template <class W>
+struct Decay {
+  W z, inv_p;
+  W half;       ///< 1 + z / 2.
+  W mean_kick;  ///< (1 + z) / (2 p): the mean speed per kick.
+
+  TAUT_INLINE explicit Decay(W rate_h) noexcept : z(rate_h) {
+    const W one = W::Splat(1.0), h = W::Splat(0.5);
+    half = one + h * z;
+    inv_p = one / (one + z * half);
+    mean_kick = h * (one + z) * inv_p;
+  }
+};
+
+/// A duty that is to be followed, per motor and step.
+template <class W>
+struct DutyLaw {
+  W duty, falls;  ///< duty - falls times the mean speed.
+};
+
+template <class W>
+TAUT_INLINE W WindingOhm(const MotorTable& t, W temperature_c) noexcept {
+  return W::Splat(t.winding_ohm) *
+         (W::Splat(1.0) + W::Splat(t.rise_per_k) * (temperature_c - W::Splat(t.rated_c)));
+}
+
+/// What turns the motor: the duty that it was given, or that of the servo (motor.md, M.6). The
+/// servo sees the rest length of the middle of the step, so that its gain may be high.
+template <class W>
+TAUT_INLINE DutyLaw<W> DutyOf(const MotorTable& t, const MotorOrders<W>& orders,
+                              const MotorNumbers<W>& motor, W wound, W target, W h) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  const W gain = W::Splat(t.servo_gain), way = W::Splat(t.way_m);
+  const W wish = gain * (wound - target);
+  const W falls = way * (W::Splat(0.5) * h * gain + W::Splat(t.servo_damping));
+  const auto by_duty = orders.by_duty > zero;
+  // A bound that is not a number would be one: with these orders of arguments it stays none.
+  const W now = Max(-one, Min(one, Select(by_duty, orders.duty, wish - falls * motor.speed)));
+  const auto servo = (now < one) & (now > -one) & !by_duty;
+  return {Select(servo, wish, now), Select(servo, falls, zero)};
+}
+
+/// The rest length that the gear's angle says, without what the spool lags behind.
+template <class W>
+TAUT_INLINE W WoundTo(const Rows<W>& s, int c, const MotorNumbers<W>& motor) noexcept {
+  return s.rest[c] + motor.gap;
+}
+
+/// The voltage of every supply under its load (motor.md, M.7): V = V0 - R sum of duty i, with the
+/// currents that this very voltage gives at the speeds of the start.
+template <class W>
+void LoadSupplies(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  for (int i = 0; i < m.supply_count; ++i) {
+    const SupplyTable& supply = m.supplies[i];
+    const W open = W::Splat(supply.voltage_v), sags = W::Splat(supply.resistance_ohm);
+    W per_volt = zero, back = zero;  // of the current: sum of duty^2 / R, of duty k w / R
+    for (int j = 0; j < m.motor_count; ++j) {
+      const MotorTable& t = m.motors[j];
+      if (t.supply != i) continue;
+      const MotorNumbers<W>& motor = s.motor[j];
+      const MotorOrders<W>& orders = s.orders[j];
+      const DutyLaw<W> law =
+          DutyOf(t, orders, motor, WoundTo(s, t.cable, motor), s.target[t.cable], h);
+      const W duty = law.duty - law.falls * motor.speed;
+      const W conducts = orders.on * duty / (WindingOhm(t, motor.winding) + W::Splat(t.driver_ohm));
+      per_volt += conducts * duty;
+      back += conducts * W::Splat(t.constant) * motor.speed;
+    }
+    work.supplies[i] = Min(open, (open + sags * back) / (one + sags * per_volt));
+  }
+}
+
+/// The rest length at some moment: what the gear says, or less while the spool is within the
+/// backlash; a taut cable (length `l`) pulls it against the gear.
+template <class W>
+TAUT_INLINE W RestOnSpool(const MotorTable& t, W wound, W before, W l) noexcept {
+  if (t.backlash_m == 0.0) return wound;
+  return Max(Min(Max(before, l), wound), wound - W::Splat(t.backlash_m));
+}
+
+/// How a motor turns in this step, for any tension of its cable: fills its MotorWork, and the
+/// cable's rate as if there were no tension. Returns the mean over the step of that rest length.
+///   k, b    of the cable     l, dl   its length at the middle, its mean rate as expected
+template <class W>
+TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W k, W b, W l,
+                         W dl, W h) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0), half_h = W::Splat(0.5) * h;
+  const int number = m.cables[c].motor;
+  const MotorTable& t = m.motors[number];
+  const MotorNumbers<W>& motor = s.motor[number];
+  MotorWork<W>& out = work.motors[number];
+  const W way = W::Splat(t.way_m), inv_J = W::Splat(t.inv_inertia), constant = W::Splat(t.constant);
+  const W speed = motor.speed, wound = WoundTo(s, c, motor);
+
+  // Torques that follow the speed, and those of a rotor that stands.
+  const DutyLaw<W> law = DutyOf(t, s.orders[number], motor, wound, s.target[c], h);
+  out.duty = law.duty;
+  out.duty_falls = law.falls;
+  out.conducts = s.orders[number].on;
+  out.resistance = WindingOhm(t, motor.winding) + W::Splat(t.driver_ohm);
+  const W per_volt = out.conducts * constant / out.resistance;
+  const W volts = work.supplies[t.supply];
+  const W rate = inv_J * (per_volt * (constant + law.falls * volts) + W::Splat(t.viscous));
+  const W drive = inv_J * per_volt * law.duty * volts;
+  const Decay<W> decay(rate * h);
+
+  // Does friction hold it? With the tension that there is if it stops (M.9, M.10).
+  const W stopping = speed / (decay.half + decay.half);
+  const W least = W::Splat(t.min_rest_m);
+  const W stop_rest = RestOnSpool(t, wound - half_h * way * stopping, s.rest[c], l);
+  const W stretch = l - stop_rest;
+  const W tension = Select(stretch > zero, Max(k * stretch + b * dl, zero), zero);
+  const W pull = inv_J * way;
+  const W slip = speed / (h * decay.half) + drive - pull * tension;
+  const W slowness = W::Splat(t.inv_stribeck2) * speed * speed;
+  const W friction = inv_J * (W::Splat(t.friction) + W::Splat(t.static_more) / (one + slowness));
+  const W loss = W::Splat(t.gear_loss);
+  const W holds = friction + pull * loss * tension;
+  const auto held = (Abs(slip) < holds) | (Abs(slip) == holds);  // what is no number goes on
+  out.direction = Select(held, zero, Select(slip < zero, -one, one));
+
+  // Else it slips: what the speeds are without the cable, and what they lose per tension.
+  const W kick = h * (drive - out.direction * friction);
+  const W lost = h * pull * (one + out.direction * loss);
+  out.mean = Select(held, stopping, speed * decay.half * decay.inv_p + kick * decay.mean_kick);
+  out.slows = Select(held, zero, lost * decay.mean_kick);
+  out.end = Select(held, zero, (speed + kick * decay.half) * decay.inv_p);
+  out.end_slows = Select(held, zero, lost * decay.half * decay.inv_p);
+
+  // The stop of the spool: the shortest rest length.
+  const W room = Max(wound - least, zero) / (way * h);
+  const auto stops = out.mean - out.slows * tension > room;
+  out.mean = Select(stops, room, out.mean);
+  out.slows = Select(stops, zero, out.slows);
+  out.end = Select(stops, zero, out.end);
+  out.end_slows = Select(stops, zero, out.end_slows);
+
+  out.length = l;
+  out.share = one / (one + k * half_h * way * Max(out.slows, zero));
+  const W mean = RestOnSpool(t, wound - half_h * way * out.mean, s.rest[c], l);
+  s.rest_rate[c] = t.backlash_m == 0.0 ? -way * out.mean : (mean - s.rest[c]) / half_h;
+  return mean;
+}
+
+/// Stage: rotors turn as the tensions that were found make them, and grow warm.
+///   reads   tension, motors[]     writes  motor, rest, rest_rate
+template <class W>
+void StageMotors(const View& m, const Rows<W>& s, const Scratch<W>& work, double step_s) noexcept {
+  const W zero = W::Splat(0.0), h = W::Splat(step_s), inv_h = W::Splat(1.0 / step_s);
+  for (int i = 0; i < m.motor_count; ++i) {
+    const MotorTable& t = m.motors[i];
+    const MotorWork<W>& turn = work.motors[i];
+    const int c = t.cable;
+    MotorNumbers<W>& motor = s.motor[i];
+    const W tension = s.tension[c], way = W::Splat(t.way_m);
+
+    // Friction stops, it does not turn back: what was to slip one way does not go the other way.
+    const W mean = turn.mean - turn.slows * tension, end = turn.end - turn.end_slows * tension;
+    const auto went_on = !(turn.direction * motor.speed < zero);
+    const W mean_speed = Select((turn.direction * mean < zero) & went_on, zero, mean);
+    const W before = s.rest[c], start = WoundTo(s, c, motor);
+    const W wound = Max(Min(start, W::Splat(t.min_rest_m)), start - h * way * mean_speed);
+    const W rest = RestOnSpool(t, wound, before, turn.length);
+    motor.speed = Select(turn.direction * end < zero, zero, end);
+    motor.gap = wound - rest;
+    s.rest[c] = rest;
+    s.rest_rate[c] = (rest - before) * inv_h;
+
+    motor.supply = work.supplies[t.supply];
+    motor.duty = turn.duty - turn.duty_falls * mean_speed;
+    motor.current = turn.conducts *
+                    (motor.duty * motor.supply - W::Splat(t.constant) * mean_speed) /
+                    turn.resistance;
+    const W square = motor.current * motor.current;
+    const W heat = square * WindingOhm(t, motor.winding);
+    motor.from_supply += h * motor.supply * motor.duty * motor.current;
+    motor.to_cable += tension * (before - rest);
+    motor.in_winding += h * heat;
+    const W outwards = W::Splat(t.winding_w_per_k) * (motor.winding - motor.housing);
+    const W away = W::Splat(t.housing_w_per_k) * (motor.housing - W::Splat(t.ambient_c));
+    motor.winding += h * W::Splat(t.winding_k_per_j) * (heat - outwards);
+    motor.housing += h * W::Splat(t.housing_k_per_j) * (outwards - away);
+  }
+}
+
+}  // namespace taut::sim

@@ -1,0 +1,403 @@
+/// Stage of the cables: actuators and forces (docs/theory/cables.md).
+///
+///   k, b    stiffness [N/m], damping [N s/m]
+///   l, dl   length along all attachments [m], its rate [m/s]
+///   L       rest length [m]
+///   T       tension [N]
+#pragma once
+
+#include "sim/cables/cable_bends.inl"
+#include "sim/cables/cable_follow.inl"
+#include "sim/cables/cable_wheels.inl"
+#include "sim/cables/dc_motor.inl"
+#include "sim/cables/stiff_cables.inl"
+#include "sim/data/rows.h"
+
+namespace taut::sim {
+
+template <class W>
+struct CableForce {
+  W tension, elastic;
+};
+
+/// Paper eq. (1): T = k (l - L) + b dl while l > L, never negative, otherwise 0.
+/// With the clamped law the damper's part is limited to +- the spring's.
+template <class W>
+TAUT_INLINE CableForce<W> TensionOf(W k, W b, W l, W dl, W rest, bool clamped) noexcept {
+  const W zero = W::Splat(0.0);
+  const W stretch = l - rest;
+  const W spring = k * stretch;
+  W damper = b * dl;
+  if (clamped) damper = Max(Min(damper, spring), -spring);
+  const auto taut = stretch > zero;
+  return {Select(taut, Max(spring + damper, zero), zero), Select(taut, spring, zero)};
+}
+
+/// Where an attachment is and how fast it is expected to move.
+template <class W>
+TAUT_INLINE AttachmentWork<W> Attachment(const AttachmentTable& table,
+                                         const Scratch<W>& work) noexcept {
+  const BodyWork<W>& body = work.bodies[table.body];
+  const Spot<W>& spot = work.spots[table.spot];
+  AttachmentWork<W> here;
+  here.arm = spot.arm;
+  here.p = spot.p;
+  here.v = body.v_mid + Cross(body.w_mid, here.arm);
+  return here;
+}
+
+/// Length and rate of a cable; fills `ends` with its attachments. `kTwo`: it has two, which have to
+/// stay in registers, so that no function by itself may get at them.
+template <bool kTwo, class W>
+TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const Rows<W>& s, const CableTable& cable,
+                                           int attachment_count, Scratch<W>& work,
+                                           AttachmentWork<W>* ends) noexcept {
+  const AttachmentTable* const tables = m.attachments + cable.first_attachment;
+  for (int i = 0; i < attachment_count; ++i) ends[i] = Attachment(tables[i], work);
+  if constexpr (!kTwo) {
+    if (cable.touch >= 0) return MeasureTouching(m, s, cable, work, ends);
+    if (cable.wheel_count > 0) {
+      PutOnWheels(m, s, cable, work, work.spots, ends);
+      return MeasurePath(attachment_count, ends, cable.wheel_count, work.wheels);
+    }
+  }
+  return MeasurePath(attachment_count, ends);
+}
+
+/// A rest length follows its target for one step, within the actuator's limits. Limits are per
+/// second, so nothing depends on the step. The force limit is NTRT's: never wind past the rest
+/// length at which the spring would exceed it. Returns the rest length's mean over the step: a
+/// motor runs until it arrives, and then stands.
+template <class W>
+TAUT_INLINE W Actuate(const CableTable& cable, W k, W l, W target, W h, W inv_h, W& rest,
+                      W& rate) noexcept {
+  const LimitTable& limit = cable.actuator;
+  const W zero = W::Splat(0.0), before = rest;
+  if (limit.kind == ActuatorDef::Kind::kNone) return rest;
+  if (limit.kind == ActuatorDef::Kind::kIdeal) {
+    rate = (target - rest) * inv_h;
+    rest = target;
+    return rest;
+  }
+  const W least_rest = W::Splat(limit.min_rest_length_m);
+  const W goal = Max(Max(target, l - W::Splat(limit.max_force_n) / k), least_rest);
+  const W way = goal - rest;
+  const W distance = Abs(way);
+  const W top = W::Splat(limit.max_speed_m_per_s);
+  const W arriving = distance * inv_h;  // the rate that ends this step at the goal
+  const bool accelerates_at_once = limit.max_acceleration_m_per_s2 > 1e300;
+  const W a = W::Splat(limit.max_acceleration_m_per_s2);
+  W speed = Min(arriving, top);
+  if (!accelerates_at_once) {
+    // No faster than can still be braked: v h + v^2 / (2 a) <= distance.
+    speed = Min(speed, Sqrt(a * a * h * h + (a + a) * distance) - a * h);
+  }
+  W wish = Select(way < zero, -speed, speed);
+  wish = Select((l < W::Splat(limit.min_length_m)) & (way < zero), zero, wish);
+  if (!accelerates_at_once) wish = Max(Min(wish, rate + a * h), rate - a * h);
+  const auto arrives = Abs(wish) == arriving;
+  rate = wish;
+  rest = Max(Select(arrives & !(wish == zero), goal, rest + h * wish), least_rest);
+  // The share of the step in which it runs; with limited acceleration, taken as all of it.
+  const W share = accelerates_at_once ? speed * W::Splat(cable.inv_max_speed) : W::Splat(1.0);
+  return rest - W::Splat(0.5) * share * (rest - before);
+}
+
+template <class W>
+TAUT_INLINE void AddLink(const Rows<W>& s, CableWork<W>& row, int body, const V3<W>& direction,
+                         const V3<W>& arm) noexcept {
+  Link<W, 1>& link = row.links[row.link_count++];
+  link.body = body;
+  link.inv_mass = s.inv_mass[body];
+  link.lin[0] = direction;
+  link.ang[0] = Cross(arm, direction);
+}
+
+/// Adds a pull to the link of its body.
+template <class W>
+TAUT_INLINE void AddPull(const View& m, const Rows<W>& s, CableWork<W>& row, int body,
+                         const V3<W>& direction, const V3<W>& arm) noexcept {
+  if (body == m.body_count) return;
+  Link<W, 1>* link = row.links;
+  Link<W, 1>* const end = link + row.link_count;
+  while (link != end && link->body != body) ++link;
+  if (link == end) {
+    AddLink(s, row, body, direction, arm);
+  } else {
+    link->lin[0] += direction;
+    link->ang[0] += Cross(arm, direction);
+  }
+}
+
+/// The links of a cable: one a body, with the pulls of all its attachments there. `kTwo`, here and
+/// below: that it joins two bodies (CableTable::joins_two) is known to the compiler, which keeps
+/// them in registers.
+template <bool kTwo, class W>
+TAUT_INLINE void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work,
+                           const CableTable& cable, const AttachmentWork<W>* ends,
+                           CableWork<W>& row) noexcept {
+  const AttachmentTable* const tables = m.attachments + cable.first_attachment;
+  row.links = work.links.From(work.link_count);
+  row.link_count = 0;
+  if constexpr (kTwo) {
+    AddLink(s, row, tables[0].body, ends[1].u, ends[0].arm);
+    AddLink(s, row, tables[1].body, -ends[1].u, ends[1].arm);
+  } else {
+    const int last = cable.attachment_count - 1;
+    if (cable.touch >= 0) {
+      const int count = 2 + 2 * work.bends_used;
+      AddPull(m, s, row, tables[0].body, PullAt(count, ends, 0), ends[0].arm);
+      AddPull(m, s, row, tables[last].body, PullAt(count, ends, count - 1), ends[count - 1].arm);
+      if (m.touches[cable.touch].rod_count > 0) LinkRods(m, s, work, cable, ends, row);
+    } else {
+      for (int i = 0; i <= last; ++i) {
+        AddPull(m, s, row, tables[i].body, PullAt(last + 1, ends, i), ends[i].arm);
+      }
+    }
+  }
+  work.link_count += row.link_count;
+}
+
+/// What impulses along a cable do.
+template <bool kTwo, class W>
+TAUT_INLINE void FinishLinks(const Scratch<W>& work, CableWork<W>& row) noexcept {
+  if constexpr (kTwo) {
+    Link<W, 1>&a = row.links[0], &b = row.links[1];
+    a.turn[0] = work.bodies[a.body].inv_inertia * a.ang[0];
+    b.turn[0] = work.bodies[b.body].inv_inertia * b.ang[0];
+    row.A = a.inv_mass + b.inv_mass + (Dot(a.ang[0], a.turn[0]) + Dot(b.ang[0], b.turn[0]));
+  } else {
+    row.A = W::Splat(0.0);
+    for (int i = 0; i < row.link_count; ++i) {
+      Link<W, 1>& link = row.links[i];
+      link.turn[0] = work.bodies[link.body].inv_inertia * link.ang[0];
+      AddCoupling(link, link, &row.A);
+    }
+  }
+}
+
+/// The mean rate over the step, as far as it is known.
+template <bool kTwo, class W>
+TAUT_INLINE W MeanRate(const Scratch<W>& work, const CableWork<W>& row) noexcept {
+  W dl = W::Splat(0.0);
+  for (int i = 0; i < (kTwo ? 2 : row.link_count); ++i) {
+    const BodyWork<W>& body = work.bodies[row.links[i].body];
+    dl -= Dot(row.links[i].lin[0], body.v_mid) + Dot(row.links[i].ang[0], body.w_mid);
+  }
+  return dl;
+}
+
+/// Brings a soft cable's tension nearer to its law, T = k s + b dl >= 0 with dl the mean rate over
+/// the step: exact if nothing else changes. The bodies' mean velocities follow, but for `half_h` =
+/// 0.
+template <bool kTwo, class W>
+TAUT_INLINE void RelaxCable(Scratch<W>& work, CableWork<W>& row, W dl, W half_h) noexcept {
+  const W zero = W::Splat(0.0);
+  const int link_count = kTwo ? 2 : row.link_count;
+  const W wish = row.tension + row.share * (row.spring + row.damping * dl - row.tension);
+  const W tension = Select(row.damped, Min(Max(wish, zero), row.upper), row.spring);
+  const W change = half_h * (tension - row.tension);
+  row.tension = tension;
+  for (int i = 0; i < link_count; ++i) {
+    BodyWork<W>& body = work.bodies[row.links[i].body];
+    Push(row.links[i], &change, body.v_mid, body.w_mid);
+  }
+}
+
+/// Tension and pull of a soft cable that was found. `kAllSoft`: in all lanes it is.
+template <bool kTwo, bool kAllSoft, class W>
+TAUT_INLINE void PullCable(const Rows<W>& s, Scratch<W>& work, int c) noexcept {
+  const CableWork<W>& row = work.cables[c];
+  const int link_count = kTwo ? 2 : row.link_count;
+  const W pull = kAllSoft ? row.tension : Select(row.soft, row.tension, W::Splat(0.0));
+  s.tension[c] = kAllSoft ? pull : Select(row.soft, row.tension, s.tension[c]);
+  for (int i = 0; i < link_count; ++i) {
+    BodyWork<W>& body = work.bodies[row.links[i].body];
+    body.force += pull * row.links[i].lin[0];
+    body.torque += pull * row.links[i].ang[0];
+  }
+}
+
+/// The second pass over the cables, back to the first.
+template <bool kAllSoft, class W>
+TAUT_INLINE void RelaxBack(const View& m, const Rows<W>& s, Scratch<W>& work, W half_h) noexcept {
+  for (int c = m.cable_count - 1; c >= 0; --c) {
+    CableWork<W>& row = work.cables[c];
+    if (!kAllSoft && !Any(row.soft)) continue;
+    if (m.cables[c].joins_two) {
+      RelaxCable<true>(work, row, MeanRate<true>(work, row), half_h);
+      PullCable<true, kAllSoft>(s, work, c);
+    } else {
+      RelaxCable<false>(work, row, MeanRate<false>(work, row), half_h);
+      PullCable<false, kAllSoft>(s, work, c);
+    }
+  }
+}
+
+/// What is the same for all cables of a step.
+template <class W>
+struct CableStep {
+  W h, inv_h;
+  MaskOf<W> goes_on;  ///< There was a step before, and its tensions are known.
+  W push;             ///< Half a step in lanes with dampers, where tensions are still to be found.
+  W room;             ///< Below zero if a cable may go slack or get taut [m^2].
+};
+
+/// A cable's length, actuator and spring. `damped`: some lane's cables are. `kMotors`, here and
+/// below: some actuators of the model are motors; others need not look.
+template <bool kTwo, bool kMotors, class W>
+TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, bool damped,
+                           CableStep<W>& step) noexcept {
+  const W zero = W::Splat(0.0), h = step.h;
+  const CableTable& cable = m.cables[c];
+  CableWork<W>& row = work.cables[c];
+  W l;
+  if constexpr (kTwo) {
+    AttachmentWork<W> ends[2];
+    l = MeasureCable<true>(m, s, cable, 2, work, ends).l;
+    LinkCable<true>(m, s, work, cable, ends, row);
+  } else {
+    l = cable.touch >= 0
+            ? FollowBends(m, s, work, cable, h)
+            : MeasureCable<false>(m, s, cable, cable.attachment_count, work, work.attachments).l;
+    KeepWheels(s, cable, work);
+    LinkCable<false>(m, s, work, cable, work.attachments, row);
+  }
+  W k = s.stiffness[c], b = s.damping[c], mean, rate;
+  if (kMotors && cable.motor >= 0) {
+    mean = DriveMotor(m, s, work, c, k, b, l, MeanRate<kTwo>(work, row), h);
+    rate = s.rest_rate[c];
+    const W share = work.motors[cable.motor].share;
+    k = k * share;
+    b = b * share;
+  } else {
+    W rest = s.rest[c];
+    rate = s.rest_rate[c];
+    mean = Actuate(cable, k, l, s.target[c], h, step.inv_h, rest, rate);
+    s.rest[c] = rest;
+    s.rest_rate[c] = rate;
+  }
+  const W stretch = l - mean;
+  const auto stiff = s.stiff_k[c] > work.implicit.limit[c];
+  row.soft = !stiff;
+  row.spring = Max(k * stretch, zero);
+  const bool any_stiff = Any(stiff);
+  if (damped || any_stiff) FinishLinks<kTwo>(work, row);
+  if (any_stiff) {
+    AddStiffCable(m, s, work, c, row, k, b, l, stretch, h, stiff);
+    if (!Any(row.soft)) return;
+  }
+  const W dl = MeanRate<kTwo>(work, row);
+  row.stretch = stretch;
+  const W way = h * (dl - rate);
+  step.room = Min(step.room, stretch * stretch - way * way);
+  if (!damped) {
+    row.damped = MaskOf<W>::Splat(false);
+    return;
+  }
+  // Before the first step, that at rest: then nothing moves what is in balance.
+  row.tension = Select(step.goes_on, s.tension[c], row.spring);
+  row.damping = b;
+  // With nothing to damp, or slack, the spring alone: to the bit. Stiff ones stay as they are.
+  row.damped = stiff | ((row.damping > zero) & (row.spring > zero));
+  row.share = W::Splat(1.0) / (W::Splat(1.0) + step.push * row.damping * row.A);
+  if (any_stiff) row.share = Select(stiff, zero, row.share);
+  row.upper = W::Splat(1e300);
+  if (cable.clamped_damping) row.upper = Select(stiff, row.upper, row.spring + row.spring);
+  RelaxCable<kTwo>(work, row, dl, step.push);
+}
+
+/// Soft cables that go slack or get taut in this step have a tension of their own law, for good:
+/// their spring's mean over the step, implicit in the end's length (docs/theory/cables.md, eq. 11).
+/// Between them explicit steps keep v^2 + w^2 x^2 / (1 - w^2 h^2 / 4), so that is what the spring
+/// must store, or energy would come and go with every catch.
+template <bool kMotors, class W>
+[[gnu::noinline, gnu::cold]] void SettleKinks(const View& m, const Rows<W>& s, Scratch<W>& work,
+                                              CableStep<W> step) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  // Rates have changed since: in a lane that did not ask, a cable may look near by now.
+  const auto asks = step.room < zero;
+  for (int c = 0; c < m.cable_count; ++c) {
+    CableWork<W>& row = work.cables[c];
+    const W dl = MeanRate<false>(work, row);
+    const W way = step.h * (dl - s.rest_rate[c]);
+    const auto near = asks & row.soft & (row.stretch * row.stretch < way * way);
+    if (!Any(near)) continue;
+    if (m.cables[c].joins_two) {
+      FinishLinks<true>(work, row);
+    } else {
+      FinishLinks<false>(work, row);
+    }
+    AttachmentWork<W>* const ends = work.attachments;
+    const W length =
+        MeasureCable<false>(m, s, m.cables[c], m.cables[c].attachment_count, work, ends).l;
+    const W before = RateBefore(work, row.links.data(), row.link_count);
+    W k = s.stiffness[c], b = s.damping[c];
+    if (kMotors && m.cables[c].motor >= 0) {
+      const W share = work.motors[m.cables[c].motor].share;
+      k = k * share;
+      b = b * share;
+    }
+    const W spring = W::Splat(0.25) * step.h * step.h * k;
+    CableRow<W> law;
+    law.A = row.A;
+    SetCableLaw(m, s, work, c, length, row.stretch, before, step.h, spring / (one - spring * law.A),
+                b, law);
+    // The mean rate has the tension in it that was found so far; without dampers, the last step's.
+    const W last = Select(step.goes_on, s.tension[c], zero);
+    const W u = before - (dl + dl), now = step.h * Select(step.push > zero, row.tension, last);
+    W l;
+    const auto crosses = near & law.Project(&u, &now, one, &l).crosses;
+    row.damped = row.damped & !crosses;
+    row.spring = Select(crosses, step.inv_h * l, row.spring);
+  }
+}
+
+/// Stage: actuators move the rest lengths, cables pull on bodies.
+///   reads   pos, bodies[], target     writes  rest, rest_rate, tension, bodies[].force, .torque
+///           (adds), cables[], stiff[]
+///   order   cables ascending, then descending: sums do not depend on anything else
+/// The force is that of the middle of the step: geometry there, the rest length's mean over the
+/// step, and the mean of the rates at its start and its end (docs/theory/cables.md, eq. 6). The
+/// mean velocities start as expected from the step before, which had these cables' tensions in
+/// them; two passes over the cables put the new ones in. Lanes in which a spring would not be
+/// stable leave the cable to the solver (stiff_cables.inl).
+template <bool kMotors, class W>
+void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
+  const W zero = W::Splat(0.0);
+  work.stiff_count = work.link_count = 0;
+  work.no_room = 0;
+  work.start_known = false;
+  auto damps = MaskOf<W>::Splat(false);
+  for (int c = 0; c < m.cable_count && Any(!damps); ++c) damps = damps | (s.damping[c] > zero);
+  const bool damped = Any(damps);
+  CableStep<W> step{W::Splat(step_s), W::Splat(1.0 / step_s), s.last_step[0] > zero,
+                    Select(damps, W::Splat(0.5 * step_s), zero), W::Splat(1e300)};
+  if constexpr (kMotors) LoadSupplies(m, s, work, step.h);
+  for (int c = 0; c < m.cable_count; ++c) {
+    if (m.cables[c].joins_two) {
+      MeetCable<true, kMotors>(m, s, work, c, damped, step);
+    } else if (m.cables[c].span_count > 0) {
+      MeetChain(m, s, work, c, step.h, step.inv_h);
+    } else {
+      MeetCable<false, kMotors>(m, s, work, c, damped, step);
+    }
+  }
+  if (Any(step.room < zero)) SettleKinks<kMotors>(m, s, work, step);
+  if (!damped) {
+    for (int c = 0; c < m.cable_count; ++c) {
+      work.cables[c].tension = work.cables[c].spring;
+      PullCable<false, false>(s, work, c);
+    }
+    return;
+  }
+  if (work.stiff_count == 0 && m.chain_count == 0) {
+    RelaxBack<true>(m, s, work, step.push);
+  } else {
+    RelaxBack<false>(m, s, work, step.push);
+  }
+}
+
+}  // namespace taut::sim
+
+#include "sim/cables/cable_chains.inl"

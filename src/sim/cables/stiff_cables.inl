@@ -1,0 +1,130 @@
+/// Cables whose tension is the mean over the step of what their spring has on its way from the
+/// length at the start to that at the end (docs/theory/cables.md, eq. 8-11): work is then exactly
+/// what the spring stores or gives, through slackness too.
+///
+/// Those that explicit forces would make unstable at this step are left to the solver, which finds
+/// them together with the contacts. Soft ones are explicit, but in a step in which they go slack or
+/// get taut.
+#pragma once
+
+#include "sim/cables/cable_bends.inl"
+#include "sim/cables/cable_wheels.inl"
+#include "sim/data/rows.h"
+
+namespace taut::sim {
+
+/// Largest K of an explicit spring at this step [1/s^2].
+template <class W>
+TAUT_INLINE W SoftLimit(W h) noexcept {
+  return W::Splat(kSoftSpring) / (h * h);
+}
+
+/// Where cables are attached, at the start of the step: from the places that SaveStart has kept.
+template <class W>
+void MeasureStart(const View& m, Scratch<W>& work) noexcept {
+  const auto* const pos = reinterpret_cast<const V3<W>*>(work.start);
+  const auto* const quat = reinterpret_cast<const Q4<W>*>(pos + m.body_count);
+  M3<W> R = work.bodies[m.body_count].R;
+  int body = m.body_count;
+  for (int i = 0; i < m.spot_count; ++i) {
+    const AttachmentTable& table = m.spots[i];
+    if (table.body == m.body_count) {
+      work.start_spots[i] = simd::Splat3<W>(table.p_P);
+      continue;
+    }
+    if (table.body != body) R = RotationOf(quat[table.body]);
+    body = table.body;
+    work.start_spots[i] = pos[body] + R * simd::Splat3<W>(table.p_P);
+  }
+  work.start_known = true;
+}
+
+template <class W>
+TAUT_INLINE W StartLength(const View& m, const Rows<W>& s, Scratch<W>& work,
+                          const CableTable& cable) noexcept {
+  if (!work.start_known) MeasureStart(m, work);
+  const AttachmentTable* const tables = m.attachments + cable.first_attachment;
+  if (cable.touch >= 0) return StartLengthOverBends(m, s, work, cable);
+  if (cable.wheel_count > 0) return StartLengthOnWheels(m, s, work, cable);
+  return MeasureThrough<V3<W>>(cable.attachment_count,
+                               [&](int i) { return work.start_spots[tables[i].spot]; })
+      .l;
+}
+
+/// At what rate a cable lengthened before the step.
+template <class W>
+TAUT_INLINE W RateBefore(const Scratch<W>& work, const Link<W, 1>* links, int count) noexcept {
+  W rate = W::Splat(0.0);
+  for (int i = 0; i < count; ++i) {
+    const BodyWork<W>& body = work.bodies[links[i].body];
+    rate -= Dot(links[i].lin[0], body.v0) + Dot(links[i].ang[0], body.w0);
+  }
+  return rate;
+}
+
+/// A cable's law over the step, from its length and stretch at the middle. Its true length at the
+/// start says how far the middle's directions are wrong; they are so at the end by as much.
+template <class W>
+TAUT_INLINE void SetCableLaw(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W length,
+                             W stretch, W rate, W h, W spring, W damping,
+                             CableRow<W>& row) noexcept {
+  const CableTable& cable = m.cables[c];
+  const W half_h = W::Splat(0.5) * h, inv_half = W::Splat(1.0) / half_h;
+  const W wound = s.rest_rate[c];
+  const W mid = stretch + (StartLength(m, s, work, cable) - (length - half_h * rate));
+  const W z = inv_half * mid;
+  row.SetLaw(z - (rate - wound), z - wound, spring, half_h * damping, wound + wound);
+  row.upper = W::Splat(1e300);
+  if (!cable.clamped_damping) return;
+  // Twice the spring's, as far as it is known before the step.
+  const W twice = row.SpringImpulse(row.start + W::Splat(2.0) * (rate - wound));
+  row.upper = Select(damping > W::Splat(0.0), twice + twice, row.upper);
+}
+
+/// `k`, `b`: of its stiffness and damping what acts within a step.
+template <class W>
+void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
+                   const CableWork<W>& linked, W k, W b, W length, W stretch, W h,
+                   MaskOf<W> on) noexcept {
+  const W zero = W::Splat(0.0);
+  StiffCable<W>& row = work.stiff[work.stiff_count++];
+  row.cable = c;
+  row.live = Select(on, W::Splat(1.0), zero);
+  row.links = linked.links;
+  row.link_count = linked.link_count;
+  const W rate = RateBefore(work, row.links, row.link_count);
+  const W spring = W::Splat(0.25) * h * h * k;
+  SetCableLaw(m, s, work, c, length, stretch, rate, h, spring, b, row);
+  row.FinishMasses();
+  row.across = W::Splat(0.25) * h * h * s.stiff_k[c] / (s.stiffness[c] * length);
+  row.l[0] = Select(on, Min(h * s.tension[c], row.upper), zero);
+}
+
+/// Share of the largest stable tension that a stiff cable has. Along itself it is stable at any
+/// tension; across itself its force is explicit.
+template <class W>
+W ShareOfStableTension(const Rows<W>& s, const StiffCable<W>& row) noexcept {
+  return Select(row.live > W::Splat(0.0), s.tension[row.cable] * row.across, W::Splat(0.0));
+}
+
+/// Sets tensions, their spring parts and angular momenta from the solver's impulses.
+template <class W>
+void FinishStiffCables(const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
+  const W zero = W::Splat(0.0), inv_h = W::Splat(1.0 / step_s);
+  for (int i = 0; i < work.stiff_count; ++i) {
+    const StiffCable<W>& row = work.stiff[i];
+    const auto live = row.live > zero;
+    W u = zero;
+    for (int k = 0; k < row.link_count; ++k) {
+      const BodyWork<W>& body = work.bodies[row.links[k].body];
+      AddVelocity(row.links[k], body.v, body.w, &u);
+      s.mom[row.links[k].body] += row.l[0] * row.links[k].ang[0];
+    }
+    const W elastic = inv_h * row.SpringImpulse(row.end - u);
+    s.tension[row.cable] = Select(live, inv_h * row.l[0], s.tension[row.cable]);
+    s.mean_elastic[row.cable] = Select(live, elastic, s.mean_elastic[row.cable]);
+    s.mean_step[0] = Select(live, W::Splat(step_s), s.mean_step[0]);
+  }
+}
+
+}  // namespace taut::sim

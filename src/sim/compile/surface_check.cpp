@@ -1,0 +1,74 @@
+#include <string>
+
+#include "math/triangles.h"
+#include "sim/compile/checker.h"
+
+namespace taut::sim {
+namespace {
+
+constexpr double kMaxCells = 1e8;
+
+void CheckField(const HeightFieldDef& field, Checker& check) {
+  const std::string name = "height field " + field.name;
+  check.Surface(field.material, name);
+  check.Finite(field.origin_m, name + ": origin");
+  check.Positive(field.cell_m, name + ": side of a cell");
+  const bool wide = field.columns >= 2 && field.rows >= 2;
+  check.Require(wide, name + " needs two corners or more along x and along y");
+  const double corners = static_cast<double>(field.columns) * field.rows;
+  check.Require(corners <= kMaxCells, name + " has more than 10^8 cells");
+  check.Require(!wide || static_cast<double>(field.height_m.size()) == corners,
+                name + " has " + std::to_string(field.height_m.size()) +
+                    " heights, not a height for each of its corners");
+  for (std::size_t i = 0; i < field.height_m.size(); ++i) {
+    if (std::isfinite(field.height_m[i])) continue;
+    check.Require(false, name + ": height " + std::to_string(i) + " must be finite");
+    return;
+  }
+}
+
+/// What is wrong, by the numbers of triangles and corners.
+std::string Text(const math::MeshFault& fault) {
+  using Kind = math::MeshFault::Kind;
+  const std::string triangle = ": triangle " + std::to_string(fault.triangle),
+                    edge = "the edge between corners " + std::to_string(fault.from) + " and " +
+                           std::to_string(fault.to);
+  switch (fault.kind) {
+    case Kind::kNoCorner:
+      return triangle + " refers to a corner that is not there";
+    case Kind::kNoArea:
+      return triangle + " has no area";
+    case Kind::kOpen:
+      return " is not closed: " + edge + " has one triangle only";
+    case Kind::kCrowded:
+      return ": " + edge + " has two triangles on one side, or more than two in all";
+    case Kind::kInsideOut:
+      return " is inside out: corners must run counter-clockwise seen from outside";
+  }
+  return {};
+}
+
+void CheckMesh(const TerrainMeshDef& mesh, Checker& check) {
+  const std::string name = "mesh " + mesh.name;
+  check.Surface(mesh.material, name);
+  check.Require(!mesh.triangles.empty(), name + " has no triangle");
+  for (std::size_t i = 0; i < mesh.corners_m.size(); ++i) {
+    const Vec3& p = mesh.corners_m[i];
+    if (!std::isfinite(p.x + p.y + p.z)) {
+      return check.Require(false, name + ": corner " + std::to_string(i) + " must be finite");
+    }
+  }
+  for (const math::MeshFault& fault :
+       math::FindFaults(mesh.corners_m, mesh.triangles, mesh.solid, 1)) {
+    check.Require(false, name + Text(fault));
+  }
+}
+
+}  // namespace
+
+void CheckGround(const ModelDef& def, Checker& check) {
+  for (const HeightFieldDef& field : def.height_fields) CheckField(field, check);
+  for (const TerrainMeshDef& mesh : def.terrain_meshes) CheckMesh(mesh, check);
+}
+
+}  // namespace taut::sim

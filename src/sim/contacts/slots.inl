@@ -1,0 +1,186 @@
+/// Where contacts go once they are found: into the slots of a body, if the other does not move,
+/// else into the lists of touches; and how far two bodies may reach before they are looked at
+/// again.
+#pragma once
+
+#include "sim/contacts/shape_pairs.inl"
+#include "sim/data/rows.h"
+
+namespace taut::sim {
+
+/// How close a contact must be to get a row: what its body may travel in this step, and a bit.
+inline constexpr double kContactMarginM = 1e-5;
+
+/// A look is for so many steps like this one, if nothing is nearer.
+inline constexpr double kLookAheadSteps = 16.0;
+
+/// What the finding of a contact with the world says about it.
+template <class W>
+struct Found {
+  W key, frame, gap, radius, static_friction, kinetic_friction, restitution;
+  V3<W> n, t1, t2, arm;
+  bool upright;
+};
+
+template <class W, class M>
+TAUT_INLINE void PutContact(Contact<W, 1>& slot, const Found<W>& found, M lanes) noexcept {
+  const auto put = [lanes](W& to, W from) { to = Select(lanes, from, to); };
+  const auto put3 = [lanes](V3<W>& to, const V3<W>& from) { to = Select3(lanes, from, to); };
+  V3<W>* const d = slot.links[0].lin;
+  put3(d[0], found.n), put3(d[1], found.t1), put3(d[2], found.t2);
+  put3(slot.arm[0], found.arm);
+  put(slot.key, found.key), put(slot.frame, found.frame), put(slot.gap, found.gap);
+  put(slot.radius, found.radius);
+  put(slot.static_friction, found.static_friction);
+  put(slot.kinetic_friction, found.kinetic_friction);
+  put(slot.restitution, found.restitution);
+}
+
+/// The contacts of one body with the world that were found so far.
+template <class W>
+class SlotFiller {
+ public:
+  SlotFiller(const View& m, Scratch<W>& work, int body) noexcept
+      : slots_(work.contacts + m.first_slot[body]),
+        capacity_(m.first_slot[body + 1] - m.first_slot[body]),
+        one_direction_(m.along_slip) {}
+
+  /// Puts it into the next slot of each of `lanes`; there is room for all points on all planes.
+  template <class M>
+  TAUT_INLINE void Add(const Found<W>& found, M lanes) noexcept {
+    const int last = count_;
+    for (int k = W::kLanes == 1 ? last : 0; k <= last; ++k) {
+      const auto here = lanes & (used_ == W::Splat(k));
+      if (Any(here)) Put(k, found, here);
+    }
+    used_ += Select(lanes, W::Splat(1.0), W::Splat(0.0));
+  }
+  /// The same for one lane. False if it has no room.
+  bool Add(const Found<W>& found, int lane) noexcept {
+    const int k = static_cast<int>(used_[lane]);
+    if (k == capacity_) return false;
+    auto here = MaskOf<W>::Splat(false);
+    here.Set(lane, true);
+    Put(k, found, here);
+    used_.Set(lane, k + 1);
+    return true;
+  }
+  int count() const noexcept { return count_; }
+
+ private:
+  template <class M>
+  TAUT_INLINE void Put(int k, const Found<W>& found, M here) noexcept {
+    Contact<W, 1>& slot = slots_[k];
+    if (k == count_) {
+      // Lanes that have no such contact keep a harmless one.
+      ++count_;
+      slot.one_direction = one_direction_;
+      slot.directed = false;
+      slot.upright = found.upright;
+      slot.live = W::Splat(0.0);
+      PutContact(slot, found, MaskOf<W>::Splat(true));
+      slot.key = Select(here, found.key, W::Splat(kNoKey));
+    } else {
+      slot.upright = slot.upright && found.upright;
+      PutContact(slot, found, here);
+    }
+    slot.live = Select(here, W::Splat(1.0), slot.live);
+  }
+
+  Contact<W, 1>* slots_;
+  int capacity_, count_ = 0;
+  W used_ = W::Splat(0.0);
+  bool one_direction_;
+};
+
+/// A touching point of a body and a shape that does not move, for one lane of a slot.
+template <class W>
+Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
+                    const ShapePairTable& pair, const TouchPoint& t, int body, int lane) noexcept {
+  const V3<W>& x = s.pos[body];
+  Found<W> found;
+  found.key = W::Splat(pair.id + static_cast<uint32_t>(t.feature));
+  found.frame = W::Splat(-1.0) - found.key;  // like no other
+  found.gap = W::Splat(t.gap_m);
+  found.radius = W::Splat(RadiusOf(m.shapes[pair.a].shape_P));
+  found.static_friction = W::Splat(pair.static_friction);
+  found.kinetic_friction = W::Splat(pair.kinetic_friction);
+  found.restitution = W::Splat(pair.restitution);
+  found.upright = false;
+  found.n = simd::Splat3<W>(t.normal);
+  found.t1 = found.t2 = found.n;  // to be made
+  const V3<W>& v = work.bodies[body].v;
+  found.arm = {W::Splat(t.point[0] - (x.x[lane] + t.when_s * v.x[lane])),
+               W::Splat(t.point[1] - (x.y[lane] + t.when_s * v.y[lane])),
+               W::Splat(t.point[2] - (x.z[lane] + t.when_s * v.z[lane]))};
+  return found;
+}
+
+/// Of the points that one pair of shapes has in one lane those that do not only pass by, in the
+/// order of their features: into the slots of a body if the other does not move, else into the
+/// lists of touches.
+template <class W>
+TAUT_INLINE void PutPoints(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+                           const ShapePairTable& pair, int lane, double step_s, NearParts* kept,
+                           TouchPoint* points, int found, SlotFiller<W>* slots,
+                           uint32_t* overflow) noexcept {
+  const int body = m.shapes[pair.a].body;
+  const int count = slots != nullptr
+                        ? KeepTouching(m, s, work, pair, lane, step_s, m.first_slot[body],
+                                       g.slots_used[body], kept, points, found)
+                        : KeepTouching(m, s, work, pair, lane, step_s, m.slot_count, g.touches_used,
+                                       kept, points, found);
+  for (int feature = 0, left = count; left > 0; ++feature) {
+    for (int i = 0; i < count; ++i) {
+      if (points[i].feature != feature) continue;
+      --left;
+      const bool room =
+          slots != nullptr
+              ? slots->Add(FoundTouch(m, s, work, pair, points[i], body, lane), lane)
+              : work.AddTouch(m, lane, static_cast<int>(&pair - m.shape_pairs), points[i]);
+      if (!room) *overflow |= 1u << lane;
+    }
+  }
+}
+
+/// All points of a pair. False if none is near.
+template <class W>
+bool PutTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+                const ShapePairTable& pair, int lane, double margin, double step_s,
+                SlotFiller<W>* slots, uint32_t* overflow) noexcept {
+  TouchPoint points[kMaxPointsPerPair];
+  const int found = TouchLane(m, s, work, pair, lane, margin, points);
+  PutPoints(m, s, g, work, pair, lane, step_s, nullptr, points, found, slots, overflow);
+  return found > 0;
+}
+
+/// How far two bodies may reach for each other in this step,
+template <class W>
+TAUT_INLINE W Reach(const BodyWork<W>& a, const BodyWork<W>& b, W h) noexcept {
+  return h * Norm1(a.v - b.v) + (a.turns + b.turns) + W::Splat(kContactMarginM);
+}
+/// and what they have used up of their clearance since the step before.
+template <class W>
+TAUT_INLINE W Used(const BodyWork<W>& a, const BodyWork<W>& b, W since_last) noexcept {
+  return since_last * Norm1(a.v0 - b.v0) + (a.turned + b.turned);
+}
+
+/// Lanes in which two bodies may touch, as far as the last look knows, and how far each may reach.
+template <class W>
+MaskOf<W> ClearanceUsedUp(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair, W h,
+                          W since_last, W& margin) noexcept {
+  const BodyPairTable& bodies = m.body_pairs[pair];
+  const BodyWork<W>&a = work.bodies[bodies.a], &b = work.bodies[bodies.b];
+  margin = Reach(a, b, h);
+  s.clearance[pair] -= Used(a, b, since_last);
+  return s.clearance[pair] < margin;
+}
+
+/// After bodies of a lane have been moved otherwise than by their velocities: how far they are from
+/// each other is to be looked up again.
+template <class W>
+void LookAgain(const View& m, const Rows<W>& s, int lane) noexcept {
+  for (int pair = 0; pair < m.body_pair_count; ++pair) s.clearance[pair].Set(lane, 0.0);
+}
+
+}  // namespace taut::sim

@@ -1,0 +1,115 @@
+/// Groups of cables that are implicit in tension and direction (docs/theory/cables.md, section 3):
+/// all cables of a group of bodies connected by cables, if one of them is stiff at this step. The
+/// selection depends on the model, its parameters and the step, never on the state.
+#pragma once
+
+#include "sim/data/view.h"
+
+namespace taut::sim {
+
+/// Limit of explicit springs: h^2 K / m, summed over the cables that a cable is coupled to (the
+/// explicit scheme is stable below 4).
+inline constexpr double kSoftSpring = 0.1;
+/// Threshold of (w h)^2 above which a damped stiff cable gets the second stage.
+inline constexpr double kUnresolvedSpring = 4.0;
+/// Largest number of bodies of a group whose matrix always fits (solve/memory.h).
+inline constexpr int kMostInGroup = 128;
+
+enum GroupKind : uint8_t {
+  kGroupStiff = 1,   ///< One of its cables is stiff.
+  kGroupOther = 2,   ///< It has cables or bodies that the scheme does not support.
+  kGroupDamped = 4,  ///< A stiff cable that the step does not resolve has a damper.
+};
+
+/// Whether the scheme supports a cable: straight between points of bodies, no direct-current motor.
+TAUT_INLINE bool IsStraight(const View& m, const CableTable& cable) noexcept {
+  if (cable.wheel_count > 0 || cable.touch >= 0 || cable.span_count > 0) return false;
+  if (cable.motor >= 0) return false;
+  for (int i = 0; i < cable.attachment_count; ++i) {
+    if (m.HasMotion(m.attachments[cable.first_attachment + i].body)) return false;
+  }
+  return true;
+}
+
+/// The groups of a world. Each array has one element per body.
+struct CableGroups {
+  int *group, *size;  ///< Lowest body of the group; number of its bodies (at that one);
+  uint8_t* kind;      ///< bits of GroupKind.
+
+  /// Whether the cables of a body are integrated implicitly.
+  TAUT_INLINE bool IsImplicit(int body) const noexcept {
+    return (kind[group[body]] & (kGroupStiff | kGroupOther)) == kGroupStiff;
+  }
+  TAUT_INLINE bool IsDamped(int body) const noexcept {
+    return (kind[group[body]] & kGroupDamped) != 0;
+  }
+};
+
+template <class Moves, class F>
+TAUT_INLINE void ForEachMoved(const View& m, const CableTable& cable, const Moves& moves,
+                              const F& f) noexcept {
+  for (int i = 0; i < cable.attachment_count; ++i) {
+    const int body = m.attachments[cable.first_attachment + i].body;
+    if (body < m.body_count && moves(body)) f(body);
+  }
+}
+
+/// `moves(body)`: whether impulses move it; `stiffness(cable)`: K of (7) [1/s^2]; `damps(cable)`:
+/// whether it has a damper.
+template <class Moves, class Stiffness, class Damps>
+TAUT_INLINE void FindGroups(const View& m, double step_s, const Moves& moves,
+                            const Stiffness& stiffness, const Damps& damps,
+                            const CableGroups& x) noexcept {
+  const auto root = [&](int body) {
+    while (x.group[body] != body) body = x.group[body];
+    return body;
+  };
+  const auto join = [&](int a, int b) {
+    a = root(a), b = root(b);
+    x.group[a > b ? a : b] = a > b ? b : a;
+  };
+  for (int b = 0; b < m.body_count; ++b) x.group[b] = b, x.size[b] = 0, x.kind[b] = 0;
+  for (int c = 0; c < m.cable_count; ++c) {
+    int first = -1;
+    ForEachMoved(m, m.cables[c], moves, [&](int body) {
+      if (first >= 0) join(first, body);
+      first = body;
+    });
+  }
+  for (int i = 0; i < m.joint_count; ++i) {
+    const JointTable& j = m.joints[i];
+    if (j.a_moves && j.b_moves) join(j.a, j.b);
+  }
+  for (int b = 0; b < m.body_count; ++b) {
+    x.group[b] = root(b);
+    ++x.size[x.group[b]];
+  }
+  const auto mark = [&](int body, uint8_t kind) {
+    uint8_t& all = x.kind[x.group[body]];
+    all = static_cast<uint8_t>(all | kind);
+  };
+  for (int i = 0; i < m.joint_count; ++i) {
+    const JointTable& j = m.joints[i];
+    if (j.a_moves) mark(j.a, kGroupOther);
+    if (j.b_moves) mark(j.b, kGroupOther);
+  }
+  for (int b = 0; b < m.body_count; ++b) {
+    if (x.size[b] > kMostInGroup) mark(b, kGroupOther);
+  }
+  for (int c = 0; c < m.cable_count; ++c) {
+    const double K = stiffness(c);
+    int kind = IsStraight(m, m.cables[c]) ? 0 : kGroupOther;
+    if (K > kSoftSpring / (step_s * step_s)) kind |= kGroupStiff;
+    if (K > kUnresolvedSpring / (step_s * step_s) && damps(c)) kind |= kGroupDamped;
+    if (m.cables[c].touch >= 0) {
+      // It may later act on any of its rods.
+      const TouchTable& touch = m.touches[m.cables[c].touch];
+      for (int i = 0; i < touch.rod_count; ++i) {
+        mark(m.touch_rods[touch.first_rod + i].body, kGroupOther);
+      }
+    }
+    ForEachMoved(m, m.cables[c], moves, [&](int body) { mark(body, static_cast<uint8_t>(kind)); });
+  }
+}
+
+}  // namespace taut::sim

@@ -1,0 +1,159 @@
+/// The solver's memory, whose size follows from the model.
+#pragma once
+
+#include "sim/constraint/cable_chain.h"
+#include "sim/constraint/cable_row.h"
+#include "sim/constraint/joint_row.h"
+#include "sim/constraint/turn_friction.h"
+#include "sim/data/contacts.h"
+#include "sim/data/island.h"
+#include "sim/data/room.h"
+#include "sim/data/view.h"
+
+namespace taut::sim {
+
+/// The kinds of constraints that a step knows.
+template <class Num>
+using StepPools =
+    Pools<ContactPoint<Num, 2>, CableRow<Num>, JointRow<Num>, TurnFriction<Num>, CableChain<Num>>;
+
+/// What solving one lane's islands takes. Systems with more blocks than there is room for (over 128
+/// bodies that are all tied together) are left to the sweeps.
+template <class Num>
+struct LaneMemory {
+  static constexpr int64_t kFullBodies = 128;
+
+  Row<Contact<Num, 2>> pairs;    ///< The lane's list of touches, prepared.
+  Row<int> root, local, bodies;  ///< Per body: its island; its number there; an island's bodies.
+  Row<int> order, place;         ///< Of elimination.
+  Row<int> source;               ///< Per constraint of an island: its index in the lane.
+  BodyGraph graph;
+  int block_capacity;
+  Island<Num, StepPools<Num>> island;
+  Row<Link<Num, 1>> links;
+  Row<RowLink<Num>> chain_links;  ///< Those of a cable from its first_link on.
+  Row<ChainSpan<Num>> spans;
+
+  void Take(const View& m, Room& room) noexcept {
+    const int64_t n = m.body_count, contacts = m.slot_count + m.pair_capacity;
+    const int64_t single = m.cable_count + m.joint_row_count;
+    const int64_t rows = 3 * contacts + single + m.span_count;
+    const int64_t cells =
+        9 * (contacts + m.turn_friction_count) + single + kMostSpans * m.span_count;
+    const int64_t blocks = n < kFullBodies ? n * n : kFullBodies * n;
+    block_capacity = static_cast<int>(blocks);
+    pairs = room.Take<Contact<Num, 2>>(m.pair_capacity);
+    Row<int>* const per_body[] = {&root, &local, &bodies, &order, &place};
+    for (Row<int>* list : per_body) *list = room.Take<int>(n + 1);
+    source = room.Take<int>(contacts + single + m.chain_count);
+    graph.bits = room.Take<uint64_t>(n * BodyGraph::WordsFor(m.body_count));
+    links = room.Take<Link<Num, 1>>(m.CableLinkCapacity(1));
+    chain_links = room.Take<RowLink<Num>>(m.chain_link_count);
+    spans = room.Take<ChainSpan<Num>>(m.span_count);
+    island.bodies = room.Take<Unknown<Num>>(n);
+    island.pattern.slot = room.Take<int>(n * n);
+    island.pattern.below = room.Take<int>(blocks);
+    island.pattern.first_below = room.Take<int>(n + 1);
+    Pool<ContactPoint<Num, 2>>& points = island.pools;
+    points.items = room.Take<ContactPoint<Num, 2>>(contacts);
+    points.branches = room.Take<typename ContactPoint<Num, 2>::Branch>(contacts);
+    Pool<CableRow<Num>>& cables = island.pools;
+    cables.items = room.Take<CableRow<Num>>(m.cable_count);
+    cables.branches = room.Take<typename CableRow<Num>::Branch>(m.cable_count);
+    Pool<JointRow<Num>>& joints = island.pools;
+    joints.items = room.Take<JointRow<Num>>(m.joint_row_count);
+    joints.branches = room.Take<typename JointRow<Num>::Branch>(m.joint_row_count);
+    Pool<TurnFriction<Num>>& frictions = island.pools;
+    frictions.items = room.Take<TurnFriction<Num>>(m.turn_friction_count);
+    frictions.branches = room.Take<typename TurnFriction<Num>::Branch>(m.turn_friction_count);
+    Pool<CableChain<Num>>& chains = island.pools;
+    chains.items = room.Take<CableChain<Num>>(m.chain_count);
+    chains.branches = room.Take<typename CableChain<Num>::Branch>(m.chain_count);
+    IslandMemory<Num>& x = island.m;
+    Row<Num>* const per_dof[] = {&x.v, &x.rhs, &x.direction, &x.trial_v};
+    for (Row<Num>* list : per_dof) *list = room.Take<Num>(kDofs * n);
+    Row<Num>* const per_row[] = {&x.l,  &x.u, &x.best,           &x.center,    &x.projected, &x.du,
+                                 &x.u2, &x.f, &x.impacts.before, &x.impacts.u, &x.impacts.l};
+    for (Row<Num>* list : per_row) *list = room.Take<Num>(rows);
+    x.g = room.Take<Num>(cells);
+    x.blocks = room.Take<Num>(36 * blocks);
+  }
+};
+
+/// What the system of all that joints hold takes (joint_places.inl).
+template <class W>
+struct JointMemory {
+  Row<Unknown<W>> bodies;
+  Row<JointRow<W>> rows;
+  Row<int> number;         ///< Per row that is held: its number among the model's,
+  Row<W> G, gap, miss, l;  ///< stiffness, gap, error, impulse.
+  Row<W> rhs, change;      ///< 6 per body; rhs: also for kinematic bodies, which do not change.
+  Row<W> moved;            ///< Per body: largest displacement of its points [m],
+  Row<V3<W>> gained;       ///< and the change of angular momentum by it.
+  Row<W> blocks;           ///< 36 a block.
+
+  void Take(const View& m, Room& room) noexcept {
+    const int64_t n = m.joint_body_count;
+    const int64_t with_motions = n + (m.joint_count > 0 ? m.motion_count : 0);
+    bodies = room.Take<Unknown<W>>(n);
+    rows = room.Take<JointRow<W>>(m.joint_row_count);
+    number = room.Take<int>(m.joint_row_count);
+    Row<W>* const per_row[] = {&G, &gap, &miss, &l};
+    for (Row<W>* list : per_row) *list = room.Take<W>(m.joint_row_count);
+    rhs = room.Take<W>(kDofs * with_motions), change = room.Take<W>(kDofs * n);
+    moved = room.Take<W>(n), gained = room.Take<V3<W>>(n);
+    blocks = room.Take<W>(36 * static_cast<int64_t>(m.joint_pattern->lower_count));
+  }
+};
+
+/// What solving all cables and contacts of a world in lanes takes (world_dual.inl). Whether a world
+/// is solved so follows from the model alone, from all that might touch: not from other lanes.
+template <class W>
+struct DualMemory {
+  static constexpr int kMaxRows = 96, kMaxRowsPerBody = 12;
+  /// On ground, where rods have room for many contacts and have few.
+  using Packed = ContactPoint<W, W::kLanes>;
+
+  /// A row of J that acts on a body.
+  struct Column {
+    int row;
+    const V3<W>*lin, *ang, *turn;
+  };
+  int capacity;         ///< Rows; 0: not solved so.
+  int packed_capacity;  ///< Contacts of a world, if they are packed (packed_contacts.inl).
+  Row<Packed> packed;
+  Row<W> a;                 ///< Inverse effective mass, then factors: an upper triangle, by rows.
+  Row<W> c;                 ///< The contacts' system.
+  Row<W> u, l, r, q;        ///< Velocities, impulses; right sides, then changes.
+  Row<W> d, now;            ///< Changes and impulses of the contacts alone.
+  Row<W> diagonal, active;  ///< Of the cables' A and S.
+  ImpactRows<W> impacts;
+  Row<Twist<W>> v;        ///< Per body.
+  Row<Column> columns;    ///< By body:
+  Row<int> first_column;  ///< where each body's start.
+
+  void Take(const View& m, Room& room) noexcept {
+    const int of_bodies = kMaxRowsPerBody * m.body_count;
+    const int most = of_bodies < kMaxRows ? of_bodies : kMaxRows;
+    int contacts = m.slot_count;
+    if (m.has_ground) contacts = most > m.cable_count ? (most - m.cable_count) / 3 : 0;
+    const int rows = 3 * contacts + m.cable_count;
+    const bool fits = rows <= most && (contacts > 0 || !m.has_ground) && m.joint_row_count == 0 &&
+                      m.motion_count == 0;
+    capacity = fits ? rows : 0;
+    if (capacity == 0) contacts = 0;
+    packed_capacity = m.has_ground ? contacts : 0;
+    packed = room.Take<Packed>(packed_capacity);
+    a = room.Take<W>(capacity * (capacity + 1) / 2);
+    c = room.Take<W>(9 * contacts * contacts);
+    Row<W>* const per_row[] = {
+        &u, &l, &r, &q, &d, &now, &diagonal, &active, &impacts.before, &impacts.u, &impacts.l};
+    for (Row<W>* list : per_row) *list = room.Take<W>(capacity);
+    v = room.Take<Twist<W>>(m.body_count);
+    first_column = room.Take<int>(m.body_count + 1);
+    const int links = m.has_ground ? W::kLanes * packed_capacity : m.slot_count;
+    columns = room.Take<Column>(3 * links + m.CableLinkCapacity(W::kLanes));
+  }
+};
+
+}  // namespace taut::sim

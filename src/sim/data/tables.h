@@ -1,0 +1,139 @@
+/// The topology and constants of a model, laid out for stepping when it is compiled (`View`).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sim/data/view.h"
+#include "sim/geometry/hull_build.h"
+#include "sim/geometry/surface_build.h"
+#include "taut/batch.h"
+
+namespace taut::sim {
+
+class Tables final : public Model {
+ public:
+  explicit Tables(ModelDef def) : Model(std::move(def)) {}
+
+  /// By impulses. `body` may be the world.
+  bool Moves(int body) const {
+    return body < body_count && !def().bodies[static_cast<std::size_t>(body)].fixed;
+  }
+  /// As a program says.
+  bool HasMotion(int body) const {
+    return body < body_count && motion_of_body[static_cast<std::size_t>(body)] >= 0;
+  }
+
+  int body_count = 0, cable_count = 0, node_count = 0, plane_count = 0;
+  std::vector<double> q_WP0;    ///< 4 per body: principal frame at t = 0.
+  std::vector<double> inertia;  ///< 3 per body: principal moments [kg m^2].
+  std::vector<double> bound_m;  ///< Per body and the world: reach of its shapes from its origin.
+  std::vector<CableTable> cables;
+  std::vector<MotorTable> motors;  ///< In the order of their cables.
+  std::vector<SupplyTable> supplies;
+  std::vector<AttachmentTable> attachments;
+  std::vector<AttachmentTable> spots;   ///< The distinct points of bodies among them.
+  int max_attachments = 0;              ///< Of one cable.
+  std::vector<WheelTable> wheels;       ///< Cable after cable.
+  int max_wheels = 0;                   ///< Of one cable.
+  int chain_count = 0, span_count = 0;  ///< Cables with friction, and their spans.
+  int chain_link_count = 0;             ///< Room for what those do to bodies.
+  std::vector<double> span_rest_m;      ///< Of the spans, at the start.
+  std::vector<SlipTable> slips;
+  std::vector<TouchTable> touches;
+  std::vector<TouchRodTable> touch_rods;
+  std::vector<AttachmentTable> nodes;
+  std::vector<PlaneTable> planes;
+  std::vector<int> first_point;  ///< Per body, and one past the last.
+  std::vector<PointTable> points;
+  std::vector<ShapeTable> shapes;
+  std::vector<ShapeRef> shape_refs;  ///< Per shape: what it is made from.
+  std::vector<Hull> hulls;
+  std::vector<Surface> surfaces;
+  std::vector<ShapePairTable> shape_pairs;
+  std::vector<BodyPairTable> body_pairs;
+  int world_pair_count = 0;     ///< Of them, the first: `b` does not move; by `a`.
+  std::vector<int> first_slot;  ///< Of a body's contacts with what does not move; one more.
+  int slot_count = 0;
+  int kept_count = 0;               ///< Pairs that keep what is near (BodyPairTable::kept).
+  std::uint32_t first_pair_id = 0;  ///< Keys below are point * planes + plane, others of pairs.
+  int pair_capacity = 0;            ///< Contacts of moving bodies that one world may have at once.
+  bool along_slip = false;
+  std::vector<FrictionSide> friction_sides;  ///< Of all shapes, then of all planes.
+  std::vector<int> shape_of_point;
+  bool friction_by_slip = false;  ///< Some side is.
+  double floor_m = 0;             ///< See View.
+  std::vector<TreeNode> tree;     ///< Of the world's shapes, where they are more than kFewShapes.
+  int tree_shapes = 0;            ///< How many those are; 0 without a tree.
+  std::vector<int> world_shapes;  ///< Without surfaces, in the order of the tree's numbers.
+  std::vector<int> beside;        ///< What ShapeTable::beside points into.
+  std::vector<std::vector<SeamPiece>> seams;  ///< Storage of the seam lists.
+  std::vector<JointTable> joints;
+  std::vector<JointRowTable> joint_rows;
+  int turn_friction_count = 0;    ///< Ball joints with friction.
+  bool joint_loops = false;       ///< They close one, so that some of their rows may be redundant.
+  std::vector<int> joint_bodies;  ///< Those that joints move, in the order of elimination, then
+                                  ///< those with motions;
+  std::vector<int> joint_number;  ///< per body its place there, or -1;
+  std::vector<int> hinged;        ///< per body whether it is on a hinge;
+  BlockPattern joint_pattern{};   ///< the blocks of their system, in what follows.
+  std::vector<int> joint_slot, joint_below, joint_first_below;
+  /// Bodies that joints tie to each other and not to what does not move: where each chain of them
+  /// starts, one more, and all their bodies.
+  std::vector<int> free_chains, free_chain_bodies;
+  std::vector<MotionTable> motions;
+  std::vector<MotionKnot> motion_knots;
+  std::vector<int> motion_of_body;
+  std::vector<double> coupling;  ///< Per cable: sum over all cables of |coupling| [1/kg].
+  double largest_coupling = 0;   ///< Largest eigenvalue of the couplings [1/kg].
+
+  /// The same tables as plain pointers, for code that is compiled for several instruction sets
+  /// and must not touch the standard library.
+  struct View View() const noexcept;
+  Layout MakeLayout() const;
+};
+
+/// Fills pairs and slots. `shapes_of`: the shapes of each body and the world, but for the ground;
+/// `ground`: surfaces among the shapes.
+void LayOutPairs(Tables& tables, const std::vector<std::vector<std::size_t>>& shapes_of,
+                 const std::vector<std::size_t>& ground);
+
+/// Fills the tree of the world's shapes if they are many, and says so to the pairs with it.
+void LayOutTree(Tables& tables);
+
+/// Finds the boxes of the world that touch each other, and says so to the pairs with it.
+void JoinBoxes(Tables& tables);
+
+/// Finds the adjacent pieces of surfaces and terrain boxes, and marks the pairs with those boxes.
+/// Call after JoinBoxes.
+void JoinPieces(Tables& tables);
+
+/// Fills floor_m.
+void LayOutFloor(Tables& tables);
+
+/// Fills friction_sides and friction_by_slip.
+void LayOutFriction(Tables& tables);
+
+/// Fills motors and supplies, and which cable has which motor.
+void LayOutMotors(Tables& tables);
+
+/// Fills all that is of cables. `frames`: of the bodies and the world.
+void LayOutCables(Tables& tables, const std::vector<Frame>& frames);
+
+/// Fills touch_rods. After the shapes.
+void LayOutTouchRods(Tables& tables);
+
+/// Room for what cables with friction do. After touch_rods.
+void LayOutChainLinks(Tables& tables);
+
+/// Fills all that is of joints. `frames`: of the bodies and the world.
+void LayOutJoints(Tables& tables, const std::vector<Frame>& frames);
+
+/// Fills all that is of motions. Before shapes and joints.
+void LayOutMotions(Tables& tables);
+
+/// Fills coupling and largest_coupling.
+void CoupleCables(Tables& tables);
+
+}  // namespace taut::sim

@@ -1,0 +1,293 @@
+/// Read-only model data for a step: topology and constants, shared by all worlds.
+///
+/// Every body has a principal frame P: origin in the centre of mass, axes along the principal
+/// axes of inertia. Points of a body are kept in P. The world is body number `body_count`: it
+/// has no mass, does not move, and its frame is W.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/data/body_frame.h"
+#include "sim/data/cable_table.h"
+#include "sim/data/elimination.h"
+#include "sim/data/joint_table.h"
+#include "sim/data/motion_table.h"
+#include "sim/data/state_rows.h"
+#include "sim/geometry/seams.h"
+#include "sim/geometry/shape_contacts.h"
+#include "sim/geometry/shape_tree.h"
+#include "sim/geometry/surface.h"
+#include "taut/batch.h"
+
+namespace taut::sim {
+
+/// A `DcMotorDef` in the variables of its law (dc_motor.inl).
+struct MotorTable {
+  int cable = 0, supply = 0;
+  double way_m = 0;        ///< Of the rest length, per angle of the rotor [m/rad].
+  double inv_inertia = 0;  ///< Of the rotor [1/(kg m^2)].
+  double constant = 0;     ///< Torque per current, back EMF per speed [V s/rad].
+  double winding_ohm = 0, driver_ohm = 0;
+  double rise_per_k = 0, rated_c = 0, ambient_c = 0;
+  double friction = 0, static_more = 0;  ///< Coulomb friction, excess of static friction [N m].
+  double inv_stribeck2 = 0;              ///< 1 / speed^2 [s^2/rad^2].
+  double viscous = 0;                    ///< [N m s/rad]
+  double gear_loss = 0;                  ///< Friction of the gear per torque of the cable [1].
+  double backlash_m = 0, min_rest_m = 0;
+  double winding_w_per_k = 0, housing_w_per_k = 0;  ///< To the housing, to the air.
+  double winding_k_per_j = 0, housing_k_per_j = 0;  ///< 1 / heat capacity.
+  double servo_gain = 0, servo_damping = 0;         ///< [1/m], [s/m]
+};
+
+struct SupplyTable {
+  double voltage_v = 0, resistance_ohm = 0;
+};
+
+struct AttachmentTable {
+  int body = 0;
+  double p_P[3] = {};  ///< [m]
+  int spot = 0;        ///< Of a cable: the number of that point among all distinct ones.
+};
+
+/// A shape that may touch another.
+struct ShapeTable {
+  int body = 0;
+  Shape shape_P;
+  double center_P[3] = {};
+  double bound_m = 0;  ///< Radius of the sphere around `center_P` that holds it.
+  Material material;
+  int point[2] = {};            ///< Of a round one: numbers of its ends among all points;
+  bool elsewhere[2] = {};       ///< another shape of the body has that one.
+  const int* beside = nullptr;  ///< Terrain boxes: other terrain boxes that touch it.
+  int beside_count = 0;
+  SeamList seams;  ///< Terrain boxes: adjacent pieces.
+
+  /// Whether adjacent pieces must be checked with it. Always inline: see View.
+  [[gnu::always_inline]] bool IsJoined() const noexcept {
+    return beside_count > 0 || seams.count > 0;
+  }
+};
+
+/// Largest gap between touching terrain boxes [m].
+inline constexpr double kJoinedM = 1e-9;
+/// Largest number of them, and of their points, per query.
+inline constexpr int kMostJoinedPairs = 32, kMostJoinedPoints = kMostJoinedPairs * 13;
+
+/// A point that can touch a plane: a sphere's centre, a capsule's end, a box's or a hull's corner.
+struct PointTable {
+  double p_P[3] = {};
+  double radius_m = 0;
+  double static_friction[8] = {}, kinetic_friction[8] = {}, restitution[8] = {};  ///< A plane each.
+};
+
+/// One side of a contact as friction sees it.
+struct FrictionSide {
+  ShapeRef ref;
+  int body = kWorld;  ///< As in a `ModelDef`.
+  bool directed = false;
+  bool by_slip = false;  ///< Anything but two constant coefficients.
+  double at_rest = 0, sliding = 0;
+  double inv_stribeck2 = 0;  ///< 1 / speed^2 [s^2/m^2], or 0.
+  double viscous = 0;        ///< [s/m]
+  double forward = 1, backward = 1, sideways = 1;
+  double axis_P[3] = {};  ///< Unit vector, if directed.
+};
+
+/// Friction data beyond two coefficients per pair (friction.h).
+struct FrictionTable {
+  const FrictionSide* sides = nullptr;  ///< Of all shapes, then of all planes.
+  int shape_count = 0;
+  const int* shape_of_point = nullptr;
+  CombineRule combine = CombineRule::kGeometricMean;
+  const ContactFriction* law = nullptr;  ///< Of the user's, or null.
+};
+
+struct PlaneTable {
+  double normal[3] = {}, tangent1[3] = {}, tangent2[3] = {};
+  double offset_m = 0;   ///< normal . x of its points.
+  bool upright = false;  ///< Normal and tangents are z, x and y.
+};
+
+struct ShapePairTable {
+  int a = 0, b = 0;      ///< Shapes; the body of `a` is not the world.
+  std::uint32_t id = 0;  ///< Of its first possible contact point.
+  double static_friction = 0, kinetic_friction = 0, restitution = 0;
+  std::uint32_t elsewhere = 0;  ///< Features that another pair has, too: a bit each.
+  /// One shape is round, so that the contact point is fixed to neither body, and one body is
+  /// kinematic or jointed (solve/rolling.inl).
+  bool rolls = false;
+};
+
+/// Two bodies that may touch, with all pairs of their shapes; or a shape of a body and ground.
+struct BodyPairTable {
+  int a = 0, b = 0;  ///< b may be the world.
+  int first_pair = 0, pair_count = 0;
+  bool by_tree = false;    ///< b is the world; its shapes are found by its tree.
+  bool on_ground = false;  ///< One pair, whose second shape is a surface.
+  int kept = -1;           ///< Index among pairs with a cache of near parts (near_parts.h).
+  bool joined = false;     ///< b is the world, and some boxes of it touch each other.
+};
+
+/// Largest number of terrain shapes that are tested one by one; more are in a BVH.
+inline constexpr int kFewShapes = 8;
+
+inline constexpr int kMaxPlanes = 8;
+
+/// Offsets, in rows of one double a lane, of everything that a group of worlds keeps
+/// (state_rows.h).
+struct Layout {
+#define TAUT_ROW(name, ...) int name = 0;
+  TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
+  int hash_rows = 0;      ///< State and parameters, which come first.
+  int snapshot_rows = 0;  ///< Those and the readings, which follow.
+  int rows = 0;
+};
+
+/// A line of state_rows.h, for loops over all rows.
+struct RowInfo {
+  int width;
+  Per per;
+  Role role;
+  Halted halted;
+  int Layout::*first;
+};
+
+inline constexpr RowInfo kStateRows[] = {
+#define TAUT_ROW(name, type, per, role, halted, start) \
+  {kWidth##type, Per::per, Role::role, Halted::halted, &Layout::name},
+    TAUT_STATE_ROWS(TAUT_ROW)
+#undef TAUT_ROW
+};
+
+/// Snapshots and hashes take state and parameters as one piece.
+constexpr bool RolesRise() {
+  Role last = Role::kState;
+  for (const RowInfo& row : kStateRows) {
+    if (row.role < last) return false;
+    last = row.role;
+  }
+  return true;
+}
+static_assert(RolesRise());
+
+/// `Tables` without the standard library.
+struct View {
+  int body_count, cable_count, node_count, plane_count, body_pair_count;
+  const double* bound_m;
+  const CableTable* cables;
+  const AttachmentTable* attachments;
+  const AttachmentTable* spots;
+  const AttachmentTable* nodes;
+  const PlaneTable* planes;
+  const int* first_point;
+  const PointTable* points;
+  const ShapeTable* shapes;
+  const ShapePairTable* shape_pairs;
+  const BodyPairTable* body_pairs;
+  int world_pair_count;
+  const int* first_slot;
+  int slot_count;
+  std::uint32_t first_pair_id;
+  int pair_capacity, max_attachments, attachment_count, spot_count;
+  int wheel_count, max_wheels;
+  const WheelTable* wheels;
+  int chain_count, span_count, slip_count, chain_link_count;
+  const SlipTable* slips;
+  bool along_slip;
+  bool has_ground;  ///< Height fields or meshes.
+  int kept_count;   ///< Number of pairs with a cache of near parts (BodyPairTable::kept).
+  int motor_count, supply_count;
+  const MotorTable* motors;
+  const SupplyTable* supplies;
+  int tree_nodes, tree_shapes;
+  const TreeNode* tree;
+  int world_shape_count;    ///< Without surfaces;
+  const int* world_shapes;  ///< in the order of the tree's numbers.
+  int touch_count;
+  const TouchTable* touches;
+  int touch_rod_count;
+  const TouchRodTable* touch_rods;
+  const FrictionTable* friction;   ///< Null: coefficients are those of the pairs.
+  double floor_m;                  ///< Bodies below it have fallen off; minus infinity: none.
+  int first_ground, ground_count;  ///< Surfaces among the shapes.
+  int joint_count, joint_row_count, joint_body_count, turn_friction_count;
+  const JointTable* joints;
+  const JointRowTable* joint_rows;
+  const int *joint_bodies, *joint_number, *hinged;
+  const BlockPattern* joint_pattern;
+  bool joint_loops;
+  int free_chain_count;
+  const int *free_chains, *free_chain_bodies;
+  int motion_count;
+  const MotionTable* motions;
+  const MotionKnot* motion_knots;
+  const int* motion_of_body;  ///< Per body, or -1; null without motions.
+
+  // Always inline: of a function that several instruction sets emit the linker keeps any one.
+  /// Contacts that one world may have at once.
+  [[gnu::always_inline]] int ContactCapacity() const noexcept { return slot_count + pair_capacity; }
+  /// Links of all cables to bodies, in `lanes` lanes: one an attachment, and one a rod that the
+  /// cable may lie against. A lane's cable has kMostBends of those at most, each lane others.
+  [[gnu::always_inline]] int CableLinkCapacity(int lanes) const noexcept {
+    int count = attachment_count;
+    for (int i = 0; i < touch_count; ++i) {
+      const int bends = lanes * kMostBends, rods = touches[i].rod_count;
+      count += bends < rods ? bends : rods;
+    }
+    return count;
+  }
+  /// Largest number of rods that one cable may touch.
+  [[gnu::always_inline]] int MostTouchRods() const noexcept {
+    int most = 0;
+    for (int i = 0; i < touch_count; ++i) {
+      if (touches[i].rod_count > most) most = touches[i].rod_count;
+    }
+    return most;
+  }
+  /// Whether the body is kinematic.
+  [[gnu::always_inline]] bool HasMotion(int body) const noexcept {
+    return motion_count > 0 && body < body_count && motion_of_body[body] >= 0;
+  }
+  /// Number of elements of a row.
+  [[gnu::always_inline]] int Count(Per per) const noexcept {
+    switch (per) {
+      case Per::kBody:
+        return body_count;
+      case Per::kCable:
+        return cable_count;
+      case Per::kMotor:
+        return motor_count;
+      case Per::kWheel:
+        return wheel_count;
+      case Per::kSpan:
+        return span_count;
+      case Per::kSlip:
+        return slip_count;
+      case Per::kTouch:
+        return touch_count;
+      case Per::kTouchRod:
+        return touch_rod_count;
+      case Per::kBend:
+        return touch_count * kMostBends;
+      case Per::kNode:
+        return node_count;
+      case Per::kJoint:
+        return joint_count;
+      case Per::kJointRow:
+        return joint_row_count;
+      case Per::kMotion:
+        return motion_count;
+      case Per::kBodyPair:
+        return body_pair_count;
+      case Per::kKept:
+        return kept_count;
+      case Per::kContact:
+        return ContactCapacity();
+      default:
+        return 1;
+    }
+  }
+};
+
+}  // namespace taut::sim

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "sim/geometry/touch_list.h"
+
+namespace taut::sim {
+
+/// A part of a line, between two shares of it.
+struct LineStretch {
+  double low, high;
+  /// Keeps where `at + share * slope` is not above 0.
+  void CutAbove(double at, double slope) noexcept {
+    if (slope > 0.0) {
+      high = Smaller(high, -at / slope);
+    } else if (slope < 0.0) {
+      low = Larger(low, -at / slope);
+    } else if (at > 0.0) {
+      high = low - 1.0;
+    }
+  }
+};
+
+}  // namespace taut::sim

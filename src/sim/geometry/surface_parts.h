@@ -1,0 +1,47 @@
+/// Searches near a field that keep what they came by (near_parts.h).
+///
+/// Part of a step: no standard library.
+#pragma once
+
+#include "sim/geometry/near_parts.h"
+#include "sim/geometry/surface_sharp.h"
+
+namespace taut::sim {
+
+/// So many times the limit is how far a field is looked through, so that bounds leave nothing out
+/// that the laws would take: what is kept is found by others.
+inline double WiderLook(const SurfaceTable& s) noexcept { return s.is_field ? 1.001 : 1.0; }
+
+/// Whether what is kept of what is near a rod, or a ball, serves where it is now.
+bool Serves(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
+            const NearParts& kept) noexcept;
+
+/// Looks up what is near, if that is worth it: not while the rod moves on at once. Whether it did.
+bool KeepParts(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
+               NearParts& kept) noexcept;
+
+inline SurfaceEdge EdgeOfPart(const SurfaceTable& s, int i, int j, int kind) noexcept {
+  constexpr FieldMark kMarks[] = {kSharpAlongX, kSharpAlongY, kSharpDiagonal};
+  return detail::EdgeOfField(s, i, j, kMarks[kind - SurfacePart::kEdgeX]);
+}
+
+/// `use_edge` and `use_corner` as EachSharp has them; `use_face(triangle)`.
+template <int kMost, class UseFace, class UseEdge, class UseCorner>
+void EachPart(const SurfaceTable& s, const PartList<kMost>& list, const UseFace& use_face,
+              const UseEdge& use_edge, const UseCorner& use_corner) noexcept {
+  for (int k = 0; k < list.count; ++k) {
+    const SurfacePart& part = list.parts[k];
+    const int i = list.i + part.di, j = list.j + (part.dj_kind >> 3), kind = part.dj_kind & 7;
+    if (kind <= SurfacePart::kSecondFace) {
+      use_face(detail::TriangleOfField(s, i, j, kind == SurfacePart::kSecondFace));
+    } else if (kind == SurfacePart::kCorner) {
+      use_corner(detail::CornerOf(s, i, j),
+                 [&](const auto& use) noexcept { detail::EachBesideOfField(s, i, j, use); });
+    } else {
+      const SurfaceEdge edge = EdgeOfPart(s, i, j, kind);
+      use_edge(edge.from, edge.to, [&]() noexcept { return edge; });
+    }
+  }
+}
+
+}  // namespace taut::sim

@@ -1,7 +1,0 @@
-#include "sim/kernel.inl"
-
-namespace taut::sim {
-
-const Kernel kKernelNeon = MakeKernel<simd::Wide<2>>();
-
-}  // namespace taut::sim

@@ -1,7 +1,0 @@
-#include "sim/kernel.inl"
-
-namespace taut::sim {
-
-const Kernel kKernelScalar = MakeKernel<simd::Wide<1>>();
-
-}  // namespace taut::sim

@@ -1,7 +1,0 @@
-#include "sim/kernel.inl"
-
-namespace taut::sim {
-
-const Kernel kKernelSse2 = MakeKernel<simd::Wide<2>>();
-
-}  // namespace taut::sim

@@ -1,0 +1,161 @@
+// Load cases of experiments: what they become, there and back, and what is wrong with them.
+#include <gmock/gmock.h>
+
+#include "unit/description/experiment_fixture.h"
+
+namespace taut::test {
+namespace {
+
+constexpr const char* kFrame = R"(taut: 1
+kind: model
+name: frame
+nodes: {a: [0, 0, 0], b: [2, 0, 0], c: [1, 0, 1], hook: [1, 0, 3]}
+pairs:
+  - {name: deck, nodes: [a, b], tags: [bar]}
+  - {tags: [bar, leg], each: [[b, c], [c, a]]}
+  - {name: rope, nodes: [c, hook], tags: [stay]}
+  - {name: line, nodes: [c, hook], tags: [stay]}
+builders:
+  - {match: deck, bar: {young_pa: 1e6, area_m2: 1e-3, mass_kg: 1}}
+  - {match: leg, bar: {young_pa: 1e6, area_m2: 1e-3, mass_kg: 1, expansion_per_k: 1e-5}}
+  - {match: stay, cable: {stiffness_n_per_m: 100, rest_length_m: 1.5, expansion_per_k: 2e-5}}
+  - {match: hook, anchor: {}}
+  - {match: [[a], [b]], support: {kind: ball}}
+)";
+constexpr const char* kCases = R"(taut: 1
+kind: experiment
+name: loads
+model: model.yaml
+duration_s: 1
+load_cases:
+  - name: snow
+    forces:
+      - {node: c, force_n: [0, 0, -100]}
+  - name: winter
+    weight: false
+    settlements:
+      - {support: b, by_m: [0, 0, -0.01]}
+    rest_lengths:
+      - {members: deck, by_m: -0.002}
+      - {members: stay, by_ratio: 0.01}
+    temperatures:
+      - {members: [[leg], [rope]], by_k: -20}
+)";
+
+class LoadCases : public ExperimentFolder {
+ protected:
+  LoadCases() {
+    Write("model.yaml", kFrame);
+    Write("trial.yaml", kCases);
+  }
+  std::string After(const std::string& old_text, const std::string& new_text) {
+    ChangeFile("trial.yaml", kCases, old_text, new_text);
+    return Without("trial.yaml:", Complaints());
+  }
+};
+
+TEST_F(LoadCases, BecomeForcesSettlementsAndLengths) {
+  const ExperimentSpec read = Load();
+  Write("resolved.yaml", ResolvedYaml(read));
+  for (const ExperimentSpec& e : {read, Load("resolved.yaml")}) {
+    ASSERT_EQ(e.load_cases.size(), 2u);
+    const LoadCaseSpec& snow = e.load_cases[0];
+    EXPECT_EQ(snow.name, "snow");
+    EXPECT_TRUE(snow.weight);
+    ASSERT_EQ(snow.forces.size(), 1u);
+    EXPECT_EQ(snow.forces[0].node, 2);
+    EXPECT_EQ(snow.forces[0].force_n.z, -100);
+    const LoadCaseSpec& winter = e.load_cases[1];
+    EXPECT_FALSE(winter.weight);
+    ASSERT_EQ(winter.settlements.size(), 1u);
+    EXPECT_EQ(e.robot.def.joints[static_cast<std::size_t>(winter.settlements[0].joint)].name, "b");
+    EXPECT_EQ(winter.settlements[0].by_m.z, -0.01);
+    ASSERT_EQ(winter.cables.size(), 2u);
+    EXPECT_NEAR(winter.cables[0].by_m, 0.015 - 2e-5 * 20 * 1.5, 1e-15);
+    EXPECT_NEAR(winter.cables[1].by_m, 0.015, 1e-15);
+    ASSERT_EQ(winter.bars.size(), 3u);
+    const auto bar = [&](std::size_t i) {
+      return e.robot.def.joints[static_cast<std::size_t>(winter.bars[i].index)];
+    };
+    EXPECT_EQ(bar(0).name, "deck");
+    EXPECT_EQ(winter.bars[0].by_m, -0.002);
+    EXPECT_EQ(bar(1).name, "b-c");
+    EXPECT_NEAR(winter.bars[1].by_m, -1e-5 * 20 * bar(1).rest, 1e-15);
+    EXPECT_EQ(e.robot.joint_tags[static_cast<std::size_t>(winter.bars[2].index)].size(), 3u);
+  }
+}
+
+TEST_F(LoadCases, MistakesAreNamed) {
+  EXPECT_EQ(After("node: c", "node: d"),
+            "9:16: error: there is no node \"d\" (did you mean \"a\"?)\n");
+  EXPECT_EQ(After("support: b", "support: c"),
+            "13:19: error: there is no support \"c\" (did you mean \"a\"?)\n");
+  EXPECT_EQ(After("members: stay", "members: stray"),
+            "16:19: error: rest_lengths.members: no cable or bar matches stray (no cable or bar is "
+            "called or tagged \"stray\"; did you mean \"stay\"?)\n");
+  EXPECT_EQ(After("by_ratio: 0.01", "by_ratio: -1"),
+            "16:19: error: the load case \"winter\" leaves nothing of the rest length of \"line\", "
+            "1.5 m\n"
+            "18:19: error: the load case \"winter\" leaves nothing of the rest length of \"rope\", "
+            "1.5 m\n");
+  EXPECT_EQ(After("by_ratio: 0.01", "by_ratio: 0.01, by_m: 1"),
+            "16:25: error: rest_lengths has both by_m and by_ratio (only one of them may be "
+            "there)\n");
+  EXPECT_EQ(After("[[leg], [rope]]", "bar"),
+            "18:19: error: temperatures.members: it is not known how warmth lengthens deck (give "
+            "the builder in the model `expansion_per_k`: steel has 12e-6)\n");
+  EXPECT_EQ(After("name: winter", "name: snow"),
+            "10:11: error: there are two load cases snow (the first is in line 7)\n");
+  EXPECT_EQ(After("by_k: -20", "by_c: -20"),
+            "18:9: error: temperatures needs the key \"by_k\"\n"
+            "18:36: error: unknown key \"by_c\" in temperatures (did you mean \"by_k\"?)\n");
+  EXPECT_EQ(After("    weight: false", "    weigth: false"),
+            "11:5: error: unknown key \"weigth\" in load_case (did you mean \"weight\"?)\n");
+  EXPECT_EQ(After("force_n: [0, 0, -100]", "force_n: 100"),
+            "9:28: error: force.force_n must be a list of 3 numbers, got a text\n");
+}
+
+TEST_F(LoadCases, OfResolvedExperimentsReferToWhatIsThere) {
+  const std::string text = ResolvedYaml(Load());
+  const auto with = [&](const std::string& old_text, const std::string& new_text) {
+    ChangeFile("resolved.yaml", text, old_text, new_text);
+    return Without("resolved.yaml:", Complaints("resolved.yaml"));
+  };
+  EXPECT_THAT(with("node: 2, force_n", "node: 4, force_n"),
+              testing::HasSubstr("there is no node 4"));
+  EXPECT_THAT(with("joint: 4, by_m", "joint: -2, by_m"), testing::HasSubstr("must be"));
+  EXPECT_THAT(with("{index: 1, by_m", "{index: 9, by_m"),
+              testing::HasSubstr("there is no cable 9"));
+  const std::string other = with("rest_m: ", "rest_rad: ");
+  EXPECT_THAT(other, testing::HasSubstr("rest_rad is of another quantity"));
+  EXPECT_THAT(other, testing::Not(testing::HasSubstr("unknown key")));  // it has been said
+}
+
+/// Of the model file, and of inputs.yaml, which knows bodies as a whole only.
+TEST_F(LoadCases, RobotsWithBarsAreWrittenAsModels) {
+  ChangeFile("model.yaml", kFrame, "expansion_per_k: 2e-5}",
+             "expansion_per_k: 2e-5, mass_kg: 0.2, strength_n: 40}");
+  const ExperimentSpec read = Load();
+  Write("resolved.yaml", ResolvedYaml(read));
+  for (const ExperimentSpec& e : {read, Load("resolved.yaml")}) {
+    Diagnostics out;
+    const auto text = ModelYaml(e.robot, "", out);
+    ASSERT_TRUE(text) << out.Format();
+    Write("written.yaml", *text);
+    const auto back = LoadRobot(Path("written.yaml"), {}, out);
+    ASSERT_TRUE(back) << out.Format() << *text;
+    ASSERT_EQ(back->def.bodies.size(), 3u);
+    EXPECT_NEAR(back->def.bodies[2].mass_kg, 1 + 0.2, 1e-15);
+    const JointDef &leg = back->def.joints.at(1), &was = read.robot.def.joints.at(1);
+    EXPECT_EQ(leg.name, was.name);
+    EXPECT_EQ(leg.stiffness, was.stiffness);
+    EXPECT_EQ(leg.rest, was.rest);
+    EXPECT_EQ(leg.member.expansion_per_k, 1e-5);
+    EXPECT_EQ(leg.member.mass_kg, 1);
+    EXPECT_THAT(back->joint_tags.at(1), testing::Contains("leg"));
+    EXPECT_EQ(back->def.cables.at(0).member.strength_n, 40);
+  }
+}
+
+}  // namespace
+}  // namespace taut::test

@@ -1,0 +1,73 @@
+// Files that come with taut, found from any folder.
+#include "taut/shipped.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace taut {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Shipped : public testing::Test {
+ protected:
+  Shipped() : before_(fs::current_path()) {
+    folder_ = fs::temp_directory_path() / ("taut_shipped_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    Write("tree/share/models/a.yaml");
+    Write("tree/build/program");
+    fs::create_directories(folder_ / "tree/build/share/taut");
+    fs::create_directory_symlink(folder_ / "tree/share/models",
+                                 folder_ / "tree/build/share/taut/models");
+    Write("tree/build/share/a.yaml");
+    Write("usr/share/taut/models/a.yaml");
+    Write("usr/bin/taut");
+    fs::create_directories(folder_ / "work");
+    fs::current_path(folder_ / "work");
+  }
+  ~Shipped() override {
+    fs::current_path(before_);
+    fs::remove_all(folder_);
+  }
+  void Write(const fs::path& path) const {
+    fs::create_directories((folder_ / path).parent_path());
+    std::ofstream(folder_ / path) << "text";
+  }
+  std::string At(const std::string& path) const { return (fs::canonical(folder_) / path).string(); }
+  std::optional<std::string> Build() const { return ShippedFolder(At("tree/build/program")); }
+
+  fs::path before_, folder_;
+};
+
+TEST_F(Shipped, TheFolderIsBesideTheProgramOrAboveIt) {
+  EXPECT_EQ(Build(), At("tree/build/share/taut"));
+  EXPECT_EQ(ShippedFolder(At("usr/bin/taut")), At("usr/share/taut"));
+  EXPECT_EQ(ShippedFolder(At("work")), std::nullopt);
+  EXPECT_EQ(ShippedFolder(At("none")), std::nullopt);
+}
+
+TEST_F(Shipped, AFileIsFoundFromAnyFolder) {
+  EXPECT_EQ(FindInput("models/a.yaml", Build()), At("tree/share/models/a.yaml"));
+  EXPECT_EQ(FindInput("models/a.yaml", ShippedFolder(At("usr/bin/taut"))),
+            At("usr/share/taut/models/a.yaml"));
+  fs::current_path(folder_ / "tree");
+  EXPECT_EQ(FindInput("models/a.yaml", Build()), "share/models/a.yaml");
+}
+
+TEST_F(Shipped, AFileOfTheCurrentFolderComesFirst) {
+  Write("work/models/a.yaml");
+  EXPECT_EQ(FindInput("models/a.yaml", Build()), "models/a.yaml");
+}
+
+TEST_F(Shipped, WhatIsNotThereStaysAsItIs) {
+  for (const char* const path : {"", "models/b.yaml", "models", "/models/a.yaml", "../a.yaml"}) {
+    EXPECT_EQ(FindInput(path, Build()), path);
+  }
+  EXPECT_EQ(FindInput("models/a.yaml", std::nullopt), "models/a.yaml");
+}
+
+}  // namespace
+}  // namespace taut

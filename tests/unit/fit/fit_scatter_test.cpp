@@ -1,0 +1,100 @@
+/// Errors by groups beside those by J^T J, in the verdict.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "taut/fit_verdict.h"
+#include "unit/fit/fit_problems.h"
+
+namespace taut {
+namespace {
+
+using test::MakeProblem;
+using test::Parameter;
+
+/// A mean of `each` data of sd 1 in each of `groups`, which share errors of this sd.
+FitProblem Mean(std::uint64_t seed, std::size_t groups, std::size_t each, double shared,
+                double scale) {
+  math::Random random(seed, 7, 3);
+  std::vector<double> y;
+  for (std::size_t g = 0; g < groups; ++g) {
+    const double common = shared * random.Normal();
+    for (std::size_t i = 0; i < each; ++i) y.push_back(common + random.Normal());
+  }
+  FitProblem problem =
+      MakeProblem({Parameter("m", 0, scale)}, y.size(), [y](const std::vector<double>& v) {
+        Residuals r;
+        for (const double one : y) r.value.push_back(v[0] - one);
+        return r;
+      });
+  for (std::size_t i = 0; i < y.size(); ++i) problem.rows[i].group = static_cast<int>(i / each);
+  return problem;
+}
+
+FitVerdict Judged(const FitProblem& problem) { return JudgeFit(problem, Fit(problem, {}), {}); }
+
+TEST(FitScatter, ANumberThatGroupsDisagreeAboutIsNotEstimated) {
+  // J^T J: 1 / sqrt(400) = 0.05. By groups about 0.5 / sqrt(8) = 0.18, of a scale of 0.2.
+  const FitVerdict verdict = Judged(Mean(1, 8, 50, 0.5, 0.2));
+  const ParameterVerdict& m = verdict.identifiability.parameters[0];
+  EXPECT_NEAR(m.se, 0.05, 1e-9);
+  ASSERT_TRUE(m.se_jackknife);
+  EXPECT_GT(*m.se_jackknife, 0.1);
+  EXPECT_TRUE(m.groups_apart);
+  EXPECT_EQ(m.kind, Determined::kScattered);
+  EXPECT_TRUE(verdict.unidentifiable);
+  EXPECT_NE(m.sentence.find("without one group or another it is another number"),
+            std::string::npos);
+  // Of a sensor's offset nobody asks that it be determined.
+  FitProblem nuisance = Mean(1, 8, 50, 0.5, 0.2);
+  nuisance.parameters[0].nuisance = true;
+  EXPECT_FALSE(Judged(nuisance).unidentifiable);
+}
+
+TEST(FitScatter, WhereTheErrorByGroupsIsSmallEnoughItIsOnlySaid) {
+  const FitVerdict verdict = Judged(Mean(1, 8, 50, 0.5, 2.0));
+  const ParameterVerdict& m = verdict.identifiability.parameters[0];
+  EXPECT_TRUE(m.groups_apart);
+  EXPECT_EQ(m.kind, Determined::kEstimated);
+  EXPECT_FALSE(verdict.unidentifiable);
+  bool said = false;
+  for (const std::string& sentence : verdict.sentences) {
+    said |= sentence.find("times J^T J's: residuals of a group hang together") != sentence.npos;
+  }
+  EXPECT_TRUE(said);
+}
+
+/// With independent residuals that is said once in a thousand times: of 400, 0.4 are expected, and
+/// four or more happen once in a thousand times.
+TEST(FitScatter, ChanceAloneSetsNoGroupsApart) {
+  for (const std::size_t groups : {3u, 6u}) {
+    int apart = 0;
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+      apart += Judged(Mean(seed, groups, 5, 0, 10)).identifiability.parameters[0].groups_apart;
+    }
+    EXPECT_LE(apart, 3) << groups;
+  }
+}
+
+/// Three groups know their scatter badly: 2.5 times as much happens by chance, 2.7 times does not.
+TEST(FitScatter, FewGroupsNeedALargerDifference) {
+  for (const auto& [ratio, apart] : {std::pair(2.5, false), {2.7, true}}) {
+    // Means of groups at -d, 0, d have a standard error of d / sqrt(3); J^T J says 1 / sqrt(6).
+    const double d = ratio / std::sqrt(6.0) * std::sqrt(3.0);
+    const std::vector<double> y{-d - 0.1, -d + 0.1, -0.1, 0.1, d - 0.1, d + 0.1};
+    FitProblem problem =
+        MakeProblem({Parameter("m", 0, 100)}, 6, [y](const std::vector<double>& v) {
+          Residuals r;
+          for (const double one : y) r.value.push_back(v[0] - one);
+          return r;
+        });
+    for (int i = 0; i < 6; ++i) problem.rows[static_cast<std::size_t>(i)].group = i / 2;
+    const FitVerdict verdict = Judged(problem);
+    const ParameterVerdict& m = verdict.identifiability.parameters[0];
+    EXPECT_NEAR(*m.se_jackknife / m.se, ratio, 1e-6);
+    EXPECT_EQ(m.groups_apart, apart);
+  }
+}
+
+}  // namespace
+}  // namespace taut

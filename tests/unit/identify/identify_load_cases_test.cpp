@@ -1,0 +1,120 @@
+// Load cases beside what was measured: a mass on a cable, pulled at, in closed form.
+#include <array>
+#include <cmath>
+
+#include "tests/unit/identify/identify_fixture.h"
+
+namespace taut {
+namespace {
+
+using test::IdentifyTest;
+
+/// Pulls to the side, down, up past its weight, and without any weight.
+struct Case {
+  const char* name;
+  double x_n, z_n;
+  bool weight;
+};
+constexpr std::array<Case, 4> kCases{
+    {{"side", 3, 0, true}, {"down", 0, -7, true}, {"both", -4, -2, true}, {"alone", 0, -2, false}}};
+
+const std::string kFit = R"(taut: 1
+kind: fit
+name: f
+experiments: [{name: a, experiment: experiment.yaml, data: a.csv, forward: load_cases}]
+estimate: [{parameter: k_n_per_m, low: 40, high: 250, scale: 20}]
+residuals: [{channel: node/ball/position_*_m, sd: 0.001}]
+groups: window
+)";
+
+double Pull(const Case& c) { return std::hypot(c.x_n, (c.weight ? -5 : 0) + c.z_n); }
+/// The mass hangs in the direction of what pulls at it, at L + T / k from (0, 0, 1).
+double Place(const Case& c, double k_n_per_m, bool z) {
+  const double along_n = z ? (c.weight ? -5 : 0) + c.z_n : c.x_n;
+  return (z ? 1 : 0) + (0.9 + Pull(c) / k_n_per_m) * along_n / Pull(c);
+}
+
+class LoadCases : public IdentifyTest {
+ protected:
+  void SetUp() override {
+    IdentifyTest::SetUp();
+    std::string cases;
+    for (const Case& c : kCases) {
+      cases += std::string("  - {name: ") + c.name + ", weight: " + (c.weight ? "true" : "false") +
+               ", forces: [{node: ball, force_n: [" + std::to_string(c.x_n) + ", 0, " +
+               std::to_string(c.z_n) + "]}]}\n";
+    }
+    Write("experiment.yaml",
+          "taut: 1\nkind: experiment\nname: pull\nmodel: model.yaml\n"
+          "gravity_m_per_s2: [0, 0, -10]\nduration_s: 1\nload_cases:\n" +
+              cases);
+    WriteCases(110);
+  }
+  void WriteCases(double k_n_per_m) {
+    std::ofstream file(folder_ / "a.csv");
+    file.precision(17);
+    file << "time_s,node/ball/position_x_m,node/ball/position_z_m\n";
+    for (std::size_t i = 0; i < kCases.size(); ++i) {
+      file << i << "," << Place(kCases[i], k_n_per_m, false) << ","
+           << Place(kCases[i], k_n_per_m, true) << "\n";
+    }
+  }
+};
+
+TEST_F(LoadCases, RowsAreThoseOfTheCases) {
+  const auto fit = Make(kFit);
+  ASSERT_TRUE(fit) << out_.Format();
+  ASSERT_EQ(fit->train_points().size(), 8u);  // x of all cases, then z
+  const Residuals at = IdentifyTest::At(*fit, {90});
+  ASSERT_EQ(at.failed, "");
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Case& c = kCases[i % 4];
+    EXPECT_EQ(fit->train_points()[i].where, std::string("load case ") + c.name);
+    EXPECT_EQ(fit->train_points()[i].time_s, static_cast<double>(i % 4 + 1));
+    // in standard deviations of 1 mm
+    const double moved_m = Place(c, 90, i >= 4) - Place(c, 110, i >= 4);
+    EXPECT_NEAR(at.value[i], moved_m / 0.001, 1e-4) << i;
+  }
+}
+
+TEST_F(LoadCases, AStiffnessIsFoundFromDeflections) {
+  const auto fit = Make(kFit);
+  ASSERT_TRUE(fit) << out_.Format();
+  const FitOutcome outcome = RunFit(*fit, {});
+  ASSERT_EQ(outcome.why, "");
+  const ParameterVerdict& k = outcome.verdict.identifiability.parameters[0];
+  EXPECT_NEAR(k.value, 110, 1e-4);
+  EXPECT_EQ(k.kind, Determined::kEstimated);
+  // A case moves by T / k^2 along its direction a unit of k.
+  double squares = 0;
+  for (const Case& c : kCases) squares += std::pow(Pull(c) / (110 * 110) / 0.001, 2);
+  EXPECT_NEAR(k.se, 1 / std::sqrt(squares), 1e-3 / std::sqrt(squares));
+}
+
+TEST_F(LoadCases, AGapInTheDataIsThatCasesOnly) {
+  std::ofstream file(folder_ / "a.csv");
+  file.precision(17);
+  file << "time_s,node/ball/position_z_m\n";
+  for (std::size_t i = 0; i < kCases.size(); ++i) {
+    file << i << ",";
+    if (i == 1) file << "nan";
+    if (i != 1) file << Place(kCases[i], 110, true);
+    file << "\n";
+  }
+  file.close();
+  const auto fit = Make(kFit);
+  ASSERT_TRUE(fit) << out_.Format();
+  ASSERT_EQ(fit->train_points().size(), 3u);
+  EXPECT_EQ(fit->train_points()[1].where, "load case both");
+  for (const double r : IdentifyTest::At(*fit, {110}).value) EXPECT_NEAR(r, 0, 1e-4);
+}
+
+TEST_F(LoadCases, RowsMoreOrLessThanCasesAreAMistake) {
+  Write("a.csv", "time_s,node/ball/position_z_m\n0,0\n1,0\n");
+  EXPECT_EQ(Wrong(kFit),
+            "experiments: a has 4 load cases, its data 2 rows (row i of the data is that of load "
+            "case i)\n");
+}
+
+}  // namespace
+}  // namespace taut

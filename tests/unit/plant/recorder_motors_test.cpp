@@ -1,0 +1,120 @@
+// What is recorded and summed up of motors, and what commands do to them.
+#include <cmath>
+
+#include "unit/plant/recorder_fixture.h"
+
+namespace taut::test {
+namespace {
+
+/// A weight of 2 kg on a motor, 1 m below the world's origin.
+ModelDef Crane() {
+  ModelDef def;
+  BodyDef body;
+  body.name = "load";
+  body.mass_kg = 2;
+  body.com_m = {0, 0, -1};
+  body.inertia_kg_m2 = {1e-3, 1e-3, 1e-3, 0, 0, 0};
+  def.bodies.push_back(body);
+  CableDef cable =
+      SoftCable("rope", {{kWorld, {0, 0, 0}}, {0, {0, 0, -1}}}, 5000, 1 - 2 * 9.81 / 5000);
+  cable.damping_n_s_per_m = 20;
+  cable.actuator.kind = ActuatorDef::Kind::kDcMotor;
+  cable.actuator.dc_motor.emplace();
+  def.cables.push_back(cable);
+  return def;
+}
+
+TEST(RecordedMotor, ShowsWhatItDraws) {
+  const Recording run(ExperimentWith(Crane(), 0.5, {}));
+  // It is driven back until the servo's duty holds the weight.
+  EXPECT_GT(run.Last("cable/rope/duty"), 0.01);
+  EXPECT_GT(run.Last("cable/rope/current_a"), 0);
+  EXPECT_EQ(run.Last("cable/rope/supply_voltage_v"), 12);
+  EXPECT_LT(run.Last("cable/rope/rotor_angle_rad"), 0);
+  EXPECT_EQ(run.Last("cable/rope/rotor_speed_rad_per_s"), 0);
+  EXPECT_GT(run.Last("cable/rope/winding_temperature_c"), 22);
+  EXPECT_LT(run.Last("cable/rope/energy_to_cable_j"), 0);
+  double from_supply_j = 0;
+  for (std::size_t row = 1; row < run.rows(); ++row) {
+    from_supply_j += 1e-3 * run.At("cable/rope/duty", row) * run.At("cable/rope/current_a", row) *
+                     run.At("cable/rope/supply_voltage_v", row);
+  }
+  EXPECT_NEAR(run.Last("cable/rope/energy_from_supply_j"), from_supply_j, 1e-9);
+  ASSERT_TRUE(run.summary.cables[0].motor);
+  const MotorSummary& motor = *run.summary.cables[0].motor;
+  EXPECT_EQ(motor.energy_from_supply_j, run.Last("cable/rope/energy_from_supply_j"));
+  EXPECT_EQ(motor.energy_to_cable_j, run.Last("cable/rope/energy_to_cable_j"));
+  EXPECT_EQ(motor.max_winding_temperature_c, run.Last("cable/rope/winding_temperature_c"));
+  EXPECT_GE(motor.max_current_a, run.Last("cable/rope/current_a"));
+}
+
+TEST(RecordedMotor, IsThereForMotorsOnly) {
+  ModelDef def = Crane();
+  def.cables[0].actuator = {};
+  const Recording run(ExperimentWith(def, 0.01, {}));
+  EXPECT_FALSE(run.Has("cable/rope/duty"));
+  EXPECT_FALSE(run.summary.cables[0].motor);
+}
+
+TEST(RecordedMotor, SensorsOfCountsShowThem) {
+  ExperimentSpec experiment = ExperimentWith(Crane(), 0.1, {"sensor/*", "cable/rope/*"});
+  experiment.sensors.emplace();
+  experiment.sensors->load_cell.emplace().counts.emplace();
+  experiment.sensors->encoder = EncoderSpec{1e-5};
+  const Recording run(experiment);
+  const std::size_t row = run.rows() - 1;
+  const double seen = run.At("sensor/rope/tension_n", row);
+  EXPECT_EQ(0.1567 * run.At("sensor/rope/tension_count", row) - 4.9363, seen);
+  EXPECT_NEAR(1e-5 * run.At("sensor/rope/encoder_count", row),
+              run.At("sensor/rope/rest_length_m", row), 1e-12);
+  EXPECT_LT(std::fabs(run.At("cable/rope/tension_n", row) - seen), 1.0);
+  EXPECT_NE(run.At("cable/rope/tension_n", row), seen);
+}
+
+/// Commands one mode from some time on.
+class Switch final : public Controller {
+ public:
+  explicit Switch(std::vector<std::pair<double, CommandMode>> when) : when_(std::move(when)) {}
+  ClockSpec clock() const override { return {0.001, 0.0}; }
+  void Act(const Tick&, const Observation& seen, Commands& commands) override {
+    for (const auto& [time_s, mode] : when_) {
+      if (*seen.time_s >= time_s) *commands.mode = mode;
+    }
+  }
+
+ private:
+  std::vector<std::pair<double, CommandMode>> when_;
+};
+
+TEST(CommandedMotor, GoesOffAndOn) {
+  Diagnostics out;
+  ExperimentSpec experiment = ExperimentWith(Crane(), 1, {});
+  experiment.step_s = 1e-3;
+  Batch batch(Model::Compile(experiment.robot.def, out), {});
+  const auto plant = PlantOf(batch);
+  RunOptions options;
+  options.plant = plant.get();
+  options.brought.controllers.push_back([](const ControlSetup&) {
+    return std::make_unique<Switch>(std::vector<std::pair<double, CommandMode>>{
+        {0.0, CommandMode::kOff}, {0.3, CommandMode::kRestLength}});
+  });
+  experiment.duration_s = 0.3;
+  ASSERT_TRUE(RunExperiment(experiment, options, out)) << out.Format();
+  EXPECT_EQ(batch.Motor(0, 0).mode, MotorMode::kOff);
+  EXPECT_EQ(batch.Motor(0, 0).current_a, 0);
+  const double sunk_m = batch.Cable(0, 0).rest_length_m;
+  EXPECT_GT(sunk_m, 1.0);  // the weight is too much for friction
+  double time_s = 0.3;
+  plant->commands().mode[0] = CommandMode::kRestLength;
+  for (int i = 0; i < 2000; ++i) {
+    const double step_s = 1e-3;
+    time_s += step_s;
+    plant->Advance(&step_s, &time_s);
+  }
+  EXPECT_EQ(batch.Motor(0, 0).mode, MotorMode::kServo);
+  // Its target went along with it, so nothing jerks: it is caught where it was.
+  EXPECT_NEAR(batch.Cable(0, 0).rest_length_m, sunk_m, 3e-3);
+}
+
+}  // namespace
+}  // namespace taut::test

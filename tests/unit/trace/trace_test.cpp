@@ -1,0 +1,390 @@
+// Traces survive the way to a file and back, and every complaint about one is clear.
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "tests/constants.h"
+#include "tests/unit/trace/trace_fixture.h"
+#include "trace/channel_names.h"
+
+namespace taut::test {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Bitwise, so that NaN equals NaN and 0 differs from -0.
+bool SameBits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+class TraceTest : public TraceFolder {
+ protected:
+  std::string CsvComplaint(const std::string& content) const {
+    return Complaint(WriteFile("t.csv", content));
+  }
+  /// gzip's bytes of a text, by way of a file.
+  static std::string Packed(const std::string& text, const std::string& path) {
+    gzFile file = gzopen(path.c_str(), "wb1");
+    gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
+    gzclose(file);
+    return ReadFile(path);
+  }
+};
+
+// Names on purpose neither in alphabetic order nor grouped: the order of columns is kept.
+const std::vector<ChannelInfo> kChannels = {{"cable/b/tension_n", "N"},
+                                            {"body/s/position_x_m", "m"},
+                                            {"cable/a/rate_m_per_s", "m/s"},
+                                            {"system/contact_count", "1"}};
+const std::vector<double> kTimes = {0.0, 0.1, 0.30000000000000004, 1e9};
+const std::vector<std::vector<double>> kRows = {{1.0 / 3.0, -0.0, 5e-324, 1.7976931348623157e308},
+                                                {kNan, kInfinity, -kInfinity, 3.0},
+                                                {0.1, 0.2, 1e-300, 123456789.125},
+                                                {1e22, 1e23, 9007199254740993.0, -1.5}};
+
+void ExpectAll(const Trace& trace) {
+  ASSERT_EQ(trace.channels.size(), kChannels.size());
+  EXPECT_TRUE(SameBits(trace.time_s, kTimes));
+  for (std::size_t i = 0; i < kChannels.size(); ++i) {
+    EXPECT_EQ(trace.channels[i].name, kChannels[i].name);
+    EXPECT_EQ(trace.channels[i].unit, kChannels[i].unit);
+    std::vector<double> column;
+    for (const auto& row : kRows) column.push_back(row[i]);
+    EXPECT_TRUE(SameBits(trace.values[i], column)) << kChannels[i].name;
+    EXPECT_EQ(trace.Find(kChannels[i].name), i);
+  }
+  EXPECT_EQ(trace.Find("cable/none/tension_n"), std::nullopt);
+}
+
+TEST_F(TraceTest, Hdf5KeepsEveryBitTheOrderTheUnitsAndTheMetadata) {
+  const TraceMetadata metadata = {{"taut_version", "0.1.0"},
+                                  {"seed", "0"},
+                                  {"empty", ""},
+                                  {"big", std::string(200000, 'x')},
+                                  {"a b/ü", "text\nof two"}};
+  Diagnostics out;
+  auto writer = CreateHdf5Trace(Path("t.h5"), kChannels, metadata, out);
+  ASSERT_TRUE(writer) << out.Format();
+  for (std::size_t i = 0; i < kRows.size(); ++i) {
+    ASSERT_TRUE(writer->Append(kTimes[i], kRows[i].data()));
+  }
+  ASSERT_TRUE(writer->Finish()) << writer->error();
+  EXPECT_TRUE(writer->Finish()) << "twice is allowed";
+  const auto trace = ReadTrace(Path("t.h5"), out);
+  ASSERT_TRUE(trace) << out.Format();
+  ExpectAll(*trace);
+  EXPECT_EQ(trace->metadata, metadata);
+  EXPECT_FALSE(trace->unfinished);
+  EXPECT_EQ(Names(), std::vector<std::string>{"t.h5"});
+}
+
+TEST_F(TraceTest, CsvKeepsEveryBitOfFiniteNumbers) {
+  Diagnostics out;
+  auto writer = CreateCsvTrace(Path("t.csv"), kChannels, out);
+  ASSERT_TRUE(writer) << out.Format();
+  for (std::size_t i = 0; i < kRows.size(); ++i) {
+    ASSERT_TRUE(writer->Append(kTimes[i], kRows[i].data()));
+  }
+  ASSERT_TRUE(writer->Finish()) << writer->error();
+  const auto trace = ReadTrace(Path("t.csv"), out);
+  ASSERT_TRUE(trace) << out.Format();
+  ExpectAll(*trace);
+  EXPECT_TRUE(trace->metadata.empty());
+  EXPECT_EQ(ReadFile(Path("t.csv")).substr(0, 142),
+            "time_s,cable/b/tension_n,body/s/position_x_m,cable/a/rate_m_per_s,system/contact_count"
+            "\n0,0.3333333333333333,-0,5e-324,1.7976931348623157e+308\n")
+      << "shortest digits";
+}
+
+TEST_F(TraceTest, ManyRowsAcrossChunksAndAFileWithoutRowsAreKept) {
+  for (const std::string name : {"t.h5", "t.csv"}) {
+    for (const std::size_t rows : {0, 1, 1023, 1024, 1025, 5000}) {
+      Diagnostics out;
+      auto writer = name == "t.h5" ? CreateHdf5Trace(Path(name), Channels(3), {}, out)
+                                   : CreateCsvTrace(Path(name), Channels(3), out);
+      ASSERT_TRUE(writer) << out.Format();
+      for (std::size_t row = 0; row < rows; ++row) {
+        ASSERT_TRUE(AppendRow(*writer, row, 3, 0.001 * static_cast<double>(row)));
+      }
+      if (rows == 0) {
+        ASSERT_TRUE(writer->Finish());
+      }
+      writer.reset();  // finishes what has rows, too
+      const auto trace = ReadTrace(Path(name), out);
+      ASSERT_TRUE(trace) << out.Format();
+      EXPECT_EQ(trace->time_s.size(), rows);
+      ExpectPattern(*trace, 3);
+    }
+  }
+}
+
+TEST_F(TraceTest, AGzippedCsvIsReadAsWellAsOneWithWindowsLineEnds) {
+  const std::string text = "\xEF\xBB\xBFtime_s, a_n ,b\r\n0, 1 ,2\r\n1,3,4\r\n\r\n";
+  gzFile file = gzopen(Path("t.csv.gz").c_str(), "wb");
+  ASSERT_EQ(gzwrite(file, text.data(), static_cast<unsigned>(text.size())),
+            static_cast<int>(text.size()));
+  gzclose(file);
+  WriteFile("t.csv", text);
+  for (const std::string name : {"t.csv", "t.csv.gz"}) {
+    Diagnostics out;
+    const auto trace = ReadTrace(Path(name), out);
+    ASSERT_TRUE(trace) << out.Format();
+    ASSERT_EQ(trace->channels.size(), 2u);
+    EXPECT_EQ(trace->channels[0].name, "a_n");
+    EXPECT_EQ(trace->channels[0].unit, "N");
+    EXPECT_EQ(trace->channels[1].unit, "1");
+    EXPECT_EQ(trace->time_s, (std::vector<double>{0, 1}));
+    EXPECT_EQ(trace->values[1], (std::vector<double>{2, 4}));
+  }
+}
+
+TEST_F(TraceTest, ACutOffCsvLosesOnlyTheRowThatIsNotWhole) {
+  Diagnostics out;
+  // the last number might have been 4 or 42
+  const auto trace = ReadTrace(WriteFile("t.csv", "time_s,a\n0,1\n1,2\n2,4"), out);
+  ASSERT_TRUE(trace) << out.Format();
+  EXPECT_EQ(trace->time_s, (std::vector<double>{0, 1}));
+}
+
+TEST_F(TraceTest, ACutOffGzippedCsvIsAnErrorThatSaysWhere) {
+  std::string text = "time_s,a\n";
+  for (int i = 0; i < 20000; ++i) text += std::to_string(i) + "," + std::to_string(i * i) + "\n";
+  const std::string path = Path("t.csv.gz"), whole = Packed(text, path);
+  int last_line = 0;
+  for (const std::size_t bytes : {whole.size() / 4, whole.size() / 2, whole.size() - 1}) {
+    WriteFile("t.csv.gz", whole.substr(0, bytes));
+    const std::string complaint = Complaint(path);
+    const int line = std::atoi(complaint.c_str() + std::strlen("t.csv.gz:"));
+    EXPECT_EQ(complaint, "t.csv.gz:" + std::to_string(line) +
+                             ": error: is cut off after this line: its packed data goes on (`zcat` "
+                             "into a .csv keeps what is there)\n");
+    EXPECT_GT(line, last_line);
+    last_line = line;
+  }
+  EXPECT_EQ(last_line, 20001) << "all is there but gzip's own end, and so its checksum";
+  for (std::size_t bytes = 0; bytes < 40; ++bytes) {
+    Diagnostics out;
+    EXPECT_FALSE(ReadTrace(WriteFile("t.csv.gz", whole.substr(0, bytes)), out)) << bytes;
+  }
+  std::string damaged = whole;
+  damaged[damaged.size() - 6] ^= 0x55;  // in its checksum
+  WriteFile("t.csv.gz", damaged);
+  EXPECT_NE(Complaint(path).find(": error: is damaged after this line: incorrect data check ("),
+            std::string::npos);
+}
+
+TEST_F(TraceTest, AFewGzippedBytesDoNotBecomeGigabytes) {
+  // Rows of 1 MiB of blanks; gzip's files may be put one behind the other.
+  const std::string path = Path("t.csv.gz");
+  const std::string blanks = Packed(std::string(1 << 20, ' '), path), end = Packed("1\n", path);
+  std::string file = Packed("time_s,a\n", path);
+  for (int row = 0; row < 260; ++row) {
+    file += Packed(std::to_string(row) + ",", path) + blanks + end;
+    if (row != 250) continue;
+    Diagnostics out;
+    const auto trace = ReadTrace(WriteFile("t.csv.gz", file), out);
+    ASSERT_TRUE(trace) << out.Format();
+    EXPECT_EQ(trace->time_s.size(), 251u) << "still within the limit";
+  }
+  EXPECT_EQ(Complaint(WriteFile("t.csv.gz", file)),
+            "t.csv.gz: error: unpacks to more than 256 MiB and than 100 times its size (if it is "
+            "what it should be, unpack it with `gunzip` first)\n");
+}
+
+TEST_F(TraceTest, CsvComplaintsNameTheLineAndComeAllAtOnce) {
+  EXPECT_EQ(CsvComplaint("time_s,a,b\n0,1,2\n1,x,\n2,3\n1,5,6\nnan,5,6\n3,1e999,2\n4,1,2 3\n"),
+            "t.csv:3:3: error: \"x\" is not a number\n"
+            "t.csv:3:5: error: \"\" is not a number (write nan for a missing value)\n"
+            "t.csv:4: error: 2 values where the header names 3\n"
+            "t.csv:6:1: error: time nan does not come after the row before (times must rise)\n"
+            "t.csv:7:3: error: number \"1e999\" is out of range\n"
+            "t.csv:8:5: error: \"2 3\" is not a number\n");
+  EXPECT_EQ(CsvComplaint("time_s,a\n1,2\n1,3\n"),
+            "t.csv:3:1: error: time 1 does not come after the row before (times must rise)\n");
+  EXPECT_EQ(CsvComplaint("time_s,a\n0,1\n\n1,2\n"), "t.csv:3: error: an empty line between rows\n");
+  EXPECT_EQ(CsvComplaint(""), "t.csv:1: error: has no header line\n");
+  EXPECT_EQ(
+      CsvComplaint("t,a\n0,1\n"),
+      "t.csv:1:1: error: the first column is \"t\" (the first column of a trace is time_s)\n");
+  EXPECT_EQ(CsvComplaint("time_s,a,a\n0,1,2\n"), "t.csv: error: channel name \"a\" occurs twice\n");
+  EXPECT_EQ(CsvComplaint(std::string(9 << 20, '1')),
+            "t.csv: error: is not a CSV file: no line end in 8 MB\n");
+  std::string bad = "time_s,a\n";
+  for (int i = 0; i < 100; ++i) bad += "0,x\n";
+  const std::string complaint = CsvComplaint(bad);
+  EXPECT_EQ(std::count(complaint.begin(), complaint.end(), '\n'), 20);
+}
+
+TEST_F(TraceTest, AFileThatCannotBeOpenedSaysWhy) {
+  EXPECT_EQ(Complaint(Path("none.h5")),
+            "none.h5: error: cannot be opened: No such file or directory\n");
+  EXPECT_EQ(Complaint(WriteFile("t.txt", "time_s\n")),
+            "t.txt: error: is of no known kind (the name of a trace ends with .h5, .csv or "
+            ".csv.gz)\n");
+  std::filesystem::create_directory(Path("folder.h5"));
+  EXPECT_EQ(Complaint(Path("folder.h5")), "folder.h5: error: is not a regular file\n");
+  EXPECT_EQ(Complaint(WriteFile("t.h5", "time_s,a\n")),
+            "t.h5: error: is not HDF5 or is damaged: file signature not found\n");
+}
+
+TEST_F(TraceTest, NamesThatAFileCannotHoldAreErrors) {
+  const std::vector<ChannelInfo> bad = {{"a", "1"},      {"a", "1"},    {"", "1"},
+                                        {"time_s", "s"}, {"b//c", "1"}, {"d,e", "1"},
+                                        {"a/b", "1"},    {"./x", "1"},  {"time_s/x", "1"}};
+  const std::string expected =
+      "channel name \"\" has an empty part or a lone dot between slashes\n"
+      "channel name \"./x\" has an empty part or a lone dot between slashes\n"
+      "channel name \"a\" occurs twice\n"
+      "channel name \"a/b\" continues the name of another channel after a slash\n"
+      "channel name \"b//c\" has an empty part or a lone dot between slashes\n"
+      "channel name \"d,e\" holds a comma, a quote or a control character\n"
+      "channel name \"time_s\" is the trace's own clock\n"
+      "channel name \"time_s/x\" continues the name of another channel after a slash\n";
+  const auto message = [&](Diagnostics& out) {
+    std::string text = WithoutFolder(out.Format());
+    for (const std::string head : {"t.h5: error: ", "t.csv: error: "}) {
+      for (std::size_t at; (at = text.find(head)) != text.npos;) text.erase(at, head.size());
+    }
+    return text;
+  };
+  Diagnostics h5, csv;
+  EXPECT_FALSE(CreateHdf5Trace(Path("t.h5"), bad, {}, h5));
+  EXPECT_EQ(message(h5), expected);
+  EXPECT_FALSE(CreateCsvTrace(Path("t.csv"), bad, csv));
+  EXPECT_EQ(message(csv), expected);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+TEST_F(TraceTest, MetadataKeysAreDistinctAndNotReserved) {
+  for (const TraceMetadata& metadata :
+       {TraceMetadata{{"format", "x"}}, TraceMetadata{{"format_version", "x"}},
+        TraceMetadata{{"", "x"}}, TraceMetadata{{"a", "x"}, {"a", "x"}}}) {
+    Diagnostics out;
+    EXPECT_FALSE(CreateHdf5Trace(Path("t.h5"), {}, metadata, out));
+    EXPECT_EQ(WithoutFolder(out.Format()), "t.h5: error: metadata key \"" + metadata.back().first +
+                                               "\" is empty, reserved or occurs twice\n");
+  }
+}
+
+TEST_F(TraceTest, ANewTraceReplacesTheOldOneOnlyWhenItIsOne) {
+  Diagnostics out;
+  auto writer = CreateHdf5Trace(Path("t.h5"), Channels(1), {}, out);
+  ASSERT_TRUE(writer && AppendRow(*writer, 0, 1, 0.0) && writer->Finish());
+  EXPECT_FALSE(CreateHdf5Trace(Path("t.h5"), {{"a", "1"}, {"a", "1"}}, {}, out));
+  Diagnostics reading;
+  ASSERT_TRUE(ReadTrace(Path("t.h5"), reading));
+  writer = CreateHdf5Trace(Path("t.h5"), Channels(2), {}, out);
+  ASSERT_TRUE(writer && writer->Finish());
+  EXPECT_EQ(ReadTrace(Path("t.h5"), reading)->channels.size(), 2u);
+}
+
+TEST_F(TraceTest, TheOldOneStaysUntilTheFirstRowWhichIsThereAtOnce) {
+  for (const std::string name : {"t.h5", "t.csv"}) {
+    const auto create = [&](int channel_count, Diagnostics& out) {
+      return name == "t.h5" ? CreateHdf5Trace(Path(name), Channels(channel_count), {}, out)
+                            : CreateCsvTrace(Path(name), Channels(channel_count), out);
+    };
+    Diagnostics out;
+    auto writer = create(1, out);
+    ASSERT_TRUE(writer && AppendRow(*writer, 0, 1, 0.0) && writer->Finish());
+    create(2, out).reset();  // never had a row
+    writer = create(3, out);
+    ASSERT_TRUE(writer) << out.Format();
+    auto trace = ReadTrace(Path(name), out);
+    ASSERT_TRUE(trace) << out.Format();
+    EXPECT_EQ(trace->channels.size(), 1u);
+    ASSERT_TRUE(AppendRow(*writer, 0, 3, 0.0));
+    trace = ReadTrace(Path(name), out);
+    ASSERT_TRUE(trace) << out.Format();
+    EXPECT_EQ(trace->channels.size(), 3u);
+    EXPECT_EQ(trace->time_s.size(), 1u);
+    EXPECT_EQ(Names(), std::vector<std::string>{name});
+    writer.reset();
+    std::filesystem::remove(Path(name));
+  }
+}
+
+TEST_F(TraceTest, ALinkInItsPlaceIsReplacedAndNotFollowed) {
+  for (const std::string name : {"t.h5", "t.csv"}) {
+    WriteFile("victim", "untouched");
+    std::filesystem::create_symlink("victim", Path(name));
+    Diagnostics out;
+    const auto writer = name == "t.h5" ? CreateHdf5Trace(Path(name), Channels(1), {}, out)
+                                       : CreateCsvTrace(Path(name), Channels(1), out);
+    ASSERT_TRUE(writer && AppendRow(*writer, 0, 1, 0.0) && writer->Finish()) << out.Format();
+    EXPECT_EQ(ReadFile(Path("victim")), "untouched");
+    EXPECT_FALSE(std::filesystem::is_symlink(Path(name)));
+  }
+}
+
+TEST_F(TraceTest, AProcessMayReadWhatItIsStillWriting) {
+  for (const std::string name : {"t.h5", "t.csv"}) {
+    Diagnostics out;
+    auto writer = name == "t.h5" ? CreateHdf5Trace(Path(name), Channels(2), {}, out)
+                                 : CreateCsvTrace(Path(name), Channels(2), out);
+    ASSERT_TRUE(writer) << out.Format();
+    std::size_t row = 0;
+    for (; row < 30000; ++row) {
+      ASSERT_TRUE(AppendRow(*writer, row, 2, static_cast<double>(row)));
+      if (row % 10000 != 0) continue;
+      const auto trace = ReadTrace(Path(name), out);
+      ASSERT_TRUE(trace) << out.Format();
+      EXPECT_LE(trace->time_s.size(), row + 1);
+      EXPECT_GE(trace->time_s.size() + 9000, row) << "whole blocks are there";
+      ExpectPattern(*trace, 2);
+    }
+    ASSERT_TRUE(writer->Finish()) << writer->error();
+    const auto trace = ReadTrace(Path(name), out);
+    ASSERT_TRUE(trace) << out.Format();
+    EXPECT_EQ(trace->time_s.size(), row);
+    ExpectPattern(*trace, 2);
+  }
+}
+
+TEST_F(TraceTest, WritingAfterTheEndIsAnError) {
+  Diagnostics out;
+  auto h5 = CreateHdf5Trace(Path("t.h5"), Channels(1), {}, out);
+  auto csv = CreateCsvTrace(Path("t.csv"), Channels(1), out);
+  for (TraceWriter* writer : {h5.get(), csv.get()}) {
+    ASSERT_TRUE(writer->Finish());
+    EXPECT_FALSE(AppendRow(*writer, 0, 1, 0.0));
+    EXPECT_NE(writer->error().find("cannot be written: was finished before this row"),
+              std::string::npos);
+  }
+}
+
+TEST(ChannelNames, EndWithTheUnit) {
+  for (const auto& [name, unit] : std::vector<std::pair<std::string, std::string>>{
+           {"cable/a/tension_n", "N"},
+           {"cable/a/length_m", "m"},
+           {"cable/a/rate_m_per_s", "m/s"},
+           {"body/a/angular_velocity_x_rad_per_s", "rad/s"},
+           {"system/kinetic_j", "J"},
+           {"body/a/orientation_w", "1"},
+           {"system/contact_count", "1"},
+           {"a_m_per_s2", "m/s^2"},
+           {"k_n_per_m", "N/m"},
+           {"b_n_s_per_m", "N s/m"},
+           {"torque_n_m", "N m"},
+           {"angle_rad", "rad"},
+           {"rate_hz", "Hz"},
+           {"mass_kg", "kg"},
+           {"age_s", "s"},
+           {"mass_kg_per_m", "kg/m"},
+           {"density_kg_per_m3", "kg/m^3"},
+           {"inertia_kg_m2", "kg m^2"},
+           {"gain_rad_per_n_s", "rad/(N s)"},
+           {"body/a_n/turns_per_s", "1"},
+           {"mass_lb_per_m", "1"},
+           {"steps_per_", "1"},
+           {"m", "1"},
+           {"", "1"}}) {
+    EXPECT_EQ(UnitOfName(name), unit) << name;
+  }
+}
+
+}  // namespace
+}  // namespace taut::test
