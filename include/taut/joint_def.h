@@ -52,6 +52,7 @@ struct JointDef {
   double stiffness = 0.0, damping = 0.0;  ///< Of a spring and a damper, >= 0.
   double rest = 0.0;                      ///< Where the spring is at rest; of a ball 0.
   MemberDef member = {};                  ///< Of a bar.
+  bool operator==(const JointDef&) const = default;
 };
 
 /// Whether it is an elastic bar: a distance with a spring, which pulls and pushes.

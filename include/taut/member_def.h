@@ -22,6 +22,7 @@ struct MemberDef {
   double mass_kg = 0.0;  ///< Of a cable or a bar: its own, which the bodies at its ends contain,
                          ///< half each. >= 0.
   MemberMass mass = MemberMass::kLumped;
+  bool operator==(const MemberDef&) const = default;
 };
 
 }  // namespace taut

@@ -26,6 +26,7 @@ namespace taut {
 struct StribeckDef {
   double speed_m_per_s = 0.0;  ///< At which half of what friction at rest has more is gone, > 0.
   double viscous_friction_s_per_m = 0.0;  ///< What the coefficient gains per speed, >= 0.
+  bool operator==(const StribeckDef&) const = default;
 };
 
 /// Factors on a surface's coefficients of friction, by the direction in which it slides over what
@@ -35,6 +36,7 @@ struct FrictionDirections {
   double forward = 1.0, backward = 1.0, sideways = 1.0;  ///< >= 0.
   Vec3 axis;  ///< Where forward is, of any length, in W at t = 0; turns with the body. Zero, for
               ///< rods only: along the rod, `from_m` to `to_m`.
+  bool operator==(const FrictionDirections&) const = default;
 };
 
 /// Surface properties of a shape. How two of them combine is `ModelDef::friction_combine`.
@@ -44,6 +46,7 @@ struct Material {
   double restitution = 0.0;       ///< Newton's coefficient, 0..1.
   std::optional<StribeckDef> stribeck = std::nullopt;           ///< None: the same at any speed.
   std::optional<FrictionDirections> directions = std::nullopt;  ///< None: the same in all.
+  bool operator==(const Material&) const = default;
 };
 
 /// A rigid body. Shapes, cables and nodes refer to it by its index.
@@ -55,6 +58,7 @@ struct BodyDef {
   Vec3 velocity_m_per_s;            ///< Of the centre of mass, in W.
   Vec3 angular_velocity_rad_per_s;  ///< In W.
   bool fixed = false;               ///< Does not move: anchored to the world.
+  bool operator==(const BodyDef&) const = default;
 };
 
 struct SphereDef {
@@ -64,6 +68,7 @@ struct SphereDef {
   double radius_m = 0.0;  ///< > 0.
   Material material;
   bool collides = true;
+  bool operator==(const SphereDef&) const = default;
 };
 
 /// A rod's shape: all points within `radius_m` of the segment from..to.
@@ -75,6 +80,7 @@ struct CapsuleDef {
   Material material;
   bool collides = true;
   MemberDef member = {};  ///< As a strut.
+  bool operator==(const CapsuleDef&) const = default;
 };
 
 struct BoxDef {
@@ -85,6 +91,7 @@ struct BoxDef {
   Vec3 half_extents_m;  ///< Along the box axes, > 0.
   Material material;
   bool collides = true;
+  bool operator==(const BoxDef&) const = default;
 };
 
 /// A convex solid with flat faces: what its corners span.
@@ -104,6 +111,7 @@ struct NodeDef {
   std::string name;
   int body = kWorld;
   Vec3 position_m;
+  bool operator==(const NodeDef&) const = default;
 };
 
 /// How a cable's damper acts (docs/theory/cables.md).
@@ -127,6 +135,7 @@ struct ActuatorDef {
   double min_rest_length_m = 0.0;          ///< >= 0.
   double min_length_m = 0.0;               ///< Does not wind in while the cable is shorter, >= 0.
   std::optional<DcMotorDef> dc_motor;      ///< There if and only if it is one.
+  bool operator==(const ActuatorDef&) const = default;
 };
 
 /// A cylinder of a body that a cable goes round: a pulley, a drum (docs/theory/cables.md, section
@@ -136,6 +145,7 @@ struct WheelDef {
   double radius_m = 0.0;          ///< Of the cable's middle, > 0.
   bool counterclockwise = false;  ///< How the cable goes round it, seen with the axis towards one.
   int turns = 0;                  ///< Whole ones on top of what the points beside it ask for, >= 0.
+  bool operator==(const WheelDef&) const = default;
 };
 
 /// Where a cable is fixed to, or slides through, a body; or the middle of a wheel.
@@ -144,6 +154,7 @@ struct AttachmentDef {
   Vec3 position_m;
   double friction = 0.0;               ///< mu of the capstan's law, >= 0; 0 at the ends.
   std::optional<WheelDef> wheel = {};  ///< Not at the ends.
+  bool operator==(const AttachmentDef&) const = default;
 };
 
 /// What a cable does not pass through, but comes to lie against (docs/theory/cables.md, section 6).
@@ -172,6 +183,7 @@ struct CableDef {
   double touch_friction = 0.0;  ///< mu where it touches, along the cable and across it, >= 0; not
                                 ///< of one that a direct-current motor winds.
   MemberDef member = {};
+  bool operator==(const CableDef&) const = default;
 };
 
 /// Whether friction parts it into spans.

@@ -45,49 +45,34 @@ Nearness NearnessFor(const ModelDef& def) {
   return {std::max(kRounding, 100 * gap_m)};
 }
 
-bool Same(const Material& a, const Material& b, const Nearness& near) {
-  if (a.stribeck.has_value() != b.stribeck.has_value() ||
-      a.directions.has_value() != b.directions.has_value()) {
-    return false;
+// Each of these compares the numbers that rounding may change, or that say nothing, in a way of
+// their own, and all others exactly: also those that are added later.
+bool Same(const Material& a, Material b, const Nearness& near) {
+  if (a.directions && b.directions && near(a.directions->axis, b.directions->axis)) {
+    b.directions->axis = a.directions->axis;
   }
-  if (a.stribeck &&
-      (a.stribeck->speed_m_per_s != b.stribeck->speed_m_per_s ||
-       a.stribeck->viscous_friction_s_per_m != b.stribeck->viscous_friction_s_per_m)) {
-    return false;
-  }
-  if (a.directions && (a.directions->forward != b.directions->forward ||
-                       a.directions->backward != b.directions->backward ||
-                       a.directions->sideways != b.directions->sideways ||
-                       !near(a.directions->axis, b.directions->axis))) {
-    return false;
-  }
-  return a.static_friction == b.static_friction && a.kinetic_friction == b.kinetic_friction &&
-         a.restitution == b.restitution;
+  return a == b;
 }
-bool Same(const ActuatorDef& a, const ActuatorDef& b) {
-  if (a.kind != b.kind || a.kind == ActuatorDef::Kind::kNone) return a.kind == b.kind;
-  if (a.kind == ActuatorDef::Kind::kIdeal) return true;
-  if (a.kind == ActuatorDef::Kind::kDcMotor) {
-    return a.min_rest_length_m == b.min_rest_length_m && a.dc_motor == b.dc_motor;
+bool Same(const ActuatorDef& a, ActuatorDef b) {
+  if (a.kind != b.kind) return false;
+  if (a.kind == ActuatorDef::Kind::kNone || a.kind == ActuatorDef::Kind::kIdeal) return true;
+  if (a.kind == ActuatorDef::Kind::kDcMotor) {  // of the limits it has one alone
+    b.max_speed_m_per_s = a.max_speed_m_per_s;
+    b.max_acceleration_m_per_s2 = a.max_acceleration_m_per_s2;
+    b.max_force_n = a.max_force_n;
+    b.min_length_m = a.min_length_m;
   }
-  return a.max_speed_m_per_s == b.max_speed_m_per_s &&
-         a.max_acceleration_m_per_s2 == b.max_acceleration_m_per_s2 &&
-         a.max_force_n == b.max_force_n && a.min_rest_length_m == b.min_rest_length_m &&
-         a.min_length_m == b.min_length_m;
+  return a == b;
 }
-bool Same(const JointDef& a, const JointDef& b, const Nearness& near) {
+bool Same(const JointDef& a, JointDef b, const Nearness& near) {
   // Nothing acts about the axis of a ball without a stop; those of rods of `class_k` have no say.
   const bool free = a.kind == JointKind::kBall && !a.most;
-  const bool along = free || (near(a.axis, b.axis) && near(a.turned, b.turned));
-  return a.kind == b.kind && along && a.least == b.least && a.most == b.most &&
-         a.restitution == b.restitution && a.friction == b.friction && a.stiffness == b.stiffness &&
-         a.damping == b.damping && a.rest == b.rest && a.collides == b.collides;
-}
-bool Same(const MemberDef& a, const MemberDef& b) {
-  return a.area_m2 == b.area_m2 && a.young_pa == b.young_pa &&
-         a.second_moment_m4 == b.second_moment_m4 && a.buckling_length_m == b.buckling_length_m &&
-         a.yield_pa == b.yield_pa && a.strength_n == b.strength_n &&
-         a.expansion_per_k == b.expansion_per_k && a.mass_kg == b.mass_kg && a.mass == b.mass;
+  if (free || near(a.axis, b.axis)) b.axis = a.axis;
+  if (free || near(a.turned, b.turned)) b.turned = a.turned;
+  // Compared already, the bodies by their names.
+  b.body_a = a.body_a, b.body_b = a.body_b, b.from_m = a.from_m, b.to_m = a.to_m;
+  b.member = a.member;
+  return a == b;
 }
 bool Same(Tags a, Tags b) {
   std::sort(a.begin(), a.end());
@@ -107,17 +92,17 @@ class Comparison {
 
   bool Run() {
     Bodies();
-    Shapes("sphere", a_.spheres, b_.spheres, [&](const SphereDef& x, const SphereDef& y) {
-      return x.radius_m == y.radius_m && near_(x.center_m, y.center_m);
+    Shapes("sphere", a_.spheres, b_.spheres, [&](const SphereDef& x, SphereDef& y) {
+      return Settle(x.center_m, y.center_m) && x.radius_m == y.radius_m;
     });
-    Shapes("rod", a_.capsules, b_.capsules, [&](const CapsuleDef& x, const CapsuleDef& y) {
-      return x.radius_m == y.radius_m && near_(x.from_m, y.from_m) && near_(x.to_m, y.to_m);
+    Shapes("rod", a_.capsules, b_.capsules, [&](const CapsuleDef& x, CapsuleDef& y) {
+      return Settle(x.from_m, y.from_m) && Settle(x.to_m, y.to_m) && x.radius_m == y.radius_m;
     });
     std::vector<BoxDef> boxes = a_.boxes;
     std::erase_if(boxes, [&](const BoxDef& box) { return IsTerrain(a_, box.body); });
-    Shapes("box", boxes, b_.boxes, [&](const BoxDef& x, const BoxDef& y) {
-      return near_(x.center_m, y.center_m) && near_(x.orientation, y.orientation) &&
-             near_(x.half_extents_m, y.half_extents_m);
+    Shapes("box", boxes, b_.boxes, [&](const BoxDef& x, BoxDef& y) {
+      return Settle(x.center_m, y.center_m) && Settle(x.orientation, y.orientation) &&
+             Settle(x.half_extents_m, y.half_extents_m);
     });
     Nodes();
     Cables();
@@ -126,6 +111,25 @@ class Comparison {
   }
 
  private:
+  /// Whether they are near; then `b` becomes `a`, so that what is left can be compared exactly.
+  template <class T>
+  bool Settle(const T& a, T& b) const {
+    if (!near_(a, b)) return false;
+    b = a;
+    return true;
+  }
+  bool Settle(double a, double& b) const {
+    if (!near_(a, b, 0)) return false;
+    b = a;
+    return true;
+  }
+  template <class T>
+  bool SettleSame(const T& a, T& b) const {
+    if (!Same(a, b)) return false;
+    b = a;
+    return true;
+  }
+
   void Differs(const char* kind, const std::string& name, const char* what) {
     if (!good_) return;
     good_ = false;
@@ -177,34 +181,35 @@ class Comparison {
     }
   }
 
-  template <class Shape>
-  static bool SameMember(const Shape& x, const Shape& y) {
-    if constexpr (requires { x.member; }) return Same(x.member, y.member);
-    return true;
-  }
-
   template <class Shape, class F>
-  void Shapes(const char* kind, const std::vector<Shape>& a, const std::vector<Shape>& b, F same) {
+  void Shapes(const char* kind, const std::vector<Shape>& a, const std::vector<Shape>& b,
+              F settle_place) {
     if (!SameCount(kind, a, b)) return;
     ByName(kind, a, b, [&](std::size_t i, std::size_t k) {
-      const Shape &x = a[i], &y = b[k];
-      if (NameOf(a_, x.body) != NameOf(b_, y.body)) {
-        Differs(kind, x.name, "body");
-      } else if (!same(x, y)) {
-        Differs(kind, x.name, "place");
-      } else if (!SameMember(x, y)) {
-        Differs(kind, x.name, "section or limit");
-      } else if (!Same(x.material, y.material, near_) || x.collides != y.collides) {
-        Differs(kind, x.name, "surface");
+      const Shape& x = a[i];
+      Shape y = b[k];
+      if (NameOf(a_, x.body) != NameOf(b_, y.body)) return Differs(kind, x.name, "body");
+      y.body = x.body;
+      if (!settle_place(x, y)) return Differs(kind, x.name, "place");
+      if constexpr (requires { x.member; }) {
+        if (x.member != y.member) return Differs(kind, x.name, "section or limit");
       }
+      if (!Same(x.material, y.material, near_) || x.collides != y.collides) {
+        return Differs(kind, x.name, "surface");
+      }
+      y.material = x.material;
+      if (x != y) Differs(kind, x.name, "number");
     });
   }
 
   void Nodes() {
     ByName("node", a_.nodes, b_.nodes, [&](std::size_t i, std::size_t k) {
-      const NodeDef &x = a_.nodes[i], &y = b_.nodes[k];
+      const NodeDef& x = a_.nodes[i];
+      NodeDef y = b_.nodes[k];
       if (NameOf(a_, x.body) != NameOf(b_, y.body)) Differs("node", x.name, "body");
-      if (!near_(x.position_m, y.position_m)) Differs("node", x.name, "place");
+      y.body = x.body;
+      if (!Settle(x.position_m, y.position_m)) Differs("node", x.name, "place");
+      if (x != y) Differs("node", x.name, "number");
       if (!Same(robot_.node_tags[i], read_.node_tags[k])) {
         Differs("node", x.name, "list of tags");
       }
@@ -214,22 +219,21 @@ class Comparison {
   void Cables() {
     if (!SameCount("cable", a_.cables, b_.cables)) return;
     ByName("cable", a_.cables, b_.cables, [&](std::size_t i, std::size_t k) {
-      const CableDef &x = a_.cables[i], &y = b_.cables[k];
+      const CableDef& x = a_.cables[i];
+      CableDef y = b_.cables[k];
       bool same_path = x.attachments.size() == y.attachments.size();
       for (std::size_t j = 0; same_path && j < x.attachments.size(); ++j) {
-        same_path = near_(x.attachments[j].position_m, y.attachments[j].position_m) &&
-                    NameOf(a_, x.attachments[j].body) == NameOf(b_, y.attachments[j].body);
+        const AttachmentDef& from = x.attachments[j];
+        AttachmentDef& to = y.attachments[j];
+        same_path =
+            Settle(from.position_m, to.position_m) && NameOf(a_, from.body) == NameOf(b_, to.body);
+        to.body = from.body;
       }
       if (!same_path) Differs("cable", x.name, "path");
-      if (!near_(x.rest_length_m, y.rest_length_m, 0)) Differs("cable", x.name, "rest length");
-      if (x.stiffness_n_per_m != y.stiffness_n_per_m ||
-          x.damping_n_s_per_m != y.damping_n_s_per_m || x.damping_law != y.damping_law ||
-          x.touches != y.touches || x.radius_m != y.radius_m ||
-          x.touch_friction != y.touch_friction) {
-        Differs("cable", x.name, "stiffness or damper");
-      }
-      if (!Same(x.member, y.member)) Differs("cable", x.name, "section, mass or limit");
-      if (!Same(x.actuator, y.actuator)) Differs("cable", x.name, "actuator");
+      if (!Settle(x.rest_length_m, y.rest_length_m)) Differs("cable", x.name, "rest length");
+      if (x.member != y.member) Differs("cable", x.name, "section, mass or limit");
+      if (!SettleSame(x.actuator, y.actuator)) Differs("cable", x.name, "actuator");
+      if (x != y) Differs("cable", x.name, "stiffness, damper or other number");
       if (!Same(robot_.cable_tags[i], read_.cable_tags[k])) {
         Differs("cable", x.name, "list of tags");
       }
@@ -247,7 +251,7 @@ class Comparison {
         Differs("joint", x.name, "place");
       } else if (!Same(x, y, near_)) {
         Differs("joint", x.name, "kind, axis or force");
-      } else if (!Same(x.member, y.member)) {
+      } else if (x.member != y.member) {
         Differs("joint", x.name, "section, mass or limit");
       }
     });
