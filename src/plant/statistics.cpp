@@ -18,16 +18,17 @@ bool Within(double time_s, double from_s, double to_s) {
 
 }  // namespace
 
-void Statistics::Sum::Take(double x) {
-  min = count == 0 ? x : std::min(min, x);
-  max = count == 0 ? x : std::max(max, x);
-  sum += x;
-  ++count;
+void Statistics::Sum::Take(double x, double step_s) {
+  min = any ? std::min(min, x) : x;
+  max = any ? std::max(max, x) : x;
+  // The start of a run is the end of no step: it counts only where there is nothing else.
+  if (step_s > 0) integral += x * step_s, time_s += step_s;
+  any = true;
 }
 
 Range Statistics::Sum::range() const {
-  if (count == 0) return {};
-  return {sum / static_cast<double>(count), min, max};
+  if (!any) return {};
+  return {time_s > 0 ? integral / time_s : min, min, max};
 }
 
 Statistics::Statistics(const ExperimentSpec& experiment)
@@ -48,13 +49,13 @@ Statistics::Statistics(const ExperimentSpec& experiment)
   }
 }
 
-void Statistics::Take(Quantity& quantity, double time_s, double force_n) const {
+void Statistics::Take(Quantity& quantity, double time_s, double step_s, double force_n) const {
   quantity.max = std::max(quantity.max, force_n);
   if (time_s > kStartIsOverS)
     quantity.max_after_start = std::max(quantity.max_after_start, force_n);
   for (std::size_t p = 0; p < experiment_.phases.size(); ++p) {
     const PhaseSpec& phase = experiment_.phases[p];
-    if (Within(time_s, phase.from_s, phase.to_s)) quantity.phases[p].Take(force_n);
+    if (Within(time_s, phase.from_s, phase.to_s)) quantity.phases[p].Take(force_n, step_s);
   }
 }
 
@@ -94,8 +95,8 @@ void Statistics::Take(double time_s, double step_s, const Observation& now,
   for (std::size_t c = 0; c < cables_.size(); ++c) {
     Cable& cable = cables_[c];
     const CableState r = now.Cable(static_cast<int>(c));
-    Take(cable.tension, time_s, r.tension_n);
-    Take(cable.elastic, time_s, r.elastic_n);
+    Take(cable.tension, time_s, step_s, r.tension_n);
+    Take(cable.elastic, time_s, step_s, r.elastic_n);
     const ActuatorDef::Kind kind = experiment_.robot.def.cables[c].actuator.kind;
     if (kind == ActuatorDef::Kind::kDcMotor && world != nullptr) {
       Take(cable.motor, world->Motor(0, static_cast<int>(c)));
@@ -118,7 +119,8 @@ void Statistics::Take(double time_s, double step_s, const Observation& now,
   }
   for (std::size_t i = 0; i < drags_.size(); ++i) {
     const DragSpec& drag = experiment_.drags[i];
-    if (Within(time_s, 0.5 * (drag.from_s + drag.to_s), drag.to_s)) drags_[i].Take(drag_n[i]);
+    if (Within(time_s, 0.5 * (drag.from_s + drag.to_s), drag.to_s))
+      drags_[i].Take(drag_n[i], step_s);
   }
 }
 

@@ -28,10 +28,11 @@ class Statistics {
   void Fill(RunSummary& summary) const;
 
  private:
+  /// Mean over time: a value counts for the step that ends with it.
   struct Sum {
-    double sum = 0, min = 0, max = 0;
-    std::int64_t count = 0;
-    void Take(double x);
+    double integral = 0, time_s = 0, min = 0, max = 0;
+    bool any = false;
+    void Take(double x, double step_s);
     Range range() const;
   };
   struct Quantity {
@@ -45,7 +46,7 @@ class Statistics {
     double since_s = 0;  ///< The last time that the rest length was another.
     std::optional<MotorSummary> motor;
   };
-  void Take(Quantity& quantity, double time_s, double force_n) const;
+  void Take(Quantity& quantity, double time_s, double step_s, double force_n) const;
   static void Take(std::optional<MotorSummary>& sum, const MotorState& motor);
 
   struct StrutSum {
