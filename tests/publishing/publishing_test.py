@@ -258,7 +258,10 @@ def WhatGitHubReadsCanBeRead():
     files = [*sorted((ROOT / ".github").rglob("*.yml")), ROOT / "CITATION.cff"]
     read = {str(path.relative_to(ROOT)): yaml.safe_load(path.read_text()) for path in files}
     job = read[".github/workflows/ci.yml"]["jobs"]["debian12"]
-    assert job["container"] == "debian:12" and {"run": ".ci/run"} in job["steps"], job
+    assert job["container"] == "debian:12" and {"run": "script/setup"} in job["steps"], job
+    parts = {each["part"]: each["command"] for each in job["strategy"]["matrix"]["include"]}
+    known = re.search(r"case \$part in ([a-z0-9| ]+)\)", (ROOT / "script/test").read_text())[1].split(" | ")
+    assert parts == {"lint": "script/lint --recent", **{part: f"script/test --part {part}" for part in known}}, parts
     for name, form in read.items():
         if "ISSUE_TEMPLATE" in name and not name.endswith("config.yml"):
             assert {"name", "description", "body"} <= form.keys(), name
