@@ -1,4 +1,4 @@
-/// What a run asks of motors and springs, and which of a catalogue bear it (docs/sizing.md).
+/// What a run asks of motors and springs, and which of a catalogue bear it (docs/cli.md).
 ///
 /// Threads: any number may call these functions at once.
 #pragma once

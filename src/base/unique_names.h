@@ -10,7 +10,7 @@ class UniqueNames {
  public:
   /// `name`, or where that is taken or empty, the first of name_2, name_3 ... that is not.
   std::string Take(const std::string& name) {
-    const std::string base = name.empty() ? "unnamed" : name;
+    std::string base = name.empty() ? "unnamed" : name;
     const auto [first, fresh] = taken_.try_emplace(base, 1);
     if (fresh) return base;
     std::string free;

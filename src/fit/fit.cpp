@@ -57,6 +57,11 @@ FitResult Fit(const FitProblem& problem, const FitOptions& options, const FitSta
   };
   result.state = fit::Search(problem, jobs, options, from, again).Run();
   const auto& tracks = result.state.tracks;
+  if (tracks.empty()) {  // stopped before the starts were computed
+    result.end = FitEnd::kInterrupted;
+    result.why = "stopped";
+    return result;
+  }
   result.best = BestTrack(result.state);
   const bool interrupted = std::any_of(tracks.begin(), tracks.end(), [](const FitTrack& track) {
     return track.end == FitEnd::kInterrupted;

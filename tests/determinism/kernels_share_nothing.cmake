@@ -1,6 +1,6 @@
 # cmake -DNM=... -DSETS=scalar,sse2,... -DOBJECTS=a.o,b.o,... -P kernels_share_nothing.cmake
 #
-# No function is emitted by two of src/sim/step_*.cpp, nor by two of src/plant/lane_*.cpp: the linker
+# No function is emitted by two of src/sim/step/step_*.cpp, nor by two of src/plant/lane_*.cpp: the linker
 # would keep one of them, perhaps that with instructions which the machine lacks. Optimisation hides
 # it, so debug builds tell most.
 cmake_minimum_required(VERSION 3.25)

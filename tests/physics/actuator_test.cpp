@@ -1,4 +1,4 @@
-/// Actuators: what a commanded rest length becomes (docs/theory/actuators.md). Limits are per
+/// Actuators: what a commanded rest length becomes (docs/theory/cables.md). Limits are per
 /// second: each test runs at three step sizes.
 
 #include <gtest/gtest.h>

@@ -44,7 +44,7 @@ TEST_F(CheckCommand, ShowsMassesLengthsTensionsAndLoads) {
   const Outcome spine = Run("models/tetraspine3.yaml");
   EXPECT_EQ(spine.status, 0);
   EXPECT_EQ(spine.errors, "");
-  EXPECT_EQ(spine.output.rfind("models/tetraspine3.yaml: good\n", 0), 0u);
+  EXPECT_EQ(spine.output.rfind("share/models/tetraspine3.yaml: good\n", 0), 0u);
   for (const char* part : {"3 bodies, 12 cables, 18 nodes; 2.349243 kg that move",
                            "segment_0  0.713081  0.793276  0.000000  0.125465            0.0148116 "
                            " 0.0157328  0.0241226  8 rods, 6 spheres\n",

@@ -14,7 +14,7 @@ namespace taut::test {
 
 inline const std::string kExperiment = R"(taut: 1
 kind: experiment
-base: )" TAUT_SOURCE_DIR R"(/experiments/sidewinder3_start.yaml
+base: )" TAUT_SOURCE_DIR R"(/share/experiments/sidewinder3_start.yaml
 duration_s: 0.8
 )";
 

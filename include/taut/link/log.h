@@ -1,4 +1,4 @@
-/// What a driver hears, as a trace (docs/formats/robot_log.md): a row a cycle.
+/// What a driver hears, as a trace (docs/hardware/driver.md): a row a cycle.
 ///
 /// Threads: belongs to one at a time.
 #pragma once

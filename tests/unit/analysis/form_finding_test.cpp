@@ -128,14 +128,14 @@ TEST(FormFinding, SixStrutsAreHalfTheirLengthApartAndBearOneAndAHalf) {
 
 std::optional<RobotSpec> Load(const std::string& path) {
   Diagnostics out;
-  auto robot = LoadRobot(std::string(TAUT_SOURCE_DIR) + "/share/" + path, {}, out);
+  auto robot = LoadRobot(std::string(TAUT_SOURCE_DIR) + "/" + path, {}, out);
   EXPECT_TRUE(robot) << out.Format();
   return robot;
 }
 
 // The model is described with its struts 1.5 m apart, far from its form, and each is 1.684 m long.
 TEST(FormFinding, SixStrutsOfAModelRelaxIntoTheirForm) {
-  const auto robot = Load("models/six_strut.yaml");
+  const auto robot = Load("share/models/six_strut.yaml");
   FormOptions options;
   options.force_density_n_per_m.assign(24, 100);
   Diagnostics out;
@@ -153,7 +153,7 @@ TEST(FormFinding, SixStrutsOfAModelRelaxIntoTheirForm) {
 
 // Equal tensions of the same robot are equal force densities: its cables are equally long.
 TEST(FormFinding, TensionsInPlaceOfForceDensities) {
-  const auto robot = Load("models/six_strut.yaml");
+  const auto robot = Load("share/models/six_strut.yaml");
   FormOptions options;
   options.tension_n.assign(24, 80);
   Diagnostics out;
@@ -165,7 +165,7 @@ TEST(FormFinding, TensionsInPlaceOfForceDensities) {
 }
 
 TEST(FormFinding, AFormIsWrittenAsAModel) {
-  const auto robot = Load("models/six_strut.yaml");
+  const auto robot = Load("share/models/six_strut.yaml");
   FormOptions options;
   options.force_density_n_per_m.assign(24, 100);
   Diagnostics out;
@@ -230,7 +230,7 @@ TEST(FormFinding, WrongInputsAreComplainedOf) {
             "nothing, or tensions and compressions cancel)\n");
   EXPECT_EQ(FindFreeForm(net, {0}, out).why, "the nodes are in a plane, or fewer than five");
 
-  const auto robot = Load("models/six_strut.yaml");
+  const auto robot = Load("share/models/six_strut.yaml");
   FormOptions options;
   Diagnostics wrong;
   EXPECT_FALSE(FindForm(*robot, options, wrong).found);

@@ -215,7 +215,7 @@ TEST(Couplings, TheLearnedGaitHasNtrtsNetwork) {
 double WorstAgainstTrace(const std::string& gait_file, const std::string& trace_file,
                          const std::string& column, double until_s) {
   Diagnostics out;
-  const auto gait = LoadGait(kRoot + gait_file, out);
+  const auto gait = LoadGait(kRoot + "share/" + gait_file, out);
   const auto trace = ReadTrace(kRoot + "tests/data/ntrt/" + trace_file, out);
   if (!gait || !trace) {
     ADD_FAILURE() << out.Format();

@@ -113,7 +113,7 @@ TEST(Tetraspine3, HasTheTrueInertiaOfItsParts) {
 TEST(Tetraspine3, HasNtrtsInertiaWithTheBoundingBoxLaw) {
   const std::string path = ::testing::TempDir() + "taut_tetraspine3_box.yaml";
   std::ofstream(path) << "taut: 1\nkind: model\nname: box\ninertia: bounding_box\n"
-                      << "base: " << TAUT_SOURCE_DIR << "/models/tetraspine3.yaml\n";
+                      << "base: " << TAUT_SOURCE_DIR << "/share/models/tetraspine3.yaml\n";
   Diagnostics out;
   const auto robot = LoadRobot(path, {}, out);
   std::remove(path.c_str());

@@ -12,7 +12,7 @@ namespace {
 const std::string kGood = R"(taut: 1
 kind: study
 name: s
-experiment: )" TAUT_SOURCE_DIR R"(/experiments/push_20n.yaml
+experiment: )" TAUT_SOURCE_DIR R"(/share/experiments/push_20n.yaml
 seed: 1
 vary:
   - {each: impedance.outer_*_1.tension_offset_n, low: 1, high: 20}
