@@ -16,7 +16,6 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 ROOT = pathlib.Path(__file__).parent
-SHIPPED = ["models", "experiments", "gaits", "studies", "fits", "schema", "mappings"]
 
 
 def version():
@@ -36,8 +35,8 @@ class BuildWithCMake(build_ext):
         package = pathlib.Path(self.get_ext_fullpath("taut._core")).parent
         package.mkdir(parents=True, exist_ok=True)
         shutil.copy2(made, package / name)
-        for folder in SHIPPED if not self.inplace else []:
-            shutil.copytree(ROOT / "share" / folder, package / "share" / "taut" / folder, dirs_exist_ok=True)
+        if not self.inplace:
+            shutil.copytree(ROOT / "share", package / "share" / "taut", dirs_exist_ok=True)
 
     def compile_here(self):
         folder = pathlib.Path(self.build_temp).resolve() / "cmake"

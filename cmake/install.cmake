@@ -33,11 +33,9 @@ if(TARGET taut)
   endif()
   install(DIRECTORY ${PROJECT_BINARY_DIR}/web DESTINATION ${CMAKE_INSTALL_DATADIR}/taut OPTIONAL)
 endif()
-foreach(folder IN ITEMS models experiments gaits studies fits schema mappings)
-  if(EXISTS ${PROJECT_SOURCE_DIR}/share/${folder})
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/share/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/taut)
-  endif()
-endforeach()
+if(EXISTS ${PROJECT_SOURCE_DIR}/share) # not in the sources of a wheel
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/share/ DESTINATION ${CMAKE_INSTALL_DATADIR}/taut)
+endif()
 
 # `cmake --install build/install --component virtual_robot --prefix ~/.local`: the emulated boards and
 # their firmware. Only when asked for by that name: the program contains libsimavr, so it is under the

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks every #include and every taut_layer(... USES ...) against layers.txt.
 
-Usage: script/check_layers.py [ROOT]. Prints `file:line: error: ...`; exit status 1 if there was any.
+Usage: script/check_layers.py [ROOT]. Prints `file:line: error: ...`; exit status 1 if there is an error.
 """
 
 import fnmatch
@@ -14,7 +14,7 @@ USES = re.compile(r"taut_layer\(\s*(\w+)(.*?)\)", re.DOTALL)
 
 
 class Rules:
-    """layers.txt as read."""
+    """Contents of layers.txt."""
 
     def __init__(self, path):
         self.uses, self.layer_of_header, self.folders = {}, {}, {}
@@ -44,7 +44,7 @@ class Rules:
 
 
 def check_outside(rules, where, layer, header, errors):
-    """An include of something that is not ours."""
+    """Checks an include of a header of another project."""
     owners = [owner for pattern, owner in rules.only if fnmatch.fnmatch(header, pattern)]
     if owners and layer not in (*owners, "tests"):
         errors.append(f"{where}: error: <{header}> belongs in {' and '.join(owners)} only")
@@ -54,7 +54,7 @@ def check_outside(rules, where, layer, header, errors):
 
 
 def check_room(rules, where, layer, path, header, errors):
-    """An include of a layer's own, from one of its rooms."""
+    """Checks an include of a header of the same layer, between its folders (rooms)."""
     rooms = rules.rooms.get(layer)
     if not rooms or header.split("/")[0] != layer:
         return
@@ -66,12 +66,12 @@ def check_room(rules, where, layer, path, header, errors):
 
 
 def folder_of(rules, header):
-    """The folder of layers.txt that a header is in: apps/viewer of apps/viewer/server.h."""
+    """Returns the folder of layers.txt that contains a header: apps/viewer for apps/viewer/server.h."""
     return max((folder for folder in rules.folders if header.startswith(folder + "/")), key=len, default=None)
 
 
 def check_file(rules, root, path, layer, allowed, private, errors):
-    """`layer` is what the file belongs to, `allowed` the layers that it may include."""
+    """Checks the includes of a file of `layer`, which may include the layers `allowed`."""
     for number, line in enumerate(path.read_text().splitlines(), 1):
         match = INCLUDE.match(line)
         if not match:
@@ -138,7 +138,7 @@ def check(root):
     for folder, allowed in rules.folders.items():
         for path in sources(root / folder):
             if folder_of(rules, str(path.relative_to(root))) != folder:
-                continue  # a folder in it has rules of its own
+                continue  # a subfolder with separate rules
             check_file(rules, root, path, folder, allowed, "src" in allowed, errors)
     return errors
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Which programs of tests `ctest -R REGEX` runs, so that only these are built.
+"""Prints the test programs that `ctest -R REGEX` runs, so that script/test builds only them.
 
-  script/test_targets.py BUILD_FOLDER REGEX      prints the targets; nothing if all are needed
+  script/test_targets.py BUILD_FOLDER REGEX      prints their targets, or nothing if all are needed
 """
 
 import collections
@@ -14,13 +14,13 @@ TEST = re.compile(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)", re.MULTILINE
 
 
 def names_of(source):
-    """Names of a file's tests as GoogleTest shows them, without the texts of parameters."""
+    """Returns the names of the tests in a file as GoogleTest lists them, without parameters."""
     text = pathlib.Path(source).read_text(encoding="utf8", errors="replace")
     return [f"{suite}.{name}" for suite, name in TEST.findall(text)]
 
 
 def is_known(name, suites):
-    """Whether a test that ctest lists is one of these suites: `Set/Suite.Name/parameter`, `Suite/0.Name`."""
+    """Returns whether a test of ctest (`Set/Suite.Name/parameter`, `Suite/0.Name`) belongs to one of `suites`."""
     return any(part.split(".")[0] in suites for part in name.split("/"))
 
 
@@ -39,7 +39,7 @@ def main():
     listed = subprocess.run(["ctest", "--test-dir", folder, "-N", "-R", sys.argv[2]], capture_output=True, text=True)
     others = [name for name in re.findall(r"Test +#\d+: (.*)", listed.stdout)
               if not is_known(name, suites) and not name.endswith("_NOT_BUILT")]
-    if targets and not others:  # others are commands: they may need anything
+    if targets and not others:  # other tests are commands, which may need any target
         print(*sorted(targets), sep="\n")
 
 

@@ -285,8 +285,7 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<AnalyzeArguments>();
   CLI::App* analyze = app.add_subcommand(
       "analyze", "Say what holds a structure up: its equilibrium, safety and modes.");
-  LookUpShipped(analyze->add_option("file", args->path, "Model or experiment file (YAML)"))
-      ->required();
+  AddInput(*analyze, "file", args->path, "Model or experiment file (YAML)")->required();
   analyze->add_option("--set", args->set, "Parameter of the file")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);

@@ -159,8 +159,7 @@ void AddCheck(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<CheckArguments>();
   CLI::App* check = app.add_subcommand(
       "check", "Check a model, experiment or gait file; show what it describes.");
-  LookUpShipped(check->add_option("file", args->path, "Model, experiment or gait file (YAML)"))
-      ->required();
+  AddInput(*check, "file", args->path, "Model, experiment or gait file (YAML)")->required();
   check->add_option("--set", args->set, "Parameter of the file")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);

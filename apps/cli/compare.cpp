@@ -78,11 +78,9 @@ void AddCompare(CLI::App& app, int& exit_code) {
                    "Trace (.h5, .csv, .csv.gz), or folder of a run: compared with B")
       ->required();
   command->add_option("B", given->path_b, "Trace, or folder of a run: the reference")->required();
-  LookUpShipped(
-      command->add_option("--map", given->map_b, "Mapping file that gives B the names of taut"))
+  AddInput(*command, "--map", given->map_b, "Mapping file that gives B the names of taut")
       ->option_text("FILE");
-  LookUpShipped(command->add_option("--map_a", given->map_a, "The same for A"))
-      ->option_text("FILE");
+  AddInput(*command, "--map_a", given->map_a, "The same for A")->option_text("FILE");
   command
       ->add_option("--channels", given->options.channels,
                    "Only channels that fit a pattern such as 'cable/*/tension_n'")

@@ -40,8 +40,7 @@ void AddExportMjcf(CLI::App& export_, int& exit_code) {
   auto args = std::make_shared<Arguments>();
   CLI::App* mjcf = export_.add_subcommand(
       "mjcf", "A robot, with the terrain of its experiment, for MuJoCo (2.2.2 and 3).");
-  LookUpShipped(mjcf->add_option("robot", args->input, "Model or experiment file (YAML)"))
-      ->required();
+  AddInput(*mjcf, "robot", args->input, "Model or experiment file (YAML)")->required();
   AddChoice(*mjcf, "--cables", args->options.cables, kCables,
             "A cable is an actuator that can only pull, or a tendon's spring with a dead band, for "
             "MuJoCo 3 alone (default: actuator)");

@@ -91,9 +91,8 @@ void AddGait(CLI::App& app, int& exit_code) {
 
   CLI::App* export_ = gait->add_subcommand(
       "export", "What a gait says to the cables, as a table in plain text (CSV).");
-  LookUpShipped(export_->add_option("gait", args->input, "Gait file (YAML)"))->required();
-  LookUpShipped(export_->add_option("robot", args->robot, "Model or experiment file (YAML)"))
-      ->required();
+  AddInput(*export_, "gait", args->input, "Gait file (YAML)")->required();
+  AddInput(*export_, "robot", args->robot, "Model or experiment file (YAML)")->required();
   export_->add_option("--rate_hz", args->rate_hz, "Rows a second; also the gait's own rate")
       ->option_text("X")
       ->check(NumberWithin(1e-3, 1e6))
@@ -129,8 +128,7 @@ void AddGait(CLI::App& app, int& exit_code) {
 
   CLI::App* create = gait->add_subcommand(
       "create", "A CPG with all couplings of a robot, weights and phases 0: a start for learning.");
-  LookUpShipped(create->add_option("robot", args->robot, "Model or experiment file (YAML)"))
-      ->required();
+  AddInput(*create, "robot", args->robot, "Model or experiment file (YAML)")->required();
   AddChoice(*create, "--symmetry", args->symmetry, kSymmetries,
             "Which couplings are alike (default: segments)");
   AddChoice(*create, "--drives", args->drives, kDrives, "What its signals are (default: velocity)");
@@ -143,7 +141,7 @@ void AddGait(CLI::App& app, int& exit_code) {
   create->callback([args, &exit_code] { exit_code = Create(*args); });
 
   CLI::App* values = gait->add_subcommand("values", "Every number of a gait by name.");
-  LookUpShipped(values->add_option("gait", args->input, "Gait file (YAML)"))->required();
+  AddInput(*values, "gait", args->input, "Gait file (YAML)")->required();
   values->add_flag("--json", args->json, "JSON instead of a table");
   values->footer("Example:\n  taut gait values gaits/hand_tuned_sine.yaml");
   values->callback([args, &exit_code] { exit_code = Values(*args); });

@@ -141,10 +141,9 @@ void AddLearn(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<LearnArguments>();
   CLI::App* learn = app.add_subcommand(
       "learn", "Search for the numbers of a controller, gait or model that score best.");
-  LookUpShipped(learn->add_option(
-                    "study", args->path,
-                    "Study file (YAML); for --best and --top a study's folder, for --parameters an "
-                    "experiment"))
+  AddInput(*learn, "study", args->path,
+           "Study file (YAML); for --best and --top a study's folder, for --parameters an "
+           "experiment")
       ->required();
   learn->add_option("--set", args->set, "Parameter of the study, experiment or model")
       ->option_text("NAME=VALUE")

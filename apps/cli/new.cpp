@@ -80,8 +80,7 @@ void AddNew(CLI::App& app, int& exit_code) {
       ->required()
       ->option_text("NAME")
       ->check(CheckName);
-  LookUpShipped(
-      create->add_option("--model", args->model, "Of an experiment: the robot's model file"))
+  AddInput(*create, "--model", args->model, "Of an experiment: the robot's model file")
       ->option_text("FILE");
   create->footer(
       "Examples:\n"

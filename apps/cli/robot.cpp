@@ -44,20 +44,26 @@ void AddPort(CLI::App& command, RobotArguments& args) {
       ->envname("TAUT_ROBOT_PORT");
 }
 
-void AddModel(CLI::App& command, RobotArguments& args) {
-  LookUpShipped(command.add_option(
-                    "--model", args.model,
-                    "The robot: names of its cables (default: tetraspine3_motors.yaml of taut)"))
+void AddModelFile(CLI::App& command, RobotArguments& args) {
+  AddInput(command, "--model", args.model,
+           "The robot: names of its cables (default: tetraspine3_motors.yaml of taut)")
       ->option_text("FILE");
+}
+
+void AddModel(CLI::App& command, RobotArguments& args) {
+  AddModelFile(command, args);
   command.add_option("--set", args.set, "Parameter of the model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
 }
 
-void AddDriving(CLI::App& command, RobotArguments& args) {
-  LookUpShipped(command.add_option("--calibration", args.calibration,
-                                   "What was measured, to be set on the boards"))
+void AddCalibration(CLI::App& command, RobotArguments& args) {
+  AddInput(command, "--calibration", args.calibration, "Calibration file, set on the boards")
       ->option_text("FILE");
+}
+
+void AddDriving(CLI::App& command, RobotArguments& args) {
+  AddCalibration(command, args);
   command
       .add_option("--encoder_lines", args.encoder_lines,
                   "Marks a turn of the encoders (default: 16)")

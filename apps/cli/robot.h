@@ -30,10 +30,13 @@ struct RobotArguments {
   bool clear_faults = false, dry_run = false, json = false, quiet = false;
 };
 
-/// Flags that name the robot: `--port` and what its commands share.
+/// Flags of the robot commands.
 void AddPort(CLI::App& command, RobotArguments& args);
+void AddModelFile(CLI::App& command, RobotArguments& args);
+/// The model file and its parameters.
 void AddModel(CLI::App& command, RobotArguments& args);
-/// Of commands that give motors power.
+void AddCalibration(CLI::App& command, RobotArguments& args);
+/// Flags of commands that give motors power.
 void AddDriving(CLI::App& command, RobotArguments& args);
 void AddJson(CLI::App& command, RobotArguments& args);
 

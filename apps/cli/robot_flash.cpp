@@ -9,7 +9,7 @@
 #include "output.h"
 #include "overrides.h"
 #include "robot.h"
-#include "shipped.h"
+#include "taut/shipped.h"
 
 namespace taut::cli {
 namespace {
@@ -25,13 +25,8 @@ struct FlashArguments {
 /// That of --hex, of the installed taut, or of the tree that it was built in.
 std::string HexPath(const FlashArguments& args) {
   if (!args.hex.empty()) return args.hex;
-  std::error_code error;
-  const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const char* const place :
-       {"firmware/taut_board.hex", "../share/taut/firmware/taut_board.hex"}) {
-    if (fs::exists(beside / place, error)) return (beside / place).lexically_normal().string();
-  }
-  return {};
+  return FindBesideProgram({"firmware/taut_board.hex", "../share/taut/firmware/taut_board.hex"})
+      .value_or("");
 }
 
 std::vector<std::string> Words(const FlashArguments& args, const std::string& hex) {

@@ -7,7 +7,6 @@
 
 #include "output.h"
 #include "robot.h"
-#include "shipped.h"
 
 namespace taut::cli {
 namespace {
@@ -187,10 +186,7 @@ void AddRobotSet(CLI::App& robot, int& exit_code) {
   set->add_option("values", args->values, "Parameters, as duty_limit=0.5; none: show all")
       ->option_text("NAME=VALUE");
   AddPort(*set, *args);
-  LookUpShipped(
-      set->add_option("--model", args->model,
-                      "The robot: names of its cables (default: tetraspine3_motors.yaml of taut)"))
-      ->option_text("FILE");
+  AddModelFile(*set, *args);
   set->add_option("--cable", args->cables, "Only of the motors of these cables")
       ->option_text("NAME");
   set->add_flag("--defaults", args->defaults, "First all that the firmware brings");
@@ -214,9 +210,7 @@ void AddRobotReference(CLI::App& robot, int& exit_code) {
       ->option_text("CABLE=REST_LENGTH_M");
   AddPort(*reference, *args);
   AddModel(*reference, *args);
-  LookUpShipped(reference->add_option("--calibration", args->calibration,
-                                      "What was measured, to be set on the boards"))
-      ->option_text("FILE");
+  AddCalibration(*reference, *args);
   auto* flag =
       reference->add_flag("--as_model", *as_model, "All cables are as the model describes them");
   reference->get_option("values")->excludes(flag);

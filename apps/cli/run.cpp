@@ -193,8 +193,7 @@ int Run(const RunArguments& args) {
 void AddRun(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<RunArguments>();
   CLI::App* run = app.add_subcommand("run", "Run an experiment: trace, summary and table.");
-  LookUpShipped(run->add_option("experiment", args->experiment, "Experiment file (YAML)"))
-      ->required();
+  AddInput(*run, "experiment", args->experiment, "Experiment file (YAML)")->required();
   run->add_option("--set", args->set, "Parameter of the experiment or model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);

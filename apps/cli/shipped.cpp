@@ -17,19 +17,20 @@ const std::vector<std::string>& ShippedKinds() {
 std::optional<std::string> ShippedFolderOf(const std::string& kind) {
   const auto shipped = ShippedFolder();
   if (!shipped) return std::nullopt;
-  // In a build these are links into the source tree; users are to see where they lead.
+  // share/taut of a build is a link into the source tree: show users the folder itself.
   std::error_code failed;
   const fs::path folder = fs::canonical(fs::path(*shipped) / kind, failed);
   return failed ? std::nullopt : std::optional(folder.string());
 }
 
-CLI::Option* LookUpShipped(CLI::Option* input) {
-  return input->transform(CLI::Validator(
-      [](std::string& path) {
-        path = FindInput(path, ShippedFolder());
-        return std::string();
-      },
-      "", "file that comes with taut"));
+CLI::Option* AddInput(CLI::App& command, const std::string& name, std::string& path,
+                      const std::string& meaning) {
+  const auto find = [](std::string& given) {
+    given = FindInput(given);
+    return std::string();
+  };
+  return command.add_option(name, path, meaning)
+      ->transform(CLI::Validator(find, "", "shipped file"));
 }
 
 std::vector<ShippedFile> ShippedFiles(const std::string& kind, Diagnostics& out) {

@@ -20,13 +20,12 @@ struct ShippedFile {
 /// "models", "experiments", "gaits", "studies", "fits": the folders.
 const std::vector<std::string>& ShippedKinds();
 
-/// A folder of them beside the installed command (share/taut) or of the tree that the command was
-/// built from. Nothing if there is none.
+/// Returns the folder of a kind: of the installed taut, or of the source tree of a build.
 std::optional<std::string> ShippedFolderOf(const std::string& kind);
 
-/// Looks an input file up among the files that come with taut if the current folder has none of
-/// its name (`FindInput`).
-CLI::Option* LookUpShipped(CLI::Option* input);
+/// Adds an option for the path of an input file, which `FindInput` resolves.
+CLI::Option* AddInput(CLI::App& command, const std::string& name, std::string& path,
+                      const std::string& meaning);
 
 /// The files of a kind, by name.
 std::vector<ShippedFile> ShippedFiles(const std::string& kind, Diagnostics& out);

@@ -156,17 +156,16 @@ void AddView(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<ViewArguments>();
   CLI::App* view =
       app.add_subcommand("view", "Watch an experiment live, replay a trace, look at a model.");
-  LookUpShipped(view->add_option("file", args->file,
-                                 "Experiment or model (YAML), or trace (.h5, .csv, .csv.gz)"));
+  AddInput(*view, "file", args->file, "Experiment or model (YAML), or trace (.h5, .csv, .csv.gz)");
   args->robot.port.clear();
   view->add_option("--robot", args->robot.port,
                    "Instead of a file: drive the robot behind this serial port, or an emulated one")
       ->option_text("virtual|PORT");
-  LookUpShipped(view->add_option("--model", args->robot.model,
-                                 "Robot: its model (default: tetraspine3_motors.yaml of taut)"))
+  AddInput(*view, "--model", args->robot.model,
+           "Robot: its model (default: tetraspine3_motors.yaml of taut)")
       ->option_text("FILE");
-  LookUpShipped(view->add_option("--calibration", args->robot.calibration,
-                                 "Robot: what was measured, to be set on the boards"))
+  AddInput(*view, "--calibration", args->robot.calibration,
+           "Robot: calibration file, set on the boards")
       ->option_text("FILE");
   view->add_option("--set", args->set, "Parameter of the experiment or model")
       ->option_text("NAME=VALUE")

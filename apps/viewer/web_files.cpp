@@ -6,23 +6,22 @@
 #include <iterator>
 #include <vector>
 
+#include "taut/shipped.h"
+
 namespace taut::viewer {
 
 namespace fs = std::filesystem;
 
 std::optional<std::string> FindWebFolder(std::string& error, const std::string& otherwise) {
-  std::vector<fs::path> folders;
-  std::error_code failed;
+  fs::path folder = otherwise;
   if (const char* named = std::getenv("TAUT_WEB"); named != nullptr && *named != '\0') {
-    folders.push_back(named);
-  } else {
-    const fs::path command = fs::read_symlink("/proc/self/exe", failed);
-    folders = {command.parent_path() / "web",
-               command.parent_path().parent_path() / "share/taut/web", otherwise};
+    folder = named;
+  } else if (const auto page =
+                 FindBesideProgram({"web/index.html", "../share/taut/web/index.html"})) {
+    folder = fs::path(*page).parent_path();
   }
-  for (const fs::path& folder : folders) {
-    if (fs::exists(folder / "index.html", failed)) return folder.string();
-  }
+  std::error_code failed;
+  if (fs::exists(folder / "index.html", failed)) return folder.string();
   error =
       "the viewer's pages are missing; they are built with taut where node and npm are "
       "(apt-get install nodejs npm, then script/build)";

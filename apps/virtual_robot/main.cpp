@@ -7,7 +7,6 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,15 +48,8 @@ struct Arguments {
 /// The firmware that came with this program: beside it where both were built, in share/taut where
 /// they were installed. Empty: none did.
 std::string OwnFirmware() {
-  namespace fs = std::filesystem;
-  std::error_code failed;
-  const fs::path folder = fs::read_symlink("/proc/self/exe", failed).parent_path();
-  for (const fs::path& place :
-       {folder / "firmware", folder.parent_path() / "share/taut/firmware"}) {
-    const fs::path elf = place / "taut_board.elf";
-    if (fs::is_regular_file(elf, failed)) return elf.string();
-  }
-  return {};
+  return FindBesideProgram({"firmware/taut_board.elf", "../share/taut/firmware/taut_board.elf"})
+      .value_or("");
 }
 
 std::atomic<bool> stop_asked{false};
@@ -370,7 +362,7 @@ int Main(int argc, char** argv) {
     app.parse(argc, argv);
     for (std::string* path :
          {&arguments.model, &arguments.experiment, &arguments.faults, &arguments.calibration}) {
-      *path = FindInput(*path, ShippedFolder());
+      *path = FindInput(*path);
     }
   } catch (const CLI::Success& asked) {
     return app.exit(asked);

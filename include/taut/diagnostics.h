@@ -1,4 +1,4 @@
-/// Complaints about an input, collected so that a user fixes a file in one go.
+/// Errors and warnings about an input, collected so that a user can fix a file in one pass.
 #pragma once
 
 #include <string>
@@ -14,32 +14,32 @@ struct SourceRef {
   int column = 0;
 };
 
-/// One complaint: where, what is wrong, and what to do about it.
+/// One error or warning: its place, the problem, and a hint how to fix it.
 struct Diagnostic {
   SourceRef at;
   std::string what;
   std::string hint;  ///< May be empty.
-  /// The system does not open or read a file: its contents are unknown, not wrong.
+  /// The file cannot be opened or read, so its contents are unknown, not wrong.
   bool unreadable = false;
 };
 
-/// Collects every complaint about one input. Nothing here throws, prints or exits: the caller
-/// decides.
+/// Collects all errors and warnings about one input. No function throws, prints or exits; the
+/// caller decides.
 class Diagnostics {
  public:
   void Error(SourceRef at, std::string what, std::string hint = {});
-  /// An error about a file that the system does not open or read.
+  /// Adds an error about a file that cannot be opened or read.
   void Unreadable(SourceRef at, std::string what, std::string hint = {});
-  /// What can be used, but is hardly meant. No function returns less because of one.
+  /// Adds a warning: the input is valid, but probably not intended. Warnings do not change results.
   void Warning(SourceRef at, std::string what, std::string hint = {});
-  /// For those who want no warnings: makes errors of all so far.
+  /// Turns all warnings so far into errors (`--strict`).
   void WarningsToErrors();
 
-  bool ok() const noexcept { return items_.empty(); }  ///< No errors; maybe warnings.
+  bool ok() const noexcept { return items_.empty(); }  ///< No errors; there may be warnings.
   const std::vector<Diagnostic>& items() const noexcept { return items_; }  ///< The errors.
   const std::vector<Diagnostic>& warnings() const noexcept { return warnings_; }
 
-  /// One line each, sorted by file, line and column, without repetitions:
+  /// Returns one line per error or warning, sorted by file, line and column, without duplicates:
   /// `prism.yaml:12:7: error: <what> (<hint>)`, or `warning:`.
   std::string Format() const;
 
@@ -51,13 +51,13 @@ class Diagnostics {
 /// ends and tabs. Use it for all printed text from files; `Diagnostics::Format` already does.
 std::string Printable(std::string_view text);
 
-/// By file, line and column, without repetitions: in the order of `Diagnostics::Format`.
+/// Returns `items` by file, line and column, without duplicates, as `Diagnostics::Format` does.
 std::vector<Diagnostic> Sorted(std::vector<Diagnostic> items);
 
-/// The candidate closest to `word` if it is close enough to be a likely misspelling, else empty.
+/// Returns the candidate closest to `word` if `word` is a likely misspelling of it, else "".
 std::string_view ClosestMatch(std::string_view word, const std::vector<std::string>& candidates);
 
-/// `did you mean "radius_m"?`, or the list of all candidates if none is close.
+/// Returns `did you mean "radius_m"?`, or a list of the candidates if none is close.
 std::string DidYouMean(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace taut

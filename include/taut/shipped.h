@@ -1,24 +1,28 @@
-/// The files that come with taut (models, experiments, gaits, ...), wherever it is installed.
+/// Files that come with taut (models, experiments, gaits, ...), found wherever taut is installed.
 ///
 /// Threads: any number may call these functions at once.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <string>
 
 namespace taut {
 
-/// The folder of these files, as seen from a program or library: `share/taut` in its folder or in
-/// one above, as in a build folder, in a Python package and below /usr. Nothing if there is none.
-std::optional<std::string> ShippedFolder(const std::string& program);
+/// Path of the running program; empty if the system does not provide it.
+std::string RunningProgram();
 
-/// The same for the running program.
-std::optional<std::string> ShippedFolder();
+/// Returns the first of these paths that exists, relative to the folder of the running program.
+std::optional<std::string> FindBesideProgram(std::initializer_list<const char*> paths);
 
-/// A user's path to an input file. A relative path to nothing in the current folder is looked up
-/// among the files that come with taut, so `experiments/push_20n.yaml` works everywhere; the result
-/// is absolute, or in a source tree `share/experiments/push_20n.yaml`. What is not found there,
-/// either, is returned unchanged.
-std::string FindInput(const std::string& path, const std::optional<std::string>& shipped);
+/// Returns the folder of the shipped files: `share/taut` in the folder of a program or library, or
+/// in a parent folder. So it is found in a build, in a Python package and below /usr.
+std::optional<std::string> ShippedFolder(const std::string& program = RunningProgram());
+
+/// Returns the path of an input file. A relative path that does not exist in the current folder is
+/// looked up in the folder of the shipped files, so `experiments/push_20n.yaml` works everywhere.
+/// The result of a lookup is absolute, or `share/experiments/push_20n.yaml` in a source tree. A
+/// path that is not found is returned unchanged.
+std::string FindInput(const std::string& path, const std::string& program = RunningProgram());
 
 }  // namespace taut

@@ -44,13 +44,18 @@ std::optional<Simd> SimdOf(const std::optional<std::string>& name) {
   throw py::value_error("simd: \"" + *name + "\"; there are scalar, sse2, neon, avx2 and avx512");
 }
 
-std::optional<std::string> DataFolder() {
+namespace {
+
+std::string ModulePath() {
   Dl_info module{};
-  if (dladdr(reinterpret_cast<const void*>(&DataFolder), &module) == 0) return std::nullopt;
-  return ShippedFolder(module.dli_fname);
+  return dladdr(reinterpret_cast<const void*>(&ModulePath), &module) != 0 ? module.dli_fname : "";
 }
 
-std::string InputPath(const std::string& path) { return FindInput(path, DataFolder()); }
+}  // namespace
+
+std::optional<std::string> DataFolder() { return ShippedFolder(ModulePath()); }
+
+std::string InputPath(const std::string& path) { return FindInput(path, ModulePath()); }
 
 void Tell(const Diagnostics& said) {
   if (!said.ok()) Refuse(said);

@@ -14,6 +14,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+SHARE = ROOT / "share"
 FOLDERS = {"models": (".yaml", ".obj"), "experiments": (".yaml",), "gaits": (".yaml",)}
 SOON_S = 1.0  # a first time at which hashes are set beside each other
 
@@ -21,13 +22,13 @@ SOON_S = 1.0  # a first time at which hashes are set beside each other
 def shipped():
     """{path: text} of all that an experiment may read."""
     return {f"{folder}/{path.name}": path.read_text()
-            for folder, ends in FOLDERS.items() for path in sorted((ROOT / "share" / folder).iterdir()) if path.suffix in ends}
+            for folder, ends in FOLDERS.items() for path in sorted((SHARE / folder).iterdir()) if path.suffix in ends}
 
 
 def run(taut, path, duration_s=None):
     """The time at which a run ends, and the hash of its state then."""
     with tempfile.TemporaryDirectory() as out:
-        command = [taut, "run", ROOT / "share" / path, "--json", "--quiet", "--out", pathlib.Path(out) / "run"]
+        command = [taut, "run", SHARE / path, "--json", "--quiet", "--out", pathlib.Path(out) / "run"]
         command += [] if duration_s is None else ["--duration_s", repr(duration_s)]
         done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:

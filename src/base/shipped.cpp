@@ -6,6 +6,21 @@ namespace taut {
 
 namespace fs = std::filesystem;
 
+std::string RunningProgram() {
+  std::error_code failed;
+  return fs::read_symlink("/proc/self/exe", failed).string();
+}
+
+std::optional<std::string> FindBesideProgram(std::initializer_list<const char*> paths) {
+  const fs::path folder = fs::path(RunningProgram()).parent_path();
+  if (folder.empty()) return std::nullopt;
+  std::error_code failed;
+  for (const char* const path : paths) {
+    if (fs::exists(folder / path, failed)) return (folder / path).lexically_normal().string();
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string> ShippedFolder(const std::string& program) {
   std::error_code failed;
   fs::path folder = fs::canonical(program, failed);
@@ -18,22 +33,17 @@ std::optional<std::string> ShippedFolder(const std::string& program) {
   return std::nullopt;
 }
 
-std::optional<std::string> ShippedFolder() {
+std::string FindInput(const std::string& path, const std::string& program) {
   std::error_code failed;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  return failed ? std::nullopt : ShippedFolder(program.string());
-}
-
-std::string FindInput(const std::string& path, const std::optional<std::string>& shipped) {
-  std::error_code failed;
-  if (!shipped || path.empty() || fs::path(path).is_absolute() || fs::exists(path, failed)) {
-    return path;
-  }
-  if (*fs::path(path).lexically_normal().begin() == "..") return path;
-  // In a build, share/taut has links into the source tree: users are to see the files themselves.
-  const fs::path found = fs::canonical(fs::path(*shipped) / path, failed);
+  const fs::path given(path);
+  if (path.empty() || given.is_absolute() || fs::exists(given, failed)) return path;
+  if (*given.lexically_normal().begin() == "..") return path;  // would leave the folder
+  const auto shipped = ShippedFolder(program);
+  if (!shipped) return path;
+  // share/taut of a build links into the source tree: return the path of the file itself.
+  const fs::path found = fs::canonical(*shipped / given, failed);
   if (failed || !fs::is_regular_file(found, failed)) return path;
-  const fs::path in_tree = fs::path("share") / path;
+  const fs::path in_tree = "share" / given;
   return fs::equivalent(in_tree, found, failed) ? in_tree.string() : found.string();
 }
 

@@ -13,17 +13,15 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <optional>
 #include <thread>
 
 #include "base/unix_address.h"
 #include "link/runtime_folder.h"
+#include "taut/shipped.h"
 
 namespace taut::link {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr char kProgram[] = "taut_virtual_robot";
 /// To read the model and start six boards, on a machine that has other work.
@@ -34,9 +32,7 @@ std::string ProgramPath() {
   if (const char* const given = std::getenv("TAUT_VIRTUAL_ROBOT"); given && *given != '\0') {
     return given;
   }
-  std::error_code error;
-  const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / kProgram;
-  return !error && fs::exists(beside, error) ? beside.string() : kProgram;
+  return FindBesideProgram({kProgram}).value_or(kProgram);
 }
 
 std::string FolderOfIt(Diagnostics& out) {

@@ -1,4 +1,4 @@
-/// Networks, and oscillators that they act on.
+/// Neural networks, and the network of oscillators that they modulate, in lanes.
 #pragma once
 
 #include "plant/lane_kernel.h"
@@ -17,7 +17,7 @@ void SayNetwork(const NetworkRows& rows, const double* inputs, double* outputs) 
       [outputs](int k, W y) { Store(outputs, k, y); });
 }
 
-/// A network in memory that the caller keeps.
+/// A network of oscillators in the caller's memory.
 template <class W>
 struct LaneFeedbackCpg {
   control::FeedbackCpgLaw<W>* laws;

@@ -1,4 +1,4 @@
-/// What is seen of all lanes at once, for who wants rows of numbers.
+/// Observations of bodies in all lanes at once, as rows of numbers.
 #pragma once
 
 #include "plant/lane_kernel.h"
@@ -16,7 +16,7 @@ TAUT_INLINE void StoreVec(double* rows, int i, const simd::V3<W>& v) noexcept {
   Store(rows, i, v.x), Store(rows, i + 1, v.y), Store(rows, i + 2, v.z);
 }
 
-// math/vec.h over lanes, operation by operation.
+// The functions of math/vec.h for lanes, with the same operations in the same order.
 template <class W>
 TAUT_INLINE simd::V3<W> Turned(const simd::Q4<W>& q, const simd::V3<W>& a) noexcept {
   const simd::V3<W> u{q.x, q.y, q.z};
@@ -34,7 +34,8 @@ TAUT_INLINE simd::Q4<W> Back(const simd::Q4<W>& q) noexcept {
   return {q.w, -q.x, -q.y, -q.z};
 }
 
-/// What `Batch::Body` says of bodies without motions, to the bit.
+/// Writes 13 rows per body (position, orientation, velocity, angular velocity), bit-identical to
+/// `Batch::Body` for bodies without motions.
 template <class W>
 void SeeBodies(const BodyRows& rows, double* out) {
   for (int b = 0; b < rows.count; ++b) {

@@ -1,4 +1,4 @@
-/// Rows of numbers, one per lane, as registers; pieces of a block of memory.
+/// Loads and stores of rows of numbers, one per lane, as SIMD registers; allocation from a block.
 #pragma once
 
 #include "simd/wide.h"
@@ -16,7 +16,7 @@ TAUT_INLINE void Store(double* row, int i, W x) noexcept {
   __builtin_memcpy(row + i * W::kLanes, &x, sizeof(double) * W::kLanes);
 }
 
-/// The next `count` of memory that the caller keeps.
+/// Returns the next `count` objects of the caller's memory block and advances `end`.
 template <class T>
 T* Take(char*& end, int count) noexcept {
   T* const first = reinterpret_cast<T*>(end);

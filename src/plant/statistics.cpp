@@ -8,7 +8,7 @@
 namespace taut::plant {
 namespace {
 
-/// The start-up transient is over by then: NTRT's own figures make the same cut.
+/// End of the start-up transient, as in the figures of NTRT.
 constexpr double kStartIsOverS = 5.0;
 
 /// A phase that ends at 30 s includes the step that ends there.
@@ -21,7 +21,7 @@ bool Within(double time_s, double from_s, double to_s) {
 void Statistics::Sum::Take(double x, double step_s) {
   min = any ? std::min(min, x) : x;
   max = any ? std::max(max, x) : x;
-  // The start of a run is the end of no step: it counts only where there is nothing else.
+  // No step ends at the start of a run: its value has no weight if there are other values.
   if (step_s > 0) integral += x * step_s, time_s += step_s;
   any = true;
 }
@@ -105,7 +105,7 @@ void Statistics::Take(double time_s, double step_s, const Observation& now,
       cable.max_force_n = std::max(cable.max_force_n, r.tension_n);
       cable.since_s += step_s;
       const double wound_m = cable.rest_length_m - r.rest_length_m;
-      // What is read of a robot stands still between two readings.
+      // Rest lengths of a real robot are constant between two readings.
       const double over_s = world != nullptr ? step_s : cable.since_s;
       if (wound_m != 0) cable.since_s = 0;
       if (step_s > 0) {

@@ -1,4 +1,4 @@
-/// What a run has to say at its end, gathered at every step.
+/// Statistics for the summary of a run, accumulated at every step.
 #pragma once
 
 #include <optional>
@@ -15,20 +15,20 @@ class Statistics {
  public:
   explicit Statistics(const ExperimentSpec& experiment);
 
-  /// Takes a moment in. `step_s` is the length of the step that led here; 0 at the start. `world`:
-  /// whose motors to look at; null where there is no simulation.
+  /// Adds the state after a step of length `step_s` (0 at the start). `world` contains the motors;
+  /// null without a simulation.
   void Take(double time_s, double step_s, const Observation& now, const std::vector<double>& drag_n,
             const World* world);
 
-  /// Takes in what struts and anchors bear at the moment of a row: at every step it would be half
-  /// of a run's time.
+  /// Adds the loads of struts and anchors at the time of a recorded row. At every step, this would
+  /// take half of the time of a run.
   void TakeLoads(const Observation& now, const World& world);
 
-  /// Cables, drags and maxima; the rest of the summary is the runner's.
+  /// Sets phases, cables, struts, anchors, drags, overloads and maxima; the runner sets the rest.
   void Fill(RunSummary& summary) const;
 
  private:
-  /// Mean over time: a value counts for the step that ends with it.
+  /// Time-weighted mean: a value has the weight of the step that ends with it.
   struct Sum {
     double integral = 0, time_s = 0, min = 0, max = 0;
     bool any = false;
@@ -43,7 +43,7 @@ class Statistics {
     Quantity tension, elastic;
     double rest_length_m = 0, max_force_n = 0, max_speed = 0, max_power_w = 0, energy_j = 0,
            net_energy_j = 0;
-    double since_s = 0;  ///< The last time that the rest length was another.
+    double since_s = 0;  ///< Time since the rest length changed.
     std::optional<MotorSummary> motor;
   };
   void Take(Quantity& quantity, double time_s, double step_s, double force_n) const;
@@ -63,7 +63,7 @@ class Statistics {
   BodyForces forces_;
   std::vector<StrutSum> struts_;
   std::vector<AnchorSum> anchors_;
-  bool has_loads_ = false;  ///< Whether struts and anchors were looked at.
+  bool has_loads_ = false;  ///< Whether `TakeLoads` was called.
   std::vector<Cable> cables_;
   std::vector<Sum> drags_;
 };

@@ -1,6 +1,6 @@
-/// Six boards that run natively behind a USB-ISS on a pseudo-terminal, in real time, and an adapter
-/// that turns hostile once motors have power. Commands of `taut robot` drive it as a real robot; no
-/// emulator is needed.
+/// A USB-ISS adapter on a pseudo-terminal with six boards, whose firmware runs natively in real
+/// time. The adapter can turn hostile while motors have power. Commands of `taut robot` drive it
+/// like a real robot; no emulator is needed.
 #pragma once
 
 #include <fcntl.h>
@@ -27,12 +27,12 @@ namespace taut::link {
 /// Behavior of the adapter after the attack.
 enum class Hostility {
   kNone,
-  kSilent,    ///< Takes frames, acts on none and answers none.
-  kGarbage,   ///< Acts, and answers with random bytes.
-  kHalf,      ///< Acts, and answers with the first half.
-  kFlood,     ///< Acts on nothing and sends without end.
-  kUnread,    ///< Does not even take frames from the line.
-  kUnplugged  ///< The line is gone.
+  kSilent,    ///< Reads frames, executes none and answers none.
+  kGarbage,   ///< Executes frames and answers with random bytes.
+  kHalf,      ///< Executes frames and sends only half of each answer.
+  kFlood,     ///< Executes no frames and sends bytes without end.
+  kUnread,    ///< Does not read frames from the line.
+  kUnplugged  ///< The line is closed.
 };
 
 class HostileAdapter {
@@ -61,7 +61,7 @@ class HostileAdapter {
   HostileAdapter& operator=(const HostileAdapter&) = delete;
 
   const std::string& device() const { return device_; }
-  /// Returns when the adapter has turned hostile, motors powered or not.
+  /// Turns the adapter hostile. Returns when it is, with or without power on the motors.
   void Attack() {
     attacks_ = true;
     while (!hostile_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -82,7 +82,7 @@ class HostileAdapter {
       } else {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
-      // Limits the boards' time on a busy machine, so that no board times out.
+      // Limits the time that boards catch up on a busy machine, so that no board times out.
       const auto now = Clock::now();
       ticked = std::max(ticked, now - std::chrono::milliseconds(10));
       for (; ticked < now; ticked += std::chrono::milliseconds(1)) {
@@ -98,8 +98,7 @@ class HostileAdapter {
     const Hostility now = attacks ? hostility_ : Hostility::kNone;
     if (now == Hostility::kUnplugged) Unplug();
     hostile_ = attacks;
-    if (now == Hostility::kUnplugged) return;
-    if (now == Hostility::kUnread) return;
+    if (line_ < 0 || now == Hostility::kUnread) return;
     if (now == Hostility::kFlood) {
       Bytes noise(4096);
       for (auto& byte : noise) byte = static_cast<std::uint8_t>(random());
@@ -119,11 +118,11 @@ class HostileAdapter {
   }
   void Send(const Bytes& bytes) const {
     if (!bytes.empty() && write(line_, bytes.data(), bytes.size()) < 0) {
-      // The line is full: nobody reads.
+      // The line is full because the command does not read.
     }
   }
-  /// The far end stays open: otherwise another test's adapter could get the device's name, and a
-  /// command that drove this adapter would reconnect to it.
+  /// Closes the adapter's end of the line. The far end stays open. Otherwise the adapter of another
+  /// test could get the same device name, and a command that drove this one would connect to it.
   void Unplug() {
     if (line_ < 0) return;
     close(line_);

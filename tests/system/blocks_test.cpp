@@ -6,12 +6,13 @@
 #include "taut/run.h"
 #include "taut/spec.h"
 #include "taut/trace.h"
+#include "tests/row_watch.h"
 
 namespace taut {
 namespace {
 
 /// Where the bodies are in the first and the last row, and the lowest of them ever.
-class Places final : public TraceWriter {
+class Places final : public test::RowWatch {
  public:
   explicit Places(std::size_t bodies) : bodies_(bodies) {}
   bool Append(double, const double* values) override {
@@ -20,9 +21,6 @@ class Places final : public TraceWriter {
     for (std::size_t b = 0; b < bodies_; ++b) lowest_m = std::min(lowest_m, values[3 * b + 2]);
     return true;
   }
-  bool FlushOld() override { return true; }
-  bool Finish() override { return true; }
-  const std::string& error() const override { return none_; }
   /// Mean over the bodies of coordinate `axis`.
   double Mean(const std::vector<double>& row, std::size_t axis) const {
     double sum = 0;
@@ -35,7 +33,6 @@ class Places final : public TraceWriter {
  private:
   std::size_t bodies_;
   int rows_ = 0;
-  std::string none_;
 };
 
 Places Drive(const std::string& name, std::size_t bodies, double duration_s) {

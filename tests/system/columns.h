@@ -7,13 +7,14 @@
 
 #include "taut/run.h"
 #include "taut/trace.h"
+#include "tests/row_watch.h"
 
 namespace taut {
 
 /// By the names of channels; the rows' times are "time_s".
 using Columns = std::map<std::string, std::vector<double>>;
 
-class Rows final : public TraceWriter {
+class Rows final : public test::RowWatch {
  public:
   explicit Rows(const ExperimentSpec& experiment) : channels_(RunChannels(experiment)) {}
   bool Append(double time_s, const double* values) override {
@@ -23,14 +24,10 @@ class Rows final : public TraceWriter {
     }
     return true;
   }
-  bool FlushOld() override { return true; }
-  bool Finish() override { return true; }
-  const std::string& error() const override { return none_; }
   Columns columns;
 
  private:
   std::vector<ChannelInfo> channels_;
-  std::string none_;
 };
 
 }  // namespace taut

@@ -9,6 +9,7 @@
 #include "taut/run.h"
 #include "taut/spec.h"
 #include "taut/trace.h"
+#include "tests/row_watch.h"
 
 namespace taut {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 constexpr std::size_t kSegments = 3, kPerSegment = 5;  // x, y, z, and x, y of the orientation
 
 /// How near neighbours come to each other, and how upright all stay.
-class Watch final : public TraceWriter {
+class Watch final : public test::RowWatch {
  public:
   bool Append(double, const double* values) override {
     for (std::size_t i = 0; i < kSegments; ++i) {
@@ -29,13 +30,7 @@ class Watch final : public TraceWriter {
     }
     return true;
   }
-  bool FlushOld() override { return true; }
-  bool Finish() override { return true; }
-  const std::string& error() const override { return none_; }
   double nearest_m = 1, uprightness = 1;  ///< The latter: cosine of the tilt.
-
- private:
-  std::string none_;
 };
 
 Watch Walk(double factor, const std::string& ground_friction) {

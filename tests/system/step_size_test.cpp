@@ -14,6 +14,7 @@
 #include "taut/run.h"
 #include "taut/spec.h"
 #include "taut/trace.h"
+#include "tests/row_watch.h"
 
 namespace taut {
 namespace {
@@ -23,7 +24,7 @@ constexpr double kApartM = 1e-6;
 constexpr int kFrontCables = 6;
 
 /// Where the front segment is, at two times.
-class Watch final : public TraceWriter {
+class Watch final : public test::RowWatch {
  public:
   explicit Watch(const ExperimentSpec& experiment) {
     const auto channels = RunChannels(experiment);
@@ -37,15 +38,11 @@ class Watch final : public TraceWriter {
     end_[0] = values[first_], end_[1] = values[first_ + 1];
     return true;
   }
-  bool FlushOld() override { return true; }
-  bool Finish() override { return true; }
-  const std::string& error() const override { return none_; }
   double SlideM() const { return std::hypot(end_[0] - start_[0], end_[1] - start_[1]); }
 
  private:
   std::size_t first_ = 0;
   double start_[2] = {}, end_[2] = {};
-  std::string none_;
 };
 
 struct Outcome {

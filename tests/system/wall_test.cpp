@@ -8,6 +8,7 @@
 #include "taut/run.h"
 #include "taut/spec.h"
 #include "taut/trace.h"
+#include "tests/row_watch.h"
 
 namespace taut {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kFarSideM = 1.20;
 constexpr double kReachM = 0.25;  // no point of a segment is further from its centre of mass
 
 /// Where the last segment is in the last row, and how far any segment ever was to a side.
-class Watch final : public TraceWriter {
+class Watch final : public test::RowWatch {
  public:
   explicit Watch(std::size_t segments) : segments_(segments) {}
   bool Append(double, const double* values) override {
@@ -27,14 +28,10 @@ class Watch final : public TraceWriter {
     }
     return true;
   }
-  bool FlushOld() override { return true; }
-  bool Finish() override { return true; }
-  const std::string& error() const override { return none_; }
   double rearmost_m = 0, aside_m = 0;
 
  private:
   std::size_t segments_;
-  std::string none_;
 };
 
 void ExpectOver(const std::string& height_m, double within_s, const std::string& name = "wall") {

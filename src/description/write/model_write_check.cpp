@@ -1,4 +1,4 @@
-// Whether a robot is still the same after it was written and read back.
+// Comparison of a robot with its copy after writing and reading a model file.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,7 +9,7 @@
 namespace taut::description {
 namespace {
 
-/// What rounding may change, of the size of a number and of the distances that go into it.
+/// Relative rounding tolerance, of the size of a number and of the distances it is computed from.
 constexpr double kRounding = 1e-12;
 
 struct Nearness {
@@ -22,7 +22,7 @@ struct Nearness {
     const double size = std::max({1.0, std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
     return (*this)(a.x, b.x, size) && (*this)(a.y, b.y, size) && (*this)(a.z, b.z, size);
   }
-  /// Between bodies far from the origin and their parts digits are lost.
+  /// The tolerance grows with the distance of the body from the origin, where digits cancel.
   bool operator()(const Inertia& a, const Inertia& b, const BodyDef& body) const {
     const Vec3& c = body.com_m;
     const double size = a.xx + a.yy + a.zz + 1e-3 * body.mass_kg * std::sqrt(Dot(c, c));
@@ -30,23 +30,24 @@ struct Nearness {
     return near(a.xx, b.xx) && near(a.yy, b.yy) && near(a.zz, b.zz) && near(a.xy, b.xy) &&
            near(a.xz, b.xz) && near(a.yz, b.yz);
   }
-  /// q and -q are the same turn.
+  /// q and -q are the same orientation.
   bool operator()(const Quat& a, const Quat& b) const {
     const Vec3 x{1, 0, 0}, y{0, 1, 0};
     return (*this)(Rotate(a, x), Rotate(b, x)) && (*this)(Rotate(a, y), Rotate(b, y));
   }
 };
 
-/// The points that a joint holds together become one node. Of parts of a centimetre and more, what
-/// that moves is this share.
+/// Tolerance for a robot with joints: the points that a joint holds together become one node, which
+/// moves them by up to the gap. For parts of a centimeter and more, this is a relative change of at
+/// most gap / 1 cm.
 Nearness NearnessFor(const ModelDef& def) {
   double gap_m = 0;
   for (const JointDef& joint : def.joints) gap_m = std::max(gap_m, HeldGap(joint));
   return {std::max(kRounding, 100 * gap_m)};
 }
 
-// Each of these compares the numbers that rounding may change, or that say nothing, in a way of
-// their own, and all others exactly: also those that are added later.
+// Each `Same` treats the fields that rounding may change, or that have no effect, separately. It
+// compares all other fields exactly with operator==, including fields that are added later.
 bool Same(const Material& a, Material b, const Nearness& near) {
   if (a.directions && b.directions && near(a.directions->axis, b.directions->axis)) {
     b.directions->axis = a.directions->axis;
@@ -56,7 +57,7 @@ bool Same(const Material& a, Material b, const Nearness& near) {
 bool Same(const ActuatorDef& a, ActuatorDef b) {
   if (a.kind != b.kind) return false;
   if (a.kind == ActuatorDef::Kind::kNone || a.kind == ActuatorDef::Kind::kIdeal) return true;
-  if (a.kind == ActuatorDef::Kind::kDcMotor) {  // of the limits it has one alone
+  if (a.kind == ActuatorDef::Kind::kDcMotor) {  // of the limits, only min_rest_length_m applies
     b.max_speed_m_per_s = a.max_speed_m_per_s;
     b.max_acceleration_m_per_s2 = a.max_acceleration_m_per_s2;
     b.max_force_n = a.max_force_n;
@@ -65,11 +66,11 @@ bool Same(const ActuatorDef& a, ActuatorDef b) {
   return a == b;
 }
 bool Same(const JointDef& a, JointDef b, const Nearness& near) {
-  // Nothing acts about the axis of a ball without a stop; those of rods of `class_k` have no say.
+  // The axis of a ball joint without a stop has no effect, also with rods of `class_k`.
   const bool free = a.kind == JointKind::kBall && !a.most;
   if (free || near(a.axis, b.axis)) b.axis = a.axis;
   if (free || near(a.turned, b.turned)) b.turned = a.turned;
-  // Compared already, the bodies by their names.
+  // Already compared by the caller; bodies are compared by name.
   b.body_a = a.body_a, b.body_b = a.body_b, b.from_m = a.from_m, b.to_m = a.to_m;
   b.member = a.member;
   return a == b;
@@ -111,21 +112,10 @@ class Comparison {
   }
 
  private:
-  /// Whether they are near; then `b` becomes `a`, so that what is left can be compared exactly.
+  /// Returns whether a and b are near. If so, sets b to a, so that operator== can compare the rest.
   template <class T>
   bool Settle(const T& a, T& b) const {
     if (!near_(a, b)) return false;
-    b = a;
-    return true;
-  }
-  bool Settle(double a, double& b) const {
-    if (!near_(a, b, 0)) return false;
-    b = a;
-    return true;
-  }
-  template <class T>
-  bool SettleSame(const T& a, T& b) const {
-    if (!Same(a, b)) return false;
     b = a;
     return true;
   }
@@ -151,22 +141,30 @@ class Comparison {
   }
 
   void Bodies() {
-    std::vector<int> bodies;  // of the robot
+    std::vector<int> bodies;  // without terrain
     for (int i = 0; i < static_cast<int>(a_.bodies.size()); ++i) {
       if (!IsTerrain(a_, i)) bodies.push_back(i);
     }
     if (!SameCount("body", bodies, b_.bodies)) return;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      const BodyDef &x = a_.bodies[static_cast<std::size_t>(bodies[i])], &y = b_.bodies[i];
+      const BodyDef& x = a_.bodies[static_cast<std::size_t>(bodies[i])];
+      BodyDef y = b_.bodies[i];
       if (x.name != y.name) Differs("body", x.name, "name");
       if (IsAnchored(a_, bodies[i]) != y.fixed) Differs("body", x.name, "anchor");
+      y.fixed = x.fixed;
       if (!near_(x.mass_kg, y.mass_kg, 0)) Differs("body", x.name, "mass");
-      if (!near_(x.com_m, y.com_m)) Differs("body", x.name, "centre of mass");
+      y.mass_kg = x.mass_kg;
+      if (!Settle(x.com_m, y.com_m)) Differs("body", x.name, "centre of mass");
       if (!near_(x.inertia_kg_m2, y.inertia_kg_m2, x)) Differs("body", x.name, "inertia");
+      y.inertia_kg_m2 = x.inertia_kg_m2;
+      // Model files have no velocities.
+      y.velocity_m_per_s = x.velocity_m_per_s;
+      y.angular_velocity_rad_per_s = x.angular_velocity_rad_per_s;
+      if (x != y) Differs("body", x.name, "number");
     }
   }
 
-  /// Calls `compare` with the places of every part and of the one read back that has its name.
+  /// Calls `compare(i, k)` for every part a[i] and the part b[k] of the same name.
   template <class Part, class F>
   void ByName(const char* kind, const std::vector<Part>& a, const std::vector<Part>& b, F compare) {
     std::map<std::string, std::size_t> read;
@@ -230,9 +228,11 @@ class Comparison {
         to.body = from.body;
       }
       if (!same_path) Differs("cable", x.name, "path");
-      if (!Settle(x.rest_length_m, y.rest_length_m)) Differs("cable", x.name, "rest length");
+      if (!near_(x.rest_length_m, y.rest_length_m, 0)) Differs("cable", x.name, "rest length");
+      y.rest_length_m = x.rest_length_m;
       if (x.member != y.member) Differs("cable", x.name, "section, mass or limit");
-      if (!SettleSame(x.actuator, y.actuator)) Differs("cable", x.name, "actuator");
+      if (!Same(x.actuator, y.actuator)) Differs("cable", x.name, "actuator");
+      y.actuator = x.actuator;
       if (x != y) Differs("cable", x.name, "stiffness, damper or other number");
       if (!Same(robot_.cable_tags[i], read_.cable_tags[k])) {
         Differs("cable", x.name, "list of tags");

@@ -1,6 +1,6 @@
-/// Where contacts go once they are found: into the slots of a body, if the other does not move,
-/// else into the lists of touches; and how far two bodies may reach before they are looked at
-/// again.
+/// Storage of detected contacts: in the slots of a body if the other body does not move, else in
+/// the lists of touches. Clearances: lower bounds of distances, which delay the next distance query
+/// of two bodies.
 #pragma once
 
 #include "sim/contacts/shape_pairs.inl"
@@ -8,13 +8,13 @@
 
 namespace taut::sim {
 
-/// How close a contact must be to get a row: what its body may travel in this step, and a bit.
+/// Margin of contact detection, in addition to the way of the bodies in a step [m].
 inline constexpr double kContactMarginM = 1e-5;
 
-/// A look is for so many steps like this one, if nothing is nearer.
+/// Distance queries search up to the approach of so many steps like this one.
 inline constexpr double kLookAheadSteps = 16.0;
 
-/// What the finding of a contact with the world says about it.
+/// A detected contact with the world, per lane.
 template <class W>
 struct Found {
   W key, frame, gap, radius, static_friction, kinetic_friction, restitution;
@@ -36,7 +36,7 @@ TAUT_INLINE void PutContact(Contact<W, 1>& slot, const Found<W>& found, M lanes)
   put(slot.restitution, found.restitution);
 }
 
-/// The contacts of one body with the world that were found so far.
+/// Fills the slots of one body with its contacts with the world.
 template <class W>
 class SlotFiller {
  public:
@@ -45,7 +45,8 @@ class SlotFiller {
         capacity_(m.first_slot[body + 1] - m.first_slot[body]),
         one_direction_(m.along_slip) {}
 
-  /// Puts it into the next slot of each of `lanes`; there is room for all points on all planes.
+  /// Puts `found` into the next free slot of each of `lanes`. There is room for all points
+  /// on all planes.
   template <class M>
   TAUT_INLINE void Add(const Found<W>& found, M lanes) noexcept {
     const int last = count_;
@@ -55,7 +56,7 @@ class SlotFiller {
     }
     used_ += Select(lanes, W::Splat(1.0), W::Splat(0.0));
   }
-  /// The same for one lane. False if it has no room.
+  /// The same for one lane. Returns false if the lane has no free slot.
   bool Add(const Found<W>& found, int lane) noexcept {
     const int k = static_cast<int>(used_[lane]);
     if (k == capacity_) return false;
@@ -72,7 +73,7 @@ class SlotFiller {
   TAUT_INLINE void Put(int k, const Found<W>& found, M here) noexcept {
     Contact<W, 1>& slot = slots_[k];
     if (k == count_) {
-      // Lanes that have no such contact keep a harmless one.
+      // Lanes without this contact get valid numbers with `live` = 0.
       ++count_;
       slot.one_direction = one_direction_;
       slot.directed = false;
@@ -93,14 +94,14 @@ class SlotFiller {
   bool one_direction_;
 };
 
-/// A touching point of a body and a shape that does not move, for one lane of a slot.
+/// Converts a touch point between a body and a shape that does not move, for one lane of a slot.
 template <class W>
 Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
                     const ShapePairTable& pair, const TouchPoint& t, int body, int lane) noexcept {
   const V3<W>& x = s.pos[body];
   Found<W> found;
   found.key = W::Splat(pair.id + static_cast<uint32_t>(t.feature));
-  found.frame = W::Splat(-1.0) - found.key;  // like no other
+  found.frame = W::Splat(-1.0) - found.key;  // unique
   found.gap = W::Splat(t.gap_m);
   found.radius = W::Splat(RadiusOf(m.shapes[pair.a].shape_P));
   found.static_friction = W::Splat(pair.static_friction);
@@ -108,7 +109,7 @@ Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
   found.restitution = W::Splat(pair.restitution);
   found.upright = false;
   found.n = simd::Splat3<W>(t.normal);
-  found.t1 = found.t2 = found.n;  // to be made
+  found.t1 = found.t2 = found.n;  // computed later
   const V3<W>& v = work.bodies[body].v;
   found.arm = {W::Splat(t.point[0] - (x.x[lane] + t.when_s * v.x[lane])),
                W::Splat(t.point[1] - (x.y[lane] + t.when_s * v.y[lane])),
@@ -116,9 +117,9 @@ Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return found;
 }
 
-/// Of the points that one pair of shapes has in one lane those that do not only pass by, in the
-/// order of their features: into the slots of a body if the other does not move, else into the
-/// lists of touches.
+/// Stores the points of one pair of shapes in one lane, in the order of their features, without
+/// points that only pass by (passing.h): in the slots of a body if the other body does not move,
+/// else in the lists of touches.
 template <class W>
 TAUT_INLINE void PutPoints(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                            const ShapePairTable& pair, int lane, double step_s, NearParts* kept,
@@ -143,7 +144,7 @@ TAUT_INLINE void PutPoints(const View& m, const Rows<W>& s, const Group& g, Scra
   }
 }
 
-/// All points of a pair. False if none is near.
+/// Finds and stores all points of a pair. Returns false if no point is within the margin.
 template <class W>
 bool PutTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                 const ShapePairTable& pair, int lane, double margin, double step_s,
@@ -154,18 +155,19 @@ bool PutTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& wor
   return found > 0;
 }
 
-/// How far two bodies may reach for each other in this step,
+/// Returns a bound of the approach of two bodies in this step, plus the margin [m].
 template <class W>
 TAUT_INLINE W Reach(const BodyWork<W>& a, const BodyWork<W>& b, W h) noexcept {
   return h * Norm1(a.v - b.v) + (a.turns + b.turns) + W::Splat(kContactMarginM);
 }
-/// and what they have used up of their clearance since the step before.
+/// Returns a bound of the approach of two bodies since the previous step [m].
 template <class W>
 TAUT_INLINE W Used(const BodyWork<W>& a, const BodyWork<W>& b, W since_last) noexcept {
   return since_last * Norm1(a.v0 - b.v0) + (a.turned + b.turned);
 }
 
-/// Lanes in which two bodies may touch, as far as the last look knows, and how far each may reach.
+/// Returns the lanes in which two bodies may touch according to the last distance query. Sets
+/// `margin` to their `Reach`.
 template <class W>
 MaskOf<W> ClearanceUsedUp(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair, W h,
                           W since_last, W& margin) noexcept {
@@ -176,8 +178,8 @@ MaskOf<W> ClearanceUsedUp(const View& m, const Rows<W>& s, const Scratch<W>& wor
   return s.clearance[pair] < margin;
 }
 
-/// After bodies of a lane have been moved otherwise than by their velocities: how far they are from
-/// each other is to be looked up again.
+/// Resets the clearances of a lane after its bodies moved other than by their velocities, so that
+/// the next step computes their distances again.
 template <class W>
 void LookAgain(const View& m, const Rows<W>& s, int lane) noexcept {
   for (int pair = 0; pair < m.body_pair_count; ++pair) s.clearance[pair].Set(lane, 0.0);

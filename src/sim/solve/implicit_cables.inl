@@ -16,9 +16,8 @@
 namespace taut::sim {
 
 using simd::M3;
-using simd::V3;
-
 using simd::RotationOf;
+using simd::V3;
 
 /// [a] M, with [a] z = a x z.
 template <class Num>

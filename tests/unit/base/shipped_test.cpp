@@ -1,4 +1,4 @@
-// Files that come with taut, found from any folder.
+// Search for shipped files from any folder.
 #include "taut/shipped.h"
 
 #include <gtest/gtest.h>
@@ -37,13 +37,13 @@ class Shipped : public testing::Test {
     std::ofstream(folder_ / path) << "text";
   }
   std::string At(const std::string& path) const { return (fs::canonical(folder_) / path).string(); }
-  std::optional<std::string> Build() const { return ShippedFolder(At("tree/build/program")); }
+  std::string Build() const { return At("tree/build/program"); }
 
   fs::path before_, folder_;
 };
 
 TEST_F(Shipped, TheFolderIsBesideTheProgramOrAboveIt) {
-  EXPECT_EQ(Build(), At("tree/build/share/taut"));
+  EXPECT_EQ(ShippedFolder(Build()), At("tree/build/share/taut"));
   EXPECT_EQ(ShippedFolder(At("usr/bin/taut")), At("usr/share/taut"));
   EXPECT_EQ(ShippedFolder(At("work")), std::nullopt);
   EXPECT_EQ(ShippedFolder(At("none")), std::nullopt);
@@ -51,10 +51,15 @@ TEST_F(Shipped, TheFolderIsBesideTheProgramOrAboveIt) {
 
 TEST_F(Shipped, AFileIsFoundFromAnyFolder) {
   EXPECT_EQ(FindInput("models/a.yaml", Build()), At("tree/share/models/a.yaml"));
-  EXPECT_EQ(FindInput("models/a.yaml", ShippedFolder(At("usr/bin/taut"))),
-            At("usr/share/taut/models/a.yaml"));
+  EXPECT_EQ(FindInput("models/a.yaml", At("usr/bin/taut")), At("usr/share/taut/models/a.yaml"));
   fs::current_path(folder_ / "tree");
   EXPECT_EQ(FindInput("models/a.yaml", Build()), "share/models/a.yaml");
+}
+
+TEST_F(Shipped, TheFirstPathBesideTheProgramThatExistsIsFound) {
+  const fs::path program = fs::canonical(RunningProgram());
+  EXPECT_EQ(FindBesideProgram({"none", program.filename().c_str(), "."}), program.string());
+  EXPECT_EQ(FindBesideProgram({"none"}), std::nullopt);
 }
 
 TEST_F(Shipped, AFileOfTheCurrentFolderComesFirst) {
@@ -66,7 +71,8 @@ TEST_F(Shipped, WhatIsNotThereStaysAsItIs) {
   for (const char* const path : {"", "models/b.yaml", "models", "/models/a.yaml", "../a.yaml"}) {
     EXPECT_EQ(FindInput(path, Build()), path);
   }
-  EXPECT_EQ(FindInput("models/a.yaml", std::nullopt), "models/a.yaml");
+  EXPECT_EQ(FindInput("models/a.yaml", At("none")), "models/a.yaml");
+  EXPECT_EQ(FindInput("models/a.yaml", ""), "models/a.yaml");
 }
 
 }  // namespace

@@ -6,26 +6,23 @@
 #include "taut/run.h"
 #include "taut/spec.h"
 #include "taut/trace.h"
+#include "tests/row_watch.h"
 
 namespace taut {
 namespace {
 
 /// The longest step between rows of a run that records every step.
-class LongestRow final : public TraceWriter {
+class LongestRow final : public test::RowWatch {
  public:
   bool Append(double time_s, const double*) override {
     longest_s_ = std::max(longest_s_, time_s - time_s_);
     time_s_ = time_s;
     return true;
   }
-  bool FlushOld() override { return true; }
-  bool Finish() override { return true; }
-  const std::string& error() const override { return none_; }
   double longest_s() const { return longest_s_; }
 
  private:
   double time_s_ = 0, longest_s_ = 0;
-  std::string none_;
 };
 
 ExperimentSpec Load(const char* name) {

@@ -1,4 +1,4 @@
-// Means of a run's phases: over time, whatever steps the run takes.
+// Time-weighted means of the phases of a run, for steps of any length.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,12 +9,13 @@
 #include "taut/run.h"
 #include "taut/spec.h"
 #include "taut/trace.h"
+#include "tests/row_watch.h"
 
 namespace taut {
 namespace {
 
-/// Means of one column between two times, of a run that records every step.
-class ColumnMeans final : public TraceWriter {
+/// Means of one column between two times, over time and over rows, if a run records each step.
+class ColumnMeans final : public test::RowWatch {
  public:
   ColumnMeans(std::size_t column, double from_s, double to_s)
       : column_(column), from_s_(from_s), to_s_(to_s) {}
@@ -28,26 +29,22 @@ class ColumnMeans final : public TraceWriter {
     before_s_ = time_s;
     return true;
   }
-  bool FlushOld() override { return true; }
-  bool Finish() override { return true; }
-  const std::string& error() const override { return none_; }
   double over_time() const { return integral_ / length_s_; }
   double over_rows() const { return sum_ / rows_; }
 
  private:
   std::size_t column_;
   double from_s_, to_s_, before_s_ = 0, integral_ = 0, length_s_ = 0, sum_ = 0, rows_ = 0;
-  std::string none_;
 };
 
 TEST(PhaseMean, IsOverTimeAndNotOverSteps) {
   Diagnostics out;
   auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/push_20n.yaml", {}, out);
   ASSERT_TRUE(experiment) << out.Format();
-  experiment->start = StartKind::kAsDescribed;  // so that tensions change
+  experiment->start = StartKind::kAsDescribed;  // not settled: tensions change
   experiment->duration_s = 0.06;
   experiment->sensors.emplace();
-  experiment->sensors->period_s = 0.0007;  // beside the controller's 1 ms: steps of 0.1 to 0.7 ms
+  experiment->sensors->period_s = 0.0007;  // with the controller's 1 ms: steps of 0.1 to 0.7 ms
   experiment->record = {};
   experiment->record.rate_hz = 0;
   experiment->phases = {{"part", 0.02, 0.05}};

@@ -11,6 +11,7 @@
 #include "taut/run.h"
 #include "taut/spec.h"
 #include "taut/trace.h"
+#include "tests/row_watch.h"
 
 namespace taut::test {
 
@@ -28,7 +29,7 @@ inline ExperimentSpec ExperimentWith(const ModelDef& def, double duration_s,
 }
 
 /// What a run records.
-class Recording final : public TraceWriter {
+class Recording final : public test::RowWatch {
  public:
   /// `plant`: in place of a simulation.
   explicit Recording(const ExperimentSpec& experiment, Plant* plant = nullptr) {
@@ -48,9 +49,6 @@ class Recording final : public TraceWriter {
     for (std::size_t i = 0; i < trace.values.size(); ++i) trace.values[i].push_back(values[i]);
     return true;
   }
-  bool FlushOld() override { return true; }
-  bool Finish() override { return true; }
-  const std::string& error() const override { return none_; }
 
   std::size_t rows() const { return trace.time_s.size(); }
   bool Has(const std::string& channel) const { return trace.Find(channel).has_value(); }
@@ -72,9 +70,6 @@ class Recording final : public TraceWriter {
 
   Trace trace;
   RunSummary summary;
-
- private:
-  std::string none_;
 };
 
 inline void ExpectNear(const Vec3& a, const Vec3& b, double tolerance, const std::string& what) {
