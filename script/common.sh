@@ -64,3 +64,11 @@ build_showing() {
   printf '%s' "$ended"
   [ "$(tail -n 1 "$log")" != "the build failed" ] || { compiler_messages "$1"; return 1; }
 }
+
+# changed_since_passed: prints the files that differ from the last commit that passed CI, uncommitted
+# ones included; status 1 if that commit is not known here (.ci/passed; TAUT_CI_PASSED overrides it).
+changed_since_passed() {
+  local passed=${TAUT_CI_PASSED:-$(cat .ci/passed)}
+  git cat-file -e "$passed^{commit}" 2>/dev/null || return 1
+  { git diff --name-only "$passed" && git ls-files --others --exclude-standard; } | sort -u
+}

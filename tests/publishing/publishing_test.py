@@ -261,7 +261,11 @@ def WhatGitHubReadsCanBeRead():
     assert job["container"] == "debian:12" and {"run": "script/setup"} in job["steps"], job
     parts = {each["part"]: each["command"] for each in job["strategy"]["matrix"]["include"]}
     known = re.search(r"case \$part in ([a-z0-9| ]+)\)", (ROOT / "script/test").read_text())[1].split(" | ")
+    known.remove("long")  # at night
     assert parts == {"lint": "script/lint --recent", **{part: f"script/test --part {part}" for part in known}}, parts
+    job = read[".github/workflows/nightly.yml"]["jobs"]["debian12"]
+    nightly = re.search(r"^all=\((.*)\)", (ROOT / "script/nightly").read_text(), re.MULTILINE)[1].split()
+    assert job["strategy"]["matrix"]["part"] == nightly, nightly
     for name, form in read.items():
         if "ISSUE_TEMPLATE" in name and not name.endswith("config.yml"):
             assert {"name", "description", "body"} <= form.keys(), name
