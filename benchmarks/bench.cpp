@@ -1,11 +1,11 @@
-// How fast: taut beside MuJoCo, Bullet and ODE on the same robots. script/bench runs it and makes
-// medians and the page docs/performance.md of what it says.
+// Benchmarks of taut, MuJoCo, Bullet and ODE on the same robots (Google Benchmark). script/bench
+// runs it, computes medians and writes the page docs/performance.md.
 //
-// With --mjcf REGEX it measures nothing and prints, as JSON, what another MuJoCo (benchmarks/wasm)
-// must run: all benchmarks of MuJoCo, under that one's name, whose names match.
+// With --mjcf REGEX it measures nothing. It prints, as JSON, the inputs for another MuJoCo
+// (benchmarks/wasm): all benchmarks of MuJoCo, renamed to that engine, whose names match.
 //
-// A benchmark's name says what it measured: KIND/engine/setting/robot/worlds/lanes/threads, and
-// its counters the rest. Every robot stands on the ground, has had time to settle, and moves.
+// The name of a benchmark is KIND/engine/setting/robot/worlds/lanes/threads; counters contain the
+// other results. Every robot stands on the ground, has had time to settle, and moves.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace {
 constexpr int kWorldsPerThread = 64;
 
 using Make = std::function<std::unique_ptr<Runner>()>;
-/// Says, in counters, what the steps were worth.
+/// Adds counters about the quality of the steps.
 using Judge = std::function<void(benchmark::State&, const Runner&)>;
 
 struct Case {
@@ -40,7 +40,7 @@ struct Case {
   }
 };
 
-/// A benchmark of the MuJoCo peer for another program to run.
+/// Benchmark of the MuJoCo peer for another program.
 struct Elsewhere {
   Case what;
   ModelDef def;
@@ -48,7 +48,7 @@ struct Elsewhere {
   int settle_periods;
 };
 
-/// Worlds that a benchmark goes on with when it is called again.
+/// Worlds that persist between calls of a benchmark.
 class Standing {
  public:
   Standing(Make make, int settle_periods) : make_(std::move(make)), settle_(settle_periods) {}
@@ -82,7 +82,8 @@ void Measure(benchmark::State& state, Runner& runner) {
   }
 }
 
-/// Ticks that reading the clock takes, least of many: each stage holds one reading.
+/// Returns the clock ticks of one reading of the clock, the least of many: each stage includes one
+/// reading.
 std::uint64_t TicksOfAReading() {
   std::uint64_t least = ~std::uint64_t{0};
   for (int i = 0; i < 10000; ++i) {
@@ -95,7 +96,7 @@ std::uint64_t TicksOfAReading() {
 void MeasureStages(benchmark::State& state, TautRunner& runner) {
   std::uint64_t before[sim::kStages];
   std::copy_n(sim::g_stage_ticks, sim::kStages, before);
-  const std::clock_t start = std::clock();  // processor's time, as Google Benchmark's rates
+  const std::clock_t start = std::clock();  // processor time, like Google Benchmark's rates
   const std::uint64_t start_ticks = __builtin_ia32_rdtsc();
   for (auto _ : state) runner.Run(1);
   const double ticks = static_cast<double>(__builtin_ia32_rdtsc() - start_ticks);
@@ -123,11 +124,12 @@ void Register(const Case& what, const Make& make, int settle_periods, bool stage
           state.SkipWithError(error.what());
         }
       });
-  // The processor's time is steadier where others run, too; threads have only the wall's in common.
+  // Processor time is steadier on a busy machine; with several threads only wall-clock time is
+  // meaningful.
   if (what.threads > 1) registered->UseRealTime();
 }
 
-/// What the solver did for how many joints.
+/// Adds counters of the solver and the number of joints.
 void JudgeJoints(benchmark::State& state, const Runner& runner) {
   const auto& ours = dynamic_cast<const TautRunner&>(runner);
   state.counters["joints"] = ours.joints();
@@ -158,7 +160,7 @@ Judge HowDeep(const std::string& robot) {
   };
 }
 
-/// Fields of ten million cells are made only where one is measured.
+/// Registers height fields; fields of ten million cells are created only when measured.
 void RegisterHills(const std::string& robot, const std::string& ground, int corners, int lanes) {
   BatchOptions options;
   options.worlds = lanes;
@@ -198,7 +200,8 @@ void RegisterPeers(Case what, const ModelDef& def, int settle_periods, bool all,
   }
 }
 
-/// A ball rolls for 3 s over level triangles, again and again: on how much of its 1 m/s is left.
+/// Measures a ball that repeatedly rolls for 3 s over level triangles: the remaining share of its 1
+/// m/s.
 void RegisterBall(const std::string& engine, const std::string& setting, const Make& make) {
   constexpr int kRolling = 300;
   const Case what{.kind = "hills", .robot = "ball@level", .engine = engine, .setting = setting};
@@ -220,7 +223,8 @@ void RegisterBall(const std::string& engine, const std::string& setting, const M
   });
 }
 
-/// The peers on the same hills; not with cables that are too stiff for explicit forces.
+/// Registers the peers on the same hills, except robots whose cables are too stiff for explicit
+/// forces.
 void RegisterPeersOnHills(std::vector<Elsewhere>& elsewhere) {
   for (const char* robot : {"six_strut", "tetraspine12"}) {
     const std::string name = robot;

@@ -111,7 +111,7 @@ void AddHeldOut(std::vector<ContactScene>& all) {
 
 std::vector<ContactScene> ContactScenes() {
   std::vector<ContactScene> all;
-  // What the others are measured against: a robot that walks on the flat.
+  // Reference for the others: a robot that walks on flat ground.
   all.push_back(
       {.name = "tetraspine3", .def = [](Seed) { return OnGround("tetraspine3"); }, .moves = true});
   AddHeaps(all);

@@ -1,4 +1,4 @@
-/// The scenes that contact solvers are measured with.
+/// Scenes for benchmarks of contact solvers.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@ struct ContactScene {
   std::function<ModelDef(std::uint64_t seed)> def;
   int steps = 3000;
   bool moves = false;     ///< Its cables change their rest lengths (`Motion`).
-  bool for_peers = true;  ///< Engines without implicit cables do not survive all of them.
-  bool held_out = false;  ///< Of a kind that no solver of taut was tuned with.
+  bool for_peers = true;  ///< False if engines without implicit cables fail on it.
+  bool held_out = false;  ///< Kind of scene that was not used to tune taut's solvers.
 };
 
 std::vector<ContactScene> ContactScenes();
 
-/// All angles, coefficients and ways of Painleve's rod: one step each.
+/// Returns Painlevé's rod for all angles, coefficients and directions, for one step each.
 std::vector<ModelDef> PainleveGrid();
 
 }  // namespace taut::bench

@@ -1,11 +1,11 @@
-// Contact-rich scenes, step by step: whether each step is solved, how long it takes, and how long
-// the peers take for the same scene in the same run. Prints JSON; script/bench makes tables of it.
+// Benchmark of contact-rich scenes: convergence and time of each step, and the time of the peers
+// for the same scene in the same run. Prints JSON; script/bench makes tables of it.
 //
 //   taut_contact_bench [--scene REGEX] [--seeds N] [--steps N] [--seconds S] [--mjcf]
 //
-// --scene: only scenes whose name matches. --seeds: so many starts of each (3). --steps: at most so
-// many steps of each run. --seconds: a run ends once it has taken that much processor time (20).
-// With --mjcf nothing is measured: it prints what another MuJoCo (benchmarks/wasm) must run.
+// --scene: only scenes whose name matches. --seeds: number of starts of each scene (3). --steps:
+// largest number of steps per run. --seconds: processor time after which a run ends (20). --mjcf:
+// measures nothing and prints the inputs for another MuJoCo (benchmarks/wasm).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -36,14 +36,14 @@ struct Wanted {
   bool print = false;
 };
 
-/// The processor's time of this thread: others who work here do not count.
+/// Returns the processor time of this thread, independent of other processes [s].
 double Now() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// What a reading of the clock adds to what lies between two of them.
+/// Returns the time that a reading of the clock adds to an interval [s].
 double ReadingCost() {
   double least = 1;
   for (int i = 0; i < 1000; ++i) {
@@ -53,7 +53,7 @@ double ReadingCost() {
   return least;
 }
 
-/// Of a sorted series: the value that a share of them does not exceed.
+/// Returns the quantile of a sorted series.
 double Quantile(const std::vector<double>& sorted, double share) {
   const double at = share * static_cast<double>(sorted.size());
   return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(at))];
@@ -81,14 +81,14 @@ std::shared_ptr<const Model> Compiled(const ModelDef& def) {
   return model;
 }
 
-/// What was seen of a run. A step of several worlds is as many steps of one, each with its share of
-/// the time.
+/// Results of a run. A step of several worlds counts as as many steps of one world, each with its
+/// share of the time.
 struct Record {
   std::vector<double> step_us, iterations;
   double contacts = 0;
   long solved = 0, world_steps = 0;
   double worst_residual = 0;
-  std::uint32_t bits = 0;  ///< All but `kStatusNotConverged`.
+  std::uint32_t bits = 0;  ///< All bits except `kStatusNotConverged`.
 
   void Look(Batch& batch) {
     for (int w = 0; w < batch.worlds(); ++w) {
@@ -112,7 +112,8 @@ struct Record {
   }
 };
 
-/// Steps until enough: `step(i)` takes one, `look(i)` is not timed.
+/// Runs and times steps until a limit is reached: `step(i)` performs a step, `look(i)` is not
+/// timed.
 template <class Step, class Look>
 std::vector<double> Timed(const Wanted& wanted, int steps, int worlds, Step step, Look look) {
   static const double cost = ReadingCost();
@@ -129,7 +130,7 @@ std::vector<double> Timed(const Wanted& wanted, int steps, int worlds, Step step
   return times_us;
 }
 
-/// Worlds of one batch start alike but for small velocities: no two touch the same way for long.
+/// Gives the worlds of a batch small different velocities, so that their contacts soon differ.
 void Disturb(Batch& batch, std::uint64_t seed) {
   for (int w = 1; w < batch.worlds(); ++w) {
     scenes::Chance chance(1000 * seed + static_cast<std::uint64_t>(w));
@@ -195,7 +196,7 @@ Json About(const Wanted& wanted, const ContactScene& scene, std::uint64_t seed, 
           {"cables", def.cables.size()}};
 }
 
-/// One start of a scene, for another MuJoCo to run.
+/// Adds one start of a scene as input for another MuJoCo.
 void Print(const Wanted& wanted, const ContactScene& scene, std::uint64_t seed, Json& runs) {
   const ModelDef def = scene.def(seed);
   if (!scene.for_peers || !peers::Unsupported(def).empty()) return;
@@ -207,7 +208,7 @@ void Print(const Wanted& wanted, const ContactScene& scene, std::uint64_t seed, 
   }
 }
 
-/// One start of a scene: the peers, then taut in one world and in the widest batch.
+/// Measures one start of a scene: the peers, then taut in one world and in the widest batch.
 void Measure(const Wanted& wanted, const ContactScene& scene, std::uint64_t seed, Json& runs) {
   const ModelDef def = scene.def(seed);
   const auto add = [&](const char* engine, const char* setting, int lanes, const Json& found) {
@@ -244,7 +245,7 @@ void Measure(const Wanted& wanted, const ContactScene& scene, std::uint64_t seed
   }
 }
 
-/// One step of every rod of the grid.
+/// Measures one step of every rod of the grid.
 void MeasurePainleve(Json& runs) {
   Record record;
   const Wanted all;
@@ -282,7 +283,7 @@ Json Context() {
   return context;
 }
 
-/// False if a word is none of ours.
+/// Parses the command line. Returns false for an unknown option.
 bool Read(int argc, char** argv, Wanted& wanted) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];

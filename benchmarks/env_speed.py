@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""What environments cost in Python: env_speed.py [WORLDS] [STEPS A PERIOD] [ROUNDS]. Prints JSON.
+"""Overhead of environments in Python: env_speed.py [WORLDS] [STEPS A PERIOD] [ROUNDS]. Prints JSON.
 
-As benchmarks/environments.cpp, of env_speed.yaml, through `taut.gym` and `taut.Batch`: "bare" is a batch that is given
-the same rest lengths and does nothing but `Batch.step`; its worlds go through the same bits, which is looked at. "singles": 64
-`taut.gym.Env`, one after the other, gathered in arrays, against 64 worlds of one `VectorEnv`. All take turns, some
-milliseconds each; what counts are medians of ratios, of processor's time, for two threads of the clock on the wall.
+Like benchmarks/environments.cpp, for env_speed.yaml, through `taut.gym` and `taut.Batch`. "bare" is a batch that
+receives the same rest lengths and only runs `Batch.step`; the program checks that its worlds have the same bits.
+"singles": 64 `taut.gym.Env`, one after the other, gathered in arrays, against 64 worlds of one `VectorEnv`. All
+variants take turns of some milliseconds. Results are medians of ratios of processor time, or, for two threads, of
+wall-clock time.
 
-The module is the one that `import taut` finds."""
+Uses the module that `import taut` finds."""
 import json
 import pathlib
 import sys
@@ -26,14 +27,14 @@ def worlds_of(experiment, worlds, threads=1):
 
 
 class Runner:
-    """Takes some periods at a time, over sets of actions."""
+    """Runs some periods at a time, with alternating sets of actions."""
 
     def __init__(self, step, worlds, steps):
         self.step, self.taken = step, 0
         self.periods = max(1, int(ROUND_S / (1e-6 * worlds * steps)))
 
     def run(self):
-        """Processor's time and the wall's, a period."""
+        """Returns processor time and wall-clock time per period [s]."""
         self.step(self.taken % SETS)
         worked, wall = time.process_time(), time.perf_counter()
         for i in range(self.periods):
@@ -67,7 +68,7 @@ def main():
     seen = np.zeros((64, many.observation_space.shape[1]), np.float32)
     rewards, flags = np.zeros(64), np.zeros((2, 64), bool)
 
-    def each_single(k):  # gathered as one VectorEnv gives them
+    def each_single(k):  # gathered in arrays as in a VectorEnv
         for i, env in enumerate(singles):
             seen[i], rewards[i], flags[0, i], flags[1, i], _ = env.step(actions[k][i])
 

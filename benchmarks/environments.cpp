@@ -1,11 +1,10 @@
-// What environments cost: env_speed EXPERIMENT [WORLDS] [STEPS A PERIOD] [ROUNDS]. Prints JSON.
+// Overhead of environments: env_speed EXPERIMENT [WORLDS] [STEPS A PERIOD] [ROUNDS]. Prints JSON.
 //
-// "bare" is a batch that is given the same rest lengths and does nothing but Batch::Step: its
-// worlds go through the same bits, which is looked at. "singles": as many environments of one world
-// each, one after the other. They take turns, a few milliseconds each, so that what else the
-// machine does meets all; each round gives ratios of processor's time, and what counts are their
-// medians. Two threads are compared by the clock on the wall, in rounds in which nobody took our
-// cores.
+// "bare" is a batch that receives the same rest lengths and only runs Batch::Step; the program
+// checks that its worlds have the same bits. "singles": as many environments of one world each, one
+// after the other. All variants take turns of a few milliseconds, so that other load on the machine
+// affects all of them. Each round yields ratios of processor time; results are their medians. Two
+// threads are compared by wall-clock time, in rounds in which no thread lost its core.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -30,7 +29,7 @@ constexpr double kRoundS = 0.01;
 constexpr int kActionSets = 8;
 
 double WallS() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
-/// Of all our threads.
+/// Returns the processor time of all threads of the process [s].
 double WorkedS() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -42,7 +41,7 @@ long Disturbances() {
   return usage.ru_nivcsw;
 }
 
-/// Actions of some steps, all different, and the rest lengths that they mean.
+/// Actions of some steps, all different, and the equivalent rest lengths.
 struct Deeds {
   std::vector<std::vector<float>> actions;
   std::vector<std::vector<double>> targets_m;
@@ -105,7 +104,7 @@ class Envs {
   std::vector<std::uint8_t> flags_;
 };
 
-/// Something that takes one period after the other, and what a number of them cost.
+/// Performs periods one after the other and measures the cost of several.
 class Runner {
  public:
   template <class Step>
@@ -115,7 +114,7 @@ class Runner {
     bool disturbed = false;
   };
   Cost Run() {
-    step_(next_++ % kActionSets);  // once to be warm
+    step_(next_++ % kActionSets);  // warm-up
     const long before = Disturbances();
     const double worked_s = WorkedS(), wall_s = WallS();
     for (int i = 0; i < periods_; ++i) step_(next_++ % kActionSets);
@@ -156,7 +155,8 @@ int Main(int argc, char** argv) {
   const double step_s = experiment->step_s;
   experiment->environment->period_s = steps * step_s;
   experiment->duration_s = 1e5 * steps * step_s;
-  // Work and tensions are measured after every step, not every period: that is looked at by itself.
+  // Work and tensions are measured after every step, not once per period; this is a separate
+  // variant.
   ExperimentSpec measured = *experiment;
   measured.environment->max_tension_n = 1e9;
   experiment->environment->max_tension_n.reset();

@@ -9,7 +9,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kFreePeriods = 10;
 
-/// Engines differ in contacts, so that these would hide whether the model is the same.
+/// Removes ground and contacts. Engines differ in contacts, which would mask differences between
+/// models.
 ModelDef WithoutContacts(ModelDef def) {
   def.planes.clear();
   def.height_fields.clear();

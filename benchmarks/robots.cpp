@@ -16,7 +16,7 @@
 namespace taut::bench {
 namespace {
 
-constexpr int kPeriodTicks = 100;  // a second
+constexpr int kPeriodTicks = 100;  // one second
 
 PlaneDef Ground() {
   PlaneDef ground;
@@ -39,7 +39,7 @@ ModelDef Loaded(const std::string& robot) {
   return spec->def;
 }
 
-/// A small one, whose cables are too stiff for explicit forces at 1 ms.
+/// Returns a small robot whose cables are too stiff for explicit forces at 1 ms.
 ModelDef StiffSixStrut() {
   scenes::SixStrut robot;
   robot.length_m = 0.4;
@@ -64,7 +64,8 @@ ModelDef OnHills(const std::string& robot, int corners) {
   constexpr double kBelow_m = 0.03;
   if (corners > 0) {
     def.height_fields = {scenes::Hills(corners, corners, Ground().material)};
-    def.height_fields[0].split = HeightFieldDef::Split::kSame;  // as all engines can
+    // The only division that all engines support.
+    def.height_fields[0].split = HeightFieldDef::Split::kSame;
     def.height_fields[0].origin_m.z = -kBelow_m;
   } else {
     def.planes = {Ground()};

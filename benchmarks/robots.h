@@ -1,4 +1,4 @@
-/// The robots that are measured, and one way to run them for every engine.
+/// Robots of the benchmarks, and a common interface to run them in every engine.
 #pragma once
 
 #include <memory>
@@ -13,28 +13,29 @@ namespace taut::bench {
 inline constexpr double kStepS = 0.001;
 inline constexpr int kControlSteps = 10;  ///< Rest lengths are commanded at 100 Hz.
 
-/// A model of share/models/ on the ground.
+/// Returns a model of share/models/ on the ground.
 ModelDef OnGround(const std::string& robot);
 
-/// A model of share/models/, or "six_strut_stiff", whose cables are rows of the solver, above hills
-/// with so many corners along each side; 0: above a plane.
+/// Returns a model of share/models/, or "six_strut_stiff", whose cables are rows of the solver,
+/// above hills with `corners` grid points along each side; 0: above a plane.
 ModelDef OnHills(const std::string& robot, int corners);
-/// A ball that rolls at 1 m/s, and would for ever, over level triangles.
+/// Returns a ball that rolls at 1 m/s, ideally without end, over level triangles.
 ModelDef BallOnTriangles();
-/// Each world a bit further along, so that each stands on other hills.
+/// Shifts the worlds along, so that each stands on other hills.
 void SpreadOut(Batch& batch);
 
-/// Tetraspine3 with another number of segments, on the ground.
+/// Returns Tetraspine3 with another number of segments, on the ground.
 ModelDef Spine(int segments);
 
-/// A disc that stands on `contacts` feet on the ground and is dragged to and fro by a cable.
+/// Returns a disc that stands on `contacts` feet on the ground and is dragged back and forth by a
+/// cable.
 ModelDef Footed(int contacts);
 
-/// Rods of 0.1 m on balls that swing, each ball with that much friction.
+/// Returns a swinging chain of rods of 0.1 m on ball joints with the given friction each.
 ModelDef SwingingChain(int rods, double friction_n_m);
 
-/// All cables' rest lengths against time: a sine of 1 Hz and 2 % about the described length, each
-/// cable of each world with a phase of its own. Looked up, so that it costs engines nothing.
+/// Rest lengths of all cables against time: a sine of 1 Hz and 2 % about the described length, with
+/// a different phase for each cable of each world. Tabulated, so that it costs the engines nothing.
 class Motion {
  public:
   explicit Motion(const ModelDef& def);
@@ -47,7 +48,7 @@ class Motion {
   std::vector<double> factor_;
 };
 
-/// Worlds of a robot in some engine, which stand and move.
+/// Worlds of a robot in an engine, which stand and move.
 class Runner {
  public:
   Runner() = default;
@@ -58,11 +59,12 @@ class Runner {
   virtual int worlds() const = 0;
   virtual double contacts() = 0;               ///< Of the first world.
   virtual BodyState Body(int body) const = 0;  ///< Of the first world.
-  /// Whether every contact solve since the start reached its tolerance, as far as the engine says.
+  /// Returns whether every contact solve since the start reached its tolerance, as far as the
+  /// engine reports it.
   virtual bool converged() const = 0;
 };
 
-/// taut. A world that is not finite or has too many contacts becomes an exception.
+/// Runner for taut. Throws an exception if a world is not finite or has too many contacts.
 class TautRunner final : public Runner {
  public:
   TautRunner(const ModelDef& def, const BatchOptions& options, int control_steps = kControlSteps);
@@ -73,7 +75,7 @@ class TautRunner final : public Runner {
   bool converged() const override { return converged_; }
   Batch& batch() { return batch_; }
   int joints() const { return static_cast<int>(batch_.model().def().joints.size()); }
-  /// Of the first world's steps, in the mean: each period's last.
+  /// Mean over the first world's steps, sampled at the last step of each period.
   double linear_solves() const { return linear_solves_ / tick_; }
 
  private:
@@ -86,7 +88,7 @@ class TautRunner final : public Runner {
   int tick_ = 0;
 };
 
-/// How deep the robot of the first world is in the ground, by taut's geometry [m].
+/// Returns the depth of the first world's robot in the ground, by taut's geometry [m].
 double Deepest(const ModelDef& def, const Runner& runner);
 
 class PeerRunner final : public Runner {

@@ -1,8 +1,9 @@
-// How much of the bare step rate rollouts reach: rollout_speed EXPERIMENT [SECONDS]. Prints JSON.
+// Step rate of rollouts relative to bare steps: rollout_speed EXPERIMENT [SECONDS]. Prints JSON.
 //
-// A robot that moves touches more and is costlier to step than one that stands, so bare is the same
-// motion: a batch that is given, step by step, the rest lengths that the controllers commanded in a
-// run before, and does nothing but Batch::Step. "held" is a batch whose motors hold still.
+// A moving robot has more contacts and costs more per step than a standing one, so "bare" repeats
+// the same motion: a batch that receives, step by step, the rest lengths that the controllers
+// commanded in a previous run, and only runs Batch::Step. "held" is a batch whose motors hold
+// still.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -21,7 +22,7 @@ double Since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// What each cable was commanded in each step.
+/// Returns the commanded rest length of each cable in each step.
 std::vector<std::vector<double>> CommandsOf(const ExperimentSpec& experiment, int steps,
                                             Diagnostics& out) {
   std::vector<std::vector<double>> commands;
@@ -42,7 +43,7 @@ std::vector<std::vector<double>> CommandsOf(const ExperimentSpec& experiment, in
   return commands;
 }
 
-/// Steps all worlds; with commands if there are any. Seconds.
+/// Steps all worlds, with commands if there are any. Returns the time [s].
 double StepAll(const std::shared_ptr<const Model>& model, double step_s, int steps,
                const std::vector<std::vector<double>>& commands) {
   BatchOptions options;
@@ -76,7 +77,7 @@ int Main(int argc, char** argv) {
   const std::vector<RolloutWorld> same(static_cast<std::size_t>(worlds), WorldOf(*experiment));
   double held_s = 1e300, bare_s = 1e300, rollout_s = 1e300;
   for (int repetition = 0; repetition < 20;
-       ++repetition) {  // the best of each: others work here, too
+       ++repetition) {  // the best of each: the machine may be shared
     held_s = std::min(held_s, StepAll(model, step_s, steps, {}));
     bare_s = std::min(bare_s, StepAll(model, step_s, steps, commands));
     const auto start = Clock::now();

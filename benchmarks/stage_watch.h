@@ -1,5 +1,5 @@
-/// Time stamps between the stages of a step. The library's own step has none: the step's text is
-/// compiled a second time, here, with a watch.
+/// Time stamps between the stages of a step. The library's step has none: here the step's source is
+/// compiled a second time, with a watch.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ inline constexpr int kStages = 8;
 inline constexpr const char* kStageNames[kStages] = {"start",   "kinematics", "cables",    "kick",
                                                      "collide", "solve",      "integrate", "judge"};
 
-/// Ticks of the processor's clock spent in each stage so far. Of batches with one thread.
+/// Clock ticks of the processor spent in each stage so far, by batches with one thread.
 extern std::uint64_t g_stage_ticks[kStages];
 
 extern const Kernel kWatchedScalar, kWatchedNeon, kWatchedSse2, kWatchedAvx2, kWatchedAvx512;

@@ -10,7 +10,7 @@ namespace taut::sim {
 
 static_assert(kStages == static_cast<int>(Stage::kCount));
 
-/// A counter that goes at a steady rate, whatever the processor's clock does.
+/// Returns a counter with a constant rate, independent of the processor's clock frequency.
 TAUT_INLINE uint64_t Ticks() noexcept {
 #if defined(__x86_64__)
   return __builtin_ia32_rdtsc();

@@ -1,9 +1,9 @@
-// What more threads gain: thread_gain [ROBOT] [THREADS] [WORLDS] [STEPS A CALL]. Prints JSON.
+// Speedup by threads: thread_gain [ROBOT] [THREADS] [WORLDS] [STEPS A CALL]. Prints JSON.
 //
-// One thread and several take turns, a few calls each, so that what else the machine does meets
-// both. Each round gives a ratio; what counts is their median. A round is undisturbed if none of
-// our threads had to give its core to somebody else and all of them had one at all, most of the
-// time: on a machine that others use, too, only those say what the threads cost each other.
+// One thread and several threads take turns of a few calls, so that other load on the machine
+// affects both. Each round yields a ratio; the result is their median. A round is undisturbed if
+// none of the threads lost its core to another process, and all of them had a core most of the
+// time. On a shared machine only these rounds show the cost of threads.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -21,19 +21,20 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kSettlePeriods = 300, kRounds = 501;
-constexpr double kRoundS = 0.002;  // of one thread: short beside what others do here
+// Of one thread: short compared with disturbances on this machine.
+constexpr double kRoundS = 0.002;
 
-/// How often threads of ours were taken off their cores.
+/// Returns the number of times that threads of this process lost their cores.
 long Disturbances() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return usage.ru_nivcsw;
 }
 
-/// Processor's time of all our threads.
+/// Returns the processor time of all threads of this process [s].
 double WorkedS() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Worlds that all get new rest lengths before every call.
+/// Worlds that all receive new rest lengths before every call.
 class Worlds {
  public:
   Worlds(const ModelDef& def, int threads, int worlds, int steps)
@@ -50,7 +51,7 @@ class Worlds {
   TautRunner runner_;
 };
 
-/// Quartile 0 to 4; 0 of nothing.
+/// Returns quartile 0 to 4; 0 for an empty list.
 double Quartile(std::vector<double> list, int quartile) {
   if (list.empty()) return 0;
   std::sort(list.begin(), list.end());
@@ -73,7 +74,7 @@ int Main(int argc, char** argv) {
     long before = Disturbances();
     const double one_took_s = one.Seconds(calls);
     const bool one_disturbed = Disturbances() != before;
-    several.Seconds(1);  // they have been idle, and may sleep
+    several.Seconds(1);  // wakes the threads up after idle time
     before = Disturbances();
     const double worked_before_s = WorkedS();
     const double several_took_s = several.Seconds(calls);

@@ -1,5 +1,6 @@
-// Steps of two worlds side by side, of experiments' robots on their ground with no controllers:
-// script/wasm --bench runs it here and in WebAssembly. A line of JSON each.
+// Steps of two worlds in one register, for robots of experiments on their ground without
+// controllers: script/wasm --bench runs it natively and in WebAssembly. Prints a line of JSON for
+// each.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -24,9 +25,9 @@ bool Measure(const char* path) {
   }
   taut::BatchOptions options;
   options.worlds = 2;
-  options.simd = taut::Simd::kSse2;  // two lanes, whatever they are called here
+  options.simd = taut::Simd::kSse2;  // two lanes on every platform
   taut::Batch batch(model, options);
-  batch.Step(experiment->step_s, kSteps);  // comes to the ground, and warms up
+  batch.Step(experiment->step_s, kSteps);  // falls onto the ground, and warms up
   double least_s = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kRounds; ++round) {
     const auto start = Clock::now();

@@ -1,4 +1,4 @@
-"""How far a push moves Tetraspine3 if nobody knows it exactly: 64 worlds with masses, cables and ground of their own."""
+"""Domain randomization: displacement of Tetraspine3 by a push, in 64 worlds of random mass, stiffness and friction."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ random = np.random.default_rng(1)
 experiment = taut.load("experiments/push_20n.yaml")
 robot, batch = experiment.robot, taut.Batch(experiment, worlds=WORLDS, threads=0)
 
-friction = random.uniform(0.6, 1.4, WORLDS)  # of the ground, as factors
+friction = random.uniform(0.6, 1.4, WORLDS)  # factors of the ground's friction
 batch.set_parameter("friction_scale", friction)
 mass_kg = np.array([batch.parameter("body_mass_kg", body) for body in range(len(robot.bodies))])
 stiffness_n_per_m = np.array([batch.parameter("cable_stiffness_n_per_m", cable) for cable in range(len(robot.cables))])
@@ -20,9 +20,9 @@ for body, masses in enumerate(mass_kg):
 for cable, stiffnesses in enumerate(stiffness_n_per_m):
     batch.set_parameter("cable_stiffness_n_per_m", stiffnesses, cable)
 
-batch.step(STEP_S, 2000)  # comes to rest, each as it must
+batch.step(STEP_S, 2000)  # until all worlds are at rest
 before = batch.body_position_m()
-for world in range(WORLDS):  # the first segment is pushed, the others are held back
+for world in range(WORLDS):  # pushes the first segment and holds the others back
     for node, force_n in (("segment_0.tip", 20), ("segment_1.tip", -9), ("segment_2.tip", -11)):
         batch.set_node_force(world, robot.nodes.index(node), [force_n, 0, 0])
 batch.step(STEP_S, 2000)

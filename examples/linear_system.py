@@ -1,4 +1,4 @@
-"""How a robot swings, and what a tap does: linear_system.py FILE INPUT OUTPUT, of `taut analyze --linear FILE`"""
+"""Natural frequencies and impulse response from `taut analyze --linear FILE`: linear_system.py FILE INPUT OUTPUT"""
 
 import sys
 
@@ -16,7 +16,7 @@ with h5py.File(path, "r") as file:
 print(f"{A.shape[0]} states, {B.shape[1]} inputs, {C.shape[0]} outputs, a tick of {period_s:g} s")
 for z in np.linalg.eigvals(A):
     s = np.log(z) / period_s
-    if s.imag > 1e-3 and abs(z) > 0.5:  # of a pair one; what is gone in a tick or two does not swing
+    if s.imag > 1e-3 and abs(z) > 0.5:  # one of each pair; excludes decay within a tick or two
         print(f"swings at {s.imag / 2 / np.pi:.4f} Hz, damping {abs(s.real) / abs(s):.4f}")
 
 x, u = np.zeros(A.shape[0]), np.zeros(B.shape[1])

@@ -1,11 +1,10 @@
-// A control law of one's own: a linear quadratic regulator that works on rest lengths.
+// Example of a user-defined controller: a linear quadratic regulator (LQR) of rest lengths.
 //
 // A ball of 1 kg hangs from four cables whose motors set their rest lengths. A push of 5 N for 0.1
-// s leaves it swinging, since the cables hardly damp. The regulator is found from the simulation
-// itself: the motion over one period is linearised by differences, the gains follow from the
-// Riccati equation. The same class then controls one world, a live run and eight worlds side by
-// side, to the same bits. The example asserts that, and that the regulator leaves less than a
-// hundredth of the swing that there is without it.
+// s leaves it swinging, since the cables hardly damp. The motion over one period is linearized by
+// differences of the simulation, and the gains follow from the Riccati equation. The same class
+// then controls one world, a live run and eight worlds of a batch, with identical bits. The example
+// asserts this, and that the regulator reduces the swing to less than a hundredth.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -19,7 +18,7 @@
 
 namespace {
 
-constexpr int kStates = 6, kInputs = 4;  // place and velocity; rest lengths
+constexpr int kStates = 6, kInputs = 4;  // position and velocity; rest lengths
 constexpr int kStepsAPeriod = 10;
 constexpr double kStepS = 0.001, kPeriodS = kStepsAPeriod * kStepS;
 
@@ -47,7 +46,7 @@ Matrix<M, N> Transposed(const Matrix<N, M>& a) {
   return out;
 }
 
-/// x of a x = b, for a positive definite a: no pivots needed.
+/// Returns x of a x = b, for a positive definite a: no pivots needed.
 template <int N, int M>
 Matrix<N, M> Solve(Matrix<N, N> a, Matrix<N, M> b) {
   for (int k = 0; k < N; ++k) {
@@ -100,15 +99,15 @@ std::array<double, kStates> StateOf(const taut::BodyState& body, const taut::Vec
   return {p.x - rest_m.x, p.y - rest_m.y, p.z - rest_m.z, v.x, v.y, v.z};
 }
 
-/// What the regulator goes by.
+/// Operating point and gain of the regulator.
 struct Plan {
-  taut::Vec3 rest_m;                          ///< Where the ball hangs.
-  std::array<double, kInputs> rest_length_m;  ///< What holds it there.
+  taut::Vec3 rest_m;                          ///< Position of the ball at rest.
+  std::array<double, kInputs> rest_length_m;  ///< Rest lengths that hold it there.
   Matrix<kInputs, kStates> gain;
 };
 
-/// From the simulation: where the robot is at rest, how it moves about there, and the regulator
-/// that takes a centimetre off as seriously as 5 mm of rest length.
+/// Computes, from the simulation, the state of rest, the linearized motion about it, and the
+/// regulator that weights a position error of a centimeter like 5 mm of rest length.
 Plan Regulator(const taut::ExperimentSpec& experiment) {
   taut::Diagnostics out;
   taut::Batch batch(taut::Model::Compile(experiment.robot.def, out), {});
@@ -147,7 +146,7 @@ Plan Regulator(const taut::ExperimentSpec& experiment) {
   for (int i = 0; i < kInputs; ++i) r[i][i] = 1.0 / (0.005 * 0.005);
 
   Matrix<kStates, kStates> p = q;
-  for (int i = 0; i < 2000; ++i) {  // the discrete Riccati equation, to its fixed point
+  for (int i = 0; i < 2000; ++i) {  // iterates the discrete Riccati equation to its fixed point
     const auto pa = p * a;
     const auto pb = p * b;
     auto weight = Transposed(b) * pb;
@@ -162,8 +161,8 @@ Plan Regulator(const taut::ExperimentSpec& experiment) {
   return found;
 }
 
-/// Rest lengths = those of rest - gain * state. `numbers[0]` of a world, if it has any, is a factor
-/// on the gain.
+/// Controller: rest lengths = values at rest - gain * state. `numbers[0]` of a world, if present,
+/// is a factor of the gain.
 class Lqr final : public taut::Controller {
  public:
   Lqr(const Plan& plan, const taut::ControlSetup& setup) : plan_(plan) {
@@ -194,7 +193,7 @@ class Lqr final : public taut::Controller {
   std::vector<double> factor_;
 };
 
-/// How far the ball is from rest at the end, its speed counted at 6 rad/s [m].
+/// Returns the ball's distance from rest at the end, with its speed counted at 6 rad/s [m].
 double Swing(const taut::ExperimentSpec& experiment, const taut::Brought& brought,
              const taut::Vec3& rest_m, std::uint64_t& hash) {
   taut::Diagnostics out;

@@ -1,7 +1,7 @@
-"""A six-strut robot rolls towards +x by looking ahead: it tries commands in 64 worlds, takes the best, and looks again.
+"""Model-predictive control (MPC): a six-strut robot rolls towards +x by commands that are optimized in 64 worlds.
 
-No gait and no model of one: what the winches are told is found anew every 0.4 s, by the cross-entropy method over rest
-lengths that hold for the next 0.8 s, in worlds that begin as the robot is now.
+Every 0.4 s the cross-entropy method optimizes the rest lengths of the next 0.8 s, without a gait, in worlds that start
+in the robot's present state.
 """
 
 import numpy as np
@@ -9,10 +9,10 @@ import numpy as np
 import taut
 
 WORLDS, ROUNDS, ELITE = 64, 3, 8
-STEP_S, TICK = 1e-3, 20    # winches are told something new every 20 ms
-AHEAD, TAKEN = 40, 20      # ticks that are tried, and that are done
+STEP_S, TICK = 1e-3, 20    # commands of the winches change every 20 ms
+AHEAD, TAKEN = 40, 20      # ticks of the horizon, and ticks that are executed
 FASTEST_M_PER_S = 0.5      # of a winch
-SHARE = 0.35              # by which rest lengths may be less than at rest
+SHARE = 0.35              # largest reduction of rest lengths from the state at rest
 
 random = np.random.default_rng(0)
 experiment = taut.load("experiments/roll_six_strut.yaml")
@@ -22,8 +22,8 @@ rest_m = robot.rest_length_m()[0]
 
 
 def targets_of(wound, now_m):
-    """From shares that are wound in, 0..1, over the first half of what lies ahead and the second: rest lengths, as the
-    winches get there from `now_m`."""
+    """Returns rest lengths per tick from wound-in shares, 0..1, for both halves of the horizon, limited by the
+    winches' speed from `now_m`."""
     wished_m, targets_m = rest_m * (1 - SHARE * wound), []
     for tick in range(AHEAD):
         step_m = wished_m[:, 0 if tick < AHEAD // 2 else 1] - now_m
@@ -33,12 +33,12 @@ def targets_of(wound, now_m):
 
 
 def x_of(positions_m):
-    """Of the middle of all struts, which weigh the same."""
+    """Returns x of the center of mass; all struts have the same mass."""
     return positions_m[..., 0].mean(axis=-1)
 
 
 def look_ahead(mean):
-    """The best of what was tried from here, and where to begin next time."""
+    """Returns the best wound-in shares found from the present state."""
     start, now_m = robot.save(), robot.rest_length_target_m()
     spread, best, best_x = np.full(mean.shape, 0.5), mean, -np.inf
     for _ in range(ROUNDS):

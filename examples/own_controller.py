@@ -1,4 +1,4 @@
-"""A controller in Python: a mass on a cable swings up and down, and the winch takes the swing away."""
+"""A controller in Python: the winch damps the vertical oscillation of a mass on a cable."""
 
 import math
 
@@ -7,9 +7,9 @@ import numpy as np
 import taut
 
 MASS_KG, STIFFNESS_N_PER_M, STEP_S = 0.5, 400.0, 1e-3
-DAMPING_N_S_PER_M = 4.0  # that the winch is to feel like: it winds in as fast as the cable gets shorter
+DAMPING_N_S_PER_M = 4.0  # simulated by the winch: winds in proportion to the shortening
 
-batch = taut.Batch(taut.load("examples/winch.yaml"), worlds=2)  # one without a controller, one with
+batch = taut.Batch(taut.load("examples/winch.yaml"), worlds=2)  # world 0 without the controller, world 1 with it
 rest_m = batch.rest_length_m()
 height_m = []
 for step in range(1500):

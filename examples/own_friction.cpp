@@ -1,12 +1,12 @@
-// A friction law of one's own: a floor with a wet patch.
+// Example of a user-defined friction law: a floor with a wet patch.
 //
 //   own_friction
 //
 // A block slides over a dry floor into a patch of oil, 0.5 m long, and out of it again. The law is
-// a class: a step asks it for the coefficient of every contact (taut/friction.h). The example
-// asserts that the block comes to rest where energy says, v0^2 / 2 g = sum of mu times way, that
-// without the class it stops before the patch, and that eight worlds on two threads have the bits
-// of one.
+// a class: each step calls it for the coefficients of all contacts (taut/friction.h). The example
+// asserts that the block comes to rest at the distance that follows from energy, v0^2 / 2 g = sum
+// of mu times distance, that it stops before the patch without the class, and that eight worlds on
+// two threads have the same bits as one.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -45,7 +45,7 @@ taut::ModelDef Block() {
   return def;
 }
 
-/// Where it stops [m]; its hash into `hash`. The last of the worlds is looked at.
+/// Returns the stopping distance [m] of the last world; `hash` receives its hash.
 double Way(std::shared_ptr<const taut::ContactFriction> law, int worlds, std::uint64_t& hash) {
   taut::Diagnostics complaints;
   const auto model = taut::Model::Compile(Block(), complaints);

@@ -1,11 +1,10 @@
-// A learner in a few lines, and rewards of one's own.
+// Example of a simple learner (random search) with user-defined rewards.
 //
 //   own_learner share/experiments/learn_spine.yaml
 //
-// 64 worlds of a robot; each tries a linear law of its own, from what it sees to what it does. The
-// reward is the experiment's, and more for whoever keeps low. What the best law of a round earned
-// does not depend on how many threads there are; the example asserts that, and that every number is
-// finite.
+// Each of 64 worlds of a robot tries a different linear policy from observations to actions. The
+// reward is the experiment's, plus a bonus for a low position. The best return of a round does not
+// depend on the number of threads; the example asserts this, and that every number is finite.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,13 +16,13 @@
 
 namespace {
 
-/// The best of 64 laws drawn from a seed; NaN if there is no environment.
+/// Returns the best return of 64 policies drawn from a seed; NaN if there is no environment.
 double BestOf(const taut::ExperimentSpec& experiment, int threads, unsigned seed) {
   constexpr std::size_t kWorlds = 64;
   taut::EnvOptions options;
   options.worlds = kWorlds;
   options.threads = threads;
-  options.autoreset = taut::Autoreset::kDisabled;  // an episode each is enough
+  options.autoreset = taut::Autoreset::kDisabled;  // one episode each is enough
   options.judge = [](const taut::EnvView& view) {
     for (std::size_t w = 0; w < kWorlds; ++w) {
       const double height_m = view.env.Body(static_cast<int>(w), 0).position_m.z;

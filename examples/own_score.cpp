@@ -1,11 +1,11 @@
-// A measure of one's own: how much a robot still moves after a push.
+// Example of a user-defined score: the remaining motion of a robot after a push.
 //
 //   own_score share/experiments/push_20n.yaml
 //
-// The experiment in sixteen variants side by side, the velocity gain B of its impedance control
-// from a quarter to twice what the file says. Each is scored by minus the time integral of the
-// speed of its fastest node after the push. The example asserts that the scores are finite, differ,
-// and do not depend on how many worlds run side by side.
+// Sixteen variants of the experiment run in parallel, with the velocity gain B of its impedance
+// control from a quarter to twice the file's value. Each score is minus the time integral of the
+// speed of the fastest node after the push. The example asserts that the scores are finite, differ,
+// and do not depend on the number of worlds.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -49,7 +49,7 @@ class Stillness final : public taut::Score {
 std::vector<double> Scores(const taut::ExperimentSpec& experiment, taut::Simd simd,
                            taut::Diagnostics& out) {
   taut::RolloutOptions options;
-  options.threads = 0;  // one a core
+  options.threads = 0;  // one per core
   options.simd = simd;
   options.score = [](const taut::ControlSetup& setup) {
     return std::make_unique<Stillness>(setup);

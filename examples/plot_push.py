@@ -1,4 +1,4 @@
-"""The push of Mirletz et al. on Tetraspine3 as a picture: plot_push.py PICTURE.png"""
+"""Plot of cable tensions during the push of Mirletz et al. on Tetraspine3: plot_push.py PICTURE.png"""
 import sys
 import matplotlib.pyplot as plt
 import taut

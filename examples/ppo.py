@@ -1,10 +1,11 @@
-"""PPO in one file: a six-strut robot learns to roll, and is set beside the best sine that `taut learn` has found.
+"""Proximal policy optimization (PPO) in one file: trains a six-strut robot to roll, and compares it with the best sine
+gait found by `taut learn`.
 
-    python3 examples/ppo.py --minutes 10    learns; Ctrl-C saves, and the same command goes on; all is in runs/ppo
-    python3 examples/ppo.py --play          a minute from twelve starts, beside the sine; `taut view` shows them
+    python3 examples/ppo.py --minutes 10    trains; Ctrl-C saves, and the same command resumes; files are in runs/ppo
+    python3 examples/ppo.py --play          compares with the sine: a minute from twelve starts, shown by `taut view`
 
 Needs taut's Python module (docs/python.md), python3-torch, and libopenblas0-serial, without which torch is slow.
-Proximal policy optimisation is that of Schulman, Wolski, Dhariwal, Radford and Klimov, arXiv:1707.06347.
+Source: Schulman, Wolski, Dhariwal, Radford and Klimov, arXiv:1707.06347.
 """
 
 import argparse
@@ -32,16 +33,16 @@ TASK = pathlib.Path(__file__).resolve().parents[1] / "share/experiments" / "lear
 
 @dataclasses.dataclass(frozen=True)
 class Settings:
-    worlds: int = 256             # side by side
-    periods: int = 32             # of each of them before an update
-    epochs: int = 5               # how often an update looks at all of that,
-    parts: int = 4                # in so many parts
-    discount: float = 0.99        # a reward one period later is worth so much of one now
-    trace: float = 0.95           # lambda of the advantages
-    clip: float = 0.2             # a chance that has changed by more than this share is left alone
-    divergence: float = 0.02      # by how much an update shall change the policy: its learning rate follows
+    worlds: int = 256             # in parallel
+    periods: int = 32             # per world and update
+    epochs: int = 5               # passes over these data per update
+    parts: int = 4                # minibatches per epoch
+    discount: float = 0.99        # discount factor per period (gamma)
+    trace: float = 0.95           # lambda of generalized advantage estimation
+    clip: float = 0.2             # largest relative change of an action's probability that has a gradient
+    divergence: float = 0.02      # target Kullback-Leibler divergence per update; adapts the learning rate
     first_rate: float = 3e-4
-    first_deviation: float = 0.6  # of actions about their mean
+    first_deviation: float = 0.6  # initial standard deviation of actions
     hidden: int = 64              # units in each of two layers
 
 
@@ -54,12 +55,12 @@ def network(inputs, hidden, outputs, last_gain):
 
 
 class Policy(nn.Module):
-    """From what is observed to the mean of an action, and to what the rest of an episode is worth."""
+    """Actor and critic: from observations to the distribution of actions, and to the value of the state."""
 
     def __init__(self, channels, actions, s):
         super().__init__()
         n = len(channels)
-        # Where the robot is does not matter, only how it lies: its parts are seen from above its centre of mass.
+        # Horizontal positions are relative to the center of mass: the task does not depend on the robot's place.
         self.center = {channels.index(f"system/com_{k}_m"):
                        [i for i, name in enumerate(channels) if name.endswith((f"position_{k}_m", f"com_{k}_m"))]
                        for k in "xy" if f"system/com_{k}_m" in channels}
@@ -69,18 +70,18 @@ class Policy(nn.Module):
             self.register_buffer(name, start.double())
 
     def look(self, observations):
-        """Observations as a tensor, seen from the centre of mass."""
+        """Returns observations as a tensor, with horizontal positions relative to the center of mass."""
         seen = torch.from_numpy(np.array(observations, np.float32))
         for at, columns in self.center.items():
             seen[..., columns] -= seen[..., [at]]
         return seen
 
     def scaled(self, seen):
-        """In standard deviations from the mean of all that was seen."""
+        """Returns normalized observations: standard deviations from the mean of all previous ones."""
         return ((seen - self.mean.float()) / (self.variance.float().sqrt() + 1e-3)).clamp(-5, 5)
 
     def learn_scales(self, seen):
-        """Adds to mean and variance what was seen."""
+        """Updates mean and variance by new observations."""
         seen = seen.reshape(-1, len(self.mean)).double()
         n, apart, total = len(seen), seen.mean(0) - self.mean, self.count + len(seen)
         self.variance = (self.variance * self.count + seen.var(0, unbiased=False) * n
@@ -88,7 +89,7 @@ class Policy(nn.Module):
         self.mean, self.count = self.mean + apart * n / total, total
 
     def forward(self, scaled):
-        """The chances of actions: normal about a mean."""
+        """Returns the normal distribution of actions."""
         return Normal(self.actor(scaled), self.log_deviation.exp(), validate_args=False)
 
     def worth(self, scaled):
@@ -96,8 +97,8 @@ class Policy(nn.Module):
 
 
 def begin(envs, policy, s, seed):
-    """Worlds somewhere in their episodes: world i begins anew after i / n of one. Until then they twitch at random,
-    from which a new policy learns its scales."""
+    """Staggers the episodes of the worlds: world i is reset after i / n of an episode. Until then actions are random,
+    and a new policy computes the scales of observations from them."""
     drawn, n, seen = np.random.default_rng(seed), envs.num_envs, []
     envs.reset(seed=seed)
     for k in range(envs.episode_steps):
@@ -113,7 +114,7 @@ def begin(envs, policy, s, seed):
 
 
 def collect(envs, policy, seen, s):
-    """Some periods of all worlds by chance: tensors (periods, worlds, ...), what is seen next, returns of episodes."""
+    """Runs some periods of all worlds; returns tensors (periods, worlds, ...), next observations, episode returns."""
     rows, returns = [], []
     with torch.no_grad():
         for _ in range(s.periods):
@@ -123,7 +124,7 @@ def collect(envs, policy, seen, s):
             found, rewards, failed, cut, infos = envs.step(actions.numpy())
             found, failed, ended = policy.look(found), torch.from_numpy(failed), torch.from_numpy(failed | cut)
             after = policy.worth(policy.scaled(found))
-            if ended.any():  # `found` is of the next episode; one that was only cut would have gone on
+            if ended.any():  # `found` is the next episode's; truncated ones keep their last value
                 last = policy.worth(policy.scaled(policy.look(infos["final_obs"])))
                 after = torch.where(ended, torch.where(failed, 0.0, last), after)
                 returns += infos["final_info"]["episode_return"][ended.numpy()].tolist()
@@ -134,8 +135,8 @@ def collect(envs, policy, seen, s):
 
 
 def advantages(rewards, values, after, ended, s):
-    """How much better than expected each action did, by all that followed it in its episode (arXiv:1506.02438):
-    A_t = d_t + discount trace A_(t+1), with d_t = r_t + discount V(after it) - V(before it)."""
+    """Returns generalized advantage estimates (arXiv:1506.02438):
+    A_t = d_t + discount trace A_(t+1), with d_t = r_t + discount V(next state) - V(state)."""
     surprises, sums, ahead = rewards + s.discount * after - values, [], torch.zeros_like(rewards[0])
     for surprise, end in zip(reversed(surprises), reversed(ended)):
         ahead = surprise + s.discount * s.trace * torch.where(end, 0.0, ahead)
@@ -144,13 +145,13 @@ def advantages(rewards, values, after, ended, s):
 
 
 def loss_of_policy(log_chance, log_chance_before, advantage, clip):
-    """Minus what is won by actions being likelier than before, no more of it than `clip` allows."""
+    """Returns the clipped surrogate loss: minus the gain by changed probabilities of actions, limited by `clip`."""
     ratio = (log_chance - log_chance_before).exp()
     return -torch.minimum(ratio * advantage, ratio.clamp(1 - clip, 1 + clip) * advantage).mean()
 
 
 def update(policy, optimizer, scaled, actions, log_chances, advantage, worth, s):
-    """Some epochs of gradient steps; returns how far the policy is from what it was (Kullback and Leibler)."""
+    """Runs some epochs of gradient steps; returns the Kullback-Leibler divergence from the previous policy."""
     with torch.no_grad():
         before = policy(scaled)
     for _ in range(s.epochs):
@@ -167,7 +168,7 @@ def update(policy, optimizer, scaled, actions, log_chances, advantage, worth, s)
 
 
 class Learner:
-    """A policy with all that it takes to go on learning."""
+    """Policy with all data that are needed to resume training."""
 
     def __init__(self, envs, seed, s):
         torch.manual_seed(seed)
@@ -181,15 +182,15 @@ class Learner:
                 "updates": self.updates, "processor_s": self.processor_s, "rate": self.optimizer.param_groups[0]["lr"]}
 
     def save(self, path):
-        """All of it; until that is done what was there before stays."""
+        """Writes a new file and then replaces the previous one, so that an interrupted write loses nothing."""
         torch.save({"about": json.dumps(self.about()), "policy": self.policy.state_dict(),
                     "moments": self.optimizer.state_dict()["state"]}, path.with_suffix(".new"))
         os.replace(path.with_suffix(".new"), path)
 
     def load(self, path, same=("seed", "settings", "channels")):
-        """Goes on where `save` was."""
+        """Restores the state of `save`."""
         try:
-            kept = torch.load(path, weights_only=True)  # numbers and names only: nothing in it is run
+            kept = torch.load(path, weights_only=True)  # numbers and names only: executes no code
             about, own = json.loads(kept["about"]), self.about()
             differ = [name for name in same if about[name] != own[name]]
             if differ:
@@ -204,7 +205,7 @@ class Learner:
         torch.manual_seed(self.seed + self.updates)
 
     def learn(self, envs):
-        """Updates for ever; yields after each what it came to."""
+        """Trains without end; yields the statistics of each update."""
         policy, group, started_s = self.policy, self.optimizer.param_groups[0], time.process_time() - self.processor_s
         seen = begin(envs, policy, self.s, self.seed + self.updates)
         while True:
@@ -271,11 +272,11 @@ def main():
         for name in names:
             if not good(getattr(args, name)):
                 parser.error(f"--{name} {getattr(args, name)}: {what}")
-    torch.set_num_threads(1)  # the sums of more depend on how many there are
+    torch.set_num_threads(1)  # sums depend on the number of threads
     torch.use_deterministic_algorithms(True)
     try:
         (play if args.play else learn)(args)
-    except (OSError, taut.InputError) as error:  # a folder that cannot be written to, a time that does not fit
+    except (OSError, taut.InputError) as error:  # such as an unwritable folder or an invalid duration
         print(error, file=sys.stderr)
         sys.exit(3)
 

@@ -1,7 +1,7 @@
-"""What a policy of ppo.py does without chance, beside the best sine: the same starts, ground, motors and time.
+"""Comparison of a deterministic policy of ppo.py with the best sine gait: same starts, ground, motors and time.
 
-The sine is gaits/roll_six_strut.yaml, which `taut learn studies/roll_six_strut.yaml` found. The starts are those of
-docs/validation/rolling.md, so that its table and this program show the same metres.
+The sine is gaits/roll_six_strut.yaml, which `taut learn studies/roll_six_strut.yaml` found. The starts equal those
+of docs/validation/rolling.md, so that its table and this program show the same distances.
 """
 
 import csv
@@ -21,8 +21,8 @@ SINE, PLAIN = EXPERIMENTS / "roll_six_strut.yaml", EXPERIMENTS / "roll_six_strut
 
 
 def write_start(path, base, number, seconds, more=""):
-    """An experiment that begins as run `number` of docs/validation/rolling.md does: the first is as described, the
-    others stand a little elsewhere, on ground of other friction. `more`: other keys of it."""
+    """Writes an experiment with the start of run `number` of docs/validation/rolling.md: the first is as described, the
+    others have slightly different positions and ground friction. `more`: further keys."""
     if number:
         more += (f"parameters: {{ground_friction: {random.Random(number).uniform(0.4, 0.6):.4f}}}\nseed: {number}\n"
                  "start_noise: {position_m: 0.01, heading_rad: 0.1}\n")
@@ -32,7 +32,7 @@ def write_start(path, base, number, seconds, more=""):
 
 
 def roll(policy, task, number, seconds, folder, more=""):
-    """How far a policy goes [m] that leaves nothing to chance; it writes an experiment that does the same by its clock."""
+    """Returns the distance [m] of the deterministic policy; writes an experiment that replays its commands."""
     name = f"policy_{number}"
     envs = taut.gym.make_vec(write_start(folder / f"{name}.yaml", task, number, seconds, more), 1, randomise=False)
     at, over, rows = [envs.observation_channels.index(f"system/com_{k}_m") for k in "xy"], False, []

@@ -1,4 +1,4 @@
-"""The matrices of `taut export structure` in the equations of tensegrity statics."""
+"""Tensegrity statics (self-stress, mechanisms) with the matrices of `taut export structure`."""
 
 import sys
 
@@ -7,10 +7,10 @@ import numpy as np
 folder = sys.argv[1]
 N, C_b, C_s, q, S = (np.loadtxt(f"{folder}/{name}.csv", delimiter=",", ndmin=2) for name in ("N", "C_b", "C_s", "q", "S"))
 C, q = np.vstack([C_b, C_s]), q.ravel()
-H = N @ C.T  # the members, a column each
+H = N @ C.T  # member vectors as columns
 print("forces balance at all nodes:", np.allclose(H @ np.diag(q) @ C, 0, atol=1e-9))
 
-# Equilibrium in the force densities: A_1 q = w, three rows a node.
+# Equilibrium in the force densities: A_1 q = w, three rows per node.
 A_1 = np.vstack([np.kron(C.T[node], np.ones((3, 1))) * H for node in range(N.shape[1])])
 _, sizes, rows = np.linalg.svd(A_1)
 rank = int(np.sum(sizes > 1e-9 * sizes[0]))

@@ -1,4 +1,4 @@
-"""The period of a mass that swings up and down on a cable: read_trace.py runs/hang/trace.h5"""
+"""Oscillation period of a mass on a cable, read from an HDF5 trace: read_trace.py runs/hang/trace.h5"""
 
 import sys
 

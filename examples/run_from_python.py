@@ -1,4 +1,4 @@
-"""Ten seconds of Tetraspine3's push on ground of two kinds: how far it slides, and what its cables bear."""
+"""Runs from Python: displacement and largest tension of Tetraspine3 in a push of 10 s, on two kinds of ground."""
 
 import taut
 

@@ -1,13 +1,13 @@
-// How hard may a hand press on a corner of the floating table (docs/tutorial.md) before it tips
-// over?
+// Example of a batch: the force on a corner of the floating table (docs/tutorial.md) at which it
+// tips over.
 //
 //   tip_over docs/tutorial/table.yaml
 //
-// 32 worlds of one robot, each pressed with another force. By hand: the pressed corner is as far
-// outside of the line through the nearest two feet as the centre of mass is inside of it, so a
-// rigid table tips when the force exceeds its weight. The corner of a real one sags outwards and
-// makes the lever longer. The example asserts that a table with stiff cables tips at its weight,
-// within 1 %, and that one with cables ten times softer tips earlier.
+// 32 worlds of one robot, each with a different force. By hand: the pressed corner is as far
+// outside of the line through the nearest two feet as the center of mass is inside of it, so a
+// rigid table tips when the force exceeds its weight. The corner of a real one sags outwards, which
+// lengthens the lever. The example asserts that a table with stiff cables tips at its weight,
+// within 1 %, and that a table with cables ten times softer tips earlier.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -24,7 +24,7 @@ constexpr int kWorlds = 32;
 constexpr double kFirstN = 2.4,
                  kBetweenN = 0.025;  // world i: kFirstN + i kBetweenN
 
-/// The plain description of the table on a floor, its outer cables of the given stiffness.
+/// Returns the description of the table on a floor, with outer cables of the given stiffness.
 std::optional<taut::ModelDef> TableOnFloor(const std::string& path, const std::string& side_n_per_m,
                                            taut::Diagnostics& diagnostics) {
   const taut::Overrides overrides{{"side_n_per_m", side_n_per_m},
@@ -43,14 +43,14 @@ int NodeCalled(const taut::ModelDef& def, const std::string& name) {
   return found == def.nodes.end() ? -1 : static_cast<int>(found - def.nodes.begin());
 }
 
-/// The least of the forces that tips a table over [N]; negative if something went wrong.
+/// Returns the least force that tips a table over [N]; negative on failure.
 double TippingForce(const taut::ModelDef& def, taut::Diagnostics& diagnostics) {
   const std::shared_ptr<const taut::Model> model = taut::Model::Compile(def, diagnostics);
   const int corner = NodeCalled(def, "upper.a");
   if (!model || corner < 0) return -1.0;
   taut::BatchOptions options;
   options.worlds = kWorlds;
-  options.threads = 0;  // one a core; the result is the same with any number
+  options.threads = 0;  // one per core; the result does not depend on it
   taut::Batch batch(model, options);
 
   constexpr double kStepS = 0.001;

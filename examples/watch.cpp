@@ -1,11 +1,11 @@
-// A page of a program's own: two worlds beside each other in a browser.
+// Example of a browser page of a program: two worlds side by side.
 //
 //   watch share/models/prism3.yaml            open the address that it prints
 //   watch share/models/prism3.yaml 0          without waiting, for tests
 //
-// A prism slides over rough ground, another over ice; the page shows both, their cables' tensions,
-// what they stand on and how far they are. Pausing there pauses here. The example asserts that ice
-// carries farther.
+// One prism slides over rough ground, another over ice. The page shows both, their cables'
+// tensions, their ground and their distances. Pausing in the page pauses the program. The example
+// asserts that the prism on ice slides farther.
 #include <cstdio>
 #include <cstdlib>
 

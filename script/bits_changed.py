@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Prints the changed files on which the tests of bitwise equality (target `bits_tests`) depend.
 
-  script/bits_changed.py BUILD_FOLDER <FILES     FILES: paths from the root of the tree, one a line
+  script/bits_changed.py BUILD_FOLDER <FILES     FILES: paths from the root of the tree, one per line
 
-BUILD_FOLDER is built: the compiler's own lists say which headers each source includes.
+BUILD_FOLDER must be built: the headers included by each source come from the compiler's dependency lists.
 """
 
 import pathlib
@@ -12,10 +12,10 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-# They say how everything is compiled.
+# Build settings, which affect every file.
 OF_EVERY_BUILD = re.compile(r"CMakePresets\.json|CMakeLists\.txt|tests/determinism/golden\.txt"
                             r"|cmake/(layers|instruction_sets|aarch64-linux-gnu)\.cmake")
-# Text, files and messages: no arithmetic of a step.
+# Text, files and messages, without arithmetic of a step.
 WITHOUT_ARITHMETIC = "src/base/"
 
 
@@ -24,7 +24,7 @@ def ninja(folder, *arguments):
 
 
 def sources_and_headers(folder):
-    """Returns the files of the tree that the tests are built from, as paths from its root."""
+    """Returns the files of the tree from which the tests are built, as paths from its root."""
     objects = {line for line in ninja(folder, "-t", "inputs", "bits_tests").splitlines() 
                if line.endswith(".o") and not line.startswith(WITHOUT_ARITHMETIC)}
     found, wanted = set(), False

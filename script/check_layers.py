@@ -14,7 +14,7 @@ USES = re.compile(r"taut_layer\(\s*(\w+)(.*?)\)", re.DOTALL)
 
 
 class Rules:
-    """Contents of layers.txt."""
+    """Content of layers.txt."""
 
     def __init__(self, path):
         self.uses, self.layer_of_header, self.folders = {}, {}, {}

@@ -1,4 +1,6 @@
-# Sourced by the other scripts: goes to the top of the tree, sets up compiler cache and job count.
+# Common part of the other scripts, which source it: changes to the top of the tree, sets up the compiler
+# cache and the
+# number of jobs.
 # shellcheck shell=bash
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -8,7 +10,7 @@ if [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] && command -v ccache >/dev/null; th
 fi
 jobs=${TAUT_JOBS:-$(nproc)}
 
-# configure PRESET: makes build/PRESET ready; quiet unless it fails.
+# configure PRESET: configures build/PRESET; quiet unless it fails.
 configure() {
   local log=build/$1.configure.log
   mkdir -p build
@@ -27,17 +29,18 @@ build() {
   cmake --build "build/$preset" --parallel "$jobs" ${1:+--target "$@"}
 }
 
-# compiler_messages PRESET: the log of a build that failed, without its steps.
+# compiler_messages PRESET: prints the log of a failed build without its steps.
 compiler_messages() { grep -vE '^\[[0-9]+/[0-9]+\] [^:]*$' "build/$1.build.log" >&2; }
 
-# build_quietly PRESET [TARGET...]: the same; shows the compiler's messages only if it fails.
+# build_quietly PRESET [TARGET...]: same as build, but prints the compiler's messages only on failure.
 build_quietly() {
   mkdir -p build
   build "$@" >"build/$1.build.log" 2>&1 || { compiler_messages "$1"; return 1; }
 }
 
-# build_showing PRESET [TARGET...]: the same, with a line of progress: rewritten on a terminal, once a
-# minute elsewhere. Shows nothing if there is nothing to build.
+# build_showing PRESET [TARGET...]: same as build_quietly, with a progress line: rewritten on a terminal, once
+# a
+# minute elsewhere. Prints nothing if there is nothing to build.
 build_showing() {
   local log=build/$1.build.log line done_count count started_s=$SECONDS shown_s=$SECONDS ended='' left
   mkdir -p build
@@ -65,8 +68,9 @@ build_showing() {
   [ "$(tail -n 1 "$log")" != "the build failed" ] || { compiler_messages "$1"; return 1; }
 }
 
-# changed_since_passed: prints the files that differ from the last commit that passed CI, uncommitted
-# ones included; status 1 if that commit is not known here (.ci/passed; TAUT_CI_PASSED overrides it).
+# changed_since_passed: prints the files that differ from the last commit that passed CI, including
+# uncommitted
+# ones; status 1 if this commit is not in this clone (.ci/passed; TAUT_CI_PASSED overrides it).
 changed_since_passed() {
   local passed=${TAUT_CI_PASSED:-$(cat .ci/passed)}
   git cat-file -e "$passed^{commit}" 2>/dev/null || return 1

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What a list of ctest's (--output-junit) says of each test: status, name and, if it was skipped, why.
+"""Lists the results in a file of ctest (--output-junit): status, name and, for skipped tests, the reason.
 
-  script/test_results.py FILE      a line a test: STATUS<tab>NAME<tab>REASON
+  script/test_results.py FILE      one line per test: STATUS<tab>NAME<tab>REASON
 
-STATUS is run, fail, skipped, or missing: skipped for want of what script/setup installs. Other reasons to
+STATUS is run, fail, skipped, or missing: skipped because a dependency of script/setup is missing. Other reasons to
 skip a test are files from outside the clone (TAUT_REFERENCE), "this machine" and "this build".
 """
 
@@ -15,7 +15,7 @@ ALLOWED = re.compile(r"TAUT_REFERENCE|\bthis (machine|build)\b")
 
 
 def reason(output):
-    """What a test says of why it was skipped: ours behind "skipped:", GoogleTest's on the line after "Skipped"."""
+    """Returns the reason of a skipped test: taut's follows "skipped:", GoogleTest's is on the line after "Skipped"."""
     found = re.search(r"skipped: *(.*)|: Skipped\n(.*)", output)
     return (found[1] or found[2] or "").strip() if found else ""
 

@@ -1,5 +1,5 @@
-// Steps a standing robot, for counting instructions and for timing; see script/bench --compare.
-// Public headers only, so that it can be built against older versions.
+// Steps of a standing robot, for counting instructions and for timing; see script/bench --compare.
+// Uses public headers only, so that it also builds against older versions.
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "this machine has no %d lanes\n", options.worlds);
     return 4;
   }
-  // Each world falls and slides a little differently.
+  // Slightly different initial motion per world.
   for (int world = 0; world < options.worlds; ++world) {
     for (std::size_t b = 0; b < robot->def.bodies.size(); ++b) {
       const int body = static_cast<int>(b);

@@ -1,4 +1,4 @@
-/// What the adapters of the engines share.
+/// Shared parts of the adapters to other physics engines.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace taut::peers {
 
-/// A rotation matrix, row major.
+/// Rotation matrix, row major.
 struct Rotation {
   double m[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 };
@@ -16,13 +16,13 @@ Rotation operator*(const Rotation& a, const Rotation& b);
 Rotation Transposed(const Rotation& r);
 Rotation RotationOf(const Quat& q);
 Quat QuatOf(const Rotation& r);
-/// Turns z onto the unit vector `axis`.
+/// Returns a rotation that maps z to the unit vector `axis`.
 Rotation RotationFromZ(const Vec3& axis);
-/// r diag(moments) r^T.
+/// Returns r diag(moments) r^T.
 Inertia Turned(const Rotation& r, const Vec3& moments);
 
-/// A sphere, a capsule or a box, relative to its body's centre of mass in axes parallel to W at the
-/// start. What it need not be tested with, mechanics/contact_roles.h says.
+/// Sphere, capsule or box, relative to its body's center of mass in axes parallel to W at the
+/// start. mechanics/contact_roles.h defines the pairs that need no test.
 struct Shape {
   enum class Kind { kSphere, kCapsule, kBox };
   Kind kind = Kind::kSphere;
@@ -42,13 +42,13 @@ struct Contact {
 Contact BetweenBodies(const ModelDef& def);
 Contact WithGround(const ModelDef& def, const Material& ground);
 
-/// A body as the springs see it.
+/// Pose and velocities of a body, for the springs.
 struct Pose {
-  Rotation r;  ///< From the axes of the start to those of now.
+  Rotation r;  ///< From the axes at the start to the present axes.
   Vec3 p, v, w;
 };
 struct Load {
-  Vec3 force_n, torque_n_m;  ///< About the centre of mass, in W.
+  Vec3 force_n, torque_n_m;  ///< About the center of mass, in W.
 };
 
 /// Cables as forces for engines without them (paper eq. 1): T = k (l - L) + b dl/dt while l > L,
@@ -58,13 +58,13 @@ class Springs {
   explicit Springs(const ModelDef& def);
   void SetRestLength(int cable, double rest_length_m);
   CableState State(int cable, const std::vector<Pose>& poses) const;
-  /// What all cables do to the bodies.
+  /// Computes the loads of all cables on the bodies.
   void Pull(const std::vector<Pose>& poses, std::vector<Load>& loads) const;
 
  private:
   struct Point {
     int body = kWorld;
-    Vec3 p;  ///< Of a body: from its centre of mass, in axes of the start. Of the world: in W.
+    Vec3 p;  ///< For bodies: from the center of mass, in axes of the start. For the world: in W.
   };
   struct Cable {
     int first = 0, count = 0;
@@ -79,7 +79,7 @@ class Springs {
   std::vector<Point> points_;
 };
 
-// One file each; nothing if the engine is not there.
+// Each is defined in a separate file and returns null if the engine is not built in.
 std::unique_ptr<World> MakeMujoco(const ModelDef& def, const Options& options);
 std::unique_ptr<World> MakeBullet(const ModelDef& def, const Options& options);
 std::unique_ptr<World> MakeOde(const ModelDef& def, const Options& options);

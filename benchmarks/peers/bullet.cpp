@@ -1,4 +1,4 @@
-/// Bullet: a compound shape a body, cables as forces on the bodies before each step.
+/// Bullet adapter: one compound shape per body; cables are forces on the bodies before each step.
 #include <BulletCollision/CollisionDispatch/btCompoundCompoundCollisionAlgorithm.h>
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <btBulletDynamicsCommon.h>
@@ -30,7 +30,7 @@ Rotation Ours(const btMatrix3x3& m) {
   return r;
 }
 
-/// Bullet asks this for ground and a part of a compound, and for parts of two compounds.
+/// Collision filter of Bullet for ground and a part of a compound, and for parts of two compounds.
 bool Meets(const btCollisionShape* a, const btCollisionShape* b) {
   const bool plane =
       a->getShapeType() == STATIC_PLANE_PROXYTYPE || b->getShapeType() == STATIC_PLANE_PROXYTYPE;
@@ -38,7 +38,8 @@ bool Meets(const btCollisionShape* a, const btCollisionShape* b) {
   return (a->getUserIndex() & b->getUserIndex() & bit) != 0;
 }
 
-/// Coefficients of surfaces from those of contacts: Bullet multiplies.
+/// Coefficients of surfaces from coefficients of contacts, since Bullet multiplies the two
+/// surfaces.
 struct Factors {
   double body = 0, ground = 0;
 };
@@ -132,7 +133,8 @@ class Bullet final : public World {
     world_.addRigidBody(grounds_.back().get());
   }
 
-  /// Bullet keeps no heights of its own, and puts the middle of their range at the body's place.
+  /// Adds a height field. Bullet does not copy the heights, and places the middle of their range at
+  /// the body's position.
   void AddField(const ModelDef& def, const HeightFieldDef& field) {
     heights_ = field.height_m;
     const mechanics::HeightRange range = mechanics::HeightsOf(field);

@@ -1,5 +1,5 @@
-/// The MuJoCo peer as text: what mujoco.cpp compiles, and what a program with another version of
-/// MuJoCo can load. Needs no MuJoCo.
+/// MuJoCo model (MJCF) as text: compiled by mujoco.cpp, and readable by programs with other
+/// versions of MuJoCo. Needs no MuJoCo.
 #include "benchmarks/peers/adapters.h"
 #include "mjcf/write.h"
 

@@ -1,8 +1,8 @@
-/// MuJoCo: free bodies, spatial tendons, and for each cable one actuator that can only pull.
+/// MuJoCo adapter: free bodies, spatial tendons, and one pull-only actuator per cable.
 ///
 /// The actuator's force is k u - k l - b dl/dt, limited to (-inf, 0], with the control u as rest
-/// length. That is paper eq. (1) but for one thing: it is the sum that is limited, so that a cable
-/// that is slack and grows longer quickly, b dl/dt > k (L - l), already pulls.
+/// length. This is paper eq. (1) with one exception: the sum is limited, so a slack cable that
+/// lengthens quickly, b dl/dt > k (L - l), already pulls.
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ class Mujoco final : public World {
       const std::vector<float> heights = MujocoHeights(field);
       std::copy(heights.begin(), heights.end(), model_->hfield_data);
     }
-    mju_user_warning = [](const char*) {};  // Step looks at the warnings; no file of them
+    mju_user_warning = [](const char*) {};  // Step checks the warnings; prevents a log file
     mj_resetDataKeyframe(model_, data_, 0);
   }
   Mujoco(const Mujoco&) = delete;
@@ -60,7 +60,7 @@ class Mujoco final : public World {
     model_->opt.timestep = step_s;
     for (int i = 0; i < count; ++i) mj_step(model_, data_);
     measured_ = false;
-    for (int kind = 0; kind < mjNWARNING; ++kind) {  // contacts that had no room, a state gone wild
+    for (int kind = 0; kind < mjNWARNING; ++kind) {  // contacts without space, diverged state
       const mjWarningStat& warning = data_->warning[kind];
       if (warning.number > 0) throw std::runtime_error(mju_warningText(kind, warning.lastinfo));
     }
@@ -98,7 +98,8 @@ class Mujoco final : public World {
   int ContactCount() const override { return data_->ncon; }
 
  private:
-  /// What is derived from positions and velocities is otherwise that of the step's start.
+  /// Updates quantities that depend on positions and velocities, which otherwise belong to the
+  /// start of the step.
   void Measure() const {
     if (measured_) return;
     mj_fwdPosition(model_, data_);

@@ -1,4 +1,4 @@
-/// ODE: geoms with offsets on each body, cables as forces on the bodies before each step.
+/// ODE adapter: geoms with offsets on each body; cables are forces on the bodies before each step.
 #include <ode/ode.h>
 
 #include <array>
@@ -19,7 +19,7 @@ constexpr unsigned long kPlaneBit = 1, kBodyBit = 2;
 Rotation Ours(const dReal* m) { return {{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}}; }
 Vec3 OursVector(const dReal* v) { return {v[0], v[1], v[2]}; }
 
-/// What ODE says of a step, "LCP internal error", and to nobody in particular.
+/// Counts ODE's global messages, such as "LCP internal error".
 std::atomic<int> g_messages = 0;
 void Hear(int, const char*, va_list) { ++g_messages; }
 
@@ -115,7 +115,8 @@ class Ode final : public World {
     dGeomSetCollideBits(geom, 0);
   }
 
-  /// ODE's fields have y up and rows along z: turned about x by a quarter, with the last row first.
+  /// Creates a height field. ODE's fields have y up and rows along z: rotated about x by a quarter
+  /// turn, with the last row first.
   dGeomID FieldOf(const HeightFieldDef& field) {
     std::vector<double> heights;
     for (auto end = field.height_m.end(); end != field.height_m.begin(); end -= field.columns) {
@@ -144,7 +145,7 @@ class Ode final : public World {
     dBodySetLinearVel(id, v.x, v.y, v.z);
     dBodySetAngularVel(id, w.x, w.y, w.z);
     bodies_.push_back(id);
-    const dSpaceID own = dSimpleSpaceCreate(space_);  // so that bodies are told apart at once
+    const dSpaceID own = dSimpleSpaceCreate(space_);  // skips pairs of the same body early
     for (const Shape& s : shapes) {
       if (s.body != index) continue;
       const dGeomID geom = GeomOf(own, s);
@@ -178,7 +179,7 @@ class Ode final : public World {
       dSpaceCollide2(a, b, this, Near);
       return;
     }
-    std::array<dContact, 64> found;  // more than two boxes have, or a rod on hills
+    std::array<dContact, 64> found;  // more than two boxes or a rod on hills have
     const int count =
         dCollide(a, b, static_cast<int>(found.size()), &found[0].geom, sizeof(dContact));
     const void* const ground = dGeomGetData(a) != nullptr ? dGeomGetData(a) : dGeomGetData(b);
@@ -225,7 +226,7 @@ std::unique_ptr<World> MakeOde(const ModelDef& def, const Options& options) {
 }
 
 std::string OdeVersion() {
-  // ODE does not say; the package's name does (peers/CMakeLists.txt).
+  // ODE has no version function; the package's name contains the version (peers/CMakeLists.txt).
   return TAUT_PEER_ODE;
 }
 

@@ -44,7 +44,7 @@ bool Same(const Material& a, const Material& b) {
          a.restitution == b.restitution;
 }
 
-/// The material of the first shape that collides; nothing without one.
+/// Returns the material of the first shape that collides; null without one.
 const Material* FirstMaterial(const ModelDef& def) {
   for (const SphereDef& s : def.spheres) {
     if (s.collides) return &s.material;
@@ -58,7 +58,7 @@ const Material* FirstMaterial(const ModelDef& def) {
   return nullptr;
 }
 
-/// Of all grounds that peers know.
+/// Returns the materials of all kinds of ground that peers support.
 std::vector<const Material*> Grounds(const ModelDef& def) {
   std::vector<const Material*> found;
   for (const PlaneDef& p : def.planes) found.push_back(&p.material);
@@ -83,7 +83,7 @@ std::string Unsupported(const ModelDef& def) {
   if (!def.terrain_boxes.empty()) return "terrain boxes";
   if (!def.terrain_meshes.empty()) return "terrain meshes";
   if (def.height_fields.size() > 1) return "more than one height field";
-  for (const HeightFieldDef& f : def.height_fields) {  // MuJoCo and ODE split theirs all alike
+  for (const HeightFieldDef& f : def.height_fields) {  // MuJoCo and ODE divide all cells alike
     if (f.split != HeightFieldDef::Split::kSame) return "height fields split other than the same";
   }
   if (!def.hulls.empty()) return "hulls";

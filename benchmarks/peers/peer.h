@@ -1,5 +1,5 @@
-/// Other engines that run the very same `ModelDef` as taut: what tests and benchmarks compare
-/// taut with. Nothing of taut itself uses them.
+/// Other physics engines that run the same `ModelDef` as taut, for comparison in tests and
+/// benchmarks. taut does not use them.
 #pragma once
 
 #include <memory>
@@ -13,22 +13,22 @@ namespace taut::peers {
 enum class Engine { kMujoco, kBullet, kOde };
 inline constexpr Engine kEngines[] = {Engine::kMujoco, Engine::kBullet, Engine::kOde};
 
-/// "mujoco", "bullet", "ode".
+/// Returns "mujoco", "bullet" or "ode".
 const char* Name(Engine engine);
-/// Whether this program was built with the engine.
+/// Returns whether this program was built with the engine.
 bool Available(Engine engine);
-/// The version that this program runs with, "not built in" without it.
+/// Returns the version that this program runs with; "not built in" without the engine.
 std::string Version(Engine engine);
 
-/// The engines' own settings. What is not here is left at the engine's default.
+/// Settings of the engines. All others keep the engine's defaults.
 struct Options {
   int iterations = 10;          ///< Of Bullet's solver and of ODE's quick step.
   bool two_directions = false;  ///< Bullet: friction in both tangential directions.
-  bool full_step = false;       ///< ODE: its direct solver in place of the quick step.
-  bool elliptic = false;        ///< MuJoCo: elliptic in place of pyramidal friction cones.
+  bool full_step = false;       ///< ODE: direct solver instead of the quick step.
+  bool elliptic = false;        ///< MuJoCo: elliptic instead of pyramidal friction cones.
 };
 
-/// What an engine holds for a body: in W, at the current pose.
+/// Mass properties of a body in an engine: in W, at the current pose.
 struct MassState {
   double mass_kg = 0;
   Vec3 com_m;
@@ -44,29 +44,30 @@ class World {
   virtual ~World() = default;
 
   virtual void Step(double step_s, int count = 1) = 0;
-  /// The rest length of a cable [m], at once: the peers have no motors.
+  /// Sets the rest length of a cable [m] immediately: the peers have no motors.
   virtual void SetRestLength(int cable, double rest_length_m) = 0;
 
   virtual CableState Cable(int cable) const = 0;  ///< Of the current state.
   virtual BodyState Body(int body) const = 0;
   virtual MassState Mass(int body) const = 0;
   virtual int ContactCount() const = 0;  ///< Of the last step.
-  /// Steps since the start that the engine says it has not solved. Only ODE's full step says so.
+  /// Returns the number of steps since the start that the engine reported as unsolved. Only ODE's
+  /// full step reports this.
   virtual int UnsolvedSteps() const { return 0; }
 };
 
-/// Why the peers cannot run a model, in words; empty if they can.
+/// Returns the reason why the peers cannot run a model; empty if they can.
 std::string Unsupported(const ModelDef& def);
 
-/// The model in MuJoCo's language, with a keyframe of its start: what the engine of that name runs,
-/// for other versions of it. The model is supported.
+/// Returns the model as MJCF, with a keyframe of its start, as the MuJoCo peer runs it; for other
+/// versions of MuJoCo. The model must be supported.
 std::string Mjcf(const ModelDef& def, const Options& options = {});
-/// The heights of a field as that model takes them when it is loaded, from 0 to 1 in single
+/// Returns the heights of a field in the form in which that model loads them: 0 to 1, single
 /// precision.
 std::vector<float> MujocoHeights(const HeightFieldDef& field);
 
-/// A world as `def` describes it. The engine is available and the model supported, otherwise
-/// std::invalid_argument says what is wrong.
+/// Returns a world as `def` describes it. Throws std::invalid_argument with the reason if the
+/// engine is not available or the model is not supported.
 std::unique_ptr<World> MakeWorld(Engine engine, const ModelDef& def, const Options& options = {});
 
 }  // namespace taut::peers

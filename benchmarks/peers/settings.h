@@ -1,4 +1,4 @@
-/// The settings in which the peers are measured and validated.
+/// Settings in which the peers are measured and validated.
 #pragma once
 
 #include "benchmarks/peers/peer.h"
@@ -9,7 +9,7 @@ struct Setting {
   Engine engine;
   const char* name;
   Options options;
-  bool main;  ///< Of those that longer series are measured with.
+  bool main;  ///< Whether longer series use it.
 };
 
 inline constexpr Setting kSettings[] = {

@@ -1,4 +1,4 @@
-"""Running other programs."""
+"""Execution of external commands."""
 
 import subprocess
 
@@ -6,7 +6,7 @@ from validation.runs import Problem
 
 
 def command(*words, **more):
-    """Runs a command, shows what it said only if it fails."""
+    """Runs a command; prints its output only if it fails."""
     run = subprocess.run([str(word) for word in words], capture_output=True, text=True, **more)
     if run.returncode != 0:
         raise Problem(f"{' '.join(map(str, words))}\n{run.stdout}{run.stderr}".rstrip())

@@ -1,4 +1,4 @@
-"""Two versions of taut, built and measured in turns."""
+"""Comparison of two versions of taut by instruction counts and alternating time measurements."""
 
 import io
 import os
@@ -12,9 +12,9 @@ import tarfile
 from measuring.measure import command
 from validation.runs import ROOT, Problem, table
 
-LIMIT = 0.03  # more instructions than that are a regression
+LIMIT = 0.03  # a larger relative increase of the instructions is a regression
 ROBOTS = ("tetraspine3", "tetraspine12", "six_strut")
-LANES = (1, 4)  # valgrind does not know AVX-512
+LANES = (1, 4)  # valgrind does not support AVX-512
 ROUNDS = 11
 FOLDER = ROOT / "build/compare"
 
@@ -38,7 +38,7 @@ def program(version):
 
 
 def counter():
-    """A function that counts the instructions of a command."""
+    """Returns a function that counts the instructions of a command."""
     def perf(words):
         run = subprocess.run(["perf", "stat", "-x,", "-e", "instructions:u", *map(str, words)],
                              capture_output=True, text=True)
@@ -61,13 +61,13 @@ def counter():
 
 
 def instructions(count, path, robot, lanes, steps=200):
-    """Of one step: what `steps` more cost, so that start and end do not count."""
+    """Returns the instructions of one step: the additional cost of `steps` steps, so that start and end cancel."""
     few, many = (count([path, robot, lanes, n]) for n in (steps, 2 * steps))
     return (many - few) / steps
 
 
 def times(paths, robot, lanes, steps):
-    """Median seconds of a step of each program, in turns."""
+    """Returns the median duration of a step of each program [s], measured alternately."""
     found = [[] for _ in paths]
     for _ in range(ROUNDS):
         for path, taken in zip(paths, found):
@@ -76,7 +76,7 @@ def times(paths, robot, lanes, steps):
 
 
 def verdict(rows):
-    """Status and words for (case, instructions before, after)."""
+    """Returns status and text for rows of (case, instructions before, after)."""
     worse = [case for case, before, after in rows if after > (1 + LIMIT) * before]
     if worse:
         return 1, f"more than {100 * LIMIT:g} % more instructions: {', '.join(worse)}"

@@ -1,4 +1,4 @@
-"""Contact-rich scenes: running the program that measures each of their steps, and the tables of it."""
+"""Contact-rich scenes: runs the program that measures each of their steps, and formats its tables."""
 
 import json
 import os
@@ -15,13 +15,13 @@ KIND = "contact_scenes"
 TEMPLATE = pathlib.Path(__file__).with_name("contact_scenes.md.in")
 NOT_MEASURED = "Not measured in this run; `script/bench --contacts` does."
 PAINLEVE = "painleve"
-REFERENCE = "tetraspine3"  # a robot on the flat, with few contacts
+REFERENCE = "tetraspine3"  # a robot on flat ground, with few contacts
 ODE = ("ode", "full_step")
 CUT = "*"
 
 
 def run(program, only, seeds, steps, seconds, load):
-    """The list for scenes whose names match; empty if there are none."""
+    """Returns the list for scenes whose names match; empty if there are none."""
     if not os.access(program, os.X_OK):
         raise Problem(f"there is no {program}")
     limit = ["--steps", steps] if steps else []
@@ -34,7 +34,7 @@ def run(program, only, seeds, steps, seconds, load):
 
 
 def together(runs):
-    """One item of the starts of a scene: each step counts alike, but the worst is that of all."""
+    """Merges the runs from all starts of a scene: means over all steps, and the worst of all runs."""
     first = runs[0]
     steps = sum(one["steps"] for one in runs)
 
@@ -66,7 +66,7 @@ def together(runs):
 
 
 def results(raw, load):
-    """The list from the program's JSON. A peer that fails on a start of a scene is left out of it."""
+    """Converts the program's JSON to the list. A peer that fails at any start of a scene is omitted there."""
     where = machine({**raw["context"], "load_avg": load})
     starts, failed = {}, set()
     for one in raw["runs"]:
@@ -97,7 +97,7 @@ class Scenes:
 
 
 def mean(item):
-    """An asterisk where a run was cut: its mean is that of fewer steps than others took."""
+    """Formats the mean time of a step; an asterisk marks an aborted run, whose mean is over fewer steps."""
     return number(item["time_us"]["mean"]) + (CUT if item["cut"] else "")
 
 
@@ -110,7 +110,7 @@ def name(item):
 
 
 def steps(items):
-    """How each scene was solved, and how long it took."""
+    """Formats the solver's results and times of each scene."""
     scenes = Scenes(items)
     rows = []
     for scene in scenes.names:
@@ -123,12 +123,12 @@ def steps(items):
                      not_solved(one), f"{one['worst_residual_m_per_s']:.1e}",
                      *(number(iterations[key]) for key in ("mean", "p99", "worst")),
                      mean(one), *(number(time[key]) for key in ("median", "p99", "p999", "worst")), *wide])
-    return table(["scene", "contacts", "steps", "not solved", "worst residual, m/s", "iterations", "99 %", "most",
-                  "us a step", "median", "99 %", "99.9 %", "worst", f"{scenes.widest} lanes", "not solved"], rows)
+    return table(["scene", "contacts", "steps", "not solved", "worst residual, m/s", "iterations", "99 %", "maximum",
+                  "us per step", "median", "99 %", "99.9 %", "worst", f"{scenes.widest} lanes", "not solved"], rows)
 
 
 def beside(items):
-    """Mean and median of the same steps of other engines."""
+    """Formats mean and median times of the same steps with other engines."""
     scenes = Scenes(items)
     engines = [key for key in SETTINGS if any((item["engine"], item["setting"]) == key for item in scenes.items)]
     rows = []
@@ -143,7 +143,7 @@ def beside(items):
 
 
 def ratios(items):
-    """What a solver is judged by, each from this run alone."""
+    """Formats the ratios by which a solver is evaluated, each from the same run."""
     scenes = Scenes(items)
 
     def over(scene, other):
@@ -164,7 +164,7 @@ def ratios(items):
             *([f"{what}: steps within 16 times ODE's mean", share(scene)]
               for scene, what in {"pile_20": "a heap of 20 rods", "boxes_10": "a stack of 10 boxes"}.items()),
             ["Painleve's rod: steps solved", f"{rod['solved']} of {rod['steps']}" if rod else NOTHING]]
-    return table(["what", "how much"], rows)
+    return table(["quantity", "value"], rows)
 
 
 def section(items):
@@ -173,7 +173,7 @@ def section(items):
         return NOT_MEASURED
     wrong = [name(item) for item in scenes.items if item.get("went_wrong")]
     return fill(TEMPLATE.read_text(), {
-        "steps": steps(items), "beside": beside(items), "ratios": ratios(items),
+        "steps": steps(items), "engines": beside(items), "ratios": ratios(items),
         "starts": str(max(item["repetitions"] for item in scenes.items)), "lanes": str(scenes.widest),
         "wrong": f"Not finite, or without room for their contacts: {', '.join(wrong)}." if wrong
-                 else "No world was not finite or had no room for its contacts."}).rstrip()
+                 else "All worlds stayed finite and had room for their contacts."}).rstrip()

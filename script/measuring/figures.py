@@ -1,4 +1,4 @@
-"""How figures and engines are called in all tables."""
+"""Names of settings and engines, and formats of numbers, common to all tables."""
 
 SETTINGS = {  # in the order of the tables
     ("taut", "default"): "taut",
@@ -16,7 +16,7 @@ NOTHING = "-"
 
 
 def number(value, digits=3):
-    """Rounded to significant digits, groups of three apart: 1 230 000."""
+    """Rounds to significant digits and separates groups of three: 1 230 000."""
     if value == 0:
         return "0"
     rounded = float(f"{value:.{digits}g}")
@@ -24,5 +24,5 @@ def number(value, digits=3):
 
 
 def count(value):
-    """All of its digits: 12 345."""
+    """Formats all digits of an integer: 12 345."""
     return f"{value:,}".replace(",", " ")

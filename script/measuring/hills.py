@@ -1,4 +1,4 @@
-"""Robots on hills: the section of docs/performance.md, and that section alone."""
+"""Robots on hills: section of docs/performance.md, which can be updated separately."""
 
 import pathlib
 
@@ -13,7 +13,7 @@ TEMPLATE = pathlib.Path(__file__).with_name("hills.md.in")
 TITLE = "### On hills"
 GROUNDS = {"plane": "plane", "hills": "hills", "many": "10^7 cells"}
 BALL = "ball@level"
-COMPANY = "\nOthers worked there at the same time: ratios say more than times, and both are to be measured again where nothing else runs."
+COMPANY = "\nOthers worked there at the same time: ratios are more reliable than times; both need a repetition on an idle machine."
 
 
 def lanes_of(name, lanes):
@@ -25,7 +25,7 @@ def robots(items):
 
 
 def grounds(items):
-    """Microseconds of a world's step of taut on a plane and on hills."""
+    """Formats the time per step of a world in taut on a plane and on hills [us]."""
     results = Results(Results(items).of(kind=KIND, engine="taut"))
     lanes = sorted({item["lanes"] for item in results.items if item["robot"] != BALL})
     rows = []
@@ -42,7 +42,7 @@ def grounds(items):
 
 
 class Beside:
-    """All engines on what more than taut was measured on."""
+    """Results of all engines, for cases that several engines ran."""
 
     def __init__(self, items):
         self.results = Results(Results(items).of(kind=KIND))
@@ -60,7 +60,7 @@ class Beside:
         return self.results.one(engine=engine, setting=setting, lanes=lanes, robot=robot)
 
     def times(self):
-        """Microseconds of a step, and how many times as long as taut's that is."""
+        """Formats the time per step [us], and its ratio to taut's."""
         columns = [f"{robot}@{ground}" for robot in self.robots for ground in ("plane", "hills")]
         rows = []
         for row in self.rows:
@@ -73,7 +73,7 @@ class Beside:
         return table(["engine", *(robot.replace("@", ", ") for robot in columns)], rows)
 
     def worth(self):
-        """What of a ball's speed is left, and how deep robots are in the ground."""
+        """Formats the remaining speed of the ball, and the penetrations of robots into the ground."""
         rows = []
         for row in self.rows:
             ball = self.of(row, BALL)
@@ -82,7 +82,7 @@ class Beside:
                      *(millimetres(item) + mark(item) if item and "deepest_m" in item else NOTHING for item in deep)]
             if set(cells) != {NOTHING}:
                 rows.append([self.name(row), *cells])
-        return table(["engine", "a ball keeps, m/s", *(f"{robot} is deep, mm" for robot in self.robots)], rows)
+        return table(["engine", "final speed of the ball, m/s", *(f"penetration of {robot}, mm" for robot in self.robots)], rows)
 
 
 def millimetres(item):
@@ -96,11 +96,11 @@ def section(items):
         return NOT_MEASURED
     machine, beside = found[0]["machine"], Beside(found)
     return fill(TEMPLATE.read_text(), {
-        "grounds": grounds(found), "beside": beside.times(), "worth": beside.worth(), "commit": machine["commit"],
+        "grounds": grounds(found), "engines": beside.times(), "worth": beside.worth(), "commit": machine["commit"],
         "repetitions": str(min(item["repetitions"] for item in found)), "load": f"{machine['load'][0]:.1f}",
         "company": COMPANY if shared(machine) else ""}).rstrip()
 
 
 def replaced(page, items):
-    """The page with this section anew and all else as it was."""
+    """Returns the page with this section replaced."""
     return sections.replaced(page, TITLE, section(items))

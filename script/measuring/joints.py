@@ -1,4 +1,4 @@
-"""What joints cost: the section of docs/performance.md, and that section alone."""
+"""Cost of joints: section of docs/performance.md, which can be updated separately."""
 
 import pathlib
 
@@ -11,19 +11,19 @@ KIND = "joints"
 NOT_MEASURED = "Not measured in this run."
 TEMPLATE = pathlib.Path(__file__).with_name("joints.md.in")
 TITLE = "### With joints"
-COMPANY = "\nOthers worked there at the same time: times are too long, and to be measured again where nothing else runs."
+COMPANY = "\nOthers worked there at the same time: times are too long and need a repetition on an idle machine."
 
 
 def costs(items):
-    """Of a step and of its solve stage; per joint, and per joint and linear system."""
+    """Formats the cost of a step and of its solve stage; per joint, and per joint and linear system."""
     rows = []
     for item in sorted(items, key=lambda item: (item["robot"], item["lanes"])):
         step, solve = 1e9 / item["steps_per_s"], item["stages_ns"]["solve"]
         joints, systems = item["joints"], item["linear_solves"]
         rows.append([item["robot"] + mark(item), str(item["lanes"]), number(joints), number(systems), number(step / 1e3),
                      number(step / joints), number(solve / joints), number(solve / joints / systems)])
-    return table(["robot", "lanes", "joints", "linear systems a step", "a step, us", "a joint, ns", "its part of `solve`, ns",
-                  "the same a linear system, ns"], rows)
+    return table(["robot", "lanes", "joints", "linear systems per step", "step, us", "step per joint, ns",
+                  "`solve` per joint, ns", "`solve` per joint and linear system, ns"], rows)
 
 
 def section(items):
@@ -37,5 +37,5 @@ def section(items):
 
 
 def replaced(page, items):
-    """The page with this section anew and all else as it was."""
+    """Returns the page with this section replaced."""
     return sections.replaced(page, TITLE, section(items))

@@ -1,4 +1,4 @@
-"""Running the benchmark program and making a list of what it measured."""
+"""Runs the benchmark program and converts its measurements to a list."""
 
 import functools
 import json
@@ -13,7 +13,7 @@ from measuring import wasm
 from measuring.commands import command
 from validation.runs import ROOT, Problem
 
-STAGE = "ns_"  # begins the counters that are times of stages
+STAGE = "ns_"  # prefix of the counters that are times of stages
 
 
 def build(*targets):
@@ -31,7 +31,7 @@ def processor():
     return platform.processor() or platform.machine()
 
 
-@functools.cache  # what was built at the start is measured, whatever is edited meanwhile
+@functools.cache  # computed once: the program was built at the start, even if sources are edited meanwhile
 def commit():
     run = subprocess.run(["git", "describe", "--always", "--dirty", "--exclude", "*"], cwd=ROOT,
                          capture_output=True, text=True)
@@ -39,7 +39,7 @@ def commit():
 
 
 def machine(context):
-    """What figures hold for: Google Benchmark's context and what it does not know."""
+    """Returns the conditions of the measurements: Google Benchmark's context and further properties of the machine."""
     return {"processor": processor(), "cores": os.cpu_count(), "load": context["load_avg"][:1],
             "commit": commit(), "mujoco_wasm": context.get("mujoco_wasm", wasm.ABSENT),
             **{key: context[key] for key in ("mujoco", "bullet", "ode", "step_s", "max_linear_solves",
@@ -47,7 +47,7 @@ def machine(context):
 
 
 def results(raw):
-    """The list from Google Benchmark's JSON: a median of the repetitions for each benchmark."""
+    """Converts Google Benchmark's JSON to the list: the median of the repetitions for each benchmark."""
     where = machine(raw["context"])
     repetitions = {}
     for run in raw["benchmarks"]:
@@ -79,7 +79,7 @@ def results(raw):
 
 
 def run(program, only, repetitions, seconds):
-    """The list for benchmarks whose names match; empty if there are none."""
+    """Returns the list for benchmarks whose names match; empty if there are none."""
     if not os.access(program, os.X_OK):
         raise Problem(f"there is no {program}; it needs libbenchmark-dev (script/setup)")
     with tempfile.TemporaryDirectory() as folder:
@@ -87,7 +87,7 @@ def run(program, only, repetitions, seconds):
         command(program, f"--benchmark_filter={only}", f"--benchmark_repetitions={repetitions}",
                 f"--benchmark_min_time={seconds}", "--benchmark_enable_random_interleaving=true",
                 f"--benchmark_out={out}", "--benchmark_out_format=json")
-        text = out.read_text()  # empty if there was nothing to run
+        text = out.read_text()  # empty if no benchmark matches
     if not text:
         return []
     raw = json.loads(text)

@@ -1,4 +1,4 @@
-"""docs/performance.md: the tables, from a list of results."""
+"""Tables of docs/performance.md from a list of results."""
 
 import pathlib
 import statistics
@@ -15,7 +15,7 @@ STAGES = ("start", "kinematics", "cables", "kick", "collide", "solve", "integrat
 
 
 def one_world(items):
-    """Steps a second of one world, and how many times as many taut does."""
+    """Formats the steps per second of one world, and taut's ratio to them."""
     results = Results(items)
     rows = []
     for (engine, setting), name in SETTINGS.items():
@@ -30,7 +30,7 @@ def one_world(items):
 
 
 def mujocos(items):
-    """How many times as many steps MuJoCo in WebAssembly does as the one that is built in."""
+    """Formats the ratio of the speed of MuJoCo in WebAssembly to the native MuJoCo."""
     results = Results(items)
     rows = []
     for setting, name in {"euler_pyramidal": "pyramidal cones", "euler_elliptic": "elliptic cones"}.items():
@@ -42,16 +42,16 @@ def mujocos(items):
 
 def which_mujoco(items):
     version = items[0]["machine"].get("mujoco_wasm", wasm.ABSENT)
-    words = "Debian's MuJoCo is of 2022. "
+    words = "Debian's MuJoCo is from 2022. "
     if version == wasm.ABSENT:
-        words += "MuJoCo 3 was not measured in this run: that takes node and npm's `@mujoco/mujoco`."
+        words += "MuJoCo 3 was not measured in this run, which requires node and npm's `@mujoco/mujoco`."
     else:
-        words += (f"MuJoCo 3 in the tables is npm's `@mujoco/mujoco` {version}: WebAssembly, one thread. It loads the text "
-                  "that the other one compiles, but for a bound on memory, with the same solver, number of iterations and "
-                  "tolerance; what that text does not name is at each version's own defaults. ")
+        words += (f"MuJoCo 3 in the tables is npm's `@mujoco/mujoco` {version}: WebAssembly, one thread. It loads the same "
+                  "MJCF as Debian's MuJoCo, except for a bound on memory, with the same solver, number of iterations and "
+                  "tolerance; other settings have the defaults of each version. ")
         apart = [item["apart_m"] for item in items if "apart_m" in item]
-        words += ("It is measured only if it makes the same bodies and masses of it and has them, after 100 steps without "
-                  f"contacts, within 1e-9 m of where the other one has them; the largest distance was {max(apart):.1e} m."
+        words += ("It is measured only if it has the same bodies and masses and, after 100 steps without contacts, positions "
+                  f"within 1e-9 m of Debian's MuJoCo; the largest distance was {max(apart):.1e} m."
                   if apart else "There was no other one in this run to compare with.")
     return textwrap.fill(words, 110, break_on_hyphens=False)
 
@@ -72,7 +72,7 @@ def batches(items):
 
 
 def against_batches(items):
-    """The widest batch on one core against one world of each peer."""
+    """Compares the widest batch on one core with one world of each peer."""
     results = Results(items)
     rows = []
     for (engine, setting), name in SETTINGS.items():
@@ -109,7 +109,7 @@ def memory(items):
 
 
 def growth(items, kind):
-    """Microseconds of a step against a number that ends the robot's name."""
+    """Formats the time per step [us] against the number at the end of the robot's name."""
     results = Results(items)
     columns = []
     for (engine, setting), name in SETTINGS.items():
@@ -127,7 +127,7 @@ def growth(items, kind):
 
 
 def spread(items):
-    """How far the repetitions of a benchmark are apart, in per cent of their median."""
+    """Returns the spread of a benchmark's repetitions, in per cent of their median."""
     worst = max(items, key=lambda item: item["spread"])
     name = SETTINGS[worst["engine"], worst["setting"]]
     return {"spread": number(100 * statistics.median(item["spread"] for item in items), 2),
@@ -138,7 +138,7 @@ def spread(items):
 def company(machine):
     if not shared(machine):
         return ""
-    return "\nOthers worked there at the same time: rows of several threads say little, all others more in their ratios."
+    return "\nOthers worked there at the same time: rows of several threads are unreliable; of the others, ratios are more reliable."
 
 
 def text(items):

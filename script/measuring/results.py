@@ -1,8 +1,8 @@
-"""The list of what was measured, looked up by what it holds for."""
+"""List of measurements, with lookup by engine, setting, robot and size."""
 
 from validation.runs import Problem
 
-UNCONVERGED = "*"  # some step of it stopped at the largest number of linear solves, or was not solved
+UNCONVERGED = "*"  # marks results with a step that reached the maximum number of linear solves, or was not solved
 
 
 class Results:
@@ -28,5 +28,5 @@ def mark(item):
 
 
 def shared(machine):
-    """Whether others worked there, which the wall's clock shows."""
+    """Returns whether other programs ran at the same time, which affects wall-clock times."""
     return machine["load"][0] > machine["cores"] / 2

@@ -1,4 +1,4 @@
-"""Sections of docs/performance.md that can be measured anew by themselves."""
+"""Sections of docs/performance.md that can be updated separately."""
 
 import re
 
@@ -6,7 +6,7 @@ from validation.runs import Problem
 
 
 def replaced(page, title, text):
-    """The page with another text in the section of that title, and all else as it was."""
+    """Returns the page with the text of the section of this title replaced."""
     start, rest = re.escape(title) + r"[^\n]*\n\n", r"(?=\n\n### )"
     if len(re.findall(f"(?m)^{start}", page)) != 1:
         raise Problem(f"the page has no section {title}")

@@ -1,5 +1,5 @@
-"""Two lanes of the step in WebAssembly beside two lanes here (script/wasm --bench): both programs in turns, so that
-what else the machine does hits both, and the median of the ratios."""
+"""Ratio of the speeds of two lanes in WebAssembly and natively (script/wasm --bench): both programs run alternately,
+so that other load affects both, and the result is the median of the ratios."""
 
 import json
 import statistics
@@ -17,7 +17,7 @@ def measured(command):
 
 
 def main():
-    # What emscripten 3.1.6 makes would fetch its file where there is a fetch, as if node were a browser.
+    # With fetch, code by emscripten 3.1.6 would load its file as in a browser.
     here, wasm = [sys.argv[1]], ["node", "--no-experimental-fetch", sys.argv[2]]
     ratios = {}
     for _ in range(ROUNDS):

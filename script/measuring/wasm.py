@@ -1,4 +1,4 @@
-"""A MuJoCo of today beside that of Debian: npm's @mujoco/mujoco, which is WebAssembly, run by node."""
+"""Current MuJoCo for comparison with Debian's: npm's @mujoco/mujoco, in WebAssembly, run by node."""
 
 import fcntl
 import functools
@@ -28,7 +28,7 @@ def installed():
 
 
 def what_is_missing():
-    """In words, after an attempt to install it; None if all is there."""
+    """Installs the package if necessary. Returns a text about missing parts; None if all are available."""
     if not shutil.which("node"):
         return "there is no node (script/setup)"
     if installed() == locked():
@@ -44,9 +44,9 @@ def what_is_missing():
 
 @functools.cache
 def version():
-    """Of MuJoCo and of node; ABSENT, and a line that says why, where one of them is not there."""
+    """Returns the versions of MuJoCo and node; ABSENT, after a message with the reason, if one is missing."""
     with (FOLDER / "node_modules.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # tests do this side by side
+        fcntl.flock(lock, fcntl.LOCK_EX)  # tests run this in parallel
         missing = what_is_missing()
     if missing:
         print(f"script/bench: MuJoCo in WebAssembly is {ABSENT}: {missing}", file=sys.stderr)
@@ -55,7 +55,7 @@ def version():
 
 
 def measured(what, cases, *numbers):
-    """What measure.mjs finds for the cases that a benchmark program prints; None without node or package."""
+    """Returns the results of measure.mjs for the cases printed by a benchmark program; None without node or package."""
     if version() == ABSENT:
         return None
     run = subprocess.run(["node", FOLDER / "measure.mjs", what, *map(str, numbers)], input=cases,

@@ -1,12 +1,12 @@
-"""The pages of the C++ interface: Doxygen reads include/taut, Breathe shows it, a page a header."""
+"""Pages of the C++ API: Doxygen parses include/taut, Breathe renders it, one page per header."""
 
 import pathlib
 import subprocess
 
 from .stage import Problem
 
-# The comment at the top of a header is about the file; Doxygen wants that said. Nothing else is complained of
-# but what is wrong: a parameter that is not there, a name that leads nowhere, a broken comment.
+# Marks the comment at the top of a header as the comment of the file, as Doxygen requires. Warnings are limited to
+# errors: unknown parameters, broken references, broken comments.
 DOXYFILE = """\
 PROJECT_NAME = taut
 INPUT = {include}
@@ -37,7 +37,7 @@ def headers(root):
 
 
 def about(path):
-    """The first sentence of the comment at the top of a header."""
+    """Returns the first sentence of the comment at the top of a header."""
     words = []
     for line in path.read_text().splitlines():
         if not line.startswith("///"):
@@ -55,13 +55,13 @@ def run_doxygen(root, folder):
     done = subprocess.run(["doxygen", folder / "Doxyfile"], capture_output=True, text=True)
     if done.returncode != 0 or done.stderr.strip():
         raise Problem(f"Doxygen complains:\n{done.stderr}{done.stdout}")
-    for path in (folder / "xml").glob("*_8h.xml"):  # a namespace that all headers open is declared by none of them
+    for path in (folder / "xml").glob("*_8h.xml"):  # no header documents a namespace that all headers open
         lines = path.read_text().splitlines(keepends=True)
         path.write_text("".join(line for line in lines if "<innernamespace" not in line))
 
 
 def write_pages(root, to):
-    """api/index.rst with a line a header, and a page each."""
+    """Writes api/index.rst with one line per header, and one page per header."""
     to.mkdir(parents=True, exist_ok=True)
     names = headers(root)
     rows = []

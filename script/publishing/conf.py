@@ -1,11 +1,11 @@
-"""Sphinx's configuration of the website; script/website stages its pages and calls it."""
+"""Sphinx configuration of the website; script/website stages its pages and calls Sphinx."""
 
 import os
 import pathlib
 import re
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-WORK = pathlib.Path(os.environ["TAUT_WEBSITE_WORK"])  # source/, and doxygen/
+WORK = pathlib.Path(os.environ["TAUT_WEBSITE_WORK"])  # contains source/ and doxygen/
 HEADER = (ROOT / "include/taut/version.h").read_text()
 
 project = "taut"
@@ -16,7 +16,7 @@ version = release = re.search(r'kVersion = "(.*)"', HEADER)[1]
 extensions = ["myst_parser", "breathe"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = ["_static"]
-suppress_warnings = ["misc.highlighting_failure"]  # a page may show YAML that is wrong on purpose
+suppress_warnings = ["misc.highlighting_failure"]  # pages may contain YAML with deliberate errors
 myst_heading_anchors = 6
 highlight_language = "text"
 breathe_projects = {"taut": str(WORK / "doxygen/xml")}

@@ -1,9 +1,9 @@
-"""What stands where on the website: parts of its sidebar, and the pages of each in their order."""
+"""Structure of the website: parts of the sidebar, and the order of their pages."""
 
 PARTS = {
     "Begin": ["docs/tutorial.md", "docs/tutorial_ground.md", "docs/tutorial_joints.md", "docs/tutorial_cables.md",
               "docs/tutorial_python.md", "docs/gallery.md", "report.md", "demo.md"],
-    "Use": ["docs/cli.md", "docs/viewer.md", "docs/browser.md", "docs/analyze.md", "docs/export.md", "docs/learning.md", "docs/environments.md", "docs/cluster.md",
+    "Use": ["docs/cli.md", "docs/viewer.md", "docs/browser.md", "docs/analyze.md", "docs/export.md", "docs/learning.md", "docs/environments.md",
             "docs/compare.md", "docs/fit.md", "docs/python.md", "docs/limits.md", "docs/glossary.md"],
     "Coming from": ["docs/from_gymnasium.md", "docs/from_ntrt.md", "docs/from_mujoco.md", "docs/from_matlab.md"],
     "Files": ["docs/formats/model.md", "docs/formats/experiment.md", "docs/formats/gait.md", "docs/formats/study.md",
@@ -16,11 +16,11 @@ PARTS = {
                        "docs/robustness.md"],
     "The project": ["docs/README.md", "ARCHITECTURE.md", "docs/extending.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md"],
 }
-REST = "More"  # pages that no part names: whoever writes one need not know this file
+REST = "More"  # part for all pages that no other part lists, such as new ones
 
 
 def parts(pages):
-    """[(part, [page, ...]), ...] of the pages that there are."""
+    """Returns [(part, [page, ...]), ...] of the existing pages."""
     left, found = sorted(pages), []
     for part, names in PARTS.items():
         chosen = []
@@ -34,7 +34,7 @@ def parts(pages):
 
 
 def toctrees(pages):
-    """The sidebar, as hidden lists at the end of the first page."""
+    """Returns the sidebar, as hidden lists for the end of the first page."""
     lines = []
     for part, chosen in parts(pages):
         lines += ["", "```{toctree}", ":hidden:", f":caption: {part}", ""]

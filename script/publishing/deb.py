@@ -1,5 +1,5 @@
-"""Debian packages of a source tree: builds them, has lintian look at them, installs them into a fresh root and runs
-what is there."""
+"""Debian packages of a source tree: builds them, checks them with lintian, installs them into an empty root and runs
+their programs."""
 
 import email.utils
 import os
@@ -15,12 +15,12 @@ PACKAGES = ("taut", "libtaut-dev")
 
 
 def missing():
-    """What this machine has not: Debian's names."""
+    """Returns the missing Debian packages."""
     return [package for tool, package in TOOLS.items() if shutil.which(tool) is None]
 
 
 def run(command, **more):
-    """What it prints; a Problem with all of that if it fails."""
+    """Returns the command's output; raises a Problem with all of it if the command fails."""
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **more)
     if done.returncode != 0:
         raise Problem(f"{' '.join(map(str, command))} ended with status {done.returncode}:\n{done.stdout}")
@@ -32,7 +32,7 @@ def version_of(source):
 
 
 def write_changelog(source, seconds):
-    """debian/changelog, which Debian wants a version in; what changed is told once, in CHANGELOG.md."""
+    """Writes debian/changelog, in which Debian requires the version; the changes are in CHANGELOG.md only."""
     maintainer = re.search(r"^Maintainer: (.*)$", (source / "debian/control").read_text(), re.MULTILINE)[1]
     (source / "debian/changelog").write_text(
         f"taut ({version_of(source)}) unstable; urgency=medium\n\n"
@@ -41,12 +41,12 @@ def write_changelog(source, seconds):
 
 
 def build(source, seconds, built=None):
-    """The packages beside `source`. With `built`, of what stands there and nothing is compiled."""
+    """Builds the packages next to `source`. With `built`, packages that build folder without compiling."""
     write_changelog(source, seconds)
     environment = dict(os.environ, DEB_BUILD_OPTIONS="noautodbgsym", SOURCE_DATE_EPOCH=str(seconds))
     if built:
         environment["TAUT_BUILT"] = str(built)
-    # -d: node may come from elsewhere than Debian, as script/setup allows; debian/rules looks for what it makes.
+    # -d: node may come from another source than Debian, as script/setup allows; debian/rules checks for its outputs.
     run(["dpkg-buildpackage", "-b", "-us", "-uc", "-d"], cwd=source, env=environment)
     debs = [next(source.parent.glob(f"{name}_*.deb"), None) for name in PACKAGES]
     if None in debs:
@@ -55,14 +55,14 @@ def build(source, seconds, built=None):
 
 
 def look_at(source):
-    """What lintian says; errors and warnings are Problems."""
+    """Returns lintian's output; raises a Problem for errors and warnings."""
     changes = next(source.parent.glob("taut_*.changes"))
     command = ["lintian", "--fail-on", "error,warning"]
     return run(command + (["--allow-root"] if os.geteuid() == 0 else []) + [changes])
 
 
 def install(debs, root):
-    """Installs into an empty root. What the packages depend on is not put there: apt says whether it could be."""
+    """Installs into an empty root, without the dependencies; apt checks whether they could be installed."""
     for folder in ("info", "updates", "triggers"):
         (root / "var/lib/dpkg" / folder).mkdir(parents=True)
     (root / "var/lib/dpkg/status").touch()
@@ -73,7 +73,7 @@ def install(debs, root):
 
 
 def try_out(root, work, version):
-    """The installed command does its work with the installed files, and says that it is this version."""
+    """Checks that the installed command works with the installed files and reports this version."""
     taut = root / "usr/bin/taut"
     if (said := run([taut, "--version"]).strip()) != f"taut {version}":
         raise Problem(f"the installed command says that it is \"{said}\", not taut {version}")
@@ -94,7 +94,7 @@ def try_out(root, work, version):
 
 
 def make(source, work, out, seconds, built=None):
-    """All of it: packages in `out`, and what lintian had to say."""
+    """Runs all steps: leaves the packages in `out` and returns lintian's output."""
     source, work = pathlib.Path(source), pathlib.Path(work)
     debs = build(source, seconds, built)
     said = look_at(source)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Puts the browser demo together (script/wasm): pages, core, the files that are shipped, and what `taut run` finds of
-these, so that the page can say whether it finds the same."""
+"""Assembles the browser demo (script/wasm): pages, core, shipped files, and the state hashes of `taut run` for them, so
+that the page can compare its results."""
 
 import argparse
 import concurrent.futures
@@ -16,17 +16,17 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHARE = ROOT / "share"
 FOLDERS = {"models": (".yaml", ".obj"), "experiments": (".yaml",), "gaits": (".yaml",)}
-SOON_S = 1.0  # a first time at which hashes are set beside each other
+SOON_S = 1.0  # time of the first comparison of hashes
 
 
 def shipped():
-    """{path: text} of all that an experiment may read."""
+    """Returns {path: text} of all files that an experiment may read."""
     return {f"{folder}/{path.name}": path.read_text()
             for folder, ends in FOLDERS.items() for path in sorted((SHARE / folder).iterdir()) if path.suffix in ends}
 
 
 def run(taut, path, duration_s=None):
-    """The time at which a run ends, and the hash of its state then."""
+    """Returns the time at which a run ends, and the hash of its last state."""
     with tempfile.TemporaryDirectory() as out:
         command = [taut, "run", SHARE / path, "--json", "--quiet", "--out", pathlib.Path(out) / "run"]
         command += [] if duration_s is None else ["--duration_s", repr(duration_s)]
@@ -43,7 +43,7 @@ def hashes_of(taut, path):
 
 
 def hashes(taut, files, kept):
-    """{experiment: [{time_s, hash}, ...]}, remembered for as long as neither files nor command change."""
+    """Returns {experiment: [{time_s, hash}, ...]}; cached while neither files nor command change."""
     what = hashlib.sha256(json.dumps(files).encode() + taut.read_bytes()).hexdigest()
     if kept.exists():
         known = json.loads(kept.read_text())

@@ -1,4 +1,4 @@
-"""The texts of a release: its version and its changes, and where they stand."""
+"""Texts of a release: version and changes, and the files that contain them."""
 
 import pathlib
 import re
@@ -8,7 +8,7 @@ from .stage import Problem
 HEADER = "include/taut/version.h"
 CHANGELOG = "CHANGELOG.md"
 UNRELEASED = re.compile(r"^## (.*) \(not yet released\)$", re.MULTILINE)
-SHOWN_IN = ["docs/cli.md", "docs/python.md"]  # outputs of commands that tell their version
+SHOWN_IN = ["docs/cli.md", "docs/python.md"]  # pages with outputs of commands that contain the version
 
 
 def numbers(version):
@@ -22,13 +22,13 @@ def current(root):
 
 
 def section(text, heading):
-    """What stands below a heading of the second level."""
+    """Returns the text below a heading of the second level."""
     after = text.split(heading + "\n", 1)[1]
     return re.split(r"^## ", after, maxsplit=1, flags=re.MULTILINE)[0].strip()
 
 
 def unreleased(root):
-    """The heading of what is not yet released and what stands below it."""
+    """Returns the heading of the unreleased section and its text."""
     text = (pathlib.Path(root) / CHANGELOG).read_text()
     found = list(UNRELEASED.finditer(text))
     first = re.search(r"^## .*$", text, re.MULTILINE)
@@ -41,7 +41,7 @@ def unreleased(root):
 
 
 def check(root, version):
-    """A Problem, if `version` cannot be the next."""
+    """Raises a Problem if `version` cannot be the next version."""
     now = current(root)
     if numbers(version) <= numbers(now):
         raise Problem(f"{version} does not come after {now}")
@@ -49,7 +49,7 @@ def check(root, version):
 
 
 def write(root, version, date):
-    """Puts the version where it stands, and the date to its changes; returns these."""
+    """Writes the version to its files, and the date to its changes; returns the changes."""
     root, now = pathlib.Path(root), current(root)
     heading, changes = unreleased(root)
     for name, old, new in [(HEADER, f'"{now}"', f'"{version}"'), (CHANGELOG, heading, f"## {version} ({date})"),

@@ -1,4 +1,4 @@
-"""Copies the project's pages for Sphinx. Links that lead to code or data on GitHub lead to pages that show them."""
+"""Copies the project's pages for Sphinx. Links to code or data on GitHub become links to pages that show them."""
 
 import os
 import pathlib
@@ -9,11 +9,11 @@ import subprocess
 PICTURES = {".png", ".svg", ".gif"}
 LANGUAGES = {".yaml": "yaml", ".yml": "yaml", ".cff": "yaml", ".json": "json", ".py": "python", ".h": "cpp",
              ".cpp": "cpp", ".inl": "cpp", ".mjs": "javascript", ".ts": "typescript", ".cmake": "cmake", ".css": "css"}
-SHOWN_BYTES = 200_000  # what is longer is only to be downloaded
+SHOWN_BYTES = 200_000  # longer files are download only
 
 
 class Problem(Exception):
-    """What is wrong with a page."""
+    """Describes an error of a page."""
 
 
 def relative(target, page):
@@ -30,7 +30,7 @@ def language(path, text):
 
 
 class Stage:
-    """Pages of `root`, as they are put into the folder `to`. Pages are named by their paths in root."""
+    """Pages of `root`, staged in the folder `to`. Pages are identified by their paths in root."""
 
     def __init__(self, root, to):
         self.root, self.to = pathlib.Path(root).resolve(), pathlib.Path(to)
@@ -40,11 +40,11 @@ class Stage:
         self.files = set(listed.stdout.split("\n")) if listed.returncode == 0 else None
 
     def belongs(self, name):
-        """Whether a file is the project's, and neither built nor somebody's own."""
+        """Returns whether a file belongs to the project: tracked, neither built nor private."""
         return (self.root / name).is_file() and (self.files is None or name in self.files)
 
     def pages(self, pages):
-        """Copies these and all that they lead to; returns the names of all pages of Markdown."""
+        """Copies these pages and all files that they link to; returns the names of all Markdown pages."""
         self.waiting = list(pages)
         while self.waiting:
             name = self.waiting.pop()
@@ -95,7 +95,7 @@ class Stage:
                           f":language: {language(path, text)}", "```", ""])
 
     def target(self, name, page):
-        """What a link on `page` to `name` becomes; the target is to be copied, too."""
+        """Returns the replacement of a link on `page` to `name`, and schedules the target for copying."""
         path = self.root / name
         if path.is_dir():
             if self.belongs(f"{name}/README.md"):
@@ -110,7 +110,7 @@ class Stage:
         return relative(f"{name}.md", page)
 
     def with_links(self, page, text):
-        """The page with its links led to pages of the website."""
+        """Returns the page with its links replaced by links to pages of the website."""
         folder = os.path.dirname(page)
 
         def changed(match):
@@ -126,7 +126,7 @@ class Stage:
         for line in text.splitlines():
             if line.startswith("```"):
                 fenced = not fenced
-            elif not fenced:  # code between backticks is no link
+            elif not fenced:  # code between backticks contains no links
                 line = "".join(part if part.startswith("`") else re.sub(r"\]\(([^)\s]+)\)", changed, part)
                                for part in re.split(r"(`[^`]*`)", line))
             lines.append(line)

@@ -1,4 +1,4 @@
-"""All the faults of a scenario, one after the other or some at once, and a table of what came of them."""
+"""Fault injection campaign: all faults of a scenario, several in parallel, and a table of the outcomes."""
 
 import collections
 import concurrent.futures
@@ -13,24 +13,24 @@ from robustness.inject import KILL_KINDS, Fault
 from robustness.scenarios import View, said
 from validation.runs import Problem, table
 
-MOST_POINTS = 2000   # of memory, of one kind and mode, unless another number is asked for
-MORE_CALLS = 1.1     # than were counted: where time decides, there may be more
+MOST_POINTS = 2000   # default limit per kind and mode for memory faults
+MORE_CALLS = 1.1     # factor for calls beyond the counted ones: timing may cause more
 
 
 @dataclasses.dataclass
 class Tally:
-    """What came of the faults of one scenario, kind and mode. Of `calls` that there were, `points` failed."""
+    """Outcomes of the faults of one scenario, kind and mode. `points` of the `calls` were made to fail."""
     calls: int = 0
     points: int = 0
-    right: int = 0    # the result was right all the same
-    said: int = 0     # the command said what failed, and what was complete is complete
-    killed: int = 0   # the process was killed there, and what was complete is complete
-    in_hdf5: int = 0  # the same; HDF5 itself crashed for want of memory
+    right: int = 0    # the result was correct all the same
+    said: int = 0     # the command reported the failure, and complete files stayed complete
+    killed: int = 0   # the process was killed there, and complete files stayed complete
+    in_hdf5: int = 0  # same as `said`, but HDF5 itself crashed for lack of memory
     wrong: list = dataclasses.field(default_factory=list)
 
 
 def faults_of(scenario, calls, kinds, every):
-    """Every call of each kind, but of those for memory every n-th."""
+    """Returns every call of each kind; of memory allocations every n-th."""
     for kind in scenario.kinds:
         if kind not in kinds or not calls[kind]:
             continue
@@ -45,15 +45,16 @@ def faults_of(scenario, calls, kinds, every):
 
 
 class Campaign:
-    """`show(text)` is told how far it is. `jobs`: so many at once. Tallies are right at any moment, also after an
-    interrupt."""
+    """Runs the faults. `show(text)` receives the progress. `jobs`: number of parallel runs. The tallies are valid at
+    any
+    moment, also after an interrupt."""
 
     def __init__(self, program, folder, show=lambda text: None, jobs=1):
         self.program, self.folder, self.show, self.jobs = program, folder, show, jobs
         self.tallies = collections.defaultdict(Tally)  # by (scenario, kind, mode)
 
     def prepare(self, name):
-        """The scenario, and how many calls of each kind it makes."""
+        """Returns the scenario, and the number of its calls of each kind."""
         scenario = ALL[name](self.program, self.folder / name)
         outcome, _, wrong = self.point(scenario, None)
         if wrong or outcome.status != 0:
@@ -61,7 +62,7 @@ class Campaign:
         return scenario, outcome.calls
 
     def point(self, scenario, fault):
-        """How the command ended, what kind of end that is, and what is wrong, if anything."""
+        """Returns the command's outcome, its category, and an error, if any."""
         work = self.folder / f"work_{threading.get_native_id()}"
         shutil.rmtree(work, ignore_errors=True)
         shutil.copytree(scenario.before, work)
@@ -74,7 +75,7 @@ class Campaign:
         return outcome, how, bad_end or scenario.check(outcome, work)
 
     def points(self, scenario, faults):
-        """All of them, in their order."""
+        """Runs all faults in order."""
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             try:
                 yield from zip(faults, pool.map(lambda fault: self.point(scenario, fault), faults))
@@ -82,8 +83,8 @@ class Campaign:
                 pool.shutdown(cancel_futures=True)
 
     def run(self, names, kinds, every=None, sample=None, seed=1):
-        """All faults, or `sample` of them in each scenario, drawn from those with many calls as often as from
-        those with few."""
+        """Runs all faults, or `sample` of them per scenario, with the same probability for kinds with many and with
+        few calls."""
         for name in names:
             scenario, calls = self.prepare(name)
             faults = list(faults_of(scenario, calls, kinds, every))
@@ -100,7 +101,7 @@ class Campaign:
                 tally.wrong.append({"at": fault.at, "first": outcome.first, "what": wrong})
                 self.show(f"\r\033[KWRONG  {name}, {fault} ({outcome.first}): {wrong}\n")
             if not wrong and not outcome.failed:
-                continue  # there were fewer calls this time
+                continue  # this time there were fewer calls
             tally.points += 1
             if not wrong:
                 setattr(tally, how, getattr(tally, how) + 1)
@@ -117,13 +118,13 @@ def drawn(faults, count, rng):
 
 
 def results(tallies):
-    """For a file."""
+    """Returns the tallies for a file."""
     return [{"scenario": name, "kind": kind, "mode": mode, **dataclasses.asdict(tally)}
             for (name, kind, mode), tally in tallies.items()]
 
 
 def summary(items):
-    """A table: a line for each scenario and kind, all modes together."""
+    """Formats a table: one line per scenario and kind, all modes together."""
     rows = collections.defaultdict(lambda: [0, 0, 0, 0, 0, 0, 0])
     for item in items:
         row = rows[item["scenario"], item["kind"]]

@@ -1,4 +1,4 @@
-"""Commands that convert files: import, export, analyze and size, with calls that fail.
+"""Commands that convert files (import, export, analyze and size) with failing calls.
 
 The outputs of these commands replace older files, so each output has an old and a new content."""
 
@@ -9,7 +9,7 @@ from validation.runs import ROOT
 
 OLD = b"old content\n"
 LOST_OUTPUT = "warning: standard output cannot be written"
-PART = re.compile(r".*\.\d+\.part")  # an unfinished file, which a command that is killed or cannot delete leaves
+PART = re.compile(r".*\.\d+\.part")  # an unfinished file, left by a command that is killed or cannot delete it
 WINCHES = """\
 taut: 1
 kind: catalogue

@@ -1,4 +1,4 @@
-"""`taut fit` with calls that fail: a new fit, and a fit that goes on after a kill."""
+"""`taut fit` with failing calls: a new fit, and a fit that resumes after a kill."""
 
 import contextlib
 import json
@@ -62,7 +62,7 @@ RUNS = ("untuned_rest", "fitted_rest", "untuned_swing", "fitted_swing")
 
 
 class Fit(Scenario):
-    """A fit in a new folder. After any fault, the same command must go on to the same bytes."""
+    """A fit in a new folder. After any fault, the same command must resume and yield the same bytes."""
     kills = True
 
     def __init__(self, program, folder):
@@ -87,7 +87,7 @@ class Fit(Scenario):
         with contextlib.closing(sqlite3.connect(folder / "fit.sqlite")) as db:
             try:
                 return dict(db.execute("SELECT key, value FROM point").fetchall())
-            except sqlite3.OperationalError:  # before its tables were made
+            except sqlite3.OperationalError:  # before its tables were created
                 return {}
 
     def check(self, outcome, folder):
@@ -110,7 +110,7 @@ class Fit(Scenario):
         return f"gone on, {wrong}" if wrong else None
 
     def difference(self, folder):
-        """Returns a text about the first difference from the right folder; None if there is no difference."""
+        """Describes the first difference from the correct folder; returns None if there is no difference."""
         for name in SAME_BYTES:
             if not (folder / name).exists() or (folder / name).read_bytes() != (self.right / name).read_bytes():
                 return f"{name} is missing or has other bytes"
@@ -136,7 +136,7 @@ class Fit(Scenario):
 
 
 class FitResumed(Fit):
-    """A fit that goes on in a folder in which it was killed after some of its points."""
+    """A fit that resumes in a folder in which it was killed after some of its points."""
 
     def prepare(self):
         calls = self.program.run(self.words(), shutil.copytree(self.before, self.before.parent / "counted")).calls

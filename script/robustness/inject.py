@@ -1,4 +1,4 @@
-"""Runs a program whose n-th call of some kind fails: tests/faults/faults.cpp, preloaded."""
+"""Runs a program whose n-th call of some kind fails, with tests/faults/faults.cpp preloaded."""
 
 import dataclasses
 import errno
@@ -15,15 +15,15 @@ from validation.runs import Problem
 KINDS = ("memory", "hdf5", "write", "sync", "name", "open", "truncate", "close", "read")  # as in faults.cpp
 ERRORS = {"memory": errno.ENOMEM, "hdf5": errno.ENOMEM, "write": errno.ENOSPC, "sync": errno.EIO, "name": errno.EIO,
           "open": errno.ENOSPC, "truncate": errno.EIO, "close": errno.EIO, "read": errno.EIO}
-KILL_KINDS = ("write", "sync", "name", "open", "truncate", "close")  # where something may be half done
+KILL_KINDS = ("write", "sync", "name", "open", "truncate", "close")  # calls at which an operation may be incomplete
 MODES = ("once", "sticky", "kill")
-PATIENCE_S = 120  # of one program; what takes longer hangs
+PATIENCE_S = 120  # timeout of one program
 RECORD_BYTES = 8 * (len(KINDS) + 1) + 200
 
 
 @dataclasses.dataclass(frozen=True)
 class Fault:
-    """The n-th call of a kind fails: once, from then on ("sticky"), or it is the last ("kill")."""
+    """The n-th call of a kind fails: once, from then on ("sticky"), or the process is killed there ("kill")."""
     kind: str
     at: int
     mode: str = "once"
@@ -39,13 +39,13 @@ class Fault:
 
 @dataclasses.dataclass
 class Outcome:
-    """How a program ended. `status` is negative where a signal ended it, as subprocess has it."""
+    """End of a program. `status` is negative if a signal ended it, as in subprocess."""
     status: int
     output: str
     errors: str
-    calls: dict    # of each kind
-    failed: int    # of those, how many
-    first: str     # which failed first
+    calls: dict    # by kind
+    failed: int    # number of failed ones
+    first: str     # name of the first failed one
 
     @property
     def crashed(self):
@@ -53,7 +53,7 @@ class Outcome:
 
 
 class Shared:
-    """What program and driver both see of the calls."""
+    """Memory shared by program and driver: counts of calls, and the fault."""
 
     def __init__(self, folder):
         file, self.path = tempfile.mkstemp(dir=folder, prefix="faults_")
@@ -79,7 +79,7 @@ class Shared:
 
 
 class Program:
-    """The command taut, in front of which the library stands."""
+    """The taut command with the library preloaded."""
 
     def __init__(self, command, library):
         for path in (command, library):
@@ -92,8 +92,8 @@ class Program:
                 **(fault.environment() if fault else {})}
 
     def run(self, words, folder, fault=None, during=None):
-        """One run in `folder`, output in files there, as on a disk. `during(process, shared, output)` is called
-        once it has begun, where it must be told to end; output() is what it has printed so far."""
+        """Runs once in `folder`, with output to files, as on a disk. `during(process, shared, output)` is called after
+        the start for programs that must be ended from outside; output() returns the output so far."""
         shared = Shared(folder.parent)
         try:
             with tempfile.TemporaryFile("w+", dir=folder.parent, errors="replace") as output, \
@@ -117,6 +117,6 @@ class Program:
             shared.close()
 
     def plain(self, words, folder):
-        """A run without faults and without the library: what a user sees afterwards."""
+        """Runs without faults and without the library, to see the result as a user does."""
         return subprocess.run([self.command, *map(str, words)], cwd=folder, stdin=subprocess.DEVNULL,
                               capture_output=True, text=True, errors="replace", timeout=PATIENCE_S)

@@ -1,7 +1,7 @@
-"""`taut run` and `taut learn`, killed at random moments, and what is lost by that.
+"""`taut run` and `taut learn`, killed at random moments, and the work lost by that.
 
-Both show on a terminal how far they are, about five times a second. What was shown last, and when, is compared
-with what is on the disk: the loss is the time between the moment at which that was reached and the kill."""
+Both print their progress on a terminal about five times per second. The progress lines and their times are compared
+with the data on disk: the loss is the time from the moment at which the stored progress was reached to the kill."""
 
 import json
 import os
@@ -26,7 +26,7 @@ class OnTerminal:
     """A command whose progress is read from a terminal."""
 
     def __init__(self, command, words, folder, number):
-        self.number, self.shown, self.text = re.compile(number), [], ""  # shown: (seconds, how far)
+        self.number, self.shown, self.text = re.compile(number), [], ""  # shown: (seconds, progress)
         self.terminal, theirs = pty.openpty()
         self.began_s = time.monotonic()
         self.process = subprocess.Popen([command, *map(str, words)], cwd=folder, stdin=subprocess.DEVNULL,
@@ -34,7 +34,7 @@ class OnTerminal:
         os.close(theirs)
 
     def read_until(self, end_s):
-        """Reads until so many seconds after the start. True if the command lives."""
+        """Reads until `end_s` seconds after the start. Returns whether the command still runs."""
         while (left_s := self.began_s + end_s - time.monotonic()) > 0:
             if not select.select([self.terminal], [], [], left_s)[0]:
                 break
@@ -55,7 +55,7 @@ class OnTerminal:
         return bool(text)
 
     def kill(self):
-        """Kills it; returns after how many seconds."""
+        """Kills the command; returns the time since its start [s]."""
         killed_s = time.monotonic() - self.began_s
         self.process.send_signal(signal.SIGKILL)
         self.process.wait(PATIENCE_S)
@@ -65,7 +65,8 @@ class OnTerminal:
         return killed_s
 
     def loss_s(self, kept, killed_s):
-        """How long before the kill what is kept had been reached; not more than since what was shown first."""
+        """Returns the time between reaching the stored progress and the kill [s], by interpolation between progress
+        lines."""
         reached = [(0.0, 0.0), *self.shown]
         for (from_s, low), (to_s, high) in zip(reached, reached[1:]):
             if low <= kept < high:
@@ -83,7 +84,7 @@ def killed_runs(program, folder, count, rng, show):
     killed = 0
     while killed < count:
         run = OnTerminal(program.command, (*words, "--out", "killed"), folder, r"t = ([\d.]+) of")
-        lives = run.read_until(0.9 * longest_s * rng.random() ** 2)  # more of the early ones
+        lives = run.read_until(0.9 * longest_s * rng.random() ** 2)  # favors early moments
         killed_s = run.kill()
         killed += lives
         show(f"\r\033[Krun: {killed} of {count} killed")
@@ -93,7 +94,7 @@ def killed_runs(program, folder, count, rng, show):
 
 
 def look_at_run(program, folder, run, killed_s):
-    """Rows, seconds lost, what is wrong."""
+    """Returns rows, lost seconds, and an error or None."""
     if not (folder / "killed/trace.h5").exists():
         return 0, run.loss_s(0, killed_s), None
     read = program.plain(("compare", "killed/trace.h5", "right/trace.csv", "--json", "--max_lag_s", "0"), folder)
@@ -135,7 +136,7 @@ def killed_searches(program, folder, count, rng, show):
 
 
 def look_at_search(program, folder, words, search, killed_s, wanted):
-    """Evaluations, seconds lost, what is wrong."""
+    """Returns evaluations, lost seconds, and an error or None."""
     rows = {}
     if (folder / "killed/study.sqlite").exists():
         copy = shutil.copytree(folder / "killed", folder / "looked_at")  # reading recovers a log
@@ -156,7 +157,7 @@ def look_at_search(program, folder, words, search, killed_s, wanted):
 
 
 def run(program, folder, count, seed, show):
-    """Kills `count` of each. A list for the file of results."""
+    """Kills `count` processes of each command. Returns a list for the file of results."""
     items = []
     for name, killed in {"run": killed_runs, "learn": killed_searches}.items():
         work = folder / f"kills_{name}"

@@ -1,8 +1,8 @@
-"""What is run while calls fail, and what must be true afterwards.
+"""Commands that run while calls fail, and the conditions that must hold afterwards.
 
-A scenario has a folder as it was before, which is made once: with a finished run, or half a study. Each fault
-gets a copy of it. `check` says in words what is wrong with the way a command ended and what it left; nothing
-is wrong if the result is right, or if the command says that it failed and what was complete is complete."""
+A scenario has a folder with an initial state, created once: with a finished run, or half a study. Each fault
+gets a copy of it. `check` describes errors of the command's end and of the files that it left. There is no error
+if the result is correct, or if the command reported the failure and complete files stayed complete."""
 
 import contextlib
 import hashlib
@@ -43,13 +43,13 @@ search:
 
 
 def digest(folder, without=()):
-    """Which files are in a folder, and what is in them."""
+    """Returns the files in a folder and hashes of their content."""
     return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
             for path in sorted(folder.rglob("*")) if path.is_file() and path.name not in without}
 
 
 def said(outcome):
-    """What is wrong with the end itself; None if it is good."""
+    """Describes an error of the end itself; returns None for a good end."""
     if outcome.status is None:
         return "hangs"
     if outcome.status < 0:
@@ -60,7 +60,8 @@ def said(outcome):
 
 
 class Scenario:
-    """`kinds`: calls that may fail here. Those of `kill`, too, may be the last ones."""
+    """Base of all scenarios. `kinds`: calls that may fail here; for `kill`, calls at which the process may be
+    killed."""
     kinds = ("memory", "hdf5", "write", "sync", "name", "open", "truncate", "close", "read")
     kills = False
 
@@ -70,7 +71,7 @@ class Scenario:
         self.before.mkdir(parents=True)
 
     def made(self, *words, folder=None):
-        """A command that must work."""
+        """Runs a command that must succeed."""
         run = self.program.plain(words, folder or self.before)
         if run.returncode != 0:
             raise Problem(f"taut {' '.join(map(str, words))}\n{run.stdout}{run.stderr}")
@@ -83,12 +84,12 @@ class Scenario:
         return self.program.run(self.words(), folder, fault)
 
     def check(self, outcome, folder):
-        """None, or what is wrong with what is left, after an end that was good for itself."""
+        """Describes an error of the files after a good end; returns None if there is no error."""
         raise NotImplementedError
 
 
 class Run(Scenario):
-    """A run into the folder of another one that is finished."""
+    """A run into the folder of another, finished run."""
     kills = True
 
     def __init__(self, program, folder):
@@ -119,13 +120,13 @@ class Run(Scenario):
             channel["rows"] == rows and channel["max_error"]["value"] == 0 for channel in compared["channels"])
 
     def check(self, outcome, folder):
-        """Whether summary and traces are those of one run."""
+        """Checks that summary and traces belong to the same run."""
         good = outcome.status == 0
-        read = self.program.plain(("report", "run/trace.h5"), folder)  # which may finish the replacement
+        read = self.program.plain(("report", "run/trace.h5"), folder)  # this command may complete the replacement
         if read.returncode != 0:
             return f"neither the old run nor the new one is left: {read.stderr}"
         if not (folder / "run/summary.json").exists():
-            return "no summary, status 0" if good else None  # declared to be no finished run
+            return "no summary, status 0" if good else None  # marked as unfinished
         try:
             end = self.end(folder / "run")
         except (ValueError, KeyError) as error:
@@ -144,7 +145,7 @@ class Run(Scenario):
 
 
 class Learn(Scenario):
-    """A study that goes on where it was stopped."""
+    """A study that resumes after an interruption."""
     kills = True
 
     def __init__(self, program, folder):
@@ -167,7 +168,7 @@ class Learn(Scenario):
 
     @staticmethod
     def rows(folder):
-        """What was evaluated, with all its numbers."""
+        """Returns all evaluations with their numbers."""
         log = folder / "study.sqlite"
         with contextlib.closing(sqlite3.connect(log)) as db:
             evaluations = db.execute("SELECT id, search, score, failed, parameter_values FROM evaluation").fetchall()
@@ -175,7 +176,7 @@ class Learn(Scenario):
         return {row[0]: (row, sorted(world for world in worlds if world[0] == row[0])) for row in evaluations}
 
     def resumed(self, _, folder):
-        """The rows that a copy of the folder has, and those after the study has gone on there."""
+        """Returns the rows in a copy of the folder, and the rows after resuming the study there."""
         try:
             rows = self.rows(folder / "study")
         except sqlite3.DatabaseError:
@@ -199,11 +200,11 @@ class Learn(Scenario):
 
 
 class Reader(Scenario):
-    """A command that reads what is complete, and prints or writes one file."""
+    """A command that reads complete files, and prints or writes one file."""
     kinds = ("memory", "hdf5", "write", "open", "close", "read")
     command, makes = (), ()
-    prints = True  # what was asked for, not only where it is
-    beside = ("experiment.yaml", "study.sqlite-shm", "study.sqlite-wal")  # what is made to read a study
+    prints = True  # prints the result, not only its path
+    beside = ("experiment.yaml", "study.sqlite-shm", "study.sqlite-wal")  # files created for reading a study
 
     def __init__(self, program, folder):
         super().__init__(program, folder)
@@ -257,9 +258,9 @@ class Top(Reader):
 
 
 class View(Scenario):
-    """A live run that is recorded until SIGTERM. How many calls there are depends on when that comes."""
+    """A live run that is recorded until SIGTERM. The number of calls depends on the time of the signal."""
 
-    RECORDS_S = 0.7   # longer than rows wait before they are written
+    RECORDS_S = 0.7   # longer than rows are buffered
     BEGINS_S = 30
 
     def __init__(self, program, folder):
@@ -273,7 +274,7 @@ class View(Scenario):
         return self.program.run(self.words(), folder, fault, during=self.end)
 
     def end(self, process, shared, output):
-        """Lets it record for a while once it serves, or until the fault has come; then SIGTERM."""
+        """Lets the session record for a while after the server starts, or until the fault; then sends SIGTERM."""
         limit = time.monotonic() + self.BEGINS_S
         serves = None
         while process.poll() is None and time.monotonic() < limit and not shared.failed:
@@ -281,7 +282,7 @@ class View(Scenario):
                 serves = time.monotonic()
                 limit = serves + self.RECORDS_S
             time.sleep(0.02)
-        # One that fails before it serves ends by itself.
+        # A command that fails before it serves ends without a signal.
         while process.poll() is None and "http://" not in output() and time.monotonic() < limit:
             time.sleep(0.02)
         time.sleep(0.1)

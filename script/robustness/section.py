@@ -10,7 +10,7 @@ PAGE = ROOT / "docs/robustness.md"
 
 
 def write(name, text):
-    """Puts `text` where the page has the part `name`."""
+    """Replaces the part `name` of the page by `text`."""
     begin, end = f"<!-- {name}: begin -->\n", f"<!-- {name}: end -->\n"
     page = PAGE.read_text()
     if page.count(begin) != 1 or page.count(end) != 1:
@@ -28,7 +28,7 @@ def read(path):
 
 
 def write_faults(folder):
-    """What script/faults has found."""
+    """Writes the results of script/faults."""
     items = [item for path in sorted(folder.glob("*.json")) if path.stem != "kills" for item in read(path)]
     if not items:
         raise Problem(f"{folder} holds no results; script/faults writes them")
@@ -38,7 +38,7 @@ def write_faults(folder):
 
 
 def write_fuzz(path):
-    """What script/fuzz has found, all its runs together."""
+    """Writes the results of script/fuzz, summed over all its runs."""
     try:
         lines = [line.split() for line in path.read_text().splitlines()]
     except OSError as error:

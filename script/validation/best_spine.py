@@ -1,4 +1,4 @@
-"""The BEST laboratory's two-dimensional spine: what five tests tell of its model."""
+"""Two-dimensional spine of the BEST laboratory: information in five tests about its model."""
 
 import itertools
 import math
@@ -13,11 +13,11 @@ from validation.runs import ROOT, fill, table
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 DATA = ROOT / "tests" / "data" / "best_2d_spine"
 TESTS = (0, 2, 4, 6, 8)
-AFTER_S = (2.1, 3.4)         # of a set point: when the pose that belongs to it is held
-UP = (40, 118)               # set points of the way up; the last one's pose was not recorded to its end
+AFTER_S = (2.1, 3.4)         # interval after a set point in which its pose is held
+UP = (40, 118)               # set points of the upward motion; the record of the last pose is incomplete
 X, Z, TURN = "node/v.o/position_x_m", "node/v.o/position_z_m", "body/v/rotation_y_rad"
 UNITS = {X: 1e3, Z: 1e3, TURN: 180 / math.pi}   # mm, mm, degrees
-SD = {X: 0.00074, Z: 0.0008, TURN: math.radians(0.62)}  # how far the five tests are apart
+SD = {X: 0.00074, Z: 0.0008, TURN: math.radians(0.62)}  # spread of the five tests
 CAMERA = [f"{{channel: {X}, offset: {{sd: 0.002}}}}", f"{{channel: {Z}, offset: {{sd: 0.002}}}}",
           f"{{channel: {TURN}, offset: {{sd: 0.01}}}}"]
 WOUND = "{parameter: wound, prior: {sd: 0.01}}"
@@ -29,7 +29,7 @@ STIFFNESS = ["{parameter: k12_n_per_m, scale: 42}", "{parameter: k34_n_per_m, sc
 
 
 class Data:
-    """The five tests with the names of taut, whole and in halves of the stroke."""
+    """The five tests with taut's names, whole and split into halves of the stroke."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -40,7 +40,7 @@ class Data:
             poses = fits.rows_of(DATA / f"test{test}_measured_pose.csv", 2)
             rows, last = [], -math.inf
             for time_ms, x_cm, y_cm, turn in poses:
-                if time_ms > last:   # a camera's row may come twice
+                if time_ms > last:   # a camera row may occur twice
                     rows.append([time_ms * 1e-3, x_cm * 1e-2, y_cm * 1e-2, -math.radians(turn)])
                     last = time_ms
             head = ["time_s", X, Z, TURN]
@@ -55,7 +55,7 @@ class Data:
                 fits.write_rows(folder / f"test{test}_{half}.csv", head, kept)
 
     def text(self, estimate, train, test, halves=("", "")):
-        """`train`, `test`: which tests; `halves`: of the stroke, of each."""
+        """Returns the text of a fit. `train`, `test`: test numbers; `halves`: of the stroke, for each."""
         entries = []
         for use, which, half in (("train", train, halves[0]), ("test", test, halves[1])):
             for number in which:
@@ -84,7 +84,7 @@ def number(point):
 
 
 class Repeated:
-    """What was measured, in all five tests: how far they are apart, and what the mean of three says of two others."""
+    """Spread of the measurements in all five tests, and the prediction of two tests by the mean of three."""
 
     def __init__(self, points):
         self.of = {(p["channel"], number(p), p["experiment"]): p["measured"] for p in points if number(p) <= UP[1]}
@@ -108,7 +108,7 @@ class Repeated:
 
 
 class Splits:
-    """A model found from three tests, on the two others: all ten ways."""
+    """A model fitted to three tests, evaluated on the other two: all ten combinations."""
 
     def __init__(self, taut, data, name, estimate):
         points, self.fits = [], []
@@ -168,7 +168,7 @@ def page(taut):
         "floor": " / ".join(errors([repeated.floor(c) for c in UNITS])),
         "parameters": table(["number", "unit", "assumed", "found", "verdict"], parameters),
         "judgement": "; ".join(one.judgements()) or "good",
-        "halves": table(["found from the lower half", "x [mm]", "y [mm]", "turn [degrees]", "the fit is",
+        "halves": table(["fitted to the lower half", "x [mm]", "y [mm]", "turn [degrees]", "fit",
                          "verdicts"], rows),
         "mass": f"{mass / 0.655:.2f}", "condition": f"{condition:.0e}" if condition else "infinite",
     })

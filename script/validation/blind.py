@@ -1,6 +1,6 @@
-"""Fits against a truth that only this file draws: measurements with noise and a clock, how far off what was found is.
+"""Blind fits: measurements with noise and a late clock from a randomly drawn truth, and errors of the estimates.
 
-What a fit reads, its experiment and its data, never has the truth in it: that is in the folder `truth` beside it."""
+The inputs of a fit, its experiment and its data, never contain the truth, which is in a separate folder `truth`."""
 
 import bisect
 import csv
@@ -9,13 +9,13 @@ import random
 
 
 def drawn(key, spread):
-    """name: (nominal, sd of it) -> name: a number that `key`, a text, decides."""
+    """Converts name: (nominal, sd) to name: a random number, reproducible from the text `key`."""
     chance = random.Random(key)
     return {name: nominal + sd * chance.uniform(-math.sqrt(3), math.sqrt(3)) for name, (nominal, sd) in spread.items()}
 
 
 class Trace:
-    """A trace in CSV: columns by name."""
+    """A CSV trace: columns by name."""
 
     def __init__(self, path):
         with open(path, newline="") as file:
@@ -24,7 +24,7 @@ class Trace:
         self.time_s = self.of["time_s"]
 
     def at(self, name, time_s):
-        """By straight lines between rows, held before the first and after the last."""
+        """Interpolates linearly between rows; constant before the first and after the last."""
         values, after = self.of[name], bisect.bisect_right(self.time_s, time_s)
         if after in (0, len(values)):
             return values[max(0, after - 1)]
@@ -33,13 +33,13 @@ class Trace:
         return values[after - 1] + share * (values[after] - values[after - 1])
 
     def mean(self, name, from_s, to_s):
-        """Of the rows in a span."""
+        """Returns the mean of the rows in a time span."""
         rows = [x for t, x in zip(self.time_s, self.of[name]) if from_s - 1e-9 <= t <= to_s + 1e-9]
         return sum(rows) / len(rows)
 
 
 def measured(trace, sensors, key, rate_hz, until_s, late_s=0.0):
-    """Rows as a logger has them whose clock is late: time and a column a sensor. `sensors`: name -> (gain, offset, sd
+    """Returns rows of a logger with a late clock: time and one column per sensor. `sensors`: name -> (gain, offset, sd
     of the noise of a row, in the channel's unit)."""
     chance = random.Random(key)
     rows = []
@@ -53,18 +53,18 @@ def measured(trace, sensors, key, rate_hz, until_s, late_s=0.0):
 
 
 def error_of(parameter):
-    """The standard error to believe: the larger one of J^T J's and of leaving out groups. Infinite without one."""
+    """Returns the larger of the standard errors from J^T J and from omitted groups; infinite without one."""
     return max(parameter["se"], parameter["se_jackknife"] or 0) if parameter["se"] else math.inf
 
 
 def off(parameter, truth):
-    """found - truth, in standard errors; infinite where nothing bounds it, so that it never counts as right."""
+    """Returns estimate - truth in standard errors; infinite for unbounded parameters, which never count as right."""
     error = error_of(parameter)
     return (parameter["value"] - truth) / error if math.isfinite(error) else math.inf
 
 
 def digits(value, error):
-    """Both with two digits of the error, no more."""
+    """Formats value and error with two digits of the error."""
     if not math.isfinite(error) or error <= 0:
         return f"{value:.4g}", "any"
     places = max(0, 1 - math.floor(math.log10(error)))

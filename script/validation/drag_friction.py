@@ -1,4 +1,4 @@
-"""Friction at rest and while sliding from a spring scale that drags the robot, on three kinds of ground."""
+"""Static and kinetic friction from a spring scale that drags the robot, on three kinds of ground."""
 
 import math
 import pathlib
@@ -9,18 +9,18 @@ from validation.push import machine
 from validation.runs import fill, table
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
-GROUNDS = {"smooth": (0.32, 0.03), "medium": (0.5, 0.05), "rough": (0.8, 0.08)}   # ground, sliding: middle, sd
-EXTRA = (0.25, 0.08)                   # by what share friction at rest is more: middle, sd
-MASS_SD, ZERO_SD_N, NOISE_N = 0.001, 0.03, 0.05    # how well the robot was weighed; of the spring scale
-DRAGS = {"first": 0.05, "second": 0.05, "slow": 0.01}   # what the hand means to do [m/s]
-SPEED_SD = 0.06                        # by which share of that it does not, each time
+GROUNDS = {"smooth": (0.32, 0.03), "medium": (0.5, 0.05), "rough": (0.8, 0.08)}   # ground, kinetic coefficient: mean, sd
+EXTRA = (0.25, 0.08)                   # excess of the static coefficient, relative: mean, sd
+MASS_SD, ZERO_SD_N, NOISE_N = 0.001, 0.03, 0.05    # relative error of the robot's mass; errors of the spring scale
+DRAGS = {"first": 0.05, "second": 0.05, "slow": 0.01}   # intended speeds of the hand [m/s]
+SPEED_SD = 0.06                        # relative deviation of each drag from its intended speed
 BEGIN_S, END_S, RATE_HZ = 3.0, 13.0, 20
 SCALE = "drag/scale/force_n"
 ROD_FRICTION, MASS_KG, G = 0.15, 2.349, 9.81
 
 
 def experiment(folder):
-    """share/experiments/drag.yaml on ground that holds more at rest, of a robot that was weighed."""
+    """Writes share/experiments/drag.yaml with static friction, for a weighed robot."""
     (folder / "drag.yaml").write_text(f"""taut: 1
 kind: experiment
 base: {fits.beside(folder, "share/experiments/drag.yaml")}
@@ -40,7 +40,7 @@ record: {{rate_hz: 200}}
 
 
 class Ground:
-    """A ground of which nobody has told the fit, dragged over three times."""
+    """A ground unknown to the fit, on which the robot is dragged three times."""
 
     def __init__(self, taut, name, drags=tuple(DRAGS)):
         top = taut.folder.resolve()
@@ -80,14 +80,15 @@ residuals:
         return fits.run(self.taut, f"{self.name}/fit", self.text())
 
     def naive(self):
-        """What the scale shows over the robot's weight and the rods' coefficient: mean while sliding, most before."""
+        """Returns coefficients by a simple evaluation, scale force over weight and the rods' coefficient: mean while
+        sliding, maximum before."""
         trace = blind.Trace(self.folder / f"{self.drags[0]}.csv")
         over = MASS_KG * G * ROD_FRICTION
         return trace.mean(SCALE, END_S - 4, END_S) / over, max(trace.of[SCALE]) / over
 
 
 def at_rest(fit):
-    """The coefficient at rest, sliding * (1 + extra), and its standard error from those of both."""
+    """Returns the static coefficient, sliding * (1 + extra), and its standard error from the errors of both."""
     names = list(fit.parameters)
     sliding, extra = (fit.parameters[n] for n in ("ground_sliding", "extra"))
     together = fit.summary["correlation"][names.index("ground_sliding") * len(names) + names.index("extra")]
@@ -119,7 +120,7 @@ def page(taut):
         "version": taut("--version").split()[-1], "seconds": f"{time.monotonic() - started:.0f}", "machine": machine(),
         "noise": f"{NOISE_N:g}", "rate": str(RATE_HZ), "begin": f"{BEGIN_S:g}",
         "fast": f"{100 * DRAGS['first']:g}", "slow": f"{100 * DRAGS['slow']:g}",
-        "grounds": table(["ground", "friction", "scale over weight", "found", "standard error", "the fit is", "truth"],
+        "grounds": table(["ground", "friction", "scale over weight", "found", "standard error", "fit", "truth"],
                          rows),
         "hands": table(["ground", "drag", "speed of the hand [mm/s]", "standard error", "truth", "zero of the scale [N]",
                         "standard error", "truth"], hands),

@@ -1,4 +1,4 @@
-"""Fits of measured robots for pages: files of `kind: fit` as they are written, run and read back."""
+"""Fits of measured robots for pages: files of `kind: fit`, written, run and read back."""
 
 import csv
 import json
@@ -9,7 +9,7 @@ import subprocess
 
 from validation.runs import ROOT, Problem
 
-# Data that are not ours to pass on.
+# Data that we may not distribute.
 REFERENCE = pathlib.Path(os.environ.get("TAUT_REFERENCE", ROOT.parent / "shared" / "reference")) / "hardware"
 
 
@@ -24,7 +24,7 @@ def write_rows(path, head, rows):
 
 
 class Fit:
-    """What `taut fit` made of a file: its summary, by name."""
+    """Summary of `taut fit` for a file, by name."""
 
     def __init__(self, summary, status):
         self.summary, self.status = summary, status
@@ -34,14 +34,14 @@ class Fit:
         return self.summary["points"][which]
 
     def judgements(self):
-        """All that hold, in words."""
+        """Returns all verdicts that apply, in words."""
         words = {"rejected": "rejected", "unidentifiable": "not identifiable",
-                 "worse_on_hold_out": "worse than untuned on what was held out"}
+                 "worse_on_hold_out": "worse than untuned on held-out data"}
         return [word for key, word in words.items() if self.summary[key]]
 
 
 def run(taut, name, text, *flags):
-    """Writes a fit into a folder within the page's and runs it there."""
+    """Writes a fit into a subfolder of the page's folder and runs it there."""
     folder = taut.folder / name
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "fit.yaml"
@@ -56,11 +56,11 @@ def run(taut, name, text, *flags):
 
 
 def beside(folder, path):
-    """A file of the project as a fit in a folder names it."""
+    """Returns the path of a project file relative to the folder of a fit."""
     return os.path.relpath(ROOT / path, folder)
 
 
 def rms(points, channel, key="fitted", wanted=lambda p: True):
-    """Root mean square of computed less measured."""
+    """Returns the root mean square of computed minus measured values."""
     errors = [p[key] - p["measured"] for p in points if p["channel"] == channel and wanted(p)]
     return math.sqrt(sum(e * e for e in errors) / len(errors))

@@ -13,17 +13,17 @@ from validation.runs import ROOT, Variant, fill, replaced, table, yaml_block
 from validation.waves import dominant, harmonics, line_at, off_sine, off_triangle
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
-FROM_S, TO_S = 30.0, 60.0  # where both gaits are periodic
-ROW_S = 0.04  # NTRT's traces in tests/data
+FROM_S, TO_S = 30.0, 60.0  # span in which both gaits are periodic
+ROW_S = 0.04  # row interval of NTRT's traces in tests/data
 TIMES_S = (5, 10, 20, 30, 40, 50, 60)
 CABLES = [f"{side}_{role}_{joint}" for joint in (1, 2) for side in ("outer", "inner")
           for role in ("top", "left", "right")]
-# NTRT's masses of the segments [kg], for the centre of mass; facts of the running model.
+# NTRT's masses of the segments [kg], for the center of mass, read from the running model.
 MASSES_KG = (0.713080883, 0.913080871, 0.723080874)
 
 
 class Gait:
-    """An experiment, its NTRT variant, and what NTRT got."""
+    """An experiment, its NTRT variant, and NTRT's results."""
 
     def __init__(self, key, title, trace, column, system_max_n):
         self.key, self.title, self.trace, self.column = key, title, trace, column
@@ -64,7 +64,7 @@ class Ntrt:
 
 
 class Run:
-    """trace.csv of a run, at NTRT's rows."""
+    """trace.csv of a run, at the times of NTRT's rows."""
 
     def __init__(self, folder, result):
         self.largest_n = result.summary["system_max_elastic_n"] if result else math.nan
@@ -88,7 +88,7 @@ class Run:
 
 
 class Path:
-    """The centre of mass of a run that recorded nothing else."""
+    """Center of mass of a run that recorded no other channels."""
 
     def __init__(self, folder):
         with open(folder / "trace.csv", newline="") as file:
@@ -100,7 +100,7 @@ class Path:
         return math.hypot(end[1] - start[1], end[2] - start[2])
 
     def parts_from_s(self, other):
-        """When the two centres of mass are first more than PARTED_M apart; None if never."""
+        """Returns the time at which the two centers of mass are first more than PARTED_M apart; None if never."""
         for a, b in zip(self.rows, other.rows):
             if math.hypot(a[1] - b[1], a[2] - b[2]) > PARTED_M:
                 return a[0]
@@ -120,7 +120,7 @@ def degrees_apart(a_rad, b_rad):
 
 
 def cable_rows(gait, ntrt, its, own):
-    """What the tables show, for each cable: NTRT, its laws, taut's own."""
+    """Returns the rows of the tables for each cable: NTRT, taut with NTRT's laws, taut with default laws."""
     for cable in CABLES:
         waves = [source.tension(cable) for source in (ntrt, its, own)]
         lines = [dominant(wave, ROW_S) for wave in waves]
@@ -143,9 +143,10 @@ def lines_table(rows):
 
 
 def shapes_table(rows, fundamental_hz):
-    """Harmonics of the tension in % of the first, and what a sine or a triangle leaves of it."""
+    """Formats harmonics of the tension in % of the first, and the remainder after subtraction of a sine or a
+    triangle."""
     head = ["cable", *(f"{n}: {who}" for n in (2, 3, 5) for who in ("NTRT", "own")),
-            "beside a sine %: NTRT", "own", "beside a triangle %: NTRT", "own"]
+            "off a sine %: NTRT", "own", "off a triangle %: NTRT", "own"]
     out = []
     for cable, waves, _, _ in rows:
         spectra = [harmonics(waves[pick], ROW_S, fundamental_hz, 7) for pick in (0, 2)]
@@ -183,7 +184,7 @@ def system_table(gait, rows, runs):
 
 
 def frequency_text(rows):
-    """How far the strongest lines are from NTRT's, where they are the same line."""
+    """Formats the largest difference of the dominant frequencies from NTRT's, for cables with the same line."""
     worst, others = 0.0, []
     for cable, _, lines, _ in rows:
         for who, line in zip(("its laws", "own laws"), lines[1:]):
@@ -196,11 +197,11 @@ def frequency_text(rows):
     return text + (f" It is another one in: {'; '.join(others)}." if others else "")
 
 
-# --- each law by itself ---------------------------------------------------------------------------
+# --- each law separately --------------------------------------------------------------------------
 
 
 def beside(text):
-    """The text of an experiment's controllers for a file in runs/validation/gaits/x/."""
+    """Returns the text of an experiment's controllers for a file in runs/validation/gaits/x/."""
     return replaced(text, "../gaits/", os.path.relpath(ROOT / "share/gaits", ROOT / "runs/validation/gaits/x") + "/")
 
 
@@ -209,7 +210,7 @@ def changed_controllers(gait, old, new):
 
 
 def law_variants(gait):
-    """What is changed, and the run; the first is what the others are set beside."""
+    """Returns the changes and their runs; the first is the reference for the others."""
     changes = [
         ("taut's own laws", ""),
         ("gait at 1 kHz instead of 100 Hz", changed_controllers(gait, "period_s: 0.01}", "period_s: 0.001}")),
@@ -238,7 +239,7 @@ def laws_table(gait, ntrt, runs):
 
 
 def saturation_table(run_of):
-    """How much of 30 to 60 s a motor winds at its limit of 0.07 m/s, from one row to the next."""
+    """Formats the fraction of 30 to 60 s in which a motor winds at its limit of 0.07 m/s, from row to row."""
     out = []
     for side in ("inner", "outer"):
         cells = []
@@ -256,7 +257,7 @@ def saturation_table(run_of):
 
 
 def controllers(gait, exact):
-    """The experiment's controllers on one clock that every step divides: the law at 250 Hz, the gait at
+    """Returns the experiment's controllers on one clock that every step divides: the law at 250 Hz, the gait at
     50 Hz."""
     text = yaml_block(f"share/experiments/{gait.key}.yaml", "controllers")
     text = replaced(text, "    period_s: 0.001\n", "    period_s: 0.004\n")
@@ -278,7 +279,7 @@ STEP_RUNS = {(gait.key, exact, step_s, start): step_variant(gait, exact, step_s,
 
 
 def steps_table(gait, exact, paths):
-    """Mean and spread of the distance in the first 20 s over the starts; when paths part."""
+    """Formats mean and spread of the distance in the first 20 s over the starts, and the time at which paths part."""
     means, out = {}, []
     finest = paths[gait.key, exact, STEPS_S[0], 0]
     for step_s in STEPS_S:
@@ -320,7 +321,7 @@ def command_values(taut, ntrts):
     taut.folder.mkdir(parents=True, exist_ok=True)
     waves = export(taut, "gaits/hand_tuned_sine.yaml")
     fine = export(taut, "gaits/cpg_learned_ntrt.yaml")
-    shipped = export(taut, "gaits/cpg_learned.yaml", 100)  # no faster than its own steps
+    shipped = export(taut, "gaits/cpg_learned.yaml", 100)  # limited to the rate of its own steps
     return {
         "sine_command": f"{worst_command(ntrts[SINE.key], SINE, waves, {}, 60):.1e}",
         "cpg_command_10": f"{worst_command(ntrts[CPG.key], CPG, fine, signs, 10):.1e}",
@@ -341,7 +342,7 @@ def page(taut):
         its, own = (Run(taut.folder / name, results[name]) for name in (gait.key + "_ntrt", gait.key))
         rows = list(cable_rows(gait, ntrt, its, own))
         owns.append(own)
-        # of NTRT's largest swing
+        # of NTRT's largest oscillation
         fundamental_hz = max((lines[0] for _, _, lines, _ in rows), key=lambda line: line[1])[0]
         values.update({
             f"{prefix}_system": system_table(gait, rows, (its, own)),

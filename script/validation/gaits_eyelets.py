@@ -1,4 +1,4 @@
-"""The two motion experiments on cables that run through eyelets with friction (gaits.md, section 5)."""
+"""The two motion experiments with cables that run through eyelets with friction (gaits.md, section 5)."""
 
 import csv
 import math
@@ -34,7 +34,7 @@ def variants():
 
 
 class Walk:
-    """What a run's trace says. Spans: the first is on the motor's side, the last on the load cell's."""
+    """Trace of a run. Spans: the first is at the motor, the last at the load cell."""
 
     def __init__(self, folder, result):
         with open(folder / "trace.csv", newline="") as file:
@@ -60,7 +60,7 @@ class Walk:
 
 
 class Side:
-    """Tensions on one side of the eyelets of some cables: mean, mean swing, largest."""
+    """Tensions of some cables on one side of the eyelets: mean, mean oscillation, largest."""
 
     def __init__(self, rows, at, cables, span):
         columns = []
@@ -113,7 +113,7 @@ def ground_table(folder, results):
 
 
 def difference_mm(walks, gait):
-    """The furthest that the plain model and the one with eyelets, without friction, get from each other in 5 s."""
+    """Returns the largest difference in 5 s between the plain model and the model with frictionless eyelets [mm]."""
     a, b = (walks[gait, friction, 0].path for friction in ("plain", "0"))
     return 1000 * max(math.dist(p, q) for p, q in zip(a[:5 * RATE_HZ], b))
 

@@ -1,4 +1,4 @@
-"""A spine of tetrahedra goes to a goal, from a hundred random starts on each of three terrains; NTRT's own controller."""
+"""A spine of tetrahedra moves to a goal, from a hundred random starts on each of three terrains; NTRT's controller."""
 
 import csv
 import math
@@ -18,7 +18,7 @@ TERRAINS = {"flat ground": "goal_trials", "hills": "goal_trials_hills", "blocks"
 COLOURS = ("#2471a3", "#1e8449", "#c0392b")
 WANTED_M, ASKED_M = 2.0, 1.5
 HEADINGS = 9
-# NTRT's impedance control of these cables (TC_goal, contactCables at commit f0c52e93), on lengths as described.
+# NTRT's impedance control of these cables (TC_goal, contactCables at commit f0c52e93), with the described lengths.
 NTRT = """controllers:
   - name: motion
     period_s: 0.001
@@ -34,9 +34,9 @@ record: {{rate_hz: 1, channels: ['body/segment_5/position_x_m', 'body/segment_5/
 
 
 def trials(taut, study):
-    """How much nearer each world came [m], ascending; the first, which is not drawn, is left out."""
+    """Returns each world's decrease of the distance to the goal [m], ascending, without the first, unrandomized one."""
     folder = taut.folder / study
-    shutil.rmtree(folder, ignore_errors=True)   # a gait that has changed is another study
+    shutil.rmtree(folder, ignore_errors=True)   # a changed gait is a different study
     taut("learn", f"studies/{study}.yaml", "--out", folder, "--quiet")
     with sqlite3.connect(folder / "study.sqlite") as log:
         rows = log.execute("SELECT score, energy_j, max_tension_n FROM world WHERE world > 0").fetchall()
@@ -46,7 +46,7 @@ def trials(taut, study):
 
 
 def ntrts_own(taut):
-    """How far NTRT's controller gets on each terrain, from some headings: a row each."""
+    """Returns the results of NTRT's controller on each terrain, from some headings: one row each."""
     bases = {"flat ground": "goal_flat", "hills": "goal_hills", "blocks": "goal_blocks"}
     variants = {(name, i): Variant(f"ntrt_{base}_{i}", base, NTRT.format(heading=2 * math.pi * i / HEADINGS),
                                    full_trace=True, any_status=True)
@@ -75,7 +75,7 @@ def row(name, outcome):
 
 
 def picture(outcomes):
-    """Shares of the starts that came at least so much nearer."""
+    """Draws the share of starts against the least decrease of the distance."""
     least, most = -1.0, 3.5
 
     def x_of(score):

@@ -1,4 +1,4 @@
-"""A six-strut robot with a payload in its middle, dropped: what the payload feels, what gives."""
+"""A six-strut robot with a payload in its middle, dropped: acceleration of the payload, loads of the members."""
 
 import csv
 import math
@@ -11,32 +11,33 @@ from validation.runs import Problem, Variant, fill, keep_picture, table
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 GRAVITY = 9.81
 SPEEDS = (5, 10, 15)
-# How it lands: which way of the model is down, and how far its lowest point is from the middle, or a little more.
+# Landing orientation: direction of the model that points down, and distance of its lowest point from the middle, or a
+# little more.
 WAYS = {
     "a triangle of cables": ((-1, -1, -1), 0.78),
     "a cable": ((-1, -3, -2), 0.84),
     "two parallel struts' ends": ((0, 0, -1), 0.90),
     "one end of a strut": ((-1, -2, 0), 1.00),
 }
-SUSPENSIONS = (500, 1000, 2000, 4000, 8000, 16000)   # N/m of a payload's cable; with a damping in proportion
+SUSPENSIONS = (500, 1000, 2000, 4000, 8000, 16000)   # stiffness of a payload cable [N/m]; damping in proportion
 DAMPING_S = 100 / 8000
 COARSE_S, FINE_S = 0.0002, 0.0001
 RATE_HZ = 5000
-AFTER_S = 1.0        # of the run, from the blow on
+AFTER_S = 1.0        # duration of the run after the impact
 FELT_S, LOAD_S = 0.001, 0.010
 PAYLOAD_KG, RADIUS_M, BODIES = 4, 0.1, "abcdef"
 STIFFNESS_N_PER_M = 3152.36   # of the robot's cables
-TUBE_M, WALL_M, YOUNG_PA, STRUT_M = 0.050, 0.002, 69e9, 1.7   # of a strut as it might be built
+TUBE_M, WALL_M, YOUNG_PA, STRUT_M = 0.050, 0.002, 69e9, 1.7   # of a realistic strut
 
 
 def euler_n():
-    """What a strut hinged at both ends carries before it buckles."""
+    """Returns the Euler buckling load of a strut with hinged ends [N]."""
     second_moment = math.pi / 64 * (TUBE_M**4 - (TUBE_M - 2 * WALL_M)**4)
     return math.pi**2 * YOUNG_PA * second_moment / STRUT_M**2
 
 
 def turn(down):
-    """The rotation that brings the direction `down` of the model down, as YAML."""
+    """Returns the rotation that turns the direction `down` of the model downward, as YAML."""
     x, y, z = (k / math.hypot(*down) for k in down)
     if math.hypot(x, y) < 1e-9:
         return "{axis: x, angle_rad: 0}"
@@ -59,7 +60,7 @@ def variant(way, speed, step_s=COARSE_S, stiffness=None):
 
 
 class Landing:
-    """What a trace says of a landing. Times count from the first touch."""
+    """Trace of a landing. Times count from the first contact."""
 
     def __init__(self, folder, speed):
         with open(folder / "trace.csv", newline="") as file:
@@ -95,7 +96,8 @@ class Landing:
 
     @staticmethod
     def _mean_push(rows, column):
-        """The largest compression of a strut, as a mean over LOAD_S: the blow on its end is an impulse."""
+        """Returns the largest compression of a strut, averaged over LOAD_S, because the impact at its end is an
+        impulse."""
         width = round(LOAD_S * RATE_HZ)
         total = most = sum(-row[column] for row in rows[:width])
         for old, new in zip(rows, rows[width:]):
@@ -104,7 +106,7 @@ class Landing:
         return most / width
 
     def touches(self):
-        """What touched that should not. The payload is the model's first body."""
+        """Returns unwanted contacts. The payload is the model's first body."""
         words = []
         if frozenset((0, -1)) in self.pairs:
             words.append("payload and ground")
@@ -136,7 +138,7 @@ def gives_table(runs):
                      f"{run.outer_slack} of 24", f"{run.inner_slack} of 12", f"{run.push_n:.0f}",
                      f"{100 * run.push_n / euler_n():.0f}", run.touches()])
     return table(["lands on", "m/s", "largest tension N: robot's cables", "payload's", "slack at some time: robot's",
-                  "payload's", "compression of a strut N", "% of Euler's load", "what touches"], rows)
+                  "payload's", "compression of a strut N", "% of Euler's load", "contacts"], rows)
 
 
 def picture(runs):
@@ -197,12 +199,12 @@ def page(taut):
     def worst_percent(form):
         return f"{100 * max(abs(form(finer[key]) / form(run) - 1) for key, run in runs.items()):.1f}"
 
-    dead = SPEEDS[-1] * math.sqrt(2 * SUSPENSIONS[4] / PAYLOAD_KG)   # six of twelve cables taut: 2 k every way
+    dead = SPEEDS[-1] * math.sqrt(2 * SUSPENSIONS[4] / PAYLOAD_KG)   # six of twelve cables taut: 2 k in every direction
     values = {
         "landings": landings_table(runs),
         "gives": gives_table(runs),
         "dead": g(dead),
-        "suspensions": table(["N/m", "N s/m", "largest deceleration m/s^2", "payload's least height cm", "what touches"],
+        "suspensions": table(["N/m", "N s/m", "largest deceleration m/s^2", "payload's least height cm", "contacts"],
                              [[str(k), f"{DAMPING_S * k:.4g}",
                                "the blow" if "payload" in run.touches() else g(run.most), f"{100 * run.gap_m:.0f}",
                                run.touches()] for k, run in softer.items()]),

@@ -1,4 +1,4 @@
-"""How well taut's optimisers learn, how fast, and how what they found holds up."""
+"""Comparison of taut's optimizers: quality, speed, and robustness of the solutions."""
 
 import csv
 import json
@@ -33,7 +33,7 @@ CHANGES += [("250 Hz", "", 0.004), ("4000 Hz", "", 0.00025)]
 
 
 def learn(taut, method, seed):
-    """[(best score so far, wall seconds so far)] by evaluation."""
+    """Returns [(best score so far, wall-clock seconds so far)] by evaluation."""
     name = f"{method}_{seed}".lower().replace(" ", "_").replace(",", "").replace("'", "")
     folder = taut.folder / name
     folder.mkdir(parents=True, exist_ok=True)
@@ -65,7 +65,7 @@ def curves_table(curves):
 
 
 def panel(curves, left, width, last, x_of, label):
-    """One plot: median over the seeds, and from the least to the greatest."""
+    """Draws one plot: median over the seeds, and the range from minimum to maximum."""
     height, top = 300, 20
     most = max(run[-1][0] for runs in curves.values() for run in runs) * 1.05
 
@@ -109,7 +109,7 @@ def picture(curves):
 
 
 def distance(taut, gait, change, keys, step_s):
-    """Horizontal way of the centre of mass in 60 s [m]."""
+    """Returns the horizontal displacement of the center of mass in 60 s [m]."""
     name = f"{gait}_{change}".replace(" ", "_").replace("%", "").replace("+", "more").replace("-", "less")
     folder = taut.folder / name
     folder.mkdir(parents=True, exist_ok=True)

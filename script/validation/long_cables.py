@@ -1,4 +1,4 @@
-"""A spine of six segments whose outer cables span two joints each, beside one with cables from each to the next."""
+"""A spine of six segments whose outer cables span two joints each, in comparison with cables between neighbors."""
 
 import csv
 import math
@@ -11,7 +11,7 @@ from validation.push import machine
 from validation.runs import Variant, fill, table
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
-STARTS = 6          # the first is the experiment as it is
+STARTS = 6          # the first is the unchanged experiment
 CHANNELS = "record: {rate_hz: 50, channels: ['system/com_*', 'cable/*']}\n"
 KINDS = {"short": ("short cables", "spine6", {}),
          "long": ("long outer cables", "spine6_long", {}),
@@ -32,7 +32,7 @@ def variant(kind, number):
 
 
 class Run:
-    """What a run's trace and summary say."""
+    """Trace and summary of a run."""
 
     def __init__(self, folder, result):
         with open(folder / "trace.csv", newline="") as file:
@@ -65,7 +65,7 @@ def kinds_table(runs):
                     f"{first.work_j:.0f}", f"{first.net_j:.0f}", f"{first.work_j / first.way_m:.0f}",
                     f"{first.loss_j:.1f}" if first.loss_j else ""])
     return table(["", "motors", "way in 60 s m", f"of {STARTS} starts: least, median, most", "path m",
-                  "outer cables: mean, largest N", "inner: mean, largest N", "wind in with J", "less what they give back J",
+                  "outer cables: mean, largest N", "inner: mean, largest N", "wind in with J", "less returned work J",
                   "J a metre", "lost in eyelets J"], out)
 
 

@@ -1,4 +1,4 @@
-"""Scenes of mechanics with known answers: expected and measured values, as tests/mechanics has them."""
+"""Scenes of mechanics with known solutions: expected and measured values, as in tests/mechanics."""
 
 import os
 import pathlib

@@ -1,4 +1,4 @@
-"""taut beside MuJoCo, Bullet and ODE on the ground."""
+"""Comparison of taut with MuJoCo, Bullet and ODE on the ground."""
 
 import json
 import math
@@ -40,7 +40,7 @@ def rows_of(by_engine, cells):
 
 
 def speed(metres_per_second):
-    """A creeping speed: what is below a nanometre a second is the engines' rounding."""
+    """Formats a creeping speed; values below a nanometer per second are the engines' round-off."""
     return "< 1e-9" if metres_per_second < 1e-9 else f"{metres_per_second:.1e}"
 
 
@@ -59,8 +59,8 @@ def stand(found, robot):
         force = run["tensions_n"]
         return [f"{run['height_m']:.4f}", str(run["contacts"]), f"{sum(force):.1f}", f"{min(force):.2f}",
                 f"{max(force):.2f}", speed(run["creep_m_per_s"])]
-    return table(["engine", "height of the centre [m]", "contacts", "sum of tensions [N]", "least [N]", "largest [N]",
-                  "speed of the centre [m/s]"], rows_of(found["stand"][robot], cells))
+    return table(["engine", "height of the center [m]", "contacts", "sum of tensions [N]", "least [N]", "largest [N]",
+                  "speed of the center [m/s]"], rows_of(found["stand"][robot], cells))
 
 
 def by_heading(series, cell):

@@ -1,4 +1,4 @@
-"""Four legs stand and trot: how still, how far, with which feet on the ground."""
+"""A robot with four legs stands and trots: steadiness, distance, footfall pattern."""
 
 import cmath
 import csv
@@ -10,11 +10,11 @@ from validation.push import machine
 from validation.runs import Variant, fill, keep_picture, table, yaml_block
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
-LEGS = ("front_left", "rear_right", "front_right", "rear_left")  # a diagonal, then the other
+LEGS = ("front_left", "rear_right", "front_right", "rear_left")  # one diagonal, then the other
 SLOTS = 8
 FOOT_RADIUS_M = 0.015
 GRAVITY = 9.81
-FROM_S = 2.0        # what it takes to get going
+FROM_S = 2.0        # start-up time
 JOINTS = [(f"{leg}.{a}", f"{leg}.{b}") for leg in LEGS for a, b in (("socket", "hip"), ("knee", "shank_knee"))]
 GIRDLES = ("vertebra_0.centre-left", "vertebra_3.centre-left")
 RECORD = ("record: {{rate_hz: 500, contacts: {slots}, channels: ['system/*', 'body/*', 'contact/*/body_*', "
@@ -26,7 +26,7 @@ def record(more=""):
 
 
 class Trace:
-    """A run's rows, as columns of numbers by name."""
+    """Rows of a run as columns by name."""
 
     def __init__(self, folder):
         with open(folder / "trace.csv", newline="") as file:
@@ -34,7 +34,7 @@ class Trace:
             head = next(rows)
             self.columns = dict(zip(head, map(list, zip(*[[float(x) for x in row] for row in rows]))))
         self.time_s = self["time_s"]
-        # Contacts name bodies by their places in the model, which is the order of their channels.
+        # Contacts refer to bodies by their index in the model, which is the order of their channels.
         self.bodies = [name.split("/")[1] for name in head if name.startswith("body/") and name.endswith("/position_x_m")]
 
     def __getitem__(self, name):
@@ -44,7 +44,7 @@ class Trace:
         return list(zip(*(self[f"{name}_{axis}_{unit}"] for axis in "xyz")))
 
     def feet(self):
-        """Vertical force on each foot, row by row [N], and the pairs of bodies that touch otherwise."""
+        """Returns the vertical force on each foot, row by row [N], and other pairs of bodies in contact."""
         shanks = {self.bodies.index(f"{leg}.spur-shank_knee"): leg for leg in LEGS}
         force = {leg: [0.0] * len(self.time_s) for leg in LEGS}
         others = set()
@@ -60,7 +60,7 @@ class Trace:
         return force, others
 
     def gap_m(self):
-        """The largest distance of two nodes that a joint holds together."""
+        """Returns the largest distance between two nodes that a joint connects [m]."""
         return max(math.dist(p, q) for a, b in JOINTS for p, q in
                    zip(self.vectors(f"node/{a}/position", "m"), self.vectors(f"node/{b}/position", "m")))
 
@@ -69,7 +69,7 @@ class Trace:
         return min(map(min, values)), max(map(max, values))
 
     def tilt_rad(self):
-        """How far a girdle's vertical leans at most."""
+        """Returns the largest tilt of a girdle [rad]."""
         return max(math.acos(min(1.0, 1 - 2 * (x * x + y * y))) for body in GIRDLES for x, y in
                    zip(self[f"body/{body}/orientation_x"], self[f"body/{body}/orientation_y"]))
 
@@ -78,7 +78,7 @@ class Trace:
         return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
     def torso_m(self):
-        """Heights of the girdles' centres of mass: the least and the largest."""
+        """Returns the minimum and maximum heights of the girdles' centers of mass [m]."""
         heights = [self[f"body/{body}/position_z_m"] for body in GIRDLES]
         return min(map(min, heights)), max(map(max, heights))
 
@@ -87,9 +87,9 @@ class Trace:
         return [value - x[0] for value in x]
 
     def slid_m(self, force, leg):
-        """How far the touching point of a foot slides while it carries, from FROM_S on."""
+        """Returns the distance that a foot's contact point slides while loaded, from FROM_S on [m]."""
         body = f"body/{leg}.spur-shank_knee"
-        # The foot is not in the body's centre: its velocity from its places.
+        # The foot is not at the body's center: its velocity is computed from its positions.
         place = self.vectors(f"node/{leg}.foot/position", "m")
         turns = self.vectors(f"{body}/angular_velocity", "rad_per_s")
         way = 0.0
@@ -104,12 +104,12 @@ class Trace:
 
 
 def phase(on, time_s, frequency_hz):
-    """Of the first harmonic of what is 1 while a foot carries, in periods."""
+    """Returns the phase of the first harmonic of a signal that is 1 while a foot carries load, in periods."""
     return cmath.phase(sum(cmath.exp(-2j * math.pi * frequency_hz * t) for o, t in zip(on, time_s) if o)) / (2 * math.pi)
 
 
 def later(a, b):
-    """By how much of a period b comes after a, of phases in periods: from -0.2, so that half a period is not minus half."""
+    """Returns the delay of phase b after phase a, in periods: from -0.2 on, so that half a period is not minus half."""
     return (a - b + 0.2) % 1 - 0.2
 
 
@@ -145,7 +145,7 @@ def standing(trace, mass_kg):
 
 
 def variants():
-    """Name of a row, keys that make it."""
+    """Returns the name of each row and the keys of its experiment."""
     yield "as shipped", ""
     for step_s in (0.0005, 0.00025):
         yield f"step {1000 * step_s:g} ms", f"step_s: {step_s}\n"
@@ -170,7 +170,7 @@ def row(name, trace, summary):
 
 
 def gait(trace, summary, mass_kg):
-    """What the feet of the unperturbed run do."""
+    """Describes the footfalls of the unperturbed run."""
     force, _ = trace.feet()
     hz = frequency_hz()
     walking = [i for i, t in enumerate(trace.time_s) if t >= FROM_S]
@@ -209,7 +209,8 @@ def gait(trace, summary, mass_kg):
 
 
 def picture(trace):
-    """A bar for each time that a foot carries, from FROM_S on for two seconds; a row a foot, a shade a diagonal."""
+    """Draws a bar for each stance phase of a foot, for two seconds from FROM_S; one row per foot, one shade per
+    diagonal."""
     force, _ = trace.feet()
     left, top, width, high = 100, 20, 720, 28
 

@@ -1,4 +1,4 @@
-"""The quasi-static push of Mirletz et al. (2015): beside NTRT, beside the robot."""
+"""The quasi-static push of Mirletz et al. (2015), in comparison with NTRT and the robot."""
 
 import csv
 import gzip
@@ -14,7 +14,7 @@ EXPERIMENT = "share/experiments/push_20n.yaml"
 TRACE = "tests/data/ntrt/push_1000hz.csv.gz"
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 PHASES = {"before": (25, 30), "during": (35, 40), "after": (50, 60)}
-START_S = 5.0  # the start-up transient is over by then; the same cut as in summary.json
+START_S = 5.0  # end of the start-up transient; same limit as in summary.json
 ROD_FRICTION = 0.15
 LEFT, LEFT_T0_N, LEFT_K_N_PER_M = "outer_left_1", 11, 100  # as in EXPERIMENT
 
@@ -25,13 +25,13 @@ OWN_LAWS = {"inertia": "exact", "damping_law": "exact", "friction_law": "cone",
 
 
 def laws(base, **changes):
-    """A key replaces the base's as a whole, so all options are given."""
+    """Returns control laws; a key replaces the base's key as a whole, so all options are given."""
     options = ", ".join(f"{key}: {value}" for key, value in {**base, **changes}.items())
     return f"model_options: {{{options}}}\n"
 
 
 def ground(static, kinetic):
-    """Coefficients as they act: the rods' 0.15 times the ground's."""
+    """Returns ground friction for effective coefficients: the rods' 0.15 times the ground's."""
     return ("terrain: [{name: ground, plane: {height_m: 0, "
             f"static_friction: {static / ROD_FRICTION:.9g}, kinetic_friction: {kinetic / ROD_FRICTION:.9g}}}}}]\n")
 
@@ -46,7 +46,7 @@ def pid(proportional, integral):
 
 
 def turned(yaw_deg, pitch_deg, holds):
-    """The push turned to the left and up; the forces that hold the robot as well, if wanted."""
+    """Returns the push turned to the left and up, and optionally the forces that hold the robot."""
     yaw, pitch = math.radians(yaw_deg), math.radians(pitch_deg)
     way = [math.cos(pitch) * math.cos(yaw), math.cos(pitch) * math.sin(yaw), math.sin(pitch)]
     text = replaced(yaml_block(EXPERIMENT, "timeline"), "[1, 0, 0]", f"[{way[0]}, {way[1]}, {way[2]}]")
@@ -54,7 +54,7 @@ def turned(yaw_deg, pitch_deg, holds):
 
 
 def staircase():
-    """The push as NTRT's timeline has it: a new force every 0.05 s."""
+    """Returns the push as in NTRT's timeline: a new force every 0.05 s."""
     points, last = [], "0"
     for tick in range(20 * 30, 20 * 45 + 1):
         time_s = tick * 0.05
@@ -71,7 +71,7 @@ def staircase():
     return text
 
 
-# What a row says, and the run. The first of each list is what the others are set beside.
+# Label of a row, and its run. The first of each list is the reference for the others.
 LAWS_OFF = [
     ("all of NTRT's laws", Variant("ntrt", "push_20n_ntrt", full_trace=True)),
     ("friction: exact cone", Variant("ntrt_cone", "push_20n_ntrt", laws(NTRT_LAWS, friction_law="cone"))),
@@ -162,7 +162,7 @@ def percent(value, digits=1):
 
 
 def worst_mean(result, reference, full_n):
-    """The largest difference of a mean elastic tension, in % of the largest tension; and where."""
+    """Returns the largest difference of a mean elastic tension, in % of the largest tension, and its cable."""
     return max((100 * abs(result.mean(cable, phase) - reference.mean(cable, phase)) / full_n, cable, phase)
                for cable in result.cables for phase in PHASES)
 
@@ -203,7 +203,7 @@ def laws_table(ntrt, results, variants):
 
 
 def moved_table(ntrt, folder):
-    """How far the segments went, from the first to the last row."""
+    """Formats the displacements of the segments from the first to the last row."""
     def ends(name):
         with open(folder / name / "trace.csv", newline="") as file:
             reader = csv.DictReader(file)
@@ -247,12 +247,12 @@ def choices_table(robot, results, after_start):
 
 
 def stretch_mm(tension_n):
-    """l - L0 of outer left 1 at rest with this tension."""
+    """Returns l - L0 of the cable outer left 1 at rest with this tension [mm]."""
     return 1000 * (tension_n - LEFT_T0_N) / LEFT_K_N_PER_M
 
 
 def outer_left_text(robot, results):
-    """What the choices do to the worst cable, in words."""
+    """Describes the effect of the choices on the worst cable."""
     off = {text: errors(robot, results[variant.name], True)[LEFT] for text, variant in CHOICES}
     near = {text: value for text, value in off.items() if round(abs(value), 1) < 30}
     far = [abs(value) for text, value in off.items() if text not in near]
@@ -263,7 +263,7 @@ def outer_left_text(robot, results):
 
 
 def largest_shift(robot, results, choices):
-    """By how many points one of these choices moves a cable's error, at most."""
+    """Returns the largest change of a cable's error by one of these choices, in percentage points."""
     own = errors(robot, results[AS_IT_IS[1].name], True)
     return max(abs(value - own[cable]) for _, variant in choices
                for cable, value in errors(robot, results[variant.name], True).items())

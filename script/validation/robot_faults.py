@@ -1,4 +1,4 @@
-"""What goes wrong with a robot's electronics, twenty times each, on emulated boards and the driver."""
+"""Faults of a robot's electronics, twenty times each, on emulated boards and the driver."""
 
 import collections
 import concurrent.futures
@@ -14,12 +14,12 @@ from validation.virtual_robot import h5py
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 SEED, TIMES = 1, 20
-FAULT_S, LOOK_S, GO_ON_S = (0.2, 0.6), 1.4, 2.9  # of the experiment; the PC needs a second to set up anew
+FAULT_S, LOOK_S, GO_ON_S = (0.2, 0.6), 1.4, 2.9  # experiment times; after a fault the PC needs a second for a new setup
 RECOVERIES = 5
 LIMIT_N = 50  # default of the boards' tension_limit_n
 PUSH, GAIT = "push_20n_motors", "sine_hand_tuned_motors"
 BOARD, CABLE = "board: {board}", "cable: {cable}"
-FAULTS = (  # what a reader calls it, its entry in a fault script, the experiment, whether one can go on afterwards
+FAULTS = (  # name for readers, entry in a fault script, experiment, whether operation can continue afterwards
     ("broadcasts lost for 25 ms", "host_killed, for_s: 0.025", PUSH, True),
     ("broadcasts lost for 60 ms", "host_killed, for_s: 0.06", PUSH, True),
     ("PC hangs for 0.4 s", "host_killed, for_s: 0.4", PUSH, True),
@@ -37,14 +37,14 @@ FAULTS = (  # what a reader calls it, its entry in a fault script, the experimen
     ("data line low for 0.3 s", "bus_stuck, for_s: 0.3, line: data", PUSH, True),
     ("clock line low for 0.3 s", "bus_stuck, for_s: 0.3, line: clock", PUSH, True),
     ("cable cut", f"cut_cable, {CABLE}", PUSH, False),
-    ("load cell stands, robot at rest", f"stuck_load_cell, for_s: 1, {CABLE}", PUSH, True),
-    ("load cell stands, robot walks", f"stuck_load_cell, for_s: 1, {CABLE}", GAIT, True),
+    ("load cell stuck, robot at rest", f"stuck_load_cell, for_s: 1, {CABLE}", PUSH, True),
+    ("load cell stuck, robot walks", f"stuck_load_cell, for_s: 1, {CABLE}", GAIT, True),
     ("load cell shows 0 N", f"stuck_load_cell, for_s: 1, force_n: 0, {CABLE}", PUSH, True),
     ("load cell shows -5 N (wire off)", f"stuck_load_cell, for_s: 1, force_n: -5, {CABLE}", PUSH, True),
     ("load cell shows 60 N", f"stuck_load_cell, for_s: 1, force_n: 60, {CABLE}", PUSH, True),
-    ("encoder stands, robot at rest", f"stuck_encoder, for_s: 1, {CABLE}", PUSH, True),
-    ("encoder stands, robot walks", f"stuck_encoder, for_s: 1, {CABLE}", GAIT, True),
-    ("driver says fault for 0.1 s", f"driver_fault, for_s: 0.1, {BOARD}", PUSH, True),
+    ("encoder stuck, robot at rest", f"stuck_encoder, for_s: 1, {CABLE}", PUSH, True),
+    ("encoder stuck, robot walks", f"stuck_encoder, for_s: 1, {CABLE}", GAIT, True),
+    ("driver fault for 0.1 s", f"driver_fault, for_s: 0.1, {BOARD}", PUSH, True),
     ("no supply of the motors for 0.3 s", "motor_supply_loss, for_s: 0.3", PUSH, True),
     ("clock 0.5 % fast", f"clock_drift, drift_ppm: 5000, {BOARD}", PUSH, True),
 )
@@ -54,7 +54,7 @@ MODES = {0: "off", 1: "hold", 2: "position", 3: "impedance", 7: "stopped"}
 
 
 def generalised(text, cables):
-    """A message without whom it is about."""
+    """Returns a message without the names of boards and cables."""
     text = re.sub(r"board \d", "a board", text)
     for cable in sorted(cables, key=len, reverse=True):
         text = text.replace(cable, "a cable")
@@ -62,7 +62,7 @@ def generalised(text, cables):
 
 
 class Run:
-    """What a run's folder says of the time between a fault and whatever is done about it."""
+    """Reaction to a fault, from the files of a run."""
 
     def __init__(self, folder):
         events = [json.loads(line) for line in (folder / "events.jsonl").read_text().splitlines()]
@@ -127,14 +127,14 @@ class Boards:
 
 
 def often(runs, texts):
-    """The texts of all runs, in the order in which they come, and of how many runs each is."""
+    """Returns the texts of all runs in order of appearance, with the number of runs of each."""
     counted = collections.Counter(text for run in runs for text in texts(run))
     return "; ".join(text if n == len(runs) else f"{text} ({n})" for text, n in counted.items())
 
 
 def row(name, goes_on, runs):
     noticed = [run.noticed_s for run in runs if run.noticed_s is not None]
-    modes = collections.Counter(" and ".join(sorted(run.modes)) or "nobody answers" for run in runs)
+    modes = collections.Counter(" and ".join(sorted(run.modes)) or "no board answers" for run in runs)
     back = sum(run.recovered and run.well for run in runs[:RECOVERIES])
     return [name, often(runs, lambda run: run.told) or "nothing", often(runs, lambda run: run.counted) or "nothing",
             f"{len(noticed)}" + (f", {1e3 * max(noticed):.0f} ms" if noticed else ""),
@@ -172,8 +172,8 @@ def page(taut):
         "times": str(TIMES), "kinds": str(len(FAULTS)), "runs": str(len(jobs)), "limit": str(LIMIT_N),
         "plain": f"{json.loads((plain / 'boards.json').read_text())['largest_tension_n']:.1f}",
         "walk": f"{json.loads((walk / 'boards.json').read_text())['largest_tension_n']:.1f}",
-        "table": table(["fault", "what the PC tells (of how many runs, if not all)", "what else counts", "noticed, at latest after",
-                        "boards' mode then", "tension left", "largest tension [N]", "goes on"],
+        "table": table(["fault", "PC events (number of runs, if not all)", "counters", "noticed, longest delay",
+                        "boards' mode", "tension left", "largest tension [N]", "recovers"],
                        [row(name, goes_on, runs[name]) for name, _, _, goes_on in FAULTS]),
         "silent": ", ".join(silent) or "none", "worst": f"{worst[0]:.1f} N ({worst[1]})",
         "over": "none" if worst[0] <= LIMIT_N else f"{sum(run.largest_n > LIMIT_N for name in runs for run in runs[name])}"})

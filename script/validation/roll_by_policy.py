@@ -1,4 +1,4 @@
-"""A six-strut robot that rolls by a policy: how it was learned, how far it gets beside the best sine."""
+"""A six-strut robot that rolls by a learned policy: training, and comparison with the best sine gait."""
 
 import csv
 import json
@@ -11,13 +11,13 @@ from validation.rolling import MOVING, STARTS, Run, moving_row, variant
 from validation.runs import Problem, fill, keep_picture, table
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
-PYTHON = "/usr/bin/python3"   # the one that the module is built for
+PYTHON = "/usr/bin/python3"   # the python3 for which the module is built
 UPDATES, SECONDS = 391, 60   # six minutes of processor time
 LEFT, TOP, WIDTH, HEIGHT = 60, 20, 560, 300
 
 
 def python(taut, *arguments):
-    """Runs a program that needs taut's module; returns what it prints."""
+    """Runs a program that needs taut's module; returns its output."""
     where = {**os.environ, "PYTHONPATH": str(taut.command.parent / "python")}
     run = subprocess.run([PYTHON, *map(str, arguments)], env=where, capture_output=True, text=True)
     if run.returncode != 0:
@@ -31,7 +31,7 @@ def curve(taut):
 
 
 def picture(rows, sine_m_per_s):
-    """Speed while learning, by processor time."""
+    """Draws the speed during training against processor time."""
     last_s = 60 * (int(rows[-1]["processor_s"] / 60) + 1)
     most = 0.5 * (int(max(row["per_s"] for row in rows) / 0.5) + 1)
 
@@ -62,7 +62,7 @@ def picture(rows, sine_m_per_s):
 
 
 def page(taut):
-    learned = taut.folder / "ppo"   # what is there already is not learned again
+    learned = taut.folder / "ppo"   # an existing policy is not trained again
     python(taut, "examples/ppo.py", "--out", learned, "--updates", UPDATES, "--minutes", 600)
     python(taut, "examples/ppo.py", "--out", learned, "--play", "--starts", STARTS, "--seconds", SECONDS)
     elsewhere = json.loads(python(taut, "script/validation/roll_elsewhere.py", learned))

@@ -1,6 +1,7 @@
-"""How far a policy and the sine get where they have not learned: roll_elsewhere.py FOLDER, in which ppo.py has learned.
+"""Generalization of a policy and a sine gait to changed conditions: roll_elsewhere.py FOLDER, the folder of ppo.py's
+training.
 
-Prints JSON, a list of [what is different, metres of the policy, metres of the sine]. For the python3 of taut's module.
+Prints JSON, a list of [change, metres of the policy, metres of the sine]. For the python3 of taut's module.
 """
 
 import json

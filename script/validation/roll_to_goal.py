@@ -24,7 +24,7 @@ TERRAINS = {  # experiment, parameters
 }
 FRICTIONS = (0.25, 1.0)
 OTHER = "models/six_strut.yaml"
-FAR = 12   # starts towards a goal that is too far to arrive at
+FAR = 12   # number of starts towards a goal that is too far to reach
 
 
 def bearing(number):
@@ -38,7 +38,7 @@ def variant(name, experiment, parameters, number, rate_hz=20, channels=("system/
 
 
 class Arrival(Run):
-    """How near the robot's centre of mass came to the goal, and when."""
+    """Least distance of the robot's center of mass from the goal, and arrival times."""
 
     def __init__(self, folder, number, status):
         super().__init__(folder)
@@ -47,13 +47,13 @@ class Arrival(Run):
         self.from_goal = [math.hypot(at[0] - x, at[1] - y) for at in self.path]
 
     def _feet(self, rows, at, downhill):
-        if "node/a.l/position_x_m" in at:  # another robot's ends have other names
+        if "node/a.l/position_x_m" in at:  # node names differ for another robot
             super()._feet(rows, at, downhill)
         else:
             self.feet, self.slide_m = 0, math.nan
 
     def arrival_s(self, within_m):
-        """None if it does not arrive."""
+        """Returns the time of arrival [s]; None if the robot does not arrive."""
         for i, distance in enumerate(self.from_goal):
             if distance <= within_m:
                 return LIMIT_S * i / (len(self.from_goal) - 1)
@@ -61,7 +61,7 @@ class Arrival(Run):
 
 
 def times(runs, within_m):
-    """Of arrival, ascending; who does not arrive is not there."""
+    """Returns the arrival times, ascending, without starts that do not arrive."""
     return sorted(at for at in (run.arrival_s(within_m) for run in runs) if at is not None)
 
 
@@ -107,7 +107,7 @@ FAR_HEAD = ["", "way m", "path m", "turns", "path a turn m", "ends slide, % of p
 
 
 def picture(outcomes):
-    """Shares of the starts that have arrived, over time."""
+    """Draws the share of starts that have arrived against time."""
     curves = {}
     for name, runs in outcomes.items():
         points, count = [f"{LEFT},{TOP + HEIGHT}"], 0
@@ -135,7 +135,7 @@ def page(taut):
     frictions = [f"flat ground, friction {friction:g}" for friction in FRICTIONS]
     for name, friction in zip(frictions, FRICTIONS):
         add(name, "roll_to_goal", {"ground_friction": friction})
-    model = f"model: ../../../../share/{OTHER}\nstart: settled_floating\n"   # seen from where the run is
+    model = f"model: ../../../../share/{OTHER}\nstart: settled_floating\n"   # relative to the run's folder
     add("six_strut", "roll_to_goal_six_strut", {})
     add("six_strut_hills", "roll_to_goal_hills", {"drop_m": "0.02 * times"}, keys=model)
     add("six_strut_far", "roll_to_goal_six_strut", {"goal_m": 100}, FAR, rate_hz=50,

@@ -11,7 +11,7 @@ from validation.push import machine
 from validation.runs import Variant, fill, keep_picture, table
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
-STARTS = 12          # the first is the experiment as it is
+STARTS = 12          # the first is the unchanged experiment
 STEPS_S = (0.001, 0.0005, 0.00025)
 RIMS_M = (0.1, 0.2, 0.3, 0.4, 0.6, 2)
 RADIUS_M, UP_M, TOUCH_M = 0.04, 0.05, 0.002
@@ -21,7 +21,7 @@ CHANNELS = ["system/com_*", "system/contact_count", "body/*/angular_velocity_*",
 
 
 def start(number):
-    """What differs at the start of a run: keys and parameters."""
+    """Returns the changes of a start: keys and parameters."""
     if number == 0:
         return "", {}
     friction = random.Random(number).uniform(0.4, 0.6)
@@ -39,7 +39,8 @@ def variant(name, experiment, number, keys="", parameters=None, channels=CHANNEL
 
 
 class Run:
-    """What a trace says: ways, turns, feet. Along the slope where there is one: `downhill` is its angle."""
+    """Displacement, revolutions and footfalls from a trace; along the slope, if there is one: `downhill` is its
+    angle."""
 
     def __init__(self, folder, downhill=0.0):
         with open(folder / "trace.csv", newline="") as file:
@@ -65,8 +66,8 @@ class Run:
             / (rows[-1][0] - rows[0][0])
 
     def _turns(self, rows, at):
-        """Turns of the robot as a whole (the mean of its struts' angular velocities) about the level axis across its
-        momentary way: as a wheel turns that goes there."""
+        """Integrates the robot's mean angular velocity (over its struts) about the horizontal axis across its momentary
+        path, in turns: the rotation of a wheel that rolls along the path."""
         spin = [[at[f"body/{body}/angular_velocity_{k}_rad_per_s"] for body in "abcdef"] for k in "xy"]
         angle = 0.0
         for i in range(len(rows) - 1):
@@ -79,7 +80,7 @@ class Run:
         self.turns = angle / (2 * math.pi)
 
     def _feet(self, rows, at, downhill):
-        """How often an end of a strut is set down after it was up; how far those on the ground slide."""
+        """Returns how often a strut's end is set down after a lift, and the sliding distance of ends on the ground."""
         self.feet, self.slide_m = 0, 0.0
         ends = [[at[f"node/{body}.{end}/position_{k}_m"] for k in "xyz"] for body in "abcdef" for end in "lr"]
         slope, level = math.sin(downhill), math.cos(downhill)
@@ -101,7 +102,7 @@ class Run:
             before = now
 
     def first_s(self, beyond_m):
-        """When the centre of mass is first that far from the middle, along x or y."""
+        """Returns the time at which the center of mass is first that far from the middle, along x or y."""
         for i, (x, y, _) in enumerate(self.path):
             if max(abs(x), abs(y)) > beyond_m:
                 return i / 50
@@ -133,7 +134,7 @@ def out_row(rim_m, motors, runs):
 
 
 def picture(runs):
-    """Paths of the centre of mass, seen from above."""
+    """Draws the paths of the center of mass, seen from above."""
     points = [(x, y) for run in runs for x, y, _ in run.path]
     low, high = (min(min(p) for p in points), max(max(p) for p in points))
     low, high = 5 * math.floor(low / 5), 5 * math.ceil(high / 5)
@@ -198,7 +199,7 @@ def page(taut):
         "slope": table(MOVING, [moving_row("its own gait", runs["slope"], forward),
                                 moving_row("the gait for level ground", runs["slope_level_gait"], forward)]),
         "still": f"{1000 * runs['slope_still'][0].length_m:.1f}",
-        "craters": table(["rim m", "motors", "out", "after s", "off the walls' far side", "centre of mass up to m"],
+        "craters": table(["rim m", "motors", "out", "after s", "off the walls' far side", "center of mass up to m"],
                          [out_row(rim_m, "0.3 m/s, 500 N", runs[f"rim_{1000 * rim_m:.0f}"]) for rim_m in RIMS_M]
                          + [out_row(2, "NTRT's: 1000 m/s, 10 kN", runs["rim_ntrt"])]),
         "steps": ", ".join(f"{runs[f'step_{i}'][0].way_m:.1f} m at {1000 * step_s:g} ms"

@@ -1,4 +1,4 @@
-"""Running variants of an experiment, and filling a page's template with what came out."""
+"""Variants of an experiment, run in parallel, and templates of pages filled with their results."""
 
 import concurrent.futures
 import json
@@ -12,7 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
 class Problem(Exception):
-    """Something that the user can mend; its text says what."""
+    """An error that the user can fix, with instructions in its text."""
 
 
 class Variant:
@@ -20,7 +20,7 @@ class Variant:
 
     `keys` is the YAML of the top-level keys that replace the base's, `parameters` the values for
     --set. `full_trace` keeps all channels at the base's rate, in trace.h5 and trace.csv. A run whose status
-    is not ok is a Problem, unless `any_status`: then whoever asked looks at it."""
+    is not ok is a Problem, unless `any_status` is set: then the caller checks it."""
 
     def __init__(self, name, base, keys="", parameters=None, full_trace=False, any_status=False):
         self.name, self.base, self.keys = name.replace(".", "_"), base, keys
@@ -28,7 +28,7 @@ class Variant:
 
 
 class Taut:
-    """The taut command and the folder that holds what it makes. `writes`: pages are made, not checked."""
+    """The taut command and its output folder. `writes`: pages are written, not checked."""
 
     def __init__(self, command, folder, writes=True):
         self.command, self.folder, self.writes = command, folder, writes
@@ -36,7 +36,7 @@ class Taut:
             raise Problem(f"there is no {command}; build it with script/build, or name it with --taut")
 
     def __call__(self, *arguments):
-        """Runs taut; returns what it prints."""
+        """Runs taut; returns its output."""
         run = subprocess.run([str(self.command), *map(str, arguments)], capture_output=True, text=True)
         if run.returncode != 0:
             raise Problem(f"taut {' '.join(map(str, arguments))}\n{run.stdout}{run.stderr}".rstrip())
@@ -59,13 +59,13 @@ class Taut:
         return Result(variant, summary)
 
     def run(self, variants):
-        """Runs all of them, one a core at a time; returns a Result for each name."""
+        """Runs all variants in parallel, one per core; returns a Result for each name."""
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             return {result.variant.name: result for result in pool.map(self._run, variants)}
 
 
 class Result:
-    """summary.json of a run, in newtons."""
+    """summary.json of a run; forces in newtons."""
 
     def __init__(self, variant, summary):
         self.variant, self.summary = variant, summary
@@ -79,7 +79,7 @@ class Result:
 
 
 def keep_picture(taut, path, text):
-    """Writes a page's picture, or complains if it is another one."""
+    """Writes a page's picture, or when checking reports a difference."""
     path = ROOT / path
     if taut.writes:
         path.write_text(text)
@@ -88,7 +88,7 @@ def keep_picture(taut, path, text):
 
 
 def yaml_block(path, key):
-    """The text of a top-level key of a YAML file, with all below it."""
+    """Returns the text of a top-level key of a YAML file, including its value."""
     match = re.search(rf"^{key}:.*\n(?:[ #].*\n|\n)*", (ROOT / path).read_text(), re.MULTILINE)
     if not match:
         raise Problem(f"{path} has no key {key}")
@@ -96,14 +96,14 @@ def yaml_block(path, key):
 
 
 def replaced(text, old, new):
-    """`text` with `old` replaced, which must be there."""
+    """Returns `text` with `old` replaced; `old` must occur."""
     if old not in text:
         raise Problem(f"there is no '{old}' in\n{text}")
     return text.replace(old, new)
 
 
 def fill(template, values):
-    """Puts values in the place of {{name}}; each must be there and each must be used."""
+    """Replaces each {{name}} by its value; every name needs a value, and every value must be used."""
     wanted = set(re.findall(r"\{\{(\w+)\}\}", template))
     if wanted != set(values):
         raise Problem(f"template and values do not fit: {', '.join(sorted(wanted ^ set(values)))}")
@@ -111,6 +111,6 @@ def fill(template, values):
 
 
 def table(head, rows):
-    """A Markdown table without its last line break."""
+    """Returns a Markdown table without its last line break."""
     lines = [head, ["---"] * len(head), *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)

@@ -1,11 +1,11 @@
-"""A picture of shares of starts, 0 to 100 %, as steps: who has arrived, who came so far."""
+"""Step plot of shares of starts, 0 to 100 %: cumulative arrivals or distances."""
 
 LEFT, TOP, WIDTH, HEIGHT = 60, 20, 640, 300
 
 
 def picture(caption, ticks, guides, curves, colours, apart):
-    """`ticks`: texts below, evenly apart; `guides`: elements behind the curves; `curves`: by name, points as
-    "x,y" in pixels; `apart`: how far apart their names are below [px]."""
+    """Draws the plot. `ticks`: evenly spaced texts below; `guides`: elements behind the curves; `curves`: by name,
+    points as "x,y" in pixels; `apart`: spacing of their names in the legend [px]."""
     out = ['<svg xmlns="http://www.w3.org/2000/svg" width="740" height="400" viewBox="0 0 740 400" '
            'font-family="sans-serif" font-size="11">', '<rect width="740" height="400" fill="white"/>',
            f'<rect x="{LEFT}" y="{TOP}" width="{WIDTH}" height="{HEIGHT}" fill="none" stroke="#999"/>']

@@ -1,4 +1,4 @@
-"""The hand-tuned sine with larger amplitudes, up to the robot's own: who topples, and on what ground."""
+"""The hand-tuned sine with larger amplitudes, up to the robot's: toppling and friction of the ground."""
 
 import csv
 import itertools
@@ -12,10 +12,10 @@ from validation.runs import ROOT, Variant, fill, keep_picture, replaced, table, 
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 EXPERIMENT, GAIT, MODEL = "sine_hand_tuned", "gaits/hand_tuned_sine.yaml", "models/tetraspine3.yaml"
-FACTORS = (1, 2, 3, 5, 7, 10)                   # 10: the robot's own amplitudes
-FRICTIONS = (0.075, 0.15, 0.3, 0.5, 0.8, 1.2)   # of a segment on the ground; 0.075: NTRT's
-ROBOT_FRICTION = 0.15                           # the ground's is multiplied by it
-OTHERS = (           # what else: experiment, friction of the robot, of a segment on the ground
+FACTORS = (1, 2, 3, 5, 7, 10)                   # 10: the robot's amplitudes
+FRICTIONS = (0.075, 0.15, 0.3, 0.5, 0.8, 1.2)   # effective coefficient of a segment on the ground; 0.075: NTRT's
+ROBOT_FRICTION = 0.15                           # multiplied by the ground's coefficient
+OTHERS = (           # further experiments: friction of the robot, effective coefficient on the ground
     ("NTRT's laws", EXPERIMENT + "_ntrt", 0.15, 0.075),
     ("0.5 between segments", EXPERIMENT, math.sqrt(0.5), 0.075),
     ("0.5 between segments", EXPERIMENT, math.sqrt(0.5), 0.5),
@@ -23,7 +23,7 @@ OTHERS = (           # what else: experiment, friction of the robot, of a segmen
     ("1 between segments", EXPERIMENT, 1, 1),
 )
 OTHER_FACTORS = (5, 10)
-STARTS = ((0.0, 0.0), (0.02, 0.004), (-0.05, 0.01))   # rolled by so much [rad], and lifted off the floor [m]
+STARTS = ((0.0, 0.0), (0.02, 0.004), (-0.05, 0.01))   # initial roll [rad], and height above the floor [m]
 COARSE_S, FINE_S = 0.001, 0.0005
 DURATION_S = 40
 FORCE_N, LEAST_M, SPEED_M_PER_S = 50, 0.01, 0.07   # limits of a motor
@@ -32,14 +32,14 @@ GAP_EVERY = 5        # rows
 EDGE_M, RADIUS_M = 0.38, 0.003175
 TIP_Z_M = EDGE_M / 2 * math.tan(math.pi / 6)
 NODES = ((0, -EDGE_M / 2, 0), (0, EDGE_M / 2, 0), (0, 0, math.sqrt(3) / 2 * EDGE_M), (0.25, 0, TIP_Z_M))
-FRONT_M, SPACING_M = (0.77, 0, 0.005), 0.23     # where the nodes of segment 0 are counted from
+FRONT_M, SPACING_M = (0.77, 0, 0.005), 0.23     # origin of the node coordinates of segment 0
 SEGMENTS = 3
-START_M = 0.21       # from centre of mass to centre of mass
+START_M = 0.21       # between centers of mass
 TOUCH_M = 0.0002
 
 
 def scaled_gait(folder, factor):
-    """The gait with all amplitudes, and the offsets that follow from them, times a factor."""
+    """Writes the gait with all amplitudes, and the offsets that depend on them, multiplied by a factor."""
     text = (ROOT / "share" / GAIT).read_text()
     for name in ("inner_front", "inner_back", "outer_front", "outer_back"):
         text = replaced(text, f"  {name}_m_per_s: ", f"  {name}_m_per_s: {factor} * ")
@@ -69,11 +69,11 @@ def variant(factor, friction, start, step_s, experiment=EXPERIMENT, robot_fricti
                    full_trace=True, any_status=True)
 
 
-# --- what a run shows -----------------------------------------------------------------------------
+# --- evaluation of a run --------------------------------------------------------------------------
 
 
 def turned(q, p):
-    """The vector p by the quaternion q = (w, x, y, z)."""
+    """Rotates the vector p by the quaternion q = (w, x, y, z)."""
     w, x, y, z = q
     tx, ty, tz = 2 * (y * p[2] - z * p[1]), 2 * (z * p[0] - x * p[2]), 2 * (x * p[1] - y * p[0])
     return (p[0] + w * tx + y * tz - z * ty, p[1] + w * ty + z * tx - x * tz, p[2] + w * tz + x * ty - y * tx)
@@ -88,7 +88,7 @@ def dot(a, b):
 
 
 def apart_m(a, b, c, d):
-    """Between the lines from a to b and from c to d."""
+    """Returns the distance between the segments from a to b and from c to d."""
     u, v, w = minus(b, a), minus(d, c), minus(a, c)
     uu, uv, vv, uw, vw = dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)
     wide = uu * vv - uv * uv
@@ -99,8 +99,8 @@ def apart_m(a, b, c, d):
 
 
 class Outcome:
-    """Of a run: way, tilt, how near segments came to each other, and what its motors did. Shares are of all
-    recorded moments, of motors also of all twelve."""
+    """Displacement, tilt, least distance between segments, and motor activity of a run. Shares refer to all recorded
+    moments, for motors also to all twelve motors."""
 
     def __init__(self, folder, result, roll_rad, lift_m):
         self.status = result.summary["status"]
@@ -110,10 +110,10 @@ class Outcome:
         self.distance_m = math.dist(*([row["system/com_x_m"], row["system/com_y_m"]] for row in (rows[0], rows[-1])))
         self.forward_m = rows[-1]["system/com_x_m"] - rows[0]["system/com_x_m"]
         pose = [[self._pose(row, i) for i in range(SEGMENTS)] for row in rows]
-        # Orientations are counted from the start, which is rolled: so are the nodes, and the way up.
+        # Orientations are relative to the start, which is rolled; so are the nodes and the upward direction.
         roll = (math.cos(roll_rad / 2), math.sin(roll_rad / 2), 0, 0)
         upright = turned(roll, (0, 0, 1))
-        levers = []   # of the nodes, seen from the centre of mass
+        levers = []   # of the nodes, relative to the center of mass
         for i, (at, _) in enumerate(pose[0]):
             middle = minus(at, (0, 0, lift_m))
             front = (FRONT_M[0] - i * SPACING_M, *FRONT_M[1:])
@@ -143,7 +143,7 @@ class Outcome:
 
     @staticmethod
     def _gap(poses, levers):
-        """Between the surfaces of rods of neighbours."""
+        """Returns the least distance between the surfaces of neighbors' rods."""
         points = [[tuple(at[k] + p[k] for k in range(3)) for p in (turned(q, lever) for lever in own)]
                   for (at, q), own in zip(poses, levers)]
         rods = list(itertools.combinations(range(4), 2))
@@ -160,14 +160,14 @@ def span(values, form):
 
 
 def cell_table(outcomes, show):
-    """A row for each friction, a column for each factor."""
+    """Formats one row per friction, one column per factor."""
     return table(["friction", *(f"x {factor}" for factor in FACTORS)],
                  [[f"{friction:g}", *(show(outcomes[factor, friction]) for factor in FACTORS)]
                   for friction in FRICTIONS])
 
 
 def picture(outcomes):
-    """Nearest approach of segments against the factor, a line for each run."""
+    """Draws the least distance of segments against the factor, one line per run."""
     left, top, width, height = 70, 30, 620, 330
     shades = ["#08306b", "#2171b5", "#4aa3c7", "#74b266", "#e08a1e", "#b2182b"]
     most = 15
@@ -195,28 +195,28 @@ def picture(outcomes):
     out.append(f'<text x="{left + width / 2}" y="{top + height + 44}" text-anchor="middle">'
                "amplitude, times the simulation's of the paper</text>")
     out.append(f'<text x="20" y="{top + height / 2}" text-anchor="middle" '
-               f'transform="rotate(-90 20 {top + height / 2})">least distance of neighbours, cm</text>')
+               f'transform="rotate(-90 20 {top + height / 2})">smallest distance of neighbors, cm</text>')
     return "\n".join(out + ["</svg>", ""])
 
 
 def answer(outcomes):
-    """What the paper saw, and whether it is so here: for the page's first lines."""
+    """Compares the paper's observation with the results, for the top of the page."""
     runs = [run for cell in outcomes.values() for run in cell]
     down = sum(run.toppled_s is not None for run in runs)
     most = max(run.tilt_deg for run in runs)
-    text = (f"No segment ever topples: none tilts by more than {most:.0f} degrees" if down == 0 else
+    text = (f"No segment topples: none tilts by more than {most:.0f} degrees" if down == 0 else
             f"A segment topples in {down} of {len(runs)} runs; the largest tilt is {most:.0f} degrees")
     free = [f for f in FACTORS if all(run.touching == 0 for mu in FRICTIONS for run in outcomes[f, mu])]
     stuck = [f for f in FACTORS if all(run.touching > 0 for mu in FRICTIONS for run in outcomes[f, mu])]
     if stuck:
         text += f". Segments do slide together, from {min(stuck)} times the amplitude on at every friction"
     if free:
-        text += f"; up to {max(free)} times it none touches its neighbour in any run"
+        text += f"; up to {max(free)} times, none touches its neighbor in any run"
     own = [run for mu in FRICTIONS for run in outcomes[FACTORS[-1], mu]]
     return textwrap.fill(
         f"{text}. At the robot's own amplitudes they touch for {span([100 * r.touching for r in own], '{:.0f}'.format)} % "
-        f"of the time, and come as near as {span([100 * r.near_m for r in own], '{:.1f}'.format)} cm, from centre of "
-        f"mass to centre of mass, where they started about {100 * START_M:.0f} cm apart, whatever the friction.", 110)
+        f"of the time, and come as close as {span([100 * r.near_m for r in own], '{:.1f}'.format)} cm between centers "
+        f"of mass (about {100 * START_M:.0f} cm at the start), at every friction.", 110)
 
 
 def page(taut):
@@ -245,15 +245,15 @@ def page(taut):
         "near": cell_table(coarse, lambda cell: span([100 * run.near_m for run in cell], "{:.1f}".format)),
         "touching": cell_table(coarse, lambda cell: span([100 * run.touching for run in cell], "{:.0f}".format)),
         "forward": cell_table(coarse, lambda cell: span([100 * run.forward_m for run in cell], "{:.0f}".format)),
-        "motors": table(["amplitude", "winding at full speed %", "at the least length %", "at 50 N %",
+        "motors": table(["amplitude", "winding at full speed %", "at the minimum length %", "at 50 N %",
                          "largest tension N"],
                         [[f"x {factor}", *(span([form(run) for mu in FRICTIONS for run in coarse[factor, mu]],
                                                 "{:.0f}".format)
                                            for form in (lambda r: 100 * r.at_speed, lambda r: 100 * r.at_length,
                                                         lambda r: 100 * r.at_force, lambda r: r.most_n))]
                          for factor in FACTORS]),
-        "others": table(["what", "friction on the ground", "amplitude", "least distance cm", "touching %",
-                         "largest tilt degrees", "forwards cm"],
+        "others": table(["run", "friction on the ground", "amplitude", "smallest distance cm", "touching %",
+                         "largest tilt degrees", "forward cm"],
                         [[text, f"{friction:g}", f"x {factor}", f"{100 * run.near_m:.1f}", f"{100 * run.touching:.0f}",
                           f"{run.tilt_deg:.0f}", f"{100 * run.forward_m:.0f}"]
                          for (text, friction, factor), run in other_runs.items()]),

@@ -1,4 +1,4 @@
-"""A measured prism of aluminium: one number from one test, judged by another."""
+"""A measured aluminum prism: one parameter from one test, validated by another."""
 
 import pathlib
 import time
@@ -9,12 +9,12 @@ from validation.runs import Problem, fill, table
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 DATA = fits.REFERENCE / "feron_t3"
-TESTS = {"6a": 0.00075, "6b": 0.0047}   # by how much the struts were lengthened [m]
+TESTS = {"6a": 0.00075, "6b": 0.0047}   # elongation of the struts [m]
 STRUTS = ("S1", "S2", "S3")
 
 
 def prepare(folder, test):
-    """The measured rows with the names of taut, and the experiment whose load cases are theirs."""
+    """Writes the measured rows with taut's names, and the experiment with their load cases."""
     path = DATA / f"fig{test}_measured.csv"
     if not path.exists():
         raise Problem(f"there is no {path}: the data are not ours to pass on (docs/validation/t3_prism.md says where from)")
@@ -36,12 +36,12 @@ def prepare(folder, test):
 
 
 def carried(check):
-    """Share of the applied load that the measured forces carry at the top nodes, of each load."""
+    """Returns the fraction of each applied load that the measured forces balance at the top nodes."""
     return [row["carried_n"] / row["applied_n"] for row in check["rows"][1:]]
 
 
 def forces(points, key):
-    """Mean magnitude of the error, as a share of what was measured [%]."""
+    """Returns the mean magnitude of the error, relative to the measurement [%]."""
     errors = [abs(p[key] / p["measured"] - 1) for p in points if p["channel"].endswith("_n")]
     return 100 * sum(errors) / len(errors)
 
@@ -84,7 +84,7 @@ def page(taut):
         "version": taut("--version").split()[-1], "seconds": f"{time.monotonic() - started:.0f}",
         "machine": machine(), "strut": f"{-strut['untuned'] / 1e3:.4f}",
         "table": table(["fitted to 6a", "forces 6a [%]", "forces 6b [%]", "heights 6a [mm]", "heights 6b [mm]",
-                        "the fit is"], rows),
+                        "fit"], rows),
         "share": f"{p['value']:.4f}", "error": f"{max(p['se'], p['se_jackknife'] or 0):.4f}", "verdict": p["verdict"],
         "carried": table(["test", "least", "most", "mean"],
                          [[c["experiment"][1:], *(f"{x:.3f}" for x in (min(carried(c)), max(carried(c)),

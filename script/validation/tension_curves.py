@@ -1,4 +1,4 @@
-"""The paper's Figs. 3 to 5 as curves: six cables in panels, actual tension and set point beside the simulations."""
+"""Figures 3 to 5 of the paper: six cables in panels, tension and set point of robot and simulations."""
 
 PANELS = [f"{side}_{where}_1" for side in ("inner", "outer") for where in ("top", "left", "right")]
 WIDTH, HEIGHT, ACROSS, DOWN = 270, 150, 330, 200
@@ -7,20 +7,20 @@ SCALE = (1, 2, 5, 10, 15, 20, 25, 30, 40, 50)
 
 
 class Curve:
-    """What is drawn in all panels: values by cable against time."""
+    """A curve in all panels: values by cable against time."""
 
     def __init__(self, title, colour, time_s, value_of, wide=1.2, dashes=""):
         self.title, self.colour, self.time_s, self.value_of = title, colour, time_s, value_of
         self.wide, self.dashes = wide, dashes
 
     def path(self, cable, span_s, top_n, left, top, row_s):
-        """SVG's points within the span, about `row_s` apart, cut off at the top of the panel."""
+        """Returns SVG points within the span, about `row_s` apart, clipped at the top of the panel."""
         out, next_s, breaks = [], span_s[0], True
         for time_s, value in zip(self.time_s, self.value_of[cable]):
             if time_s < next_s - 1e-6 or time_s > span_s[1] + 1e-6:
                 continue
             next_s = max(next_s + row_s, time_s)
-            if value != value:  # no set point: not in impedance control
+            if value != value:  # NaN: no set point outside impedance control
                 breaks = True
                 continue
             x = left + WIDTH * (time_s - span_s[0]) / (span_s[1] - span_s[0])
@@ -32,7 +32,7 @@ class Curve:
 
 
 def top_of(curves, cable, span_s):
-    """End of a panel's scale: above all tensions, not all set points, which a gait throws far beyond."""
+    """Returns the upper limit of a panel: above all tensions; set points of a gait may be far larger."""
     most = max(value for curve in curves for time_s, value in zip(curve.time_s, curve.value_of[cable])
                if span_s[0] <= time_s <= span_s[1])
     return next((end for end in SCALE if end >= 1.08 * most), 50)
@@ -57,7 +57,7 @@ def panel(number, cable, tensions, curves, span_s, row_s):
 
 
 def picture(set_point, tensions, span_s, row_s):
-    """`set_point` is drawn below `tensions`, whose scale it does not stretch."""
+    """Draws all panels. `set_point` is drawn below `tensions` and does not affect their scale."""
     curves = [set_point, *tensions]
     width, height = LEFT + 3 * ACROSS - 20, TOP + 2 * DOWN + 44
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" '

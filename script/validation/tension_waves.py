@@ -1,4 +1,4 @@
-"""Tensions of a Tetraspine3 run after its start, and how two runs differ: in level, in swing, in time."""
+"""Tensions of a Tetraspine3 run after its start, and differences between two runs: level, oscillation, time lag."""
 
 import cmath
 import csv
@@ -21,7 +21,7 @@ def h5py():
 
 
 class Waves:
-    """Tensions of the cables after the start [N], as arrays with equal time between rows."""
+    """Tensions of the cables after the start [N], as arrays with constant row interval."""
 
     def __init__(self, time_s, tension_n_of, until_s=None, from_s=START_S):
         late = time_s >= from_s - 1e-9
@@ -38,24 +38,24 @@ class Waves:
         return sum(wave.mean() for wave in self.of.values()) / len(self.of)
 
     def swing(self):
-        """Root mean square about each cable's own mean."""
+        """Returns the root mean square of the deviations from each cable's mean."""
         return (sum(wave.var() for wave in self.of.values()) / len(self.of)) ** 0.5
 
     def strongest(self):
-        """Frequency [Hz] of the strongest line of the cable that swings most."""
+        """Returns the dominant frequency [Hz] of the cable with the largest oscillation."""
         wave = max(self.of.values(), key=lambda wave: wave.var())
         return dominant(wave.tolist(), self.row_s)[0]
 
     def lines(self, frequency_hz):
-        """Complex amplitude of each cable at a frequency."""
+        """Returns the complex amplitude of each cable at a frequency."""
         return {cable: cmath.rect(*line_at(wave.tolist(), self.row_s, frequency_hz)) for cable, wave in self.of.items()}
 
 
 class Off:
-    """How far a run is from another one with the same rows; with `frequency_hz` also how late it is.
+    """Difference of a run from another one with the same rows; with `frequency_hz` also its time lag.
 
-    `lag_s` is the one time by which all cables together are late at that frequency; `aligned_n` is the rms that is
-    left of a difference if each cable's mean and that time are taken out."""
+    `lag_s` is the common lag of all cables at this frequency; `aligned_n` is the rms difference that remains after
+    removal of each cable's mean and of the lag."""
 
     def __init__(self, waves, reference, frequency_hz=None):
         pairs = [(waves.of[cable], reference.of[cable]) for cable in CABLES]
@@ -72,7 +72,7 @@ class Off:
         ours, theirs = waves.lines(frequency_hz), reference.lines(frequency_hz)
         turned = cmath.phase(sum(theirs[cable] * ours[cable].conjugate() for cable in CABLES))
         self.lag_s = turned / (2 * math.pi * frequency_hz)
-        edge_s = 1 / frequency_hz  # what is moved out of the window at either end
+        edge_s = 1 / frequency_hz  # shifted out of the window at either end
         time_s = reference.time_s
         inside = (time_s > time_s[0] + edge_s) & (time_s < time_s[-1] - edge_s)
         squares = []
@@ -93,7 +93,7 @@ def read_trace(path, until_s=None):
 
 
 def read_ntrt(path, from_s=START_S):
-    """NTRT's elastic tensions, from a trace in tests/data/ntrt."""
+    """Reads NTRT's elastic tensions from a trace in tests/data/ntrt."""
     import numpy
     with gzip.open(path, "rt", newline="") as file:
         rows = list(csv.DictReader(file))

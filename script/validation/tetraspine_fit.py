@@ -1,4 +1,4 @@
-"""Tetraspine3's six maxima: what they tell of a model of it, and what would tell more."""
+"""Tetraspine3's six maxima: their information about a model, and experiments that would yield more."""
 
 import pathlib
 import re
@@ -15,11 +15,11 @@ SET_POINTS = {"inner, top": "it", "inner, left": "il", "inner, right": "ir", "ou
 PRIORS = {"push_n": 3, "yaw_rad": 0.09, "pitch_rad": 0.09, "shared": 0.15, "hold_yaw_rad": 0.09, "ground_friction": 0.5,
           **{f"longer_{k}_m": 0.003 for k in SET_POINTS.values()}, "mass_0": 0.03, "mass_1": 0.03, "mass_2": 0.03,
           "inner": 0.05, "outer": 0.05, "spacing_m": 0.003, "edge_m": 0.003}
-FIRST = ("push_n", "yaw_rad", "ground_friction")   # what the maxima can feel most of
+FIRST = ("push_n", "yaw_rad", "ground_friction")   # parameters to which the maxima are most sensitive
 
 
 def experiment(folder):
-    """The push test with everything that is not known for sure as a parameter."""
+    """Writes the push test with every uncertain quantity as a parameter."""
     text = (ROOT / "share/experiments" / "push_20n.yaml").read_text()
     text = replaced(text, "../models/", fits.beside(folder, "share/models") + "/")
     text = replaced(text, "  ground_friction: 0.5\n", "  ground_friction: 0.5\n" + "".join(
@@ -38,7 +38,7 @@ def experiment(folder):
     text = replaced(text, "force_n: [[30, 0]", "force_n: [[35 - rise_s, 0]")
     text += ("scale:\n" + "".join(f"  - {{mass: mass_{i}, bodies: segment_{i}}}\n" for i in range(3)) +
              "  - {stiffness: inner, cables: inner}\n  - {stiffness: outer, cables: outer}\n")
-    # What the robot's load cells saw; what another simulator says is no measurement.
+    # Measurements by the robot's load cells only; results of another simulator are not measurements.
     text = re.sub(r"  - source: NTRT(?:.*\n)(?:    .*\n)*", "", text)
     (folder / "push.yaml").write_text(text)
 
@@ -65,7 +65,7 @@ DESIGN = ("design:\n  - name: cable_means\n    residuals:\n" + phases(["cable/*/
 
 
 def off(fit, key):
-    """Mean error of the maxima [%]."""
+    """Returns the mean error of the maxima [%]."""
     points = fit.points("train")
     return 100 * sum(abs(p[key] / p["measured"] - 1) for p in points) / len(points)
 
@@ -91,7 +91,7 @@ def page(taut):
     outer = next(k for k in left if "outer_left_1" in k)
     return fill(TEMPLATE.read_text(), {
         "version": taut("--version").split()[-1], "seconds": f"{time.monotonic() - started:.0f}",
-        "machine": machine(), "fits": table(["fitted", "push [N]", "mean error [%]", "chi-square", "the fit is"], rows),
+        "machine": machine(), "fits": table(["fitted", "push [N]", "mean error [%]", "chi-square", "fit"], rows),
         "numbers": str(len(PRIORS)),
         "measured": f"{left[outer]['measured']:.2f}", "slow": f"{slow[outer]['untuned']:.2f}",
         "fast": f"{left[outer]['untuned']:.2f}",

@@ -1,4 +1,4 @@
-"""A robot whose numbers are known, measured in a simulation: does a fit find them, and does it say what it cannot?"""
+"""Fits to simulated measurements of a robot with known parameters: accuracy, and detection of unidentifiable ones."""
 
 import pathlib
 import time
@@ -10,14 +10,14 @@ from validation.runs import fill, table
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 SEEDS = 20
 RATE_HZ, LASTS_S = 50, 4.0
-WEIGHT_N = 8                           # laid on while it is dragged
-# What the robot of a seed has in place of what its model says: nominal, how far it is off (sd).
+WEIGHT_N = 8                           # placed on the robot while it is dragged
+# True parameters of the robot of a seed, in contrast to the model: nominal, deviation (sd).
 ROBOT = {"stiffness_n_per_m": (229.16, 12), "mass": (1, 0.05), "ground_friction": (0.5, 0.1)}
 CELLS, CAMERA, DELAY = "gain cable/*/tension_n", "offset body/*/position_x_m", "delay"
 SENSORS = {CELLS: (1, 0.03), CAMERA: (0, 0.004), DELAY: (0.05, 0.02)}
 WHAT = {"stiffness_n_per_m": "stiffness of the springs [N/m]", "mass": "factor on all masses",
         "ground_friction": "friction of the ground", CELLS: "gain of the load cells",
-        CAMERA: "where the camera stands, x [m]", DELAY: "how late the logger's clock is [s]"}
+        CAMERA: "camera position, x [m]", DELAY: "delay of the logger's clock [s]"}
 ESTIMATE = ["{parameter: stiffness_n_per_m, low: 100, high: 500, scale: 12}",
             "{parameter: mass, low: 0.5, high: 2, scale: 0.05}",
             "{parameter: ground_friction, low: 0.05, high: 2, scale: 0.1}",
@@ -25,13 +25,13 @@ ESTIMATE = ["{parameter: stiffness_n_per_m, low: 100, high: 500, scale: 12}",
             '{channel: "body/*/position_x_m", offset: {scale: 0.004}}',
             "{clock: data, delay_s: {low: 0, high: 0.2, start: 0.05, scale: 0.02}}"]
 DAMPING = "{parameter: damping_n_s_per_m, low: 1, high: 100, scale: 4}"
-ALIAS = "{parameter: friction, low: 0.01, high: 1, scale: 0.03}"  # of the rods; with the ground's only the product acts
+ALIAS = "{parameter: friction, low: 0.01, high: 1, scale: 0.03}"  # coefficient of the rods; only its product with the ground's has an effect
 NOISE = {"tension_n": 0.2, "position_m": 0.001, "scale_n": 0.05}  # sd of a row
 
 
 def experiment(folder):
-    """A hand drags the robot's tip by a spring scale while two cables are wound in and let out, and from 2.2 s on a known
-    weight lies on it: what the scale shows more by then tells friction from mass."""
+    """Writes the experiment: a hand drags the robot's tip by a spring scale while two cables are wound in and let out.
+    From 2.2 s on a known weight lies on it: the increase of the force separates friction from mass."""
     (folder / "twin.yaml").write_text(f"""taut: 1
 kind: experiment
 name: twin
@@ -58,8 +58,8 @@ record: {{rate_hz: 200}}
 
 
 def measure(taut, folder, seed, name, weight_n):
-    """The robot of a seed, simulated with half the step of the fits, as its sensors and a late logger see it. Returns
-    the truth."""
+    """Simulates the robot of a seed with half the step of the fits, and writes the readings of its sensors by a late
+    logger. Returns the truth."""
     truth = blind.drawn(f"twin {seed}", {**ROBOT, **SENSORS})
     run = folder / f"truth_{name}"
     changes = [x for key in ROBOT for x in ("--set", f"{key}={truth[key]!r}")]
@@ -89,7 +89,7 @@ def text(estimate, name, weight_n):
 
 
 class Twin:
-    """Of one seed: what is so, and what fits find in its data."""
+    """True parameters of one seed, and fits to its data."""
 
     def __init__(self, taut, seed):
         top = taut.folder.resolve()
@@ -104,18 +104,18 @@ class Twin:
         return fits.run(self.taut, f"{self.name}/{name}", text([*ESTIMATE, *more], "measured", WEIGHT_N))
 
     def without_weight(self):
-        """The same robot measured without the known weight, with its dampers free."""
+        """Fits the same robot without the known weight, with free dampers."""
         self._measure()
         return fits.run(self.taut, f"{self.name}/without_weight", text([*ESTIMATE, DAMPING], "unweighted", 0))
 
     def off(self, fit):
-        """In standard errors, by the names of the estimates."""
+        """Returns errors in standard errors, by the names of the estimates."""
         return {name: blind.off(fit.parameters[name], truth) for name, truth in self.truth.items()}
 
 
 def alias_is_named(fit):
-    """Whether the two numbers of which only the product acts are said to take each other's place, with how much of one
-    for how much of the other, and no other number is blamed."""
+    """Returns whether the fit reports that only the product of these two parameters is identifiable, with the ratio at
+    which they compensate, and names no other parameter."""
     rods, ground = fit.parameters["friction"], fit.parameters["ground_friction"]
     others = [p for name, p in fit.parameters.items() if name not in ("friction", "ground_friction")]
     return (all(p["verdict"] == "traded" and set(p["trade"]) == {"friction", "ground_friction"} for p in (rods, ground))
@@ -149,8 +149,8 @@ def page(taut):
         "seeds": str(SEEDS), "numbers": str(len(offs)), "rate": str(RATE_HZ), "lasts": f"{LASTS_S:g}",
         "tension_n": f"{NOISE['tension_n']:g}", "position_mm": f"{1e3 * NOISE['position_m']:g}",
         "scale_n": f"{NOISE['scale_n']:g}",
-        "table": table(["number", "how far robots differ (sd)", "standard error, mean", "within one", "within two",
-                        "off in the mean, in standard errors", "at most"], [row(name, twins, found) for name in WHAT]),
+        "table": table(["number", "spread of the robots (sd)", "standard error, mean", "within one", "within two",
+                        "mean error, in standard errors", "largest"], [row(name, twins, found) for name in WHAT]),
         "within": f"{sum(abs(x) <= 2 for x in offs)}", "share": f"{100 * sum(abs(x) <= 2 for x in offs) / len(offs):.0f}",
         "good": f"{sum(not fit.judgements() for fit in found)}",
         "one": table(["number", "model", "found", "standard error", "verdict", "truth"], of_one),

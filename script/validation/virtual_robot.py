@@ -1,4 +1,5 @@
-"""The paper's experiments on emulated boards, beside the pure simulation and NTRT; and where they differ."""
+"""The paper's experiments on emulated boards, in comparison with the pure simulation and NTRT; causes of
+differences."""
 
 import concurrent.futures
 import json
@@ -17,8 +18,8 @@ PUSH, SINE, CPG = "push_20n", "sine_hand_tuned", "cpg_learned"
 EXPERIMENTS = (PUSH, SINE, CPG)
 NTRT = {name: ROOT / f"tests/data/ntrt/{trace}_1000hz.csv.gz"
         for name, trace in ((PUSH, "push"), (SINE, SINE), (CPG, CPG))}
-CAUSE_S = 20.0  # how long the gaits' runs for causes are; the push is over after 45 s
-# Of the pictures: from when to when, time between points, width of the set point (the push's tensions cover it).
+CAUSE_S = 20.0  # duration of the gaits' runs for causes; the push is over after 45 s
+# For the pictures: time span, interval of points, width of the set point (the push's tensions cover it).
 SPANS = {PUSH: ((20, 60), 0.2, 4.5), SINE: ((30, 40), 0.04, 1.2), CPG: ((30, 35), 0.02, 0.8)}
 FULL_DUTY = 0.999
 FAULTS = ("over tension", "sensor", "slack", "stall", "polarity", "runaway", "hot")  # MotorFault of taut/board/faults.h
@@ -31,7 +32,7 @@ class Runs:
         self.taut, self.command = taut, pathlib.Path(taut.command).parent / "taut_virtual_robot"
         if not os.access(self.command, os.X_OK):
             raise Problem(f"there is no {self.command}: it wants gcc-avr, avr-libc and libsimavr-dev")
-        self.firmware = {}  # by what is changed in it
+        self.firmware = {}  # by the changes in it
 
     def folder(self, kind, name, cause):
         title = "".join(letter if letter.isalnum() else "_" for letter in cause.title)
@@ -64,7 +65,7 @@ class Runs:
 
 
 class Beside:
-    """The pure simulation of an experiment, and what others are set beside it."""
+    """The pure simulation of an experiment, and comparisons with it."""
 
     def __init__(self, name, path):
         self.name, self.path, self.whole = name, path, read_trace(path / "trace.h5")
@@ -73,7 +74,7 @@ class Beside:
         self.frequency_hz = None if name == PUSH else self.whole.strongest()
 
     def off(self, path):
-        """From the start to the end of a cause's run."""
+        """Returns the difference from the start to the end of a cause's run."""
         return Off(read_trace(path / "trace.h5", self.until_s), self.cut, self.frequency_hz)
 
 
@@ -86,7 +87,7 @@ def late_ms(off):
 
 
 def compared_tables(beside, motors, boards):
-    """Of the whole minute: how large, and of what the difference is made."""
+    """Formats differences over the whole minute: size and composition."""
     sizes, shapes = [], []
     for name in EXPERIMENTS:
         ntrt, pure = read_ntrt(NTRT[name]), beside[name]
@@ -103,15 +104,15 @@ def compared_tables(beside, motors, boards):
                 shapes.append(["" if not itself else name, who, f"{1 / waves.strongest():.3f}", *(
                     [""] * 5 if itself else (f"{off.rms_n:.2f}", f"{off.means_n:.2f}", f"{100 * off.swing:.0f}",
                                              late_ms(off), f"{off.aligned_n:.2f}"))])
-    return (table(["experiment", "who", "largest tension [N]", "off NTRT's", "mean tension [N]", "swing [N]",
+    return (table(["experiment", "variant", "largest tension [N]", "against NTRT", "mean tension [N]", "swing [N]",
                    "rms off the simulation [N]", "most [N]"], sizes),
-            table(["experiment", "who", "period [s]", "rms off [N]", "means off [N]", "swing [%]", "late by [ms]",
+            table(["experiment", "variant", "period [s]", "rms off [N]", "means off [N]", "swing [%]", "late by [ms]",
                    "left when aligned [N]"], shapes))
 
 
 def causes_table(causes, names, beside, path_of):
-    """A row for each cause; of the push the difference, of the gaits also what it is made of."""
-    head, rows = ["what is different"], []
+    """Formats one row per cause: the difference, for gaits also its composition."""
+    head, rows = ["change"], []
     for name in names:
         head += ["push: rms [N]", "most [N]"] if name == PUSH else [
             f"{'sine' if name == SINE else 'learned gait'}: rms [N]", "means [N]", "swing [%]", "late [ms]"]
@@ -126,7 +127,7 @@ def causes_table(causes, names, beside, path_of):
 
 
 def winding_table(motors, boards, strong):
-    """How fast a motor winds at full voltage, in and out, and how often it is there."""
+    """Formats the winding speeds at full voltage, in and out, and how often they occur."""
     rows = []
     for name in (SINE, CPG):
         rows.append([f"{name}, with motors", *winding_cells(motors[name])])
@@ -159,7 +160,7 @@ def winding_cells(path):
 
 
 def faults(done):
-    """What of the runs on boards must not be taken at its word: faults that stopped a motor."""
+    """Describes the faults that stopped a motor in runs on boards, which limit their validity."""
     found = []
     for (name, cause), path in done.items():
         with h5py().File(path / "host.h5", "r") as file:
@@ -201,7 +202,7 @@ def called(causes, title):
 
 
 def headlines(beside, motors, boards, done, simulate):
-    """The figures of the page's first lines: rms off the pure simulation [N], as in the tables below them."""
+    """Returns the numbers at the top of the page: rms difference from the pure simulation [N], as in the tables."""
 
     def rms(name, path):
         return f"{beside[name].off(path).rms_n:.1f}"

@@ -1,4 +1,4 @@
-"""What may make emulated boards differ from the pure simulation, one thing at a time, and how to switch it."""
+"""Possible causes of differences between emulated boards and the pure simulation, each switched separately."""
 
 import os
 import pathlib
@@ -9,8 +9,8 @@ import subprocess
 from validation.runs import ROOT, Problem, replaced
 
 LIMITED, MOTORS = "tetraspine3", "tetraspine3_motors"
-# The rate of the cable's length, as the simulation's law has it, in place of that of the rest length. To find a cause
-# only: its noise is newtons of set point.
+# Uses the rate of the cable's length, as the simulation's law does, instead of the rest length's rate. Only for finding
+# the cause: its noise causes newtons of set point.
 CABLE_RATE = {
     "  motor.rate_m_per_s = motor.counts_per_tick * numbers.speed_per_count_m_per_s;\n": "  (void)numbers;\n",
     "  motor.length_m = control::LengthFromTension(motor.rest_length_m, motor.tension_n, p[kStiffness]);\n":
@@ -23,15 +23,15 @@ CABLE_RATE = {
 
 
 class Cause:
-    """`model` of models/ with `changes` of its text, `keys` of the experiment; on boards `flags` and, if `firmware` is
-    not empty, changes of include/taut/board/motor_loop.h."""
+    """One cause: `model` of models/ with `changes` of its text, `keys` of the experiment; on boards `flags` and, if
+    `firmware` is not empty, changes of include/taut/board/motor_loop.h."""
 
     def __init__(self, title, model=LIMITED, changes=None, keys="", flags=(), firmware=None):
         self.title, self.model, self.changes, self.keys = title, model, changes or {}, keys
         self.flags, self.firmware = list(flags), firmware
 
     def write(self, folder, name):
-        """The experiment and its model as files in the folder."""
+        """Writes the experiment and its model as files in the folder."""
         folder.mkdir(parents=True, exist_ok=True)
         text = (ROOT / f"share/models/{self.model}.yaml").read_text()
         for old, new in self.changes.items():
@@ -48,7 +48,7 @@ class Cause:
 
 
 def ohms(part, inertia=1.0):
-    """All resistances between supply and rotor divided by `part`, the rotor's inertia times `inertia`."""
+    """Divides all resistances between supply and rotor by `part`, multiplies the rotor's inertia by `inertia`."""
     return {"supply: battery": f"supply: battery\n    resistance_ohm: 19.8 / {part}\n"
                                f"    driver_resistance_ohm: 0.45 / {part}\n    rotor_inertia_kg_m2: 5.6e-8 * {inertia}",
             "supply_resistance_ohm: 0.3": f"supply_resistance_ohm: 0.3 / {part}"}
@@ -59,16 +59,16 @@ NO_FRICTION = {"static_friction_torque_n_m: 0.00012": "static_friction_torque_n_
 NO_GEAR_LOSS = {"gear_efficiency: 0.66": "gear_efficiency: 1"}
 LIGHT = {"supply: battery": "supply: battery\n    rotor_inertia_kg_m2: 5.6e-10"}
 TWICE = {"supply_voltage_v: 12": "supply_voltage_v: 24"}
-# Titles that are looked up.
-LOSS_ALONE = "that, but resistances as they are, rotors / 100: loss of speed under load alone"
+# Titles that other code looks up.
+LOSS_ALONE = "the same, but unchanged resistances, rotors / 100: loss of speed under load alone"
 STIFF = "resistances / 100"
 STIFF_PID = "resistances / 100, PID three times"
 STRONG_P = "P ten times as strong"
 STRONG_PID = ["force_p_per_n=0.18", "force_i_per_n_s=1.8"]
 
 SENSITIVITY = (
-    Cause("start up to 1 um beside", keys="start_noise: {position_m: 0.000001}\n"),
-    Cause("start up to 1 mm beside", keys="start_noise: {position_m: 0.001}\n"),
+    Cause("start displaced by up to 1 um", keys="start_noise: {position_m: 0.000001}\n"),
+    Cause("start displaced by up to 1 mm", keys="start_noise: {position_m: 0.001}\n"),
     Cause("half the step", keys="step_s: 0.0005\n"),
     Cause("friction + 1 %", keys="scale: [{friction: 1.01}]\n"),
     Cause("masses + 1 %", keys="scale: [{mass: 1.01}]\n"),
@@ -89,7 +89,7 @@ ADDED = (
     Cause("no limit of speed", changes={SPEED + ", ": ""}),
 )
 MOTORS_CHANGED = (
-    Cause("as they are", MOTORS),
+    Cause("unchanged", MOTORS),
     Cause("gears without loss", MOTORS, NO_GEAR_LOSS),
     Cause("motors without friction", MOTORS, NO_FRICTION),
     Cause("rotors of a hundredth", MOTORS, LIGHT),
@@ -112,8 +112,8 @@ def on_boards(title, changes=None, board=(), flags=(), firmware=None):
     return Cause(title, MOTORS, changes, "", [*(["--board", *board] if board else []), *flags], firmware)
 
 
-ON_BOARDS = (  # the first is what the others are set beside
-    on_boards("as it is"),
+ON_BOARDS = (  # the first is the reference for the others
+    on_boards("unchanged"),
     on_boards("load cells without noise", flags=["--noise_counts", "0"]),
     on_boards("load cells not filtered", board=["tension_filter_share=1"]),
     on_boards("rate of the encoder not filtered", board=["rate_filter_share=1"]),
@@ -137,7 +137,7 @@ TOGETHER = (
 
 
 def build_firmware(folder, changes):
-    """The boards' program with changes of its motor loop, by the flags of apps/firmware/CMakeLists.txt."""
+    """Builds the boards' program with changes of its motor loop, with the flags of apps/firmware/CMakeLists.txt."""
     shutil.rmtree(folder, ignore_errors=True)
     for part in ("include/taut/board", "include/taut/control", "apps/firmware"):
         shutil.copytree(ROOT / part, folder / part)

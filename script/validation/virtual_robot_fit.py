@@ -1,4 +1,4 @@
-"""Springs, load cells and motors of the virtual robot from what its boards said: twelve motors that lift weights."""
+"""Parameters of springs, load cells and motors from logs of the virtual robot: twelve motors that lift weights."""
 
 import math
 import os
@@ -12,13 +12,13 @@ from validation.runs import Problem, fill, table
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 MOTORS = 12
-LENGTH_M, LIFT_M = 0.9, 0.05           # of a cable from weight to motor; how far a weight is lifted
-DUTIES = {"half": 0.5, "most": 0.8, "held_out": 0.65}   # limits of the duty, a log each
+LENGTH_M, LIFT_M = 0.9, 0.05           # cable length from weight to motor; height of the lift
+DUTIES = {"half": 0.5, "most": 0.8, "held_out": 0.65}   # limits of the duty, one log each
 BEGIN_S, CYCLE_S = 0.3, 0.01
-FILTER_S = 0.004                       # by which a tension is late: a low pass of 1 kHz whose share is 0.2
-G, VOLT, OHM, TORQUE_CONSTANT, M_PER_RAD = 9.81, 12, 20.25, 0.0115, 0.00517 / 76   # of data sheets and of the gear
+FILTER_S = 0.004                       # delay of a tension: a low pass at 1 kHz with factor 0.2
+G, VOLT, OHM, TORQUE_CONSTANT, M_PER_RAD = 9.81, 12, 20.25, 0.0115, 0.00517 / 76   # from data sheets and the gear
 NOMINAL = {"stiffness_n_per_m": 229.16, "friction_n_m": 8e-5, "efficiency": 0.66, "slack_m": 0.02}
-# What a motor's station has in place of that: nominal, how far it is off (sd).
+# True parameters of a motor's station, in contrast to these: nominal, deviation (sd).
 STATION = {"stiffness_n_per_m": (229.16, 15), "friction_n_m": (8e-5, 2e-5), "efficiency": (0.66, 0.05),
            "slack_m": (0.02, 0.002)}
 CELL = {"gain": (1, 0.04), "counts_at_zero": (31.5, 1.5)}
@@ -27,11 +27,11 @@ TENSION_SD_N, DUTY_SD = 0.06, 0.002
 
 
 def weight_kg(motor):
-    return 1.0 + 0.1 * motor           # weighed; what all forces are known by
+    return 1.0 + 0.1 * motor           # weighed; reference of all forces
 
 
 def model(motors, numbers):
-    """A stand: each motor hangs above a weight on the floor. `numbers`: motor -> of STATION."""
+    """Writes a stand: each motor hangs above a weight on the floor. `numbers`: motor -> values of STATION."""
     parameters, nodes, pairs, builders = [], [], [], []
     for m in motors:
         parameters += [f"  {name}_{m}: {value!r}\n" for name, value in numbers[m].items()]
@@ -63,9 +63,11 @@ def model(motors, numbers):
 
 
 class Course:
-    """A motor's way in and back out at a limited duty, by what is known beforehand. The boards are told to be at its other
-    end at once, so that they hold the duty at its limit all the way: what they say of it every 10 ms is then what it is. While
-    they follow a slow program it is not, it falls between broadcasts, and what is read is always the first of it."""
+    """A motor's winding in and back out at a limited duty, computed from the known parameters. The boards receive the
+    far
+    end as the target at once, so that they hold the duty at its limit all the way: then the duty that they report every
+    10 ms is accurate. With a slow program the duty drops between broadcasts, and the reported value is always the first
+    of each interval."""
 
     def __init__(self, motor, duty):
         load_n = weight_kg(motor) * G
@@ -82,8 +84,9 @@ class Course:
         return [[BEGIN_S, 0], [BEGIN_S + 0.05, -self.way_m], [self.down_s, -self.way_m], [self.down_s + 0.05, 0]]
 
     def steady(self, way):
-        """Spans in which the motor turns at the limit: slack, half tightened and lifting, on both ways. `way`: times, and
-        how much is wound in."""
+        """Returns the spans in which the motor turns at the limit: slack, half tightened and lifting, in both
+        directions.
+        `way`: times and wound lengths."""
         spans = [(0.25 * self.tight_m, 0.8 * self.tight_m),
                  *((self.tight_m + a * (self.lifted_m - self.tight_m), self.tight_m + b * (self.lifted_m - self.tight_m))
                    for a, b in ((0.2, 0.5), (0.5, 0.8))),
@@ -97,7 +100,7 @@ class Course:
 
 
 def experiment(path, motors, programs, duration_s):
-    """`programs`: motor -> points of its rest length's change."""
+    """Writes the experiment. `programs`: motor -> points of its rest length's change."""
     lines = "".join(f"        - {{cables: cable_{m}, change_m: {programs[m]}}}\n" for m in motors)
     path.write_text("taut: 1\nkind: experiment\nname: stand\nmodel: model.yaml\n"
                     "terrain: [{name: ground, plane: {height_m: 0}}]\n"
@@ -106,7 +109,7 @@ def experiment(path, motors, programs, duration_s):
 
 
 class Robot:
-    """The virtual robot on its stand: its hidden numbers, and what its boards said."""
+    """The virtual robot on its stand: its hidden parameters, and its boards' logs."""
 
     def __init__(self, taut, motors, seed):
         self.taut, self.motors = taut, motors
@@ -118,14 +121,14 @@ class Robot:
         self.folder = taut.folder.resolve() / f"stand_{seed}"
 
     def log(self, name):
-        """Runs it; what the PC heard."""
+        """Runs the robot; returns the data received by the PC."""
         folder = self.folder / f"truth_{name}"
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "model.yaml").write_text(model(self.motors, self.truth))
         courses = {m: Course(m, DUTIES[name]) for m in self.motors}
         experiment(folder / "stand.yaml", self.motors, {m: c.points() for m, c in courses.items()},
                    max(c.end_s for c in courses.values()) + 0.3)
-        # The cells are as the board assumes by default; what the board believes here is not.
+        # The true cells are the board's default assumption; the board's calibration is wrong here.
         cells = "".join(f"  - {{cable: cable_{m}, measured: 2026-01-01, load_cell_n_per_count: "
                         f"{N_PER_COUNT * cell['gain']!r}, load_cell_counts_at_zero: {cell['counts_at_zero']!r}}}\n"
                         for m, cell in self.cells.items())
@@ -138,15 +141,16 @@ class Robot:
         return blind.Trace(folder / "run/host.csv")
 
     def offset_n(self, motor):
-        """What the boards show of a cable without tension."""
+        """Returns the boards' tension reading of a cable without tension."""
         cell = self.cells[motor]
         return N_PER_COUNT * cell["gain"] * (COUNTS_AT_ZERO - cell["counts_at_zero"])
 
 
 def unrounded(heard, motor, name):
-    """Columns of tension and duty as they were on the board: what it tells is rounded towards 0 (docs/hardware/protocol.md),
-    tensions to a quarter of a count, duties to a 127th. Half a step comes on top of the first; of the second the limit is
-    known, which the width of pulses, of 400, has to the digit."""
+    """Returns columns of tension and duty before rounding: transmitted values are truncated
+    (docs/hardware/protocol.md),
+    tensions to a quarter of a count, duties to 1/127. Adds half a step to tensions; replaces duties at the limit by
+    the exact pulse width, in steps of 1/400."""
     cable = f"cable/cable_{motor}"
     limit = int(400 * DUTIES[name])
     told = limit * 127 // 400 / 127
@@ -156,8 +160,9 @@ def unrounded(heard, motor, name):
 
 
 def heard_at(heard, motor):
-    """Rows and the times that they are of: a status that did not know the broadcast before it (`stale_frames`) is one cycle
-    old. A board that ticks just as broadcasts come is now fresh, now not, and 10 ms in 300 would be 3 % of its speed."""
+    """Returns rows and the times of their measurements: a status from before the last broadcast (`stale_frames`) is one
+    cycle old. For a board that ticks just as broadcasts arrive this alternates, and 10 ms in 300 would be 3 % of its
+    speed."""
     stale = heard.of[f"board/{motor // 2}/stale_frames"]
     rows, times = [], []
     for i in range(1, len(stale)):
@@ -169,7 +174,9 @@ def heard_at(heard, motor):
 
 
 def data(folder, motor, name, heard):
-    """The experiment and the measurement of one motor: it wound as its encoder says. Returns when its motor was steady."""
+    """Writes the experiment, wound according to the encoder, and the measurement of one motor. Returns the spans in
+    which
+    the motor turned steadily."""
     cable = f"cable/cable_{motor}"
     rows, times = heard_at(heard, motor)
     first_m = heard.of[f"{cable}/rest_length_m"][rows[0]]
@@ -178,7 +185,7 @@ def data(folder, motor, name, heard):
                times[-1])
     channels = [f"{cable}/tension_n", f"{cable}/duty"]
     tension, duty = unrounded(heard, motor, name)
-    gap = math.nan  # rows have one of both: tensions are late
+    gap = math.nan  # rows have one of both, because tensions are delayed
     fits.write_rows(folder / f"{name}.csv", ["time_s", *channels],
                     [row for t, i in zip(times, rows) for row in ([t - FILTER_S, tension[i], gap], [t, gap, duty[i]])
                      if row[0] >= 0])
@@ -190,7 +197,7 @@ BOUNDS = {"stiffness_n_per_m": "low: 50, high: 1000, scale: 15", "friction_n_m":
 
 
 def text(motor, steady, more=()):
-    """A fit of one motor. `steady`: log -> when it was; `more`: estimates beside its own."""
+    """Returns the fit of one motor. `steady`: log -> spans; `more`: additional estimates."""
     cable = f"cable/cable_{motor}"
     estimate = [f"{{parameter: {name}_{motor}, {bounds}}}" for name, bounds in BOUNDS.items()]
     estimate += [f"{{channel: {cable}/tension_n, gain: {{scale: 0.04}}}}",
@@ -200,7 +207,7 @@ def text(motor, steady, more=()):
                           for name, use in uses.items())
     residuals = []
     for name, spans in steady.items():
-        # Where a weight lands or leaves the floor its cable's damper makes the tension jump: no derivative there.
+        # When a weight lands or leaves the floor, its cable's damper makes the tension jump: no derivative there.
         still = [(0.05, BEGIN_S - 0.02), (Course(motor, DUTIES[name]).down_s - 0.4, Course(motor, DUTIES[name]).down_s - 0.05)]
         residuals += [f"  - {{channel: {cable}/tension_n, sd: {TENSION_SD_N}, statistic: rows, experiments: [{name}], "
                       f"window: {{from_s: {a:.3f}, to_s: {b:.3f}}}}}\n" for a, b in [*spans, *still]]
@@ -210,14 +217,14 @@ def text(motor, steady, more=()):
             "".join(residuals) + "groups: window\nsearch: {step: 0.2}\n")
 
 
-MORE = {"the weight, if nobody had weighed it": "{parameter: mass_factor, low: 0.3, high: 3, scale: 0.05}",
+MORE = {"the weight, not weighed": "{parameter: mass_factor, low: 0.3, high: 3, scale: 0.05}",
         "friction at rest over that while turning": "{parameter: static_ratio, low: 1, high: 5, scale: 0.2}",
         "friction that grows with speed": "{parameter: viscous_n_m_s_per_rad, low: 0, high: 1e-6, start: 1e-8, scale: 3e-8}",
         "the torque constant": "{parameter: torque_factor, low: 0.8, high: 1.2, scale: 0.01}"}
 
 
 class Stand:
-    """All motors, by their logs alone."""
+    """Fits of all motors, from their logs alone."""
 
     def __init__(self, taut, motors=range(MOTORS), seed=1, duties=tuple(DUTIES)):
         self.taut, self.motors = taut, list(motors)
@@ -235,15 +242,15 @@ class Stand:
                         text(motor, self.steady[motor], more))
 
     def truth(self, motor):
-        """By the names of the estimates."""
+        """Returns the true values by the names of the estimates."""
         cable = f"cable/cable_{motor}/tension_n"
         return {**{f"{name}_{motor}": value for name, value in self.robot.truth[motor].items()},
-                # What is so of the cell is the assumed calibration; what the board believes is not.
+                # The assumed calibration is true for the cell; the board's is wrong.
                 f"gain {cable}": self.robot.cells[motor]["gain"], f"offset {cable}": self.robot.offset_n(motor)}
 
 
 WHAT = {"stiffness_n_per_m": ("stiffness of cable and spring [N/m]", 1), "friction_n_m": ("friction of the motor [mN m]", 1e3),
-        "efficiency": ("efficiency of the gear", 1), "slack_m": ("cable that is slack at first [mm]", 1e3),
+        "efficiency": ("efficiency of the gear", 1), "slack_m": ("initial slack of the cable [mm]", 1e3),
         "gain": ("gain of the load cell", 1), "offset": ("zero of the load cell [N]", 1)}
 
 
@@ -252,7 +259,7 @@ def kind(name):
 
 
 def motor_row(stand, motor, found):
-    """A motor's line: of each number what was found and what is so."""
+    """Formats a motor's line: estimate and truth of each parameter."""
     truth, cells = stand.truth(motor), [f"{motor}", f"{weight_kg(motor):g}"]
     for name, p in found.parameters.items():
         scale, error = WHAT[kind(name)][1], blind.error_of(p)
@@ -299,11 +306,11 @@ def page(taut):
         "version": taut("--version").split()[-1], "seconds": f"{time.monotonic() - started:.0f}", "machine": machine(),
         "motors": str(len(stand.motors)), "duties": ", ".join(f"{d:g}" for d in DUTIES.values()),
         "lift_cm": f"{100 * LIFT_M:g}", "heaviest_kg": f"{weight_kg(MOTORS - 1):g}",
-        "table": table(["number", "off before (rms)", "off after (rms)", "of the number",
-                        f"within two standard errors, of {len(stand.motors)}", "farthest, in standard errors"], rows),
+        "table": table(["number", "error before (rms)", "error after (rms)", "relative",
+                        f"within two standard errors, of {len(stand.motors)}", "largest, in standard errors"], rows),
         "within": str(sum(abs(x) <= 2 for x in everything)), "numbers": str(len(everything)),
-        "held": table(["motor", "tension, untuned [N]", "fitted", "duty, untuned", "fitted", "the fit is"], held),
-        "more": table(["one more number", "found", "standard error", "verdict", "traded against", "no longer told"], more),
+        "held": table(["motor", "tension, untuned [N]", "fitted", "duty, untuned", "fitted", "fit"], held),
+        "more": table(["parameter", "found", "standard error", "verdict", "traded against", "no longer estimated"], more),
         "all": table(["motor", "weight [kg]", *(what for what, _ in WHAT.values())],
                      [motor_row(stand, m, fit) for m, fit in found.items()]),
     })

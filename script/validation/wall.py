@@ -1,5 +1,5 @@
-"""Twelve segments over walls: how high, and how often, with cables that pass through them and that do not,
-and with a gait that feels them."""
+"""Twelve segments over walls: height and frequency of success, with cables that pass through the walls or collide
+with them, and with a gait with contact feedback."""
 
 import csv
 import pathlib
@@ -14,14 +14,14 @@ HEIGHTS_M = (0.02, 0.04, 0.06, 0.08, 0.10)
 STARTS = 20
 DURATION_S = 70
 FAR_SIDE_M = 1.20   # of the wall
-REACH_M = 0.25      # no point of a segment is further from its centre of mass
+REACH_M = 0.25      # largest distance of a segment's point from its center of mass
 SEGMENTS = 12
-ROBOT_CM = 33.0     # how high it stands
-SIDE_M = 2.5        # the wall reaches 3 m to either side
+ROBOT_CM = 33.0     # height of the standing robot
+SIDE_M = 2.5        # half width: the wall reaches 3 m to either side
 
 
 def start(number):
-    """Where, which way and on what; the first start is the experiment as it is."""
+    """Returns position, heading and ground of a start; the first is the unchanged experiment."""
     if number == 0:
         return {}
     rng = random.Random(number)
@@ -46,7 +46,9 @@ def variant(kind, height_m, number):
 
 
 def over_at_s(folder):
-    """When the whole robot is first behind the wall; None if never. And the segments then or at the end."""
+    """Returns the time at which the whole robot is first behind the wall (None if never), and the number of segments
+    behind
+    it then or at the end."""
     behind = 0
     with open(folder / "trace.csv", newline="") as file:
         for row in csv.DictReader(file):
@@ -61,7 +63,7 @@ def over_at_s(folder):
 
 
 def walls(taut, kind, results):
-    """The table of one experiment, and the highest wall that the unperturbed robot is over."""
+    """Formats the table of one experiment; returns also the highest wall that the unperturbed robot passes."""
     rows, highest = [], 0.0
     for height_m in KINDS[kind]:
         names = [variant(kind, height_m, number).name for number in range(STARTS)]
@@ -75,7 +77,7 @@ def walls(taut, kind, results):
                      f"{outcomes[0][0]:.1f}" if outcomes[0][0] is not None else "never",
                      f"{min(stuck)} to {max(stuck)}" if stuck else "", str(warned)])
     return table(["wall cm", "over it", "after s", "unperturbed: after s",
-                  "else: segments behind it in the end", "runs with a warning"], rows), highest
+                  "not over it: segments behind it at the end", "runs with a warning"], rows), highest
 
 
 def page(taut):

@@ -1,11 +1,11 @@
-"""Lines and harmonics of a periodic signal, by Fourier sums over a window."""
+"""Spectral lines and harmonics of a periodic signal, by Fourier sums over a window."""
 
 import cmath
 import math
 
 
 def _project(values, row_s, frequency_hz, window):
-    """Complex amplitude c of c exp(2 pi i f t), t from the middle of the window."""
+    """Returns the complex amplitude c of c exp(2 pi i f t), with t from the middle of the window."""
     middle = (len(values) - 1) / 2
     total, weight = 0j, 0.0
     step = cmath.exp(-2j * math.pi * frequency_hz * row_s)
@@ -27,8 +27,8 @@ def _centred(values):
 
 
 def dominant(values, row_s, least_hz=0.2, most_hz=6.0):
-    """(frequency [Hz], amplitude) of the strongest line: searched on the grid that the window's length
-    gives, then between its neighbours to 0.1 mHz."""
+    """Returns (frequency [Hz], amplitude) of the strongest line: searched on the frequency grid of the window,
+    then between its neighbors to 0.1 mHz."""
     values, window = _centred(values), _hann(len(values))
     grid = 1 / (row_s * len(values))
 
@@ -48,24 +48,25 @@ def dominant(values, row_s, least_hz=0.2, most_hz=6.0):
 
 
 def line_at(values, row_s, frequency_hz):
-    """(amplitude, phase [rad] of its cosine in the middle of the window) at a frequency."""
+    """Returns (amplitude, phase [rad] of its cosine in the middle of the window) at a frequency."""
     c = _project(_centred(values), row_s, frequency_hz, _hann(len(values)))
     return abs(c), cmath.phase(c)
 
 
 def harmonics(values, row_s, fundamental_hz, count):
-    """Complex amplitudes of the first `count` harmonics."""
+    """Returns the complex amplitudes of the first `count` harmonics."""
     values, window = _centred(values), _hann(len(values))
     return [_project(values, row_s, n * fundamental_hz, window) for n in range(1, count + 1)]
 
 
 def off_sine(spectrum):
-    """What a sine with the signal's first harmonic leaves of it, as a share of its rms."""
+    """Returns the remainder after subtraction of a sine with the signal's first harmonic, relative to the signal's
+    rms."""
     return math.sqrt(sum(abs(c) ** 2 for c in spectrum[1:]) / sum(abs(c) ** 2 for c in spectrum))
 
 
 def off_triangle(spectrum):
-    """The same for a triangle wave with the signal's first harmonic: sum of cos(n x) / n^2, n odd."""
+    """Same for a triangle wave with the signal's first harmonic: sum of cos(n x) / n^2, n odd."""
     first, left = spectrum[0], 0.0
     for n, c in enumerate(spectrum, start=1):
         triangle = abs(first) / n**2 * cmath.exp(1j * n * cmath.phase(first)) if n % 2 else 0

@@ -1,4 +1,4 @@
-/// The keys of what an experiment is to learners (docs/environments.md).
+/// Keys of reinforcement-learning environments (docs/environments.md).
 #pragma once
 
 #include "description/experiment/experiment_text.h"
@@ -14,8 +14,8 @@ inline const Choices<Measure> kRewardMeasures{{"none", Measure::kNone},
 template <class Io, Either<EnvironmentAction, EnvironmentActionText> Action>
 void Keys(Io& io, Action& a) {
   io.Map("", "environment.actions",
-         "Some cables, or some numbers of controllers and gaits, each with a number of its own in "
-         "the action, -1 to 1. 0 is what the experiment does without a learner.");
+         "Action on selected cables, or on parameters of controllers and gaits, with values from "
+         "-1 to 1. 0 leaves the experiment unchanged.");
   if constexpr (Io::kResolved) {
     io("cable", a.cable);
   } else {
@@ -25,101 +25,105 @@ void Keys(Io& io, Action& a) {
             R"("then": {"not": {"anyOf": [{"required": ["by"]}, {"required": ["name"]}]}}, )"
             R"("else": {"required": ["by"]})");
     io("cables", a.cables,
-       "Which cables. An action has them in the order of the model's cables, before all others.",
+       "Cable selector. Actions on cables come first in the action, in the order of the model's "
+       "cables.",
        Example{R"("driven")"});
   }
   io("rest_length_m", a.rest_length_m, Bound::kPositive,
-     "What 1 adds to the rest length that is commanded at the start. For cables that no controller "
-     "drives.");
+     "Length that an action of 1 adds to the initially commanded rest length. For cables without a "
+     "controller.");
   io("rest_length_rate_m_per_s", a.rest_length_rate_m_per_s, Bound::kPositive,
-     "How fast 1 lengthens what is commanded. For cables that no controller drives.");
+     "Rate at which an action of 1 lengthens the commanded rest length. For cables without a "
+     "controller.");
   io("velocity_input_m_per_s", a.velocity_input_m_per_s, Bound::kPositive,
-     "What 1 adds to V0 of impedance control. For cables of a controller with `impedance` and "
-     "without `velocity_input`.");
+     "Velocity that an action of 1 adds to V0 of impedance control. For cables of a controller "
+     "with `impedance` and without `velocity_input`.");
   if constexpr (Io::kResolved) {
     io("numbers", a.numbers, kLater);
   } else {
     io("each", a.each,
-       "Numbers of the controllers and their gaits, by the names that a study's `vary` has for "
-       "them, `*` for any letters: set points and gains of impedance control, frequencies, "
-       "amplitudes and phases of a gait. Each that fits has an action of its own.",
+       "Parameters of controllers and gaits, named as in a study's `vary`, `*` for any letters: "
+       "set points and gains of impedance control, frequencies, amplitudes and phases of a gait. "
+       "One action per matching parameter.",
        Example{R"("hold.*.tension_offset_n")"});
-    io("all", a.all, "The same, with one action for all that fit together.",
+    io("all", a.all, "As `each`, with one common action for all matching parameters.",
        Example{R"("hold.sine.*.amplitude_m_per_s")"});
   }
   io("by", a.by, Bound::kPositive,
-     "What 1 adds to the number, in its unit. The sum stays within the bounds that the number has "
-     "anywhere: no tension below 0. A frequency that changes does so without a jump of the phase.");
+     "Amount that an action of 1 adds to the parameter, in its unit. The sum stays within the "
+     "parameter's valid range: no negative tension. The phase stays continuous if a frequency "
+     "changes.");
   io("name", a.name, kName, kLater,
-     "Of an action on `all` of some numbers. That of the first of them if absent.");
+     "Name of an action on `all`. Default: the name of the first matching parameter.");
 }
 void Check(const MapReader& map, EnvironmentActionText& action);
 
 template <class Io>
 void Keys(Io& io, Like<EnvironmentReward> auto& r) {
-  io.Map("", "environment.reward",
-         "What a step is worth: by how much the score of a study with this objective would grow, "
-         "and more. Without an early end the rewards of an episode add up to that score.");
+  io.Map(
+      "", "environment.reward",
+      "Reward of a step: increase of the score that a study with this objective computes, plus the "
+      "terms below. Without early termination, the rewards of an episode sum to that score.");
   io("measure", r.measure, kRewardMeasures,
-     "As of a study's objective: `distance`, `heading` or `nearer` [m]. `none`: only what is below "
-     "counts, or what a program says.");
+     "Objective as in a study: `distance`, `heading` or `nearer` [m]. `none`: only the terms "
+     "below, or a reward that your program computes.");
   ObjectiveKeys(io, r);
-  io("alive_per_s", r.alive_per_s, Bound::kNonNegative, "For every second of an episode.");
+  io("alive_per_s", r.alive_per_s, Bound::kNonNegative, "Reward per second of an episode.");
   io("work_penalty_per_j", r.work_penalty_per_j, Bound::kNonNegative,
-     "Taken for every joule of the motors' work, tension times winding in.");
+     "Penalty per joule of motor work, tension times wound-in length.");
   io("failure_penalty", r.failure_penalty, Bound::kNonNegative,
-     "Taken when a world fails: it is not finite any more, too fast, off its terrain, or a cable "
-     "pulls more than `max_tension_n`.");
+     "Penalty if a world fails: its state is not finite, a body is too fast or off the terrain, or "
+     "a cable tension exceeds `max_tension_n`.");
 }
 void Check(const MapReader& map, EnvironmentReward& reward);
 
 template <class Io>
 void Keys(Io& io, Like<EnvironmentVariation> auto& v) {
   io.Map("", "environment.randomise",
-         "How episodes differ, each by its seed. What of the experiment depends on the seed "
-         "(`start_noise`, the errors of `sensors`) differs, too.");
+         "Domain randomization: differences between episodes, drawn from the seed of each. Parts "
+         "of the experiment that depend on the seed (`start_noise`, the errors of `sensors`) "
+         "differ, too.");
   VariationKeys(io, v);
   io("slope_rad", v.slope_rad,
      Bound{.least = 0.0,
            .most = 0.5 * 3.14159265358979323846,
            .below_most = true,
            .most_text = "pi / 2"},
-     "Gravity is turned by up to this about a horizontal axis, any of them: the terrain lies "
-     "aslant.");
+     "Largest rotation of gravity about a random horizontal axis: a slope of the terrain.");
   io("action_delay_s", v.action_delay_s, Bound::kNonNegative,
-     "Actions act by up to this later: whole periods, drawn once an episode.");
+     "Largest delay of actions: whole periods, drawn once per episode.");
   io("observation_delay_s", v.observation_delay_s, Bound::kNonNegative,
-     "Observations come by up to this later, likewise.");
+     "Largest delay of observations: whole periods, drawn once per episode.");
   io("starts", v.starts, Bound{.least = 0, .most = 100'000},
-     "How many different episodes there are: seeds count modulo this, and each start is prepared "
-     "once and kept. 0: no two are alike, and each is prepared anew, which takes long where a "
+     "Number of different episodes: seeds count modulo this number, and each start is prepared "
+     "once and kept. 0: all differ, and each start is prepared separately, which is slow if the "
      "robot settles first.");
 }
 
 template <class Io, Either<EnvironmentSpec, EnvironmentText> Environment>
 void Keys(Io& io, Environment& e) {
   io.Map("environment", "environment",
-         "The experiment as an environment for learners, docs/environments.md: what they may do, "
-         "what they see, what they are rewarded for. `duration_s` is how long an episode lasts. "
-         "`taut run` does not look at it.",
+         "Environment for reinforcement learning (docs/environments.md): actions, observations, "
+         "reward, domain randomization. `duration_s` is the length of an episode. `taut run` "
+         "ignores this key.",
          R"({"actions": [{"cables": "driven", "rest_length_m": 0.05}], )"
          R"("observations": ["cable/*/tension_n"]})");
   io("period_s", e.period_s, Bound::kPositive,
-     "Time from action to action: a whole multiple of `step_s` and of the periods of all "
-     "controllers and sensors.");
+     "Time between actions: a whole multiple of `step_s` and of the periods of all controllers and "
+     "sensors.");
   if constexpr (Io::kResolved) {
     io("actions", e.actions);
     io("observations", e.observations);
   } else {
-    io("actions", e.action_texts, kNeeded, "What an action is, number by number.");
+    io("actions", e.action_texts, kNeeded, "Elements of the action.");
     io("observations", e.observation_texts, kNeeded,
-       "Names of trace channels (docs/formats/trace.md), `*` stands for any text. They are "
-       "observed in the order in which a trace has them.",
+       "Observations: names of trace channels (docs/formats/trace.md), `*` for any text, in the "
+       "order of a trace.",
        Example{R"(["body/*/position_z_m", "cable/*/tension_n"])"});
   }
   io("reward", e.reward);
   io("max_tension_n", e.max_tension_n, Bound::kPositive,
-     "An episode ends as failed once a cable pulls more than this.");
+     "Cable tension above which an episode terminates as failed.");
   io("randomise", e.randomise);
 }
 void Check(const MapReader& map, EnvironmentText& environment);

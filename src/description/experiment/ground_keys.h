@@ -1,4 +1,4 @@
-/// Ground that is not flat, in an experiment's terrain: height fields and meshes.
+/// Keys of uneven ground in an experiment's terrain: height fields and meshes.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace taut::description {
 
-/// An expression with more names than numbers have.
+/// Expression with more names than other numbers have.
 struct FormulaForm {
   static constexpr const char* kSchema =
       R"("$ref": "#/$defs/number", "title": "formula", "unit": "m")";
@@ -22,7 +22,7 @@ struct HeightFieldText : HeightFieldDef {
   Raw<FormulaForm> formula;
   SurfaceText surface;
 };
-/// `place` of a mesh.
+/// Key `place` of a mesh.
 struct MeshPlaceText {
   Vec3 at_m;
   Quat rotate;
@@ -48,8 +48,8 @@ template <class Io, Either<HeightFieldDef, HeightFieldText> Field>
 void Keys(Io& io, Field& f) {
   io.Map(
       "height_field", "terrain.height_field",
-      "Ground above a rectangle, solid below: heights at the corners of square cells, each of "
-      "which is two triangles. Outside of the rectangle there is nothing.",
+      "Height field above a rectangle, solid below: heights at the corners of square cells of two "
+      "triangles each. There is no ground outside the rectangle.",
       R"json({"columns": 240, "rows": 240, "cell_m": 0.04, "height_m": "0.02 * sin(i) * cos(j)"})json");
   io("name", f.name, kResolvedOnly);
   if constexpr (Io::kResolved) {
@@ -58,29 +58,29 @@ void Keys(Io& io, Field& f) {
   } else {
     io.OneOf({"file", "height_m"});
     io("file", f.file,
-       "Heights, from the experiment's folder. CSV: in m, a line for each row of corners, that of "
-       "the least y first, x rising along the line; lines that begin with # are skipped. PNG: "
-       "gray, "
-       "best with 16 bits, with `height_range_m`; as on a map, x rises to the right and y upwards. "
-       "HDF5: `hills.h5:/z`, the data set z, in m, its rows as those of CSV.");
-    io("height_range_m", f.height_range_m, "Of an image: the heights of black and of white.");
-    io("columns", f.columns, kCorners, kInherited, "Corners along x. Goes with a formula.");
-    io("rows", f.rows, kCorners, kInherited, "Corners along y. Goes with a formula.");
+       "Heights, relative to the experiment's folder. CSV: in m, one line per row of corners, "
+       "smallest y first, x increasing along the line; lines that begin with # are skipped. PNG: "
+       "gray, preferably 16 bits, with `height_range_m`; x increases to the right and y upward. "
+       "HDF5: `hills.h5:/z`, data set z in m, rows as in CSV.");
+    io("height_range_m", f.height_range_m, "Heights of black and white in an image.");
+    io("columns", f.columns, kCorners, kInherited,
+       "Number of corners along x. With a formula only.");
+    io("rows", f.rows, kCorners, kInherited, "Number of corners along y. With a formula only.");
   }
-  io("cell_m", f.cell_m, kNeeded, Bound::kPositive, "Side of a cell.");
-  io("origin_m", f.origin_m, "Middle of the rectangle; its z is added to all heights.");
+  io("cell_m", f.cell_m, kNeeded, Bound::kPositive, "Edge length of a cell.");
+  io("origin_m", f.origin_m, "Center of the rectangle; its z is added to all heights.");
   if constexpr (Io::kResolved) {
     io("height_m", f.height_m);
   } else {
     io("height_m", f.formula,
-       "A formula: heights by `x_m` and `y_m`, counted from the middle, or by `i` and `j`, counted "
-       "from 0 at the corner of least x and y; `noise(seed, x, y)` is smooth, between -1 and 1, "
-       "and "
-       "has another value at each whole x and y.");
+       "Formula of the heights over `x_m` and `y_m` from the center, or over `i` and `j` from 0 at "
+       "the corner with the smallest x and y. `noise(seed, x, y)` is smooth, between -1 and 1, "
+       "with a different value at each whole x and y.");
   }
   io("split", f.split, kSplits,
-     "Along which diagonal a cell is split: by turns, always from its corner of least x and y, or "
-     "that whose ends differ less in height.");
+     "Diagonal that splits a cell. `alternating`: changes from cell to cell. `same`: from the "
+     "corner with the smallest x and y. `shortest`: the diagonal with the smaller height "
+     "difference.");
   if constexpr (Io::kResolved) {
     io("material", f.material);
   } else {
@@ -91,14 +91,14 @@ void Check(const MapReader& map, HeightFieldText& field);
 
 template <class Io>
 void Keys(Io& io, Like<MeshPlaceText> auto& p) {
-  io.Map("place", "terrain.mesh.place", "Where a mesh is: turned by `rotate`, then moved.");
-  io("at_m", p.at_m, "Where the file's origin goes.");
-  io("rotate", p.rotate, "Turns the mesh about the file's origin.");
+  io.Map("place", "terrain.mesh.place", "Placement of a mesh: rotated by `rotate`, then moved.");
+  io("at_m", p.at_m, "Position of the file's origin.");
+  io("rotate", p.rotate, "Rotation about the file's origin.");
 }
 
 template <class Io, Either<TerrainMeshDef, TerrainMeshText> Mesh>
 void Keys(Io& io, Mesh& m) {
-  io.Map("mesh", "terrain.mesh", "Ground of triangles from a file.",
+  io.Map("mesh", "terrain.mesh", "Ground mesh of triangles from a file.",
          R"({"file": "rock.obj", "scale_m": 0.001})");
   io("name", m.name, kResolvedOnly);
   if constexpr (Io::kResolved) {
@@ -108,14 +108,14 @@ void Keys(Io& io, Mesh& m) {
     io("triangles", triangles);
   } else {
     io("file", m.file, kNeeded,
-       "Wavefront OBJ or STL, text or binary, from the experiment's folder. Corners run "
-       "counter-clockwise seen from outside.");
+       "Wavefront OBJ or STL file, text or binary, relative to the experiment's folder. Corners "
+       "are counter-clockwise seen from outside.");
     io("scale_m", m.scale_m, kNeeded, Bound::kPositive,
-       "What 1 in the file is: 0.001 if it is in mm. Neither format says.");
+       "Length of 1 in the file: 0.001 for mm. Neither format has a unit.");
     io("place", m.place);
   }
   io("solid", m.solid, kMeshKinds,
-     "Whether the mesh encloses a solid, or is a thin sheet with two sides.");
+     "`closed`: the mesh encloses a solid. `surface`: a thin sheet with two sides.");
   if constexpr (Io::kResolved) {
     io("material", m.material);
   } else {
@@ -124,12 +124,12 @@ void Keys(Io& io, Mesh& m) {
 }
 void Check(const MapReader& map, TerrainMeshText& mesh);
 
-/// Of its file, if it has one.
+/// Return the path of the file, if any.
 std::string PathOf(const HeightFieldText& text);
 std::string PathOf(const TerrainMeshText& text);
-/// Heights from the file or the formula; nothing after a complaint.
+/// Returns a height field with heights from the file or formula; nothing after an error.
 std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const Scope& scope);
-/// Corners and triangles from the file, in place; nothing after a complaint.
+/// Returns a mesh with corners and triangles from the file, in place; nothing after an error.
 std::optional<TerrainMeshDef> ReadTerrainMesh(const TerrainMeshText& text, const Scope& scope);
 
 }  // namespace taut::description

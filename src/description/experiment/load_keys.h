@@ -1,4 +1,4 @@
-/// The keys of load cases.
+/// Keys of load cases.
 #pragma once
 
 #include "description/experiment/experiment_text.h"
@@ -8,27 +8,28 @@ namespace taut::description {
 
 template <class Io, Either<LoadCaseSpec::NodeForce, NodeForceText> Force>
 void Keys(Io& io, Force& f) {
-  io.Map("force", "load_case.force", "A force on a node, which stands still.",
+  io.Map("force", "load_case.force", "Constant force on a node.",
          R"({"node": "top", "force_n": [0, 0, -100]})");
   if constexpr (Io::kResolved) {
     io("node", f.node);
   } else {
-    io("node", f.node_name, kNeeded, "The node that it acts on, such as segment_0.tip.");
+    io("node", f.node_name, kNeeded, "Node on which the force acts, such as segment_0.tip.");
   }
-  io("force_n", f.force_n, kNeeded, "The force, in the world frame.");
+  io("force_n", f.force_n, kNeeded, "Force in the world frame.");
 }
 
 template <class Io, Either<LoadCaseSpec::Settlement, SettlementText> Settlement>
 void Keys(Io& io, Settlement& s) {
-  io.Map("settlement", "load_case.settlement", "How far the ground under a support has moved.",
+  io.Map("settlement", "load_case.settlement", "Displacement of the ground under a support.",
          R"({"support": "foot", "by_m": [0, 0, -0.01]})");
   if constexpr (Io::kResolved) {
     io("joint", s.joint);
   } else {
     io("support", s.support, kNeeded,
-       "The support: the name of its node, or of a joint with a node of the world.");
+       "Name of the support's node, or of a joint with a node of the world.");
   }
-  io("by_m", s.by_m, kNeeded, "How far its point of the world moves, in the world frame.");
+  io("by_m", s.by_m, kNeeded,
+     "Displacement of the support's point of the world, in the world frame.");
 }
 
 template <class Io>
@@ -38,48 +39,47 @@ void Keys(Io& io, Like<LoadCaseSpec::Lengthening> auto& l) {
 }
 
 inline constexpr const char* kMembersMeaning =
-    "Which cables and bars, by their names and tags, as controllers select cables.";
+    "Selector of cables and bars by names and tags, as for controllers.";
 
 template <class Io>
 void Keys(Io& io, Like<RestLengthText> auto& r) {
-  io.Map(
-      "rest_lengths", "load_case.rest_length",
-      "How much longer than the model says cables and bars are without stress: what a turnbuckle "
-      "does, or a member of another length than planned.",
-      R"({"members": "inner", "by_m": -0.005})");
+  io.Map("rest_lengths", "load_case.rest_length",
+         "Change of the unstressed length of cables and bars, by a turnbuckle or a manufacturing "
+         "error.",
+         R"({"members": "inner", "by_m": -0.005})");
   io("members", r.members, kNeeded, kMembersMeaning);
   io.OneOf({"by_m", "by_ratio"});
-  io("by_m", r.by_m, Bound::kAny, "What the rest length gains; negative shortens.");
+  io("by_m", r.by_m, Bound::kAny, "Change of the rest length; negative shortens.");
   io("by_ratio", r.by_ratio, Bound::kAny,
-     "What it gains over what it is: -0.01 shortens by a hundredth.");
+     "Relative change of the rest length: -0.01 shortens by a hundredth.");
 }
 
 template <class Io>
 void Keys(Io& io, Like<TemperatureText> auto& t) {
   io.Map("temperatures", "load_case.temperature",
-         "How much warmer than the model says cables and bars are. Their rest lengths gain "
-         "`expansion_per_k` times that times what they are.",
+         "Change of temperature of cables and bars. Their rest lengths increase by the rest length "
+         "times `expansion_per_k` times the change.",
          R"({"members": "strut", "by_k": 30})");
   io("members", t.members, kNeeded, kMembersMeaning);
-  io("by_k", t.by_k, kNeeded, Bound::kAny, "By how many kelvins; negative cools.");
+  io("by_k", t.by_k, kNeeded, Bound::kAny, "Change of temperature [K]; negative cools.");
 }
 
 template <class Io, Either<LoadCaseSpec, LoadCaseText> LoadCase>
 void Keys(Io& io, LoadCase& c) {
-  io.Map("load_case", "load_case",
-         "Loads that stand still, for `taut analyze`; a run does not know of them. Changes of one "
-         "member's length add up.",
-         R"({"name": "wind", "forces": [{"node": "top", "force_n": [50, 0, 0]}]})");
+  io.Map(
+      "load_case", "load_case",
+      "Static loads for `taut analyze`, ignored by a run. Changes of one member's length add up.",
+      R"({"name": "wind", "forces": [{"node": "top", "force_n": [50, 0, 0]}]})");
   io("name", c.name, kNeeded, kName, "Name of the load case.");
-  io("weight", c.weight, "Whether gravity acts, too.");
+  io("weight", c.weight, "Whether gravity acts.");
   io("forces", c.forces, "Forces on nodes.");
-  io("settlements", c.settlements, "What the ground under supports has done.");
+  io("settlements", c.settlements, "Settlements of the ground under supports.");
   if constexpr (Io::kResolved) {
     io("cables", c.cables);
     io("bars", c.bars);
   } else {
-    io("rest_lengths", c.rest_lengths, "Cables and bars of other lengths.");
-    io("temperatures", c.temperatures, "Cables and bars of other temperatures.");
+    io("rest_lengths", c.rest_lengths, "Changes of length of cables and bars.");
+    io("temperatures", c.temperatures, "Changes of temperature of cables and bars.");
   }
 }
 

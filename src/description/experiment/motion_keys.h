@@ -1,4 +1,4 @@
-/// Bodies that a program moves, as experiments spell it and as resolved ones have it.
+/// Keys of kinematic bodies, in experiments and in resolved experiments.
 #pragma once
 
 #include "description/yaml/keys.h"
@@ -22,17 +22,18 @@ struct MotionText {
   std::optional<TurnText> turn;
 };
 
-/// `speed`, `amplitude`: the keys with their units.
+/// Keys of a law of time; `speed` and `amplitude` are the names with units.
 template <class Io, class Law>
 void TimeLawKeys(Io& io, Law& law, const char* speed, const char* amplitude) {
   io(speed, law.speed,
-     "Points [[time_s, speed], ...] with straight lines between them; the first and the last hold "
-     "on. One point is a constant speed.");
+     "Speed over time, points [[time_s, speed], ...], linearly interpolated; the first and last "
+     "speed are held. One point is a constant speed.");
   io(amplitude, law.amplitude,
-     "Of a sine that is added: amplitude (sin(2 pi frequency_hz t + phase_rad) - sin(phase_rad)).");
-  io("frequency_hz", law.frequency_hz, Bound::kNonNegative, "Of the sine.");
+     "Amplitude of an additional sine: amplitude (sin(2 pi frequency_hz t + phase_rad) - "
+     "sin(phase_rad)).");
+  io("frequency_hz", law.frequency_hz, Bound::kNonNegative, "Frequency of the sine.");
   io("phase_rad", law.phase_rad,
-     "Of the sine. With -pi / 2 it starts at rest, from its lowest point.");
+     "Phase of the sine. -pi / 2 starts at rest, from the lowest point.");
 }
 
 template <class Io>
@@ -55,29 +56,30 @@ void Keys(Io& io, Like<MotionDef> auto& m) {
 
 template <class Io>
 void Keys(Io& io, Like<SlideText> auto& s) {
-  io.Map("slide", "motion.slide", "Slides along a direction.",
+  io.Map("slide", "motion.slide", "Translation along a direction.",
          R"({"direction": [1, 0, 0], "speed_m_per_s": [[0, 0], [1, 0.5]]})");
   io("direction", s.direction, kNeeded, kDirection, "Direction in the world frame.");
   TimeLawKeys(io, s.law, "speed_m_per_s", "amplitude_m");
 }
 template <class Io>
 void Keys(Io& io, Like<TurnText> auto& t) {
-  io.Map("turn", "motion.turn", "Turns about an axis, which slides along if there is a `slide`.",
+  io.Map("turn", "motion.turn", "Rotation about an axis, which moves with the `slide`.",
          R"({"axis": [0, 0, 1], "speed_rad_per_s": [[0, 2]]})");
   io("axis", t.axis, kNeeded, kDirection, "Direction of the axis in the world frame.");
-  io("center_m", t.center_m, "A point of the axis at t = 0, in the world frame.");
+  io("center_m", t.center_m, "Point of the axis at t = 0, in the world frame.");
   TimeLawKeys(io, t.law, "speed_rad_per_s", "amplitude_rad");
 }
 template <class Io>
 void Keys(Io& io, Like<MotionText> auto& m) {
-  io.Map("motion", "motion",
-         "A body that a program moves, whatever pushes it: a turntable, a shaker, a platform "
-         "(docs/theory/motion.md). It starts at t = 0; while a robot settles, it stands still.",
-         R"({"name": "shaker", "of": "plate", "slide": )"
-         R"({"direction": [1, 0, 0], "amplitude_m": 0.01, "frequency_hz": 2}})");
-  io("name", m.name, kNeeded, kName, "Its channels are `motion/NAME/...`.");
+  io.Map(
+      "motion", "motion",
+      "Kinematic body with prescribed motion, independent of forces: a turntable, a shaker, a "
+      "platform (docs/theory/motion.md). It starts at t = 0 and is at rest while a robot settles.",
+      R"({"name": "shaker", "of": "plate", "slide": )"
+      R"({"direction": [1, 0, 0], "amplitude_m": 0.01, "frequency_hz": 2}})");
+  io("name", m.name, kNeeded, kName, "Name in the channels `motion/NAME/...`.");
   io("of", m.of, kNeeded,
-     "What moves: a body of the robot, which forces then do not move any more, or a box of the "
+     "Moving body: one of the robot, which then no longer responds to forces, or a box of the "
      "terrain.");
   io("slide", m.slide);
   io("turn", m.turn);

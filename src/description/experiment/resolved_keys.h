@@ -1,4 +1,4 @@
-/// What is in a resolved experiment only: the robot, in numbers.
+/// Keys that only resolved experiments contain: the robot, in numbers.
 #pragma once
 
 #include "description/experiment/experiment_keys.h"

@@ -1,4 +1,4 @@
-/// Parts of the terrain that are many boxes: blocks that lie about, stairs.
+/// Terrain elements made of many boxes: scattered blocks and stairs.
 #pragma once
 
 #include <vector>
@@ -30,28 +30,27 @@ struct StairsText {
   Material material;
 };
 
-/// Of all parts of a terrain. What a run writes of more could not be read back.
+/// Limit over the whole terrain. A resolved experiment with more boxes could not be read back.
 inline constexpr int kMostBoxes = 5000;
 
 template <class Io>
 void Keys(Io& io, Like<ScatterText> auto& s) {
-  io.Map(
-      "scatter", "terrain.scatter",
-      "Fixed blocks of one size, upright, at random places and headings. That of number i, from 0, "
-      "is called NAME_i.",
-      R"({"count": 500, "seed": 1, "within_m": [[-1, -1, 0], [1, 1, 0]], )"
-      R"("box_m": [0.05, 0.05, 0.05]})");
-  io("count", s.count, kNeeded, Bound{.least = 1, .most = kMostBoxes}, "How many.");
+  io.Map("scatter", "terrain.scatter",
+         "Fixed upright blocks of equal size, at random positions and headings. Block i, from 0, "
+         "is named NAME_i.",
+         R"({"count": 500, "seed": 1, "within_m": [[-1, -1, 0], [1, 1, 0]], )"
+         R"("box_m": [0.05, 0.05, 0.05]})");
+  io("count", s.count, kNeeded, Bound{.least = 1, .most = kMostBoxes}, "Number of blocks.");
   io("seed", s.seed, Bound{.least = 0, .most = 2'147'483'647},
-     "Where they lie. Block i has x, y, z and heading, drawn evenly in this order, from "
-     "Philox4x32-10 "
-     "(docs/theory/sensors.md, Noise) with this key, stream 100 and index i: the same everywhere, "
-     "and a larger `count` adds blocks and moves none.");
+     "Seed of the positions. Block i has x, y, z and heading, uniformly distributed and drawn in "
+     "this order, from Philox4x32-10 (docs/theory/sensors.md, Noise) with this key, stream 100 and "
+     "index i. Positions are the same on all machines; a larger `count` only adds blocks.");
   io("within_m", s.within, kNeeded,
-     "Two corners of the upright region in which their centres are, the lower numbers first. A "
-     "coordinate that is the same in both is not random.",
+     "Two corners of the box that contains the blocks' centers, smaller coordinates first. A "
+     "coordinate equal in both is not random.",
      Example{"[[-1, -1, 0], [1, 1, 0]]"});
-  io("box_m", s.box_m, kNeeded, Bound::kPositive, "Edge lengths of a block; the third is upright.");
+  io("box_m", s.box_m, kNeeded, Bound::kPositive,
+     "Edge lengths of a block; the third is vertical.");
   SurfaceKeys(io, s.surface);
 }
 void Check(const MapReader& map, ScatterText& scatter);
@@ -59,21 +58,20 @@ void Check(const MapReader& map, ScatterText& scatter);
 template <class Io>
 void Keys(Io& io, Like<StairsText> auto& s) {
   io.Map("stairs", "terrain.stairs",
-         "Fixed stairs that rise along x: a box for each step, from the foot up to its tread, one "
-         "beside the other. The lowest is called NAME_0, the next NAME_1.",
+         "Fixed stairs that rise along x: adjacent boxes, one per step, from the foot's height to "
+         "the tread. The lowest is named NAME_0, the next NAME_1.",
          R"({"steps": 10, "width_m": 0.2, "tread_m": 0.05, "rise_m": 0.01, "at_m": [0.5, 0, 0]})");
-  io("steps", s.steps, kNeeded, Bound{.least = 1, .most = kMostBoxes}, "How many.");
-  io("width_m", s.width_m, kNeeded, Bound::kPositive, "Across.");
-  io("tread_m", s.tread_m, kNeeded, Bound::kPositive, "How deep a step is, along x.");
-  io("rise_m", s.rise_m, kNeeded, Bound::kPositive, "How much higher each is than the one before.");
-  io("at_m", s.at_m, "Their foot: the middle of the lower edge of the first step.");
-  io("rotate", s.rotate,
-     "Turns the stairs about their foot. They rise along the world's x if absent.");
+  io("steps", s.steps, kNeeded, Bound{.least = 1, .most = kMostBoxes}, "Number of steps.");
+  io("width_m", s.width_m, kNeeded, Bound::kPositive, "Width.");
+  io("tread_m", s.tread_m, kNeeded, Bound::kPositive, "Depth of a step, along x.");
+  io("rise_m", s.rise_m, kNeeded, Bound::kPositive, "Rise from step to step.");
+  io("at_m", s.at_m, "Foot: the middle of the lower edge of the first step.");
+  io("rotate", s.rotate, "Rotation about the foot. Default: rising along the world's x.");
   SurfaceKeys(io, s.surface);
 }
 void Check(const MapReader& map, StairsText& stairs);
 
-/// The boxes, without names.
+/// Return the boxes, without names.
 std::vector<TerrainBoxDef> Boxes(const ScatterText& scatter);
 std::vector<TerrainBoxDef> Boxes(const StairsText& stairs);
 

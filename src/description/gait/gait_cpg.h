@@ -1,4 +1,4 @@
-/// A central pattern generator as a gait file has it. Its network: gait_couplings.cpp.
+/// Keys of central pattern generators (CPG) in gait files. Coupling graph: gait_couplings.cpp.
 #pragma once
 
 #include "description/gait/gait_parts.h"
@@ -12,50 +12,51 @@ inline const Choices<CpgSymmetry> kSymmetries{{"segments", CpgSymmetry::kSegment
 
 template <class Io>
 void Keys(Io& io, Like<CouplingGroup> auto& g) {
-  io.Map("groups", "cpg.groups", "One group of couplings.",
+  io.Map("groups", "cpg.groups", "Group of couplings.",
          R"({"name": "same.outer_top.inner_top", "weight_per_m": 20, "phase_rad": "pi"})");
   io("name", g.name, kNeeded,
-     "As `taut check --couplings` names it, such as behind.outer_top.inner_left: an outer_top is "
-     "pulled by an inner_left of the joint behind, and the other way round by roles.");
+     "Name in the list of `taut check --couplings`. behind.outer_top.inner_left couples an "
+     "outer_top to an inner_left of the joint behind, and an inner_left to an outer_top behind.");
   io(Driven("weight_per_m", "weight_per_m_s"), g.weight, kNeeded,
-     "w: times the neighbour's amplitude it is a rate in rad/s.");
+     "Weight w of the coupling. Multiplied by the neighbor's amplitude, it is a rate in rad/s.");
   io("phase_rad", g.phase_rad, kNeeded,
-     "phi: how far the neighbour's phase is pulled ahead of the oscillator's own.");
+     "Phase phi of the coupling: the neighbor's phase lead at equilibrium.");
 }
 template <class Io>
 void Keys(Io& io, Like<CpgFeedback> auto& f) {
   io.Map("", "cpg.feedback",
-         "A cable's tension acts on the phase of its oscillator: theta' gets gain (T - reference) "
-         "cos theta. None if absent.",
+         "Feedback of a cable's tension on the phase of its oscillator: gain (T - reference) cos "
+         "theta is added to theta'. Default: none.",
          R"({"gain_rad_per_n_s": 0.1, "reference_n": 15})");
-  io("gain_rad_per_n_s", f.gain_rad_per_n_s, kNeeded, "Gain.");
-  io("reference_n", f.reference_n, "The tension that changes nothing.");
+  io("gain_rad_per_n_s", f.gain_rad_per_n_s, kNeeded, "Feedback gain.");
+  io("reference_n", f.reference_n, "Reference tension, at which the feedback is zero.");
 }
 template <class Io>
 void Keys(Io& io, Like<CpgGait> auto& c) {
   io.Map("cpg", "cpg",
-         "A central pattern generator (paper eq. 4-6): an oscillator a cable, coupled to every "
-         "other whose cable shares a rigid body with its own. `taut check MODEL --couplings` shows "
-         "the network, `taut gait create MODEL` writes a file with all its groups.");
-  io("frequency_hz", c.frequency_hz, kNeeded, "Frequency of each oscillator left to itself.");
+         "Central pattern generator (paper eq. 4-6): one oscillator per cable, coupled to all "
+         "oscillators whose cables share a rigid body with this cable. `taut check MODEL "
+         "--couplings` lists the network; `taut gait create MODEL` writes a file with all groups.");
+  io("frequency_hz", c.frequency_hz, kNeeded, "Frequency of each oscillator without coupling.");
   io(Driven("amplitude_m_per_s", "amplitude_m"), c.amplitude, kNeeded, Bound::kNonNegative,
-     "Amplitude R that each oscillator grows to.");
+     "Amplitude R to which each oscillator converges.");
   io("convergence_per_s", c.convergence_per_s, Bound::kPositive,
-     "How fast it does so: a of the critically damped amplitude.");
+     "Convergence rate a of the critically damped amplitude.");
   io("integrator_step_s", c.integrator_step_s, kFixed, Bound::kPositive,
-     "Longest step of the network's integrator; the gait's period is divided into equal steps. It "
-     "has nothing to do with the step of the simulation.");
+     "Longest step of the network's integrator; the gait's period is divided into equal steps. "
+     "Independent of the simulation step.");
   io("symmetry", c.symmetry, kSymmetries,
-     "Which couplings share a weight and a phase. `segments`: those between the same two roles "
-     "(the cable's name without its number) with the same one in front. `index`: by NTRT's rule, "
-     "from positions in `order`. `none`: each has its own.");
+     "Couplings with common weight and phase. `segments`: those between the same two roles (the "
+     "cable's name without its number) with the neighbor on the same joint, in front, or behind. "
+     "`index`: NTRT's rule, from positions in `order`. `none`: every coupling has separate "
+     "values.");
   io("order", c.order,
-     "The cables with an oscillator, by name. All cables that have an actuator, in the model's "
-     "order, if absent.");
+     "Names of the cables with an oscillator. Default: all cables with an actuator, in the model's "
+     "order.");
   io("inverted", c.inverted, "Cables whose signal is the negative of their oscillator's.");
   io("feedback", c.feedback);
   io("groups", c.groups,
-     "Weight and phase of every group of couplings. None that the robot needs may be missing.");
+     "Weight and phase of every group of couplings. All groups of the robot are required.");
 }
 void Check(const MapReader& map, CpgGait& cpg);
 void CheckNumbers(const CpgGait& cpg, const SourceRef& at, Diagnostics& out);

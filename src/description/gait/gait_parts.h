@@ -1,4 +1,4 @@
-/// What reading and resolving gaits share.
+/// Shared parts of reading and resolving gaits.
 #pragma once
 
 #include <map>
@@ -14,34 +14,35 @@
 
 namespace taut::description {
 
-/// A key whose unit follows what the gait drives.
+/// Returns the names of a key whose unit depends on the driven quantity.
 constexpr Spellings Driven(const char* of_velocity, const char* of_rest_length) {
   return {{of_velocity, of_rest_length},
-          {"a gait with `drives: velocity`", "a gait with `drives: rest_length`"}};
+          {"gaits with `drives: velocity`", "gaits with `drives: rest_length`"}};
 }
 
-/// What a cable of a chain is: "outer_top_2" is an outer_top, the second from the front.
+/// Role and number of a cable in a chain: "outer_top_2" has the role outer_top and is the second
+/// from the front.
 struct CablePlace {
   std::string role;
   int number = 0;  ///< From 1.
 };
 
-/// Nothing if the name does not end in _1, _2, ...
+/// Returns nothing if the name does not end in _1, _2, ...
 std::optional<CablePlace> PlaceInChain(const std::string& cable_name);
 
-/// False if the text is not a finite number and nothing else. The last digit is right everywhere.
+/// Returns false unless the whole text is one finite number. Correctly rounded on all machines.
 bool ToNumber(const std::string& text, double& number);
 
-/// "_m_per_s" or "_m": what names of the gait's signals end with.
+/// Returns the suffix of the names of the gait's signals: "_m_per_s" or "_m".
 const char* UnitOfName(GaitDrives drives);
-/// "a gait that drives rest lengths".
+/// Returns "a gait that drives rest lengths" or the like.
 const char* WhoDrives(GaitDrives drives);
 
-/// The cables of a robot that match; none after a complaint.
+/// Returns the cables of a robot that match; none after an error.
 std::vector<int> FindCables(const CableMatch& match, const std::string& what, const SourceRef& at,
                             const RobotSpec& robot, Diagnostics& out);
 
-/// Complains about names that are there twice; gaits name their parts.
+/// Reports duplicate names of the parts of a gait.
 template <class Part>
 void CheckTwice(const std::vector<Part>& parts, const std::string& what, const Scope& scope) {
   std::map<std::string, SourceRef> seen;
@@ -49,7 +50,7 @@ void CheckTwice(const std::vector<Part>& parts, const std::string& what, const S
     if (part.name.empty()) continue;
     const auto [first, fresh] = seen.emplace(part.name, part.at);
     if (fresh) continue;
-    scope.out.Error(part.at, "there are two " + what + " " + part.name,
+    scope.out.Error("gait.duplicate_part", part.at, "there are two " + what + " " + part.name,
                     "the first is in line " + std::to_string(first->second.line));
   }
 }

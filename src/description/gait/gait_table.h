@@ -1,4 +1,4 @@
-/// A table of signals as a gait file or a text file of its own has it.
+/// Keys of tables of signals, in gait files or in separate CSV files.
 #pragma once
 
 #include "description/gait/gait_parts.h"
@@ -16,41 +16,41 @@ struct RowsForm {
 struct TableText : TableGait {
   Raw<FileForm> file;
   Raw<RowsForm> rows_text;
-  std::vector<std::string> files;  ///< That were read.
+  std::vector<std::string> files;  ///< Files that were read.
 };
 template <class Io, Either<TableGait, TableText> Table>
 void Keys(Io& io, Table& t) {
   io.Map("table", "table",
-         "The signals from a table: `taut gait export` writes such files. Either `file`, or "
-         "`cables` and `rows`.",
+         "Signals from a table, as written by `taut gait export`. Either `file`, or `cables` and "
+         "`rows`.",
          R"({"file": "commands.csv", "repeat_from_s": 0})");
   if constexpr (!Io::kResolved) {
     io.Rule(R"("oneOf": [{"required": ["rows", "cables"]}, {"required": ["file"]}])");
     io("file", t.file,
-       "A text file, seen from this file's folder: a line `time_s,outer_top_1_m_per_s,...` "
-       "(`outer_top_1_m` with `drives: rest_length`), then a line a row; lines that begin with # "
-       "are "
-       "comments.");
+       "Text file, relative to this file's folder: a line `time_s,outer_top_1_m_per_s,...` "
+       "(`outer_top_1_m` with `drives: rest_length`), then one line per row; lines that begin with "
+       "# are comments.");
   }
-  io("cables", t.cables, "Cables by name, one a column.");
+  io("cables", t.cables, "Names of the cables, one per column.");
   if constexpr (Io::kResolved) {
     io("time_s", t.time_s);
     io("rows", t.rows);
     io("linear", t.linear);
   } else {
     io("rows", t.rows_text,
-       "Time and a signal for each cable, in m/s or m; the first time is 0, and times rise.");
+       "Time and one signal per cable, in m/s or m; the first time is 0, and times increase.");
     io("interpolation", t.linear, kInterpolations,
-       "Between rows: `hold` keeps the last one, `linear` goes straight to the next.");
+       "Between rows: `hold` keeps the last one, `linear` interpolates.");
   }
   io("repeat_from_s", t.repeat_from_s, kFixed, Bound::kNonNegative,
-     "At the last row go on from here, again and again. Without it the last row holds.");
+     "Time to which the table returns after the last row, repeatedly. Default: the last row is "
+     "held.");
 }
 void Check(const MapReader& map, TableText& table);
 void CheckNumbers(const TableGait& table, const SourceRef& at, Diagnostics& out);
 void Resolve(const TableGait& table, const RobotSpec& robot, ResolvedGait& resolved,
              Diagnostics& out);
-/// The rows, which the table of keys leaves to code.
+/// Returns the rows, which are not in the table of keys.
 std::string LinesBesideKeys(const TableGait& table);
 
 }  // namespace taut::description

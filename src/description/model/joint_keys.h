@@ -1,4 +1,4 @@
-/// The keys of a joint.
+/// Keys of joints.
 #pragma once
 
 #include "description/model/member_keys.h"
@@ -7,11 +7,10 @@
 
 namespace taut::description {
 
-/// A key whose unit follows what a joint's coordinate is.
+/// Returns the names of a key whose unit depends on the coordinate of the joint: angle or length.
 constexpr Spellings Coordinate(const char* of_angle, const char* of_length) {
   return {{of_angle, of_length},
-          {"a joint of the kind hinge or ball",
-           "a joint of the kind prismatic, cylindrical, line or distance"}};
+          {"hinge and ball joints", "prismatic, cylindrical, line and distance joints"}};
 }
 inline const char* WhoHas(JointKind kind) {
   return IsAngle(kind) ? "a joint whose coordinate is an angle"
@@ -20,49 +19,48 @@ inline const char* WhoHas(JointKind kind) {
 
 template <class Io, Either<JointDef, JointText> Joint>
 void Keys(Io& io, Joint& j) {
-  io.Map(
-      "", "builder.joint",
-      "What of the motion of one body against another is held, and what acts on the rest. "
-      "`joint` goes on a pair: between the bodies a and b of its two nodes. `support` goes on a "
-      "node: the world is a. What is free is measured by one coordinate: the angle of a hinge; "
-      "how far b's node has slid along the axis, of prismatic, cylindrical and line; the length "
-      "of a distance; of a ball, how far its axis in b is turned from that in a. Friction, spring "
-      "and damper of a ball act on all of its turns, about every axis alike.",
-      R"({"kind": "hinge", "axis": [0, 1, 0], "least_rad": -0.5, "most_rad": 1.2})");
+  io.Map("", "builder.joint",
+         "Joint that constrains the motion of body b relative to body a, with forces on the free "
+         "motion. `joint` is for a pair: between the bodies a and b of its two nodes. `support` is "
+         "for a node: a is the world. One coordinate measures the free motion: the angle of a "
+         "hinge; the displacement of b's node along the axis, of prismatic, cylindrical and line; "
+         "the length of a distance; the angle between the axis in b and in a, of a ball. Friction, "
+         "spring and damper of a ball act about every axis alike.",
+         R"({"kind": "hinge", "axis": [0, 1, 0], "least_rad": -0.5, "most_rad": 1.2})");
   io("name", j.name, kResolvedOnly);
   io("body_a", j.body_a, kResolvedOnly);
   io("body_b", j.body_b, kResolvedOnly);
   io("from_m", j.from_m, kResolvedOnly);
   io("to_m", j.to_m, kResolvedOnly);
   io("turned", j.turned,
-     "How b is turned against a as described, about axes as that of `axis`, from the pose where "
-     "the "
-     "joint's angle is 0. If absent, angles are 0 as described. It is what a model has that taut "
-     "writes of a robot in a pose that it has come to.");
+     "Rotation of b relative to a in the described pose, from the pose with joint angle 0, about "
+     "axes in the frame of `axis`. Default: angles are 0 in the described pose. taut writes this "
+     "key for a robot in a later pose.");
   io("kind", j.kind, kJointKinds, kNeeded,
-     "What it leaves free. `ball`: all turns. `hinge`: turns about the axis. `weld`: nothing. "
-     "`prismatic`: sliding along the axis. `cylindrical`: both. `planar`: sliding across the axis "
-     "and turns about it. `line`: all turns, and b's node slides along the axis. `plane`: all "
-     "turns, and b's node slides across the axis. `distance`: all but the distance of the nodes.");
+     "Free motion. `ball`: all rotations. `hinge`: rotation about the axis. `weld`: none. "
+     "`prismatic`: translation along the axis. `cylindrical`: rotation about the axis and "
+     "translation along it. `planar`: translation across the axis and rotation about it. `line`: "
+     "all rotations, and b's node moves along the axis. `plane`: all rotations, and b's node moves "
+     "across the axis. `distance`: all but the distance of the nodes.");
   io.SpeltBy("kind", {IsAngle(j.kind) ? 0 : 1, WhoHas(j.kind)});
   io("axis", j.axis, kDirection,
-     "The axis as described: in the part's frame of the pair or node, in the world's if its nodes "
-     "are in several parts.");
+     "Axis in the described pose: in the part's frame of the pair or node, or in the world frame "
+     "if the nodes are in several parts.");
   io(Coordinate("least_rad", "least_m"), j.least,
-     "Where its coordinate stops downwards. Angles are 0 in the pose that is described, and "
-     "turns of a hinge count on; a slide is that from a's node to b's. Not of a ball.");
-  io(Coordinate("most_rad", "most_m"), j.most, "Where its coordinate stops upwards.");
+     "Lower joint limit of the coordinate. Angles are 0 in the described pose, and a hinge counts "
+     "whole turns; a displacement is from a's node to b's. A ball has no lower limit.");
+  io(Coordinate("most_rad", "most_m"), j.most, "Upper joint limit of the coordinate.");
   io("restitution", j.restitution, Bound::kFraction,
-     "Of the stops: how much of the speed comes back.");
+     "Coefficient of restitution at the joint limits.");
   io(Coordinate("friction_n_m", "friction_n"), j.friction, Bound::kNonNegative,
-     "Dry friction: up to this it sticks, and slides against it.");
+     "Dry friction: the joint sticks up to this value and slides against it.");
   io(Coordinate("stiffness_n_m_per_rad", "stiffness_n_per_m"), j.stiffness, Bound::kNonNegative,
-     "Of a spring. That of a ball turns b back to how it is described, the shorter way. A "
-     "distance with a spring or a stop does not hold its length.");
+     "Stiffness of a spring. A ball's spring turns b back to the described pose, the shorter way. "
+     "A distance with a spring or a limit does not hold its length.");
   io(Coordinate("damping_n_m_s_per_rad", "damping_n_s_per_m"), j.damping, Bound::kNonNegative,
-     "Of a damper.");
-  io(Coordinate("rest_rad", "rest_m"), j.rest, "Where the spring is at rest. Not of a ball.");
-  io("collides", j.collides, "Whether its bodies touch each other.");
+     "Damping.");
+  io(Coordinate("rest_rad", "rest_m"), j.rest, "Rest position of the spring. A ball has none.");
+  io("collides", j.collides, "Whether the joint's bodies collide with each other.");
   if constexpr (Io::kResolved) MemberKeys(io, j.member, MemberOf::kBar);
 }
 
@@ -71,14 +69,14 @@ void Check(const MapReader& map, JointText& joint);
 template <class Io>
 void Keys(Io& io, Like<PinText> auto& p) {
   io.Map("", "builder.rod.pins",
-         "What acts on the turns of a rod of class k in the ball joints at its nodes, about every "
-         "axis alike.",
+         "Friction, spring and damper in the ball joints at the nodes of a class-k rod, about "
+         "every axis alike.",
          R"({"friction_n_m": 0.01})");
   io("friction_n_m", p.friction, Bound::kNonNegative,
-     "Dry friction: up to this they stick, and slide against it.");
+     "Dry friction: the joints stick up to this value and slide against it.");
   io("stiffness_n_m_per_rad", p.stiffness, Bound::kNonNegative,
-     "Of a spring that turns the rod back to how it is described, the shorter way.");
-  io("damping_n_m_s_per_rad", p.damping, Bound::kNonNegative, "Of a damper.");
+     "Stiffness of a spring that turns the rod back to the described pose, the shorter way.");
+  io("damping_n_m_s_per_rad", p.damping, Bound::kNonNegative, "Damping.");
 }
 
 }  // namespace taut::description

@@ -1,4 +1,4 @@
-/// Rotations as files spell them.
+/// Rotations in files: axis and angle, or quaternion.
 #pragma once
 
 #include <optional>
@@ -22,19 +22,18 @@ struct RotationText {
   Raw<AxisForm> axis;
   std::optional<double> angle_rad;
   Raw<QuaternionForm> quaternion;
-  Quat q;  ///< The rotation; none after a complaint.
+  Quat q;  ///< The rotation; identity after an error.
 };
 template <class Io>
 void Keys(Io& io, Like<RotationText> auto& r) {
   io.Map("", "rotation",
-         "One rotation: `axis` and `angle_rad`, or `quaternion`. Wherever a rotation is asked for, "
-         "a list of rotations may stand, which follow each other, all about the fixed axes of the "
-         "world.",
+         "Rotation by `axis` and `angle_rad`, or by `quaternion`. A list of rotations is applied "
+         "in order, all about the fixed axes of the world.",
          R"({"axis": "z", "angle_rad": "pi / 2"})");
   io.Rule(R"("oneOf": [{"required": ["axis", "angle_rad"]}, {"required": ["quaternion"]}])");
-  io("axis", r.axis, "Axis in the world frame; any length but zero. Right-handed.");
-  io("angle_rad", r.angle_rad, "Angle.");
-  io("quaternion", r.quaternion, "A quaternion of any length but zero.");
+  io("axis", r.axis, "Axis in the world frame, right-handed, of any length but zero.");
+  io("angle_rad", r.angle_rad, "Rotation angle.");
+  io("quaternion", r.quaternion, "Quaternion of any length but zero.");
 }
 void Check(const MapReader& map, RotationText& rotation);
 

@@ -1,4 +1,4 @@
-/// The keys of a calibration.
+/// Keys of calibration files.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace taut::description {
 
-/// An entry of `cables:`.
+/// Entry of `cables:`.
 struct CableCalibrationText {
   SourceRef at;
   bool good = true;
@@ -19,21 +19,20 @@ struct CableCalibrationText {
 };
 template <class Io>
 void Keys(Io& io, Like<CableCalibrationText> auto& c) {
-  io.Map("cable", "cables", "What was measured of one cable. What is absent is as it was before.");
-  io("cable", c.cable, kNeeded, "Which cable, by its name in the model; it has to have a motor.");
-  io("measured", c.measured, kNeeded, Example{R"("2026-11-23")"},
-     "The day on which it was measured.");
-  io("how", c.values.how, "How it was measured, in a sentence.");
+  io.Map("cable", "cables", "Measured values of one cable. Missing values are unchanged.");
+  io("cable", c.cable, kNeeded, "Name of a cable with a motor.");
+  io("measured", c.measured, kNeeded, Example{R"("2026-11-23")"}, "Date of the measurement.");
+  io("how", c.values.how, "Method of the measurement, in a sentence.");
   io("load_cell_n_per_count", c.values.load_cell_n_per_count, Bound{.least = 0.001, .most = 10},
-     "Force of a count of the load cell's converter.");
+     "Force per count of the load cell's converter.");
   io("load_cell_counts_at_zero", c.values.load_cell_counts_at_zero, Bound{.least = 0, .most = 1023},
-     "What it shows without force.");
+     "Count of the load cell without force.");
   io("encoder_m_per_count", c.values.encoder_m_per_count, Bound{.least = 1e-8, .most = 1e-3},
-     "Cable that a count of the encoder winds in.");
+     "Length of cable per count of the encoder.");
   io("rest_length_at_reference_m", c.values.rest_length_at_reference_m,
-     Bound{.least = 0, .most = 2}, "The cable's rest length where the encoder is at 0.");
+     Bound{.least = 0, .most = 2}, "Rest length of the cable at encoder count 0.");
   io("stiffness_n_per_m", c.values.stiffness_n_per_m, Bound{.least = 1, .most = 1e6},
-     "Of cable, spring and frame in series.");
+     "Stiffness of cable, spring and frame in series.");
 }
 void Check(const MapReader& map, CableCalibrationText& cable);
 
@@ -47,18 +46,18 @@ struct CalibrationFileText {
 };
 template <class Io>
 void Keys(Io& io, Like<CalibrationFileText> auto& s) {
-  io.Map("", "Calibration", "What was measured of a robot's load cells, encoders and springs.");
+  io.Map("", "Calibration",
+         "A calibration contains measured values of a robot's load cells, encoders and springs.");
   HeadKeys(
       io, s,
-      {"Name of the calibration. Needed unless `base` has it.",
-       "Which robot, who measured, with what.",
-       "Another calibration, seen from this file's folder. This file then holds only what differs: "
-       "each of its keys replaces the base's as a whole, except that `parameters` are merged by "
-       "name.",
+      {"Name of the calibration. Required unless `base` has it.",
+       "Robot, person and instruments of the measurement.",
+       "Another calibration to inherit from, relative to this file's folder. Each key of this file "
+       "replaces the whole key of the base, except that `parameters` are merged by name.",
        R"("first_calibration.yaml")",
        "Named numbers for expressions in this file. They may refer to each other, in any order.",
        R"({"gain_n": "0.1567"})"});
-  io("cables", s.cables, kNeeded, "What was measured, a cable each, in any order.");
+  io("cables", s.cables, kNeeded, "Measured values, one entry per cable, in any order.");
 }
 
 }  // namespace taut::description

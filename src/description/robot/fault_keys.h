@@ -1,4 +1,4 @@
-/// The keys of a fault script.
+/// Keys of fault scripts.
 #pragma once
 
 #include <string>
@@ -26,7 +26,7 @@ inline const Choices<FaultKind> kFaultKinds{{"clock_drift", FaultKind::kClockDri
                                             {"host_killed", FaultKind::kHostKilled}};
 inline const Choices<BusLine> kBusLines{{"data", BusLine::kData}, {"clock", BusLine::kClock}};
 
-/// An entry of `faults:`, with the keys of all kinds.
+/// Entry of `faults:`, with the keys of all kinds.
 struct FaultText {
   SourceRef at;
   bool good = true;
@@ -37,30 +37,29 @@ struct FaultText {
 };
 template <class Io>
 void Keys(Io& io, Like<FaultText> auto& f) {
-  io.Map("fault", "faults", "One thing that goes wrong.");
+  io.Map("fault", "faults", "Fault at a given time.");
   io("kind", f.spec.kind, kFaultKinds, kNeeded,
-     "`clock_drift`: a board's clock is fast by `drift_ppm`. `board_loss`: a board has no power. "
-     "`brown_out`: a board's supply is too low, which holds it in reset. `firmware_hang`: a "
-     "board's program goes round in a circle with interrupts off. `bus_noise`: bits on the bus "
-     "turn over. `bus_error`: an illegal start within the next byte on the bus. `bus_stuck`: a "
-     "line of the bus is held low. `cut_cable`: a cable is cut, for good. `stuck_load_cell`: a "
-     "cable's load cell shows one force. `stuck_encoder`: a motor's encoder stands. "
-     "`driver_fault`: a board's motor drivers report a fault. `motor_supply_loss`: the motors of "
-     "all boards have no supply, and their drivers report it. `usb_loss`: the adapter is pulled "
-     "out of the computer, and forgets its mode. `host_killed`: the program on the computer is "
-     "gone.");
-  io("at_s", f.spec.at_s, kNeeded, Bound::kNonNegative, "When, since the robot was switched on.");
+     "`clock_drift`: a board's clock is fast by `drift_ppm`. `board_loss`: a board loses power. "
+     "`brown_out`: low supply voltage holds a board in reset. `firmware_hang`: a board's firmware "
+     "hangs in a loop with interrupts off. `bus_noise`: bits on the bus flip. `bus_error`: an "
+     "illegal start within the next byte on the bus. `bus_stuck`: a line of the bus is held low. "
+     "`cut_cable`: a cable is cut, permanently. `stuck_load_cell`: a cable's load cell reads a "
+     "constant force. `stuck_encoder`: a motor's encoder stops counting. `driver_fault`: a board's "
+     "motor drivers report a fault. `motor_supply_loss`: the motors of all boards lose their "
+     "supply, and their drivers report it. `usb_loss`: the adapter is unplugged from the computer "
+     "and loses its mode. `host_killed`: the program on the computer ends.");
+  io("at_s", f.spec.at_s, kNeeded, Bound::kNonNegative,
+     "Start time since the robot was switched on.");
   io("for_s", f.spec.for_s, Bound::kPositive, kLimit,
-     "How long; then all is as it was. For good if absent.");
-  io("board", f.board, Bound{.least = 0, .most = 5}, "Which board, 0 first.");
-  io("cable", f.cable, "Which cable, by its name in the model; it has to have a motor.");
+     "Duration, after which the previous state returns. Default: permanent.");
+  io("board", f.board, Bound{.least = 0, .most = 5}, "Number of the board, from 0.");
+  io("cable", f.cable, "Name of a cable with a motor.");
   io("drift_ppm", f.spec.drift_ppm, Bound{.least = -100'000, .most = 100'000},
-     "For `clock_drift`: millionths by which the clock is fast; negative: slow.");
+     "Clock error for `clock_drift` in parts per million; positive: fast, negative: slow.");
   io("flips_per_bit", f.spec.flips_per_bit, Bound::kFraction,
-     "For `bus_noise`: the probability that a bit turns over.");
-  io("line", f.spec.line, kBusLines, "For `bus_stuck`: which line.");
-  io("force_n", f.spec.force_n,
-     "For `stuck_load_cell`: what it shows. What it showed last if absent.");
+     "Probability of a bit flip for `bus_noise`.");
+  io("line", f.spec.line, kBusLines, "Bus line for `bus_stuck`.");
+  io("force_n", f.spec.force_n, "Reading for `stuck_load_cell`. Default: the last reading.");
 }
 void Check(const MapReader& map, FaultText& fault);
 
@@ -74,18 +73,19 @@ struct FaultFileText {
 };
 template <class Io>
 void Keys(Io& io, Like<FaultFileText> auto& s) {
-  io.Map("", "Fault script", "What goes wrong with a robot's electronics, and when.");
+  io.Map("", "Fault script",
+         "A fault script defines faults of a robot's electronics and their times.");
   HeadKeys(
       io, s,
-      {"Name of the script. Needed unless `base` has it.", "What it is for, in a sentence or two.",
-       "Another fault script, seen from this file's folder. This file then holds only what "
-       "differs: each of its keys replaces the base's as a whole, except that `parameters` "
-       "are merged by name.",
+      {"Name of the script. Required unless `base` has it.",
+       "Purpose of the script, in a sentence or two.",
+       "Another fault script to inherit from, relative to this file's folder. Each key of this "
+       "file replaces the whole key of the base, except that `parameters` are merged by name.",
        R"("noisy_bus.yaml")",
        "Named numbers for expressions in this file. They may refer to each other, in any "
        "order.",
        R"({"begin_s": "0.5"})"});
-  io("faults", s.faults, kNeeded, "What happens, in any order. Several may last at once.");
+  io("faults", s.faults, kNeeded, "Faults, in any order. Several may act at once.");
 }
 
 }  // namespace taut::description

@@ -1,4 +1,4 @@
-/// The keys of a study file.
+/// Keys of study files.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace taut::description {
 
 inline const Choices<bool> kScales{{"linear", false}, {"log", true}};
 inline const Choices<bool> kJudges{{"mean", false}, {"worst", true}};
-/// `NloptAlgorithms`, each for itself.
+/// Returns `NloptAlgorithms` as choices.
 const Choices<std::string>& NloptChoices();
 enum class Method { kMonteCarlo, kHillClimbing, kNlopt, kCmaEs };
 inline const Choices<Method> kMethods{{"monte_carlo", Method::kMonteCarlo},
@@ -19,7 +19,7 @@ inline const Choices<Method> kMethods{{"monte_carlo", Method::kMonteCarlo},
                                       {"nlopt", Method::kNlopt},
                                       {"cma_es", Method::kCmaEs}};
 
-/// An entry of `vary:`.
+/// Entry of `vary:`.
 struct VaryText {
   SourceRef at;
   std::string name;
@@ -30,19 +30,20 @@ struct VaryText {
 };
 template <class Io>
 void Keys(Io& io, Like<VaryText> auto& v) {
-  io.Map("vary", "vary", "Numbers of the experiment, by name, `*` for any letters.");
+  io.Map("vary", "vary", "Parameters of the experiment, by name, `*` for any letters.");
   io("name", v.name, kName,
-     "Name of the parameter, for tables and the log; with `each`, a prefix. That of the number "
-     "itself if absent.");
+     "Name of the parameter in tables and the log; with `each`, a prefix. Default: the parameter's "
+     "name in the experiment.");
   io.OneOf({"each", "all"});
-  io("each", v.each, "A parameter for each number that fits.",
+  io("each", v.each, "Pattern: one parameter per match.",
      Example{R"("impedance.inner_*.tension_offset_n")"});
-  io("all", v.all, "One parameter for all that fit together: a symmetric group.",
+  io("all", v.all, "Pattern: one common parameter for all matches, a symmetric group.",
      Example{R"(["impedance.outer_left*.tension_offset_n", )"
              R"("impedance.outer_right*.tension_offset_n"])"});
   io("low", v.low, kNeeded, "Lower bound, in the number's unit.");
   io("high", v.high, kNeeded, "Upper bound, in the number's unit.");
-  io("scale", v.log, kScales, "Whether even steps are even differences or even ratios.");
+  io("scale", v.log, kScales,
+     "`linear`: equal steps are equal differences. `log`: equal steps are equal ratios.");
 }
 void Check(const MapReader& map, VaryText& vary);
 
@@ -52,13 +53,13 @@ struct ObjectiveText : ObjectiveSpec {
 template <class Io>
 void Keys(Io& io, Like<ObjectiveText> auto& o) {
   io.Map("objective", "objective",
-         "The score of a world; more is better. Measured along the way, without a trace.");
+         "Score of a world; more is better. Computed during the run, without a trace.");
   io("measure", o.measure, kMeasures, kNeeded,
-     "`distance`: how far the centre of mass gets from where it was, horizontally [m]. `heading`: "
-     "the part of that along `direction`. `distance_per_energy`: distance by the motors' work, "
-     "tension times winding in [m/J]. `nearer`: how much nearer to the experiment's goal the body "
-     "that it watches is, horizontally [m]. `tracking`: minus the root mean square of the cables' "
-     "tensions less their set points [N].");
+     "`distance`: horizontal displacement of the center of mass [m]. `heading`: its component "
+     "along `direction`. `distance_per_energy`: distance divided by the motors' work, tension "
+     "times wound-in length [m/J]. `nearer`: decrease of the horizontal distance between the "
+     "tracked body and the experiment's goal [m]. `tracking`: negative root mean square of the "
+     "cables' tensions minus their set points [N].");
   ObjectiveKeys(io, o);
 }
 void Check(const MapReader& map, ObjectiveText& objective);
@@ -66,15 +67,15 @@ void Check(const MapReader& map, ObjectiveText& objective);
 template <class Io>
 void Keys(Io& io, Like<PerturbationSpec> auto& w) {
   io.Map("worlds", "worlds",
-         "The worlds that judge each candidate, so that what is learned is no fluke of one. The "
-         "first is as the experiment says; the others have factors and starts drawn evenly.");
-  io("count", w.worlds, kNeeded, Bound{.least = 1, .most = 1000}, "How many.");
+         "Domain randomization: worlds that score each candidate. The first is the unmodified "
+         "experiment; the others have uniformly distributed factors and starts.");
+  io("count", w.worlds, kNeeded, Bound{.least = 1, .most = 1000}, "Number of worlds.");
   VariationKeys(io, w);
-  io("redraw", w.redraw, "Whether each candidate meets worlds of its own; else all meet the same.");
-  io("score", w.worst, kJudges, "How the worlds' scores become one.");
+  io("redraw", w.redraw, "Whether each candidate has new worlds. Otherwise all have the same.");
+  io("score", w.worst, kJudges, "Combination of the worlds' scores.");
 }
 
-/// An entry of `search:`, with the keys of all methods.
+/// Entry of `search:`, with the keys of all methods.
 struct SearchText {
   SourceRef at, algorithm_at;
   Method method = Method::kMonteCarlo;
@@ -88,30 +89,30 @@ struct SearchText {
 };
 template <class Io>
 void Keys(Io& io, Like<SearchText> auto& s) {
-  io.Map("search", "search", "One way of searching, docs/learning.md.");
+  io.Map("search", "search", "Search method (docs/learning.md).");
   io("method", s.method, kMethods, kNeeded,
-     "`monte_carlo`: points all over the bounds. `hill_climbing`: Gauss steps around the best. "
-     "`nlopt`: a local method of the library NLopt, from many starts side by side. `cma_es`: Gauss "
-     "steps whose directions and lengths adapt.");
+     "`monte_carlo`: random points within the bounds. `hill_climbing`: Gaussian steps around the "
+     "best candidate. `nlopt`: a local method of the library NLopt, from many starts in parallel. "
+     "`cma_es`: Gaussian steps whose directions and lengths adapt.");
   io("evaluations", s.evaluations, kNeeded, Bound{.least = 1, .most = 1'000'000'000},
-     "How many candidates to try. That of the last search may be raised later.");
+     "Number of candidates. You can increase it later for the last search.");
   io("batch", s.batch, Bound{.least = 1, .most = 100'000},
-     "Candidates side by side before the search looks at scores; for `cma_es` the population, at "
-     "least 4. Results depend on it.");
+     "Number of candidates evaluated in parallel before the search uses their scores; for `cma_es` "
+     "the population, at least 4. Results depend on it.");
   io("deviation", s.deviation,
      Bound{.least = 0.0, .most = 10.0, .above_least = true, .hint = "in widths of the bounds"},
-     "For `hill_climbing` (0.1 if absent) and `cma_es` (0.3): standard deviation of the first "
-     "steps, in widths of the bounds.");
+     "Standard deviation of the first steps for `hill_climbing` (default 0.1) and `cma_es` "
+     "(default 0.3), in widths of the bounds.");
   io("adapt", s.adapt,
-     "For `hill_climbing`: steps grow after success and shrink after failure; else they keep their "
-     "deviation, as NTRT's.");
-  io("algorithm", s.algorithm, NloptChoices(), "For `nlopt`: which of its methods.");
+     "For `hill_climbing`: whether steps grow after success and shrink after failure. Otherwise "
+     "the deviation is constant, as in NTRT.");
+  io("algorithm", s.algorithm, NloptChoices(), "Algorithm for `nlopt`.");
   io("starts", s.starts, Bound{.least = 1, .most = 1000},
-     "For `nlopt`: how many runs side by side. The first starts from the best so far, the others "
-     "anywhere; one that has converged starts again elsewhere.");
+     "Number of parallel runs for `nlopt`. The first starts from the best candidate, the others at "
+     "random points; a converged run restarts elsewhere.");
   io("initial_step", s.initial_step,
      Bound{.least = 0.0, .most = 0.5, .above_least = true, .hint = "half the bounds"},
-     "For `nlopt`: the first step, in widths of the bounds.");
+     "First step for `nlopt`, in widths of the bounds.");
 }
 void Check(const MapReader& map, SearchText& search);
 
@@ -132,34 +133,35 @@ struct StudyFileText {
 template <class Io>
 void Keys(Io& io, Like<StudyFileText> auto& s) {
   io.Map("", "Study file",
-         "A search: which numbers of an experiment to vary, what for, in which worlds, and how.");
-  HeadKeys(io, s,
-           {"Name of the study, and of its folder under runs/. Needed unless `base` has it.",
-            "What the study is for, in a sentence or two.",
-            "Another study file, seen from this file's folder. This file then holds only what "
-            "differs: each of its keys replaces the base's as a whole, except that `parameters` "
-            "and `set` are merged by name.",
-            R"("sidewinder3.yaml")",
-            "Named numbers for expressions in this file. They may refer to each other, in any "
-            "order; `--set name=value` on the command line replaces them.",
-            R"({"fastest_hz": "2"})"});
+         "A study file defines a search: the parameters to vary, the objective, the worlds and the "
+         "methods.");
+  HeadKeys(
+      io, s,
+      {"Name of the study, and of its folder under runs/. Required unless `base` has it.",
+       "Purpose of the study, in a sentence or two.",
+       "Another study file to inherit from, relative to this file's folder. Each key of this file "
+       "replaces the whole key of the base, except that `parameters` and `set` are merged by name.",
+       R"("sidewinder3.yaml")",
+       "Named numbers for expressions in this file. They may refer to each other, in any "
+       "order; `--set name=value` on the command line overrides them.",
+       R"({"fastest_hz": "2"})"});
   io("experiment", s.experiment, kNeeded,
-     "The experiment file that is run, seen from this file's folder. Needed unless `base` has it.",
+     "Experiment file, relative to this file's folder. Required unless `base` has it.",
      Example{R"("../experiments/push_20n.yaml")"});
   io("set", s.set,
-     "Parameters of the experiment or its model whose value this study changes; `--set` on the "
-     "command line wins over them.",
+     "Parameters of the experiment or its model that this study overrides; `--set` on the command "
+     "line takes precedence.",
      Example{R"({"segments": 12})"});
   io("seed", s.seed, Bound{.least = 0, .most = 2'147'483'647},
-     "Seed of everything random in the search. The first world of every candidate keeps the "
-     "experiment's own seed.");
+     "Seed of all random numbers of the search. The first world of every candidate keeps the "
+     "experiment's seed.");
   io("vary", s.vary, kNeeded,
-     "The numbers to search. `taut learn --parameters EXPERIMENT` lists all that there are.");
+     "Varied parameters. `taut learn --parameters EXPERIMENT` lists all parameters.");
   io("objective", s.objective, kNeeded);
   io("worlds", s.worlds);
   io("search", s.search, kNeeded,
-     "What is done, one after the other, each from the best so far. The first starts from what the "
-     "experiment says.");
+     "Searches, one after the other, each from the best candidate so far. The first starts from "
+     "the experiment's values.");
 }
 
 }  // namespace taut::description

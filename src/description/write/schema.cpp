@@ -1,4 +1,4 @@
-// The JSON schemas of the formats, from the tables of keys.
+// JSON schemas of the formats, generated from the tables of keys.
 #include "taut/schema.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace taut {
 namespace description {
 namespace {
 
-/// In double quotes.
+/// Returns the text in double quotes.
 std::string Json(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -45,7 +45,7 @@ std::string OneOfThese(const std::vector<std::string>& keys) {
   return Joined(keys, [](const std::string& key) { return Needs({key}); });
 }
 
-/// What the formats spell alike. Of a name's text `reader.cpp` has the law.
+/// Definitions common to all formats. The rule for names is in `reader.cpp`.
 const std::vector<std::pair<std::string, std::string>> kSpellings{
     {"number",
      R"({"type": ["number", "string"], "title": "number", "description": "A number, or an expression over parameters such as `2.3 * 9.81`."})"},
@@ -58,19 +58,19 @@ const std::vector<std::pair<std::string, std::string>> kSpellings{
     {"vector",
      R"({"type": "array", "title": "[x, y, z]", "items": {"$ref": "#/$defs/number"}, "minItems": 3, "maxItems": 3, "description": "Three numbers."})"},
     {"points",
-     R"({"type": "array", "title": "[[time_s, value], ...]", "minItems": 1, "items": {"type": "array", "items": {"$ref": "#/$defs/number"}, "minItems": 2, "maxItems": 2}, "description": "Points of a piecewise linear course; times [s] are not negative and rise."})"},
+     R"({"type": "array", "title": "[[time_s, value], ...]", "minItems": 1, "items": {"type": "array", "items": {"$ref": "#/$defs/number"}, "minItems": 2, "maxItems": 2}, "description": "Points, linearly interpolated; times [s] are not negative and increase."})"},
     {"patterns",
      R"({"title": "pattern or list of patterns", "oneOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]})"},
     {"tags", R"({"type": "array", "items": {"$ref": "#/$defs/tag"}, "minItems": 1})"},
     {"tag", R"({"type": ["string", "integer"], "pattern": "^[A-Za-z0-9_.-]+$"})"},
     {"selector",
-     R"({"title": "selector", "oneOf": [{"$ref": "#/$defs/tag"}, {"$ref": "#/$defs/tags"}, {"type": "array", "items": {"oneOf": [{"$ref": "#/$defs/tag"}, {"$ref": "#/$defs/tags"}]}, "minItems": 1, "contains": {"type": "array"}}], "description": "`a`: all that carry the tag a. `[a, b]`: all that carry both tags. `[[a, b], [c]]`: all that carry any of these sets."})"},
+     R"({"title": "selector", "oneOf": [{"$ref": "#/$defs/tag"}, {"$ref": "#/$defs/tags"}, {"type": "array", "items": {"oneOf": [{"$ref": "#/$defs/tag"}, {"$ref": "#/$defs/tags"}]}, "minItems": 1, "contains": {"type": "array"}}], "description": "`a`: all with the tag a. `[a, b]`: all with both tags. `[[a, b], [c]]`: all with any of these sets."})"},
 };
 
-/// The definitions of one schema, in the order of reading.
+/// Definitions of one schema, in the order of reading.
 class Definitions {
  public:
-  /// Whether the caller is to write it.
+  /// Registers a definition. Returns whether the caller has to write it.
   bool Begin(const std::string& name) {
     if (!seen_.insert({name, order_.size()}).second) return false;
     order_.emplace_back(name, "");
@@ -79,7 +79,7 @@ class Definitions {
   void End(const std::string& name, std::string json) {
     order_[seen_.at(name)].second = std::move(json);
   }
-  /// All of them, with those of `kSpellings` that they or `top` refer to.
+  /// Returns all definitions, and the entries of `kSpellings` to which they or `top` refer.
   std::string Text(const std::string& top) const {
     std::string out;
     for (const auto& [name, json] : order_) out += Line(name, json);
@@ -107,7 +107,7 @@ class Definitions {
 
 std::string Reference(const std::string& name) { return R"("$ref": "#/$defs/)" + name + '"'; }
 
-/// The members that say what a number has to be. An expression is not looked at.
+/// Returns the schema members for the range of a number. Expressions are not checked.
 std::string Range(const Bound& bound) {
   std::string out;
   const auto end = [&](double value, bool open, const char* closed_word, const char* open_word) {
@@ -119,8 +119,7 @@ std::string Range(const Bound& bound) {
   return out;
 }
 
-/// What a field holds before anything is read: what it is if the key is absent. Empty if that is
-/// nothing that could be written.
+/// Returns the default of a key: the initial value of its field. Empty if it cannot be written.
 template <class T>
 std::string Default(const T& field) {
   if constexpr (std::same_as<T, bool>) {
@@ -136,7 +135,7 @@ std::string Default(const T& field) {
   }
 }
 
-/// `replaces`: what is absent stays as it was, so nothing is a default.
+/// `replaces`: absent keys keep the model's values, so the schema has no defaults.
 template <class T>
 std::string MappingReference(Definitions& definitions, bool replaces = false);
 
@@ -148,7 +147,7 @@ std::string TypeOf(const Key& key, Definitions& definitions) {
   if constexpr (std::same_as<T, double>) {
     return Reference("number") + of_number;
   } else if constexpr (std::same_as<T, int> || std::same_as<T, std::uint64_t>) {
-    return Reference("number") + R"(, "title": "whole number", "multipleOf": 1)" + of_number;
+    return Reference("number") + R"(, "title": "integer", "multipleOf": 1)" + of_number;
   } else if constexpr (std::same_as<T, bool>) {
     return R"("type": "boolean")";
   } else if constexpr (std::same_as<T, std::string> || std::same_as<T, Placed>) {
@@ -241,7 +240,7 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
     rules_.push_back(R"("oneOf": [)" + any(one) + ", " + any(other) + "]");
   }
   void Rule(const char* json) { rules_.push_back(json); }
-  /// All names; which of them it must be is left to the reader.
+  /// Adds all alternative names; the reader checks which one is valid.
   template <class OfName>
   void Spell(const Spellings& spellings, const OfName& of_name) {
     spellings_ = &spellings;
@@ -252,7 +251,8 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
     spellings_ = nullptr;
   }
 
-  /// The mapping, each line after `indent`. Of a whole file, `base` may have what is needed.
+  /// Returns the schema of the map, with `indent` before each line. In a whole file, `base` may
+  /// provide the required keys.
   std::string Text(const std::string& indent, bool whole_file) const {
     std::string needed = Joined(needed_, Json), rules;
     if (rules_.size() == 1) rules = rules_[0];
@@ -288,20 +288,20 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
   std::string Meaning(const KeyText& key) const {
     if (!spellings_) return key.meaning;
     const std::string in = spellings_->when[spelt_] + std::string(".");
-    if (spelt_ == 0) return key.meaning + ((key.needed ? " Needed in " : " In ") + in);
-    return (key.needed ? "The same, needed in " : "The same in ") + in;
+    if (spelt_ == 0) return key.meaning + ((key.needed ? " Required in " : " In ") + in);
+    return (key.needed ? "The same, required in " : "The same in ") + in;
   }
 
   Definitions& definitions_;
   bool replaces_;
-  const Spellings* spellings_ = nullptr;  ///< Of the key that has several names, now.
+  const Spellings* spellings_ = nullptr;  ///< Key with alternative names that is being visited.
   int spelt_ = 0;
   bool spelt_needed_ = false;
   std::string about_;
   std::vector<std::string> needed_, rules_, properties_;
 };
 
-/// The heading of a table.
+/// Finds the heading of a table.
 class TitleFinder : public KeyVisitor<TitleFinder, false> {
  public:
   template <class T, class... Choices>

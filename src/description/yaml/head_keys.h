@@ -1,4 +1,4 @@
-/// What stands at the top of every file.
+/// Header keys of all file formats: format version, kind, name, description, base file, parameters.
 #pragma once
 
 #include <string>
@@ -13,14 +13,15 @@ struct VersionForm {
 struct FileForm {
   static constexpr const char* kSchema = R"("type": "string")";
 };
-/// Names of parameters, each with a number.
+/// Map from names of parameters to numbers.
 struct ParametersForm {
   static constexpr const char* kSchema =
       R"("type": "object", "additionalProperties": {"$ref": "#/$defs/number"}, )"
       R"("propertyNames": {"$ref": "#/$defs/identifier"})";
 };
 
-/// What `ReadMergedFile` has read before the rest. `Kind::kSchema` is the file's own.
+/// Header keys, which `ReadMergedFile` reads before the rest. `Kind::kSchema` is the format's own
+/// schema of `kind`.
 template <class Kind>
 struct Head {
   Raw<VersionForm> taut;
@@ -29,7 +30,7 @@ struct Head {
   Raw<ParametersForm> parameters;
 };
 
-/// `name_is` ... are the meanings in this format; the examples are JSON.
+/// Descriptions of the header keys for one format; the examples are JSON.
 struct HeadTexts {
   const char *name_is, *description_is, *base_is, *base_example, *parameters_are,
       *parameters_example;
@@ -38,8 +39,8 @@ struct HeadTexts {
 template <class Io, class Text>
 void HeadKeys(Io& io, Text& t, const HeadTexts& texts) {
   if constexpr (!Io::kResolved) {
-    io("taut", t.head.taut, "Version of the format.");
-    io("kind", t.head.kind, "What the file describes.");
+    io("taut", t.head.taut, "Format version.");
+    io("kind", t.head.kind, "Kind of file.");
   }
   io("name", t.name, kNeeded, kName, texts.name_is);
   io("description", t.description, texts.description_is);

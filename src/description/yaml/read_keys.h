@@ -1,4 +1,4 @@
-/// Reading what people write by the tables of keys (keys.h).
+/// Reader of YAML files by tables of keys (keys.h).
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 
 namespace taut::description {
 
-/// Fills `out` from a map: complains about unknown and missing keys and wrong values, then about
-/// what does not go together (`Check`). `path` is where it stands; a field whose key is absent
-/// stays as it is, but a number that is needed becomes NaN. Sets `out.at` to the place and
-/// `out.good` to whether nothing was wrong, where there are such fields.
+/// Fills `out` from a map. Reports unknown and missing keys and wrong values, then violated
+/// conditions on several keys (`Check`). `path` is the path of the map in the file. A field whose
+/// key is absent keeps its value, but a required number becomes NaN. Sets `out.at` to the position
+/// and `out.good` to whether no error occurred, if these members exist.
 template <class T>
 void ReadMapping(const Value& value, const std::string& path, const Scope& scope, T& out);
 
@@ -42,7 +42,7 @@ inline constexpr bool kIsOverlay = false;
 template <class T>
 inline constexpr bool kIsOverlay<Overlay<T>> = true;
 
-/// One field, by its type.
+/// Reads one field, according to its type.
 template <class T>
 void ReadField(const Value& value, const std::string& path, const Key& key, const Scope& scope,
                T& out);
@@ -87,7 +87,8 @@ void ReadField(const Value& value, const std::string& path, const Key& key, cons
     out = key.is_direction ? ReadDirection(value, path, scope) : ReadVec3(value, path, scope);
     if (key.bound->above_least && !(out.x > 0.0 && out.y > 0.0 && out.z > 0.0)) {
       if (!std::isnan(out.x + out.y + out.z)) {
-        scope.out.Error(value.at, path + " must be three positive numbers");
+        scope.out.Error("value.not_three_positive", value.at,
+                        path + " must be three positive numbers");
       }
       out = {NAN, NAN, NAN};
     }
@@ -165,7 +166,7 @@ class FileReader : public KeyVisitor<FileReader, false> {
       not_chosen_.emplace_back(key.name);
     }
   }
-  /// A wrong name is answered with the right one.
+  /// Reports a name that is not the valid alternative, with the valid one.
   template <class OfName>
   void Spell(const Spellings& spellings, const OfName& of_name) {
     const char* right = spellings.names[std::max(0, spelling.index)];
@@ -176,7 +177,7 @@ class FileReader : public KeyVisitor<FileReader, false> {
       if (spelling.index < 0) {
         right = name;
       } else {
-        map_.Error(name, map_.Path(name) + " is of another quantity",
+        map_.Error("key.wrong_quantity", name, map_.Path(name) + " is of another quantity",
                    std::string(spelling.who) + " has " + right);
         wrong = true;
       }
@@ -188,7 +189,7 @@ class FileReader : public KeyVisitor<FileReader, false> {
     const bool chosen = std::find(not_chosen_.begin(), not_chosen_.end(), key) == not_chosen_.end();
     if (!chosen) spelling.index = -1;
   }
-  /// Of several nobody knows which was meant: none is looked at.
+  /// If several of the keys are present, all are ignored, because the intended one is unknown.
   void OneOf(const std::vector<std::string>& keys) {
     const bool clear = !map_.ExactlyOne(keys).empty();
     if (!clear) ignored_.insert(ignored_.end(), keys.begin(), keys.end());
@@ -209,11 +210,12 @@ class FileReader : public KeyVisitor<FileReader, false> {
   }
 
  private:
-  /// The same for fields of all types: what a table is compiled to is a list of calls.
+  /// Type-erased reader of a field; it keeps the code that each table compiles to small: a list of
+  /// calls.
   using FieldReader = void (*)(const Value&, const std::string& path, const Key&, const Scope&,
                                void* field);
 
-  /// False if a key is absent that is needed.
+  /// Returns false if a required key is absent.
   bool ReadInto(void* field, const Key& key, FieldReader read) {
     const Value* value = Find(key);
     if (!value) return !key.needed;

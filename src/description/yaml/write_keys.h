@@ -1,5 +1,5 @@
-/// Writing by the tables of keys (keys.h): resolved experiments, and files that people may go on
-/// writing.
+/// Writers of YAML by tables of keys (keys.h): resolved experiments, and files that people can
+/// edit.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 
 namespace taut::description {
 
-/// In double quotes, as JSON and YAML both read it.
+/// Returns the text in double quotes, valid in JSON and YAML.
 std::string Quoted(const std::string& text);
-/// Without quotes if that is as good.
+/// Returns the text without quotes where YAML allows it, else in quotes.
 std::string PlainOrQuoted(const std::string& text);
 
-/// All numbers of a list that is too long to be one, as a text.
+/// Returns all numbers of a long list as one quoted text.
 template <class List>
 std::string PackedText(const Packed<List>& packed) {
   std::string text = "\"";
@@ -29,8 +29,8 @@ std::string PackedText(const Packed<List>& packed) {
   return text + '"';
 }
 
-/// One line: `{name: "ground", point_m: [0, 0, 0]}`, or a single `key: value` of it. Files for
-/// people lack what says nothing: empty texts and lists, values that code reads.
+/// Writer of one line: a map `{name: "ground", point_m: [0, 0, 0]}`, or a single `key: value` of
+/// it. Files for people omit empty texts and lists and values that code reads (`Raw`).
 template <bool kOfResolved>
 class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
  public:
@@ -74,7 +74,7 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
     return "[" + out + "]";
   }
 
-  /// Infinity, which files do not have, is a limit that is not there.
+  /// An infinite limit is omitted, since files cannot contain infinity.
   template <class T>
   void On(const KeyText& key, const T& value) {
     if constexpr (std::same_as<T, double>) {
@@ -82,7 +82,7 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
       if (value == key.before) return;
     }
     if constexpr (std::same_as<T, bool>) {
-      if (key.later && !value) return;  // what is said by a key that came later is that it is so
+      if (key.later && !value) return;  // a later key is written only if true
     }
     if constexpr (requires { value.empty(); }) {
       if ((!kOfResolved || key.later) && value.empty()) return;
@@ -93,7 +93,7 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
       Put(key.name, Text(value, this->spelling));
     }
   }
-  /// What is chosen if a key that came later is absent is as good as absent.
+  /// A later key is omitted if it has its first choice, the default.
   template <class E>
   void On(const KeyText& key, E value, const Choices<E>& choices) {
     if (key.later && choices.front().second == value) return;
@@ -113,7 +113,7 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
   std::string text_;
 };
 
-/// Whether a mapping gets lines of its own.
+/// Whether a map is written as a block of lines, not in one line.
 template <bool kOfResolved, class T>
 inline constexpr bool kIsBlock = requires(FlowWriter<kOfResolved>& io, const T& mapping) {
   Keys(io, mapping);
@@ -121,7 +121,7 @@ inline constexpr bool kIsBlock = requires(FlowWriter<kOfResolved>& io, const T& 
 template <class T>
 inline constexpr bool kIsBlock<true, T> = std::same_as<T, RobotSpec>;
 
-/// A line for each key and for each item of a list.
+/// Writer of a block with a line for each key and each item of a list.
 template <bool kOfResolved>
 class BlockWriter : public KeyVisitor<BlockWriter<kOfResolved>, kOfResolved> {
  public:
